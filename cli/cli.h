@@ -20,6 +20,7 @@ int command_bench(int argc, char **argv);
 int command_paper(int argc, char **argv);
 int command_validate(int argc, char **argv);
 int command_sweep(int argc, char **argv);
+int command_fit(int argc, char **argv);
 int command_scene_doc(int argc, char **argv);
 
 #endif

@@ -22,6 +22,7 @@ static const struct {
     {"measure", command_measure, "measures the shape of a cache: creases, wrinkles, jitter"},
     {"verify", command_verify, "looks for faults in a cache: crossings, inverted cells, bad edges and values"},
     {"sweep", command_sweep, "burns a scene many times with other parameters, here or on a farm"},
+    {"fit", command_fit, "searches the parameters with which a scene matches measurements"},
     {"bench", command_bench, "measures speed, strain and stability of the solver on this machine"},
     {"paper", command_paper, "runs the paper's experiments and writes a page about them"},
     {"validate", command_validate, "holds the physics against sources outside the project, on a page"},
@@ -52,7 +53,7 @@ int main(int argc, char **argv) {
     if (streams_open()) return EXIT_FAILED;
     if (argc < 2) {
         fputs(
-            "singe: error: needs a command: run, check, render, convert, measure, verify, sweep, bench, paper or validate\n"
+            "singe: error: needs a command: run, check, render, convert, measure, verify, sweep, fit, bench, paper or validate\n"
             "see: singe --help\n",
             stderr);
         return EXIT_INPUT;

@@ -97,7 +97,8 @@ def build(system, out, work):
     command = system.startswith("linux") and shutil.which("apt-get") and shutil.which("dpkg")
     static = static_libraries(system, work) if command else None
     defines = {"CMAKE_TOOLCHAIN_FILE": ROOT / "cmake/toolchains/zig.cmake", "SINGE_PREVIEW": "OFF",
-               "SINGE_EXR": "OFF", "SINGE_ASSIMP": "OFF", "SINGE_PROGRAM": "ON" if static else "OFF"}
+               "SINGE_EXR": "OFF", "SINGE_ASSIMP": "OFF", "SINGE_NLOPT": "OFF",
+               "SINGE_PROGRAM": "ON" if static else "OFF"}
     if static:
         environment["PKG_CONFIG_LIBDIR"] = str(static)
         defines["SINGE_LICENCES"] = static / "licences"

@@ -7,7 +7,7 @@ set -euo pipefail
 # a|b: the first that the system's package lists have. No name has a version in it, but for the formatter's, as each
 # breaks lines elsewhere: compilers and their libraries are the system's own.
 needed=(build-essential cmake ninja-build pkg-config libfyaml-dev libpng-dev 'libjpeg-dev|libjpeg62-turbo-dev'
-        'libembree-dev|libembree4-dev|libembree3-dev' libopenexr-dev libassimp-dev libcmocka-dev python3)
+        'libembree-dev|libembree4-dev|libembree3-dev' libopenexr-dev libassimp-dev libnlopt-dev libcmocka-dev python3)
 # without these a run leaves no video and tests are skipped
 useful=(ffmpeg python3-numpy python3-openvdb valgrind locales libsdl2-dev)
 only_list=false

@@ -122,8 +122,29 @@ static bool make_drawn(Plan *plan) {
     return true;
 }
 
+static bool make_fit(Plan *plan, uint32_t *parameter, char *message, size_t size) {
+    for (uint32_t p = 0; p < plan->parameter_count; p++)
+        if (plan->parameters[p].count || plan->parameters[p].steps) {
+            *parameter = p;
+            snprintf(message, size, "a fit needs a range {from: A, to: B} without steps");
+            return false;
+        }
+    return make_values(plan, plan->evaluations);
+}
+
+bool plan_set_row(Plan *plan, uint32_t row, const double *places) {
+    bool good = true;
+    for (uint32_t p = 0; p < plan->parameter_count; p++) {
+        char *value = range_text(plan, &plan->parameters[p], fmin(fmax(places[p], 0), 1));
+        plan->values[(size_t)row * plan->parameter_count + p] = value;
+        good = good && value;
+    }
+    return good;
+}
+
 bool plan_make_rows(Plan *plan, uint32_t *parameter, char *message, size_t size) {
     message[0] = 0;
+    if (plan->target.given) return make_fit(plan, parameter, message, size);
     if (plan->method == PLAN_RANDOM || plan->method == PLAN_LATIN_HYPERCUBE) return make_drawn(plan);
     for (uint32_t p = 0; p < plan->parameter_count; p++)
         if (!choices(&plan->parameters[p])) {

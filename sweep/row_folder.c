@@ -54,7 +54,7 @@ static void row_sets(const Sweep *sweep, uint32_t row, SetList *sets, char **own
     }
 }
 
-static ExitCode check_row(Sweep *sweep, uint32_t row) {
+ExitCode sweep_check_row(Sweep *sweep, uint32_t row) {
     char *owned[PLAN_PARAMETERS_MAX];
     SetList sets = {0};
     Job job;
@@ -75,17 +75,28 @@ static ExitCode check_row(Sweep *sweep, uint32_t row) {
 ExitCode sweep_check_rows(Sweep *sweep) {
     const uint32_t only = (uint32_t)sweep->options->row;
     ExitCode code = EXIT_GOOD;
-    sweep->frames = calloc(sweep->plan.row_count, sizeof *sweep->frames);
-    if (!sweep->frames) {
-        console_error(sweep->console, "out of memory");
-        return EXIT_FAILED;
-    }
     for (uint32_t row = 0; row < sweep->plan.row_count && !code; row++)
-        if (!only || row + 1 == only) code = check_row(sweep, row);
+        if (!only || row + 1 == only) code = sweep_check_row(sweep, row);
     return code;
 }
 
 // ---- the plan
+
+/// Of a fit the parameters and the target: its values follow from them.
+static void write_target(FILE *file, const Plan *plan) {
+    const PlanTarget *target = &plan->target;
+    for (uint32_t p = 0; p < plan->parameter_count; p++) {
+        const PlanParameter *parameter = &plan->parameters[p];
+        fprintf(file, "\nrange,%.9g,%.9g,%s,%d,%d", parameter->from, parameter->to, parameter->unit,
+                parameter->logarithmic, parameter->whole);
+    }
+    fprintf(file, "\ntarget,%d,%.9g,", (int)plan->search, target->front_speed);
+    text_csv_cell(file, target->curve ? target->curve : "");
+    fputc(',', file);
+    text_csv_cell(file, target->probe ? target->probe : "");
+    fputc(',', file);
+    text_csv_cell(file, target->masks ? target->masks : "");
+}
 
 static char *plan_table(const Sweep *sweep) {
     const Plan *plan = &sweep->plan;
@@ -96,7 +107,8 @@ static char *plan_table(const Sweep *sweep) {
         fputs("row", file);
         for (uint32_t p = 0; p < plan->parameter_count; p++)
             fputc(',', file), text_csv_cell(file, plan->parameters[p].key);
-        for (uint32_t row = 0; row < plan->row_count; row++) {
+        if (plan->target.given) write_target(file, plan);
+        for (uint32_t row = 0; row < plan->row_count && !plan->target.given; row++) {
             fprintf(file, "\n%u", row + 1);
             for (uint32_t p = 0; p < plan->parameter_count; p++)
                 fputc(',', file), text_csv_cell(file, plan_value(plan, row, p));
@@ -163,7 +175,7 @@ static ExitCode note_or_compare(Sweep *sweep, const char *name, const char *text
     return code;
 }
 
-ExitCode sweep_open_folder(Sweep *sweep) {
+ExitCode sweep_note_plan(Sweep *sweep) {
     SingeError error = {0};
     char *note = NULL, *table = NULL;
     ExitCode code = scene_note(sweep, &note);

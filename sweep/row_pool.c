@@ -120,7 +120,8 @@ static void next_stage(Pool *pool, Slot *slot, int status) {
     const bool good = WIFEXITED(status) && WEXITSTATUS(status) == 0;
     const char *doing = slot->stage == STAGE_RUN ? "run" : "measure";
     char *why;
-    if (good && slot->stage == STAGE_MEASURE) {
+    // a fit compares by itself
+    if (good && (slot->stage == STAGE_MEASURE || pool->sweep->plan.target.given)) {
         complete_row(pool, slot);
         return;
     }

@@ -44,15 +44,24 @@ typedef struct Sweep {
     Lock lock;
 } Sweep;
 
+Sweep sweep_make(Console *console, const SweepOptions *options);
+void sweep_close(Sweep *sweep);
+
+/// Of a sweep whose plan is read: makes and locks its folder, and notes the plan there or compares it with what is noted.
+ExitCode sweep_prepare(Sweep *sweep);
+
 /// Paths from malloc; rows are numbered from 0 here and from 1 in names.
 char *sweep_row_folder(const Sweep *sweep, uint32_t row, bool complete);
 RowState sweep_row_state(const Sweep *sweep, uint32_t row);
 
+/// Checks the scene of a row, and notes how many frames it has.
+ExitCode sweep_check_row(Sweep *sweep, uint32_t row);
+
 /// Checks the scene of every row, or of one. Messages have been printed unless the result is EXIT_GOOD.
 ExitCode sweep_check_rows(Sweep *sweep);
 
-/// Makes the folder and notes the plan there, or compares it with what is noted.
-ExitCode sweep_open_folder(Sweep *sweep);
+/// Makes the parts of the folder and notes the plan there, or compares it with what is noted.
+ExitCode sweep_note_plan(Sweep *sweep);
 
 /// The command of a row's run, NULL-terminated: the array and its texts come from malloc.
 char **sweep_run_command(const Sweep *sweep, uint32_t row);

@@ -125,6 +125,13 @@ static ExitCode open_folder(Sweep *sweep) {
     return result ? EXIT_FAILED : EXIT_GOOD;
 }
 
+static ExitCode sweep_make_room(Sweep *sweep) {
+    if (!sweep->frames) sweep->frames = calloc(sweep->plan.row_count, sizeof *sweep->frames);
+    if (sweep->frames) return EXIT_GOOD;
+    console_error(sweep->console, "out of memory");
+    return EXIT_FAILED;
+}
+
 /// A sweep that runs or submits rows is alone in its folder; a row's job and a report are not.
 static ExitCode hold_folder(Sweep *sweep) {
     const SweepOptions *o = sweep->options;
@@ -137,6 +144,13 @@ static ExitCode hold_folder(Sweep *sweep) {
     else if (!kept) console_warn(sweep->console, "%s: no locks there: nothing else may write it", sweep->folder);
     free(path);
     return result ? EXIT_FAILED : EXIT_GOOD;
+}
+
+ExitCode sweep_prepare(Sweep *sweep) {
+    ExitCode code = sweep_make_room(sweep);
+    if (!code) code = open_folder(sweep);
+    if (!code) code = hold_folder(sweep);
+    return code ? code : sweep_note_plan(sweep);
 }
 
 static void print_rows(const Sweep *sweep) {
@@ -163,15 +177,29 @@ static ExitCode run_or_report(Sweep *sweep) {
 
 static ExitCode sweep_all(Sweep *sweep) {
     const SweepOptions *o = sweep->options;
-    ExitCode code = plan_read(o->plan, sweep->console, &sweep->plan);
+    ExitCode code = plan_read(o->plan, false, sweep->console, &sweep->plan);
     if (code) return code;
     if (o->row > 0 && (uint32_t)o->row > sweep->plan.row_count) {
         console_error(sweep->console, "--row %d: %s has %u rows", o->row, o->plan, sweep->plan.row_count);
         return EXIT_INPUT;
     }
-    if ((code = sweep_check_rows(sweep)) || (code = open_folder(sweep)) || (code = hold_folder(sweep))) return code;
-    if ((code = sweep_open_folder(sweep))) return code;
+    if ((code = sweep_make_room(sweep)) || (code = sweep_check_rows(sweep)) || (code = sweep_prepare(sweep)))
+        return code;
     return run_or_report(sweep);
+}
+
+Sweep sweep_make(Console *console, const SweepOptions *options) {
+    return (Sweep){.console = console,
+                   .options = options,
+                   .program = own_path(),
+                   .plan_path = absolute(options->plan),
+                   .lock = LOCK_NONE};
+}
+
+void sweep_close(Sweep *sweep) {
+    lock_release(&sweep->lock);
+    plan_free(&sweep->plan);
+    free(sweep->folder), free(sweep->frames), free(sweep->name), free(sweep->program), free(sweep->plan_path);
 }
 
 int command_sweep(int argc, char **argv) {
@@ -181,15 +209,9 @@ int command_sweep(int argc, char **argv) {
     if (!code && !done) {
         interrupt_shield();
         Console console = console_make(options.quiet);
-        Sweep sweep = {.console = &console,
-                       .options = &options,
-                       .program = own_path(),
-                       .plan_path = absolute(options.plan),
-                       .lock = LOCK_NONE};
+        Sweep sweep = sweep_make(&console, &options);
         code = sweep_all(&sweep);
-        lock_release(&sweep.lock);
-        plan_free(&sweep.plan);
-        free(sweep.folder), free(sweep.frames), free(sweep.name), free(sweep.program), free(sweep.plan_path);
+        sweep_close(&sweep);
     }
     set_free(&options.slurm);
     return code;

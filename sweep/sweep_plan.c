@@ -1,5 +1,5 @@
 // A plan read from its file: YAML by the tree of scene files, so that errors have their lines.
-#include "sweep/sweep_plan.h"
+#include "sweep/plan_reader.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,14 +15,9 @@ enum { PLAN_BYTES_MAX = 1 << 20 };
 
 static const char *const methods[PLAN_METHODS] = {"grid", "list", "random", "latin-hypercube"};
 
-typedef struct PlanReader {
-    Plan *plan;
-    SceneText text;
-    SceneMessages messages;
-    const char *folder; ///< of the plan, "" or with its last slash
-} PlanReader;
+static const char *const searches[PLAN_SEARCHES] = {"local", "global"};
 
-static void complain(PlanReader *reader, const Node *node, const char *key, const char *expected) {
+void plan_complain(PlanReader *reader, const Node *node, const char *key, const char *expected) {
     char seen[NODE_WORDS];
     message_add(&reader->messages, &reader->text, node->location, "%s: expected %s, got %s", key, expected,
                 node_describe(node, seen, sizeof seen));
@@ -79,13 +74,13 @@ static void read_count(PlanReader *reader, const Node *node, const char *key, ui
     }
     snprintf(expected, sizeof expected, "a whole number from %u to %u", low, high);
     if (number >= low && number <= high) *count = (uint32_t)number;
-    else complain(reader, node, key, expected);
+    else plan_complain(reader, node, key, expected);
 }
 
 static bool read_switch(PlanReader *reader, const Node *node, const char *key) {
     const char *text = node->kind == NODE_VALUE ? node->text : "";
     const bool yes = strcmp(text, "yes") == 0 || strcmp(text, "true") == 0;
-    if (!yes && strcmp(text, "no") != 0 && strcmp(text, "false") != 0) complain(reader, node, key, "yes or no");
+    if (!yes && strcmp(text, "no") != 0 && strcmp(text, "false") != 0) plan_complain(reader, node, key, "yes or no");
     return yes;
 }
 
@@ -100,7 +95,7 @@ static void read_quantity(PlanReader *reader, const Node *node, const char *key,
             return;
         }
     }
-    complain(reader, node, key, "a number, with a unit or without");
+    plan_complain(reader, node, key, "a number, with a unit or without");
 }
 
 // ---- parameters
@@ -143,14 +138,14 @@ static void read_parameter(PlanReader *reader, const Node *node) {
         for (const Node *value = node->first; value && parameter->values; value = value->next)
             parameter->values[parameter->count++] = flow_text(plan, value, "");
     } else {
-        complain(reader, node, node->key, "a list of values, or a range {from: A, to: B, steps: N}");
+        plan_complain(reader, node, node->key, "a list of values, or a range {from: A, to: B, steps: N}");
     }
 }
 
 static void read_parameters(PlanReader *reader, const Node *node) {
     Plan *plan = reader->plan;
     if (node->kind != NODE_MAP || !node->count || node->count > PLAN_PARAMETERS_MAX) {
-        complain(reader, node, "parameters", "a map of 1 to 64 keys of the scene");
+        plan_complain(reader, node, "parameters", "a map of 1 to 64 keys of the scene");
         return;
     }
     plan->parameters = arena_new(plan->arena, node->count, sizeof *plan->parameters);
@@ -160,7 +155,7 @@ static void read_parameters(PlanReader *reader, const Node *node) {
 static void read_sets(PlanReader *reader, const Node *node) {
     Plan *plan = reader->plan;
     if (node->kind != NODE_MAP) {
-        complain(reader, node, "set", "a map of keys of the scene");
+        plan_complain(reader, node, "set", "a map of keys of the scene");
         return;
     }
     plan->sets = arena_new(plan->arena, (size_t)node->count + 1, sizeof *plan->sets);
@@ -174,42 +169,49 @@ static void read_sets(PlanReader *reader, const Node *node) {
 
 // ---- the plan
 
-static void read_scene_path(PlanReader *reader, const Node *node) {
-    Plan *plan = reader->plan;
+char *plan_read_path(PlanReader *reader, const Node *node, const char *key) {
     if (node->kind != NODE_VALUE || !node->text[0]) {
-        complain(reader, node, "scene", "the path of a scene file");
-        return;
+        plan_complain(reader, node, key, "the path of a file");
+        return NULL;
     }
     const char *folder = node->text[0] == '/' ? "" : reader->folder;
-    plan->scene = arena_new(plan->arena, strlen(folder) + strlen(node->text) + 1, 1);
-    if (plan->scene) sprintf(plan->scene, "%s%s", folder, node->text);
+    char *path = arena_new(reader->plan->arena, strlen(folder) + strlen(node->text) + 1, 1);
+    if (path) sprintf(path, "%s%s", folder, node->text);
+    return path;
 }
 
-static void read_method(PlanReader *reader, const Node *node) {
-    for (int i = 0; i < PLAN_METHODS && node->kind == NODE_VALUE; i++)
-        if (strcmp(node->text, methods[i]) == 0) {
-            reader->plan->method = (PlanMethod)i;
-            return;
-        }
-    complain(reader, node, "method", "grid, list, random or latin-hypercube");
+/// The index of a word in a list.
+static int read_word(PlanReader *reader, const Node *node, const char *key, const char *const *words, int count,
+                     const char *expected) {
+    for (int i = 0; i < count && node->kind == NODE_VALUE; i++)
+        if (strcmp(node->text, words[i]) == 0) return i;
+    plan_complain(reader, node, key, expected);
+    return 0;
 }
 
 static void read_key(PlanReader *reader, const Node *node) {
     Plan *plan = reader->plan;
     const char *key = node->key;
-    if (strcmp(key, "scene") == 0) read_scene_path(reader, node);
-    else if (strcmp(key, "method") == 0) read_method(reader, node);
+    if (strcmp(key, "scene") == 0) plan->scene = plan_read_path(reader, node, key);
+    else if (strcmp(key, "method") == 0)
+        plan->method =
+            (PlanMethod)read_word(reader, node, key, methods, PLAN_METHODS, "grid, list, random or latin-hypercube");
     else if (strcmp(key, "samples") == 0) read_count(reader, node, key, 1, PLAN_ROWS_MAX, &plan->samples);
     else if (strcmp(key, "seed") == 0) read_count(reader, node, key, 0, UINT32_MAX, &plan->seed);
     else if (strcmp(key, "set") == 0) read_sets(reader, node);
     else if (strcmp(key, "parameters") == 0) read_parameters(reader, node);
+    else if (strcmp(key, "target") == 0) plan_read_target(reader, node);
+    else if (strcmp(key, "search") == 0)
+        plan->search = (PlanSearch)read_word(reader, node, key, searches, PLAN_SEARCHES, "local or global");
+    else if (strcmp(key, "evaluations") == 0) read_count(reader, node, key, 1, PLAN_ROWS_MAX, &plan->evaluations);
     else
         message_add(&reader->messages, &reader->text, node->key_location,
-                    "unknown key '%s' of a plan: expected scene, method, samples, seed, set or parameters",
+                    "unknown key '%s' of a plan: expected scene, method, samples, seed, set, parameters, and for a fit "
+                    "target, search, evaluations",
                     shown(key).text);
 }
 
-static void check_plan(PlanReader *reader, const Node *root) {
+static void check_plan(PlanReader *reader, const Node *root, bool fit) {
     Plan *plan = reader->plan;
     const bool drawn = plan->method == PLAN_RANDOM || plan->method == PLAN_LATIN_HYPERCUBE;
     if (!plan->scene) message_add(&reader->messages, &reader->text, root->location, "a plan needs 'scene'");
@@ -218,6 +220,10 @@ static void check_plan(PlanReader *reader, const Node *root) {
     if (drawn && !plan->samples)
         message_add(&reader->messages, &reader->text, root->location, "method %s needs 'samples'",
                     methods[plan->method]);
+    if (fit && !plan->target.given && !reader->messages.count)
+        message_add(&reader->messages, &reader->text, root->location, "a fit needs 'target'");
+    if (!fit && plan->target.given)
+        message_add(&reader->messages, &reader->text, root->location, "a plan with 'target' is one of singe fit");
     if (reader->messages.count || arena_failed(plan->arena)) return;
     uint32_t parameter = 0;
     char message[200];
@@ -225,17 +231,17 @@ static void check_plan(PlanReader *reader, const Node *root) {
         message_add(&reader->messages, &reader->text, plan->parameters[parameter].location, "%s", message);
 }
 
-static void read_plan(PlanReader *reader) {
+static void read_plan(PlanReader *reader, bool fit) {
     Plan *plan = reader->plan;
     const SceneText *text = &reader->text;
     Node *root = tree_read(plan->arena, text, text->bytes, text->size, (SceneLocation){0}, &reader->messages);
     if (!root) return;
     if (root->kind != NODE_MAP) {
-        complain(reader, root, "a plan", "a map (key: value)");
+        plan_complain(reader, root, "a plan", "a map (key: value)");
         return;
     }
     for (const Node *node = root->first; node; node = node->next) read_key(reader, node);
-    check_plan(reader, root);
+    check_plan(reader, root, fit);
 }
 
 /// "plans/wind.yaml": the folder "plans/" and the name "wind".
@@ -246,10 +252,10 @@ static void take_path(PlanReader *reader, const char *path) {
     plan->name = arena_text(plan->arena, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
 }
 
-ExitCode plan_read(const char *path, Console *console, Plan *plan) {
+ExitCode plan_read(const char *path, bool fit, Console *console, Plan *plan) {
     Bytes bytes = {0};
     SingeError error = {0};
-    *plan = (Plan){.arena = arena_create()};
+    *plan = (Plan){.arena = arena_create(), .evaluations = 40};
     SingeResult result =
         plan->arena ? file_read_max(path, PLAN_BYTES_MAX, (SingeAllocator){0}, &bytes, &error) : SINGE_ERROR_MEMORY;
     if (result) {
@@ -260,7 +266,7 @@ ExitCode plan_read(const char *path, Console *console, Plan *plan) {
     }
     PlanReader reader = {.plan = plan, .text = {.name = path, .bytes = (const char *)bytes.data, .size = bytes.size}};
     take_path(&reader, path);
-    read_plan(&reader);
+    read_plan(&reader, fit);
     const bool failed = arena_failed(plan->arena);
     const bool bad = reader.messages.count || reader.messages.left_out;
     scene_messages_print(&reader.messages, stderr);

@@ -27,6 +27,21 @@ typedef struct PlanParameter {
     SceneLocation location;
 } PlanParameter;
 
+/// What a fit is to match (docs/sweep.md): the sum of what is given.
+typedef struct PlanTarget {
+    bool given;
+    double front_speed; ///< m/s; 0: none
+    char *curve;        ///< path of a CSV table with columns time (s) and temperature (K); NULL: none
+    char *probe;        ///< the scene's probe that has the curve
+    char *masks;        ///< path of PNGs with # for the frame's number, white where the sheet has burnt; NULL: none
+} PlanTarget;
+
+typedef enum PlanSearch {
+    PLAN_SEARCH_LOCAL,  ///< from the middle of the ranges: Subplex (Rowan 1990)
+    PLAN_SEARCH_GLOBAL, ///< over all of the ranges: DIRECT-L (Gablonsky and Kelley 2001)
+    PLAN_SEARCHES
+} PlanSearch;
+
 enum { PLAN_ROWS_MAX = 10000, PLAN_PARAMETERS_MAX = 64 };
 
 typedef struct Plan {
@@ -35,15 +50,21 @@ typedef struct Plan {
     char *scene;       ///< path of the scene
     PlanMethod method;
     uint32_t samples, seed;
+    PlanTarget target;
+    PlanSearch search;
+    uint32_t evaluations; ///< of a fit, at most: its rows
     uint32_t set_count, parameter_count, row_count;
     char **sets; ///< [set_count] PATH=VALUE for all rows
     PlanParameter *parameters;
     char **values; ///< [row_count * parameter_count], row by row
 } Plan;
 
-/// Reads a plan and makes its rows. All errors have been printed, with their lines, unless the result is EXIT_GOOD.
-ExitCode plan_read(const char *path, Console *console, Plan *plan);
+/// Reads the plan of a sweep, or of a fit, and makes its rows. All errors have been printed, with their lines, unless the result is EXIT_GOOD.
+ExitCode plan_read(const char *path, bool fit, Console *console, Plan *plan);
 void plan_free(Plan *plan);
+
+/// Sets a row's values from places in [0, 1] of the ranges. False when out of memory.
+bool plan_set_row(Plan *plan, uint32_t row, const double *places);
 
 /// A row's value of a parameter.
 static inline const char *plan_value(const Plan *plan, uint32_t row, uint32_t parameter) {
@@ -54,6 +75,7 @@ static inline const char *plan_value(const Plan *plan, uint32_t row, uint32_t pa
 const char *plan_label(const Plan *plan, uint32_t parameter);
 
 /// Makes the rows of a plan whose parameters are read (plan_rows.c). False: `message` says why not, about `parameter`.
+/// A fit's rows are as many as its evaluations, and have no values yet.
 bool plan_make_rows(Plan *plan, uint32_t *parameter, char *message, size_t size);
 
 #endif

@@ -15,14 +15,13 @@
 #include "cli/text.h"
 #include "cli/video.h"
 #include "formats/formats.h"
-#include "formats/lines.h"
-#include "formats/number.h"
 #include "scene/builtin.h"
+#include "sweep/csv.h"
 #include "sweep/sweep.h"
 
 extern const SceneBuiltin sweep_pages[];
 
-enum { NUMBERS_MAX = 160, FRAMES_MAX = 1 << 20 };
+enum { NUMBERS_MAX = 160 };
 
 /// A column of a row's tables.
 typedef struct Column {
@@ -41,9 +40,9 @@ typedef struct Report {
 // ---- tables
 
 /// The index of a column, which is added where it is new; -1 where there is no room.
-static int find_column(Report *report, const char *table, const uint8_t *begin, const uint8_t *end) {
+static int find_column(Report *report, const char *table, const char *cell, size_t size) {
     char name[sizeof(Column)];
-    snprintf(name, sizeof name, "%s.%.*s", table, (int)(end - begin), (const char *)begin);
+    snprintf(name, sizeof name, "%s.%.*s", table, (int)size, cell);
     for (int i = 0; i < report->column_count; i++)
         if (strcmp(report->columns[i].name, name) == 0) return i;
     if (report->column_count == NUMBERS_MAX) return -1;
@@ -51,44 +50,28 @@ static int find_column(Report *report, const char *table, const uint8_t *begin, 
     return report->column_count++;
 }
 
-static void next_cell(Text *text, const uint8_t **begin, const uint8_t **end) {
-    *begin = text->at;
-    while (!text_at_line_end(text) && *text->at != ',') text->at++;
-    *end = text->at;
-    if (!text_at_line_end(text)) text->at++;
-}
-
-/// The number of a column: the last line's, or the median of all.
-static double summarize(Text text, int column, bool median, double *values) {
-    int count = 0;
-    for (text_next_line(&text); text.at < text.end && count < FRAMES_MAX; text_next_line(&text)) {
-        const uint8_t *begin = text.at, *end = text.at;
-        double value;
-        for (int i = 0; i <= column; i++) next_cell(&text, &begin, &end);
-        if (number_double(&begin, end, &value) == NUMBER_OK && begin == end) values[count++] = value;
-    }
-    if (!count) return (double)NAN;
-    return median ? numbers_median(values, count) : values[count - 1];
+/// The number of a column: the last line's, or the median of all; NaN where there is none.
+static double summarize(const Csv *csv, int column, bool median) {
+    uint32_t count;
+    double *values = csv_numbers(csv, column, (CsvLines){0}, &count), number = (double)NAN;
+    if (count) number = median ? numbers_median(values, (int)count) : values[count - 1];
+    free(values);
+    return number;
 }
 
 static bool read_table(Report *report, uint32_t row, const char *table, bool median) {
     char *folder = sweep_row_folder(report->sweep, row, true), *path = text_format("%s/%s.csv", folder, table);
-    Bytes bytes = {0};
-    SingeError error = {0};
-    const bool good = !file_read(path, (SingeAllocator){0}, &bytes, &error);
-    double *values = good ? malloc(((size_t)bytes.size / 2 + 2) * sizeof *values) : NULL;
-    Text text = {bytes.data, bytes.data + bytes.size, 1}, header = text;
-    for (int c = 0; values && !text_at_line_end(&header); c++) {
-        const uint8_t *begin, *end;
-        next_cell(&header, &begin, &end);
-        const bool counts = !text_word_is(begin, end, "frame") && !text_word_is(begin, end, "time");
-        const int column = counts ? find_column(report, table, begin, end) : -1;
-        if (column >= 0)
-            report->numbers[(size_t)row * NUMBERS_MAX + (size_t)column] = summarize(text, c, median, values);
+    Csv csv = {0};
+    const bool good = !csv_read(&csv, path, report->sweep->console);
+    const char *name;
+    size_t size;
+    for (int c = 0; csv_column_name(&csv, c, &name, &size); c++) {
+        const bool counts =
+            !(size == 5 && memcmp(name, "frame", 5) == 0) && !(size == 4 && memcmp(name, "time", 4) == 0);
+        const int column = counts ? find_column(report, table, name, size) : -1;
+        if (column >= 0) report->numbers[(size_t)row * NUMBERS_MAX + (size_t)column] = summarize(&csv, c, median);
     }
-    if (!good) console_result(report->sweep->console, &error);
-    free(values);
-    bytes_free(&bytes);
+    csv_free(&csv);
     free(path), free(folder);
     return good;
 }

@@ -1,0 +1,190 @@
+"""A scene's parameters found again from what one run of it shows."""
+
+import csv
+import os
+import re
+import signal
+import struct
+import time
+import unittest
+import zlib
+
+from support import HAS_EXR, Case
+
+SCENE = """\
+frames: {frames}
+fps: 24
+steps: 4
+pace: 8
+sheets:
+  - grid: {{size: [6 cm, 6 cm], cells: [24, 24]}}
+    translate: [0, 0, 2 mm]
+sources:
+  - {{kind: spot, position: [-3 cm, 0, 0], temperature: 1200 K, conductance: 300, radius: 1 cm, falloff: 1 cm}}
+colliders:
+  - kind: plane
+probes:
+  - {{name: p, kind: point, at: [-1 cm, 0, 2 mm]}}
+gas: no
+"""
+RATE = "sheets.0.material.mass_rate"
+RANGE = f"parameters:\n  {RATE}: {{from: 1e-3, to: 3e-2, logarithmic: yes}}\n"
+
+
+def gray_png(path, size, rows):
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    with open(path, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", size, size, 8, 0, 0, 0, 0)) +
+                   chunk(b"IDAT", zlib.compress(b"".join(b"\0" + bytes(row) for row in rows))) + chunk(b"IEND", b""))
+
+
+class Fit(Case):
+    def write_scene(self, **_):
+        path = self.path("tiny.yaml")
+        with open(path, "w") as file:
+            file.write(SCENE.format(frames=16))
+        return path
+
+    def truth(self, *args):
+        self.run_scene("truth", "--set", f"{RATE}=9e-3", "--quiet", *args)
+        return self.stats("truth")[-1]
+
+    def fit(self, plan, *args, out="f", expect=0, **options):
+        with open(self.path("plan.yaml"), "w") as file:
+            file.write(plan)
+        return self.singe("fit", self.path("plan.yaml"), "-o", self.path(out), *args, expect=expect, **options)
+
+    def lines(self, out="f"):
+        try:
+            with open(self.path(out, "fit.csv"), newline="") as file:
+                return list(csv.DictReader(file))
+        except FileNotFoundError:
+            return []
+
+    def found(self, shown):
+        return float(re.search(RATE + r"=([0-9.e-]+)", shown).group(1))
+
+    def test_front_speed(self):
+        speed = float(self.truth()["front_speed"])
+        plan = f"scene: tiny.yaml\ntarget: {{front_speed: {1e3 * speed} mm/s}}\nevaluations: 12\n{RANGE}"
+        shown, err = self.fit(plan)
+        self.assertAlmostEqual(self.found(shown), 9e-3, delta=0.1 * 9e-3)
+        lines = self.lines()
+        self.assertLessEqual(len(lines), 12)
+        self.assertEqual(len({line[RATE] for line in lines}), len(lines), "a row was run twice")
+        best = min(lines, key=lambda line: float(line["error"]))
+        self.assertIn(f"row {best['row']} of {len(lines)}, error", shown)
+        self.assertIn(f"1: mass_rate={lines[0][RATE]}: error", err)
+        # the line of the result is a command that gives that row
+        front = float(self.stats(f"f/rows/{int(best['row']):04}")[-1]["front_speed"])
+        self.assertAlmostEqual(float(best["error"]), (front / speed - 1) ** 2, delta=1e-9)
+
+    def test_temperature_curve(self):
+        self.truth()
+        with open(self.path("truth", "probes.csv"), newline="") as file:
+            rows = [(r["time"], r["temperature"]) for r in csv.DictReader(file) if r["temperature"]]
+        with open(self.path("curve.csv"), "w") as file:
+            file.write("temperature,note,time\n" + "".join(f"{kelvin},x,{time}\n" for time, kelvin in rows))
+        shown, _ = self.fit("scene: tiny.yaml\ntarget: {temperature: {file: curve.csv, probe: p}}\nevaluations: 12\n" +
+                            RANGE)
+        self.assertAlmostEqual(self.found(shown), 9e-3, delta=0.1 * 9e-3)
+
+    @unittest.skipUnless(HAS_EXR, "built without EXR")
+    def test_masks(self):
+        """From the textures that a run leaves; the search is over all of the range."""
+        from exr import read
+        self.truth("--set", "output.formats=[textures]", "--set", "output.texture_size=128")
+        for frame in 10, 16:
+            size, _, channels = read(self.path("truth", "textures", f"tiny.{frame:04}.exr"))
+            flat = [255 if alpha < 0.5 or burn >= 0.5 else 0 for alpha, burn in zip(channels["A"], channels["G"])]
+            burnt = [flat[i:i + size] for i in range(0, size * size, size)]
+            self.assertGreater(sum(map(sum, burnt)), 0)
+            gray_png(self.path(f"mask{frame:02}.png"), 128, burnt)
+        shown, _ = self.fit("scene: tiny.yaml\ntarget: {masks: mask##.png}\nsearch: global\nevaluations: 15\n" + RANGE)
+        self.assertAlmostEqual(self.found(shown), 9e-3, delta=0.25 * 9e-3)
+        best = min(float(line["error"]) for line in self.lines())
+        first = float(self.lines()[0]["error"])
+        self.assertLess(best, 0.25 * first, "no better than the middle of the range")
+
+    def test_two_parameters(self):
+        """A sum of two targets; a whole number stays one."""
+        speed = float(self.truth()["front_speed"])
+        self.fit(f"scene: tiny.yaml\ntarget: {{front_speed: {speed}}}\nevaluations: 6\n{RANGE}"
+                 "  sheets.0.grid.seed: {from: 1, to: 5, whole: yes}\n")
+        self.assertTrue(all(re.fullmatch(r"[1-5]", line["sheets.0.grid.seed"]) for line in self.lines()))
+
+    def test_a_killed_fit_goes_on(self):
+        speed = float(self.truth()["front_speed"])
+        plan = f"scene: tiny.yaml\ntarget: {{front_speed: {speed}}}\nevaluations: 7\n{RANGE}"
+        whole, _ = self.fit(plan, out="whole")
+        for stop in signal.SIGKILL, signal.SIGINT:
+            before = len(self.lines())
+            run = self.start("fit", self.path("plan.yaml"), "-o", self.path("f"))
+            self.addCleanup(run.stderr.close)
+            end = time.monotonic() + 120
+            while len(self.lines()) < before + 2:
+                self.assertLess(time.monotonic(), end)
+                time.sleep(0.005)
+            run.send_signal(stop)
+            self.assertNotEqual(run.wait(timeout=60), 0)
+        times = {f: os.stat(self.path("f", "rows", f)).st_mtime_ns for f in os.listdir(self.path("f", "rows"))}
+        shown, _ = self.fit(plan)
+        self.assertEqual(shown, whole)
+        self.assertEqual(self.lines(), self.lines("whole"))
+        for name, changed in times.items():
+            self.assertEqual(os.stat(self.path("f", "rows", name)).st_mtime_ns, changed)
+
+    def test_another_fit_is_noticed(self):
+        speed = float(self.truth()["front_speed"])
+        plan = f"scene: tiny.yaml\ntarget: {{front_speed: {speed}}}\nevaluations: 1\n{RANGE}"
+        self.fit(plan)
+        for other in plan.replace("to: 3e-2", "to: 2e-2"), plan.replace(str(speed), str(2 * speed)):
+            self.assertIn("another plan", self.fit(other, expect=2)[1])
+
+    def test_bad_plans(self):
+        for name, text in (("a.csv", "time,temperature\n0,300\n0,400\n"), ("b.csv", "time,kelvin\n0,300\n1,400\n"),
+                           ("c.csv", "time,temperature\n0,300\n1,300\n"), ("d.csv", "time,temperature\n0,300\n1,\n")):
+            with open(self.path(name), "w") as file:
+                file.write(text)
+        for target, expected in (
+            ("", "needs 'target'"),
+            ("target: {}\n", "expected a map of front_speed, temperature or masks"),
+            ("target: {speed: 1}\n", "unknown key 'speed'"),
+            ("target: {front_speed: -1}\n", "a speed above 0"),
+            ("target: {front_speed: 3 kg}\n", "a speed above 0"),
+            ("target: {temperature: curve.csv}\n", "{file: CURVE.csv, probe: NAME}"),
+            ("target: {temperature: {file: curve.csv}}\n", "needs 'file' and 'probe'"),
+            ("target: {temperature: {file: none.csv, probe: p}}\n", "none.csv"),
+            ("target: {temperature: {file: a.csv, probe: p}}\n", "times must ascend"),
+            ("target: {temperature: {file: b.csv, probe: p}}\n", "needs columns 'time' and 'temperature'"),
+            ("target: {temperature: {file: c.csv, probe: p}}\n", "all temperatures are the same"),
+            ("target: {temperature: {file: d.csv, probe: p}}\n", "each with a time and a temperature"),
+            ("target: {masks: mask.png}\n", "one run of #"),
+            ("target: {masks: '#/mask##.png'}\n", "one run of #"),
+            ("target: {front_speed: 1}\nsearch: far\n", "local or global"),
+            ("target: {front_speed: 1}\nevaluations: 0\n", "whole number from 1"),
+        ):
+            with self.subTest(target):
+                self.assertIn(expected, self.fit("scene: tiny.yaml\n" + target + RANGE, expect=2)[1])
+        target = "scene: tiny.yaml\ntarget: {front_speed: 1 mm/s}\n"
+        self.assertIn("without steps", self.fit(target + f"parameters:\n  {RATE}: [1e-3, 2e-3]\n", expect=2)[1])
+        with open(self.path("plan.yaml"), "w") as file:
+            file.write(target + RANGE)
+        self.assertIn("one of singe fit", self.singe("sweep", self.path("plan.yaml"), expect=2)[1])
+
+    def test_what_a_row_lacks(self):
+        """A probe that the scene has not, masks of no frame: the fit fails and says so."""
+        self.truth()
+        with open(self.path("curve.csv"), "w") as file:
+            file.write("time,temperature\n0,300\n1,400\n")
+        _, err = self.fit("scene: tiny.yaml\ntarget: {temperature: {file: curve.csv, probe: q}}\nevaluations: 1\n" + RANGE,
+                          expect=1)
+        self.assertIn("has no temperatures of probe 'q'", err)
+        _, err = self.fit("scene: tiny.yaml\ntarget: {masks: mask##.png}\nevaluations: 1\n" + RANGE, out="g", expect=1)
+        self.assertIn("there is no such file for any frame", err)
+
+
+if __name__ == "__main__":
+    unittest.main()
