@@ -106,6 +106,7 @@ SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets,
     Scene bare = *scene; // a longer run or other looks may go on from the same checkpoint
     bare.frames = 1;
     bare.output = (SceneOutput){0};
+    bare.gas_detail = 0;
     bool good = hash_scene(&bare, &hash->looks);
     bare.preview = (ScenePreview){0};
     if (good && hash_scene(&bare, &hash->result)) {

@@ -15,7 +15,8 @@ enum { OPT_TO, OPT_SINGLE, OPT_SET, OPT_QUIET, OPT_COUNT };
 static const ArgOption convert_options[OPT_COUNT] = {
     [OPT_TO] = {"to", 0, "FORMAT", "format to write (see docs/formats.md); may be repeated"},
     [OPT_SINGLE] = {"single", 0, NULL, "one file of all frames: `usd`, `glb`"},
-    [OPT_SET] = {"set", 0, "PATH=VALUE", "sets a value of the scene (output.texture_size); may be repeated"},
+    [OPT_SET] = {"set", 0, "PATH=VALUE",
+                 "sets a value of the scene (output.texture_size, gas.detail); may be repeated"},
     [OPT_QUIET] = {"quiet", 'q', NULL, "says nothing but errors"},
 };
 
@@ -134,6 +135,14 @@ static bool show_single(void *context, int frame) {
     return !interrupt_asked();
 }
 
+static SingeResult convert_gas(const Outputs *outputs, Console *console, int last, bool *interrupted,
+                               SingeError *error) {
+    SingleProgress progress = {console, console_clock(), last};
+    SingeResult result = gas_detail_write(outputs->job, outputs->folder, last, show_single, &progress, error);
+    *interrupted = result && interrupt_asked();
+    return *interrupted ? SINGE_OK : result;
+}
+
 static SingeResult convert_singles(const Outputs *outputs, const ConvertOptions *o, Console *console, int last,
                                    bool *interrupted, SingeError *error) {
     SingeResult result = SINGE_OK;
@@ -142,9 +151,6 @@ static SingeResult convert_singles(const Outputs *outputs, const ConvertOptions 
         SingleProgress progress = {console, console_clock(), last};
         result = outputs_write_single(outputs, i, last, show_single, &progress, error);
     }
-    SingleProgress progress = {console, console_clock(), last};
-    if (!result && o->gas)
-        result = gas_detail_write(outputs->job, outputs->folder, last, show_single, &progress, error);
     *interrupted = result && interrupt_asked();
     return *interrupted ? SINGE_OK : result;
 }
@@ -152,8 +158,8 @@ static SingeResult convert_singles(const Outputs *outputs, const ConvertOptions 
 static void print_results(const Outputs *outputs, const ConvertOptions *o) {
     const unsigned singles = o->singles;
     if (o->gas) {
-        char *path = gas_detail_folder(outputs->folder);
-        printf("%s/%s.0001.vdb\n", path, outputs->folder->name);
+        char *path = folder_gas_detail(outputs->folder, 1);
+        printf("%s\n", path);
         free(path);
     }
     for (int i = 0; i < OUTPUT_SINGLE_COUNT; i++) {
@@ -185,12 +191,14 @@ static ExitCode convert(const ConvertOptions *o, Console *console, const Job *jo
     }
     SingeResult result = lock_take(lock, folder->cache_lock, "frames", false, &kept, &error);
     if (!kept) console_warn(console, "%s: no locks there: nothing else may write it", folder->path);
-    char *vdb = folder_vdb(folder, 1);
+    char *vdb = folder_vdb(folder, 1), *fine = folder_gas_detail(folder, 1);
     if (!result) result = outputs_open(&outputs, job, folder, o->formats, folder_has(vdb), &error);
-    free(vdb);
-    if (!result) result = folder_create(folder, (FolderParts){.outputs = o->formats}, &error);
+    outputs.scene.gas_detail = job->scene->gas_detail > 1 && (o->gas || folder_has(fine));
+    free(vdb), free(fine);
+    if (!result) result = folder_create(folder, (FolderParts){.outputs = o->formats, .gas_detail = o->gas}, &error);
     interrupt_watch();
-    if (!result && o->formats) result = convert_frames(&outputs, console, last, &interrupted, &error);
+    if (!result && o->gas) result = convert_gas(&outputs, console, last, &interrupted, &error);
+    if (!result && !interrupted && o->formats) result = convert_frames(&outputs, console, last, &interrupted, &error);
     if (!result && !interrupted) result = convert_singles(&outputs, o, console, last, &interrupted, &error);
     console_clear(console);
     if (result) console_result(console, &error);

@@ -81,7 +81,7 @@ SingeResult folder_make(const char *path, SingeError *error) {
 }
 
 /// The folders of frames: those of formats first.
-enum { INNER_FRAMES = OUTPUT_COUNT, INNER_GAS, INNER_EXR, INNER_COUNT };
+enum { INNER_FRAMES = OUTPUT_COUNT, INNER_GAS, INNER_GAS_DETAIL, INNER_EXR, INNER_COUNT };
 
 /// A folder's name, and how its files end.
 typedef struct Inner {
@@ -89,13 +89,13 @@ typedef struct Inner {
 } Inner;
 
 static Inner inner(int which) {
-    static const Inner others[] = {{"frames", ".png"}, {"gas", ".vdb"}, {"exr", ".exr"}};
+    static const Inner others[] = {{"frames", ".png"}, {"gas", ".vdb"}, {"gas_detail", ".vdb"}, {"exr", ".exr"}};
     if (which >= OUTPUT_COUNT) return others[which - OUTPUT_COUNT];
     return (Inner){output_formats[which].name, output_formats[which].ending};
 }
 
 static bool is_asked(FolderParts parts, int which) {
-    const bool others[] = {parts.pictures, parts.gas, parts.exr};
+    const bool others[] = {parts.pictures, parts.gas, parts.gas_detail, parts.exr};
     if (which >= OUTPUT_COUNT) return others[which - OUTPUT_COUNT];
     return which == OUTPUT_ply || output_has(parts.outputs, which);
 }
@@ -121,6 +121,7 @@ SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *e
 char *folder_ply(const Folder *folder, int frame) { return frame_path(folder, OUTPUT_ply, frame); }
 char *folder_png(const Folder *folder, int frame) { return frame_path(folder, INNER_FRAMES, frame); }
 char *folder_vdb(const Folder *folder, int frame) { return frame_path(folder, INNER_GAS, frame); }
+char *folder_gas_detail(const Folder *folder, int frame) { return frame_path(folder, INNER_GAS_DETAIL, frame); }
 char *folder_exr(const Folder *folder, int frame) { return frame_path(folder, INNER_EXR, frame); }
 char *folder_output(const Folder *folder, int format, int frame) { return frame_path(folder, format, frame); }
 

@@ -34,11 +34,11 @@ SINGE_NODISCARD SingeResult folder_make(const char *path, SingeError *error);
 
 /// What a run writes besides the cache: a folder of its own each, or a table.
 typedef struct FolderParts {
-    bool pictures, gas, exr, events, probes;
+    bool pictures, gas, gas_detail, exr, events, probes;
     OutputSet outputs;
 } FolderParts;
 
-/// Makes ply/ and, as `parts` ask, frames/, gas/, exr/ and those of formats in the folder, which must be there. A link
+/// Makes ply/ and, as `parts` ask, frames/, gas/, gas_detail/, exr/ and those of formats in the folder, which must be there. A link
 /// in the place of one of them is refused: what it points at is not ours.
 SINGE_NODISCARD SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *error);
 
@@ -46,6 +46,7 @@ SINGE_NODISCARD SingeResult folder_create(const Folder *folder, FolderParts part
 char *folder_ply(const Folder *folder, int frame);
 char *folder_png(const Folder *folder, int frame);
 char *folder_vdb(const Folder *folder, int frame);
+char *folder_gas_detail(const Folder *folder, int frame);
 char *folder_exr(const Folder *folder, int frame);
 char *folder_output(const Folder *folder, int format, int frame);
 /// Path of what has all frames, from malloc: DIR/NAME.usdc, or DIR/vat/NAME, to which endings are added.

@@ -9,8 +9,6 @@
 #include "cli/text.h"
 #include "formats/gas_grid.h"
 
-char *gas_detail_folder(const Folder *folder) { return text_format("%s/gas_detail", folder->path); }
-
 /// Between which coarse cells along an axis a fine one's centre lies, and how far.
 static uint32_t neighbours(uint32_t fine, int detail, uint32_t size, uint32_t pair[2], float *share) {
     const float at = ((float)fine + 0.5f) / (float)detail - 0.5f, low = at > 0 ? at : 0;
@@ -54,13 +52,12 @@ static void clear_air(Gas *fine, float coolest) {
     }
 }
 
-static SingeResult write_frame(const Folder *folder, Pictures *pictures, int number, int detail, SingeError *error) {
-    Frame frame = {0};
+SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Pictures *pictures, int number, int detail,
+                                   SingeError *error) {
     Gas fine = {0};
-    char *parent = gas_detail_folder(folder), *path = text_format("%s/%s.%04d.vdb", parent, folder->name, number);
-    SingeResult result = frame_read(folder, number, &frame, error);
-    const SingeGas *coarse = &frame.gas.view;
-    if (!result && !coarse->size[0]) result = folder_fail(path, "write, for the frame has no gas", 0, error);
+    const SingeGas *coarse = &frame->gas.view;
+    SingeResult result = SINGE_OK;
+    if (!coarse->size[0]) result = folder_fail(path, "write, for the frame has no gas", 0, error);
     fine.view = *coarse;
     fine.view.cell = coarse->cell / (float)detail;
     for (int c = 0; c < 3; c++) fine.view.size[c] *= (uint32_t)detail;
@@ -74,35 +71,40 @@ static SingeResult write_frame(const Folder *folder, Pictures *pictures, int num
     if (result) fine = (Gas){0};
     else result = gas_make(&fine, path, coolest, error);
     if (!result)
-        result = pictures_bake(pictures, &frame.surface, coarse, frame.time, detail, fine.extinction, fine.flame_share,
-                               error);
+        result = pictures_bake(pictures, &frame->surface, coarse, frame->time, detail, fine.extinction,
+                               fine.flame_share, error);
     if (!result) {
         interpolate(coarse, detail, &fine);
         clear_air(&fine, coolest);
         gas_decode(&fine);
-        result = vdb_write_fine(path, &fine, frame.time, error);
+        result = vdb_write_fine(path, &fine, frame->time, error);
     }
     gas_free(&fine);
+    return result;
+}
+
+SingeResult gas_detail_convert(const Folder *folder, Pictures *pictures, int number, int detail, SingeError *error) {
+    Frame frame = {0};
+    char *path = folder_gas_detail(folder, number);
+    SingeResult result = frame_read(folder, number, &frame, error);
+    if (!result) result = gas_detail_write_frame(path, &frame, pictures, number, detail, error);
     frame_free(&frame);
-    free(path), free(parent);
+    free(path);
     return result;
 }
 
 SingeResult gas_detail_write(const Job *job, const Folder *folder, int last, OutputsProgress *progress, void *context,
                              SingeError *error) {
     Pictures *pictures = NULL;
-    char *parent = gas_detail_folder(folder);
     SingeResult result = pictures_open(job, &pictures, error);
-    if (!result) result = folder_make(parent, error);
     for (int frame = 1; frame <= last && !result; frame++) {
         if (progress(context, frame)) {
-            result = write_frame(folder, pictures, frame, job->scene->output.gas_detail, error);
+            result = gas_detail_convert(folder, pictures, frame, job->scene->gas_detail, error);
             continue;
         }
         *error = (SingeError){.code = SINGE_ERROR_STATE, .stage = "gas", .element = -1, .message = "interrupted"};
         result = SINGE_ERROR_STATE;
     }
     pictures_close(pictures);
-    free(parent);
     return result;
 }

@@ -3,13 +3,20 @@
 #define CLI_GAS_DETAIL_H
 
 #include "cli/folder.h"
+#include "cli/frame_files.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
+#include "cli/pictures.h"
 
-/// Path of the folder, from malloc.
-char *gas_detail_folder(const Folder *folder);
+/// Writes a frame, which has gas, on cells `detail` times as fine.
+SINGE_NODISCARD SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Pictures *pictures, int number,
+                                                   int detail, SingeError *error);
 
-/// Writes frames 1 to `last`, which have gas. SINGE_ERROR_STATE in a program built without the preview, and where
+/// The same from the cache.
+SINGE_NODISCARD SingeResult gas_detail_convert(const Folder *folder, Pictures *pictures, int number, int detail,
+                                               SingeError *error);
+
+/// The same of frames 1 to `last`, in the folder that is there. SINGE_ERROR_STATE in a program built without the preview, and where
 /// progress says no.
 SINGE_NODISCARD SingeResult gas_detail_write(const Job *job, const Folder *folder, int last, OutputsProgress *progress,
                                              void *context, SingeError *error);

@@ -239,6 +239,7 @@ int command_run(int argc, char **argv) {
         tables_close(&run.tables);
         frame_free(&run.frame);
         outputs_close(&run.outputs);
+        if (run.baker != run.pictures) pictures_close(run.baker);
         pictures_close(run.pictures);
         singe_sim_destroy(run.sim);
         lock_release(&run.pictures_lock);

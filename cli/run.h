@@ -8,6 +8,7 @@
 #include "cli/checkpoint.h"
 #include "cli/folder.h"
 #include "cli/frame_files.h"
+#include "cli/gas_detail.h"
 #include "cli/job.h"
 #include "cli/lock.h"
 #include "cli/outputs.h"
@@ -28,7 +29,7 @@ typedef struct FrameFile {
     char *path;
     char *draft; ///< where it is written until it takes its place; NULL: at once
 } FrameFile;
-enum { FRAME_FILES_MAX = 3 + OUTPUT_COUNT };
+enum { FRAME_FILES_MAX = 4 + OUTPUT_COUNT };
 
 /// A frame whose files are being written and whose picture is being drawn, in a thread of its own, while the simulation
 /// steps on to the next.
@@ -55,6 +56,7 @@ typedef struct Run {
     Lock cache_lock, pictures_lock;
     SingeSim *sim;
     Pictures *pictures; ///< NULL without a preview
+    Pictures *baker;    ///< of finer gas: `pictures`, or its own without a preview; NULL where none is asked for
     bool layers;        ///< written as EXR, too
     Frame frame;
     Outputs outputs;
@@ -90,7 +92,7 @@ SINGE_NODISCARD SingeResult run_take_over(Run *run, SingeError *error);
 /// Draws pictures that frames of before lack. False in *whole when Ctrl-C came in between.
 SINGE_NODISCARD SingeResult run_draw_missing(Run *run, bool *whole, SingeError *error);
 
-/// Writes the frames of before in formats that they are not there in, as the cache has them. False in *whole as above.
+/// Writes the frames of before in formats that they are not there in, and their finer gas, as the cache has them. False in *whole as above.
 SINGE_NODISCARD SingeResult run_convert_missing(Run *run, bool *whole, SingeError *error);
 
 /// Steps on to the next frame, or, when the run is asked to stop, by at least one step: run->step tells.

@@ -18,6 +18,7 @@ FolderParts run_parts(const Run *run) {
     bool gas = singe_sim_gas(run->sim).size[0] > 0;
     return (FolderParts){.pictures = run->pictures != NULL,
                          .gas = gas,
+                         .gas_detail = gas && run->baker,
                          .exr = run->layers,
                          .events = run->job.scene->output.events,
                          .probes = run->job.scene->probe_count > 0,
@@ -140,14 +141,25 @@ SingeResult run_draw_missing(Run *run, bool *whole, SingeError *error) {
     return result;
 }
 
+static bool lacks_fine_gas(const Run *run, int frame) {
+    if (!run_parts(run).gas_detail) return false;
+    char *path = folder_gas_detail(&run->folder, frame);
+    const bool lacks = !folder_has(path);
+    free(path);
+    return lacks;
+}
+
 SingeResult run_convert_missing(Run *run, bool *whole, SingeError *error) {
     SingeResult result = SINGE_OK;
     const int last = run->record.resumed_from;
     *whole = true;
     for (int frame = 1; frame <= last && !result && *whole; frame++) {
         const OutputSet missing = outputs_missing(&run->outputs, frame);
-        if (!missing) continue;
-        result = outputs_convert(&run->outputs, frame, missing, error);
+        const bool coarse = lacks_fine_gas(run, frame);
+        if (missing) result = outputs_convert(&run->outputs, frame, missing, error);
+        if (coarse && !result)
+            result = gas_detail_convert(&run->folder, run->baker, frame, run->job.scene->gas_detail, error);
+        if (!missing && !coarse) continue;
         *whole = !interrupt_asked();
     }
     return result;
@@ -196,6 +208,11 @@ static ExitCode open_pictures(Run *run, const RunOptions *options) {
     else if (pictures_open(&run->job, &run->pictures, &error)) return run_begin_fail(run, &error, EXIT_FAILED);
     if (options->exr && pictures_keep_layers(run->pictures, &error)) return run_begin_fail(run, &error, EXIT_FAILED);
     run->layers = options->exr;
+    if (run->job.scene->gas_detail <= 1 || !run->job.scene->sim.gas.enabled) return EXIT_GOOD;
+    run->baker = run->pictures;
+    if (!pictures_available()) console_warn(run->console, "gas.detail: without the preview no finer gas is written");
+    else if (!run->baker && pictures_open(&run->job, &run->baker, &error))
+        return run_begin_fail(run, &error, EXIT_FAILED);
     return EXIT_GOOD;
 }
 
@@ -226,5 +243,6 @@ ExitCode run_prepare(Run *run, const RunOptions *options) {
     if (outputs_open(&run->outputs, &run->job, &run->folder, run->job.scene->output.formats, run_parts(run).gas,
                      &error))
         return run_begin_fail(run, &error, EXIT_FAILED);
+    run->outputs.scene.gas_detail = run_parts(run).gas_detail;
     return open_outputs(run);
 }

@@ -112,7 +112,11 @@ static SingeResult write_gas(Run *run, int frame, SingeError *error) {
     const char *name;
     if (run->frame.gas.view.size[0] <= 0) return SINGE_OK;
     SingeResult result = file_begin(run, folder_vdb(&run->folder, frame), &name, error);
-    return result ? result : vdb_write_gas(name, &run->frame.gas, run->frame.time, error);
+    if (!result) result = vdb_write_gas(name, &run->frame.gas, run->frame.time, error);
+    if (result || !run->baker) return result;
+    result = file_begin(run, folder_gas_detail(&run->folder, frame), &name, error);
+    const int detail = run->job.scene->gas_detail;
+    return result ? result : gas_detail_write_frame(name, &run->frame, run->baker, frame, detail, error);
 }
 
 static SingeResult write_picture(Run *run, int frame, SingeError *error) {

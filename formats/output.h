@@ -68,6 +68,7 @@ typedef struct OutputScene {
     int frames;       ///< that are written, from 1
     int texture_size; ///< pixels a side of textures
     bool gas;         ///< gas/NAME.0001.vdb are there
+    bool gas_detail;  ///< gas_detail/NAME.0001.vdb, too: the root names those
     uint32_t sheet_count, shape_count;
     const OutputSheet *sheets;
     const OutputShape *shapes;

@@ -136,7 +136,7 @@ static void put_gas(Root *r) {
         put(r, "            asset filePath.timeSamples = {\n");
         for (int frame = 1; frame <= r->scene->frames; frame++) {
             sink_text(&r->sink, "                %d: ", frame);
-            put_file(r, "gas", frame, ".vdb");
+            put_file(r, r->scene->gas_detail ? "gas_detail" : "gas", frame, ".vdb");
             put(r, ",\n");
         }
         put(r, "            }\n        }\n");

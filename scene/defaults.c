@@ -44,7 +44,7 @@ bool default_scene(SceneArena *arena, void *object) {
     default_preview(&scene->preview);
     scene->output.formats = 1u << OUTPUT_ply;
     scene->output.texture_size = 1024;
-    scene->output.gas_detail = 2;
+    scene->gas_detail = 1;
     return true;
 }
 

@@ -205,7 +205,6 @@ typedef struct SceneOutput {
     OutputSet formats;
     bool events;      ///< events.csv
     int texture_size; ///< pixels
-    int gas_detail;   ///< finer cells along a side, of gas that is converted
 } SceneOutput;
 
 /// A key or a word that the scene still calls by the name it had before this release.
@@ -222,8 +221,9 @@ typedef struct Scene {
     int frames;            ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
     float fps;             ///< frames a second
     int steps;             ///< steps a frame
-    bool tearing;          ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
-    SingeSimDef sim;       ///< time_step is 1/(fps * steps); hooks and thread_count are not the scene's
+    int gas_detail;  ///< how many times finer along a side the cells of gas_detail/ are; 1: a run has no such files
+    bool tearing;    ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
+    SingeSimDef sim; ///< time_step is 1/(fps * steps); hooks and thread_count are not the scene's
     uint32_t sheet_count, source_count, collider_count, pin_count, probe_count;
     SceneSheet *sheets;
     SceneSource *sources;

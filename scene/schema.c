@@ -79,20 +79,24 @@ static const Schema schema_solver = {
            "given take the method's defaults ([equations.md](equations.md#the-papers-solver))."};
 
 static const SchemaRow gas_rows[] = {
-    {"enabled", ROW_BOOL, DIM_NONE, AT(SingeGasDef, enabled), .doc = "no: sheets burn as in still air"},
-    {"cell_size", ROW_FLOAT, DIM_LENGTH, AT(SingeGasDef, cell_size), WITHIN(0, 1),
+    {"enabled", ROW_BOOL, DIM_NONE, AT(Scene, sim.gas.enabled), .doc = "no: sheets burn as in still air"},
+    {"cell_size", ROW_FLOAT, DIM_LENGTH, AT(Scene, sim.gas.cell_size), WITHIN(0, 1),
      .doc = "side of a cell of its grid; 0: 8.7 mm for a sheet of A4, in proportion to others"},
-    {"height", ROW_FLOAT, DIM_LENGTH, AT(SingeGasDef, height), WITHIN(0.01, 100),
+    {"height", ROW_FLOAT, DIM_LENGTH, AT(Scene, sim.gas.height), WITHIN(0.01, 100),
      .doc = "height of the grid above the sheets at the start"},
-    {"conductance", ROW_FLOAT, DIM_CONDUCTANCE, AT(SingeGasDef, conductance), FROM(0),
+    {"conductance", ROW_FLOAT, DIM_CONDUCTANCE, AT(Scene, sim.gas.conductance), FROM(0),
      .doc = "heat transfer to each side of a cooler sheet; a larger value makes fire climb faster"},
-    {"radiated", ROW_FLOAT, DIM_FRACTION, AT(SingeGasDef, radiated), WITHIN(0, 0.95),
+    {"radiated", ROW_FLOAT, DIM_FRACTION, AT(Scene, sim.gas.radiated), WITHIN(0, 0.95),
      .doc = "share of the flames' power that leaves as radiation"},
-    {"soot", ROW_FLOAT, DIM_FRACTION, AT(SingeGasDef, soot), WITHIN(0, 1), .doc = "mass of smoke over the mass burnt"},
+    {"soot", ROW_FLOAT, DIM_FRACTION, AT(Scene, sim.gas.soot), WITHIN(0, 1),
+     .doc = "mass of smoke over the mass burnt"},
+    {"detail", ROW_INT, DIM_NONE, AT(Scene, gas_detail), WITHIN(1, PREVIEW_BAKE_MAX),
+     .doc = "above 1: `gas_detail/` has each frame on cells so many times finer along a side, with the tongues and "
+            "streaks of our pictures, for other renderers ([formats.md](formats.md#the-gas))"},
 };
 static const Schema schema_gas = {
     .title = "the gas",
-    .size = sizeof(SingeGasDef),
+    .size = sizeof(Scene),
     ROWS(gas_rows),
     .choice = "enabled",
     .doc = "Burning releases hot gas. The gas rises, heats what is above, lifts ash and flakes, and carries flame and "
@@ -123,8 +127,6 @@ static const SchemaRow output_rows[] = {
      .doc = "`events.csv`: ignitions, holes and pieces that come free, with time and position"},
     {"texture_size", ROW_INT, DIM_NONE, AT(SceneOutput, texture_size), WITHIN(16, 8192),
      .doc = "pixels a side of `textures`"},
-    {"gas_detail", ROW_INT, DIM_NONE, AT(SceneOutput, gas_detail), WITHIN(1, PREVIEW_BAKE_MAX),
-     .doc = "how many times finer along each side `singe convert --to gas` makes the cells of the gas"},
 };
 static const Schema schema_output = {
     .title = "the output",
@@ -174,7 +176,7 @@ static const SchemaRow scene_rows[] = {
             "`strand`); no: bending is elastic, as in the paper"},
     {"tearing", ROW_BOOL, DIM_NONE, AT(Scene, tearing),
      .doc = "sheets tear where the line force exceeds the material's `strength`; needs the method `strand`"},
-    {"gas", ROW_MAP, DIM_NONE, AT(Scene, sim.gas), .sub = &schema_gas, .doc = "hot gas, flames and smoke"},
+    {"gas", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_gas, .doc = "hot gas, flames and smoke"},
     {"contact", ROW_MAP, DIM_NONE, AT(Scene, sim.contact), .sub = &schema_contact,
      .doc = "contact of sheets with themselves and each other"},
     {"preview", ROW_MAP, DIM_NONE, AT(Scene, preview), .sub = &schema_preview, .doc = "how frames are drawn"},

@@ -319,7 +319,7 @@ class Delivery(Case):
         self.assertEqual(out.strip(), self.path("o", "gas_detail", "tiny.0001.vdb"))
         found = {}
         for detail in (1, 2, 2, 4):
-            self.singe("convert", self.path("o"), "--to", "gas", "--quiet", "--set", "output.gas_detail=%d" % detail)
+            self.singe("convert", self.path("o"), "--to", "gas", "--quiet", "--set", "gas.detail=%d" % detail)
             with open(self.path("o", "gas_detail", "tiny.0004.vdb"), "rb") as file:
                 fine = file.read()
             self.assertEqual(fine.count(b"_HalfFloat"), 5)
@@ -332,10 +332,39 @@ class Delivery(Case):
         self.assertEqual(len(os.listdir(self.path("o", "gas_detail"))), 4)
         with open(self.path("o", "gas", "tiny.0004.vdb"), "rb") as file:
             self.assertEqual(file.read(), coarse)
-        self.assertIn("gas_detail must be 1 to 4", self.singe("convert", self.path("o"), "--to", "gas", "--set",
-                                                              "output.gas_detail=5", expect=2)[1])
+        self.assertIn("detail must be 1 to 4", self.singe("convert", self.path("o"), "--to", "gas", "--set",
+                                                              "gas.detail=5", expect=2)[1])
         self.burn("none", "--frames", "2")
         self.assertIn("has no gas", self.singe("convert", self.path("none"), "--to", "gas", expect=1)[1])
+
+    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
+    def test_gas_of_a_run(self):
+        """`gas.detail` in a scene: the run writes what `convert` makes, and a resumed one what is missing."""
+        def fine(folder):
+            inside = self.path(folder, "gas_detail")
+            return {name: open(os.path.join(inside, name), "rb").read() for name in sorted(os.listdir(inside))}
+        self.scene = self.write_scene(frames=3)
+        sets = ("--quiet", "--set", "pace=16", "--set", "output.formats=[usd]")
+        self.run_scene("coarse", *sets)
+        self.assertFalse(os.path.exists(self.path("coarse", "gas_detail")))
+        self.run_scene("run", *sets, "--set", "gas.detail=2", "--no-preview")
+        made = fine("run")
+        self.assertEqual(len(made), 3)
+        self.singe("convert", self.path("coarse"), "--to", "gas", "--to", "usd", "--quiet", "--set", "gas.detail=2")
+        self.assertEqual(fine("coarse"), made)
+        with open(self.path("run", "tiny.usda")) as one, open(self.path("coarse", "tiny.usda")) as other:
+            root = one.read()
+            self.assertEqual(root, other.read())
+        self.assertEqual((root.count("@./gas_detail/tiny."), root.count("@./gas/tiny.")), (12, 0))
+        os.remove(self.path("run", "gas_detail", "tiny.0002.vdb"))
+        self.run_scene("run", *sets, "--set", "gas.detail=2", "--resume")
+        self.assertEqual(fine("run"), made)
+        # the root names the finer gas only where it is there; a run without it takes away an earlier one's
+        self.run_scene("run", *sets)
+        self.assertFalse(os.path.exists(self.path("run", "gas_detail")))
+        self.singe("convert", self.path("run"), "--to", "usd", "--quiet", "--set", "gas.detail=2")
+        with open(self.path("run", "tiny.usda")) as file:
+            self.assertNotIn("gas_detail", file.read())
 
     def test_refusals(self):
         self.burn("o", "--frames", "2")

@@ -18,6 +18,17 @@ environment() {
     "$folder/$name/bin/pip" install --quiet --disable-pip-version-check "$@"
 }
 
+# find_python VERSION: one in PATH that runs, or one of pyenv's, whatever version is chosen there
+find_python() {
+    local found
+    for found in "python$1" "${PYENV_ROOT:-$HOME/.pyenv}/versions/$1".*/bin/python; do
+        "$found" -c "import sys; assert '%d.%d' % sys.version_info[:2] == '$1'" 2> /dev/null || continue
+        echo "$found"
+        return
+    done
+    return 1
+}
+
 # client NAME SCRIPT [WORK]     WORK: the folder of what it makes, NAME by default
 client() {
     local work=${3:-$1}
@@ -48,11 +59,10 @@ fi
 # each bpy is for one Python
 found=0
 for version in 3.11:4.5 3.13:5.2; do
-    if ! "python${version%:*}" -c '' 2> /dev/null; then
+    if ! python=$(find_python "${version%:*}"); then
         echo "== Blender ${version#*:}: needs python${version%:*}, which is not here"
         continue
     fi
-    python=python${version%:*}
     if environment "blender-${version#*:}" "bpy==${version#*:}.*" numpy; then
         found=1
         client "blender-${version#*:}" blender.py

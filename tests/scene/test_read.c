@@ -36,10 +36,10 @@ static const char full[] =
     "probes:\n"
     "  - {kind: uv, at: [0.25, 0.5], sheet: sheet2, name: \"a, b\"}\n"
     "  - {kind: point, at: [1 cm, 0, 1], sheet: 0}\n"
-    "output: {formats: [vtp], events: yes, texture_size: 64, gas_detail: 4}\n"
+    "output: {formats: [vtp], events: yes, texture_size: 64}\n"
     "wind: {velocity: [1, 0, 0], gust: 0.5, seed: 4294967295}\n"
     "solver: {substeps: 7, order: [yellow, blue, green, red], regularisation: {red: 0.5}, height_min: 0}\n"
-    "gas: {cell_size: 12 mm, conductance: 12, radiated: 25 %}\n"
+    "gas: {cell_size: 12 mm, conductance: 12, radiated: 25 %, detail: 4}\n"
     "preview:\n  size: [320, 180]\n  samples: 4\n  camera: {eye: [1, 1, 1], fov: 50}\n"
     "  light: {direction: [0, 0, 1], angle: 5, colour: [3, 2, 1]}\n  ground: {height: -0.5}\n  sky: [1, 1, 1]\n";
 
@@ -97,6 +97,7 @@ static void check_objects(const Scene *scene) {
     assert_string_equal(probe[1].name, "probe2");
     assert_true(scene->output.events && scene->output.texture_size == 64 &&
                 output_has(scene->output.formats, OUTPUT_vtp));
+    assert_true(scene->sim.gas.enabled && scene->sim.gas.radiated == 0.25f && scene->gas_detail == 4);
     assert_int_equal(scene->sim.solver.order[0], SINGE_YELLOW);
     assert_true(scene->sim.solver.regularisation[SINGE_RED] == 0.5f);
     assert_true(scene->preview.ground_height == -0.5f && scene->preview.light_colour[0] == 3);
