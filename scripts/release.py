@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+"""Makes the files of a release from a commit, the same bytes every time.
+
+    release.py [--out FOLDER] [--commit COMMIT] [--twice] [--wheels]
+
+    singe-VERSION.tar.gz                  the sources
+    singe-VERSION-linux-ARCH.tar.gz       the command, static: runs on any Linux, without preview, EXR, assimp and fit
+    singe_VERSION_ARCH.deb, libsinge-dev_VERSION_ARCH.deb    for the Debian or Ubuntu that this runs on
+    *.whl                                 with --wheels (python/build_wheels.py says what that needs)
+    singe-VERSION.spdx.json               what is inside, with versions and licences (SPDX 2.3)
+    SHA256SUMS
+
+--twice builds everything once more in another folder and compares the bytes. Needs the packages of setup.sh, dpkg-dev,
+and the static libraries that the -dev packages of libfyaml, libpng, zlib and libjpeg have.
+"""
+
+import argparse
+import gzip
+import hashlib
+import io
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+# Debian's packages whose code is in the static command, with their licences as SPDX names them
+LINKED = {"libc6-dev": "LGPL-2.1-or-later", "libfyaml-dev": "MIT", "libpng-dev": "Libpng", "zlib1g-dev": "Zlib",
+          "libjpeg62-turbo-dev": "IJG AND BSD-3-Clause AND Zlib"}
+
+
+def run(*command, **options):
+    options.setdefault("stdout", subprocess.DEVNULL)
+    subprocess.run([str(c) for c in command], check=True, **options)
+
+
+def ask(*command, **options):
+    return subprocess.run([str(c) for c in command], check=True, capture_output=True, text=True, **options).stdout.strip()
+
+
+def sources(commit, prefix, epoch, target):
+    """git archive gives the same bytes for a commit; gzip without name and time."""
+    tar = subprocess.run(["git", "-C", str(ROOT), "archive", f"--prefix={prefix}/", commit], check=True,
+                         capture_output=True).stdout
+    with open(target, "wb") as file, gzip.GzipFile("", "wb", 9, file, mtime=epoch) as packed:
+        packed.write(tar)
+
+
+def pack(folder, prefix, epoch, target):
+    """A tar whose entries are sorted and have one time and no owner."""
+    memory = io.BytesIO()
+    with tarfile.open(fileobj=memory, mode="w", format=tarfile.PAX_FORMAT) as tar:
+        for path in sorted(folder.rglob("*")):
+            entry = tar.gettarinfo(path, f"{prefix}/{path.relative_to(folder)}")
+            entry.uid = entry.gid = 0
+            entry.uname = entry.gname = "root"
+            entry.mtime = epoch
+            entry.mode = 0o755 if path.is_dir() or os.access(path, os.X_OK) else 0o644
+            with open(path, "rb") if path.is_file() else io.BytesIO() as data:
+                tar.addfile(entry, data if path.is_file() else None)
+    with open(target, "wb") as file, gzip.GzipFile("", "wb", 9, file, mtime=epoch) as packed:
+        packed.write(memory.getvalue())
+
+
+def configure(source, build, *more):
+    # no path of this machine in what is built
+    flags = f"-ffile-prefix-map={source}=. -ffile-prefix-map={build}=build"
+    run("cmake", "-S", source, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_INSTALL_PREFIX=/usr",
+        f"-DCMAKE_C_FLAGS={flags}", "-DSINGE_TESTS=OFF", "-DSINGE_PYTHON=OFF", *more)
+    run("cmake", "--build", build)
+
+
+def debian_packages(source, work, out):
+    build = work / "deb"
+    configure(source, build)
+    run("cpack", "-G", "DEB", "-B", work / "cpack", cwd=build)
+    for package in (work / "cpack").glob("*.deb"):
+        shutil.copy(package, out)
+
+
+def static_command(source, work, out, name, epoch):
+    """One file and what one needs to try it."""
+    build, folder = work / "static", work / "portable"
+    configure(source, build, "-DSINGE_PREVIEW=OFF", "-DSINGE_EXR=OFF", "-DSINGE_ASSIMP=OFF",
+              "-DSINGE_NLOPT=OFF", "-DSINGE_STATIC=ON")
+    (folder / "examples").mkdir(parents=True)
+    shutil.copy(build / "cli" / "singe", folder)
+    run("strip", folder / "singe")
+    for file in ("LICENSE", "README.md", "CHANGELOG.md"):
+        shutil.copy(source / file, folder)
+    for part in ("docs", "materials", "examples/letter"):
+        shutil.copytree(source / part, folder / part, ignore=shutil.ignore_patterns("gallery"))
+    licences = folder / "licences"
+    licences.mkdir()
+    for package in LINKED:
+        shutil.copy(f"/usr/share/doc/{package}/copyright", licences / f"{package}.txt")
+    pack(folder, name, epoch, out / f"{name}.tar.gz")
+
+
+def bill_of_materials(version, commit, created, out):
+    """SPDX 2.3: the artefacts, and the libraries inside the static command."""
+    def package(key, name, version, licence, **more):
+        return {"SPDXID": f"SPDXRef-{key}", "name": name, "versionInfo": version, "downloadLocation": "NOASSERTION",
+                "filesAnalyzed": False, "licenseConcluded": licence, "licenseDeclared": licence,
+                "copyrightText": "NOASSERTION", **more}
+
+    packages, relations = [], []
+    for path in sorted(out.iterdir()):
+        key = "file-" + re.sub(r"[^A-Za-z0-9.-]", "-", path.name)
+        digest = hashlib.sha256(path.read_bytes()).hexdigest()
+        packages.append(package(key, path.name, version, "MIT", supplier="Organization: Singe",
+                                checksums=[{"algorithm": "SHA256", "checksumValue": digest}]))
+        relations.append(("SPDXRef-DOCUMENT", "DESCRIBES", f"SPDXRef-{key}"))
+        if "-linux-" in path.name:
+            relations += [(f"SPDXRef-{key}", "STATIC_LINK", f"SPDXRef-{name}") for name in LINKED]
+    for name, licence in LINKED.items():
+        packages.append(package(name, name, ask("dpkg-query", "-W", "-f", "${Version}", name), licence,
+                                supplier="Organization: Debian"))
+    document = {
+        "spdxVersion": "SPDX-2.3", "dataLicense": "CC0-1.0", "SPDXID": "SPDXRef-DOCUMENT", "name": f"singe-{version}",
+        "documentNamespace": f"https://spdx.org/spdxdocs/singe-{version}-{commit}",
+        "creationInfo": {"created": created, "creators": ["Organization: Singe", "Tool: scripts/release.py"]},
+        "packages": packages,
+        "relationships": [{"spdxElementId": a, "relationshipType": kind, "relatedSpdxElement": b}
+                          for a, kind, b in relations]}
+    (out / f"singe-{version}.spdx.json").write_text(json.dumps(document, indent=1) + "\n")
+
+
+def release(commit, out, wheels):
+    commit = ask("git", "-C", ROOT, "rev-parse", commit)
+    epoch = int(ask("git", "-C", ROOT, "show", "-s", "--format=%ct", commit))
+    created = ask("date", "-u", "-d", f"@{epoch}", "+%Y-%m-%dT%H:%M:%SZ")
+    os.environ.update(SOURCE_DATE_EPOCH=str(epoch), LC_ALL="C", TZ="UTC")
+    shutil.rmtree(out, ignore_errors=True)
+    out.mkdir(parents=True)
+    with tempfile.TemporaryDirectory() as work:
+        work = pathlib.Path(work)
+        tree = work / "source.tar.gz"
+        sources(commit, "source", epoch, tree)
+        with tarfile.open(tree) as tar:
+            tar.extractall(work, filter="data")
+        source = work / "source"
+        version = re.search(r'#define SINGE_VERSION "(.*)"', (source / "include/singe/base.h").read_text()).group(1)
+        sources(commit, f"singe-{version}", epoch, out / f"singe-{version}.tar.gz")
+        static_command(source, work, out, f"singe-{version}-linux-{os.uname().machine}", epoch)
+        debian_packages(source, work, out)
+        if wheels:
+            run(sys.executable, source / "python" / "build_wheels.py", "--out", out, "--work", work / "wheels")
+    bill_of_materials(version, commit, created, out)
+    sums = "".join(f"{hashlib.sha256(p.read_bytes()).hexdigest()}  {p.name}\n" for p in sorted(out.iterdir()))
+    (out / "SHA256SUMS").write_text(sums)
+    return sums
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build" / "release")
+    parser.add_argument("--commit", default="HEAD")
+    parser.add_argument("--twice", action="store_true")
+    parser.add_argument("--wheels", action="store_true")
+    options = parser.parse_args()
+    sums = release(options.commit, options.out.resolve(), options.wheels)
+    print(sums, end="")
+    if options.twice:
+        with tempfile.TemporaryDirectory() as again:
+            other = release(options.commit, pathlib.Path(again) / "again", options.wheels)
+        differ = [a for a, b in zip(sums.splitlines(), other.splitlines()) if a != b]
+        if differ or len(sums) != len(other):
+            sys.exit("release.py: not the same bytes the second time:\n" + "\n".join(differ))
+        print(f"built twice: {len(sums.splitlines())} files have the same bytes")
+
+
+if __name__ == "__main__":
+    main()

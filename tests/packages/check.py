@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+"""Installs what scripts/release.py makes on bare systems, and burns a sheet there.
+
+    tests/packages/check.py [--work FOLDER] [WHAT...]     bookworm trixie static conan [all]
+
+bookworm, trixie   a bare Debian 12 or 13 (debootstrap); the sources are built there into .deb packages, which another
+                   bare root installs with nothing but what they depend on, and links a program against
+static             the static command in Debian 12, Debian 13 and a root without a C library, as Alpine is without glibc
+conan              the recipe is created and consumed (PyPI's conan, in a folder of its own)
+
+Needs root for the first two. The caches of all must have the same bytes as those of the command in build/.
+"""
+
+import argparse
+import hashlib
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import venv
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+SCENE = """\
+frames: 4
+steps: 3
+pace: 6
+sheets:
+  - grid: {size: [6 cm, 6 cm], cells: [16, 16]}
+sources:
+  - {kind: spot, position: [-3 cm, 0, 0], temperature: 1200 K, conductance: 300, radius: 1 cm, falloff: 1 cm}
+gas: {cell_size: 8 mm}
+preview: {size: [64, 48], samples: 1}
+"""
+CONSUMER = """\
+#include <singe/singe.h>
+#include <stdio.h>
+int main(void) { return printf("%s\\n", singe_version()) < 0; }
+"""
+
+
+def run(*command, both=False, **options):
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, **options)
+    if done.returncode or "Traceback" in done.stderr:
+        sys.exit(f"{' '.join(map(str, command))}: {done.returncode}\n{done.stdout[-3000:]}{done.stderr[-3000:]}")
+    return done.stdout + done.stderr if both else done.stdout
+
+
+def bare_root(work, suite, name):
+    """A fresh root of a suite; what debootstrap makes is kept and copied."""
+    kept, made = work / suite, work / name
+    if not kept.exists():
+        run("debootstrap", "--variant=minbase", suite, work / f"{suite}.part")
+        (work / f"{suite}.part").rename(kept)
+    shutil.rmtree(made, ignore_errors=True)
+    run("cp", "-a", kept, made)
+    shutil.copy("/etc/resolv.conf", made / "etc" / "resolv.conf")
+    return made
+
+
+def inside(root, script):
+    return run("chroot", root, "bash", "-euc", f"export DEBIAN_FRONTEND=noninteractive HOME=/root\n{script}")
+
+
+def cache(folder):
+    """Digest of the simulation's files."""
+    digest = hashlib.sha256()
+    files = sorted(p for kind in ("ply", "gas") for p in (folder / kind).iterdir())
+    for path in files:
+        digest.update(path.name.encode() + path.read_bytes())
+    return len(files), digest.hexdigest()
+
+
+def expected(work):
+    (work / "scene.yaml").write_text(SCENE)
+    run(ROOT / "build/cli/singe", "run", work / "scene.yaml", "-o", work / "expected", "--quiet", "--no-preview")
+    return cache(work / "expected")
+
+
+def compare(what, folder, wanted):
+    found = cache(folder)
+    if found != wanted:
+        sys.exit(f"{what}: other bytes than here")
+    print(f"{what}: {found[0]} files have the same bytes", flush=True)
+
+
+def debian(work, suite, wanted):
+    """Builds in one root, installs in another."""
+    builder = bare_root(work, suite, f"{suite}-build")
+    source = builder / "source"
+    source.mkdir()
+    archive = subprocess.run(["git", "-C", ROOT, "archive", "HEAD"], check=True, capture_output=True).stdout
+    subprocess.run(["tar", "-x", "-C", source], input=archive, check=True)
+    inside(builder, "cd /source; apt-get -qq update; scripts/setup.sh; apt-get -qq install -y dpkg-dev file; "
+                    "cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr "
+                    "-DSINGE_TESTS=OFF -DSINGE_PYTHON=OFF; cmake --build build; cd build; cpack -G DEB")
+    root = bare_root(work, suite, f"{suite}-install")
+    for package in (source / "build").glob("*.deb"):
+        shutil.copy(package, root / "tmp")
+    (root / "tmp/scene.yaml").write_text(SCENE)
+    (root / "tmp/consumer.c").write_text(CONSUMER)
+    inside(root, "apt-get -qq update; apt-get -qq install -y --no-install-recommends /tmp/*.deb; "
+                 "singe run /tmp/scene.yaml -o /tmp/out --quiet")
+    compare(f"{suite}, singe_*.deb", root / "tmp/out", wanted)
+    pictures = len(list((root / "tmp/out/frames").iterdir()))
+    version = inside(root, "apt-get -qq install -y --no-install-recommends gcc pkg-config >&2; cd /tmp; "
+                           "gcc consumer.c $(pkg-config --cflags --libs singe) -o consumer; ./consumer")
+    print(f"{suite}: {pictures} pictures; a program linked against libsinge-dev says {version.strip()}", flush=True)
+    if pictures != 4:
+        sys.exit(f"{suite}: no pictures")
+
+
+def static(work, wanted):
+    build = work / "static"
+    run("cmake", "-S", ROOT, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DSINGE_TESTS=OFF",
+        "-DSINGE_PYTHON=OFF", "-DSINGE_PREVIEW=OFF", "-DSINGE_EXR=OFF", "-DSINGE_ASSIMP=OFF", "-DSINGE_NLOPT=OFF",
+        "-DSINGE_STATIC=ON")
+    run("cmake", "--build", build)
+    empty = work / "empty"
+    shutil.rmtree(empty, ignore_errors=True)
+    (empty / "tmp").mkdir(parents=True)
+    roots = [("a root with nothing else", empty)]
+    if os.geteuid() == 0 and shutil.which("debootstrap"):
+        roots += [(suite, bare_root(work, suite, f"{suite}-static")) for suite in ("bookworm", "trixie")]
+    for name, root in roots:
+        shutil.copy(build / "cli/singe", root / "singe")
+        (root / "tmp/scene.yaml").write_text(SCENE)
+        run("chroot", root, "/singe", "run", "/tmp/scene.yaml", "-o", "/tmp/out", "--quiet")
+        compare(f"static command in {name}", root / "tmp/out", wanted)
+
+
+def conan(work, _):
+    """In its own home and its own Python."""
+    environment = {**os.environ, "CONAN_HOME": str(work / "conan-home")}
+    place = work / "conan"
+    if not (place / "bin/conan").exists():
+        venv.create(place, with_pip=True)
+        run(place / "bin/pip", "install", "-q", "conan>=2")
+    command = place / "bin/conan"
+    run(command, "profile", "detect", "--force", env=environment)
+    shown = run(command, "create", ROOT / "packaging/conan", env=environment, cwd=ROOT, both=True)
+    version = run(ROOT / "build/cli/singe", "--version").strip()
+    if f"\n{version}\n" not in shown:
+        sys.exit(f"conan: the test package does not say '{version}'\n{shown[-2000:]}")
+    print(f"conan: created; its test package is built and says '{version}'", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build" / "packages")
+    parser.add_argument("what", nargs="*", default=["all"])
+    options = parser.parse_args()
+    work = options.work.resolve()
+    work.mkdir(parents=True, exist_ok=True)
+    checks = {"bookworm": lambda: debian(work, "bookworm", wanted), "trixie": lambda: debian(work, "trixie", wanted),
+              "static": lambda: static(work, wanted), "conan": lambda: conan(work, wanted)}
+    wanted = expected(work)
+    for name in checks if options.what == ["all"] else options.what:
+        checks[name]()
+
+
+if __name__ == "__main__":
+    main()
