@@ -1,5 +1,6 @@
-// Smoke and flame are the preview's, at the fine cells' centres. Temperature and velocity are interpolated between the
-// coarse cells' centres.
+// Smoke and flame are the preview's, at the fine cells' centres. The velocity is interpolated between the coarse cells'
+// centres. The temperature is that of a black body as bright as the flame: renderers that draw one, whose light goes
+// with its fourth power, show the same tongues, in a flame's colours.
 #include "cli/gas_detail.h"
 
 #include <stdlib.h>
@@ -8,6 +9,8 @@
 #include "cli/pictures.h"
 #include "cli/text.h"
 #include "formats/gas_grid.h"
+
+#define BRIGHTEST 2500.0f ///< K, where `flame` is 1: so that pictures by it have the colours of our own
 
 /// Between which coarse cells along an axis a fine one's centre lies, and how far.
 static uint32_t neighbours(uint32_t fine, int detail, uint32_t size, uint32_t pair[2], float *share) {
@@ -29,26 +32,29 @@ static void interpolate(const SingeGas *coarse, int detail, Gas *fine) {
                 neighbours(a, detail, coarse->size[0], x, &s[0]);
                 neighbours(b, detail, coarse->size[1], y, &s[1]);
                 neighbours(c, detail, coarse->size[2], z, &s[2]);
-                float warmth = 0, moved[3] = {0, 0, 0};
+                float moved[3] = {0, 0, 0};
                 for (int k = 0; k < 8; k++) {
                     const size_t from = gas_index(coarse, x[k & 1], y[k >> 1 & 1], z[k >> 2]);
                     const float weight =
                         (k & 1 ? s[0] : 1 - s[0]) * (k >> 1 & 1 ? s[1] : 1 - s[1]) * (k >> 2 ? s[2] : 1 - s[2]);
-                    warmth += weight * coarse->temperature[from];
                     for (int d = 0; d < 3; d++) moved[d] += weight * coarse->velocity[from][d];
                 }
-                fine->temperature[i] = warmth;
                 for (int d = 0; d < 3; d++) fine->velocity[i][d] = moved[d];
             }
 }
 
+static void glow(Gas *fine) {
+    const size_t count = gas_cells(&fine->view);
+    for (size_t i = 0; i < count; i++)
+        fine->temperature[i] = fine->flame_share[i] > 0 ? BRIGHTEST * sqrtf(sqrtf(fine->flame_share[i])) : 0;
+}
+
 /// What is as good as clear air becomes it: half a metre of it hides a quarter of a percent. Most warm blocks go by it.
-static void clear_air(Gas *fine, float coolest) {
+static void clear_air(Gas *fine) {
     const size_t count = gas_cells(&fine->view);
     for (size_t i = 0; i < count; i++) {
         if (fine->extinction[i] >= 0.005f || fine->flame_share[i] >= 1e-4f) continue;
-        fine->extinction[i] = fine->flame_share[i] = 0;
-        fine->temperature[i] = coolest;
+        fine->extinction[i] = fine->flame_share[i] = fine->temperature[i] = 0;
     }
 }
 
@@ -67,15 +73,15 @@ SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Picture
                  fine.view.size[0], fine.view.size[1], fine.view.size[2], GAS_CELL_LIMIT);
         result = SINGE_ERROR_LIMIT;
     }
-    const float coolest = result ? 0 : gas_coolest(coarse);
     if (result) fine = (Gas){0};
-    else result = gas_make(&fine, path, coolest, error);
+    else result = gas_make(&fine, path, 0, error);
     if (!result)
         result = pictures_bake(pictures, &frame->surface, coarse, frame->time, detail, fine.extinction,
                                fine.flame_share, error);
     if (!result) {
         interpolate(coarse, detail, &fine);
-        clear_air(&fine, coolest);
+        glow(&fine);
+        clear_air(&fine);
         gas_decode(&fine);
         result = vdb_write_fine(path, &fine, frame->time, error);
     }

@@ -1,6 +1,7 @@
 """A burn by Singe in Blender (PyPI's bpy, 4.5 to 5.2): every value, the camera, blur from velocities, and pictures to look at.
 
-usage: blender.py SINGE FOLDER    FOLDER is emptied; its pictures are sheet.png, gas.png and preview.png, Singe's own
+usage: blender.py SINGE FOLDER    FOLDER is emptied; its pictures are sheet.png, gas-flame.png, gas-blackbody.png and
+preview.png, Singe's own
 """
 
 import math
@@ -75,28 +76,55 @@ def draw(scene, path, blur):
     return pixels.reshape(270, 480, 4)
 
 
-def give_gas_a_material():
-    """Principled Volume as it comes, with Temperature 1 and the flame for its light."""
+def gas_material(**inputs):
+    """Principled Volume as it comes, but for these inputs."""
     material = bpy.data.materials.new("gas")
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.clear()
     volume, output = nodes.new("ShaderNodeVolumePrincipled"), nodes.new("ShaderNodeOutputMaterial")
+    for name, value in inputs.items():
+        volume.inputs[name.replace("_", " ")].default_value = value
+    links.new(volume.outputs[0], output.inputs["Volume"])
+    materials = bpy.data.objects["gas"].data.materials
+    materials.clear()
+    materials.append(material)
+    return nodes, links, volume
+
+
+def light_by_flame():
+    """The flame for its light."""
+    nodes, links, volume = gas_material(Color=(0.05, 0.05, 0.05, 1), Emission_Color=(1, 0.33, 0.07, 1))
     flame, times = nodes.new("ShaderNodeAttribute"), nodes.new("ShaderNodeMath")
-    volume.inputs["Temperature"].default_value = 1
-    volume.inputs["Color"].default_value = (0.05, 0.05, 0.05, 1)
-    volume.inputs["Emission Color"].default_value = (1, 0.33, 0.07, 1)
-    flame.attribute_name, times.operation, times.inputs[1].default_value = "flame", "MULTIPLY", 60
+    flame.attribute_name, times.operation, times.inputs[1].default_value = "flame", "MULTIPLY", 118
     links.new(flame.outputs["Fac"], times.inputs[0])
     links.new(times.outputs[0], volume.inputs["Emission Strength"])
-    links.new(volume.outputs[0], output.inputs["Volume"])
-    bpy.data.objects["gas"].data.materials.append(material)
+
+
+def check_gas(scene, folder, sharp):
+    """Smoke and flame by the node, and by a black body without any: both where the strip's flame is, orange, and alike."""
+    above = (slice(150, 200), slice(290, 345), slice(0, 3))
+    clear = (slice(40, 130), slice(20, 130), slice(0, 3))  # where neither is
+    adds = []
+    for name in ("flame", "blackbody"):
+        if name == "flame":
+            light_by_flame()
+        else:
+            gas_material(Temperature=1, Blackbody_Intensity=1, Blackbody_Tint=(167, 167, 167, 1))
+        lit = draw(scene, os.path.join(folder, "gas-%s.png" % name), False) - sharp
+        red, green, blue = lit[above].mean((0, 1))
+        print("the flame by %s adds %.3f, %.3f, %.3f there" % (name, red, green, blue))
+        assert red > 0.05 and red > green > blue and abs(lit[clear].mean()) < 0.01
+        adds.append(lit[above].sum(2).ravel())
+    alike = float(np.corrcoef(*adds)[0, 1])
+    print("both pictures of it agree by a correlation of %.2f" % alike)
+    assert alike > 0.7
 
 
 def main():
     singe, folder = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
     shutil.rmtree(folder, ignore_errors=True)
-    out = make(singe, folder, ["usd"])
+    out = make(singe, folder, ["usd"], "--set", "gas.detail=2")
     shutil.copy(os.path.join(out, "frames", "burn.0018.png"), os.path.join(folder, "preview.png"))
     scene = open_root(os.path.join(out, "burn.usda"))
     assert (scene.frame_start, scene.frame_end) == (1, FRAMES)
@@ -106,7 +134,7 @@ def main():
     check_values(scene, out)
     gas = bpy.data.objects["gas"]
     scene.frame_set(18)
-    assert gas.data.grids.load() and gas.data.grids.frame_filepath.endswith("burn.0018.vdb")
+    assert gas.data.grids.load() and gas.data.grids.frame_filepath.endswith(os.path.join("gas_detail", "burn.0018.vdb"))
     gas.hide_render = True
     sharp = draw(scene, os.path.join(folder, "sheet.png"), False)
     blurred = draw(scene, os.path.join(folder, "blur.png"), True)
@@ -115,11 +143,7 @@ def main():
     print("motion blur changes the picture by %.6f on average; drawing it again by %.6f" % (difference, again))
     assert difference > 1e-4 + 20 * again
     gas.hide_render = False
-    give_gas_a_material()
-    lit = draw(scene, os.path.join(folder, "gas.png"), False)
-    above = (slice(150, 200), slice(290, 345), slice(0, 3))  # where the strip's flame is
-    print("the flame adds %.3f, %.3f, %.3f there" % tuple((lit - sharp)[above].mean((0, 1))))
-    assert (lit - sharp)[above].mean((0, 1))[0] > 0.05
+    check_gas(scene, folder, sharp)
     print("Blender %s: pictures in %s" % (bpy.app.version_string, folder))
 
 
