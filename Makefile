@@ -22,7 +22,7 @@ MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 PRESET ?= release
 
-.PHONY: all configure demo test check check-examples check-clients check-platforms check-farm check-packages gate torture coverage fuzz-long soak pictures build build-asan build-fuzz build-shared build-tsan clean
+.PHONY: all configure demo test check check-examples check-clients check-platforms check-farm check-packages check-mpi gate torture coverage fuzz-long soak pictures build build-asan build-fuzz build-shared build-tsan clean
 
 all: build
 
@@ -90,6 +90,10 @@ check-clients: build
 # a sweep on a Slurm of one node, preempted and resumed: needs root
 check-farm: build
 	tests/farm/check_slurm.py build/cli/singe --install
+
+# the prototype of one sheet on several nodes, on the ranks of this machine
+check-mpi:
+	tests/farm/check_mpi.py --install
 
 # packages on bare Debian 12 and 13, the static command, the Conan recipe: needs root and debootstrap
 check-packages: build

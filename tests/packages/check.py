@@ -59,7 +59,10 @@ def bare_root(work, suite, name):
 
 
 def inside(root, script):
-    return run("chroot", root, "bash", "-euc", f"export DEBIAN_FRONTEND=noninteractive HOME=/root\n{script}")
+    # mounts that end with the command
+    mounts = f"mount -t proc proc {root}/proc && mount --rbind /dev {root}/dev && exec chroot {root} bash -euc \"$1\""
+    return run("unshare", "--mount", "bash", "-c", mounts, "bash",
+               f"export DEBIAN_FRONTEND=noninteractive HOME=/root\n{script}")
 
 
 def cache(folder):
