@@ -154,6 +154,7 @@ static bool follow_shape(const Outputs *outputs, uint32_t slot, int frames, Outp
         if (!now.solid) continue;
         shape->vertex_count = now.solid->vertex_count, shape->triangle_count = now.solid->triangle_count;
         shape->vertices = now.solid->vertices, shape->triangles = now.solid->triangles;
+        poses[frame].vertices = now.solid->vertices;
     }
     return ever;
 }

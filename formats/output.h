@@ -45,10 +45,11 @@ typedef struct OutputSheet {
 /// Where a shape is in a frame.
 typedef struct OutputPose {
     float position[3], rotation[4]; ///< m; quaternion x, y, z, w
+    const float *vertices;          ///< [3 * OutputShape.vertex_count] m, of a mesh that deforms; NULL: the shape's
     bool visible;
 } OutputPose;
 
-/// A rigid thing: a collider or a hot ball.
+/// A collider or a hot ball.
 typedef struct OutputShape {
     SingeColliderKind kind;                ///< no plane
     float radius, half_size[3], height;    ///< m, as SingeColliderDef has them

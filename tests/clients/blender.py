@@ -12,7 +12,7 @@ import sys
 import bpy
 import numpy as np
 
-from burn import CHECKED, FRAMES, SCALARS, Frame, make, same
+from burn import CHECKED, FRAMES, SCALARS, Frame, body, make, same
 
 SHEETS = ("leaf", "strip")
 
@@ -63,6 +63,8 @@ def check_values(scene, out):
             uv = np.empty(2 * len(mesh.loops), np.float32)
             mesh.attributes["st"].data.foreach_get("vector", uv)
             same(uv.reshape(-1, 2), cache.stack("s t")[corners], (name, frame, "uv"))
+        things = bpy.data.objects["shape1"].evaluated_get(graph)
+        same(values(things.data, "position", 3, np.float32), body(frame)[0], ("body", frame))
     print("every value of frames %s, counts of %d" % (CHECKED, FRAMES))
 
 

@@ -9,7 +9,8 @@ import numpy as np
 FRAMES = 24
 CHECKED = (1, 10, 20, 24)  # frames of which every value is compared
 
-# a strip that burns, hangs and drops pieces, a ball that moves beside it, gas above; a picture on one of two sheets
+# a strip that burns, hangs and drops pieces, a ball that moves beside it, a body that
+# deforms, gas above; a picture on one of two sheets
 SCENE = """\
 name: burn
 frames: {frames}
@@ -35,6 +36,7 @@ colliders:
     path:
       - {{time: 0, position: [-8 cm, 0, 3 cm]}}
       - {{time: 1 s, position: [-6 cm, 0, 3 cm]}}
+  - {{kind: mesh, motion: {{mesh: body.####.ply}}, position: [-10 cm, 5 cm, 0]}}
 pins:
   - {{sheet: leaf, points: [[-4 cm, 6 cm, 6 cm], [4 cm, 6 cm, 6 cm]], radius: 6 mm}}
   - {{sheet: strip, points: [[6 cm, 4 cm, 6 cm], [10 cm, 4 cm, 6 cm]], radius: 6 mm}}
@@ -68,10 +70,29 @@ def write_picture(path, width=96, height=144):
                    chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
+def body(frame):
+    """An octahedron that grows: its corners (m) in a frame, and its faces."""
+    wide, high = 0.012 + 0.0005 * frame, 0.02 + 0.001 * frame
+    corners = [(wide, 0, 0), (-wide, 0, 0), (0, wide, 0), (0, -wide, 0), (0, 0, high), (0, 0, -high)]
+    faces = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
+    return np.float32(corners), faces
+
+
+def write_body(folder):
+    for frame in range(1, FRAMES + 1):
+        corners, faces = body(frame)
+        with open(os.path.join(folder, "body.%04d.ply" % frame), "w") as file:
+            file.write("ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+                       "element face 8\nproperty list uchar int vertex_indices\nend_header\n")
+            file.writelines("%.9g %.9g %.9g\n" % tuple(corner) for corner in corners)
+            file.writelines("3 %d %d %d\n" % face for face in faces)
+
+
 def make(singe, folder, formats, *extra):
     """Burns the scene in folder/out, and says where its files are."""
     os.makedirs(folder, exist_ok=True)
     write_picture(os.path.join(folder, "print.png"))
+    write_body(folder)
     scene = os.path.join(folder, "burn.yaml")
     with open(scene, "w") as file:
         file.write(SCENE.format(frames=FRAMES, formats=", ".join(formats)))

@@ -22,7 +22,7 @@ except ImportError:
     print("skipped: no OpenUSD; make check-clients installs it (PyPI's usd-core)")
     sys.exit(77)
 
-from burn import CHECKED, FRAMES, SCALARS, VECTORS, Frame, make, same
+from burn import CHECKED, FRAMES, SCALARS, VECTORS, Frame, body, make, same
 
 SHEETS = ("leaf", "strip")
 
@@ -80,6 +80,12 @@ def check_rest(stage, out):
     ball = UsdGeom.Xformable(stage.GetPrimAtPath("/burn/things/shape0"))
     x = [ball.ComputeLocalToWorldTransform(frame).ExtractTranslation()[0] for frame in (1, 13, 24)]
     assert np.allclose(x, [-0.08, -0.07, -0.08 + 0.02 * 23 / 24], atol=1e-6), x
+    deforms = UsdGeom.Mesh(stage.GetPrimAtPath("/burn/things/shape1"))
+    for frame in range(1, FRAMES + 1):
+        same(np.array(deforms.GetPointsAttr().Get(frame)), body(frame)[0], ("body", frame))
+        place = UsdGeom.Xformable(deforms).ComputeLocalToWorldTransform(frame).ExtractTranslation()
+        assert np.allclose(place, (-0.1, 0.05, 0), atol=1e-7), place
+    assert len(deforms.GetFaceVertexCountsAttr().Get()) == 8
     camera = UsdGeom.Camera(stage.GetPrimAtPath("/burn/camera")).GetCamera(1)
     assert abs(camera.GetFieldOfView(camera.FOVVertical) - 34) < 1e-3
     view = camera.frustum.ComputeViewDirection()

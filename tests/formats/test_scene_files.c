@@ -17,6 +17,10 @@ static const OutputPose moving[2] = {{.position = {0, 0, 0.5f}, .rotation = {0, 
 static const float corners[12] = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, -3};
 static const uint32_t triangles[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
 
+static const float grown[12] = {0, 0, 0, 2, 0, 0, 0, 4, 0, 0, 0, -6};
+static const OutputPose breathing[2] = {{.rotation = {0, 0, 0, 1}, .vertices = corners, .visible = true},
+                                        {.rotation = {0, 0, 0, 1}, .vertices = grown, .visible = true}};
+
 static const OutputShape shapes[] = {
     {.kind = SINGE_COLLIDER_SPHERE, .radius = 0.25f, .colour = {1, 0, 0}, .temperature = 1100, .poses = still},
     {.kind = SINGE_COLLIDER_BOX, .half_size = {0.5f, 1, 2}, .colour = {0, 1, 0}, .poses = moving},
@@ -27,6 +31,12 @@ static const OutputShape shapes[] = {
      .vertices = corners,
      .triangles = triangles,
      .poses = still},
+    {.kind = SINGE_COLLIDER_MESH,
+     .vertex_count = 4,
+     .triangle_count = 4,
+     .vertices = corners,
+     .triangles = triangles,
+     .poses = breathing},
 };
 
 static OutputScene scene_of(const OutputSheet *sheet) {
@@ -86,6 +96,14 @@ static void shapes_stand_where_they_are(void **state) {
     expect_in(text, "def Mesh \"shape3\"", "points = [(0, 0, 0), (1, 0, 0), (0, 2, 0), (0, 0, -3)]");
     expect_in(text, "def Mesh \"shape3\"", "float3[] extent = [(0, 0, -3), (1, 2, 0)]");
     expect_in(text, "def Mesh \"shape3\"", "int[] faceVertexIndices = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]");
+    text = strstr(text, "def Mesh \"shape4\"");
+    assert_non_null(strstr(text, "point3f[] points.timeSamples = {\n"
+                                 "                1: [(0, 0, 0), (1, 0, 0), (0, 2, 0), (0, 0, -3)],\n"
+                                 "                2: [(0, 0, 0), (2, 0, 0), (0, 4, 0), (0, 0, -6)],\n"));
+    assert_non_null(strstr(text, "float3[] extent.timeSamples = {\n"
+                                 "                1: [(0, 0, -3), (1, 2, 0)],\n"
+                                 "                2: [(0, 0, -6), (2, 4, 0)],\n"));
+    text = (const char *)sink.bytes;
     expect_in(text, "def Mesh \"ground\"", "-0.5)");
     assert_non_null(strstr(text, "def Material \"shape0\""));
     assert_non_null(strstr(text, "def Material \"ground\""));
