@@ -56,6 +56,16 @@ else
     failed=1
     tail -30 "$folder/gltf.log"
 fi
+echo "== vat"
+browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
+if [ -z "$browser" ]; then echo "needs chromium, which is not here"
+elif npm install --prefix "$folder/three" --no-audit --no-fund --silent three > "$folder/vat.log" 2>&1 &&
+    NODE_PATH="$folder/three/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
+        node "$here/vat.js" "$singe" "$folder/work/vat" "$browser" >> "$folder/vat.log" 2>&1; then cat "$folder/vat.log"
+else
+    failed=1
+    tail -30 "$folder/vat.log"
+fi
 # each bpy is for one Python
 found=0
 for version in 3.11:4.5 3.13:5.2; do
