@@ -32,4 +32,4 @@ RED, GREEN, BLUE, YELLOW = range(4)
 IGNITED, HOLE_OPENED, PIECE_FREED = range(3)
 
 __all__ = [name for name in dir() if not name.startswith("_") and name not in
-           ("cache", "command", "errors", "objects", "picture", "simulation", "views")]
+           ("alembic", "cache", "command", "errors", "objects", "picture", "simulation", "views")]

@@ -7,7 +7,7 @@ import json
 import os
 import pathlib
 import re
-from typing import Any, Dict, Iterator, List, Optional, Sequence, Union
+from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -84,7 +84,9 @@ class Frame:
             of = parts.split()
             if all(one in names for one in of):
                 first = table.dtype.fields[of[0]][1]  # type: ignore[index]
-                view = np.ndarray((len(table), len(of)), "<f4", table, first, (table.dtype.itemsize, 4))
+                view = np.ndarray((len(table), len(of)), "<f4", table if len(table) else None, first if len(table) else 0,
+                                  (table.dtype.itemsize, 4))
+                view.flags.writeable = False
                 setattr(self, vector, view)
                 taken.update(of)
         for name in names:
@@ -167,6 +169,16 @@ class Cache:
             number = numbers[number] if -number <= len(numbers) else 0
         path = self.folder / "frames" / f"{self.name}.{number:04d}.png"
         return path if path.is_file() else None
+
+    def write_alembic(self, path: Union[str, "os.PathLike[str]", None] = None,
+                      progress: Optional[Callable[[int, int], None]] = None) -> pathlib.Path:
+        """Writes all frames as one Alembic file, NAME.abc in the folder by default, and returns its path.
+
+        A mesh a sheet, y up: positions, triangles, uv of corners, and velocities (m/s) for motion blur; no fields.
+        Frame f is at f/fps seconds. `progress` is called with (frame, frames). Needs `pip install singe[alembic]`.
+        """
+        from .alembic import write
+        return write(self, path, progress)
 
     def __repr__(self) -> str:
         return f"<singe.Cache {str(self.folder)!r}: {len(self)} frames, {self.record.get('result')}>"

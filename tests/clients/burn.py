@@ -49,6 +49,22 @@ preview:
 output: {{formats: [{formats}]}}
 """
 
+# a sheet that is burnt in its second frame
+GONE = """\
+name: burn
+frames: 12
+steps: 4
+pace: 40
+sheets:
+  - name: leaf
+    grid: {size: [2 cm, 2 cm], cells: [8, 8]}
+    drop_pieces_below: 3 cm2
+    material: {char_yield: 0, mass_loss: 50 %}
+sources: [{kind: spot, position: [0, 0, 0], radius: 5 cm, temperature: 1400 K, conductance: 2000}]
+gas: no
+output: {}
+"""
+
 VECTORS = {"points": "x y z", "velocities": "vx vy vz", "normals": "nx ny nz", "st": "s t", "rest": "rest_x rest_y rest_z"}
 SCALARS = ("temperature temperature_peak mass burn_rate char_fraction ash_fraction burnt time_ignited piece_id vertex_id "
            "sheet").split()

@@ -47,6 +47,8 @@ environment usd usd-core numpy
 client usd usd.py
 environment vtk vtk numpy
 client vtk vtk_client.py
+environment alembic alembic3d numpy
+client alembic alembic_client.py
 echo "== gltf"
 mkdir -p "$folder/gltf"
 if npm install --prefix "$folder/gltf" --no-audit --no-fund --silent gltf-validator > "$folder/gltf.log" 2>&1 &&
@@ -77,6 +79,7 @@ for version in 3.11:4.5 3.13:5.2; do
         found=1
         client "blender-${version#*:}" blender.py
         client "blender-${version#*:}" blender_meshes.py "meshes-${version#*:}"
+        client "blender-${version#*:}" blender_alembic.py "alembic-${version#*:}"
     else
         echo "== Blender ${version#*:}: not to be had"
     fi

@@ -22,7 +22,7 @@ except ImportError:
     print("skipped: no OpenUSD; make check-clients installs it (PyPI's usd-core)")
     sys.exit(77)
 
-from burn import CHECKED, FRAMES, SCALARS, VECTORS, Frame, body, make, same
+from burn import CHECKED, FRAMES, GONE, SCALARS, VECTORS, Frame, body, make, same
 
 SHEETS = ("leaf", "strip")
 
@@ -147,20 +147,7 @@ def check_gone(singe, folder):
     """A sheet that is burnt at the end: the last frames have no vertices, and hold nothing of those before."""
     scene = os.path.join(folder, "gone.yaml")
     with open(scene, "w") as file:
-        file.write("""\
-name: burn
-frames: 12
-steps: 4
-pace: 40
-sheets:
-  - name: leaf
-    grid: {size: [2 cm, 2 cm], cells: [8, 8]}
-    drop_pieces_below: 3 cm2
-    material: {char_yield: 0, mass_loss: 50 %}
-sources: [{kind: spot, position: [0, 0, 0], radius: 5 cm, temperature: 1400 K, conductance: 2000}]
-gas: no
-output: {formats: [usd]}
-""")
+        file.write(GONE.replace("output: {}", "output: {formats: [usd]}"))
     out = os.path.join(folder, "gone")
     subprocess.run([singe, "run", scene, "-o", out, "--quiet", "--no-preview"], check=True, stdout=subprocess.DEVNULL)
     stage = Usd.Stage.Open(os.path.join(out, "burn.usda"))

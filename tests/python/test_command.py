@@ -1,6 +1,7 @@
 """The Python package: run, check, measure and caches."""
 
 import os
+import re
 import shutil
 import stat
 import unittest
@@ -48,6 +49,38 @@ class Command(Case):
             self.assertTrue(np.array_equal(array, rows[:, [names.index(c) for c in columns.split()]]))
         self.assertTrue(np.array_equal(frame.burn, rows[:, names.index("burnt")]))
         self.assertTrue(np.array_equal(frame.source_vertex, rows[:, names.index("vertex_id")].view("<i4")))
+
+    def test_a_frame_of_nothing(self):
+        cache = singe.run(self.scene(), self.dir / "out", frames=2, preview=False)
+        path = cache[2].path
+        header = path.read_bytes().split(b"end_header\n", 1)[0]
+        empty = re.sub(rb"element (\w+) \d+", rb"element \1 0", header) + b"end_header\n"
+        path.write_bytes(empty)
+        frame = cache[2]
+        self.assertEqual((frame.position.shape, frame.uv.shape, frame.triangles.shape), ((0, 3), (0, 2), (0, 3)))
+        self.assertEqual(len(frame.temperature), 0)
+        self.assertFalse(frame.position.flags.writeable)
+
+    def test_alembic(self):
+        cache = singe.run(self.scene(), self.dir / "out", frames=3, preview=False)
+        try:
+            import alembic3d  # noqa: F401
+        except ImportError:
+            with self.assertRaisesRegex(ImportError, r"singe\[alembic\]"):
+                cache.write_alembic()
+            return
+        told = []
+        path = cache.write_alembic(progress=lambda done, frames: told.append((done, frames)))
+        self.assertEqual((path, told), (self.dir / "out" / "tiny.abc", [(1, 3), (2, 3), (3, 3)]))
+        self.assertTrue(path.read_bytes().startswith(b"Ogawa"))
+        whole = path.read_bytes()
+        cache[2].path.unlink()
+        with self.assertRaisesRegex(singe.FormatError, "lacks frames"):
+            cache.write_alembic()
+        self.assertEqual(path.read_bytes(), whole)
+        with self.assertRaises((singe.FormatError, OSError)):
+            singe.run(self.scene(), self.dir / "out", preview=False).write_alembic(self.dir / "nowhere" / "a.abc")
+        self.assertEqual([name for name in os.listdir(self.dir / "out") if name.endswith(".tmp")], [])
 
     def test_damaged_caches(self):
         with self.assertRaisesRegex(singe.FormatError, "not a cache"):
