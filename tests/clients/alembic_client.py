@@ -6,14 +6,13 @@ usage: alembic_client.py SINGE FOLDER    FOLDER is emptied; burn.abc and gone.ab
 
 import os
 import shutil
-import subprocess
 import sys
 
 import imath
 import numpy as np
 from alembic3d import Abc, AbcGeom
 
-from burn import FRAMES, GONE, Frame, make, same
+from burn import FRAMES, Frame, make, make_gone, same
 
 
 def array(values, width, kind):
@@ -58,12 +57,7 @@ def main():
         same(corners, cache.triangles, (name, frame, "triangles"))
         same(uv, cache.stack("s t")[cache.triangles], (name, frame, "uv"))
     size = os.path.getsize(path)
-    scene = os.path.join(folder, "gone.yaml")
-    with open(scene, "w") as file:
-        file.write(GONE)
-    gone = os.path.join(folder, "gone")
-    subprocess.run([singe, "run", scene, "-o", gone, "--quiet", "--no-preview"], check=True, stdout=subprocess.DEVNULL)
-    path = package.read_cache(gone).write_alembic(os.path.join(folder, "gone.abc"))
+    path = package.read_cache(make_gone(singe, folder, [])).write_alembic(os.path.join(folder, "gone.abc"))
     counts = [len(position) for position, *_ in read(str(path), ("leaf",), 12).values()]
     assert counts[0] > 0 and counts[-1] == 0, counts
     print("Alembic: every value of %d frames, %d bytes; vertices of a sheet that burns away: %s" % (FRAMES, size, counts))

@@ -12,7 +12,7 @@ import sys
 import bpy
 import numpy as np
 
-from burn import CHECKED, FRAMES, SCALARS, Frame, body, make, same
+from burn import CHECKED, FRAMES, SCALARS, Frame, body, make, make_gone, same
 
 SHEETS = ("leaf", "strip")
 
@@ -123,6 +123,31 @@ def check_gas(scene, folder, sharp):
     assert alike > 0.7
 
 
+def check_gas_blur(scene, folder):
+    """Flames are blurred by the velocity of the gas: all else that moves is blurred in both pictures."""
+    gas = bpy.data.objects["gas"].data
+    gas.velocity_grid, gas.velocity_unit = "velocity", "SECOND"
+    pictures = []
+    for scale in (0, 1, 1):
+        gas.velocity_scale = scale
+        pictures.append(draw(scene, os.path.join(folder, "gas-blur%d.png" % len(pictures)), True))
+    difference, noise = (float(np.abs(picture - pictures[1]).mean()) for picture in (pictures[0], pictures[2]))
+    print("the velocity of the gas changes the picture by %.6f; drawing it again by %.6f" % (difference, noise))
+    assert difference > 1e-4 + 20 * noise
+
+
+def check_gone(singe, folder):
+    """A sheet that is burnt at the end: the last frames have no vertices."""
+    open_root(os.path.join(make_gone(singe, folder, ["usd"]), "burn.usda"))
+    counts = []
+    for frame in range(1, 13):
+        bpy.context.scene.frame_set(frame)
+        graph = bpy.context.evaluated_depsgraph_get()
+        counts.append(len(bpy.data.objects["leaf"].evaluated_get(graph).data.vertices))
+    print("vertices of a sheet that burns away:", counts)
+    assert counts[0] > 0 and counts[-1] == 0
+
+
 def main():
     singe, folder = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
     shutil.rmtree(folder, ignore_errors=True)
@@ -146,6 +171,8 @@ def main():
     assert difference > 1e-4 + 20 * again
     gas.hide_render = False
     check_gas(scene, folder, sharp)
+    check_gas_blur(scene, folder)
+    check_gone(singe, folder)
     print("Blender %s: pictures in %s" % (bpy.app.version_string, folder))
 
 

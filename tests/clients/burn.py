@@ -117,6 +117,15 @@ def make(singe, folder, formats, *extra):
     return out
 
 
+def make_gone(singe, folder, formats):
+    """Burns GONE in folder/gone, 12 frames, and says where its files are."""
+    scene, out = os.path.join(folder, "gone.yaml"), os.path.join(folder, "gone")
+    with open(scene, "w") as file:
+        file.write(GONE.replace("output: {}", "output: {formats: [%s]}" % ", ".join(formats)))
+    subprocess.run([singe, "run", scene, "-o", out, "--quiet", "--no-preview"], check=True, stdout=subprocess.DEVNULL)
+    return out
+
+
 class Frame:
     """A PLY of the cache: `column(name)`, `stack("x y z")`, `triangles`; of one sheet, numbered from 0, if asked for."""
 

@@ -47,6 +47,20 @@ environment usd usd-core numpy
 client usd usd.py
 environment vtk vtk numpy
 client vtk vtk_client.py
+echo "== paraview"
+# Debian's packages: only root installs them
+if [ "$(id -u)" -eq 0 ] && command -v apt-get > /dev/null && ! command -v pvpython > /dev/null; then
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends paraview python3-paraview \
+        python3-numpy xvfb xauth > "$folder/paraview.log" 2>&1 || true
+fi
+if ! command -v pvpython > /dev/null || ! command -v xvfb-run > /dev/null; then
+    echo "needs pvpython and xvfb-run (packages paraview, python3-paraview, xvfb), which are not here"
+elif PYTHONDONTWRITEBYTECODE=1 xvfb-run -a pvpython "$here/paraview_client.py" "$singe" "$folder/work/paraview" \
+    > "$folder/paraview.log" 2>&1 && grep '^ParaView' "$folder/paraview.log"; then :
+else
+    failed=1
+    tail -30 "$folder/paraview.log"
+fi
 environment alembic alembic3d numpy
 client alembic alembic_client.py
 echo "== gltf"

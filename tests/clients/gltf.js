@@ -10,6 +10,7 @@ const [singe, folder] = process.argv.slice(2);
 fs.rmSync(folder, {recursive: true, force: true});
 const make = `import sys; sys.path.insert(0, ${JSON.stringify(__dirname)}); import burn; print(burn.make(sys.argv[1], ` +
     `sys.argv[2], ["glb"], "--no-preview", "--set", "gas=no"))`;
+const makeGone = make.replace('burn.make(', 'burn.make_gone(').replace(/\["glb"\].*$/, '["glb"]))');
 const out = execFileSync(process.env.PYTHON || 'python3', ['-c', make, singe, folder]).toString().trim();
 
 function readPly(file) {
@@ -92,6 +93,13 @@ async function checkSingle() {
     let hints = 0;
     for (const file of files) hints += await validate(path.join(out, 'glb', file));
     hints += await checkSingle();
+    const gone = execFileSync(process.env.PYTHON || 'python3', ['-c', makeGone, singe, folder]).toString().trim();
+    const nodes = [];
+    for (const file of fs.readdirSync(path.join(gone, 'glb')).sort()) {
+        await validate(path.join(gone, 'glb', file));
+        nodes.push((readGlb(path.join(gone, 'glb', file)).json.nodes || []).length);
+    }
+    if (nodes.length !== 12 || !nodes[0] || nodes[11]) throw new Error(`a sheet that burns away has nodes ${nodes}`);
     const frames = [1, 10, 20, 24];
     frames.forEach(check);
     console.log(`gltf-validator ${validator.version()}: ${files.length} frames, the model of all and that of the VAT without ` +

@@ -22,7 +22,7 @@ except ImportError:
     print("skipped: no OpenUSD; make check-clients installs it (PyPI's usd-core)")
     sys.exit(77)
 
-from burn import CHECKED, FRAMES, GONE, SCALARS, VECTORS, Frame, body, make, same
+from burn import CHECKED, FRAMES, SCALARS, VECTORS, Frame, body, make, make_gone, same
 
 SHEETS = ("leaf", "strip")
 
@@ -145,11 +145,7 @@ def check_single(singe, out):
 
 def check_gone(singe, folder):
     """A sheet that is burnt at the end: the last frames have no vertices, and hold nothing of those before."""
-    scene = os.path.join(folder, "gone.yaml")
-    with open(scene, "w") as file:
-        file.write(GONE.replace("output: {}", "output: {formats: [usd]}"))
-    out = os.path.join(folder, "gone")
-    subprocess.run([singe, "run", scene, "-o", out, "--quiet", "--no-preview"], check=True, stdout=subprocess.DEVNULL)
+    out = make_gone(singe, folder, ["usd"])
     stage = Usd.Stage.Open(os.path.join(out, "burn.usda"))
     counts = [len(UsdGeom.Mesh(stage.GetPrimAtPath("/burn/sheets/leaf")).GetPointsAttr().Get(frame))
               for frame in range(1, 13)]

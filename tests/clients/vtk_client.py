@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkVersion
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
-from burn import CHECKED, FRAMES, SCALARS, Frame, make, same
+from burn import CHECKED, FRAMES, SCALARS, Frame, make, make_gone, same
 
 VECTORS = {"normal": "nx ny nz", "uv": "s t", "velocity": "vx vy vz", "rest": "rest_x rest_y rest_z"}
 
@@ -43,6 +43,16 @@ def main():
         assert (corners == cache.triangles.ravel()).all()
         assert arrays.GetScalars().GetName() == "temperature" and arrays.GetVectors().GetName() == "velocity"
         assert abs(mesh.GetFieldData().GetArray("TimeValue").GetValue(0) - cache.time) == 0
+    gone = make_gone(singe, folder, ["vtp"])
+    counts = []
+    for frame in range(1, 13):
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(os.path.join(gone, "vtp", "burn.%04d.vtp" % frame))
+        reader.Update()
+        assert reader.GetErrorCode() == 0
+        counts.append(reader.GetOutput().GetNumberOfPoints())
+    print("vertices of a sheet that burns away:", counts)
+    assert counts[0] > 0 and counts[-1] == 0
     print("VTK %s: every value of frames %s, counts of %d" % (vtkVersion.GetVTKVersion(), CHECKED, FRAMES))
 
 
