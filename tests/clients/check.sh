@@ -65,7 +65,8 @@ environment alembic alembic3d numpy
 client alembic alembic_client.py
 echo "== gltf"
 mkdir -p "$folder/gltf"
-if npm install --prefix "$folder/gltf" --no-audit --no-fund --silent gltf-validator > "$folder/gltf.log" 2>&1 &&
+if npm install --prefix "$folder/gltf" --no-audit --no-fund --silent gltf-validator @gltf-transform/core \
+    @gltf-transform/extensions @gltf-transform/functions meshoptimizer > "$folder/gltf.log" 2>&1 &&
     NODE_PATH="$folder/gltf/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
         node "$here/gltf.js" "$singe" "$folder/work/gltf" >> "$folder/gltf.log" 2>&1; then cat "$folder/gltf.log"
 else

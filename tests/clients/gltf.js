@@ -1,7 +1,7 @@
 // GLB frames of a burn by Singe, looked at by the glTF validator (npm's gltf-validator): no errors, no warnings; and
 // their values against those of the cache, by reading the file here.
 //
-// usage: node gltf.js SINGE FOLDER    FOLDER is emptied; NODE_PATH has gltf-validator
+// usage: node gltf.js SINGE FOLDER    FOLDER is emptied; NODE_PATH has gltf-validator and gltf-transform
 'use strict';
 const fs = require('fs'), path = require('path'), {execFileSync} = require('child_process');
 const validator = require('gltf-validator');
@@ -88,6 +88,40 @@ async function checkSingle() {
     return remarks;
 }
 
+// What gltf-transform's meshopt keeps: every attribute, what lies within -1 to 1 rounded to 12 bits.
+async function checkMeshopt() {
+    const {Logger, NodeIO} = require('@gltf-transform/core'), {ALL_EXTENSIONS} = require('@gltf-transform/extensions');
+    const {meshopt} = require('@gltf-transform/functions');
+    const {MeshoptDecoder, MeshoptEncoder} = require('meshoptimizer');
+    await MeshoptEncoder.ready, await MeshoptDecoder.ready;
+    const io = new NodeIO().registerExtensions(ALL_EXTENSIONS)
+        .registerDependencies({'meshopt.decoder': MeshoptDecoder, 'meshopt.encoder': MeshoptEncoder});
+    const file = path.join(out, 'glb', 'burn.0018.glb'), packed = path.join(folder, 'packed.glb');
+    const ranges = document => document.getRoot().listMeshes().map(mesh => {
+        const primitive = mesh.listPrimitives()[0];
+        return Object.fromEntries(primitive.listSemantics().map(semantic => {
+            const accessor = primitive.getAttribute(semantic);
+            return [semantic, [accessor.getMinNormalized([])[0], accessor.getMaxNormalized([])[0]]];
+        }));
+    });
+    const document = (await io.read(file)).setLogger(new Logger(Logger.Verbosity.SILENT)), before = ranges(document);
+    await document.transform(meshopt({encoder: MeshoptEncoder, level: 'medium'}));
+    await io.write(packed, document);
+    const after = ranges(await io.read(packed));
+    before.forEach((mesh, i) => {
+        for (const name of Object.keys(mesh)) {
+            if (!after[i][name]) throw new Error(`meshopt drops ${name}`);
+            if (name === '_TEMPERATURE' || name === '_BURNT' || name === '_VELOCITY')
+                mesh[name].forEach((bound, k) => {
+                    if (Math.abs(bound - after[i][name][k]) > 5e-4 * Math.max(1, ...mesh[name].map(Math.abs)))
+                        throw new Error(`meshopt changes ${name}: ${mesh[name]} to ${after[i][name]}`);
+                });
+        }
+    });
+    return `gltf-transform's meshopt: ${fs.statSync(packed).size} bytes of ${fs.statSync(file).size}, all ` +
+        `${Object.keys(after[0]).length} attributes`;
+}
+
 (async () => {
     const files = fs.readdirSync(path.join(out, 'glb')).sort();
     let hints = 0;
@@ -100,6 +134,7 @@ async function checkSingle() {
         nodes.push((readGlb(path.join(gone, 'glb', file)).json.nodes || []).length);
     }
     if (nodes.length !== 12 || !nodes[0] || nodes[11]) throw new Error(`a sheet that burns away has nodes ${nodes}`);
+    console.log(await checkMeshopt());
     const frames = [1, 10, 20, 24];
     frames.forEach(check);
     console.log(`gltf-validator ${validator.version()}: ${files.length} frames, the model of all and that of the VAT without ` +
