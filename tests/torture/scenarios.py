@@ -148,12 +148,16 @@ def record_fields(data):
     return record
 
 
+# A checkpoint, and the one before it: when each was written depends on where a run was interrupted.
+CHECKPOINTS = ("checkpoint.singe", "checkpoint.previous.singe")
+
+
 def comparable(name, data):
     if name == "stats.csv":
         return stats_rows(data)
     if name == "run.json":
         return record_fields(data)
-    if name == "checkpoint.singe":
+    if name in CHECKPOINTS:
         return None  # holds seconds; that it can be gone on from is looked at otherwise
     return zlib.crc32(data), len(data)
 

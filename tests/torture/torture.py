@@ -19,7 +19,7 @@ import tempfile
 import threading
 import time
 
-from scenarios import comparable, contents, printed, scenarios, write_ffmpeg, write_scene
+from scenarios import CHECKPOINTS, comparable, contents, printed, scenarios, write_ffmpeg, write_scene
 
 SINGE, SHIM = os.path.abspath(os.environ["SINGE"]), os.path.abspath(os.environ["SINGE_TORTURE_SHIM"])
 
@@ -225,7 +225,7 @@ def file_faults(trial, done, left, expected):
                 yield f"{name} is no JSON"
         elif name == "preview.mp4" and is_shorter_video(data, left):
             continue
-        elif name != "checkpoint.singe":
+        elif name not in CHECKPOINTS:
             yield f"{name} is neither whole nor absent"
     if done.returncode == 2 and left != expected.before:
         yield "exit code 2, but files of the earlier run are touched"
