@@ -132,7 +132,6 @@ def bill_of_materials(version, commit, created, out):
 
 
 def release(commit, out, wheels):
-    commit = ask("git", "-C", ROOT, "rev-parse", commit)
     epoch = int(ask("git", "-C", ROOT, "show", "-s", "--format=%ct", commit))
     created = ask("date", "-u", "-d", f"@{epoch}", "+%Y-%m-%dT%H:%M:%SZ")
     os.environ.update(SOURCE_DATE_EPOCH=str(epoch), LC_ALL="C", TZ="UTC")
@@ -164,6 +163,7 @@ def main():
     parser.add_argument("--twice", action="store_true")
     parser.add_argument("--wheels", action="store_true")
     options = parser.parse_args()
+    options.commit = ask("git", "-C", ROOT, "rev-parse", options.commit)  # others may commit meanwhile
     sums = release(options.commit, options.out.resolve(), options.wheels)
     print(sums, end="")
     if options.twice:
