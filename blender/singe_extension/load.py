@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A cache in the scene: each sheet by a Mesh Sequence Cache on its USD, the gas as a volume. Blender's own means: what
+is loaded renders where this extension is not installed."""
+
+import os
+
+import bpy
+
+from . import export, job, materials
+
+COLLECTION = "Singe"
+
+
+class LoadError(Exception):
+    """What the user can mend, in words."""
+
+
+def relative(path):
+    """From the .blend file where there is one, so that both can be moved together."""
+    try:
+        return bpy.path.relpath(path) if bpy.data.filepath else path
+    except ValueError:  # another drive
+        return path
+
+
+def collection_of(context, cache):
+    """The collection of a cache; it knows its folder."""
+    for collection in bpy.data.collections:
+        if collection.get("singe_cache") == os.path.abspath(cache):
+            return collection
+    collection = bpy.data.collections.new(COLLECTION)
+    collection["singe_cache"] = os.path.abspath(cache)
+    context.scene.collection.children.link(collection)
+    return collection
+
+
+def clear(context, cache):
+    """Takes what was loaded of a cache out of the scene."""
+    for collection in [c for c in bpy.data.collections if c.get("singe_cache") == os.path.abspath(cache)]:
+        for loaded in list(collection.objects):
+            data = loaded.data
+            files = [m.cache_file for m in loaded.modifiers if m.type == "MESH_SEQUENCE_CACHE" and m.cache_file]
+            bpy.data.objects.remove(loaded)
+            if data.users == 0:
+                (bpy.data.volumes if isinstance(data, bpy.types.Volume) else bpy.data.meshes).remove(data)
+            for file in files:
+                if file.users == 0:
+                    bpy.data.batch_remove([file])
+        bpy.data.collections.remove(collection)
+    for sheet in export.objects(context.scene, "SHEET"):
+        sheet.hide_render = False
+        sheet.hide_set(False)
+
+
+def load(context, cache):
+    """The first time: objects for the sheets and the gas. Returns how many frames there are."""
+    found = job.root_of(cache)
+    if not found:
+        raise LoadError(f"{cache} has no USD: add `usd` to the formats of its scene, or run singe convert --to usd")
+    root, gas, fps = found
+    scene = context.scene
+    if abs(scene.render.fps / scene.render.fps_base - fps) > 1e-3:
+        raise LoadError(f"the cache has {fps:g} frames a second; set the scene's frame rate to that")
+    clear(context, cache)
+    collection = collection_of(context, cache)
+    sheets = _import_sheets(context, root, collection)
+    if not sheets:
+        bpy.data.collections.remove(collection)
+        raise LoadError(f"{root} has no sheets")
+    _dress(context, sheets)
+    if gas:
+        _add_gas(context, collection, gas, job.frames_in(cache))
+    context.scene.singe.cache = relative(cache)
+    return job.frames_in(cache)
+
+
+def _import_sheets(context, root, collection):
+    before, files = set(bpy.data.objects), set(bpy.data.cache_files)
+    chosen = context.selected_objects[:]
+    active = context.view_layer.objects.active
+    start, end = context.scene.frame_start, context.scene.frame_end
+    bpy.ops.wm.usd_import(filepath=root, import_cameras=False, import_lights=False, import_materials=False,
+                          import_volumes=False, import_curves=False, set_frame_range=False)
+    context.scene.frame_start, context.scene.frame_end = start, end
+    made = [o for o in bpy.data.objects if o not in before]
+    sheets = [o for o in made if any(m.type == "MESH_SEQUENCE_CACHE" for m in o.modifiers)
+              and "/sheets/" in next(m.object_path for m in o.modifiers if m.type == "MESH_SEQUENCE_CACHE")]
+    unit = context.scene.unit_settings.scale_length
+    for o in made:
+        if o not in sheets:
+            bpy.data.objects.remove(o)
+    for sheet in sheets:
+        world = sheet.matrix_world.copy()
+        sheet.parent = None
+        sheet.matrix_world = world
+        sheet.scale = [s / unit for s in sheet.scale]
+        for user in list(sheet.users_collection):
+            user.objects.unlink(sheet)
+        collection.objects.link(sheet)
+    for file in bpy.data.cache_files:
+        if file not in files:
+            file.filepath = relative(root)
+            # Singe's frame 1 is the scene's first
+            file.frame_offset = float(context.scene.frame_start - 1)
+    for o in chosen:
+        o.select_set(True)
+    context.view_layer.objects.active = active
+    return sheets
+
+
+def _dress(context, loaded):
+    """Materials of the objects that burn, which are hidden while their cache is there."""
+    sources = export.objects(context.scene, "SHEET")
+    for i, sheet in enumerate(sorted(loaded, key=lambda o: o.name)):
+        source = sources[i] if i < len(sources) else None
+        image, colour = materials.base_of(source)
+        sheet.name = f"{source.name} burning" if source else "Sheet burning"
+        sheet.data.materials.clear()
+        sheet.data.materials.append(materials.sheet_material(f"Singe {sheet.name}", image, colour))
+        for modifier in sheet.modifiers:
+            if modifier.type == "MESH_SEQUENCE_CACHE":
+                modifier.use_vertex_interpolation = False  # vertices are others in each frame
+        if source:
+            source.hide_render = True
+            source.hide_set(True)
+
+
+def _add_gas(context, collection, path, frames):
+    volume = bpy.data.volumes.new("Singe Gas")
+    volume.filepath = relative(path)
+    volume.is_sequence = True
+    volume.frame_start, volume.frame_offset = context.scene.frame_start, 0
+    volume.frame_duration = max(frames, 1)
+    volume.sequence_mode = "CLIP"
+    volume.velocity_unit = "SECOND"
+    if os.path.basename(os.path.dirname(path)) == "gas":  # the finer one has no velocity
+        volume.velocity_grid = "velocity"
+    volume.materials.append(materials.fire_material())
+    gas = bpy.data.objects.new("Singe Gas", volume)
+    gas.scale = [1 / context.scene.unit_settings.scale_length] * 3
+    collection.objects.link(gas)
+
+
+def grow(context, cache):
+    """Takes in frames that have come since: the root is read again, and the gas lasts longer."""
+    frames = job.frames_in(cache)
+    for collection in bpy.data.collections:
+        if collection.get("singe_cache") != os.path.abspath(cache):
+            continue
+        for loaded in collection.objects:
+            if loaded.type == "VOLUME":
+                loaded.data.frame_duration = max(frames, 1)
+            for modifier in loaded.modifiers:
+                if modifier.type == "MESH_SEQUENCE_CACHE" and modifier.cache_file:
+                    with context.temp_override(edit_cachefile=modifier.cache_file):
+                        bpy.ops.cachefile.reload()
+    return frames
+
+
+def is_loaded(cache):
+    return any(c.get("singe_cache") == os.path.abspath(cache) and c.objects for c in bpy.data.collections)

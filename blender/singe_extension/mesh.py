@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes of polygons as arrays: finer ones, and PLY files. Knows no Blender."""
+
+import numpy as np
+
+
+class Mesh:
+    """points [n, 3] m; faces as corners [c] and sizes [f]; uv [c, 2] or None; weights by name [n], from 0 to 1."""
+
+    def __init__(self, points, corners, sizes, uv=None, weights=None):
+        self.points = np.asarray(points, np.float64).reshape(-1, 3)
+        self.corners = np.asarray(corners, np.int64).ravel()
+        self.sizes = np.asarray(sizes, np.int64).ravel()
+        self.uv = None if uv is None else np.asarray(uv, np.float64).reshape(-1, 2)
+        self.weights = {name: np.asarray(values, np.float64).ravel() for name, values in (weights or {}).items()}
+
+    def next_corners(self):
+        """For each corner the place of the face's next one."""
+        following = np.arange(1, len(self.corners) + 1)
+        ends = np.cumsum(self.sizes)
+        following[ends - 1] = ends - self.sizes
+        return following
+
+    def edge_length(self):
+        """The mean side, m."""
+        sides = self.points[self.corners[self.next_corners()]] - self.points[self.corners]
+        return float(np.sqrt((sides**2).sum(1)).mean()) if len(sides) else 0.0
+
+    def is_flat(self):
+        """Whether all points lie in a plane, to a thousandth of the mesh's size."""
+        centred = self.points - self.points.mean(0)
+        size = np.linalg.svd(centred, compute_uv=False)
+        return len(self.points) >= 3 and size[2] <= 1e-3 * size[0]
+
+    def is_closed(self):
+        """Whether each edge has two faces."""
+        a, b = self.corners, self.corners[self.next_corners()]
+        _, counts = np.unique(np.sort(np.stack((a, b), 1), 1), axis=0, return_counts=True)
+        return bool((counts == 2).all())
+
+
+def _split_edges(mesh):
+    """The vertex in the middle of the side that begins at each corner, numbered behind the others, and the sides' ends."""
+    a, b = mesh.corners, mesh.corners[mesh.next_corners()]
+    ends, index = np.unique(np.sort(np.stack((a, b), 1), 1), axis=0, return_inverse=True)
+    return len(mesh.points) + index.ravel(), ends
+
+
+def subdivide(mesh):
+    """Each face of n corners as n quads, with sides half as long: nothing is smoothed."""
+    face_of = np.repeat(np.arange(len(mesh.sizes)), mesh.sizes)
+    middle, ends = _split_edges(mesh)
+    centre = len(mesh.points) + len(ends) + face_of
+    following = mesh.next_corners()
+    before = np.empty_like(following)
+    before[following] = np.arange(len(following))
+
+    def grown(values):
+        sums = np.zeros((len(mesh.sizes),) + values.shape[1:])
+        np.add.at(sums, face_of, values[mesh.corners])
+        sizes = mesh.sizes.reshape((-1,) + (1,) * (values.ndim - 1))
+        return np.concatenate((values, values[ends].mean(1), sums / sizes))
+
+    corners = np.stack((mesh.corners, middle, centre, middle[before]), 1)
+    uv = None
+    if mesh.uv is not None:
+        sums = np.zeros((len(mesh.sizes), 2))
+        np.add.at(sums, face_of, mesh.uv)
+        half = 0.5 * (mesh.uv + mesh.uv[following])
+        uv = np.stack((mesh.uv, half, (sums / mesh.sizes[:, None])[face_of], half[before]), 1)
+    return Mesh(grown(mesh.points), corners, np.full(len(corners), 4), uv,
+                {name: grown(values) for name, values in mesh.weights.items()})
+
+
+def refine(mesh, cell_size, cells_max=2_000_000):
+    """Subdivided until its sides are at most `cell_size` m on average; no further than `cells_max` cells."""
+    while mesh.edge_length() > cell_size * 1.05 and 4 * len(mesh.sizes) <= cells_max:
+        mesh = subdivide(mesh)
+    return mesh
+
+
+def spread(points, count):
+    """Places among the points that are far from each other: the index of each, `count` at most."""
+    chosen = [0]
+    distance = ((points - points[0])**2).sum(1)
+    while len(chosen) < min(count, len(points)) and distance.max() > 0:
+        chosen.append(int(distance.argmax()))
+        distance = np.minimum(distance, ((points - points[chosen[-1]])**2).sum(1))
+    return chosen, float(np.sqrt(distance.max()))
+
+
+def write_ply(path, mesh):
+    """Binary, with the uv of corners and the weights as properties of vertices."""
+    lines = ["ply", "format binary_little_endian 1.0", f"element vertex {len(mesh.points)}"]
+    lines += [f"property float {name}" for name in ("x", "y", "z", *mesh.weights)]
+    lines += [f"element face {len(mesh.sizes)}", "property list int int vertex_indices"]
+    if mesh.uv is not None:
+        lines.append("property list int float texcoord")
+    table = np.column_stack([mesh.points, *mesh.weights.values()]).astype("<f4")
+    faces, at = [], 0
+    for size in mesh.sizes.tolist():
+        faces.append(np.concatenate(([size], mesh.corners[at:at + size])).astype("<i4").tobytes())
+        if mesh.uv is not None:
+            faces.append(np.int32(2 * size).astype("<i4").tobytes())
+            faces.append(mesh.uv[at:at + size].astype("<f4").tobytes())
+        at += size
+    with open(path, "wb") as file:
+        file.write(("\n".join(lines) + "\nend_header\n").encode("ascii"))
+        file.write(table.tobytes())
+        file.write(b"".join(faces))

@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Burn, preview, cancel, resume, free and load."""
+
+import os
+import shutil
+
+import bpy
+from bpy.props import BoolProperty, StringProperty
+
+from . import export, job, load
+
+EVERY = 0.25  # s
+
+
+def burn_folder(scene, preview=False):
+    path = bpy.path.abspath(scene.singe.folder or "//singe")
+    if path.startswith("//") or not os.path.isabs(path):
+        raise export.ExportError("save the .blend file first, or choose a cache folder that does not begin with //")
+    return os.path.join(path, "preview" if preview else "burn")
+
+
+def say(scene, text, failed=False):
+    scene.singe.message, scene.singe.failed = text, failed
+
+
+def redraw(context):
+    for window in context.window_manager.windows if context.window_manager else ():
+        for area in window.screen.areas:
+            if area.type in {"PROPERTIES", "VIEW_3D"}:
+                area.tag_redraw()
+
+
+def frame_count(scene):
+    return scene.frame_end - scene.frame_start + 1
+
+
+class Burning:
+    """A job and what the scene shows of it; shared by burn, preview and resume."""
+
+    def begin_job(self, context, preview, resume):
+        scene = context.scene
+        folder = burn_folder(scene, preview)
+        if folder in job.RUNNING:
+            raise export.ExportError("it is burning already")
+        if frame_count(scene) < 2:
+            raise export.ExportError("the scene has a single frame: set its end")
+        program = job.find_program(bpy.path.abspath(scene.singe.program) if scene.singe.program else "")
+        if not resume:
+            load.clear(context, os.path.join(folder, "cache"))
+            export.Exporter(context, folder, preview).write()
+        self.job = job.Job(program, folder, frame_count(scene), resume)
+        self.root_time, self.shown = None, -1
+        scene.singe.progress = 0
+        say(scene, "burning")
+
+    def look(self, context):
+        """Takes in what is new. False when the job has ended."""
+        scene, running = context.scene, self.job.running()
+        frames = self.job.frames_done()
+        if frames != self.shown:
+            self.shown = frames
+            scene.singe.progress = frames / self.job.frames
+            say(scene, f"frame {frames} of {self.job.frames}")
+            redraw(context)
+        found = job.root_of(self.job.cache) if frames else None
+        time = os.stat(found[0]).st_mtime_ns if found else None
+        # a root of one frame has nothing that moves: Blender makes no cache of it
+        if found and time != self.root_time and job.root_frames(found[0]) > 1 and (self.job.resumed or time > (self.job.started or (0, 0))[1]):
+            self.root_time = time
+            if load.is_loaded(self.job.cache):
+                load.grow(context, self.job.cache)
+            else:
+                load.load(context, self.job.cache)
+        return running
+
+    def end_job(self, context):
+        """Whether it has come to its end; the scene says why not."""
+        code, said = self.job.finish()
+        self.look(context)
+        scene, frames = context.scene, job.frames_in(self.job.cache)
+        if code == 0:
+            say(scene, f"{frames} frames are burnt")
+        elif said:
+            say(scene, said, True)
+        else:
+            say(scene, f"stopped after frame {frames} of {self.job.frames}: Resume continues")
+        scene.singe.progress = frames / self.job.frames
+        redraw(context)
+        return code == 0
+
+
+class SINGE_OT_burn(bpy.types.Operator, Burning):
+    """Burn the scene's sheets in the background; the cache comes in as it grows"""
+    bl_idname = "singe.burn"
+    bl_label = "Burn"
+
+    preview: BoolProperty(options={"SKIP_SAVE"}, description="Coarse, without gas")
+    resume: BoolProperty(options={"SKIP_SAVE"}, description="Continue a burn that was stopped")
+
+    def _begin(self, context):
+        try:
+            self.begin_job(context, self.preview, self.resume)
+        except (export.ExportError, load.LoadError, job.ProgramError, OSError) as error:
+            say(context.scene, str(error), True)
+            self.report({"ERROR"}, str(error))
+            return False
+        return True
+
+    def execute(self, context):
+        """Waits: for scripts and for Blender without a window."""
+        if not self._begin(context):
+            return {"CANCELLED"}
+        try:
+            while self.look(context):
+                try:
+                    self.job.process.wait(EVERY)
+                except Exception:
+                    pass
+        except KeyboardInterrupt:
+            self.job.stop()
+        if self.end_job(context):
+            return {"FINISHED"}
+        self.report({"ERROR"}, context.scene.singe.message)
+        return {"CANCELLED"}
+
+    def invoke(self, context, event):
+        if bpy.app.background:
+            return self.execute(context)
+        if not self._begin(context):
+            return {"CANCELLED"}
+        self.timer = context.window_manager.event_timer_add(EVERY, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        try:
+            if self.look(context):
+                return {"PASS_THROUGH"}
+            good = self.end_job(context)
+        except (load.LoadError, RuntimeError, OSError) as error:
+            self.job.stop()
+            say(context.scene, str(error), True)
+            good = False
+        context.window_manager.event_timer_remove(self.timer)
+        if not good and context.scene.singe.failed:
+            self.report({"ERROR"}, context.scene.singe.message)
+        return {"FINISHED"}
+
+
+class SINGE_OT_cancel(bpy.types.Operator):
+    """Stop after the current step. Resume continues from there"""
+    bl_idname = "singe.cancel"
+    bl_label = "Cancel"
+
+    def execute(self, context):
+        for running in list(job.RUNNING.values()):
+            running.stop()
+        return {"FINISHED"}
+
+
+class SINGE_OT_free(bpy.types.Operator):
+    """Delete the cache's files, and what was loaded of it"""
+    bl_idname = "singe.free"
+    bl_label = "Free Cache"
+
+    def invoke(self, context, event):
+        return context.window_manager.invoke_confirm(self, event)
+
+    def execute(self, context):
+        try:
+            for preview in (False, True):
+                folder = burn_folder(context.scene, preview)
+                if folder in job.RUNNING:
+                    self.report({"ERROR"}, "it is burning: cancel first")
+                    return {"CANCELLED"}
+                load.clear(context, os.path.join(folder, "cache"))
+                if os.path.exists(os.path.join(folder, "burn.yaml")):  # ours
+                    shutil.rmtree(folder)
+        except (export.ExportError, OSError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        context.scene.singe.progress = 0
+        say(context.scene, "")
+        return {"FINISHED"}
+
+
+class SINGE_OT_load(bpy.types.Operator):
+    """Load the cache of a run of Singe, made here or elsewhere"""
+    bl_idname = "singe.load"
+    bl_label = "Load Cache"
+    bl_options = {"REGISTER", "UNDO"}
+
+    directory: StringProperty(subtype="DIR_PATH")
+    filepath: StringProperty(subtype="FILE_PATH", options={"HIDDEN", "SKIP_SAVE"})
+
+    def invoke(self, context, event):
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context):
+        folder = bpy.path.abspath(self.directory or os.path.dirname(self.filepath))
+        try:
+            frames = load.load(context, folder.rstrip("/\\"))
+        except (load.LoadError, RuntimeError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        say(context.scene, f"{frames} frames are loaded")
+        self.report({"INFO"}, context.scene.singe.message)
+        return {"FINISHED"}
+
+
+CLASSES = (SINGE_OT_burn, SINGE_OT_cancel, SINGE_OT_free, SINGE_OT_load)
+
+
+def register():
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    for running in list(job.RUNNING.values()):
+        running.stop()
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)
