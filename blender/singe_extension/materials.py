@@ -7,6 +7,8 @@ import bpy
 BROWN, BLACK = 470.0, 640.0
 # the flame's light a metre where `flame` is 1 (docs/blender.md)
 FLAME_LIGHT = 118.0
+# of `ember`: so that it is seen beside a lit sheet
+EMBER_LIGHT = 1.5
 
 
 def _node(tree, kind, place, **values):
@@ -95,22 +97,19 @@ def sheet_material(name, image, colour):
                   0.05, 0.16, (-500, -400))
     coloured = _mix(tree, grey, black, (0.30, 0.29, 0.28, 1), (-100, 200))
 
-    # embers: hot char glows in patches, as air comes to it
-    heat = _attribute(tree, "temperature", (-1100, -800)).outputs["Fac"]
-    patches = _node(tree, "ShaderNodeTexNoise", (-900, -900), Scale=350.0, Detail=6.0, Roughness=0.65)
+    # embers: hot char glows in patches, as air comes to it. By `ember`, the cache's colour of that glow: Cycles keeps the
+    # name `temperature` for volumes and finds 0 in a mesh's
+    ember = _attribute(tree, "ember", (-1100, -800)).outputs["Color"]
+    patches = _node(tree, "ShaderNodeTexNoise", (-900, -900), Scale=220.0, Detail=5.0, Roughness=0.7)
     links.new(_attribute(tree, "rest", (-1100, -1000)).outputs["Vector"], patches.inputs["Vector"])
-    hot = _range(tree, heat, 780, 1050, (-700, -800))
-    glow = _math(tree, "MULTIPLY", (-300, -800), _math(tree, "MULTIPLY", (-500, -800), hot,
-                                                       _range(tree, burnt, 0.15, 0.4, (-700, -950))),
-                 _range(tree, patches.outputs[0], 0.38, 0.72, (-500, -950)))
-    colour_of_heat = _node(tree, "ShaderNodeBlackbody", (-500, -1150))
-    links.new(_math(tree, "ADD", (-700, -1150), heat, 350), colour_of_heat.inputs[0])
+    glow = _math(tree, "MULTIPLY", (-300, -900), _range(tree, burnt, 0.15, 0.4, (-700, -750)),
+                 _range(tree, patches.outputs[0], 0.46, 0.68, (-500, -900)))
 
     paper = _node(tree, "ShaderNodeBsdfPrincipled", (150, 200), Roughness=0.85)
     paper.inputs["Specular IOR Level"].default_value = 0.1
     links.new(coloured, paper.inputs["Base Color"])
-    links.new(colour_of_heat.outputs[0], paper.inputs["Emission Color"])
-    links.new(_math(tree, "MULTIPLY", (-100, -800), glow, 9.0), paper.inputs["Emission Strength"])
+    links.new(ember, paper.inputs["Emission Color"])
+    links.new(_math(tree, "MULTIPLY", (-100, -800), glow, EMBER_LIGHT), paper.inputs["Emission Strength"])
     through = _node(tree, "ShaderNodeBsdfTranslucent", (150, -150))
     links.new(coloured, through.inputs["Color"])
     mixed = _node(tree, "ShaderNodeMixShader", (400, 200))
