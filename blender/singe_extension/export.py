@@ -135,6 +135,19 @@ class Exporter:
             document["wind"] = wind
         return document
 
+    def _save_texture(self, image, sheet, name):
+        """A copy beside the scene, of the image as it is in this file: changed, packed or of another format."""
+        scene = bpy.data.scenes.new("singe texture")  # its settings, not the user's
+        try:
+            scene.view_settings.view_transform = "Raw"
+            scene.render.image_settings.file_format = "PNG"
+            scene.render.image_settings.color_mode = "RGB"
+            image.save_render(os.path.join(self.folder, name), scene=scene)
+        except RuntimeError as error:
+            raise ExportError(f"'{sheet.name}': the speed texture '{image.name}' cannot be saved: {error}") from None
+        finally:
+            bpy.data.scenes.remove(scene)
+
     # sheets
 
     def _sheet(self, document, sheet):
@@ -143,8 +156,9 @@ class Exporter:
         if not len(mesh.sizes):
             raise ExportError(f"'{sheet.name}' has no faces")
         mesh = meshes.refine(mesh, (2.5 if self.preview else 1) * own.cell_size * self.unit)
-        file = f"sheet{len(document['sheets'])}.ply"
-        entry = {"name": f"sheet{len(document['sheets'])}", "mesh": file, "material": self._material(sheet, mesh)}
+        name = f"sheet{len(document['sheets'])}"
+        file = f"{name}.ply"
+        entry = {"name": name, "mesh": file, "material": self._material(sheet, mesh, f"{name}-speed.png")}
         if own.lit_by == "GROUP":
             document["sources"] += self._lit_group(sheet, mesh)
         elif own.lit_by == "OBJECT":
@@ -156,7 +170,7 @@ class Exporter:
         meshes.write_ply(os.path.join(self.folder, file), mesh)
         document["sheets"].append(entry)
 
-    def _material(self, sheet, mesh):
+    def _material(self, sheet, mesh, texture):
         own = sheet.singe
         material = {"base": own.material}
         if own.material == "FILE":
@@ -166,6 +180,12 @@ class Exporter:
             material["base"] = path
         if "rate_group" in mesh.weights:
             material["mass_rate"] = {"from": own.rate_low, "to": own.rate_high, "attribute": "speed"}
+        elif own.rate_image:
+            if mesh.uv is None:
+                raise ExportError(f"'{sheet.name}' has a speed texture, but no uv to put it by: unwrap its mesh")
+            material["mass_rate"] = {"from": own.rate_low, "to": own.rate_high,
+                                     "texture": texture}
+            self._save_texture(own.rate_image, sheet, texture)
         return material
 
     def _lit_group(self, sheet, mesh):

@@ -81,6 +81,8 @@ class Job:
         """Its exit code, and what it said was wrong."""
         code = self.process.wait()
         RUNNING.pop(self.folder, None)
+        # its last record is newer than its table, so a run that ends between two looks is seen here only
+        self.counting = self.counting or self._mark() not in (None, self.started)
         with open(self.log, encoding="utf-8", errors="replace") as file:
             lines = file.read().splitlines()
         # with the line of the file below where there is one

@@ -39,17 +39,31 @@ def clear(context, cache):
     for collection in [c for c in bpy.data.collections if c.get("singe_cache") == os.path.abspath(cache)]:
         for loaded in list(collection.objects):
             data = loaded.data
-            files = [m.cache_file for m in loaded.modifiers if m.type == "MESH_SEQUENCE_CACHE" and m.cache_file]
             bpy.data.objects.remove(loaded)
             if data.users == 0:
                 (bpy.data.volumes if isinstance(data, bpy.types.Volume) else bpy.data.meshes).remove(data)
-            for file in files:
-                if file.users == 0:
-                    bpy.data.batch_remove([file])
         bpy.data.collections.remove(collection)
+    _close(context, cache)
     for sheet in export.objects(context.scene, "SHEET"):
         sheet.hide_render = False
         sheet.hide_set(False)
+
+
+def _close(context, cache):
+    """OpenUSD shares files that are open: one that is held would show an earlier burn's frames in a later one."""
+    folder = os.path.abspath(cache)
+    for file in list(bpy.data.cache_files):
+        if os.path.dirname(os.path.abspath(bpy.path.abspath(file.filepath))) != folder:
+            continue
+        if file.users == 0:
+            bpy.data.batch_remove([file])
+        else:  # of an object that was copied out of the collection, say
+            _reload(context, file)
+
+
+def _reload(context, file):
+    with context.temp_override(edit_cachefile=file):
+        bpy.ops.cachefile.reload()
 
 
 def load(context, cache):
@@ -152,8 +166,7 @@ def grow(context, cache):
                 loaded.data.frame_duration = max(frames, 1)
             for modifier in loaded.modifiers:
                 if modifier.type == "MESH_SEQUENCE_CACHE" and modifier.cache_file:
-                    with context.temp_override(edit_cachefile=modifier.cache_file):
-                        bpy.ops.cachefile.reload()
+                    _reload(context, modifier.cache_file)
     return frames
 
 

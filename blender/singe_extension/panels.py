@@ -23,7 +23,9 @@ def draw_sheet(layout, candidate):
         layout.prop(own, "lit_temperature")
         layout.prop(own, "lit_seconds")
     layout.prop_search(own, "rate_group", candidate, "vertex_groups")
-    if own.rate_group:
+    if not own.rate_group:
+        layout.prop(own, "rate_image")
+    if own.rate_group or own.rate_image:
         row = layout.row(align=True)
         row.prop(own, "rate_low")
         row.prop(own, "rate_high")

@@ -31,8 +31,10 @@ class ObjectSettings(bpy.types.PropertyGroup):
     lit_temperature: FloatProperty(name="Flame", description="Kelvin", default=1200, min=400, max=3000)
     lit_seconds: FloatProperty(name="For", description="Seconds from the first frame", default=1.5, min=0, unit="TIME_ABSOLUTE")
     rate_group: StringProperty(name="Speed", description="Vertex group: where its weight is 0 the sheet burns slowly, where it is 1 fast")
-    rate_low: FloatProperty(name="Slow", description="Mass rate where the weight is 0, 1/(K s)", default=0.002, min=0, precision=4)
-    rate_high: FloatProperty(name="Fast", description="Mass rate where the weight is 1, 1/(K s)", default=0.016, min=0, precision=4)
+    rate_image: PointerProperty(name="Speed Texture", type=bpy.types.Image,
+                                description="Over the mesh's uv: where it is black the sheet burns slowly, where it is white fast")
+    rate_low: FloatProperty(name="Slow", description="Mass rate where the weight is 0 or the texture black, 1/(K s)", default=0.002, min=0, precision=4)
+    rate_high: FloatProperty(name="Fast", description="Mass rate where the weight is 1 or the texture white, 1/(K s)", default=0.016, min=0, precision=4)
     pin_group: StringProperty(name="Pinned", description="Vertex group that is held, and follows the object's own animation")
     friction: FloatProperty(name="Friction", default=0.4, min=0, soft_max=1)
 

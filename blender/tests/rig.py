@@ -163,6 +163,43 @@ def curtain_burns():
     return sheet
 
 
+def burnt_again():
+    """What was burnt before into the same folder is not shown, though its object was deleted or kept elsewhere."""
+    for keep in (False, True):
+        scene = fresh(frames=10)
+        curtain = add_curtain()
+        assert bpy.ops.singe.burn() == {"FINISHED"}, scene.singe.message
+        first, = burning()
+        assert values(evaluated(first, 10), "temperature_peak").max() > 700
+        if keep:
+            copy = first.copy()
+            scene.collection.objects.link(copy)
+        bpy.data.objects.remove(first)
+        curtain.singe.lit_by = "NONE"
+        assert bpy.ops.singe.burn() == {"FINISHED"}, scene.singe.message
+        second = next(o for o in burning() if not keep or o != copy)
+        assert values(evaluated(second, 10), "temperature_peak").max() < 300, "an earlier burn is shown"
+
+
+def speed_by_texture():
+    """The black half of the sheet's picture stays; the white half burns."""
+    scene = fresh(frames=20)
+    curtain = add_curtain()
+    image = bpy.data.images.new("speed", 8, 8, float_buffer=True)
+    pixels = np.zeros((8, 8, 4), np.float32)
+    pixels[:, 4:, :3], pixels[..., 3] = 1, 1
+    image.pixels.foreach_set(pixels.ravel())
+    own = curtain.singe
+    own.lit_group = group(curtain, "side to side", lambda p: p.z < 0.151)
+    own.rate_image, own.rate_low, own.rate_high = image, 1e-5, 0.016
+    assert bpy.ops.singe.burn() == {"FINISHED"}, scene.singe.message
+    last = evaluated(burning()[0], 20)
+    rest = np.empty(3 * len(last.vertices), np.float32)
+    last.attributes["rest"].data.foreach_get("vector", rest)
+    x, burnt = rest[::3], values(last, "burnt")
+    assert burnt[x < -0.02].max() < 0.1 and burnt[x > 0.02].max() > 0.5, (burnt[x < -0.02].max(), burnt[x > 0.02].max())
+
+
 def saved_and_moved(extension):
     """Without the extension the file shows the same; it renders, blurred by the cache's velocities."""
     bpy.ops.wm.save_mainfile()
@@ -192,7 +229,11 @@ def errors():
         (lambda: setattr(bpy.data.objects["Curtain"].singe, "lit_group", ""), "none is chosen"),
         (lambda: setattr(bpy.data.objects["Curtain"].singe, "lit_by", "OBJECT"), "lit by an object, but none"),
         (lambda: (setattr(bpy.data.objects["Curtain"].singe, "lit_by", "NONE"), open_collider()), "has holes"),
-        (lambda: (bpy.data.objects.remove(bpy.data.objects["Bowl"]),
+        (lambda: setattr(bpy.data.objects["Curtain"].singe, "rate_image", lost_image()), "cannot be saved"),
+        (lambda: (setattr(bpy.data.objects["Curtain"].singe, "rate_image", bpy.data.images.new("speed", 4, 4)),
+                  remove_uv(bpy.data.objects["Curtain"].data)), "no uv"),
+        (lambda: (setattr(bpy.data.objects["Curtain"].singe, "rate_image", None),
+                  bpy.data.objects.remove(bpy.data.objects["Bowl"]),
                   setattr(bpy.data.objects["Curtain"].singe, "material", "FILE")), "no material file"),
         (lambda: (setattr(bpy.data.objects["Curtain"].singe, "material_file", bad_material()),), "bad.yaml:1"),
     ):
@@ -204,6 +245,18 @@ def errors():
         except RuntimeError as error:  # how a report of an error arrives in a script
             result = str(error)
         assert scene.singe.failed and expected in scene.singe.message, (expected, scene.singe.message, result)
+
+
+def remove_uv(mesh):
+    while mesh.uv_layers:
+        mesh.uv_layers.remove(mesh.uv_layers[0])
+    mesh.update_tag()
+
+
+def lost_image():
+    image = bpy.data.images.new("lost", 4, 4)
+    image.source, image.filepath = "FILE", os.path.join(folder, "nowhere.png")
+    return image
 
 
 def bad_material():
@@ -349,8 +402,8 @@ def preview_and_load():
 
 def main():
     extension = install()
-    for scenario in (curtain_burns, lambda: saved_and_moved(extension), errors, lambda: cancel_and_resume(extension),
-                     preview_and_load, suzanne):
+    for scenario in (curtain_burns, lambda: saved_and_moved(extension), errors, burnt_again, speed_by_texture,
+                     lambda: cancel_and_resume(extension), preview_and_load, suzanne):
         begun = time.monotonic()
         scenario()
         name = scenario.__name__ if scenario.__name__ != "<lambda>" else "saved, cancelled or resumed"
