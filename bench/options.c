@@ -3,7 +3,7 @@
 #include <math.h>
 
 static const char *const solver_names[] = {"strand", "paper", "paper-literal", "all-at-once", "mass-spring"};
-static const char *const instruction_names[] = {"best", "plain", "v2", "v3", "v4"};
+static const char *const instruction_names[] = {"best", "plain", "v2", "v3", "v4", "neon"};
 
 const char *options_solver_name(SingeSolverMethod method) { return solver_names[method]; }
 const char *options_instructions_name(SingeInstructions instructions) { return instruction_names[instructions]; }

@@ -16,7 +16,7 @@ static const ArgOption all_options[BENCH_OPT_COUNT] = {
     [BENCH_OPT_SMOOTHING] = {"smoothing", 0, "RATE", "internal friction, 0 to 1e6 per second"},
     [BENCH_OPT_THREADS] = {"threads", 0, "N", "threads [1]"},
     [BENCH_OPT_SOLVER] = {"solver", 0, "METHOD", "strand, paper, paper-literal, all-at-once or mass-spring [strand]"},
-    [BENCH_OPT_INSTRUCTIONS] = {"instructions", 0, "SET", "best, plain, v2, v3 or v4 [best]"},
+    [BENCH_OPT_INSTRUCTIONS] = {"instructions", 0, "SET", "best, plain, v2, v3, v4 or neon [best]"},
     [BENCH_OPT_PROJECTIONS] = {"projections", 0, "N", "projections a substep, 1 to 1000 [the solver's]"},
     [BENCH_OPT_SPRINGS] = {"springs", 0, "N,N,...", "sizes, 40 to 40000000 springs"},
     [BENCH_OPT_STATE] = {"state", 0, "swing|shrink", "what the sheet does [swing]"},
@@ -94,9 +94,9 @@ static bool read_solver(const Parser *parser, const char *text, SingeSolverMetho
 }
 
 static bool read_instructions(const Parser *parser, const char *text, SingeInstructions *instructions) {
-    static const char *const words[] = {"best", "plain", "v2", "v3", "v4"};
+    static const char *const words[] = {"best", "plain", "v2", "v3", "v4", "neon"};
     int value;
-    if (!read_word(parser, text, words, 5, "best, plain, v2, v3 or v4", &value)) return false;
+    if (!read_word(parser, text, words, 6, "best, plain, v2, v3, v4 or neon", &value)) return false;
     *instructions = (SingeInstructions)value;
     return true;
 }

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "bench/options.h"
 #include "bench/strip.h"
 #include "cli/args.h"
 #include "cli/bench_materials.h"
@@ -110,6 +111,7 @@ static void report_shell(const SingeCounts *c) {
         printf("  %-11s %" PRIu32 " in %" PRIu32 " strands, %" PRIu32 " families\n", rows[i].name,
                c->springs[rows[i].colour], c->strands[rows[i].colour], c->families[rows[i].colour]);
     printf("memory        %.1f MB\n", 1e-6 * (double)c->memory);
+    printf("instructions  %s\n", options_instructions_name(c->instructions));
 }
 
 /// Office paper takes 8,000 pieces of work (StripSetup.work_max), a third of a second in all; a fire that creeps by

@@ -311,9 +311,10 @@ static inline SingeStats singe_sim_stats(const SingeSim *sim) {
 /// Counts of a committed simulation's elements.
 typedef struct SingeCounts {
     uint32_t particles, cells, springs[SINGE_COLOUR_COUNT], strands[SINGE_COLOUR_COUNT], families[SINGE_COLOUR_COUNT];
-    double mean_strand_length; ///< springs per strand
-    float cell_size;           ///< m, median edge, the mean over the sheets
-    size_t memory;             ///< bytes held, of the allocator
+    double mean_strand_length;      ///< springs per strand
+    float cell_size;                ///< m, median edge, the mean over the sheets
+    size_t memory;                  ///< bytes held, of the allocator
+    SingeInstructions instructions; ///< that the inner loops use: never SINGE_INSTRUCTIONS_BEST
 } SingeCounts;
 
 /// Fills `struct_size` bytes, the caller's sizeof.

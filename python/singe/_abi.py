@@ -269,7 +269,7 @@ class SingeStats(Structure):
 class SingeCounts(Structure):
     _fields_ = [("particles", c_uint32), ("cells", c_uint32), ("springs", c_uint32 * 4), ("strands", c_uint32 * 4),
                 ("families", c_uint32 * 4), ("mean_strand_length", c_double), ("cell_size", c_float),
-                ("memory", c_size_t)]
+                ("memory", c_size_t), ("instructions", c_int)]
 
 
 class SingeNetworkDef(Structure):
@@ -297,7 +297,7 @@ FIELD_ENUMS = {"SingeError.code": "SingeResult", "SingeField.kind": "SingeFieldK
                "SingeColliderDef.kind": "SingeColliderKind", "SingeColliderDef.sides": "SingeContactSides",
                "SingeSolverDef.method": "SingeSolverMethod", "SingeSolverDef.order": "SingeColour",
                "SingeSimDef.instructions": "SingeInstructions", "SingeMeshDef.quads": "SingeMeshQuads",
-               "SingeEvent.kind": "SingeEventKind"}
+               "SingeEvent.kind": "SingeEventKind", "SingeCounts.instructions": "SingeInstructions"}
 # name: (result, arguments)
 FUNCTIONS = {
     "singe_result_name": (c_char_p, [c_int]),

@@ -35,6 +35,7 @@ static bool plan_allocate(DynamicsPlan *plan, const Shell *shell, Memory *memory
 }
 
 bool dynamics_runs_here(SingeInstructions instructions) { return kernels_choose(instructions) != NULL; }
+SingeInstructions dynamics_instructions(SingeInstructions asked) { return kernels_choose(asked)->instructions; }
 
 SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const DynamicsSettings *settings,
                                  DynamicsPlan **out) {

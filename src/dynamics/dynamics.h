@@ -22,6 +22,9 @@ typedef struct DynamicsSettings {
 /// Whether this processor supports the instructions.
 bool dynamics_runs_here(SingeInstructions instructions);
 
+/// The set that is used where `asked`, which runs here, may be SINGE_INSTRUCTIONS_BEST.
+SingeInstructions dynamics_instructions(SingeInstructions asked);
+
 /// Scratch of the stage, built once.
 typedef struct DynamicsPlan DynamicsPlan;
 SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const DynamicsSettings *settings,

@@ -23,6 +23,7 @@ typedef struct Kernels {
     StrandSolve *solve;
     AttachHold *hold;
     StrandBend *bend;
+    SingeInstructions instructions;
 } Kernels;
 
 /// The loops for these instructions, or NULL if the processor lacks them (strand_kernels.c).

@@ -73,6 +73,7 @@ void singe_sim_read_timers(const SingeSim *sim, SingeTimers *timers, size_t stru
 void singe_sim_read_counts(const SingeSim *sim, SingeCounts *out, size_t struct_size) {
     const Shell *shell = &sim->shell;
     SingeCounts counts = {.cells = shell->cell_count, .memory = sim->memory.held};
+    counts.instructions = dynamics_instructions(sim->def.instructions);
     double springs = 0, strands = 0, size = 0;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         counts.springs[colour] = shell_strand_springs(shell, colour);

@@ -98,6 +98,18 @@ class Bench(Case):
         rows = self.measure("width", "--springs", "1000", "--steps", "5")["rows"]
         self.assertEqual(rows[0]["instructions"], "plain")
         self.assertEqual({row["bytes"] for row in rows} - {"same", "not here"}, set())
+        self.assertEqual([row["instructions"] for row in rows], ["plain", "v2", "v3", "v4", "neon"])
+
+    def test_instructions_of_this_processor_and_of_another(self):
+        """Each set is run or refused, as `width` says; those of Arm and of x86-64 never run on one machine."""
+        rows = self.measure("width", "--springs", "1000", "--steps", "5")["rows"]
+        here = {row["instructions"]: row["bytes"] == "same" for row in rows}
+        self.assertFalse(here["neon"] and here["v2"])
+        for name, runs in here.items():
+            with self.subTest(name):
+                _, err = self.singe("bench", "dynamics", "--springs", "250", "--steps", "2", "--quick",
+                                    "--instructions", name, expect=0 if runs else 1)
+                self.assertEqual("this processor lacks the instructions" in err, not runs)
 
     def test_limit(self):
         out, err = self.singe("bench", "step", "--springs", "1000", "--steps", "3", "--limit-ms", "0.001", expect=1)
@@ -177,7 +189,7 @@ class Bench(Case):
             (["swing", "--springs", "1000"], "unknown option"),
             (["dynamics", "--springs", "10"], "from 40 to 40000000"),
             (["dynamics", "--solver", "best"], "strand, paper"),
-            (["dynamics", "--instructions", "v5"], "v2, v3 or v4"),
+            (["dynamics", "--instructions", "v5"], "v2, v3, v4 or neon"),
             (["dynamics", "--state", "still"], "swing or shrink"),
             (["dynamics", "--json=1"], "takes no value"),
             (["step", "--limit-ms", "-1"], "milliseconds"),

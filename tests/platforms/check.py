@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 """The core on other systems: builds it by cross compilers, runs hash_runs there and compares the bytes.
 
+hash_runs is tried on the static library with the best instructions, plain ones and, on Arm, NEON by name; and on the
+shared library of the Python package (Windows: the DLL).
+
     check.py --source FOLDER --build FOLDER [--install] [SYSTEM...]
 
 All are built with SINGE_PORTABLE_MATH, as C libraries differ in the last digits of exp and others. The measure is what
@@ -24,6 +27,7 @@ SYSTEMS = {
               ["qemu-aarch64", "qemu-aarch64-static"]),
     "macos": ([], [], None),
 }
+PLAIN = ["--instructions", "plain"]
 
 
 def fail(message):
@@ -31,11 +35,14 @@ def fail(message):
     sys.exit(1)
 
 
-def output(command, environment=None):
-    """Lines that a program prints; ends the check where it fails."""
+def output(command, environment=None, used=None):
+    """Lines that hash_runs prints; ends the check where it fails, or uses instructions that are not among `used`."""
     done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=3000)
     if done.returncode != 0:
         fail(f"{' '.join(map(str, command))} ended with {done.returncode}:\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
+    found = done.stderr.replace("\r", "").partition("instructions: ")[2].split("\n")[0]
+    if used and found not in used:
+        fail(f"{' '.join(map(str, command))} used the instructions '{found}', not {' or '.join(used)}")
     return done.stdout.replace("\r", "").splitlines()
 
 
@@ -73,7 +80,7 @@ def missing(system, build):
 
 
 def built(system, source, build):
-    """Configures and builds a system; the program that it leaves."""
+    """Configures and builds a system; hash_runs on its static library, and on its shared one."""
     folder = build / system
     environment = dict(os.environ)
     if system == "macos":
@@ -83,8 +90,8 @@ def built(system, source, build):
     subprocess.run(["cmake", "--preset", system, "-S", source, "-B", folder], check=True, env=environment,
                    stdout=subprocess.DEVNULL, cwd=source)
     subprocess.run(["cmake", "--build", folder, "-j2"], check=True, env=environment, stdout=subprocess.DEVNULL)
-    return next(path for path in (folder / "tests/platforms/hash_runs", folder / "tests/platforms/hash_runs.exe")
-                if path.exists())
+    end = ".exe" if system == "windows" else ""
+    return folder / f"tests/platforms/hash_runs{end}", folder / f"python/singe/hash_runs_shared{end}"
 
 
 def emulator(system):
@@ -112,6 +119,22 @@ def enough(lines):
         fail("two hashes are the same: the runs do not differ, or nothing moves")
 
 
+def try_runs(system, build, program, shared, wanted):
+    """Runs a system's programs by its emulator, with the instructions that it has and with some that it lacks."""
+    quiet = dict(os.environ, WINEDEBUG="-all", WINEPREFIX=str(build / "wine"))
+    views = [line for line in wanted if "snapshot" not in line]
+    call, own = emulator(system), ["neon"] if system == "arm64" else ["v2", "v3", "v4"]
+    compare(f"{system}, the best instructions", output([*call, program], quiet, own), wanted)
+    compare(f"{system}, plain loops", output([*call, program, *PLAIN], quiet, ["plain"]), views)
+    named = own[0]
+    compare(f"{system}, {named} by name", output([*call, program, "--instructions", named], quiet, [named]), views)
+    compare(f"{system}, shared library", output([*call, shared], quiet, own), wanted)
+    lacking = "v2" if system == "arm64" else "neon"
+    done = subprocess.run([*call, program, "--instructions", lacking], capture_output=True, text=True, env=quiet)
+    if done.returncode == 0 or "lacks the instructions" not in done.stderr:
+        fail(f"{system}: {lacking} was not refused: {done.stderr[-500:]}")
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--source", type=pathlib.Path, required=True)
@@ -130,11 +153,12 @@ def main():
             print(f"skipped {system}: there is no {missing(system, build)}")
         sys.exit(77) # for ctest: nothing to try is a skip, not a success
 
-    program = built("portable", options.source, build)
+    program, shared = built("portable", options.source, build)
     wanted = output([program])
     views = [line for line in wanted if "snapshot" not in line]
     enough(wanted)
-    compare("here, 3 threads", output([program, "--threads", "3", "--plain"]), views)
+    compare("here, 3 threads", output([program, "--threads", "3", *PLAIN], used=["plain"]), views)
+    compare("here, shared library", output([shared]), wanted)
 
     tried = 0
     for system in systems:
@@ -142,14 +166,12 @@ def main():
         if lack:
             print(f"skipped {system}: there is no {lack}")
             continue
-        program = built(system, options.source, build)
+        program, shared = built(system, options.source, build)
         tried += 1
         if SYSTEMS[system][2] is None:
             print(f"{system}: built, not run")
             continue
-        quiet = dict(os.environ, WINEDEBUG="-all", WINEPREFIX=str(build / "wine"))
-        compare(system, output([*emulator(system), program], quiet), wanted)
-        compare(f"{system}, plain loops", output([*emulator(system), program, "--plain"], quiet), views)
+        try_runs(system, build, program, shared, wanted)
     print(f"tried {tried} of {len(systems)} systems")
 
 

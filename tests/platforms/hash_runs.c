@@ -1,8 +1,9 @@
 // Short runs by the public interface, each with a hash of its snapshot: the same lines on every system (check.py).
 //
-//   hash_runs [--plain] [--threads N]
+//   hash_runs [--instructions best|plain|v2|v3|v4|neon] [--threads N]
 //
-// A line is "NAME STEP HASH". --plain runs the loops without special instructions: its lines are the same too.
+// A line is "NAME STEP HASH". The lines of runs are the same for all sets of instructions; that of the snapshot, which
+// names the set asked for, is printed for the best alone. The set in use goes to the standard error.
 #include <singe/singe.h>
 
 #include <inttypes.h>
@@ -107,9 +108,13 @@ static uint64_t hash_view(const SingeSim *sim) {
     return hash * 31 + hash_bytes(view.particle_flags, view.particle_count);
 }
 
+static const char *const sets[] = {"best", "plain", "v2", "v3", "v4", "neon"};
+enum { SETS = sizeof sets / sizeof sets[0] };
+
 static SingeResult hash_run(const Run *run, const SingeSimDef *base, SingeError *error) {
     SingeSim *sim = NULL;
     SingeResult result = open_run(run, base, &sim, error);
+    if (!result && run == runs) fprintf(stderr, "instructions: %s\n", sets[singe_sim_counts(sim).instructions]);
     for (int step = 1; step <= run->steps && !result; step++) {
         result = singe_sim_step(sim);
         if (!result && step % (run->steps / PARTS) == 0)
@@ -134,13 +139,22 @@ static SingeResult hash_run(const Run *run, const SingeSimDef *base, SingeError 
     return result;
 }
 
+/// SETS for what is no set.
+static int find_set(const char *name) {
+    int set = 0;
+    while (set < SETS && strcmp(sets[set], name)) set++;
+    return set;
+}
+
 int main(int count, char **arguments) {
     SingeSimDef def = singe_default_sim();
     def.thread_count = 1;
     for (int i = 1; i < count; i++) {
-        if (strcmp(arguments[i], "--plain") == 0) def.instructions = SINGE_INSTRUCTIONS_PLAIN;
-        else if (strcmp(arguments[i], "--threads") == 0 && i + 1 < count) def.thread_count = atoi(arguments[++i]);
-        else return fprintf(stderr, "usage: hash_runs [--plain] [--threads N]\n"), 2;
+        const char *value = i + 1 < count ? arguments[i + 1] : "";
+        int set = strcmp(arguments[i], "--instructions") == 0 ? find_set(value) : SETS;
+        if (set < SETS) def.instructions = (SingeInstructions)set, i++;
+        else if (strcmp(arguments[i], "--threads") == 0 && *value) def.thread_count = atoi(value), i++;
+        else return fprintf(stderr, "usage: hash_runs [--instructions best|plain|v2|v3|v4|neon] [--threads N]\n"), 2;
     }
     for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
         SingeError error;

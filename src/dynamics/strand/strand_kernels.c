@@ -4,14 +4,16 @@
 
 static const Kernels *kernels_of(SingeInstructions instructions) {
     static const Kernels kernels[] = {
-        [SINGE_INSTRUCTIONS_PLAIN] = {strand_solve_plain, attach_hold_plain, strand_bend_plain},
+        [SINGE_INSTRUCTIONS_PLAIN] = {strand_solve_plain, attach_hold_plain, strand_bend_plain,
+                                      SINGE_INSTRUCTIONS_PLAIN},
 #ifdef SINGE_X86_LEVELS
-        [SINGE_INSTRUCTIONS_X86_V2] = {strand_solve_v2, attach_hold_v2, strand_bend_v2},
-        [SINGE_INSTRUCTIONS_X86_V3] = {strand_solve_v3, attach_hold_v3, strand_bend_v3},
-        [SINGE_INSTRUCTIONS_X86_V4] = {strand_solve_v4, attach_hold_v4, strand_bend_v4},
+        [SINGE_INSTRUCTIONS_X86_V2] = {strand_solve_v2, attach_hold_v2, strand_bend_v2, SINGE_INSTRUCTIONS_X86_V2},
+        [SINGE_INSTRUCTIONS_X86_V3] = {strand_solve_v3, attach_hold_v3, strand_bend_v3, SINGE_INSTRUCTIONS_X86_V3},
+        [SINGE_INSTRUCTIONS_X86_V4] = {strand_solve_v4, attach_hold_v4, strand_bend_v4, SINGE_INSTRUCTIONS_X86_V4},
 #endif
 #ifdef __aarch64__
-        [SINGE_INSTRUCTIONS_ARM_NEON] = {strand_solve_neon, attach_hold_neon, strand_bend_neon},
+        [SINGE_INSTRUCTIONS_ARM_NEON] = {strand_solve_neon, attach_hold_neon, strand_bend_neon,
+                                         SINGE_INSTRUCTIONS_ARM_NEON},
 #endif
     };
     bool built = (size_t)instructions < sizeof kernels / sizeof kernels[0] && kernels[instructions].solve;
