@@ -196,7 +196,7 @@ def written(reader, include):
     for name, fields in reader.structs.items():
         out.append(f"\n\nclass {name}(Structure):")
         out.append(wrapped("    _fields_ = [", [f'("{field}", {kind})' for field, kind in fields], "]"))
-    out.append("\n\nSTRUCTS = " + wrapped("[", list(reader.structs), "]").replace("\n", "\n          "))
+    out.append("\n\n" + wrapped("STRUCTS = [", list(reader.structs), "]"))
     out.append("# enumerations of fields")
     out.append(wrapped("FIELD_ENUMS = {", [f'"{f}": "{e}"' for f, e in reader.field_enums.items()], "}"))
     out.append("# name: (result, arguments)")

@@ -22,7 +22,7 @@ from .errors import (ArgumentError, CommandError, CommandMissingError, DivergedE
 from .objects import Collider, Grid, Pin, Sheet, Source, grid
 from .picture import draw, draw_png
 from .simulation import Sim, materials
-from .views import Gas, Surface
+from .views import Gas, StepView, Surface
 
 # bits of flags
 ALIVE, PINNED = 1, 2

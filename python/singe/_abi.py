@@ -287,10 +287,11 @@ class SingeNetworkReport(Structure):
 
 
 STRUCTS = [SingeError, SingeAllocator, SingeLog, SingeTasks, SingeSheetId, SingeSourceId, SingeColliderId, SingePinId,
-           SingeTexture, SingeNoise, SingeAttribute, SingeField, SingeParam, SingeMaterialDef, SingePoseKey, SingeValueKey,
-           SingeSheetDef, SingeSourceDef, SingeColliderDef, SingePinDef, SingeWindDef, SingeSolverDef, SingeGasDef,
-           SingeContactDef, SingeSimDef, SingeMeshDef, SingeGridDef, SingeMeshView, SingeSurface, SingeGas, SingeView,
-           SingeSheetRange, SingeEvent, SingeTimers, SingeStats, SingeCounts, SingeNetworkDef, SingeNetworkReport]
+           SingeTexture, SingeNoise, SingeAttribute, SingeField, SingeParam, SingeMaterialDef, SingePoseKey,
+           SingeValueKey, SingeSheetDef, SingeSourceDef, SingeColliderDef, SingePinDef, SingeWindDef, SingeSolverDef,
+           SingeGasDef, SingeContactDef, SingeSimDef, SingeMeshDef, SingeGridDef, SingeMeshView, SingeSurface,
+           SingeGas, SingeView, SingeSheetRange, SingeEvent, SingeTimers, SingeStats, SingeCounts, SingeNetworkDef,
+           SingeNetworkReport]
 # enumerations of fields
 FIELD_ENUMS = {"SingeError.code": "SingeResult", "SingeField.kind": "SingeFieldKind",
                "SingeMaterialDef.heat_operator": "SingeHeatOperator", "SingeSourceDef.kind": "SingeSourceKind",

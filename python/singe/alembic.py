@@ -1,5 +1,6 @@
-"""Alembic from a cache, for pipelines that have nothing newer: shape, uv and velocity. Needs `pip install singe[alembic]`.
+"""Alembic from a cache, for pipelines that have nothing newer: shape, uv and velocity.
 
+Needs `pip install singe[alembic]`.
 USD and PLY keep every field; Alembic's readers drop scalars of vertices, so none are written (docs/formats.md).
 """
 

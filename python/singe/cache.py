@@ -27,9 +27,9 @@ class Frame:
 
     position, rest_position: [vertices, 3] m. normal: [vertices, 3] unit. uv: [vertices, 2]. velocity: [vertices, 3]
     m/s. temperature, temperature_peak: [vertices] K. mass, char_fraction, ash_fraction: [vertices] fractions of the
-    initial mass. burn_rate: [vertices] 1/s. burn: [vertices] 0 fresh to 1 ash. time_ignited: [vertices] s, -1 not yet. piece,
-    sheet, source_vertex: [vertices]. triangles: [triangles, 3]. time: s. number: of the frame, from 1. gas: the path
-    of its OpenVDB file, or None.
+    initial mass. burn_rate: [vertices] 1/s. burn: [vertices] 0 fresh to 1 ash. time_ignited: [vertices] s, -1 not yet.
+    piece, sheet, source_vertex: [vertices]. triangles: [triangles, 3]. time: s. number: of the frame, from 1. gas: the
+    path of its OpenVDB file, or None.
     """
 
     position: Floats
@@ -84,8 +84,8 @@ class Frame:
             of = parts.split()
             if all(one in names for one in of):
                 first = table.dtype.fields[of[0]][1]  # type: ignore[index]
-                view = np.ndarray((len(table), len(of)), "<f4", table if len(table) else None, first if len(table) else 0,
-                                  (table.dtype.itemsize, 4))
+                view = np.ndarray((len(table), len(of)), "<f4", table if len(table) else None,
+                                  first if len(table) else 0, (table.dtype.itemsize, 4))
                 view.flags.writeable = False
                 setattr(self, vector, view)
                 taken.update(of)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any, List, NamedTuple, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +11,7 @@ import numpy.typing as npt
 from . import _abi
 from ._fields import Attributes, assign, default, floats, indices, path_keys, pointer
 from ._library import library, log_callback, raise_for
-from .views import shown
+from .views import StepView, shown
 
 if TYPE_CHECKING:
     from .simulation import Sim
@@ -135,6 +135,21 @@ class Source(Placed):
     """Something that heats."""
 
     _name = "source"
+
+    def set_callback(self, callback: Optional[Callable[[StepView], Any]]) -> None:
+        """What heats, of a source of the kind `callback`, also after a load, as no snapshot has it; None: nothing.
+
+        It is called in each step with a StepView, whose arrays show the particles as they are in it, and returns the
+        flux into each layer in W/m2, a number or [particles], or (flux, conductance, temperature): conductance in
+        W/(m2 K) towards temperature in K. What it returns must follow from the StepView alone. If it raises, the step
+        fails and changes nothing, and step() or advance() raises the same.
+        """
+        self._sim._set_callback(self.id, callback)
+
+    def remove(self) -> None:
+        """Takes it out of the simulation."""
+        super().remove()
+        self._sim._forget_callback(self.id)
 
 
 class Collider(Placed):

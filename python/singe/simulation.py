@@ -7,19 +7,24 @@ import ctypes
 import os
 import pathlib
 import threading
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
+import time
+import weakref
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, TypeVar, Union
 
 import numpy as np
 
 from . import _abi, errors
+from ._aside import LONG, Aside, is_interruptible
 from ._fields import (Attributes, Vary, as_dict, assign, default, floats, indices, path_keys, pointer, set_texture)
 from ._library import library, log_callback, raise_for
 from .objects import Collider, Pin, Sheet, Source, make_mesh
 from .picture import draw_png, html_picture
-from .views import Gas, OwnedSurface, Surface, Views, shown
+from .views import Gas, OwnedSurface, StepView, Surface, Views, add_fluxes, shown
 
 Vector = Sequence[float]
 Material = Union[str, Mapping[str, Any]]
+Result = TypeVar("Result")
+Callback = Callable[[StepView], Any]
 EVENT = np.dtype(_abi.SingeEvent)
 _SLICE = 16  # steps between which advance() can be interrupted
 
@@ -68,6 +73,9 @@ class Sim(Views):
         self._time_step = 0.0  # not known after a load
         self._events = np.zeros(0, EVENT)
         self._collider_sizes: Dict[Tuple[int, int], int] = {}
+        self._callbacks: Dict[Tuple[int, int], Tuple[Callback, Any]] = {}  # of sources: Python's, and C's for it
+        self._raised: Optional[BaseException] = None  # by a callback, for the call that it is in
+        self._seconds: Optional[float] = None  # that the last step or slice took; None: not known
 
     @classmethod
     def _of(cls, out: ctypes.c_void_p) -> "Sim":
@@ -99,6 +107,23 @@ class Sim(Views):
     def _checked(handle: _Handle, result: int) -> None:
         if result:
             raise_for(library.singe_sim_error(handle.pointer).contents)
+
+    def _stepped(self, call: Callable[[_Handle], Result]) -> Result:
+        """`call`, of steps or the commit: aside where it may take long and Ctrl-C can interrupt this thread."""
+        def timed(handle: _Handle) -> Result:
+            begun, self._raised = time.perf_counter(), None
+            try:
+                return call(handle)
+            finally:
+                self._seconds = time.perf_counter() - begun
+                raised, self._raised = self._raised, None
+                if raised is not None:
+                    raise raised
+
+        if is_interruptible() and (self._seconds is None or self._seconds >= LONG):
+            return Aside(self._locked, timed).wait()
+        with self._locked() as handle:
+            return timed(handle)
 
     def _read(self, struct: type, name: str) -> Any:
         made = struct()
@@ -140,15 +165,18 @@ class Sim(Views):
 
     def commit(self) -> None:
         """Builds what steps need. No sheet can be added after it."""
-        self._call("singe_sim_commit")
+        self._stepped(lambda handle: self._checked(handle, library.singe_sim_commit(handle.pointer)))
+        self._seconds = None  # which says nothing about steps
 
     def source(self, kind: str = "spot", *, path: Any = None, texture: Any = None, strength: Any = None,
-               **fields: Any) -> Source:
-        """Adds something that heats: `spot`, `ball` (on a path) or `texture` (a flux over uv).
+               callback: Optional[Callback] = None, **fields: Any) -> Source:
+        """Adds something that heats: `spot`, `ball` (on a path), `texture` (a flux over uv) or `callback`.
 
         Fields are those of SingeSourceDef. path: rows (time, x, y, z) in s and m. texture: [rows, columns] 0 to 1.
-        strength: rows (time, factor).
+        strength: rows (time, factor). callback: see Source.set_callback.
         """
+        if (callback is not None) != (kind == "callback"):
+            raise ValueError("a source of the kind 'callback' has a callback, and no other kind has one")
         keep: List[Any] = []
         made = default(_abi.SingeSourceDef, "singe_init_source")
         assign(made, {"kind": kind, **fields}, keep)
@@ -162,7 +190,39 @@ class Sim(Views):
             made.strength_count = len(rows)
         id_ = _abi.SingeSourceId()
         self._call("singe_sim_add_source", ctypes.byref(made), ctypes.byref(id_))
+        if callback is not None:
+            self._set_callback(id_, callback)
         return Source(self, id_)
+
+    def _set_callback(self, id_: _abi.SingeSourceId, callback: Optional[Callback]) -> None:
+        if callback is None:
+            self._call("singe_sim_set_source_callback", id_, _abi.SingeFluxFn(), None)
+            self._forget_callback(id_)
+            return
+        own = weakref.ref(self)  # so that a Sim goes when nobody holds it
+
+        def heat(_context: object, view: int, *sums: Any) -> None:
+            sim = own()
+            if sim is None:
+                return
+            seen = StepView(ctypes.cast(view, ctypes.POINTER(_abi.SingeView)).contents, sim._handle)
+            try:
+                add_fluxes(callback(seen), sums, len(seen.mass))
+            except BaseException as error:
+                sim._raised = error
+                np.ctypeslib.as_array(sums[0], (len(seen.mass),))[:] = np.nan  # the step fails and changes nothing
+
+        called = _abi.SingeFluxFn(heat)
+        self._call("singe_sim_set_source_callback", id_, called, None)
+        self._callbacks[id_.index, id_.generation] = callback, called
+
+    def _forget_callback(self, id_: _abi.SingeSourceId) -> None:
+        self._callbacks.pop((id_.index, id_.generation), None)
+
+    def _take_callbacks(self, other: "Sim") -> None:
+        """Those of another Sim of the same sources; C has copied what calls into the other one."""
+        for (index, generation), (callback, _) in list(other._callbacks.items()):
+            self._set_callback(_abi.SingeSourceId(index, generation), callback)
 
     def spot(self, position: Vector, radius: float = 0.005, temperature: float = 1200, **fields: Any) -> Source:
         """Adds a hot spot that stands still: position and radius in m, temperature in K; at any time.
@@ -258,37 +318,49 @@ class Sim(Views):
         if copy is not self:
             with self._locked():
                 self._handle = copy._handle
+            self._take_callbacks(self)
 
     # time
 
     def step(self, n: int = 1) -> None:
-        """`n` steps of `time_step`. Ctrl-C ends it between two steps. A step that fails changes nothing."""
-        found = []
+        """`n` steps of `time_step`. A step that fails changes nothing.
+
+        Ctrl-C ends it at once. A step that is under way then ends by itself, and calls of this simulation wait for it.
+        """
+        found: List[np.ndarray] = []
+
+        def one(handle: _Handle) -> None:
+            self._checked(handle, library.singe_sim_step(handle.pointer))
+            found.extend(self._new_events(handle))
+
         try:
             for _ in range(n):
-                with self._locked() as handle:
-                    self._checked(handle, library.singe_sim_step(handle.pointer))
-                    found += self._new_events(handle)
+                self._stepped(one)
         finally:
             self._events = np.concatenate(found) if found else np.zeros(0, EVENT)
 
     def advance(self, seconds: float, steps_max: int = 0) -> int:
         """As many steps as fit in `seconds` plus what earlier calls left; returns how many.
 
-        With `steps_max` whole steps beyond that many are dropped. Without it Ctrl-C ends it every 16 steps, and what is
-        left of `seconds` is lost.
+        With `steps_max` whole steps beyond that many are dropped. Ctrl-C ends it at once, and what is left of `seconds`
+        is lost but for the steps under way, 16 at most without `steps_max`: they end by themselves.
         """
         whole = float(seconds)
         part = whole if steps_max else _SLICE * (self._time_step or self._mean_step() or 1e-3)
-        done, found, count = 0, [], ctypes.c_uint32()
+        done = 0
+        found: List[np.ndarray] = []
+
+        def some(handle: _Handle) -> int:
+            count = ctypes.c_uint32()
+            result = library.singe_sim_advance(handle.pointer, now, steps_max, ctypes.byref(count))
+            found.extend(self._new_events(handle))
+            self._checked(handle, result)
+            return count.value
+
         try:
             while True:
                 now = min(part, whole)
-                with self._locked() as handle:
-                    result = library.singe_sim_advance(handle.pointer, now, steps_max, ctypes.byref(count))
-                    found += self._new_events(handle)
-                    self._checked(handle, result)
-                done, whole = done + count.value, whole - now
+                done, whole = done + self._stepped(some), whole - now
                 if not whole > 0:
                     return done
         finally:
@@ -431,6 +503,7 @@ class Sim(Views):
         self._call("singe_sim_clone", ctypes.byref(out))
         made = self._of(out)
         made._time_step, made._collider_sizes = self._time_step, dict(self._collider_sizes)
+        made._take_callbacks(self)
         return made
 
     def __reduce__(self) -> Any:

@@ -155,6 +155,30 @@ class Views:
         return shown(view.spring_flags[colour], (view.spring_count[colour],), np.uint8, keeper)
 
 
+class StepView(Views):
+    """What the callback of a source sees: the arrays of a simulation within a step, and `time` in s."""
+
+    def __init__(self, view: _abi.SingeView, keeper: object):
+        self._shown = view, keeper
+        self.time: float = view.time
+
+    def _view(self) -> Tuple[_abi.SingeView, object]:
+        return self._shown
+
+
+def add_fluxes(returned: Any, sums: Any, count: int) -> None:
+    """Adds what a callback returned to the library's sums: flux, conductance, conductance times temperature."""
+    parts = returned if isinstance(returned, tuple) else (returned, 0, 0)
+    if len(parts) != 3:
+        raise ValueError(f"a callback returns a flux, or (flux, conductance, temperature), not {len(parts)} parts")
+    flux, conductance, temperature = (np.broadcast_to(np.asarray(part, np.float32), count) for part in parts)
+    if np.any(conductance < 0):
+        raise ValueError("a callback's conductance must not be below 0")
+    for sum_, value in zip(sums, (flux, conductance, conductance * temperature)):
+        array = np.ctypeslib.as_array(sum_, (count,))
+        array += value
+
+
 class Surface:
     """The drawn surface of a simulation at one time, as the cache has it. Its arrays stay as they are.
 

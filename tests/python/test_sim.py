@@ -53,6 +53,14 @@ class Layout(Case):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("SingeView", done.stderr)
 
+    def test_lines_fit(self):
+        """The width that the project's C has."""
+        files = [*(ROOT / "python").rglob("*.py"), *(ROOT / "examples/python").rglob("*.py")]
+        self.assertGreater(len(files), 12)
+        long = [f"{path.name}:{n}" for path in files for n, line in enumerate(path.read_text().split("\n"), 1)
+                if len(line) > 120]
+        self.assertEqual(long, [])
+
     def test_every_function_is_there(self):
         self.assertGreater(len(_abi.FUNCTIONS), 70)
         for name in _abi.FUNCTIONS:
@@ -191,6 +199,87 @@ class Given(Case):
             found = hottest({"base": "cotton", "specific_heat": singe.Vary(1400, 9000, **field)})
             self.assertGreater(np.ptp(found), 25)
         self.assertEqual(set(singe.materials()), {"cotton", "newsprint", "office-paper", "one-reaction", "tissue"})
+
+    def test_callback_heats_as_a_texture_does(self):
+        def hot(kind, **fields):
+            sim = singe.Sim(pace=5)
+            sim.sheet(*singe.grid((0.1, 0.1), (8, 8), jitter=0))
+            sim.source(kind, **fields)
+            sim.commit()
+            sim.step(40)
+            return sim
+
+        seen = []
+
+        def half(view):
+            seen.append((view.time, view.position, view.temperature.copy()))
+            return np.where(view.rest_position[:, 0] > 0, 3e4, 0)
+
+        even = hot("texture", texture=np.ones((2, 2)), flux=3e4)
+        self.assertEqual(hot("callback", callback=lambda view: 3e4).save()[-1000:], even.save()[-1000:])
+        self.assertTrue(np.array_equal(hot("callback", callback=lambda view: (3e4, 0, 0)).temperature,
+                                       even.temperature))
+        sim = hot("callback", callback=half)
+        right = sim.rest_position[:, 0] > 0
+        self.assertGreater(sim.temperature[right].min(), sim.temperature[~right].min() + 50)
+        self.assertEqual(len(seen), 40)
+        self.assertAlmostEqual(seen[39][0], 39 / 480, 5)
+        self.assertGreater(seen[39][2].max(), seen[0][2].max() + 50)
+        self.assertEqual(seen[0][1].shape, (81 + 64, 3))
+        bath = hot("callback", callback=lambda view: (0, 1e4, np.full(145, 500)))
+        self.assertLess(np.abs(bath.temperature - 500).max(), 5)
+
+    def test_callbacks_of_copies(self):
+        def flux(view):
+            calls.append(view.time)
+            return 3e4
+
+        calls = []
+        sim = burning()
+        source = sim.source("callback", callback=flux)
+        sim.step(5)
+        copy = sim.clone()
+        loaded = singe.Sim.load(sim.save())
+        del sim, source
+        gc.collect()
+        calls.clear()
+        copy.step(3)
+        copy.set_ambient_temperature(310)
+        copy.step(3)
+        self.assertEqual(len(calls), 6)
+        loaded.step(3)
+        self.assertEqual(len(calls), 6)  # no snapshot has them
+        loaded.sources[1].set_callback(flux)
+        loaded.step(2)
+        self.assertEqual(len(calls), 8)
+        loaded.sources[1].remove()
+        loaded.clone().step()
+        copy.sources[1].set_callback(None)
+        copy.step()
+        self.assertEqual(len(calls), 8)
+
+    def test_a_callback_that_raises(self):
+        sim = burning()
+        answers = [lambda: 1 / 0, lambda: np.zeros(7), lambda: (1, 2), lambda: (0, -1, 300), lambda: "hot",
+                   lambda: sim.step(), lambda: sys.exit(3)]
+        kinds = [ZeroDivisionError, ValueError, ValueError, ValueError, ValueError, singe.StateError, SystemExit]
+        source = sim.source("callback", callback=lambda view: answers[0]())
+        before = sim.position.copy()
+        for kind in kinds:
+            for call in (sim.step, lambda: sim.advance(0.1)):
+                with self.subTest(kind), self.assertRaises(kind):
+                    call()
+                self.assertEqual(sim.steps, 0)
+                self.assertTrue(np.array_equal(sim.position, before))
+            answers.pop(0)
+        source.set_callback(lambda view: 0)
+        sim.step(3)
+        self.assertEqual(sim.steps, 3)
+        with self.assertRaisesRegex(singe.ArgumentError, "not a callback"):
+            sim.sources[0].set_callback(lambda view: 0)
+        for wrong in ({"kind": "callback"}, {"kind": "spot", "callback": lambda view: 0}):
+            with self.assertRaisesRegex(ValueError, "no other kind"):
+                sim.source(**wrong)
 
     def test_objects_move_and_go(self):
         sim = burning()
@@ -402,6 +491,48 @@ for call in (lambda sim: sim.step(10**9), lambda sim: sim.advance(1e6)):
         print(steps > 0, sim.steps == steps + 2)
 """)
         self.assertEqual(out.split(), ["True"] * 4)
+
+    def test_ctrl_c_does_not_wait_for_the_end_of_a_step(self):
+        """A step of seconds: Ctrl-C comes through at once, and the step ends by itself. Called directly it comes late."""
+        out = self.python("""
+import os, signal, threading, time
+from support import burning, singe
+from singe._library import library
+
+def late(call):
+    threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    begun = time.monotonic()
+    try:
+        call()
+    except KeyboardInterrupt:
+        pass
+    return time.monotonic() - begun - 0.3
+
+sim = burning(240, solver={"substeps": 1000})
+begun = time.monotonic()
+sim.step()
+whole = time.monotonic() - begun
+print(whole > 0.8)
+for call in (sim.step, lambda: sim.advance(2 / 480)):
+    steps = sim.steps
+    print(late(call) < 0.25 * whole)
+    print(0 < sim.steps - steps <= 2)  # waits for the step to end
+sim.step()
+print(late(lambda: library.singe_sim_step(sim._handle.pointer)) > 0.3 * whole)
+
+bigs = [burning(500, commit=False) for _ in range(2)]
+begun = time.monotonic()
+bigs[0].commit()
+whole = time.monotonic() - begun
+big = bigs[1]
+print(whole > 0.6, late(big.commit) < 0.25 * whole)
+try:
+    big.commit()  # waits, and is the second one
+except singe.StateError:
+    print(big.committed)
+""")
+        self.assertEqual(out.split(), ["True"] * len(out.split()))
+        self.assertEqual(len(out.split()), 9)
 
     def test_no_call_from_within(self):
         class Nosy(logging.Handler):
