@@ -50,7 +50,7 @@ def zig(build):
     """How to call Zig: SINGE_ZIG, a module of this Python, or the one that --install put there; None without."""
     if os.environ.get("SINGE_ZIG"):
         return os.environ["SINGE_ZIG"]
-    for python in (build / "zig/bin/python3", sys.executable):
+    for python in filter(shutil.which, (build / "zig/bin/python3", sys.executable)):
         if subprocess.run([python, "-m", "ziglang", "version"], capture_output=True).returncode == 0:
             return f"{python} -m ziglang"
     return None
