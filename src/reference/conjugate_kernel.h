@@ -1,6 +1,8 @@
 // The sweeps of conjugate gradients. One file per instruction set defines CONJUGATE_KERNEL, the name of its table, and
 // includes this. Every operation rounds according to IEEE 754 and lanes are added in a fixed order, so all of them give
 // the same bytes.
+#include <string.h>
+
 #include "reference/conjugate.h"
 
 #ifdef __AVX__
@@ -10,11 +12,15 @@ enum { PACK = 2 };
 #endif
 enum { PACKS = NETWORK_LANES / PACK };
 
-/// As many lanes as a register holds; unaligned.
-typedef double Pack __attribute__((vector_size(PACK * sizeof(double)), aligned(sizeof(double)), may_alias));
+/// As many lanes as a register holds. Of natural alignment: gcc 14 for AArch64 crashes on an argument of less.
+typedef double Pack __attribute__((vector_size(PACK * sizeof(double))));
 
-static inline Pack pack_load(const double *from) { return *(const Pack *)from; }
-static inline void pack_store(double *to, Pack a) { *(Pack *)to = a; }
+static inline Pack pack_load(const double *from) {
+    Pack a;
+    memcpy(&a, from, sizeof a);
+    return a;
+}
+static inline void pack_store(double *to, Pack a) { memcpy(to, &a, sizeof a); }
 
 static inline Pack pack_gather(const double *from, const uint32_t *at) {
     Pack pack = {0};

@@ -25,7 +25,7 @@ SYSTEMS = {
                 ["wine64", "wine", "/usr/lib/wine/wine64"]),
     "arm64": (["gcc-aarch64-linux-gnu", "libc6-dev-arm64-cross", "qemu-user"], ["aarch64-linux-gnu-gcc"],
               ["qemu-aarch64", "qemu-aarch64-static"]),
-    "macos": ([], [], None),
+    "macos": (["python3-venv"], [], None),  # for Zig's folder
 }
 PLAIN = ["--instructions", "plain"]
 
