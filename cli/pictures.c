@@ -1,5 +1,6 @@
 #include "cli/pictures.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "cli/interrupt.h"
@@ -15,7 +16,7 @@ struct Pictures {
     PreviewLayers layers; ///< empty unless they are kept
 };
 
-bool pictures_available(void) { return true; }
+bool pictures_available(void) { return preview_draws(); }
 
 static SingeResult no_memory(SingeError *error) {
     *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "preview", .element = -1};
@@ -48,9 +49,17 @@ static PreviewDef scene_def(const Job *job) {
     return def;
 }
 
-SingeResult pictures_open(const Job *job, Pictures **pictures, SingeError *error) {
+SingeResult pictures_open_baker(const Job *job, Pictures **pictures, SingeError *error) {
     const PreviewDef def = scene_def(job);
     return open_def(job, &def, pictures, error);
+}
+
+SingeResult pictures_open(const Job *job, Pictures **pictures, SingeError *error) {
+    if (pictures_available()) return pictures_open_baker(job, pictures, error);
+    *pictures = NULL;
+    *error = (SingeError){.code = SINGE_ERROR_STATE, .stage = "preview", .element = -1};
+    snprintf(error->message, sizeof error->message, "this singe was built without the preview");
+    return SINGE_ERROR_STATE;
 }
 
 SingeResult pictures_open_sharp(const Job *job, int scale, Pictures **pictures, SingeError *error) {

@@ -1,4 +1,4 @@
-// The preview of a scene as the commands use it. Built without the preview (pictures_none.c) nothing is drawn.
+// The preview of a scene as the commands use it. Built without the preview it bakes gas and draws nothing.
 #ifndef CLI_PICTURES_H
 #define CLI_PICTURES_H
 
@@ -9,8 +9,11 @@ typedef struct Pictures Pictures;
 /// False in a program built without the preview.
 bool pictures_available(void);
 
-/// The job must outlive *pictures.
+/// The job must outlive *pictures. Fails in a program built without the preview.
 SINGE_NODISCARD SingeResult pictures_open(const Job *job, Pictures **pictures, SingeError *error);
+
+/// The same for pictures_bake alone, in any program.
+SINGE_NODISCARD SingeResult pictures_open_baker(const Job *job, Pictures **pictures, SingeError *error);
 
 /// Draws a frame and returns its pixels, [height * width * 3], valid until the next call; NULL on failure. The gas may
 /// be NULL.

@@ -210,8 +210,7 @@ static ExitCode open_pictures(Run *run, const RunOptions *options) {
     run->layers = options->exr;
     if (run->job.scene->gas_detail <= 1 || !run->job.scene->sim.gas.enabled) return EXIT_GOOD;
     run->baker = run->pictures;
-    if (!pictures_available()) console_warn(run->console, "gas.detail: without the preview no finer gas is written");
-    else if (!run->baker && pictures_open(&run->job, &run->baker, &error))
+    if (!run->baker && pictures_open_baker(&run->job, &run->baker, &error))
         return run_begin_fail(run, &error, EXIT_FAILED);
     return EXIT_GOOD;
 }

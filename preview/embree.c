@@ -24,6 +24,15 @@ static float let_through(const Preview *preview, const uint32_t t[3], float burn
     return 0.5f * paper_transmittance(preview, scene->vertices[t[0]].sheet) * (1 - stepf(0.08f, PAPER_WHOLE, burn));
 }
 
+SingeResult tracer_open(Preview *preview, SingeError *error) {
+    preview->device = rtcNewDevice("threads=1,set_affinity=0");
+    return preview->device ? SINGE_OK : preview_fail(error, SINGE_ERROR_STATE, -1, "Embree made no device");
+}
+
+void tracer_close(Preview *preview) {
+    if (preview->device) rtcReleaseDevice(preview->device);
+}
+
 /// Lets shadow rays through the holes that the picture shows in a burnt sheet, and a part of them through the sheet.
 static void pass_sheets(const struct RTCFilterFunctionNArguments *arguments) {
     const Preview *preview = arguments->geometryUserPtr;

@@ -195,7 +195,9 @@ Float3 texture_sample(const Preview *preview, const Texture *texture, float u, f
 SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeError *error);
 void tracer_free(Preview *preview);
 
-// embree.c
+// embree.c, or without_embree.c
+SingeResult tracer_open(Preview *preview, SingeError *error);
+void tracer_close(Preview *preview);
 SingeResult tracer_build(Preview *preview, SingeError *error);
 void tracer_release(Preview *preview);
 /// Whether the ray comes nearer than `margin` to the surface's bounds before `far`.

@@ -196,10 +196,7 @@ SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Prev
     *preview = (Preview){.def = *def, .allocator = allocator};
     preview_aim(preview);
     result = preview_allocate(preview, error);
-    if (!result) {
-        preview->device = rtcNewDevice("threads=1,set_affinity=0");
-        if (!preview->device) result = preview_fail(error, SINGE_ERROR_STATE, -1, "Embree made no device");
-    }
+    if (!result) result = tracer_open(preview, error);
     if (!result) result = preview_set_shapes(preview, def->shapes, def->shape_count, error);
     if (result) preview_destroy(preview);
     else *out = preview;
@@ -237,7 +234,7 @@ void preview_destroy(Preview *preview) {
     tracer_free(preview);
     fire_free(preview);
     facets_free(preview);
-    if (preview->device) rtcReleaseDevice(preview->device);
+    tracer_close(preview);
     for (uint32_t s = 0; preview->textures && s < def->sheet_count; s++) texture_free(preview, &preview->textures[s]);
     allocator_resize(allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);
     allocator_resize(allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);

@@ -79,6 +79,8 @@ typedef struct PreviewDef {
 PreviewDef preview_default(void);
 
 typedef struct Preview Preview;
+/// False in a build without Embree, which bakes gas but draws nothing.
+bool preview_draws(void);
 /// Sets up the device; `def`'s pointers must outlive the Preview.
 SINGE_NODISCARD SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Preview **preview,
                                            SingeError *error);

@@ -1,5 +1,5 @@
 // Embree 4 and 3 by one set of names: what a query of rays takes is a context in Embree 3, arguments in Embree 4.
-// SINGE_EMBREE, 3 or 4, is the version that CMake has found.
+// SINGE_EMBREE, 3 or 4, is the version that CMake has found; 0 is a build without the preview, which traces nothing.
 #ifndef PREVIEW_TRACE_H
 #define PREVIEW_TRACE_H
 
@@ -27,6 +27,12 @@ static inline void trace_occluded16(RTCScene scene, const int *valid, TraceConte
     arguments.context = context;
     rtcOccluded16(valid, scene, rays, &arguments);
 }
+
+#elif SINGE_EMBREE == 0
+typedef void *RTCDevice;
+typedef void *RTCScene;
+struct RTCRayHit16;
+struct RTCRay16;
 
 #else
 #include <embree3/rtcore.h>

@@ -10,7 +10,7 @@ import zipfile
 import zlib
 
 import exr
-from support import Case, HAS_EXR, HAS_PREVIEW
+from support import Case, HAS_EXR
 
 
 def ply(path):
@@ -308,7 +308,6 @@ class Delivery(Case):
 
     # ---- gas
 
-    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_gas(self):
         """Finer cells in 16-bit floats; the run's own files stay as they are."""
         self.scene = self.write_scene(frames=4)
@@ -337,7 +336,6 @@ class Delivery(Case):
         self.burn("none", "--frames", "2")
         self.assertIn("has no gas", self.singe("convert", self.path("none"), "--to", "gas", expect=1)[1])
 
-    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_gas_of_a_run(self):
         """`gas.detail` in a scene: the run writes what `convert` makes, and a resumed one what is missing."""
         def fine(folder):
