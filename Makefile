@@ -22,7 +22,7 @@ MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 PRESET ?= release
 
-.PHONY: all configure demo test check check-examples check-clients check-platforms check-farm check-packages check-mpi gate torture coverage fuzz-long soak pictures build build-asan build-fuzz build-shared build-tsan clean
+.PHONY: all configure demo test check check-examples check-blender check-clients check-platforms check-farm check-packages check-mpi gate torture coverage fuzz-long soak pictures build build-asan build-fuzz build-shared build-tsan clean
 
 all: build
 
@@ -86,6 +86,10 @@ gate: build
 # other programs, which are installed into build/clients, on what a burn leaves: docs/usd.md and others have the table
 check-clients: build
 	tests/clients/check.sh build/cli/singe build/clients
+
+# the extension in Blender 4.5 and 5.2: WHEELS=FOLDER installs it with its program, too
+check-blender: build
+	blender/tests/check.sh build/cli/singe build/blender $(WHEELS)
 
 # a sweep on a Slurm of one node, preempted and resumed: needs root
 check-farm: build
