@@ -23,15 +23,31 @@ static void next_cell(Text *text, const uint8_t **begin, const uint8_t **end) {
 }
 
 static bool read_header(Text *text, int column[COLUMNS]) {
-    int found = 0;
+    for (int c = 0; c < COLUMNS; c++) column[c] = -1;
+    bool twice = false;
     for (int i = 0; !text_at_line_end(text); i++) {
         const uint8_t *begin, *end;
         next_cell(text, &begin, &end);
-        for (int c = 0; c < COLUMNS; c++)
-            if (text_word_is(begin, end, names[c])) column[c] = i, found++;
+        for (int c = 0; c < COLUMNS; c++) {
+            if (!text_word_is(begin, end, names[c])) continue;
+            twice |= column[c] >= 0;
+            column[c] = i;
+        }
     }
     text_next_line(text);
-    return found == COLUMNS;
+    bool all = true;
+    for (int c = 0; c < COLUMNS; c++) all &= column[c] >= 0;
+    return all && !twice;
+}
+
+/// As the rows are read: a line may end in other ways than by a line feed.
+static size_t count_lines(Text text) {
+    size_t lines = 0;
+    for (; text.at < text.end; lines++) {
+        while (!text_at_line_end(&text)) text.at++;
+        text_next_line(&text);
+    }
+    return lines;
 }
 
 static bool read_row(Text *text, const int column[COLUMNS], StatsRow *row) {
@@ -62,9 +78,7 @@ ExitCode stats_table_read(StatsTable *table, const char *path, Console *console)
     }
     Text text = {bytes.data, bytes.data + bytes.size, 1};
     bool good = read_header(&text, column);
-    size_t lines = 1;
-    for (size_t i = 0; i < bytes.size; i++) lines += bytes.data[i] == '\n';
-    table->rows = calloc(lines, sizeof *table->rows);
+    table->rows = calloc(count_lines(text) + 1, sizeof *table->rows);
     while (good && table->rows && text.at < text.end) good = read_row(&text, column, &table->rows[table->count++]);
     if (!table->rows) console_error(console, "%s: out of memory", path);
     else if (!good) console_error(console, "%s:%lld: not a line of such numbers", path, (long long)text.line - 1);
