@@ -145,7 +145,8 @@ static void choose_steps(CollisionPlan *plan, const Shell *shell) {
         if (plan->alive[c]) sum += (double)sqrtf(float4_dot(off, off));
     }
     double step = sum / fmax(count, 1) * (double)plan->time_step, max = (double)plan->cell_size / 2;
-    plan->steps = step * COLLISION_STEPS < max ? COLLISION_STEPS : step * 2 > max ? 2 : (uint32_t)(max / step);
+    // a step that is not finite, as of positions that overflow, has the fewest
+    plan->steps = step * COLLISION_STEPS < max ? COLLISION_STEPS : step * 2 <= max ? (uint32_t)(max / step) : 2;
 }
 
 SingeResult broad_search(CollisionPlan *plan, const Shell *shell, Pool *pool) {
