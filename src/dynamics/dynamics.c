@@ -154,14 +154,15 @@ static uint32_t dynamics_pose_colliders(DynamicsPlan *plan, const ColliderList *
     return count;
 }
 
-/// Counts particles that are not finite or farther than 10 km from the origin.
+/// Counts particles that are not finite or farther than 10 km from the origin. 1e18 m/s: squares are finite.
 static double dynamics_count_lost(void *task, int begin, int end) {
     const DynamicsState *dynamics = task;
     SINGE_ASSERT(begin >= 0 && begin <= end);
     double lost = 0;
     for (int i = begin; i < end; i++) {
-        const float *x = dynamics->position[i];
-        lost += !(fabsf(x[0]) < 1e4f && fabsf(x[1]) < 1e4f && fabsf(x[2]) < 1e4f);
+        const float *x = dynamics->position[i], *v = dynamics->velocity[i];
+        lost += !(fabsf(x[0]) < 1e4f && fabsf(x[1]) < 1e4f && fabsf(x[2]) < 1e4f) ||
+                !(fabsf(v[0]) < 1e18f && fabsf(v[1]) < 1e18f && fabsf(v[2]) < 1e18f);
     }
     return lost;
 }
@@ -170,9 +171,10 @@ static SingeResult dynamics_check(DynamicsPlan *plan, Pool *pool, DynamicsState 
     if (pool_sum(pool, (int)plan->particle_count, dynamics_count_lost, dynamics, plan->partial) == 0) return SINGE_OK;
     int i = 0;
     while (dynamics_count_lost(dynamics, i, i + 1) == 0) i++;
-    return error_set(error, SINGE_ERROR_DIVERGED, "dynamics", i,
-                     "particle %d has no finite position within 10 km; a smaller time_step or more substeps may help",
-                     i);
+    return error_set(
+        error, SINGE_ERROR_DIVERGED, "dynamics", i,
+        "particle %d has no finite position within 10 km, or velocity; a smaller time_step or more substeps may help",
+        i);
 }
 
 /// One projection of all colours. The attachments come first, for the load, and before the last colour, which is held
@@ -266,6 +268,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const StepContext *context, Dynami
     dynamics_order(plan, shell, ablate, pool, dynamics);
     plan->strands_written = true;
     dynamics_crease(plan, shell, state, pool, h, dynamics);
+    TRY(dynamics_check(plan, pool, dynamics, error));
     StateInput done = *state;
     done.dynamics = dynamics; // which nothing writes any more
     if (solver->attachments) attach_update(&plan->attachments, shell, &done, false);
