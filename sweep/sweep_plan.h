@@ -12,6 +12,7 @@ typedef enum PlanMethod {
     PLAN_LIST,            ///< the first values of all, the second, ...
     PLAN_RANDOM,          ///< each value on its own
     PLAN_LATIN_HYPERCUBE, ///< each parameter's range in as many parts as there are rows, each part once
+    PLAN_SHEETS,          ///< sheets that cannot meet in rows of their own
     PLAN_METHODS
 } PlanMethod;
 
@@ -50,6 +51,7 @@ typedef struct Plan {
     char *scene;       ///< path of the scene
     PlanMethod method;
     uint32_t samples, seed;
+    double margin; ///< m, of PLAN_SHEETS: sheets this near to each other can meet; negative: not given
     PlanTarget target;
     PlanSearch search;
     uint32_t evaluations; ///< of a fit, at most: its rows
@@ -62,6 +64,10 @@ typedef struct Plan {
 /// Reads the plan of a sweep, or of a fit, and makes its rows. All errors have been printed, with their lines, unless the result is EXIT_GOOD.
 ExitCode plan_read(const char *path, bool fit, Console *console, Plan *plan);
 void plan_free(Plan *plan);
+
+/// Makes the rows of PLAN_SHEETS from the scene's meshes (sheet_groups.c). Messages have been printed unless the result
+/// is EXIT_GOOD.
+ExitCode plan_split_sheets(Plan *plan, Console *console);
 
 /// Sets a row's values from places in [0, 1] of the ranges. False when out of memory.
 bool plan_set_row(Plan *plan, uint32_t row, const double *places);

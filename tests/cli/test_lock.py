@@ -1,6 +1,7 @@
 """Two processes at one folder: who writes what, and that no lock outlives its process."""
 
 import os
+import re
 import signal
 import socket
 import time
@@ -58,6 +59,39 @@ class Lock(Case):
         if codes[1 - winner]:
             self.assertIn("are being written by process", errors[1 - winner])
             self.assertEqual(self.record("o")["scene"]["pace"], (12, 6)[winner])
+
+    def whole_ply(self, path):
+        """Whether the file has as many bytes as its head says, of the vertices and at least the faces' counts."""
+        with open(path, "rb") as file:
+            head, mark, body = file.read().partition(b"end_header\n")
+        properties = re.search(rb"element vertex \d+\n(.*?)element face", head, re.S)[1].count(b"property")
+        vertices, faces = (int(n) for n in re.findall(rb"element \w+ (\d+)", head)[:2])
+        return mark and len(body) == 4 * properties * vertices + 13 * faces
+
+    def test_a_cache_is_read_while_it_is_written(self):
+        """All that is there by its name is whole; what reads it stops at the last frame, and takes nothing from the run."""
+        run = self.begin("o")
+        looked = 0
+        for _ in range(300):
+            for name in sorted(os.listdir(self.path("o", "ply"))):
+                if re.fullmatch(r"long\.\d+\.ply", name):
+                    self.assertTrue(self.whole_ply(self.path("o", "ply", name)), name)
+                    looked += 1
+            with open(self.path("o", "stats.csv")) as file:
+                lines = file.read().split("\n")
+            self.assertEqual({line.count(",") for line in lines[:-1]}, {lines[0].count(",")})
+        self.assertGreater(looked, 300)
+        shown, _ = self.singe("measure", self.path("o"), "--frames", "1-2")
+        self.assertIn("jitter", shown)
+        self.assertIn("wait for it to end", self.singe("convert", self.path("o"), "--to", "vtp", expect=1)[1])
+        self.assertIsNone(run.poll())
+        self.end(run, signal.SIGINT)
+        self.singe("verify", self.path("o"))
+        with open(self.path("o", "ply", "long.0002.ply"), "rb") as file:
+            part = file.read()[:-1]
+        with open(self.path("cut.ply"), "wb") as file:
+            file.write(part)
+        self.assertFalse(self.whole_ply(self.path("cut.ply")))  # the test would see it
 
     def test_a_killed_run_holds_nothing(self):
         self.end(self.begin("o"))

@@ -93,7 +93,7 @@ class Sweep(Case):
 
     def test_bad_plans(self):
         for text, line, expected in (
-            ("method: grd\nparameters: {pace: [1]}\n", 2, "expected grid, list, random or latin-hypercube, got 'grd'"),
+            ("method: grd\nparameters: {pace: [1]}\n", 2, "expected grid, list, random, latin-hypercube or sheets, got 'grd'"),
             ("parameters:\n  pace: {from: 1, to: 2 C, steps: 2}\n", 3, "'from' has none and 'to' has C"),
             ("parameters:\n  pace: {from: 1, to: 2}\n", 3, "needs 'steps'"),
             ("parameters:\n  pace: {from: 1, stop: 2}\n", 3, "unknown key 'stop'"),

@@ -1,0 +1,67 @@
+// A part of a scene: `only_sheets` keeps some sheets, with their pins and probes, and leaves the others out. What acts
+// on all sheets stays: sources, colliders, wind.
+#include "scene/schema.h"
+
+#include <string.h>
+
+enum { LEFT_OUT = -1 };
+
+/// Marks the sheets that are kept. False where a number is no sheet's, or is given twice.
+static bool mark_kept(Reader *reader, const Node *node, const Scene *scene, int32_t *now) {
+    const uint32_t before = message_total(reader->messages);
+    for (uint32_t i = 0; i < scene->sheet_count; i++) now[i] = LEFT_OUT;
+    const Node *number = node->first;
+    for (uint32_t i = 0; number && i < scene->only_sheet_count; i++, number = number->next) {
+        const uint32_t sheet = scene->only_sheets[i];
+        if (sheet >= scene->sheet_count)
+            message_add(reader->messages, reader->text, number->location,
+                        "there is no sheet %u: the scene has %u, from 0", sheet, scene->sheet_count);
+        else if (now[sheet] != LEFT_OUT)
+            message_add(reader->messages, reader->text, number->location, "sheet %u is given twice", sheet);
+        else now[sheet] = 0;
+    }
+    return message_total(reader->messages) == before;
+}
+
+static void keep_sheets(Scene *scene, int32_t *now) {
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < scene->sheet_count; i++) {
+        if (now[i] == LEFT_OUT) continue;
+        scene->sheets[kept] = scene->sheets[i];
+        now[i] = (int32_t)kept++;
+    }
+    scene->sheet_count = kept;
+}
+
+/// Sheets are called by name from now on: their numbers have changed.
+static void keep_pins(Scene *scene, const int32_t *now) {
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < scene->pin_count; i++) {
+        ScenePin pin = scene->pins[i];
+        if (now[pin.sheet_index] == LEFT_OUT) continue;
+        pin.sheet_index = (uint32_t)now[pin.sheet_index];
+        pin.sheet = scene->sheets[pin.sheet_index].name;
+        scene->pins[kept++] = pin;
+    }
+    scene->pin_count = kept;
+}
+
+static void keep_probes(Scene *scene, const int32_t *now) {
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < scene->probe_count; i++) {
+        SceneProbe probe = scene->probes[i];
+        if (now[probe.sheet_index] == LEFT_OUT) continue;
+        probe.sheet_index = (uint32_t)now[probe.sheet_index];
+        probe.sheet = scene->sheets[probe.sheet_index].name;
+        scene->probes[kept++] = probe;
+    }
+    scene->probe_count = kept;
+}
+
+void scene_keep_only_sheets(Reader *reader, const Node *node, Scene *scene) {
+    int32_t *now = arena_new(reader->arena, scene->sheet_count, sizeof *now); // new numbers of the sheets
+    if (!now || !mark_kept(reader, node, scene, now)) return;
+    keep_sheets(scene, now);
+    keep_pins(scene, now);
+    keep_probes(scene, now);
+}
