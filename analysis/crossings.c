@@ -76,7 +76,7 @@ static uint64_t morton_position(const Box *box, const Box *all, double scale) {
     return position;
 }
 
-static int by_position(const void *a, const void *b) {
+static int box_by_position(const void *a, const void *b) {
     const Placed *x = a, *y = b;
     if (x->position != y->position) return x->position < y->position ? -1 : 1;
     return x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
@@ -99,7 +99,7 @@ static void put_in_order(Tree *tree) {
         Box box = triangle_box(tree, t);
         tree->order[t] = (Placed){morton_position(&box, &all, scale), t};
     }
-    qsort(tree->order, tree->count, sizeof *tree->order, by_position);
+    qsort(tree->order, tree->count, sizeof *tree->order, box_by_position);
 }
 
 static uint32_t leaf_begin(const Tree *tree, uint32_t leaf) {

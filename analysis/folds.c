@@ -113,7 +113,7 @@ static void find_distances(RestRaster *raster, float *distance, double cell) {
     for (int p = 0; p < pixels; p++) distance[p] -= (float)(far_off * cell);
 }
 
-static bool add_sheet(const SingeSurface *surface, int32_t sheet, Folds *folds) {
+static bool folds_add_sheet(const SingeSurface *surface, int32_t sheet, Folds *folds) {
     const double cell = cell_length(surface, sheet);
     RestRaster raster;
     Work work;
@@ -141,7 +141,7 @@ bool folds_add(const SingeSurface *surface, Folds *folds) {
     for (uint32_t v = 0; good && v < surface->vertex_count; v++)
         if (surface->sheet[v] >= 0 && surface->sheet[v] < SHEETS_MAX) there[surface->sheet[v]] = true;
     for (int32_t sheet = 0; good && sheet < SHEETS_MAX; sheet++)
-        if (there[sheet]) good = add_sheet(surface, sheet, folds);
+        if (there[sheet]) good = folds_add_sheet(surface, sheet, folds);
     free(there);
     return good;
 }

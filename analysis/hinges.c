@@ -48,7 +48,7 @@ static int compare_positions(const Side *a, const Side *b) {
 
 static bool is_same_edge(const Side *a, const Side *b) { return a->ends[0] == b->ends[0] && a->ends[1] == b->ends[1]; }
 
-static int by_position(const void *a, const void *b) {
+static int side_by_position(const void *a, const void *b) {
     const Side *x = a, *y = b;
     const int position = compare_positions(x, y);
     if (position) return position;
@@ -89,7 +89,7 @@ static bool join_all(Hinges *hinges) {
     if (!sides) return false;
     for (uint32_t t = 0; t < hinges->count; t++)
         for (uint8_t k = 0; k < 3; k++) sides[3 * (size_t)t + k] = side_of(hinges, t, k), hinges->across[t][k] = NONE;
-    qsort(sides, count, sizeof *sides, by_position);
+    qsort(sides, count, sizeof *sides, side_by_position);
     for (size_t i = 0, end; i < count; i = end) {
         for (end = i + 1; end < count && compare_positions(&sides[i], &sides[end]) == 0;) end++;
         join_at(hinges, &sides[i], end - i);

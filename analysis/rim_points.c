@@ -29,7 +29,7 @@ typedef struct Edge {
     uint32_t low, high, from, to;
 } Edge;
 
-static int by_position(const void *a, const void *b) {
+static int corner_by_position(const void *a, const void *b) {
     const float *x = ((const Corner *)a)->position, *y = ((const Corner *)b)->position;
     for (int k = 0; k < 3; k++)
         if (x[k] < y[k] || x[k] > y[k]) return x[k] < y[k] ? -1 : 1;
@@ -50,10 +50,10 @@ static bool number_positions(const SingeSurface *surface, uint32_t *number) {
         memcpy(corners[v].position, surface->rest_position[v], sizeof corners[v].position);
         corners[v].vertex = v;
     }
-    qsort(corners, surface->vertex_count, sizeof *corners, by_position);
+    qsort(corners, surface->vertex_count, sizeof *corners, corner_by_position);
 
     for (uint32_t i = 0; i < surface->vertex_count; i++) {
-        bool same = i && by_position(&corners[i], &corners[i - 1]) == 0;
+        bool same = i && corner_by_position(&corners[i], &corners[i - 1]) == 0;
         number[corners[i].vertex] = same ? number[corners[i - 1].vertex] : corners[i].vertex;
     }
     free(corners);

@@ -97,7 +97,7 @@ static void add_roughness(const RestRaster *raster, Work *work, Wrinkles *wrinkl
     }
 }
 
-static bool add_sheet(const SingeSurface *surface, int32_t sheet, Wrinkles *wrinkles) {
+static bool wrinkles_add_sheet(const SingeSurface *surface, int32_t sheet, Wrinkles *wrinkles) {
     RestRaster raster;
     Work work = {0};
     if (!rest_raster_draw(surface, sheet, spacing, &raster)) return false;
@@ -116,7 +116,7 @@ bool wrinkles_add(const SingeSurface *surface, Wrinkles *wrinkles) {
     for (uint32_t v = 0; good && v < surface->vertex_count; v++)
         if (surface->sheet[v] >= 0 && surface->sheet[v] < SHEETS_MAX) there[surface->sheet[v]] = true;
     for (int32_t sheet = 0; good && sheet < SHEETS_MAX; sheet++)
-        if (there[sheet]) good = add_sheet(surface, sheet, wrinkles);
+        if (there[sheet]) good = wrinkles_add_sheet(surface, sheet, wrinkles);
     free(there);
     return good;
 }

@@ -13,7 +13,7 @@ enum { CELLS = 32, ROW = CELLS + 1, WARM_UP = 60, MEASURED = 20 };
         if (result_) return result_;  \
     } while (0)
 
-static SingeResult add_sheet(SingeSim *sim, SingeSheetId *id) {
+static SingeResult instructions_sheet(SingeSim *sim, SingeSheetId *id) {
     static float positions[ROW * ROW][3];
     static uint32_t cells[CELLS * CELLS][4];
     for (uint32_t v = 0; v < ROW * ROW; v++) {
@@ -35,7 +35,7 @@ static SingeResult add_sheet(SingeSim *sim, SingeSheetId *id) {
 
 static SingeResult instructions_build(SingeSim *sim) {
     SingeSheetId sheet;
-    TRY(add_sheet(sim, &sheet));
+    TRY(instructions_sheet(sim, &sheet));
     TRY(singe_sim_commit(sim));
 
     SingePinDef pin = singe_default_pin();

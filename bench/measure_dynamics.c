@@ -47,8 +47,8 @@ static const BenchColumn columns[COLUMNS] = {
     [ALL] = {"all_pct", "%.3g", 20, "max/p99/mean"},
 };
 
-static SingeResult add_row(BenchTable *table, const BenchSetup *setup, const Peaks *peaks, const SingeSim *sim,
-                           const Timing *timing) {
+static SingeResult dynamics_add_row(BenchTable *table, const BenchSetup *setup, const Peaks *peaks, const SingeSim *sim,
+                                    const Timing *timing) {
     Strain *strain = malloc(2 * sizeof *strain);
     if (!strain) return SINGE_ERROR_MEMORY;
     SingeView view = singe_sim_view(sim);
@@ -97,7 +97,7 @@ static SingeResult dynamics_measure(const BenchOptions *options, BenchSetup *set
     int steps = options->steps ? options->steps : timing_steps(springs, 5, 200);
     SingeResult result = timing_measure(&timing, sim, NULL, timing_steps(springs, 5, 240), steps);
     if (result) *error = *singe_sim_error(sim);
-    else result = add_row(table, setup, peaks, sim, &timing);
+    else result = dynamics_add_row(table, setup, peaks, sim, &timing);
     timing_free(&timing);
     singe_sim_destroy(sim);
     return result;

@@ -153,7 +153,7 @@ static double shape_distance(const Look *a, const Look *b) {
 
 static double change(double value, double base) { return 100 * (value / base - 1); }
 
-static bool add_row(BenchTable *table, const char *name, const Look *look, const Look *base) {
+static bool look_add_row(BenchTable *table, const char *name, const Look *look, const Look *base) {
     BenchValue row[COLUMNS] = {
         [SETTING] = bench_text(name),
         [SAG] = bench_number(look->sag),
@@ -187,7 +187,7 @@ SingeResult bench_look(const BenchOptions *options, BenchTable *table, SingeErro
         setup.solver.substeps = (int)fmax(1, setup.solver.substeps * setting->substeps);
         result = look_observe(options, setup, BENCH_HANG, &looks[i], error);
         if (!result) result = look_observe(options, setup, BENCH_SHRINK, &looks[i], error);
-        if (!result && !add_row(table, setting->name, &looks[i], &looks[0])) result = SINGE_ERROR_MEMORY;
+        if (!result && !look_add_row(table, setting->name, &looks[i], &looks[0])) result = SINGE_ERROR_MEMORY;
     }
     free(looks);
     return result;

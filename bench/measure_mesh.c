@@ -230,8 +230,8 @@ static double irregular_percent(const Mesh *mesh) {
     return inside ? 100.0 * irregular / inside : 0;
 }
 
-static bool add_row(BenchTable *table, const BenchSetup *setup, Triangles kind, MeshQuads quads, const Mesh *mesh,
-                    const MeshReport *report, const Trajectory *t) {
+static bool mesh_add_row(BenchTable *table, const BenchSetup *setup, Triangles kind, MeshQuads quads, const Mesh *mesh,
+                         const MeshReport *report, const Trajectory *t) {
     BenchValue row[COLUMNS] = {
         [NAME] = bench_text(names[kind]),
         [BECOME] = bench_text(kind <= MOVED               ? "-"
@@ -269,7 +269,7 @@ static SingeResult mesh_measure(BenchSetup setup, Triangles kind, MeshQuads quad
     setup.shape = &shape;
     Trajectory *trajectory = result ? NULL : trajectory_run(&setup, frames, 1, INFINITY, error);
     if (!result && !trajectory) result = error->code;
-    if (!result && !add_row(table, &setup, kind, quads, &mesh, &report, trajectory)) result = SINGE_ERROR_MEMORY;
+    if (!result && !mesh_add_row(table, &setup, kind, quads, &mesh, &report, trajectory)) result = SINGE_ERROR_MEMORY;
     trajectory_free(trajectory);
     mesh_free(&mesh);
     return result;

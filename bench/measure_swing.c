@@ -62,7 +62,7 @@ static const char *bars_held(const BenchSetup *setup, const Trajectory *t, doubl
     return blue.number[0] <= max && blue.number[1] <= p99 && !(off > off_max) ? "held" : "missed";
 }
 
-static bool add_row(BenchTable *table, const BenchSetup *setup, int steps, const Trajectory *t) {
+static bool swing_add_row(BenchTable *table, const BenchSetup *setup, int steps, const Trajectory *t) {
     const double off = trajectory_off(setup, t);
     BenchValue row[COLUMNS] = {
         [CELLS] = bench_number(setup->cells),
@@ -101,7 +101,7 @@ static SingeResult run_all(const BenchOptions *options, BenchSetup *setup, int s
             setup->cells = (int)cells->values[c], setup->thickness = (float)thickness->values[t];
             if (steps == 1 && !options->substeps && !options->steps) setup->solver.substeps = swing_substeps(setup);
             Trajectory *trajectory = trajectory_run(setup, frames, steps, INFINITY, error);
-            bool added = trajectory && add_row(table, setup, steps, trajectory);
+            bool added = trajectory && swing_add_row(table, setup, steps, trajectory);
             trajectory_free(trajectory);
             if (!trajectory) return error->code;
             if (!added) return SINGE_ERROR_MEMORY;

@@ -32,8 +32,8 @@ static uint64_t positions_hash(const SingeSim *sim) {
     return hash;
 }
 
-static SingeResult add_row(BenchTable *table, const BenchSetup *setup, const SingeSim *sim, const Timing *timing,
-                           Reference *plain) {
+static SingeResult width_add_row(BenchTable *table, const BenchSetup *setup, const SingeSim *sim, const Timing *timing,
+                                 Reference *plain) {
     double springs = timing_springs(sim), sweeps = (double)setup->solver.substeps * setup->solver.projections;
     double projection = timing_median(timing, TIMED_PROJECTION);
     uint64_t hash = positions_hash(sim);
@@ -70,7 +70,7 @@ static SingeResult width_measure(const BenchOptions *options, const BenchSetup *
     int steps = options->steps ? options->steps : timing_steps(timing_springs(sim), 5, 200);
     result = timing_measure(&timing, sim, NULL, steps, steps);
     if (result) *error = *singe_sim_error(sim);
-    else result = add_row(table, setup, sim, &timing, plain);
+    else result = width_add_row(table, setup, sim, &timing, plain);
     timing_free(&timing);
     singe_sim_destroy(sim);
     return result;

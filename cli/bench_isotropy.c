@@ -63,7 +63,7 @@ static SingeMaterialDef isotropy_material(const Burn *burn, SingeField noises[NO
     return def;
 }
 
-static SingeResult add_sheet(SingeSim *sim, const Burn *burn, double angle, SingeError *error) {
+static SingeResult isotropy_sheet(SingeSim *sim, const Burn *burn, double angle, SingeError *error) {
     SingeSheetDef def = singe_default_sheet();
     SingeSheetId id;
     SingeField noises[NOISES];
@@ -104,7 +104,7 @@ static SingeResult isotropy_build(const Burn *burn, double angle, SingeSim **sim
     def.solver.creases = burn->creases, def.solver.tearing = true, def.contact.enabled = true;
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
-    result = add_sheet(*sim, burn, angle, error);
+    result = isotropy_sheet(*sim, burn, angle, error);
     if (!result) result = add_world(*sim, error);
     if (result) singe_sim_destroy(*sim), *sim = NULL;
     return result;

@@ -82,7 +82,7 @@ static bool add_format(const ArgReader *reader, const char *name, ConvertOptions
     return false;
 }
 
-static ExitCode parse_options(int argc, char **argv, ConvertOptions *o, bool *done) {
+static ExitCode convert_parse(int argc, char **argv, ConvertOptions *o, bool *done) {
     ArgReader reader = args_begin(&convert_command, argc, argv);
     const char *value;
     *o = (ConvertOptions){0};
@@ -211,7 +211,7 @@ static ExitCode convert(const ConvertOptions *o, Console *console, const Job *jo
 int command_convert(int argc, char **argv) {
     ConvertOptions options;
     bool done;
-    ExitCode code = parse_options(argc, argv, &options, &done);
+    ExitCode code = convert_parse(argc, argv, &options, &done);
     if (code || done) {
         set_free(&options.sets);
         return code;

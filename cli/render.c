@@ -71,7 +71,7 @@ static bool pair(const char *text, char between, bool single, int *a, int *b) {
     return *end == 0;
 }
 
-static ExitCode parse_options(int argc, char **argv, RenderOptions *o, bool *done) {
+static ExitCode render_parse(int argc, char **argv, RenderOptions *o, bool *done) {
     ArgReader reader = args_begin(&render_command, argc, argv);
     const char *value;
     *o = (RenderOptions){.threads = job_threads()};
@@ -209,7 +209,7 @@ static ExitCode render_frames(Render *render) {
 int command_render(int argc, char **argv) {
     RenderOptions options;
     bool done;
-    ExitCode code = parse_options(argc, argv, &options, &done);
+    ExitCode code = render_parse(argc, argv, &options, &done);
     if (!code && !done) {
         interrupt_shield();
         Console console = console_make(options.quiet);

@@ -31,7 +31,7 @@ static const ArgCommand run_command = {
     "Ctrl-C ends the run after its step; a second Ctrl-C ends it at once. Exit codes: 0 good, 1 failed or\n"
     "interrupted, or its video did, 2 bad input."};
 
-static ExitCode parse_options(int argc, char **argv, RunOptions *options, bool *done) {
+static ExitCode run_parse(int argc, char **argv, RunOptions *options, bool *done) {
     ArgReader reader = args_begin(&run_command, argc, argv);
     const char *value;
     int frames = 0;
@@ -218,7 +218,7 @@ static ExitCode run_scene(Run *run, const RunOptions *options) {
 int command_run(int argc, char **argv) {
     RunOptions options;
     bool done;
-    ExitCode code = parse_options(argc, argv, &options, &done);
+    ExitCode code = run_parse(argc, argv, &options, &done);
     if (!code && !done) {
         interrupt_shield();
         Console console = console_make(options.quiet);

@@ -5,6 +5,7 @@
 #define COMMON_REAL_H
 
 #include <math.h>
+#include <stdbool.h>
 
 /// To a float's last digit, half a unit of which they are off at most and by hardly more.
 float portable_expf(float x);
@@ -40,5 +41,8 @@ static inline double real_exp(double x) { return REAL(exp)(x); }
 static inline double real_cbrt(double x) { return REAL(cbrt)(x); }
 
 #undef REAL
+
+/// False for NaN.
+static inline bool float_within(float value, float low, float high) { return value >= low && value <= high; }
 
 #endif

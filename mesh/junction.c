@@ -25,7 +25,7 @@ typedef struct Junctions {
     int count;
 } Junctions;
 
-static int by_position(const void *a, const void *b) {
+static int junction_by_position(const void *a, const void *b) {
     const OnSide *x = a, *y = b;
     return (x->t > y->t) - (x->t < y->t);
 }
@@ -67,7 +67,7 @@ static void look_along(Junctions *j, uint32_t a, uint32_t b) {
             look_in_box(j, a, b, box);
         }
     }
-    qsort(j->found, (size_t)j->count, sizeof *j->found, by_position);
+    qsort(j->found, (size_t)j->count, sizeof *j->found, junction_by_position);
 }
 
 static bool open_edge(const Junctions *j, uint32_t a, uint32_t b) {

@@ -263,7 +263,7 @@ static ExitCode fit_plan(Sweep *sweep, SweepOptions *options) {
     return code;
 }
 
-static ExitCode parse_options(int argc, char **argv, SweepOptions *o, bool *done) {
+static ExitCode fit_parse(int argc, char **argv, SweepOptions *o, bool *done) {
     ArgReader reader = args_begin(&fit_command, argc, argv);
     const char *value;
     *o = (SweepOptions){.threads = job_threads(), .jobs = 1, .no_preview = true};
@@ -284,7 +284,7 @@ static ExitCode parse_options(int argc, char **argv, SweepOptions *o, bool *done
 int command_fit(int argc, char **argv) {
     SweepOptions options;
     bool done;
-    ExitCode code = parse_options(argc, argv, &options, &done);
+    ExitCode code = fit_parse(argc, argv, &options, &done);
     if (code || done) return code;
     interrupt_shield();
     Console console = console_make(options.quiet);

@@ -64,7 +64,7 @@ static bool number_option(const ArgReader *reader, int option, const char *value
     }
 }
 
-static ExitCode parse_options(int argc, char **argv, SweepOptions *o, bool *done) {
+static ExitCode sweep_parse(int argc, char **argv, SweepOptions *o, bool *done) {
     ArgReader reader = args_begin(&sweep_command, argc, argv);
     const char *value;
     *o = (SweepOptions){.threads = 1, .frames = 24};
@@ -206,7 +206,7 @@ void sweep_close(Sweep *sweep) {
 int command_sweep(int argc, char **argv) {
     SweepOptions options;
     bool done;
-    ExitCode code = parse_options(argc, argv, &options, &done);
+    ExitCode code = sweep_parse(argc, argv, &options, &done);
     if (!code && !done) {
         interrupt_shield();
         Console console = console_make(options.quiet);

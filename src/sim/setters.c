@@ -5,11 +5,10 @@
 // simulation is built again from it as a load would do it: so it is at once what a load of its snapshot gives.
 #include "sim/objects.h"
 
+#include "common/real.h"
 #include "shell/sheet.h"
 
 #include <string.h>
-
-static bool in_range(float value, float low, float high) { return value >= low && value <= high; }
 
 static SingeResult setter_bad(SingeSim *sim, const char *stage, const char *what) {
     return sim_fail(sim, SINGE_ERROR_ARGUMENT, stage, -1, what);
@@ -27,7 +26,7 @@ static int gravity_axis(const float gravity[3]) {
 
 SingeResult singe_sim_set_gravity(SingeSim *sim, const float gravity[3]) {
     for (int d = 0; d < 3; d++)
-        if (!in_range(gravity[d], -1e4f, 1e4f))
+        if (!float_within(gravity[d], -1e4f, 1e4f))
             return setter_bad(sim, "gravity", "gravity must be between -10000 and 10000 m/s2");
     if (sim->gas && gravity_axis(gravity) != gravity_axis(sim->def.gravity))
         return sim_fail(sim, SINGE_ERROR_STATE, "gravity", -1,
@@ -39,7 +38,7 @@ SingeResult singe_sim_set_gravity(SingeSim *sim, const float gravity[3]) {
 }
 
 SingeResult singe_sim_set_pace(SingeSim *sim, float pace) {
-    if (!in_range(pace, 1e-6f, 1e6f)) return setter_bad(sim, "pace", "pace must be between 1e-6 and 1e6");
+    if (!float_within(pace, 1e-6f, 1e6f)) return setter_bad(sim, "pace", "pace must be between 1e-6 and 1e6");
     sim->def.pace = pace;
     if (sim->heat) heat_plan_set_pace(sim->heat, pace);
     if (sim->gas) gas_plan_set_pace(sim->gas, pace);
@@ -58,7 +57,7 @@ static SingeResult velocity_check(SingeSim *sim, SingeSheetId id, uint32_t first
                          "sheet '%s' has %u vertices with those in reserve", sheet->name, sheet->vertex_count);
     if (count && !velocity) return setter_bad(sim, "velocity", "velocity is NULL");
     for (size_t k = 0; k < 3 * (size_t)count; k++)
-        if (!in_range(velocity[k], -1e4f, 1e4f))
+        if (!float_within(velocity[k], -1e4f, 1e4f))
             return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "velocity", (int64_t)(first + k / 3),
                              "the velocity of vertex %zu must be between -10000 and 10000 m/s", first + k / 3);
     return SINGE_OK;
@@ -105,7 +104,7 @@ static SingeResult sim_rebuild(SingeSim *sim) {
 }
 
 SingeResult singe_sim_set_ambient_temperature(SingeSim *sim, float temperature) {
-    if (!in_range(temperature, 1, 1e4f))
+    if (!float_within(temperature, 1, 1e4f))
         return setter_bad(sim, "ambient", "ambient_temperature must be between 1 and 10000 K");
     const float before = sim->def.ambient_temperature;
     const double start = sim->heat_start, stored = sim->committed ? sim_enthalpy(sim) : 0;
@@ -200,7 +199,7 @@ SingeResult singe_sim_set_material(SingeSim *sim, SingeSheetId id, const SingeMa
     SheetSource *source = &sim->sheets[id.index], other;
     const uint32_t total = source->sheet.vertex_count + source->sheet.cell_count;
     for (uint32_t v = 0; share && v < source->sheet.vertex_count; v++)
-        if (!in_range(share[v], 0, 1))
+        if (!float_within(share[v], 0, 1))
             return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "material", v,
                              "the share of vertex %u must be between 0 and 1", v);
     const SingeSheetDef def = material_sheet(source, &material);

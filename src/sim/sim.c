@@ -1,5 +1,6 @@
 // A simulation's life: create, add sheets, commit, destroy.
 #include "common/check.h"
+#include "common/real.h"
 #include "shell/validate.h"
 #include "sim/sim_internal.h"
 
@@ -12,15 +13,13 @@ SingeResult sim_fail(SingeSim *sim, SingeResult code, const char *stage, int64_t
 
 const SingeError *singe_sim_error(const SingeSim *sim) { return &sim->error; }
 
-static bool in_range(float value, float low, float high) { return value >= low && value <= high; }
-
 static const char *sim_check_solver(const SingeSolverDef *solver) {
     bool seen[SINGE_COLOUR_COUNT] = {false};
     if ((int)solver->method < SINGE_SOLVER_STRAND || solver->method > SINGE_SOLVER_MASS_SPRING)
         return "solver.method is none of the methods";
     if (solver->projections < 1 || solver->projections > 1000) return "solver.projections must be between 1 and 1000";
-    if (!in_range(solver->tolerance, 1e-12f, 1)) return "solver.tolerance must be between 1e-12 and 1";
-    if (!in_range(solver->stiffness, 1e-6f, 1e9f)) return "solver.stiffness must be between 1e-6 and 1e9 N/m";
+    if (!float_within(solver->tolerance, 1e-12f, 1)) return "solver.tolerance must be between 1e-12 and 1";
+    if (!float_within(solver->stiffness, 1e-6f, 1e9f)) return "solver.stiffness must be between 1e-6 and 1e9 N/m";
     if (solver->substeps < 0 || solver->substeps > 1000)
         return "solver.substeps must be between 1 and 1000, or 0 for as many as the stiffness needs";
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
@@ -28,13 +27,13 @@ static const char *sim_check_solver(const SingeSolverDef *solver) {
         if (colour < 0 || colour >= SINGE_COLOUR_COUNT || seen[colour])
             return "solver.order must name each colour once";
         seen[colour] = true;
-        if (!in_range(solver->regularisation[i], 1e-6f, 1e6f))
+        if (!float_within(solver->regularisation[i], 1e-6f, 1e6f))
             return "solver.regularisation must be between 1e-6 and 1e6";
     }
-    if (!in_range(solver->smoothing, 0, 1e6f)) return "solver.smoothing must be between 0 and 1e6 1/s";
-    if (!in_range(solver->smoothing_length, 0, 1e3f)) return "solver.smoothing_length must be between 0 and 1000 m";
-    if (!in_range(solver->height_min, 0, 1)) return "solver.height_min must be between 0 and 1";
-    if (!in_range(solver->height_gain, 0, 1)) return "solver.height_gain must be between 0 and 1";
+    if (!float_within(solver->smoothing, 0, 1e6f)) return "solver.smoothing must be between 0 and 1e6 1/s";
+    if (!float_within(solver->smoothing_length, 0, 1e3f)) return "solver.smoothing_length must be between 0 and 1000 m";
+    if (!float_within(solver->height_min, 0, 1)) return "solver.height_min must be between 0 and 1";
+    if (!float_within(solver->height_gain, 0, 1)) return "solver.height_gain must be between 0 and 1";
     return NULL;
 }
 
@@ -43,15 +42,15 @@ SingeResult sim_check_def(const SingeSimDef *def, SingeError *error) {
     if (!(def->thread_count >= 1 && def->thread_count <= 64)) what = "thread_count must be between 1 and 64";
     if ((int)def->instructions < SINGE_INSTRUCTIONS_BEST || def->instructions > SINGE_INSTRUCTIONS_ARM_NEON)
         what = "instructions is none of the choices";
-    if (!in_range(def->time_step, 1e-9f, 10)) what = "time_step must be between 1e-9 and 10 s";
-    if (!in_range(def->pace, 1e-6f, 1e6f)) what = "pace must be between 1e-6 and 1e6";
+    if (!float_within(def->time_step, 1e-9f, 10)) what = "time_step must be between 1e-9 and 10 s";
+    if (!float_within(def->pace, 1e-6f, 1e6f)) what = "pace must be between 1e-6 and 1e6";
     for (int i = 0; i < 3; i++)
-        if (!in_range(def->gravity[i], -1e4f, 1e4f)) what = "gravity must be between -10000 and 10000 m/s2";
-    if (!in_range(def->ambient_temperature, 1, 1e4f)) what = "ambient_temperature must be between 1 and 10000 K";
-    if (!in_range(def->air_density, 0, 1e3f)) what = "air_density must be between 0 and 1000 kg/m3";
-    if (!in_range(def->heat_tolerance, 1e-9f, 1)) what = "heat_tolerance must be between 1e-9 and 1";
-    if (!in_range(def->surface_detail, 0, 1e3f)) what = "surface_detail must be between 0 and 1000 m";
-    if (!in_range(def->surface_raggedness, 0, 1e3f)) what = "surface_raggedness must be between 0 and 1000 m";
+        if (!float_within(def->gravity[i], -1e4f, 1e4f)) what = "gravity must be between -10000 and 10000 m/s2";
+    if (!float_within(def->ambient_temperature, 1, 1e4f)) what = "ambient_temperature must be between 1 and 10000 K";
+    if (!float_within(def->air_density, 0, 1e3f)) what = "air_density must be between 0 and 1000 kg/m3";
+    if (!float_within(def->heat_tolerance, 1e-9f, 1)) what = "heat_tolerance must be between 1e-9 and 1";
+    if (!float_within(def->surface_detail, 0, 1e3f)) what = "surface_detail must be between 0 and 1000 m";
+    if (!float_within(def->surface_raggedness, 0, 1e3f)) what = "surface_raggedness must be between 0 and 1000 m";
     if (def->tasks.enqueue && !def->tasks.finish) what = "tasks.enqueue needs tasks.finish";
     if (what) return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "%s", what);
     TRY(gas_check(&def->gas, error));

@@ -39,18 +39,20 @@ bool snapshot_remainder_fits(const SingeSim *sim) {
 
 // ---- state
 
-static bool in_range(double x, double low, double high) { return x >= low && x <= high; }
+static bool double_within(double x, double low, double high) { return x >= low && x <= high; }
 
 /// A moment that may have been: -1 for never.
-static bool moment_fits(float moment, double now) { return moment == -1 || in_range((double)moment, 0, (float)now); }
+static bool moment_fits(float moment, double now) {
+    return moment == -1 || double_within((double)moment, 0, (float)now);
+}
 
 static bool burn_fits(const SingeSim *sim) {
     const State *state = &sim->state;
     for (uint32_t i = 0; i < sim->shell.particle_count; i++) {
         float temperature = state->heat.temperature[i], peak = state->heat.temperature_peak[i];
         if (!(temperature >= 0 && isfinite(temperature) && peak >= 0 && isfinite(peak))) return false;
-        if (!in_range((double)state->burn.mass[i], 0, 1)) return false;
-        if (!in_range((double)state->burn.fuel[i], 0, 1)) return false;
+        if (!double_within((double)state->burn.mass[i], 0, 1)) return false;
+        if (!double_within((double)state->burn.fuel[i], 0, 1)) return false;
         if (!(state->burn.release[i] >= 0 && isfinite(state->burn.release[i]))) return false;
         if (!(state->burn.burn_rate[i] >= 0 && isfinite(state->burn.burn_rate[i]))) return false;
         if (!moment_fits(state->burn.time_ignited[i], state->time)) return false;

@@ -20,7 +20,7 @@ typedef struct Polygon {
     uint32_t keys[4];
 } Polygon;
 
-static void push(Polygon *polygon, uint32_t key) {
+static void polygon_push(Polygon *polygon, uint32_t key) {
     if (polygon->count && polygon->keys[polygon->count - 1] == key) return;
     polygon->keys[polygon->count++] = key;
 }
@@ -41,10 +41,11 @@ static Polygon surface_clip(const AblatePlan *plan, const Shell *shell, uint32_t
         int a = (first + i) % 3, b = (a + 1) % 3;
         float level_a = level[a], level_b = level[b];
         if (level_a >= 0) {
-            push(&polygon, corner[a]);
-            if (level_b < 0) push(&polygon, surface_cut(level_a, level_b, SURFACE_NEAREST) > 0 ? edge[a] : corner[a]);
+            polygon_push(&polygon, corner[a]);
+            if (level_b < 0)
+                polygon_push(&polygon, surface_cut(level_a, level_b, SURFACE_NEAREST) > 0 ? edge[a] : corner[a]);
         } else if (level_b >= 0) {
-            push(&polygon, surface_cut(level_b, level_a, SURFACE_NEAREST) > 0 ? edge[a] : corner[b]);
+            polygon_push(&polygon, surface_cut(level_b, level_a, SURFACE_NEAREST) > 0 ? edge[a] : corner[b]);
         }
     }
     if (polygon.count > 1 && polygon.keys[polygon.count - 1] == polygon.keys[0]) polygon.count--;
