@@ -53,7 +53,7 @@ static const struct {
     {"memory", "bench memory", bench_memory, BENCH_BIT(SPRINGS) | BENCH_BIT(THREADS) | OUTPUT,
      "Bytes a spring: what a simulation holds, and its drawn mesh."},
     {"front", "bench front", bench_front, BENCH_BIT(MATERIAL) | BENCH_BIT(QUICK) | BENCH_BIT(THREADS) | OUTPUT,
-     "The burning front of materials: speed, temperature and residue, beside what sources say; level, down and up."},
+     "The burning front of materials: speed, temperature and residue, and published values; level, down and up."},
     {"spread", "bench spread", bench_spread, BENCH_BIT(QUICK) | BENCH_BIT(THREADS) | OUTPUT,
      "How fast fire runs level, down and up in the gas that rises from it."},
     {"output", "bench output", bench_output, OUTPUT,

@@ -27,7 +27,7 @@ static const ArgOption all_options[BENCH_OPT_COUNT] = {
     [BENCH_OPT_CURVATURE] = {"curvature", 0, "1/M,1/M,...", "curvature_max, 0 (none) to 1e6 [the material's]"},
     [BENCH_OPT_SEEDS] = {"seeds", 0, "N,N,...", "seeds of the noise, 1 to 1000000 [1,2,3,4]"},
     [BENCH_OPT_OUTLINE] = {"outline", 0, "square|disc", "one of the two alone [both]"},
-    [BENCH_OPT_CREASES] = {"creases", 0, NULL, "sharp bends stay, by the material's crease_radius"},
+    [BENCH_OPT_CREASES] = {"creases", 0, NULL, "sharp bends are plastic, by the material's crease_radius"},
     [BENCH_OPT_JSON] = {"json", 0, NULL, "prints JSON"},
     [BENCH_OPT_CSV] = {"csv", 0, "FILE", "writes the table to FILE, too"},
 };

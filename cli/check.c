@@ -26,7 +26,7 @@ static const ArgCommand check_command = {
     "Reads a scene with its meshes and images, builds it, and prints its size and cost.",
     check_options,
     OPT_COUNT,
-    "Exit codes: 0 the scene is good; 1 a step of it fails, there is no memory, or standard output cannot be written;\n"
+    "Exit codes: 0 the scene is valid; 1 a step fails, memory runs out, or standard output cannot be written;\n"
     "2 bad input."};
 
 /// Real steps are timed until there are this many or this much time has gone.

@@ -191,7 +191,7 @@ static SingeResult read_trailer(const char *path, const Bytes *bytes, SceneHash 
     if (trailer->hash.result != hash_so_far(hash.result, assets, progress))
         return checkpoint_refuse(
             path, SINGE_ERROR_STATE,
-            "the checkpoint is of another scene (the scene, its --set or a file it names has changed)", error);
+            "the checkpoint belongs to another scene (the scene, its --set or a file it names has changed)", error);
     return SINGE_OK;
 }
 

@@ -17,7 +17,7 @@ static const ArgOption convert_options[OPT_COUNT] = {
     [OPT_SINGLE] = {"single", 0, NULL, "one file of all frames: `usd`, `glb`"},
     [OPT_SET] = {"set", 0, "PATH=VALUE",
                  "sets a value of the scene (output.texture_size, gas.detail); may be repeated"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "says nothing but errors"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints errors only"},
 };
 
 static const ArgCommand convert_command = {
@@ -186,11 +186,11 @@ static ExitCode convert(const ConvertOptions *o, Console *console, const Job *jo
     ExitCode code = folder_span(folder, console, &first, &last);
     if (code) return code;
     if (first != 1) {
-        console_error(console, "%s has frames from %d on only; the first is needed", folder->path, first);
+        console_error(console, "%s has frames from %d on; the first frame is needed", folder->path, first);
         return EXIT_INPUT;
     }
     SingeResult result = lock_take(lock, folder->cache_lock, "frames", false, &kept, &error);
-    if (!kept) console_warn(console, "%s: no locks there: nothing else may write it", folder->path);
+    if (!kept) console_warn(console, "%s: the file system has no locks; nothing else may write there", folder->path);
     char *vdb = folder_vdb(folder, 1), *fine = folder_gas_detail(folder, 1);
     if (!result) result = outputs_open(&outputs, job, folder, o->formats, folder_has(vdb), &error);
     outputs.scene.gas_detail = job->scene->gas_detail > 1 && (o->gas || folder_has(fine));

@@ -316,7 +316,7 @@ ExitCode folder_span(const Folder *folder, Console *console, int *first, int *la
     }
     if (*first == 0) *first = lowest, *last = highest;
     if (*first >= lowest && *last <= highest) return EXIT_GOOD;
-    console_error(console, "frames %d-%d are asked for, but %s has %d-%d", *first, *last, folder->path, lowest,
+    console_error(console, "frames %d-%d are requested, but %s has %d-%d", *first, *last, folder->path, lowest,
                   highest);
     return EXIT_INPUT;
 }

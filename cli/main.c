@@ -16,16 +16,16 @@ static const struct {
     const char *summary; ///< NULL: not in the help
 } commands[] = {
     {"run", command_run, "burns a scene: cache, pictures, video, numbers"},
-    {"check", command_check, "says whether a scene is good, what it consists of, what it costs"},
+    {"check", command_check, "checks a scene, and prints its size and cost"},
     {"render", command_render, "draws a cache's pictures and video again"},
     {"convert", command_convert, "writes a cache in another format, such as USD"},
     {"measure", command_measure, "measures the shape of a cache: creases, wrinkles, jitter"},
     {"verify", command_verify, "looks for faults in a cache: crossings, inverted cells, bad edges and values"},
     {"sweep", command_sweep, "burns a scene many times with other parameters, here or on a farm"},
-    {"fit", command_fit, "searches the parameters with which a scene matches measurements"},
+    {"fit", command_fit, "fits a scene's parameters to measurements"},
     {"bench", command_bench, "measures speed, strain and stability of the solver on this machine"},
     {"paper", command_paper, "runs the paper's experiments and writes a page about them"},
-    {"validate", command_validate, "holds the physics against sources outside the project, on a page"},
+    {"validate", command_validate, "compares the physics with outside sources, on a page"},
     {"scene-doc", command_scene_doc, NULL},
 };
 

@@ -35,7 +35,7 @@ static const ArgOption measure_options[OPT_COUNT] = {
 
 static const ArgCommand measure_command = {
     "measure",       "DIR",     "Measures what a cache looks like: creases, wrinkles, jitter, embers.",
-    measure_options, OPT_COUNT, "docs/cli.md says what the numbers are. Exit codes: 0 good, 1 failed, 2 bad input."};
+    measure_options, OPT_COUNT, "docs/cli.md describes the numbers. Exit codes: 0 good, 1 failed, 2 bad input."};
 
 /// A number of every frame, and how it is summed up.
 typedef enum Number { BIAS, BEND, BURNT, UNBURNT, FOLD, CURL, CURL_STRONG, CURL_MAX, JITTER, EMBER, NUMBERS } Number;

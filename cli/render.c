@@ -22,7 +22,7 @@ enum { OPT_SET, OPT_FRAMES, OPT_SHEET, OPT_ONLY_SHEET, OPT_EXR, OPT_GIF, OPT_THR
 
 static const ArgOption render_options[OPT_COUNT] = {
     [OPT_SET] = {"set", 0, "preview.PATH=VALUE", "sets a value of the scene; may be repeated"},
-    [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone); the video is made of all only"},
+    [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone), without the video"},
     [OPT_SHEET] = {"sheet", 0, "CxR", "also DIR/sheet.png, C by R frames spread over the run"},
     [OPT_ONLY_SHEET] = {"only-sheet", 0, NULL, "draws the frames of the sheet and writes nothing else"},
     [OPT_EXR] = {"exr", 0, NULL, "also DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
@@ -169,7 +169,9 @@ static SingeResult draw_all(Render *render, bool *interrupted, SingeError *error
 static SingeResult hold_pictures(Render *render, SingeError *error) {
     bool kept, part = render->options->first > 0;
     SingeResult result = lock_take(&render->lock, render->folder.pictures_lock, "pictures", part, &kept, error);
-    if (!kept) console_warn(render->console, "%s: no locks there: nothing else may write it", render->folder.path);
+    if (!kept)
+        console_warn(render->console, "%s: the file system has no locks; nothing else may write there",
+                     render->folder.path);
     return result;
 }
 

@@ -185,12 +185,13 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
                      "%g); steps of fire may be so short that temperatures hardly change",
                      stats.ledger_error, stats.mass_ledger_error, SINGE_LEDGER_BOUND);
     if (run->strained)
-        console_warn(run->console,
-                     "in frame %d one edge in a hundred is off its length by %.0f %% or more (strain_p99): sheets are "
-                     "moved too fast, pulled too hard or too soft; `singe verify` counts edges twice their length",
-                     run->strained, 100 * run->strain);
+        console_warn(
+            run->console,
+            "in frame %d the strain of one edge in a hundred is %.0f %% or more (strain_p99): sheets "
+            "move too fast, are pulled too hard or are too soft; `singe verify` counts edges twice their length",
+            run->strained, 100 * run->strain);
     double frames = record->frames_done > 0 ? record->frames_done : 1;
-    console_note(run->console, "drawn %u triangles at last, %.0f %% of them near the front; %.1f ms a surface",
+    console_note(run->console, "last frame: %u triangles, %.0f %% of them near the front; %.1f ms a surface",
                  record->triangles, 100.0 * record->fine_triangles / (record->triangles ? record->triangles : 1),
                  1e3 * run->totals->output_seconds[TOTAL_SURFACE] / frames);
     if (!run->console->quiet) printf("%s\n", record->video ? run->folder.video : run->folder.path);

@@ -30,7 +30,8 @@ FolderParts run_parts(const Run *run) {
 static SingeResult take_lock(Run *run, Lock *lock, const char *path, const char *what, SingeError *error) {
     bool kept;
     SingeResult result = lock_take(lock, path, what, false, &kept, error);
-    if (!kept) console_warn(run->console, "%s: no locks there: nothing else may write it", run->folder.path);
+    if (!kept)
+        console_warn(run->console, "%s: the file system has no locks; nothing else may write there", run->folder.path);
     return result;
 }
 

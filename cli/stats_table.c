@@ -81,7 +81,7 @@ ExitCode stats_table_read(StatsTable *table, const char *path, Console *console)
     table->rows = calloc(count_lines(text) + 1, sizeof *table->rows);
     while (good && table->rows && text.at < text.end) good = read_row(&text, column, &table->rows[table->count++]);
     if (!table->rows) console_error(console, "%s: out of memory", path);
-    else if (!good) console_error(console, "%s:%lld: not a line of such numbers", path, (long long)text.line - 1);
+    else if (!good) console_error(console, "%s:%lld: not a line of statistics", path, (long long)text.line - 1);
     bytes_free(&bytes);
     if (!table->rows) return EXIT_FAILED;
     return good ? EXIT_GOOD : EXIT_INPUT;

@@ -30,7 +30,7 @@ static const ArgCommand verify_command = {
     "Reads a cache and counts crossings, inverted cells and other faults.",
     verify_options,
     OPT_COUNT,
-    "docs/cli.md says what counts. Exit codes: 0 no faults, 1 faults or interrupted, 2 cannot be read."};
+    "docs/cli.md defines the faults. Exit codes: 0 no faults, 1 faults or interrupted, 2 cannot be read."};
 
 static const struct {
     const char *key, *title;

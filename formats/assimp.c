@@ -39,7 +39,7 @@ struct Walk {
 static SingeResult walk_node(Walk *walk, const struct aiNode *node, struct aiMatrix4x4 parent) {
     const struct aiScene *scene = walk->scene;
     if (++walk->depth > DEPTH_LIMIT)
-        return refuse(walk->error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: more than %d nodes in each other",
+        return refuse(walk->error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: nodes are nested more than %d deep",
                       short_name(walk->name), DEPTH_LIMIT);
     aiMultiplyMatrix4(&parent, &node->mTransformation);
     for (unsigned i = 0; i < node->mNumMeshes; i++) {
@@ -101,8 +101,8 @@ static SingeResult count_mesh(Walk *walk, const struct aiMesh *mesh, const struc
     counts->uv = counts->uv || mesh->mTextureCoords[0];
     if (12 * counts->vertices + 12 * counts->corners > walk->max)
         return refuse(walk->error, SINGE_ERROR_LIMIT, "mesh", -1,
-                      "%s: too large: its nodes use meshes over and over, and come to more than %llu MB",
-                      short_name(walk->name), (unsigned long long)walk->max / 1000000);
+                      "%s: too large: its nodes repeat meshes, which come to more than %llu MB", short_name(walk->name),
+                      (unsigned long long)walk->max / 1000000);
     return SINGE_OK;
 }
 
@@ -235,7 +235,7 @@ static SingeResult check_kind(const char *name, const uint8_t *bytes, size_t siz
             memcmp(at, kinds[i].begins, length) == 0)
             return SINGE_OK;
     }
-    return refuse(error, SINGE_ERROR_FORMAT, "mesh", 0, "%s: does not begin as a file of its name's kind does",
+    return refuse(error, SINGE_ERROR_FORMAT, "mesh", 0, "%s: the contents do not match the extension",
                   short_name(name));
 }
 

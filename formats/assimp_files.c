@@ -50,7 +50,7 @@ static void note_refused(Source *source, const char *why) {
 
 static bool open_beside(Source *source, const char *path, Opened *opened) {
     if (!beside_is(source->name, path)) {
-        note_refused(source, "; it refers to what is no file in its folder or below");
+        note_refused(source, "; it refers to something that is not a file in its folder or below");
         return false;
     }
     if (file_read(path, (SingeAllocator){0}, &opened->own, NULL)) {

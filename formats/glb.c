@@ -172,7 +172,7 @@ static SingeResult put_frame(GlbFile *f, const OutputFrame *frame, int frames, c
     }
     sheet_parts_free(&meshes.parts);
     if (!result && f->data.size > UINT32_MAX / 2)
-        result = refuse(error, SINGE_ERROR_LIMIT, "glb", frame->number, "%s: frame %d is more than a GLB can hold",
+        result = refuse(error, SINGE_ERROR_LIMIT, "glb", frame->number, "%s: frame %d is too large for a GLB",
                         short_name(path), frame->number);
     return result;
 }

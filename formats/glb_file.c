@@ -133,7 +133,7 @@ static void put_scene(GlbFile *f, const char *up, const char *extras) {
 SingeResult glb_finish(GlbFile *f, const char *up, const char *extras, const char *path, SingeError *error) {
     put_scene(f, up, extras);
     if (f->data.size + f->text.size > UINT32_MAX / 2)
-        return refuse(error, SINGE_ERROR_LIMIT, "glb", -1, "%s: more than a GLB can hold", short_name(path));
+        return refuse(error, SINGE_ERROR_LIMIT, "glb", -1, "%s: too large for a GLB", short_name(path));
     Sink sink = {.allocator = f->text.allocator};
     const uint32_t head = 12 + 8 + (uint32_t)f->text.size, body = f->mesh_count ? 8 + (uint32_t)f->data.size : 0;
     sink_reserve(&sink, head + body);

@@ -108,7 +108,7 @@ static bool make_path(const Gltf *gltf, const uint8_t *at, const uint8_t *end, c
 static SingeResult load_file(Gltf *gltf, uint32_t number, const uint8_t *at, const uint8_t *end, Bytes *bytes) {
     char path[PATH_LIMIT];
     if (!make_path(gltf, at, end, path) || !beside_is(gltf->name, path))
-        return gltf_bad(gltf, "buffers", number, "what it refers to is no file in the folder or below");
+        return gltf_bad(gltf, "buffers", number, "it refers to something that is not a file in its folder or below");
     SingeError error = {0};
     SingeResult result = file_read_max(path, BUFFERS_LIMIT - gltf->loaded_size, gltf->allocator, bytes, &error);
     if (result == SINGE_ERROR_MEMORY) return refuse_memory(gltf->error, "gltf", gltf->name);
@@ -154,7 +154,7 @@ typedef struct Slice {
 static SingeResult find_view(Gltf *gltf, uint32_t number, uint64_t offset, Slice *slice) {
     int64_t view = gltf->views[number], extensions = json_member(&gltf->json, view, "extensions"), buffer;
     if (json_member(&gltf->json, extensions, "EXT_meshopt_compression") != JSON_NONE)
-        return gltf_bad(gltf, "bufferViews", number, "compressed data are not read");
+        return gltf_bad(gltf, "bufferViews", number, "compressed data are not supported");
     TRY(gltf_index(gltf, view, "buffer", gltf->buffer_count, &buffer));
     if (buffer == JSON_NONE) return gltf_bad(gltf, "bufferViews", number, "it has no buffer");
     const uint8_t *bytes = NULL;
@@ -188,7 +188,7 @@ static SingeResult find_elements(Gltf *gltf, int64_t object, uint32_t number, ui
     TRY(gltf_index(gltf, object, "bufferView", gltf->view_count, &view));
     if (view == JSON_NONE) return gltf_bad(gltf, "accessors", number, "it has no data, or compressed ones");
     if (!take_count(gltf, object, "byteOffset", 0, INT64_MAX, &offset))
-        return gltf_bad(gltf, "accessors", number, "its byteOffset is no count");
+        return gltf_bad(gltf, "accessors", number, "its byteOffset is not a count");
     Slice slice = {0};
     TRY(find_view(gltf, (uint32_t)view, offset, &slice));
     uint64_t step = slice.stride ? slice.stride : size;
@@ -242,7 +242,7 @@ static SingeResult read_primitive(Gltf *gltf, int64_t object, GltfPrimitive *pri
     int64_t extensions = json_member(&gltf->json, object, "extensions");
     uint64_t mode;
     if (json_member(&gltf->json, extensions, "KHR_draco_mesh_compression") != JSON_NONE)
-        return gltf_bad(gltf, "meshes", primitive->mesh, "compressed data are not read");
+        return gltf_bad(gltf, "meshes", primitive->mesh, "compressed data are not supported");
     if (!take_count(gltf, object, "mode", 4, 6, &mode))
         return gltf_bad(gltf, "meshes", primitive->mesh, "a primitive's mode is not known");
     primitive->mode = (uint32_t)mode;
@@ -364,7 +364,7 @@ SingeResult gltf_read(const char *name, const uint8_t *bytes, size_t size, Singe
     }
     if (!result) result = json_read(name, json, json_size, allocator, &gltf.json, error);
     if (!result && gltf.json.values[0].kind != JSON_OBJECT)
-        result = gltf_refuse(&gltf, SINGE_ERROR_FORMAT, "not glTF: its JSON is no object");
+        result = gltf_refuse(&gltf, SINGE_ERROR_FORMAT, "not glTF: its JSON is not an object");
     bool other = !result && is_for_assimp(&gltf.json);
     if (!result && !other) result = read_lists(&gltf);
     if (!result && !other) result = read_meshes(&gltf);

@@ -69,7 +69,7 @@ static SingeResult node_transform(const Gltf *gltf, uint32_t node, Transform *at
     bool good = take_numbers(json, object, "matrix", 16, matrix) &&
                 take_numbers(json, object, "translation", 3, move) &&
                 take_numbers(json, object, "rotation", 4, rotation) && take_numbers(json, object, "scale", 3, scale);
-    if (!good) return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: its transform is not of finite numbers", node);
+    if (!good) return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: its transform is not finite", node);
     if (json_member(json, object, "matrix") != JSON_NONE) {
         for (int r = 0; r < 3; r++)
             for (int c = 0; c < 4; c++) at->m[r][c] = matrix[4 * c + r];
@@ -99,7 +99,7 @@ static SingeResult count_primitive(Walk *walk, const GltfPrimitive *primitive) {
     walk->primitives++;
     if (12 * walk->vertices + 12 * walk->corners + 100 * walk->primitives > walk->max)
         return gltf_refuse(gltf, SINGE_ERROR_LIMIT,
-                           "too large: its nodes use meshes over and over, and come to more than %llu MB",
+                           "too large: its nodes repeat meshes, which come to more than %llu MB",
                            (unsigned long long)walk->max / 1000000);
     return SINGE_OK;
 }
@@ -119,11 +119,11 @@ static SingeResult walk_node(Walk *walk, uint32_t node, const Transform *parent,
     const Gltf *gltf = walk->gltf;
     int64_t object = gltf->nodes[node], mesh, extensions = json_member(&gltf->json, object, "extensions");
     if (walk->seen[node])
-        return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: it is in itself, or in two others", node);
+        return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: it contains itself, or has two parents", node);
     if (depth > NODE_DEPTH)
-        return gltf_refuse(gltf, SINGE_ERROR_LIMIT, "nodes[%u]: more than %d nodes in each other", node, NODE_DEPTH);
+        return gltf_refuse(gltf, SINGE_ERROR_LIMIT, "nodes[%u]: nodes are nested more than %d deep", node, NODE_DEPTH);
     if (json_member(&gltf->json, extensions, "EXT_mesh_gpu_instancing") != JSON_NONE)
-        return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: EXT_mesh_gpu_instancing is not read", node);
+        return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: EXT_mesh_gpu_instancing is not supported", node);
     walk->seen[node] = 1;
     Transform own, at;
     TRY(node_transform(gltf, node, &own));

@@ -316,7 +316,7 @@ bool isolate_possible(void) {
 static SingeResult refuse_process(const char *name, SingeError *error, int reason) {
     char text[120];
     if (strerror_r(reason, text, sizeof text)) snprintf(text, sizeof text, "error %d", reason);
-    return refuse(error, SINGE_ERROR_MEMORY, "file", -1, "%s: no process can be made to read it: %s", short_name(name),
+    return refuse(error, SINGE_ERROR_MEMORY, "file", -1, "%s: cannot start a process to read it: %s", short_name(name),
                   text);
 }
 

@@ -106,7 +106,7 @@ SingeResult json_read(const char *name, const uint8_t *text, size_t size, SingeA
     while (parser.depth) TRY(go_on(&parser));
     for (skip_blanks(&parser); parser.at < parser.end && *parser.at == 0; parser.at++) {
     } // some chunks are filled so
-    return parser.at < parser.end ? json_bad(&parser, "there is more behind the end") : SINGE_OK;
+    return parser.at < parser.end ? json_bad(&parser, "there is data after the end") : SINGE_OK;
 }
 
 void json_free(Json *json) {

@@ -12,11 +12,11 @@ static SingeResult off_header(Scan *scan) {
     if (at < end && *at == 'C') at++;
     if (at < end && *at == 'N') at++;
     if (!text_word_is(at, end, "OFF"))
-        return scan_refuse(scan, SINGE_ERROR_FORMAT, "not an OFF file that Singe reads: it begins otherwise");
+        return scan_refuse(scan, SINGE_ERROR_FORMAT, "not an OFF file: its header is unknown");
     scan->text.at = end;
     if (!scan_to_word(scan, '#')) return scan_refuse(scan, SINGE_ERROR_FORMAT, "the file ends too soon");
     if (text_word_is(scan->text.at, text_word_end(&scan->text), "BINARY"))
-        return scan_refuse(scan, SINGE_ERROR_FORMAT, "binary OFF is not read");
+        return scan_refuse(scan, SINGE_ERROR_FORMAT, "binary OFF is not supported");
     return SINGE_OK;
 }
 
@@ -80,7 +80,7 @@ static SingeResult off_body(Scan *scan, Polygons *mesh, size_t *capacity) {
     mesh->first[mesh->face_count] = mesh->corner_count;
     text_next_line(&scan->text);
     if (scan_to_word(scan, '#'))
-        return scan_refuse(scan, SINGE_ERROR_FORMAT, "there is more than the %u vertices and %u faces of the header",
+        return scan_refuse(scan, SINGE_ERROR_FORMAT, "there is data after the %u vertices and %u faces of the header",
                            mesh->vertex_count, mesh->face_count);
     return SINGE_OK;
 }

@@ -77,7 +77,7 @@ static SingeResult ply_header_type(Ply *ply, Word word, PlyType *type) {
             *type = (PlyType)i;
             return SINGE_OK;
         }
-    return ply_refuse(ply, SINGE_ERROR_FORMAT, "the line has no PLY type where one is due");
+    return ply_refuse(ply, SINGE_ERROR_FORMAT, "a PLY type is missing");
 }
 
 static SingeResult ply_header_element(Ply *ply) {
@@ -141,7 +141,7 @@ static SingeResult ply_header_format(Ply *ply, bool *known) {
     for (int i = 0; i < 3; i++)
         if (word_is(word, formats[i])) ply->header.format = (PlyFormat)i, *known = true;
     if (!*known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a PLY format");
-    if (!word_is(version, "1.0")) return ply_refuse(ply, SINGE_ERROR_FORMAT, "only PLY version 1.0 is known");
+    if (!word_is(version, "1.0")) return ply_refuse(ply, SINGE_ERROR_FORMAT, "only PLY version 1.0 is supported");
     return SINGE_OK;
 }
 

@@ -19,12 +19,13 @@ static void sort_by_sheet(const SheetParts *p, const uint32_t (*triangles)[3], u
 static SingeResult check_sheets(const SingeSurface *s, uint32_t sheet_count, const char *path, SingeError *error) {
     for (uint32_t v = 0; v < s->vertex_count; v++)
         if (s->sheet[v] < 0 || (uint32_t)s->sheet[v] >= sheet_count)
-            return refuse(error, SINGE_ERROR_FORMAT, "output", v, "%s: vertex %u is of sheet %d; the scene has %u",
-                          short_name(path), v, (int)s->sheet[v], sheet_count);
+            return refuse(error, SINGE_ERROR_FORMAT, "output", v,
+                          "%s: vertex %u belongs to sheet %d; the scene has %u sheets", short_name(path), v,
+                          (int)s->sheet[v], sheet_count);
     for (uint32_t t = 0; t < s->triangle_count; t++)
         for (int k = 1; k < 3; k++)
             if (s->sheet[s->triangles[t][k]] != s->sheet[s->triangles[t][0]])
-                return refuse(error, SINGE_ERROR_FORMAT, "output", t, "%s: triangle %u is of two sheets",
+                return refuse(error, SINGE_ERROR_FORMAT, "output", t, "%s: triangle %u belongs to two sheets",
                               short_name(path), t);
     return SINGE_OK;
 }

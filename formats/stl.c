@@ -30,8 +30,7 @@ static SingeResult stl_read_bytes(const char *name, const uint8_t *bytes, size_t
     uint64_t count = load_u32_little(bytes + 80), needed = HEAD + TRIANGLE * count;
     if (size != needed)
         return refuse(error, SINGE_ERROR_FORMAT, "stl", 80,
-                      "%s: byte 80: the file has not the length that its number of triangles asks for",
-                      short_name(name));
+                      "%s: byte 80: the file's length does not match its number of triangles", short_name(name));
     if (count == 0) return refuse(error, SINGE_ERROR_FORMAT, "stl", 80, "%s: has no faces", short_name(name));
     mesh->positions = store_new(mesh->allocator, 9 * (size_t)count, sizeof *mesh->positions);
     mesh->vertex_count = (uint32_t)(3 * count);

@@ -15,7 +15,7 @@ static SingeResult read_picture(const char *path, const char *picture, Bytes *by
     const char *slash = strrchr(path, '/');
     const int folder = *picture == '/' || !slash ? 0 : (int)(slash - path) + 1;
     if ((size_t)snprintf(name, sizeof name, "%.*s%s", folder, path, picture) >= sizeof name)
-        return refuse(error, SINGE_ERROR_LIMIT, "usdz", -1, "%s: too long a name", short_name(picture));
+        return refuse(error, SINGE_ERROR_LIMIT, "usdz", -1, "%s: the name is too long", short_name(picture));
     return file_read(name, (SingeAllocator){0}, bytes, error);
 }
 

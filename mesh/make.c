@@ -268,7 +268,8 @@ static SingeResult run_steps(Work *work, const MeshOptions *options) {
     if (work->no_memory) return SINGE_OK;
     uint32_t unsound = unsound_quad(work);
     if (unsound != MESH_NONE)
-        return work_refuse(work, work->faces.origin[unsound], "is crossed or bent so that it cannot be cut into quads");
+        return work_refuse(work, work->faces.origin[unsound],
+                           "crosses itself, or is bent so that it cannot be cut into quads");
     if (!work->no_memory) mesh_order(work);
     return SINGE_OK;
 }

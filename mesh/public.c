@@ -59,7 +59,7 @@ static SingeResult check_def(const SingeMeshDef *def, const char *name, uint32_t
         if (!def->attributes[i].name || !def->attributes[i].values)
             return bad(error, "an attribute has no name or no values");
     if (def->quads != SINGE_MESH_PAIR && def->quads != SINGE_MESH_SPLIT)
-        return bad(error, "quads is none of the choices");
+        return bad(error, "quads is not a known choice");
     if (!(def->weld >= 0 && isfinite(def->weld))) return bad(error, "weld must be 0 or more");
     if (!(def->smallest >= 0 && def->smallest <= 1)) return bad(error, "smallest must be between 0 and 1");
     for (uint32_t f = 0; f < def->face_count; f++) {

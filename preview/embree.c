@@ -26,7 +26,7 @@ static float let_through(const Preview *preview, const uint32_t t[3], float burn
 
 SingeResult tracer_open(Preview *preview, SingeError *error) {
     preview->device = rtcNewDevice("threads=1,set_affinity=0");
-    return preview->device ? SINGE_OK : preview_fail(error, SINGE_ERROR_STATE, -1, "Embree made no device");
+    return preview->device ? SINGE_OK : preview_fail(error, SINGE_ERROR_STATE, -1, "Embree cannot create a device");
 }
 
 void tracer_close(Preview *preview) {
@@ -89,7 +89,7 @@ SingeResult tracer_build(Preview *preview, SingeError *error) {
     }
     if (geometry) rtcReleaseGeometry(geometry);
     SingeResult result = embree_check(preview, error);
-    if (!result && !built) result = preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree made no scene");
+    if (!result && !built) result = preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree cannot create a scene");
     if (result) {
         if (built) rtcReleaseScene(built);
         return result;

@@ -81,7 +81,7 @@ static SingeResult check_shape(const PreviewShape *shape, int64_t index, SingeEr
     }
     if (shape->kind != SINGE_COLLIDER_SPHERE) good = good && fabsf(length - 1) < 0.01f;
     return good ? SINGE_OK
-                : preview_refuse(error, index, "shape: kind, size, place, rotation or temperature is out of range");
+                : preview_refuse(error, index, "shape: kind, size, position, rotation or temperature is out of range");
 }
 
 static SingeResult check_shapes(const PreviewShape *shapes, uint32_t count, SingeError *error) {
@@ -111,9 +111,8 @@ static SingeResult check_light(const PreviewDef *def, SingeError *error) {
     if (!(def->shutter >= 0 && def->shutter <= 1e4f))
         return preview_refuse(error, -1, "shutter must lie between 0 and 1e4 s");
     if (!(def->pace > 0 && def->pace <= 1e9f)) return preview_refuse(error, -1, "pace must be above 0");
-    if ((unsigned)def->ground > PREVIEW_GROUND_PLAIN)
-        return preview_refuse(error, -1, "ground is none of those there are");
-    if ((unsigned)def->sky > PREVIEW_SKY_PICTURE) return preview_refuse(error, -1, "sky is none of those there are");
+    if ((unsigned)def->ground > PREVIEW_GROUND_PLAIN) return preview_refuse(error, -1, "ground is not a known kind");
+    if ((unsigned)def->sky > PREVIEW_SKY_PICTURE) return preview_refuse(error, -1, "sky is not a known kind");
     if (!isfinite(def->sky_turn) || fabsf(def->sky_turn) > 1e6f)
         return preview_refuse(error, -1, "sky_turn must be finite");
     if (def->sky == PREVIEW_SKY_PICTURE && !(def->sky_picture && image_is_good(def->sky_picture)))

@@ -77,7 +77,7 @@ static SceneText *base_builtin(Reader *reader, const Node *node) {
     }
     char seen[NODE_WORDS], hint[80], names[160];
     message_add(reader->messages, reader->text, node->location,
-                "there is no material %s; built in are %s, and a file of your own is named with its ending "
+                "there is no material %s; the built-in ones are %s; a file of your own needs its extension "
                 "(mine.yaml)%s",
                 node_describe(node, seen, sizeof seen), base_names(names, sizeof names),
                 nearest_hint(&nearest, hint, sizeof hint));
@@ -106,12 +106,12 @@ static bool chain_open(Reader *reader, const Node *node, const SceneFile *file, 
     for (const BaseChain *outer = link->outer; outer; outer = outer->outer)
         if (outer->text == link->text || (file->path && outer->status.st_ino == link->status.st_ino &&
                                           outer->status.st_dev == link->status.st_dev)) {
-            message_add(reader->messages, reader->text, node->location, "%s begins as itself, by way of %s",
+            message_add(reader->messages, reader->text, node->location, "%s is based on itself, through %s",
                         shown_path(link->text->name).text, shown_path(reader->chain->text->name).text);
             return false;
         }
     if (link->depth <= BASES_MAX) return true;
-    message_add(reader->messages, reader->text, node->location, "materials begin as each other more than %d deep",
+    message_add(reader->messages, reader->text, node->location, "materials are based on each other more than %d deep",
                 BASES_MAX);
     return false;
 }

@@ -49,7 +49,7 @@ void finish_material(Reader *reader, const Node *map, void *object) {
     const Node *thickening = node_find(map, "thickening");
     float value = material->def.thickening;
     if (thickening && value > 0 && value < 1)
-        complain(reader, thickening->location, "thickening must be 0 (as little as the cells need) or 1 and more");
+        complain(reader, thickening->location, "thickening must be 0 (as little as the cells need), or at least 1");
 }
 
 void finish_sheet(Reader *reader, const Node *map, void *object) {

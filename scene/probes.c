@@ -60,7 +60,7 @@ void probes_find(const Scene *scene, SceneAssets *assets, SceneMessages *message
         const SceneProbe *probe = &scene->probes[i];
         const Mesh *mesh = &assets->meshes[probe->sheet_index];
         if (probe->kind == SCENE_PROBE_UV && !mesh->uv && !mesh->corner_uv) {
-            message_add(messages, scene->text, probe->location, "the probe's place is in uv, but the mesh has none");
+            message_add(messages, scene->text, probe->location, "the probe is given in uv, but the mesh has none");
             continue;
         }
         assets->probes[i] = find_place(mesh, probe);

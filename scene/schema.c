@@ -12,12 +12,12 @@ static const char *const method_names[] = {[SINGE_SOLVER_STRAND] = "strand",
 
 static const SchemaRow wind_rows[] = {
     {"velocity", ROW_VECTOR, DIM_SPEED, AT(SingeWindDef, velocity), .length = 3, WITHIN(-1000, 1000),
-     .doc = "mean of the air's motion"},
+     .doc = "mean velocity of the air"},
     {"gust", ROW_FLOAT, DIM_SPEED, AT(SingeWindDef, gust), WITHIN(0, 1000), .doc = "how strong gusts are"},
     {"gust_time", ROW_FLOAT, DIM_TIME, AT(SingeWindDef, gust_time), WITHIN(1e-6, 1e6), .doc = "how long a gust lasts"},
     {"gust_size", ROW_FLOAT, DIM_LENGTH, AT(SingeWindDef, gust_size), WITHIN(1e-6, 1e6),
      .doc = "how far a gust reaches"},
-    {"seed", ROW_UINT32, DIM_NONE, AT(SingeWindDef, seed), .doc = "another seed, other gusts"},
+    {"seed", ROW_UINT32, DIM_NONE, AT(SingeWindDef, seed), .doc = "seed of the gusts"},
 };
 static const Schema schema_wind = {
     .title = "the wind", .size = sizeof(SingeWindDef), ROWS(wind_rows), .doc = "The air's motion."};
@@ -40,8 +40,9 @@ static const Schema schema_regularisation = {
 
 static const SchemaRow solver_rows[] = {
     {"method", ROW_ENUM, DIM_NONE, AT(SingeSolverDef, method), .names = method_names,
-     .doc = "strand after strand; successive fast projection as the paper has it, or to its letter, which may fail; "
-            "all colours in one system; or Hooke's law. The defaults below are those of `strand`"},
+     .doc = "in this order: projection along strands; the paper's successive fast projection; the same exactly as "
+            "printed, which may fail; all colours in one system; Hooke's law. The defaults below are those of "
+            "`strand`"},
     {"substeps", ROW_INT, DIM_NONE, AT(SingeSolverDef, substeps), WITHIN(0, 1000),
      .doc =
          "substeps of a step; stiff, thick sheets of small cells need more ([equations.md](equations.md#stiffness)); "

@@ -11,7 +11,7 @@ static const SchemaRow noise_rows[] = {
     {"scale", ROW_FLOAT, DIM_LENGTH, AT(SingeNoise, scale), WITHIN(1e-6, 1e6), .doc = "size of the largest features"},
     {"octaves", ROW_INT, DIM_NONE, AT(SingeNoise, octaves), WITHIN(1, 8),
      .doc = "layers of detail, each half the size and half the strength of the one before"},
-    {"seed", ROW_UINT32, DIM_NONE, AT(SingeNoise, seed), .doc = "another seed, another noise"},
+    {"seed", ROW_UINT32, DIM_NONE, AT(SingeNoise, seed), .doc = "seed of the noise"},
 };
 const Schema schema_noise = {.title = "a noise",
                              .size = sizeof(SingeNoise),
@@ -66,21 +66,21 @@ static const Schema schema_compliance = {
 
 static const SchemaRow measured_rows[] = {
     {"calibrated", ROW_BOOL, DIM_NONE, AT(SceneMeasured, calibrated),
-     .doc = "the material was made to agree with these; otherwise they are held against what it predicts"},
+     .doc = "yes: the material was calibrated with these values; no: its predictions are compared with them"},
     {"speed", ROW_VECTOR, DIM_SPEED, AT(SceneMeasured, speed), .length = 2, WITHIN(0, 1e6),
-     .doc = "of a front that runs level, from and to"},
+     .doc = "speed of a level front, min and max"},
     {"temperature", ROW_VECTOR, DIM_TEMPERATURE, AT(SceneMeasured, temperature), .length = 2, WITHIN(0, 1e4),
-     .doc = "the hottest, from and to"},
+     .doc = "highest temperature, min and max"},
     {"residue", ROW_VECTOR, DIM_FRACTION, AT(SceneMeasured, residue), .length = 2, WITHIN(0, 1),
-     .doc = "share of the mass that is left, from and to"},
+     .doc = "share of the mass that remains, min and max"},
 };
 static const Schema schema_measured = {
     .title = "what is measured",
     .size = sizeof(SceneMeasured),
     ROWS(measured_rows),
     .defaults = default_measured,
-    .doc = "What sources say of the material's fire, for `singe bench front`; nothing is computed from it. 0 and 0 "
-           "where they say nothing."};
+    .doc = "Published measurements of the material's fire, for `singe bench front`. They do not affect the "
+           "simulation. 0 and 0: unknown."};
 
 // those that are one for the sheet
 #define SCALAR_reference_grammage ROW_FLOAT, DIM_GRAMMAGE, WITHIN(0, 1e6)
@@ -90,8 +90,8 @@ static const Schema schema_measured = {
 
 static const SchemaRow material_rows[] = {
     {"base", ROW_BASE, DIM_NONE, .offset = 0, .flags = ROW_SHORT,
-     .doc = "the material that it begins as, and which the other keys change: one that is built in, or a file of the "
-            "same keys ([materials.md](materials.md))"},
+     .doc = "the material that the other keys change: a built-in one, or a file of the same keys "
+            "([materials.md](materials.md))"},
     {"name", ROW_TEXT, DIM_NONE, AT(SceneMaterial, name), .doc = "for messages; that of `base` by default"},
 #define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) \
     PARAM(#name, name, dimension, text, range),
@@ -101,7 +101,7 @@ static const SchemaRow material_rows[] = {
 #define SINGE_SCALAR(type, name, standard, text) {#name, SCALAR_##name, AT(SceneMaterial, def.name), .doc = text},
 #include "singe/material.def"
     {"measured", ROW_MAP, DIM_NONE, AT(SceneMaterial, measured), EXTRA(SceneMaterial, measured.given),
-     .sub = &schema_measured, .doc = "what sources say of its fire"},
+     .sub = &schema_measured, .doc = "published measurements of its fire"},
 };
 const Schema schema_material = {
     .title = "a material",

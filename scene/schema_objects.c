@@ -41,8 +41,8 @@ static const Schema schema_key = {
     .title = "a path's entry",
     .size = sizeof(SceneKey),
     ROWS(key_rows),
-    .doc = "Where something is at a time. Positions move in straight lines from entry to entry and rest before the "
-           "first and after the last; times must increase."};
+    .doc = "A pose at a time. Positions are interpolated linearly. They are constant before the first entry and "
+           "after the last. Times must increase."};
 
 static const SchemaRow strength_rows[] = {
     {"time", ROW_FLOAT, DIM_TIME, AT(SingeValueKey, time), .min = 0, .max = 1e6, .flags = ROW_REQUIRED, .doc = "when"},
@@ -53,7 +53,7 @@ static const Schema schema_strength = {
     .title = "a strength's entry",
     .size = sizeof(SingeValueKey),
     ROWS(strength_rows),
-    .doc = "How strong a texture source is at a time; straight lines in between. Times must increase."};
+    .doc = "The strength of a texture source at a time, interpolated linearly. Times must increase."};
 
 static const SchemaRow motion_rows[] = {
     {"mesh", ROW_FILE, DIM_NONE, AT(SceneMotion, mesh), .flags = ROW_REQUIRED | ROW_NUMBERED,
@@ -81,13 +81,13 @@ static const SchemaRow grid_rows[] = {
     {"size", ROW_VECTOR, DIM_LENGTH, AT(SceneGrid, size), .length = 2, WITHIN(1e-6, 1e4), .flags = ROW_REQUIRED,
      .doc = "along x and y"},
     {"cells", ROW_INTS, DIM_NONE, AT(SceneGrid, cells), .length = 2, .flags = ROW_REQUIRED, WITHIN(1, 20000),
-     .doc = "how many cells along x and y"},
+     .doc = "number of cells along x and y"},
     {"jitter", ROW_FLOAT, DIM_FRACTION, AT(SceneGrid, wear.jitter), WITHIN(0, 0.3),
      .doc = "displacement of vertices off the grid, in cells, so that folds and fronts follow no grid lines; 0 is "
             "regular"},
     {"displacement", ROW_FLOAT, DIM_LENGTH, AT(SceneGrid, wear.displacement), WITHIN(0, 1e3),
      .doc = "root mean square displacement of the rest shape by smooth waves; 0 is flat"},
-    {"seed", ROW_UINT32, DIM_NONE, AT(SceneGrid, wear.seed), .doc = "another seed, another sheet"},
+    {"seed", ROW_UINT32, DIM_NONE, AT(SceneGrid, wear.seed), .doc = "seed of the waves"},
 };
 static const Schema schema_grid = {.title = "a grid",
                                    .size = sizeof(SceneGrid),
@@ -147,11 +147,11 @@ static SceneLocation *source_location(void *object) { return &((SceneSource *)ob
 static const SchemaRow source_rows[] = {
     {"kind", ROW_ENUM, DIM_NONE, AT(SceneSource, def.kind), .names = source_names, .flags = ROW_REQUIRED,
      .doc = "`ball`: a hot ball on a path; `spot`: a hot ball that stands still; `texture`: a flux drawn on the sheet"},
-    SOURCE("start", start, DIM_TIME, 0, FROM(0), "it heats from here"),
+    SOURCE("start", start, DIM_TIME, 0, FROM(0), "time at which it starts"),
     {"end", ROW_FLOAT, DIM_TIME, AT(SceneSource, def.end), .flags = ROW_INF, FROM(0),
-     .doc = "to here; `inf` is for ever"},
+     .doc = "time at which it ends; `inf`: never"},
     SOURCE("temperature", temperature, DIM_TEMPERATURE, BALL | SPOT, KELVIN, "of the ball or the flame"),
-    SOURCE("conductance", conductance, DIM_CONDUCTANCE, BALL | SPOT, FROM(0), "how well its heat reaches the sheet"),
+    SOURCE("conductance", conductance, DIM_CONDUCTANCE, BALL | SPOT, FROM(0), "heat transfer coefficient to the sheet"),
     SOURCE("radius", radius, DIM_LENGTH, BALL, WITHIN(0, 1e4), "full heat within it"),
     SOURCE("radius", radius, DIM_LENGTH, SPOT, FROM(0), "full heat within it"),
     SOURCE("falloff", falloff, DIM_LENGTH, BALL | SPOT, FROM(0),
@@ -237,7 +237,7 @@ const Schema schema_collider = {
     .defaults = default_collider,
     .finish = finish_collider,
     .location = collider_location,
-    .doc = "A thing that sheets rest on and slide over. Its `kind` decides which keys it has."};
+    .doc = "A solid that sheets rest on and slide over. Its `kind` decides which keys it has."};
 
 static SceneLocation *pin_location(void *object) { return &((ScenePin *)object)->location; }
 static const SchemaRow pin_rows[] = {
@@ -246,16 +246,15 @@ static const SchemaRow pin_rows[] = {
     {"points", ROW_POINTS, DIM_LENGTH, AT(ScenePin, points), EXTRA(ScenePin, point_count), .length = 3, ANY,
      .doc = "points [x, y, z] in the world at the start"},
     {"radius", ROW_FLOAT, DIM_LENGTH, AT(ScenePin, radius), WITHIN(0, 1e6),
-     .doc = "what is this near to one of the points is held, and the nearest vertex of each in any case; a point that "
-            "misses the sheet by a tenth of its diagonal is warned of"},
+     .doc = "all particles within this distance of a point are held, and at least the vertex nearest to each point; "
+            "a point that misses the sheet by a tenth of its diagonal causes a warning"},
     {"vertices", ROW_INDICES, DIM_NONE, AT(ScenePin, vertices), EXTRA(ScenePin, vertex_count), WITHIN(0, 4294967294.0),
      .doc = "numbers of the mesh's vertices, from 0"},
     {"path", ROW_LIST, DIM_NONE, AT(ScenePin, keys), EXTRA(ScenePin, key_count), .sub = &schema_key,
-     .doc = "how what is held moves, relative to the path's pose at the start; held still without"},
+     .doc = "motion of the held part, relative to the path's pose at the start; without a path it is held still"},
     {"motion", ROW_MAP, DIM_NONE, AT(ScenePin, motion), EXTRA(ScenePin, motion.given), .sub = &schema_motion,
-     .doc =
-         "a moving mesh in the world that what is held follows, each particle by the triangle that is nearest to it at "
-         "frame 1; instead of `path`"},
+     .doc = "a moving mesh in world coordinates that the held part follows: each particle follows the triangle that is "
+            "nearest to it at frame 1; instead of `path`"},
 };
 const Schema schema_pin = {.title = "a pin",
                            .size = sizeof(ScenePin),
@@ -269,15 +268,15 @@ static const char *const probe_names[] = {[SCENE_PROBE_UV] = "uv", [SCENE_PROBE_
 static SceneLocation *probe_location(void *object) { return &((SceneProbe *)object)->location; }
 static const SchemaRow probe_rows[] = {
     {"kind", ROW_ENUM, DIM_NONE, AT(SceneProbe, kind), .names = probe_names, .flags = ROW_REQUIRED,
-     .doc = "how its place is given: `uv`, the sheet's texture coordinates, or `point`, the world at the start"},
+     .doc = "how its position is given: `uv`, the sheet's texture coordinates, or `point`, the world at the start"},
     {"name", ROW_NAME, DIM_NONE, AT(SceneProbe, name), .doc = "in `probes.csv`; `probe1`, `probe2`, ... by default"},
     {"sheet", ROW_TEXT, DIM_NONE, AT(SceneProbe, sheet),
      .doc = "name of the sheet, or its number from 0; the first by default"},
     {"at", ROW_VECTOR, DIM_NONE, AT(SceneProbe, uv), .length = 2, .kinds = 1u << SCENE_PROBE_UV, .flags = ROW_REQUIRED,
-     ANY, .doc = "[u, v]; the nearest place of the sheet, with a warning where that is not there"},
+     ANY, .doc = "[u, v]; the nearest point of the sheet is taken, with a warning where the sheet has no such uv"},
     {"at", ROW_VECTOR, DIM_LENGTH, AT(SceneProbe, point), .length = 3, .kinds = 1u << SCENE_PROBE_POINT,
      .flags = ROW_REQUIRED, ANY,
-     .doc = "[x, y, z]; the nearest place of the sheet, with a warning where it is far off"},
+     .doc = "[x, y, z]; the nearest point of the sheet is taken, with a warning where it is far off"},
 };
 const Schema schema_probe = {.title = "a probe",
                              .size = sizeof(SceneProbe),

@@ -8,24 +8,23 @@ static const char *const ground_names[] = {
 
 static const SchemaRow camera_rows[] = {
     {"eye", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, eye), .length = 3, WITHIN(-1e4, 1e4),
-     .doc = "where it stands; with neither eye nor target it is placed so that the sheets fill the picture"},
+     .doc = "its position; without eye and target the sheets fill the picture"},
     {"target", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, target), .length = 3, WITHIN(-1e4, 1e4),
      .doc = "what it looks at"},
     {"up", ROW_VECTOR, DIM_NONE, AT(PreviewCamera, up), .length = 3, WITHIN(-1e4, 1e4),
-     .doc = "which way is up in the picture"},
+     .doc = "direction that is up in the picture"},
     {"fov", ROW_FLOAT, DIM_ANGLE, AT(PreviewCamera, fov), WITHIN(0.1 * DEGREE, 175 * DEGREE),
      .doc = "angle of view from bottom to top"},
     {"aperture", ROW_FLOAT, DIM_LENGTH, AT(PreviewCamera, aperture), WITHIN(0, 10),
-     .doc = "diameter of the lens: the wider, the more blurs what is nearer or farther than the focus; 0: nothing "
-            "does"},
+     .doc = "diameter of the lens; a wider lens blurs more in front of the focus and behind it; 0: all is sharp"},
     {"focus", ROW_FLOAT, DIM_LENGTH, AT(PreviewCamera, focus), WITHIN(0, 1e4),
-     .doc = "distance that is sharp, along the line of sight; 0: the target's"},
+     .doc = "distance of the focus along the line of sight; 0: the target's"},
 };
 static const Schema schema_camera = {.title = "the camera",
                                      .size = sizeof(PreviewCamera),
                                      ROWS(camera_rows),
                                      .finish = finish_camera,
-                                     .doc = "From where the preview is drawn."};
+                                     .doc = "The camera of the preview."};
 
 static const SchemaRow light_rows[] = {
     {"direction", ROW_VECTOR, DIM_NONE, AT(ScenePreview, light_direction), .length = 3, ANY,
@@ -51,8 +50,8 @@ static const Schema schema_environment = {
     .title = "the environment",
     .size = sizeof(ScenePreview),
     ROWS(environment_rows),
-    .doc = "Where the light of `sky` comes from, and what shiny things mirror. It is scaled so that what faces up gets "
-           "as much of it as from an even sky."};
+    .doc = "Where the light of `sky` comes from, and what shiny surfaces mirror. It is scaled so that a surface that "
+           "faces up gets as much light as from an even sky."};
 
 static const SchemaRow ground_rows[] = {
     {"kind", ROW_ENUM, DIM_NONE, AT(ScenePreview, ground), .names = ground_names,
@@ -73,18 +72,18 @@ static const SchemaRow preview_rows[] = {
      .doc = "width and height in pixels, even numbers for video"},
     {"samples", ROW_INT, DIM_NONE, AT(ScenePreview, samples), WITHIN(1, 4096),
      .doc = "rays a pixel: more is smoother and slower"},
-    {"camera", ROW_MAP, DIM_NONE, AT(ScenePreview, camera), .sub = &schema_camera, .doc = "from where"},
-    {"light", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_light, .doc = "the one light"},
+    {"camera", ROW_MAP, DIM_NONE, AT(ScenePreview, camera), .sub = &schema_camera, .doc = "the camera"},
+    {"light", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_light, .doc = "the distant light"},
     {"sky", ROW_VECTOR, DIM_NONE, AT(ScenePreview, sky), .length = 3, .min = 0, .max = 1e4,
      .doc = "light from all around, linear red, green, blue"},
     {"environment", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_environment,
-     .doc = "from where the sky's light comes"},
+     .doc = "distribution of the sky's light"},
     {"ground", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_ground, .doc = "the floor"},
     {"background", ROW_VECTOR, DIM_NONE, AT(ScenePreview, background), .length = 3, .min = 0, .max = 1e4,
-     .doc = "behind everything, linear red, green, blue"},
+     .doc = "background colour, linear red, green, blue"},
     {"exposure", ROW_FLOAT, DIM_NONE, AT(ScenePreview, exposure), WITHIN(1e-6, 1000), .doc = "multiplies all light"},
     {"shutter", ROW_FLOAT, DIM_FRACTION, AT(ScenePreview, shutter), WITHIN(0, 1),
-     .doc = "share of a frame's time during which what moves leaves its trace: film has 0.5; 0: nothing blurs"},
+     .doc = "share of a frame's time during which the shutter is open; film has 0.5; 0: no motion blur"},
 };
 const Schema schema_preview = {.title = "the preview",
                                .size = sizeof(ScenePreview),

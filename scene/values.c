@@ -184,7 +184,7 @@ void value_order(Reader *reader, const SchemaRow *row, const Node *node, SingeCo
         int colour = 0;
         if (!value_word(reader, row, child, names, &colour)) return;
         if (seen & 1 << colour) {
-            message_add(reader->messages, reader->text, child->location, "'%s' is there twice; each colour comes once",
+            message_add(reader->messages, reader->text, child->location, "'%s' is repeated; each colour comes once",
                         names[colour]);
             return;
         }
@@ -205,7 +205,7 @@ void value_formats(Reader *reader, const SchemaRow *row, const Node *node, Outpu
         int format = 0;
         if (!value_word(reader, row, child, names, &format)) return;
         if (output_has(set, format)) {
-            message_add(reader->messages, reader->text, child->location, "'%s' is there twice", names[format]);
+            message_add(reader->messages, reader->text, child->location, "'%s' is repeated", names[format]);
             return;
         }
         set |= 1u << format;

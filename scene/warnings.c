@@ -42,7 +42,7 @@ static void warn_of_pin(const Scene *scene, const SceneAssets *assets, const Sce
         if (!(gap > reach)) continue;
         message_warn(
             log, scene->text, pin->location,
-            "the pin's point [%.6g, %.6g, %.6g] m misses the sheet: it holds the nearest vertex alone, %.3g m away",
+            "the pin's point [%.6g, %.6g, %.6g] m misses the sheet: it holds only the nearest vertex, %.3g m away",
             (double)p[0], (double)p[1], (double)p[2], gap);
         return; // one of them is enough
     }
@@ -58,7 +58,7 @@ static void warn_of_probe(const Scene *scene, const SceneAssets *assets, uint32_
                      (double)probe->uv[1], gap);
     else if (probe->kind == SCENE_PROBE_POINT && gap > 0.1 * diagonal(&assets->meshes[probe->sheet_index]))
         message_warn(log, scene->text, probe->location,
-                     "the probe's point [%.6g, %.6g, %.6g] m misses the sheet: it takes the nearest place, %.3g m away",
+                     "the probe's point [%.6g, %.6g, %.6g] m misses the sheet: it takes the nearest point, %.3g m away",
                      (double)probe->point[0], (double)probe->point[1], (double)probe->point[2], gap);
 }
 
@@ -94,7 +94,8 @@ static void warn_of_source(const Scene *scene, const SceneSource *source, const 
 void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
     for (const SceneRenamed *entry = scene->renamed; entry && log->write; entry = entry->next)
         message_warn(log, entry->text, entry->location,
-                     "'%s' is called '%s' now; the old name is read in this release only", entry->before, entry->now);
+                     "'%s' is now called '%s'; the old name is accepted in this release only", entry->before,
+                     entry->now);
     for (uint32_t i = 0; i < scene->source_count && log->write; i++) warn_of_source(scene, &scene->sources[i], log);
     for (uint32_t i = 0; i < scene->pin_count && log->write; i++) warn_of_pin(scene, assets, &scene->pins[i], log);
     for (uint32_t i = 0; i < scene->collider_count && log->write; i++)

@@ -27,10 +27,10 @@ static const ArgOption fit_options[OPT_COUNT] = {
 static const ArgCommand fit_command = {
     "fit",
     "PLAN",
-    "Searches the parameters of a scene with which it matches what was measured.",
+    "Finds the parameters with which a scene best matches measurements.",
     fit_options,
     OPT_COUNT,
-    "docs/sweep.md says what a plan is. The same command continues a fit that was stopped.\n"
+    "docs/sweep.md describes plans. The same command continues a fit that was stopped.\n"
     "Exit codes: 0 good, 1 a row failed or the fit was interrupted, 2 bad input."};
 
 /// Changes of the places in [0, 1] below this end the search.

@@ -38,7 +38,7 @@ static ExitCode read_curve(FitCurve *curve, const char *path, Console *console) 
     csv_free(&csv);
     if (time < 0 || temperature < 0) return refuse_curve(console, path, "needs columns 'time' and 'temperature'");
     if (count != curve->count || count < 2)
-        return refuse_curve(console, path, "needs two lines at least, each with a time and a temperature");
+        return refuse_curve(console, path, "needs at least two lines, each with a time and a temperature");
     if (!ascending) return refuse_curve(console, path, "times must ascend");
     if (!(high > low)) return refuse_curve(console, path, "all temperatures are the same");
     return EXIT_GOOD;

@@ -87,7 +87,8 @@ static bool make_list(Plan *plan, uint32_t *parameter, char *message, size_t siz
     for (uint32_t p = 1; p < plan->parameter_count; p++)
         if (choices(&plan->parameters[p]) != rows) {
             *parameter = p;
-            snprintf(message, size, "a list has as many values of each parameter: %u here, %u of the first",
+            snprintf(message, size,
+                     "a list needs the same number of values for each parameter: %u here, %u for the first",
                      choices(&plan->parameters[p]), rows);
             return false;
         }

@@ -61,7 +61,7 @@ ExitCode sweep_check_row(Sweep *sweep, uint32_t row) {
     row_sets(sweep, row, &sets, owned);
     ExitCode code = job_read(&job, sweep->console, sweep->plan.scene, &sets, 1);
     if (code) {
-        console_error(sweep->console, "row %u of %s is no good scene", row + 1, sweep->options->plan);
+        console_error(sweep->console, "row %u of %s is not a valid scene", row + 1, sweep->options->plan);
     } else {
         sweep->frames[row] = (uint32_t)job.scene->frames;
         if (!sweep->name) sweep->name = text_format("%s", job.scene->name);

@@ -49,7 +49,7 @@ static const ArgCommand sweep_command = {
     "Runs a scene many times with other parameters, and writes a report.",
     sweep_options,
     OPT_COUNT,
-    "docs/sweep.md says what a plan is. The same command continues a sweep that was stopped, however it was.\n"
+    "docs/sweep.md describes plans. The same command continues a sweep that was stopped.\n"
     "Exit codes: 0 all rows are complete, 1 a row failed or the sweep was interrupted, 2 bad input."};
 
 /// One of the options that take a number. False where it is none of them.
@@ -141,7 +141,8 @@ static ExitCode hold_folder(Sweep *sweep) {
     char *path = text_format("%s/sweep.lock", sweep->folder);
     SingeResult result = lock_take(&sweep->lock, path, "rows", false, &kept, &error);
     if (result) console_result(sweep->console, &error);
-    else if (!kept) console_warn(sweep->console, "%s: no locks there: nothing else may write it", sweep->folder);
+    else if (!kept)
+        console_warn(sweep->console, "%s: the file system has no locks; nothing else may write there", sweep->folder);
     free(path);
     return result ? EXIT_FAILED : EXIT_GOOD;
 }

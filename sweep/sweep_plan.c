@@ -120,10 +120,10 @@ static void read_range(PlanReader *reader, const Node *map, PlanParameter *param
         message_add(&reader->messages, &reader->text, map->location, "a range needs both 'from' and 'to'");
     else if (strcmp(units[0], units[1]) != 0)
         message_add(&reader->messages, &reader->text, map->location,
-                    "a range has one unit: 'from' has %s and 'to' has %s", *units[0] ? shown(units[0]).text : "none",
+                    "a range needs one unit: 'from' has %s and 'to' has %s", *units[0] ? shown(units[0]).text : "none",
                     *units[1] ? shown(units[1]).text : "none");
     else if (parameter->logarithmic && !(parameter->from > 0 && parameter->to > 0))
-        message_add(&reader->messages, &reader->text, map->location, "a logarithmic range is above 0");
+        message_add(&reader->messages, &reader->text, map->location, "a logarithmic range must be above 0");
 }
 
 static void read_parameter(PlanReader *reader, const Node *node) {
@@ -246,7 +246,7 @@ static void check_plan(PlanReader *reader, const Node *root, bool fit) {
     if (fit && !plan->target.given && !reader->messages.count)
         message_add(&reader->messages, &reader->text, root->location, "a fit needs 'target'");
     if (!fit && plan->target.given)
-        message_add(&reader->messages, &reader->text, root->location, "a plan with 'target' is one of singe fit");
+        message_add(&reader->messages, &reader->text, root->location, "a plan with 'target' belongs to singe fit");
     if (reader->messages.count || arena_failed(plan->arena) || sheets) return;
     uint32_t parameter = 0;
     char message[200];

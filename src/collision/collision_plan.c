@@ -7,7 +7,7 @@
 
 SingeResult collision_check(const SingeContactDef *def, SingeError *error) {
     const char *what = NULL;
-    if (!(def->thickness > 0 && def->thickness <= 1)) what = "thickness must be above 0, at most 1 m";
+    if (!(def->thickness > 0 && def->thickness <= 1)) what = "thickness must be above 0 and at most 1 m";
     if (!(def->friction >= 0 && def->friction <= 1e3f)) what = "friction must be between 0 and 1000";
     return what ? error_set(error, SINGE_ERROR_ARGUMENT, "contact", -1, "%s", what) : SINGE_OK;
 }

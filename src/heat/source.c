@@ -20,7 +20,7 @@ static const float SOURCE_FLUX_MAX = 1e15f;
 
 static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *error) {
     const SingeTexture *texture = &def->texture;
-    if (texture->width < 1 || texture->height < 1 || !texture->values) return source_bad(error, "the picture is empty");
+    if (texture->width < 1 || texture->height < 1 || !texture->values) return source_bad(error, "the texture is empty");
     if (!isfinite(def->flux)) return source_bad(error, "flux must be finite");
     float whitest = 0, strongest = def->strength_count ? 0 : 1;
     size_t count = (size_t)texture->width * (size_t)texture->height;
@@ -28,7 +28,7 @@ static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *e
         whitest = fmaxf(whitest, fabsf(texture->values[k]));
         if (!isfinite(texture->values[k]))
             return error_set(error, SINGE_ERROR_ARGUMENT, "source", (int64_t)k,
-                             "value %lld of the picture is not finite", (long long)k);
+                             "value %lld of the texture is not finite", (long long)k);
     }
     if (def->strength_count && !def->strength) return source_bad(error, "strength is missing");
     for (uint32_t k = 0; k < def->strength_count; k++) {
@@ -39,7 +39,7 @@ static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *e
         strongest = fmaxf(strongest, fabsf(key->value));
     }
     if (!((double)fabsf(def->flux) * (double)whitest * (double)strongest <= (double)SOURCE_FLUX_MAX))
-        return source_bad(error, "flux times strength and picture must be at most 1e15 W/m2");
+        return source_bad(error, "flux times strength and texture must be at most 1e15 W/m2");
     return SINGE_OK;
 }
 
@@ -79,7 +79,7 @@ static SingeResult source_set_texture(Memory *memory, const Shell *shell, const 
     bool mapped = false;
     for (uint32_t i = 0; i < shell->particle_count && !mapped; i++)
         mapped = shell->uv[i][0] != 0 || shell->uv[i][1] != 0;
-    if (!mapped) return source_bad(error, "a picture needs a sheet with uv");
+    if (!mapped) return source_bad(error, "a texture needs a sheet with uv");
     if (!NEW(memory, source->texture, shell->particle_count)) return source_no_memory(error);
     for (uint32_t i = 0; i < shell->particle_count; i++)
         source->texture[i] = shell_sample_texture(texture, shell->uv[i][0], shell->uv[i][1]);
@@ -143,7 +143,7 @@ SingeResult source_check_read(const Shell *shell, const Source *source, SingeErr
     def.texture = (SingeTexture){(int)shell->particle_count, 1, source->texture};
     TRY(source_check(&def, error));
     if (source->texture && def.kind != SINGE_SOURCE_TEXTURE)
-        return source_bad(error, "a picture needs a source of its kind");
+        return source_bad(error, "a texture needs a source of kind texture");
     return path_check(def.path_count, def.path, "source", error);
 }
 

@@ -46,7 +46,7 @@ static SingeResult match(const uint32_t *order, Shell *shell, HalfEdges *mesh, S
         if (size == 2) {
             uint32_t b = order[k + 1];
             if (half_from(shell, a) == half_from(shell, b))
-                return edge_fail(shell, b, "runs the same way in two cells (one is turned over):", error);
+                return edge_fail(shell, b, "runs in the same direction in two cells (one is flipped):", error);
             mesh->twin[a] = b, mesh->twin[b] = a;
             CellSprings *first = &shell->cell_springs[a / 4], *second = &shell->cell_springs[b / 4];
             second->blue[b & 3] = mesh->edge_count;

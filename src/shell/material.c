@@ -64,7 +64,7 @@ SingeResult material_check_scalars(const SingeMaterialDef *material, const char 
                          sheet);
     int heat_operator = (int)material->heat_operator;
     if (heat_operator != SINGE_HEAT_SURFACE && heat_operator != SINGE_HEAT_UMBRELLA)
-        return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': there is no heat operator %d", sheet,
+        return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': heat operator %d is unknown", sheet,
                          heat_operator);
     return SINGE_OK;
 }

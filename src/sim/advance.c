@@ -28,7 +28,7 @@ SingeResult singe_sim_advance(SingeSim *sim, double seconds, uint32_t steps_max,
     uint32_t done = 0;
     if (steps) *steps = 0;
     if (!sim->committed)
-        return sim_fail(sim, SINGE_ERROR_STATE, "advance", -1, "singe_sim_commit comes before the first step");
+        return sim_fail(sim, SINGE_ERROR_STATE, "advance", -1, "singe_sim_commit must come before the first step");
     if (!(seconds >= 0 && seconds <= 1e6))
         return sim_fail(sim, SINGE_ERROR_ARGUMENT, "advance", -1, "seconds must be between 0 and 1e6");
     if (!advance_reserve(sim)) return sim_fail(sim, SINGE_ERROR_MEMORY, "advance", -1, "out of memory for events");

@@ -46,7 +46,7 @@ SingeResult singe_sim_move_source(SingeSim *sim, SingeSourceId id, uint32_t coun
     Source *source = OBJECT_FIND(sim->sources, id);
     if (!source) return object_stale(sim, "source", id.index);
     if (source->def.kind != SINGE_SOURCE_BALL && source->def.kind != SINGE_SOURCE_SPOT)
-        return sim_fail(sim, SINGE_ERROR_ARGUMENT, "source", id.index, "only balls and spots have a place");
+        return sim_fail(sim, SINGE_ERROR_ARGUMENT, "source", id.index, "only balls and spots have a position");
     if (count == 0) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "source", id.index, "the path needs at least one key");
     if (source->def.kind == SINGE_SOURCE_SPOT && count != 1)
         return sim_fail(sim, SINGE_ERROR_ARGUMENT, "source", id.index, "the path of a spot has exactly one key");

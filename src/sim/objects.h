@@ -14,7 +14,7 @@
     } while (0)
 
 static inline SingeResult object_stale(SingeSim *sim, const char *stage, uint32_t index) {
-    return error_set(&sim->error, SINGE_ERROR_HANDLE, stage, index, "the handle is stale or was never given out");
+    return error_set(&sim->error, SINGE_ERROR_HANDLE, stage, index, "the handle is stale or invalid");
 }
 
 /// Finds an object by its handle; NULL when stale.

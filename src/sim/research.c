@@ -55,7 +55,7 @@ static SingeResult network_check_numbers(const SingeNetworkDef *def, SingeError 
     if (!(def->time_step >= 1e-9 && def->time_step <= 10))
         return network_refuse(error, -1, "time_step must be between 1e-9 and 10 s");
     if (!(def->tolerance > 0 && def->tolerance <= 1))
-        return network_refuse(error, -1, "tolerance must be above 0, to 1");
+        return network_refuse(error, -1, "tolerance must be above 0 and at most 1");
     if (!(def->iterations >= 1 && def->iterations <= 1000000))
         return network_refuse(error, -1, "iterations must be between 1 and 1000000");
     return SINGE_OK;

@@ -30,7 +30,7 @@ SingeResult singe_sim_set_gravity(SingeSim *sim, const float gravity[3]) {
             return setter_bad(sim, "gravity", "gravity must be between -10000 and 10000 m/s2");
     if (sim->gas && gravity_axis(gravity) != gravity_axis(sim->def.gravity))
         return sim_fail(sim, SINGE_ERROR_STATE, "gravity", -1,
-                        "the gas has its room above the sheets: gravity must keep the axis along which it is largest");
+                        "the gas grid lies above the sheets: gravity must stay largest along the same axis");
     memcpy(sim->def.gravity, gravity, sizeof sim->def.gravity);
     if (sim->dynamics) dynamics_plan_set_gravity(sim->dynamics, gravity);
     if (sim->gas) gas_plan_set_gravity(sim->gas, gravity);
@@ -49,7 +49,7 @@ static SingeResult velocity_check(SingeSim *sim, SingeSheetId id, uint32_t first
                                   const float *velocity) {
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "velocity", -1,
-                        "singe_sim_commit comes first; a sheet's Def has the velocity at the start");
+                        "singe_sim_commit must come first; a sheet's Def has the velocity at the start");
     if (id.generation != 1 || id.index >= sim->sheet_count) return object_stale(sim, "velocity", id.index);
     const Sheet *sheet = &sim->shell.sheets[id.index];
     if (count > sheet->vertex_count || first > sheet->vertex_count - count)

@@ -16,7 +16,7 @@ const SingeError *singe_sim_error(const SingeSim *sim) { return &sim->error; }
 static const char *sim_check_solver(const SingeSolverDef *solver) {
     bool seen[SINGE_COLOUR_COUNT] = {false};
     if ((int)solver->method < SINGE_SOLVER_STRAND || solver->method > SINGE_SOLVER_MASS_SPRING)
-        return "solver.method is none of the methods";
+        return "solver.method is not a known method";
     if (solver->projections < 1 || solver->projections > 1000) return "solver.projections must be between 1 and 1000";
     if (!float_within(solver->tolerance, 1e-12f, 1)) return "solver.tolerance must be between 1e-12 and 1";
     if (!float_within(solver->stiffness, 1e-6f, 1e9f)) return "solver.stiffness must be between 1e-6 and 1e9 N/m";
@@ -41,7 +41,7 @@ SingeResult sim_check_def(const SingeSimDef *def, SingeError *error) {
     const char *what = sim_check_solver(&def->solver);
     if (!(def->thread_count >= 1 && def->thread_count <= 64)) what = "thread_count must be between 1 and 64";
     if ((int)def->instructions < SINGE_INSTRUCTIONS_BEST || def->instructions > SINGE_INSTRUCTIONS_ARM_NEON)
-        what = "instructions is none of the choices";
+        what = "instructions is not a known set";
     if (!float_within(def->time_step, 1e-9f, 10)) what = "time_step must be between 1e-9 and 10 s";
     if (!float_within(def->pace, 1e-6f, 1e6f)) what = "pace must be between 1e-6 and 1e6";
     for (int i = 0; i < 3; i++)
@@ -102,7 +102,7 @@ SingeResult singe_sim_create(const SingeSimDef *given, SingeSim **out, SingeErro
                          "struct_size is not set; start from singe_default_sim()");
     TRY(sim_check_def(&def, error));
     if (!dynamics_runs_here(def.instructions))
-        return error_set(error, SINGE_ERROR_LIMIT, "simulation", -1, "this processor lacks the instructions asked for");
+        return error_set(error, SINGE_ERROR_LIMIT, "simulation", -1, "this processor lacks the requested instructions");
     Memory memory = memory_make(def.allocator);
     SingeSim *sim = memory_new(&memory, 1, sizeof *sim);
     if (!sim) return error_set(error, SINGE_ERROR_MEMORY, "simulation", -1, "out of memory");
@@ -176,7 +176,7 @@ void *sim_slot(SingeSim *sim, void *items_pointer, uint32_t *count, uint32_t *ca
 SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSheetId *id) {
     *id = (SingeSheetId){0, 0};
     if (sim->committed)
-        return sim_fail(sim, SINGE_ERROR_STATE, "sheet", -1, "sheets are added before singe_sim_commit");
+        return sim_fail(sim, SINGE_ERROR_STATE, "sheet", -1, "sheets must be added before singe_sim_commit");
     if (sim->sheet_count == UINT16_MAX) return sim_fail(sim, SINGE_ERROR_LIMIT, "sheet", -1, "more than 65535 sheets");
     if (sim->sheet_count == sim->sheet_capacity) {
         uint32_t grown = sim->sheet_capacity ? 2 * sim->sheet_capacity : 1;

@@ -101,7 +101,7 @@ SingeResult singe_sim_draw(SingeSim *sim, SingeSurface *surface, size_t struct_s
     if (struct_size < sizeof *surface)
         return sim_fail(sim, SINGE_ERROR_ARGUMENT, "surface", -1, "struct_size is smaller than a SingeSurface");
     if (!sim->committed)
-        return sim_fail(sim, SINGE_ERROR_STATE, "surface", -1, "singe_sim_commit comes before the surface");
+        return sim_fail(sim, SINGE_ERROR_STATE, "surface", -1, "singe_sim_commit must come before the surface");
     SurfaceDetail detail = {sim->def.surface_detail, sim->def.surface_raggedness, (uint32_t)sim->def.seed, NULL,
                             bulge_max(sim)};
     if (!(detail.size > 0)) return ablate_surface(sim->ablate, &sim->shell, &sim->state, surface, &sim->error);

@@ -112,13 +112,14 @@ static SingeResult snapshot_body(Stream *stream, SingeSim *sim) {
     stream->failed |= ok && stream->mode == STREAM_READ && stream->offset != stream->size;
     if (stream->failed)
         return sim_fail(sim, SINGE_ERROR_FORMAT, "load", (int64_t)stream->offset,
-                        "the snapshot ends too soon or does not fit together");
+                        "the snapshot is cut short or inconsistent");
     return ok ? SINGE_OK : sim_fail(sim, SINGE_ERROR_MEMORY, "load", -1, "out of memory");
 }
 
 SingeResult singe_sim_save(SingeSim *sim, uint8_t **bytes, size_t *size) {
     *bytes = NULL, *size = 0;
-    if (!sim->committed) return sim_fail(sim, SINGE_ERROR_STATE, "save", -1, "singe_sim_commit comes before a save");
+    if (!sim->committed)
+        return sim_fail(sim, SINGE_ERROR_STATE, "save", -1, "singe_sim_commit must come before a save");
     Stream measure = {.mode = STREAM_MEASURE};
     TRY(snapshot_body(&measure, sim));
     size_t total = sizeof(SnapshotHeader) + measure.offset;
@@ -150,7 +151,7 @@ static SingeResult snapshot_check(const uint8_t *bytes, size_t size, SingeError 
     if (header.version != expected.version || header.order != expected.order ||
         memcmp(header.sizes, expected.sizes, sizeof header.sizes + sizeof header.reserved))
         return error_set(error, SINGE_ERROR_VERSION, "load", 0,
-                         "the snapshot is of another version or another kind of machine");
+                         "the snapshot is from another version or another kind of machine");
     if (header.size != expected.size)
         return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "the snapshot is cut short");
     if (header.checksum != expected.checksum)

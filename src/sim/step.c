@@ -140,7 +140,7 @@ static void step_validate(const SingeSim *sim) {
 
 SingeResult sim_step(SingeSim *sim) {
     if (!sim->committed)
-        return sim_fail(sim, SINGE_ERROR_STATE, "step", -1, "singe_sim_commit comes before the first step");
+        return sim_fail(sim, SINGE_ERROR_STATE, "step", -1, "singe_sim_commit must come before the first step");
 
     // colliders where the step begins
     for (uint32_t i = 0; i < sim->colliders.count; i++)

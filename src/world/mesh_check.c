@@ -103,7 +103,7 @@ static SingeResult mesh_gather(const uint32_t *triangles, const uint32_t *first,
     }
     memset(solid->triangles[count], 0, (solid->triangle_count - count) * sizeof *solid->triangles);
     solid->triangle_count = count;
-    return count ? SINGE_OK : mesh_bad(error, -1, "all of the mesh's triangles are without extent");
+    return count ? SINGE_OK : mesh_bad(error, -1, "all triangles of the mesh are degenerate");
 }
 
 /// Turns a mesh that is inside out, by its volume: the sum of those of the tetrahedra over its triangles.
@@ -148,7 +148,7 @@ static SingeResult mesh_link(const PairTable *edges, const uint32_t *source, Mes
             uint32_t other = *table_find(edges, key);
             if (other == UINT32_MAX)
                 return error_set(error, SINGE_ERROR_MESH, "collider", source[t],
-                                 "the mesh is open: nothing joins triangle %u along vertices %u and %u", source[t],
+                                 "the mesh is open: triangle %u has no neighbour along vertices %u and %u", source[t],
                                  key[1], key[0]);
             solid->neighbours[t][i] = other;
         }

@@ -162,7 +162,7 @@ HOSTILE = {
             nodes=[{"mesh": 0}] * 3000,
             meshes=[{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}] * 100}],
         ),
-        "over and over",
+        "repeat meshes",
     ),
     "deeper.gltf": (gltf(extras="x").replace(b'"x"', b"[" * 500000 + b"]" * 500000), ""),
     "self.dae": (dae(f'<node id="n">{USE}<instance_node url="#n"/></node>'), ""),
@@ -219,6 +219,6 @@ HOSTILE = {
     "index.ply": (ply(index=999999), "index.ply:14: vertex index 999999 is out of range"),
     "index.obj": (obj(999999), "index.obj:5:"),
     # what is no file of its kind
-    "blend.dae": (b"BLENDER-v279" + b"\0" * 100, "does not begin"),
+    "blend.dae": (b"BLENDER-v279" + b"\0" * 100, "do not match the extension"),
     "text.glb": (b"hello", "not glTF"),
 }

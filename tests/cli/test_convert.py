@@ -73,7 +73,7 @@ class Convert(Case):
         self.assertIn("run.json", self.singe("convert", self.path("none"), "--to", "vtp", expect=2)[1])
         error = self.run_scene("x", "--set", "output.formats=[vtk]", expect=2)[1]
         self.assertIn("did you mean 'vtp'?", error)
-        self.assertIn("is there twice", self.run_scene("x", "--set", "output.formats=[vtp, vtp]", expect=2)[1])
+        self.assertIn("is repeated", self.run_scene("x", "--set", "output.formats=[vtp, vtp]", expect=2)[1])
         with open(self.path("o", "ply", "tiny.0002.ply"), "r+b") as file:
             file.truncate(2000)
         self.assertIn("tiny.0002.ply", self.singe("convert", self.path("o"), "--to", "vtp", expect=2)[1])

@@ -172,7 +172,7 @@ class Fit(Case):
         self.assertIn("without steps", self.fit(target + f"parameters:\n  {RATE}: [1e-3, 2e-3]\n", expect=2)[1])
         with open(self.path("plan.yaml"), "w") as file:
             file.write(target + RANGE)
-        self.assertIn("one of singe fit", self.singe("sweep", self.path("plan.yaml"), expect=2)[1])
+        self.assertIn("belongs to singe fit", self.singe("sweep", self.path("plan.yaml"), expect=2)[1])
 
     def test_what_a_row_lacks(self):
         """A probe that the scene has not, masks of no frame: the fit fails and says so."""

@@ -144,7 +144,7 @@ class Motion(Case):
         corners, faces = box((0, 0.05, 0), 1)
         write_obj(self.path("body.0002.obj"), corners, faces)
         _, err = self.run_scene("half", "--resume", expect=2)
-        self.assertIn("of another scene", err)
+        self.assertIn("belongs to another scene", err)
 
     def wrong(self, message, **changes):
         scene = self.write("wrong.yaml", **changes)

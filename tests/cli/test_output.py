@@ -57,7 +57,7 @@ class Output(Case):
                 _, err = self.run_scene("strained", "--set", "frames=2", "--set",
                                         "colliders=[{kind: plane, rotation: [0, 40, 0], offset: %s}]" % depth)
                 self.assertEqual("begin inside it, up to 0." in err, told)
-                self.assertEqual("one edge in a hundred is off its length by" in err, told)
+                self.assertEqual("the strain of one edge in a hundred is" in err, told)
 
     def test_record(self):
         self.run_scene("o", "--set", "seed=7", "--threads", "2")

@@ -103,7 +103,7 @@ class Sweep(Case):
             ("parameters:\n  pace: {from: nan, to: 1, steps: 3}\n", 3, "expected a number"),
             ("parameters:\n  pace: {from: 0, to: 1, steps: 1}\n", 3, "whole number from 2 to 10000"),
             ("parameters:\n  name: [a, b]\n", 3, "the scene's name"),
-            ("method: list\nparameters:\n  pace: [1, 2]\n  fps: [24]\n", 5, "1 here, 2 of the first"),
+            ("method: list\nparameters:\n  pace: [1, 2]\n  fps: [24]\n", 5, "1 here, 2 for the first"),
             ("method: random\nparameters:\n  pace: [1, 2]\n", 1, "needs 'samples'"),
             ("parameters:\n  pace: {from: 1, to: 2, steps: 200}\n  fps: {from: 1, to: 2, steps: 200}\n", 4,
              "more than 10000 rows"),

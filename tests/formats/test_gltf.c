@@ -136,12 +136,12 @@ static void bad_files_are_refused(void **state) {
         {"{\"a\":[1,2}", SINGE_ERROR_FORMAT, "byte 9 of its JSON: a comma or an end is missing"},
         {"{\"a\" 1}", SINGE_ERROR_FORMAT, "a colon is missing"},
         {"{\"a\":\"b}", SINGE_ERROR_FORMAT, "a string has no end"},
-        {"{} {}", SINGE_ERROR_FORMAT, "more behind the end"},
+        {"{} {}", SINGE_ERROR_FORMAT, "data after the end"},
         {"{}", SINGE_ERROR_FORMAT, "no scene"},
         {SCENE MESH(PRIMITIVE), SINGE_ERROR_FORMAT, "only 0 nodes"},
         {SCENE NODE ",\"meshes\":[]}", SINGE_ERROR_FORMAT, "\"mesh\" is not a number below 0"},
         {SCENE ",\"nodes\":[{\"children\":[1,1]},{\"mesh\":0}]" MESH(PRIMITIVE), SINGE_ERROR_FORMAT,
-         "nodes[1]: it is in"},
+         "nodes[1]: it contains itself"},
         {SCENE ",\"nodes\":[{\"mesh\":0,\"scale\":[1,1]}]" MESH(PRIMITIVE), SINGE_ERROR_FORMAT,
          "nodes[0]: its transform"},
         {SCENE ",\"nodes\":[{\"mesh\":0,\"scale\":[1,1,1e300]}]" MESH(PRIMITIVE), SINGE_ERROR_FORMAT, "nodes[0]"},
@@ -154,7 +154,7 @@ static void bad_files_are_refused(void **state) {
         {SCENE NODE MESH("{\"attributes\":{\"POSITION\":0},\"mode\":0}"), SINGE_ERROR_MESH, "no faces"},
         {SCENE NODE MESH("{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":0}}"), SINGE_ERROR_FORMAT, "not VEC2"},
         {SCENE ",\"nodes\":[{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{}}}]" MESH(PRIMITIVE),
-         SINGE_ERROR_FORMAT, "nodes[0]: EXT_mesh_gpu_instancing is not read"},
+         SINGE_ERROR_FORMAT, "nodes[0]: EXT_mesh_gpu_instancing is not supported"},
     };
     Data d = data();
     Polygons mesh;
@@ -193,15 +193,20 @@ static void bad_buffers_are_refused(void **state) {
         {TEXT(ZEROS, "", POSITIONS), NULL},
         {TEXT("data:,abc", "", POSITIONS), "buffers[0]: its data are not base64"},
         {TEXT("data:;base64,A*AA", "", POSITIONS), "buffers[0]: its data are not base64"},
-        {TEXT("none%2Ebin", "", POSITIONS), "buffers[0]: what it refers to is no file in the folder or below"},
-        {TEXT("none%2ebin", "", POSITIONS), "buffers[0]: what it refers to is no file in the folder or below"},
-        {TEXT("%2e%2e/none", "", POSITIONS), "buffers[0]: what it refers to is no file in the folder or below"},
-        {TEXT("a%00b", "", POSITIONS), "buffers[0]: what it refers to is no file in the folder or below"},
-        {TEXT("a\\u0041", "", POSITIONS), "buffers[0]: what it refers to is no file in the folder or below"},
-        {TEXT(ZEROS, ",\"extensions\":{\"EXT_meshopt_compression\":{}}", POSITIONS), "compressed data are not read"},
+        {TEXT("none%2Ebin", "", POSITIONS),
+         "buffers[0]: it refers to something that is not a file in its folder or below"},
+        {TEXT("none%2ebin", "", POSITIONS),
+         "buffers[0]: it refers to something that is not a file in its folder or below"},
+        {TEXT("%2e%2e/none", "", POSITIONS),
+         "buffers[0]: it refers to something that is not a file in its folder or below"},
+        {TEXT("a%00b", "", POSITIONS), "buffers[0]: it refers to something that is not a file in its folder or below"},
+        {TEXT("a\\u0041", "", POSITIONS),
+         "buffers[0]: it refers to something that is not a file in its folder or below"},
+        {TEXT(ZEROS, ",\"extensions\":{\"EXT_meshopt_compression\":{}}", POSITIONS),
+         "compressed data are not supported"},
         {TEXT(ZEROS, ",\"byteStride\":4", POSITIONS), "accessors[0]: its elements overlap"},
         {TEXT(ZEROS, ",\"byteStride\":999", POSITIONS), "bufferViews[0]"},
-        {TEXT(ZEROS, "", POSITIONS ",\"byteOffset\":-1"), "accessors[0]: its byteOffset is no count"},
+        {TEXT(ZEROS, "", POSITIONS ",\"byteOffset\":-1"), "accessors[0]: its byteOffset is not a count"},
         {TEXT(ZEROS, "", ",\"componentType\":5126,\"count\":3,\"type\":\"VEC9\""), "accessors[0]: it has no type"},
         {TEXT(ZEROS, "", ",\"componentType\":5124,\"count\":3,\"type\":\"VEC3\""), "accessors[0]: it has no type"},
         {TEXT(ZEROS, "", ",\"componentType\":5126,\"count\":-3,\"type\":\"VEC3\""), "accessors[0]: it has no type"},
@@ -272,7 +277,7 @@ static void copies_are_limited(void **state) {
     SingeError error;
     assert_int_equal(polygons_read("a.gltf", (const uint8_t *)text, length, test_allocator(&counts), &mesh, &error),
                      SINGE_ERROR_LIMIT);
-    assert_message(&error, "over and over");
+    assert_message(&error, "repeat meshes");
     assert_true(counts.peak < 20 * length);
     test_allocator_check(&counts);
     free(text);

@@ -82,8 +82,8 @@ static void off_is_refused(void **state) {
     } cases[] = {
         {"", SINGE_ERROR_FORMAT, 1, "empty"},
         {"# only\n", SINGE_ERROR_FORMAT, 2, "nothing but comments"},
-        {"ply\n", SINGE_ERROR_FORMAT, 1, "begins otherwise"},
-        {"4OFF\n4 2 0\n", SINGE_ERROR_FORMAT, 1, "begins otherwise"},
+        {"ply\n", SINGE_ERROR_FORMAT, 1, "its header is unknown"},
+        {"4OFF\n4 2 0\n", SINGE_ERROR_FORMAT, 1, "its header is unknown"},
         {"OFF BINARY\n", SINGE_ERROR_FORMAT, 1, "binary"},
         {"OFF", SINGE_ERROR_FORMAT, 1, "ends too soon"},
         {"OFF\n4\n" POINTS, SINGE_ERROR_FORMAT, 2, "too few values"},
@@ -104,7 +104,7 @@ static void off_is_refused(void **state) {
         {"OFF\n4 1 0\n" POINTS "2 0 1       \n", SINGE_ERROR_MESH, 7, "face has 2 corners; it needs three"},
         {"OFF\n4 1 0\n" POINTS "4000000000 0 1 2\n", SINGE_ERROR_FORMAT, 7, "too few values"},
         {"OFF\n4 1 0\n0 0 0      \n1 0 0      \n1 1 0\n3 0 1 2", SINGE_ERROR_FORMAT, 6, "ends too soon"},
-        {"OFF\n4 1 0\n" POINTS "4 0 1 2 3\n3 0 1 2\n", SINGE_ERROR_FORMAT, 8, "more than the 4 vertices and 1 faces"},
+        {"OFF\n4 1 0\n" POINTS "4 0 1 2 3\n3 0 1 2\n", SINGE_ERROR_FORMAT, 8, "after the 4 vertices and 1 faces"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         expect_error("a.off", cases[i].text, strlen(cases[i].text), cases[i].code, cases[i].line, cases[i].part);
@@ -165,10 +165,10 @@ static void stl_bytes_are_refused(void **state) {
     expect_error("a.stl", bytes, 0, SINGE_ERROR_FORMAT, 1, "empty");
     expect_error("a.stl", bytes, 83, SINGE_ERROR_FORMAT, 0, "83 bytes are too few");
     expect_error("a.stl", bytes, size - 1, SINGE_ERROR_FORMAT, 80,
-                 "byte 80: the file has not the length that its number of triangles asks for");
-    expect_error("a.stl", bytes, size + 1, SINGE_ERROR_FORMAT, 80, "the file has not the length");
+                 "byte 80: the file's length does not match its number of triangles");
+    expect_error("a.stl", bytes, size + 1, SINGE_ERROR_FORMAT, 80, "the file's length does not match");
     bytes[83] = (char)0xff;
-    expect_error("a.stl", bytes, size, SINGE_ERROR_FORMAT, 80, "the file has not the length");
+    expect_error("a.stl", bytes, size, SINGE_ERROR_FORMAT, 80, "the file's length does not match");
     binary((uint8_t *)bytes, "a", 0);
     expect_error("a.stl", bytes, 84, SINGE_ERROR_FORMAT, 80, "no faces");
     binary((uint8_t *)bytes, "a", 2);

@@ -171,7 +171,7 @@ static void refuses_bad_headers(void **state) {
     expect_error(HEADER "element vertex 4 5\n", SINGE_ERROR_FORMAT, 3, "too many words");
     expect_error(HEADER "element vertex 4\nelement vertex 4\n", SINGE_ERROR_FORMAT, 4, "twice");
     expect_error(HEADER "property float x\n", SINGE_ERROR_FORMAT, 3, "before any element");
-    expect_error(HEADER "element vertex 4\nproperty real x\n", SINGE_ERROR_FORMAT, 4, "no PLY type where one is due");
+    expect_error(HEADER "element vertex 4\nproperty real x\n", SINGE_ERROR_FORMAT, 4, "a PLY type is missing");
     expect_error(HEADER "element vertex 4\nproperty float x\nproperty int x\n", SINGE_ERROR_FORMAT, 5, "twice");
     expect_error(HEADER "element vertex 4\nproperty float\n", SINGE_ERROR_FORMAT, 4, "name is missing");
     expect_error(HEADER "element face 4\nproperty list float int vertex_indices\n", SINGE_ERROR_FORMAT, 4,

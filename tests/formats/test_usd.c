@@ -159,10 +159,10 @@ static void sheets_are_meshes_of_their_own(void **state) {
     bytes_free(&bytes);
     s.triangle_count = 1; // of vertices 0, 1 and 13
     assert_int_equal(write_sheet(&s, 2, NULL, &error), SINGE_ERROR_FORMAT);
-    assert_non_null(strstr(error.message, "triangle 0 is of two sheets"));
+    assert_non_null(strstr(error.message, "triangle 0 belongs to two sheets"));
     s.triangle_count = 0, s.sheet[5] = 2;
     assert_int_equal(write_sheet(&s, 2, NULL, &error), SINGE_ERROR_FORMAT);
-    assert_non_null(strstr(error.message, "vertex 5 is of sheet 2"));
+    assert_non_null(strstr(error.message, "vertex 5 belongs to sheet 2"));
     singe_surface_free(&s);
 }
 

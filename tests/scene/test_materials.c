@@ -271,7 +271,7 @@ static void test_mistakes(void **state) {
 
     expect_mistake(in, "    material: newsprnt\n", "scene.yaml:3:15", "did you mean 'newsprint'?", 1);
     expect_mistake(in, "    material: silk\n", "scene.yaml:3:15",
-                   "built in are cotton, newsprint, office-paper, one-reaction, tissue", 1);
+                   "the built-in ones are cotton, newsprint, office-paper, one-reaction, tissue", 1);
     expect_mistake(in, "    material: {base: [1]}\n", "scene.yaml:3:22", "base must be a material (cotton", 1);
     expect_mistake(in, "    material: [1]\n", "scene.yaml:3:15", "material must be a map (key: value) or a material (",
                    1);
@@ -285,8 +285,8 @@ static void test_mistakes(void **state) {
                    "a material must be a map (key: value), not this value", 1);
     expect_mistake(in, "    material: empty.yaml\n", "empty.yaml:1:1", "the file is empty", 1);
     expect_mistake(in, "    material: broken.yaml\n", "broken.yaml:2:1", "not valid YAML", 1);
-    expect_mistake(in, "    material: self.yaml\n", "self.yaml:2:7", "begins as itself", 1);
-    expect_mistake(in, "    material: one.yaml\n", "two.yaml:1:7", "one.yaml begins as itself, by way of", 1);
+    expect_mistake(in, "    material: self.yaml\n", "self.yaml:2:7", "is based on itself", 1);
+    expect_mistake(in, "    material: one.yaml\n", "two.yaml:1:7", "one.yaml is based on itself, through", 1);
     expect_mistake(in, "    material: picture.yaml\n", "picture.yaml:1:38", "there is no such file", 1);
     expect_mistake(in, "    material: unknown.yaml\n", "unknown.yaml:1:7", "did you mean 'newsprint'?", 1);
     expect_mistake(in, "    material: range.yaml\n", "range.yaml:1:19", "must not begin above its end", 1);
@@ -305,7 +305,7 @@ static void test_mistakes(void **state) {
     // without a folder files are not looked for, but what is built in is there
     Scene *scene = folder_scene(NULL, SHEET "    material: gone.yaml\n", NULL, 0);
     scene_free(scene);
-    expect_mistake(NULL, "    material: silk\n", "scene.yaml:3:15", "built in are", 1);
+    expect_mistake(NULL, "    material: silk\n", "scene.yaml:3:15", "the built-in ones are", 1);
 }
 
 int main(void) {

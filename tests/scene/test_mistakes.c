@@ -63,7 +63,7 @@ static void test_values(void **state) {
     one("gravity: [0, 0, down]", "bad.yaml:3:17", "not 'down'");
     one("name: a/b", "bad.yaml:3:7", "name must be");
     one("name: .hidden", "bad.yaml:3:7", "name must be");
-    one("solver: {order: [red, green, blue, red]}", "bad.yaml:3:36", "'red' is there twice");
+    one("solver: {order: [red, green, blue, red]}", "bad.yaml:3:36", "'red' is repeated");
     one("solver: {order: [red, green, blue, yelow]}", "bad.yaml:3:36", "did you mean 'yellow'?");
     one("solver: {order: [red]}", "bad.yaml:3:17", "each once");
     one("wind: 3", "bad.yaml:3:7", "wind must be a map");
@@ -199,7 +199,7 @@ static void test_sheets(void **state) {
     one("  - {grid: {size: [1, 1]}}", "bad.yaml:3:12", "needs 'cells'");
     one("    material: {rate_ceiling: {from: inf, to: 9, noise: {}}}", "bad.yaml:3:37", "not 'inf'");
     one("    material: {grammage: 80 mm}", "bad.yaml:3:26", "possible are: kg/m2, g/m2");
-    one("    material: {thickening: 0.5}", "bad.yaml:3:28", "0 (as little as the cells need) or 1 and more");
+    one("    material: {thickening: 0.5}", "bad.yaml:3:28", "0 (as little as the cells need), or at least 1");
     one("    material: {ablate: maybe}", "bad.yaml:3:24", "true or false");
     one("    material: {mass_rate: {from: 1}}", "bad.yaml:3:27", "needs 'from', 'to' and one of");
     one("    material: {mass_rate: {from: 1, to: 2}}", "bad.yaml:3:27", "needs 'from', 'to' and one of");

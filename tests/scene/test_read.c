@@ -367,10 +367,10 @@ static void test_renamed(void **state) {
     scene_warn(new_scene, NULL, &log);
     assert_string_equal(lines, "");
     scene_warn(old_scene, NULL, &log);
-    assert_non_null(strstr(lines, "test.yaml:2:47: 'relief' is called 'displacement' now"));
-    assert_non_null(strstr(lines, "test.yaml:3:50: 'picture' is called 'texture' now"));
-    assert_non_null(strstr(lines, "test.yaml:4:18: 'picture' is called 'texture' now"));
-    assert_non_null(strstr(lines, "test.yaml:4:27: 'picture' is called 'texture' now"));
+    assert_non_null(strstr(lines, "test.yaml:2:47: 'relief' is now called 'displacement'"));
+    assert_non_null(strstr(lines, "test.yaml:3:50: 'picture' is now called 'texture'"));
+    assert_non_null(strstr(lines, "test.yaml:4:18: 'picture' is now called 'texture'"));
+    assert_non_null(strstr(lines, "test.yaml:4:27: 'picture' is now called 'texture'"));
     free(old_dump);
     free(new_dump);
     scene_free(old_scene);

@@ -39,7 +39,7 @@ static void refuse(QuadMesh *mesh, SingeResult code, int64_t element, const char
 static void test_moebius(void **state) {
     (void)state;
     QuadMesh mesh = mesh_moebius(12);
-    refuse(&mesh, SINGE_ERROR_MESH, 11, "turned over");
+    refuse(&mesh, SINGE_ERROR_MESH, 11, "is flipped");
 }
 
 static void test_turned_cell(void **state) {
