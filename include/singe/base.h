@@ -1,13 +1,13 @@
 /// Singe: results, errors, hooks and handles shared by every public header.
 ///
-/// ABI rule: a Def begins with `struct_size`, set by its `singe_default_...()` function, which is inline: it
-/// has the size that the caller's header knows. Fields are only ever appended; a smaller Def from an older
-/// header is accepted and the fields it lacks take their defaults, of a larger one from a newer header the
-/// unknown fields are not read. This holds for a Def inside another, too. What a simulation gives (views,
-/// statistics, timers, counts, ranges, surfaces, gas) grows at its end as well: it is filled by a function that takes
-/// the caller's sizeof and writes no more, and 0 in what the library does not know yet; an inline function beside it
-/// returns the struct by value. All other structs keep their size while SINGE_VERSION_MAJOR does: what Defs are made of
-/// (parameters, textures, keys, hooks). Enumerators keep their values for ever. tests/abi/abi.txt has all of them.
+/// ABI rule: a Def begins with `struct_size`. Its `singe_default_...()` function is inline and sets it to the size that
+/// the caller's header knows. Fields are only ever appended. A smaller Def from an older header is accepted: the fields
+/// that it lacks take their defaults. Of a larger Def from a newer header the unknown fields are not read. The same
+/// holds for a Def inside another. Structs that a simulation returns (views, statistics, timers, counts, ranges,
+/// surfaces, gas) grow at their end, too. A function fills them: it takes the caller's sizeof, writes no more than
+/// that, and zeroes fields that the library does not know. An inline function returns the same struct by value. All
+/// other structs (parameters, textures, keys, hooks) keep their size within a SINGE_VERSION_MAJOR. Enumerators never
+/// change their values. tests/abi/abi.txt lists all of them.
 ///
 /// Units are SI and kelvin throughout. Nothing here depends on the locale.
 #ifndef SINGE_BASE_H
@@ -56,11 +56,11 @@ typedef enum SingeResult {
     SINGE_ERROR_ARGUMENT = 1, ///< a Def field or argument is out of its range
     SINGE_ERROR_MEMORY = 2,   ///< the allocator returned NULL
     SINGE_ERROR_MESH = 3,     ///< the mesh is degenerate, non-manifold or indexes out of range
-    SINGE_ERROR_HANDLE = 4,   ///< the handle is stale or was never given out
+    SINGE_ERROR_HANDLE = 4,   ///< the handle is stale or invalid
     SINGE_ERROR_STATE = 5,    ///< the call is not allowed now (a sheet added after the first step)
     SINGE_ERROR_DIVERGED = 6, ///< a stage produced a value that is not finite; state rolled back
     SINGE_ERROR_FORMAT = 7,   ///< bytes do not follow their format (file, snapshot, scene)
-    SINGE_ERROR_VERSION = 8,  ///< a snapshot of another version
+    SINGE_ERROR_VERSION = 8,  ///< the snapshot is of another version
     SINGE_ERROR_FILE = 9,     ///< the operating system refused a file
     SINGE_ERROR_LIMIT = 10,   ///< an input larger than the format or the index type allows
 } SingeResult;
@@ -88,8 +88,8 @@ typedef struct SingeAllocator {
 
 typedef enum SingeLogLevel { SINGE_LOG_INFO = 0, SINGE_LOG_WARNING = 1, SINGE_LOG_ERROR = 2 } SingeLogLevel;
 
-/// Receives one line without its newline: at commit what was made, and warnings of what will look bad. Errors are
-/// results. The library never prints by itself.
+/// Receives one line without its newline: a summary at the commit, and warnings of what will look wrong. Errors are
+/// returned as results. The library itself never prints.
 typedef struct SingeLog {
     void (*write)(void *context, SingeLogLevel level, const char *line);
     void *context;
@@ -99,16 +99,16 @@ typedef struct SingeLog {
 typedef void SingeTaskFn(void *task, int begin, int end);
 
 /// Task hook, for hosts with a scheduler of their own. `enqueue` may split [0, count) into ranges of
-/// at least `grain` items in any order on any thread, and returns a token for `finish`, which returns
-/// when all ranges are done. Results do not depend on how it splits. A zeroed struct means the
-/// simulation's own pool of `thread_count` threads; one hook needs the other.
+/// at least `grain` items, which may run in any order on any thread. It returns a token for `finish`, which returns
+/// when all ranges are done. Results do not depend on the split. Both hooks must be set, or neither: a zeroed struct
+/// means the simulation's own pool of `thread_count` threads.
 typedef struct SingeTasks {
     void *(*enqueue)(void *context, SingeTaskFn *run, void *task, int count, int grain);
     void (*finish)(void *context, void *token);
     void *context;
 } SingeTasks;
 
-/// Handles: an index with a generation, so that a handle to a removed object is noticed. Zeroed
+/// Handles: an index with a generation, so that a handle to a removed object is detected. Zeroed
 /// handles are never valid.
 typedef struct SingeSheetId {
     uint32_t index, generation;

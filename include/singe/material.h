@@ -1,4 +1,4 @@
-/// Singe: materials, and what their parameters follow over a sheet.
+/// Singe: materials, and the fields by which their parameters vary over a sheet.
 #ifndef SINGE_MATERIAL_H
 #define SINGE_MATERIAL_H
 
@@ -18,13 +18,13 @@ typedef struct SingeTexture {
 /// Seeded value noise in [0, 1], evaluated at the rest position.
 typedef struct SingeNoise {
     float scale;   ///< m, the size of its largest features, > 0
-    int octaves;   ///< 1 to 8, each half the size and half the strength of the one before
+    int octaves;   ///< 1 to 8, each half the size and half the strength of the previous one
     uint32_t seed; ///< any
 } SingeNoise;
 
 /// A named value per vertex of a sheet's mesh.
 typedef struct SingeAttribute {
-    const char *name;    ///< that a SingeParam refers to
+    const char *name;    ///< a SingeField refers to it
     const float *values; ///< [vertex_count] any; 0 gives a parameter's `value`, 1 its `to`
 } SingeAttribute;
 
@@ -35,8 +35,8 @@ typedef enum SingeFieldKind {
     SINGE_FIELD_NOISE = 3,
 } SingeFieldKind;
 
-/// What a parameter follows over the sheet. Centres of cells take a texture or noise at their own position and the mean
-/// of their corners' attributes.
+/// A field by which a parameter varies over the sheet. Textures and noise are evaluated at the centres of cells, too;
+/// of an attribute a centre takes the mean of its corners.
 typedef struct SingeField {
     SingeFieldKind kind;
     SingeTexture texture;  ///< SINGE_FIELD_TEXTURE: needs the sheet's uv
@@ -44,10 +44,10 @@ typedef struct SingeField {
     SingeNoise noise;      ///< SINGE_FIELD_NOISE
 } SingeField;
 
-/// A parameter that may vary over the sheet: `value` where the field is 0, `to` where it is 1, linear in between (and
-/// beyond, for an attribute outside [0, 1]).
+/// A parameter that may vary over the sheet: `value` where the field is 0, `to` where it is 1, linear in between.
+/// Attributes outside [0, 1] extrapolate.
 typedef struct SingeParam {
-    float value;             ///< in the parameter's unit and range, as `to` and all between
+    float value;             ///< in the parameter's unit and range; so must `to` be, and all in between
     float to;                ///< finite; unused without a field
     const SingeField *field; ///< the caller's; parameters may share one. NULL: `value` everywhere
 } SingeParam;
@@ -100,12 +100,12 @@ static inline SingeMaterialDef singe_default_material(void) {
     return def;
 }
 
-/// A material that Singe brings along, by name: "office-paper", "newsprint", "tissue", "cotton" or "one-reaction"
-/// (docs/materials.md). *def holds its struct_size, as after singe_default_material(). SINGE_ERROR_ARGUMENT: there is
-/// none of this name; *error (may be NULL) lists those that there are, and *def stays as it was. In libsinge_input.
+/// A built-in material by its name: "office-paper", "newsprint", "tissue", "cotton" or "one-reaction"
+/// (docs/materials.md). *def holds its struct_size, as after singe_default_material(). SINGE_ERROR_ARGUMENT: the
+/// name is unknown; *error (may be NULL) lists the known ones, and *def is unchanged. In libsinge_input.
 SINGE_API SINGE_NODISCARD SingeResult singe_material_preset(const char *name, SingeMaterialDef *def, SingeError *error);
 
-/// The name of the index-th of these materials; NULL behind the last. In libsinge_input.
+/// The name of the index-th built-in material; NULL after the last. In libsinge_input.
 SINGE_API const char *singe_material_preset_name(uint32_t index);
 
 #ifdef __cplusplus

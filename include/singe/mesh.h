@@ -1,5 +1,5 @@
-/// Singe: meshes as programs have them, of triangles and polygons, made into the quads of a sheet (docs/meshes.md).
-/// These functions are in libsinge_input, beside libsinge. They need no simulation.
+/// Singe: converts meshes of triangles and polygons to the quads of a sheet (docs/meshes.md). These functions are in
+/// libsinge_input, a second library. They need no simulation.
 #ifndef SINGE_MESH_H
 #define SINGE_MESH_H
 
@@ -15,7 +15,7 @@ typedef enum SingeMeshQuads {
     SINGE_MESH_SPLIT = 1, ///< every face of n corners becomes n quads; its sides are halved
 } SingeMeshQuads;
 
-/// A mesh of faces with three corners or more, counter-clockwise seen from the front. What it points to may be freed
+/// A mesh whose faces have three corners or more, counter-clockwise seen from the front. The caller may free its arrays
 /// after the call.
 typedef struct SingeMeshDef {
     size_t struct_size;
@@ -26,14 +26,14 @@ typedef struct SingeMeshDef {
     const uint32_t *face_sizes; ///< [face_count] corners of each face, 3 to 4096; NULL, the default: all have 3
     const uint32_t *corners;    ///< [sum of face_sizes] vertices, face after face
     const float *uv;            ///< [2 * vertex_count], or NULL
-    const float *corner_uv;     ///< [2 * corners] in place of uv where a mesh has seams, or NULL
+    const float *corner_uv;     ///< [2 * corners] instead of uv where a mesh has seams, or NULL
     uint32_t attribute_count;
-    const SingeAttribute *attributes; ///< [attribute_count] of the vertices; carried to the sheet's
+    const SingeAttribute *attributes; ///< [attribute_count] of the vertices; interpolated to the new mesh
     SingeMeshQuads quads;             ///< SINGE_MESH_PAIR
-    float weld;     ///< m, vertices on open edges that are this near become one, >= 0; 0, the default: 1e-5 of the size
-    float smallest; ///< sides below this share of the median side shrink to a point, 0 (none) to 1; 0.02
+    float weld; ///< m, vertices on open edges within this distance are merged, >= 0; 0, the default: 1e-5 of the size
+    float smallest;           ///< sides below this share of the median side are collapsed, 0 (none) to 1; 0.02
     SingeAllocator allocator; ///< zeroed: libc's
-    SingeLog log;             ///< receives what the mesh is and each repair; zeroed: nobody
+    SingeLog log;             ///< receives a summary of the mesh and each repair; zeroed: none
 } SingeMeshDef;
 
 SINGE_API void singe_init_mesh(SingeMeshDef *def, size_t struct_size);
@@ -50,10 +50,10 @@ typedef struct SingeGridDef {
     size_t struct_size;
     float size[2];      ///< m along x and y, > 0; 0.2
     uint32_t cells[2];  ///< along x and y, at least 1; 50
-    float jitter;       ///< of a cell, how far vertices lie off the grid at most, 0 to 0.3, so that folds find no lines
-                        ///< to follow; 0.15
-    float displacement; ///< m, root mean square height of the waves in which it lies, >= 0; 0
-    uint32_t seed;      ///< of both; 1
+    float jitter;       ///< of a cell, max offset of vertices from the grid, 0 to 0.3, so that folds do not follow its
+                        ///< lines; 0.15
+    float displacement; ///< m, root mean square height of waves in the rest shape, >= 0; 0
+    uint32_t seed;      ///< of jitter and displacement; 1
     SingeAllocator allocator; ///< zeroed: libc's
 } SingeGridDef;
 
@@ -68,9 +68,9 @@ static inline SingeGridDef singe_default_grid(void) {
 /// Quads, ready for a sheet.
 typedef struct SingeMesh SingeMesh;
 
-/// Makes quads of a mesh: vertices are welded, what is broken is repaired or refused. A mesh of quads without faults
-/// keeps its vertices, its cells and their order. To be freed by singe_mesh_destroy. On failure *mesh is NULL and
-/// *error (may be NULL) says why: SINGE_ERROR_MESH with the face or vertex in `element`, SINGE_ERROR_ARGUMENT,
+/// Converts a mesh to quads. Vertices are welded; faults are repaired or refused. A mesh of quads without faults keeps
+/// its vertices, its cells and their order. Free the result by singe_mesh_destroy. On failure *mesh is NULL and *error
+/// (may be NULL) says why: SINGE_ERROR_MESH with the face or vertex in `element`, SINGE_ERROR_ARGUMENT,
 /// SINGE_ERROR_LIMIT or SINGE_ERROR_MEMORY.
 SINGE_API SINGE_NODISCARD SingeResult singe_mesh_create(const SingeMeshDef *def, SingeMesh **mesh, SingeError *error);
 
@@ -81,7 +81,7 @@ SINGE_API SINGE_NODISCARD SingeResult singe_mesh_create_grid(const SingeGridDef 
 /// Frees a mesh; NULL is allowed.
 SINGE_API void singe_mesh_destroy(SingeMesh *mesh);
 
-/// The mesh, as a sheet's Def has it. The arrays belong to the mesh.
+/// The mesh in the form of a sheet's Def. The mesh owns the arrays.
 typedef struct SingeMeshView {
     size_t struct_size;
     uint32_t vertex_count, cell_count, attribute_count;
@@ -89,7 +89,7 @@ typedef struct SingeMeshView {
     const float *positions;              ///< [3 * vertex_count] m
     const uint32_t *cells;               ///< [4 * cell_count]
     const float *uv;                     ///< [2 * vertex_count], or NULL
-    const float *corner_uv;              ///< [8 * cell_count], or NULL where those of the vertices hold
+    const float *corner_uv;              ///< [8 * cell_count], or NULL: those of the vertices
     const SingeAttribute *attributes;    ///< [attribute_count]
     const int32_t *source_vertex;        ///< [vertex_count] of the SingeMeshDef, -1 for a new one; NULL: the same
     const int32_t *corner_source_vertex; ///< [4 * cell_count] the same of the cells' corners, or NULL
@@ -123,8 +123,8 @@ static inline void singe_mesh_fill_sheet(const SingeMesh *mesh, SingeSheetDef *s
     sheet->corner_source_vertex = view.corner_source_vertex;
 }
 
-/// What a vertex of the SingeMeshDef is now, for pins; UINT32_MAX where no face has it, or there is none of this
-/// number.
+/// The new index of a vertex of the SingeMeshDef, for pins; UINT32_MAX: no face uses the vertex, or the index is out of
+/// range.
 static inline uint32_t singe_mesh_vertex(const SingeMesh *mesh, uint32_t vertex) {
     const SingeMeshView view = singe_mesh_view(mesh);
     if (view.became) return vertex < view.source_count ? view.became[vertex] : UINT32_MAX;

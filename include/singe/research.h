@@ -1,8 +1,8 @@
 /// Singe: a free network of springs in double precision, for research into the constraint solver.
 ///
 /// A network is particles, springs and sets of springs. Projecting a set is one Newton step of fast projection, eq 16
-/// to 19 of the paper: by the same code as SINGE_SOLVER_PAPER, on any network, one set after another as the caller
-/// likes. What one wants to know about a set's system can be read: errors, gradients, its matrix.
+/// to 19 of the paper. It uses the code of SINGE_SOLVER_PAPER, on any network and in any order of the sets. The errors,
+/// gradients and matrix of a set's system can be read.
 ///
 /// One thread at a time may call into one network; different networks are independent.
 #ifndef SINGE_RESEARCH_H
@@ -16,7 +16,7 @@ extern "C" {
 
 typedef struct SingeNetwork SingeNetwork;
 
-/// A network. Everything is copied.
+/// A network. All arrays are copied.
 typedef struct SingeNetworkDef {
     size_t struct_size;
     SingeAllocator allocator;
@@ -25,22 +25,22 @@ typedef struct SingeNetworkDef {
     uint32_t particle_count;
     const double *positions;      ///< [3 * particle_count] m
     const double *inverse_masses; ///< [particle_count] 1/kg, >= 0, or NULL: 1 each
-    /// [particle_count] or NULL: none. What is held is in the system by its inverse mass, and put back afterwards; an
-    /// inverse mass of 0 is another thing: the system knows that it cannot move.
+    /// [particle_count] or NULL: none. A held particle takes part in the system by its inverse mass, and is put back
+    /// afterwards. This differs from an inverse mass of 0, with which the system knows that it cannot move.
     const uint8_t *held;
     uint32_t spring_count;
     const uint32_t *ends;      ///< [2 * spring_count] two different particles each
     const double *lengths;     ///< [spring_count] m, targets, > 0
-    const double *weights;     ///< [spring_count] W of eq 19, 0 (not there) to 1, or NULL: 1 each
+    const double *weights;     ///< [spring_count] W of eq 19, 0 (absent) to 1, or NULL: 1 each
     const double *compliances; ///< [spring_count] m/N, >= 0, or NULL: 0 each
     uint32_t set_count;        ///< at least 1
     const uint32_t *sets;      ///< [spring_count] the set of each spring, or NULL: all are in set 0
-    /// C = |d|^2/l - l as eq 10 has it, without regularisation and compliance; else C = (|d|^2 - l^2)/(2 |d|)
+    /// C = |d|^2/l - l as in eq 10, without regularisation and compliance; else C = (|d|^2 - l^2)/(2 |d|)
     bool literal;
     double regularisation; ///< added to the diagonal, relative to the mean of w_a and w_b, >= 0
     double time_step;      ///< s, h in compliance/h^2, > 0
     double tolerance;      ///< residual of the conjugate gradients, relative to the right-hand side, > 0 to 1
-    int iterations;        ///< of the conjugate gradients, at most; 1 to 1e6
+    int iterations;        ///< max of the conjugate gradients, 1 to 1e6
 } SingeNetworkDef;
 
 SINGE_API void singe_init_network(SingeNetworkDef *def, size_t struct_size);
@@ -62,14 +62,14 @@ SINGE_API void singe_network_destroy(SingeNetwork *network);
 /// The positions, [3 * particle_count] m, to be read and written. The network owns them; valid until it is destroyed.
 SINGE_API double *singe_network_positions(SingeNetwork *network);
 
-/// Springs of a set; 0 where there is no such set. In what follows row i of a set is its i-th spring in the order of
+/// The number of springs of a set; 0 if there is no such set. Below, row i of a set is its i-th spring in the order of
 /// the Def.
 SINGE_API uint32_t singe_network_set_size(const SingeNetwork *network, uint32_t set);
 
-/// What a projection took.
+/// The cost of a projection.
 typedef struct SingeNetworkReport {
     uint32_t iterations; ///< of the conjugate gradients
-    double residual;     ///< when they ended, relative to the right-hand side; 0 where that was 0
+    double residual;     ///< at their end, relative to the right-hand side; 0 if that was 0
 } SingeNetworkReport;
 
 /// Projects one set: J M^-1 J^T lambda = W C, x -= M^-1 J^T lambda. Allocates nothing. *report may be NULL.

@@ -1,4 +1,4 @@
-/// Singe: what a simulation gives to be drawn: the surface of its sheets, and the gas.
+/// Singe: the results of a simulation for renderers: the surface of its sheets, and the gas.
 #ifndef SINGE_SURFACE_H
 #define SINGE_SURFACE_H
 
@@ -9,32 +9,32 @@ extern "C" {
 #endif
 
 /// The drawn mesh: cells as four triangles around a virtual centre, cut by the level set m - m_loss
-/// (eq 7, Fig 6). With a `surface_detail`, cells near the front are split finely, burnt edges ragged by noise fixed to
-/// the sheet, and all lies on a smooth surface (docs/equations.md); vertices of the input keep their `source_vertex`.
-/// All arrays belong to the surface.
+/// (eq 7, Fig 6). With a `surface_detail`, cells near the front are refined, burnt edges are ragged by noise fixed to
+/// the sheet, and the mesh lies on a smooth surface (docs/equations.md). Vertices of the input keep their
+/// `source_vertex`. The surface owns all arrays.
 typedef struct SingeSurface {
     uint32_t vertex_count, triangle_count;
-    uint32_t fine_triangle_count; ///< of the triangles, those in cells that are split near the front
+    uint32_t fine_triangle_count; ///< triangles in refined cells
     float (*position)[3];         ///< m
-    float (*normal)[3];           ///< unit; area-weighted where the surface is not smooth
-    float (*uv)[2];               ///< 0 where the sheet has none
+    float (*normal)[3];           ///< unit length; area-weighted means if the surface is not smooth
+    float (*uv)[2];               ///< 0 if the sheet has none
     float (*velocity)[3];         ///< m/s
     float (*rest_position)[3];    ///< m
     float *temperature;           ///< K
-    float *temperature_peak;      ///< K, highest so far: what browns paper for good
+    float *temperature_peak;      ///< K, highest so far; it decides how brown paper is
     float *mass;                  ///< fraction
     float *burn_rate;             ///< 1/s
-    float *char_fraction;         ///< of the initial mass, black char that can still glow away
-    float *ash_fraction; ///< of the initial mass, grey ash: what of `mass` neither pyrolyses nor glows any more
-    float *burn;         ///< burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash
-    float *time_ignited; ///< s, -1 never
-    int32_t *piece;      ///< id
-    /// vertex of the input mesh (numbered over all sheets), -1 for a new one; on a seam several have it
+    float *char_fraction;         ///< of the initial mass: black char that can still glow
+    float *ash_fraction;          ///< of the initial mass: grey ash, which neither pyrolyses nor glows
+    float *burn;                  ///< burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash
+    float *time_ignited;          ///< s, -1 never
+    int32_t *piece;               ///< id
+    /// vertex of the input mesh (numbered over all sheets), -1: new; several vertices on a seam may share it
     int32_t *source_vertex;
     int32_t *sheet;                              ///< index of the sheet, in the order added
     uint32_t (*triangles)[3];                    ///< counter-clockwise seen from the front
     uint32_t vertex_capacity, triangle_capacity; ///< allocated
-    SingeAllocator allocator;                    ///< that the arrays come from
+    SingeAllocator allocator;                    ///< of the arrays
 } SingeSurface;
 
 /// Frees a surface's arrays and zeroes its `struct_size` bytes, the caller's sizeof; NULL is allowed.
@@ -42,10 +42,10 @@ SINGE_API void singe_surface_release(SingeSurface *surface, size_t struct_size);
 
 static inline void singe_surface_free(SingeSurface *surface) { singe_surface_release(surface, sizeof *surface); }
 
-/// The hot gas about what burns: cubes of side `cell` along the axes of space, x fastest. Cell (i, j, k) is entry
-/// i + size[0] (j + size[1] k) and spans origin + cell (i..i+1, j..j+1, k..k+1). Values are those at its centre.
+/// The hot gas around the sheets, on a grid of cubes of side `cell` along the axes, x fastest. Cell (i, j, k) is entry
+/// i + size[0] (j + size[1] k) and spans origin + cell (i..i+1, j..j+1, k..k+1). Values hold at its centre.
 typedef struct SingeGas {
-    uint32_t size[3];           ///< cells; all 0 where the simulation has no gas
+    uint32_t size[3];           ///< cells; all 0 if the simulation has no gas
     float origin[3];            ///< m, lower corner of cell (0, 0, 0)
     float cell;                 ///< m
     const float *temperature;   ///< K
