@@ -22,11 +22,15 @@ SingeResult burn_step(const StepContext *context, const float *thickening, doubl
         .partial = partial,
         .burn = burn,
     };
+
+    // ignitions, air at the embers, loss of mass
     burn_ignite(&job, pool, context->events);
     burn_air(&job, pool);
     double lost = burn_lose_mass(&job, pool);
     if (!isfinite(lost)) return diverged(context->shell, burn, context->error);
     burn->mass_burnt += lost;
+
+    // shorten the springs of what has lost mass
     if (lost > 0) burn_shrink(&job, pool);
     return SINGE_OK;
 }

@@ -83,6 +83,8 @@ static void shrink_burning_cell(const BurnJob *job, uint32_t cell, const bool bu
     const BurnState *burn = job->burn;
     SpringEnd corner[4], centre = spring_end(&shell->matter, burn, shell_centre(shell, cell));
     for (int i = 0; i < 4; i++) corner[i] = spring_end(&shell->matter, burn, shell->cells[cell][i]);
+
+    // red, blue and green springs; a shared one by one of its two cells
     for (int i = 0; i < 4; i++) {
         uint32_t other = shell_neighbour(shell, cell, i), beyond = shell_centre(shell, other);
         int next = (i + 1) & 3;
@@ -96,6 +98,8 @@ static void shrink_burning_cell(const BurnJob *job, uint32_t cell, const bool bu
         if (centre_burns && other != SHELL_NONE && (cell < other || !(burn->burn_rate[beyond] > 0)))
             shrink_spring(job, SINGE_GREEN, springs->green[i], centre, spring_end(&shell->matter, burn, beyond), 1);
     }
+
+    // the diagonals
     for (int i = 0; i < 2; i++)
         if (burns[i] | burns[i + 2]) shrink_spring(job, SINGE_YELLOW, springs->yellow[i], corner[i], corner[i + 2], 1);
 }

@@ -59,6 +59,8 @@ static void advect_field(GasPass *pass, int f, const GasBox *box, int parts) {
     end[(parts - 1) % 2] = pass->to->field[f], end[parts % 2] = plan->spare[0];
     memcpy(pass->to->field[f], start, plan->grid.cells * sizeof(float));
     if (box->high[0] <= box->low[0]) return;
+
+    // three sweeps a part, one per axis
     for (int s = 0; s < 2; s++) advect_frame(&plan->grid, box, start, plan->spare[s]);
     for (int part = 0; part < parts; part++) {
         float *here = end[part % 2];
@@ -89,6 +91,8 @@ static float advect_row(const GasPass *pass, size_t c, int count, int busy[GAS_B
     const float *smoke = pass->from->field[GAS_SMOKE] + c;
     float speed[SWEEP_RUN], max = 0;
     for (int i = 0; i < count; i++) speed[i] = 0;
+
+    // max speed through the cells' faces
     for (int d = 0; d < 3; d++) {
         const float *restrict lower = through[d] + c, *restrict upper = lower + plan->grid.stride[d];
         float wind = pass->wind[d];
@@ -98,6 +102,8 @@ static float advect_row(const GasPass *pass, size_t c, int count, int busy[GAS_B
             speed[i] = both > speed[i] ? both : speed[i];
         }
     }
+
+    // ranges of cells that have something to carry
     float calm = ADVECT_CALM;
     for (int d = 0; d < 3; d++) calm = fmaxf(calm, fabsf(pass->wind[d]) + ADVECT_CALM);
     for (int i = 0; i < count; i++) {
@@ -118,6 +124,8 @@ static void advect_look(void *context, int begin, int end) {
         GasBox *box = pass->plan->plane_busy[k];
         float max = 0;
         for (int b = 0; b < GAS_BOXES; b++) box[b] = GAS_NO_BOX;
+
+        // boxes around what moves in this plane, and its max speed
         for (int j = 0; j < grid->n[1]; j++)
             for (int first = 0; first < grid->n[0]; first += SWEEP_RUN) {
                 int count = grid->n[0] - first, busy[GAS_BOXES][2] = {{INT_MAX, -1}, {INT_MAX, -1}, {INT_MAX, -1}};
@@ -164,11 +172,15 @@ static void advect_mixing(void *context, int begin, int end) {
             size_t c = gas_at(grid, 0, j, k);
             float *restrict mixing = plan->mixing + c;
             for (int i = 0; i < grid->n[0]; i++) mixing[i] = 0;
+
+            // squared differences of the velocity
             for (int d = 0; d < 3; d++)
                 for (int e = 0; e < 3; e++) {
                     const float *restrict a = u[d] + c - grid->stride[e], *restrict b = u[d] + c + grid->stride[e];
                     for (int i = 0; i < grid->n[0]; i++) mixing[i] += (b[i] - a[i]) * (b[i] - a[i]);
                 }
+
+            // mixing coefficient of still air plus that of eddies
             for (int i = 0; i < grid->n[0]; i++) {
                 float mix = still + eddy * sqrtf(mixing[i]);
                 mixing[i] = mix < ADVECT_MIX_MAX ? mix : ADVECT_MIX_MAX;

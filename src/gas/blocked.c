@@ -14,6 +14,8 @@ static void blocked_planes(void *context, int begin, int end) {
         for (int j = 0; j < grid->n[1]; j++) {
             size_t c = gas_at(grid, 0, j, k);
             memset(plan->solid + c, 0, (size_t)grid->n[0]);
+
+            // cells whose centre is inside a collider
             for (uint32_t s = 0; s < pass->colliders->count; s++) {
                 const Collider *collider = &pass->colliders->items[s];
                 if (collider->generation == 0) continue;

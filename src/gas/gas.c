@@ -87,12 +87,18 @@ void gas_step(GasPlan *plan, const StepContext *context, GasState *gas) {
                     .to = &plan->turn[!gas->turn],
                     .dt = plan->dt};
     pass.fire = plan->dt * (float)plan->parts * plan->settings.pace;
+
+    // nothing burns and nothing moves: no step
     if (!gas_fed(&pass) && !gas->awake) return;
+
+    // wind, normals of the sheets, faces that they block
     Float3 centre = float3_load(plan->origin);
     for (int d = 0; d < 3; d++) (&centre.x)[d] += 0.5f * plan->cell * (float)plan->grid.n[d];
     float3_store(pass.wind, wind_velocity(context->wind, centre, state->time));
     gas_normals(&pass);
     gas_blocked(&pass);
+
+    // parts of the step
     gas->awake = true;
     for (int part = 0; part < plan->parts; part++) {
         gas_part(&pass);

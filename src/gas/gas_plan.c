@@ -37,6 +37,8 @@ static double plan_fit(GasPlan *plan, const float low[3], const float high[3], f
     const float *g = plan->settings.gravity;
     for (int d = 0; d < 3; d++)
         if (fabsf(g[d]) > fabsf(g[up])) up = d;
+
+    // cells along each axis, a multiple of eight, with a margin and the height above
     double cells = 1;
     for (int d = 0; d < 3; d++) {
         float below = PLAN_MARGIN, above = PLAN_MARGIN;
@@ -63,6 +65,8 @@ static int plan_longest(const GasPlan *plan) {
 static void plan_lay(GasPlan *plan, const Shell *shell) {
     float low[3] = {0}, high[3] = {0}, diagonal = 0, wanted = plan->settings.def.cell_size;
     bool first = true;
+
+    // the box around all sheets at rest
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         if (!(shell->matter.area[i] > 0)) continue;
         for (int d = 0; d < 3; d++) {
@@ -73,6 +77,8 @@ static void plan_lay(GasPlan *plan, const Shell *shell) {
         first = false;
     }
     for (int d = 0; d < 3; d++) diagonal += (high[d] - low[d]) * (high[d] - low[d]);
+
+    // a cell size that is asked for, or in proportion; larger until the grid fits the limits
     float cell = sqrtf(diagonal) / PLAN_CELLS_ACROSS;
     if (wanted > 0) cell = wanted;
     else if (cell < PLAN_CELL_MIN) cell = PLAN_CELL_MIN;
@@ -163,11 +169,15 @@ SingeResult gas_plan_create(Memory *memory, const Shell *shell, const GasSetting
     plan->settings = *settings;
     plan->rows = sweep_choose(settings->instructions);
     plan->particles = shell->particle_count, plan->cell_count = shell->cell_count;
+
+    // steps of the simulation per step of the gas, and parts of the latter
     float steps = 1 / (PLAN_RATE * settings->time_step);
     plan->every = steps > 1 ? (uint64_t)(steps + 0.5f) : 1;
     float length = (float)plan->every * settings->time_step, parts = ceilf(length * PLAN_RATE * 0.99f);
     plan->parts = parts < PLAN_PARTS_MAX ? (int)parts : PLAN_PARTS_MAX;
     plan->dt = length / (float)plan->parts;
+
+    // the grid and its arrays
     plan_lay(plan, shell);
     plan_levels(plan);
     plan->view_cells = (size_t)plan->grid.n[0] * (size_t)plan->grid.n[1] * (size_t)plan->grid.n[2];
@@ -175,6 +185,8 @@ SingeResult gas_plan_create(Memory *memory, const Shell *shell, const GasSetting
         gas_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
+
+    // start: all fuel, no gas
     for (int t = 0; t < 2; t++)
         for (uint32_t i = 0; i < plan->particles; i++) plan->turn[t].fuel[i] = 1;
     *gas = (GasState){0};

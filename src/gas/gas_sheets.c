@@ -99,6 +99,8 @@ static void sheets_add(const GasPlan *plan, float *field, Float3 x, float amount
     float part[3], weight[8], sum = 0;
     size_t cell[8];
     for (int d = 0; d < 3; d++) at[d] = (int)(position[d] + 1) - 1, part[d] = position[d] - (float)at[d];
+
+    // trilinear weights of the eight cells that are open
     for (int e = 0; e < 8; e++) {
         weight[e] = 1;
         bool inside = true;
@@ -111,6 +113,8 @@ static void sheets_add(const GasPlan *plan, float *field, Float3 x, float amount
         if (!inside || plan->solid[cell[e]]) weight[e] = 0;
         sum += weight[e];
     }
+
+    // their shares of the amount
     for (int e = 0; e < 8 && sum > 0; e++)
         if (weight[e] > 0) field[cell[e]] += amount * weight[e] / sum;
 }
@@ -184,13 +188,19 @@ static void sheets_meet(void *context, int begin, int end) {
         if (!(pass->state->ablate->particle_flags[i] & SINGE_ALIVE)) continue;
         Float3 x = float3_load(pass->state->dynamics->position[i]);
         if (!gas_position(plan, x, position)) continue;
+
+        // velocity of the air
         float open = sheets_open(plan, position, plan->normal[i]);
         for (int d = 0; d < 3; d++)
             air[d] = open * gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], position);
+
+        // temperature of the gas that has flowed here
         if (!(g0 > 0) || !sheets_position(pass, i, sheets_side(pass, i), &x)) continue;
         if (!gas_position(plan, sheets_upstream(pass, x), position)) continue;
         float temperature = ambient / (1 - sheets_lightness(plan, pass->to->field[GAS_LIGHTNESS], position));
         if (temperature < ambient + SHEET_MIN) continue;
+
+        // conductance, less by the mass that blows out of the sheet
         float gone = (pass->from->fuel[i] - pass->state->burn->fuel[i]) * (1 - field_at(matter->char_yield, i));
         float flux = gone * matter->mass[i] / (matter->area[i] * pass->fire); // m''
         float slower = shell_glow_slowing(matter, i, pass->state->burn->fuel[i]);

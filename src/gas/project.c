@@ -36,6 +36,8 @@ static void project_faces(void *context, int begin, int end) {
         float *through = pass->to->field[GAS_THROUGH + d], *weight = plan->level[0].weight[d];
         size_t beyond = grid->stride[d];
         int rows = grid->n[1] + (d == 1), columns = grid->n[0] + (d == 0);
+
+        // mean of the two cells at each face, weight of its pressure gradient
         for (int k = begin; k < end; k++)
             for (int j = 0; j < rows; j++) {
                 size_t c = gas_at(grid, 0, j, k);
@@ -81,6 +83,8 @@ static void project_cells(void *context, int begin, int end) {
         const float *weight = plan->level[0].weight[d];
         float *u = pass->to->field[GAS_VELOCITY + d];
         size_t s = grid->stride[d];
+
+        // change of the fluxes through both faces, added to the cell's velocity
         for (int k = begin; k < end; k++)
             for (int j = 0; j < grid->n[1]; j++) {
                 size_t c = gas_at(grid, 0, j, k);

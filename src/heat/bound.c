@@ -57,6 +57,8 @@ static void bound_means(void *context, int begin, int end) {
                 if (!plan->alive[i]) continue;
                 plan->next[i] = (float)bound_mean(pass, i);
                 if (!bound_of_surface(pass, i)) continue;
+
+                // heat that is lacking, and the room above and below
                 lacking += (double)capacity[i] * (bound_star(pass, i) - (double)plan->next[i]);
                 above += (double)capacity[i] * ((double)pass->max - (double)plan->next[i]);
                 below += (double)capacity[i] * ((double)plan->next[i] - (double)pass->min);
@@ -81,6 +83,8 @@ static void bound_shares(void *context, int begin, int end) {
                     plan->next[i] = pass->heat->temperature[i];
                     continue;
                 }
+
+                // move by a share towards the bound; round at random
                 double T = (double)plan->next[i];
                 if (bound_of_surface(pass, i)) T += share * (towards - T);
                 else made += (double)pass->shell->matter.capacity[i] * (T - bound_star(pass, i));

@@ -65,6 +65,8 @@ static void conduct_start_group(const HeatPass *pass, uint32_t group, double sum
     for (uint32_t i = group * HEAT_GROUP; i < last; i = next) {
         next = conduct_slice_end(i, last);
         HeatLanes inflow = conduct_inflow(&plan->matrix, plan->star, i);
+
+        // residual of the start, norm of the right-hand side, range of T*
         for (uint32_t row = 0; i < next; i++, row++) {
             float r = plan->residual[i] = pass->dt * inflow[row];
             float star = plan->star[i], b = plan->measure[i] * (star - ambient), inverse = plan->matrix.inverse[i];
@@ -183,6 +185,8 @@ static bool conduct_finish_group(const HeatPass *pass, uint32_t group, double *m
         plan->next[i] = temperature[i];
         bool changes = inflow[i % HEAT_ROWS] != 0 || plan->delta[i] != 0;
         if (!changes || !plan->alive[i]) continue;
+
+        // T of the new step, rounded at random; whether it is within the range
         double rise = (double)pass->dt * inflow[i % HEAT_ROWS] / plan->measure[i];
         double change = plan->delta[i] + rise;
         if (change != 0) plan->next[i] = heat_round(temperature[i] + change, random_hash(i, low, high, HEAT_SEED));
@@ -239,6 +243,8 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
     HeatPlan *plan = pass->plan;
     heat_blocks(pass, conduct_start);
     double residual = heat_sum(plan, 0), whole = heat_sum(plan, 1), tolerance = plan->settings.tolerance;
+
+    // range of T*; a value that is not finite fails the step
     double min = INFINITY, max = 0;
     for (int block = 0; block < plan->blocks; block++)
         min = fmin(min, plan->partial[block][2]), max = fmax(max, plan->partial[block][3]);
@@ -248,6 +254,8 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
             return error_set(error, SINGE_ERROR_DIVERGED, "heat", fault,
                              "the temperature of particle %lld is not a positive finite number", (long long)fault);
     }
+
+    // solve, then check that no temperature has left the range
     pass->min = (float)min, pass->max = (float)max;
     pass->slack = tolerance * fmax(max - min, 0) + 1e-6 * max; // what was asked for, and rounding
     pass->direction = 0;

@@ -54,8 +54,12 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
             plan->star[i] = T, plan->delta[i] = 0;
             continue;
         }
+
+        // heat of combustion
         float combustion = release[i] * h;
         float T1 = T + combustion;
+
+        // sources, implicit in their conductance
         float warmth = dt * matter->area[i] / matter->capacity[i]; // dt/C''
         float g = plan->source_conductance[i];
         float flux = (plan->flux[i] + (plan->source_temperature[i] - g * T1)) / (1 + warmth * g);
@@ -64,6 +68,8 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
             T2 = T1 < HEAT_COLDEST ? T1 : HEAT_COLDEST;
             flux = (T2 - T1) / warmth;
         }
+
+        // convection and radiation, implicit in their conductance
         float floor_mass = field_at(matter->loss_mass_floor, i), burnt = mass[i] > floor_mass ? mass[i] : floor_mass;
         float radiation = field_at(matter->emissivity, i) * STEFAN_BOLTZMANN;
         float exchange = field_at(matter->convection, i) + radiation * (T2 + ambient) * (T2 * T2 + ambient * ambient);
@@ -77,6 +83,8 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
             plan->star[i] = ambient + (T2 - ambient) / (1 + rate);
             plan->delta[i] = plan->star[i] - T;
         }
+
+        // what the ledger counts
         ledger[0] += (double)flux * matter->area[i] * dt;
         ledger[1] += (double)loss * matter->capacity[i];
         ledger[2] += (double)combustion * matter->capacity[i];

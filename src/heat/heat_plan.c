@@ -12,6 +12,8 @@ static float plan_thickening(const Shell *shell, uint32_t s, float ambient) {
     const Sheet *sheet = &shell->sheets[s];
     const Matter *matter = &shell->matter;
     double diffusivity = 0, rate = 0, heating = 0, ignition = 0, ceiling = 0, factor = 0, energy = 0, count = 0;
+
+    // sums over the sheet
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         if (matter->sheet[i] != s || !(matter->area[i] > 0)) continue;
         diffusivity += field_at(matter->diffusivity, i);
@@ -24,6 +26,8 @@ static float plan_thickening(const Shell *shell, uint32_t s, float ambient) {
         count++;
     }
     if (count == 0) return 1;
+
+    // their means give the front's thickness
     FrontMatter front = {(float)(diffusivity / count), (float)(rate / count),    (float)(heating / count),
                          (float)(ignition / count),    (float)(ceiling / count), (float)(factor / count),
                          (float)(energy / count)};
@@ -97,6 +101,8 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         plan->spring_first[c + 1] = plan->spring_first[c] + shell->springs[c].count;
     plan->springs = plan->spring_first[SINGE_COLOUR_COUNT];
+
+    // memory, thickening, conductances, their matrix
     SingeResult result = plan_allocate(memory, plan) ? SINGE_OK : SINGE_ERROR_MEMORY;
     if (!result) {
         result = plan_thicken(plan, shell, error);

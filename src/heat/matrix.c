@@ -119,6 +119,8 @@ SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shel
     HeatMatrix *matrix = &plan->matrix;
     uint32_t n = plan->particles, *length = NULL;
     matrix->slices = n / HEAT_ROWS + (n % HEAT_ROWS > 0);
+
+    // count the entries of each row, then lay out the slices and fill them
     bool ok = NEW(memory, matrix->first, (size_t)matrix->slices + 1) && NEW(memory, matrix->inverse, n) &&
               NEW(memory, length, n);
     if (ok) {
@@ -134,6 +136,8 @@ SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shel
     }
     FREE(memory, length, n);
     if (!ok) return SINGE_ERROR_MEMORY;
+
+    // pairs of springs between the same two particles
     matrix_revive(plan, shell);
     matrix->twin_count = matrix->twin_capacity = matrix_twins(plan, shell, NULL);
     if (!NEW(memory, matrix->twins, matrix->twin_count)) return SINGE_ERROR_MEMORY;
@@ -169,6 +173,8 @@ static uint32_t matrix_insert(uint32_t *list, uint32_t count, uint32_t number) {
 static uint32_t matrix_springs(const HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list) {
     const uint32_t *first = plan->spring_first;
     uint32_t count = 0;
+
+    // a centre: red and green springs of its cell
     if (row >= shell->vertex_count) {
         const CellSprings *springs = &shell->cell_springs[row - shell->vertex_count];
         for (int k = 0; k < 4; k++) {
@@ -178,6 +184,8 @@ static uint32_t matrix_springs(const HeatPlan *plan, const Shell *shell, uint32_
         }
         return count;
     }
+
+    // a vertex: the springs at its corner in each cell of its fan
     for (uint32_t f = shell->fan_first[row]; f < shell->fan_first[row + 1]; f++) {
         const CellSprings *springs = &shell->cell_springs[shell->fan[f]];
         int i = 0;
@@ -284,6 +292,8 @@ void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *a
         plan->matrix.dt = dt;
         for (uint32_t i = 0; i < count; i++) matrix_invert(plan, i);
     }
+
+    // particles that are gone since the last step
     for (uint32_t first = 0; first < count; first = last) {
         last = count - first < LOOK ? count : first + LOOK;
         if (!matrix_lost_any(plan->alive, ablate->particle_flags, first, last)) continue;
@@ -293,6 +303,8 @@ void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *a
             matrix_cut_dead(plan, i);
         }
     }
+
+    // springs that are gone
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
         const uint8_t *flags = ablate->spring_flags[c], *known = plan->spring_alive + plan->spring_first[c];
         count = shell->springs[c].count;

@@ -150,9 +150,13 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
     uint32_t centre = shell_centre(shell, cell);
     double area = (double)shell->matter.area[centre];
     operator_weights(shell, cell, w);
+
+    // sides and diagonals, by the cell's weights
     for (int k = 0; k < 4; k++)
         conductance[first[SINGE_BLUE] + springs->blue[k]] += operator_side(plan, shell, cell, k, w[k]);
     for (int k = 0; k < 2; k++) conductance[first[SINGE_YELLOW] + springs->yellow[k]] = (float)w[4 + k];
+
+    // fluxes to the neighbours' centres
     for (int k = 0; k < 4; k++) {
         uint32_t other = shell_neighbour(shell, cell, k);
         if (other == SHELL_NONE || springs->green[k] == SHELL_NONE) continue;

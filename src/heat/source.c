@@ -22,6 +22,8 @@ static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *e
     const SingeTexture *texture = &def->texture;
     if (texture->width < 1 || texture->height < 1 || !texture->values) return source_bad(error, "the texture is empty");
     if (!isfinite(def->flux)) return source_bad(error, "flux must be finite");
+
+    // values of the texture
     float whitest = 0, strongest = def->strength_count ? 0 : 1;
     size_t count = (size_t)texture->width * (size_t)texture->height;
     for (size_t k = 0; k < count; k++) {
@@ -30,6 +32,8 @@ static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *e
             return error_set(error, SINGE_ERROR_ARGUMENT, "source", (int64_t)k,
                              "value %lld of the texture is not finite", (long long)k);
     }
+
+    // key frames of the strength
     if (def->strength_count && !def->strength) return source_bad(error, "strength is missing");
     for (uint32_t k = 0; k < def->strength_count; k++) {
         const SingeValueKey *key = &def->strength[k];
@@ -38,6 +42,8 @@ static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *e
                              "key %u of strength: times must increase and all be finite", k);
         strongest = fmaxf(strongest, fabsf(key->value));
     }
+
+    // the largest flux
     if (!((double)fabsf(def->flux) * (double)whitest * (double)strongest <= (double)SOURCE_FLUX_MAX))
         return source_bad(error, "flux times strength and texture must be at most 1e15 W/m2");
     return SINGE_OK;
@@ -278,9 +284,13 @@ static void source_contact_task(void *context, int begin, int end) {
     for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
         if (!plan->alive[i]) continue;
         Float3 normal, local = pose_unapply(&job->pose, float3_load(job->pass->state->dynamics->position[i]));
+
+        // distance at which a layer is in contact
         float behind = def->contact_distance + (def->sides == SINGE_SIDES_BOTH ? field_at(thickness, i) : 0);
         float limit = nextafterf(behind, INFINITY), distance = collider_distance(job->collider, local, limit, &normal);
         if (!(distance <= behind)) continue;
+
+        // of two layers only the one that faces the collider
         if (def->sides != SINGE_SIDES_BOTH || distance > def->contact_distance) {
             float outward = shell_is_corner(job->pass->shell, i) ? -1 : 1;
             Float3 sheet = source_normal(job->pass, i), away = quat_rotate(job->pose.rotation, normal);

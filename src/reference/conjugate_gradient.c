@@ -41,6 +41,8 @@ ProjectionReport conjugate_gradient(Network *network, uint32_t group, Pool *pool
                      0};
     int rows = (int)job.group->padded;
     ProjectionReport report = {0};
+
+    // iterate until the residual is small enough
     double rest = square;
     pool_for(pool, rows, POOL_BLOCK, conjugate_begin, &job);
     while (rest > enough && report.iterations < network->rules.iterations) {
@@ -56,6 +58,8 @@ ProjectionReport conjugate_gradient(Network *network, uint32_t group, Pool *pool
         job.beta = rest / before;
         pool_for(pool, rows, POOL_BLOCK, kernel->advance, &job);
     }
+
+    // residual and cost
     report.broken = report.broken || !isfinite(rest);
     report.residual = square > 0 ? sqrt(rest / square) : 0;
     double entries = (double)ellpack_entries(job.group), iterations = report.iterations;

@@ -53,6 +53,8 @@ static double projection_rows(void *task, int begin, int end) {
         g[0] = g[1] = g[2] = network->scale[k] = network->residual[k] = 0;
         if (group->weight[k] <= 0) continue;
         Row row = projection_row(network, group, (uint32_t)k);
+
+        // diagonal of J M^-1 J^T, with regularisation and compliance
         double both = w[group->ends[k][0]] + w[group->ends[k][1]];
         double square =
             row.gradient[0] * row.gradient[0] + row.gradient[1] * row.gradient[1] + row.gradient[2] * row.gradient[2];
@@ -60,6 +62,8 @@ static double projection_rows(void *task, int begin, int end) {
         if (!network->rules.literal)
             diagonal += 0.5 * group->regularisation * both + group->compliance[k] * network->rules.inverse_h2;
         if (!(diagonal > 0) || both <= 0) continue; // held at both ends, or no direction at all
+
+        // the row, scaled to a diagonal of 1
         for (int i = 0; i < 3; i++) g[i] = row.gradient[i];
         network->scale[k] = 1 / sqrt(diagonal);
         network->residual[k] = network->scale[k] * group->weight[k] * row.constraint;
@@ -110,10 +114,14 @@ ProjectionReport network_project(Network *network, uint32_t group, Pool *pool) {
     int rows = (int)job.group->padded;
     double entries = (double)ellpack_entries(job.group), particles = network->particle_count;
     double square = network_rows(network, group, pool), enough = rules->tolerance * rules->tolerance * square;
+
+    // the error at which to stop
     if (rules->early_exit) {
         double lengths = pool_sum(pool, rows, projection_lengths, &job, network->partial);
         enough = fmax(enough, rules->tolerance * rules->tolerance * lengths);
     }
+
+    // assemble, solve and move
     ProjectionReport report = {.broken = !isfinite(square)};
     if (!report.broken && square > enough) {
         ellpack_assemble(network, group, pool);

@@ -83,6 +83,8 @@ void shell_free(Memory *memory, Shell *shell) {
 static void bcs_lay_sheet(Shell *shell, uint32_t index, const SheetSource *source) {
     const Sheet *sheet = &shell->sheets[index];
     uint32_t centre = shell_centre(shell, sheet->cell_first), count = source->sheet.vertex_count;
+
+    // vertices, and those in reserve
     for (uint32_t i = 0; i < sheet->vertex_count; i++) {
         uint32_t p = sheet->vertex_first + i, v = i < count ? i : 0;
         for (int k = 0; k < 3; k++) shell->rest_position[p][k] = source->position[v][k];
@@ -91,6 +93,8 @@ static void bcs_lay_sheet(Shell *shell, uint32_t index, const SheetSource *sourc
         int32_t from = i >= count ? -1 : source->source_vertex ? source->source_vertex[v] : (int32_t)v;
         shell->source_vertex[p] = from < 0 ? -1 : (int32_t)sheet->source_first + from;
     }
+
+    // cells: corners, their uv and sources
     for (uint32_t c = 0; c < sheet->cell_count; c++) {
         float *uv = shell->uv[centre + c];
         for (int i = 0; i < 4; i++) {
@@ -222,6 +226,8 @@ static SingeResult spring_colour(Memory *memory, const HalfEdges *mesh, Shell *s
     LooseSprings loose = {.count = count};
     uint32_t *number = NULL, *ends = NULL;
     SingeResult result;
+
+    // ends of the springs, pairs that continue each other, strands
     if (NEW(memory, loose.ends, count) && NEW(memory, loose.mate, (size_t)2 * count) && NEW(memory, number, count) &&
         NEW(memory, ends, (size_t)mesh->fan_longest + 1)) {
         for (uint32_t e = 0; e < 2 * count; e++) loose.mate[e] = SHELL_NONE;
@@ -233,6 +239,8 @@ static SingeResult spring_colour(Memory *memory, const HalfEdges *mesh, Shell *s
     } else {
         result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for %u springs", count);
     }
+
+    // scratch
     FREE(memory, loose.ends, count);
     FREE(memory, loose.mate, (size_t)2 * count);
     FREE(memory, number, count);
@@ -292,17 +300,23 @@ SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t so
     *shell = (Shell){0};
     TRY(shell_count(sources, source_count, shell, error));
     SingeResult result = SINGE_OK;
+
+    // cells, fans, families, matter
     if (!shell_alloc(memory, any_seams(sources, source_count), shell) ||
         (bcs_lay_sheets(shell, sources), list_fans(shell), !colour_cells(memory, shell)) ||
         !matter_create(memory, shell, sources))
         result =
             error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells", shell->cell_count);
+
+    // springs and their measures
     if (result == SINGE_OK) result = build_springs(memory, shell, error);
     if (result == SINGE_OK) {
         measure_particles(shell);
         matter_weigh(shell, sources);
         result = measure_springs(shell, error);
     }
+
+    // reserves of tears, directions of fibres
     if (result == SINGE_OK && !split_reserve(memory, shell))
         result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the edges of tears");
     if (result == SINGE_OK && !fibre_measure(memory, shell))

@@ -39,10 +39,14 @@ static SingeResult match(const uint32_t *order, Shell *shell, HalfEdges *mesh, S
     uint32_t count = 4 * shell->cell_count;
     for (uint32_t k = 0, size; k < count; k += size) {
         uint32_t a = order[k], low = half_low(shell, a), high = half_high(shell, a);
+
+        // half edges between the same two vertices are consecutive
         for (size = 1; k + size < count; size++)
             if (half_low(shell, order[k + size]) != low || half_high(shell, order[k + size]) != high) break;
         if (size > 2) return edge_fail(shell, order[k + 2], "has more than two cells, the third of which is", error);
         shell->cell_springs[a / 4].blue[a & 3] = mesh->edge_count;
+
+        // shared by two cells, or a border
         if (size == 2) {
             uint32_t b = order[k + 1];
             if (half_from(shell, a) == half_from(shell, b))

@@ -103,6 +103,8 @@ bool matter_create(Memory *memory, Shell *shell, const SheetSource *sources) {
         if (!field_vary(memory, field, particles)) return false;
         for (uint32_t s = 0; s < sheets; s++) matter_fill(shell, &shell->sheets[s], &sources[s], p, field);
     }
+
+    // heat capacity: uniform unless mass or specific heat varies
     if (!field_create(memory, &matter->capacity_ratio, 1)) return false;
     if (!weighs_evenly && !field_vary(memory, &matter->capacity_ratio, particles)) return false;
     return NEW(memory, matter->area, particles) && NEW(memory, matter->mass, particles) &&

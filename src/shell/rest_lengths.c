@@ -45,6 +45,8 @@ static void share_area(double p[4][3], CellShape *shape) {
 CellShape cell_shape(const float *const corners[4]) {
     CellShape shape = {0};
     double p[4][3], diagonal[2][3], side[3];
+
+    // corners and centre
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 3; k++) {
             p[i][k] = (double)corners[i][k];
@@ -57,6 +59,8 @@ CellShape cell_shape(const float *const corners[4]) {
         if (i == 0 || length < shape.shortest) shape.shortest = length;
         if (i == 0 || length > shape.longest) shape.longest = length;
     }
+
+    // normal and area
     subtract(p[2], p[0], diagonal[0]);
     subtract(p[3], p[1], diagonal[1]);
     rest_cross(diagonal[0], diagonal[1], shape.normal);
@@ -124,6 +128,8 @@ SingeResult measure_springs(Shell *shell, SingeError *error) {
             double x = (double)b[0] - (double)a[0], y = (double)b[1] - (double)a[1], z = (double)b[2] - (double)a[2];
             set->rest[s] = (float)sqrt(x * x + y * y + z * z);
             if (isnormal(set->rest[s])) continue;
+
+            // a spring without length: name its vertex or cell
             uint32_t p = set->ends[s][0];
             const Sheet *sheet = &shell->sheets[shell->matter.sheet[p]];
             bool corner = shell_is_corner(shell, p);
@@ -133,6 +139,8 @@ SingeResult measure_springs(Shell *shell, SingeError *error) {
                              sheet->name, corner ? "vertex" : "the centre of cell", element);
         }
     }
+
+    // median edge of each sheet
     for (uint32_t i = 0; i < shell->sheet_count; i++)
         shell->sheets[i].cell_size = median_edge(shell, &shell->sheets[i]);
     return SINGE_OK;

@@ -57,6 +57,8 @@ static SingeResult check_def(const SingeSheetDef *def, const char *name, SingeEr
     if ((uint64_t)def->vertex_count + def->cell_count > INT32_MAX || def->cell_count > INT32_MAX / 4)
         return error_set(error, SINGE_ERROR_LIMIT, "sheet", -1, "sheet '%s': %u vertices and %u cells are too many",
                          name, def->vertex_count, def->cell_count);
+
+    // arrays
     if (!def->positions || !def->cells) return argument(name, "positions or cells are NULL", error);
     if (def->corner_uv && !def->uv) return argument(name, "corner_uv needs uv, too", error);
     if (def->corner_source_vertex && (!def->corner_uv || !def->source_vertex))
@@ -66,6 +68,8 @@ static SingeResult check_def(const SingeSheetDef *def, const char *name, SingeEr
     for (uint32_t i = 0; i < def->attribute_count; i++)
         if (!def->attributes[i].name || !def->attributes[i].values)
             return argument(name, "an attribute has no name or no values", error);
+
+    // numbers
     for (int k = 0; k < 3; k++)
         if (!isfinite(def->velocity[k])) return argument(name, "velocity is not finite", error);
     if (!(isfinite(def->drop_pieces_below) && def->drop_pieces_below >= 0))

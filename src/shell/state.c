@@ -29,6 +29,8 @@ uint32_t shell_nowhere_count(const Shell *shell) {
 /// Points the arrays into the block at `base` and returns the block's size; *basic is that of all but the lengths.
 static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basic) {
     size_t used = 0, particles = shell->particle_count;
+
+    // particles and cells
     TAKE(state->dynamics.position, particles + shell_nowhere_count(shell));
     TAKE(state->dynamics.velocity, particles);
     TAKE(state->heat.temperature, particles);
@@ -48,10 +50,14 @@ static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basi
         TAKE(state->dynamics.bend, shell->springs[SINGE_GREEN].count);
         TAKE(state->dynamics.crease, shell->springs[SINGE_GREEN].count);
     }
+
+    // springs and tears
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         TAKE(state->ablate.spring_flags[colour], shell->springs[colour].count);
     TAKE(state->tear.line_force, shell->spare_count ? shell->cell_count : 0);
     TAKE(state->tear.splits, shell->spare_count);
+
+    // springs' lengths, which a backup leaves out
     *basic = used;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         TAKE(state->burn.spring_length[colour], shell->springs[colour].count);

@@ -58,9 +58,13 @@ static void trace_from(Trace *trace, uint32_t step) {
             end_strand(trace);
             begin_strand(trace, step_from(springs, step));
         }
+
+        // take the spring
         trace->steps[trace->length++] = step;
         trace->done[step / 2] = 1;
         trace->visitor[next] = trace->strand_count;
+
+        // go on with the one that continues it
         uint32_t mate = springs->mate[step ^ 1];
         bool goes_on = mate != SHELL_NONE && !trace->done[mate / 2];
         if (closes) trace->ring[trace->strand_count] = 1;

@@ -32,6 +32,8 @@ SingeResult singe_sim_advance(SingeSim *sim, double seconds, uint32_t steps_max,
     if (!(seconds >= 0 && seconds <= 1e6))
         return sim_fail(sim, SINGE_ERROR_ARGUMENT, "advance", -1, "seconds must be between 0 and 1e6");
     if (!advance_reserve(sim)) return sim_fail(sim, SINGE_ERROR_MEMORY, "advance", -1, "out of memory for events");
+
+    // steps that fit in the remainder
     sim->gathered.count = 0;
     sim->gathers = true;
     sim->remainder += seconds;

@@ -91,6 +91,8 @@ static SingeResult pin_check(SingeSim *sim, const SingePinDef *def) {
         return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "neither points nor vertices are given");
     if (def->point_count && !def->points) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "points is NULL");
     if (def->vertex_count && !def->vertices) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "vertices is NULL");
+
+    // points and vertices
     for (size_t k = 0; k < 3 * (size_t)def->point_count; k++)
         if (!(fabsf(def->points[k]) <= pin_position_max))
             return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "pin", (int64_t)(k / 3),
@@ -111,6 +113,8 @@ static bool pin_gather(SingeSim *sim, const SingePinDef *def, Pin *pin) {
     uint32_t *nearest = NULL;
     uint8_t *listed = NULL;
     bool ok = NEW(memory, nearest, def->point_count) && NEW(memory, listed, shell->particle_count);
+
+    // which particles are held
     if (ok) {
         for (uint32_t k = 0; k < def->point_count; k++)
             nearest[k] = pin_nearest(shell, sheet, def->points + 3 * (size_t)k);
@@ -160,6 +164,8 @@ SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *given, SingePinI
     if (!pin) return sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
     TRY(path_set(&pin->path, &sim->memory, def.path_count, def.path, "pin", &sim->error));
     pin->user_data = def.user_data;
+
+    // particles now, or at the commit
     SingeResult result = SINGE_OK;
     if (sim->committed) result = pin_hold(sim, &def, pin);
     else if (!pin_wait(sim, &def, pin)) result = sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
@@ -167,6 +173,8 @@ SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *given, SingePinI
         sim_free_pin(sim, pin);
         return result;
     }
+
+    // only now is the slot taken
     if (sim->committed) dynamics_plan_hold(sim->dynamics, &sim->shell, &sim->state);
     pin->generation = sim_take_slot(sim, &sim->pins.count, index);
     *id = (SingePinId){index, pin->generation};

@@ -74,6 +74,8 @@ static SingeResult network_check(const SingeNetworkDef *def, SingeError *error) 
         return network_refuse(error, (int64_t)bad, "weights must be between 0 and 1");
     if (!all_within(def->compliances, def->spring_count, 0, 1e9, &bad))
         return network_refuse(error, (int64_t)bad, "compliances must be between 0 and 1e9 m/N");
+
+    // ends and sets of the springs
     for (uint32_t k = 0; k < def->spring_count; k++) {
         uint32_t a = def->ends[2 * (size_t)k], b = def->ends[2 * (size_t)k + 1];
         if (a >= def->particle_count || b >= def->particle_count || a == b)
@@ -98,6 +100,8 @@ static void network_fill(const SingeNetworkDef *def, Network *network, uint32_t 
         rows[s] = 0;
         network->groups[s].regularisation = def->regularisation;
     }
+
+    // springs, in the rows of their sets
     for (uint32_t k = 0; k < def->spring_count; k++) {
         SpringGroup *group = &network->groups[set_of(def, k)];
         uint32_t row = rows[set_of(def, k)]++;
@@ -121,6 +125,7 @@ static SingeResult network_build(const SingeNetworkDef *def, SingeNetwork *netwo
     ok = NEW(memory, ends, def->spring_count) && ok;
     SingeResult result = SINGE_ERROR_MEMORY;
     if (ok) {
+        // sort the springs by set
         for (uint32_t k = 0; k < def->spring_count; k++) sets[set_of(def, k)].count++;
         for (uint32_t s = 0, first = 0; s < def->set_count; first += sets[s++].count) {
             sets[s].ends = (const uint32_t(*)[2])(ends + first);
@@ -130,6 +135,8 @@ static SingeResult network_build(const SingeNetworkDef *def, SingeNetwork *netwo
             memcpy(ends[rows[set_of(def, k)]++], def->ends + 2 * (size_t)k, sizeof *ends);
         result = network_create(memory, def->particle_count, def->set_count, sets, true, &network->network);
     }
+
+    // numbers, then free the scratch
     if (!result) network_fill(def, &network->network, rows);
     FREE(memory, sets, def->set_count);
     FREE(memory, rows, def->set_count);

@@ -202,6 +202,8 @@ SingeResult singe_sim_set_material(SingeSim *sim, SingeSheetId id, const SingeMa
         if (!float_within(share[v], 0, 1))
             return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "material", v,
                              "the share of vertex %u must be between 0 and 1", v);
+
+    // evaluate the new material, and mix it with the old
     const SingeSheetDef def = material_sheet(source, &material);
     TRY(sheet_source_create(&sim->memory, &def, &other, &sim->error));
     MaterialValues values = {0};
@@ -210,6 +212,8 @@ SingeResult singe_sim_set_material(SingeSim *sim, SingeSheetId id, const SingeMa
     if (!material_mix(sim, source, &other, share, &values))
         result = sim_fail(sim, SINGE_ERROR_MEMORY, "material", -1, "out of memory");
     sheet_source_free(&sim->memory, &other);
+
+    // take the values over
     if (!result) result = material_take(sim, source, &values);
     Memory *memory = !result && sim->committed ? &before : &sim->memory;
     for (int p = 0; p < PARAM_COUNT; p++) FREE(memory, values.values[p], total);

@@ -22,6 +22,8 @@ static const char *sim_check_solver(const SingeSolverDef *solver) {
     if (!float_within(solver->stiffness, 1e-6f, 1e9f)) return "solver.stiffness must be between 1e-6 and 1e9 N/m";
     if (solver->substeps < 0 || solver->substeps > 1000)
         return "solver.substeps must be between 1 and 1000, or 0 for as many as the stiffness needs";
+
+    // colours
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
         int colour = (int)solver->order[i];
         if (colour < 0 || colour >= SINGE_COLOUR_COUNT || seen[colour])
@@ -30,6 +32,8 @@ static const char *sim_check_solver(const SingeSolverDef *solver) {
         if (!float_within(solver->regularisation[i], 1e-6f, 1e6f))
             return "solver.regularisation must be between 1e-6 and 1e6";
     }
+
+    // internal friction and heights
     if (!float_within(solver->smoothing, 0, 1e6f)) return "solver.smoothing must be between 0 and 1e6 1/s";
     if (!float_within(solver->smoothing_length, 0, 1e3f)) return "solver.smoothing_length must be between 0 and 1000 m";
     if (!float_within(solver->height_min, 0, 1)) return "solver.height_min must be between 0 and 1";
@@ -79,6 +83,8 @@ static bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
     memcpy(def, bytes, rest < head ? rest : head);
     def->struct_size = sizeof *def;
     if (rest <= head) return true;
+
+    // Defs inside, each of its own size
     bytes += head, rest -= head;
     if (!sim_read_def(&def->wind, sizeof def->wind, bytes, rest)) return false;
     memcpy(&wind, bytes, sizeof wind);
@@ -103,6 +109,8 @@ SingeResult singe_sim_create(const SingeSimDef *given, SingeSim **out, SingeErro
     TRY(sim_check_def(&def, error));
     if (!dynamics_runs_here(def.instructions))
         return error_set(error, SINGE_ERROR_LIMIT, "simulation", -1, "this processor lacks the requested instructions");
+
+    // memory and threads
     Memory memory = memory_make(def.allocator);
     SingeSim *sim = memory_new(&memory, 1, sizeof *sim);
     if (!sim) return error_set(error, SINGE_ERROR_MEMORY, "simulation", -1, "out of memory");

@@ -243,9 +243,13 @@ void singe_init_sim(SingeSimDef *def, size_t struct_size) {
         fill_def(def, struct_size, &standard, head);
         return;
     }
+
+    // sizes of the Defs inside
     size_t wind = inner_size(bytes + head, struct_size - head), left = struct_size - head - wind;
     size_t solver = inner_size(bytes + head + wind, left);
     size_t gas = inner_size(bytes + head + wind + solver, left - solver);
+
+    // fill each by its size
     fill_def(def, head, &standard, head);
     memcpy(def, &struct_size, sizeof struct_size);
     fill_def(bytes + head, wind, &standard.wind, sizeof standard.wind);

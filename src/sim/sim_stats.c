@@ -51,6 +51,8 @@ static void stats_strain(const SingeSim *sim, SingeStats *stats) {
         if (ablate_level(&sim->shell, &sim->state, blue->ends[k][0]) < 0 &&
             ablate_level(&sim->shell, &sim->state, blue->ends[k][1]) < 0)
             continue;
+
+        // strain of a drawn edge
         Float3 d = float3_sub(float3_load(sim->state.dynamics.position[blue->ends[k][1]]),
                               float3_load(sim->state.dynamics.position[blue->ends[k][0]]));
         float strain = fabsf(float3_length(d) / sim->state.burn.spring_length[SINGE_BLUE][k] - 1);
@@ -58,6 +60,8 @@ static void stats_strain(const SingeSim *sim, SingeStats *stats) {
         if ((double)strain > stats->strain_max) stats->strain_max = (double)strain;
         sim->sample[n++] = strain;
     }
+
+    // mean and percentile
     if (n == 0) return;
     stats->strain_mean = sum / (double)n;
     stats->strain_p99 = (double)stats_select(sim->sample, n, (size_t)(0.99 * (double)(n - 1)));

@@ -31,6 +31,8 @@ void singe_sim_read_view(const SingeSim *sim, SingeView *out, size_t struct_size
         .line_force = shell->spare_count ? (const float(*)[6])state->tear.line_force : NULL,
         .source_vertex = shell->source_vertex,
     };
+
+    // springs by colour
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         view.spring_count[colour] = shell->springs[colour].count;
         view.springs[colour] = (const uint32_t(*)[2])shell->springs[colour].ends;

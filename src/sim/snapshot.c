@@ -49,15 +49,21 @@ static SingeResult snapshot_state(Stream *stream, SingeSim *sim) {
     STREAM(stream, state->ablate.mass_removed);
     STREAM(stream, state->tear.split_count);
     STREAM(stream, sim->heat_start);
+
+    // the arena
     uint64_t size = state->arena_size;
     STREAM(stream, size);
     stream->failed |= size != state->arena_size;
     stream_data(stream, state->arena, state->arena_size);
+
+    // tears change the Shell: repeat them
     if (stream->mode == STREAM_READ && !stream->failed) // the shell is as built: it tears again as it did
         stream->failed = state->tear.split_count > sim->shell.spare_count ||
                          !split_replay(&sim->shell, state->tear.splits, state->tear.split_count) ||
                          !snapshot_state_fits(sim);
     if (stream->failed) return SINGE_OK; // the caller tells
+
+    // plans that keep something
     SingeResult result = dynamics_plan_stream(sim->dynamics, &sim->shell, state, stream);
     if (sim->gas) gas_plan_stream(sim->gas, &sim->state.gas, stream);
     return result;

@@ -42,6 +42,8 @@ static bool snapshot_sheet(Stream *stream, Memory *memory, SheetSource *source) 
         !snapshot_array(stream, memory, &source->cells, cells, sizeof *source->cells) ||
         !snapshot_array(stream, memory, &source->uv, vertices, sizeof *source->uv))
         return false;
+
+    // arrays that may be absent
     uint8_t seams = source->corner_uv != NULL, numbered = source->source_vertex != NULL;
     uint8_t corners = source->corner_source != NULL;
     STREAM(stream, corners);
@@ -51,6 +53,8 @@ static bool snapshot_sheet(Stream *stream, Memory *memory, SheetSource *source) 
         (corners && !snapshot_array(stream, memory, &source->corner_source, cells, sizeof *source->corner_source)) ||
         (numbered && !snapshot_array(stream, memory, &source->source_vertex, vertices, sizeof *source->source_vertex)))
         return false;
+
+    // parameters
     for (int p = 0; p < PARAM_COUNT; p++) {
         uint8_t varies = source->values[p] != NULL;
         STREAM(stream, source->value[p]);
@@ -141,6 +145,8 @@ static bool snapshot_deform(Stream *stream, Memory *memory, Deform *deform) {
         return snapshot_mesh(stream, memory, &given) &&
                snapshot_motion(stream, memory, given.vertex_count, &deform->motion);
     }
+
+    // reading: build the tree again
     MeshSolid given = {0};
     Motion motion = {0};
     bool ok = snapshot_mesh(stream, memory, &given) && snapshot_motion(stream, memory, given.vertex_count, &motion);

@@ -65,6 +65,8 @@ static void march_draw(Fine *fine, const Piece *piece) {
     const int first = surface_fan(level, NEAREST);
     uint32_t polygon[4];
     int count = 0;
+
+    // corners inside and cuts, without repetitions
     for (int i = 0; i < 3; i++) {
         int a = (first + i) % 3, b = (a + 1) % 3;
         bool in = level[a] >= 0, next = level[b] >= 0;
@@ -76,6 +78,8 @@ static void march_draw(Fine *fine, const Piece *piece) {
             if (!count || polygon[count - 1] != vertex[m]) polygon[count++] = vertex[m];
     }
     if (count > 1 && polygon[count - 1] == polygon[0]) count--;
+
+    // a fan of triangles
     for (int k = 2; k < count; k++) {
         uint32_t *triangle = fine->surface->triangles[fine->surface->triangle_count++];
         triangle[0] = polygon[0] - 1, triangle[1] = polygon[k - 1] - 1, triangle[2] = polygon[k] - 1;
@@ -204,6 +208,8 @@ static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *f
                    splits - j - 1,
                    .first = &first[j],
                    .last = &last[j]};
+
+        // cuts of the row's lower and upper line
         memset(line[j & 1], 0, sizeof line[j & 1]);
         for (int i = 0; i < row.lower; i++)
             row.lower_cut[i] = j == 0 ? side_cut(fine, cell, side, row.lower, i) : &line[(j + 1) & 1][i];

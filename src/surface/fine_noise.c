@@ -83,6 +83,8 @@ FineValue fine_value(const Fine *fine, FineLocation location) {
     if (fine->sheets[sheet].reach > 0) {
         float depth = eaten(fine, location, &fine->sheets[sheet], &angle);
         x = half_max(depth, fine->axes[location.cell][0]), y = half_max(depth, fine->axes[location.cell][1]);
+
+        // the min over three directions
         float c = real_cosf(angle), s = real_sinf(angle);
         const float across = 0.8660254f; // of 120 degrees
         const float direction[3][2] = {
@@ -93,6 +95,8 @@ FineValue fine_value(const Fine *fine, FineLocation location) {
             if (value < min) min = value, min_location = there;
         }
     }
+
+    // edges of tears
     if (fine->flags[location.cell] & FINE_TEAR_EDGE) min = fminf(min, fine_tear_level(fine, location));
     return (FineValue){min, fine_spline_at(shell, &fine->splines[SPLINE_MASS], min_location)};
 }

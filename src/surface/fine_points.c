@@ -182,6 +182,8 @@ static void evaluate_vertices(void *context, int begin, int end) {
             if (!points_alive(fine, shell->fan[k])) gone = true;
             else if (home == SHELL_NONE) home = shell->fan[k];
         }
+
+        // its value in one of the cells that are left
         fine->values[v] = (FineValue){-1, 0};
         if (home == SHELL_NONE) continue;
         fine->values[v] = particle_value(fine, v);

@@ -138,6 +138,8 @@ static void gather_shares(Fine *fine) {
         const uint32_t *at = shell->cells[c];
         Float3 centre = centre_of(at, position);
         float whole = fine->sound[c]; // what the normal at the virtual centre allows
+
+        // each side allows its corners a share and a height
         for (int i = 0; i < 4; i++) {
             const uint32_t corner[2] = {at[i], at[(i + 1) & 3]};
             Float3 a = float3_sub(float3_load(position[corner[0]]), centre),
@@ -224,12 +226,16 @@ void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocati
                                   shell_centre(fine->shell, location->cell)};
     const Float3 corner[3] = {float3_load(corners[particle[0]]), float3_load(corners[particle[1]]),
                               centre_of(at, corners)};
+
+    // the flat triangle
     Float3 normals[3], flat = weigh(corner, location->weight);
     for (int i = 0; i < 3; i++) normals[i] = float3_load(fine->normal[particle[i]]);
     Float3 lean = float3_unit(weigh(normals, location->weight));
     float share = blend_corners(at, location, fine->share), max = blend_corners(at, location, fine->max), x, y;
     float3_store(position, flat), float3_store(normal, unit_or_up(lean));
     if (!(share * max > 0)) return;
+
+    // the smooth patch beneath the point
     fine_coordinates(*location, &x, &y);
     const float u = x + 0.5f, v = y + 0.5f;
     float du, dv;
@@ -238,10 +244,14 @@ void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocati
     Float3 beneath = float3_mad(float3_scale(lean, 1 - regular * regular), across(&point), regular * regular);
     share *= fade(float3_dot(beneath, lean), 0.6f, 0.85f);
     if (!(share > 0)) return;
+
+    // position, limited in height
     float height = share * float3_dot(float3_sub(point.position, flat), beneath) / float3_dot(beneath, lean);
     if (fabsf(height) > max) share *= max / fabsf(height), height = copysignf(max, height);
     if (fabsf(height) > FLAT * float3_length(float3_sub(corner[1], corner[0])))
         float3_store(position, float3_mad(flat, lean, height));
+
+    // normal
     step_beneath(&point, flat, &du, &dv);
     share *= 1 - fade(fmaxf(fabsf(du), fabsf(dv)), 0.5f * STEP_MAX, STEP_MAX);
     float3_store(normal,

@@ -33,9 +33,13 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
     SingeSurface *surface = fine->surface;
     uint32_t centre = shell_centre(shell, location->cell);
     const uint32_t particle[3] = {at[location->side], at[(location->side + 1) & 3], centre};
+
+    // position, velocity, rest position
     fine_position_at(fine, patch, location, surface->position[v], surface->normal[v]);
     float3_store(surface->velocity[v], blend(at, location, (const float(*)[4])state->dynamics.velocity));
     float3_store(surface->rest_position[v], blend(at, location, (const float(*)[4])shell->rest_position));
+
+    // means over the triangle's corners
     float mass_min = 0, yield = 0, u = 0, w = 0;
     for (int i = 0; i < 3; i++) {
         u += location->weight[i] * shell->uv[particle[i]][0], w += location->weight[i] * shell->uv[particle[i]][1];
@@ -43,6 +47,8 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
         yield += location->weight[i] * field_at(shell->matter.char_yield, particle[i]);
     }
     surface->uv[v][0] = u, surface->uv[v][1] = w;
+
+    // fields by splines
     surface->temperature[v] = fine_spline_at(shell, &fine->splines[SPLINE_TEMPERATURE], *location);
     surface->temperature_peak[v] = fine_spline_at(shell, &fine->splines[SPLINE_PEAK], *location);
     surface->burn_rate[v] = fine_spline_at(shell, &fine->splines[SPLINE_RATE], *location);
@@ -51,6 +57,8 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
     surface->char_fraction[v] = yield * shell_char(vertex->mass, fuel, mass_min, yield);
     surface->ash_fraction[v] = fmaxf(vertex->mass - fuel - surface->char_fraction[v], 0);
     surface->burn[v] = shell_burn_progress(vertex->mass, mass_min);
+
+    // fields that are not interpolated smoothly
     surface->time_ignited[v] = blend_times(state->burn.time_ignited, particle, location->weight);
     surface->piece[v] = state->ablate.piece[particle[0]];
     surface->sheet[v] = shell->matter.sheet[centre];

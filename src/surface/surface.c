@@ -37,6 +37,8 @@ static Polygon surface_clip(const AblatePlan *plan, const Shell *shell, uint32_t
     const float level[3] = {plan->level[corner[0]], plan->level[corner[1]], plan->level[corner[2]]};
     const int first = surface_fan(level, SURFACE_NEAREST);
     Polygon polygon = {0};
+
+    // corners inside and cuts, without repetitions
     for (int i = 0; i < 3; i++) {
         int a = (first + i) % 3, b = (a + 1) % 3;
         float level_a = level[a], level_b = level[b];

@@ -89,6 +89,8 @@ SingeResult surface_grow_vertices(SingeSurface *surface, uint64_t count, SingeEr
     Memory memory = memory_make(surface->allocator);
     SingeSurface grown = {.vertex_capacity = (uint32_t)(count + count / 4), .allocator = surface->allocator};
     bool good = true;
+
+    // copy into larger arrays
     for (int i = 0; i < VERTEX_ARRAYS && good; i++) {
         const SurfaceArray *array = &vertex_arrays[i];
         void *from, *to;

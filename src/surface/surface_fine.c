@@ -103,6 +103,8 @@ static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError
     for (uint32_t s = 0; s < fine->shell->sheet_count; s++)
         fine->sheets[s] = fine_describe(detail, &fine->shell->sheets[s], s);
     fill_levels(fine);
+
+    // splines of the fields
     const float *const fields[SPLINE_COUNT] = {[SPLINE_LEVEL] = fine->raw_level,
                                                [SPLINE_MASS] = state->burn.mass,
                                                [SPLINE_FUEL] = state->burn.fuel,
@@ -112,6 +114,8 @@ static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError
     for (int f = 0; f < SPLINE_COUNT; f++)
         if (fields[f]) fine_spline(fine, fields[f], &fine->splines[f]);
     fine_spline_cells(fine, &fine->splines[SPLINE_WHOLE]);
+
+    // points, triangles, vertices, seams
     fine_position(fine);
     TRY(fine_points(fine, error));
     TRY(fine_march(fine, error));

@@ -112,10 +112,14 @@ static uint32_t copy_with(Seams *seams, uint32_t vertex, const float uv[2], floa
         surface->source_vertex[vertex] = source;
         return vertex;
     }
+
+    // a vertex that has this uv already
     for (uint32_t v = vertex; v != SHELL_NONE; last = v, v = seams->next[v])
         if (fabsf(surface->uv[v][0] - uv[0]) <= same && fabsf(surface->uv[v][1] - uv[1]) <= same &&
             surface->source_vertex[v] == source)
             return v;
+
+    // a new copy
     uint32_t copy = surface->vertex_count++;
     surface_copy_vertex(surface, vertex, copy);
     memcpy(surface->uv[copy], uv, 2 * sizeof *uv);

@@ -60,6 +60,8 @@ static Sample sample_particle(const Shell *shell, const State *state, uint32_t p
         .piece = state->ablate.piece[particle],
         .sheet = shell->matter.sheet[particle],
     };
+
+    // a vertex, or a virtual centre
     if (shell_is_corner(shell, particle)) {
         sample.position = float3_load(position[particle]);
         sample.velocity = float3_load(velocity[particle]);

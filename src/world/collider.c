@@ -53,10 +53,14 @@ SingeResult collider_create(Memory *memory, const SingeColliderDef *def, Collide
     memcpy(still.position, def->position, sizeof still.position);
     memcpy(still.rotation, def->rotation, sizeof still.rotation);
     const bool stands = def->path_count == 0;
+
+    // the Def without its arrays
     collider->def = *def;
     collider->def.path_count = stands ? 1 : def->path_count;
     collider->def.path = NULL;
     collider->def.vertices = NULL, collider->def.triangles = NULL, collider->def.heights = NULL;
+
+    // its path and its solid
     SingeResult result =
         path_set(&collider->path, memory, collider->def.path_count, stands ? &still : def->path, "collider", error);
     if (!result && def->kind == SINGE_COLLIDER_MESH)

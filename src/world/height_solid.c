@@ -35,12 +35,16 @@ SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows,
         if (!(size[d] >= 1e-6f && size[d] <= 1e4f)) what = "size must be between 1e-6 and 10000 m";
     if (!heights) what = "heights are missing";
     if (what) return error_set(error, SINGE_ERROR_ARGUMENT, "collider", -1, "%s", what);
+
+    // heights
     size_t count = (size_t)columns * rows;
     for (size_t k = 0; k < count; k++)
         if (!(fabsf(heights[k]) <= 1e4f))
             return error_set(error, SINGE_ERROR_ARGUMENT, "collider", (int64_t)k,
                              "height %zu (column %zu, row %zu) is not finite or beyond 10 km", k, k % columns,
                              k / columns);
+
+    // grid and blocks
     const uint32_t n[2] = {columns, rows};
     for (int d = 0; d < 2; d++) {
         solid->half[d] = size[d] / 2;
@@ -52,6 +56,8 @@ SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows,
         height_solid_free(memory, solid);
         return error_set(error, SINGE_ERROR_MEMORY, "collider", -1, "out of memory for the heights");
     }
+
+    // copy, ranges
     for (size_t k = 0; k < count; k++) {
         solid->heights[k] = heights[k];
         solid->low = fminf(solid->low, heights[k]), solid->high = fmaxf(solid->high, heights[k]);

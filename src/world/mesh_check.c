@@ -122,6 +122,8 @@ static void mesh_turn(MeshSolid *solid) {
             volume += p[0][i] * (p[1][e] * p[2][f] - p[1][f] * p[2][e]);
         }
     }
+
+    // inside out: flip all
     solid->turned = volume < 0;
     for (uint32_t t = 0; solid->turned && t < solid->triangle_count; t++) {
         uint32_t second = solid->triangles[t][1];
@@ -131,6 +133,7 @@ static void mesh_turn(MeshSolid *solid) {
 }
 
 static SingeResult mesh_link(const PairTable *edges, const uint32_t *source, MeshSolid *solid, SingeError *error) {
+    // each directed edge belongs to one triangle
     for (uint32_t t = 0; t < solid->triangle_count; t++)
         for (uint32_t i = 0; i < 3; i++) {
             uint32_t key[3] = {solid->triangles[t][i], solid->triangles[t][(i + 1) % 3], 0};
@@ -161,10 +164,14 @@ SingeResult mesh_solid_take(Memory *memory, uint32_t vertex_count, const float *
     uint32_t *first = NULL, *source = NULL;
     PairTable edges = {0};
     solid->vertex_count = vertex_count, solid->triangle_count = triangle_count, solid->room = triangle_count + 1;
+
+    // memory
     bool ok = NEW(memory, solid->vertices, vertex_count) && NEW(memory, solid->triangles, solid->room) &&
               NEW(memory, solid->neighbours, solid->room) && NEW(memory, first, vertex_count) &&
               NEW(memory, source, triangle_count) && table_create(memory, &edges, 3 * (size_t)triangle_count);
     SingeResult result = ok ? SINGE_OK : mesh_memory(error);
+
+    // join vertices, keep triangles that have an area, check that they close
     for (size_t k = 0; ok && k < 3 * (size_t)vertex_count; k++)
         solid->vertices[k / 3][k % 3] = vertices[k] + 0.0f; // one zero, not two
     if (!result) result = mesh_join(memory, solid, first, error);

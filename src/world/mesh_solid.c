@@ -194,10 +194,14 @@ float mesh_solid_distance(const MeshSolid *solid, Float3 p, float limit, Float3 
     bool within = true;
     *normal = float3(0, 0, 1);
     if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z)) return INFINITY; // every box of the tree would be near
+
+    // the grid's cell
     for (int d = 0; d < 3; d++) {
         within = within && q[d] >= 0 && q[d] < (float)solid->cells[d];
         at[d] = within ? (int)q[d] : 0;
     }
+
+    // bounds by the grid, or by the box outside of it
     float min = 0, max = INFINITY;
     if (within) {
         float coarse = solid_look(solid, at, p, &min, &max);
@@ -209,6 +213,8 @@ float mesh_solid_distance(const MeshSolid *solid, Float3 p, float limit, Float3 
         min = float3_length(out);
         if (min > 0 && min >= limit) return min;
     }
+
+    // the nearest triangle
     float square = SOLID_SLACK * max * max;
     uint32_t t = mesh_tree_nearest(solid, p, &square);
     return t == UINT32_MAX ? INFINITY : solid_signed(solid, p, t, normal);

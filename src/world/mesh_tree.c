@@ -123,6 +123,8 @@ bool mesh_tree_create(Memory *memory, MeshSolid *solid) {
     TreeBuild build = {.solid = solid};
     bool ok = NEW(memory, solid->order, count) && NEW(memory, solid->leaves, solid->leaf_count) &&
               NEW(memory, solid->nodes, nodes) && NEW(memory, build.centroid, count);
+
+    // centroids
     for (uint32_t t = 0; ok && t < count; t++) {
         solid->order[t] = t;
         for (int i = 0; i < 3; i++) {
@@ -131,6 +133,8 @@ bool mesh_tree_create(Memory *memory, MeshSolid *solid) {
             build.centroid[t][i] = a + b + solid->vertices[corner[2]][i];
         }
     }
+
+    // nodes and leaves
     if (ok && count > SOLID_WIDE) tree_build(&build, 0, count);
     if (ok && count <= SOLID_WIDE) { // a node all the same
         tree_leaf(&build, 0, count);
@@ -167,6 +171,8 @@ void mesh_tree_refit(MeshSolid *solid) {
     const uint32_t count = solid->triangle_count;
     for (uint32_t first = 0; first < count; first += SOLID_WIDE)
         tree_leaf(&build, first, count - first < SOLID_WIDE ? count - first : SOLID_WIDE);
+
+    // boxes from the leaves up
     solid->low = float3(INFINITY, INFINITY, INFINITY), solid->high = float3(-INFINITY, -INFINITY, -INFINITY);
     for (uint32_t n = solid->node_count; n-- > 0;) { // what a node holds has higher numbers
         SolidNode *node = &solid->nodes[n];
@@ -255,6 +261,8 @@ uint32_t mesh_tree_nearest(const MeshSolid *solid, Float3 at, float *square) {
     float best = *square;
     uint32_t found = UINT32_MAX;
     int depth = tree_push(&solid->nodes[0], p, best, stack, 0);
+
+    // depth first, through nodes that are near enough
     while (depth > 0) {
         TreeItem item = stack[--depth];
         if (!(item.square < best)) continue;
@@ -262,6 +270,8 @@ uint32_t mesh_tree_nearest(const MeshSolid *solid, Float3 at, float *square) {
             depth = tree_push(&solid->nodes[item.child], p, best, stack, depth);
             continue;
         }
+
+        // a leaf
         Float4 near = tree_triangles(&solid->leaves[~item.child], p);
         for (int i = 0; i < SOLID_WIDE; i++)
             if (near[i] < best) best = near[i], found = (uint32_t)~item.child * SOLID_WIDE + (uint32_t)i;
