@@ -25,12 +25,13 @@
 #include "analysis/wrinkles.h"
 #include "formats/formats.h"
 
-enum { OPT_FRAMES, OPT_CSV, OPT_COUNT };
+enum { OPT_FRAMES, OPT_CSV, OPT_NO_PREVIEW, OPT_COUNT };
 enum { EMBER_FRAMES = 4, EMBER_SCALE = 3 };
 
 static const ArgOption measure_options[OPT_COUNT] = {
     [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone) [all]"},
     [OPT_CSV] = {"csv", 0, "FILE", "writes the numbers of every frame to FILE, too"},
+    [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no frames, and so does not measure embers"},
 };
 
 static const ArgCommand measure_command = {
@@ -77,7 +78,7 @@ typedef struct Measure {
     Rim all_rim;
     Moment moments[3]; ///< this frame's at index frame mod 3
     Job job;
-    Pictures *pictures; ///< NULL where the program draws none
+    Pictures *pictures; ///< NULL where none are drawn
 } Measure;
 
 // ---- one frame
@@ -369,12 +370,14 @@ static ExitCode measure_all(Measure *measure) {
 
 int command_measure(int argc, char **argv) {
     Measure measure = {.console = console_make(false)};
+    bool draws = pictures_available();
     ArgReader reader = args_begin(&measure_command, argc, argv);
     const char *value, *path = NULL;
     for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
         if (option == ARG_HELP) return EXIT_GOOD;
         if (option == ARG_OPERAND) path = value;
         else if (option == OPT_CSV) measure.csv = value;
+        else if (option == OPT_NO_PREVIEW) draws = false;
         else if (option != OPT_FRAMES || !args_span(&reader, option, value, &measure.first, &measure.last))
             return EXIT_INPUT;
     }
@@ -384,7 +387,7 @@ int command_measure(int argc, char **argv) {
     measure.folder = folder_name(path, measure.job.scene->name);
     code = folder_span(&measure.folder, &measure.console, &measure.first, &measure.last);
     SingeError error = {0};
-    if (!code && pictures_available() && pictures_open_sharp(&measure.job, EMBER_SCALE, &measure.pictures, &error)) {
+    if (!code && draws && pictures_open_sharp(&measure.job, EMBER_SCALE, &measure.pictures, &error)) {
         console_result(&measure.console, &error);
         code = EXIT_FAILED;
     }

@@ -80,8 +80,10 @@ static void start_stage(Pool *pool, Slot *slot, Stage stage) {
     char *folder = sweep_row_folder(pool->sweep, slot->row, false), *log = text_format("%s/log.txt", folder);
     char *csv = text_format("--csv=%s/measure.csv", folder);
     char *measure[] = {pool->sweep->program, "measure", csv, "--", folder, NULL};
+    char *measure_undrawn[] = {pool->sweep->program, "measure", csv, "--no-preview", "--", folder, NULL};
     char **run = stage == STAGE_RUN ? sweep_run_command(pool->sweep, slot->row) : NULL;
-    int reason = stage == STAGE_RUN && !run ? ENOMEM : start(run ? run : measure, log, &slot->process);
+    char **command = run ? run : pool->sweep->options->no_preview ? measure_undrawn : measure;
+    int reason = stage == STAGE_RUN && !run ? ENOMEM : start(command, log, &slot->process);
     slot->stage = stage;
     if (reason) {
         char *why = text_format("cannot run %s: %s", pool->sweep->program, strerror(reason));

@@ -6,7 +6,7 @@ import os
 import struct
 import unittest
 
-from support import Case
+from support import HAS_PREVIEW, Case
 
 
 def read_ply(path):
@@ -80,6 +80,15 @@ class Measure(Case):
         _, rows = self.rows("--frames", "3-5")
         self.assertEqual([int(row["frame"]) for row in rows], [3, 4, 5])
         self.assertNotEqual(rows[1]["jitter_mm_per_s"], "")
+
+    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
+    def test_embers_are_drawn_unless_asked_otherwise(self):
+        drawn, without = self.rows()[1], self.rows("--no-preview")[1]
+        self.assertTrue(any(row["ember_width_mm"] for row in drawn))
+        self.assertFalse(any(row["ember_width_mm"] for row in without))
+        for row, other in zip(drawn, without):
+            row["ember_width_mm"] = ""
+            self.assertEqual(row, other)
 
     def test_refusals(self):
         for args, message in (
