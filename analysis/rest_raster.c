@@ -164,19 +164,34 @@ void rest_raster_free(RestRaster *raster) {
 
 enum { REACH_MAX = 64 };
 
-/// One pass along rows (step 1) or columns (step width) of `count` lines of `length` pixels.
-static void rest_raster_blur(const float *from, float *to, int lines, int line_step, int length, int step,
-                             const float *kernel, int reach) {
-    for (int line = 0; line < lines; line++)
-        for (int i = 0; i < length; i++) {
-            const float *at = from + (size_t)line * line_step + (size_t)i * step;
-            float sum = kernel[0] * *at;
-            for (int k = 1; k <= reach; k++) {
-                if (i - k >= 0) sum += kernel[k] * *(at - (size_t)k * step);
-                if (i + k < length) sum += kernel[k] * at[(size_t)k * step];
-            }
-            to[(size_t)line * line_step + (size_t)i * step] = sum;
+/// Adds to a line that of another, times `share`.
+static void line_add(float *restrict to, const float *restrict from, float share, int count) {
+    for (int i = 0; i < count; i++) to[i] += share * from[i];
+}
+
+static void blur_rows(const float *from, float *to, int width, int height, const float *kernel, int reach) {
+    for (int j = 0; j < height; j++) {
+        const float *line = from + (size_t)j * (size_t)width;
+        float *sum = to + (size_t)j * (size_t)width;
+        for (int i = 0; i < width; i++) sum[i] = kernel[0] * line[i];
+        for (int k = 1; k <= reach && k < width; k++) {
+            line_add(sum + k, line, kernel[k], width - k);
+            line_add(sum, line + k, kernel[k], width - k);
         }
+    }
+}
+
+/// Row by row as well: memory is read in its order.
+static void blur_columns(const float *from, float *to, int width, int height, const float *kernel, int reach) {
+    for (int j = 0; j < height; j++) {
+        const float *line = from + (size_t)j * (size_t)width;
+        float *sum = to + (size_t)j * (size_t)width;
+        for (int i = 0; i < width; i++) sum[i] = kernel[0] * line[i];
+        for (int k = 1; k <= reach; k++) {
+            if (j - k >= 0) line_add(sum, line - (size_t)k * (size_t)width, kernel[k], width);
+            if (j + k < height) line_add(sum, line + (size_t)k * (size_t)width, kernel[k], width);
+        }
+    }
 }
 
 void rest_raster_smooth(const RestRaster *raster, const float *field, double deviation, float *scratch, float *weight,
@@ -191,10 +206,10 @@ void rest_raster_smooth(const RestRaster *raster, const float *field, double dev
     for (int k = 1; k <= reach; k++) total += 2 * exp(-0.5 * k * k / (pixel * pixel));
     for (int k = 0; k <= reach; k++) kernel[k] = (float)(exp(-0.5 * k * k / (pixel * pixel)) / total);
     for (size_t p = 0; p < pixels; p++) covered[p] = field[p] * raster->cover[p];
-    rest_raster_blur(covered, scratch, height, width, width, 1, kernel, reach);
-    rest_raster_blur(scratch, smooth, width, 1, height, width, kernel, reach);
-    rest_raster_blur(raster->cover, scratch, height, width, width, 1, kernel, reach);
-    rest_raster_blur(scratch, weight, width, 1, height, width, kernel, reach);
+    blur_rows(covered, scratch, width, height, kernel, reach);
+    blur_columns(scratch, smooth, width, height, kernel, reach);
+    blur_rows(raster->cover, scratch, width, height, kernel, reach);
+    blur_columns(scratch, weight, width, height, kernel, reach);
     for (size_t p = 0; p < pixels; p++) smooth[p] = weight[p] > 0 ? smooth[p] / weight[p] : 0;
 }
 
