@@ -83,7 +83,8 @@ class Measure(Case):
 
     @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_embers_are_drawn_unless_asked_otherwise(self):
-        letter = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "examples", "letter", "letter.yaml")
+        root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+        letter = os.path.join(root, "examples", "letter", "letter.yaml")
         sets = ("pace=16", "gas=no", "preview.size=[160, 120]", "sheets.0.grid.cells=[21, 30]")
         self.singe("run", letter, "-o", self.path("o"), "--no-preview", "--frames", "14",
                    *(word for value in sets for word in ("--set", value)))
