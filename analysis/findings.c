@@ -63,7 +63,7 @@ void check_values(const CacheFrame *frame, Findings *findings) {
 
 static bool is_finite_point(const float p[3]) { return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]); }
 
-/// The corners are vertices at finite places.
+/// The corners are vertices at finite positions.
 static bool has_corners(const CacheFrame *frame, uint32_t triangle) {
     for (int k = 0; k < 3; k++) {
         const uint32_t vertex = frame->triangles[triangle][k];

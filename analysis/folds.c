@@ -69,7 +69,7 @@ static bool fold_at(const Work *work, int p, double cell, double along[2]) {
     return bend * cell > turn_min;
 }
 
-/// N at a place between pixels. False where one of them does not count.
+/// N at a position between pixels. False where one of them does not count.
 static bool normal_at(const Work *work, double x, double y, double normal[3]) {
     const RestRaster *raster = work->raster;
     int i = (int)floor(x), j = (int)floor(y);

@@ -8,7 +8,7 @@
 
 /// Sums over a frame, or over many.
 typedef struct Folds {
-    double power, count; ///< rad2, and places: the normal's angle along folds in wavelengths below three cells
+    double power, count; ///< rad2, and samples: the normal's angle along folds in wavelengths below three cells
 } Folds;
 
 /// Adds a frame's. False when out of memory.

@@ -29,7 +29,7 @@ static void corners_of(const Hinges *hinges, uint32_t triangle, Corners corners)
 // ---- who is across an edge
 
 typedef struct Side {
-    const float *at[2]; ///< the edge's ends in ascending order of their places
+    const float *at[2]; ///< the edge's ends in ascending order of their positions
     uint32_t ends[2];   ///< their vertices
     uint32_t triangle;
     uint8_t corner; ///< where the edge begins in it
@@ -71,7 +71,8 @@ static void hinges_join(Hinges *hinges, const Side *a, const Side *b) {
     hinges->far[b->triangle][b->corner] = (uint8_t)((a->corner + 2) % 3);
 }
 
-/// Joins the triangles of edges at one place: two of the same vertices, then two that have nobody else, as at a seam.
+/// Joins the triangles of edges at the same position: two of the same vertices, then two that have nobody else, as at a
+/// seam.
 static void join_at(Hinges *hinges, const Side *sides, size_t count) {
     const Side *alone[2];
     size_t loose = 0;

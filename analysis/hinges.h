@@ -9,7 +9,7 @@
 
 /// Keeps those of the pairs whose surfaces cross at an edge of one, and of two triangles there, that runs through the
 /// other or along an edge of it, and returns their number in *count. The two triangles at an edge have its vertices, or
-/// two of their own at the same places, as at a seam. Each crossing is kept for the lower triangle of either side.
+/// two of their own at the same positions, as at a seam. Each crossing is kept for the lower triangle of either side.
 /// Pairs that cross otherwise must not be among them. False when out of memory.
 bool hinges_find(const float (*position)[3], const uint32_t (*triangles)[3], uint32_t triangle_count,
                  uint32_t (*pairs)[2], size_t *count);

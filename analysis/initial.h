@@ -25,7 +25,7 @@ void initial_free(Initial *initial);
 /// Counts the pairs of triangles of a surface that cross, and says where the first is. False when out of memory.
 bool initial_count(const SingeSurface *surface, uint64_t *pairs, float at[3]);
 
-/// Whether both triangles are of places that crossed something at the start.
+/// Whether both triangles lie where something crossed at the start.
 bool initial_has(const Initial *initial, const CacheFrame *frame, uint32_t a, uint32_t b);
 
 #endif

@@ -1,4 +1,4 @@
-// Edges are open where no second triangle has the same two places at rest: so neither the edges of a tear nor seams of
+// Edges are open where no second triangle has the same two rest positions: so neither the edges of a tear nor seams of
 // the uv are taken for a rim. A grid of cells finds the nearest point.
 #include "analysis/rim_points.h"
 
@@ -24,7 +24,7 @@ typedef struct Corner {
     uint32_t vertex;
 } Corner;
 
-/// An edge by the numbers of its places at rest, the lower first, and by its vertices.
+/// An edge by the numbers of its rest positions, the lower first, and by its vertices.
 typedef struct Edge {
     uint32_t low, high, from, to;
 } Edge;
@@ -42,7 +42,7 @@ static int by_ends(const void *a, const void *b) {
     return (x->high > y->high) - (x->high < y->high);
 }
 
-/// Gives vertices at the same place at rest the same number. False when out of memory.
+/// Gives vertices at the same rest position the same number. False when out of memory.
 static bool number_positions(const SingeSurface *surface, uint32_t *number) {
     Corner *corners = malloc(((size_t)surface->vertex_count + 1) * sizeof *corners);
     if (!corners) return false;
@@ -125,7 +125,7 @@ static void fill_points(const SingeSurface *surface, const Edge *edges, size_t c
     }
 }
 
-/// The cell of a place along an axis; may lie outside.
+/// The cell of a position along an axis; may lie outside.
 static int cell_along(const RimPoints *points, double position, int axis) {
     return (int)floor((position - points->low[axis]) / points->cell);
 }
@@ -184,7 +184,8 @@ bool rim_points_make(const SingeSurface *surface, int32_t piece, RimPoints *poin
     return good;
 }
 
-/// Visits the points in the grid's cells that are `ring` cells from that of a place, to find one nearer than *square.
+/// Visits the points in the grid's cells that are `ring` cells from that of a position, to find one nearer than
+/// *square.
 static void look_at_ring(const RimPoints *points, const double *position, const int *centre, int ring, double *square,
                          uint32_t *nearest) {
     int low[3], high[3];

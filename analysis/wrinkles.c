@@ -6,7 +6,7 @@
 //   J_ij = sum over k of dN_k/dx_i dN_k/dx_j
 //
 // has the squares of the two principal bends as eigenvalues, and the direction across a crease is that of the larger.
-// A pixel counts with its area times the difference of the bends: round places have no direction.
+// A pixel counts with its area times the difference of the bends: round spots have no direction.
 //
 // Roughness. The band of wavelengths from 3 to 15 mm is N smoothed less N smoothed more, by Gaussians that halve waves
 // of 3 and of 15 mm: deviation = wavelength sqrt(2 ln 2)/(2 pi). Its square is the square of an angle.
@@ -22,7 +22,7 @@ static const double spacing = 0.75e-3, crease_deviation = 2e-3;
 static const double band_short = 3e-3, band_long = 15e-3;
 static const float around_burnt = 0.010f, far_from_burnt = 0.025f;
 
-/// Burn progress above which a place counts as burnt.
+/// Burn progress above which a pixel counts as burnt.
 static const float burnt_min = 0.05f;
 
 /// Beside an edge a Gaussian sees less than its whole: where it sees less than this share it is not trusted.

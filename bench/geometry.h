@@ -22,7 +22,7 @@ double geometry_folded(const SingeView *view, int cells);
 /// Cells whose centre is not on the front of their corners; such as have no area are in order.
 double geometry_inverted(const SingeView *view);
 
-/// The greatest ratio of a particle's distance from a place on the sheet to that at rest, of particles farther from
+/// The max ratio of a particle's distance from a point on the sheet to that at rest, of particles farther from
 /// it than 0.2 m at rest.
 double geometry_reach(const SingeView *view, const float *position);
 

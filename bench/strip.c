@@ -124,7 +124,7 @@ static double strip_front(const Strip *strip, const SingeView *view) {
     return (double)view->rest_position[i][0];
 }
 
-/// The line through places and times of ignition between the gates, by least squares.
+/// The line through positions and times of ignition between the gates, by least squares.
 static double strip_speed(const Strip *strip, const SingeView *view) {
     double n = 0, x1 = 0, t1 = 0, xt = 0, tt = 0;
     for (uint32_t v = 0; v < view->vertex_count; v++) {

@@ -14,9 +14,9 @@ typedef struct StripSetup {
     bool gas;
     float gas_cell; ///< m, 0: as it comes
     int threads;
-    int patience;      ///< steps without a new place reached, after which the fire has gone out
+    int patience;      ///< steps without progress, after which the fire has gone out
     uint64_t work_max; ///< steps, and iterations of their conduction, in all
-    /// Moves a vertex from its place on the grid; NULL: none.
+    /// Moves a vertex from its position on the grid; NULL: none.
     void (*shape)(float x[3], uint32_t column, uint32_t row, float cell);
 } StripSetup;
 

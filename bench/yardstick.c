@@ -35,7 +35,7 @@ Yardstick *yardstick_create(void) {
     return yardstick;
 }
 
-/// The same places before every run: the same work, and no numbers so small that they slow it.
+/// The same positions before every run: the same work, and no numbers so small that they slow it.
 static void particles_lay_out(float (*position)[4]) {
     for (uint32_t i = 0; i < PARTICLES; i++) {
         float *x = position[i];

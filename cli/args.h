@@ -27,7 +27,7 @@ typedef struct ArgReader {
     const ArgCommand *command;
     int argc, index;
     char **argv;
-    int letters;        ///< place within a group of one-letter switches
+    int letters;        ///< position within a group of one-letter switches
     bool operands_only; ///< after "--"
     int operand_count;
 } ArgReader;

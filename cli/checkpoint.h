@@ -1,5 +1,6 @@
-// DIR/checkpoint.singe, and the one before it in DIR/checkpoint.previous.singe: a snapshot of the simulation, then a trailer with the frame that it comes after, the steps
-// since, the hash of the scene and a checksum. Written whole or not at all, after everything of its frame.
+// DIR/checkpoint.singe, and the one before it in DIR/checkpoint.previous.singe: a snapshot of the simulation, then a
+// trailer with the frame that it comes after, the steps since, the hash of the scene and a checksum. Written whole or
+// not at all, after everything of its frame.
 #ifndef CLI_CHECKPOINT_H
 #define CLI_CHECKPOINT_H
 
@@ -55,7 +56,7 @@ typedef struct Checkpoint {
 SINGE_NODISCARD SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, SceneHash hash,
                                             const SceneAssets *assets, Checkpoint *checkpoint, SingeError *error);
 
-/// Puts the checkpoint before the last in the place of the last, which cannot be used: so the next one written does not
+/// Puts the checkpoint before the last instead of the last, which cannot be used: so the next one written does not
 /// replace the only good one.
 SINGE_NODISCARD SingeResult checkpoint_promote(const Folder *folder, SingeError *error);
 

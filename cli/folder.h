@@ -38,8 +38,8 @@ typedef struct FolderParts {
     OutputSet outputs;
 } FolderParts;
 
-/// Makes ply/ and, as `parts` ask, frames/, gas/, gas_detail/, exr/ and those of formats in the folder, which must be there. A link
-/// in the place of one of them is refused: what it points at is not ours.
+/// Makes ply/ and, as `parts` ask, frames/, gas/, gas_detail/, exr/ and those of formats in the folder, which must be
+/// there. A link instead of one of them is refused: what it points at is not ours.
 SINGE_NODISCARD SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *error);
 
 /// Paths of a frame, from malloc.

@@ -16,8 +16,8 @@ SINGE_NODISCARD SingeResult gas_detail_write_frame(const char *path, const Frame
 SINGE_NODISCARD SingeResult gas_detail_convert(const Folder *folder, Pictures *pictures, int number, int detail,
                                                SingeError *error);
 
-/// The same of frames 1 to `last`, in the folder that is there. SINGE_ERROR_STATE in a program built without the preview, and where
-/// progress says no.
+/// The same of frames 1 to `last`, in the folder that is there. SINGE_ERROR_STATE in a program built without the
+/// preview, and where progress says no.
 SINGE_NODISCARD SingeResult gas_detail_write(const Job *job, const Folder *folder, int last, OutputsProgress *progress,
                                              void *context, SingeError *error);
 

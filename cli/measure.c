@@ -1,7 +1,7 @@
 // singe measure: what a cache looks like in numbers, frame by frame and as a whole.
 //
-// Jitter is what a vertex's velocity has that its trajectory does not show: of vertices that never ignited, in three frames
-// dt apart,
+// Jitter is what a vertex's velocity has that its trajectory does not show: of vertices that never ignited, in three
+// frames dt apart,
 //
 //   j = v(t) - (x(t + dt) - x(t - dt))/(2 dt)
 //

@@ -27,7 +27,7 @@ typedef struct RunOptions {
 /// A file of the frame in hand.
 typedef struct FrameFile {
     char *path;
-    char *draft; ///< where it is written until it takes its place; NULL: at once
+    char *draft; ///< where it is written until it is published; NULL: at once
 } FrameFile;
 enum { FRAME_FILES_MAX = 4 + OUTPUT_COUNT };
 
@@ -86,13 +86,14 @@ FolderParts run_parts(const Run *run);
 /// run has been touched but for half-written files.
 ExitCode run_prepare(Run *run, const RunOptions *options);
 
-/// Puts the first frame of a run from the start, which is written whole, in the place of an earlier run's files.
+/// Puts the first frame of a run from the start, which is written whole, over an earlier run's files.
 SINGE_NODISCARD SingeResult run_take_over(Run *run, SingeError *error);
 
 /// Draws pictures that frames of before lack. False in *whole when Ctrl-C came in between.
 SINGE_NODISCARD SingeResult run_draw_missing(Run *run, bool *whole, SingeError *error);
 
-/// Writes the frames of before in formats that they are not there in, and their finer gas, as the cache has them. False in *whole as above.
+/// Writes the frames of before in formats that they are not there in, and their finer gas, as the cache has them. False
+/// in *whole as above.
 SINGE_NODISCARD SingeResult run_convert_missing(Run *run, bool *whole, SingeError *error);
 
 /// Steps on to the next frame, or, when the run is asked to stop, by at least one step: run->step tells.

@@ -168,7 +168,7 @@ SingeResult run_convert_missing(Run *run, bool *whole, SingeError *error) {
 
 // ---- from the start
 
-/// run.json of this run, in the place of an earlier run's, which can no longer be gone on with.
+/// run.json of this run, over an earlier run's, which can no longer be continued.
 static SingeResult replace_record(Run *run, int *removed, SingeError *error) {
     char *draft;
     SingeResult result = file_draft(run->folder.record, &draft, error);

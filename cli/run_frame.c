@@ -86,7 +86,7 @@ static SingeResult file_begin(Run *run, char *path, const char **name, SingeErro
     return SINGE_OK;
 }
 
-/// Drafts that have not taken their places go.
+/// Drafts that have not been published go.
 static void files_end(Run *run) {
     for (int i = 0; i < run->file_count; i++) {
         interrupt_disown(run->files[i].draft);

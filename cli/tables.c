@@ -98,22 +98,22 @@ static SingeResult write_events(Tables *tables, size_t count, int frame, SingeEr
 
 // ---- probes
 
-static double weighted(const SceneProbePlace *place, const uint32_t corner[4], const float *values, size_t stride) {
+static double weighted(const SceneProbePoint *point, const uint32_t corner[4], const float *values, size_t stride) {
     double sum = 0;
-    for (int i = 0; i < 4; i++) sum += place->weight[i] * (double)values[stride * corner[i]];
+    for (int i = 0; i < 4; i++) sum += point->weight[i] * (double)values[stride * corner[i]];
     return sum;
 }
 
 /// When the fire came by, between corners that it has reached; -1 before.
-static double ignited_at(const SceneProbePlace *place, const uint32_t corner[4], const float *times) {
+static double ignited_at(const SceneProbePoint *point, const uint32_t corner[4], const float *times) {
     for (int i = 0; i < 4; i++)
-        if (place->weight[i] > 0 && times[corner[i]] < 0) return -1;
-    return weighted(place, corner, times, 1);
+        if (point->weight[i] > 0 && times[corner[i]] < 0) return -1;
+    return weighted(point, corner, times, 1);
 }
 
-static void put_probe(FILE *file, const SingeView *view, const SceneProbe *probe, const SceneProbePlace *place,
+static void put_probe(FILE *file, const SingeView *view, const SceneProbe *probe, const SceneProbePoint *point,
                       int frame) {
-    const bool there = view->cell_flags[place->cell] & SINGE_ALIVE;
+    const bool there = view->cell_flags[point->cell] & SINGE_ALIVE;
     const char *quote = strchr(probe->name, ',') ? "\"" : ""; // names have no quotes
     fprintf(file, "%d,%.9g,%s%s%s,%" PRIu32 ",%d,", frame, view->time, quote, probe->name, quote, probe->sheet_index,
             there);
@@ -121,12 +121,12 @@ static void put_probe(FILE *file, const SingeView *view, const SceneProbe *probe
         fputs(",,,,,,,,\n", file);
         return;
     }
-    const uint32_t *corner = view->cells[place->cell];
-    for (int c = 0; c < 3; c++) fprintf(file, "%.9g,", weighted(place, corner, &view->position[0][c], 4));
-    fprintf(file, "%.9g,%.9g,%.9g,%.9g,%.9g,%" PRId32 "\n", weighted(place, corner, view->temperature, 1),
-            weighted(place, corner, view->temperature_peak, 1), weighted(place, corner, view->mass, 1),
-            weighted(place, corner, view->burn_rate, 1), ignited_at(place, corner, view->time_ignited),
-            view->piece[view->vertex_count + place->cell]);
+    const uint32_t *corner = view->cells[point->cell];
+    for (int c = 0; c < 3; c++) fprintf(file, "%.9g,", weighted(point, corner, &view->position[0][c], 4));
+    fprintf(file, "%.9g,%.9g,%.9g,%.9g,%.9g,%" PRId32 "\n", weighted(point, corner, view->temperature, 1),
+            weighted(point, corner, view->temperature_peak, 1), weighted(point, corner, view->mass, 1),
+            weighted(point, corner, view->burn_rate, 1), ignited_at(point, corner, view->time_ignited),
+            view->piece[view->vertex_count + point->cell]);
 }
 
 SingeResult tables_take_frame(Tables *tables, const SingeSim *sim, int frame, SingeError *error) {

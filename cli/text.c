@@ -137,7 +137,7 @@ static char *put_code(char *out, uint32_t code) {
     return out;
 }
 
-/// Reads what follows a backslash and appends it. Returns the place behind it, or NULL where it is no escape.
+/// Reads what follows a backslash and appends it. Returns the position behind it, or NULL where it is no escape.
 static const char *put_escape(const char *p, const char *end, char **out) {
     static const char kinds[] = "\"\\/bfnrt", meanings[] = "\"\\/\b\f\n\r\t";
     const char *kind = p < end && *p ? strchr(kinds, *p) : NULL;

@@ -144,7 +144,7 @@ VideoResult video_make(Console *console, const Folder *folder, double fps, int f
 }
 
 VideoResult gif_make(Console *console, const Folder *folder, double fps, int first, int last) {
-    // one palette for the whole film, else still places flicker; GIF tells time in hundredths of a second
+    // one palette for the whole film, else still areas flicker; GIF tells time in hundredths of a second
     char *filter = text_format("fps=%.9g,scale='min(640,iw)':-2:flags=lanczos,split[a][b];"
                                "[a]palettegen=stats_mode=full[p];[b][p]paletteuse=dither=bayer:bayer_scale=4",
                                fps < 25 ? fps : 25);

@@ -4,7 +4,7 @@
 #define COMMON_CHECK_H
 
 #ifdef SINGE_ASSERTIONS
-/// Prints the condition with its place, and aborts.
+/// Prints the condition with its file and line, and aborts.
 _Noreturn void check_failed(const char *condition, const char *file, int line);
 #define SINGE_ASSERT(condition) ((condition) ? (void)0 : check_failed(#condition, __FILE__, __LINE__))
 #else

@@ -1,4 +1,4 @@
-// Failures: filled once at the place that knows most, passed up unchanged.
+// Failures: filled once where most is known, passed up unchanged.
 #ifndef COMMON_ERROR_H
 #define COMMON_ERROR_H
 

@@ -16,12 +16,12 @@ uint32_t random_hash(uint32_t a, uint32_t b, uint32_t c, uint32_t seed) {
 
 static float random_blend(float t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 
-/// The lattice cell of a coordinate and the place within it. Beyond 2^31 a float has no place within:
-/// cell 0, place 0, and so for what is not finite.
-static uint32_t random_cell(float x, float *place) {
+/// The lattice cell of a coordinate and the fraction within it. Beyond 2^31 a float has no fraction:
+/// cell 0, fraction 0. The same holds for values that are not finite.
+static uint32_t random_cell(float x, float *fraction) {
     float cell = floorf(x);
     bool near = cell >= -2147483648.0f && cell < 2147483648.0f;
-    *place = near ? x - cell : 0;
+    *fraction = near ? x - cell : 0;
     return near ? (uint32_t)(int32_t)cell : 0;
 }
 

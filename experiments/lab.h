@@ -75,7 +75,7 @@ void lab_sets_mass(SingeMaterialDef *material);
 double shape_angle(const SingeView *view, uint32_t a, uint32_t b);
 /// Degrees, root mean square of the angle between neighbouring cells that are both there.
 double shape_bend(const SingeView *view);
-/// Lowest and highest place of the vertices that are there.
+/// Lowest and highest position of the vertices that exist.
 void shape_bounds(const SingeView *view, double low[3], double high[3]);
 /// Share of the sheet's cells that are there.
 double shape_left(const SingeView *view);

@@ -45,7 +45,7 @@ static SingeResult centre_moves(bool with_mass, double *moved, SingeError *error
     return result;
 }
 
-/// Steps that the paper's solver takes until it fails, or `most`.
+/// Steps that the paper's solver takes until it fails, or `max`.
 static SingeResult steps_taken(SingeSolverMethod method, int max, int *steps, SingeError *error) {
     SingeSolverDef solver = singe_default_solver();
     singe_init_solver_method(&solver, sizeof solver, method);

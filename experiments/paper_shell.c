@@ -289,19 +289,19 @@ SingeResult paper_fig5(Lab *lab, SingeError *error) {
     SingeResult result = paper_burn_to(lab, &grid, mass, state_loss, &sim, &surface, error);
     if (!result) {
         SingeView view = singe_sim_view(sim);
-        double worst, worst_cut, ratio[STATES], cut[STATES], worst_middle = 0, one_end = 0;
+        double worst, worst_cut, ratio[STATES], cut[STATES], worst_centre = 0, one_end = 0;
         for (int i = 0; i < STATES; i++) {
             ratio[i] = state_ratio(&view, (uint32_t)i);
             cut[i] = state_is_cut(i) ? state_cut(&surface, i, cell) : -1;
             if (ratio[i] >= 0) one_end = fmax(one_end, fabs(state_mass[i][0] - state_length[i]));
-            if (state_is_cut(i)) worst_middle = fmax(worst_middle, fabs(0.5 - cut[i]));
+            if (state_is_cut(i)) worst_centre = fmax(worst_centre, fabs(0.5 - cut[i]));
         }
         state_table(lab, ratio, cut, &worst, &worst_cut);
         state_draw(report_drawing(lab->report), ratio, cut);
         report_bar(lab->report, &(ReportBar){"lengths", "largest difference of the lengths, removed counting as -1",
                                              worst, 0, 1e-4, one_end, "v of the first end alone in eq 6"});
         report_bar(lab->report, &(ReportBar){"cuts", "largest difference of the cuts of c and d from eq 7", worst_cut,
-                                             0, 1e-3, worst_middle, "cuts in the middle"});
+                                             0, 1e-3, worst_centre, "cuts in the middle"});
     }
     singe_surface_free(&surface);
     singe_sim_destroy(sim);

@@ -17,7 +17,7 @@ static void exr_hush(exr_const_context_t context, exr_result_t code, const char 
     (void)context, (void)code, (void)message;
 }
 
-/// The library also goes back: to the table of the lines' places, when all are there.
+/// The library also goes back: to the table of the lines' offsets, when all are there.
 static int64_t exr_put(exr_const_context_t context, void *data, const void *buffer, uint64_t size, uint64_t offset,
                        exr_stream_error_func_ptr_t fail) {
     ExrJob *job = data;
@@ -96,7 +96,7 @@ SingeResult exr_write(const char *path, int width, int height, const ExrChannel 
     exr_result_t done = exr_start_write(&file, short_name(path), EXR_WRITE_FILE_DIRECTLY, &hooks);
     if (!done) done = exr_describe(file, width, height, channels, count);
     if (!done) done = exr_encode(file, width, height, channels, count);
-    exr_result_t closed = exr_finish(&file); // writes the table of the lines' places
+    exr_result_t closed = exr_finish(&file); // writes the table of the lines' offsets
     SingeResult result = SINGE_OK;
     if (job.out_of_memory || done == EXR_ERR_OUT_OF_MEMORY) result = refuse_memory(error, "exr", path);
     else if (done || closed)

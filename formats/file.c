@@ -139,7 +139,7 @@ static void flush_folder(const char *target) {
     close(file);
 }
 
-// A rename replaces a link, and never what it points at; but it would put a plain file in the place of a device.
+// A rename replaces a link, and never what it points at; but it would put a plain file instead of a device.
 static SingeResult check_target(const char *path, SingeError *error) {
     struct stat about;
     if (!*path) return refuse_system(error, "write", "(no name)", ENOENT);

@@ -33,10 +33,10 @@ SINGE_NODISCARD SingeResult file_write_backup(const char *path, const char *back
                                               SingeError *error);
 
 /// Makes an empty file beside `path`, under a temporary name that nobody else has, for what is written by others or
-/// shall take its place later. *draft is its name, for file_publish or file_discard; NULL on failure. Errors as above.
+/// shall replace it later. *draft is its name, for file_publish or file_discard; NULL on failure. Errors as above.
 SINGE_NODISCARD SingeResult file_draft(const char *path, char **draft, SingeError *error);
 
-/// Puts a draft in the place of `path`, whole. The draft is gone afterwards, after a failure too.
+/// Replaces `path` by a draft, whole. The draft is gone afterwards, after a failure too.
 SINGE_NODISCARD SingeResult file_publish(char *draft, const char *path, SingeError *error);
 
 /// Removes a draft. NULL is none.

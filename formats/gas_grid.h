@@ -30,7 +30,7 @@ static inline size_t gas_cells(const SingeGas *gas) { return (size_t)gas->size[0
 /// Whether any of the block's cells holds something. `coolest` is the temperature of still air.
 bool gas_block_holds(const SingeGas *gas, const uint32_t block[3], float coolest);
 float gas_coolest(const SingeGas *gas);
-/// Whether the sizes, the place and the number of cells can be.
+/// Whether the sizes, the origin and the number of cells are possible.
 bool gas_shape_is_good(const SingeGas *gas);
 /// Sets every temperature.
 void gas_fill(Gas *gas, float coolest);

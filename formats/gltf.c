@@ -1,4 +1,4 @@
-// glTF 2.0 and GLB: what is where in the file. Every place and count is checked here, once: of buffers, views of them,
+// glTF 2.0 and GLB: what is where in the file. Every offset and count is checked here, once: of buffers, views of them,
 // and accessors, which are arrays in a view.
 #include "formats/gltf.h"
 
@@ -37,7 +37,7 @@ SingeResult gltf_index(const Gltf *gltf, int64_t object, const char *key, uint32
     return SINGE_OK;
 }
 
-/// A member that counts, or `otherwise` without it. False where it does not count, or above `most`.
+/// A member that counts, or `otherwise` without it. False where it does not count, or above `max`.
 static bool take_count(const Gltf *gltf, int64_t object, const char *key, uint64_t otherwise, uint64_t max,
                        uint64_t *count) {
     int64_t value = json_member(&gltf->json, object, key);
@@ -145,7 +145,7 @@ static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **byte
 
 // ---- views and accessors
 
-/// A place in a view, from which `size` bytes are left.
+/// An offset in a view, from which `size` bytes are left.
 typedef struct Slice {
     const uint8_t *bytes;
     uint64_t size, stride; ///< 0: close together

@@ -9,7 +9,7 @@
 
 enum { NODE_DEPTH = 1000 };
 
-/// Rows of a transform: three axes and a place.
+/// Rows of a transform: three axes and an origin.
 typedef struct Transform {
     float m[3][4];
 } Transform;

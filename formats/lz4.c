@@ -43,7 +43,7 @@ static size_t match_length(const uint8_t *a, const uint8_t *b, const uint8_t *en
 }
 
 size_t lz4_pack(const uint8_t *in, size_t size, uint8_t *out) {
-    uint32_t last[1 << HASH_BITS] = {0}; // one more than the place; 0: none
+    uint32_t last[1 << HASH_BITS] = {0}; // one more than the offset; 0: none
     uint8_t *begin = out;
     size_t at = 0, literals = 0, misses = 0;
     while (size > MATCH_MARGIN && at < size - MATCH_MARGIN && at < UINT32_MAX) {

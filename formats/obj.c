@@ -36,7 +36,7 @@ static SingeResult obj_refuse(const Obj *obj, SingeResult code, const char *what
     return obj_refuse_at(obj, code, obj->text.line, what);
 }
 
-/// The word at the cursor is reported by its place alone: the file may not be one that whoever sees the message may
+/// The word at the cursor is reported by its position only: the file may not be one that whoever sees the message may
 /// read.
 static SingeResult obj_refuse_word(const Obj *obj, const char *what) {
     return refuse(obj->error, SINGE_ERROR_FORMAT, "obj", obj->text.line, "%s:%lld:%lld: this %s", short_name(obj->name),

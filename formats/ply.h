@@ -40,7 +40,7 @@ typedef struct PlyHeader {
     const uint8_t *note, *note_end; ///< the first comment that begins with "singe", or NULL
 } PlyHeader;
 
-/// A place in a PLY file, with what is needed to complain about it.
+/// A position in a PLY file, with what is needed to complain about it.
 typedef struct Ply {
     const char *name;
     const uint8_t *begin;

@@ -5,7 +5,7 @@
 #include "formats/formats.h"
 #include "formats/lines.h"
 
-/// A place in a text file, with what is needed to complain about it.
+/// A position in a text file, with what is needed to complain about it.
 typedef struct Scan {
     const char *name, *stage;
     const uint8_t *begin; ///< of the file

@@ -17,9 +17,9 @@ static bool grow(Crate *crate, void *list, size_t *capacity, size_t count, size_
 /// A word's number; it is added where it is new.
 static uint32_t word_number(Crate *crate, const char *text) {
     for (size_t i = 0; i < crate->word_count; i++)
-        if (strcmp((const char *)crate->words.bytes + crate->places[i], text) == 0) return (uint32_t)i;
-    if (!grow(crate, &crate->places, &crate->word_capacity, crate->word_count, sizeof *crate->places)) return 0;
-    crate->places[crate->word_count] = (uint32_t)crate->words.size;
+        if (strcmp((const char *)crate->words.bytes + crate->offsets[i], text) == 0) return (uint32_t)i;
+    if (!grow(crate, &crate->offsets, &crate->word_capacity, crate->word_count, sizeof *crate->offsets)) return 0;
+    crate->offsets[crate->word_count] = (uint32_t)crate->words.size;
     sink_bytes(&crate->words, text, strlen(text) + 1);
     if (crate->words.failed) {
         crate->sink.failed = true;
@@ -39,7 +39,7 @@ void crate_begin(Crate *crate, SingeAllocator allocator) {
 
 void crate_free(Crate *crate) {
     SingeAllocator a = crate->sink.allocator;
-    store_free(a, crate->places, crate->word_capacity, sizeof *crate->places);
+    store_free(a, crate->offsets, crate->word_capacity, sizeof *crate->offsets);
     store_free(a, crate->field_tokens, crate->field_capacity, sizeof *crate->field_tokens);
     store_free(a, crate->field_values, crate->value_capacity, sizeof *crate->field_values);
     store_free(a, crate->sets, crate->set_capacity, sizeof *crate->sets);
@@ -54,15 +54,15 @@ void crate_free(Crate *crate) {
 
 /// `size` bytes by LZ4 behind the mark of a single chunk, and its length before it.
 static void put_packed(Crate *crate, Sink *sink, const uint8_t *bytes, size_t size) {
-    const size_t place = sink->size;
+    const size_t offset = sink->size;
     sink_u64(sink, 0);
     uint8_t *room = sink_room(sink, 1 + lz4_size_max(size));
     if (!room) return;
     *room = 0;
     const size_t length = 1 + lz4_pack(bytes, size, room + 1);
-    sink->size = place + 8 + length;
-    store_u32_little(sink->bytes + place, (uint32_t)length);
-    store_u32_little(sink->bytes + place + 4, (uint32_t)((uint64_t)length >> 32));
+    sink->size = offset + 8 + length;
+    store_u32_little(sink->bytes + offset, (uint32_t)length);
+    store_u32_little(sink->bytes + offset + 4, (uint32_t)((uint64_t)length >> 32));
     if (sink->failed) crate->sink.failed = true;
 }
 
@@ -146,9 +146,9 @@ CrateValue crate_ints(Crate *crate, const int32_t *values, size_t count) {
 /// Numbers the values that occur, in the order in which they do. How many there are, or 0 where so many differ that
 /// nothing is gained, or there is no memory, which matters as little.
 static size_t number_values(Crate *crate, const uint32_t *bits, size_t count, int32_t *numbers, uint32_t *values) {
-    const size_t most = count - count / 3;
+    const size_t max = count - count / 3;
     int log = 5;
-    while ((size_t)1 << log < 2 * most) log++;
+    while ((size_t)1 << log < 2 * max) log++;
     const size_t size = (size_t)1 << log;
     if (log > 31 || !store_grow(crate->sink.allocator, &crate->table, &crate->table_capacity, size, 4)) return 0;
     memset(crate->table, 0, size * sizeof *crate->table);
@@ -157,7 +157,7 @@ static size_t number_values(Crate *crate, const uint32_t *bits, size_t count, in
         size_t at = bits[i] * 2654435761u >> (32 - log);
         while (crate->table[at] && values[crate->table[at] - 1] != bits[i]) at = (at + 1) & (size - 1);
         if (!crate->table[at]) {
-            if (found == most) return 0;
+            if (found == max) return 0;
             values[found++] = bits[i];
             crate->table[at] = (uint32_t)found;
         }
@@ -326,25 +326,25 @@ static void put_sections(Crate *crate) {
         void (*put)(Crate *);
     } sections[SECTIONS] = {{"TOKENS", put_tokens},       {"STRINGS", put_strings}, {"FIELDS", put_fields},
                             {"FIELDSETS", put_fieldsets}, {"PATHS", put_paths},     {"SPECS", put_specs}};
-    size_t places[SECTIONS + 1];
+    size_t offsets[SECTIONS + 1];
     for (int i = 0; i < SECTIONS; i++) {
-        places[i] = crate->sink.size;
+        offsets[i] = crate->sink.size;
         sections[i].put(crate);
     }
-    places[SECTIONS] = crate->sink.size;
+    offsets[SECTIONS] = crate->sink.size;
     sink_u64(&crate->sink, SECTIONS);
     for (int i = 0; i < SECTIONS; i++) {
         char name[16] = "";
         memcpy(name, sections[i].name, strlen(sections[i].name));
         sink_bytes(&crate->sink, name, sizeof name);
-        sink_u64(&crate->sink, places[i]);
-        sink_u64(&crate->sink, places[i + 1] - places[i]);
+        sink_u64(&crate->sink, offsets[i]);
+        sink_u64(&crate->sink, offsets[i + 1] - offsets[i]);
     }
     if (crate->sink.failed) return;
     uint8_t *header = crate->sink.bytes;
     memcpy(header, "PXR-USDC\0\10\0", 11);
-    store_u32_little(header + 16, (uint32_t)places[SECTIONS]);
-    store_u32_little(header + 20, (uint32_t)((uint64_t)places[SECTIONS] >> 32));
+    store_u32_little(header + 16, (uint32_t)offsets[SECTIONS]);
+    store_u32_little(header + 20, (uint32_t)((uint64_t)offsets[SECTIONS] >> 32));
 }
 
 bool crate_take(Crate *crate, Sink *bytes) {

@@ -49,8 +49,8 @@ typedef struct CrateSpecRow {
 
 typedef struct Crate {
     Sink sink;
-    Sink words;       ///< the tokens, each with its zero
-    uint32_t *places; ///< of each in `words`
+    Sink words;        ///< the tokens, each with its zero
+    uint32_t *offsets; ///< of each in `words`
     size_t word_count, word_capacity;
     uint32_t *field_tokens;
     CrateValue *field_values;

@@ -124,8 +124,8 @@ static void unit(float v[3]) {
     for (int i = 0; i < 3; i++) v[i] = length > 0 ? v[i] / length : (float)(i == 2);
 }
 
-/// A frame whose z axis is `back`, its x axis level as far as `up` tells, at `place`.
-static void put_frame(Root *r, const float back[3], const float up[3], const float place[3]) {
+/// A frame whose z axis is `back`, its x axis level as far as `up` tells, at `position`.
+static void put_frame(Root *r, const float back[3], const float up[3], const float position[3]) {
     float x[3], y[3], z[3] = {back[0], back[1], back[2]};
     unit(z);
     cross(up, z, x);
@@ -135,8 +135,10 @@ static void put_frame(Root *r, const float back[3], const float up[3], const flo
     }
     unit(x);
     cross(z, x, y);
-    const float rows[4][4] = {
-        {x[0], x[1], x[2], 0}, {y[0], y[1], y[2], 0}, {z[0], z[1], z[2], 0}, {place[0], place[1], place[2], 1}};
+    const float rows[4][4] = {{x[0], x[1], x[2], 0},
+                              {y[0], y[1], y[2], 0},
+                              {z[0], z[1], z[2], 0},
+                              {position[0], position[1], position[2], 1}};
     put(r, "        matrix4d xformOp:transform = (");
     for (int i = 0; i < 4; i++) {
         put(r, i ? ", " : " ");

@@ -27,7 +27,8 @@ static void put_box(Root *r, const float *vertices, uint32_t count) {
     put(r, "]");
 }
 
-/// Vertices that move: how many frames differ from the one before them, as far as the last that does. 1 for a rigid one.
+/// Vertices that move: how many frames differ from the one before them, as far as the last that does. 1 for a rigid
+/// one.
 static int moving_frames(const Root *r, const OutputShape *shape) {
     int last = 0;
     for (int i = 1; shape && i < r->scene->frames; i++)

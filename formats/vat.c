@@ -9,7 +9,7 @@
 // A texel a vertex and frame: vertex i of frame f (both from 0) is in column i mod width, row f * rows + i / width, so
 // that the v of frame f is TEXCOORD_1's plus f * rows / height, from the first row on.
 //
-// A vertex of the cache is one of the mesh by its place at rest, its sheet, and its number in the file, where it has
+// A vertex of the cache is one of the mesh by its rest position, its sheet, and its number in the file, where it has
 // one. One that is gone goes on with those of its neighbours that are left: faces at the rim keep their shape.
 #include "formats/glb_file.h"
 #include "formats/number.h"

@@ -3,14 +3,14 @@
 // File, all little-endian; a string is its length (u32) and its bytes:
 //     magic (i64), file version 224 (u32), library version (2 u32), 1: grids have offsets (u8), id (36 bytes),
 //     metadata, number of grids (u32), then for each grid its name, type and the grid whose tree it shares (strings),
-//     the places in the file of its body, of its buffers and of its end (3 i64), and there
+//     the offsets in the file of its body, of its buffers and of its end (3 i64), and there
 //     body: compression (u32), metadata, map (a string and 15 doubles), number of buffers (u32, 1), topology
 // Metadata: their number (u32), each a name, a type (strings), a size (u32) and the bytes.
 // Topology, depth first: the root has its background value, no tiles and at most one child at (0, 0, 0) (2 u32,
 // 3 i32): a node of 32^3 children, each a node of 16^3 leaves of 8^3 cells. A node is the mask of its children, the
 // mask of its values and, as the compression is by active values alone and there are none, one zero byte; a leaf is
 // the mask of its cells. The buffers hold of each leaf the mask again, a zero byte and the values of its cells.
-// A node's places, and a mask's bits from the lowest, are numbered with z fastest.
+// A node's entries, and a mask's bits from the lowest, are numbered with z fastest.
 #ifndef FORMATS_VDB_H
 #define FORMATS_VDB_H
 

@@ -1,5 +1,5 @@
 // The OpenVDB files of vdb_write.c, and no others, back as a gas. Nothing in the bytes is believed before it is
-// checked; places in the tree outside of the gas are refused.
+// checked; entries of the tree outside of the gas are refused.
 #include "formats/store.h"
 #include "formats/vdb.h"
 
@@ -196,7 +196,7 @@ static SingeResult read_tree(Reader *r, Reader *buffers, VdbField field) {
     return SINGE_OK;
 }
 
-/// A place in the file; NULL outside of it.
+/// A position in the file; NULL outside of it.
 static const uint8_t *vdb_read_position(const Reader *r, uint64_t offset) {
     return offset <= (uint64_t)(r->end - r->begin) ? r->begin + offset : NULL;
 }

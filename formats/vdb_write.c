@@ -167,7 +167,7 @@ static void put_grid_metadata(Writer *w, const char *name, bool vector) {
     put_triple(w, "file_bbox_max", high);
 }
 
-/// Index to place: cell (0, 0, 0) has its centre half a cell from the origin.
+/// Index to position: cell (0, 0, 0) has its centre half a cell from the origin.
 static void put_map(Writer *w) {
     const SingeGas *gas = &w->gas->view;
     double cell = (double)gas->cell;

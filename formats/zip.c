@@ -41,7 +41,7 @@ static void put_entry(Sink *sink, uint32_t sum, size_t size, size_t name, size_t
 }
 
 void zip_add(Zip *zip, const char *name, const void *bytes, size_t size) {
-    const size_t place = zip->sink.size, length = strlen(name), head = place + 30 + length;
+    const size_t offset = zip->sink.size, length = strlen(name), head = offset + 30 + length;
     // an extra field of no meaning takes up what is missing: 4 bytes and its contents
     const size_t extra = (ZIP_ALIGNMENT - (head + 4) % ZIP_ALIGNMENT) % ZIP_ALIGNMENT + 4;
     const uint32_t sum = zip_sum(bytes, size);
@@ -57,14 +57,14 @@ void zip_add(Zip *zip, const char *name, const void *bytes, size_t size) {
     put_u16(&zip->directory, ZIP_VERSION);
     put_entry(&zip->directory, sum, size, length, 0);
     sink_zeros(&zip->directory, 10); // no comment, the first disk, no attributes
-    sink_u32(&zip->directory, (uint32_t)place);
+    sink_u32(&zip->directory, (uint32_t)offset);
     sink_bytes(&zip->directory, name, length);
     zip->count++;
 }
 
 SingeResult zip_write(Zip *zip, const char *path, SingeError *error) {
     Sink *sink = &zip->sink;
-    const size_t place = sink->size, size = zip->directory.size;
+    const size_t offset = sink->size, size = zip->directory.size;
     if (zip->too_large) {
         zip_free(zip);
         return refuse(error, SINGE_ERROR_LIMIT, "zip", -1, "%s: more than 4 GiB, or 65535 files", short_name(path));
@@ -73,7 +73,7 @@ SingeResult zip_write(Zip *zip, const char *path, SingeError *error) {
     sink_bytes(sink, "PK\5\6", 4);
     sink_zeros(sink, 4);
     put_u16(sink, zip->count), put_u16(sink, zip->count);
-    sink_u32(sink, (uint32_t)size), sink_u32(sink, (uint32_t)place);
+    sink_u32(sink, (uint32_t)size), sink_u32(sink, (uint32_t)offset);
     put_u16(sink, 0);
     sink->failed = sink->failed || zip->directory.failed;
     sink_free(&zip->directory);

@@ -59,7 +59,7 @@ typedef struct MeshOptions {
 /// What may be done to a mesh.
 typedef enum MeshRepair {
     MESH_UNUSED,     ///< vertices of no face left out
-    MESH_WELDED,     ///< vertices joined to another one at their place
+    MESH_WELDED,     ///< vertices joined to another one at their position
     MESH_SHRUNK,     ///< very short sides whose ends became one vertex
     MESH_REPEATED,   ///< faces that named a vertex twice
     MESH_SPIKE,      ///< faces that went out and came back the same way

@@ -7,10 +7,10 @@
 //
 // and less where the quad continues the rows of an existing one: at an end of the side that both share, their angles
 // add up to 180 where the other sides run straight through. The cheapest pairs are made first, so rows grow from where
-// quads fit best, and opposite sides run through many quads: strands are long. Single triangles that remain are resolved
-// by match.c, which shifts pairs along a path of triangles until two single ones meet, or one reaches the border. A pair
-// that would make a bad quad (an angle above 175 degrees, a sharp fold, a seam of the uv) gets a new vertex at the centre
-// of its shared side, which makes both triangles quads; so does a single triangle at the border.
+// quads fit best, and opposite sides run through many quads: strands are long. Single triangles that remain are
+// resolved by match.c, which shifts pairs along a path of triangles until two single ones meet, or one reaches the
+// border. A pair that would make a bad quad (an angle above 175 degrees, a sharp fold, a seam of the uv) gets a new
+// vertex at the centre of its shared side, which makes both triangles quads; so does a single triangle at the border.
 #include "mesh/pair.h"
 
 #include <math.h>

@@ -20,8 +20,8 @@ typedef struct Pairs {
 
 /// Degrees between 0 and 180 at vertex b of the corner a b c.
 double pair_angle(const Work *work, uint32_t a, uint32_t b, uint32_t c);
-/// Cuts all faces into triangles: `before`, `from`, `mate` and `whole`, and the faces of `work`. False where a face cannot
-/// be cut. work->no_memory is set when out of memory.
+/// Cuts all faces into triangles: `before`, `from`, `mate` and `whole`, and the faces of `work`. False where a face
+/// cannot be cut. work->no_memory is set when out of memory.
 bool pair_cut_faces(Pairs *pairs);
 /// Twins of the triangles' sides: those of the faces before, and the two sides of a diagonal.
 void pair_find_twins(Pairs *pairs);

@@ -113,7 +113,7 @@ static double angle_at(const PolygonCut *cut, uint32_t a, uint32_t b, uint32_t c
     return square > 0 ? DEGREES * acos(fmax(-1, fmin(1, dot3(p, q) / sqrt(square)))) : 0;
 }
 
-/// Its smallest angle, in degrees; negative where it is turned over or has no area. Corners are places in the ring.
+/// Its smallest angle, in degrees; negative where it is turned over or has no area. Corners are indices of the ring.
 static double worth_of(const PolygonCut *cut, uint32_t i, uint32_t k, uint32_t j) {
     const uint32_t a = cut->ring[i], b = cut->ring[k], c = cut->ring[j];
     double min = fmin(angle_at(cut, a, b, c), fmin(angle_at(cut, b, c, a), angle_at(cut, c, a, b)));
@@ -195,7 +195,7 @@ static uint32_t best_ear(const PolygonCut *cut, uint32_t n) {
     return best;
 }
 
-/// Cuts off corners until `most` are left. Returns how many there are.
+/// Cuts off corners until `max` are left. Returns how many there are.
 static uint32_t cut_ears(PolygonCut *cut, uint32_t n, uint32_t max) {
     enum { LOOKS_MAX = 16 }; // an ear may come free when another is gone
     for (uint32_t looks = 0; looks < LOOKS_MAX && n > max; looks++) {

@@ -12,7 +12,7 @@ typedef struct PolygonCut {
     const Faces *faces;
     uint32_t capacity;       ///< POLYGON_GROWTH times the corners of the largest face
     uint32_t *ring;          ///< [capacity] half-edges
-    double (*at)[2];         ///< [capacity] their places, seen along the normal
+    double (*at)[2];         ///< [capacity] their positions, seen along the normal
     double *worth;           ///< [capacity] of the triangle at a corner
     uint32_t *order;         ///< sides by their ends, once one is asked for
     uint32_t count;          ///< triangles

@@ -120,7 +120,7 @@ void mesh_order(Work *work) {
     if (work->no_memory) return;
     memset(order.vertex, 0xff, work->vertex_count * sizeof *order.vertex);
     memset(order.face, 0xff, count * sizeof *order.face);
-    int searches = 64; // for good places to begin; then anywhere, so that meshes of short rows take no longer
+    int searches = 64; // for good vertices to begin at; then anywhere, so that meshes of short rows take no longer
     for (uint32_t f = 0; f < count; f++) {
         if (order.face[f] != MESH_NONE) continue;
         uint32_t side = searches-- > 0 ? first_side(work, order.face, f) : 4 * f;

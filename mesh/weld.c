@@ -12,7 +12,7 @@ uint32_t positions_slot(const Positions *positions, const int64_t box[3]) {
 }
 
 void positions_box(const Positions *positions, const double *position, int64_t box[3]) {
-    const double far = 0x1p62; // a place may be more boxes away than a number counts; those out there share the last
+    const double far = 0x1p62; // a position may be more boxes away than a number counts; those out there share the last
     for (int k = 0; k < 3; k++) box[k] = (int64_t)fmin(fmax(floor(position[k] / positions->size), -far), far);
 }
 

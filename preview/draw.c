@@ -4,7 +4,7 @@
 // (one ambient-occlusion ray); see lighting.c. The light of flames and embers comes last (lamps.c). Pixels whose first
 // samples agree stop there. Blocks that no sheet or shape can touch show only the table or what lies behind it: nothing
 // is intersected, and where no shadow can fall one sample is enough.
-// Everything random comes from the pixel's place and the sample's number, so threads do not matter.
+// Everything random comes from the pixel's position and the sample's number, so threads do not matter.
 
 #include "preview/block.h"
 
@@ -24,13 +24,13 @@ typedef struct Job {
     bool fire; ///< flame and smoke are looked at
 } Job;
 
-/// A sample's place in the pixel: a tent of radius 0.9 pixel, softer than a box and without ringing.
+/// A sample's position in the pixel: a tent of radius 0.9 pixel, softer than a box and without ringing.
 static void sample_offset(int sample, float at[2]) {
     sample_square((uint32_t)sample, 0.5f, 0.5f, at);
     for (int c = 0; c < 2; c++) at[c] = 0.9f * (at[c] < 0.5f ? sqrtf(2 * at[c]) - 1 : 1 - sqrtf(2 - 2 * at[c]));
 }
 
-/// Rays of a sample through the pixels, each with its place on the lens and its time: SAMPLE_CENTRE of both.
+/// Rays of a sample through the pixels, each with its position on the lens and its time: SAMPLE_CENTRE of both.
 static void aim_block(const Preview *preview, Block *block, int sample, const float at[2]) {
     bool lens = preview->camera.lens > 0 && sample >= 0, shutter = preview->def.shutter > 0 && sample >= 0;
     for (int i = 0; i < LANES; i++) {

@@ -16,7 +16,7 @@ enum {
     FIRE_COLOURS = 64,
 };
 
-/// What is looked up at a place. Four floats: interpolated together.
+/// What is looked up at a position. Four floats: interpolated together.
 typedef struct FireCell {
     float flame; ///< 0 none to 1 burning fully
     float rise;  ///< m times flame: how far above the paper the flame is
@@ -85,7 +85,7 @@ void fire_raise(Preview *preview);
 /// The light that falls on smoke: the day's and the flames'. The lights have been gathered.
 void fire_light_smoke(Preview *preview);
 
-/// What there is at a place, a metre of it.
+/// The values at a position, per metre.
 typedef struct Matter {
     Float3 light;
     float dense; ///< 1/m, extinction

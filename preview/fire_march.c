@@ -67,7 +67,7 @@ static void see_ray(const Preview *preview, Float3 d, FireView *view) {
             continue;
         }
         bool seek = dark && (what & FIRE_FLAME);
-        // steps begin at multiples of their length: neighbouring rays then look at neighbouring places
+        // steps begin at multiples of their length: neighbouring rays then look at neighbouring positions
         float step = maxf(what & FIRE_FLAME ? (dark ? 2 : 1) * fine : fire->cell, min);
         float next = maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step);
         step = next - t;
@@ -75,7 +75,7 @@ static void see_ray(const Preview *preview, Float3 d, FireView *view) {
         dark = !m.flame;
         if (seek && m.flame) continue; // the same way again in short steps
         add_step(&g, &m, step);
-        // the last place takes whatever is left
+        // the last step is as long as what is left
         int k = view->count < FIRE_STEPS ? view->count++ : FIRE_STEPS - 1;
         view->from[k] = t, t = next, view->distance[k] = t;
         view->light[k] = g.light, view->clear[k] = g.clear;

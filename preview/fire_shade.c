@@ -1,8 +1,8 @@
-// What there is of flame and smoke at a place.
+// Flame and smoke at a position.
 //
 // The gas comes in cells of several millimetres and is interpolated by quadratic B-splines, so its cells do not
-// show. What is finer is added: the place that is looked up is shifted by noise (domain warping), stretched upwards and
-// rising with the gas, so flames have tongues and streaks and flicker.
+// show. What is finer is added: the position that is looked up is shifted by noise (domain warping), stretched upwards
+// and rising with the gas, so flames have tongues and streaks and flicker.
 //
 // A flame over paper is a thin sheet of burning gas about clear, hot vapour. With f the share that burns, r the height
 // above the paper and N noise of the width of a tongue, it lies where
@@ -203,7 +203,7 @@ void fire_look(const Preview *preview, Float3 p, float *flame, float *smoke) {
     const Fire *fire = &preview->fire;
     Float3 light = {0, 0, 0};
     float opaque = 0;
-    const float most = SOOT_DENSE * float3_luminance(fire->colours[FIRE_COLOURS - 1]);
+    const float brightest = SOOT_DENSE * float3_luminance(fire->colours[FIRE_COLOURS - 1]);
     const FireCell cell = fire_sample(fire, p, FIRE_FLAME | FIRE_SMOKE, &light, &opaque);
-    *flame = float3_luminance(light) / most, *smoke = maxf(cell.smoke, 0);
+    *flame = float3_luminance(light) / brightest, *smoke = maxf(cell.smoke, 0);
 }

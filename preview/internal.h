@@ -61,7 +61,7 @@ typedef struct EmberLights {
     float strength[3][LIGHT_LIMIT]; ///< linear colour; radiance times area over 2 pi: divide by distance squared
 } EmberLights;
 
-/// The light of the sky and what the ground sends back of it, as seen from a place in the open.
+/// The light of the sky and what the ground sends back of it, as seen from a point in the open.
 enum { SKY_ACROSS = 48, SKY_DOWN = 24 };
 typedef struct Sky {
     Float3 radiance[SKY_DOWN][SKY_ACROSS]; ///< latitudes from the top
@@ -258,7 +258,7 @@ typedef struct PaperState {
     float age;     ///< s since it caught fire, as a fire of real pace has it; 0: not yet
     int32_t sheet, piece;
 } PaperState;
-/// The sheet's fields at a place in a triangle.
+/// The sheet's fields at a point in a triangle.
 void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperState *state);
 /// Whether the burnt sheet has a hole there at the picture's scale. Only where burn > PAPER_WHOLE.
 bool paper_is_hole(const PaperState *state, float footprint);
@@ -277,9 +277,9 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
 #define EMBER_GAIN 3.4f
 /// The glowing skin is hotter than the mean over the sheet's thickness that the simulation keeps.
 static inline float ember_temperature(float mean) { return mean + 110; }
-/// How readily a place glows, 0 to 1, by its rate of burning (1/s).
+/// How readily a point glows, 0 to 1, by its rate of burning (1/s).
 static inline float ember_activity(float burn_rate) { return burn_rate > 0 ? burn_rate / (burn_rate + 0.12f) : 0; }
-/// The air that reaches a place now, about 1: it comes and goes.
+/// The air that reaches a point now, about 1: it comes and goes.
 float ember_air(const Preview *preview, Float3 position);
 
 // shade_ground.c

@@ -1,6 +1,6 @@
 // Light cast by embers and hot shapes, as a few point sources.
 //
-// A patch of area A and radiance L that glows to both sides lights a place at distance r by about L A / (2 pi r^2)
+// A patch of area A and radiance L that glows to both sides lights a point at distance r by about L A / (2 pi r^2)
 // per unit of its albedo. Triangles are summed in the cells of a grid over the surface; the strongest cells become
 // lights, scaled so that the total is kept. A sphere of radius R gives L R^2 / r^2. A flame of volume V that emits j
 // (radiance a metre) gives j V / (pi r^2); its clusters are made and chosen in the same way.

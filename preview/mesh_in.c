@@ -36,7 +36,7 @@ static bool near_enough(const float p[3]) {
     return fabsf(p[0]) < 1e4f && fabsf(p[1]) < 1e4f && fabsf(p[2]) < 1e4f; // false for NaN
 }
 
-/// How far the look of a place has gone from fresh (0) by black char (CHAR_LEAF) to ash (1). Where pyrolysis leaves
+/// How far the look of a point has gone from fresh (0) by black char (CHAR_LEAF) to ash (1). Where pyrolysis leaves
 /// char that glows away later, the share of the mass does not tell: with the fractions c of char, a of ash and f of
 /// fuel, and about half of the char staying as ash, q = c / (c + 2 a) is the share of what has burnt that is still
 /// char, and

@@ -3,7 +3,7 @@
 //     d = (b' - EMBER_BURN) / |grad b|,   glow = blackbody(T') exp(-(d / w)^2),   w about EMBER_WIDTH,
 //
 // steep towards the char, slower to fade towards the ash. It is thinned, thickened and broken by noise that crawls
-// along the paper, brighter where air comes and goes, and flickers. Behind it sparks creep: a place of the ash glows
+// along the paper, brighter where air comes and goes, and flickers. Behind it sparks creep: a spot of the ash glows
 // again for a moment when the time since it caught fire passes a delay that noise gives to it, so that the lines of one
 // delay wander over the ash as time goes by.
 
@@ -18,7 +18,7 @@ float ember_air(const Preview *preview, Float3 p) {
     return clampf(1 + 0.42f * slow + 0.22f * quick, 0.3f, 1.7f);
 }
 
-/// How alive the line is at a place, 0 dead to 1.
+/// How alive the line is at a point, 0 dead to 1.
 static float line_life(const Preview *preview, const Bent *bent) {
     float t = seconds(preview);
     Float3 drift = float3_add(float3_scale(bent->position, 190), float3(0.5f * t, -0.35f * t, 0.8f * t));

@@ -43,7 +43,7 @@ static void load_luminance(Loader *loader, const SceneFile *file, SingeTexture *
 }
 
 /// What lies farther out the simulation takes for a failure.
-static const float location_max = 1e4f;
+static const float coordinate_max = 1e4f;
 
 /// Grids are in metres.
 double metres_per_unit(int unit, float scale) {
@@ -72,7 +72,7 @@ static bool transform(const SceneSheet *sheet, float *positions, uint32_t count)
         double q[3] = {x, y, z};
         for (int i = 0; i < 3 && turned; i++) q[i] = r[3 * i] * x + r[3 * i + 1] * y + r[3 * i + 2] * z;
         for (int i = 0; i < 3; i++)
-            near = fabsf(p[i] = (float)(q[i] + (double)sheet->translate[i])) < location_max && near;
+            near = fabsf(p[i] = (float)(q[i] + (double)sheet->translate[i])) < coordinate_max && near;
     }
     return near;
 }
@@ -142,18 +142,18 @@ static void load_sheet(Loader *loader, uint32_t index) {
     if (sheet->picture.name && !load_image(loader, &sheet->picture, &assets->images[index]))
         assets->pictures[index] = &assets->images[index];
     SingeMaterialDef material = sheet->material.def;
-    SceneParam location;
-    for (int i = 0; scene_param(i, &location); i++) {
-        const SingeField *field = scene_param_at(&material, &location)->field;
-        const SceneFile *file = &sheet->material.textures[location.slot];
-        if (field) assets->fields[index][location.slot] = *field;
+    SceneParam row;
+    for (int i = 0; scene_param(i, &row); i++) {
+        const SingeField *field = scene_param_at(&material, &row)->field;
+        const SceneFile *file = &sheet->material.textures[row.slot];
+        if (field) assets->fields[index][row.slot] = *field;
         if (field && field->kind == SINGE_FIELD_TEXTURE) {
-            load_luminance(loader, file, &assets->fields[index][location.slot].texture);
+            load_luminance(loader, file, &assets->fields[index][row.slot].texture);
             if (mesh->positions && !mesh->uv)
                 message_add(loader->messages, loader->scene->text, file->location,
-                            "%s follows a texture, but the mesh has no uv", location.key);
+                            "%s follows a texture, but the mesh has no uv", row.key);
         } else if (field && field->kind == SINGE_FIELD_ATTRIBUTE && mesh->positions) {
-            check_attribute(loader, location.key, field->attribute, file, mesh);
+            check_attribute(loader, row.key, field->attribute, file, mesh);
         }
     }
 }

@@ -66,7 +66,7 @@ static char *source_line(const SceneText *text, int line, int column, int *caret
     return *caret ? text_printable(start, (size_t)(end - start)) : NULL;
 }
 
-// The file that a place is in.
+// The file that a location is in.
 static const SceneText *text_of(const SceneText *text, SceneLocation location) {
     const SceneText *file = text && location.file ? text->files : text;
     while (file && file->number != location.file) file = file->next;
@@ -135,7 +135,7 @@ void message_warn(const SingeLog *log, const SceneText *text, SceneLocation loca
     const size_t size = what && origin ? strlen(what) + strlen(origin) + 3 : 0;
     char *line = size ? malloc(size) : NULL;
     if (line) snprintf(line, size, "%s: %s", origin, what);
-    if (log->write) // without memory it comes without its place
+    if (log->write) // without memory it comes without its location
         log->write(log->context, SINGE_LOG_WARNING, line ? line : format);
     free(line);
     free(what);

@@ -1,10 +1,10 @@
-// Errors in a scene, collected with their places.
+// Errors in a scene, collected with their locations.
 #ifndef SCENE_MESSAGES_H
 #define SCENE_MESSAGES_H
 
 #include "scene/scene.h"
 
-/// What a place refers to: the scene's name and bytes, and the --set texts; or those of a material file.
+/// What a location refers to: the scene's name and bytes, and the --set texts; or those of a material file.
 typedef struct SceneText {
     const char *name;
     const char *bytes;
@@ -18,12 +18,12 @@ typedef struct SceneText {
     bool was_read;
 } SceneText;
 
-/// Adds an error at a place; one in a material file that several sheets use is reported once. Never fails: what memory
-/// does not suffice for is counted in left_out.
+/// Adds an error at a location; one in a material file that several sheets use is reported once. Never fails: what
+/// memory does not suffice for is counted in left_out.
 void message_add(SceneMessages *messages, const SceneText *text, SceneLocation location, const char *format, ...)
     SINGE_PRINTF(4, 5);
 
-/// Writes a warning with its place to the log. A zeroed log receives nothing.
+/// Writes a warning with its location to the log. A zeroed log receives nothing.
 void message_warn(const SingeLog *log, const SceneText *text, SceneLocation location, const char *format, ...)
     SINGE_PRINTF(4, 5);
 

@@ -1,4 +1,4 @@
-// The nearest place of a sheet to a probe's, in space or in uv. A cell is four triangles around the mean of its
+// The nearest found of a sheet to a probe's, in space or in uv. A cell is four triangles around the mean of its
 // corners, as it is drawn where it is flat.
 #include "scene/probes.h"
 
@@ -37,22 +37,22 @@ static void cell_corners(const Mesh *mesh, uint32_t cell, bool in_uv, double cor
     }
 }
 
-static SceneProbePlace find_place(const Mesh *mesh, const SceneProbe *probe) {
+static SceneProbePoint find_point(const Mesh *mesh, const SceneProbe *probe) {
     const bool in_uv = probe->kind == SCENE_PROBE_UV;
     const float *at = in_uv ? probe->uv : probe->point;
     const double p[3] = {(double)at[0], (double)at[1], in_uv ? 0 : (double)at[2]};
-    SceneProbePlace place = {.distance = INFINITY};
+    SceneProbePoint found = {.distance = INFINITY};
     double best = INFINITY;
     for (uint32_t c = 0; c < mesh->cell_count && best > 0; c++) {
         double corners[4][3], weight[4];
         cell_corners(mesh, c, in_uv, corners);
         const double gap = nearest_in_cell(p, (const double(*)[3])corners, weight);
         if (!(gap < best)) continue;
-        best = gap, place.cell = c;
-        memcpy(place.weight, weight, sizeof weight);
+        best = gap, found.cell = c;
+        memcpy(found.weight, weight, sizeof weight);
     }
-    place.distance = sqrt(best);
-    return place;
+    found.distance = sqrt(best);
+    return found;
 }
 
 void probes_find(const Scene *scene, SceneAssets *assets, SceneMessages *messages) {
@@ -63,7 +63,7 @@ void probes_find(const Scene *scene, SceneAssets *assets, SceneMessages *message
             message_add(messages, scene->text, probe->location, "the probe is given in uv, but the mesh has none");
             continue;
         }
-        assets->probes[i] = find_place(mesh, probe);
+        assets->probes[i] = find_point(mesh, probe);
         for (uint32_t s = 0; s < probe->sheet_index; s++) assets->probes[i].cell += assets->meshes[s].cell_count;
     }
 }

@@ -1,6 +1,6 @@
 // Scenes: what a scene file describes, apart from its syntax, and the way from a file to a simulation.
 //
-//   scene_read  file → Scene      every error at once, each with its place
+//   scene_read  file → Scene      every error at once, each with its location
 //   scene_load  Scene → meshes and pictures
 //   scene_build Scene, meshes, pictures → SingeSim
 //
@@ -17,9 +17,9 @@
 #include "preview/preview.h"
 #include "singe/singe.h"
 
-// ---- places and messages
+// ---- locations and messages
 
-/// Where something in a scene was written. A zeroed place is nowhere.
+/// Where something in a scene was written. A zeroed location is nowhere.
 typedef struct SceneLocation {
     int line, column; ///< counted from 1; 0 for nothing
     int set;          ///< 1 + index of the --set that it came from, 0 for a file
@@ -69,7 +69,7 @@ typedef struct SceneGrid {
     GridWear wear;
 } SceneGrid;
 
-/// Places for what belongs to a material's SingeParams. Each has its own: where it lies in the Def, counted in whole
+/// Slots for what belongs to a material's SingeParams. Each has its own: where it lies in the Def, counted in whole
 /// SingeParams, so that no list of them is needed.
 #define SCENE_PARAM_SLOT(member) (offsetof(SingeMaterialDef, member) / sizeof(SingeParam))
 enum { SCENE_PARAM_SLOTS = sizeof(SingeMaterialDef) / sizeof(SingeParam) };
@@ -168,7 +168,7 @@ typedef struct ScenePin {
     SceneMotion motion; ///< in place of keys
 } ScenePin;
 
-/// How a probe's place is given.
+/// How a probe's position is given.
 typedef enum SceneProbeKind { SCENE_PROBE_UV, SCENE_PROBE_POINT } SceneProbeKind;
 
 /// A point of a sheet that is followed through the run.
@@ -279,11 +279,11 @@ typedef struct SceneSolid {
 } SceneSolid;
 
 /// Where a probe is in its sheet's mesh: values there are the weighted sum of those at a cell's corners.
-typedef struct SceneProbePlace {
+typedef struct SceneProbePoint {
     uint32_t cell;    ///< numbered over all sheets
     double weight[4]; ///< of the cell's corners; they add up to 1
     double distance;  ///< from what the scene asks for: m, or of uv
-} SceneProbePlace;
+} SceneProbePoint;
 
 /// A pin's particle on a triangle of a moving mesh (sequence.c).
 typedef struct SceneBond {
@@ -315,7 +315,7 @@ typedef struct SceneAssets {
     SceneSequence *collider_motions;         ///< [collider_count]
     SceneSequence *pin_motions;              ///< [pin_count]
     Image sky;                               ///< zeroed where there is none
-    SceneProbePlace *probes;                 ///< [Scene.probe_count]
+    SceneProbePoint *probes;                 ///< [Scene.probe_count]
 } SceneAssets;
 
 /// Reads every file that the scene names. On failure *assets is empty and *messages points at the names, and also at
@@ -342,7 +342,7 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
 
 /// Makes the simulation: sheets, commit, sources, colliders, pins. Allocator, log, tasks and thread_count
 /// are taken from `hooks`. On failure *sim is NULL and *messages names the scene's object: each sheet that is refused,
-/// or the first other object. What is certain to have no effect is reported to the log of `hooks`, with its place.
+/// or the first other object. What is certain to have no effect is reported to the log of `hooks`, with its location.
 SINGE_NODISCARD SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const SingeSimDef *hooks,
                                         SingeSim **sim, SceneMessages *messages);
 

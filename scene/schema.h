@@ -39,7 +39,7 @@ enum {
     ROW_INF = 8,       ///< "inf" is allowed
     ROW_NONE = 16,     ///< "none" is allowed: -INFINITY
     ROW_SHORT = 32,    ///< short for another key; not dumped
-    ROW_NUMBERED = 64, ///< ROW_FILE: a name with a run of # in the place of a number
+    ROW_NUMBERED = 64, ///< ROW_FILE: a name with a run of # instead of a number
 };
 
 typedef struct SchemaRow {
@@ -83,7 +83,7 @@ typedef struct Schema {
     bool (*defaults)(SceneArena *arena, void *object);
     /// Checks what one row cannot see.
     void (*finish)(Reader *reader, const Node *map, void *object);
-    /// Where the object keeps its place; NULL when it does not.
+    /// Where the object keeps its location; NULL when it does not.
     SceneLocation *(*location)(void *object);
 } Schema;
 

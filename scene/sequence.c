@@ -41,7 +41,7 @@ static char *sequence_path(const SceneMotion *motion, int frame) {
 }
 
 /// Turns a frame of y up to z up.
-static void sequence_place(const SceneMotion *motion, float *positions, uint32_t count) {
+static void sequence_transform(const SceneMotion *motion, float *positions, uint32_t count) {
     for (uint32_t v = 0; motion->up == SCENE_UP_Y && v < count; v++) {
         float *p = positions + 3 * (size_t)v, y = p[1];
         p[1] = -p[2], p[2] = y;
@@ -70,7 +70,7 @@ static SingeResult sequence_read_frame(const SceneMotion *motion, const char *pa
                         vertices, triangles, sequence->vertex_count, sequence->triangle_count);
     }
     if (!result) {
-        sequence_place(motion, solid.surface.vertices, vertices);
+        sequence_transform(motion, solid.surface.vertices, vertices);
         sequence->frames[frame] =
             (PreviewSolid){vertices, triangles, solid.surface.vertices, sequence->triangles, true};
         sequence->frame_count = (uint32_t)frame + 1;

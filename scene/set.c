@@ -105,7 +105,7 @@ static void set_one(SceneArena *arena, const SceneText *text, int index, Node *r
     Node *value = tree_read(arena, text, equals + 1, strlen(equals + 1), setter.location, messages);
     Node *target = value ? setter_walk(&setter, root) : NULL;
     if (!target) return;
-    // the value takes the target's place among its siblings; its name is now the --set's
+    // the value replaces the target among its siblings; its name is now the --set's
     value->key = target->key;
     value->key_location = setter.location;
     value->next = target->next;

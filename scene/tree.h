@@ -1,4 +1,4 @@
-// The text of a scene as a tree of lists, maps and single values, each with its place. Knows YAML, not scenes.
+// The text of a scene as a tree of lists, maps and single values, each with its location. Knows YAML, not scenes.
 #ifndef SCENE_TREE_H
 #define SCENE_TREE_H
 
@@ -19,11 +19,11 @@ typedef struct Node {
 } Node;
 
 /// Reads one YAML document. NULL after an error or when out of memory. `origin` has the numbers of the --set or the
-/// file for places.
+/// file for locations.
 Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, SceneLocation origin,
                 SceneMessages *messages);
 
-/// Lays --set texts over a tree; their values' places name them. Returns false when out of memory.
+/// Lays --set texts over a tree; their values' locations name them. Returns false when out of memory.
 bool tree_set(SceneArena *arena, const SceneText *text, Node *root, SceneMessages *messages);
 
 /// The last child with this key, or NULL.

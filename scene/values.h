@@ -1,4 +1,4 @@
-// From one node of the tree to one value, checked against its row. What is wrong is reported with its place and
+// From one node of the tree to one value, checked against its row. What is wrong is reported with its location and
 // leaves the value as it was.
 #ifndef SCENE_VALUES_H
 #define SCENE_VALUES_H

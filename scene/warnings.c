@@ -48,7 +48,7 @@ static void warn_of_pin(const Scene *scene, const SceneAssets *assets, const Sce
     }
 }
 
-/// A probe whose place the sheet does not have: uv by more than rounding, points as those of pins.
+/// A probe whose point is not on the sheet: uv by more than rounding, points as those of pins.
 static void warn_of_probe(const Scene *scene, const SceneAssets *assets, uint32_t index, const SingeLog *log) {
     const SceneProbe *probe = &scene->probes[index];
     const double gap = assets->probes[index].distance;

@@ -83,7 +83,7 @@ static void sink_measure(Sink *sink) {
         else sink->last_length += ((unsigned char)sink->bytes[i] & 0xc0) != 0x80;
 }
 
-/// An event without a place of its own is where the last one ended.
+/// An event without a location of its own is where the last one ended.
 static void sink_location(Sink *sink, const struct fy_event *event, struct fy_token *tag, struct fy_token *anchor) {
     struct fy_token *value = event->type == FYET_SCALAR ? event->scalar.value : NULL;
     const struct fy_mark *mark = fy_event_start_mark((struct fy_event *)event);

@@ -21,7 +21,7 @@ enum {
     YAML_QUOTED = 1, ///< or a block
     YAML_TAGGED = 2,
     YAML_ANCHORED = 4,
-    YAML_ABSENT = 8, ///< a value of which nothing is written; its place is where the event before it ended
+    YAML_ABSENT = 8, ///< a value of which nothing is written; its location is where the event before it ended
     YAML_FLAGS = 15,
 };
 

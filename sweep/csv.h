@@ -26,8 +26,8 @@ typedef struct CsvLines {
     const char *with;       ///< NULL: all
 } CsvLines;
 
-/// The numbers of a column in those lines, from malloc; cells that are no numbers are left out. NULL with *count 0 where
-/// there is none, or no such column.
+/// The numbers of a column in those lines, from malloc; cells that are no numbers are left out. NULL with *count 0
+/// where there is none, or no such column.
 double *csv_numbers(const Csv *csv, int column, CsvLines lines, uint32_t *count);
 
 #endif

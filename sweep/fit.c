@@ -33,8 +33,8 @@ static const ArgCommand fit_command = {
     "docs/sweep.md describes plans. The same command continues a fit that was stopped.\n"
     "Exit codes: 0 good, 1 a row failed or the fit was interrupted, 2 bad input."};
 
-/// Changes of the places in [0, 1] below this end the search.
-static const double place_tolerance = 1e-3;
+/// Changes of the coordinates in [0, 1] below this end the search.
+static const double parameter_tolerance = 1e-3;
 
 typedef struct Fit {
     Sweep *sweep;
@@ -162,7 +162,7 @@ static ExitCode row_error(Fit *fit, uint32_t row, double *value) {
     return code;
 }
 
-/// An earlier row with the values of `row`, or `row`: the optimiser comes back to places, and numbers are rounded.
+/// An earlier row with the values of `row`, or `row`: the optimiser comes back to points, and numbers are rounded.
 static uint32_t same_row(const Plan *plan, uint32_t row) {
     for (uint32_t r = 0; r < row; r++) {
         uint32_t p = 0;
@@ -179,13 +179,13 @@ static double stop(Fit *fit, ExitCode code) {
 }
 
 /// What NLopt calls.
-static double objective(unsigned count, const double *places, double *gradient, void *context) {
+static double objective(unsigned count, const double *coordinates, double *gradient, void *context) {
     Fit *fit = context;
     Plan *plan = &fit->sweep->plan;
     const uint32_t row = fit->row;
     (void)count, (void)gradient;
     if (fit->code || row == plan->evaluations) return stop(fit, fit->code);
-    if (!plan_set_row(plan, row, places)) return stop(fit, EXIT_FAILED);
+    if (!plan_set_row(plan, row, coordinates)) return stop(fit, EXIT_FAILED);
     const uint32_t before = same_row(plan, row);
     if (before != row) return fit->errors[before];
 
@@ -206,7 +206,7 @@ static bool set_up(Fit *fit, unsigned count) {
     return optimiser && nlopt_set_lower_bounds1(optimiser, 0) > 0 && nlopt_set_upper_bounds1(optimiser, 1) > 0 &&
            nlopt_set_min_objective(optimiser, objective, fit) > 0 &&
            nlopt_set_maxeval(optimiser, 10 * (int)fit->sweep->plan.evaluations) > 0 && // with those that come back
-           nlopt_set_xtol_abs1(optimiser, place_tolerance) > 0 && nlopt_set_initial_step1(optimiser, 0.25) > 0;
+           nlopt_set_xtol_abs1(optimiser, parameter_tolerance) > 0 && nlopt_set_initial_step1(optimiser, 0.25) > 0;
 }
 
 static void print_result(const Fit *fit) {
@@ -227,14 +227,14 @@ static void print_result(const Fit *fit) {
 
 static ExitCode search(Fit *fit) {
     const unsigned count = fit->sweep->plan.parameter_count;
-    double places[PLAN_PARAMETERS_MAX], least;
-    for (unsigned p = 0; p < count; p++) places[p] = 0.5;
+    double coordinates[PLAN_PARAMETERS_MAX], least;
+    for (unsigned p = 0; p < count; p++) coordinates[p] = 0.5;
     fit->errors = calloc(fit->sweep->plan.evaluations, sizeof *fit->errors);
     if (!fit->errors || !read_table(fit) || !set_up(fit, count)) {
         console_error(fit->sweep->console, "out of memory");
         return EXIT_FAILED;
     }
-    const nlopt_result result = nlopt_optimize(fit->optimiser, places, &least);
+    const nlopt_result result = nlopt_optimize(fit->optimiser, coordinates, &least);
     // rounding ends a search near a minimum: what was found stands
     const bool spent = result == NLOPT_FORCED_STOP && fit->row == fit->sweep->plan.evaluations;
     if (!fit->code && result < 0 && !spent && result != NLOPT_ROUNDOFF_LIMITED) {

@@ -45,7 +45,7 @@ static char *choice(Plan *plan, const PlanParameter *parameter, uint32_t index) 
     return range_text(plan, parameter, (double)index / (parameter->steps - 1));
 }
 
-/// The value at a place in [0, 1) of all that the parameter may be.
+/// The value at a coordinate in [0, 1) of all that the parameter may be.
 static char *value_at(Plan *plan, const PlanParameter *parameter, double unit) {
     if (!parameter->count && !parameter->whole) return range_text(plan, parameter, unit);
     if (parameter->count) return parameter->values[(uint32_t)(unit * parameter->count)];
@@ -133,10 +133,10 @@ static bool make_fit(Plan *plan, uint32_t *parameter, char *message, size_t size
     return make_values(plan, plan->evaluations);
 }
 
-bool plan_set_row(Plan *plan, uint32_t row, const double *places) {
+bool plan_set_row(Plan *plan, uint32_t row, const double *coordinates) {
     bool good = true;
     for (uint32_t p = 0; p < plan->parameter_count; p++) {
-        char *value = range_text(plan, &plan->parameters[p], fmin(fmax(places[p], 0), 1));
+        char *value = range_text(plan, &plan->parameters[p], fmin(fmax(coordinates[p], 0), 1));
         plan->values[(size_t)row * plan->parameter_count + p] = value;
         good = good && value;
     }

@@ -1,5 +1,5 @@
-// The shot of a scene whose sheets ran in rows (method `sheets`): a USD file that refers to the root of each row. Camera,
-// lights, ground and colliders are in every root; those of the first row are kept.
+// The shot of a scene whose sheets ran in rows (method `sheets`): a USD file that refers to the root of each row.
+// Camera, lights, ground and colliders are in every root; those of the first row are kept.
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -53,10 +53,10 @@ static void write_rows_job(FILE *file, const Sweep *sweep, const char *rows) {
 }
 
 static uint32_t frames_max(const Sweep *sweep) {
-    uint32_t most = 1;
+    uint32_t max = 1;
     for (uint32_t row = 0; row < sweep->plan.row_count; row++)
-        if (sweep->frames[row] > most) most = sweep->frames[row];
-    return most;
+        if (sweep->frames[row] > max) max = sweep->frames[row];
+    return max;
 }
 
 /// An array over parts of rows: task t draws part t mod PARTS of row t / PARTS + 1.

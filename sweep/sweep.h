@@ -48,7 +48,8 @@ typedef struct Sweep {
 Sweep sweep_make(Console *console, const SweepOptions *options);
 void sweep_close(Sweep *sweep);
 
-/// Of a sweep whose plan is read: makes and locks its folder, and notes the plan there or compares it with what is noted.
+/// Of a sweep whose plan is read: makes and locks its folder, and notes the plan there or compares it with what is
+/// noted.
 ExitCode sweep_prepare(Sweep *sweep);
 
 /// Paths from malloc; rows are numbered from 0 here and from 1 in names.

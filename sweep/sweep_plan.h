@@ -61,7 +61,8 @@ typedef struct Plan {
     char **values; ///< [row_count * parameter_count], row by row
 } Plan;
 
-/// Reads the plan of a sweep, or of a fit, and makes its rows. All errors have been printed, with their lines, unless the result is EXIT_GOOD.
+/// Reads the plan of a sweep, or of a fit, and makes its rows. All errors have been printed, with their lines, unless
+/// the result is EXIT_GOOD.
 ExitCode plan_read(const char *path, bool fit, Console *console, Plan *plan);
 void plan_free(Plan *plan);
 
@@ -69,8 +70,8 @@ void plan_free(Plan *plan);
 /// is EXIT_GOOD.
 ExitCode plan_split_sheets(Plan *plan, Console *console);
 
-/// Sets a row's values from places in [0, 1] of the ranges. False when out of memory.
-bool plan_set_row(Plan *plan, uint32_t row, const double *places);
+/// Sets a row's values from coordinates in [0, 1] of the ranges. False when out of memory.
+bool plan_set_row(Plan *plan, uint32_t row, const double *coordinates);
 
 /// A row's value of a parameter.
 static inline const char *plan_value(const Plan *plan, uint32_t row, uint32_t parameter) {

@@ -1,8 +1,8 @@
 // What came of a sweep: report.csv, a line a row; index.html, to sort and compare; sheet.svg, three
 // pictures of each row with its parameters below.
 //
-// A row's numbers are those of its tables: of stats.csv the last frame's, of measure.csv the median over the frames that
-// have the number.
+// A row's numbers are those of its tables: of stats.csv the last frame's, of measure.csv the median over the frames
+// that have the number.
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>

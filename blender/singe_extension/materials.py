@@ -11,9 +11,9 @@ FLAME_LIGHT = 118.0
 EMBER_LIGHT = 1.5
 
 
-def _node(tree, kind, place, **values):
+def _node(tree, kind, location, **values):
     node = tree.nodes.new(kind)
-    node.location = place
+    node.location = location
     for name, value in values.items():
         if name in node.inputs:
             node.inputs[name].default_value = value
@@ -22,12 +22,12 @@ def _node(tree, kind, place, **values):
     return node
 
 
-def _attribute(tree, name, place):
-    return _node(tree, "ShaderNodeAttribute", place, attribute_name=name)
+def _attribute(tree, name, location):
+    return _node(tree, "ShaderNodeAttribute", location, attribute_name=name)
 
 
-def _math(tree, operation, place, *operands):
-    node = _node(tree, "ShaderNodeMath", place, operation=operation)
+def _math(tree, operation, location, *operands):
+    node = _node(tree, "ShaderNodeMath", location, operation=operation)
     for i, operand in enumerate(operands):
         if isinstance(operand, (int, float)):
             node.inputs[i].default_value = operand
@@ -36,15 +36,15 @@ def _math(tree, operation, place, *operands):
     return node.outputs[0]
 
 
-def _range(tree, value, low, high, place):
-    node = _node(tree, "ShaderNodeMapRange", place)
+def _range(tree, value, low, high, location):
+    node = _node(tree, "ShaderNodeMapRange", location)
     node.inputs[1].default_value, node.inputs[2].default_value = low, high
     tree.links.new(value, node.inputs[0])
     return node.outputs[0]
 
 
-def _mix(tree, share, a, b, place):
-    node = _node(tree, "ShaderNodeMix", place, data_type="RGBA")
+def _mix(tree, share, a, b, location):
+    node = _node(tree, "ShaderNodeMix", location, data_type="RGBA")
     tree.links.new(share, node.inputs[0])
     for socket, value in ((node.inputs[6], a), (node.inputs[7], b)):
         if isinstance(value, tuple):

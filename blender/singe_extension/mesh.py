@@ -15,7 +15,7 @@ class Mesh:
         self.weights = {name: np.asarray(values, np.float64).ravel() for name, values in (weights or {}).items()}
 
     def next_corners(self):
-        """For each corner the place of the face's next one."""
+        """For each corner the index of the face's next one."""
         following = np.arange(1, len(self.corners) + 1)
         ends = np.cumsum(self.sizes)
         following[ends - 1] = ends - self.sizes
@@ -80,7 +80,7 @@ def refine(mesh, cell_size, cells_max=2_000_000):
 
 
 def spread(points, count):
-    """Places among the points that are far from each other: the index of each, `count` at most."""
+    """Points far from each other: their indices, at most `count`, and the max distance of a point from one of them."""
     chosen = [0]
     distance = ((points - points[0])**2).sum(1)
     while len(chosen) < min(count, len(points)) and distance.max() > 0:

@@ -10,7 +10,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 points, faces, uv = singe.grid((0.06, 0.01), (60, 10), jitter=0)
-place = 1e3 * (points[:61, 0] + 0.03)  # mm from the end that is lit
+position = 1e3 * (points[:61, 0] + 0.03)  # mm from the end that is lit
 
 
 def times(mass_rate):
@@ -27,7 +27,7 @@ def times(mass_rate):
 
 # the measurement stands in for one of a film: a known rate and noise
 measured = times(0.012) + np.random.default_rng(1).normal(0, 0.03, 61)
-there = np.isfinite(measured) & (place > 12)
+there = np.isfinite(measured) & (position > 12)
 
 
 def misfit(rate):
@@ -35,7 +35,7 @@ def misfit(rate):
 
 
 best = minimize_scalar(misfit, bounds=(0.004, 0.03), method="bounded", options={"xatol": 1e-4})
-plt.plot(place, measured, ".", place, times(best.x))
+plt.plot(position, measured, ".", position, times(best.x))
 plt.xlabel("mm from the end")
 plt.ylabel("time of ignition (s)")
 plt.savefig(sys.argv[1] if len(sys.argv) > 1 else "fit.png", dpi=80)

@@ -67,7 +67,7 @@ class CommandError(Error, RuntimeError):
     """The command `singe` failed. `str()` of it is what the command printed, with file:line:column and the line.
 
     `returncode` is 1 where a run failed or was interrupted, 2 for bad input. `problems` lists the errors that have a
-    place in a file.
+    location in a file.
     """
 
     def __init__(self, text: str, returncode: Optional[int] = None):

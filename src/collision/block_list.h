@@ -74,7 +74,7 @@ static inline void block_list_end(const BlockWriter *writer) { *writer->target =
 /// A job that writes blocks of a list.
 typedef void BlockWriteFn(void *context, BlockList *list, int block);
 
-/// Has `blocks` blocks written, at most block_count. Returns the number of items, of a block at most `most` and one,
+/// Has `blocks` blocks written, at most block_count. Returns the number of items, of a block at most `max` and one,
 /// with or without room. The list is not to be read before block_list_settle.
 uint64_t block_list_write(BlockList *list, Pool *pool, int blocks, uint32_t max, BlockWriteFn *write, void *context);
 

@@ -13,7 +13,7 @@ static inline Cube collision_cube(Float4 p, float inverse_edge) {
     return whole + (__builtin_convertvector(whole, Float4) > q); // a mask is -1
 }
 
-/// Cubes from one to another; more than `most` also where two of them would have one key, or a position is not finite.
+/// Cubes from one to another; more than `max` also where two of them would have one key, or a position is not finite.
 static inline uint64_t collision_cubes(Cube first, Cube last, uint64_t max) {
     uint64_t x = (uint64_t)((int64_t)last[0] - first[0]) + 1, y = (uint64_t)((int64_t)last[1] - first[1]) + 1;
     uint64_t z = (uint64_t)((int64_t)last[2] - first[2]) + 1;

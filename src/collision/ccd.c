@@ -151,7 +151,7 @@ static uint32_t meet_changed(Ccd *ccd, Pool *pool) {
     return ccd_meet_active(ccd, pool, count);
 }
 
-static uint32_t list_strayed(CollisionPlan *plan) {
+static uint32_t list_out_of_bounds(CollisionPlan *plan) {
     uint32_t count = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++)
         if (plan->is_outside[c]) plan->outside[count++] = c;
@@ -160,17 +160,17 @@ static uint32_t list_strayed(CollisionPlan *plan) {
 
 /// Lists what cells that have left their boxes may have met; all again where these are many. *first is the first pair
 /// that is new.
-static SingeResult follow_strayed(Ccd *ccd, const StateInput *state, Pool *pool, float h, uint32_t *first) {
+static SingeResult follow_out_of_bounds(Ccd *ccd, const StateInput *state, Pool *pool, float h, uint32_t *first) {
     SINGE_ASSERT(h > 0);
     CollisionPlan *plan = ccd->plan;
-    uint32_t count = list_strayed(plan);
+    uint32_t count = list_out_of_bounds(plan);
     *first = plan->pair_count;
     if (count == 0) return SINGE_OK;
     bool all = count > plan->cell_count / OUTSIDE_MAX || plan->edge <= 0;
     if (all) {
         TRY(search_again(ccd, state, pool, h));
         ccd_measure(ccd, pool);
-        count = list_strayed(plan);
+        count = list_out_of_bounds(plan);
     }
     TRY(broad_search_outside(plan, ccd->shell, pool, count, (const float(*)[4])ccd->dynamics->position));
     plan->restless = plan->step < state->step && count > plan->cell_count / OUTSIDE_PART;
@@ -189,7 +189,7 @@ static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float
         *hits = ccd_meet(ccd, pool, 0);
     }
     if (*hits > 0) return SINGE_OK;
-    TRY(follow_strayed(ccd, state, pool, h, &first));
+    TRY(follow_out_of_bounds(ccd, state, pool, h, &first));
     *hits = ccd_meet(ccd, pool, first);
     return SINGE_OK;
 }

@@ -1,5 +1,5 @@
 // Room for what is found. The lists have room for what folds and heaps come to; where sheets crowd more than that they
-// grow to what is needed, up to a most that only sheets lying within each other reach. What is found beyond that is
+// grow to what is needed, up to a max that only sheets lying within each other reach. What is found beyond that is
 // dropped and counted.
 //
 // What a list has grown to decides nothing: the same is found with as much room or with more, so that a run which goes

@@ -273,7 +273,7 @@ static inline FourVectors collision_four_off(const CollisionFourPairs *four, con
     return (FourVectors){off[0], off[1], off[2]};
 }
 
-/// The most that any points of the cells differ in.
+/// The max difference of any points of the cells.
 static inline Float4 collision_four_differ(const CollisionFourPairs *four, int motion) {
     Float4 deviations;
     FourVectors off = collision_four_off(four, four->a, four->b, motion, &deviations);

@@ -1,6 +1,6 @@
-// Cells that intersect or coincide at the start have no side on which to keep each other. Such a pair is left alone until
-// it has separated; then, and with all other cells, each of the two is in contact as usual. So a pair that never crossed
-// is guarded, whatever else its cells cross.
+// Cells that intersect or coincide at the start have no side on which to keep each other. Such a pair is left alone
+// until it has separated; then, and with all other cells, each of the two is in contact as usual. So a pair that never
+// crossed is guarded, whatever else its cells cross.
 //
 // The pairs (a, b), a <= b, are stored by a: those of cell a are initial_other[initial_first[a]] up to
 // initial_other[initial_first[a + 1]].

@@ -13,7 +13,7 @@
 #include "common/clock.h"
 #include "collision/collision_plan.h"
 
-/// Takes back slip across the normal, at most `most`.
+/// Takes back slip across the normal, at most `max`.
 static void repulsion_friction(const Repulsion *repulsion, const float (*predicted)[4], float h, float max,
                                float weight, DynamicsState *dynamics) {
     SINGE_ASSERT(h > 0);

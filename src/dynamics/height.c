@@ -18,7 +18,7 @@
 /// Substeps to wait, and cells that wait together.
 enum { HEIGHT_WAIT = 5, HEIGHT_BLOCK = 64 };
 
-/// The most that is mended at once, of the square root of |n|, which is 1.4 cells: shells thicker than their cells
+/// The max that is corrected at once, of the square root of |n|, which is 1.4 cells: shells thicker than their cells
 /// would else be thrown about.
 static const float HEIGHT_MAX = 0.05f;
 

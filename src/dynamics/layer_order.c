@@ -1,14 +1,14 @@
 // The last pass of a step: no cell is left inverted. height.c keeps centres up softly, for it moves corners as well and
 // may not throw them about; what it has not mended when the step ends is mended here, by the centre alone. With the
-// height z of a centre over its corners and the cell's unit normal n as there, where z < z_least
+// height z of a centre over its corners and the cell's unit normal n as there, where z < z_low
 //
-//   x_centre += (z_least - z) n,   u = (v_centre - mean of v_corners) . n,   v_centre -= min(u, 0) n
+//   x_centre += (z_low - z) n,   u = (v_centre - mean of v_corners) . n,   v_centre -= min(u, 0) n
 //
 // so that the centre does not run back at once. Only centres move: they are not drawn, each belongs to one cell, and so
 // this pass makes no crossing of what is drawn, depends on no order, and needs no families. The corners do not answer,
 // so that momentum is kept by height.c only. A pinned centre gives way too, and is put back where its pin has it in
 // the next substep; over corners that its pins have turned it would else be out of order for good. So does one that a
-// collider holds, by z_least at most beyond the mean of its corners.
+// collider holds, by z_low at most beyond the mean of its corners.
 //
 // A cell whose diagonals are parallel has no normal, and no front that its centre could be on: it is left as it is and
 // counts as inverted no more than as in order (sim/sim_stats.c).
@@ -16,7 +16,7 @@
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
-/// z_least over height_min thicknesses: well under where height.c mends, so that this pass stays the exception.
+/// z_low over height_min thicknesses: well under where height.c mends, so that this pass stays the exception.
 static const float ORDER_MIN = 0.1f;
 
 typedef struct Order {

@@ -9,8 +9,8 @@
 // what of the heat of combustion did not stay in the sheet (shell/matter.c). The fire runs `pace` times as fast as the
 // gas moves, and its power is that of the real fire.
 //
-// In turn the gas heats, from the place that the flow has come from, so that heat arrives by the flow only and not by
-// the size of the cells:
+// In turn the gas heats, from the position that the flow has come from, so that heat arrives by the flow only and not
+// by the size of the cells:
 //
 //   g = g_0 B/(e^B - 1),   B = m'' cp/g_0,   T = T_gas(x + side cell/2 - reach u/(|u| + u_0))
 //
@@ -72,7 +72,7 @@ static float sheets_vent(const GasPass *pass, uint32_t i) {
     return 2 * side * float3_dot(normal, down) > SHEET_LEVEL ? -side : side;
 }
 
-/// The particle's place half a cell off the sheet, on that side or, where it is a collider's, on the other. False
+/// The particle's position half a cell off the sheet, on that side or, where it is a collider's, on the other. False
 /// outside of the grid.
 static bool sheets_position(const GasPass *pass, uint32_t i, float side, Float3 *x) {
     const GasPlan *plan = pass->plan;
@@ -167,7 +167,8 @@ static float sheets_open(const GasPlan *plan, const float position[3], const flo
     return sum;
 }
 
-/// L of the gas that flows along a sheet at a place: a cell's heat, where it is thicker than that layer, is all in it.
+/// L of the gas that flows along a sheet at a position: a cell's heat, where it is thicker than that layer, is all in
+/// it.
 static float sheets_lightness(const GasPlan *plan, const float *L, const float position[3]) {
     float thick = plan->cell / SHEET_LAYER, max = 1 - plan->settings.ambient_temperature / GAS_HOTTEST;
     float light = gas_sample(&plan->grid, L, position), layer = thick > 1 ? light * thick : light;

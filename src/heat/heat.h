@@ -10,7 +10,7 @@
 /// A heat source of the simulation. Pictures are evaluated once, at every particle.
 typedef struct Source {
     uint32_t generation; ///< 0: the slot is free
-    SingeSourceDef def;  ///< its pointers (path, picture, strength) are not used
+    SingeSourceDef def;  ///< its pointers (path, texture, strength) are not used
     Path path;
     uint32_t strength_count;
     SingeValueKey *strength;
@@ -34,7 +34,7 @@ void source_settled(Memory *memory, Source *source);
 void source_unsettle(Memory *memory, const Shell *shell, Source *source);
 void source_free(Memory *memory, const Shell *shell, Source *source);
 
-/// Checks a source that was read back as source_create and later moves of it would; its picture's values are those at
+/// Checks a source that was read back as source_create and later moves of it would; its texture's values are those at
 /// the particles.
 SingeResult source_check_read(const Shell *shell, const Source *source, SingeError *error);
 

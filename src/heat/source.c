@@ -15,7 +15,7 @@ static SingeResult source_bad(SingeError *error, const char *what) {
 static bool source_in(float x, float min, float max) { return x >= min && x <= max; }
 static bool source_not_negative(float x) { return x >= 0 && isfinite(x); }
 
-/// W/m2, of a picture: far beyond any fire, and finite whatever a step makes of it.
+/// W/m2, of a texture: far beyond any fire, and finite whatever a step makes of it.
 static const float SOURCE_FLUX_MAX = 1e15f;
 
 static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *error) {

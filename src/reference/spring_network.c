@@ -8,7 +8,7 @@ static bool group_incidence(Memory *memory, SpringGroup *group, uint32_t particl
     for (uint32_t k = 0; k < group->count; k++)
         for (int end = 0; end < 2; end++) group->first[group->ends[k][end] + 1]++;
     for (uint32_t i = 0; i < particle_count; i++) group->first[i + 1] += group->first[i];
-    // fills from each particle's last place down; afterwards first[i] is the first place again
+    // fills from each particle's last entry down; afterwards first[i] is the first entry again
     for (uint32_t k = group->count; k-- > 0;)
         for (uint32_t end = 2; end-- > 0;) group->incident[--group->first[group->ends[k][end] + 1]] = 2 * k + end;
     for (uint32_t i = 0; i < particle_count; i++) group->first[i] = group->first[i + 1];

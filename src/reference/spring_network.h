@@ -24,7 +24,7 @@ typedef struct SpringGroup {
     double regularisation; ///< floor on the diagonal, relative to the mean of w_a and w_b
     // the springs of each particle: incident[first[i]] up to first[i + 1], as 2 spring + end
     uint32_t *first, *incident;
-    // ELLPACK pattern of J M^-1 J^T off its diagonal, in slices: entry k of the rows of slice s is the 8 places from
+    // ELLPACK pattern of J M^-1 J^T off its diagonal, in slices: entry k of the rows of slice s is the 8 entries from
     // 8 (slice_first[s] + k) on. A slice is as wide as the longest of its 8 rows.
     size_t *slice_first; ///< [padded/8 + 1]
     uint32_t *column;    ///< [8 entries]

@@ -29,7 +29,7 @@ static SingeResult shell_count(const SheetSource *sources, uint32_t source_count
         numbers += sources[i].sheet.source_count;
     }
     // indices of particles and of the 4 N_c red springs are also counted in int; four times a particle's number, and
-    // places in lanes, of which springs take some, in uint32_t
+    // slots in lanes, of which springs take some, in uint32_t
     if (source_count > SHEET_LIMIT || vertices + cells > INT32_MAX / 4 || numbers > INT32_MAX || cells > INT32_MAX / 16)
         return error_set(error, SINGE_ERROR_LIMIT, "sheet", -1,
                          "%u sheets with %llu vertices and %llu cells are too many", source_count,

@@ -17,7 +17,7 @@ typedef struct NodeItems {
 static bool transpose(Memory *memory, const ItemNodes *items, NodeItems *at) {
     uint32_t total = items->first[items->item_count];
     if (!NEW(memory, at->first, (size_t)items->node_count + 2) || !NEW(memory, at->items, total)) return false;
-    // counted two places on, summed, then advanced by one while filling: first[n] ends as the start of n
+    // counted two entries on, summed, then advanced by one while filling: first[n] ends as the start of n
     for (uint32_t k = 0; k < total; k++) at->first[items->nodes[k] + 2]++;
     for (uint32_t n = 0; n < items->node_count; n++) at->first[n + 2] += at->first[n + 1];
     for (uint32_t i = 0; i < items->item_count; i++)

@@ -93,7 +93,7 @@ void sim_log_contacts(SingeSim *sim, const CollisionCounters *contacts);
 
 /// Logs colliders that sheets begin deep inside of.
 void sim_find_buried(const SingeSim *sim);
-/// Logs one, `depth` m deep at `place`.
+/// Logs one, `depth` m deep at `position`.
 void sim_log_buried(const SingeSim *sim, uint32_t collider, double share, float depth, Float3 position);
 
 /// Enthalpy of what is left above ambient, J, sum of capacity (T - T_amb).

@@ -78,7 +78,7 @@ static float stats_slope2(const SingeSim *sim, const uint32_t *corner, const flo
     return area2 > 0 ? (bb * ta * ta - 2 * ab * ta * tb + aa * tb * tb) / area2 : 0;
 }
 
-/// A front that passes at speed v ignites places a distance d apart d/v after each other.
+/// A front that passes at speed v ignites points a distance d apart d/v after each other.
 static double stats_front_speed(const SingeSim *sim) {
     size_t n = 0;
     for (uint32_t c = 0; c < sim->shell.cell_count; c++) {

@@ -11,7 +11,7 @@ void snapshot_sim_def(Stream *stream, SingeSimDef *def);
 /// Name, counts, material and the rest of a sheet as it was added.
 void snapshot_sheet_def(Stream *stream, Sheet *sheet);
 
-/// Without path, picture, strength and callback.
+/// Without path, texture, strength and callback.
 void snapshot_source_def(Stream *stream, SingeSourceDef *def);
 
 /// Without path.

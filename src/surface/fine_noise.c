@@ -8,7 +8,7 @@
 // the directions another noise. What is drawn is L >= 0: about the positions farther than r from the edge of S. As S
 // never grows, nor does L, whatever the front's width and speed: what is gone stays gone, the edge stands still where
 // the fire does, and the noise moves it by a length. Nothing is drawn outside S >= 0. The mass drawn is that of the
-// place where L is taken, so that char follows the edge.
+// point where L is taken, so that char follows the edge.
 //
 // r is a sum of octaves, each half the size of the one before down to the fine triangles; its lattice lies askew to the
 // sheet and its grid.

@@ -3,7 +3,7 @@
 //   S(u, v) = sum B_i(u) B_j(v) b_ij,   u along the cell's side 0, v along its side 3 backwards
 //
 // Near the Catmull-Clark limit surface (Loop and Schaefer, Approximating Catmull-Clark subdivision surfaces with
-// bicubic patches, 2008), and this itself where four cells meet, so that places and tangent planes are those of the
+// bicubic patches, 2008), and this itself where four cells meet, so that positions and tangent planes are those of the
 // cell across. With a corner x that n cells have, its neighbours e, e' in the cell and the corner f across:
 //
 //   inner point    p = (n x + 2 (e + e') + f) / (n + 5)

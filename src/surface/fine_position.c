@@ -25,7 +25,7 @@
 /// How far a position leaves its triangle at most, of the shortest side at its corners; of how far another surface is.
 #define BULGE_MAX 0.1f
 #define ROOM_SHARE 0.4f
-/// How far the corners of tear edges at one place are drawn back, of the cell's side: less than contact keeps free.
+/// How far the corners of tear edges at one position are drawn back, of the cell's side: less than contact keeps free.
 #define TEAR_EDGE 1e-3f
 /// Tear edges this near are at one position; and apart, when their corners have their shares again.
 #define TEAR_EDGES_CLOSED 1e-2f

@@ -6,7 +6,7 @@
 //        beside a straight tear, -1/2 at a corner of it that stands out, 1/2 at one that stands in, 3/4 at its end
 //   L(x) = max(S(x + D(x)) - 0.3, z(x + D(x)) - 0.45)/2
 //
-// D is a noise of the place at rest, as a vector. Both tear edges have the same there and lie on different sides, so
+// D is a noise of the rest position, as a vector. Both tear edges have the same there and lie on different sides, so
 // that what one gives away the other keeps: the tear wanders, frays at small scales, and its edges fit. x + D stays on
 // the edge's own side, for no way leads over a torn side: there it ends, where S is 0 (fine_walk). S is that of the
 // sheet as it is cut, so that it runs slantwise where a tear runs in stairs. z is the weight of a cell's centroid: what

@@ -127,7 +127,7 @@ void fine_spline_bounds(const Shell *shell, const Spline *spline, uint32_t cell,
 float fine_spline_at(const Shell *shell, const Spline *spline, FineLocation location);
 
 /// The position that lies (x, y) from another one, in sides of its cell along the cell's own axes (corner 0 to 1,
-/// corner 0 to 3), at most half a cell either way. Where the sheet ends, the nearest place along its border.
+/// corner 0 to 3), at most half a cell either way. Where the sheet ends, the nearest point along its border.
 FineLocation fine_walk(const Shell *shell, FineLocation location, float x, float y);
 
 /// A position in its cell's own coordinates: corners at (-1/2, -1/2), (1/2, -1/2), (1/2, 1/2), (-1/2, 1/2).
@@ -145,7 +145,7 @@ int fine_octaves(float spacing);
 /// The level and the mass that a position is drawn by.
 FineValue fine_value(const Fine *fine, FineLocation location);
 
-/// A place at rest, and a vector rotated out of every plane that sheets and their grids may lie in.
+/// A rest position, and a vector rotated out of every plane that sheets and their grids may lie in.
 Float3 fine_rest(const Shell *shell, FineLocation location);
 Float3 fine_askew(Float3 p);
 

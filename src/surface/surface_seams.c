@@ -1,6 +1,6 @@
-// Seams of the uv. A vertex where cells have different uv is drawn once for each, at the same place and with the same
-// normal, so that pictures break there and the surface does not. A drawn vertex lies on one of a cell's four triangles
-// at rest; with its barycentric weights w there, of the side's two corners and the virtual centre,
+// Seams of the uv. A vertex where cells have different uv is drawn once for each, at the same position and with the
+// same normal, so that images break there and the surface does not. A drawn vertex lies on one of a cell's four
+// triangles at rest; with its barycentric weights w there, of the side's two corners and the virtual centre,
 //
 //   uv = w_a uv_a + w_b uv_b + w_c (uv_1 + uv_2 + uv_3 + uv_4)/4,   uv_i as this cell has them
 //

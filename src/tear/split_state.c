@@ -6,7 +6,7 @@
 #include <string.h>
 
 /// How far each edge of a tear moves towards the centroid of its own cells, of the way there: they are never in one
-/// place, so that contact can tell their sides from the start. It is less than contact keeps free
+/// position, so that contact can tell their sides from the start. It is less than contact keeps free
 /// (collision/collision_plan.h), for it does not look at what moves here.
 static const float TEAR_EDGE_GAP = 0.002f;
 
@@ -82,7 +82,7 @@ static bool tear_edges_cross(const Shell *shell, const State *state, uint32_t on
     return false;
 }
 
-/// Parts two edges of a tear that are in one place, each towards its cells. Where the sheet is crumpled there, these
+/// Parts two edges of a tear at the same position, each towards its cells. Where the sheet is crumpled there, these
 /// may lie across the other one: then along the first of 26 directions in which they do not cross.
 static void open_tear_edges(const Shell *shell, State *state, uint32_t one, uint32_t two) {
     enum { DIRECTIONS = 27 };

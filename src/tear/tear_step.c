@@ -188,7 +188,8 @@ static TearEdge tear_edge(const TearPlan *plan, const Shell *shell, const State 
     return edge;
 }
 
-/// One of the edges [begin, count) by which a tear goes on in the direction `displacement`; -1 where there is none. `lot` is 0 to 1.
+/// One of the edges [begin, count) by which a tear goes on in the direction `displacement`; -1 where there is none.
+/// `lot` is 0 to 1.
 static int pick_edge(const TearEdge *edges, int begin, int count, Float3 displacement, float lot) {
     float weight[SPLIT_FAN], min = INFINITY, sum = 0;
     for (int j = begin; j < count; j++)

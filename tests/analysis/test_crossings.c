@@ -44,7 +44,7 @@ static int orient3_of_integers(int64_t p[4][3]) {
     return (value > 0) - (value < 0);
 }
 
-/// Points of whole coordinates up to `most`, of which a fourth is put into the plane of the others half of the time.
+/// Points of whole coordinates up to `max`, of which a fourth is put into the plane of the others half of the time.
 static void random_points(int max, int64_t p[4][3]) {
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < 3; k++) p[i][k] = random_integer(max);
@@ -290,7 +290,7 @@ static void test_hinges(void **state) {
     (void)state;
     static const float left[3] = {-1, 0, 0}, centroid[3] = {0, 0, 0}, right[3] = {1, 0, 0};
     for (size_t i = 0; i < sizeof meetings / sizeof *meetings; i++)
-        for (int apart = 0; apart < 4; apart++) { // lines at the same places, or not; the sheets' order
+        for (int apart = 0; apart < 4; apart++) { // lines at the same positions, or not; the sheets' order
             const Meeting *m = &meetings[i];
             float position[18][3];
             uint32_t triangles[16][3];

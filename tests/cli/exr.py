@@ -5,7 +5,7 @@ import zlib
 
 
 def unpack(data, size):
-    """ZIP of EXR: the bytes' differences, those of even places first."""
+    """ZIP of EXR: the bytes' differences, those of even offsets first."""
     if len(data) == size:
         return data
     raw = bytearray(zlib.decompress(data))
@@ -30,11 +30,11 @@ def read(path):
         attributes[name] = data[kind + 5 : kind + 5 + size]
         at = kind + 5 + size
     at += 1
-    channels, place, listed = [], 0, attributes["channels"]
-    while listed[place]:
-        end = listed.index(b"\0", place)
-        channels.append((listed[place:end].decode(), "Ief"[struct.unpack_from("<I", listed, end + 1)[0]]))
-        place = end + 17
+    channels, start, listed = [], 0, attributes["channels"]
+    while listed[start]:
+        end = listed.index(b"\0", start)
+        channels.append((listed[start:end].decode(), "Ief"[struct.unpack_from("<I", listed, end + 1)[0]]))
+        start = end + 17
     x0, y0, x1, y1 = struct.unpack("<4i", attributes["dataWindow"])
     width, height = x1 - x0 + 1, y1 - y0 + 1
     lines = {0: 1, 2: 1, 3: 16}[attributes["compression"][0]]
@@ -44,9 +44,9 @@ def read(path):
         offset, = struct.unpack_from("<Q", data, at + 8 * chunk)
         _, size = struct.unpack_from("<iI", data, offset)
         rows = min(lines, height - chunk * lines)
-        block, place = unpack(data[offset + 8 : offset + 8 + size], rows * line), 0
+        block, start = unpack(data[offset + 8 : offset + 8 + size], rows * line), 0
         for _ in range(rows):
             for name, kind in channels:
-                image[name] += struct.unpack_from("<%d%s" % (width, kind), block, place)
-                place += width * struct.calcsize(kind)
+                image[name] += struct.unpack_from("<%d%s" % (width, kind), block, start)
+                start += width * struct.calcsize(kind)
     return width, height, image

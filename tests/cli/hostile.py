@@ -170,7 +170,7 @@ HOSTILE = {
     "doubled.dae": (doubling_dae(40), ""),
     "deep.x3d": (x3d("<Group>" * 200000 + x3d_shape() + "</Group>" * 200000), ""),
     "self.x3d": (x3d(f'<Group DEF="a">{x3d_shape()}<Group USE="a"/></Group>'), ""),
-    # counts, sizes and places past the end
+    # counts, sizes and offsets past the end
     "view.gltf": (gltf(bufferViews=[{"buffer": 0, "byteOffset": 1 << 30, "byteLength": 48}] * 2), ""),
     "past.gltf": (gltf(accessors=accessors(byteOffset=1 << 30)), ""),
     "count.gltf": (gltf(accessors=accessors(count=0x7FFFFFFF)), ""),

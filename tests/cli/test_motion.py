@@ -31,7 +31,7 @@ gas: no
 
 
 def box(at, squeeze):
-    """A box of 6 cm by 12 cm by 3 cm about a place, y up, wider at its top by `squeeze`."""
+    """A box of 6 cm by 12 cm by 3 cm about a point, y up, wider at its top by `squeeze`."""
     corners = []
     for y in (-0.06, 0.06):
         for x, z in ((-0.03, -0.015), (0.03, -0.015), (0.03, 0.015), (-0.03, 0.015)):

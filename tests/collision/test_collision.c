@@ -492,7 +492,7 @@ static void cells_out_of_bounds_are_found(void **unused) {
     check_outside(1e4f); // through more cubes than can be counted
 }
 
-/// Cells of which some are thousands of cubes long, and what has no place at all.
+/// Cells of which some are thousands of cubes long, and what has no position at all.
 static void the_grid_has_bounds(void **unused) {
     (void)unused;
     Searched *s = searched(30);

@@ -61,8 +61,8 @@ static SingeSim *hinges(uint32_t seed, int threads, bool contact) {
     return sim;
 }
 
-/// Steps on one thread, on two, and without contact. Counts crossings with and without it; all places are the same on
-/// one thread and on two.
+/// Steps on one thread, on two, and without contact. Counts crossings with and without it; all positions are the same
+/// on one thread and on two.
 static void step_all(SingeSim *const sims[3], long *with, long *without) {
     SingeSurface surface[3] = {{0}, {0}, {0}};
     for (int i = 0; i < 3; i++) {

@@ -83,9 +83,9 @@ static void seeds_differ(void **state) {
 
 static void any_coordinate_is_defined(void **state) {
     (void)state;
-    static const float places[] = {1e9f, -1e9f, 3e9f, -3e9f, 1e20f, -1e38f, INFINITY, -INFINITY, NAN};
-    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-        float n = random_noise(places[i], 0.5f, places[i], 1);
+    static const float coordinates[] = {1e9f, -1e9f, 3e9f, -3e9f, 1e20f, -1e38f, INFINITY, -INFINITY, NAN};
+    for (size_t i = 0; i < sizeof coordinates / sizeof *coordinates; i++) {
+        float n = random_noise(coordinates[i], 0.5f, coordinates[i], 1);
         assert_true(n >= 0 && n <= 1);
     }
 }

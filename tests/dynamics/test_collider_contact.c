@@ -374,7 +374,7 @@ static double seconds(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/// ns a particle for one look at the collider, with the sheet at that place.
+/// ns a particle for one look at the collider, with the sheet there.
 static double look(Bench *bench, Float3 at, uint64_t *contacts) {
     const float none[4] = {0, 0, 0, 1};
     DynamicsPlan *plan = bench->plan;

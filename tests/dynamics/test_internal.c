@@ -269,7 +269,7 @@ static void test_char_weight_by_attribute(void **unused) {
 }
 
 /// Damping and drag slow each particle by its own; without weight no spring makes them equal.
-static void test_damping_and_drag_by_picture(void **unused) {
+static void test_damping_and_drag_by_texture(void **unused) {
     (void)unused;
     static const float halves[] = {0, 1};
     for (int drag = 0; drag < 2; drag++) {
@@ -317,7 +317,7 @@ static void hang(SingeParam compliance, double stretch[2]) {
     bench_close(&bench);
 }
 
-static void test_compliance_by_picture(void **unused) {
+static void test_compliance_by_texture(void **unused) {
     (void)unused;
     static const float halves[] = {0, 1}; // white at the bottom
     double all[2], half[2];
@@ -339,8 +339,8 @@ int main(void) {
         cmocka_unit_test(test_weights),
         cmocka_unit_test(test_compliance_is_physical),
         cmocka_unit_test(test_char_weight_by_attribute),
-        cmocka_unit_test(test_damping_and_drag_by_picture),
-        cmocka_unit_test(test_compliance_by_picture),
+        cmocka_unit_test(test_damping_and_drag_by_texture),
+        cmocka_unit_test(test_compliance_by_texture),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

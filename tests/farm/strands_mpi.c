@@ -2,8 +2,8 @@
 //
 //   mpirun -n P strands_mpi ROWS COLUMNS SUBSTEPS [FILE [NUDGE]]
 //
-// A sheet of ROWS x COLUMNS particles hangs by two corners and swings. It is projected as Singe's solver does: family by
-// family (rows, columns, two diagonals), each strand of a family by one Newton step, whose system is tridiagonal:
+// A sheet of ROWS x COLUMNS particles hangs by two corners and swings. It is projected as Singe's solver does: family
+// by family (rows, columns, two diagonals), each strand of a family by one Newton step, whose system is tridiagonal:
 //
 //   (w_i + w_{i+1} + s) y_i - w_i n_{i-1}.n_i y_{i-1} - w_{i+1} n_i.n_{i+1} y_{i+1} = |d_i| - l_i.
 //
@@ -12,8 +12,8 @@
 // y_right. What is left is a tridiagonal system along the ranks, of one unknown a strand and border, which goes through
 // the ranks forth and back. The result is that of the uncut strand but for rounding.
 //
-// Prints the times and the messages of a substep, and writes the particles to FILE. NUDGE moves one particle at the start,
-// m: what rounding does to the motion is held against that (tests/farm/check_mpi.py).
+// Prints the times and the messages of a substep, and writes the particles to FILE. NUDGE moves one particle at the
+// start, m: what rounding does to the motion is held against that (tests/farm/check_mpi.py).
 #include <math.h>
 #include <mpi.h>
 #include <stdbool.h>
@@ -324,14 +324,15 @@ static Work make_work(const Sheet *s) {
 static double *gather(const Sheet *s) {
     const int count = 3 * s->rows * s->width;
     double *mine = need((size_t)count, 8), *all = s->rank ? NULL : need(3 * (size_t)s->rows * (size_t)s->columns, 8);
-    int *counts = need((size_t)s->ranks, sizeof *counts), *places = need((size_t)s->ranks, sizeof *places);
+    int *counts = need((size_t)s->ranks, sizeof *counts),
+        *displacements = need((size_t)s->ranks, sizeof *displacements);
     for (int c = 0; c < s->width; c++) // column by column, as the slabs are
         for (int r = 0; r < s->rows; r++)
             memcpy(mine + 3 * ((size_t)c * (size_t)s->rows + (size_t)r), s->x[at(s, r, c)], 24);
     MPI_Gather(&count, 1, MPI_INT, counts, 1, MPI_INT, 0, MPI_COMM_WORLD);
-    for (int i = 1; i < s->ranks; i++) places[i] = places[i - 1] + counts[i - 1];
-    MPI_Gatherv(mine, count, MPI_DOUBLE, all, counts, places, MPI_DOUBLE, 0, MPI_COMM_WORLD);
-    free(mine), free(counts), free(places);
+    for (int i = 1; i < s->ranks; i++) displacements[i] = displacements[i - 1] + counts[i - 1];
+    MPI_Gatherv(mine, count, MPI_DOUBLE, all, counts, displacements, MPI_DOUBLE, 0, MPI_COMM_WORLD);
+    free(mine), free(counts), free(displacements);
     return all;
 }
 

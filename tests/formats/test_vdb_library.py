@@ -1,4 +1,4 @@
-"""A gas written by Singe, read by OpenVDB's own library: names, kinds, places and every value."""
+"""A gas written by Singe, read by OpenVDB's own library: names, kinds, positions and every value."""
 
 import os
 import struct

@@ -1,4 +1,4 @@
-// Any bytes as a scene: no crash, every refusal has its place, and what is accepted reads back from its own dump.
+// Any bytes as a scene: no crash, every refusal has its location, and what is accepted reads back from its own dump.
 #include "fuzz_scene.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

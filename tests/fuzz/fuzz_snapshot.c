@@ -79,7 +79,7 @@ static void put_double(Input *input, uint8_t *at) {
     memcpy(at, &number, sizeof number);
 }
 
-/// Makes one change at a place of the body; *size may become less.
+/// Makes one change at an offset of the body; *size may become less.
 static void change(Input *input, uint8_t *body, size_t *size) {
     unsigned how = input_pick(input, 16);
     size_t at = ((size_t)input_byte(input) << 16 | (size_t)input_byte(input) << 8 | input_byte(input)) % (*size - 15);

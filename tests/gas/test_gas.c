@@ -293,7 +293,7 @@ static void it_comes_to_rest(void **unused) {
     air_close(&air);
 }
 
-/// Places far away, at the border and not finite, and powers that no fire has.
+/// Positions far away, at the border and not finite, and powers that no fire has.
 static void copes_with_anything(void **unused) {
     (void)unused;
     GasSettings settings = settings_default();

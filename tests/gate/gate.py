@@ -140,7 +140,7 @@ def singe(options, *args):
 
 
 def positions(path):
-    """Places and the number of triangles of a frame: floats x, y, z come first."""
+    """Positions and the number of triangles of a frame: floats x, y, z come first."""
     with open(path, "rb") as file:
         data = file.read()
     header = data[: data.index(b"end_header\n")].decode("ascii").splitlines()
@@ -153,8 +153,8 @@ def positions(path):
             element, counts[words[1]] = words[1], int(words[2])
         elif words[0] == "property" and element == "vertex":
             stride += sizes[words[1]]
-    places = [struct.unpack_from("<3f", data, start + i * stride) for i in range(counts["vertex"])]
-    return places, counts["face"]
+    points = [struct.unpack_from("<3f", data, start + i * stride) for i in range(counts["vertex"])]
+    return points, counts["face"]
 
 
 def write_scene(path, mesh, scale=1.0, shift=(0.0, 0.0, 0.0), frames=1):
@@ -252,11 +252,11 @@ def try_model(options, job):
         return end("large", f"more than {MEMORY >> 30} GiB")
     if code:
         return end("failed", f"exit code {code}: {reason(said)}")
-    places, triangles = positions(glob.glob(os.path.join(folder, "size/ply/*"))[0])
+    points, triangles = positions(glob.glob(os.path.join(folder, "size/ply/*"))[0])
     if triangles > options.largest:
         return end("large", "", triangles)
-    low = [min(p[k] for p in places) for k in range(3)]
-    high = [max(p[k] for p in places) for k in range(3)]
+    low = [min(p[k] for p in points) for k in range(3)]
+    high = [max(p[k] for p in points) for k in range(3)]
     factor = SIZE / sum((b - a) ** 2 for a, b in zip(low, high)) ** 0.5
     shift = [-factor * 0.5 * (a + b) for a, b in zip(low, high)]
     shift[2] += 0.3

@@ -54,7 +54,7 @@ void rig_source(Rig *rig, const SingeSourceDef *def);
 /// Takes a particle and its springs away, and its enthalpy to `removed`.
 void rig_remove(Rig *rig, uint32_t particle);
 
-static inline float *rig_place(const Rig *rig, uint32_t i) { return rig->shell.rest_position[i]; }
+static inline float *rig_position(const Rig *rig, uint32_t i) { return rig->shell.rest_position[i]; }
 static inline uint32_t rig_vertex(const Rig *rig, int column, int row) {
     return (uint32_t)(row * (rig->nx + 1) + column);
 }

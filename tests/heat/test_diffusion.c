@@ -13,7 +13,7 @@ static double mode_amplitude(const Rig *rig, double length, bool centres) {
     double sum = 0, norm = 0;
     for (uint32_t i = 0; i < rig->shell.particle_count; i++) {
         if (shell_is_corner(&rig->shell, i) == centres) continue;
-        double c = cos(PI * (double)rig_place(rig, i)[0] / length), area = (double)rig->shell.matter.area[i];
+        double c = cos(PI * (double)rig_position(rig, i)[0] / length), area = (double)rig->shell.matter.area[i];
         sum += area * c * ((double)rig->state.heat.temperature[i] - 600);
         norm += area * c * c;
     }
@@ -31,7 +31,7 @@ static double mode_error(int n, float aspect, bool centres, float exchange) {
     int steps = 2 * n * n;
     rig.h = (float)(seconds / steps);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
-        rig.state.heat.temperature[i] = (float)(600 + 300 * cos(PI * (double)rig_place(&rig, i)[0] / length));
+        rig.state.heat.temperature[i] = (float)(600 + 300 * cos(PI * (double)rig_position(&rig, i)[0] / length));
     for (int step = 0; step < steps; step++) rig_step(&rig);
     double amplitude = mode_amplitude(&rig, length, centres);
     // the scheme's own decay is known too: 1/(1 + dt lambda), with the part X dx^2/16 of alpha that goes by way of the
@@ -77,7 +77,7 @@ static Moments moments(const Rig *rig, int layer) {
         for (uint32_t i = 0; i < rig->shell.particle_count; i++) {
             if (layer < 2 && shell_is_corner(&rig->shell, i) == (layer == 1)) continue;
             double w = weight[i] * ((double)rig->state.heat.temperature[i] - 300);
-            double x = (double)rig_place(rig, i)[0], y = (double)rig_place(rig, i)[1];
+            double x = (double)rig_position(rig, i)[0], y = (double)rig_position(rig, i)[1];
             if (pass == 0) m.sum += w, mx += w * x, my += w * y;
             else
                 m.x += w * (x - mx / m.sum) * (x - mx / m.sum), m.y += w * (y - my / m.sum) * (y - my / m.sum),
@@ -92,10 +92,11 @@ static Moments moments(const Rig *rig, int layer) {
 static Moments gaussian(const RigDef *def, int layer, double deviation) {
     Rig rig;
     rig_open(&rig, def);
-    double x = (double)rig_place(&rig, rig_vertex(&rig, def->nx / 2, def->ny / 2))[0];
-    double y = (double)rig_place(&rig, rig_vertex(&rig, def->nx / 2, def->ny / 2))[1];
+    double x = (double)rig_position(&rig, rig_vertex(&rig, def->nx / 2, def->ny / 2))[0];
+    double y = (double)rig_position(&rig, rig_vertex(&rig, def->nx / 2, def->ny / 2))[1];
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
-        double a = ((double)rig_place(&rig, i)[0] - x) / deviation, b = ((double)rig_place(&rig, i)[1] - y) / deviation;
+        double a = ((double)rig_position(&rig, i)[0] - x) / deviation,
+               b = ((double)rig_position(&rig, i)[1] - y) / deviation;
         rig.state.heat.temperature[i] = (float)(300 + 800 * exp(-(a * a + b * b) / 2));
     }
     Moments before = moments(&rig, layer);
@@ -188,7 +189,7 @@ static void umbrella_slab_mode_decays(void **unused) {
         rig_open(&rig, &def);
         rig.h = 0.01f;
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
-            rig.state.heat.temperature[i] = (float)(600 + 300 * cos(PI * (double)rig_place(&rig, i)[0] / length));
+            rig.state.heat.temperature[i] = (float)(600 + 300 * cos(PI * (double)rig_position(&rig, i)[0] / length));
         for (int step = 0; step < 300; step++) rig_step(&rig);
         double lambda = 1e-4 * umbrella_factor(1, 1, 0.5) * PI * PI / (length * length);
         error[k] = fabs(mode_amplitude(&rig, length, false) / (300 * pow(1 + lambda * (double)rig.h, -300)) - 1);
@@ -251,12 +252,12 @@ static void linear_temperature_is_steady_on_skewed_quads(void **unused) {
     rig_open(&rig, &def);
     rig.h = 2e-4f; // alpha dt/s^2 = 0.005: the border is not felt four cells away
     for (uint32_t i = 0; i < rig.shell.vertex_count; i++)
-        rig.state.heat.temperature[i] = 400 + 9000 * rig_place(&rig, i)[0] - 4000 * rig_place(&rig, i)[1];
+        rig.state.heat.temperature[i] = 400 + 9000 * rig_position(&rig, i)[0] - 4000 * rig_position(&rig, i)[1];
     rig_step(&rig);
     double border = 0;
     for (int row = 0; row <= 16; row++)
         for (int column = 0; column <= 16; column++) {
-            const float *x = rig_place(&rig, rig_vertex(&rig, column, row));
+            const float *x = rig_position(&rig, rig_vertex(&rig, column, row));
             double T = (double)rig.state.heat.temperature[rig_vertex(&rig, column, row)];
             double change = fabs(T - (double)(400 + 9000 * x[0] - 4000 * x[1]));
             if (column >= 4 && column <= 12 && row >= 4 && row <= 12) CHECK_NEAR(change, 0, 2e-4);
@@ -274,7 +275,7 @@ static void iterations_have_an_end(void **unused) {
     Rig rig;
     rig_open(&rig, &def);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
-        rig.state.heat.temperature[i] = rig_place(&rig, i)[0] < 0.3f ? 900 : 400;
+        rig.state.heat.temperature[i] = rig_position(&rig, i)[0] < 0.3f ? 900 : 400;
     double before = rig_content(&rig, 0);
     rig_step(&rig);
     assert_int_equal(rig.counters.unconverged, 0);
@@ -313,7 +314,7 @@ static void what_is_gone_conducts_nothing(void **unused) {
     Rig rig;
     rig_open(&rig, &def);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
-        rig.state.heat.temperature[i] = rig_place(&rig, i)[0] < 0.008f ? 900 : 300;
+        rig.state.heat.temperature[i] = rig_position(&rig, i)[0] < 0.008f ? 900 : 300;
     rig_step(&rig);
     // a cut across the sheet: a column of vertices and one of centres beside it
     for (int row = 0; row < 3; row++) rig_remove(&rig, rig_vertex(&rig, 4, row));
@@ -353,7 +354,7 @@ static void heat_is_kept_where_capacity_varies(void **unused) {
     rig_open(&rig, &def);
     double sum = 0, capacity = 0;
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
-        rig.state.heat.temperature[i] = rig_place(&rig, i)[0] < 0.012f ? 900 : 300;
+        rig.state.heat.temperature[i] = rig_position(&rig, i)[0] < 0.012f ? 900 : 300;
         sum += (double)rig.shell.matter.capacity[i] * (double)rig.state.heat.temperature[i];
         capacity += (double)rig.shell.matter.capacity[i];
     }
@@ -368,7 +369,7 @@ static void heat_is_kept_where_capacity_varies(void **unused) {
     rig_close(&rig);
 }
 
-/// Where the exchange varies, the layers even out at the rate of their place, and no heat is lost.
+/// Where the exchange varies, the layers even out at the local rate, and no heat is lost.
 static void layers_even_out_at_their_own_rates(void **unused) {
     (void)unused;
     static const float halves[] = {0, 1};

@@ -26,7 +26,7 @@ static void light(Rig *rig) {
 static void burn(Rig *rig, bool remove) {
     double radius = 0.005 + 0.01 * rig->state.time;
     for (uint32_t i = 0; i < rig->shell.particle_count; i++) {
-        const float *x = rig_place(rig, i);
+        const float *x = rig_position(rig, i);
         double d = hypot((double)x[0] - 0.03, (double)x[1] - 0.03);
         bool burns = fabs(d - radius) < 0.004 && rig->state.burn.mass[i] > 0.2f;
         rig->state.burn.burn_rate[i] = burns ? 0.8f : 0;

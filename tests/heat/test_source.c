@@ -68,7 +68,7 @@ static void falls_off_smoothly_and_moves(void **unused) {
     rig.state.time = 0.5; // half way: at (0.01, 0.01)
     rig_step(&rig);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
-        const float *x = rig_place(&rig, i);
+        const float *x = rig_position(&rig, i);
         double d = sqrt(pow((double)x[0] - 0.01, 2) + pow((double)x[1] - 0.01, 2) + pow((double)x[2], 2)),
                s = (d - 0.003) / 0.004;
         double g = 100 * (s <= 0 ? 1 : s >= 1 ? 0 : 1 - s * s * (3 - 2 * s)), a = 0.002 * g / PER_AREA;
@@ -144,7 +144,7 @@ static void contact_heats_the_given_sides(void **unused) {
         rig_step(&rig);
         double a = 0.002 * 300 / PER_AREA, heated = (300 + a * (double)temperature) / (1 + a), stored = 0;
         for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
-            const float *x = rig_place(&rig, i);
+            const float *x = rig_position(&rig, i);
             double off = fmax(fabs((double)x[0] - 0.02), fabs((double)x[1] - 0.02));
             if (off > 0.0095 && off < 0.0125) { // the corners of the reach are round
                 stored += (double)rig.shell.matter.area[i] * PER_AREA * ((double)rig.state.heat.temperature[i] - 300);
@@ -184,7 +184,7 @@ static void contact_heat_goes_through_the_sheet(void **unused) {
     rig_close(&rig);
 }
 
-static void picture_and_key_frames(void **unused) {
+static void texture_and_key_frames(void **unused) {
     (void)unused;
     const float pixels[] = {0, 1, 0.5f, 0.25f}; // top row 0 1, bottom row .5 .25
     const SingeValueKey keys[] = {{1, 0}, {3, 2}};
@@ -352,7 +352,7 @@ int main(void) {
         cmocka_unit_test(contact_heats_the_near_layer),
         cmocka_unit_test(contact_heats_the_given_sides),
         cmocka_unit_test(contact_heat_goes_through_the_sheet),
-        cmocka_unit_test(picture_and_key_frames),
+        cmocka_unit_test(texture_and_key_frames),
         cmocka_unit_test(callback_adds_to_the_rest),
         cmocka_unit_test(a_sink_stops_at_1_kelvin),
         cmocka_unit_test(hot_gas_heats_up_to_itself),

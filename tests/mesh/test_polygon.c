@@ -3,7 +3,7 @@
 
 static Text text;
 
-/// A ring in the plane: places and the corners that name them, from 0.
+/// A ring in the plane: positions and the corners that name them, from 0.
 typedef struct Shape {
     double at[400][2];
     int corner[800], positions, corners;
@@ -165,7 +165,7 @@ static void holes_stay_open(void **state) {
     assert_refused(&shape, "holes that lie on each other");
 }
 
-/// A hole's vertices may be others at the same places, as where each loop is drawn for itself.
+/// A hole's vertices may be others at the same positions, as where each loop is drawn for itself.
 static void bridges_of_two_vertices_are_one(void **state) {
     (void)state;
     Shape shape = SHAPE(holes, 0, 1, 2, 3);

@@ -10,7 +10,7 @@ static uint32_t below(uint32_t count) {
     return (random_state >> 8) % count;
 }
 
-/// Faces between random vertices, some of which lie at one place or on one line.
+/// Faces between random vertices, some of which lie at one position or on one line.
 static void random_polygons(Text *text) {
     uint32_t vertices = 3 + below(14), faces = 1 + below(24), grid = 1 + below(4);
     bool uv = below(2);

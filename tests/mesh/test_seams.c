@@ -60,7 +60,7 @@ static SingeSim *tube_sim(float detail, bool seams) {
     return sim;
 }
 
-/// The uv that a place of the tube has at rest, apart from the chart: those between the seams are exact.
+/// The uv that a point of the tube has at rest, apart from the chart: those between the seams are exact.
 static void check_uv(const SingeSurface *surface) {
     for (uint32_t t = 0; t < surface->triangle_count; t++) {
         float low[2] = {9, 9}, high[2] = {-9, -9}, z = 0;
@@ -100,7 +100,7 @@ typedef struct Edge {
 
 static int by_ends(const void *a, const void *b) { return memcmp(a, b, sizeof(Edge)); }
 
-/// Edges that one triangle alone has once vertices at one place, to the bit, are one.
+/// Edges that one triangle alone has once vertices at one position, to the bit, are one.
 static int open_edges(const SingeSurface *surface) {
     uint32_t vertices = surface->vertex_count, edges = 3 * surface->triangle_count;
     Position *positions = calloc(vertices, sizeof *positions);
@@ -164,7 +164,7 @@ static void seams_open_no_cracks(void **state) {
     }
 }
 
-// A file that has two vertices at each place of a seam gets both numbers back, each with its uv.
+// A file that has two vertices at each position of a seam gets both numbers back, each with its uv.
 static void seams_keep_their_vertices(void **state) {
     (void)state;
     text.size = 0;

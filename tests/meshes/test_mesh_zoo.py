@@ -1,6 +1,6 @@
 """Meshes of every class that users bring (tools/make_meshes.py): two seconds of each, and what `singe verify` says.
 
-A good mesh runs without a warning and without a fault, and its first frame has all of it: every vertex at its place
+A good mesh runs without a warning and without a fault, and its first frame has all of it: every vertex at its position
 with its uv. A broken one either runs, and then what was repaired is said
 with the file's name and a number, or it is refused with exit code 2, the file's name and the element's number.
 """
@@ -125,7 +125,7 @@ class MeshZoo(Case):
         return f"verify: {faults}" if faults else None
 
     def lost(self, name):
-        """What the first frame does not have of the input: each vertex at its place, under its number, with its uv."""
+        """What the first frame does not have of the input: each vertex at its position, under its number, with its uv."""
         mesh = make_meshes.MESHES[name][2]()
         angle, scale = math.radians(TURN.get(name, 20)), SCALE.get(name, 1)
         values, uv_faces = mesh.corner_uv or (mesh.uv, mesh.faces)
@@ -139,10 +139,10 @@ class MeshZoo(Case):
             if number < 0:
                 continue
             x, y, z = (scale * c for c in mesh.points[number])
-            place = x, y * math.cos(angle) - z * math.sin(angle), y * math.sin(angle) + z * math.cos(angle) + 0.15
+            position = x, y * math.cos(angle) - z * math.sin(angle), y * math.sin(angle) + z * math.cos(angle) + 0.15
             # what is drawn is smooth: it leaves bent cells by at most 0.45 of the 0.5 mm that contact keeps
-            if math.dist(place, [row[axis] for axis in "xyz"]) > 2.3e-4:
-                return f"vertex {number} is not at {place}"
+            if math.dist(position, [row[axis] for axis in "xyz"]) > 2.3e-4:
+                return f"vertex {number} is not at {position}"
             known = uv[number]
             if known and min(math.dist(t, (row["s"], row["t"])) for t in known) > 1e-6:
                 return f"vertex {number} has the uv {row['s']}, {row['t']} instead of {uv[number][0]}"

@@ -44,7 +44,7 @@ static Corner corner_at(SyntheticKind kind, float radius, float x, float y) {
     return c;
 }
 
-static void place(SyntheticKind kind, float radius, const float rest[3], float out[3]) {
+static void position(SyntheticKind kind, float radius, const float rest[3], float out[3]) {
     float x = rest[0], y = rest[1], s = from_edge(kind, radius, x, y);
     float near = expf(-(s > 0 ? s : 0) / 0.016f), angle = atan2f(y - 0.02f, x - 0.012f);
     float curl = near * (0.006f + 0.0045f * sinf(6 * angle) + 0.002f * sinf(17 * angle + 2));
@@ -67,7 +67,7 @@ static void add_vertex(SyntheticKind kind, float radius, SingeSurface *s, const 
     memcpy(s->rest_position[i], c->rest, sizeof c->rest);
     float p[3], px[3], py[3], e = 2e-4f;
     float rx[3] = {c->rest[0] + e, c->rest[1], 0}, ry[3] = {c->rest[0], c->rest[1] + e, 0};
-    place(kind, radius, c->rest, p), place(kind, radius, rx, px), place(kind, radius, ry, py);
+    position(kind, radius, c->rest, p), position(kind, radius, rx, px), position(kind, radius, ry, py);
     float a[3], b[3];
     for (int k = 0; k < 3; k++) {
         a[k] = px[k] - p[k], b[k] = py[k] - p[k];

@@ -43,7 +43,7 @@ static void add_fuel(const SingeSurface *surface, SyntheticGas *s) {
     }
 }
 
-/// Fuel of the layer below at a place that is not a cell's middle, spread over its neighbours.
+/// Fuel of the layer below at a point that is not a cell's centre, spread over its neighbours.
 static float below(const float *fuel, const uint32_t *n, float x, float y) {
     float sum = 0;
     int ix = (int)floorf(x), iy = (int)floorf(y);

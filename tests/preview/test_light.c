@@ -57,7 +57,7 @@ static float box(float (*beauty)[3], int x, int y) {
     return sum;
 }
 
-/// What a flame adds to a place.
+/// What a flame adds to a point.
 static float added(const PreviewDef *def, const SingeSurface *surface, int x, int y) {
     static float dark[W * H][3], lit[W * H][3];
     static Ball ball;

@@ -202,7 +202,7 @@ static void keep_line(void *context, SingeLogLevel level, const char *line) {
     if (level == SINGE_LOG_WARNING) strcat(strcat(lines, line), "\n");
 }
 
-/// What can be simulated and has no effect is warned of, with its place.
+/// What can be simulated and has no effect is warned of, with its location.
 static void test_warnings(void **state) {
     (void)state;
     static const struct {

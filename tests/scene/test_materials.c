@@ -154,7 +154,7 @@ static void test_files(void **state) {
     const SceneFile *thickness = &material->textures[SCENE_PARAM_SLOT(thickness)];
     assert_string_equal(rate->name, "below/rate.png");
     assert_memory_equal(rate->path, folder.path, strlen(folder.path));
-    assert_true(!material->def.thickness.field && !thickness->name); // the number took its place
+    assert_true(!material->def.thickness.field && !thickness->name); // the number replaced it
     char *yaml = dump_text(scene, SCENE_YAML), *json = dump_text(scene, SCENE_JSON);
     folder_remove(&folder);
     assert_null(strstr(yaml, "base:"));
@@ -222,7 +222,7 @@ static void test_secrets(void **state) {
     folder_remove(&folder);
 }
 
-/// One error, with its place and its line.
+/// One error, with its location and its line.
 static void expect_mistake(const Folder *folder, const char *line, const char *origin, const char *says, int count) {
     char text[400];
     Scene *scene = NULL;

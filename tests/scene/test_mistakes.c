@@ -1,4 +1,4 @@
-// Bad scenes: each error at its exact place, all at once, and no bytes that crash the reader.
+// Bad scenes: each error at its exact location, all at once, and no bytes that crash the reader.
 #include "parsing.h"
 
 static SceneMessages failing(const char *text, size_t size, const char *base_dir, const char *const *sets,
@@ -109,7 +109,7 @@ static void test_range_words(void **state) {
     }
 }
 
-/// What the library alone used to refuse, one at a time and without a place: now all at once.
+/// What the library alone used to refuse, one at a time and without a location: now all at once.
 static void test_ranges_at_once(void **state) {
     (void)state;
     static const char text[] = SHEET "pace: 1e9\ngravity: [0, 0, -1e5]\nambient_temperature: 1e9\nair_density: 1e9\n"

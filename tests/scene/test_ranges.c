@@ -1,5 +1,5 @@
 // The schema's ranges and the library's: what a row allows is accepted by the library (and the preview), and what lies
-// just beyond is refused by the reader, with its place. Every number of the schema is walked to both its ends.
+// just beyond is refused by the reader, with its location. Every number of the schema is walked to both its ends.
 #include "parsing.h"
 
 #include <float.h>

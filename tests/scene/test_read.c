@@ -111,41 +111,41 @@ static void test_values(void **state) {
     scene_free(scene);
 }
 
-/// Each parameter of a material that may vary is written under its key, fills its own place and no other, keeps its
-/// picture in a place of its own, and reads back from a dump.
+/// Each parameter of a material that may vary is written under its key, fills its own slot and no other, keeps its
+/// texture in a slot of its own, and reads back from a dump.
 static void test_all_vary(void **state) {
     (void)state;
     static const char *const fields[] = {"picture: p.png", "attribute: burn", "noise: {scale: 2 mm, seed: 9}"};
     SingeMaterialDef standard = singe_default_material();
-    SceneParam location;
+    SceneParam row;
     int count = 0;
     uint64_t slots = 0;
-    for (; scene_param(count, &location); count++) {
-        assert_true(location.slot < SCENE_PARAM_SLOTS && !(slots & 1ull << location.slot));
-        slots |= 1ull << location.slot;
+    for (; scene_param(count, &row); count++) {
+        assert_true(row.slot < SCENE_PARAM_SLOTS && !(slots & 1ull << row.slot));
+        slots |= 1ull << row.slot;
         for (int f = 0; f < 3; f++) {
             char set[128];
             const char *sets[] = {set};
-            float from = strcmp(location.key, "temperature") ? 0.5f : 500, to = 1.5f * from; // allowed by every row
-            const char *unit = strcmp(location.key, "fibre_angle") ? "" : " rad";            // a bare angle is degrees
-            snprintf(set, sizeof set, "sheets.0.material.%s={from: %g%s, to: %g%s, %s}", location.key, (double)from,
-                     unit, (double)to, unit, fields[f]);
+            float from = strcmp(row.key, "temperature") ? 0.5f : 500, to = 1.5f * from; // allowed by every row
+            const char *unit = strcmp(row.key, "fibre_angle") ? "" : " rad";            // a bare angle is degrees
+            snprintf(set, sizeof set, "sheets.0.material.%s={from: %g%s, to: %g%s, %s}", row.key, (double)from, unit,
+                     (double)to, unit, fields[f]);
             Scene *scene = good_scene(SHEET, sets, 1);
             const SceneMaterial *material = &scene->sheets[0].material;
             SingeMaterialDef def = material->def;
-            SingeParam *param = scene_param_at(&def, &location);
+            SingeParam *param = scene_param_at(&def, &row);
             assert_true(param->value == from && param->to == to);
             assert_int_equal(param->field->kind, SINGE_FIELD_TEXTURE + f);
             for (size_t slot = 0; slot < SCENE_PARAM_SLOTS; slot++)
-                assert_true((material->textures[slot].name != NULL) == (f == 0 && slot == location.slot));
-            *param = *scene_param_at(&standard, &location);
+                assert_true((material->textures[slot].name != NULL) == (f == 0 && slot == row.slot));
+            *param = *scene_param_at(&standard, &row);
             SceneParam other;
             for (int i = 0; scene_param(i, &other); i++)
                 assert_memory_equal(scene_param_at(&def, &other), scene_param_at(&standard, &other), sizeof *param);
             char *dump = dump_text(scene, SCENE_YAML);
             Scene *again = good_scene(dump, NULL, 0);
             def = again->sheets[0].material.def;
-            assert_true(scene_param_at(&def, &location)->to == to);
+            assert_true(scene_param_at(&def, &row)->to == to);
             free(dump);
             scene_free(again);
             scene_free(scene);
@@ -158,7 +158,7 @@ static void test_all_vary(void **state) {
 #include "singe/material.def"
         ;
     assert_int_equal(count, known); // all that the library has
-    assert_false(scene_param(count, &location));
+    assert_false(scene_param(count, &row));
 }
 
 static void test_defaults(void **state) {

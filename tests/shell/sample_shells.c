@@ -38,7 +38,7 @@ void mesh_release(QuadMesh *mesh) {
     *mesh = (QuadMesh){0};
 }
 
-/// The vertex at a place, added unless one is there already.
+/// The vertex at a position, added unless one is there already.
 static uint32_t vertex_at(QuadMesh *mesh, double x, double y, double z) {
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         const float *p = mesh->position[v];

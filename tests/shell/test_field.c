@@ -93,7 +93,7 @@ static void test_attribute(void **state) {
     square_free(&square);
 }
 
-// Noise lies between the two values, varies, and depends on the seed and on the place alone.
+// Noise lies between the two values, varies, and depends on the seed and on the position alone.
 static void test_noise(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});

@@ -81,7 +81,7 @@ static void test_all_are_listed(void **state) {
     for (int p = 0; p < PARAM_COUNT; p++) assert_true(filled[p]);
 }
 
-// Every parameter goes to its own place, front and back of shrinkage each to its layer, and through the
+// Every parameter goes to its own slot, front and back of shrinkage each to its layer, and through the
 // shell into Matter.
 static void test_numbers(void **state) {
     (void)state;
@@ -148,7 +148,7 @@ static void test_numbers(void **state) {
     square_free(&square);
 }
 
-/// Every parameter follows a picture, an attribute and noise, each in its own place: the same field gives every one
+/// Every parameter follows a texture, an attribute and noise, each in its own slot: the same field gives every one
 /// the values that it gives the thickness, and leaves the others alone.
 static void test_all_vary(void **state) {
     (void)state;

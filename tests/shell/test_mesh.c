@@ -1,4 +1,4 @@
-// Meshes that are refused, each with its code and its place.
+// Meshes that are refused, each with its code and its position.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -121,8 +121,8 @@ static void test_concave(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh mesh = {0};
-    static const float place[4][2] = {{0, 0}, {1, 1}, {2, 0}, {1, 2}};
-    for (int v = 0; v < 4; v++) mesh_add_vertex(&mesh, place[v][0], place[v][1], 0);
+    static const float position[4][2] = {{0, 0}, {1, 1}, {2, 0}, {1, 2}};
+    for (int v = 0; v < 4; v++) mesh_add_vertex(&mesh, position[v][0], position[v][1], 0);
     mesh_add_cell(&mesh, 0, 1, 2, 3);
     Shell shell = mesh_shell(&memory, &mesh);
     check_layers(&shell, 1, 1e-6);

@@ -28,7 +28,7 @@ SingeResult scene_build_early(const SingeSimDef *def, uint32_t cells, Scene *sce
 Scene scene_make(const SingeSimDef *def, uint32_t cells);
 SingeSimDef scene_def(void);
 
-/// The callback source's function: a flux that grows with place and time; *context is a float, W/m2.
+/// The callback source's function: a flux that grows with position and time; *context is a float, W/m2.
 void scene_flux(void *context, const struct SingeView *view, float *flux, float *conductance,
                 float *conductance_temperature);
 

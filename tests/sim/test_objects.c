@@ -142,7 +142,7 @@ static void pins_hold_move_and_let_go(void **state) {
     assert_false(view.particle_flags[2] & SINGE_PINNED);
     assert_true(view.position[48][2] < at[0][2] - 0.01f); // the rest hangs
 
-    // a new path starts from where the pin is, whatever its own place, and carries it along
+    // a new path starts from where the pin is, whatever its own position, and carries it along
     float now = (float)singe_sim_view(sim).time;
     SingePoseKey path[2] = {test_key(now, 3, 3, 3), test_key(now + 0.1f, 3.05f, 3, 3.02f)};
     test_ok(sim, singe_sim_move_pin(sim, pin, 2, path));

@@ -194,7 +194,7 @@ static void flipped_bits(void **state) {
     free(bytes.data);
 }
 
-/// Puts a number at a place of the body, and the checksum right.
+/// Puts a number at an offset of the body, and the checksum right.
 static void forge(TestBytes *bytes, size_t at, uint32_t word) {
     enum { HEADER = 56, CHECKSUM_AT = 24 };
     memcpy(bytes->data + HEADER + at, &word, sizeof word);
@@ -268,7 +268,7 @@ POKE(order, sim->def.solver.order[0] = sim->def.solver.order[1])
 POKE(wind, sim->def.wind.velocity[1] = INFINITY)
 POKE(gas_cell, sim->def.gas.cell_size = NAN)
 POKE(contact, sim->def.contact.thickness = 0)
-POKE(sheet_place, sim->sheets[0].position[3][1] = NAN)
+POKE(sheet_position, sim->sheets[0].position[3][1] = NAN)
 POKE(sheet_cell, sim->sheets[0].cells[1][2] = sim->sheets[0].cells[1][0])
 POKE(sheet_param, sim->sheets[0].value[PARAM_GRAMMAGE] = NAN)
 POKE(sheet_varied, sim->sheets[0].values[PARAM_MASS_RATE][5] = -1)
@@ -279,9 +279,9 @@ POKE(sheet_sources, sim->sheets[0].sheet.source_count = 1u << 30)
 POKE(source_heat, sim->sources.items[0].def.conductance = NAN)
 POKE(source_kind, sim->sources.items[0].def.kind = (SingeSourceKind)7)
 POKE(source_path, sim->sources.items[0].path.keys[1].time = sim->sources.items[0].path.keys[0].time)
-POKE(source_place, sim->sources.items[0].path.keys[1].position[0] = NAN)
+POKE(source_position, sim->sources.items[0].path.keys[1].position[0] = NAN)
 POKE(source_turn, sim->sources.items[0].path.keys[1].rotation[3] = 3)
-POKE(source_picture, sim->sources.items[2].texture[3] = INFINITY)
+POKE(source_texture, sim->sources.items[2].texture[3] = INFINITY)
 POKE(source_generation, sim->sources.items[0].generation = sim->next_generation)
 POKE(collider_radius, sim->colliders.items[1].def.radius = NAN)
 POKE(collider_sides, sim->colliders.items[1].def.sides = (SingeContactSides)5)
@@ -333,7 +333,7 @@ POKE(attach_source, sim->dynamics->attachments.source[0][0] = sim->shell.vertex_
 POKE(attach_gap, sim->dynamics->attachments.source[0][0] = SHELL_NONE)
 POKE(attach_length, sim->dynamics->attachments.length[VERTEX][0] = NAN)
 POKE(attach_goal, sim->dynamics->attachments.goal[VERTEX][0] = -1)
-POKE(collision_place, sim->dynamics->collision->position[VERTEX][0] = NAN)
+POKE(collision_position, sim->dynamics->collision->position[VERTEX][0] = NAN)
 POKE(collision_speed, sim->dynamics->collision->speed[VERTEX][0] = INFINITY)
 POKE(collision_alive, sim->dynamics->collision->alive[1] = 0)
 POKE(initial_crossing, sim->dynamics->collision->initial_first[1] = 9)
@@ -348,9 +348,9 @@ static void impossible_numbers(void **state) {
 #define ROW(name) {#name, poke_##name}
     static const struct { const char *what; void (*poke)(SingeSim *sim); } rows[] = {
         ROW(time_step), ROW(projections), ROW(method), ROW(order), ROW(wind), ROW(gas_cell), ROW(contact),
-        ROW(sheet_place), ROW(sheet_cell), ROW(sheet_param), ROW(sheet_varied), ROW(sheet_operator),
+        ROW(sheet_position), ROW(sheet_cell), ROW(sheet_param), ROW(sheet_varied), ROW(sheet_operator),
         ROW(sheet_velocity), ROW(sheet_drop), ROW(sheet_sources), ROW(source_heat), ROW(source_kind), ROW(source_path),
-        ROW(source_place), ROW(source_turn), ROW(source_picture), ROW(source_generation), ROW(collider_radius),
+        ROW(source_position), ROW(source_turn), ROW(source_texture), ROW(source_generation), ROW(collider_radius),
         ROW(collider_sides), ROW(collider_path), ROW(collider_mesh), ROW(collider_height), ROW(pin_anchor),
         ROW(pin_particle), ROW(pin_twice), ROW(time), ROW(time_of_step), ROW(heat_in), ROW(heat_start),
         ROW(mass_removed), ROW(temperature), ROW(temperature_below), ROW(temperature_peak), ROW(mass), ROW(mass_nan),
@@ -358,7 +358,7 @@ static void impossible_numbers(void **state) {
         ROW(inverse_mass), ROW(bend), ROW(crease), ROW(pinned), ROW(pinned_flag), ROW(flag), ROW(cell_flag),
         ROW(spring_gone), ROW(spring_spare), ROW(degree), ROW(piece_none), ROW(piece_far), ROW(piece_other),
         ROW(pieces_to_come), ROW(piece_count), ROW(line_force), ROW(split_count), ROW(split), ROW(attach_source),
-        ROW(attach_gap), ROW(attach_length), ROW(attach_goal), ROW(collision_place), ROW(collision_speed),
+        ROW(attach_gap), ROW(attach_length), ROW(attach_goal), ROW(collision_position), ROW(collision_speed),
         ROW(collision_alive), ROW(initial_crossing), ROW(initial_cell), ROW(gas_field), ROW(gas_air)};
     // clang-format on
 #undef ROW

@@ -110,7 +110,7 @@ static inline void expect_linear_fields(const Drawing *d, Linear level, double n
     }
 }
 
-/// A fire that burns from some places at 1 m/s: rings, so that the front runs in all directions.
+/// A fire that burns from some points at 1 m/s: rings, so that the front runs in all directions.
 static inline void burn_rings(Drawing *d, float time) {
     const float at[3][2] = {{0.031f, 0.042f}, {0.068f, 0.075f}, {0.083f, 0.017f}};
     const float width = 0.008f; // of the front, m

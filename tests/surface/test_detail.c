@@ -29,7 +29,7 @@ static bool covers(const SingeSurface *s, uint32_t t, double x, double y) {
     return true;
 }
 
-/// The surface goes on right behind an edge of it: a crack. Not asked of edges so short that the place may lie behind
+/// The surface goes on right behind an edge of it: a crack. Not asked of edges so short that the point may lie behind
 /// another one.
 static bool covered_behind(const SingeSurface *s, uint32_t a, uint32_t b) {
     const float *p = s->position[a], *q = s->position[b];
@@ -191,7 +191,7 @@ static void crumpled_sheets_are_not_turned_over(void **unused) {
     }
 }
 
-/// Tears the sheet along y = row from its border on, up to `length` cells far; the tear edges stay at one place.
+/// Tears the sheet along y = row from its border on, up to `length` cells far; the tear edges stay at one position.
 static void tear_along(Drawing *d, uint32_t row, uint32_t length) {
     BurningSheet *b = d->sheet;
     for (uint32_t i = 0; i < length; i++) {
@@ -295,7 +295,7 @@ static void threads_draw_the_same(void **unused) {
     drawing_free(one), drawing_free(four);
 }
 
-/// A place of the sheet at a fraction of its cells.
+/// A point of the sheet at a fraction of its cells.
 static FineLocation location_at(uint32_t n, uint32_t cells) {
     FineLocation location = {random_hash(n, 1, 0, 0) % cells, (uint8_t)(random_hash(n, 2, 0, 0) & 3), {0}};
     float x = random_unit(random_hash(n, 3, 0, 0)), y = (1 - x) * random_unit(random_hash(n, 4, 0, 0));

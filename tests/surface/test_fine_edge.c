@@ -98,7 +98,7 @@ static void what_is_gone_stays_gone(void **unused) {
         memcpy(before, after, sizeof before);
     }
     assert_true(gone > WIDTH * HEIGHT);
-    printf("%d of %d places gone are drawn again\n", back, gone);
+    printf("%d of %d pixels gone are drawn again\n", back, gone);
     assert_true(back * 2000 < gone); // where a fine edge cuts straight through what is curved
     drawing_free(d);
 }
@@ -129,8 +129,8 @@ static void edges_are_eaten_by_a_length(void **unused) {
     assert_float_equal(lost[2] / lost[0], 1, 0.02);
 }
 
-/// Whether a place of the raster within `reach` of (x, y) is covered, or is not, as wanted.
-static bool near_a_place_that_is(const uint8_t *raster, bool wanted, int size, int x, int y, int reach) {
+/// Whether a pixel of the raster within `reach` of (x, y) is covered, or is not, as wanted.
+static bool near_one_that_is(const uint8_t *raster, bool wanted, int size, int x, int y, int reach) {
     for (int j = y - reach; j <= y + reach; j++)
         for (int i = x - reach; i <= x + reach; i++)
             if (i >= 0 && j >= 0 && i < size && j < size && (i - x) * (i - x) + (j - y) * (j - y) <= reach * reach &&
@@ -155,7 +155,7 @@ static void edges_stay_within_a_cell(void **unused) {
         for (int k = 0; k < SIZE * SIZE; k++) {
             if (coarse[k] == fine[k]) continue;
             missing += coarse[k];
-            assert_true(near_a_place_that_is(coarse, fine[k], SIZE, k % SIZE, k / SIZE, reach));
+            assert_true(near_one_that_is(coarse, fine[k], SIZE, k % SIZE, k / SIZE, reach));
         }
     }
     assert_true(missing > 1000);

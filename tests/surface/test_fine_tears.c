@@ -63,5 +63,5 @@ static void tear_edges_do_not_cross(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(tear_edges_do_not_cross)};
-    return cmocka_run_group_tests_name("tear_lips", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("tear_edges", tests, NULL, NULL);
 }

@@ -101,7 +101,7 @@ static float between(Float3 a, Float3 b) {
     return atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b)) * 180 / pi;
 }
 
-/// The largest differences across sides: of places, and of normals in degrees, root mean square, drawn and of flat
+/// The largest differences across sides: of positions, and of normals in degrees, root mean square, drawn and of flat
 /// cells.
 typedef struct Steps {
     float location;
@@ -128,9 +128,9 @@ static Steps steps_of(const Bent *b) {
     return steps;
 }
 
-/// Places agree to rounding where four cells meet everywhere, to thousandths of a cell about irregular vertices; 3e-4
-/// at a corner that stands in is what following each cell's own tangents there would give. Normals agree to tenths of a
-/// degree (0.09 to 0.24); those of flat cells are 5 to 18 degrees apart.
+/// Positions agree to rounding where four cells meet everywhere, to thousandths of a cell about irregular vertices;
+/// 3e-4 at a corner that stands in is what following each cell's own tangents there would give. Normals agree to tenths
+/// of a degree (0.09 to 0.24); those of flat cells are 5 to 18 degrees apart.
 static void cells_agree_on_their_sides(void **unused) {
     (void)unused;
     const struct {
@@ -147,7 +147,7 @@ static void cells_agree_on_their_sides(void **unused) {
     for (size_t k = 0; k < sizeof meshes / sizeof *meshes; k++) {
         Bent *b = bent(meshes[k].mesh, meshes[k].size);
         Steps steps = steps_of(b);
-        print_message("%s: places %.2g of a cell apart, normals %.3f degrees, flat %.2f\n", meshes[k].name,
+        print_message("%s: positions %.2g of a cell apart, normals %.3f degrees, flat %.2f\n", meshes[k].name,
                       (double)(steps.location / meshes[k].size), steps.drawn, steps.flat);
         assert_true(steps.location < 1e-4f * meshes[k].size);
         assert_true(steps.drawn < meshes[k].max && steps.flat > 3);

@@ -76,7 +76,7 @@ Triangles triangles_torus(uint32_t around, uint32_t tube, float radius, float tu
 }
 
 Triangles triangles_box(uint32_t n, float x, float y, float z) {
-    // faces have vertices of their own at the same places: what a collider joins
+    // faces have vertices of their own at the same positions: what a collider joins
     Triangles mesh = triangles_new(6 * (n + 1) * (n + 1), 12 * n * n);
     const float half[3] = {x / 2, y / 2, z / 2};
     for (int face = 0; face < 6; face++) {

@@ -10,7 +10,7 @@ typedef struct Triangles {
     uint32_t *triangles;
 } Triangles;
 
-/// A sphere of about 2 around^2/2 triangles; every vertex off its place by up to `rough` of the radius.
+/// A sphere of about 2 around^2/2 triangles; every vertex off its position by up to `rough` of the radius.
 Triangles triangles_sphere(uint32_t around, float radius, float rough);
 /// A torus about z.
 Triangles triangles_torus(uint32_t around, uint32_t tube, float radius, float tube_radius);

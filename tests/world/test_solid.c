@@ -95,8 +95,8 @@ static void four_triangles_are_enough(void **unused) {
     assert_true(compare(&mesh, "tetrahedron", 800, 0.1f) > 5);
 }
 
-/// Every box of its tree would be near such a place.
-static void places_that_are_none_are_far(void **unused) {
+/// Every box of its tree would be near such a position.
+static void impossible_positions_are_far(void **unused) {
     (void)unused;
     Triangles mesh = triangles_torus(24, 12, 0.1f, 0.04f);
     Memory memory = memory_make((SingeAllocator){0});
@@ -169,7 +169,7 @@ static void bad_meshes_are_refused_by_number(void **unused) {
         Memory memory = memory_make((SingeAllocator){0});
         Triangles mesh = triangles_sphere(8, 0.0625f, 0);
         uint32_t count = mesh.triangle_count;
-        if (cases[i].spoil == spoil_flat) mesh.vertices[3 * mesh.triangles[12] + 1] += 0; // exact places there
+        if (cases[i].spoil == spoil_flat) mesh.vertices[3 * mesh.triangles[12] + 1] += 0; // exact positions there
         cases[i].spoil(&mesh);
         SingeColliderDef def = triangles_def(&mesh);
         def.path_count = 1, def.path = &STILL;
@@ -352,7 +352,7 @@ int main(void) {
         cmocka_unit_test(heights_are_those_of_their_triangles),
         cmocka_unit_test(bad_heights_are_refused),
         cmocka_unit_test(ten_thousand_triangles_are_quick),
-        cmocka_unit_test(places_that_are_none_are_far),
+        cmocka_unit_test(impossible_positions_are_far),
     };
     return cmocka_run_group_tests_name("world_solid", tests, NULL, NULL);
 }

@@ -1,7 +1,7 @@
 // The projection of one group of strands, with one strand per lane. One file per instruction set defines LANES, the
-// vector type Lanes, Float4s (a particle of every lane: its position and its inverse mass), Node (the same, with x of all
-// lanes contiguous, then y) and the operations on them, and includes this. Every operation rounds according to IEEE 754
-// and lanes never mix, so all instruction sets give the same bytes.
+// vector type Lanes, Float4s (a particle of every lane: its position and its inverse mass), Node (the same, with x of
+// all lanes contiguous, then y) and the operations on them, and includes this. Every operation rounds according to IEEE
+// 754 and lanes never mix, so all instruction sets give the same bytes.
 //
 // Constraint of a spring of target length l between nodes a and b, row-normalised, d = x_b - x_a,
 // u = d/|d|: eq 10 over the length of its gradient (eq 11) is

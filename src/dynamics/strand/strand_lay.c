@@ -70,7 +70,7 @@ static bool lay_list(Lay *lay, uint32_t family, bool ring) {
     return any;
 }
 
-/// The longest length with a strand that is at most `most`; 0 for none. Forgets what has been laid meanwhile.
+/// The longest length with a strand that is at most `max`; 0 for none. Forgets what has been laid meanwhile.
 static uint32_t lay_longest(Lay *lay, uint32_t max) {
     uint32_t found = max;
     while (found > 0) {
@@ -128,7 +128,7 @@ static void lay_own(Lay *lay, uint32_t family, bool own) {
     }
 }
 
-/// Lays a strand into the lane on the right if its place there is free.
+/// Lays a strand into the lane on the right if its slot there is free.
 static void lay_put_right(Lay *lay, uint32_t s, uint32_t column, uint32_t row) {
     uint32_t length = strand_length(lay->springs, s);
     if (row + length >= lay->frame) return;
@@ -138,8 +138,8 @@ static void lay_put_right(Lay *lay, uint32_t s, uint32_t column, uint32_t row) {
     lay_put(lay, s, lay->set->group_count - 1, column, row);
 }
 
-/// Fills the lane on the right with what runs next to the lane on the left. Returns how many particles have p + 1 beside
-/// them.
+/// Fills the lane on the right with what runs next to the lane on the left. Returns how many particles have p + 1
+/// beside them.
 static uint32_t lay_right(Lay *lay, uint32_t column) {
     uint32_t contiguous = 0;
     lay->lane_serial++;

@@ -1,4 +1,4 @@
-// Every message about a scene has its place. The examples, broken in every way that is near: cut off at each line,
+// Every message about a scene has its location. The examples, broken in every way that is near: cut off at each line,
 // each word left out or there twice, each line left out, indented or turned back. A part of it, or with the argument
 // `all` everything.
 #include "parsing.h"

@@ -117,5 +117,5 @@ static void cells_that_hang_by_a_vertex_part(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(tears_run_across_the_pull),
                                        cmocka_unit_test(cells_that_hang_by_a_vertex_part)};
-    return cmocka_run_group_tests_name("tear_way", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("tear_direction", tests, NULL, NULL);
 }
