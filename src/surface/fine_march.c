@@ -1,12 +1,13 @@
 // Marching triangles over fine triangles and coarse ones.
 //
-// A cell's triangle is k^2 fine ones in k rows, k = 1 for a flat cell that is not split. The row at the side has as
-// many parts along the side as both of its cells draw there. Each is clipped as in surface.c, once to count and once to
-// draw; a fine side's cut is made once and shared, on the sides of cells through `cuts`.
+// A cell's triangle consists of k^2 fine triangles in k rows; k = 1 for a flat cell that is not split. The row at the
+// cell's side has as many parts as both of its cells draw there. Each fine triangle is clipped as in surface.c, once to
+// count and once to draw. A fine side is cut once and the triangles at it share the cut; on the sides of cells they do
+// so through `cuts`.
 //
-// A cell that has lost springs has corners that go their own ways and take its virtual centre along. What is drawn
-// there has torn: a triangle of it is left out when it is pulled apart, with C and C' the metrics of its two sides from
-// the centre at rest and now:
+// The corners of a cell that has lost springs move independently and drag its virtual centre along. The surface has
+// torn there: a triangle of such a cell is omitted when it is stretched too far. With C and C' the metrics of its two
+// sides from the centre, at rest and now:
 //
 //   lambda^2 > TORN^2,   lambda^2 the larger eigenvalue of C^-1 C'
 #include "common/check.h"
@@ -14,10 +15,11 @@
 
 #include <string.h>
 
-/// surface_cut of a fine side: a few micrometres, which floats distinguish some metres from the origin and nobody sees.
+/// `nearest` of surface_cut for fine sides: a few micrometres, which floats still resolve some metres from the origin
+/// and nobody sees.
 #define NEAREST 0.03125f
 
-/// How many times as long as at rest it may be.
+/// Max stretch of such a triangle.
 #define TORN 1.6f
 
 typedef struct Marching {
@@ -46,7 +48,7 @@ static uint32_t point_vertex(Fine *fine, const Piece *piece, int corner) {
     return fine->drawn[point];
 }
 
-/// The vertex that cuts edge `edge`, of which one end is inside.
+/// The vertex that cuts edge `edge`, which has one end inside.
 static uint32_t cut_vertex(Fine *fine, const Piece *piece, int edge) {
     int inside = edge, outside = edge == 2 ? 0 : edge + 1;
     if (fine->values[piece->point[inside]].level < 0) inside = outside, outside = edge;
@@ -97,7 +99,7 @@ static void count(Marching *march, int inside) {
     march->crossed += inside == 1 || inside == 2;
 }
 
-/// Entry of a cell's side in the cuts, for its i-th part of `parts`.
+/// The entry in `cuts` of part i of a cell's side that is in `parts` parts.
 static uint32_t *side_cut(const Fine *fine, uint32_t cell, int side, int parts, int i) {
     SINGE_ASSERT(cell < fine->shell->cell_count);
     SINGE_ASSERT(side >= 0 && side < 4);
@@ -107,9 +109,9 @@ static uint32_t *side_cut(const Fine *fine, uint32_t cell, int side, int parts, 
     return &fine->cuts[fine->side_cut[blue] + (uint32_t)(forwards ? i : parts - 1 - i)];
 }
 
-// ---- what has been torn
+// ---- torn triangles
 
-/// Products of a cell's triangle's sides from its virtual centre.
+/// Dot products of the two sides of a cell's triangle that begin at its virtual centre.
 static void metric(const uint32_t at[4], int side, const float (*field)[4], float product[3]) {
     SINGE_ASSERT(side >= 0 && side < 4);
     Float3 centre = {0, 0, 0};
@@ -142,8 +144,8 @@ bool fine_is_torn(const Fine *fine, uint32_t cell, int side) {
 
 // ---- a triangle of a cell
 
-/// A row of fine triangles: between `lower` parts of the line j and `upper` parts of the line j + 1. Cuts of both
-/// lines' parts, and of the first and the last side between them.
+/// A row of fine triangles between line j, in `lower` parts, and line j + 1, in `upper` parts. Holds the cuts of both
+/// lines' parts, and of the first and the last side between the lines.
 typedef struct Row {
     uint32_t cell;
     int side, splits, j, lower, upper;
@@ -158,14 +160,14 @@ static void row_point(const Fine *fine, const Row *row, bool upper, int i, uint3
     *location = fine_point_location(row->cell, row->side, parts, i, j);
 }
 
-/// Where a line's point i is along the row, 0 to 1.
+/// Position of a line's point i along the row, 0 to 1.
 static float along_row(const Row *row, bool upper, int i) {
     int parts = upper ? row->upper : row->lower;
     float inset = upper ? 0.5f / (float)(row->splits - row->j) : 0;
     return parts == 0 ? 0.5f : inset + (1 - 2 * inset) * (float)i / (float)parts;
 }
 
-/// Whether the next triangle stands on the lower line: where that leaves the lines' ends nearer to each other.
+/// Whether the next triangle has its base on the lower line: if that leaves the ends of the lines closer to each other.
 static bool stands(const Row *row, int low, int high) {
     if (low == row->lower || high == row->upper) return low < row->lower;
     return along_row(row, false, low + 1) - along_row(row, true, high) <=
@@ -193,7 +195,7 @@ static void march_row(Marching *march, const Row *row) {
     }
 }
 
-/// The rows of one of a cell's four triangles. `first` and `last` are cuts of its sides towards the centre.
+/// The rows of one of a cell's four triangles. `first` and `last` are the cuts of its two sides to the centre.
 static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *first, uint32_t *last) {
     SINGE_ASSERT(side >= 0 && side < 4);
     const Fine *fine = march->fine;
@@ -224,7 +226,7 @@ static void march_cell(Marching *march, uint32_t cell) {
         if (!fine_is_torn(march->fine, cell, side)) march_triangle(march, cell, side, line[side], line[(side + 1) & 3]);
 }
 
-// ---- all
+// ---- all cells
 
 static void march_cells(Marching *march) {
     const Fine *fine = march->fine;
@@ -260,7 +262,7 @@ SingeResult fine_march(Fine *fine, SingeError *error) {
         return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");
     march_cells(&march);
     TRY(surface_reserve_triangles(fine->surface, march.triangles, error));
-    uint64_t max = points_inside(fine) + 2 * march.crossed; // a triangle has two cuts, and most share them
+    uint64_t max = points_inside(fine) + 2 * march.crossed; // a crossed triangle has two cuts; most are shared
     if (max > INT32_MAX) return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "too many vertices");
     fine->vertex_capacity = (uint32_t)max;
     if (!NEW(fine->memory, fine->vertices, fine->vertex_capacity))

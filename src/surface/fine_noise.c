@@ -1,23 +1,24 @@
-// Where a position is drawn: burnt edges crumble.
+// Which positions are drawn: burnt edges crumble.
 //
-// Noise of the rest position r(x), 0 to `reach` and fixed to the paper, says how far the edge is eaten at x:
+// A noise r(x) of the rest position, from 0 to `reach` and fixed to the paper, is the depth to which the edge is eroded
+// at x:
 //
 //   L(x) = min { S(x), S(x + r u_1), S(x + r u_2), S(x + r u_3) },   u_i three directions 120 degrees apart
 //
-// with S the lesser of the smooth level m' and of what the cells that are left give (fine_spline.c), and the angle of
-// the directions another noise. What is drawn is L >= 0: about the positions farther than r from the edge of S. As S
-// never grows, nor does L, whatever the front's width and speed: what is gone stays gone, the edge stands still where
-// the fire does, and the noise moves it by a length. Nothing is drawn outside S >= 0. The mass drawn is that of the
-// point where L is taken, so that char follows the edge.
+// with S the lesser of the smooth level m' and the level of the remaining cells (fine_spline.c); the angle of the
+// directions is another noise. Positions with L >= 0 are drawn: about those farther than r from the edge of S. As S
+// never grows, L never grows, whatever the front's width and speed: burnt parts do not return, the edge stops where the
+// fire stops, and the noise displaces the edge by a length. Nothing is drawn outside S >= 0. The mass drawn is that of
+// the point at which the minimum is taken, so that char follows the edge.
 //
-// r is a sum of octaves, each half the size of the one before down to the fine triangles; its lattice lies askew to the
-// sheet and its grid.
+// r is a sum of octaves, each half the size of the one before, down to the size of the fine triangles. Its lattice is
+// rotated out of the sheet's plane and grid.
 #include "common/real.h"
 #include "surface/surface_fine.h"
 #include "common/random.h"
 
-/// The largest features of the noise, m; its mean depth over the reach, the first octave's strength and an octave's
-/// over that of the one before.
+/// The largest features of the noise, m; its mean depth over the reach; an octave's strength over that of the one
+/// before; the first octave's strength.
 #define NOISE_SIZE 3e-3f
 #define NOISE_MEAN 0.45f
 #define NOISE_STRENGTH 0.7f
@@ -49,7 +50,7 @@ Float3 fine_askew(Float3 p) {
                   -0.2121f * p.x + 0.3680f * p.y + 0.9053f * p.z);
 }
 
-/// The noise at a position: how far it eats, m, and the direction, as an angle.
+/// The noise at a position: the depth of erosion, m, and the direction, as an angle.
 static float eaten(const Fine *fine, FineLocation location, const FineSheet *sheet, float *angle) {
     Float3 p = float3_scale(fine_askew(fine_rest(fine->shell, location)), 1 / NOISE_SIZE);
     float sum = 0, strength = NOISE_GAIN;
@@ -60,12 +61,12 @@ static float eaten(const Fine *fine, FineLocation location, const FineSheet *she
         strength *= NOISE_STRENGTH;
         p = float3_add(float3_scale(p, 2), float3(17.31f, 5.77f, 11.83f));
     }
-    float depth = fabsf(NOISE_MEAN + sum); // folded back where it leaves 0 to 1, so that no edge is smooth
+    float depth = fabsf(NOISE_MEAN + sum); // reflected into 0 to 1, so that no edge is smooth
     if (depth > 1) depth = fmaxf(2 - depth, 0);
     return sheet->reach * depth;
 }
 
-/// A step of at most half a cell.
+/// A length in cells, at most a half.
 static float half_max(float length, float axis) { return length < 0.5f * axis ? length / axis : length > 0 ? 0.5f : 0; }
 
 /// S at a position.

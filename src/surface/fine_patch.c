@@ -1,19 +1,19 @@
-// The smooth surface that the corners of the cells stand for: a bicubic Bezier patch a cell,
+// The smooth surface over the corners of the cells: one bicubic Bezier patch per cell,
 //
 //   S(u, v) = sum B_i(u) B_j(v) b_ij,   u along the cell's side 0, v along its side 3 backwards
 //
-// Near the Catmull-Clark limit surface (Loop and Schaefer, Approximating Catmull-Clark subdivision surfaces with
-// bicubic patches, 2008), and this itself where four cells meet, so that positions and tangent planes are those of the
-// cell across. With a corner x that n cells have, its neighbours e, e' in the cell and the corner f across:
+// It approximates the Catmull-Clark limit surface (Loop and Schaefer, Approximating Catmull-Clark subdivision surfaces
+// with bicubic patches, 2008), and equals it where four cells meet, so that positions and tangent planes agree with
+// those of the next cell. For a corner x of n cells, its neighbours e, e' in the cell and the opposite corner f:
 //
 //   inner point    p = (n x + 2 (e + e') + f) / (n + 5)
 //   on a side      mean of p of both cells;   at a border (2 x + e) / 3
 //   corner         mean of p of all cells;    at a border (4 x + e_1 + e_2) / 6, of its two neighbours along it
 //
-// At a border n is twice the number of cells, and 4 at least. Cells that are torn have corners that go their own
-// ways: to others they are not there, and they are drawn flat. A surface that may not leave a corner so far is moved
-// there with all points about it by the same vector: that keeps tangent planes, and with the whole way the patches go
-// through the corners.
+// At a border n is twice the number of cells, and at least 4. The corners of torn cells move independently: other cells
+// ignore torn cells, which are drawn flat. Where the surface may not be this far from a corner, all points around the
+// corner are moved by the same vector. This keeps tangent planes; moved by the whole distance, the patches pass through
+// the corners.
 #include "common/check.h"
 #include "surface/surface_fine.h"
 
@@ -26,10 +26,10 @@ static bool is_sound(const Fine *fine, uint32_t cell) {
 
 static Float3 corner_of(const Fine *fine, uint32_t vertex) { return float3_load(fine->corner[vertex]); }
 
-/// What the cells around a vertex say of it.
+/// Sums over the sound cells around a vertex.
 typedef struct Ring {
-    uint32_t cells, borders; ///< sound ones; their sides at the vertex that have none across
-    Float3 along;            ///< sum of the neighbours along these
+    uint32_t cells, borders; ///< sound cells; their sides at the vertex with no sound cell across
+    Float3 along;            ///< sum of the vertex's neighbours along these sides
     Float3 inner;            ///< sum of the cells' inner points
 } Ring;
 
@@ -124,7 +124,7 @@ static void put_rails(void *context, int begin, int end) {
         }
 }
 
-/// Where the patches meet at a vertex, and how they are moved there to stay within reach of it.
+/// The point where the patches meet at a vertex, and the shift that keeps them within its max distance.
 static void put_limits(void *context, int begin, int end) {
     Fine *fine = context;
     SINGE_ASSERT(begin >= 0 && begin <= end);
@@ -152,8 +152,8 @@ void fine_patches(Fine *fine) {
 
 // ---- a patch
 
-/// Where corner i is in the net, the points next to it along the side that begins there and along the one before, and
-/// the inner one.
+/// Indices in the net of corner i, of the points next to it along the side that begins there and along the side before,
+/// and of the inner point.
 static const uint8_t net_locations[4][4][2] = {{{0, 0}, {1, 0}, {0, 1}, {1, 1}},
                                                {{3, 0}, {3, 1}, {2, 0}, {2, 1}},
                                                {{3, 3}, {2, 3}, {3, 2}, {2, 2}},

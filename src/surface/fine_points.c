@@ -1,12 +1,12 @@
-// Which cells are split, and the points that the level is taken at.
+// Which cells are split, and the points at which the level is evaluated.
 //
-// A cell is near the front where the level in it or in the eight cells around it may be negative, by the bounds of its
-// spline, and may be positive in itself. Its sides and triangles get points, k - 1 within a side and within each line
-// from a corner to the centre, (k - 1)(k - 2)/2 within a triangle, and the level is evaluated there; on a side once,
-// for both of its cells. A cell is split where these differ in sign; where they do not, its four triangles will do.
+// A cell is near the front if, by the bounds of the splines, the level may be positive in it, and negative in it or in
+// one of the eight cells around it. Such a cell gets points: k - 1 within a side and within each line from a corner to
+// the centre, (k - 1)(k - 2)/2 within a triangle. The level is evaluated there; on a side once, for both of its cells.
+// A cell is split if these levels differ in sign; otherwise its four triangles suffice.
 //
-// Unless it is bent: then it gets the points that show how, in fewer parts. Its sides are drawn in the more of its
-// parts and those of the cell across.
+// A bent cell that is not split gets points to show its shape, in fewer parts. A side is drawn in the max of the
+// numbers of parts of its two cells.
 #include "common/check.h"
 #include "surface/surface_fine.h"
 
@@ -33,7 +33,7 @@ static void measure_axes(const Shell *shell, uint32_t cell, float axes[2]) {
     axes[1] = 0.5f * float3_length(float3_sub(float3_add(corner[3], corner[2]), float3_add(corner[0], corner[1])));
 }
 
-/// Flags of the cells by the bounds of their splines, and their axes.
+/// Sets the cells' flags from the bounds of their splines, and their axes.
 static void bound_cells(Fine *fine) {
     for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
         float low, high, whole, wholest, lightest, heaviest;
@@ -45,7 +45,7 @@ static void bound_cells(Fine *fine) {
         measure_axes(fine->shell, c, fine->axes[c]);
         fine->flags[c] = low >= 0 && heaviest - lightest < 1e-5f ? FINE_EVEN : 0;
         if (whole == 1) fine->flags[c] |= FINE_WHOLE;
-        if (points_alive(fine, c) && high >= 0) fine->flags[c] |= FINE_NEAR; // until its neighbours have been asked
+        if (points_alive(fine, c) && high >= 0) fine->flags[c] |= FINE_NEAR; // until its neighbours are checked
     }
 }
 
@@ -83,7 +83,7 @@ static void number_cell(Fine *fine, uint32_t cell, uint64_t *point) {
     *point += (uint64_t)inner_points(splits);
 }
 
-/// Points of bent cells and of their sides, in case that they are not split.
+/// Numbers the points of bent cells and of their sides, for the case that they are not split.
 static void number_bent(Fine *fine, uint64_t *point) {
     const Shell *shell = fine->shell;
     memset(fine->parts, 1, shell->springs[SINGE_BLUE].count);
@@ -160,7 +160,7 @@ static bool even_around(const Fine *fine, uint32_t vertex) {
     return true;
 }
 
-/// What a value is beside a cell that is gone: no more than the straight line between its ends has.
+/// The value next to a cell that is gone: its level is limited to the linear interpolation of the side's ends.
 static FineValue held_back(FineValue value, float level) {
     if (level < value.level) value.level = level;
     return value;
@@ -183,7 +183,7 @@ static void evaluate_vertices(void *context, int begin, int end) {
             else if (home == SHELL_NONE) home = shell->fan[k];
         }
 
-        // its value in one of the cells that are left
+        // its value in one of the remaining cells
         fine->values[v] = (FineValue){-1, 0};
         if (home == SHELL_NONE) continue;
         fine->values[v] = particle_value(fine, v);
@@ -226,7 +226,7 @@ static void evaluate_sides(void *context, int begin, int end) {
     }
 }
 
-/// A cell is split where its points are not all on one side of the level.
+/// Whether a cell's points differ in the sign of the level; if so, the cell is split.
 static bool differs(const Fine *fine, uint32_t cell, int splits) {
     SINGE_ASSERT(cell < fine->shell->cell_count);
     bool inside = false, outside = false;
@@ -254,7 +254,7 @@ static void evaluate_cells(void *context, int begin, int end) {
     }
 }
 
-/// Not while cells are evaluated, which look at the flags of others.
+/// A pass of its own, as evaluation reads the flags of other cells.
 static void mark_split(void *context, int begin, int end) {
     Fine *fine = context;
     SINGE_ASSERT(begin >= 0 && begin <= end);
@@ -262,12 +262,12 @@ static void mark_split(void *context, int begin, int end) {
         if (differs(fine, fine->near[n], fine_splits(fine, fine->near[n]))) fine->flags[fine->near[n]] |= FINE_SPLIT;
 }
 
-// ---- what is bent and not split
+// ---- bent cells that are not split
 
 /// Decides how cells and their sides are drawn.
 static void points_settle(Fine *fine) {
     const Shell *shell = fine->shell;
-    uint32_t *split_side = fine->bent_side; // the two change positions; back where a side belongs to a split cell
+    uint32_t *split_side = fine->bent_side; // swapped; sides of split cells get theirs back below
     fine->bent_side = fine->side_point, fine->side_point = split_side;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         fine->splits[c] = fine->bent[c];
@@ -284,7 +284,7 @@ static void points_settle(Fine *fine) {
     }
 }
 
-/// The value at a position of a cell that is not split: on the same side of the level as at `particle`.
+/// The value at a position of a cell that is not split. Its level has the sign of that at `particle`.
 static FineValue bent_value(const Fine *fine, uint32_t particle, FineLocation location) {
     SINGE_ASSERT(particle < fine->shell->particle_count);
     const FineValue *there = &fine->values[particle];
@@ -294,7 +294,7 @@ static FineValue bent_value(const Fine *fine, uint32_t particle, FineLocation lo
     return value;
 }
 
-/// Whether a cell's side gets its points from this cell, and for bends.
+/// Whether a side's points are evaluated in this cell, for a bent and unsplit cell.
 static bool is_bent_side(const Fine *fine, uint32_t cell, int side) {
     SINGE_ASSERT(cell < fine->shell->cell_count);
     SINGE_ASSERT(side >= 0 && side < 4);

@@ -1,40 +1,41 @@
-// Where the surface is drawn. A position of a cell lies on one of its four flat triangles, at T; it is drawn over it on
-// the patches of fine_patch.c, in the direction m that the flat triangles' normals at its corners are blended to:
+// Where the surface is drawn. A position of a cell lies on one of its four flat triangles, at T. It is displaced to the
+// patch S of fine_patch.c in the direction m, a blend of the flat triangles' normals at the corners, as far as the
+// tangent plane of S at (u, v), which has the normal n:
 //
 //   x = T + s h m,   h = ((S(u, v) - T) . n)/(m . n)
 //
-// where the tangent plane of S at (u, v), with the normal n, is met. So what is printed on it stays where it is; and as
-// all of this is the same from either cell along a side, there are no steps. About vertices where the patches' tangents
-// differ a little, n is m. The normal is that of S nearest to T: at
-// (u, v) and the step along the tangents that brings S there. s is 1 but where corners' shares fade.
+// So prints on the sheet keep their positions. Both cells at a side give the same result, so there are no steps. Near
+// vertices where the patches' tangents differ slightly, n is m. The drawn normal is that of S nearest to T: at (u, v)
+// plus the step along the tangents that brings S there. s is 1 except where corners' shares fade.
 //
-// What does not cross as it is must not cross as it is drawn. So no position leaves its triangle farther than a tenth
-// of the shortest side, less than half the contact thickness, and less than half of what another surface is away; and
-// shares fade
+// Sheets that do not intersect must not intersect as drawn. So a displacement is at most a tenth of the shortest side,
+// less than half the contact thickness, and less than half the distance to another surface. Shares fade
 //
-//   where a triangle at the corner leans away from its normal, or is thin, as when a cell collapses or is crumpled;
-//   at the edges of a tear until they have parted.
+//   where a triangle at the corner is tilted from its normal, or is thin, as when a cell collapses or is crumpled;
+//   at the edges of a tear until they have separated.
 //
-// Tear edges lie at one position until they part. What is drawn of them is cut otherwise on either side, so their
-// corners are drawn back from each other, by a small share of a cell's side.
+// Both edges of a tear coincide until they separate. They are cut differently on either side, so their corners are
+// drawn back from each other, by a small fraction of a cell's side.
 #include "common/check.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>
 
-/// How far a position leaves its triangle at most, of the shortest side at its corners; of how far another surface is.
+/// Max displacement of a position, over the shortest side at its corners, and over the distance to another surface.
 #define BULGE_MAX 0.1f
 #define ROOM_SHARE 0.4f
-/// How far the corners of tear edges at one position are drawn back, of the cell's side: less than contact keeps free.
+/// How far the corners of coincident tear edges are drawn back, over the cell's side: less than the gap that contact
+/// keeps.
 #define TEAR_EDGE 1e-3f
-/// Tear edges this near are at one position; and apart, when their corners have their shares again.
+/// Distances of tear edges over the cell's side: below the first they coincide, from the second their shares are full.
 #define TEAR_EDGES_CLOSED 1e-2f
 #define TEAR_EDGES_OPEN 0.2f
-/// What is nearer to its flat triangle, of the shortest side, is drawn on it.
+/// Displacements smaller than this, over the cell's side, are omitted.
 #define FLAT 1e-5f
-/// The longest step along a patch, in sides: past its end it goes on as the cell's across, but for third derivatives.
+/// The longest step along a patch, in sides: beyond its end it continues as the next cell's, except for third
+/// derivatives.
 #define STEP_MAX 0.25f
-/// A cell is drawn in as many parts a side as its corners' normals turn by this chord, about 10 degrees.
+/// A cell's sides get one part more for each such chord between its corners' normals; a part turns by about 10 degrees.
 #define TURN_A_PART 0.3f
 
 static Float3 centre_of(const uint32_t at[4], const float (*field)[4]) {
@@ -48,7 +49,7 @@ static bool is_alive(const Fine *fine, uint32_t cell) { return fine->state->abla
 /// 0 at `low` and below, 1 at `high`.
 static float fade(float value, float low, float high) { return fmaxf(0, fminf((value - low) / (high - low), 1)); }
 
-/// Towards the centroid of the cells that a vertex has.
+/// A vertex's position, moved by `length` towards the centroids of its cells.
 static Float3 drawn_back(const Fine *fine, uint32_t vertex, float length) {
     SINGE_ASSERT(vertex < fine->shell->vertex_count);
     const Shell *shell = fine->shell;
@@ -61,7 +62,7 @@ static Float3 drawn_back(const Fine *fine, uint32_t vertex, float length) {
 
 static void lessen(float *value, float max) { *value = fminf(*value, max); }
 
-/// Draws two vertices that were one back from each other, and returns the share that they may have.
+/// Draws two vertices that were one back from each other, and returns their max share.
 static float part_tear_edges(Fine *fine, const uint32_t tear_edge[2]) {
     const float(*position)[4] = (const float(*)[4])fine->state->dynamics.position;
     const float side = fine->shell->sheets[fine->shell->matter.sheet[tear_edge[0]]].cell_size;
@@ -71,8 +72,8 @@ static float part_tear_edges(Fine *fine, const uint32_t tear_edge[2]) {
     return fade(apart, TEAR_EDGES_CLOSED * side, TEAR_EDGES_OPEN * side);
 }
 
-/// A torn side, of which this is the one tear edge and that the other. Where it ends, its tear edges open no faster
-/// than at its other end.
+/// A torn side with its two tear edges. Where both end at one vertex, the tip of a tear, the share is that of the other
+/// end.
 static void part_side(Fine *fine, const uint32_t one[2], const uint32_t other[2]) {
     float share[2] = {1, 1}, min = 0;
     for (int end = 0; end < 2; end++)
@@ -86,7 +87,7 @@ static void part_side(Fine *fine, const uint32_t one[2], const uint32_t other[2]
     }
 }
 
-/// Where corners are, what they have of their shares, and how far the surface may leave them.
+/// Sets the corners' positions, their shares, and the surface's max distance from them.
 static void fine_put_corners(Fine *fine) {
     const Shell *shell = fine->shell;
     const SpringSet *blue = &shell->springs[SINGE_BLUE];
@@ -100,7 +101,7 @@ static void fine_put_corners(Fine *fine) {
         part_side(fine, blue->ends[spare + k], blue->ends[shell->edge_origin[k]]);
 }
 
-/// Unit normals of corners and virtual centres: of the triangles around them, by their areas.
+/// Unit normals of corners and virtual centres: those of the triangles around them, weighted by area.
 static void gather_normals(Fine *fine) {
     const Shell *shell = fine->shell;
     const float(*position)[4] = (const float(*)[4])fine->corner;
@@ -121,14 +122,14 @@ static void gather_normals(Fine *fine) {
         float3_store(fine->normal[i], float3_unit(float3_load(fine->normal[i])));
 }
 
-/// The share that a triangle with this normal, 2 A n, and this square of its longest edge allows.
+/// The share that a triangle allows, from its normal 2 A n and the square of its longest edge.
 static float allowed(Float3 doubled, float longest, Float3 normal) {
     float area = float3_length(doubled);
     if (!(area > 0)) return 0;
     return fade(float3_dot(doubled, normal) / area, 0.7f, 0.85f) * fade(area / longest, 0.1f, 0.25f);
 }
 
-/// Lessens the shares where triangles lean away from the normals or are thin, and how far positions may go to a part of
+/// Reduces the shares where triangles are tilted from the normals or thin, and limits displacements to a fraction of
 /// the shortest side. The normals are in place.
 static void gather_shares(Fine *fine) {
     const Shell *shell = fine->shell;
@@ -137,9 +138,9 @@ static void gather_shares(Fine *fine) {
         if (!is_alive(fine, c)) continue;
         const uint32_t *at = shell->cells[c];
         Float3 centre = centre_of(at, position);
-        float whole = fine->sound[c]; // what the normal at the virtual centre allows
+        float whole = fine->sound[c]; // the share that the normal at the virtual centre allows
 
-        // each side allows its corners a share and a height
+        // limits of the corners' shares and heights by each side
         for (int i = 0; i < 4; i++) {
             const uint32_t corner[2] = {at[i], at[(i + 1) & 3]};
             Float3 a = float3_sub(float3_load(position[corner[0]]), centre),
@@ -156,7 +157,7 @@ static void gather_shares(Fine *fine) {
     }
 }
 
-/// In how many parts the sides of a cell's triangles are drawn, to show how it is bent.
+/// The number of parts in which the sides of a cell's triangles are drawn, to show its bending.
 static int parts_of(const Fine *fine, uint32_t cell) {
     SINGE_ASSERT(cell < fine->shell->cell_count);
     const uint32_t *at = fine->shell->cells[cell];
@@ -187,7 +188,7 @@ static Float3 weigh(const Float3 corner[3], const float weight[3]) {
     return float3_mad(float3_mad(float3_scale(corner[0], weight[0]), corner[1], weight[1]), corner[2], weight[2]);
 }
 
-/// The step along the patch from (u, v) to the point whose normal leads to `target`, or nearly.
+/// The step along the patch from (u, v) to the point nearest to `target`, approximately.
 static void step_beneath(const FinePoint *point, Float3 target, float *du, float *dv) {
     Float3 left = float3_sub(target, point->position);
     float uu = float3_dot(point->along_u, point->along_u), vv = float3_dot(point->along_v, point->along_v);
@@ -199,14 +200,14 @@ static void step_beneath(const FinePoint *point, Float3 target, float *du, float
 
 static Float3 across(const FinePoint *point) { return float3_unit(float3_cross(point->along_u, point->along_v)); }
 
-/// Normal of the patch where that step ends.
+/// Normal of the patch at the end of that step.
 static Float3 normal_beneath(const FinePatch *patch, float u, float v, float du, float dv) {
     FinePoint point =
         fine_patch_at(patch, u + fmaxf(-STEP_MAX, fminf(du, STEP_MAX)), v + fmaxf(-STEP_MAX, fminf(dv, STEP_MAX)));
     return across(&point);
 }
 
-/// A number of the vertices at a position: straight between the corners, and the mean of all four at the centre.
+/// Interpolates a field of the vertices: linear between the corners, the mean of all four at the centre.
 static float blend_corners(const uint32_t at[4], const FineLocation *location, const float *value) {
     float centre = 0.25f * ((value[at[0]] + value[at[1]]) + (value[at[2]] + value[at[3]]));
     return location->weight[0] * value[at[location->side]] + location->weight[1] * value[at[(location->side + 1) & 3]] +

@@ -1,7 +1,8 @@
 // A smooth field over the sheet from its values at the particles.
 //
-// On the body-centred square the cells' triangles are a four-direction mesh. On it the Zwart-Powell element, centred on
-// the cells, gives a C1 piecewise quadratic: with q of a cell and its triangle's corners A, B and centre C,
+// In the body-centred square the cells' triangles form a four-direction mesh. On it the Zwart-Powell element, centred
+// on the cells, gives a C1 piecewise quadratic. With the value q of a cell, and the corners A, B and the centre C of
+// its triangle:
 //
 //   q    = f_C / 2 + (f_1 + f_2 + f_3 + f_4) / 8
 //   b_AB = (q + q') / 2             q' of the cell across the side; (f_A + f_B) / 2 where there is none
@@ -12,8 +13,8 @@
 //   S = b_A x^2 + b_B y^2 + b_C z^2 + 2 (b_AB x y + b_AC x z + b_BC y z)     (Bernstein-Bezier, barycentric x, y, z)
 //
 // (Zwart 1973; Peters and Reif, The simplest subdivision scheme for smoothing polyhedra, 1997, for meshes that are not
-// regular: C1 but at their irregular vertices). All weights are positive: where no particle's mass grows, nor does S.
-// It is exact for linear fields on parallelograms, and its isolines have no corners where cells meet.
+// regular: C1 except at their irregular vertices). All weights are positive: if no particle's mass grows, S does not
+// grow. It is exact for linear fields on parallelograms, and its isolines have no corners where cells meet.
 #include "common/check.h"
 #include "surface/surface_fine.h"
 
@@ -28,7 +29,7 @@ static void cell_values(const Fine *fine, const float *values) {
     }
 }
 
-/// The cells' values are in place. Without values at the particles, the sheet goes on evenly beyond its border.
+/// The cells' values are in place. Without values at the particles, the field is constant across the sheet's border.
 static void side_coefficients(const Fine *fine, const float *values, float *edge) {
     const Shell *shell = fine->shell;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
@@ -114,7 +115,7 @@ static FineLocation from_coordinates(uint32_t cell, float x, float y) {
     return location;
 }
 
-/// The side by which a cell's neighbour borders on spring `blue`.
+/// The side of a cell that has spring `blue`.
 static int side_of(const Shell *shell, uint32_t cell, uint32_t blue) {
     SINGE_ASSERT(cell < shell->cell_count);
     int side = 0;

@@ -1,29 +1,29 @@
-// The edges of tears. A sheet tears along the sides of its cells (src/tear): drawn like that, tears would be straight
-// cuts and stairs. So these edges are drawn a little within their cells, where a smooth field S is 0.3:
+// The edges of tears. A sheet tears along the sides of its cells (src/tear): drawn as they are, tears would be straight
+// cuts and staircases. So their edges are drawn slightly inside their cells, where a smooth field S is 0.3:
 //
-//   S    of the splines of fine_spline.c, with b of a side 1, and 0 where it is torn; b of a vertex at a tear
-//        min(3/4, A/pi - 1), A the angle of the cells that are left at it, taken twice at the border of the sheet: 0
-//        beside a straight tear, -1/2 at a corner of it that stands out, 1/2 at one that stands in, 3/4 at its end
+//   S    a spline of fine_spline.c, with b = 1 for a side, 0 if it is torn; for a vertex at a tear b =
+//        min(3/4, A/pi - 1), with A the angle of the cells that it still has, doubled at the border of the sheet: 0
+//        beside a straight tear, -1/2 at a convex corner, 1/2 at a concave corner, 3/4 at the tear's end
 //   L(x) = max(S(x + D(x)) - 0.3, z(x + D(x)) - 0.45)/2
 //
-// D is a noise of the rest position, as a vector. Both tear edges have the same there and lie on different sides, so
-// that what one gives away the other keeps: the tear wanders, frays at small scales, and its edges fit. x + D stays on
-// the edge's own side, for no way leads over a torn side: there it ends, where S is 0 (fine_walk). S is that of the
-// sheet as it is cut, so that it runs slantwise where a tear runs in stairs. z is the weight of a cell's centroid: what
-// is torn off all around is drawn, too.
+// D is a vector noise of the rest position. It is the same at both tear edges, which lie on different sides, so each
+// keeps the material that the other loses: the tear meanders, frays at small scales, and its edges fit together. x + D
+// stays on the edge's own side, as no walk crosses a torn side: it ends there, where S is 0 (fine_walk). S is that of
+// the torn sheet, so its isolines run diagonally where a tear runs in stairs. z is the weight of a cell's centroid: a
+// cell torn off on all sides is drawn, too.
 //
-// Nothing is drawn outside the cells, so tear edges cross nothing that the cells do not.
+// Nothing is drawn outside the cells, so tear edges intersect only what the cells intersect.
 #include "common/check.h"
 #include "common/real.h"
 #include "surface/surface_fine.h"
 #include "common/random.h"
 
 static const float TEAR_EDGE_MIN = 0.3f;       ///< S at the tear edge: 0.16 of a cell's side beside a straight tear
-static const float TEAR_EDGE_CENTROID = 0.45f; ///< z from which on something is left of a cell
-static const float TEAR_EDGE_WANDERS = 0.25f;  ///< |D|, at most, of a cell's side
-static const float TEAR_EDGE_WAVE = 2.2f;      ///< largest features of D, of a cell's side
+static const float TEAR_EDGE_CENTROID = 0.45f; ///< min z that is drawn whatever S is
+static const float TEAR_EDGE_WANDERS = 0.25f;  ///< max |D|, over a cell's side
+static const float TEAR_EDGE_WAVE = 2.2f;      ///< largest features of D, over a cell's side
 static const float TEAR_EDGE_STRENGTH = 0.6f,
-                   TEAR_EDGE_GAIN = 2.4f; ///< an octave's over that of the one before; of the first
+                   TEAR_EDGE_GAIN = 2.4f; ///< of an octave over that of the one before; of the first
 
 static const float pi = 3.14159265f;
 
@@ -75,7 +75,7 @@ void fine_tear_edges(Fine *fine) {
         }
 }
 
-/// D at a position, m, each component up to `reach`.
+/// D at a position, m, at most `reach` long.
 static Float3 wander(const FineSheet *sheet, Float3 location, float size, float reach) {
     Float3 p = float3_scale(location, 1 / (TEAR_EDGE_WAVE * size)), sum = {0, 0, 0};
     float strength = TEAR_EDGE_GAIN;

@@ -1,11 +1,11 @@
-// The fields of the fine surface's vertices. Velocity, uv and rest position lie on the cell's triangle, straight
-// between its corners and its virtual centre; temperatures and rates follow their splines; the mass is what the level
-// was taken with. Of times to ignition, those of corners that have ignited count, by their weights. Where vertices are,
-// and their normals, fine_position.c says.
+// The fields of the fine surface's vertices. Velocity, uv and rest position are interpolated linearly between the
+// corners of the cell's triangle and its virtual centre. Temperatures and rates follow their splines. The mass is the
+// one found with the level. The time of ignition is the weighted mean over the corners that have ignited. Positions and
+// normals come from fine_position.c.
 #include "common/check.h"
 #include "surface/surface_fine.h"
 
-/// Of a triangle's corners: two particles, and the mean of four for the virtual centre.
+/// Interpolates between a triangle's corners: two particles, and the mean of four for the virtual centre.
 static Float3 blend(const uint32_t at[4], const FineLocation *location, const float (*field)[4]) {
     Float3 sum = {0, 0, 0};
     for (int i = 0; i < 4; i++) {

@@ -1,14 +1,14 @@
-// Marching triangles (section 6, Fig 6). Every cell left is drawn as four triangles around its virtual
-// centre; the level set m' cuts them:
+// Marching triangles (section 6, Fig 6). Every remaining cell is drawn as four triangles around its virtual centre; the
+// level set m' cuts them:
 //
 //   corners inside   3          2                1              0
 //   drawn            the whole  a quadrilateral  a small one    nothing
 //
-// m' >= 0 is inside. Each triangle is clipped into a polygon of keys (AblatePlan), one key per vertex that
-// neighbouring triangles share, so that they meet without cracks; then the keys in use are numbered in
-// order: corners in the input's order, virtual centres, cuts. A cut that falls on its end inside is that
-// end, and polygons with fewer than three corners left vanish. Cuts keep away from ends, and quadrilaterals are cut
-// along the diagonal that makes the rounder triangles, so that none is as thin as its vertices are rounded.
+// m' >= 0 is inside. Each triangle is clipped into a polygon of keys (AblatePlan), one key per vertex that neighbouring
+// triangles share, so that they meet without cracks. The keys in use are then numbered in order: corners in the input's
+// order, virtual centres, cuts. A cut at its inside end becomes that end; polygons with fewer than three corners are
+// dropped. Cuts keep a distance from ends, and quadrilaterals are divided along the diagonal that gives the rounder
+// triangles, so that no triangle is as thin as the rounding of its vertices.
 #include "common/check.h"
 #include "ablate/ablate_plan.h"
 #include "common/float3.h"
@@ -54,7 +54,7 @@ static Polygon surface_clip(const AblatePlan *plan, const Shell *shell, uint32_t
     return polygon;
 }
 
-/// Draws the cells with keys for vertices, which it marks in plan->output.
+/// Draws the cells with keys as vertices, and marks these keys in plan->output.
 static void draw_cells(AblatePlan *plan, const Shell *shell, const State *state, uint32_t *cell_first,
                        SingeSurface *surface) {
     memset(plan->output, 0, plan->keys.count * sizeof *plan->output);
@@ -73,7 +73,7 @@ static void draw_cells(AblatePlan *plan, const Shell *shell, const State *state,
     }
 }
 
-/// As many triangles as the cells left can have: four, or eight where the level set may pass.
+/// Max number of triangles: four per remaining cell, or eight where the level set may cross it.
 static uint64_t max_triangles(const AblatePlan *plan, const Shell *shell, const State *state) {
     uint64_t max = 0;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
@@ -103,8 +103,7 @@ static void fill_vertices(AblatePlan *plan, const Shell *shell, const State *sta
         for (int i = 0; i < 3; i++) surface->triangles[t][i] = plan->output[surface->triangles[t][i]];
 }
 
-/// The sum of a triangle's vectors 2 A n over the triangles around each vertex, made unit. Where they
-/// cancel, +z.
+/// The normalised sum of 2 A n over the triangles around each vertex; +z where they cancel.
 void surface_normals(SingeSurface *surface) {
     memset(surface->normal, 0, surface->vertex_count * sizeof *surface->normal);
     for (uint32_t t = 0; t < surface->triangle_count; t++) {

@@ -99,7 +99,7 @@ SingeResult surface_grow_vertices(SingeSurface *surface, uint64_t count, SingeEr
         memcpy(&to, (char *)&grown + array->offset, sizeof to);
         if (good && from) memcpy(to, from, surface->vertex_count * array->element_size);
     }
-    for (int i = 0; i < VERTEX_ARRAYS; i++) { // the old ones go, or on failure the new ones
+    for (int i = 0; i < VERTEX_ARRAYS; i++) { // frees the old ones, or on failure the new ones
         const SurfaceArray *array = &vertex_arrays[i];
         void *to;
         memcpy(&to, (char *)&grown + array->offset, sizeof to);

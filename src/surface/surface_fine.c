@@ -1,9 +1,10 @@
 // The drawn surface, refined near the front.
 //
-// The level of a burning sheet's particles is made smooth (fine_spline.c) and eaten into by noise (fine_noise.c). Where
-// it changes sign within a cell, the cell's triangles are split into k^2 fine ones, k = side / (sqrt(2) detail): their
+// The level of a burning sheet's particles is smoothed (fine_spline.c) and eroded by noise (fine_noise.c). Where it
+// changes sign within a cell, the cell's triangles are split into k^2 fine ones, k = side / (sqrt(2) detail): their
 // points form a square lattice at 45 degrees to the cell with this spacing (fine_points.c). Marching triangles cut them
-// (fine_march.c), and fields are taken at the vertices (fine_vertices.c). Nothing of it goes back to the simulation.
+// (fine_march.c), and fields are evaluated at the vertices (fine_vertices.c). Nothing of this feeds back into the
+// simulation.
 #include "surface/surface_fine.h"
 #include "common/random.h"
 
@@ -25,7 +26,7 @@ typedef struct FineArray {
     size_t offset, size, count;
 } FineArray;
 
-/// Arrays whose sizes are known from the start, but the splines'. Returns how many.
+/// Lists the arrays whose sizes are known from the start, except the splines'. Returns their number.
 static int list_arrays(const Fine *fine, FineArray arrays[]) {
     const Shell *shell = fine->shell;
     const size_t cells = shell->cell_count, sides = shell->springs[SINGE_BLUE].count, corners = shell->vertex_count;
@@ -76,8 +77,9 @@ static void fine_release(Fine *fine) {
     FREE(fine->memory, fine->vertices, fine->vertex_capacity);
 }
 
-/// The level that is made smooth. The mass of what is gone stands still as it was when it went, just below m_loss;
-/// there the level goes on falling as fast as it fell, so that the edge moves evenly and does not stick to particles:
+/// The level that is smoothed. The mass of a removed particle keeps its value from when it was removed, just below
+/// m_loss. There the level keeps falling at its previous rate, so that the edge moves evenly and does not stick to
+/// particles:
 ///
 ///   m' <- min(m', -(1 - m_loss) (t - t_burnt)/(t_burnt - t_ignited)),   to LEVEL_GONE at most
 static void fill_levels(Fine *fine) {

@@ -6,15 +6,15 @@
 #include "ablate/ablate_plan.h"
 #include "common/float3.h"
 
-/// A fine triangle has at most this part of its cell's sides.
+/// A cell's side is split into at most this many parts.
 enum { FINE_SPLITS_MAX = 16 };
 
 /// Flags of a cell.
 enum {
     FINE_NEAR = 1,       ///< near the front: its points are numbered
     FINE_SPLIT = 2,      ///< the level changes sign in it
-    FINE_EVEN = 4,       ///< nothing to draw finely: one mass, and not negative
-    FINE_WHOLE = 8,      ///< nothing around it has gone
+    FINE_EVEN = 4,       ///< no refinement: uniform mass, and level not negative
+    FINE_WHOLE = 8,      ///< no cell around it is gone
     FINE_TEAR_EDGE = 16, ///< at a tear
 };
 
@@ -31,7 +31,7 @@ typedef enum SplineField {
     SPLINE_COUNT
 } SplineField;
 
-/// One of them: the coefficients of a C1 quadratic spline over the cells' triangles (fine_spline.c).
+/// One such field: the coefficients of a C1 quadratic spline over the cells' triangles (fine_spline.c).
 typedef struct Spline {
     float *edge;   ///< [blue springs]
     float *corner; ///< [vertices]
@@ -44,12 +44,12 @@ typedef struct FineLocation {
     float weight[3];
 } FineLocation;
 
-/// What a position is drawn by.
+/// Level and mass at a position.
 typedef struct FineValue {
     float level, mass;
 } FineValue;
 
-/// A vertex to be.
+/// A vertex to draw.
 typedef struct FineVertex {
     FineLocation location;
     float mass;
@@ -59,7 +59,7 @@ typedef struct FineVertex {
 /// How a sheet's cells near the front are split.
 typedef struct FineSheet {
     int splits;    ///< k: a side becomes k fine ones
-    float reach;   ///< m, how far noise eats into the edge at most
+    float reach;   ///< m, max depth to which noise erodes the edge
     int octaves;   ///< of the noise
     uint32_t seed; ///< of its first octave
 } FineSheet;
@@ -76,7 +76,7 @@ typedef struct Fine {
     float bulge_max;   ///< m, of SurfaceDetail
     FineSheet *sheets; ///< [sheets]
     Spline splines[SPLINE_COUNT];
-    float *raw_level;     ///< [particles] m'; below 0 for what is gone
+    float *raw_level;     ///< [particles] m'; below 0 for particles that are gone
     float *cell_value;    ///< [cells] scratch of the splines
     float *low;           ///< [cells] the level's smallest coefficient
     float (*axes)[2];     ///< [cells] m, lengths of a cell's two axes at rest
@@ -84,12 +84,12 @@ typedef struct Fine {
     uint32_t *cell_point; ///< [cells] first of its points; where FINE_NEAR
     uint32_t *side_point; ///< [blue springs] first of the points on a side, or SHELL_NONE
     uint32_t *near;       ///< [near_count] the cells near the front
-    uint32_t *side_owner; ///< [side_count] 4 cell + side, which the points of a numbered side are evaluated in
-    uint8_t *bent;        ///< [cells] parts of a side that show how a cell is bent, if it is not split
-    uint32_t *bent_point; ///< [cells] as cell_point, of points for that
-    uint32_t *bent_side;  ///< [blue springs] as side_point; those of a split cell's sides once cells are settled
+    uint32_t *side_owner; ///< [side_count] 4 cell + side, in which a numbered side's points are evaluated
+    uint8_t *bent;        ///< [cells] parts of a side that show a cell's bending, if it is not split
+    uint32_t *bent_point; ///< [cells] as cell_point, for points of bent cells
+    uint32_t *bent_side;  ///< [blue springs] as side_point, for bent cells; swapped with it once cells are settled
     uint8_t *splits;      ///< [cells] k of the cell as it is drawn
-    uint8_t *parts;       ///< [blue springs] of a side as it is drawn: the more of its cells'
+    uint8_t *parts;       ///< [blue springs] parts of a side as drawn: the max of its cells'
     uint32_t near_count, side_count, point_count;
     FineValue *values;  ///< [point_count]
     uint32_t *drawn;    ///< [point_count] 1 + index of the vertex drawn there, 0 for none
@@ -97,16 +97,16 @@ typedef struct Fine {
     uint32_t *cuts;     ///< [cut_count] 1 + index of the vertex that cuts a fine side, 0 for none
     uint32_t cut_count;
     float (*normal)[3];   ///< [particles] unit, or 0
-    float *max;           ///< [vertices] m, how far the surface leaves flat triangles there
-    float *share;         ///< [vertices] of its way to the patches that it goes there
-    float (*corner)[4];   ///< [vertices] m, of the flat triangles
-    uint8_t *sound;       ///< [cells] 1: it is there and not torn
+    float *max;           ///< [vertices] m, max displacement from the flat triangles there
+    float *share;         ///< [vertices] fraction of the displacement to the patches that is applied
+    float (*corner)[4];   ///< [vertices] m, corners of the flat triangles
+    uint8_t *sound;       ///< [cells] 1: alive and not torn
     float *valence;       ///< [vertices] n of fine_patch.c
     float *regular;       ///< [vertices] 1 where the patches around meet with the same derivatives, else 0
     float (*inner)[4][3]; ///< [cells] m, points of the patches beside the corners,
     float (*rail)[2][3];  ///< [blue springs] on sides, in the order of their ends,
     float (*limit)[3];    ///< [vertices] and at the corners
-    float (*shift)[3];    ///< [vertices] m, by which the first two are moved; the third is
+    float (*shift)[3];    ///< [vertices] m, added to inner and rail where they are used; limit includes it
     FineVertex *vertices; ///< [vertex_capacity]
     uint32_t vertex_count, vertex_capacity;
     uint32_t *cell_triangle; ///< [cells + 1] first of a cell's triangles, where the sheets have seams; else NULL
@@ -118,31 +118,31 @@ typedef struct Fine {
 /// Fills the coefficients of a field with a value at every particle.
 void fine_spline(const Fine *fine, const float *values, Spline *spline);
 
-/// The same for what is 1 in cells that are left and -1 in others.
+/// The same for a field that is 1 in remaining cells and -1 in others.
 void fine_spline_cells(const Fine *fine, Spline *spline);
 
-/// The smallest and the greatest coefficient of a cell: the spline lies between them.
+/// The min and max coefficient of a cell: the spline lies between them.
 void fine_spline_bounds(const Shell *shell, const Spline *spline, uint32_t cell, float *low, float *high);
 
 float fine_spline_at(const Shell *shell, const Spline *spline, FineLocation location);
 
-/// The position that lies (x, y) from another one, in sides of its cell along the cell's own axes (corner 0 to 1,
-/// corner 0 to 3), at most half a cell either way. Where the sheet ends, the nearest point along its border.
+/// The position displaced by (x, y) from another one, in sides of its cell along the cell's own axes (corner 0 to 1,
+/// corner 0 to 3), at most half a cell along each. Beyond the sheet's border, the nearest point on it.
 FineLocation fine_walk(const Shell *shell, FineLocation location, float x, float y);
 
 /// A position in its cell's own coordinates: corners at (-1/2, -1/2), (1/2, -1/2), (1/2, 1/2), (-1/2, 1/2).
 void fine_coordinates(FineLocation location, float *x, float *y);
 
-/// The level that this spline stands for: below 0 from a little within the cells that are left outwards, in smooth
-/// curves where their sides have corners, so that the sides are nowhere to be seen.
+/// The level of this spline. It turns negative slightly inside the remaining cells, along smooth curves where the
+/// cells' sides have corners, so that the sides are never visible.
 static inline float fine_whole_level(float whole) { return 0.5f * (whole - 0.25f); }
 
 // ---- fine_noise.c
 
-/// How many octaves of the noise points with this spacing (m) can show.
+/// The number of octaves of the noise that points with this spacing (m) can resolve.
 int fine_octaves(float spacing);
 
-/// The level and the mass that a position is drawn by.
+/// The level and the mass at a position.
 FineValue fine_value(const Fine *fine, FineLocation location);
 
 /// A rest position, and a vector rotated out of every plane that sheets and their grids may lie in.
@@ -151,10 +151,10 @@ Float3 fine_askew(Float3 p);
 
 // ---- fine_tears.c
 
-/// Fills SPLINE_TEAR_EDGE where sheets have torn, and marks the cells there, which have their other flags.
+/// Fills SPLINE_TEAR_EDGE where sheets have torn, and marks the cells there. Their other flags are in place.
 void fine_tear_edges(Fine *fine);
 
-/// The level that tears give a position in a marked cell: below 0 is not drawn.
+/// The level due to tears at a position in a marked cell; below 0 it is not drawn.
 float fine_tear_level(const Fine *fine, FineLocation location);
 
 // ---- fine_points.c
@@ -163,7 +163,7 @@ float fine_tear_level(const Fine *fine, FineLocation location);
 /// which cells are split.
 SingeResult fine_points(Fine *fine, SingeError *error);
 
-/// Point i of a cell's side, of `parts` that it is in.
+/// Point i of a cell's side that is in `parts` parts.
 uint32_t fine_side_point(const Fine *fine, uint32_t cell, int side, int parts, int i);
 
 /// Point (i, j) of a cell's triangle: i of k along the side, j of k towards the centre.
@@ -207,7 +207,7 @@ typedef struct FinePoint {
 /// Finds the sound cells.
 void fine_find_sound(Fine *fine);
 
-/// Works out the points of all patches. Sound cells, corners, normals, shares and most are in place.
+/// Computes the points of all patches. Sound cells, corners, normals, `share` and `max` are in place.
 void fine_patches(Fine *fine);
 
 FinePatch fine_patch(const Fine *fine, uint32_t cell);
@@ -215,10 +215,10 @@ FinePoint fine_patch_at(const FinePatch *patch, float u, float v);
 
 // ---- fine_position.c
 
-/// Works out where the surface is, and how finely bent cells are to be drawn.
+/// Computes where the surface is, and how finely bent cells are drawn.
 void fine_position(Fine *fine);
 
-/// Position and unit normal at a position, with the patch of its cell.
+/// Position and unit normal at a location; `patch` is that of its cell.
 void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocation *location, float position[3],
                       float normal[3]);
 

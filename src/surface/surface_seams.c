@@ -1,18 +1,18 @@
 // Seams of the uv. A vertex where cells have different uv is drawn once for each, at the same position and with the
-// same normal, so that images break there and the surface does not. A drawn vertex lies on one of a cell's four
-// triangles at rest; with its barycentric weights w there, of the side's two corners and the virtual centre,
+// same normal, so that textures are discontinuous there and the surface is not. A drawn vertex lies on one of a cell's
+// four triangles at rest; with its barycentric weights w there, of the side's two corners and the virtual centre,
 //
 //   uv = w_a uv_a + w_b uv_b + w_c (uv_1 + uv_2 + uv_3 + uv_4)/4,   uv_i as this cell has them
 //
-// Only cells are looked at whose uv differ from what their vertices have (Shell.uv). Where the input had several
-// vertices on a seam, each copy has the number of its own.
+// Only cells whose uv differ from those of their vertices (Shell.uv) are visited. If the input had several vertices on
+// a seam, each copy keeps its own source vertex.
 #include "common/check.h"
 #include "ablate/ablate_plan.h"
 #include "common/float3.h"
 
 #include <string.h>
 
-/// uv are the same within this share of the cell's; weights this near to 1 are a corner.
+/// Tolerance of uv, over the cell's extent in uv; weights this close to 1 are a corner.
 #define SEAM_SAME 1e-3f
 
 typedef struct Seams {
@@ -76,7 +76,7 @@ static int side_of(const Seams *seams, uint32_t cell, const uint32_t triangle[3]
     return best;
 }
 
-/// uv of a point, and its number where it is a corner that has one.
+/// uv of a point, and its source vertex if it is a corner that has one.
 static void cell_uv(const Shell *shell, uint32_t cell, int side, Float3 point, float uv[2], int32_t *source) {
     SINGE_ASSERT(cell < shell->cell_count);
     SINGE_ASSERT(side >= 0 && side < 4);
@@ -101,7 +101,7 @@ static float cell_uv_size(const Shell *shell, uint32_t cell) {
     return size;
 }
 
-/// The copy of a vertex that has this uv and number; made where there is none.
+/// The copy of a vertex that has this uv and source vertex; created if there is none.
 static uint32_t copy_with(Seams *seams, uint32_t vertex, const float uv[2], float same, int32_t source) {
     SINGE_ASSERT(vertex < seams->surface->vertex_count);
     SingeSurface *surface = seams->surface;
@@ -146,7 +146,7 @@ static void part_cell(Seams *seams, uint32_t cell, uint32_t begin, uint32_t end)
     }
 }
 
-/// Claims what cells without a seam use; returns how many copies there may be.
+/// Claims the vertices of cells without a seam; returns the max number of copies.
 static uint64_t claim(Seams *seams, const uint32_t *cell_first) {
     const Shell *shell = seams->shell;
     uint64_t copies = 0;

@@ -78,10 +78,10 @@ static Sample sample_particle(const Shell *shell, const State *state, uint32_t p
 static float mix(float a, float b, float t) { return a + (b - a) * t; }
 static Float3 mix_float3(Float3 a, Float3 b, float t) { return float3_mad(a, float3_sub(b, a), t); }
 
-/// Between two times of which -1 means never: then the other one counts.
+/// Interpolates between two times; if one is -1, never, returns the other.
 static float mix_times(float a, float b, float t) { return a < 0 ? b : b < 0 ? a : mix(a, b, t); }
 
-/// The end inside at t = 0; piece and sheet are its own.
+/// Interpolates from the inside end, t = 0; piece and sheet are those of that end.
 static Sample mix_samples(const Sample *a, const Sample *b, float t) {
     return (Sample){
         .position = mix_float3(a->position, b->position, t),
