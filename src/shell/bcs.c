@@ -1,13 +1,13 @@
 // The body-centred square of section 3.2: from quads to particles and springs of four colours.
 //
 //   blue    the mesh's edges                 about 2 N_c
-//   green   centres of cells that share one        2 N_c
+//   green   centres of cells that share an edge    2 N_c
 //   red     centre to corners                      4 N_c
 //   yellow  both diagonals                         2 N_c
 //
-// Which springs run on into which (the mates that strand.c follows): a green spring into the one across
-// the opposite side of the cell, a red one at the centre into that of the opposite corner, and at a vertex
-// each into the one opposite in the fan of cells, where there is one.
+// Springs continue in others, their mates, which strand.c follows: a green spring in the one across the opposite side
+// of the cell, a red one at the centre in that of the opposite corner, and each one at a vertex in the opposite one in
+// the fan of cells, where there is one.
 #include "common/check.h"
 #include "shell/family.h"
 #include "shell/fibre.h"
@@ -29,7 +29,7 @@ static SingeResult shell_count(const SheetSource *sources, uint32_t source_count
         numbers += sources[i].sheet.source_count;
     }
     // indices of particles and of the 4 N_c red springs are also counted in int; four times a particle's number, and
-    // slots in lanes, of which springs take some, in uint32_t
+    // the springs' slots in lanes, in uint32_t
     if (source_count > SHEET_LIMIT || vertices + cells > INT32_MAX / 4 || numbers > INT32_MAX || cells > INT32_MAX / 16)
         return error_set(error, SINGE_ERROR_LIMIT, "sheet", -1,
                          "%u sheets with %llu vertices and %llu cells are too many", source_count,
@@ -78,13 +78,13 @@ void shell_free(Memory *memory, Shell *shell) {
     *shell = (Shell){0};
 }
 
-/// Copies one sheet to its ranges, which begin at sheet->vertex_first, cell_first and source_first. Spares wait at its
-/// first vertex.
+/// Copies one sheet to its ranges, which begin at sheet->vertex_first, cell_first and source_first. Spares have the
+/// position of its first vertex.
 static void bcs_lay_sheet(Shell *shell, uint32_t index, const SheetSource *source) {
     const Sheet *sheet = &shell->sheets[index];
     uint32_t centre = shell_centre(shell, sheet->cell_first), count = source->sheet.vertex_count;
 
-    // vertices, and those in reserve
+    // vertices, and spares
     for (uint32_t i = 0; i < sheet->vertex_count; i++) {
         uint32_t p = sheet->vertex_first + i, v = i < count ? i : 0;
         for (int k = 0; k < 3; k++) shell->rest_position[p][k] = source->position[v][k];
@@ -128,7 +128,7 @@ static void bcs_lay_sheets(Shell *shell, const SheetSource *sources) {
     }
 }
 
-/// Ends of springs in the order of the numbers that cell_springs holds before the strands are known.
+/// Ends of springs in the order of their numbers in cell_springs, before the strands are known.
 static void list_ends(const HalfEdges *mesh, int colour, LooseSprings *loose) {
     SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     const Shell *shell = mesh->shell;
@@ -151,8 +151,8 @@ static void list_ends(const HalfEdges *mesh, int colour, LooseSprings *loose) {
     }
 }
 
-/// The end at its vertex of the spring of `colour` that belongs to a half-edge: the edge itself, the red
-/// spring to the corner or the diagonal from it.
+/// The end, at the half-edge's vertex, of the spring of `colour` that belongs to the half-edge: the edge itself, the
+/// red spring to the corner or the diagonal from it.
 static uint32_t end_at_vertex(const Shell *shell, int colour, uint32_t half) {
     SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     const CellSprings *springs = &shell->cell_springs[half / 4];
@@ -162,8 +162,8 @@ static uint32_t end_at_vertex(const Shell *shell, int colour, uint32_t half) {
     return 2 * springs->blue[i] + (corner > next);
 }
 
-/// Mates the ends around a vertex, in turning order. Inside, an even number n of spokes pairs k with
-/// k + n/2 and an odd one pairs none; at the boundary k goes with k + 2, past the one spoke between them.
+/// Mates the ends around a vertex, in turning order. At an inner vertex, if the number n of spokes is even, k pairs
+/// with k + n/2; if n is odd, none pair. At the boundary k pairs with k + 2, skipping the spoke between them.
 static void join_fan(LooseSprings *loose, const uint32_t *ends, uint32_t count, bool inside) {
     if (inside && count % 2 == 0)
         for (uint32_t k = 0; k < count / 2; k++) strand_join(loose, ends[k], ends[k + count / 2]);
@@ -183,7 +183,7 @@ static void join_at_vertices(const HalfEdges *mesh, int colour, LooseSprings *lo
         }
         bool inside = half_edge_is_inside(mesh, v);
         if (colour == SINGE_BLUE && count && !inside) {
-            // the boundary's other edge comes in from the last cell's corner before
+            // the other boundary edge precedes the corner in the last cell
             uint32_t before = half_edge_previous(last);
             uint32_t other = shell->cells[before / 4][before & 3];
             ends[count++] = 2 * shell->cell_springs[before / 4].blue[before & 3] + (v > other);
@@ -206,7 +206,7 @@ static void join_in_cells(const HalfEdges *mesh, int colour, LooseSprings *loose
     }
 }
 
-/// From loose numbers to the numbers along strands.
+/// Replaces loose numbers by the numbers along strands.
 static void renumber_cells(Shell *shell, int colour, const uint32_t *number) {
     SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     for (uint32_t c = 0; c < shell->cell_count; c++) {
@@ -274,7 +274,7 @@ static void list_fans(Shell *shell) {
     for (uint32_t v = 0; v < shell->vertex_count; v++) first[v + 1] += first[v];
     for (uint32_t c = 0; c < shell->cell_count; c++)
         for (int i = 0; i < 4; i++) shell->fan[first[shell->cells[c][i]]++] = c;
-    // filling has moved every start to the next one
+    // filling has moved each start to the next one
     memmove(first + 1, first, shell->vertex_count * sizeof *first);
     first[0] = 0;
 }

@@ -1,12 +1,12 @@
 // Greedy colouring of the conflict graph whose vertices are items and whose edges are shared nodes.
 //
-// The graph is never built: each node keeps the set of families already at it as the bits of a word,
-// and an item takes the lowest family that none of its nodes has. Where 64 families are not enough, what
-// is left is coloured in a further round with 64 new ones.
+// The graph is never built: each node keeps the set of families already at it as the bits of a word, and an item takes
+// the lowest family that none of its nodes has. If 64 families are not enough, the remaining items are coloured in
+// further rounds, each with 64 new ones.
 //
-// Items are taken breadth-first, from item to item that share a node. That colours every two-colourable
-// part with two families (an item's neighbours that are already coloured all lie one level nearer to the
-// start, and share one colour), however the mesh is numbered; index order and longest-first do not.
+// Items are visited breadth-first, from item to item that share a node. This colours every two-colourable part with two
+// families, whatever the mesh's numbering: an item's neighbours that are already coloured all lie one level nearer to
+// the start and share one colour. Index order and longest-first do not.
 #include "shell/family.h"
 
 /// Items at each node, the transpose of ItemNodes.
@@ -100,7 +100,7 @@ void family_sort(uint32_t item_count, const uint32_t *family, uint32_t family_co
     for (uint32_t f = 0; f <= family_count; f++) family_first[f] = 0;
     for (uint32_t i = 0; i < item_count; i++) family_first[family[i] + 1]++;
     for (uint32_t f = 0; f < family_count; f++) family_first[f + 1] += family_first[f];
-    // filling moves each start to its end, which is the next one's start: move them back after
+    // filling moves each start to its end, the next one's start; they are moved back afterwards
     for (uint32_t i = 0; i < item_count; i++) sorted[family_first[family[i]]++] = i;
     for (uint32_t f = family_count; f > 0; f--) family_first[f] = family_first[f - 1];
     family_first[0] = 0;

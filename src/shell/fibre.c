@@ -1,9 +1,10 @@
-// How the springs lie to the fibres. A fibre runs at `fibre_angle` phi from e1, the direction of growing u in the
-// cell's tangent plane (its first side where uv says nothing), towards e2 = n x e1. A spring along d has
+// Directions of the springs relative to the fibres. A fibre runs at `fibre_angle` phi from e1, the direction of
+// increasing u in the cell's tangent plane (its first side if the uv are degenerate), towards e2 = n x e1. A spring
+// along d has
 //
 //   grain = [(x^2 - y^2) cos 2 phi + 2 x y sin 2 phi] / |d|^2,   x = d . e1,   y = d . e2
 //
-// which is cos 2(angle to the fibres) in the plane of the sheet, and less for a spring that leaves it. A spring of
+// which is cos 2(angle to the fibres) in the plane of the sheet, and less for a spring out of the plane. A spring of
 // two cells has the mean of both.
 #include "common/check.h"
 #include "common/real.h"
@@ -18,7 +19,7 @@ typedef struct FibreFrame {
     float cosine, sine; ///< of 2 phi
 } FibreFrame;
 
-/// The direction in which u grows where v does not; the first side where there is none.
+/// The direction in which u grows and v is constant; the first side if there is none.
 static Float3 fibre_along_u(const Shell *shell, uint32_t cell, Float3 a, Float3 b) {
     SINGE_ASSERT(cell < shell->cell_count);
     const uint32_t *corner = shell->cells[cell];
@@ -46,7 +47,7 @@ static FibreFrame fibre_frame(const Shell *shell, uint32_t cell) {
     return (FibreFrame){e1, float3_cross(normal, e1), real_cosf(2 * angle), real_sinf(2 * angle)};
 }
 
-/// Adds `share` of a cell's view of a spring.
+/// Adds `share` of a spring's grain in a cell's frame.
 static void fibre_add(Shell *shell, const FibreFrame *frame, SingeColour colour, uint32_t spring, float share) {
     SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     SINGE_ASSERT(spring < shell->springs[colour].count);

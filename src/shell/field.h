@@ -20,7 +20,7 @@ static inline const float *field_run(Field field, uint32_t first) { return field
 
 /// A uniform field. False when out of memory.
 bool field_create(Memory *memory, Field *field, float value);
-/// Gives each of `count` particles a value of its own, at first the one that all had. False when out of memory.
+/// Gives each of `count` particles a value of its own, initially the uniform one. False when out of memory.
 bool field_vary(Memory *memory, Field *field, uint32_t count);
 /// `count` particles are the shell's. A zeroed field is allowed.
 void field_free(Memory *memory, Field *field, uint32_t count);

@@ -34,7 +34,7 @@ static SingeResult edge_fail(const Shell *shell, uint32_t half, const char *what
                      half_to(shell, half) - sheet->vertex_first, what, element);
 }
 
-/// Half-edges in order of their edge: one or two in a row are an edge.
+/// Takes half-edges in order of their edge: one or two consecutive ones are an edge.
 static SingeResult match(const uint32_t *order, Shell *shell, HalfEdges *mesh, SingeError *error) {
     uint32_t count = 4 * shell->cell_count;
     for (uint32_t k = 0, size; k < count; k += size) {

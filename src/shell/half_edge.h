@@ -18,8 +18,8 @@ typedef struct HalfEdges {
     uint32_t shared_count; ///< edges with two cells
 } HalfEdges;
 
-/// Matches the sides of the cells, checks that they form a manifold that is turned one way, and numbers
-/// edges: fills blue and green (one for each shared edge) of shell->cell_springs.
+/// Matches the sides of the cells, checks that they form a manifold with consistent orientation, and numbers edges:
+/// fills blue and green (one for each shared edge) of shell->cell_springs.
 SingeResult half_edge_build(Memory *memory, Shell *shell, HalfEdges *mesh, SingeError *error);
 void half_edge_free(Memory *memory, HalfEdges *mesh);
 
@@ -37,7 +37,7 @@ static inline uint32_t half_edge_across(const HalfEdges *mesh, uint32_t cell, in
     return mesh->twin[4 * cell + (uint32_t)i] / 4;
 }
 
-/// True where the cells around the vertex close into a circle.
+/// True if the cells around the vertex form a closed ring.
 static inline bool half_edge_is_inside(const HalfEdges *mesh, uint32_t vertex) {
     SINGE_ASSERT(vertex < mesh->shell->vertex_count);
     return mesh->fan_size[vertex] && mesh->twin[mesh->fan_start[vertex]] != SHELL_NONE;

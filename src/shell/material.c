@@ -1,4 +1,4 @@
-// The parameters of a sheet: a number, or a line between two numbers by a texture, attribute or noise.
+// The parameters of a sheet: a number, or an interpolation between two numbers by a texture, attribute or noise.
 //
 //   value(x) = (1 - f) value + f to,   f = texture(u, v), attribute or noise(rest position)
 //
@@ -14,7 +14,7 @@
 
 enum { AT_VERTICES = 1, AT_CENTRES = 2, AT_BOTH = 3 };
 
-/// Where a parameter stands in the material and what it may be.
+/// A parameter's offset in the material, and its range.
 typedef struct ParamRule {
     const char *name;
     size_t offset;
@@ -50,7 +50,7 @@ static const ParamRule param_rules[] = {
 };
 enum { RULE_COUNT = sizeof param_rules / sizeof param_rules[0] };
 
-/// NaN is outside every range, and so are infinities but where the range ends at one and is closed.
+/// NaN is outside every range. So is an infinity, unless the range ends there and is closed.
 static bool material_inside(float x, float low, float high, bool low_open, bool high_open) {
     return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high);
 }
@@ -86,7 +86,7 @@ float shell_sample_texture(const SingeTexture *texture, float u, float v) {
     return (float)((1 - part[1]) * upper + part[1] * lower);
 }
 
-/// What a parameter is evaluated on.
+/// Inputs of a parameter's evaluation.
 typedef struct ParamField {
     const SingeParam *param;
     const SingeField *follows; ///< NULL: `value` everywhere
@@ -114,7 +114,7 @@ static SingeResult field_attribute(const SingeSheetDef *def, const ParamRule *ru
 static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, ParamField *field, SingeError *error) {
     const SingeField *follows = field->follows;
     if (!follows) return SINGE_OK;
-    if (!isfinite(field->param->value) || !isfinite(field->param->to)) // no line leads there
+    if (!isfinite(field->param->value) || !isfinite(field->param->to)) // an infinity cannot be interpolated
         return field_fail(field->source, rule, "varies between numbers that are not both finite", error);
     switch ((int)follows->kind) {
     case SINGE_FIELD_TEXTURE:
@@ -133,7 +133,7 @@ static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, P
     }
 }
 
-/// The parameter at the mean of `count` vertices: 1, or those of a cell, which has its own uv of them.
+/// The parameter at the mean of `count` vertices: one vertex, or those of a cell with the cell's own uv.
 static float field_value(const ParamField *field, const uint32_t *vertices, int count, uint32_t cell) {
     const SingeParam *param = field->param;
     const SingeField *follows = field->follows;
@@ -153,7 +153,7 @@ static float field_value(const ParamField *field, const uint32_t *vertices, int 
     return (float)((1 - f) * (double)param->value + f * (double)param->to);
 }
 
-/// The particles of a sheet that a rule is about.
+/// The particles of a sheet to which a rule applies.
 static void rule_range(const ParamRule *rule, const Sheet *sheet, uint32_t *begin, uint32_t *end) {
     *begin = rule->positions & AT_VERTICES ? 0 : sheet->vertex_count;
     *end = rule->positions & AT_CENTRES ? sheet->vertex_count + sheet->cell_count : sheet->vertex_count;
@@ -183,7 +183,7 @@ static SingeResult evaluate(const ParamField *field, const ParamRule *rule, floa
     return SINGE_OK;
 }
 
-/// Keeps one value where all are the same to the bit.
+/// Keeps a single value if all are the same to the bit.
 static void keep_values(Memory *memory, SheetSource *source, int param) {
     size_t total = (size_t)source->sheet.vertex_count + source->sheet.cell_count;
     float **values = &source->values[param];
@@ -191,7 +191,7 @@ static void keep_values(Memory *memory, SheetSource *source, int param) {
     if (memcmp(*values, *values + 1, (total - 1) * sizeof **values) == 0) FREE(memory, *values, total);
 }
 
-/// What several parameters make together may leave what a float can hold.
+/// A quantity computed from several parameters may exceed the range of float.
 static SingeResult check_matter(const SheetSource *source, SingeError *error) {
     static const struct {
         int param;
@@ -234,7 +234,7 @@ SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSou
             return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for sheet '%s'", source->sheet.name);
         TRY(field_open(def, rule, &field, error));
         TRY(evaluate(&field, rule, *values, error));
-        // the layers' rules of one parameter follow each other
+        // the rules of one parameter, one per layer, are consecutive
         if (r + 1 == RULE_COUNT || param_rules[r + 1].param != rule->param) keep_values(memory, source, rule->param);
     }
     return check_matter(source, error);

@@ -1,29 +1,29 @@
-// Matter of the particles. A parameter that has one value on all sheets stays one value; where it varies over a
-// sheet, or from one to the next, every particle gets its own.
+// Matter of the particles. A parameter that has one value on all sheets is stored once; if it varies over a sheet or
+// between sheets, every particle gets its own value.
 //
 //   mass      m = (grammage/2) A [kg], heat capacity = m c_p [J/K]
 //
-// Each layer carries half of the sheet's mass. Some of what a particle has comes from several parameters:
+// Each layer carries half of the sheet's mass. Some properties of a particle come from several parameters:
 //
 //   diffusivity, layer exchange,
-//   mass rate, char rate = stated value * g_0/g                       g grammage, g_0 that which they are stated for
-//   heating   eta = s H/c_p [K]                                       H heat of combustion [J/kg], s its share that
+//   mass rate, char rate = stated value * g_0/g                       g grammage, g_0 that of the stated values
+//   heating   eta = s H/c_p [K]                                       H heat of combustion [J/kg], s the share that
 //   gas_heat  (1 - s) H [J/kg]                                        stays in the sheet
 //   char_heating  H_c/c_p [K]                                         H_c heat of glowing char [J/kg]
 //   char_yield    max(nu, m_min)                                      nu <= m_min: no char
 //
-// The first four stand for what the gas beside a sheet does: heat that flows along it (W/K) and oxygen that reaches
-// it (kg/(m2 s K)) are the same beside a thick sheet and a thin one, but the thin one has less to warm and to burn.
-// Losses and sources, being fluxes over the capacity per area, have this by themselves. So with g every rate changes in
-// the same proportion, t' = t g_0/g gives the old equations, and the front's speed is in proportion to 1/g, its
-// thickness and its temperature the same.
+// The first four model effects of the gas next to a sheet: heat conducted along it (W/K) and oxygen that reaches it
+// (kg/(m2 s K)) are the same next to a thick sheet and a thin one, but the thin one has less mass to heat and burn.
+// Losses and sources are fluxes divided by the capacity per area, so they scale by themselves. So every rate changes
+// with g in the same proportion: t' = t g_0/g gives the old equations. The front's speed is proportional to 1/g, its
+// thickness and temperature are the same.
 #include "shell/matter.h"
 
 #include <math.h>
 #include <string.h>
 
-/// The Field of a parameter, or of what it is turned into (matter_value); NULL for those that masses and capacities are
-/// made of.
+/// The Field of a parameter, or of the quantity computed from it (matter_value); NULL for those from which masses and
+/// capacities are computed.
 static Field *matter_field(Matter *matter, int param) {
     Field *const fields[PARAM_COUNT] = {
 #define MATTER(field) &matter->field
@@ -37,7 +37,7 @@ static Field *matter_field(Matter *matter, int param) {
     return fields[param];
 }
 
-/// Whether what a particle has by a parameter differs within the sheet.
+/// Whether the particles' values of a parameter differ within the sheet.
 static bool matter_varies(const SheetSource *source, int param) {
     float *const *values = source->values;
     switch (param) {

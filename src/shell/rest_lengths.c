@@ -1,4 +1,4 @@
-// Rest geometry: where the centres lie, and what area each particle has.
+// Rest geometry: positions of the centres and areas of the particles.
 //
 //   centre    x_c = (x_0 + x_1 + x_2 + x_3)/4 + t n,   n = (x_2 - x_0) x (x_3 - x_1), normalised
 //   area      A_c = sum of the triangles (x_i, x_i+1, mean) [m2]; A_v = half of each triangle at v
@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/// A corner's share of its cell below this makes the four shares equal: a concave corner has little or
+/// If a corner's share of its cell is below this, the four shares are made equal: a concave corner has little or
 /// negative area around it, but a particle needs mass.
 static const double share_min = 1.0 / 32;
 
@@ -86,8 +86,8 @@ void measure_particles(Shell *shell) {
     }
 }
 
-/// The k-th smallest of the sides of a sheet's cells, digit by digit: positive floats are in the order
-/// of their bits, so a histogram of 256 bins for each byte from the top finds it in four passes.
+/// The k-th smallest side of a sheet's cells, digit by digit: positive floats are in the order of their bits, so a
+/// histogram of 256 bins for each byte from the top finds it in four passes.
 static float select_length(const Shell *shell, const Sheet *sheet, uint64_t k) {
     const SpringSet *blue = &shell->springs[SINGE_BLUE];
     uint32_t prefix = 0;
@@ -96,7 +96,7 @@ static float select_length(const Shell *shell, const Sheet *sheet, uint64_t k) {
         for (uint32_t c = 0; c < 4 * sheet->cell_count; c++) {
             const CellSprings *springs = &shell->cell_springs[sheet->cell_first + c / 4];
             uint32_t cell = sheet->cell_first + c / 4, other = shell_neighbour(shell, cell, c & 3), bits;
-            if (other != SHELL_NONE && other < cell) continue; // once an edge
+            if (other != SHELL_NONE && other < cell) continue; // each edge once
             memcpy(&bits, &blue->rest[springs->blue[c & 3]], sizeof bits);
             if (shift == 24 || bits >> (shift + 8) == prefix >> (shift + 8)) bins[bits >> shift & 255]++;
         }

@@ -6,7 +6,7 @@
 
 typedef struct CellShape {
     double centre[3];         ///< m, mean of the corners
-    double normal[3];         ///< unit, towards the front; zero where the vector area is
+    double normal[3];         ///< unit, towards the front; zero if the vector area is
     double vector_area;       ///< m2, length of half the cross product of the diagonals
     double area;              ///< m2, of the four triangles around the centre
     double corner_area[4];    ///< m2, each corner's share; sums to `area`
@@ -15,11 +15,11 @@ typedef struct CellShape {
 
 CellShape cell_shape(const float *const corners[4]);
 
-/// Fills rest positions of the centres and areas; corners are in place.
+/// Fills the centres' rest positions, and areas; corners are in place.
 void measure_particles(Shell *shell);
 
-/// Fills the rest lengths of all springs and each sheet's cell size. Fails with SINGE_ERROR_MESH when
-/// a spring has no length, as when neighbouring centres meet.
+/// Fills the rest lengths of all springs and each sheet's cell size. Fails with SINGE_ERROR_MESH if a spring has no
+/// length, as when neighbouring centres coincide.
 SingeResult measure_springs(Shell *shell, SingeError *error);
 
 #endif

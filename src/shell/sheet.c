@@ -1,4 +1,4 @@
-// A sheet's Def: read whatever its version, checked, copied.
+// A sheet's Def: read in any version, checked, copied.
 #include "shell/sheet.h"
 
 #include "shell/rest_lengths.h"
@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/// A cell is degenerate when a side or its area is this small beside its longest side (squared).
+/// A cell is degenerate if a side, or its area, is at most this fraction of its longest side (squared).
 static const double thin = 1e-6;
 /// Coordinates (m) up to this size keep squared lengths within float.
 static const float position_max = 1e15f;
@@ -15,8 +15,8 @@ static const double measure_max = 1e30;
 
 static size_t sheet_min(size_t a, size_t b) { return a < b ? a : b; }
 
-/// Copies a Def of any version over the defaults. The material lies inside and has grown by itself, so
-/// the fields after it are found by the size that the caller's header gave it.
+/// Copies a Def of any version over the defaults. The material is embedded and has grown on its own, so the fields
+/// after it are located by the size that the caller's header gave it.
 static bool read_def(const SingeSheetDef *def, SingeSheetDef *out) {
     const size_t head = offsetof(SingeSheetDef, material), tail = offsetof(SingeSheetDef, velocity);
     const char *bytes = (const char *)def;
@@ -77,7 +77,7 @@ static SingeResult check_def(const SingeSheetDef *def, const char *name, SingeEr
     return material_check_scalars(&def->material, name, error);
 }
 
-/// A fault of a vertex or cell; `what` is the end of a sentence that begins with it.
+/// An error at a vertex or cell; `what` ends the sentence that begins with it.
 static SingeResult element_fail(const char *name, const char *kind, uint32_t element, const char *what,
                                 SingeError *error) {
     return error_set(error, SINGE_ERROR_MESH, "sheet", element, "sheet '%s': %s %u %s", name, kind, element, what);
@@ -135,7 +135,8 @@ static SingeResult check_cells(const SingeSheetDef *def, const char *name, Singe
     return SINGE_OK;
 }
 
-/// The cell's particle and those of its corners weigh about as much as the cell would with their grammage.
+/// Whether the masses and heat capacities that the cell would have with the grammage of its particle, and of each
+/// corner's, are in range.
 static bool mass_fits(const SheetSource *source, uint32_t cell) {
     const uint32_t *corners = source->cells[cell], vertices = source->sheet.vertex_count;
     const float *p[4];

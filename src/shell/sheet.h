@@ -4,14 +4,14 @@
 
 #include "shell/shell.h"
 
-/// Checks the numbers and choices that are one for the sheet.
+/// Checks the parameters that have one value for the sheet.
 SingeResult material_check_scalars(const SingeMaterialDef *material, const char *sheet, SingeError *error);
 
 /// Evaluates every parameter at every particle into the source and checks its range; the source's
 /// mesh, uv and sheet are in place.
 SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSource *source, SingeError *error);
 
-/// Checks the values that material_evaluate has left, or that were read back.
+/// Checks values that material_evaluate wrote, or that were read back.
 SingeResult material_check_values(const SheetSource *source, SingeError *error);
 
 #endif

@@ -39,14 +39,14 @@ typedef struct CellSprings {
     uint32_t yellow[2]; ///< corners 0-2, corners 1-3
 } CellSprings;
 
-/// Material of each particle (its own layer: half the sheet's mass), at the grammage that it has. Area, mass and
-/// capacity of a vertex without cells are 0; it never lives.
+/// Material of each particle (its own layer: half the sheet's mass), at its actual grammage. Area, mass and capacity of
+/// a vertex without cells are 0; it is never alive.
 typedef struct Matter {
     float *area;          ///< m2 at rest
     float *mass;          ///< kg, initial
     float *capacity;      ///< J/K, of the unburnt particle
     Field capacity_ratio; ///< capacity per area over its mean in the sheet; exactly 1 where it is uniform
-    // from the rows of singe/material.def: the parameter, or what matter_value computes from several
+    // from the rows of singe/material.def: the parameter, or the quantity that matter_value computes from several
 #define MATTER(field) Field field;
 #define MATTER_NONE
 #define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) field
@@ -91,18 +91,18 @@ typedef struct Shell {
     uint32_t cell_family_count; ///< cells coloured so that cells of one family share no corner
     uint32_t *cell_family_first;
     uint32_t *cell_order; ///< [cell_count] cells, family by family
-    uint32_t *fan_first;  ///< [vertex_count + 1] the cells around vertex v are fan[fan_first[v]] up to
-    uint32_t *fan;        ///< [4 cell_count] fan[fan_first[v + 1]], in order of cell
+    uint32_t *fan_first;  ///< [vertex_count + 1] start of each vertex's cells in `fan`
+    uint32_t *fan;        ///< [4 cell_count] the cells around each vertex, in order of cell
     bool creases;         ///< creases are on: a State has room for them
     // changes by tears; all 0 where sheets cannot tear
     uint32_t spare_count;                       ///< of all sheets
-    uint32_t split_count;                       ///< splits so far: whoever caches topology compares it
+    uint32_t split_count;                       ///< splits so far; code that caches topology compares it
     uint32_t edge_spare_count, edge_spare_used; ///< blue springs after those of the strands, for a tear's second edge
-    uint32_t *edge_origin;                      ///< [edge_spare_count] the blue spring that it was torn from
-    uint32_t moved[SINGE_COLOUR_COUNT];         ///< max springs that a split has given another end, or made
+    uint32_t *edge_origin;                      ///< [edge_spare_count] the blue spring from which it was torn
+    uint32_t moved[SINGE_COLOUR_COUNT];         ///< upper bound of the springs that splits gave another end, or created
 } Shell;
 
-/// The parameters that vary over a sheet, in the order of SheetSource.value, which snapshots have.
+/// The parameters that vary over a sheet, in the order of SheetSource.value, which is that of snapshots.
 typedef enum ShellParam {
 #define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) PARAM_##NAME = number,
 #define SINGE_PARAM_COLOURS(number, NAME, name, range, text) PARAM_##NAME = number, // four, by colour
@@ -115,8 +115,8 @@ enum {
 #include "singe/material.def"
 };
 
-/// A sheet as it was added: the mesh and its evaluated material, kept for saving and for the build. The
-/// ranges and cell_size in `sheet` are the shell's to set; here firsts and cell_size are 0.
+/// A sheet as it was added: the mesh and its evaluated material, kept for saving and for the build. In `sheet` firsts
+/// and cell_size are 0; the shell sets its own.
 typedef struct SheetSource {
     Sheet sheet;
     float (*position)[3];        ///< [vertex_count]
@@ -130,7 +130,7 @@ typedef struct SheetSource {
     void *user_data;             ///< the caller's
 } SheetSource;
 
-/// uv of corner i of a cell, as this cell has it.
+/// The cell's own uv of its corner i.
 static inline const float *sheet_corner_uv(const SheetSource *source, uint32_t cell, int i) {
     return source->corner_uv ? source->corner_uv[cell][i] : source->uv[source->cells[cell][i]];
 }
@@ -145,7 +145,7 @@ static inline float sheet_param(const SheetSource *source, int param, uint32_t i
 SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *def, SheetSource *source, SingeError *error);
 void sheet_source_free(Memory *memory, SheetSource *source);
 
-/// Checks a sheet that was read back as sheet_source_create would.
+/// Makes the checks of sheet_source_create on a sheet that was read back.
 SingeResult sheet_source_check(const SheetSource *source, SingeError *error);
 
 /// The texture at (u, v): bilinear between pixel centres, clamped at the border, row 0 at v = 1 (material.c).
@@ -168,7 +168,7 @@ typedef struct HeatState {
 } HeatState;
 
 typedef struct BurnState {
-    float *mass;         ///< [particles] fraction of the initial
+    float *mass;         ///< [particles] fraction of the initial mass
     float *fuel;         ///< [particles] share that can still pyrolyse, 1 to 0; with the mass it gives char and ash
     float *burn_rate;    ///< [particles] 1/s of the step just done
     float *release;      ///< [particles] K/s, heating by the step just done
@@ -186,7 +186,7 @@ typedef struct AblateState {
     int32_t *piece;   ///< [particles] id, -1 when gone
     uint32_t next_piece, piece_count;
     uint64_t topology_version;
-    double heat_removed; ///< J, enthalpy that left with removed particles
+    double heat_removed; ///< J, enthalpy of removed particles
     double mass_removed; ///< kg
 } AblateState;
 
@@ -201,9 +201,9 @@ typedef struct DynamicsState {
 /// Effect of the gas on the sheets, from one of its steps to the next. The arrays belong to the gas plan, which has two
 /// sets and alternates between them, so that restoring the pointers rolls back a failed step; NULL without gas.
 typedef struct GasState {
-    bool awake;               ///< something in it is hot
+    bool awake;               ///< some of it is hot
     bool warm;                ///< some conductance is not 0
-    const float *conductance; ///< [particles] W/(m2 K), towards `temperature` where that is higher
+    const float *conductance; ///< [particles] W/(m2 K), to `temperature` if that is higher
     const float *temperature; ///< [particles] K
     const float (*air)[4];    ///< [particles] m/s of the air there, relative to the wind; fourth is unused
     const float *fuel;        ///< [particles] share left at the gas's last step
@@ -211,7 +211,7 @@ typedef struct GasState {
     int turn;                 ///< which of the two sets is current
 } GasState;
 
-/// A vertex that a tear has split: cells of its fan went to the next spare vertex of its sheet.
+/// A vertex that a tear has split: some cells of its fan went to the next spare vertex of its sheet.
 typedef struct ShellSplit {
     uint32_t vertex;
     uint32_t cells; ///< bit k: the cell fan[fan_first[vertex] + k]
@@ -223,7 +223,7 @@ _Static_assert(sizeof(ShellSplit) == 12, "snapshots hold splits as they are");
 /// Empty where sheets cannot tear.
 typedef struct TearState {
     float (*line_force)[6]; ///< [cells] N/m in rest coordinates, filtered: xx, yy, zz, yz, zx, xy
-    ShellSplit *splits;     ///< [spare_count] in the order in which they happened; they make the Shell what it is
+    ShellSplit *splits;     ///< [spare_count] in order of time; they determine the Shell
     uint32_t split_count;
 } TearState;
 
@@ -241,8 +241,8 @@ typedef struct State {
     size_t basic_size; ///< of the arena's start: all except the springs' lengths, which follow from the rest
 } State;
 
-/// What a stage reads of the State: the parts that it does not write. The part that it writes is NULL here, and an
-/// argument of its own, so that no part is reached by two pointers of which one writes.
+/// What a stage reads of the State: all parts except the one that it writes. That part is NULL here and a separate
+/// argument, so that no part is accessed through two pointers of which one writes.
 typedef struct StateInput {
     double time; ///< s
     uint64_t step;
@@ -254,7 +254,7 @@ typedef struct StateInput {
     const TearState *tear;
 } StateInput;
 
-/// All parts of a State that nobody writes at the time.
+/// All parts of a State, while none is written.
 static inline StateInput state_input(const State *state) {
     return (StateInput){state->time,    state->step,      &state->heat, &state->burn,
                         &state->ablate, &state->dynamics, &state->gas,  &state->tear};
@@ -277,12 +277,11 @@ static inline void event_push(EventList *list, SingeEventKind kind, int32_t elem
     list->items[list->count++] = (SingeEvent){kind, element, time, {position[0], position[1], position[2]}};
 }
 
-/// Nodes without mass after the last particle, for lanes without a strand. Their number is the max number of strands in
-/// a family.
+/// Number of massless nodes after the last particle, for lanes without a strand: the max number of strands in a family.
 uint32_t shell_nowhere_count(const Shell *shell);
 
-/// Lays out a State for the shell and fills it with the start: rest positions, initial temperatures,
-/// mass 1, all alive, target lengths = rest lengths (state.c).
+/// Lays out a State for the shell and fills it with the initial state: rest positions, initial temperatures, mass 1,
+/// all alive, target lengths = rest lengths (state.c).
 SingeResult state_create(Memory *memory, const Shell *shell, State *state);
 void state_free(Memory *memory, State *state);
 
@@ -299,7 +298,7 @@ static inline bool shell_is_spare(const Shell *shell, uint32_t vertex) {
     return vertex - sheet->vertex_first >= sheet->vertex_count - sheet->spare_count + sheet->spare_used;
 }
 
-/// True for a vertex of a mesh, of the corner layer, also where no cell uses it; false for a cell's centre.
+/// True for a vertex of a mesh (corner layer), even if no cell uses it; false for a cell's centre.
 static inline bool shell_is_corner(const Shell *shell, uint32_t particle) { return particle < shell->vertex_count; }
 static inline const float *shell_corner_uv(const Shell *shell, uint32_t cell, int i) {
     SINGE_ASSERT(cell < shell->cell_count);
@@ -307,7 +306,7 @@ static inline const float *shell_corner_uv(const Shell *shell, uint32_t cell, in
 }
 static inline uint32_t shell_centre(const Shell *shell, uint32_t cell) { return shell->vertex_count + cell; }
 
-/// Springs of a colour that are in strands: the first ones. Those after them are the spares of tears.
+/// Number of springs of a colour that are in strands. They come first, followed by the spares of tears.
 static inline uint32_t shell_strand_springs(const Shell *shell, int colour) {
     SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     return shell->springs[colour].count - (colour == SINGE_BLUE ? shell->edge_spare_count : 0);
@@ -322,8 +321,8 @@ static inline uint32_t shell_neighbour(const Shell *shell, uint32_t cell, int i)
     return (ends[0] == centre ? ends[1] : ends[0]) - shell->vertex_count;
 }
 
-/// Char over the char that pyrolysis of all the fuel leaves, c/nu, from mass and fuel: 0 to 1. 0 where there is no
-/// char: `yield` is not above mass_min (burn/glow.c).
+/// Char over the char that pyrolysis of all the fuel leaves, c/nu, from mass and fuel: 0 to 1. 0 if there is no char:
+/// `yield` is not above mass_min (burn/glow.c).
 static inline float shell_char(float mass, float fuel, float mass_min, float yield) {
     float span = yield - mass_min, max = 1 - fuel;
     if (!(span > 0)) return 0;
@@ -331,7 +330,7 @@ static inline float shell_char(float mass, float fuel, float mass_min, float yie
     return share < 0 ? 0 : share > max ? max : share;
 }
 
-/// Factor by which char burns and cools more slowly than the flame's front: 1 while there is fuel, and always 1 where
+/// Factor by which char burns and cools more slowly than the flame front: 1 while there is fuel, and always 1 if
 /// pyrolysis leaves no char (burn/glow.c).
 static inline float shell_glow_slowing(const Matter *matter, uint32_t i, float fuel) {
     const float slowest = 4;

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/// The side of a cell by which a vertex is reached turning clockwise, and counter-clockwise.
+/// The side of a cell that leads to the next cell around the vertex, clockwise, and counter-clockwise.
 static int side_before(int corner) { return corner; }
 static int side_after(int corner) { return (corner + 3) & 3; }
 
@@ -53,7 +53,7 @@ bool split_reserve(Memory *memory, Shell *shell) {
 
 static bool goes(const ShellSplit *split, int k) { return k >= 0 && split->cells >> k & 1; }
 
-/// Edges between what goes and what stays.
+/// Edges between cells that go and cells that stay.
 static int count_torn(const Fan *fan, const ShellSplit *split) {
     int torn = 0;
     for (int k = 0; k < fan->count; k++)
@@ -82,7 +82,7 @@ static void move_end(Shell *shell, SingeColour colour, uint32_t spring, uint32_t
         if (ends[k] == from) ends[k] = to;
 }
 
-/// Parts two neighbours: `cell` goes to the spare, the other one, across `side`, stays.
+/// Separates two neighbours: `cell` goes to the spare; the other one, across `side`, stays.
 static TornEdge tear_edge(Shell *shell, uint32_t cell, int side, uint32_t vertex) {
     SINGE_ASSERT(cell < shell->cell_count);
     SINGE_ASSERT(vertex < shell->vertex_count);
@@ -109,7 +109,7 @@ static TornEdge tear_edge(Shell *shell, uint32_t cell, int side, uint32_t vertex
     return torn;
 }
 
-/// Moves cells from the fan of a vertex to that of a later one, which has none; those between move up.
+/// Moves cells from the fan of a vertex to that of a later one, which is empty; entries between move up.
 static void move_fan(Shell *shell, const Fan *fan, const ShellSplit *split, uint32_t to) {
     uint32_t *first = shell->fan_first, v = split->vertex, keep = first[v], gone = 0, cells[SPLIT_FAN];
     for (int k = 0; k < fan->count; k++)
@@ -139,7 +139,7 @@ SplitResult split_vertex(Shell *shell, const Fan *fan, const ShellSplit *split) 
     uint32_t v = split->vertex, to = first_spare + sheet->spare_used++;
     SplitResult result = {.spare = to};
 
-    // the new vertex is as the old one
+    // the new vertex copies the old one
     memcpy(shell->rest_position[to], shell->rest_position[v], sizeof shell->rest_position[to]);
     memcpy(shell->uv[to], shell->uv[v], sizeof shell->uv[to]);
     shell->source_vertex[to] = shell->source_vertex[v];

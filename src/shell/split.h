@@ -1,25 +1,25 @@
 // Splitting a vertex: the only change of a Shell after its build (src/tear decides where).
 //
-// A vertex v gives some cells of its fan to a spare vertex v'. These cells get v' as their corner, and the springs that
-// lie only in them end at v' from then on. Cells stay whole. Where a cell of v' is next to a cell of v, their edge is
-// torn: the two are no longer neighbours (their green spring belongs to no cell any more), and the cell of v' gets its
-// own blue spring, a spare one after those of the strands. v' has v's rest position, uv and material; area, mass and
-// capacity are divided by the areas of the corners. The list of ShellSplit records all splits, so that they can be
-// repeated.
+// A vertex v gives some cells of its fan to a spare vertex v'. v' becomes a corner of these cells, and springs that lie
+// only in them end at v' from then on. Cells stay whole. Where a cell of v' is next to a cell of v, their edge is torn:
+// the two are no longer neighbours (their green spring no longer belongs to a cell), and the cell of v' gets its own
+// blue spring, a spare one after those of the strands. v' has v's rest position, uv and material; area, mass and
+// capacity are divided in the ratio of the corners' areas. The list of ShellSplit records all splits, so that they can
+// be repeated.
 #ifndef SHELL_SPLIT_H
 #define SHELL_SPLIT_H
 
 #include "shell/shell.h"
 
 enum {
-    SPLIT_FAN = 24,  ///< cells around a vertex that can be split, at most
-    SPLIT_EDGES = 2, ///< edges that a split tears at most
-    SPLIT_MOVED = 8, ///< springs of a colour that splits give another end, at most, for each spare vertex
+    SPLIT_FAN = 24,  ///< max cells around a vertex that can be split
+    SPLIT_EDGES = 2, ///< max edges that a split tears
+    SPLIT_MOVED = 8, ///< max springs of a colour that splits give another end, per spare vertex
 };
 
 /// The cells around a vertex and their neighbours there.
 typedef struct Fan {
-    int count;                ///< 0 where there are too many; the rest holds as many as it says
+    int count;                ///< number of cells in the arrays below; 0 if there are too many
     uint32_t cell[SPLIT_FAN]; ///< in the order of shell->fan
     uint8_t corner[SPLIT_FAN];
     int8_t after[SPLIT_FAN];  ///< the one counter-clockwise of it, across side corner - 1; -1 where there is none

@@ -26,7 +26,7 @@ uint32_t shell_nowhere_count(const Shell *shell) {
     return max;
 }
 
-/// Points the arrays into the block at `base` and returns the block's size; *basic is that of all but the lengths.
+/// Points the arrays into the block at `base` and returns the block's size; *basic is the size without the lengths.
 static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basic) {
     size_t used = 0, particles = shell->particle_count;
 
@@ -57,7 +57,7 @@ static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basi
     TAKE(state->tear.line_force, shell->spare_count ? shell->cell_count : 0);
     TAKE(state->tear.splits, shell->spare_count);
 
-    // springs' lengths, which a backup leaves out
+    // springs' lengths, omitted from backups
     *basic = used;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         TAKE(state->burn.spring_length[colour], shell->springs[colour].count);
@@ -106,7 +106,7 @@ static void start_particles(const Shell *shell, State *state) {
     for (uint32_t c = 0; c < shell->cell_count; c++) state->ablate.cell_flags[c] = SINGE_ALIVE;
 }
 
-/// Bytes before an aligned block, the last of which say how far it lies from its allocation's start.
+/// Bytes before an aligned block. The last one holds the block's offset in its allocation.
 enum { LEAD = SLICE };
 
 SingeResult state_create(Memory *memory, const Shell *shell, State *state) {

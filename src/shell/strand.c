@@ -1,7 +1,7 @@
-// Every spring lies in exactly one strand: a chain through mated ends, started where an end has no mate,
-// or a ring where all have one. A strand that would touch a particle twice is cut before it does, so that
-// its Newton matrix J M^-1 J^T is tridiagonal; one that comes back to its own start becomes a ring, whose
-// matrix has two more corner entries. Rings have three springs at least: two would share both ends.
+// Every spring lies in exactly one strand: a chain through mated ends that starts at an end without a mate, or a ring
+// if all have one. A strand that would meet a particle twice is cut before it does, so that its Newton matrix J M^-1
+// J^T is tridiagonal; one that returns to its start becomes a ring, whose matrix has two more corner entries. Rings
+// have at least three springs: two would share both ends.
 #include "shell/strand.h"
 
 #include "shell/family.h"
@@ -15,7 +15,7 @@ typedef struct Trace {
     uint32_t *first;   ///< [springs + 1]
     uint8_t *ring;     ///< [springs]
     uint8_t *done;     ///< [springs] spring is in a strand
-    uint32_t *visitor; ///< [particles] last strand to touch it, SHELL_NONE before
+    uint32_t *visitor; ///< [particles] last strand at it, SHELL_NONE before
 } Trace;
 
 static uint32_t step_from(const LooseSprings *springs, uint32_t step) { return springs->ends[step / 2][step & 1]; }
@@ -47,7 +47,7 @@ static void begin_strand(Trace *trace, uint32_t particle) {
 
 static void end_strand(Trace *trace) { trace->first[++trace->strand_count] = trace->length; }
 
-/// Follows mates from `step` until there is none or the spring it leads to is done.
+/// Follows mates from `step` until there is none or its spring is done.
 static void trace_from(Trace *trace, uint32_t step) {
     const LooseSprings *springs = trace->springs;
     begin_strand(trace, step_from(springs, step));
@@ -64,7 +64,7 @@ static void trace_from(Trace *trace, uint32_t step) {
         trace->done[step / 2] = 1;
         trace->visitor[next] = trace->strand_count;
 
-        // go on with the one that continues it
+        // continue with its mate
         uint32_t mate = springs->mate[step ^ 1];
         bool goes_on = mate != SHELL_NONE && !trace->done[mate / 2];
         if (closes) trace->ring[trace->strand_count] = 1;
@@ -85,15 +85,15 @@ static void trace_all(Trace *trace) {
 
 static uint32_t trace_length(const Trace *trace, uint32_t s) { return trace->first[s + 1] - trace->first[s]; }
 
-/// How far apart the numbers of a strand's first two particles are.
+/// The difference of the numbers of a strand's first two particles.
 static uint32_t trace_stride(const Trace *trace, uint32_t s) {
     uint32_t step = trace->steps[trace->first[s]];
     uint32_t a = step_from(trace->springs, step), b = step_to(trace->springs, step);
     return a < b ? b - a : a - b;
 }
 
-/// Strands by length, longest first; of one length first those that begin with the stride of the very first, then in
-/// the order in which they were found.
+/// Orders strands by length, longest first. Among equals, those whose stride is that of the first longest strand come
+/// first, then the order in which they were found.
 static bool order_by_length(Memory *memory, const Trace *trace, uint32_t *order) {
     uint32_t first = 0, *rank = NULL, *next = NULL;
     if (trace->strand_count == 0) return true;
@@ -103,7 +103,7 @@ static bool order_by_length(Memory *memory, const Trace *trace, uint32_t *order)
     bool done = NEW(memory, rank, trace->strand_count) && NEW(memory, next, 2 * (size_t)longest + 2);
     for (uint32_t s = 0; s < trace->strand_count && done; s++) {
         rank[s] = 2 * (longest - trace_length(trace, s)) + (trace_stride(trace, s) != stride);
-        next[rank[s] + 1]++; // lengths are 1 at least
+        next[rank[s] + 1]++; // lengths are at least 1
     }
     if (done) {
         for (uint32_t i = 0; i <= 2 * longest; i++) next[i + 1] += next[i];
@@ -114,7 +114,7 @@ static bool order_by_length(Memory *memory, const Trace *trace, uint32_t *order)
     return done;
 }
 
-/// The particles of every strand, strands in this order.
+/// The particles of every strand, in this order of strands.
 static bool list_nodes(Memory *memory, const Trace *trace, uint32_t particle_count, const uint32_t *order,
                        ItemNodes *items) {
     *items = (ItemNodes){.node_count = particle_count, .item_count = trace->strand_count};
@@ -132,9 +132,9 @@ static bool list_nodes(Memory *memory, const Trace *trace, uint32_t particle_cou
     return true;
 }
 
-/// Colours the strands, longest first. Where strands form several networks that share no particle, as the diagonals of
-/// a grid's black and of its white vertices do, the longest of each get family 0: those run side by side, and lanes
-/// want neighbours in one family. Returns the number of families, 0 when out of memory.
+/// Colours the strands, longest first. If strands form several networks without a common particle, as the diagonals of
+/// a grid's black and of its white vertices do, the longest of each get family 0: they run side by side, and lanes need
+/// neighbours in one family. Returns the number of families, 0 when out of memory.
 static uint32_t find_families(Memory *memory, const Trace *trace, uint32_t particle_count, uint32_t *family) {
     uint32_t strands = trace->strand_count, families = 0, *order = NULL, *of_item = NULL;
     ItemNodes items = {0};

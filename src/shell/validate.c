@@ -110,7 +110,7 @@ static const char *validate_particle(const State *state, uint32_t i) {
     return NULL;
 }
 
-/// Springs are alive or not, and their ends have been counted.
+/// Springs are alive or gone, and degrees count the ends of those alive.
 static const char *validate_flags(const Shell *shell, const State *state) {
     uint64_t ends = 0, degrees = 0;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
