@@ -1,15 +1,15 @@
-// The range of conduction: T stays within that of T*, however far the solver got.
+// Bounds of conduction: T stays in the range of T*, whatever the solver's residual.
 //
-// (D + dt L) T = D T* has an M-matrix, so that its T lies between the least and the largest T*. What the solver leaves
-// of a residual r, conduct.c adds as r/D to keep all heat: nothing to speak of, but where a step is very long for a
-// particle, dt sum c_ij >> D, a float's last digit is already too much. Then the step ends as follows.
+// (D + dt L) T = D T* has an M-matrix, so its T lies between the min and the max of T*. conduct.c adds the solver's
+// residual r as r/D, to conserve heat. This is negligible unless a step is very long for a particle, dt sum c_ij >> D:
+// then the last digit of a float is already too much. In that case the step ends as follows.
 //
-//   x_j = the solver's T_j, within the range
+//   x_j = the solver's T_j, limited to the range
 //   T_i = T*_i + dt sum c_ij (x_j - T*_i)/(D_i + dt sum c_ij)        a mean of numbers within the range
 //
-// The heat that these lack or have too much of, as little as the residual, comes from all that conduct alike: by a
-// share of what each is away from the upper or the lower end of the range. So T stays within it, and heat is kept. Of
-// the umbrella, which does not keep heat, it is counted as made.
+// The heat that is then missing or in excess, as small as the residual, is distributed over all conducting particles:
+// each moves towards the upper or the lower end of the range by the same fraction of its distance. So T stays in the
+// range, and heat is conserved. For the umbrella, which does not conserve heat, it is counted as made.
 #include <math.h>
 
 #include "common/check.h"
@@ -58,7 +58,7 @@ static void bound_means(void *context, int begin, int end) {
                 plan->next[i] = (float)bound_mean(pass, i);
                 if (!bound_of_surface(pass, i)) continue;
 
-                // heat that is lacking, and the room above and below
+                // missing heat, and the room above and below
                 lacking += (double)capacity[i] * (bound_star(pass, i) - (double)plan->next[i]);
                 above += (double)capacity[i] * ((double)pass->max - (double)plan->next[i]);
                 below += (double)capacity[i] * ((double)plan->next[i] - (double)pass->min);

@@ -7,20 +7,20 @@
 // dt    s  of fire
 //
 // Solved for the correction e = T - T*, (D + dt L) e = -dt L T*, by conjugate gradients with the diagonal as
-// preconditioner (Hestenes & Stiefel 1952): floats, sums in double by fixed blocks. Differences of temperature
-// are formed before anything is summed, so that the kelvins do not eat the digits. Stops when the residual,
-// in the norm of the inverse diagonal, is below `tolerance` times that of D (T* - T_amb), or after 200 iterations,
-// and then the step is counted as unconverged.
+// preconditioner (Hestenes & Stiefel 1952): floats, sums in double by fixed blocks. Temperature differences are formed
+// before summation, so that the size of absolute temperatures costs no digits. Stops when the residual, in the norm of
+// the inverse diagonal, is below `tolerance` times that of D (T* - T_amb), or after 200 iterations; then the step is
+// counted as unconverged.
 //
-// The new temperature is then T = T* - dt D^-1 L (T* + e). What flows from i to j is minus what flows from j to i to
-// the last bit, so that sum D T is kept whatever the tolerance. Adding what is smaller than a float's last
-// digit would lose it, always on the same side; rounding up or down at random, with the odds of the digits
-// cut off, loses nothing in the mean. The random numbers depend on particle and step alone.
+// The new temperature is then T = T* - dt D^-1 L (T* + e). The flow from i to j is minus that from j to i to the last
+// bit, so sum D T is conserved whatever the tolerance. An increment below a float's last digit would be lost, always in
+// the same direction; rounding up or down at random, with the probability of the digits cut off, loses nothing on
+// average. The random numbers depend only on particle and step.
 //
-// Where the residual is too much for that, and T would leave the range of T*, bound.c ends the step in another way.
+// If the residual is too large for that, and T would leave the range of T*, bound.c ends the step instead.
 //
-// The umbrella keeps sum D T, not the heat sum C T. The difference, sum C_i dt (L T)_i / D_i, is heat that the operator
-// itself makes or destroys; it is counted as heat brought in, so that the ledger tells the truth about eq 3.
+// The umbrella conserves sum D T, not the heat sum C T. The difference, sum C_i dt (L T)_i / D_i, is heat that the
+// operator itself makes or destroys; it is counted as heat in, so that the ledger is correct for eq 3.
 #include <math.h>
 #include <string.h>
 
@@ -30,7 +30,7 @@
 
 enum { CONDUCT_ITERATIONS = 200 };
 
-/// A number for each row of a slice; gcc's and clang's vectors, which every processor has in some way.
+/// One number per row of a slice, in the vectors of gcc and clang, which compile for every processor.
 typedef float HeatLanes __attribute__((vector_size(HEAT_ROWS * sizeof(float))));
 
 static inline HeatLanes conduct_load(const float *x) {
@@ -97,7 +97,7 @@ static void conduct_start(void *context, int begin, int end) {
     }
 }
 
-/// The new direction, one ring of groups farther than before.
+/// The new search direction. It reaches one ring of groups farther than the one before.
 static void conduct_direction(void *context, int begin, int end) {
     const HeatPass *pass = context;
     SINGE_ASSERT(begin >= 0 && begin <= end);
@@ -213,7 +213,7 @@ static void conduct_finish(void *context, int begin, int end) {
     }
 }
 
-/// Conjugate gradients for the correction. Returns whether they came to the tolerance.
+/// Conjugate gradients for the correction. Returns whether they reached the tolerance.
 static bool conduct_solve(HeatPass *pass, double residual, double enough, HeatCounters *counters) {
     HeatPlan *plan = pass->plan;
     for (int k = 0; k < CONDUCT_ITERATIONS && residual > enough; k++) {
@@ -232,7 +232,7 @@ static bool conduct_solve(HeatPass *pass, double residual, double enough, HeatCo
     return residual <= enough;
 }
 
-/// The first particle whose T* is no temperature, or -1.
+/// The first particle whose T* is not a positive finite number, or -1.
 static int64_t conduct_fault(const HeatPlan *plan) {
     for (uint32_t i = 0; i < plan->particles; i++)
         if (plan->alive[i] && !(plan->star[i] > 0 && plan->star[i] < INFINITY)) return i;
@@ -257,7 +257,7 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
 
     // solve, then check that no temperature has left the range
     pass->min = (float)min, pass->max = (float)max;
-    pass->slack = tolerance * fmax(max - min, 0) + 1e-6 * max; // what was asked for, and rounding
+    pass->slack = tolerance * fmax(max - min, 0) + 1e-6 * max; // the tolerance, and rounding
     pass->direction = 0;
     pass->turn = 0;
     bool converged = conduct_solve(pass, residual, tolerance * tolerance * whole, counters), within = true;

@@ -1,32 +1,31 @@
-// Eq 1, with the losses that it lacks:
+// Eq 1, with losses in addition:
 //
 //   T*  = T + r h + dt (q + g (Ts - T*))/C''
 //   T** : dT/dt = -[h_c (T - Ta) + eps sigma (T^4 - Ta^4)]/(C'' max(m, floor) F F_c)
 //
 // T      K         temperature; Ta ambient, Ts of a source
-// r      K/s       what burning in the last step warms by: eta (-dm) of eq 4 (burn/lose_mass.c), and char (burn/glow.c)
+// r      K/s       heating by burning in the last step: eta (-dm) of eq 4 (burn/lose_mass.c), and char (burn/glow.c)
 // q, g   W/m2, W/(m2 K)  flux and conductance of the sources
 // C''    J/(m2 K)  capacity per area of a layer, unburnt
 // h_c    W/(m2 K)  convection; eps emissivity; sigma Stefan and Boltzmann's constant. Each layer owns one side
-// m      mass fraction; F front thickening (thicken.c), F_c that of char that glows (burn/glow.c)
+// m      mass fraction; F front thickening (thicken.c), F_c that of glowing char (burn/glow.c)
 // h, dt  s         scene time; fire time dt = h pace
 //
-// Sources are implicit, T* = (T1 + dt (q + g Ts)/C'')/(1 + dt g/C''), so T* never passes Ts; with the flux at the
-// end of the step, f = (q + g Ts - g T1)/(1 + dt g/C''), it is T* = T1 + dt f/C''. A flux below 0 takes no more than
-// brings T* to 1 K. Losses are implicit too,
-// with T^4 - Ta^4 = (T + Ta)(T^2 + Ta^2)(T - Ta) and the first two factors at T*:
+// Sources are implicit, T* = (T1 + dt (q + g Ts)/C'')/(1 + dt g/C''), so T* never passes Ts; with the flux at the end
+// of the step, f = (q + g Ts - g T1)/(1 + dt g/C''), it is T* = T1 + dt f/C''. A negative flux does not cool T* below
+// 1 K. Losses are implicit, too, with T^4 - Ta^4 = (T + Ta)(T^2 + Ta^2)(T - Ta) and the first two factors at T*:
 //   T** = (T* + dt K Ta)/(1 + dt K),  K = [h_c/C'' + eps sigma/C'' (T* + Ta)(T*^2 + Ta^2)]/max(m, floor)/(F F_c).
 //
-// Ledger: heat in = A dt f, heat lost = C dt K (T** - Ta), heat of combustion = C r h, with the unburnt
-// capacity C of the particle, as the enthalpy C (T - Ta) that is stored.
+// Ledger: heat in = A dt f, heat lost = C dt K (T** - Ta), heat of combustion = C r h, with the particle's unburnt
+// capacity C, as in the stored enthalpy C (T - Ta).
 #include <math.h>
 
 #include "common/check.h"
 #include "heat/heat_plan.h"
 
 static const float STEFAN_BOLTZMANN = 5.670374e-8f; // W/(m2 K4)
-static const float HEAT_COLDEST = 1;                // K, to which a flux below 0 can cool
-static const float HEAT_RATE_MAX = 1e30f;           // all is lost in a step
+static const float HEAT_COLDEST = 1;                // K, a negative flux does not cool below it
+static const float HEAT_RATE_MAX = 1e30f;           // everything is lost in a step
 
 void heat_blocks(HeatPass *pass, SingeTaskFn *run) { pool_for(pass->pool, pass->plan->blocks, 1, run, pass); }
 
@@ -64,7 +63,7 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
         float g = plan->source_conductance[i];
         float flux = (plan->flux[i] + (plan->source_temperature[i] - g * T1)) / (1 + warmth * g);
         float T2 = T1 + warmth * flux;
-        if (T2 < HEAT_COLDEST && flux < 0 && flux > -INFINITY) { // and no further
+        if (T2 < HEAT_COLDEST && flux < 0 && flux > -INFINITY) { // limit the cooling
             T2 = T1 < HEAT_COLDEST ? T1 : HEAT_COLDEST;
             flux = (T2 - T1) / warmth;
         }
@@ -77,21 +76,22 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
         float loss = rate * (T2 - ambient) / (1 + rate);
         plan->star[i] = T2 - loss;
         plan->delta[i] = combustion + warmth * flux - loss;
-        if (rate > 1) { // where little is left, the difference would have no digits
+        if (rate > 1) { // little remains of T - Ta, so the difference would have no digits
             if (rate > HEAT_RATE_MAX) rate = HEAT_RATE_MAX;
             loss = rate * (T2 - ambient) / (1 + rate);
             plan->star[i] = ambient + (T2 - ambient) / (1 + rate);
             plan->delta[i] = plan->star[i] - T;
         }
 
-        // what the ledger counts
+        // ledger
         ledger[0] += (double)flux * matter->area[i] * dt;
         ledger[1] += (double)loss * matter->capacity[i];
         ledger[2] += (double)combustion * matter->capacity[i];
     }
 }
 
-/// Nothing of eq 1 happens at particles [first, last): all at the ambient temperature, and no source and no fire there.
+/// Whether eq 1 changes nothing at particles [first, last): all at the ambient temperature, no source and no fire
+/// there.
 static bool heat_is_calm(const HeatPass *pass, uint32_t first, uint32_t last) {
     const HeatPlan *plan = pass->plan;
     const float *temperature = pass->heat->temperature, *burn_rate = pass->state->burn->burn_rate;
@@ -104,7 +104,7 @@ static bool heat_is_calm(const HeatPass *pass, uint32_t first, uint32_t last) {
     return !busy;
 }
 
-/// Not all of the particles [first, last) that live are at the ambient temperature and stay there.
+/// Whether a live particle of [first, last) is not at the ambient temperature, or does not stay there.
 static bool heat_is_warm(const HeatPlan *plan, uint32_t first, uint32_t last) {
     float ambient = plan->settings.ambient_temperature;
     int warm = 0;
@@ -141,7 +141,7 @@ static void heat_exchange(void *context, int begin, int end) {
     }
 }
 
-/// Takes the new temperatures over where anything may have changed.
+/// Copies the new temperatures where they may have changed.
 static void heat_take_over(void *context, int begin, int end) {
     const HeatPass *pass = context;
     SINGE_ASSERT(begin >= 0 && begin <= end);

@@ -7,7 +7,7 @@
 #include "world/collider.h"
 #include "world/step_context.h"
 
-/// A heat source of the simulation. Pictures are evaluated once, at every particle.
+/// A heat source of the simulation. Textures are evaluated once, at every particle.
 typedef struct Source {
     uint32_t generation; ///< 0: the slot is free
     SingeSourceDef def;  ///< its pointers (path, texture, strength) are not used
@@ -15,7 +15,7 @@ typedef struct Source {
     uint32_t strength_count;
     SingeValueKey *strength;
     float *texture;       ///< [particle_count] or NULL
-    SingeTexture waiting; ///< of a texture source that was added before the commit, until then: its own copy
+    SingeTexture waiting; ///< own copy of a texture that was added before the commit, until then
 } Source;
 
 typedef struct SourceList {
@@ -23,19 +23,19 @@ typedef struct SourceList {
     Source *items;
 } SourceList;
 
-/// Checks a Def and fills a slot's contents (all but generation). The uv of particles come from the shell; with an
-/// empty one a texture waits for source_settle.
+/// Checks a Def and fills a slot's contents (all but generation). The uv of particles come from the shell; if it is
+/// empty, a texture waits for source_settle.
 SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source,
                           SingeError *error);
-/// Evaluates a texture that waits, once the shell is there; it goes on waiting till source_settled.
+/// Evaluates a waiting texture once the shell exists; it stays waiting until source_settled.
 SingeResult source_settle(Memory *memory, const Shell *shell, Source *source, SingeError *error);
 void source_settled(Memory *memory, Source *source);
-/// Takes source_settle back.
+/// Reverts source_settle.
 void source_unsettle(Memory *memory, const Shell *shell, Source *source);
 void source_free(Memory *memory, const Shell *shell, Source *source);
 
-/// Checks a source that was read back as source_create and later moves of it would; its texture's values are those at
-/// the particles.
+/// Makes the checks of source_create, and of later moves, on a source that was read back; its texture's values are
+/// those at the particles.
 SingeResult source_check_read(const Shell *shell, const Source *source, SingeError *error);
 
 /// Settings of the stage, constant while it runs.
@@ -54,11 +54,11 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
                              SingeError *error);
 void heat_plan_free(Memory *memory, HeatPlan *plan);
 
-/// From the next step on.
+/// Sets the pace from the next step on.
 void heat_plan_set_pace(HeatPlan *plan, float pace);
 
-/// Memory that the stage needs while it runs, and that the caller may use from one heat_step to the next: at least
-/// settings.scratch_min bytes.
+/// Scratch memory of the stage, which the caller may use between two calls of heat_step: at least settings.scratch_min
+/// bytes.
 void *heat_scratch(HeatPlan *plan);
 
 /// The front thickening F used for a sheet (thicken.c).
@@ -70,7 +70,7 @@ typedef struct FrontMatter {
     float pre_exponential, activation_energy;
 } FrontMatter;
 
-/// That factor for a material's `thickening`, its front and the cell size.
+/// The front thickening for a material's `thickening`, its front and the cell size.
 float heat_thickening_for(float thickening, const FrontMatter *front, float ambient_temperature, float cell_size);
 
 typedef struct HeatCounters {

@@ -4,7 +4,7 @@
 
 /// More is an error in the material: on cells of a millimetre its front would be a nanometre thick.
 static const float PLAN_THICKENING_MAX = 1e6f;
-/// m2/s, times a step and a temperature it is still a float.
+/// m2/s; times a step and a temperature it still fits a float.
 static const float PLAN_CONDUCTANCE_MAX = 1e20f;
 
 /// Means of a sheet's parameters over its particles, for the front thickening.
@@ -62,7 +62,7 @@ static bool plan_allocate(Memory *memory, HeatPlan *plan) {
            NEW(memory, plan->partial, (size_t)plan->blocks);
 }
 
-/// F of every sheet; fails where a material needs more than any front does.
+/// Computes F of every sheet; fails if a material needs more than PLAN_THICKENING_MAX.
 static SingeResult plan_thicken(HeatPlan *plan, const Shell *shell, SingeError *error) {
     for (uint32_t s = 0; s < plan->sheets; s++) {
         float needed = plan_thickening(shell, s, plan->settings.ambient_temperature);
@@ -77,7 +77,7 @@ static SingeResult plan_thicken(HeatPlan *plan, const Shell *shell, SingeError *
     return SINGE_OK;
 }
 
-/// Refuses what would not stay finite in a step.
+/// Refuses conductances that would not stay finite in a step.
 static SingeResult plan_check(const HeatPlan *plan, const Shell *shell, SingeError *error) {
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         for (uint32_t k = 0; k < shell->springs[c].count; k++)
@@ -121,7 +121,7 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
     return result;
 }
 
-/// Scratch of the step, which has not begun, is room for what the rebuilding counts.
+/// Rebuilds operator, matrix and groups. The step's scratch is free, as the step has not begun.
 static void plan_rebuild(HeatPlan *plan, const Shell *shell) {
     for (uint32_t k = 0; k < plan->springs; k++) plan->conductance[k] = 0;
     for (uint32_t i = 0; i < plan->particles; i++) plan->measure[i] = 0;
@@ -130,7 +130,7 @@ static void plan_rebuild(HeatPlan *plan, const Shell *shell) {
     heat_rest_rebuild(plan, plan->scratch);
 }
 
-/// Around a vertex that was split, or is new: what the cells there conduct.
+/// Updates the conductances of the cells around a vertex that was split, or is new.
 static void follow_operator(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
     SINGE_ASSERT(vertex < shell->vertex_count);
     uint32_t ordinary = shell->springs[SINGE_BLUE].count - shell->edge_spare_count;
@@ -138,14 +138,14 @@ static void follow_operator(HeatPlan *plan, const Shell *shell, uint32_t vertex)
     for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
         uint32_t cell = shell->fan[f];
         heat_operator_torn_cell(plan, shell, cell);
-        // what was spare till now, and counted as gone, lives; if it does not, heat_matrix_follow will find out
+        // a spring that was spare, and counted as gone, is alive; if it is not, heat_matrix_follow will find out
         for (int k = 0; k < 4; k++)
             if (shell->cell_springs[cell].blue[k] >= ordinary)
                 plan->spring_alive[plan->spring_first[SINGE_BLUE] + shell->cell_springs[cell].blue[k]] = 1;
     }
 }
 
-/// The rows of all particles around it. False where one has no room.
+/// Rewrites the rows of all particles around a vertex. False if one has no room.
 static bool follow_rows(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
     SINGE_ASSERT(vertex < shell->vertex_count);
     for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
@@ -164,8 +164,8 @@ static void follow_rest(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
     }
 }
 
-/// Follows a few splits by what is around them: what building all again would give, to the bit (heat_torn). False where
-/// that cannot be.
+/// Follows a few splits by local updates, which give the same as a full rebuild, to the bit (heat_torn). False if that
+/// is not possible.
 static bool follow_splits(HeatPlan *plan, const Shell *shell, const StateInput *state, uint32_t first) {
     const ShellSplit *splits = state->tear->splits;
     uint32_t last = shell->split_count;

@@ -10,10 +10,10 @@
 /// Consecutive particles that rest together (rest.c). Divides POOL_BLOCK.
 enum { HEAT_GROUP = 64 };
 _Static_assert(POOL_BLOCK % HEAT_GROUP == 0, "a block of a sum is whole groups");
-/// Groups near one that can be listed.
+/// Max number of groups listed as near a group.
 enum { HEAT_NEAR = 48 };
 
-/// A spring that shares both its ends with another one that conducts.
+/// A spring that shares both its ends with another conducting spring.
 typedef struct HeatTwin {
     uint32_t spring; ///< in the numbering of all colours
     float conductance;
@@ -24,14 +24,14 @@ enum { HEAT_ROWS = 4 };
 _Static_assert(HEAT_GROUP % HEAT_ROWS == 0, "a group is whole slices");
 
 /// The heat equation's matrix in rows: an entry is a spring's conductance to particle `column`. `value` is 0 where the
-/// spring conducts no more; conductances are without the time step. HEAT_ROWS rows lie interleaved, so that a processor
-/// can work on all of them at once (ELLPACK by slices): entry k of row i is heat_entry(matrix, i, k). Shorter rows are
-/// filled up with entries of value 0 in their own column.
+/// spring no longer conducts; conductances do not contain the time step. HEAT_ROWS rows are interleaved, so that a
+/// processor can work on all of them at once (sliced ELLPACK): entry k of row i is heat_entry(matrix, i, k). Shorter
+/// rows are padded with entries of value 0 in their own column.
 typedef struct HeatMatrix {
     uint32_t *first;  ///< [slices + 1]
     uint32_t *column; ///< [entries]
     float *value;     ///< [entries]
-    float *inverse;   ///< [particles] 1/(D + dt times the sum of the row's values); 0 for what is gone
+    float *inverse;   ///< [particles] 1/(D + dt times the sum of the row's values); 0 for particles that are gone
     float dt;         ///< s, of `inverse`
     uint32_t slices, entries;
     HeatTwin *twins; ///< rarely any
@@ -39,7 +39,7 @@ typedef struct HeatMatrix {
     bool full; ///< a row has no room for all springs from tears
 } HeatMatrix;
 
-/// Entries of every row in the slice of row i, and where entry k of row i lies.
+/// The number of entries of each row in the slice of row i, and the index of entry k of row i.
 static inline uint32_t heat_row_width(const HeatMatrix *matrix, uint32_t i) {
     return (matrix->first[i / HEAT_ROWS + 1] - matrix->first[i / HEAT_ROWS]) / HEAT_ROWS;
 }
@@ -47,11 +47,11 @@ static inline uint32_t heat_entry(const HeatMatrix *matrix, uint32_t i, uint32_t
     return matrix->first[i / HEAT_ROWS] + HEAT_ROWS * k + i % HEAT_ROWS;
 }
 
-/// Groups of HEAT_GROUP particles in a row, and which of them have anything to conduct in this step (rest.c).
+/// Groups of HEAT_GROUP consecutive particles, and which of them conduct in this step (rest.c).
 typedef struct HeatRest {
     uint32_t groups;
-    uint32_t (*near)[HEAT_NEAR]; ///< [groups] those that conduct with it, less itself
-    uint8_t *near_count;         ///< [groups] how many; HEAT_NEAR + 1: too many to list, it counts as near all others
+    uint32_t (*near)[HEAT_NEAR]; ///< [groups] the groups that conduct with it, without itself
+    uint8_t *near_count;         ///< [groups] their number; HEAT_NEAR + 1: too many to list, near all others
     uint8_t *warm;               ///< [groups] a particle is not at the ambient temperature, or heated
     uint8_t *awake[2];           ///< [groups] conducts; the second is the first with all groups near it, alternating
 } HeatRest;
@@ -65,11 +65,11 @@ struct HeatPlan {
 
     // operator
     float *measure;        ///< [particles] D: m2 (surface) or m (umbrella)
-    float *conductance;    ///< [springs] alpha F times the operator's weight: D/s. Gone once the matrix is built, but
-                           ///< where sheets can tear
+    float *conductance;    ///< [springs] alpha F times the operator's weight: D/s. Freed once the matrix is built,
+                           ///< unless sheets can tear
     uint32_t split_count;  ///< of the shell that the matrix is for
-    uint8_t *spring_alive; ///< [springs] as the matrix has it
-    uint8_t *alive;        ///< [particles] as the matrix has it
+    uint8_t *spring_alive; ///< [springs] alive in the matrix
+    uint8_t *alive;        ///< [particles] alive in the matrix
     HeatMatrix matrix;
     HeatRest rest;
 
@@ -77,7 +77,7 @@ struct HeatPlan {
     size_t scratch_size;
 
     // sources, per particle
-    float *flux, *source_conductance, *source_temperature; ///< W/m2, W/(m2 K), their product with K
+    float *flux, *source_conductance, *source_temperature; ///< W/m2, W/(m2 K), conductance times K
 
     // solver, per particle
     float *star;       ///< T* after sources and losses, K
@@ -101,24 +101,24 @@ typedef struct HeatPass {
     float direction;   ///< their beta
     int turn;          ///< which of rest.awake is current
     float min, max;    ///< K, the range of T*
-    double slack;      ///< K, beyond it, before a step ends by bound.c
-    double share;      ///< of what is missing to the range's end, in bound.c
+    double slack;      ///< K, allowed outside of it before bound.c ends the step
+    double share;      ///< fraction of the distance to the range's end, in bound.c
 } HeatPass;
 
-/// Makes operator and matrix follow a shell that has torn since the last call (heat_plan.c).
+/// Updates operator and matrix for a shell that has torn since the last call (heat_plan.c).
 void heat_plan_follow(HeatPlan *plan, const Shell *shell, const StateInput *state);
 
-/// What one cell gives to the springs along its four sides and two diagonals by linear elements, without diffusivity
-/// and F. Sides opposite to obtuse angles are negative. False, and zeros, where it cannot be cut into two triangles
-/// (weights.c).
+/// One cell's weights of the springs along its four sides and two diagonals by linear elements, without diffusivity and
+/// F. Sides opposite to obtuse angles have negative ones. False, and zeros, if the cell cannot be cut into two
+/// triangles (weights.c).
 bool heat_cell_linear(const Float3 corners[4], double weights[6]);
-/// The same, so that no side is negative once what the cell `across` it gives by linear elements (0 at a border) is
-/// added, and no diagonal.
+/// The same with no negative diagonal, and no negative side once the linear weight `across` of the cell on its other
+/// side (0 at a border) is added.
 void heat_cell_weights(const Float3 corners[4], const double across[4], double weights[6]);
 
 /// Fills plan->conductance and plan->measure (operator.c).
 void heat_operator(HeatPlan *plan, const Shell *shell);
-/// The same of one cell's sides and diagonals, and of a vertex, where a tear has come by; not for the umbrella.
+/// The same for one cell's sides and diagonals, and for a vertex, next to a new tear; not for the umbrella.
 void heat_operator_torn_cell(HeatPlan *plan, const Shell *shell, uint32_t cell);
 void heat_operator_torn_vertex(HeatPlan *plan, const Shell *shell, uint32_t vertex);
 /// Whether a tear may change the cell's weights of springs that are not torn.
@@ -126,18 +126,18 @@ bool heat_operator_may_change(const Shell *shell, uint32_t cell);
 
 /// Builds the matrix's pattern, all springs alive (matrix.c).
 SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shell);
-/// Writes it again for a shell that has torn; `length` and `fill`, [particles], are scratch.
+/// Rebuilds it for a shell that has torn; `length`, [particles], is scratch.
 void heat_matrix_rebuild(HeatPlan *plan, const Shell *shell, uint32_t *length);
-/// Writes a row again, for springs that tears have changed; `list` is scratch for the springs of it.
-/// False where it has no room for all.
+/// Rewrites a row whose springs were changed by tears; `list` is scratch for its springs. False if the row has no room
+/// for all.
 bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list);
 void heat_matrix_free(Memory *memory, HeatPlan *plan);
-/// Makes the matrix follow what ablation removed since the last call, and the time step.
+/// Updates the matrix for what ablation removed since the last call, and for the time step.
 void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate, float dt);
 
 /// Lists which groups conduct with which (rest.c).
 SingeResult heat_rest_create(Memory *memory, HeatPlan *plan);
-/// The same again, of all or of one group; `seen`, [groups], is scratch.
+/// Updates the lists of all groups, or of one; `seen`, [groups], is scratch.
 void heat_rest_rebuild(HeatPlan *plan, uint32_t *seen);
 void heat_rest_update(HeatPlan *plan, uint32_t group, uint32_t *seen);
 void heat_rest_free(Memory *memory, HeatPlan *plan);
@@ -151,8 +151,8 @@ void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *
 /// the umbrella made.
 SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, SingeError *error);
 
-/// Leaves new temperatures in plan->next that keep to the range of T*, and returns the heat that the umbrella made, for
-/// plan->star as the solver left it (bound.c).
+/// Leaves new temperatures in the range of T* in plan->next, from plan->star as the solver left it, and returns the
+/// heat that the umbrella made (bound.c).
 double heat_bound(HeatPass *pass);
 
 enum { HEAT_SEED = 0x68656174 };

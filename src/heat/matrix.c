@@ -1,12 +1,12 @@
-// The matrix of the heat equation: rows of conductances. Springs and particles go and never come back, so that an
-// entry loses its value when its spring does, and nothing of the springs need be kept.
+// The matrix of the heat equation: rows of conductances. Springs and particles are removed and never come back: the
+// entries of a removed spring become 0, and the springs themselves need not be stored.
 #include <string.h>
 
 #include "common/check.h"
 #include "heat/heat_plan.h"
 
-/// Counts the entries of every row in `length`, or fills them in where `fill` is set: where tears have given a vertex
-/// more springs than its row has room for, the last ones conduct nothing.
+/// Counts the entries of every row in `length`, or fills them in if `fill` is set. If tears have given a vertex more
+/// springs than its row has room for, the last ones conduct nothing.
 static void matrix_scatter(HeatPlan *plan, const Shell *shell, uint32_t *length, bool fill) {
     HeatMatrix *matrix = &plan->matrix;
     matrix->full = false;
@@ -28,7 +28,7 @@ static void matrix_scatter(HeatPlan *plan, const Shell *shell, uint32_t *length,
         }
 }
 
-/// Room for the springs of a cell that conduct nothing till a tear changes what it gives them.
+/// Reserves room for the springs of a cell that conduct nothing until a tear changes their weights.
 static void matrix_reserve_cell(const HeatPlan *plan, const Shell *shell, uint32_t cell, uint32_t *length) {
     SINGE_ASSERT(cell < shell->cell_count);
     const CellSprings *springs = &shell->cell_springs[cell];
@@ -40,7 +40,7 @@ static void matrix_reserve_cell(const HeatPlan *plan, const Shell *shell, uint32
                                          (yellow[springs->yellow[k & 1]] == 0);
 }
 
-/// Room for what tears may bring: a second copy of an edge at every vertex, and all that a spare vertex may get.
+/// Reserves room for tears: a second copy of an edge at every vertex, and all springs that a spare vertex may get.
 static void matrix_reserve(const HeatPlan *plan, const Shell *shell, uint32_t *length) {
     enum { SPARE = 16 };
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
@@ -68,7 +68,7 @@ static void matrix_lay_out(HeatMatrix *matrix, uint32_t rows, const uint32_t *le
     matrix->entries = matrix->first[matrix->slices];
 }
 
-/// Every entry in its own column, rows that there are not in that of the last.
+/// Gives every entry its row as column; rows past the end get the last row.
 static void matrix_fill_up(HeatMatrix *matrix, uint32_t rows) {
     for (uint32_t slice = 0; slice < matrix->slices; slice++)
         for (uint32_t e = matrix->first[slice]; e < matrix->first[slice + 1]; e++) {
@@ -86,7 +86,7 @@ static void matrix_invert(HeatPlan *plan, uint32_t row) {
     matrix->inverse[row] = diagonal > 0 && plan->alive[row] ? 1 / diagonal : 0;
 }
 
-/// How many entries of a row are in a column: more than one where several springs join the same two particles.
+/// The number of a row's entries in a column: more than one if several springs join the same two particles.
 static uint32_t matrix_count(const HeatMatrix *matrix, uint32_t row, uint32_t column) {
     uint32_t count = 0;
     for (uint32_t k = 0; k < heat_row_width(matrix, row); k++)
@@ -109,7 +109,7 @@ static uint32_t matrix_twins(const HeatPlan *plan, const Shell *shell, HeatTwin 
     return count;
 }
 
-/// All springs and particles of the shell as alive as at the start.
+/// Marks all springs and particles of the shell as alive, as at the start.
 static void matrix_revive(HeatPlan *plan, const Shell *shell) {
     memset(plan->spring_alive, 1, plan->springs);
     for (uint32_t i = 0; i < plan->particles; i++) plan->alive[i] = plan->measure[i] > 0 && shell->matter.area[i] > 0;
@@ -153,7 +153,7 @@ void heat_matrix_rebuild(HeatPlan *plan, const Shell *shell, uint32_t *length) {
     matrix_scatter(plan, shell, length, true);
     matrix_revive(plan, shell);
     matrix->dt = 0;                         // all diagonals are computed again
-    if (matrix->twin_capacity == 0) return; // parting cells makes no twins
+    if (matrix->twin_capacity == 0) return; // separating cells makes no twins
     matrix->twin_count = matrix_twins(plan, shell, NULL);
     if (matrix->twin_count > matrix->twin_capacity) matrix->twin_count = 0;
     else matrix_twins(plan, shell, matrix->twins);
@@ -234,18 +234,18 @@ void heat_matrix_free(Memory *memory, HeatPlan *plan) {
     FREE(memory, matrix->twins, matrix->twin_capacity);
 }
 
-/// The spring among those that are not alone between their ends, or NULL.
+/// The spring among the twins, or NULL.
 static const HeatTwin *matrix_twin(const HeatMatrix *matrix, uint32_t spring) {
     uint32_t low = 0, high = matrix->twin_count;
     while (low < high) {
-        uint32_t centroid = low + (high - low) / 2;
-        if (matrix->twins[centroid].spring < spring) low = centroid + 1;
-        else high = centroid;
+        uint32_t mid = low + (high - low) / 2;
+        if (matrix->twins[mid].spring < spring) low = mid + 1;
+        else high = mid;
     }
     return low < matrix->twin_count && matrix->twins[low].spring == spring ? &matrix->twins[low] : NULL;
 }
 
-/// Empties an entry of a spring that is gone. Twins are distinguished by their values; equal ones need not be.
+/// Clears an entry of a spring that is gone. Twins are distinguished by their values; equal ones need not be.
 static void matrix_cut(HeatMatrix *matrix, uint32_t row, uint32_t column, uint32_t spring) {
     const HeatTwin *twin = matrix_twin(matrix, spring);
     for (uint32_t k = 0; k < heat_row_width(matrix, row); k++) {
@@ -256,7 +256,7 @@ static void matrix_cut(HeatMatrix *matrix, uint32_t row, uint32_t column, uint32
     }
 }
 
-/// Empties all that a dead particle still has.
+/// Clears all remaining entries of a dead particle.
 static void matrix_cut_dead(HeatPlan *plan, uint32_t row) {
     HeatMatrix *matrix = &plan->matrix;
     for (uint32_t k = 0; k < heat_row_width(matrix, row); k++) {
@@ -286,7 +286,7 @@ static bool matrix_lost_any(const uint8_t *known, const uint8_t *flags, uint32_t
 }
 
 void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate, float dt) {
-    enum { LOOK = 1024 }; // at once, for a loss is rare
+    enum { LOOK = 1024 }; // compared at once, as a loss is rare
     uint32_t count = plan->particles, last;
     if (plan->matrix.dt != dt) { // the first step, or a step of another length
         plan->matrix.dt = dt;

@@ -7,23 +7,23 @@
 // c   D per second, symmetric, so that sum D_i T_i is constant and a uniform T stays uniform
 // a   m2/s   diffusivity alpha of eq 2 times r: the mean of the spring's ends, times the front thickening F
 // r          capacity per area over its mean in the sheet; 1 for the umbrella, and wherever grammage and specific heat
-//            do not vary. What is conducted is heat, k grad T with k = alpha C'', so D holds r too: sum D T is the heat
+//            do not vary. Heat is conducted, k grad T with k = alpha C'', so D contains r, too: sum D T is the heat
 //
 // `surface`: finite volumes in each layer, lumped (D = r times the area of the particle in its own layer).
-//   Corner layer: linear finite elements on triangles, exact for linear T on flat meshes, and on cells whose angles
-//   would make a conductance negative, something positive in their place (weights.c). On rectangles the diagonals
-//   drop out and the five-point Laplacian remains, for any dx : dy.
-//   Centre layer: two-point fluxes through the edge e that two cells share, their centres d apart,
-//   c = a |e x d|/|d|^2. On rectangles |e|/|d|, exact. On skewed cells the trace of the diffusion tensor is
-//   right, but what one sees of the skew is lost: the error is a factor 1 -+ cos(skew) along the diagonals.
+//   Corner layer: linear finite elements on triangles, exact for linear T on flat meshes. On cells whose angles would
+//   make a conductance negative, positive weights replace them (weights.c). On rectangles the diagonals vanish and the
+//   five-point Laplacian remains, for any dx : dy.
+//   Centre layer: two-point fluxes through the edge e that two cells share, their centres d apart, c = a |e x d|/|d|^2.
+//   On rectangles |e|/|d|, exact. On skewed cells the trace of the diffusion tensor is right, but the effect of the
+//   skew is lost: the error is a factor 1 -+ cos(skew) along the diagonals.
 //   Through the thickness: each red spring carries c = X S/2, X = r layer_exchange/F, the mean of the spring's ends, S
-//   the share of the cell's area that its corner has. The shares at a centre sum to its area, those at a corner to its
-//   own, so two layers of uniform T1 and T2 each change at the rate X/2 towards the other: T1 - T2 decays as exp(-X t).
-//   Red springs lean: what goes through the thickness also moves half a cell sideways and back, which diffuses along
-//   a side of length dx like a further X dx^2/16. So much is taken from blue (X S/32 for each cell beside the
-//   spring) and green (X/32 times the areas of both cells), which makes the sum exact on parallelograms; at most
-//   nine tenths of a spring's conductance, which is reached where X dx^2 > 14 a.
-//   No conductance is negative, on any mesh: (D + dt L) is an M-matrix, and stays one when springs go.
+//   the corner's share of the cell's area. The shares at a centre sum to its area, those at a corner to its own, so two
+//   layers of uniform T1 and T2 each change at the rate X/2 towards the other: T1 - T2 decays as exp(-X t).
+//   Red springs are inclined: heat that flows through the thickness also moves half a cell sideways and back, which
+//   adds X dx^2/16 to the diffusivity along a side of length dx. This is subtracted from blue springs (X S/32 for each
+//   cell at the spring) and green ones (X/32 times the areas of both cells), which makes the sum exact on
+//   parallelograms; at most nine tenths of a spring's conductance are subtracted, the limit where X dx^2 > 14 a.
+//   No conductance is negative, on any mesh: (D + dt L) is an M-matrix, and stays one when springs are removed.
 //
 // `umbrella`: eq 3 as printed, over all springs with their initial lengths d_ij:
 //   L(T_i) = (2/E_i) sum (T_j - T_i)/d_ij, E_i = sum d_ij; so D_i = E_i/2 and c = a/d_ij.
@@ -31,8 +31,8 @@
 //   r = sqrt(q^2/4 + t^2), smooth T diffuses along x with
 //     a_x/a = (2 dx + 2 dx^2/q + dx^2/r)/(2 dx + 2 dy + 2 q + 4 r),
 //   one half for dx = dy and t = 0; less for thick shells, and a_x/a_y is not 1 where dx is not dy.
-//   What it keeps is sum D_i T_i, which is not the heat sum C_i T_i, as D is not in proportion to the
-//   area: corners hold yellow springs too. See heat_conduct for what the ledger makes of that.
+//   It conserves sum D_i T_i, not the heat sum C_i T_i, as D is not proportional to the area: corners have yellow
+//   springs, too. See heat_conduct for how the ledger accounts for that.
 #include <math.h>
 
 #include "common/check.h"
@@ -56,7 +56,7 @@ static float operator_spring(const HeatPlan *plan, const Shell *shell, SingeColo
     return 0.5f * (end[0] + end[1]) * plan->thickening[sheet];
 }
 
-/// Exchange between the layers, as it is at both particles in the mean, 1/s.
+/// Exchange rate between the layers, mean of both particles, 1/s.
 static float operator_rate(const HeatPlan *plan, const Shell *shell, uint32_t a, uint32_t b) {
     const Matter *matter = &shell->matter;
     float mean = 0.5f * (field_at(matter->layer_exchange, a) * field_at(matter->capacity_ratio, a) +
@@ -64,13 +64,13 @@ static float operator_rate(const HeatPlan *plan, const Shell *shell, uint32_t a,
     return mean / plan->thickening[matter->sheet[a]];
 }
 
-/// A weight less what the red springs carry beside it, `leak` in m2/s.
+/// A weight less the sideways conduction of the red springs next to it, `leak` in m2/s.
 static double operator_less(double weight, double leak, float diffusivity) {
     return weight > 0 && diffusivity > 0 ? fmax(0.1 * weight, weight - leak / (double)diffusivity) : weight;
 }
 
-/// The power of two that a cell is as wide as, m: what divides by it is the same to the bit, and its products fit a
-/// float, however large or small the cell is.
+/// The exponent of a cell's width, m, as a power of two: division by this power changes no digits, and products of the
+/// quotients fit a float, however large or small the cell is.
 static int operator_scale(const Shell *shell, uint32_t cell) {
     SINGE_ASSERT(cell < shell->cell_count);
     const float *first = shell->rest_position[shell->cells[cell][0]];
@@ -89,7 +89,7 @@ static void operator_corners(const Shell *shell, uint32_t cell, int scale, Float
     }
 }
 
-/// Linear elements' weights of a cell; false where it cannot do with them alone.
+/// Linear elements' weights of a cell; false if they do not suffice.
 static bool operator_linear(const Shell *shell, uint32_t cell, Float3 x[4], double w[6]) {
     SINGE_ASSERT(cell < shell->cell_count);
     operator_corners(shell, cell, operator_scale(shell, cell), x);
@@ -115,7 +115,7 @@ static void operator_weights(const Shell *shell, uint32_t cell, double w[6]) {
     heat_cell_weights(x, across, w);
 }
 
-/// What a cell whose side has the weight gives to the spring along it.
+/// A cell's contribution to the spring along a side, from the side's weight.
 static float operator_side(const HeatPlan *plan, const Shell *shell, uint32_t cell, int side, double weight) {
     SINGE_ASSERT(cell < shell->cell_count);
     SINGE_ASSERT(side >= 0 && side < 4);
@@ -169,8 +169,8 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
     }
 }
 
-/// The red springs of a cell: nothing of the diffusivity. A corner's share is half of the two triangles at it
-/// that meet in the cell's centre, or a quarter where a corner is turned inwards.
+/// The red springs of a cell, which do not depend on the diffusivity. A corner's share is half of the two triangles at
+/// it that meet in the cell's centre, or a quarter of the cell if a corner is concave.
 static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell) {
     SINGE_ASSERT(cell < shell->cell_count);
     uint32_t centre = shell_centre(shell, cell);
@@ -206,7 +206,7 @@ static void operator_umbrella(HeatPlan *plan, const Shell *shell, uint32_t sheet
     }
 }
 
-/// A weight times alpha F. What two cells give is 0 or more, but for what mixing one of them takes from the other.
+/// A weight times alpha F. The sum of two cells' weights is 0 or more, unless mixing reduced one of them.
 static float operator_conductance(const HeatPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring,
                                   float weight) {
     SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
@@ -214,7 +214,7 @@ static float operator_conductance(const HeatPlan *plan, const Shell *shell, Sing
     return weight > 0 ? weight * operator_spring(plan, shell, colour, spring) : 0;
 }
 
-/// Multiplies by alpha F what is not an exchange rate already.
+/// Multiplies by alpha F all weights but exchange rates.
 static void operator_diffusivity(HeatPlan *plan, const Shell *shell) {
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         for (uint32_t k = 0; k < shell->springs[c].count; k++) {

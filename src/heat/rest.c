@@ -1,11 +1,11 @@
-// Groups at rest. Where a group of particles and all that it conducts with are at the ambient temperature and nothing
-// heats them, every term of eq 1 to 3 is zero to the bit: what conducts there need not be computed. In the k-th
-// iteration of the conjugate gradients heat reaches groups k links farther, and they wake one ring after another.
+// Groups at rest. If a group of particles and all that conduct with it are at the ambient temperature and unheated,
+// every term of eq 1 to 3 is zero to the bit, and the conduction there need not be computed. In the k-th iteration of
+// the conjugate gradients heat reaches groups k links farther: they wake ring by ring.
 #include "heat/heat_plan.h"
 
 #include <string.h>
 
-/// Lists the groups near one. `seen` remembers, by group, the last one that listed it.
+/// Lists the groups near one. `seen` holds for each group 1 + the last group that listed it.
 static void list_near(HeatPlan *plan, uint32_t group, uint32_t *seen) {
     const HeatMatrix *matrix = &plan->matrix;
     uint32_t count = 0, begin = matrix->first[group * (HEAT_GROUP / HEAT_ROWS)];

@@ -1,12 +1,12 @@
-// Everything that heats a sheet from outside goes through one interface: flux q, conductance g and g times the
-// temperature it tends to, summed per particle. A kind of source is one function in the table below.
+// All external heat enters a sheet through one interface: flux q, conductance g and g times the source's temperature,
+// summed per particle. A kind of source is one function in the table below.
 #include <math.h>
 #include <string.h>
 
 #include "common/check.h"
 #include "heat/heat_plan.h"
 
-// --- making one ---------------------------------------------------------------------------------------
+// --- creating a source ----------------------------------------------------------------------------------
 
 static SingeResult source_bad(SingeError *error, const char *what) {
     return error_set(error, SINGE_ERROR_ARGUMENT, "source", -1, "%s", what);
@@ -15,7 +15,7 @@ static SingeResult source_bad(SingeError *error, const char *what) {
 static bool source_in(float x, float min, float max) { return x >= min && x <= max; }
 static bool source_not_negative(float x) { return x >= 0 && isfinite(x); }
 
-/// W/m2, of a texture: far beyond any fire, and finite whatever a step makes of it.
+/// Max flux of a texture, W/m2: far beyond any fire, and finite in all computations of a step.
 static const float SOURCE_FLUX_MAX = 1e15f;
 
 static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *error) {
@@ -161,12 +161,12 @@ void source_free(Memory *memory, const Shell *shell, Source *source) {
     source->strength_count = 0;
 }
 
-// --- what each kind gives -------------------------------------------------------------------------------
+// --- the kinds of sources -------------------------------------------------------------------------------
 
-/// Cosine between a side's way out and the collider's below which the side faces it.
+/// A side faces a collider if the cosine between their outward normals is at most this.
 static const float SOURCE_LEVEL = 0.1f;
 
-/// A conductance towards `temperature`, weighted by a shape's distance.
+/// Arguments of a task for one source, one collider or the gas.
 typedef struct SourceJob {
     HeatPass *pass;
     const Source *source;
@@ -180,7 +180,7 @@ static inline void source_add(HeatPlan *plan, uint32_t i, float conductance, flo
     plan->source_temperature[i] += conductance * temperature;
 }
 
-/// 1 to radius, 0 from radius + falloff on, smoothstep between.
+/// 1 up to radius, 0 from radius + falloff on, smoothstep between.
 static inline float source_falloff(float distance, float radius, float falloff) {
     if (distance <= radius) return 1;
     if (distance >= radius + falloff) return 0;
@@ -255,7 +255,7 @@ static SourceFn *const SOURCE_KINDS[] = {
     [SINGE_SOURCE_CALLBACK] = source_callback,
 };
 
-/// The sheet's normal at a particle, of any length.
+/// The sheet's normal at a particle, not normalised.
 static Float3 source_normal(const HeatPass *pass, uint32_t i) {
     const Shell *shell = pass->shell;
     const float(*x)[4] = (const float(*)[4])pass->state->dynamics->position;
@@ -273,8 +273,8 @@ static Float3 source_normal(const HeatPass *pass, uint32_t i) {
     return sum;
 }
 
-/// A particle touches within contact_distance, if its side of the sheet faces the collider. The one behind it is a
-/// thickness farther; it counts where both sides do. A sheet that stands on its edge touches with both.
+/// A particle is in contact within contact_distance if its side of the sheet faces the collider. The particle behind it
+/// is a thickness farther; it counts if both sides do. A sheet that stands on its edge is in contact with both sides.
 static void source_contact_task(void *context, int begin, int end) {
     const SourceJob *job = context;
     SINGE_ASSERT(begin >= 0 && begin <= end);
@@ -306,9 +306,9 @@ static void source_contact(HeatPass *pass, const Collider *collider) {
     pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_contact_task, &job);
 }
 
-/// Gas that is hotter than a particle heats it, and it loses nothing to air that is not there: what the losses take by
-/// convection to the ambient is given back. What is hotter than the gas has the losses to still air alone, and nothing
-/// is given back that would bring it there.
+/// Gas that is hotter than a particle heats it. The particle then loses nothing to still air, so the convective part of
+/// the losses is given back, but not beyond heating it to the gas's temperature. A particle hotter than the gas only
+/// has the losses to still air.
 static void source_gas_task(void *context, int begin, int end) {
     const SourceJob *job = context;
     SINGE_ASSERT(begin >= 0 && begin <= end);
@@ -323,8 +323,8 @@ static void source_gas_task(void *context, int begin, int end) {
             float convection = field_at(matter->convection, (uint32_t)i), hot = gas->temperature[i], T = temperature[i];
             float slower = shell_glow_slowing(matter, (uint32_t)i, fuel[i]);
             float back = convection * (T - ambient) / slower;
-            // what the losses take by convection: at the gas's temperature, to which no more than this may bring it; or
-            // what they give, where it is colder than the air
+            // the convective loss: at most what heats the particle to the gas's temperature; or the convective gain, if
+            // it is colder than the ambient air
             float left = fmaxf(mass[i], field_at(matter->loss_mass_floor, (uint32_t)i));
             float real = convection / (left * plan->thickening[matter->sheet[i]] * slower);
             float max = (hot - T) * (matter->capacity[i] / matter->area[i]) / job->pass->dt + real * (hot - ambient);

@@ -1,23 +1,22 @@
 // The front thickening F (thickened flame model: Butler & O'Rourke 1977; Colin, Ducros, Veynante & Poinsot 2000).
 //
-// Diffusivity times F and every rate over F leave the front's speed and temperatures as they are and make it F times
-// thicker, for with x' = x/F and t' = t/F the equations are the old ones. The cells then have to resolve F delta
-// instead of delta,
+// Diffusivity times F and every rate over F keep the front's speed and temperatures and make it F times thicker: with
+// x' = x/F and t' = t/F the equations are the old ones. The cells then have to resolve F delta instead of delta,
 //
 //   delta = sqrt(alpha/(mu theta)),   theta = min(eta - (T_ign - T_amb), rate_ceiling)
 //   F = max(1, s/(c delta)), refused above 1e6
 //
-// delta  m          thickness of the front, from diffusion over delta against burning
+// delta  m          thickness of the front, from the balance of diffusion over delta and burning
 // alpha  m2/s       diffusivity, mu 1/(K s) mass rate of eq 4
-// theta  K          rise above ignition without losses: eta, less what it takes to get there; at most the ceiling of
+// theta  K          rise above ignition without losses: eta, less the rise to ignition; at most the ceiling of
 //                   eq 4's rate
 // s      m          cell size
 // c      1          cells as large as c delta: measured on strips of cells from 0.5 to 4 mm, c = 0.75 holds the speed
 //                   within 5 % (tests/heat/test_front.c, `singe bench front`)
 //
-// By Arrhenius' kinetics mu theta is A exp(-E/(R (T_ign + theta))), the rate at the hottest.
+// With Arrhenius kinetics mu theta is A exp(-E/(R (T_ign + theta))), the rate at the highest temperature.
 //
-// One F holds for a whole sheet; parameters that vary over it come in by their means.
+// F has one value for a whole sheet, from the means of parameters that vary over it.
 #include <math.h>
 
 #include "common/real.h"
@@ -25,7 +24,7 @@
 
 static const float THICKEN_CELLS = 0.75f;
 
-/// 1/s, of burning at a rise above ignition.
+/// Rate of burning at a rise above ignition, 1/s.
 static float front_rate(const FrontMatter *front, float rise) {
     const float gas_constant = 8.314462618f; // J/(mol K)
     if (!(front->pre_exponential > 0)) return front->mass_rate * rise;
@@ -36,7 +35,7 @@ static float front_rate(const FrontMatter *front, float rise) {
 float heat_thickening_for(float thickening, const FrontMatter *front, float ambient_temperature, float cell_size) {
     if (thickening > 0) return thickening > 1 ? thickening : 1;
     float rise = front->heating - (front->ignition_temperature - ambient_temperature);
-    // what cannot burn, or diffuses nothing, has no front
+    // without burning or diffusion there is no front
     if (!(rise > 0) || !(front->diffusivity > 0)) return 1;
     float rate = front_rate(front, fminf(rise, front->rate_ceiling));
     if (!(rate > 0)) return 1;

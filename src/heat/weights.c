@@ -1,36 +1,36 @@
-// What one cell conducts along its sides and diagonals: the weights of its part of the `surface` operator.
+// The conductances of one cell along its sides and diagonals: its weights in the `surface` operator.
 //
 //   energy of the cell   sum over its six springs e of c_e (T_j - T_i)^2/2
-//   right for linear T   sum of c_e p_e p_e' = A 1                                             (1)
+//   exact for linear T   sum of c_e p_e p_e' = A 1                                             (1)
 //
 // p   m   the spring, in the plane of the cell
 // A   m2  the cell's area in that plane
 // c       conductance over a
 //
-// Linear elements on two triangles fulfil (1), and more: a linear T is steady. c = cot/2 of the angle opposite to each
-// side (MacNeal 1949; Pinkall & Polthier 1993). Of the two ways to split the cell, the one is taken whose diagonal
-// conducts what is not negative (Delaunay's; on rectangles both are the same, and the diagonal drops out).
+// Linear elements on two triangles satisfy (1), and a linear T is steady. c = cot/2 of the angle opposite to each side
+// (MacNeal 1949; Pinkall & Polthier 1993). Of the two ways to split the cell, the one whose diagonal has a nonnegative
+// weight is taken (Delaunay's; on rectangles both are the same, and the diagonal vanishes).
 //
-// A side that lies opposite to an obtuse angle is negative still. Most often the cell across it makes up for that, and
-// nothing is done. Where it does not, these weights c1 are mixed with positive ones c2 that fulfil (1) where anything
-// positive does,
+// The weight of a side opposite to an obtuse angle is still negative. Usually that of the cell across the side
+// compensates for it, and nothing is done. Otherwise these weights c1 are mixed with positive ones c2 that satisfy (1),
+// if positive weights can,
 //
 //   c = c1 + s (c2 - c1),   with the smallest s for which no side, with the cell across it, is negative
 //
-// which keeps (1), and a linear T as steady as s is small. So every conductance is 0 or more, and the matrix is an
-// M-matrix: T never leaves the range that it has. Removal takes whole springs, which leaves it one. A tear parts the
-// two cells of a side; each then has to do without the other, and is mixed again.
+// which keeps (1); the smaller s, the closer a linear T is to steady. So every conductance is 0 or more, and the matrix
+// is an M-matrix: T never leaves its range. Ablation removes whole springs, so it stays one. A tear separates the two
+// cells of a side; each then lacks the other's weight, and is mixed again.
 //
 // c2: with k = c p^2 and z = (cos, sin) of twice the angle of p, (1) is a balance of directions,
 //
 //   sum of k = 2 A,   sum of k z = 0
 //
-// and of all that fulfil it those of most entropy are taken, which all springs have a part in: k in proportion to
-// exp(lambda z), lambda by Newton's method. Where all springs of a cell run within a quarter turn (needles that lean),
-// no positive k balances. lambda, held to a length of 5, then makes the most of the springs that are farthest apart;
-// the cell conducts (1 + r) times k along and (1 - r) across, r what is left of the balance, and 2 A/sqrt(1 - r^2) as
-// the sum of k makes one as much too large as the other too small. So a front is faster along such cells and slower
-// across, and stops nowhere.
+// and of all solutions that of max entropy is taken, in which all springs have a part: k is proportional to
+// exp(lambda z), lambda by Newton's method. If all springs of a cell run within a quarter turn (inclined needles), no
+// positive k balances. lambda, limited to a length of 5, then favours the springs that are farthest apart. The cell
+// conducts (1 + r) times k along and (1 - r) across, with r the residual of the balance; with 2 A/sqrt(1 - r^2) as the
+// sum of k, one is too large by the factor by which the other is too small. So a front is faster along such cells and
+// slower across, and stops nowhere.
 #include <float.h>
 #include <math.h>
 
@@ -57,7 +57,7 @@ static void weights_linear(const Float3 x[4], int split, double share, double w[
     w[SIDES + split] += half * (weights_cot(x[b], x[c], x[a]) + weights_cot(x[d], x[a], x[c]));
 }
 
-/// Whether a split leaves both triangles an area, and turns none over (arrow-shaped cells, three corners in line).
+/// Whether both triangles of a split have an area, and none is inverted (arrow-shaped cells, three collinear corners).
 static void weights_good(const Float3 x[4], bool good[2]) {
     Float3 normal = float3_unit(float3_cross(float3_sub(x[2], x[0]), float3_sub(x[3], x[1])));
     double min[2], total = 0;
@@ -82,7 +82,7 @@ bool heat_cell_linear(const Float3 x[4], double w[6]) {
         for (int k = 0; k < SIDES; k++) largest = fmax(largest, fabs(each[split][k]));
     }
     double one = each[0][SIDES], two = each[1][SIDES + 1];
-    // what rounding leaves of a right angle needs no entry in the matrix
+    // the rounding error of a right angle needs no entry in the matrix
     bool square = good[0] && good[1] && fmax(fabs(one), fabs(two)) <= 6e-5 * largest;
     if (good[0] && good[1] && !square) good[one < two ? 0 : 1] = false;
     for (int split = 0; split < 2; split++)
@@ -93,7 +93,7 @@ bool heat_cell_linear(const Float3 x[4], double w[6]) {
 
 /// A spring in the plane of the cell.
 typedef struct WeightSpring {
-    double square; ///< p^2, 0: it stands upright
+    double square; ///< p^2; 0: normal to the plane
     double z[2];
 } WeightSpring;
 
@@ -120,7 +120,7 @@ static double weights_plane(const Float3 x[4], WeightSpring springs[SPRINGS]) {
     return area;
 }
 
-/// k of a given lambda, with a sum of 1: their mean of z, and its derivatives by lambda.
+/// k of a given lambda, with a sum of 1; the mean of z with these weights, and its derivatives by lambda.
 static void weights_mean(const WeightSpring s[SPRINGS], const double lambda[2], double k[SPRINGS], double mean[2],
                          double slope[3]) {
     double total = 0;
@@ -138,20 +138,20 @@ static void weights_mean(const WeightSpring s[SPRINGS], const double lambda[2], 
     slope[0] -= mean[0] * mean[0], slope[1] -= mean[0] * mean[1], slope[2] -= mean[1] * mean[1];
 }
 
-/// a in two halves of 26 bits, whose products are exact (Veltkamp).
+/// The upper of two halves of a, of 26 bits each, whose products are exact (Veltkamp).
 static double weights_high(double a) {
     double b = a * 134217729; // 2^27 + 1
     return b - (b - a);
 }
 
-/// What a a has beyond `square`, its rounded value (Dekker).
+/// The rounding error of a a, with `square` its rounded value (Dekker).
 static double weights_rest(double a, double square) {
     double high = weights_high(a), low = a - high;
     return ((high * high - square) + 2 * high * low) + low * low;
 }
 
-/// sqrt(u u + v v), rounded as if exact but for few in a million: the same with every C library, unlike hypot. For
-/// numbers whose squares neither overflow nor vanish.
+/// sqrt(u u + v v), correctly rounded but for few in a million: the same with every C library, unlike hypot. For
+/// numbers whose squares neither overflow nor underflow.
 static double weights_length(double u, double v) {
     double uu = u * u, vv = v * v, length = sqrt(uu + vv);
     if (!(length > 1e-140 && length < 1e140)) return length;
@@ -161,13 +161,13 @@ static double weights_length(double u, double v) {
     return length - miss / (2 * length);
 }
 
-/// k of most entropy, with a sum of 1. Returns sqrt(1 - r^2).
+/// k of max entropy, with a sum of 1. Returns sqrt(1 - r^2).
 static double weights_entropy(const WeightSpring s[SPRINGS], double k[SPRINGS]) {
     double lambda[2] = {0}, mean[2], slope[3], moved = 1;
     weights_mean(s, lambda, k, mean, slope);
     for (int n = 0; n < ITERATIONS && moved > 1e-9 && weights_length(mean[0], mean[1]) > 1e-12; n++) {
         double before[2] = {lambda[0], lambda[1]};
-        // Newton's step, at most 1 long: the mean is the gradient of a convex function of lambda
+        // Newton step, of length 1 at most: the mean is the gradient of a convex function of lambda
         double a = slope[0] + 1e-9, b = slope[1], c = slope[2] + 1e-9, determinant = a * c - b * b;
         double u = (b * mean[1] - c * mean[0]) / determinant, v = (b * mean[0] - a * mean[1]) / determinant;
         double shorter = fmax(weights_length(u, v), 1);
@@ -180,7 +180,7 @@ static double weights_entropy(const WeightSpring s[SPRINGS], double k[SPRINGS]) 
     return sqrt(fmax(1 - mean[0] * mean[0] - mean[1] * mean[1], DBL_EPSILON));
 }
 
-/// c2 of (1), or what comes next to it.
+/// c2 of (1), or the closest to it.
 static void weights_positive(const Float3 x[4], double w[SPRINGS]) {
     WeightSpring springs[SPRINGS] = {{0}};
     double k[SPRINGS], twice = weights_plane(x, springs);
