@@ -2,6 +2,8 @@
 # make check-clients: other programs, installed by name into a folder of their own, on what a fresh burn leaves.
 #
 # usage: check.sh SINGE FOLDER     FOLDER/NAME is the environment of a client, FOLDER/work/NAME what it made
+#
+# Exit codes: 0 all is good; 1 a client found a fault; 3 none did, but some could not be installed.
 set -euo pipefail
 singe=$(realpath "$1")
 mkdir -p "$2"
@@ -9,13 +11,20 @@ folder=$(realpath "$2")
 here=$(cd "$(dirname "$0")" && pwd)
 python=${PYTHON:-python3}
 failed=0
+absent=0
 
 # environment NAME PACKAGE...: a Python of its own, made by $python, with these packages
 environment() {
     local name=$1
     shift
-    [ -x "$folder/$name/bin/python" ] || "$python" -m venv "$folder/$name"
+    [ -x "$folder/$name/bin/python" ] || "$python" -m venv "$folder/$name" || return
     "$folder/$name/bin/pip" install --quiet --disable-pip-version-check "$@"
+}
+
+# lacking NAME WHAT
+lacking() {
+    echo "== $1: needs $2, which is not to be had"
+    absent=1
 }
 
 # find_python VERSION: one in PATH that runs, or one of pyenv's, whatever version is chosen there
@@ -43,10 +52,8 @@ client() {
 }
 
 mkdir -p "$folder/work"
-environment usd usd-core numpy
-client usd usd.py
-environment vtk vtk numpy
-client vtk vtk_client.py
+if environment usd usd-core numpy; then client usd usd.py; else lacking usd "PyPI's usd-core"; fi
+if environment vtk vtk numpy; then client vtk vtk_client.py; else lacking vtk "PyPI's vtk"; fi
 echo "== paraview"
 # Debian's packages: only root installs them
 if [ "$(id -u)" -eq 0 ] && command -v apt-get > /dev/null && ! command -v pvpython > /dev/null; then
@@ -54,20 +61,20 @@ if [ "$(id -u)" -eq 0 ] && command -v apt-get > /dev/null && ! command -v pvpyth
         python3-numpy xvfb xauth > "$folder/paraview.log" 2>&1 || true
 fi
 if ! command -v pvpython > /dev/null || ! command -v xvfb-run > /dev/null; then
-    echo "needs pvpython and xvfb-run (packages paraview, python3-paraview, xvfb), which are not here"
+    lacking paraview "pvpython and xvfb-run (packages paraview, python3-paraview, xvfb)"
 elif PYTHONDONTWRITEBYTECODE=1 xvfb-run -a pvpython "$here/paraview_client.py" "$singe" "$folder/work/paraview" \
     > "$folder/paraview.log" 2>&1 && grep '^ParaView' "$folder/paraview.log"; then :
 else
     failed=1
     tail -30 "$folder/paraview.log"
 fi
-environment alembic alembic3d numpy
-client alembic alembic_client.py
+if environment alembic alembic3d numpy; then client alembic alembic_client.py; else lacking alembic "PyPI's alembic3d"; fi
 echo "== gltf"
 mkdir -p "$folder/gltf"
-if npm install --prefix "$folder/gltf" --no-audit --no-fund --silent gltf-validator @gltf-transform/core \
-    @gltf-transform/extensions @gltf-transform/functions meshoptimizer > "$folder/gltf.log" 2>&1 &&
-    NODE_PATH="$folder/gltf/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
+if ! npm install --prefix "$folder/gltf" --no-audit --no-fund --silent gltf-validator @gltf-transform/core \
+    @gltf-transform/extensions @gltf-transform/functions meshoptimizer > "$folder/gltf.log" 2>&1; then
+    lacking gltf "npm's gltf-validator and @gltf-transform"
+elif NODE_PATH="$folder/gltf/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
         node "$here/gltf.js" "$singe" "$folder/work/gltf" >> "$folder/gltf.log" 2>&1; then cat "$folder/gltf.log"
 else
     failed=1
@@ -75,29 +82,28 @@ else
 fi
 echo "== vat"
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
-if [ -z "$browser" ]; then echo "needs chromium, which is not here"
-elif npm install --prefix "$folder/three" --no-audit --no-fund --silent three > "$folder/vat.log" 2>&1 &&
-    NODE_PATH="$folder/three/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
+if [ -z "$browser" ]; then lacking vat chromium
+elif ! npm install --prefix "$folder/three" --no-audit --no-fund --silent three > "$folder/vat.log" 2>&1; then
+    lacking vat "npm's three"
+elif NODE_PATH="$folder/three/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
         node "$here/vat.js" "$singe" "$folder/work/vat" "$browser" >> "$folder/vat.log" 2>&1; then cat "$folder/vat.log"
 else
     failed=1
     tail -30 "$folder/vat.log"
 fi
 # each bpy is for one Python
-found=0
 for version in 3.11:4.5 3.13:5.2; do
     if ! python=$(find_python "${version%:*}"); then
-        echo "== Blender ${version#*:}: needs python${version%:*}, which is not here"
+        lacking "Blender ${version#*:}" "python${version%:*}"
         continue
     fi
     if environment "blender-${version#*:}" "bpy==${version#*:}.*" numpy; then
-        found=1
         client "blender-${version#*:}" blender.py
         client "blender-${version#*:}" blender_meshes.py "meshes-${version#*:}"
         client "blender-${version#*:}" blender_alembic.py "alembic-${version#*:}"
     else
-        echo "== Blender ${version#*:}: not to be had"
+        lacking "Blender ${version#*:}" "PyPI's bpy"
     fi
 done
-[ $found -eq 1 ] || failed=1
-exit $failed
+[ $failed -eq 0 ] || exit 1
+[ $absent -eq 0 ] || exit 3
