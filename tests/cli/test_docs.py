@@ -66,7 +66,7 @@ class Docs(Case):
             with self.subTest(material=material, key=key, value=value):
                 plain = dict(built_in[material])
                 plain.pop("measured", None), changed.pop("measured", None)  # not taken over by what is changed
-                for one in plain, changed:  # detail and seed of patches are not told
+                for one in plain, changed:  # detail and seed of patches are not reported
                     if isinstance(one.get(key), dict) and "noise" in one[key]:
                         one[key] = dict(one[key], noise=one[key]["noise"]["scale"])
                 self.assertEqual(changed, plain)

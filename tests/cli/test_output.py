@@ -52,12 +52,12 @@ class Output(Case):
 
     def test_what_is_torn_out_of_shape(self):
         """Sheets that a plane throws out by many cells are warned of twice: as they begin, and for what came of it."""
-        for depth, told in (("0 m", False), ("0.6 m", True)):
+        for depth, reported in (("0 m", False), ("0.6 m", True)):
             with self.subTest(depth):
                 _, err = self.run_scene("strained", "--set", "frames=2", "--set",
                                         "colliders=[{kind: plane, rotation: [0, 40, 0], offset: %s}]" % depth)
-                self.assertEqual("begin inside it, up to 0." in err, told)
-                self.assertEqual("the strain of one edge in a hundred is" in err, told)
+                self.assertEqual("begin inside it, up to 0." in err, reported)
+                self.assertEqual("the strain of one edge in a hundred is" in err, reported)
 
     def test_record(self):
         self.run_scene("o", "--set", "seed=7", "--threads", "2")
@@ -124,7 +124,7 @@ class Output(Case):
 
     @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_ffmpeg_that_fails(self):
-        """All else is there, the reason is told even to the quiet, and the exit code is 1."""
+        """All else is there, the reason is reported even to the quiet, and the exit code is 1."""
         for number, (script, why) in enumerate((
             ("exit 3", "ffmpeg failed (exit 3)"),
             ("kill -9 $$", "ffmpeg was stopped (signal 9)"),

@@ -307,7 +307,7 @@ class Verify(Case):
         self.finds("winding", turned, "run the same way along edge")
 
     def test_what_crosses_from_the_start(self):
-        """What crosses in frame 1 is told and no fault, there and later; what comes to cross elsewhere is."""
+        """What crosses in frame 1 is reported and is no fault, there and later; what comes to cross elsewhere is one."""
         def pierce(first):
             def change(s):
                 def place(t): return [s.vertices[t[0]]["rest_" + axis] for axis in "xyz"]
@@ -325,7 +325,7 @@ class Verify(Case):
         def total(rows, kind): return [row[kind] for row in rows]
         for number in (1, 3):
             self.damage(pierce(0), number)
-        _, _, rows = self.verify("--stretch", "1e9", expect=1) # the run has told of none
+        _, _, rows = self.verify("--stretch", "1e9", expect=1) # the run has reported none
         self.assertEqual(sum(total(rows, "initial_crossings")), 0)
         with open(self.path("o", "run.json")) as file:
             record = file.read()
@@ -456,7 +456,7 @@ class Verify(Case):
         self.assertGreater(touching, 5)
 
     def test_interrupted(self):
-        """Ctrl-C ends it after a frame, and what was not looked at is told."""
+        """Ctrl-C ends it after a frame, and what was not looked at is reported."""
         surface = Surface(self.frame(1))
         for number in range(7, 1200):
             surface.write(self.frame(number))

@@ -169,7 +169,8 @@ static CollisionSizes tiny(const SingeSim *sim) {
 
 // ---- tests
 
-/// Lists of the usual size grow: in a stack those of pushes, in a soup, which crosses from the start, those of pairs.
+/// Lists of the usual size grow: in a stack those of repulsions, in a soup, which crosses from the start, those of
+/// pairs.
 static void check_growth(const Crowd *scene, bool pairs) {
     SingeSim *one = crowd(scene, 1, NULL), *three = crowd(scene, 3, NULL), *resumed;
     test_steps(one, 6), test_steps(three, 6);
@@ -180,8 +181,8 @@ static void check_growth(const Crowd *scene, bool pairs) {
         assert_true(scene->soup || crossings(one) == 0);
     }
     const CollisionSizes *sizes = &collision(one)->sizes;
-    print_message("%u pairs where %u are usual, %u pushes where %u are\n", collision(one)->pair_capacity, sizes->pairs,
-                  collision(one)->repulsion_capacity, sizes->repulsions);
+    print_message("%u pairs where %u are usual, %u repulsions where %u are\n", collision(one)->pair_capacity,
+                  sizes->pairs, collision(one)->repulsion_capacity, sizes->repulsions);
     assert_true(pairs ? collision(one)->pair_capacity > sizes->pairs
                       : collision(one)->repulsion_capacity > sizes->repulsions);
     assert_int_equal(singe_sim_timers(one).contact_dropped, 0);

@@ -53,7 +53,7 @@ static void segment_distance(void **unused) {
 }
 
 /// Over a triangle that is 50 to 5,000 times as long as high, and edges that cross at 1 rad to 1e-4 rad, at a known
-/// distance: told to 1e-6 of the length. With weights in float they are off by .24 and 2.5e-4.
+/// distance: found to 1e-6 of the length. With weights in float they are off by .24 and 2.5e-4.
 static void distance_to_slivers(void **unused) {
     (void)unused;
     float triangles = 0, edges = 0;

@@ -161,7 +161,7 @@ class Example(Case):
             areas[piece] = areas.get(piece, 0) + math.hypot(*cross) / 2
         return max(areas.values(), default=0)
 
-    def told(self):
+    def report(self):
         print("  ".join(f"{name} {value}" for name, value in self.say.items() if value != 0))
 
 
@@ -181,7 +181,7 @@ class Letter(Example):
         leaf = 1e4 * self.leaf(len(self.rows))
         self.say["leaf"] = f"{leaf:.0f} cm2 of char at last"
         self.curls("56-60")
-        self.told()
+        self.report()
         self.assertGreaterEqual(leaf, 10)
         self.assertTrue(750 <= hottest <= 1050)  # of flame and embers; strips without edges keep to 950 (heat_front)
         # what office paper does, lying free
@@ -214,7 +214,7 @@ class LetterHanging(Example):
         self.say["unburnt"] = f"{1e3 * rest:.2f} mm/s rms in the last second"
         self.say["hottest"] = f"{max(self.column('temperature_max')) - ZERO_CELSIUS:.0f} C"
         self.curls("100-119")
-        self.told()
+        self.report()
         self.assertLessEqual(max(self.column("strain_mean")), 0.008)
         self.assertLessEqual(max(self.column("strain_p99")), 0.03)
         self.assertGreater(self.column("tears")[-1], 0)
@@ -234,7 +234,7 @@ class HotSphere(Example):
         self.say["burnt"] = f"{last['burnt_fraction']:.2f}"
         self.say["pieces"] = f"{last['pieces']:.0f}"
         self.look("50-69")
-        self.told()
+        self.report()
         self.assertGreaterEqual(last["pieces"], 2)
         self.assertTrue(0.1 < last["burnt_fraction"] < 0.9)
         self.assertEqual(max(self.column("inverted_cells")), 0)
@@ -248,7 +248,7 @@ class PageHot(Example):
         self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
         self.say["pieces"] = f"{self.rows[-1]['pieces']:.0f}"
         self.look("40-49", unburnt=None)  # nothing of it stays unburnt
-        self.told()
+        self.report()
         self.assertGreater(self.rows[-1]["burnt_fraction"], 0.6)
         self.assertGreaterEqual(self.rows[-1]["pieces"], 4)
         self.assertEqual(max(self.column("inverted_cells")), 0)
@@ -261,7 +261,7 @@ class Newspaper(Example):
         self.common()
         self.say["front"] = f"{1e3 * self.rows[-1]['front_speed']:.2f} mm/s"
         self.curls("80-99")
-        self.told()
+        self.report()
         # newsprint as sources have it: 7.8 to 12.4 mm/s
         self.assertTrue(7.8e-3 <= self.rows[-1]["front_speed"] <= 12.4e-3)
         self.assertTrue(0.2 < self.rows[-1]["burnt_fraction"] < 0.9)
@@ -282,7 +282,7 @@ class Curtain(Example):
         moving = root_mean_square([row["speed_rms_unburnt"] for row in self.rows if 2 < row["time"] < 4])
         self.say["swings"] = f"{100 * moving:.1f} cm/s rms"
         self.look("100-119", unburnt=None)
-        self.told()
+        self.report()
         self.assertTrue(0.1 < self.rows[-1]["burnt_fraction"] < 0.9)
         self.assertGreater(moving, 0.02)
         self.assertLessEqual(max(self.column("strain_mean")), 0.01)
@@ -295,7 +295,7 @@ class StackEdge(Example):
         self.common()
         self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
         self.look("60-79")
-        self.told()
+        self.report()
         # one sheet alone is a fifth
         self.assertGreater(self.rows[-1]["burnt_fraction"], 0.4)
         self.assertEqual(max(self.column("inverted_cells")), 0)
@@ -331,7 +331,7 @@ class Stack(Example):
         self.say["char of the sheets"] = " ".join(f"{share:.2f}" for share in burnt)
         lit = self.lit()
         self.say["lit"] = " ".join(f"{time:.1f}" for time in lit) + " s"
-        self.told()
+        self.report()
         self.assertGreater(burnt[0], burnt[4])
         self.assertGreater(burnt[4], 0.01)
         match_out = 1.1  # s
@@ -361,7 +361,7 @@ class CrumpledBall(Example):
         self.say["size"] = ", ".join(sizes) + " mm"
         self.say["strain"] = f"mean {max(self.column('strain_mean')):.4f} p99 {max(self.column('strain_p99')):.4f}"
         self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
-        self.told()
+        self.report()
         # 21 cm long as it lay flat, less than half of that between the boxes, and not flat again when they have gone
         self.assertGreater(max(flat), 0.2)
         self.assertLess(max(held), 0.1)
@@ -401,7 +401,7 @@ class HotIron(Example):
         last_under, last_beside = self.parts(len(self.rows))
         burnt = sum(v["burnt"] for v in last_under) / len(last_under)
         self.say["char at last"] = f"{burnt:.2f}"
-        self.told()
+        self.report()
         self.assertTrue(290 < heated < 335 and warmest < 80)
         self.assertEqual(max(v["burnt"] for v in beside + last_beside), 0)
         self.assertGreater(burnt, 0.5)
@@ -444,7 +444,7 @@ class Shirt(Example):
         self.say["fire"] = f"up to {max(burnt):.2f} m in frame {burning}"
         self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
         self.say["strain"] = f"mean {max(self.column('strain_mean')):.4f}"
-        self.told()
+        self.report()
         self.assertTrue(0.75 < below < 0.84)  # from 0.85 m: it hangs from the shoulders, and not through them
         self.assertEqual(self.rows[lit - 1]["burnt_fraction"], 0)
         self.assertGreater(max(burnt), 1.2)  # climbs
@@ -473,7 +473,7 @@ class BurningTorus(Example):
         self.say["pieces"] = f"{self.rows[-1]['pieces']:.0f}"
         halves = max(self.unburnt_halves(frame) for frame in range(90, 150, 5))
         self.say["halves"] = halves
-        self.told()
+        self.report()
         self.assertEqual(self.unburnt_halves(15), 1)
         self.assertGreaterEqual(halves, 2)
         self.assertGreater(self.column("tears")[-1], 0)

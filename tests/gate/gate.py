@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Real models, burnt: every model of some packages is run until it is eaten away, and what comes of it is told.
+"""Real models, burnt: every model of some packages is run until it is eaten away, and what comes of it is reported.
 
 Each model is scaled to 30 cm, hangs in a hot ball that is larger than it, and is run on one thread and on two, with the
 same bytes in every file of the two caches; then `singe verify` looks for faults. What comes of a model is one of

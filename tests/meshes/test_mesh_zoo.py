@@ -71,7 +71,7 @@ BROKEN = {
     "empty-ply": (REFUSED, r":10\b.*no vertices", None),
 }
 
-# What does not hold yet. It is run all the same, and what has come to hold is told, so that it can be taken out.
+# What does not hold yet. It is run all the same, and what has come to hold is reported, so that it can be taken out.
 PENDING = set()
 
 
@@ -111,17 +111,17 @@ class MeshZoo(Case):
     def judge(self, name, code, err, faults):
         """Why it is not as it should be, or None."""
         outcome, refusal, repair = BROKEN.get(name, (RUNS, None, None))
-        told, file = " ".join(err.split()), re.escape(make_meshes.file_name(name))
+        reported, file = " ".join(err.split()), re.escape(make_meshes.file_name(name))
         if code not in (0, 2) or (code == 2 and outcome == RUNS):
-            return f"exit code {code}: {told}"
+            return f"exit code {code}: {reported}"
         if code == 2:
-            return None if re.search(file + ".*" + refusal, told) else f"not told as {refusal!r}: {told}"
+            return None if re.search(file + ".*" + refusal, reported) else f"not reported as {refusal!r}: {reported}"
         if outcome == REFUSED:
             return "is not refused"
         if repair and not re.search(f"{file}.*{repair}", self.told_of_repair(name, err)):
-            return f"what was repaired is not told as {repair!r}"
-        if name not in BROKEN and ("warning" in told or self.lost(name)):
-            return self.lost(name) or told
+            return f"what was repaired is not reported as {repair!r}"
+        if name not in BROKEN and ("warning" in reported or self.lost(name)):
+            return self.lost(name) or reported
         return f"verify: {faults}" if faults else None
 
     def lost(self, name):

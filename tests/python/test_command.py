@@ -14,11 +14,11 @@ import numpy as np
 @unittest.skipUnless(os.environ.get("SINGE_PROGRAM"), "SINGE_PROGRAM names no command")
 class Command(Case):
     def test_run_and_read(self):
-        told = []
+        reported = []
         cache = singe.run(self.scene(), self.dir / "out", frames=4, preview=False, settings={"pace": np.float32(3)},
-                          progress=lambda done, frames: told.append((done, frames)))
-        self.assertEqual(told[-1], (4, 4))
-        self.assertEqual(told, sorted(set(told)))
+                          progress=lambda done, frames: reported.append((done, frames)))
+        self.assertEqual(reported[-1], (4, 4))
+        self.assertEqual(reported, sorted(set(reported)))
         self.assertEqual(cache.frames, [1, 2, 3, 4])
         self.assertEqual(cache.scene["pace"], 3)
         self.assertTrue(np.allclose(cache.stats["time"], [frame.time for frame in cache], atol=1e-5))
@@ -69,9 +69,9 @@ class Command(Case):
             with self.assertRaisesRegex(ImportError, r"singe\[alembic\]"):
                 cache.write_alembic()
             return
-        told = []
-        path = cache.write_alembic(progress=lambda done, frames: told.append((done, frames)))
-        self.assertEqual((path, told), (self.dir / "out" / "tiny.abc", [(1, 3), (2, 3), (3, 3)]))
+        reported = []
+        path = cache.write_alembic(progress=lambda done, frames: reported.append((done, frames)))
+        self.assertEqual((path, reported), (self.dir / "out" / "tiny.abc", [(1, 3), (2, 3), (3, 3)]))
         self.assertTrue(path.read_bytes().startswith(b"Ogawa"))
         whole = path.read_bytes()
         cache[2].path.unlink()

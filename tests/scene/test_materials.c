@@ -292,7 +292,7 @@ static void test_mistakes(void **state) {
     expect_mistake(in, "    material: range.yaml\n", "range.yaml:1:19", "must not begin above its end", 1);
     expect_mistake(in, "    material: deep0.yaml\n", "deep15.yaml:1:7", "more than 16 deep", 1);
     expect_mistake(in, "    material: long.yaml\n", "scene.yaml:3:15", "larger than 1 MiB", 1);
-    // told once however many sheets are made of it, and behind those of the scene
+    // reported once however many sheets are made of it, and behind those of the scene
     expect_mistake(in,
                    "    material: key.yaml\n  - {grid: {size: [1, 1], cells: [1, 1]}, material: key.yaml}\npac: 2\n",
                    "scene.yaml:5:1", "did you mean 'pace'?", 2);

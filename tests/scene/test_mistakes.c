@@ -286,7 +286,7 @@ static void test_unprintable(void **state) {
             if (i < 8) assert_non_null(strstr(all, characters[c].escaped));
             free(all);
             scene_messages_free(&messages);
-            const char *set[] = {line + strspn(line, " -{")}; // "fps: a" is no PATH=VALUE, and told as it is
+            const char *set[] = {line + strspn(line, " -{")}; // "fps: a" is no PATH=VALUE, and reported as it is
             messages = failing(SHEET, strlen(SHEET), NULL, set, 1, SINGE_ERROR_FORMAT);
             all = printed(&messages);
             assert_null(strstr(all, characters[c].bytes));

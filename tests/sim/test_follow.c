@@ -181,7 +181,7 @@ static void a_swelling_block_lifts(void **state) {
     singe_sim_destroy(sim);
 }
 
-/// Two corners go round; frame by frame they are where they were told to be.
+/// Two corners go round; frame by frame they are where they were set.
 static void round_trip(SingeSim *sim, SingePinId pin, SingeColliderId body, const Block *block, int first, int last) {
     for (int f = first; f < last; f++) {
         const double end = (f + 1) / 48.0;
