@@ -135,6 +135,7 @@ typedef struct Work {
     Inland *inland;
     size_t inland_count, inland_room;
     Rim *rim;
+    uint32_t nearest; ///< point to the last sample: the next one is not far
 } Work;
 
 static bool inland_add(Work *work, const Sample *sample, uint32_t nearest) {
@@ -157,8 +158,8 @@ static int angle_bin(double degrees) {
 
 /// False when out of memory.
 static bool take_sample(Work *work, const Sample *sample) {
-    uint32_t nearest = 0;
-    const double distance = rim_points_distance(&work->points, sample->rest, rim_band_limits[RIM_BANDS], &nearest);
+    const double distance =
+        rim_points_distance(&work->points, sample->rest, rim_band_limits[RIM_BANDS], &work->nearest);
     if (!(distance < rim_band_limits[RIM_BANDS])) return true;
     int b = 0;
     while (distance >= rim_band_limits[b + 1]) b++;
@@ -172,8 +173,8 @@ static bool take_sample(Work *work, const Sample *sample) {
     band->slope[angle_bin(degrees_between(sample->normal, piece->normal))] += sample->rest_area;
 
     if (distance <= normal_depth)
-        for (int k = 0; k < 3; k++) work->points.near[nearest][k] += sample->normal[k] * sample->rest_area;
-    if (fabs(distance - curl_distance) <= curl_width) return inland_add(work, sample, nearest);
+        for (int k = 0; k < 3; k++) work->points.near[work->nearest][k] += sample->normal[k] * sample->rest_area;
+    if (fabs(distance - curl_distance) <= curl_width) return inland_add(work, sample, work->nearest);
     return true;
 }
 

@@ -184,8 +184,25 @@ bool rim_points_make(const SingeSurface *surface, int32_t piece, RimPoints *poin
     return good;
 }
 
-/// Visits the points in the grid's cells that are `ring` cells from that of a position, to find one nearer than
-/// *square.
+/// m, no more than the distance of cell `at` from a position along an axis. Points have been rounded to cells.
+static double gap_along(const RimPoints *points, const double *position, int at, int axis) {
+    const double low = points->low[axis] + at * points->cell, slack = 1e-6 * points->cell;
+    const double below = low - position[axis] - slack, above = position[axis] - low - points->cell - slack;
+    return below > 0 ? below : above > 0 ? above : 0;
+}
+
+/// Visits the points of a cell, to find one nearer than *square.
+static void look_at_cell(const RimPoints *points, const double *position, size_t cell, double *square,
+                         uint32_t *nearest) {
+    for (uint32_t i = points->first[cell]; i < points->first[cell + 1]; i++) {
+        const double *point = points->position[points->order[i]];
+        double d[3] = {point[0] - position[0], point[1] - position[1], point[2] - position[2]},
+               found = rim_points_dot(d, d);
+        if (found < *square) *square = found, *nearest = points->order[i];
+    }
+}
+
+/// Visits the cells that are `ring` cells from that of a position, but for those that are farther than *square.
 static void look_at_ring(const RimPoints *points, const double *position, const int *centre, int ring, double *square,
                          uint32_t *nearest) {
     int low[3], high[3];
@@ -194,20 +211,21 @@ static void look_at_ring(const RimPoints *points, const double *position, const 
         high[k] = centre[k] + ring >= points->size[k] ? points->size[k] - 1 : centre[k] + ring;
     }
     int at[3];
-    for (at[2] = low[2]; at[2] <= high[2]; at[2]++)
+    for (at[2] = low[2]; at[2] <= high[2]; at[2]++) {
+        const double z = gap_along(points, position, at[2], 2);
         for (at[1] = low[1]; at[1] <= high[1]; at[1]++) {
-            bool whole = abs(at[2] - centre[2]) == ring || abs(at[1] - centre[1]) == ring;
-            for (at[0] = low[0]; at[0] <= high[0]; at[0]++) {
-                if (!whole && abs(at[0] - centre[0]) != ring) continue;
-                size_t c = cell_at(points, at);
-                for (uint32_t i = points->first[c]; i < points->first[c + 1]; i++) {
-                    const double *point = points->position[points->order[i]];
-                    double d[3] = {point[0] - position[0], point[1] - position[1], point[2] - position[2]},
-                           found = rim_points_dot(d, d);
-                    if (found < *square) *square = found, *nearest = points->order[i];
-                }
+            const double y = gap_along(points, position, at[1], 1), row = y * y + z * z;
+            if (row >= *square) continue;
+            // rows inside the ring have its two ends alone
+            const bool whole = abs(at[2] - centre[2]) == ring || abs(at[1] - centre[1]) == ring;
+            const int step = whole ? 1 : 2 * ring, begin = whole ? low[0] : centre[0] - ring;
+            for (at[0] = begin; at[0] <= high[0]; at[0] += step) {
+                const double x = gap_along(points, position, at[0], 0);
+                if (at[0] >= 0 && x * x + row < *square)
+                    look_at_cell(points, position, cell_at(points, at), square, nearest);
             }
         }
+    }
 }
 
 double rim_points_distance(const RimPoints *points, const double position[3], double reach, uint32_t *nearest) {
@@ -219,6 +237,12 @@ double rim_points_distance(const RimPoints *points, const double position[3], do
         if (centre[k] < -rings || centre[k] >= points->size[k] + rings) return INFINITY;
     }
 
+    // nothing farther than the point nearest to the position before; a little more, so that this one is found again
+    if (*nearest < points->count) {
+        const double *point = points->position[*nearest];
+        double d[3] = {point[0] - position[0], point[1] - position[1], point[2] - position[2]};
+        square = fmin(square, (1 + 1e-9) * rim_points_dot(d, d) + 1e-30);
+    }
     bool found = false;
     for (int ring = 0; ring <= rings; ring++) {
         if (ring > 0 && square <= pow((ring - 1) * points->cell, 2)) break; // nothing nearer can be that far

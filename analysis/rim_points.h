@@ -24,7 +24,8 @@ typedef struct RimPoints {
 bool rim_points_make(const SingeSurface *surface, int32_t piece, RimPoints *points);
 void rim_points_free(RimPoints *points);
 
-/// m from a rest position to the nearest point, or INFINITY from `reach` on.
+/// m from a rest position to the nearest point, or INFINITY from `reach` on. *nearest is that point; before the call,
+/// any number, at best that of a point nearby.
 double rim_points_distance(const RimPoints *points, const double position[3], double reach, uint32_t *nearest);
 
 /// The rim's normal at each point, from `near` of all points within `reach` in m.
