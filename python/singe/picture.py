@@ -62,8 +62,8 @@ def draw(surface: Any, width: int = 480, height: int = 360) -> np.ndarray:
     def at(values: np.ndarray) -> np.ndarray:
         return np.einsum("nk,nk...->n...", weights, values[corners])
 
-    position = at(pixels)
-    cell = np.clip(position[:, 1].astype(int), 0, height - 1) * width + np.clip(position[:, 0].astype(int), 0, width - 1)
+    x, y = at(pixels).astype(int).T
+    cell = np.clip(y, 0, height - 1) * width + np.clip(x, 0, width - 1)
     depth = at(surface.position @ towards)
     order = np.argsort(depth, kind="stable")  # the last to be written is the nearest
     burn, heat = at(surface.burn), at(surface.temperature)
