@@ -11,7 +11,8 @@
 /// go to context->events in order of particle. SINGE_ERROR_DIVERGED with the particle when a mass is not finite.
 SingeResult burn_step(const StepContext *context, const float *thickening, double *partial, BurnState *burn);
 
-/// Target lengths from the masses, of all springs that `ablate` has left: to the bit those that the steps left there.
+/// Computes the target lengths of all springs that are alive in `ablate` from the masses: to the bit those that the
+/// steps computed.
 void burn_restore_lengths(const Shell *shell, const AblateState *ablate, BurnState *burn);
 
 #endif

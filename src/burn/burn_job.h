@@ -9,7 +9,7 @@ typedef struct BurnJob {
     const StateInput *state;
     float h;                 ///< s, the step in scene time
     float dt;                ///< s, of fire: h times pace
-    float time;              ///< s, stamped on what happens in this step
+    float time;              ///< s, time stamp of this step
     const float *thickening; ///< [sheets] F
     double *partial;         ///< [pool_blocks(particles)]
     BurnState *burn;
@@ -21,8 +21,8 @@ static inline void burn_block(const BurnJob *job, int block, uint32_t *first, ui
     *last = *first + POOL_BLOCK < job->shell->particle_count ? *first + POOL_BLOCK : job->shell->particle_count;
 }
 
-/// Whether any of the particles [first, last), at most FIELD_RUN of them, is above its ignition temperature or not a
-/// number: most of a sheet is not, most of the time.
+/// Whether any of the particles [first, last), at most FIELD_RUN of them, has reached its ignition temperature or is
+/// not a number. Most of a sheet usually has not.
 static inline bool burn_is_hot(const BurnJob *job, uint32_t first, uint32_t last) {
     const float *temperature = job->state->heat->temperature + first;
     const float *ignition = field_run(job->shell->matter.ignition_temperature, first);
@@ -39,15 +39,15 @@ static inline uint32_t burn_run_end(uint32_t first, uint32_t last) {
 /// Stamps particles that reached their ignition temperature and pushes their events in order of particle.
 void burn_ignite(BurnJob *job, Pool *pool, EventList *events);
 
-/// The share of the air that reaches hot char, left in burn->release until burn_lose_mass writes that (glow.c).
+/// The share of the air that reaches hot char, stored in burn->release until burn_lose_mass overwrites it (glow.c).
 void burn_air(BurnJob *job, Pool *pool);
 
 /// The second reaction: the share of char that is left of `share` after dt s.
 float burn_glow(const BurnJob *job, uint32_t i, float fuel, float share, float air, float dt);
-/// K by which a mass fraction of char heats unit mass as it glows away.
+/// K by which unit mass is heated per mass fraction of char that glows away.
 float burn_glow_heat(const BurnJob *job, uint32_t i);
 
-/// Eq 4 and the glowing of char. Returns the mass that went as gas, kg; not finite where a mass is not.
+/// Eq 4 and the glowing of char. Returns the mass lost as gas, kg; not finite if a mass is not.
 double burn_lose_mass(BurnJob *job, Pool *pool);
 
 /// Eq 6, for springs with an end that lost mass in this step.

@@ -30,7 +30,7 @@ SingeResult burn_step(const StepContext *context, const float *thickening, doubl
     if (!isfinite(lost)) return diverged(context->shell, burn, context->error);
     burn->mass_burnt += lost;
 
-    // shorten the springs of what has lost mass
+    // shorten the springs of particles that lost mass
     if (lost > 0) burn_shrink(&job, pool);
     return SINGE_OK;
 }

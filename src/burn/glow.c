@@ -1,36 +1,35 @@
-// Glowing, the second reaction (beyond the paper): what pyrolysis leaves as char burns away to ash. With the fractions
-// of the initial mass f of fuel, c of char and a of ash, and the share z = c/nu,
+// Glowing, the second reaction (beyond the paper): the char that pyrolysis leaves burns to ash. With the fractions of
+// the initial mass f of fuel, c of char and a of ash, and the share z = c/nu,
 //
 //   m = f + c + a,   a = m_min (1 - f - z)
 //   dc/dt = -nu df/dt - nu (k/(F F_c)) z^(1/2),   1/k = 1/r(T) + 1/(s k_air),   r = A exp(-E/(R T))
 //
-//   nu     char_yield: what pyrolysis leaves; at or below m_min there is no char, and nothing here
-//   r      1/s, kinetics of the oxidation of cellulose's char: A = 5.667e9 1/s, E = 160 kJ/mol (Kashiwagi & Nambu,
+//   nu     char_yield: mass that pyrolysis leaves; at or below m_min there is no char, and no glowing
+//   r      1/s, kinetics of the oxidation of cellulose char: A = 5.667e9 1/s, E = 160 kJ/mol (Kashiwagi & Nambu,
 //          Combust. Flame 88, 1992, 345-368)
-//   k_air  1/s, char_rate: what air at an edge can burn
-//   s      share of it that reaches a particle, s = (1 - f_n)^8 max(s_0, w, 1 at an edge): what leaves the fuel, and
-//          the flame, keep the air away; within a leaf little air comes, s_0 = char_air; at an edge, and where char has
-//          burnt away and ash is porous, all of it. w is the largest 1 - f - z, and f_n the largest f, of the particle
-//          and those beside it in the other layer
+//   k_air  1/s, char_rate: rate that the air at an edge sustains
+//   s      share of this air that reaches a particle, s = (1 - f_n)^8 max(s_0, w, 1 at an edge): gas from the fuel, and
+//          the flame, keep the air away; inside a leaf little air arrives, s_0 = char_air; at an edge, and where char
+//          has burnt to porous ash, all of it. w is the max of 1 - f - z, and f_n the max of f, over the particle and
+//          its neighbours in the other layer
 //   F      front thickening, by which every rate is divided
-//   F_c    1 + 3 (1 - f)^8: the diffusivity alpha stands for heat that the flame's gas carries along the sheet. Char
-//   has
-//          no flame, alpha/F_c is left for it, and its front is thickened F_c times for the cells: so conduction stays
-//          as it is, and what burns and cools char is F_c times slower (also heat/heat.c). Without this the heat of an
-//          ember reaches half a cell, and embers go out where the flame leaves them
+//   F_c    1 + 3 (1 - f)^8: the diffusivity alpha includes heat that the flame's gas carries along the sheet. Char has
+//          no flame, so alpha/F_c remains for it, and its front is thickened F_c times for the cells: conduction stays
+//          unchanged, and char burns and cools F_c times slower (also heat/heat.c). Without this the heat of an ember
+//          reaches half a cell, and embers die where the flame leaves them
 //
 // Slow kinetics and slow supply are resistances in series, as in the theory of burning carbon (Glassman, Combustion,
-// 9B). So char that is hot glows at edges and dies where it loses more than it gets, and embers crawl into a leaf from
-// there. The order 1/2 ends in a finite time, as a thread does whose rim burns at an even pace.
+// 9B). So hot char glows at edges and dies where it loses more heat than it gains, and embers creep from the edges into
+// a leaf. The order 1/2 ends in a finite time, like a thread whose rim burns at a constant speed.
 //
-// The heat of what glows stays in the sheet and warms what is left there,
+// The heat of glowing stays in the sheet and heats the remaining mass,
 //
 //   dT/dt = (H/c_p)(1 - m_min/nu)(-dc/dt)/max(m, floor),   H = H_c (h + (1 - h)/(1 + q)),   q = 2500 exp(-6240 K/T)
 //
-// over what is left as the losses are (heat/heat.c). H_c is the heat of char that goes to CO2; q is how much goes to CO
-// in place of CO2 (Arthur, Trans. Faraday Soc. 47, 1951, 164-178), h = .28 the share of the heat that this gives: 9.2
-// of
-// 32.8 MJ/kg of carbon. So the hotter an ember is the less it gives, and more air makes it faster rather than hotter.
+// divided by the remaining mass like the losses (heat/heat.c). H_c is the heat of char that burns to CO2; q is the
+// ratio of CO to CO2 (Arthur, Trans. Faraday Soc. 47, 1951, 164-178), and h = .28 the share of the heat that burning to
+// CO gives: 9.2 of 32.8 MJ/kg of carbon. So a hotter ember gives less heat, and more air makes it faster rather than
+// hotter.
 #include "common/check.h"
 #include "common/real.h"
 #include "burn/burn_job.h"
@@ -41,7 +40,7 @@ static const float GLOW_PRE_EXPONENTIAL = 5.667e9f; // 1/s
 static const float GLOW_CO = 2500, GLOW_CO_TEMPERATURE = 6240, GLOW_CO_HEAT = 0.28f;
 static const float GLOW_TEMPERATURE = 160e3f / 8.314462618f; // K, E/R
 
-/// The share of a particle that has gone on to ash.
+/// The share of a particle that has become ash.
 static float glow_ash(const BurnJob *job, uint32_t i) {
     const Matter *matter = &job->shell->matter;
     float fuel = job->burn->fuel[i], min = field_at(matter->mass_min, i), yield = field_at(matter->char_yield, i);
@@ -53,7 +52,7 @@ static bool glow_is_gone(const BurnJob *job, uint32_t cell) {
     return cell == SHELL_NONE || !(job->state->ablate->cell_flags[cell] & SINGE_ALIVE);
 }
 
-/// w of a cell's centre; 1 beside a cell that is gone, and at the border.
+/// w of a cell's centre; 1 next to a cell that is gone, and at the border.
 static float glow_centre(const BurnJob *job, uint32_t cell) {
     SINGE_ASSERT(cell < job->shell->cell_count);
     const Shell *shell = job->shell;

@@ -21,7 +21,7 @@ static uint32_t mark_run(BurnJob *job, uint32_t first, uint32_t last) {
     return count;
 }
 
-/// Leaves the number of new ignitions in every block's partial.
+/// Stores the number of new ignitions of every block in its partial.
 static void mark_blocks(void *context, int begin, int end) {
     BurnJob *job = context;
     SINGE_ASSERT(begin >= 0 && begin <= end);

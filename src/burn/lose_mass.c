@@ -2,21 +2,21 @@
 //
 //   dm/dt = (1 - nu) df/dt = -(mu/F) f^p min((T - T_ign)+, theta),   m = nu + (1 - nu) f
 //
-//   m      mass as a fraction of the initial mass, 1 unburnt; f fuel: what can still pyrolyse, 1 to 0
-//   nu     what that leaves: char, which then glows away to m_min (glow.c), or m_min itself in the paper, where f is
-//          (m - m_min)/(1 - m_min)
+//   m      mass as a fraction of the initial mass, 1 unburnt; f fuel: share that can still pyrolyse, 1 to 0
+//   nu     mass that pyrolysis leaves: char, which then glows to m_min (glow.c), or m_min itself in the paper, where f
+//          is (m - m_min)/(1 - m_min)
 //   mu     mass rate, 1/(K s)
 //   F      front thickening, by which every rate is divided
 //   T, T_ign  temperature and ignition temperature, K;  (.)+ is zero below zero
-//   theta  ceiling, K: hotter fuel burns no faster, for the air brings no more oxygen; infinite in the paper
+//   theta  ceiling, K: hotter fuel burns no faster, as the air brings no more oxygen; infinite in the paper
 //   p      ash exponent; 0 is the paper's straight line, larger p leaves flakes of ash
 //
-// With a pre-exponential factor A > 0 the rate is Arrhenius' instead, for what is above T_ign:
+// With a pre-exponential factor A > 0 the rate above T_ign is Arrhenius' instead:
 //
 //   df/dt = -(A/F) f^p exp(-E/(R T_e)),   T_e = min(T, T_ign + theta),   E activation energy, J/mol
 //
-// Over one step T is held, and k = mu dt min((T - T_ign)+, theta)/(F (1 - nu)), or A dt exp(-E/(R T_e))/F, is a
-// number. df/dt = -(k/dt) f^p is then solved exactly, so that no step however long passes 0, and f falls by
+// Over one step T is constant, and so is k = mu dt min((T - T_ign)+, theta)/(F (1 - nu)), or A dt exp(-E/(R T_e))/F.
+// df/dt = -(k/dt) f^p is then solved exactly, so that no step overshoots 0, however long, and f falls by
 //
 //   p = 0     k, at most f
 //   p = 1/2   (k/2) (2 sqrt(f) - k/2), and all of f once k/2 >= sqrt(f)
@@ -24,7 +24,7 @@
 //   p = 2     f / (1 + 1/(k f))
 //   else      f (1 - (1 - r)^(1/(1 - p))),  r = (1 - p) k f^(p - 1), and all of f once r >= 1
 //
-// What pyrolysis warms the sheet by is eta (1 - nu) df, eq 1.
+// Pyrolysis heats the sheet by eta (1 - nu) df, eq 1.
 #include "common/check.h"
 #include "common/real.h"
 #include "burn/burn_job.h"
@@ -34,7 +34,7 @@
 
 static const float STRENGTH_MAX = 1e30f;
 
-/// How much x falls in a step of strength k; x > 0, k > 0. NaN comes through.
+/// The decrease of x in a step of strength k; x > 0, k > 0. NaN propagates.
 static float fall(float x, float k, float p) {
     if (p == 0.0f) return k > x ? x : k;
     if (p == 1.0f) return -x * real_expm1f(-k);
@@ -47,7 +47,7 @@ static float fall(float x, float k, float p) {
     return r >= 1 ? x : -x * real_expm1f(real_log1pf(-r) / (1 - p));
 }
 
-/// A exp(-E/(R T_e)), 1/s; NaN comes through.
+/// A exp(-E/(R T_e)), 1/s; NaN propagates.
 static float arrhenius_rate(const Matter *matter, uint32_t i, float excess) {
     const float gas_constant = 8.314462618f; // J/(mol K)
     float temperature = field_at(matter->ignition_temperature, i) + excess;
@@ -55,12 +55,12 @@ static float arrhenius_rate(const Matter *matter, uint32_t i, float excess) {
     return field_at(matter->pre_exponential, i) * real_expf(-exponent);
 }
 
-/// One particle's new fuel; NaN comes through.
+/// One particle's new fuel; NaN propagates.
 static float lower_fuel(const Matter *matter, uint32_t i, float fuel, float excess, float dt) {
     float k = field_at(matter->mass_rate, i) * dt * excess / (1 - field_at(matter->char_yield, i));
     if (field_at(matter->pre_exponential, i) > 0) k = arrhenius_rate(matter, i, excess) * dt;
     if (fuel <= 0 || k <= 0) return fuel;
-    if (k > STRENGTH_MAX) k = STRENGTH_MAX; // all burns; infinite it would be NaN times an f^p that vanishes
+    if (k > STRENGTH_MAX) k = STRENGTH_MAX; // all burns; infinity times a vanishing f^p would be NaN
     float lowered = fuel - fall(fuel, k, field_at(matter->ash_exponent, i));
     return lowered < 0 ? 0 : lowered;
 }

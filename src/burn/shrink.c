@@ -6,26 +6,26 @@
 //   v0, v1  volume ratios of the ends, eq 5
 //   s       mean of the ends' shrink factors; 1 is the paper, and the layers' difference makes curl
 //
-// Paper shrinks more across its fibres than along them: for bond paper that dries, 1.5 to 4 times (Roberts &
-// Etherington, Bookbinding and the Conservation of Books, 1982, "anisotropic behavior"). With q the ratio,
-// `fibre_shrink`, and b = e (q - 1)/(q + 1), lengths along the fibres become 1 - e + b of what they were, those across
-// 1 - e - b. So all springs measure one stretched plane: at the angle phi to the fibres
+// Paper shrinks more across its fibres than along them: for drying bond paper, 1.5 to 4 times (Roberts & Etherington,
+// Bookbinding and the Conservation of Books, 1982, "anisotropic behavior"). With q the ratio, `fibre_shrink`, and b = e
+// (q - 1)/(q + 1), lengths along the fibres are scaled by 1 - e + b, those across by 1 - e - b. So all springs fit one
+// stretched plane: at the angle phi to the fibres
 //
 //   (l/l_init)^2 = (1 - e + b)^2 cos^2 phi + (1 - e - b)^2 sin^2 phi = (1 - e)^2 + b (b + 2 (1 - e) cos 2 phi)
 //
-// What of a red spring stands on the sheet shrinks by 1 - e: with the share p of its square in the plane it has
-// p b^2 in place of b^2, and p is in its `grain` already (shell/fibre.c).
+// The component of a red spring normal to the sheet shrinks by 1 - e: with the share p of its square in the plane, p
+// b^2 replaces b^2. Its `grain` already contains p (shell/fibre.c).
 //
-// v follows from the mass alone, so that only springs with an end that lost mass need a new length.
+// v depends only on the mass, so only springs with an end that lost mass need a new length.
 #include "common/check.h"
 #include "burn/burn_job.h"
 
 #include <math.h>
 
-/// A strong shrink factor must not turn a spring inside out.
+/// A strong shrink factor must not invert a spring.
 #define RATIO_MIN 0.05f
 
-/// What a spring asks of an end.
+/// Properties of a spring's end.
 typedef struct SpringEnd {
     float volume; ///< v of eq 5
     float shrink; ///< s
@@ -46,7 +46,7 @@ static inline float length_ratio(SpringEnd a, SpringEnd b) {
     return ratio < RATIO_MIN ? RATIO_MIN : ratio;
 }
 
-/// The ratio of a spring that lies in the fibres' direction as `grain` says; `even` is the one without fibres.
+/// The length ratio of a spring with this `grain`; `even` is the ratio without fibres.
 static inline float fibre_ratio(SpringEnd a, SpringEnd b, float even, float grain, float in_plane) {
     float q = 0.5f * (a.fibres + b.fibres), max = even - RATIO_MIN, stretch = (1 - even) * (q - 1) / (q + 1);
     stretch = stretch > max ? max : stretch < -max ? -max : stretch;
@@ -55,7 +55,7 @@ static inline float fibre_ratio(SpringEnd a, SpringEnd b, float even, float grai
 
 /// The share p of the square of a red spring that lies in the plane of the sheet.
 static inline float red_in_plane(const Matter *matter, const SpringSet *red, uint32_t s, uint32_t centre) {
-    if (!red->grain) return 1; // nobody asks
+    if (!red->grain) return 1; // unused
     float upright = field_at(matter->thickness, centre) / red->rest[s];
     return upright < 1 ? 1 - upright * upright : 0;
 }
@@ -74,8 +74,8 @@ static inline void shrink_spring(const BurnJob *job, SingeColour colour, uint32_
         job->burn->spring_length[colour][s] = target_length(&job->shell->springs[colour], s, a, b, in_plane);
 }
 
-/// The springs of a cell of which an end burns. One that lies in two cells is left to the first of them that sees an
-/// end of it burn: both see those of a blue spring, and each sees its own centre of a green one.
+/// Shortens the springs of a cell that have a burning end. A spring of two cells is left to the first of them that sees
+/// an end of it burn: both see the ends of a blue spring, each sees only its own centre of a green one.
 static void shrink_burning_cell(const BurnJob *job, uint32_t cell, const bool burns[4], bool centre_burns) {
     SINGE_ASSERT(cell < job->shell->cell_count);
     const Shell *shell = job->shell;

@@ -10,8 +10,8 @@
 
 #include "shell/shell.h"
 
-/// Volume ratio for a mass fraction, of which the shares `fuel` is left of the fuel and `ash` has gone on to ash. In
-/// (0, 1] for sane materials, clamped to [0.05, 1].
+/// Volume ratio at a mass fraction, with the share `fuel` of the fuel left and the share `ash` turned to ash. In (0, 1]
+/// for sane materials, clamped to [0.05, 1].
 static inline float burn_volume_ratio(float mass, float fuel, float ash, float char_density, float ash_density) {
     float ratio = mass / (1 + (char_density - 1) * (1 - fuel) + (ash_density - char_density) * ash);
     return ratio < 0.05f ? 0.05f : ratio > 1 ? 1 : ratio;
