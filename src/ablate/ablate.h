@@ -1,4 +1,4 @@
-// Ablation: removes what is burnt (section 6), labels the pieces, and gives the level set that is drawn.
+// Ablation: removes burnt parts (section 6), labels the pieces, and gives the level set that is drawn.
 #ifndef ABLATE_ABLATE_H
 #define ABLATE_ABLATE_H
 
@@ -18,16 +18,16 @@ float ablate_level(const Shell *shell, const State *state, uint32_t particle);
 /// first; a caller that reads pieces before the first step calls it too.
 void ablate_label(AblatePlan *plan, const Shell *shell, AblateState *ablate);
 
-/// Whether data that was read back is consistent: springs that are left and counted at their ends, pieces connected by
-/// them, and enough ids for all pieces that may still separate. The shell's tears have been repeated.
+/// Whether data that was read back is consistent: live springs are counted at their ends, pieces are connected by them,
+/// and ids suffice for all pieces that may still separate. The shell's tears have been repeated.
 bool ablate_fits(AblatePlan *plan, const Shell *shell, const AblateState *ablate);
 
 /// Removes burnt triangles, springs, particles and small loose pieces; relabels pieces when topology changed; pushes
-/// hole and piece events. The context's ambient temperature is the zero of the enthalpy that removed particles carry
-/// away. Reads the other parts of the State, and writes `ablate`; cannot fail. The first call labels the pieces.
+/// hole and piece events. The enthalpy of removed particles is relative to the context's ambient temperature. Reads the
+/// other parts of the State, and writes `ablate`; cannot fail. The first call labels the pieces.
 void ablate_step(AblatePlan *plan, const StepContext *context, AblateState *ablate);
 
-/// Labels the pieces again after a tear; small loose ones go, and those that came free are reported.
+/// Relabels the pieces after a tear, removes small loose ones, and reports those that separated.
 void ablate_torn(AblatePlan *plan, const StepContext *context, AblateState *ablate);
 
 /// Draws the surface (marching triangles, surface.c). Grows `surface` through its allocator.

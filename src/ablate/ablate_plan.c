@@ -1,4 +1,4 @@
-// Scratch of the ablate stage and the neighbours it looks at.
+// Scratch of the ablate stage, and the mesh's boundary.
 #include "ablate/ablate_plan.h"
 
 #include <string.h>

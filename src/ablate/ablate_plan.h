@@ -29,13 +29,13 @@ struct AblatePlan {
     uint32_t *output; ///< [keys.count] index in the surface; in the same scratch
 };
 
-/// Makes the plan follow a shell that has torn.
+/// Updates the plan for a shell that has torn.
 void ablate_plan_follow(AblatePlan *plan, const Shell *shell);
 
 /// Fills plan->level.
 void ablate_levels(AblatePlan *plan, const Shell *shell, const BurnState *burn);
 
-/// What is left of a cell: bit i is the triangle of side i (corners i, i + 1 and the virtual centre). A
+/// The remaining triangles of a cell: bit i is the triangle of side i (corners i, i + 1 and the virtual centre). A
 /// triangle is gone when its three levels are negative.
 static inline unsigned ablate_triangles(const AblatePlan *plan, const Shell *shell, uint32_t cell) {
     SINGE_ASSERT(cell < shell->cell_count);
@@ -47,7 +47,7 @@ static inline unsigned ablate_triangles(const AblatePlan *plan, const Shell *she
     return left;
 }
 
-/// What removal works on.
+/// Arguments of removal.
 typedef struct Removal {
     AblatePlan *plan;
     const Shell *shell;
@@ -57,33 +57,33 @@ typedef struct Removal {
     bool changed;       ///< something was removed
 } Removal;
 
-/// Removes a spring unless it has gone already; a particle that loses its last spring goes with it.
+/// Removes a spring unless it is already gone, and a particle with its last spring.
 void remove_spring(Removal *removal, SingeColour colour, uint32_t spring);
 
-/// Removes what has burnt through: springs, cells, particles.
+/// Removes burnt springs, cells and particles.
 void remove_burnt(Removal *removal);
 
-/// Pushes a SINGE_EVENT_HOLE_OPENED for every hole that opened in this step. Comes before the removal.
+/// Pushes a SINGE_EVENT_HOLE_OPENED for every hole that opened in this step. To be called before the removal.
 void hole_report(const AblatePlan *plan, const Shell *shell, const StateInput *state, const AblateState *ablate,
                  EventList *events);
 
 /// Finds the pieces after a change: drops small loose ones, keeps or gives ids, pushes SINGE_EVENT_PIECE_FREED.
 void piece_update(Removal *removal, EventList *events);
 
-/// Room for so many triangles or vertices; what the arrays held is lost. On failure the surface is empty.
+/// Makes room for `count` triangles or vertices; previous contents are lost. On failure the surface is empty.
 SingeResult surface_reserve_triangles(SingeSurface *surface, uint64_t count, SingeError *error);
 SingeResult surface_reserve_vertices(SingeSurface *surface, uint64_t count, SingeError *error);
 
-/// Room for so many vertices in all; those that are there stay. On failure the surface is empty.
+/// Makes room for `count` vertices in total; existing ones are kept. On failure the surface is empty.
 SingeResult surface_grow_vertices(SingeSurface *surface, uint64_t count, SingeError *error);
-/// Vertex `to` becomes what vertex `from` is.
+/// Copies vertex `from` to vertex `to`.
 void surface_copy_vertex(SingeSurface *surface, uint32_t from, uint32_t to);
 
-/// Gives vertices on seams of the uv a copy for each uv. cell_first: [cells + 1] the first triangle of each cell. What
-/// it needs comes from the surface's allocator and goes back. On failure the surface is empty (surface_seams.c).
+/// Gives vertices on seams of the uv a copy for each uv. cell_first: [cells + 1] the first triangle of each cell. Its
+/// scratch comes from the surface's allocator and is freed. On failure the surface is empty (surface_seams.c).
 SingeResult surface_seams(const Shell *shell, const uint32_t *cell_first, SingeSurface *surface, SingeError *error);
 
-/// Empties a surface but for its allocator.
+/// Empties a surface; keeps its allocator.
 void surface_clear(SingeSurface *surface);
 
 /// Fills the normals of a surface's vertices from its triangles.
@@ -93,15 +93,15 @@ void surface_normals(SingeSurface *surface);
 void surface_vertex(const AblatePlan *plan, const Shell *shell, const State *state, uint32_t key, uint32_t index,
                     SingeSurface *surface);
 
-/// Cuts nearer to an end of their edge than this share of it would make triangles as thin as floats are rounded.
+/// Cuts closer to an end of their edge than this fraction of it would make triangles as thin as the rounding of floats.
 #define SURFACE_NEAREST 1e-3f
 
-/// Where the level set cuts an edge, eq 7, as a fraction of the way from the end inside. What is nearer to an end than
-/// `nearest` is 0, the end inside itself, or as far from the one outside.
+/// Where the level set cuts an edge, eq 7, as a fraction of the edge from its inside end. Less than `nearest` becomes
+/// 0, the inside end itself; the max is 1 - nearest.
 float surface_cut(float inside, float outside, float nearest);
 
-/// The corner from which a clipped triangle is cut into triangles: of a quadrilateral, the end inside that is farther
-/// from its cut, for the other diagonal would leave one thinner than the cuts are near.
+/// The corner from which a clipped triangle is triangulated: of a quadrilateral, the inside end that is farther from
+/// its cut, as the other diagonal would leave a triangle thinner than the min distance of cuts from ends.
 int surface_fan(const float level[3], float nearest);
 
 #endif

@@ -1,9 +1,9 @@
 // Where holes open.
 //
-// A hole opens at a particle that burnt through in this step (its level fell below 0) while none of the
-// particles it was built with springs to is burnt through or gone, and that is not at the mesh's boundary:
-// what burns there is a notch. Of neighbours that burn through in the same step only the first in order of
-// particle opens a hole. A centre is never at the boundary.
+// A hole opens at a particle that burnt through in this step (its level fell below 0) if none of the particles that
+// were connected with it by springs at the start is burnt through or gone, and if it is not at the mesh's boundary,
+// where it leaves a notch. Of neighbours that burn through in the same step only the first in order of particle opens a
+// hole. A centre is never at the boundary.
 #include "common/check.h"
 #include "ablate/ablate_plan.h"
 
@@ -12,7 +12,7 @@ typedef struct HoleSearch {
     const Shell *shell;
     const StateInput *state;
     const AblateState *ablate;
-    float now; ///< s, as the burn stage stamped it
+    float now; ///< s, time stamp of the burn stage
 } HoleSearch;
 
 static bool burnt_now(const HoleSearch *search, uint32_t particle) {
@@ -28,7 +28,7 @@ static bool open_before(const HoleSearch *search, uint32_t other, uint32_t parti
     return search->plan->level[other] < 0 && (!burnt_now(search, other) || other < particle);
 }
 
-/// Any corner or the centre of a cell is open: the red, blue and yellow neighbours of its particles.
+/// Whether a corner or the centre of a cell is open: the red, blue and yellow neighbours of its particles.
 static bool cell_open_before(const HoleSearch *search, uint32_t cell, uint32_t particle) {
     SINGE_ASSERT(cell < search->shell->cell_count);
     SINGE_ASSERT(particle < search->shell->particle_count);

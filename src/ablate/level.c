@@ -2,7 +2,7 @@
 //
 //   m' = m - m_loss
 //
-// Not negative: still there. A sheet that is not ablated is inside everywhere.
+// The sheet is left where it is not negative. A sheet that is not ablated is inside everywhere.
 #include "common/check.h"
 #include "ablate/ablate_plan.h"
 

@@ -1,9 +1,9 @@
-// Pieces: what hangs together by springs.
+// Pieces: particles that are connected by springs.
 //
-// Disjoint sets over the springs that are left, with path halving; the root of a set is its smallest
-// particle, so that the result does not depend on the order of the springs. A piece that falls apart leaves
-// its id to the part with most particles (of equals the one with the smallest particle); the others get new
-// ids in order of their smallest particle. A particle without springs belongs to no piece.
+// Disjoint sets over the live springs, with path halving; the root of a set is its smallest particle, so that the
+// result does not depend on the order of the springs. When a piece falls apart, the part with most particles keeps its
+// id (among equals the one with the smallest particle); the others get new ids in order of their smallest particle. A
+// particle without springs belongs to no piece.
 #include "ablate/ablate_plan.h"
 
 #include <string.h>
@@ -24,7 +24,7 @@ static void piece_join(uint32_t *root, uint32_t a, uint32_t b) {
     else root[a] = b;
 }
 
-/// Leaves in plan->root[i] the smallest particle that i hangs together with.
+/// Sets plan->root[i] to the smallest particle that is connected with i.
 static void find_sets(AblatePlan *plan, const Shell *shell, const AblateState *ablate) {
     uint32_t *root = plan->root;
     for (uint32_t i = 0; i < shell->particle_count; i++) root[i] = i;
@@ -34,7 +34,7 @@ static void find_sets(AblatePlan *plan, const Shell *shell, const AblateState *a
         for (uint32_t s = 0; s < springs->count; s++)
             if (flags[s] & SINGE_ALIVE) piece_join(root, springs->ends[s][0], springs->ends[s][1]);
     }
-    // roots come before what they are the root of, so one look is enough
+    // a root precedes the other particles of its set, so one lookup is enough
     for (uint32_t i = 0; i < shell->particle_count; i++) root[i] = root[root[i]];
 }
 
@@ -53,8 +53,8 @@ static void piece_measure(AblatePlan *plan, const Shell *shell, const AblateStat
     }
 }
 
-/// Marks a sheet's small loose pieces; its largest stays whatever its size. The root of a piece is a
-/// corner: no centre depends on without one, and corners come first.
+/// Marks a sheet's small loose pieces; its largest stays whatever its size. The root of a piece is a corner: every
+/// piece has one, and corners come first.
 static bool mark_small(AblatePlan *plan, const Sheet *sheet) {
     uint32_t first = sheet->vertex_first, last = first + sheet->vertex_count, largest = SHELL_NONE;
     bool any = false;
@@ -86,7 +86,7 @@ static bool is_piece(const AblatePlan *plan, uint32_t root) {
     return plan->size[root] > 0 && !(plan->mark[root] & PIECE_DROPPED);
 }
 
-/// For every id the root of the part that keeps it.
+/// Finds for every id the root of the part that keeps it.
 static void choose_heirs(AblatePlan *plan, const AblateState *ablate) {
     memset(plan->heir, 0xff, plan->particle_count * sizeof *plan->heir);
     for (uint32_t r = 0; r < plan->particle_count; r++) {
@@ -96,7 +96,7 @@ static void choose_heirs(AblatePlan *plan, const AblateState *ablate) {
     }
 }
 
-/// Gives every particle the id that its root has by now.
+/// Gives every particle the id of its root.
 static void spread_ids(const AblatePlan *plan, AblateState *ablate) {
     for (uint32_t i = 0; i < plan->particle_count; i++)
         ablate->piece[i] = ablate->degree[i] ? ablate->piece[plan->root[i]] : -1;
@@ -160,8 +160,8 @@ static bool degrees_fit(AblatePlan *plan, const Shell *shell, const AblateState 
     return true;
 }
 
-/// A piece that falls apart takes a new id for each part but one, so it may need as many as it has particles, less one.
-/// Vertices that wait for a tear may become parts, too.
+/// A piece that falls apart takes a new id for each part but one, so it may need as many ids as it has particles, less
+/// one. Spare vertices may become parts, too.
 static bool pieces_fit(AblatePlan *plan, const Shell *shell, const AblateState *ablate) {
     uint64_t pieces = 0, particles = 0;
     find_sets(plan, shell, ablate);

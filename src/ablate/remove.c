@@ -1,16 +1,16 @@
 // Removal (section 6): "if both triangles that share a spring disappear, we remove that spring".
 //
-// Triangle i of a cell joins corners i and i + 1 and the virtual centre. It is gone when its three levels
-// are negative; mass never grows, so what is gone stays gone. Then
+// Triangle i of a cell joins corners i and i + 1 and the virtual centre. It is gone when its three levels are negative;
+// mass never grows, so it stays gone. Then
 //
 //   blue   i goes when triangle i and the one across side i (none at the boundary) are gone
 //   red    i goes when triangles i - 1 and i are gone
 //   yellow   goes when its cell's four triangles are gone
 //   green    goes when either of its cells' four triangles are gone
 //
-// and a particle goes with its last spring. It takes its mass and its enthalpy C (T - T_amb) along. What it burnt in
-// the step that removes it is in mass_burnt, but that step's heat of combustion is not released: heat comes with the
-// next step, for what is alive then. Nor is it counted, so that the ledger closes.
+// and a particle goes with its last spring, with its mass and its enthalpy C (T - T_amb). The mass that it burnt in the
+// step that removes it is in mass_burnt, but that step's heat of combustion is not released: heat is released in the
+// next step, to particles that are then alive. It is not counted either, so that the ledger closes.
 #include "common/check.h"
 #include "ablate/ablate_plan.h"
 
@@ -39,8 +39,8 @@ void remove_spring(Removal *removal, SingeColour colour, uint32_t spring) {
     }
 }
 
-/// The triangle on the other side of side i is gone, or there never was one. The two share the side's
-/// corners, so that only the other centre is left to ask.
+/// Whether the triangle across side i is gone, or never existed. The two share the side's corners, so only the other
+/// centre remains to be checked.
 static bool gone_across(const Removal *removal, uint32_t cell, int i) {
     SINGE_ASSERT(cell < removal->shell->cell_count);
     uint32_t other = shell_neighbour(removal->shell, cell, i);
@@ -68,6 +68,6 @@ static void remove_from_cell(Removal *removal, uint32_t cell) {
 void remove_burnt(Removal *removal) {
     const float *centre_level = removal->plan->level + removal->shell->vertex_count;
     const uint8_t *flags = removal->ablate->cell_flags;
-    for (uint32_t c = 0; c < removal->shell->cell_count; c++) // a cell whose centre is there keeps all it has
+    for (uint32_t c = 0; c < removal->shell->cell_count; c++) // a cell whose centre is left keeps everything
         if (centre_level[c] < 0 && flags[c] & SINGE_ALIVE) remove_from_cell(removal, c);
 }
