@@ -2,21 +2,21 @@
 //
 //   N = (1/A) sum share f L (U x U),   f U L = (f/|d|) (l/L) D,   N = (1/A) sum share pull (l/L) (D x D)   [N/m]
 //
-//   f     N     force of the spring, pulling positive; pull (l/L) is what the dynamics gives
+//   f     N     force of the spring, positive in tension; pull (l/L) is what the dynamics gives
 //   D     m     the spring at rest, in the plane of the sheet; L its length; l its target length
-//   share 1     of a red or yellow spring, and of what lies at the border; 1/2 of what two cells share
+//   share 1     for red and yellow springs, and springs at the border; 1/2 for springs of two cells
 //
 // Where an edge or a cell's diagonal is EDGE_STRETCH times as long as at rest, as in threads of char that carry more
-// than substeps hold (T in tear_step.c), its ends tear, whatever their strength.
+// than substeps can hold (T in tear_step.c), its ends tear, whatever their strength.
 //
-// Both layers are in it: N is that of the sheet. It is filtered over time, so that what does not last some milliseconds
-// tears nothing,
+// Both layers are included: N is that of the sheet. It is filtered over time, so that loads shorter than some
+// milliseconds tear nothing,
 //
 //   N <- N + (1 - exp(-h/tau)) (N_step - N)
 //
-// with the mean over all substeps of a step for N_step, whatever h; where a sheet lets go, N follows at once. And it is
-// averaged over a process zone of a fixed length: a share 1/8 of each neighbour and 1/2 of a cell's own spreads by
-// s^2/4 (variance, an axis) at a time, and so does the mean over the cells at a vertex.
+// with the mean over all substeps of a step for N_step, whatever h; where a sheet is released, N follows at once. N is
+// also averaged over a process zone of a fixed length: one pass, 1/8 of each neighbour and 1/2 of the cell itself,
+// spreads by s^2/4 (variance, an axis), and so does the mean over the cells at a vertex.
 #include "common/check.h"
 #include "common/real.h"
 #include "tear/tear_plan.h"
@@ -51,7 +51,7 @@ typedef struct Measure {
     int from;   ///< which of plan->smooth is read
 } Measure;
 
-/// The centroid of a cell's corners at rest: where its centre is, seen along the normal.
+/// The centroid of a cell's corners at rest: its centre, projected along the normal.
 static Float3 centroid(const Shell *shell, uint32_t cell) {
     SINGE_ASSERT(cell < shell->cell_count);
     const uint32_t *corner = shell->cells[cell];
@@ -81,7 +81,7 @@ static void measure_now(const Measure *job, uint32_t cell, Tensor now) {
     for (int k = 0; k < 6; k++) now[k] /= area;
 }
 
-/// How long an edge or a diagonal is, over how long it is at rest.
+/// Length of an edge or a diagonal over its length at rest.
 static float edge_stretch(const Shell *shell, const State *state, SingeColour colour, uint32_t spring) {
     SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     SINGE_ASSERT(spring < shell->springs[colour].count);
@@ -91,7 +91,7 @@ static float edge_stretch(const Shell *shell, const State *state, SingeColour co
     return length / shell->springs[colour].rest[spring];
 }
 
-/// Something at a vertex has gone.
+/// Whether a cell at a vertex is gone.
 static bool gone_at(const Shell *shell, const State *state, uint32_t vertex) {
     SINGE_ASSERT(vertex < shell->vertex_count);
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
@@ -99,7 +99,7 @@ static bool gone_at(const Shell *shell, const State *state, uint32_t vertex) {
     return false;
 }
 
-/// Whether a tensor's size, which no principal value exceeds, reaches the strength of a corner.
+/// Whether a tensor's norm, which no principal value exceeds, reaches the strength of a corner.
 static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
     SINGE_ASSERT(cell < job->shell->cell_count);
     float square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
@@ -168,7 +168,7 @@ void tear_smooth(TearPlan *plan, const Shell *shell, const State *state, Pool *p
     for (uint32_t s = 1; s < shell->sheet_count; s++) size = fminf(size, shell->sheets[s].cell_size);
     float passes = floorf(4 * LINE_ZONE * LINE_ZONE / (size * size)) - 1;
     int count = passes < 0 ? 0 : passes > LINE_PASSES ? LINE_PASSES : (int)passes;
-    count += count & 1; // and back
+    count += count & 1; // even, so that the result is in smooth[0]
     memcpy(plan->smooth[0], state->tear.line_force, shell->cell_count * sizeof(Tensor));
     Measure job = {.plan = plan, .shell = shell, .state = (State *)(uintptr_t)state};
     for (int k = 0; k < count; k++) {
@@ -177,10 +177,10 @@ void tear_smooth(TearPlan *plan, const Shell *shell, const State *state, Pool *p
     }
 }
 
-/// Whether a cell borders on a torn edge, or the sheet's, at the vertex.
+/// Whether a cell has a torn edge, or an edge of the sheet, at the vertex.
 static bool borders(const Fan *fan, int k) { return fan->after[k] < 0 || fan->before[k] < 0; }
 
-/// The mean over the cells of a vertex; before the tip of a tear over those that lie ahead, where there are any.
+/// The mean over the cells of a vertex; at the tip of a tear over the cells ahead of it, if there are any.
 static bool pull_force(const TearPlan *plan, const Shell *shell, const State *state, const Fan *fan, bool torn,
                        Tensor force) {
     float weight = 0;

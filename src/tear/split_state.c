@@ -1,13 +1,13 @@
-// What a split does to the State: the new particle is what the old one was, and the edges of a tear part a little.
+// The effect of a split on the State: the new particle copies the old one, and the edges of a tear separate slightly.
 #include "common/check.h"
 #include "shell/cross.h"
 #include "tear/tear_plan.h"
 
 #include <string.h>
 
-/// How far each edge of a tear moves towards the centroid of its own cells, of the way there: they are never in one
-/// position, so that contact can tell their sides from the start. It is less than contact keeps free
-/// (collision/collision_plan.h), for it does not look at what moves here.
+/// How far each edge of a tear moves towards the centroid of its own cells, as a fraction of the distance: they never
+/// coincide, so that contact can tell their sides from the start. It is less than the gap that contact keeps
+/// (collision/collision_plan.h), as contact does not check this displacement.
 static const float TEAR_EDGE_GAP = 0.002f;
 
 #define COPY(array, to, from) memcpy((array) + (to), (array) + (from), sizeof *(array))
@@ -32,7 +32,7 @@ static uint16_t split_alive(const State *state, SingeColour colour, uint32_t spr
     return state->ablate.spring_flags[colour][spring] & SINGE_ALIVE;
 }
 
-/// Counts the springs that are left at a corner.
+/// Counts the live springs at a corner.
 static void count_degree(const Shell *shell, State *state, uint32_t vertex) {
     SINGE_ASSERT(vertex < shell->vertex_count);
     uint16_t degree = 0;
@@ -51,7 +51,7 @@ static void count_degree(const Shell *shell, State *state, uint32_t vertex) {
     state->ablate.degree[vertex] = degree;
 }
 
-/// A torn edge has two springs from now on, and nothing spans it.
+/// A torn edge gets a second spring, and the green spring across it is removed.
 static void tear_edge_state(const Shell *shell, State *state, const TornEdge *torn) {
     COPY(state->ablate.spring_flags[SINGE_BLUE], torn->spare, torn->edge);
     COPY(state->burn.spring_length[SINGE_BLUE], torn->spare, torn->edge);
@@ -82,8 +82,8 @@ static bool tear_edges_cross(const Shell *shell, const State *state, uint32_t on
     return false;
 }
 
-/// Parts two edges of a tear at the same position, each towards its cells. Where the sheet is crumpled there, these
-/// may lie across the other one: then along the first of 26 directions in which they do not cross.
+/// Separates two coincident edges of a tear, each towards its cells. If the sheet is crumpled there, these
+/// displacements may make them intersect: then along the first of 26 directions in which they do not intersect.
 static void open_tear_edges(const Shell *shell, State *state, uint32_t one, uint32_t two) {
     enum { DIRECTIONS = 27 };
     float *x = state->dynamics.position[one], *y = state->dynamics.position[two];

@@ -1,8 +1,8 @@
 // Tearing: where the line force in a sheet exceeds its strength, the sheet opens along the sides of its cells.
 //
 // This is the one stage that changes the Shell, by the splits of shell/split.h, whose list is in the TearState. A split
-// makes a particle, so it writes to every part of the State what the new particle takes over from the old one. The
-// stage runs after everything in a step that can fail, so a failed step has torn nothing.
+// creates a particle, so it copies the old particle's values in every part of the State. The stage runs after
+// everything in a step that can fail, so a failed step has torn nothing.
 #ifndef TEAR_TEAR_H
 #define TEAR_TEAR_H
 
@@ -15,10 +15,10 @@ typedef struct TearPlan TearPlan;
 SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPlan **plan);
 void tear_plan_free(Memory *memory, TearPlan *plan);
 
-/// N/m, the line force that a sheet's substeps can carry; with more it stretches (tear_step.c).
+/// N/m, the max line force that a sheet's substeps can hold; above it the sheet stretches (tear_step.c).
 float tear_carried(const Shell *shell, uint32_t sheet, float h);
 
-/// Distance at which a sheet is held, over its geodesic length; changes the strength that applies in this step.
+/// Sets a sheet's strength for this step from the distance at which it is held, over its geodesic length.
 void tear_stretched(TearPlan *plan, uint32_t sheet, float stretch);
 
 /// One step of length h. `pull` are the springs' forces over their lengths in that step, times their target over their

@@ -26,7 +26,7 @@ static inline void tensor_add(float *t, Float3 n, float s) {
 
 /// The load at a vertex.
 typedef struct TearPull {
-    float ratio;   ///< of the largest principal line force and the strength; 0 where nothing can tear
+    float ratio;   ///< largest principal line force over the strength; 0 where nothing can tear
     Float3 across; ///< its direction at rest
     Tensor force;
 } TearPull;
@@ -40,15 +40,15 @@ struct TearPlan {
     uint32_t *leader;     ///< [particles] by piece: its weakest vertex, or LEADER_RUNS
     double *partial;      ///< [pool_blocks(cells)]
     uint32_t sheet_count;
-    float safe;      ///< N/m, nothing tears below: the min of all strengths, as char or weakened
+    float safe;      ///< N/m, nothing tears below: the min of all strengths, fresh, as char or weakened
     float *weakened; ///< [sheets] max share of its fresh strength in this step
-    float *min;      ///< [sheets] that factor where it is pulled farther apart than it reaches
+    float *min;      ///< [sheets] that factor while it is held farther apart than its length
 };
 
 /// N/m, the line force at which a vertex tears.
 float tear_strength(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex);
 
-/// The line force of every cell in this step, filtered (line_force.c). Returns how many cells come near their strength.
+/// Computes the filtered line force of every cell (line_force.c). Returns the number of cells near their strength.
 double tear_measure(TearPlan *plan, const Shell *shell, State *state, const float *const pull[SINGE_COLOUR_COUNT],
                     Pool *pool, float h);
 /// Averages it over the process zone; the result is in plan->smooth[0].

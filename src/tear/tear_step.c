@@ -1,30 +1,29 @@
-// Where sheets tear, and which way.
+// Where sheets tear, and in which direction.
 //
-// A vertex tears where the largest principal value N_1 of the line force exceeds its strength and no vertex of its
-// cells is nearer to tearing. The cells around it are parted along two of its edges, or one where the sheet is open
-// there already. While tears run in a piece, no other begins there, and of those that could begin, one does.
+// A vertex tears if the largest principal value N_1 of the line force exceeds its strength and no vertex of its cells
+// is closer to tearing. The cells around it are separated along two of its edges, or along one if the sheet is already
+// open there. While a tear runs in a piece, no other begins there; of those that could begin, only one does.
 //
-// Cells that are connected by a vertex alone, for what lay between them has burnt, part where they are pulled at with
-// TEAR_HINGE of the strength.
+// Cells that are connected only by a vertex, as those between them have burnt, separate at TEAR_HINGE of the strength.
 //
-// A tear is to run along t, across the direction of N_1, but can along sides of cells only, an edge a step. So of the
-// edges e that lead forwards one is drawn by lot,
+// A tear should run along t, normal to the direction of N_1, but it can run only along sides of cells, one edge per
+// step. So one of the edges e that lead forwards is drawn at random,
 //
 //   weight = (e . t) (S_min/S_e)^4
 //
-// with S_e the mean strength of an edge's ends: on square cells the mean of many edges so has the direction t whatever
-// the cells', and where the sheet is weaker the tear goes there. The lots are multiples of the golden section, one a
-// split: they fall as evenly as can be, so that a tear keeps near its line.
+// with S_e the mean strength of an edge's ends: so on square cells the mean of many edges has the direction t, whatever
+// the cells' orientation, and tears prefer weaker parts of the sheet. The random numbers are multiples of the golden
+// section, one per split: they are distributed as evenly as possible, so that a tear stays close to its line.
 //
-// What line forces there can be. A sheet under tension T vibrates across itself at 4 T/(rho s^2) at most, in (1/s)^2,
-// which substeps of h follow as long as that is below about 1/h^2. Projections hold a sheet that is pulled apart
-// farther no better than to
+// The max line force. A sheet under tension T vibrates transversely at 4 T/(rho s^2) at most, in (1/s)^2, which
+// substeps of h resolve while it is below about 1/h^2. If a sheet is pulled apart farther, projections can hold it only
+// to
 //
 //   T = 0.2 rho s^2/h^2     (measured: 0.19 to 0.35, from 20 to 3 substeps of 1/480 s)
 //
-// with its mass per area rho, and it stretches. Its own weight needs far less. But where it is held farther apart than
-// it reaches along itself, by more than paper stretches before it breaks, it must tear though it is stronger: its fresh
-// strengths are then lowered, all by one factor, so that the smallest is half of this.
+// with its mass per area rho, and it stretches. Its own weight needs far less. But if it is held farther apart than its
+// geodesic length, by more than paper stretches before it breaks, it must tear though it is stronger: all its fresh
+// strengths are then lowered by one factor, so that the smallest is half of this.
 #include "common/check.h"
 #include "common/random.h"
 #include "tear/tear_plan.h"
@@ -38,7 +37,7 @@ static const float STRETCH_MAX = 1.03f; ///< paper breaks at 2 to 4 %
 /// In TearPlan.leader.
 #define LEADER_RUNS (UINT32_MAX - 1)
 
-/// The smallest line force across an edge that tears, of N_1: that of edges within 10 degrees of its direction.
+/// Min line force across an edge that tears, over N_1. Edges within 10 degrees of N_1's direction carry less.
 static const float EDGE_MIN = 0.03f;
 
 float tear_carried(const Shell *shell, uint32_t index, float h) {
@@ -116,7 +115,8 @@ static void mark_torn(TearPlan *plan, const Shell *shell) {
             plan->torn[blue->ends[first + k][end]] = plan->torn[blue->ends[shell->edge_origin[k]][end]] = 1;
 }
 
-/// Nothing that shares a cell with the vertex is nearer to tearing; of a vertex at a tear, nothing else there.
+/// Whether no vertex that shares a cell with this one is closer to tearing. For a vertex at a tear only others at tears
+/// count.
 static bool is_weakest(const TearPlan *plan, const Shell *shell, uint32_t vertex) {
     SINGE_ASSERT(vertex < shell->vertex_count);
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
@@ -130,7 +130,7 @@ static bool is_weakest(const TearPlan *plan, const Shell *shell, uint32_t vertex
     return true;
 }
 
-/// For every piece: that a tear runs in it, or the vertex where one may begin.
+/// Sets for every piece that a tear runs in it, or the vertex where one may begin.
 static void choose_leaders(TearPlan *plan, const State *state) {
     memset(plan->leader, 0xff, plan->particle_count * sizeof *plan->leader);
     for (uint32_t v = 0; v < plan->vertex_count; v++) {
@@ -142,7 +142,7 @@ static void choose_leaders(TearPlan *plan, const State *state) {
     }
 }
 
-/// The cells of a fan in turning order, those that are connected with the first; none of a fan without cells.
+/// The cells of a fan that are connected with the first, in turning order; empty for a fan without cells.
 typedef struct Turn {
     int count, at[SPLIT_FAN];
     bool closed;
@@ -160,7 +160,7 @@ static Turn turn_order(const Fan *fan) {
     return turn;
 }
 
-/// The edge that a cell shares with the one before it: its other end and its direction at rest.
+/// The other end of the edge that a cell shares with the one before it.
 static uint32_t edge_end(const Shell *shell, const Fan *fan, int k) {
     return shell->cells[fan->cell[k]][(fan->corner[k] + 1) & 3];
 }
@@ -168,8 +168,8 @@ static uint32_t edge_end(const Shell *shell, const Fan *fan, int k) {
 /// An edge of a vertex along which it may tear.
 typedef struct TearEdge {
     Float3 along;   ///< from the vertex, at rest
-    float strength; ///< N/m, both ends'; INFINITY where too little of N_1 is across
-    bool solid;     ///< cells on both sides are left
+    float strength; ///< N/m, sum of both ends'; INFINITY if too little of N_1 is across
+    bool solid;     ///< the cells on both sides are left
 } TearEdge;
 
 static bool is_left(const State *state, const Fan *fan, int k) {
@@ -188,17 +188,17 @@ static TearEdge tear_edge(const TearPlan *plan, const Shell *shell, const State 
     return edge;
 }
 
-/// One of the edges [begin, count) by which a tear goes on in the direction `displacement`; -1 where there is none.
-/// `lot` is 0 to 1.
-static int pick_edge(const TearEdge *edges, int begin, int count, Float3 displacement, float lot) {
+/// Picks one of the edges [begin, count) along which a tear continues in `direction`; -1 if there is none. `lot` is 0
+/// to 1.
+static int pick_edge(const TearEdge *edges, int begin, int count, Float3 direction, float lot) {
     float weight[SPLIT_FAN], min = INFINITY, sum = 0;
     for (int j = begin; j < count; j++)
-        if (edges[j].solid && float3_dot(edges[j].along, displacement) > 0) min = fminf(min, edges[j].strength);
+        if (edges[j].solid && float3_dot(edges[j].along, direction) > 0) min = fminf(min, edges[j].strength);
     if (isinf(min)) return -1;
     for (int j = begin; j < count; j++) {
         float weaker = min / edges[j].strength;
         weight[j] =
-            edges[j].solid ? fmaxf(0, float3_dot(edges[j].along, displacement)) * weaker * weaker * weaker * weaker : 0;
+            edges[j].solid ? fmaxf(0, float3_dot(edges[j].along, direction)) * weaker * weaker * weaker * weaker : 0;
         sum += weight[j];
     }
     int last = -1;
@@ -210,7 +210,7 @@ static int pick_edge(const TearEdge *edges, int begin, int count, Float3 displac
     return last;
 }
 
-/// The cells [first, last) of the turn, or the others where those are fewer.
+/// The cells [first, last) of the turn, or the others if they are fewer.
 static uint32_t smaller_part(const Fan *fan, const Turn *turn, int first, int last) {
     uint32_t inside = 0, outside = UINT32_MAX >> (32 - fan->count);
     for (int j = first; j < last; j++) inside |= 1u << turn->at[j];
@@ -235,18 +235,17 @@ static Float3 fan_normal(const Shell *shell, const Fan *fan) {
     return float3_unit(normal);
 }
 
-/// Of what is open at a vertex, the edge that goes on the straightest from one that tears; -1 where nothing is.
-static int open_edge(const TearEdge *edges, int count, Float3 displacement) {
+/// The open edge at a vertex that continues the one along `direction` most straightly; -1 if none is open.
+static int open_edge(const TearEdge *edges, int count, Float3 direction) {
     int open = -1;
     for (int j = 0; j < count; j++)
         if (!edges[j].solid &&
-            (open < 0 || float3_dot(edges[j].along, displacement) < float3_dot(edges[open].along, displacement)))
+            (open < 0 || float3_dot(edges[j].along, direction) < float3_dot(edges[open].along, direction)))
             open = j;
     return open;
 }
 
-/// Cells that are connected with others by the vertex alone, for what lay between them has burnt; 0 where there are
-/// none.
+/// Cells that are connected with others only by the vertex, as those between them have burnt; 0 if there are none.
 static uint32_t hinge_part(const State *state, const Fan *fan, const Turn *turn) {
     int start[2] = {-1, -1};
     for (int j = 0; j < turn->count; j++) {
@@ -259,7 +258,7 @@ static uint32_t hinge_part(const State *state, const Fan *fan, const Turn *turn)
     return start[1] < 0 ? 0 : smaller_part(fan, turn, start[0], start[1]);
 }
 
-/// Which cells of a vertex part from the others; 0 where no edge is pulled at enough.
+/// The cells of a vertex that separate from the others; 0 if no edge is loaded enough.
 static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull,
                             uint32_t vertex, const Fan *fan) {
     SINGE_ASSERT(vertex < shell->vertex_count);
@@ -281,22 +280,22 @@ static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const Stat
         if (edges[j].solid) forward = float3_add(forward, edges[j].along);
     }
 
-    // across the pull, forwards
-    Float3 displacement = float3_cross(normal, pull->across);
-    if (float3_dot(displacement, forward) < 0) displacement = float3_scale(displacement, -1);
+    // the tear's direction: normal to the pull, forwards
+    Float3 direction = float3_cross(normal, pull->across);
+    if (float3_dot(direction, forward) < 0) direction = float3_scale(direction, -1);
     const float lot = random_unit(state->tear.split_count * 2654435769u); // multiples of the golden section
 
     // one edge where the sheet is open, else two
-    int first = pick_edge(edges, begin, count, displacement, lot);
+    int first = pick_edge(edges, begin, count, direction, lot);
     if (first < 0) return 0;
     if (!turn.closed) return smaller_part(fan, &turn, first, count);
     int second = open_edge(edges, count, edges[first].along);
-    if (second < 0) second = pick_edge(edges, 0, count, float3_scale(displacement, -1), lot);
+    if (second < 0) second = pick_edge(edges, 0, count, float3_scale(direction, -1), lot);
     if (second < 0 || second == first) return 0;
     return smaller_part(fan, &turn, first < second ? first : second, first < second ? second : first);
 }
 
-/// The same, where something of both parts is left.
+/// The same; 0 unless cells of both parts are left.
 static uint32_t choose_cells(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull,
                              uint32_t vertex, const Fan *fan) {
     SINGE_ASSERT(vertex < shell->vertex_count);
@@ -310,7 +309,7 @@ typedef struct Ratios {
     const State *state;
 } Ratios;
 
-/// How near each vertex is to tearing; what could tear along none of its edges does not come near.
+/// How close each vertex is to tearing; 0 if it would tear but can along none of its edges.
 static void fill_ratios(void *task, int begin, int end) {
     const Ratios *job = task;
     SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->plan->vertex_count);
@@ -329,7 +328,7 @@ static void fill_ratios(void *task, int begin, int end) {
     }
 }
 
-/// What has torn open does not carry line force across any more.
+/// Removes the line force across a new tear, which no longer carries it.
 static void unload(State *state, const Fan *fan, Float3 across) {
     for (int k = 0; k < fan->count; k++) {
         float *force = state->tear.line_force[fan->cell[k]], carried = tensor_across(force, across);
@@ -337,7 +336,7 @@ static void unload(State *state, const Fan *fan, Float3 across) {
     }
 }
 
-/// Parts what hangs together at a vertex alone.
+/// Separates cells that are connected only by a vertex.
 static void separate(Shell *shell, State *state, uint32_t vertex) {
     SINGE_ASSERT(vertex < shell->vertex_count);
     for (;;) {
@@ -349,11 +348,11 @@ static void separate(Shell *shell, State *state, uint32_t vertex) {
         ShellSplit split = {vertex, smaller_part(&fan, &turn, 0, turn.count), SHELL_NONE};
         if (!split_is_possible(shell, &fan, &split)) return;
         tear_split(shell, state, &fan, &split, &result);
-        if (!(split.cells & 1u << turn.at[0])) return; // the rest went, and may be connected at the new vertex alone
+        if (!(split.cells & 1u << turn.at[0])) return; // the rest went, and may be connected only by the new vertex
     }
 }
 
-/// Splits a vertex; true when it did. Two spare vertices are left for the ends of the edges that it tears.
+/// Splits a vertex; returns whether it did. Keeps two spare vertices for the ends of the edges that it tears.
 static bool tear_vertex(TearPlan *plan, Shell *shell, State *state, uint32_t vertex, bool *short_of_spares) {
     SINGE_ASSERT(vertex < shell->vertex_count);
     TearPull pull = tear_pull(plan, shell, state, vertex);
