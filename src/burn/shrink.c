@@ -7,14 +7,14 @@
 //   s       mean of the ends' shrink factors; 1 is the paper, and the layers' difference makes curl
 //
 // Paper shrinks more across its fibres than along them: for drying bond paper, 1.5 to 4 times (Roberts & Etherington,
-// Bookbinding and the Conservation of Books, 1982, "anisotropic behavior"). With q the ratio, `fibre_shrink`, and b = e
-// (q - 1)/(q + 1), lengths along the fibres are scaled by 1 - e + b, those across by 1 - e - b. So all springs fit one
-// stretched plane: at the angle phi to the fibres
+// Bookbinding and the Conservation of Books, 1982, "anisotropic behavior"). With q the ratio, `fibre_shrink`, and
+// b = e (q - 1)/(q + 1), lengths along the fibres are scaled by 1 - e + b, those across by 1 - e - b. So all springs
+// fit one stretched plane: at the angle phi to the fibres
 //
 //   (l/l_init)^2 = (1 - e + b)^2 cos^2 phi + (1 - e - b)^2 sin^2 phi = (1 - e)^2 + b (b + 2 (1 - e) cos 2 phi)
 //
-// The component of a red spring normal to the sheet shrinks by 1 - e: with the share p of its square in the plane, p
-// b^2 replaces b^2. Its `grain` already contains p (shell/fibre.c).
+// The component of a red spring normal to the sheet shrinks by 1 - e: with the share p of its square in the plane,
+// p b^2 replaces b^2. Its `grain` already contains p (shell/fibre.c).
 //
 // v depends only on the mass, so only springs with an end that lost mass need a new length.
 #include "common/check.h"
