@@ -29,14 +29,14 @@ SingeResult collider_create(Memory *memory, const SingeColliderDef *def, Collide
 void collider_free(Memory *memory, Collider *collider);
 
 /// Signed distance of a point in the collider's own frame, negative inside, and the outward unit normal there (own
-/// frame). Exact inside and where it is less than `limit`; farther out it is some number that is not less than `limit`,
-/// and no more than the distance, and the normal is any. With a limit of 0 only its sign counts, inside too.
+/// frame). Exact inside and where it is less than `limit`; farther out it is some number from `limit` to the distance,
+/// and the normal is arbitrary. With a limit of 0 only the sign is valid, also inside.
 float collider_distance(const Collider *collider, Float3 local, float limit, Float3 *normal);
 
 /// Poses a deforming mesh at a time; others need no posing.
 void collider_at(const Collider *collider, double time);
 
-/// The box that holds the collider, in its own frame, throughout a substep; infinite where the collider is.
+/// The bounding box of the collider during a substep, in its own frame; infinite where the collider is.
 void collider_bounds(const Collider *collider, Float3 *low, Float3 *high);
 
 #endif

@@ -9,7 +9,7 @@ static SingeResult deform_no_memory(SingeError *error) {
     return error_set(error, SINGE_ERROR_MEMORY, "collider", -1, "out of memory for the mesh");
 }
 
-/// The arrays of the second solid that are its own.
+/// Allocates the second solid's own arrays; it shares the others.
 static bool deform_second(Memory *memory, DeformPose *pose) {
     MeshSolid *second = &pose->solid[1];
     *second = pose->solid[0];
@@ -33,7 +33,7 @@ SingeResult deform_create(Memory *memory, uint32_t vertex_count, const float *ve
                     !NEW(memory, deform->rest, vertex_count) || !deform_second(memory, deform->pose)))
         result = deform_no_memory(error);
     if (result) {
-        deform->motion.count = vertex_count; // of what there is of its arrays
+        deform->motion.count = vertex_count; // length of those of its arrays that exist
         deform_free(memory, deform);
         return result;
     }

@@ -1,9 +1,9 @@
-// Signed distance from what lies below a grid of heights over its own x-y rectangle: all (x, y, z) with z < h(x, y).
-// Each cell of the grid is two triangles, split from its node of smallest x and y to the opposite one. The rectangle's
-// edges are walls that go down without end.
+// Signed distance from the solid below a grid of heights over its own x-y rectangle: all (x, y, z) with z < h(x, y).
+// Each cell of the grid is two triangles, with the diagonal from its node of smallest x and y to the opposite one.
+// Walls go down from the rectangle's edges without end.
 //
-// The surface straight above or below is |z - h| away, so only cells that near can hold the foot; blocks of cells whose
-// heights do not come near enough are passed over.
+// The surface straight above or below is |z - h| away, so only cells within this distance can contain the foot; blocks
+// of cells whose heights are farther away are skipped.
 #include "world/height_solid.h"
 #include "world/triangle.h"
 
@@ -77,14 +77,14 @@ static Float3 height_node(const HeightSolid *solid, uint32_t i, uint32_t j) {
                   solid->heights[(size_t)j * solid->columns + i]);
 }
 
-/// The triangle `upper` of a cell; all turn up.
+/// The upper or lower triangle of a cell; all face up.
 static void height_triangle(const HeightSolid *solid, uint32_t i, uint32_t j, bool upper, Float3 corner[3]) {
     corner[0] = height_node(solid, i, j);
     corner[1] = upper ? height_node(solid, i + 1, j + 1) : height_node(solid, i + 1, j);
     corner[2] = upper ? height_node(solid, i, j + 1) : height_node(solid, i + 1, j + 1);
 }
 
-/// The cell along an axis that holds x, the first or last beyond the ends; *part is how far x is through it, 0 to 1.
+/// The cell along an axis that contains x, the first or last beyond the ends; *part is the position of x in it, 0 to 1.
 static uint32_t height_cell(const HeightSolid *solid, int axis, float x, float *part) {
     uint32_t last = (axis ? solid->rows : solid->columns) - 2;
     float at = (x + solid->half[axis]) / solid->step[axis];
@@ -149,7 +149,7 @@ static void height_block(const HeightSolid *solid, Float3 p, uint32_t bi, uint32
             }
 }
 
-/// The surface's foot among those nearer than best->square.
+/// Finds the foot on the surface, if it is nearer than best->square.
 static void height_surface(const HeightSolid *solid, Float3 p, HeightFoot *best) {
     float reach = (float)sqrt(best->square) * 1.0001f, part;
     uint32_t from[2] = {height_cell(solid, 0, p.x - reach, &part), height_cell(solid, 1, p.y - reach, &part)};
@@ -159,7 +159,7 @@ static void height_surface(const HeightSolid *solid, Float3 p, HeightFoot *best)
             height_block(solid, p, bi, bj, from, to, best);
 }
 
-/// The walls' foot.
+/// The same for the walls.
 static void height_walls(const HeightSolid *solid, Float3 p, HeightFoot *best) {
     for (int wall = 0; wall < 4; wall++) {
         float side = wall & 1 ? 1 : -1, at[2] = {p.x, p.y};
@@ -184,10 +184,10 @@ float height_solid_distance(const HeightSolid *solid, Float3 p, float limit, Flo
     float above = p.z - height_at(solid, p.x, p.y, normal);
     bool inside = over && above < 0;
     if (limit == 0) return inside ? -1 : 1;
-    // straight up or down, or at the foot over the nearest position of the rectangle, there is some surface
+    // upper bound: the surface above or below the nearest position of the rectangle
     double slack = 1e-6 * (double)(solid->half[0] + solid->half[1] + float3_length(p)); // heights are rounded
     double max = (double)float3_length(float3(out.x, out.y, above)) + slack;
-    if (!inside) max = fmin(max, (double)limit); // what is not found is not nearer
+    if (!inside) max = fmin(max, (double)limit); // surface beyond the limit need not be found
     HeightFoot best = {.square = max * max};
     double unfound = best.square;
     height_walls(solid, p, &best);

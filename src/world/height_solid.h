@@ -8,13 +8,13 @@
 
 typedef struct HeightSolid {
     uint32_t columns, rows;
-    float *heights; ///< [rows * columns] m, a row along x after another along y
-    // what follows from them
+    float *heights; ///< [rows * columns] m, rows along x, in order of y
+    // derived from them
     float half[2];   ///< m, of the rectangle about the origin
     float step[2];   ///< m, from node to node
     float low, high; ///< of the heights
     uint32_t blocks[2];
-    float (*ranges)[2]; ///< [blocks] smallest and largest height of HEIGHT_BLOCK by HEIGHT_BLOCK cells
+    float (*ranges)[2]; ///< [blocks] min and max height of HEIGHT_BLOCK by HEIGHT_BLOCK cells
 } HeightSolid;
 
 SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows, const float *heights,

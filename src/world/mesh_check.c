@@ -1,12 +1,12 @@
-// What a mesh must be to have an inside: each edge belongs to two triangles that run along it in opposite directions.
+// Checks that a mesh has an inside: each edge belongs to two triangles that run along it in opposite directions.
 #include "world/mesh_solid.h"
 
 #include <string.h>
 
-/// m; beyond, squares of differences lose what contact needs.
+/// m; beyond this, squares of differences are too inaccurate for contact.
 static const float MESH_POSITION_MAX = 1e4f;
 
-/// m2, twice a triangle's area at least: its square must not vanish.
+/// m2, min of twice a triangle's area: its square must not vanish.
 static const float MESH_AREA_MIN = 1e-17f;
 
 static SingeResult mesh_bad(SingeError *error, int64_t element, const char *text) {
@@ -17,7 +17,7 @@ static SingeResult mesh_memory(SingeError *error) {
     return error_set(error, SINGE_ERROR_MEMORY, "collider", -1, "out of memory for the mesh");
 }
 
-// ---- a table from pairs of numbers to a number, by open addressing
+// ---- a table from three numbers to one, by open addressing
 
 typedef struct PairTable {
     size_t capacity; ///< a power of two
@@ -37,7 +37,7 @@ static void table_free(Memory *memory, PairTable *table) {
     FREE(memory, table->values, table->capacity);
 }
 
-/// Where the key's value is or belongs; UINT32_MAX there: it has none yet.
+/// The location of a key's value; UINT32_MAX there if it has none yet.
 static uint32_t *table_find(const PairTable *table, const uint32_t key[3]) {
     uint64_t hash = 0xcbf29ce484222325u;
     for (int i = 0; i < 3; i++) hash = (hash ^ key[i]) * 0x9e3779b97f4a7c15u, hash ^= hash >> 29;
@@ -89,7 +89,8 @@ static Float3 mesh_cross(const MeshSolid *solid, const uint32_t t[3]) {
                         float3_sub(float3_load(solid->vertices[t[2]]), a));
 }
 
-/// Triangles by the vertices that are left, without those that lost their extent; *source* has their numbers before.
+/// Writes the triangles with the joined vertices, without those that have become degenerate; `source` gets their
+/// original numbers.
 static SingeResult mesh_gather(const uint32_t *triangles, const uint32_t *first, uint32_t *source, MeshSolid *solid,
                                SingeError *error) {
     uint32_t count = 0;
@@ -106,7 +107,7 @@ static SingeResult mesh_gather(const uint32_t *triangles, const uint32_t *first,
     return count ? SINGE_OK : mesh_bad(error, -1, "all triangles of the mesh are degenerate");
 }
 
-/// Turns a mesh that is inside out, by its volume: the sum of those of the tetrahedra over its triangles.
+/// Flips a mesh that is inside out, which its volume shows: the sum over the tetrahedra of its triangles.
 static void mesh_turn(MeshSolid *solid) {
     double volume = 0;
     Float3 o = float3_load(solid->vertices[solid->triangles[0][0]]);
@@ -171,9 +172,9 @@ SingeResult mesh_solid_take(Memory *memory, uint32_t vertex_count, const float *
               NEW(memory, source, triangle_count) && table_create(memory, &edges, 3 * (size_t)triangle_count);
     SingeResult result = ok ? SINGE_OK : mesh_memory(error);
 
-    // join vertices, keep triangles that have an area, check that they close
+    // join vertices, keep triangles that have an area, check that the mesh is closed
     for (size_t k = 0; ok && k < 3 * (size_t)vertex_count; k++)
-        solid->vertices[k / 3][k % 3] = vertices[k] + 0.0f; // one zero, not two
+        solid->vertices[k / 3][k % 3] = vertices[k] + 0.0f; // turns -0 into 0
     if (!result) result = mesh_join(memory, solid, first, error);
     if (!result) result = mesh_gather(triangles, first, source, solid, error);
     if (!result) mesh_turn(solid);

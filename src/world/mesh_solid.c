@@ -1,25 +1,25 @@
-// Signed distance from a closed mesh. Its size is that to the nearest triangle; its sign is that of
+// Signed distance from a closed mesh. Its magnitude is the distance to the nearest triangle; its sign is that of
 //
 //   (p - foot) . n,   n the pseudonormal of the feature that the foot lies on: the face's normal, the sum of an edge's
-//   two, or the sum of a vertex's weighed by their angles
+//   two, or the sum of a vertex's weighted by their angles
 //
 // (Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005), which is right for
-// every mesh that does not pass through itself. A grid of distances at its cells' centroids spares the tree of
-// triangles (mesh_tree.c) what is far: the distance changes by no more than the way, so that at p
+// every mesh that does not intersect itself. A grid of distances at its cells' centres avoids searches in the tree of
+// triangles (mesh_tree.c) for points far away: the distance changes by at most the displacement, so that at p
 //
 //   |d(p)| >= |d(c)| - |p - c|,   and the sign is that at c where this is above 0,
 //
-// and it bounds how far the tree has to look. So the grid's coarseness costs time, never accuracy.
+// and it bounds the search radius in the tree. So the grid's coarseness costs time, never accuracy.
 #include "common/real.h"
 #include "world/mesh_solid.h"
 #include "world/triangle.h"
 
 #include <string.h>
 
-/// Cells of the grid for a triangle, and how many there are at least and most.
+/// Cells of the grid per triangle; min and max number of cells.
 static const double GRID_SHARE = 32, GRID_MIN = 4096, GRID_MAX = 1 << 20;
 
-/// Of a square of a distance, for rounding.
+/// Factor on the square of a distance, for rounding.
 static const float SOLID_SLACK = 1.001f;
 
 static Float3 solid_corner(const MeshSolid *solid, uint32_t t, uint32_t corner) {
@@ -63,7 +63,7 @@ static Float3 solid_centroid(const MeshSolid *solid, int i, int j, int k) {
                   solid->origin.z + ((float)k + 0.5f) * solid->cell);
 }
 
-/// A vertex's normal, weighed by angles, from the triangles around it.
+/// A vertex's normal, weighted by angles, from the triangles around it.
 static Float3 solid_vertex_normal(const MeshSolid *solid, uint32_t t, uint32_t corner) {
     if (solid->vertex_normals) return float3_load(solid->vertex_normals[solid->triangles[t][corner]]);
     const uint32_t vertex = solid->triangles[t][corner], first = t;
@@ -81,7 +81,7 @@ static Float3 solid_vertex_normal(const MeshSolid *solid, uint32_t t, uint32_t c
     return sum;
 }
 
-/// The pseudonormal where a foot lies.
+/// The pseudonormal at a foot.
 static Float3 solid_pseudonormal(const MeshSolid *solid, uint32_t t, int feature) {
     if (feature >= TRIANGLE_FACE) return solid_face_normal(solid, t);
     if (feature < TRIANGLE_EDGE)
@@ -91,7 +91,7 @@ static Float3 solid_pseudonormal(const MeshSolid *solid, uint32_t t, int feature
     return float3_unit(sum);
 }
 
-/// The distance that the nearest triangle gives.
+/// The signed distance from triangle t, the nearest one.
 static float solid_signed(const MeshSolid *solid, Float3 p, uint32_t t, Float3 *normal) {
     Float3 a = solid_corner(solid, t, 0), b = solid_corner(solid, t, 1), c = solid_corner(solid, t, 2);
     TriangleFoot foot = triangle_foot(p, a, b, c);
@@ -100,7 +100,7 @@ static float solid_signed(const MeshSolid *solid, Float3 p, uint32_t t, Float3 *
     double along = triangle_dot(foot.away, n), distance = sqrt(foot.square);
     float sign = along < 0 ? -1 : 1;
     *normal = pseudo;
-    // beside an edge or a vertex the way out is along what is away from it, unless that is lost in rounding
+    // at an edge or a vertex the normal points from the foot to p or back, unless that is lost in rounding
     if (foot.feature < TRIANGLE_FACE && distance > 1e-7 * (1 + (double)float3_length(p))) {
         double scale = (double)sign / distance;
         *normal = float3((float)(foot.away[0] * scale), (float)(foot.away[1] * scale), (float)(foot.away[2] * scale));
@@ -108,16 +108,16 @@ static float solid_signed(const MeshSolid *solid, Float3 p, uint32_t t, Float3 *
     return sign * (float)distance;
 }
 
-/// The grid's distances, one after another along x: each bounds how far the next has to look.
+/// Computes the grid's distances, one after another along x: each bounds the search radius of the next.
 static bool solid_grid(Memory *memory, MeshSolid *solid) {
     Float3 size = float3_sub(solid->high, solid->low);
     double wanted = fmin(fmax(GRID_SHARE * solid->triangle_count, GRID_MIN), GRID_MAX);
-    // a flat one is taken to be thicker: else all cells would lie in its plane
+    // a flat mesh counts as thicker: otherwise all cells would lie in its plane
     double min = (double)fmaxf(size.x, fmaxf(size.y, size.z)) / 256;
     double side[3] = {fmax((double)size.x, min), fmax((double)size.y, min), fmax((double)size.z, min)};
     solid->cell = (float)real_cbrt(side[0] * side[1] * side[2] / wanted);
     size_t count = 1;
-    for (int d = 0; d < 3; d++) { // and one cell about it
+    for (int d = 0; d < 3; d++) { // and a margin of one cell
         solid->cells[d] = (int32_t)ceil(side[d] / (double)solid->cell) + 2;
         count *= (size_t)solid->cells[d];
     }
@@ -177,13 +177,13 @@ void mesh_solid_free(Memory *memory, MeshSolid *solid) {
     *solid = (MeshSolid){0};
 }
 
-/// What the grid knows: the smallest and the largest size of the distance, and its sign where the smallest is above 0.
+/// Bounds of the distance's magnitude by the grid. Returns a number with the distance's sign, if the min is above 0.
 static float solid_look(const MeshSolid *solid, const int at[3], Float3 p, float *min, float *max) {
     size_t index = ((size_t)at[2] * (size_t)solid->cells[1] + (size_t)at[1]) * (size_t)solid->cells[0] + (size_t)at[0];
     float coarse = solid->coarse[index];
-    float displacement = 1.0001f * float3_length(float3_sub(p, solid_centroid(solid, at[0], at[1], at[2])));
-    *min = fabsf(coarse) - displacement;
-    *max = fabsf(coarse) + displacement;
+    float distance = 1.0001f * float3_length(float3_sub(p, solid_centroid(solid, at[0], at[1], at[2])));
+    *min = fabsf(coarse) - distance;
+    *max = fabsf(coarse) + distance;
     return coarse;
 }
 

@@ -10,12 +10,12 @@
 /// Triangles at a leaf of the tree, and children of a node.
 enum { SOLID_WIDE = 4 };
 
-/// Four triangles side by side: a corner and the edges from it. What is left over repeats the last.
+/// Four triangles side by side: a corner and the edges from it. Unused lanes repeat the last triangle.
 typedef struct SolidLeaf {
     Float4 a[3], ab[3], ac[3];
 } SolidLeaf;
 
-/// Four boxes side by side, and what they hold: node `child`, or leaf ~child. One that holds nothing is infinitely far.
+/// Four boxes side by side, and their contents: node `child`, or leaf ~child. An empty one is infinitely far.
 typedef struct SolidNode {
     Float4 low[3], high[3];
     int32_t child[SOLID_WIDE];
@@ -23,13 +23,13 @@ typedef struct SolidNode {
 
 typedef struct MeshSolid {
     uint32_t vertex_count, triangle_count;
-    uint32_t room; ///< triangles that were asked for, and one: of the arrays
+    uint32_t room; ///< capacity of the arrays: the triangles given, plus one
     float (*vertices)[3];
     uint32_t (*triangles)[3];
-    // what follows from them
+    // derived from them
     uint32_t (*neighbours)[3];  ///< across edge k, which runs from corner k to the next
-    float (*vertex_normals)[3]; ///< weighed by angles, any length; NULL where vertices move
-    uint32_t *order;            ///< [triangles] as the leaves have them
+    float (*vertex_normals)[3]; ///< weighted by angles, not normalised; NULL if vertices move
+    uint32_t *order;            ///< [triangles] in the order of the leaves
     uint32_t leaf_count, node_count;
     SolidLeaf *leaves;
     SolidNode *nodes;
@@ -37,16 +37,17 @@ typedef struct MeshSolid {
     float cell;       ///< m, side of the cells of the grid
     int32_t cells[3];
     Float3 origin;
-    float *coarse; ///< signed distances at the centroids of the cells; none where vertices move
-    bool turned;   ///< it was inside out
+    float *coarse; ///< signed distances at the centres of the cells; NULL if vertices move
+    bool turned;   ///< the given mesh was inside out
 } MeshSolid;
 
-/// Checks and copies a mesh, and builds what its distances need. Vertices at the same position become one, triangles
-/// without extent that this leaves go; a mesh that is inside out is turned. Errors name the triangle or vertex.
+/// Checks and copies a mesh, and builds the data for its distances. Vertices at the same position are merged, and
+/// triangles that this makes degenerate are removed; a mesh that is inside out is flipped. Errors name the triangle or
+/// vertex.
 SingeResult mesh_solid_create(Memory *memory, uint32_t vertex_count, const float *vertices, uint32_t triangle_count,
                               const uint32_t *triangles, MeshSolid *solid, SingeError *error);
-/// The same of a mesh whose vertices will move: without a grid of distances and normals of vertices, which would have
-/// to be made anew.
+/// The same for a mesh whose vertices will move: without a grid of distances and vertex normals, which would have to be
+/// rebuilt.
 SingeResult mesh_solid_create_moving(Memory *memory, uint32_t vertex_count, const float *vertices,
                                      uint32_t triangle_count, const uint32_t *triangles, MeshSolid *solid,
                                      SingeError *error);
@@ -63,9 +64,10 @@ SingeResult mesh_solid_take(Memory *memory, uint32_t vertex_count, const float *
 // mesh_tree.c
 /// Fills in order, leaves and nodes; false when out of memory.
 bool mesh_tree_create(Memory *memory, MeshSolid *solid);
-/// Makes the leaves, the boxes and `low` and `high` follow vertices that have moved.
+/// Updates the leaves, the boxes, `low` and `high` after vertices have moved.
 void mesh_tree_refit(MeshSolid *solid);
-/// The triangle nearest to p among those nearer than sqrt(*square), with its distance's square; UINT32_MAX: none.
+/// The triangle nearest to p among those nearer than sqrt(*square), which becomes its squared distance; UINT32_MAX:
+/// none.
 uint32_t mesh_tree_nearest(const MeshSolid *solid, Float3 p, float *square);
 
 #endif

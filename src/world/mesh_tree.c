@@ -1,11 +1,11 @@
-// The nearest of many triangles, by a tree of boxes, four side by side: a node's boxes and a leaf's triangles are
-// looked at in one go (Wald et al., Getting rid of packets, 2008, for rays). Halves of equal size along the longest
-// axis of the centroids; a leaf is full but for the last, so that counts tell how many nodes there are.
+// The nearest of many triangles, by a tree of boxes, four side by side: a node's boxes, or a leaf's triangles, are
+// tested at once (Wald et al., Getting rid of packets, 2008, for rays). Triangles are halved along the longest axis of
+// the centroids; all leaves but the last are full, so that the number of nodes follows from that of triangles.
 #include "world/mesh_solid.h"
 
 #include <string.h>
 
-/// Of three children left at every level that a path leads through, and levels of a tree of 2^31 triangles.
+/// Three pending children at each level of a path, for the levels of a tree of 2^31 triangles.
 enum { TREE_STACK = 3 * 17 + 4 };
 
 typedef struct TreeBuild {
@@ -14,7 +14,7 @@ typedef struct TreeBuild {
     uint32_t leaves, nodes;
 } TreeBuild;
 
-/// Triangles of the first half: leaves but the last are full.
+/// Number of triangles in the first half; all leaves but the last are full.
 static uint32_t tree_half(uint32_t count) {
     return count <= SOLID_WIDE ? count : (count / 2 + SOLID_WIDE - 1) / SOLID_WIDE * SOLID_WIDE;
 }
@@ -37,7 +37,7 @@ static void tree_box(const TreeBuild *build, uint32_t first, uint32_t count, Flo
         }
 }
 
-/// The axis along which the centroids reach farthest.
+/// The axis along which the centroids have the max extent.
 static int tree_axis(const TreeBuild *build, uint32_t first, uint32_t count) {
     int best = 0;
     float max = -1;
@@ -52,13 +52,13 @@ static int tree_axis(const TreeBuild *build, uint32_t first, uint32_t count) {
     return best;
 }
 
-/// Whether triangle a comes before b along the axis: by number where they are equal, so that there is one order.
+/// Whether triangle a comes before b along the axis; equal ones are ordered by number, so that the order is unique.
 static bool tree_before(const TreeBuild *build, int axis, uint32_t a, uint32_t b) {
     float x = build->centroid[a][axis], y = build->centroid[b][axis];
     return x < y || (!(y < x) && a < b);
 }
 
-/// Brings the `half` first along the axis to the front (Hoare's selection).
+/// Moves the first `half` triangles along the axis to the front (Hoare's selection).
 static void tree_split(TreeBuild *build, uint32_t first, uint32_t count, uint32_t half) {
     uint32_t *order = build->solid->order;
     int axis = tree_axis(build, first, count);
@@ -136,7 +136,7 @@ bool mesh_tree_create(Memory *memory, MeshSolid *solid) {
 
     // nodes and leaves
     if (ok && count > SOLID_WIDE) tree_build(&build, 0, count);
-    if (ok && count <= SOLID_WIDE) { // a node all the same
+    if (ok && count <= SOLID_WIDE) { // a single leaf gets a node, too
         tree_leaf(&build, 0, count);
         for (int i = 0; i < 3; i++)
             solid->nodes[0].low[i] = float4_all(-INFINITY), solid->nodes[0].high[i] = float4_all(INFINITY);
@@ -146,7 +146,7 @@ bool mesh_tree_create(Memory *memory, MeshSolid *solid) {
     return ok;
 }
 
-/// The box of a leaf's triangles, or of what a node holds.
+/// The box of a leaf's triangles, or of a node's children.
 static void tree_child_box(const MeshSolid *solid, int32_t child, Float3 *low, Float3 *high) {
     float bounds[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (int i = 0; i < 3; i++)
@@ -174,11 +174,11 @@ void mesh_tree_refit(MeshSolid *solid) {
 
     // boxes from the leaves up
     solid->low = float3(INFINITY, INFINITY, INFINITY), solid->high = float3(-INFINITY, -INFINITY, -INFINITY);
-    for (uint32_t n = solid->node_count; n-- > 0;) { // what a node holds has higher numbers
+    for (uint32_t n = solid->node_count; n-- > 0;) { // a node's children have higher numbers
         SolidNode *node = &solid->nodes[n];
         for (int i = 0; i < SOLID_WIDE; i++) {
             Float3 low, high;
-            if (node->child[i] == 0) continue; // nothing: the root is in no other
+            if (node->child[i] == 0) continue; // empty: the root is nobody's child
             tree_child_box(solid, node->child[i], &low, &high);
             node->low[0][i] = low.x, node->low[1][i] = low.y, node->low[2][i] = low.z;
             node->high[0][i] = high.x, node->high[1][i] = high.y, node->high[2][i] = high.z;
@@ -242,7 +242,7 @@ typedef struct TreeItem {
     int32_t child;
 } TreeItem;
 
-/// Pushes what a node holds nearer than the best, the nearest last.
+/// Pushes a node's children that are nearer than the best, the nearest last.
 static int tree_push(const SolidNode *node, const Float4 p[3], float best, TreeItem *stack, int depth) {
     Float4 square = tree_boxes(node, p);
     int first = depth;

@@ -1,4 +1,4 @@
-// Points that move in straight lines from their positions at one time to those that a caller sets for another.
+// Points that move in straight lines from their positions at one time to positions that a caller sets for another.
 #ifndef WORLD_MOTION_H
 #define WORLD_MOTION_H
 
@@ -8,18 +8,18 @@
 
 typedef struct Motion {
     uint32_t count;
-    float (*from)[3], (*to)[3]; ///< [count] m; NULL: there is none
+    float (*from)[3], (*to)[3]; ///< [count] m; NULL: no motion
     double start, end;          ///< s; at `from` before, at `to` after
 } Motion;
 
-/// All at rest at `points`. False when out of memory; nothing is left then.
+/// Creates points at rest at `points`. False when out of memory; nothing stays allocated then.
 bool motion_create(Memory *memory, uint32_t count, const float *points, Motion *motion);
 void motion_free(Memory *memory, Motion *motion);
 
-/// Sets out at `now`, from where they are then, to be at `to` at `time`; at once where that is not later.
+/// Moves the points from their positions at `now` to `to` at `time`; at once if that is not later.
 void motion_set(Motion *motion, const float *to, double now, double time);
 
-/// Share of the displacement that is done, 0 to 1.
+/// Share of the displacement that is completed, 0 to 1.
 float motion_share(const Motion *motion, double time);
 
 static inline Float3 motion_point(const Motion *motion, uint32_t i, float share) {

@@ -71,7 +71,7 @@ Pose path_pose(const Path *path, double time) {
     Pose pose = {
         float3_mad(float3_load(a->position), float3_sub(float3_load(b->position), float3_load(a->position)), t),
         {0, 0, 0, 1}};
-    // the shorter way round, then normalised
+    // the shorter rotation, then normalised
     float dot = 0, length = 0;
     for (int k = 0; k < 4; k++) dot += a->rotation[k] * b->rotation[k];
     for (int k = 0; k < 4; k++) {

@@ -20,7 +20,7 @@ typedef struct Pose {
 /// Checks keys: finite, times increasing, rotations not zero.
 SingeResult path_check(uint32_t count, const SingePoseKey *keys, const char *owner, SingeError *error);
 
-/// Whether keys that path_check lets pass have rotations of length one, as path_set leaves them.
+/// Whether keys that path_check accepts have rotations of length one, as path_set leaves them.
 bool path_is_normal(const Path *path);
 
 /// Copies keys after checking them; rotations are normalised.

@@ -12,12 +12,12 @@ typedef struct Pin {
     uint32_t *particles; ///< held particles, increasing
     float (*anchors)[3]; ///< m, in the frame of the path's pose
     Path path;
-    Motion motion; ///< of the particles, in space, in place of the path; its arrays are NULL where the path holds
+    Motion motion; ///< of the particles, in space, instead of the path; its arrays are NULL if the path applies
     void *user_data;
-    SingePinDef waiting; ///< of a pin that was added before the commit, until then: its points and vertices are its own
+    SingePinDef waiting; ///< Def of a pin that was added before the commit, until then; owns its points and vertices
 } Pin;
 
-/// Where held particle k is at a time; `pose` is that of the path then.
+/// Position of held particle k at a time; `pose` is the path's pose at that time.
 static inline Float3 pin_point(const Pin *pin, const Pose *pose, uint32_t k, float share) {
     return pin->motion.to ? motion_point(&pin->motion, k, share) : pose_apply(pose, float3_load(pin->anchors[k]));
 }

@@ -1,4 +1,4 @@
-// What every stage of a step is given.
+// Input of every stage of a step.
 #ifndef WORLD_STEP_CONTEXT_H
 #define WORLD_STEP_CONTEXT_H
 
@@ -7,7 +7,7 @@
 #include "world/collider.h"
 #include "world/pin.h"
 
-/// A step in progress. A stage reads all of this, and writes its own part of the State, its plan and, where it has any,
+/// A step in progress. A stage reads all of this, and writes its own part of the State, its plan and, if it has any,
 /// events and the error. It owns nothing.
 typedef struct StepContext {
     const Shell *shell;

@@ -5,7 +5,7 @@
 
 #include "common/float3.h"
 
-/// Corners are 0 to 2, edges lie opposite to none: edge k runs from corner k to the next.
+/// Corners are 0 to 2; edge k runs from corner k to the next.
 typedef enum TriangleFeature {
     TRIANGLE_CORNER = 0, ///< + corner
     TRIANGLE_EDGE = 3,   ///< + edge
@@ -15,7 +15,7 @@ typedef enum TriangleFeature {
 typedef struct TriangleFoot {
     double square;  ///< of the distance
     double away[3]; ///< from the foot to the point
-    double s, t;    ///< weights of the second and third corner in it
+    double s, t;    ///< weights of the second and third corner at the foot
     int feature;
 } TriangleFoot;
 
