@@ -1,5 +1,5 @@
-// The caller's memory hook, or libc's allocator where there is none. Inline, so that programs beside libsinge, whose
-// names a shared library hides, have the same one.
+// The caller's memory hook, or libc's allocator if there is none. Inline, so that programs next to libsinge can use it,
+// too, though a shared library hides its names.
 #ifndef COMMON_ALLOCATOR_H
 #define COMMON_ALLOCATOR_H
 

@@ -1,5 +1,6 @@
-// Assertions of invariants: what only a mistake in this program can break. Inputs are checked by code that returns an
-// error instead. On where SINGE_ASSERTIONS is defined (the presets dev, asan, tsan and fuzz); else nothing is computed.
+// Assertions of invariants, which only a bug in this program can break. Inputs are checked by code that returns an
+// error instead. Enabled if SINGE_ASSERTIONS is defined (the presets dev, asan, tsan and fuzz); otherwise nothing is
+// computed.
 #ifndef COMMON_CHECK_H
 #define COMMON_CHECK_H
 

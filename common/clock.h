@@ -1,4 +1,4 @@
-// Time for the timers. Nothing that is computed depends on it.
+// Time for the timers. No result depends on it.
 #ifndef COMMON_CLOCK_H
 #define COMMON_CLOCK_H
 

@@ -1,5 +1,5 @@
-// x86-64 in levels (System V ABI, section 3.1.1), asked of the processor itself: a compiler's own answer needs a part
-// of its run-time library that not every toolchain has.
+// x86-64 in levels (System V ABI, section 3.1.1), by a query of the processor itself: the compiler's own query needs a
+// part of its run-time library that not every toolchain has.
 #include "common/cpu.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -27,7 +27,7 @@ enum {
     CPU_AVX512BW = 1 << 30,
     // leaf 0x80000001, ecx
     CPU_LZCNT = 1 << 5,
-    // what the operating system keeps: SSE and AVX; AVX-512's masks and registers too
+    // registers that the operating system saves: SSE and AVX; AVX-512's masks and registers, too
     CPU_KEEPS_AVX = 0x06,
     CPU_KEEPS_AVX512 = 0xE6,
 };

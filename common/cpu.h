@@ -1,10 +1,10 @@
-// Which instructions run here.
+// Which instructions this machine can run.
 #ifndef COMMON_CPU_H
 #define COMMON_CPU_H
 
 #include "singe/types.h"
 
-/// Whether the processor has all instructions of the set, and the operating system keeps their registers. False for
+/// Whether the processor has all instructions of the set, and the operating system saves their registers. False for
 /// SINGE_INSTRUCTIONS_BEST, which is no set.
 bool cpu_has(SingeInstructions set);
 

@@ -1,4 +1,4 @@
-// Failures: filled once where most is known, passed up unchanged.
+// Errors: filled in once, where most is known, and passed up unchanged.
 #ifndef COMMON_ERROR_H
 #define COMMON_ERROR_H
 

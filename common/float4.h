@@ -1,4 +1,4 @@
-// Four floats at once: the arithmetic of gcc's and clang's vector types, which every processor has some form of.
+// Four floats at once: the arithmetic of gcc's and clang's vector types, which compile for every processor.
 #ifndef COMMON_FLOAT4_H
 #define COMMON_FLOAT4_H
 
@@ -14,7 +14,7 @@
 #endif
 
 typedef float Float4 __attribute__((vector_size(16)));
-typedef int32_t Float4Mask __attribute__((vector_size(16))); ///< -1 where it holds, 0 elsewhere
+typedef int32_t Float4Mask __attribute__((vector_size(16))); ///< -1 where true, 0 elsewhere
 
 static inline Float4 float4_load(const float *p) {
     Float4 a;
@@ -31,11 +31,11 @@ static inline Float4 float4_all(float a) { return (Float4){a, a, a, a}; }
 static inline Float4 float4_select(Float4Mask mask, Float4 yes, Float4 no) {
     return (Float4)((mask & (Float4Mask)yes) | (~mask & (Float4Mask)no));
 }
-#ifdef __SSE2__ // compilers do not see one instruction in a comparison and a choice
+#ifdef __SSE2__ // compilers do not turn a comparison and a selection into one instruction
 static inline Float4 float4_min(Float4 a, Float4 b) { return (Float4)_mm_min_ps((__m128)a, (__m128)b); }
 static inline Float4 float4_max(Float4 a, Float4 b) { return (Float4)_mm_max_ps((__m128)a, (__m128)b); }
 static inline Float4 float4_sqrt(Float4 a) { return (Float4)_mm_sqrt_ps((__m128)a); }
-/// Bit k is set where the mask holds in number k.
+/// Bit k is set if the mask is true in lane k.
 static inline unsigned float4_bits(Float4Mask mask) { return (unsigned)_mm_movemask_ps((__m128)mask); }
 #else
 static inline Float4 float4_min(Float4 a, Float4 b) { return float4_select(a < b, a, b); }
@@ -61,13 +61,13 @@ static inline unsigned float4_bits(Float4Mask mask) {
 #define FLOAT4_SHUFFLE(a, b, i, j, k, l) __builtin_shuffle(a, b, (Float4Mask){i, j, k, l})
 #endif
 
-/// The fourth number made 0, or something else.
+/// Sets the fourth number to 0, or to `fourth`.
 static inline Float4 float4_flat(Float4 a) { return (Float4)((Float4Mask)a & (Float4Mask){-1, -1, -1, 0}); }
 static inline Float4 float4_with(Float4 a, float fourth) {
     return float4_select((Float4Mask){-1, -1, -1, 0}, a, float4_all(fourth));
 }
 
-/// Of the first three numbers; the fourth of the product is 0.
+/// Products of the first three numbers; the fourth of the cross product is 0.
 static inline Float4 float4_cross(Float4 a, Float4 b) {
     Float4 turned = a * FLOAT4_SHUFFLE(b, b, 1, 2, 0, 3) - FLOAT4_SHUFFLE(a, a, 1, 2, 0, 3) * b;
     return FLOAT4_SHUFFLE(turned, turned, 1, 2, 0, 3);

@@ -10,7 +10,7 @@ enum {
     TEXT_NUMBER = 512, // of a number: %f of the largest double has 309 digits before its point
 };
 
-/// What is written so far; length < size, and a zero closes it.
+/// The text so far; length < size, and a zero terminates it.
 typedef struct Text {
     char *out;
     size_t size, length;
@@ -43,7 +43,7 @@ static void text_add_string(Text *text, const char *spec, const char *string) {
     if (bytes > 0) text->length += (size_t)bytes < room ? (size_t)bytes : room - 1;
 }
 
-/// An integer as wide as the lengths in `spec` say.
+/// Prints an integer of the width that the lengths in `spec` give.
 static void text_print_integer(char number[TEXT_NUMBER], const char *spec, va_list *arguments) {
     if (strstr(spec, "ll")) snprintf(number, TEXT_NUMBER, spec, va_arg(*arguments, long long));
     else if (strchr(spec, 'l')) snprintf(number, TEXT_NUMBER, spec, va_arg(*arguments, long));
@@ -51,7 +51,7 @@ static void text_print_integer(char number[TEXT_NUMBER], const char *spec, va_li
     else snprintf(number, TEXT_NUMBER, spec, va_arg(*arguments, int));
 }
 
-/// Adds the conversion `spec` of the next argument; false where it is not known.
+/// Adds the conversion `spec` of the next argument; false if it is unknown.
 static bool text_convert(Text *text, const char *spec, va_list *arguments) {
     char number[TEXT_NUMBER];
     switch (spec[strlen(spec) - 1]) {
@@ -76,7 +76,7 @@ static bool text_convert(Text *text, const char *spec, va_list *arguments) {
 void text_print(char *out, size_t size, const char *format, va_list arguments) {
     Text text = {.out = out, .size = size};
     va_list list;
-    va_copy(list, arguments); // an array in some ABIs: only a copy has an address to hand on
+    va_copy(list, arguments); // an array in some ABIs: only a copy's address can be passed on
     out[0] = 0;
     for (bool known = true; known && *format;) {
         size_t plain = strcspn(format, "%");

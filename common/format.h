@@ -1,4 +1,4 @@
-// printf whose decimal point is a point: the C library's follows the locale, which is the host's.
+// printf with a decimal point in every locale: the C library's follows the host's locale.
 #ifndef COMMON_FORMAT_H
 #define COMMON_FORMAT_H
 
@@ -6,8 +6,8 @@
 #include <stddef.h>
 
 /// As vsnprintf, without its result: at most `size` bytes with the closing zero, size > 0. Knows %d, %u, %x with the
-/// lengths l, ll and z, %s, %e, %f, %g and %%, with flags, widths and precisions in digits. Where it meets another
-/// conversion it ends the text.
+/// lengths l, ll and z, %s, %e, %f, %g and %%, with flags, widths and precisions in digits. The text ends at any other
+/// conversion.
 void text_print(char *out, size_t size, const char *format, va_list arguments);
 
 #endif

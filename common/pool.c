@@ -1,11 +1,11 @@
-// A fork-join pool. A job is cut into ranges of `grain` items; those that are left are [first, last) in one word. The
+// A fork-join pool. A job is cut into ranges of `grain` items; the remaining ones are [first, last) in one word. The
 // caller takes them from the front and workers from the back, so that from job to job most items stay with the thread
 // whose cache they are in. Which thread takes which range does not matter for the result, since items are independent.
 //
-// A job is over when its ranges are done, not when every worker has seen it: one that sleeps, or is kept off its
-// processor, holds up nobody. Whoever takes a range reads the job after that, and the job stays until it is done.
+// A job is over when its ranges are done, not when every worker has seen it: a worker that sleeps, or is preempted,
+// delays nobody. A thread reads the job only after it has taken a range, and the job stays until that is done.
 //
-// Idle workers watch for the next job for a short while, for a step has many, and then block; no more of them watch, or
+// Idle workers watch for the next job for a short while, as a step has many, and then block; no more of them watch, or
 // are woken, than there are processors to run them.
 #include "common/check.h"
 #include "common/pool.h"
@@ -43,7 +43,7 @@ static inline void pool_pause(void) {
 #endif
 }
 
-/// Takes a range off the front or the back. False when none is left.
+/// Takes a range from the front or the back. False when none is left.
 static bool pool_take(Pool *pool, bool back, uint32_t *range) {
     uint64_t left = atomic_load_explicit(&pool->left, memory_order_relaxed);
     for (;;) {
@@ -70,7 +70,7 @@ static void pool_run_ranges(Pool *pool, bool back) {
     }
 }
 
-/// Looks for a while whether there is a job after `seen`.
+/// Watches for a while for a job after `seen`.
 static bool pool_watch(Pool *pool, unsigned seen) {
     bool found = false;
     if (atomic_fetch_add(&pool->watching, 1) + 1 < pool->processors)
@@ -89,7 +89,7 @@ static void pool_worker(void *argument) {
     while (!atomic_load(&pool->quit)) {
         if (!pool_watch(pool, seen)) {
             mutex_lock(&pool->mutex);
-            atomic_fetch_add(&pool->asleep, 1); // before the look at the generation: see pool_wake
+            atomic_fetch_add(&pool->asleep, 1); // before the generation is read: see pool_wake
             while (atomic_load(&pool->generation) == seen) condition_wait(&pool->wake, &pool->mutex);
             atomic_fetch_sub(&pool->asleep, 1);
             mutex_unlock(&pool->mutex);
@@ -99,8 +99,8 @@ static void pool_worker(void *argument) {
     }
 }
 
-/// Wakes as many sleepers as there are ranges and processors for, less those awake. The generation is raised before the
-/// look at `asleep`: a worker that is not seen asleep here sees the new generation before it sleeps.
+/// Wakes as many sleepers as the ranges and processors can use, less the threads awake. The generation is raised before
+/// `asleep` is read: a worker that is not counted as asleep here sees the new generation before it sleeps.
 static void pool_wake(Pool *pool, int ranges) {
     atomic_fetch_add(&pool->generation, 1);
     int asleep = atomic_load(&pool->asleep), awake = pool->thread_count - asleep;

@@ -14,8 +14,8 @@ enum { POOL_BLOCK = 1024 };
 SingeResult pool_create(Memory *memory, SingeTasks tasks, int thread_count, Pool **pool);
 void pool_destroy(Memory *memory, Pool *pool);
 
-/// Calls run(context, begin, end) over [0, count) in ranges of at least `grain` items, and returns when
-/// all are done. Items must be independent. A NULL pool runs everything here.
+/// Calls run(context, begin, end) over [0, count) in ranges of at least `grain` items, and returns when all are done.
+/// Items must be independent. A NULL pool runs everything in the calling thread.
 void pool_for(Pool *pool, int count, int grain, SingeTaskFn *run, void *context);
 
 /// Sum over [0, count): sum(context, begin, end) is called for fixed blocks of POOL_BLOCK items and the

@@ -1,5 +1,5 @@
 // Taylor's series in double precision after a reduction of the argument, cut off below 1e-16 of the result. So a float
-// is rounded as if it were exact, but where the exact value is nearer to a tie than about 1e-8 of its last digit.
+// is correctly rounded, unless the exact value is closer to a tie than about 1e-8 of its last digit.
 #include "common/real.h"
 
 #include <stdint.h>

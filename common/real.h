@@ -1,13 +1,13 @@
 // Elementary functions of the core. libm's by default; with SINGE_PORTABLE_MATH our own (real.c), which use nothing but
 // IEEE 754's additions, products, quotients and square roots: the same bytes with every C library, compiler and
-// processor. The two differ in the last digit of some results, so a build is of one kind throughout.
+// processor. The two differ in the last digit of some results, so a build uses one kind throughout.
 #ifndef COMMON_REAL_H
 #define COMMON_REAL_H
 
 #include <math.h>
 #include <stdbool.h>
 
-/// To a float's last digit, half a unit of which they are off at most and by hardly more.
+/// Accurate to a float's last digit: the error is at most half a unit of it, or hardly more.
 float portable_expf(float x);
 float portable_expm1f(float x);
 float portable_log1pf(float x);
@@ -18,7 +18,7 @@ float portable_sinf(float x);
 float portable_cosf(float x);
 float portable_acosf(float x);
 float portable_atan2f(float y, float x);
-/// To 1e-15 of the result.
+/// Accurate to 1e-15 of the result.
 double portable_exp(double x);
 /// x >= 0.
 double portable_cbrt(double x);

@@ -1,4 +1,5 @@
-// Threads, mutexes and conditions: POSIX's, or Windows' own. A Mutex and a Condition do not move while they are in use.
+// Threads, mutexes and conditions: POSIX's, or Windows' own. A Mutex or a Condition must not be moved while it is in
+// use.
 #ifndef COMMON_THREAD_H
 #define COMMON_THREAD_H
 
@@ -19,14 +20,14 @@ typedef pthread_mutex_t Mutex;
 typedef pthread_cond_t Condition;
 #endif
 
-/// A running thread. It does not move until it is joined.
+/// A running thread. It must not be moved until it is joined.
 typedef struct Thread {
     ThreadHandle handle;
     void (*run)(void *context);
     void *context;
 } Thread;
 
-/// Starts run(context) on a new thread. False when there is none to be had.
+/// Starts run(context) on a new thread. False if none can be created.
 bool thread_start(Thread *thread, void (*run)(void *context), void *context);
 /// Waits until the thread has returned.
 void thread_join(Thread *thread);
@@ -42,7 +43,7 @@ void mutex_unlock(Mutex *mutex);
 
 void condition_open(Condition *condition);
 void condition_close(Condition *condition);
-/// Lets go of the mutex, waits for a signal, and takes the mutex again. May return without a signal.
+/// Releases the mutex, waits for a signal, and takes the mutex again. May return without a signal.
 void condition_wait(Condition *condition, Mutex *mutex);
 void condition_signal(Condition *condition);
 void condition_broadcast(Condition *condition);
