@@ -111,7 +111,7 @@ static void pool_wake(Pool *pool, int ranges) {
     mutex_unlock(&pool->mutex);
 }
 
-/// Waits until the ranges that others took are done.
+/// Waits until the ranges taken by others are done.
 static void pool_join(Pool *pool, int ranges) {
     for (int i = 0; i < POOL_PAUSES + POOL_YIELDS; i++) {
         if (atomic_load(&pool->done) == ranges) return;
@@ -136,7 +136,7 @@ SingeResult pool_create(Memory *memory, SingeTasks tasks, int thread_count, Pool
     condition_open(&pool->wake);
     condition_open(&pool->over);
     if (thread_count > POOL_THREADS_MAX) thread_count = POOL_THREADS_MAX;
-    // a thread that cannot be had is done without: results are the same
+    // works without threads that cannot be created: results are the same
     int count = 1;
     if (!tasks.enqueue)
         while (count < thread_count && thread_start(&pool->threads[count], pool_worker, pool)) count++;

@@ -53,7 +53,7 @@ typedef struct HeatRest {
     uint32_t (*near)[HEAT_NEAR]; ///< [groups] the groups that conduct with it, without itself
     uint8_t *near_count;         ///< [groups] their number; HEAT_NEAR + 1: too many to list, near all others
     uint8_t *warm;               ///< [groups] a particle is not at the ambient temperature, or heated
-    uint8_t *awake[2];           ///< [groups] conducts; the second is the first with all groups near it, alternating
+    uint8_t *awake[2];           ///< [groups] conducts; alternating, each is the other and all groups near it
 } HeatRest;
 
 struct HeatPlan {

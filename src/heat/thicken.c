@@ -11,8 +11,8 @@
 // theta  K          rise above ignition without losses: eta, less the rise to ignition; at most the ceiling of
 //                   eq 4's rate
 // s      m          cell size
-// c      1          cells as large as c delta: measured on strips of cells from 0.5 to 4 mm, c = 0.75 holds the speed
-//                   within 5 % (tests/heat/test_front.c, `singe bench front`)
+// c      1          max cell size over F delta: measured on strips of cells from 0.5 to 4 mm, c = 0.75 holds the
+//                   speed within 5 % (tests/heat/test_front.c, `singe bench front`)
 //
 // With Arrhenius kinetics mu theta is A exp(-E/(R (T_ign + theta))), the rate at the highest temperature.
 //

@@ -92,7 +92,7 @@ static void put_inner(void *context, int begin, int end) {
     }
 }
 
-/// The two points of side i of a cell, in the order of its corners.
+/// The two points within side i of a cell, in the order of its corners.
 static void put_rail(const Fine *fine, uint32_t cell, int i, Float3 point[2]) {
     SINGE_ASSERT(cell < fine->shell->cell_count);
     const Shell *shell = fine->shell;

@@ -46,7 +46,7 @@ static Float3 centre_of(const uint32_t at[4], const float (*field)[4]) {
 
 static bool is_alive(const Fine *fine, uint32_t cell) { return fine->state->ablate.cell_flags[cell] & SINGE_ALIVE; }
 
-/// 0 at `low` and below, 1 at `high`.
+/// 0 up to `low`, 1 from `high` on, linear between.
 static float fade(float value, float low, float high) { return fmaxf(0, fminf((value - low) / (high - low), 1)); }
 
 /// A vertex's position, moved by `length` towards the centroids of its cells.

@@ -2,7 +2,7 @@
 // level set m' cuts them:
 //
 //   corners inside   3          2                1              0
-//   drawn            the whole  a quadrilateral  a small one    nothing
+//   drawn            all of it  a quadrilateral  a triangle     nothing
 //
 // m' >= 0 is inside. Each triangle is clipped into a polygon of keys (AblatePlan), one key per vertex that neighbouring
 // triangles share, so that they meet without cracks. The keys in use are then numbered in order: corners in the input's

@@ -18,7 +18,7 @@
 typedef struct Seams {
     const Shell *shell;
     SingeSurface *surface;
-    uint8_t *claimed; ///< [capacity] a triangle uses the vertex with its uv
+    uint8_t *claimed; ///< [capacity] a triangle uses the vertex with its present uv
     uint32_t *next;   ///< [capacity] another copy of it, SHELL_NONE
     uint32_t capacity;
 } Seams;

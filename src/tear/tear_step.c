@@ -188,9 +188,9 @@ static TearEdge tear_edge(const TearPlan *plan, const Shell *shell, const State 
     return edge;
 }
 
-/// Picks one of the edges [begin, count) along which a tear continues in `direction`; -1 if there is none. `lot` is 0
+/// Picks one of the edges [begin, count) along which a tear continues in `direction`; -1 if there is none. `draw` is 0
 /// to 1.
-static int pick_edge(const TearEdge *edges, int begin, int count, Float3 direction, float lot) {
+static int pick_edge(const TearEdge *edges, int begin, int count, Float3 direction, float draw) {
     float weight[SPLIT_FAN], min = INFINITY, sum = 0;
     for (int j = begin; j < count; j++)
         if (edges[j].solid && float3_dot(edges[j].along, direction) > 0) min = fminf(min, edges[j].strength);
@@ -205,7 +205,7 @@ static int pick_edge(const TearEdge *edges, int begin, int count, Float3 directi
     for (int j = begin; j < count; j++) {
         if (weight[j] <= 0) continue;
         last = j;
-        if ((lot -= weight[j] / sum) < 0) break;
+        if ((draw -= weight[j] / sum) < 0) break;
     }
     return last;
 }
@@ -235,7 +235,7 @@ static Float3 fan_normal(const Shell *shell, const Fan *fan) {
     return float3_unit(normal);
 }
 
-/// The open edge at a vertex that continues the one along `direction` most straightly; -1 if none is open.
+/// The open edge at a vertex that is the straightest continuation of one along `direction`; -1 if none is open.
 static int open_edge(const TearEdge *edges, int count, Float3 direction) {
     int open = -1;
     for (int j = 0; j < count; j++)
@@ -265,7 +265,7 @@ static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const Stat
     Turn turn = turn_order(fan);
 
     // cells that only the vertex connects
-    if (turn.count < fan->count) return smaller_part(fan, &turn, 0, turn.count); // joined at the vertex alone
+    if (turn.count < fan->count) return smaller_part(fan, &turn, 0, turn.count); // connected only by the vertex
     const uint32_t hinge = hinge_part(state, fan, &turn);
     if (hinge) return hinge;
 
@@ -283,14 +283,14 @@ static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const Stat
     // the tear's direction: normal to the pull, forwards
     Float3 direction = float3_cross(normal, pull->across);
     if (float3_dot(direction, forward) < 0) direction = float3_scale(direction, -1);
-    const float lot = random_unit(state->tear.split_count * 2654435769u); // multiples of the golden section
+    const float draw = random_unit(state->tear.split_count * 2654435769u); // multiples of the golden section
 
     // one edge where the sheet is open, else two
-    int first = pick_edge(edges, begin, count, direction, lot);
+    int first = pick_edge(edges, begin, count, direction, draw);
     if (first < 0) return 0;
     if (!turn.closed) return smaller_part(fan, &turn, first, count);
     int second = open_edge(edges, count, edges[first].along);
-    if (second < 0) second = pick_edge(edges, 0, count, float3_scale(direction, -1), lot);
+    if (second < 0) second = pick_edge(edges, 0, count, float3_scale(direction, -1), draw);
     if (second < 0 || second == first) return 0;
     return smaller_part(fan, &turn, first < second ? first : second, first < second ? second : first);
 }

@@ -68,7 +68,7 @@ static SingeResult mesh_check_numbers(uint32_t vertex_count, const float *vertic
     return SINGE_OK;
 }
 
-/// Writes to *first* the number of the first vertex at each vertex's position.
+/// Writes to `first` the number of the first vertex at each vertex's position.
 static SingeResult mesh_join(Memory *memory, const MeshSolid *solid, uint32_t *first, SingeError *error) {
     PairTable table = {0};
     bool ok = table_create(memory, &table, solid->vertex_count);

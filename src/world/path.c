@@ -13,7 +13,7 @@ static bool path_key_finite(const SingePoseKey *key) {
     return finite;
 }
 
-/// In double, where no square of a float overflows or vanishes.
+/// In double, where the square of a float neither overflows nor underflows.
 static double path_rotation_length(const float q[4]) {
     double square = 0;
     for (int k = 0; k < 4; k++) square += (double)q[k] * (double)q[k];
