@@ -74,17 +74,13 @@ class Burning(Case):
         if not program:
             self.skipTest("SINGE_BURN names no program")
         sim = singe.Sim(pace=5)
-        y, x = np.mgrid[0:41, 0:41].astype(np.float32)
-        points = np.stack([np.float32(0.15) * (x / 40 - np.float32(0.5)), np.float32(0.15) * (y / 40 - np.float32(0.5)),
-                           0 * x], axis=2).reshape(-1, 3)
-        first = (np.arange(40)[:, None] * 41 + np.arange(40)).reshape(-1, 1)
-        sheet = sim.sheet(points, first + [0, 1, 42, 41])
+        sheet = sim.sheet(*singe.grid((0.15, 0.15), (40, 40)))
         sim.commit()
         sim.spot((0.075, 0, 0), radius=0.01, falloff=0.01, temperature=1123, end=0.5)
         sim.pin(sheet, vertices=[0, 40], radius=0.005)
         lines = []
         for frame in range(1, 49):
-            sim.step(20)
+            sim.advance(1 / 24)
             alive = sim.alive
             lines.append(f"frame {frame:2d}: lowest at {1e3 * float(sim.position[alive, 2].min()):4.0f} mm, hottest "
                          f"{sim.temperature[alive].max():4.0f} K, {100 * sim.stats()['burnt_fraction']:3.0f} % burnt")
