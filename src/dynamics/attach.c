@@ -4,26 +4,26 @@
 //
 //   x_i <- x_p + (x_i - x_p) L_ip / |x_i - x_p|.
 //
-// A strand passes a pull on only to the other end of itself within a projection, so that on a fine sheet most of
-// the load at a pin would be carried by stretch; these carry it at once. Centres lie off the mesh, farther away on
-// the outside of a bend: they are not attached, or a sheet would not bend.
+// Within a projection a strand passes a pull on only to its own other end, so that on a fine sheet stretch would carry
+// most of the load at a pin; attachments carry it at once. Centres lie off the mesh, farther away on the outside of a
+// bend: they are not attached, or a sheet would not bend.
 //
-// Sources are up to ATTACH_SOURCES held vertices of a sheet, each as far as possible from those before it. Lengths
-// are those of the springs' targets over the cells that are left, measured again every ATTACH_PERIOD steps while a
-// sheet burns. What has grown longer, where the fire has cut a way off, counts at once; what has shrunk goes to its new
-// length step by step till the next measurement, for a length that shortens at once jerks what depends on it; so does
-// what a source that takes over from one that has burnt finds too far, and what has gone too far while a tight sheet
-// that may tear was left to its springs. What has come free of a source is let go at the end of the step. A sheet whose
-// mesh may stretch by its compliance has no attachments.
+// Sources are up to ATTACH_SOURCES held vertices of a sheet, each as far as possible from those before it. Lengths are
+// those of the springs' targets over the cells that are left, measured again every ATTACH_PERIOD steps while a sheet
+// burns. A length that has grown, because the fire cut a path, takes effect at once. A length that has shrunk
+// approaches its new value step by step until the next measurement, as a sudden change would jerk the vertex. So do the
+// lengths of vertices that are too far from a source that replaces a burnt one, and of vertices that moved too far
+// while a tight sheet that may tear was left to its springs. Vertices that have come free of a source are released at
+// the end of the step. A sheet whose mesh may stretch by its compliance has no attachments.
 #include "common/check.h"
 #include "dynamics/attach.h"
 
 #include "common/float3.h"
 
-/// Vertices that any kernel takes in whole blocks of lanes.
+/// A number of vertices that makes whole blocks of lanes for any kernel.
 enum { ATTACH_BLOCK = 16 };
 
-/// Of itself, what a length shortens by in a step at most.
+/// Max fraction by which a length shortens in a step.
 static const float ATTACH_HASTE = 0.003f;
 
 bool attach_create(Memory *memory, const Shell *shell, Attachments *attachments) {
@@ -51,8 +51,8 @@ static bool attach_may_hold(const StateInput *state, uint32_t v) {
     return state->dynamics->pinned[v] && (state->ablate->particle_flags[v] & SINGE_ALIVE);
 }
 
-/// The held vertex that is farthest, at rest, from the sources found so far; the first one for none. None where it is
-/// nearer than a tenth of the way between the first two: it would hardly hold anything else.
+/// The held vertex that is farthest, at rest, from the sources found so far; the first one if there are none.
+/// SHELL_NONE if it is nearer than a tenth of the distance between the first two: it would hardly hold anything else.
 static uint32_t attach_farthest(const Shell *shell, const StateInput *state, const Sheet *sheet, const uint32_t *source,
                                 int count) {
     uint32_t farthest = SHELL_NONE;
@@ -73,15 +73,15 @@ static uint32_t attach_farthest(const Shell *shell, const StateInput *state, con
     return max < 0.01f * float3_dot(first, first) ? SHELL_NONE : farthest;
 }
 
-/// Whether nothing in a sheet's mesh may stretch.
+/// Whether no part of a sheet's mesh may stretch.
 static bool attach_is_inextensible(const Shell *shell, const Sheet *sheet) {
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
         if (field_at(shell->matter.compliance[SINGE_BLUE], v) > 0) return false;
     return true;
 }
 
-/// Takes over what was measured: at once what has grown longer, or all of it. Cells may touch at a vertex where no
-/// spring joins them any more: another piece is out of reach, whatever was measured.
+/// Accepts measured lengths: those that have grown at once, or all of them. Cells may share a vertex where no spring
+/// joins them any more: another piece is out of reach, whatever was measured.
 static void attach_accept(Attachments *attachments, const Sheet *sheet, const int32_t *piece, uint32_t source, int k,
                           bool all) {
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
@@ -93,7 +93,8 @@ static void attach_accept(Attachments *attachments, const Sheet *sheet, const in
     attachments->settled = false;
 }
 
-/// A source that takes over holds nothing nearer than it is: what is too far comes by and by.
+/// A new source starts with the present distances, so that it pulls nothing at first: vertices that are too far
+/// approach gradually.
 static void attach_start(Attachments *attachments, const Sheet *sheet, const DynamicsState *dynamics, uint32_t source,
                          int k) {
     Float3 position = float3_load(dynamics->position[source]);
@@ -119,7 +120,7 @@ static void attach_measure(Attachments *attachments, const Shell *shell, const S
     }
 }
 
-/// Pieces never join again: what is in another piece than a source is out of its reach for good.
+/// Pieces never join again: a vertex in another piece than a source is out of its reach for good.
 static void attach_let_go(Attachments *attachments, const Shell *shell, const int32_t *piece) {
     for (uint32_t v = 0; v < shell->vertex_count; v++) {
         const uint32_t *source = attachments->source[shell->matter.sheet[v]];
@@ -128,7 +129,8 @@ static void attach_let_go(Attachments *attachments, const Shell *shell, const in
     }
 }
 
-/// What rests is as long as it has become. The distances between what is held tell whether it is tight: they stay.
+/// Lengths of a resting sheet grow to the present distances. Those of held vertices tell whether it is tight: they
+/// stay.
 static void attach_follow(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics) {
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const uint32_t first = shell->sheets[s].vertex_first, *source = attachments->source[s];
@@ -146,8 +148,8 @@ static void attach_follow(Attachments *attachments, const Shell *shell, const Dy
     }
 }
 
-/// A step of what shortens, so that it arrives when the next measurement is due or as fast as may be: all at once would
-/// jerk what depends on it.
+/// Shortens lengths for a step, so that they reach their goals when the next measurement is due, or at the max rate: at
+/// once would jerk the vertices.
 static void attach_shorten(Attachments *attachments, const Shell *shell, uint64_t step) {
     if (attachments->settled) return;
     attachments->settled = true;
@@ -184,7 +186,7 @@ void attach_split(Attachments *attachments, uint32_t vertex, uint32_t spare) {
     }
 }
 
-/// Whether what was read back is what attach_measure may have left.
+/// Whether the data read back is what attach_measure may have left.
 static bool attach_fits(const Attachments *attachments, const Shell *shell) {
     for (uint32_t s = 0; s < shell->sheet_count; s++)
         for (int k = 0; k < ATTACH_SOURCES; k++) {
@@ -210,7 +212,7 @@ void attach_stream(Attachments *attachments, const Shell *shell, Stream *stream)
     if (stream->mode == STREAM_READ && !attach_fits(attachments, shell)) stream->failed = true;
 }
 
-/// Where a sheet's sources are now, how far apart, and how that compares with what the sheet reaches between them.
+/// Present positions of a sheet's sources, their distances, and the ratios to the lengths of the sheet between them.
 static void attach_spread(const Attachments *attachments, const float (*position)[4], const uint32_t *source,
                           AttachSpread *spread) {
     *spread = (AttachSpread){0};
@@ -221,7 +223,7 @@ static void attach_spread(const Attachments *attachments, const float (*position
             spread->apart[p][q] = apart;
             spread->ratio[p][q] = apart / attachments->length[source[p]][q];
             spread->max = fmaxf(spread->max, isfinite(spread->ratio[p][q]) ? spread->ratio[p][q] : 0);
-            spread->tight |= spread->ratio[p][q] > 1.001f; // what is held at its own distance is not pulled apart
+            spread->tight |= spread->ratio[p][q] > 1.001f; // sources held at their own distance are not pulled apart
         }
     }
 }

@@ -6,8 +6,8 @@
 #include "common/pool.h"
 #include "dynamics/geodesic.h"
 
-/// Sources of a sheet at most; steps between two measurements while it burns: a search costs as much as several steps;
-/// and while it tears.
+/// Max sources of a sheet; steps between two measurements while it burns (a search costs as much as several steps); and
+/// while it tears.
 enum { ATTACH_SOURCES = 4, ATTACH_PERIOD = 96, ATTACH_TORN_PERIOD = 8 };
 _Static_assert(ATTACH_SOURCES == 4, "kernels load the lengths of a vertex as one quadruple");
 _Static_assert(ATTACH_PERIOD % ATTACH_TORN_PERIOD == 0, "a measurement of a fire is one of a tear");
@@ -16,28 +16,28 @@ _Static_assert(ATTACH_PERIOD % ATTACH_TORN_PERIOD == 0, "a measurement of a fire
 typedef struct AttachSpread {
     int count;                                   ///< 0 also where a tight sheet may tear
     float max;                                   ///< of the ratios
-    bool tight;                                  ///< two are farther apart than the sheet between them
+    bool tight;                                  ///< two sources are farther apart than their distance along the sheet
     float position[ATTACH_SOURCES][3];           ///< m
     float apart[ATTACH_SOURCES][ATTACH_SOURCES]; ///< m, of source p from source q < p
-    float ratio[ATTACH_SOURCES][ATTACH_SOURCES]; ///< of that and their distance along the sheet
+    float ratio[ATTACH_SOURCES][ATTACH_SOURCES]; ///< of `apart` and their distance along the sheet
 } AttachSpread;
 
 /// Held vertices of a sheet, far from each other, and every vertex's distance from them.
 typedef struct Attachments {
     uint32_t (*source)[ATTACH_SOURCES]; ///< [sheets] vertices; SHELL_NONE where there are fewer
-    float (*length)[ATTACH_SOURCES];    ///< [vertices] m, INFINITY where nothing holds
+    float (*length)[ATTACH_SOURCES];    ///< [vertices] m, INFINITY if the source does not hold it
     float (*goal)[ATTACH_SOURCES];      ///< [vertices] m, as last measured; shortening lengths approach it
     AttachSpread *spread;               ///< [sheets] scratch of a substep
     float *distance;                    ///< [vertices] scratch
     Geodesic search;
     bool settled; ///< all lengths have reached their goals
-    // what they were measured for
+    // the state that they were measured for
     uint64_t topology;
     double mass_burnt;
     uint32_t split_count;
 } Attachments;
 
-/// Puts back what is too far from the sources: of `count` contiguous vertices, as many whole blocks of lanes
+/// Moves vertices that are too far from the sources back: of `count` contiguous vertices, as many whole blocks of lanes
 /// as there are (attach_kernel.h). `length` as in Attachments, `position` with the inverse mass as fourth.
 typedef void AttachHold(const AttachSpread *spread, const float *length, float *position, int count);
 AttachHold attach_hold_plain, attach_hold_v2, attach_hold_v3, attach_hold_v4, attach_hold_neon;
@@ -45,11 +45,11 @@ AttachHold attach_hold_plain, attach_hold_v2, attach_hold_v3, attach_hold_v4, at
 bool attach_create(Memory *memory, const Shell *shell, Attachments *attachments);
 void attach_free(Memory *memory, const Shell *shell, Attachments *attachments);
 
-/// At the end of a step, and after pins have changed: lets go what has come free of a source, and finds sources and
-/// lengths again where pins have changed, and every ATTACH_PERIOD steps where the sheet has.
+/// At the end of a step, and after pins have changed: releases vertices that have come free of a source. Finds sources
+/// and lengths again where pins have changed, and every ATTACH_PERIOD steps where the sheet has.
 void attach_update(Attachments *attachments, const Shell *shell, const StateInput *state, bool pins_changed);
 
-/// A tear has given a vertex a second edge: it is as far from everything.
+/// A tear has split `vertex`: `spare` gets the same lengths.
 void attach_split(Attachments *attachments, uint32_t vertex, uint32_t spare);
 
 /// Stores the positions of the sources.
@@ -59,20 +59,20 @@ void attach_position(Attachments *attachments, const Shell *shell, const Dynamic
 void attach_range(const Attachments *attachments, const Shell *shell, AttachHold *hold, DynamicsState *dynamics,
                   int begin, int end);
 
-/// The largest of the ratios, 1 at least.
+/// The largest of the ratios, at least 1.
 static inline float attach_stretched(const AttachSpread *spread) { return spread->max > 1 ? spread->max : 1; }
 
-/// Whether sources hold nothing for now: what is held farther apart than it reaches may tear, where it can, and nothing
-/// but its springs pulls at it then.
+/// Whether sources hold nothing for now: a sheet that can tear and is held farther apart than it reaches is left to its
+/// springs, so that it may tear.
 static inline bool attach_rests(const Shell *shell, const AttachSpread *spread) {
     return spread->tight && shell->spare_count > 0;
 }
 
-/// Both, for all vertices.
+/// attach_position and attach_range for all vertices.
 void attach_project(Attachments *attachments, const Shell *shell, AttachHold *hold, Pool *pool,
                     DynamicsState *dynamics);
 
-/// Sources and lengths are part of a snapshot: they are those of an earlier step.
+/// Sources and lengths are part of a snapshot, as they come from an earlier step.
 void attach_stream(Attachments *attachments, const Shell *shell, Stream *stream);
 
 #endif

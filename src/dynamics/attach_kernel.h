@@ -1,9 +1,9 @@
 // The attachments of vertices, LANES at a time. One file per instruction set includes this, like strand_kernel.h.
 #include "dynamics/attach.h"
 
-/// Where sources p and q are farther apart than the sheet between them, by the ratio f, no position satisfies both
-/// spheres of what lies near the line between them: there both lengths grow, as if the sheet were stretched, by at
-/// most f and so far that the spheres overlap by a margin.
+/// Where sources p and q are farther apart than the sheet between them, by the ratio f, no position near the line
+/// between them satisfies both spheres: there both lengths grow, as if the sheet were stretched, by at most f and so
+/// far that the spheres overlap by a margin.
 static inline void attach_stretch(const AttachSpread *spread, Lanes length[ATTACH_SOURCES]) {
     Lanes factor[ATTACH_SOURCES], one = lanes_all(1);
     for (int p = 0; p < ATTACH_SOURCES; p++) factor[p] = one;
@@ -33,13 +33,13 @@ void ATTACH_HOLD(const AttachSpread *spread, const float *length, float *positio
             Lanes dz = node.z - lanes_all(anchor[2]);
             Lanes square = dx * dx + dy * dy + dz * dz, limit = max[k] * max[k];
             if (!lanes_any_less(limit, square)) continue;
-            // sqrt(q) - 1 for q = limit/square; for a hundredth too far, (q - 1)/(q + 1) is that to 1e-5
+            // sqrt(q) - 1 for q = limit/square; up to a hundredth too far, (q - 1)/(q + 1) equals it to 1e-5
             Lanes pull = (limit - square) / (limit + square);
             Lanes max_square = limit * lanes_all(1.02f);
             if (lanes_any_less(max_square, square))
                 pull = lanes_where_less(max_square, square, lanes_sqrt(limit / square) - one, pull);
             pull = lanes_where_less(limit, square, pull, zero);
-            pull = lanes_where_less(zero, node.w, pull, zero); // what is held itself stays
+            pull = lanes_where_less(zero, node.w, pull, zero); // held vertices stay
             node.x += dx * pull, node.y += dy * pull, node.z += dz * pull;
             quads_pull(&point, anchor, pull);
             moved = true;

@@ -1,11 +1,11 @@
-// Contact of the cells between particles. What is smaller than a cell would reach through it, for particles of a layer
-// are a cell apart. So the mean of a cell's corners,
+// Contact of the cells between particles. Particles of a layer are a cell apart: a collider smaller than a cell would
+// reach through it. So the mean of a cell's corners,
 //
 //   x = (x_0 + x_1 + x_2 + x_3)/4,
 //
-// touches colliders as a particle does, with friction, and its corners go where it goes; those that are held stay.
-// Cells of one family share no corner; family follows family. The particles' own contact comes after it and has the
-// last word.
+// is kept out of colliders like a particle, with friction, and its corners move with it; held corners stay. Cells of
+// one family share no corner; families follow each other. Contact of the particles comes after it and has the last
+// word.
 #include "common/check.h"
 #include "dynamics/dynamics_plan.h"
 
@@ -19,10 +19,10 @@ typedef struct Centroid {
     float h;
 } Centroid;
 
-/// Of the offset, how much cells keep: less than all, so that what lies on something flat is left to its particles.
+/// Share of the offset that cells keep: less than all, so that a sheet on something flat is left to its particles.
 static const float CENTROID_SHARE = 0.875f;
 
-/// Whether a position is nearer to a collider than that.
+/// Whether a point is nearer to a collider than `limit`.
 static bool centroid_is_near(const MovingCollider *moving, float limit, Float3 point) {
     const Collider *collider = moving->collider;
     Float3 from = float3_sub(point, moving->after.position), normal;
@@ -52,7 +52,7 @@ static void centroid_cell(const Centroid *job, const uint32_t corner[4]) {
     float3_store(point, mean);
     for (uint32_t c = 0; c < job->collider_count; c++) {
         const MovingCollider *collider = &job->plan->colliders[c];
-        // nothing of a plane lies between positions outside of it
+        // no part of a plane lies between points outside it
         if (collider->collider->def.kind == SINGE_COLLIDER_PLANE) continue;
         float offset = CENTROID_SHARE * collider->collider->def.offset;
         if (centroid_is_near(collider, offset, float3_load(point)))

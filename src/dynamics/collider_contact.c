@@ -6,23 +6,23 @@
 // as positions (Mueller et al., Position based dynamics, 2007; Macklin et al. 2014).
 //
 // Depth alone does not tell on which side a particle belongs that has gone through something thin. So where its
-// displacement over the collider in this substep is longer than its distance, the displacement is followed from its
-// start, in the collider's frame, by steps that the distance allows (contact_enters); what enters goes back to the
+// displacement over the collider in this substep is longer than its distance, its path is followed from the start, in
+// the collider's frame, by steps that the distance allows (contact_enters); a particle that enters goes back to the
 // plane that touches the surface there.
 #include "common/check.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
-/// m/s, relative to a collider: what is faster may pass what is smaller than its displacement in a substep.
+/// m/s, relative to a collider: a faster particle may pass a collider smaller than its displacement in a substep.
 static const float CONTACT_SPEED = 20;
 
-/// Parts of the displacement that it is followed in at most.
+/// Max steps in which a displacement is followed.
 enum { CONTACT_STEPS = 128 };
 
-/// As far outside of a surface as this, of the offset or in m, counts as there.
+/// A position this near outside a surface, as a share of the offset or in m, counts as on it.
 static const float CONTACT_SKIN = 1.0f / 16, CONTACT_SKIN_MIN = 1e-6f;
 
-/// How far any point of a box about the origin moves between two poses.
+/// Max displacement of any point of a box about the origin between two poses.
 static float contact_motion(const Pose *before, const Pose *after, float size) {
     float turn = 0, back = 0;
     for (int k = 0; k < 4; k++) {
@@ -48,10 +48,10 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
     float size = 0;
     for (int i = 0; i < 3; i++) {
         float far = fmaxf(fabsf(ends[i][0]), fabsf(ends[i][1]));
-        if (isfinite(far)) size += far * far; // what has no end along an axis is taken not to turn about another
+        if (isfinite(far)) size += far * far; // a collider without end along an axis is taken not to turn about another
     }
 
-    // box in its own frame, widened by what moves in the substep
+    // box in its own frame, widened by the motion in the substep
     float margin = collider->def.offset + CONTACT_SPEED * (float)(after - before) +
                    contact_motion(&moving.before, &moving.after, sqrtf(size));
     for (int i = 0; i < 3; i++) {
@@ -69,7 +69,7 @@ typedef struct Entry {
     float distance;
 } Entry;
 
-/// Follows the displacement from `from`, outside, to `to`, in the collider's frame.
+/// Follows the straight path from `from`, outside, to `to`, in the collider's frame.
 static bool contact_enters(const Collider *collider, Float3 from, Float3 to, Entry *entry) {
     float skin = fmaxf(CONTACT_SKIN * collider->def.offset, CONTACT_SKIN_MIN);
     Float3 displacement = float3_sub(to, from);
@@ -88,12 +88,12 @@ static bool contact_enters(const Collider *collider, Float3 from, Float3 to, Ent
     return false;
 }
 
-/// Moves a particle out of a collider, in its frame. Returns by how much, or 0; *normal is the direction of it.
+/// Moves a particle out of a collider, in its frame. Returns the distance, or 0; *normal is the direction.
 static float contact_out(const Collider *collider, float offset, Float3 from, Float3 *to, Float3 *normal) {
     float displacement = float3_length(float3_sub(*to, from));
     float distance = collider_distance(collider, *to, offset + displacement, normal);
     Entry entry = {0};
-    // behind a plane, however far, the displacement out is up
+    // behind a plane, at any depth, a particle moves out along the plane's normal
     if (distance < displacement && collider->def.kind != SINGE_COLLIDER_PLANE &&
         contact_enters(collider, from, *to, &entry) &&
         (distance >= offset || float3_dot(entry.normal, *normal) < 0.5f)) {
@@ -110,7 +110,7 @@ static float contact_out(const Collider *collider, float offset, Float3 from, Fl
     return offset - distance;
 }
 
-/// How far the surface of a deforming mesh has carried what was near it; nothing where it is too far to touch.
+/// Displacement of a deforming mesh's surface near a particle; zero if it is too far for contact.
 static Float3 contact_drift(const MovingCollider *moving, float offset, Float3 from, Float3 to) {
     Float3 normal;
     if (moving->drift == 0) return float3(0, 0, 0);
@@ -140,7 +140,7 @@ bool contact_particle(const MovingCollider *moving, float offset, Float3 previou
     return true;
 }
 
-/// Which of four particles may be nearer to a collider than it reaches.
+/// Whether any of four particles may be nearer to a collider than it reaches.
 static inline bool contact_any_near(const MovingCollider *collider, const Float4 x[4]) {
     Float3 origin = collider->after.position;
     Float4 dx = x[0] - origin.x, dy = x[1] - origin.y, dz = x[2] - origin.z;

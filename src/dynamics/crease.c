@@ -1,4 +1,4 @@
-// Plastic creases: what is bent sharper than a radius keeps a part of the bend.
+// Plastic creases: a sheet bent sharper than a radius keeps a part of the bend.
 //
 // Geometry. Two cells meet at an edge, their centroids at the distances p and q from it along the sheet: the bend
 // between them is spread over the arc s = p + q. theta is the angle from one cell's normal n to the other's, positive
@@ -6,52 +6,52 @@
 //
 //   theta = atan2((n_1 x n_2) . e, n_1 . n_2),   e the unit edge, turned as it is in the first cell
 //
-// Centres at the thickness t over their cells are then apart by (p = q; alpha = theta/2)
+// The distance of centres at the thickness t over their cells is then (p = q; alpha = theta/2)
 //
 //   l(theta) = s cos alpha + 2 t sin alpha = r cos(alpha - beta),   r^2 = s^2 + 4 t^2,   tan beta = 2 t/s
 //
 // so that a green spring of the target length l(theta_0 + theta_p), theta_0 the angle at rest, is at rest in a fold of
-// theta_p more: longer for folds away from the centres, shorter towards them. The other colours keep theirs. As a
-// fraction of the length for theta_0, which eq 6 gives, that is cos(psi_p)/cos(phi) with
+// theta_p more: longer for folds away from the centres, shorter towards them. The other colours keep their targets. As
+// a fraction of the length for theta_0, which eq 6 gives, that is cos(psi_p)/cos(phi) with
 //
 //   phi = theta_0/2 - beta,   psi_p = phi + theta_p/2,   psi = phi + (present angle)/2
 //
-// Seen from other angles such a spring bends ever more softly the nearer psi is to 0, where l is greatest, and the
-// sheet would give way at one edge and spare its neighbours. What has a crease is therefore given the target from
-// which, where it is now, the moment (l - target) dl/dalpha is 4 t^2 times (psi - psi_p), as in a flat sheet:
+// At other angles such a spring bends ever more softly the nearer psi is to 0, where l is largest, and the sheet would
+// yield at one edge and spare its neighbours. A creased spring therefore gets the target for which, at its present
+// angle, the moment (l - target) dl/dalpha is 4 t^2 times (psi - psi_p), as in a flat sheet:
 //
 //   f = (cos psi + sin^2 beta (psi - psi_p)/sin psi)/cos phi
 //
-// with CREASE_LEVER of sin beta at least in place of |sin psi|. A mesh of cells s holds less than 2 beta an edge away
-// from the centres, and less than pi - 2 beta towards them. Both angles are held to CREASE_HOLDS of the way there.
+// with at least CREASE_LEVER of sin beta in place of |sin psi|. A mesh of cells s holds less than 2 beta at an edge
+// away from the centres, and less than pi - 2 beta towards them. Creases are limited to CREASE_HOLDS of both angles.
 //
-// Plasticity, in curvatures k = angle/s (1/m), which mean the same on every mesh. Elastic is what is neither crease nor
-// eq 6's own doing, k_e = k - k_6 - k_p, where layers that shrink by ratios a (green) and b (blue) curl by
-// cos(phi + theta_6/2) = a/b cos phi. With k_y = 1/crease_radius, c = crease_share,
+// Plasticity, in curvatures k = angle/s (1/m), which mean the same on every mesh. The elastic part is neither crease
+// nor due to eq 6, k_e = k - k_6 - k_p, where layers that shrink by ratios a (green) and b (blue) curl by cos(phi +
+// theta_6/2) = a/b cos phi. With k_y = 1/crease_radius, c = crease_share,
 //
 //   |k_e| > k_y + (1/c - 1)|k_p|:   k_p += c (|k_e| - k_y - (1/c - 1)|k_p|) sign k_e
 //
-// which is linear hardening: a sheet bent from flat to k keeps k_p = c (|k| - k_y), at once and at any step. A sheet
-// let go has |k_e| = 0 at k = k_p: only a bend by k_y the other way opens the crease again. k - k_6 is
-// taken through a low pass of CREASE_TIME: trembling does not crease.
+// which is linear hardening: a sheet bent from flat to k keeps k_p = c (|k| - k_y), at once and at any step. A released
+// sheet has |k_e| = 0 at k = k_p: only a bend by k_y in the opposite direction opens the crease again. k - k_6 passes a
+// low-pass filter of CREASE_TIME: trembling does not crease.
 //
 // Three things keep creases from running along rows of the mesh.
 //
-// Width. What yields is soft, and would take all of a bend into one row of edges: of k - k_6 no more counts than
-// CREASE_PEAK of the mean about an edge, of its own bend and half as much of those before and behind it along the
+// Width. An edge that yields is soft, and would take all of a bend into one row of edges: k - k_6 counts only up to
+// CREASE_PEAK of the mean about an edge, of its own bend and half as much of those before and after it along the
 // strand. An arc of any length loses nothing by that, a single edge a third.
 //
 // Direction. A fold of the curvature k whose line is turned by omega from the edge bends it by k cos^2 omega and twists
-// it by k sin omega cos omega, as a cylinder, for a sheet does not stretch: the twist tau is what turns n_1 into n_2
-// about the direction across the edge. So that a fold keeps the same whichever way it runs, k_y counts
-// cos^2 omega = theta^2/(theta^2 + (tau - tau_0)^2) of itself at the edge, theta without theta_0 and eq 6's part, and
-// CREASE_SLANT at least. Else creases along the mesh come at k_y and those along its diagonals at 2 k_y.
+// it by k sin omega cos omega, like a cylinder, as a sheet does not stretch: the twist tau is the rotation from n_1 to
+// n_2 about the direction across the edge. So that a fold keeps the same in any direction, an edge has cos^2 omega k_y
+// in place of k_y, where cos^2 omega = theta^2/(theta^2 + (tau - tau_0)^2), theta without theta_0 and eq 6's part, and
+// at least CREASE_SLANT. Otherwise creases along the mesh would come at k_y and those along its diagonals at 2 k_y.
 //
-// Sharpness. Of what is bent beyond curvature_max, which the mesh gives back (curvature.c), nothing stays: k - k_6
-// counts up to cos^2 omega of it, so that |k_p| <= c (curvature_max - k_y) cos^2 omega.
+// Sharpness. Nothing is kept of a bend beyond curvature_max, which the mesh gives back (curvature.c): k - k_6 counts up
+// to cos^2 omega of it, so that |k_p| <= c (curvature_max - k_y) cos^2 omega.
 //
-// Char breaks, it does not fold: by the burn progress B of the two cells a crease fades, k_p (1 - B) counts of it,
-// and no more than that share of a bend comes to stay.
+// Char breaks instead of folding: with the burn progress B of the two cells a crease fades, k_p (1 - B) of it counts,
+// and no more than that share of a bend is kept.
 #include "common/check.h"
 #include "common/real.h"
 #include "common/float4.h"
@@ -60,17 +60,17 @@
 /// s, how long a bend must last.
 static const float CREASE_TIME = 0.02f;
 
-/// Share of the way to where l(theta) is flat or 0 that is left to a crease, so that it stays stiff.
+/// Share of the angle where l(theta) is flat or 0 that a crease may have, so that it stays stiff.
 static const float CREASE_HOLDS = 0.85f;
 
-/// Least lever of a creased spring, -sin psi, over that in a flat sheet. With less of it the force for the same moment
-/// would pull the cells into each other.
+/// Min lever of a creased spring, -sin psi, over that in a flat sheet. With less, the force for the same moment would
+/// pull the cells into each other.
 static const float CREASE_LEVER = 0.5f;
 
-/// Least cos^2 omega that counts: at folds more nearly across an edge it bends little, and its direction is uncertain.
+/// Min cos^2 omega that counts: a fold more nearly across an edge bends it little, and its direction is uncertain.
 static const float CREASE_SLANT = 0.4f;
 
-/// Most of an edge's bend that counts, over the mean about it: that of the last edge of an even arc.
+/// Max bend of an edge that counts, over the mean about it: that of the last edge of an even arc.
 static const float CREASE_PEAK = 4.0f / 3;
 
 static const float CREASE_PI = 3.14159265f;
@@ -80,7 +80,7 @@ typedef struct Crease {
     const Shell *shell;
     const StateInput *state;
     DynamicsState *dynamics;
-    float follows; ///< share of the way to the present bend that the low pass goes in this step
+    float follows; ///< weight of the present bend in the low-pass filter in this step
     bool burning;  ///< something has burnt
 } Crease;
 
@@ -105,23 +105,23 @@ static Float3 hinge_centroid(const float (*x)[4], const uint32_t *corner) {
     return sum;
 }
 
-/// theta between unit normals; NAN where one of them is none.
+/// theta between unit normals; NAN if one of them is zero.
 static inline float hinge_angle(Float3 a, Float3 b, Float3 edge) {
     float along = float3_dot(a, b), length = float3_length(edge);
     if (!(length > 0 && float3_dot(a, a) > 0.5f && float3_dot(b, b) > 0.5f)) return NAN;
     float across = float3_dot(float3_cross(a, b), edge) / length;
     if (along < 0.9f) return real_atan2f(across, along);
-    float square = across * across; // asin, to 1e-4 of itself
+    float square = across * across; // asin, with a relative error of 1e-4
     return across * (1 + square * (1.0f / 6 + square * (3.0f / 40 + square * (15.0f / 336))));
 }
 
-/// curvature_max in the centre of an edge, where it has one at both ends, and what cells of this size bear at most.
+/// curvature_max at the midpoint of an edge, if both its ends have one, and at most what cells of this size can bear.
 static float hinge_limit(const Shell *shell, uint32_t from, uint32_t to, float borne) {
     float a = field_at(shell->matter.curvature_max, from), b = field_at(shell->matter.curvature_max, to);
     return a > 0 && b > 0 ? fminf(0.5f * (a + b), borne) : INFINITY;
 }
 
-/// tau: of the turn from one unit normal to the other, the part about the direction across the edge.
+/// tau: the part of the rotation from one unit normal to the other about the direction across the edge.
 static float hinge_twist(Float3 a, Float3 b, Float3 edge) {
     const Float3 turn = float3_cross(a, b), across = float3_cross(float3_add(a, b), edge);
     const float sine = float3_length(turn), length = float3_length(across);
@@ -158,7 +158,7 @@ void creases_measure(const Shell *shell, Hinge *hinges) {
 
 // ---- a step
 
-/// phi + angle/2, as far as the mesh holds a crease.
+/// phi + angle/2, limited to a crease that the mesh holds.
 static float crease_lean(const Hinge *hinge, float angle) {
     float away = -(1 - CREASE_HOLDS) * hinge->max, towards = -CREASE_HOLDS * CREASE_PI / 2;
     float lean = hinge->lean + 0.5f * angle;
@@ -182,7 +182,7 @@ float crease_kept(const Shell *shell, const StateInput *state, uint32_t green) {
     return kept;
 }
 
-/// Of the mesh along a green spring, over what it was at rest: the mean of its cells' four blue springs.
+/// Length of the mesh along a green spring over that at rest: the mean of its cells' four blue springs.
 static float crease_blue_ratio(const Crease *job, const uint32_t *ends, const Hinge *hinge) {
     const float *length = job->state->burn->spring_length[SINGE_BLUE], *rest = job->shell->springs[SINGE_BLUE].rest;
     float sum = 0;
@@ -196,7 +196,7 @@ static float crease_blue_ratio(const Crease *job, const uint32_t *ends, const Hi
     return sum;
 }
 
-/// The angle by which layers that have shrunk differently curl of themselves.
+/// The angle by which layers that have shrunk differently curl by themselves.
 static float crease_curl(const Crease *job, uint32_t k, const uint32_t *ends, const Hinge *hinge) {
     float green = job->state->burn->spring_length[SINGE_GREEN][k] / job->shell->springs[SINGE_GREEN].rest[k];
     float ratio = green / crease_blue_ratio(job, ends, hinge) * real_cosf(hinge->lean);
@@ -210,7 +210,7 @@ static Float3 crease_edge(const Crease *job, const uint32_t *ends, const Hinge *
     return float3_sub(float3_load(x[corner[(hinge->side[0] + 1) & 3]]), float3_load(x[corner[hinge->side[0]]]));
 }
 
-/// The angle of a fold now. Flat on itself it is the same to both sides: then it is on the side where it came from.
+/// The present angle of a fold. A sheet folded flat on itself has both signs: the angle keeps the sign that it had.
 static float crease_angle(const Crease *job, const uint32_t *ends, const Hinge *hinge, float last) {
     uint32_t first = ends[0] - job->shell->vertex_count, second = ends[1] - job->shell->vertex_count;
     const float(*normal)[4] = (const float(*)[4])job->plan->cell_normal;
@@ -220,7 +220,7 @@ static float crease_angle(const Crease *job, const uint32_t *ends, const Hinge *
     return angle - hinge->angle;
 }
 
-/// k - k_6 as it is now, in rad; NAN where it is not known. `last` is where it was.
+/// The present k - k_6, in rad; NAN where it is not known. `last` is the previous one.
 static float crease_turned(const Crease *job, uint32_t k, float last) {
     const uint32_t *ends = job->shell->springs[SINGE_GREEN].ends[k];
     const Hinge *hinge = &job->plan->hinges[k];
@@ -229,7 +229,7 @@ static float crease_turned(const Crease *job, uint32_t k, float last) {
     return crease_angle(job, ends, hinge, last + curl + hinge->angle) - curl;
 }
 
-/// cos^2 omega. The bend is the larger of that now and that which lasts: no edge seems aslant while its fold opens.
+/// cos^2 omega. The bend is the larger of the present and the filtered one: no edge seems oblique while its fold opens.
 static float crease_slant(const Crease *job, uint32_t k) {
     const uint32_t *ends = job->shell->springs[SINGE_GREEN].ends[k];
     const Hinge *hinge = &job->plan->hinges[k];
@@ -243,21 +243,21 @@ static float crease_slant(const Crease *job, uint32_t k) {
     return fmaxf(slant, CREASE_SLANT);
 }
 
-/// How much |k_p| grows at a bend k - k_6, with the sign of the bend that makes it; 0 where it does not yield.
+/// Growth of |k_p| at a bend k - k_6, with the sign of the bend that causes it; 0 where it does not yield.
 static float crease_yield(const Hinge *hinge, float bend, float held, float radius, float share, float slant) {
     float max = slant * hinge->limit, elastic = fmaxf(-max, fminf(bend, max)) - held;
     float excess = fabsf(elastic) - slant / radius - (1 / share - 1) * fabsf(held);
     return excess > 0 ? copysignf(share * excess, elastic) : 0;
 }
 
-/// Follows the bend of a green spring, but for what its layers do of themselves.
+/// Filters the bend of a green spring, without the curl of its layers.
 static void crease_bend(const Crease *job, uint32_t k) {
     float *bend = &job->dynamics->bend[k], arc = job->plan->hinges[k].arc;
     float turned = crease_turned(job, k, *bend * arc);
     if (!isnan(turned)) *bend += job->follows * (turned / arc - *bend);
 }
 
-/// Of a green spring's bend what counts beside those of its neighbours along the strand.
+/// The part of a green spring's bend that counts next to those of its neighbours along the strand.
 static float crease_counts(const Crease *job, uint32_t k) {
     const uint8_t *flags = job->state->ablate->spring_flags[SINGE_GREEN];
     const SpringSet *green = &job->shell->springs[SINGE_GREEN];
@@ -279,7 +279,7 @@ static bool crease_spring(const Crease *job, uint32_t k) {
     float *crease = &job->dynamics->crease[k];
     const float bend = crease_counts(job, k);
     float radius = 0.5f * (field_at(matter->crease_radius, ends[0]) + field_at(matter->crease_radius, ends[1]));
-    if (fabsf(bend) * radius < CREASE_SLANT && *crease == 0) return false; // most are this
+    if (fabsf(bend) * radius < CREASE_SLANT && *crease == 0) return false; // the usual case
     float kept = job->burning ? crease_kept(job->shell, job->state, k) : 1;
     float share = 0.5f * (field_at(matter->crease_share, ends[0]) + field_at(matter->crease_share, ends[1]));
     if (!(radius > 0 && share > 0 && kept > 0)) return *crease != 0;

@@ -1,27 +1,27 @@
 // The limit of curvature. A mesh of two layers resists a bend at an edge by the moment of its green spring, which grows
-// up to an angle of about atan(2 t/s) and falls beyond: a sheet that is bent sharper gives way at one row of edges and
-// spares their neighbours, so that folds run along rows. Where a sheet has not burnt, three vertices a, b, c in a row
-// of a blue or yellow strand, their springs l long in the mean, therefore keep to
+// up to an angle of about atan(2 t/s) and falls beyond: a sheet bent more sharply yields at one row of edges and spares
+// their neighbours, so that folds run along rows. Where a sheet has not burnt, three consecutive vertices a, b, c of a
+// blue or yellow strand, with springs of the mean length l, therefore keep to
 //
 //   |r| <= B,   r = x_a - 2 x_b + x_c,   B^2 = |r_0|^2 + (2 l sin(min(kappa l, 2.8)/2))^2
 //
-// with r_0 what it is at rest and kappa = curvature_max: an arc of the curvature kappa turns by kappa l from one spring
-// to the next. Cells s that are large for the thickness t cannot bear that: their moment is greatest at about
-// beta = atan(2 t/s), and kappa is beta/s at most (with l/s times the chord of beta for the chord of beta l/s). Cells
-// of more than 8 t, which show no folds of paper, would be held nearly flat by that, and have no limit.
+// with r_0 the value at rest and kappa = curvature_max: an arc of the curvature kappa turns by kappa l from one spring
+// to the next. Cells s that are large for the thickness t cannot bear that: their moment is largest at about beta =
+// atan(2 t/s), and kappa is at most beta/s (with l/s times the chord of beta for the chord of beta l/s). Cells of more
+// than 8 t, which show no folds of paper, would be held nearly flat by that, and have no limit.
 //
-// Once a substep what exceeds that is reduced by BEND_GAIN of the excess, with momentum kept:
+// Once a substep the excess is reduced by BEND_GAIN of itself, with momentum conserved:
 //
 //   m = gain (|r| - B)/|r| r/(w_a + 4 w_b + w_c),   x_a -= w_a m,   x_b += 2 w_b m,   x_c -= w_c m
 //
-// Families of strands follow each other; strands of a family share no particle.
+// Families of strands follow each other; strands of one family share no particle.
 #include "common/check.h"
 #include "common/real.h"
 #include "dynamics/dynamics_plan.h"
 
 #include <math.h>
 
-/// Mass fraction above which a vertex counts as unburnt. Char is weak, and folds as it likes.
+/// Mass fraction above which a vertex counts as unburnt. Char is weak, and folds freely.
 static const float BEND_FRESH = 0.98f;
 /// Cells over thickness above which there is no limit.
 static const float BEND_COARSE = 8;
@@ -40,7 +40,7 @@ bool curvature_create(Memory *memory, const Shell *shell, Strands *strands) {
     return true;
 }
 
-/// B above, of the vertex between two springs.
+/// B above, for the vertex between two springs.
 static float bend_limit(const Shell *shell, uint32_t a, uint32_t b, uint32_t c, float length, float side) {
     const float(*x)[4] = (const float(*)[4])shell->rest_position;
     const float curvature = field_at(shell->matter.curvature_max, b);

@@ -1,12 +1,12 @@
 // The limit of curvature along the strands of one group, with one strand per lane: see curvature.c. Included after
 // strand_kernel.h, whose groups and operations it uses.
 
-/// Three nodes in a row.
+/// Three consecutive nodes.
 typedef struct Bend {
     Float4s a, b, c;
 } Bend;
 
-/// Straightens what is bent too sharply by its share of the way; false where no lane is.
+/// Straightens bends that are too sharp by their share BEND_GAIN; false if there are none.
 static inline bool bend_straighten(Bend *bend, Lanes max) {
     Node a = quads_node(&bend->a), b = quads_node(&bend->b), c = quads_node(&bend->c);
     Lanes two = lanes_all(2), x = a.x - two * b.x + c.x, y = a.y - two * b.y + c.y, z = a.z - two * b.z + c.z;

@@ -1,4 +1,4 @@
-// A step of the shell's motion: substeps of predict, project, keep order, touch (eq 8 to 15, 18).
+// A step of the shell's motion: substeps of prediction, projection, layer order and contact (eq 8 to 15, 18).
 //
 // One projection of every colour a substep instead of several a step: the same cost and a smaller
 // error (Macklin et al., Small steps in physics simulation, 2019).
@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-/// Blocks of what sums go over: particles, or the springs of two colours.
+/// Max number of blocks of a sum: over the particles, or the springs of two colours.
 static int plan_partials(const Shell *shell) {
     int particles = pool_blocks((int)shell->particle_count), springs = 0;
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
@@ -105,7 +105,7 @@ float dynamics_stretch(const DynamicsPlan *plan, uint32_t sheet) {
 
 void dynamics_plan_torn(DynamicsPlan *plan, uint32_t vertex, uint32_t spare) {
     attach_split(&plan->attachments, vertex, spare);
-    if (plan->collision) collision_plan_forget(plan->collision); // cells that shared a corner may touch from now on
+    if (plan->collision) collision_plan_forget(plan->collision); // cells that shared a corner may now be in contact
 }
 
 void dynamics_plan_set_gravity(DynamicsPlan *plan, const float gravity[3]) {
@@ -113,7 +113,7 @@ void dynamics_plan_set_gravity(DynamicsPlan *plan, const float gravity[3]) {
 }
 
 void dynamics_plan_velocity_changed(DynamicsPlan *plan) {
-    if (plan->collision) collision_plan_forget(plan->collision); // its boxes are for the velocities of before
+    if (plan->collision) collision_plan_forget(plan->collision); // its boxes are for the old velocities
 }
 
 SingeResult dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, const State *state, Stream *stream) {
@@ -177,8 +177,8 @@ static SingeResult dynamics_check(DynamicsPlan *plan, Pool *pool, DynamicsState 
         i);
 }
 
-/// One projection of all colours. The attachments come first, for the load, and before the last colour, which is held
-/// best: so it mends what they disturb.
+/// One projection of all colours. The attachments come first, for the load, and before the last colour, which is
+/// satisfied best: so it repairs what they disturb.
 static void dynamics_project(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, bool attached,
                              DynamicsState *dynamics, DynamicsCounters *counters) {
     SINGE_ASSERT(h > 0);
@@ -193,7 +193,7 @@ static void dynamics_project(DynamicsPlan *plan, const Shell *shell, Pool *pool,
     }
 }
 
-/// Limits and the guard in turn: what the guard has stopped may be too far from what it has not.
+/// Alternates limits and CCD: what CCD has stopped may be too far from what it has not.
 static SingeResult dynamics_close(DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics) {
     enum { TURNS = 8 };
     const Shell *shell = context->shell;
@@ -228,7 +228,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const StepContext *context, Dynami
     if (plan->collision)
         TRY(dynamics_contact_result(collision_open(plan->collision, shell, state, pool, dynamics), error));
 
-    // substeps, each of which closes the one before: one pass more than there are
+    // each pass closes a substep and opens the next: one pass more than substeps
     Between between = {.opens = true};
     double before = state->time;
     for (int substep = 0; substep <= solver->substeps; substep++) {
@@ -236,8 +236,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const StepContext *context, Dynami
         between.opens = substep < solver->substeps;
         between.attaches = between.opens && solver->attachments && !plan->paper;
 
-        // velocities of the substep behind, prediction of the one ahead; held particles are where it ends before the
-        // others set out
+        // velocities of the last substep, prediction of the next; held particles are at its end before the others start
         if (between.opens) dynamics_move_pins(plan, context->pins, ablate, after, h_sub, dynamics);
         counters->contacts += dynamics_move(plan, shell, pool, h_sub, &between, dynamics);
         if (!between.opens) break;
@@ -270,7 +269,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const StepContext *context, Dynami
     dynamics_crease(plan, shell, state, pool, h, dynamics);
     TRY(dynamics_check(plan, pool, dynamics, error));
     StateInput done = *state;
-    done.dynamics = dynamics; // which nothing writes any more
+    done.dynamics = dynamics; // nothing writes it from here on
     if (solver->attachments) attach_update(&plan->attachments, shell, &done, false);
     return SINGE_OK;
 }

@@ -16,13 +16,13 @@ typedef struct DynamicsSettings {
     SingeContactDef contact;
     float time_step; ///< s
     SingeInstructions instructions;
-    int thread_count; ///< that may work at once
+    int thread_count; ///< max threads at once
 } DynamicsSettings;
 
 /// Whether this processor supports the instructions.
 bool dynamics_runs_here(SingeInstructions instructions);
 
-/// The set that is used where `asked`, which runs here, may be SINGE_INSTRUCTIONS_BEST.
+/// The set used for `asked`, which this processor supports and which may be SINGE_INSTRUCTIONS_BEST.
 SingeInstructions dynamics_instructions(SingeInstructions asked);
 
 /// Scratch of the stage, built once.
@@ -41,11 +41,11 @@ SingeResult dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, const S
 /// Must be called when the set of pinned particles has changed.
 void dynamics_plan_hold(DynamicsPlan *plan, const Shell *shell, const State *state);
 
-/// What a colour's springs pulled with in the step done, N/m: force over length, times target over rest length; NULL
-/// where sheets cannot tear.
+/// Forces of a colour's springs in the last step, N/m: force over length, times target over rest length; NULL where
+/// sheets cannot tear.
 const float *dynamics_pull(const DynamicsPlan *plan, SingeColour colour);
 
-/// How far apart a sheet is held in this step, over how far it reaches, at most; 1 where that is not known.
+/// Max ratio, in this step, of the distance at which a sheet is held to the length of the sheet there; 1 where unknown.
 float dynamics_stretch(const DynamicsPlan *plan, uint32_t sheet);
 
 /// Must be called when a tear has split a vertex.
@@ -60,13 +60,13 @@ void dynamics_plan_velocity_changed(DynamicsPlan *plan);
 /// Makes room for that many colliders before they are added; false when out of memory.
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity);
 
-/// Counts of contact of sheets so far; zero without.
+/// Counters of contact of sheets so far; zero without it.
 CollisionCounters dynamics_plan_contacts(const DynamicsPlan *plan);
 
-/// NULL, or which invariant of the plan is broken between two steps.
+/// NULL, or the invariant of the plan that is broken between two steps.
 const char *dynamics_plan_validate(const DynamicsPlan *plan);
 
-/// How far another part of a sheet is from the cells at each vertex ([vertices], m), where that is near, else INFINITY.
+/// Distance from the cells at each vertex to another part of a sheet ([vertices], m), if it is near, else INFINITY.
 void dynamics_plan_clearance(const DynamicsPlan *plan, const Shell *shell, const State *state, float *room);
 
 typedef struct DynamicsCounters {
@@ -75,8 +75,7 @@ typedef struct DynamicsCounters {
 } DynamicsCounters;
 
 /// One step in settings.solver.substeps substeps. Reads the other parts of the State, and writes `dynamics`. Adds to
-/// *counters. SINGE_ERROR_DIVERGED with a particle that has left; SINGE_ERROR_MEMORY where lists of contact cannot
-/// grow.
+/// *counters. SINGE_ERROR_DIVERGED if a particle is out of bounds; SINGE_ERROR_MEMORY if contact lists cannot grow.
 SingeResult dynamics_step(DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics,
                           DynamicsCounters *counters);
 

@@ -8,14 +8,14 @@
 
 #include <stdatomic.h>
 
-/// A collider at the two ends of a substep, and a box about it that turns with it: what is outside of it is not
-/// touched, whatever the shape. A plane's box is without end but along its normal.
+/// A collider at the two ends of a substep, and a box about it that turns with it: a point outside the box is not in
+/// contact, whatever the shape. A plane's box is infinite except along its normal.
 typedef struct MovingCollider {
     const Collider *collider;
     Pose before, after;
     Float3 axis[3];        ///< of the box, which has `after.position` for its origin
     float low[3], high[3]; ///< m
-    float drift;           ///< m, that its own surface moves at most, in its frame: 0 but of a deforming mesh
+    float drift;           ///< m, max displacement of its surface in its frame: 0 except for a deforming mesh
 } MovingCollider;
 
 /// The loops that have a version for each instruction set.
@@ -56,7 +56,7 @@ typedef struct Patches {
     uint32_t capacity; ///< of each list
     uint32_t count[SINGE_COLOUR_COUNT];
     Patch *items[SINGE_COLOUR_COUNT];
-    uint32_t split_count;            ///< of the shell that they are for
+    uint32_t split_count;            ///< of the shell when they were listed
     float *pull[SINGE_COLOUR_COUNT]; ///< [springs] N/m, as in patch.c, of the step done
 } Patches;
 
@@ -64,20 +64,20 @@ typedef struct Paper Paper;
 
 /// The edge between two cells that a green spring joins, at rest (crease.c).
 typedef struct Hinge {
-    uint8_t side[2]; ///< of the cell at each of the spring's ends
+    uint8_t side[2]; ///< which side of the cell at each of the spring's ends it is
     float arc;       ///< m, s, from centroid to centroid along the sheet
     float angle;     ///< rad, theta_0
     float twist;     ///< rad, tau_0
     float max;       ///< rad, beta
     float lean;      ///< rad, phi
-    float limit;     ///< 1/m, the sharpest bend that creases: curvature_max, INFINITY where there is none
+    float limit;     ///< 1/m, the sharpest bend that creases: curvature_max, INFINITY if none
 } Hinge;
 
 struct DynamicsPlan {
     DynamicsSettings settings;
     Paper *paper; ///< of the methods other than strand, else NULL
     // per particle, refreshed at every step
-    float *inverse_mass;   ///< 1/kg; 0 for what is pinned or gone
+    float *inverse_mass;   ///< 1/kg; 0 if pinned or gone
     float *drag;           ///< 1/m, k of the quadratic drag: dv/dt = -k |v_n| v_n
     float (*normal)[4];    ///< unit
     float (*air)[4];       ///< m/s, the wind there
@@ -125,7 +125,7 @@ void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h,
 
 /// Room for the limits of bends, where a material has one (curvature.c). False when out of memory.
 bool curvature_create(Memory *memory, const Shell *shell, Strands *strands);
-/// Once a step: the limits along a strand, whose weights are known.
+/// Once a step: the limits along a strand, after its weights.
 void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour colour, uint32_t strand,
                        StrandSet *set);
 /// Straightens bends that are sharper than the material's curvature_max.
@@ -137,7 +137,7 @@ void patches_free(Memory *memory, const Shell *shell, Patches *patches);
 bool patch_follow(DynamicsPlan *plan, const Shell *shell);
 /// ... takes over their weights and lengths, and starts to sum.
 void patch_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state);
-/// Whether a spring still runs where its strand does.
+/// Whether a spring is still in its strand.
 bool patch_is_in_strand(const DynamicsPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring, size_t slot);
 /// Projects a colour's patches one by one.
 void patch_project(DynamicsPlan *plan, SingeColour colour, float inverse_h2, DynamicsState *dynamics);
@@ -147,7 +147,7 @@ void patch_gather(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h);
 /// Bytes of height_wait.
 size_t height_wait_count(const Shell *shell);
 
-/// Keeps every centre over its cell's corners (height.c).
+/// Keeps every centre above its cell's corners (height.c).
 void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
                     DynamicsState *dynamics);
 
@@ -163,14 +163,14 @@ bool dynamics_limit(DynamicsPlan *plan, const Shell *shell, const StateInput *st
 void dynamics_order(const DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
                     DynamicsState *dynamics);
 
-/// What bends may stay at (crease.c).
+/// Geometry of all hinges at rest (crease.c).
 void creases_measure(const Shell *shell, Hinge *hinges);
 
 /// Makes bending beyond the crease radius partly plastic, for the steps to come.
 void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
                      DynamicsState *dynamics);
 
-/// Target length of a green spring with a crease of so many rad, over that without, when it is bent to `now`.
+/// Target length of a green spring with a crease of `stays` rad, over that without, when it is bent to `now` rad.
 float crease_ratio(const Hinge *hinge, float stays, float now);
 
 /// Share of a green spring's crease that burning has left.
@@ -179,7 +179,7 @@ float crease_kept(const Shell *shell, const StateInput *state, uint32_t green);
 /// A collider between two times of a substep.
 MovingCollider contact_collider(const Collider *collider, double before, double after);
 
-/// W of a spring from a to b (eq 19) that is there: the mean of its ends' material weights, times that of their
+/// W (eq 19) of a spring from a to b that is not gone: the mean of its ends' material weights, times that of their
 /// softness.
 static inline float dynamics_weight(Field material, const float *soft, uint32_t a, uint32_t b) {
     return 0.25f * (field_at(material, a) + field_at(material, b)) * (soft[a] + soft[b]);
@@ -190,7 +190,7 @@ static inline float dynamics_weight(Field material, const float *soft, uint32_t 
 uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
                        int end);
 
-/// Contact and friction of one position that was at `previous` when the substep began, at that offset from the surface;
+/// Contact and friction of one position, which was at `previous` when the substep began, at `offset` from the surface;
 /// false without contact.
 bool contact_particle(const MovingCollider *collider, float offset, Float3 previous, float *position);
 
@@ -198,7 +198,7 @@ bool contact_particle(const MovingCollider *collider, float offset, Float3 previ
 void contact_centroids(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
                        Pool *pool, float h, DynamicsState *dynamics);
 
-/// The same for all particles.
+/// contact_range for all particles.
 uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics);
 
 #endif

@@ -3,8 +3,8 @@
 //
 //   d(u) = d(v) + |vu|,
 //
-// or through the segment between two corners v and w that have their distances: these and |vw| place a virtual
-// source s in the plane of the triangle, beyond vw, and where the line from s to u crosses the segment,
+// or through the segment between two corners v and w whose distances are known: these and |vw| place a virtual source s
+// in the plane of the triangle, beyond vw, and where the line from s to u crosses the segment,
 //
 //   d(u) = |s - u|.
 //
@@ -61,7 +61,7 @@ static uint32_t heap_pop(Geodesic *search, const float *distance) {
     return nearest;
 }
 
-/// The distance at u through the segment vw of length c, or INFINITY where the way does not cross it.
+/// The distance at u through the segment vw of length c, or INFINITY where the path does not cross it.
 static float geodesic_through(float dv, float dw, float c, float vu, float wu) {
     if (c <= 0) return INFINITY;
     // v at the origin, w at (c, 0), u above, the virtual source below
@@ -74,7 +74,8 @@ static float geodesic_through(float dv, float dw, float c, float vu, float wu) {
     return (float)sqrt(x * x + y * y);
 }
 
-/// Length of the side or diagonal between corners i and j of a cell. What is held cannot shrink to its target.
+/// Length of the side or diagonal between corners i and j of a cell. A spring between held ends cannot shrink to its
+/// target.
 static float cell_length(const Shell *shell, const StateInput *state, uint32_t cell, int i, int j) {
     SINGE_ASSERT(cell < shell->cell_count);
     const CellSprings *springs = &shell->cell_springs[cell];
@@ -88,7 +89,7 @@ static float cell_length(const Shell *shell, const StateInput *state, uint32_t c
                  float3_length(float3_sub(float3_load(dynamics->position[a]), float3_load(dynamics->position[b]))));
 }
 
-/// Lowers the distances at a cell's other corners, now that corner i has its own for good.
+/// Lowers the distances at a cell's other corners, once that of corner i is final.
 static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const StateInput *state, uint32_t cell, int i,
                                 float *distance) {
     SINGE_ASSERT(cell < shell->cell_count);

@@ -15,8 +15,7 @@ bool geodesic_create(Memory *memory, uint32_t vertex_count, Geodesic *search);
 void geodesic_free(Memory *memory, uint32_t vertex_count, Geodesic *search);
 
 /// Distances from `source` to the vertices [first, last) of its sheet over the cells that are alive, with the springs'
-/// target lengths as metric, and between held vertices no less than the distance that they are held at; INFINITY where
-/// there is no way.
+/// target lengths as metric, but between held vertices at least their actual distance; INFINITY where there is no path.
 void geodesic_from(Geodesic *search, const Shell *shell, const StateInput *state, uint32_t source, uint32_t first,
                    uint32_t last, float *distance);
 

@@ -7,10 +7,10 @@
 //
 //   lambda = gain C / (w_centre + sum w_i / 16),   x_centre -= w_centre lambda n,   x_i += w_i lambda n / 4
 //
-// which keeps linear momentum: what holds a centre up presses its corners down. Angular momentum it keeps where the
-// centre stands over the mean of its corners; a centre that leans aside gets a small moment. Cells of one family
-// share no corner; family follows family. Where all centres of a block of cells are
-// twice as high as they must be, they are left alone for some substeps.
+// which conserves linear momentum: the force that holds a centre up presses its corners down. It conserves angular
+// momentum where the centre stands over the mean of its corners; a centre that leans aside gets a small moment. Cells
+// of one family share no corner; families follow each other. Blocks of cells whose centres are all twice as high as
+// they must be are skipped for some substeps.
 #include "common/check.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
@@ -18,8 +18,8 @@
 /// Substeps to wait, and cells that wait together.
 enum { HEIGHT_WAIT = 5, HEIGHT_BLOCK = 64 };
 
-/// The max that is corrected at once, of the square root of |n|, which is 1.4 cells: shells thicker than their cells
-/// would else be thrown about.
+/// Max correction at once, over the square root of |n|, which is 1.4 cells: otherwise shells thicker than their cells
+/// would be thrown about.
 static const float HEIGHT_MAX = 0.05f;
 
 typedef struct Height {

@@ -1,22 +1,22 @@
-// The last pass of a step: no cell is left inverted. height.c keeps centres up softly, for it moves corners as well and
-// may not throw them about; what it has not mended when the step ends is mended here, by the centre alone. With the
-// height z of a centre over its corners and the cell's unit normal n as there, where z < z_low
+// The last pass of a step: no cell is left inverted. height.c keeps centres up softly, as it moves corners as well and
+// must not throw them about; this pass corrects what is left at the end of the step, by moving the centre alone. With
+// the height z of a centre over its corners and the cell's unit normal n as there, where z < z_low
 //
 //   x_centre += (z_low - z) n,   u = (v_centre - mean of v_corners) . n,   v_centre -= min(u, 0) n
 //
-// so that the centre does not run back at once. Only centres move: they are not drawn, each belongs to one cell, and so
-// this pass makes no crossing of what is drawn, depends on no order, and needs no families. The corners do not answer,
-// so that momentum is kept by height.c only. A pinned centre gives way too, and is put back where its pin has it in
-// the next substep; over corners that its pins have turned it would else be out of order for good. So does one that a
-// collider holds, by z_low at most beyond the mean of its corners.
+// so that the centre does not run back at once. Only centres move: they are not drawn, and each belongs to one cell. So
+// this pass makes no drawn surfaces cross, depends on no order, and needs no families. The corners do not react: only
+// height.c conserves momentum. A pinned centre moves too, and its pin puts it back in the next substep; over corners
+// that its pins have turned it would otherwise be out of order for good. So does a centre held by a collider, to at
+// most z_low beyond the mean of its corners.
 //
-// A cell whose diagonals are parallel has no normal, and no front that its centre could be on: it is left as it is and
-// counts as inverted no more than as in order (sim/sim_stats.c).
+// A cell whose diagonals are parallel has no normal, and no front for its centre to be on: it is left as it is and
+// counts neither as inverted nor as in order (sim/sim_stats.c).
 #include "common/check.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
-/// z_low over height_min thicknesses: well under where height.c mends, so that this pass stays the exception.
+/// z_low over height_min thicknesses: well below where height.c acts, so that this pass stays the exception.
 static const float ORDER_MIN = 0.1f;
 
 typedef struct Order {
@@ -26,7 +26,7 @@ typedef struct Order {
     DynamicsState *dynamics;
 } Order;
 
-/// Takes from a centre's velocity what leads it back through its corners.
+/// Removes the velocity that leads a centre back through its corners.
 static void order_calm(const Order *job, const uint32_t *corner, uint32_t centre, Float4 normal) {
     float(*v)[4] = job->dynamics->velocity;
     Float4 mean = 0.25f * (float4_load(v[corner[0]]) + float4_load(v[corner[1]]) +

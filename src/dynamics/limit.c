@@ -1,20 +1,20 @@
 // No cell of a mesh that does not stretch ends a step far larger than it should be. Strands are projected once a
-// substep: what meets at vertices where no strand runs on, among cells far smaller than their neighbours or in threads
-// of char that something heavy depends on, may be left several times as long. So after the substeps sides and diagonals
+// substep: springs at vertices where no strand continues, among cells far smaller than their neighbours, or in threads
+// of char that carry something heavy, may be left several times as long. So after the substeps sides and diagonals
 // (blue and yellow springs) longer than LIMIT_SIDE or LIMIT_DIAGONAL times their targets l, here s l, are shortened one
 // by one:
 //
 //   C = |d| - s l > 0,   u = d/|d|,   lambda = C/(w_a + w_b),   x_a += w_a lambda u,   x_b -= w_b lambda u
 //
-// and what still draws them out is taken from the velocities, without bounce: v_a += w_a mu u, v_b -= w_b mu u with
-// mu = max((v_b - v_a) . u, 0)/(w_a + w_b). Both keep linear and angular momentum. A count says which blocks of
-// springs have some; sweeps go over those, and then it is counted again. Nearly all steps end with the first count.
+// and the velocity that still stretches them is removed, without bounce: v_a += w_a mu u, v_b -= w_b mu u with mu =
+// max((v_b - v_a) . u, 0)/(w_a + w_b). Both conserve linear and angular momentum. A count finds the blocks with springs
+// to shorten; sweeps go over those, and then they are counted again. Nearly all steps end with the first count.
 //
-// That is done in every step. CCD against crossing, which comes after, takes displacements back towards where the step
-// began: what was too long then would be so again.
+// This is done in every step. CCD comes after it and takes displacements back towards the start of the step: a spring
+// that was too long then would be so again.
 //
-// Where a spring has burnt, what depends on its cell may pull it open: held there, it would stretch what is whole
-// beside it.
+// Where a spring has burnt, a load on its cell may pull it open: if it were held, it would stretch intact cells next to
+// it.
 #include "common/check.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
@@ -24,7 +24,7 @@
 /// Times the target length. A square cell of inextensible sides that collapses has a diagonal of 1.41.
 #define LIMIT_SIDE 1.25f
 #define LIMIT_DIAGONAL 1.45f
-/// Counts at most, and sweeps over what each has found at most.
+/// Max counts, and max sweeps over the blocks that each count has found.
 enum { LIMIT_ROUNDS = 16, LIMIT_SWEEPS = 4 };
 
 typedef struct Limit {
@@ -32,7 +32,7 @@ typedef struct Limit {
     const StateInput *state;
     DynamicsState *dynamics;
     const AttachSpread *spread;
-    uint32_t sides, first_diagonal, end; ///< springs numbered: sides from 0 on, diagonals from a block's begin on
+    uint32_t sides, first_diagonal, end; ///< springs are numbered: sides from 0, diagonals from the begin of a block
 } Limit;
 
 /// Springs of one colour.
@@ -61,7 +61,7 @@ static inline unsigned limit_four(const Limit *job, SingeColour colour, uint32_t
                        max * max * 1.0001f);
 }
 
-/// Whether a spring that is too long may be shortened: it is left, no part of a mesh that may stretch, its ends are not
+/// Whether a spring that is too long may be shortened: it is not gone nor in a mesh that may stretch, its ends are not
 /// both held, and the sheet is not held farther apart than it reaches.
 static bool limit_holds(const Limit *job, SingeColour colour, uint32_t spring) {
     SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
@@ -89,7 +89,7 @@ static LimitRange limit_range(const Limit *job, uint32_t begin, uint32_t end) {
     return (LimitRange){SINGE_BLUE, begin, end < job->sides ? end : job->sides};
 }
 
-/// How many of a block of springs are to be shortened.
+/// Number of springs to shorten in a block.
 static double limit_count(void *task, int begin, int end) {
     const Limit *job = task;
     SINGE_ASSERT(begin >= 0 && begin <= end);
@@ -121,7 +121,8 @@ static void limit_shorten(const Limit *job, SingeColour colour, uint32_t spring)
     float4_store(v[b], float4_load(v[b]) - wb * slow);
 }
 
-/// Shortens what is too long in blocks with a count above 0, one after another. Whether there was any.
+/// Shortens springs that are too long, one after another, in blocks with a count above 0. Returns whether there were
+/// any.
 static bool limit_sweep(const Limit *job, const double *over) {
     bool some = false;
     for (uint32_t block = 0; block < job->end; block += POOL_BLOCK) {

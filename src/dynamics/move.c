@@ -1,4 +1,4 @@
-// What a particle does by itself between two projections: it touches colliders, eq 13 closes one substep,
+// Motion of single particles between two projections: contact with colliders, then eq 13 closes one substep,
 //
 //   v^ = v~ + (x^ - x~)/h
 //
@@ -10,7 +10,7 @@
 // and attachments hold it. F_ext: gravity, and quadratic drag on the normal velocity relative to the air, taken
 // implicitly (v_n <- v_n / (1 + h k |v_n|)), so that no time step makes it overshoot. Damping: v <- v / (1 + h d).
 //
-// The fourth numbers: of a position, the inverse mass, which its prediction repeats; of a velocity, 0.
+// The fourth component: of a position, the inverse mass, which its prediction repeats; of a velocity, 0.
 #include "common/check.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
@@ -23,7 +23,7 @@ typedef struct Move {
     float h;
 } Move;
 
-/// Drag on a velocity that gravity and damping have been at.
+/// Drag on a velocity that already has gravity and damping.
 static inline Float4 move_drag(const DynamicsPlan *plan, uint32_t i, float h, Float4 velocity) {
     SINGE_ASSERT(h > 0);
     Float4 normal = float4_load(plan->normal[i]), slips = (velocity - float4_load(plan->air[i])) * normal;
@@ -61,7 +61,7 @@ static inline void move_particles(const Move *job, int begin, int end, bool clos
     }
 }
 
-/// A block of particles stays in the cache while all this happens to it.
+/// A block of particles stays in the cache during all of this.
 static double move_block(void *task, int begin, int end) {
     const Move *job = task;
     SINGE_ASSERT(begin >= 0 && begin <= end);
@@ -71,7 +71,7 @@ static double move_block(void *task, int begin, int end) {
     const Field drag = job->shell->matter.drag, damping = job->shell->matter.damping;
     bool still = plan->settings.air_density == 0 || (drag.mask == 0 && field_at(drag, 0) == 0);
     bool plain = still && damping.mask == 0;
-    // each of these is a loop of its own
+    // each call becomes a loop of its own
     if (closes && opens && plain) move_particles(job, begin, end, true, true, true);
     else if (closes && opens) move_particles(job, begin, end, true, true, false);
     else if (closes) move_particles(job, begin, end, true, false, true);

@@ -1,15 +1,15 @@
-// Successive fast projection as the paper has it (section 7.1): each of `projections` steps projects the colours one
-// after another, each to the solution of its linear system, and then takes what touches a collider out of it.
+// Successive fast projection as in the paper (section 7.1): each of `projections` steps projects the colours one after
+// another, each to the solution of its linear system, and then moves particles out of colliders.
 //
-// The projection steps end after `projections` of them. With early_exit they also end after one in which every colour
-// began with a residual below `tolerance` of its target lengths, so that there was nothing to solve.
+// With early_exit the projection steps also end after one in which every colour began with a residual below `tolerance`
+// of its target lengths, so that there was nothing to solve.
 #include "common/check.h"
 #include "dynamics/paper_solver.h"
 
 #include "common/clock.h"
 #include "dynamics/stiffness.h"
 
-/// A system of n rows takes some hundreds of iterations at most; a singular one would take for ever.
+/// A system of n rows takes some hundreds of iterations at most; a singular one would not end.
 enum { PAPER_ITERATIONS = 5000 };
 
 struct Paper {
@@ -120,7 +120,7 @@ static void paper_fill_particles(void *task, int begin, int end) {
     bool literal = job->paper->solver.method == SINGE_SOLVER_PAPER_LITERAL;
     for (int i = begin; i < end; i++) {
         network->inverse_mass[i] = (double)job->plan->inverse_mass[i];
-        // to the letter: M = I, and what is held is put back afterwards
+        // to the letter: M = I, and held particles are put back afterwards
         if (literal) network->inverse_mass[i] = job->state->ablate->particle_flags[i] & SINGE_ALIVE ? 1 : 0;
         network->held[i] = job->plan->inverse_mass[i] == 0;
     }
@@ -188,7 +188,7 @@ static void paper_put(void *task, int begin, int end) {
         for (int c = 0; c < 3; c++) job->dynamics->position[i][c] = (float)job->paper->network.position[i][c];
 }
 
-/// Takes over what has been moved since paper_put; the rest keeps its double precision.
+/// Takes over positions that changed since paper_put; the others keep their double precision.
 static void paper_take(void *task, int begin, int end) {
     const Exchange *job = task;
     SINGE_ASSERT(begin >= 0 && begin <= end);

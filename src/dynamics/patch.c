@@ -1,7 +1,7 @@
-// Springs that tears have taken out of their strands. A strand is a chain in a lane, each node shared by two springs:
-// where a split has given one of them another end, it is gone from its lane (weight 0) and goes on here, and so do the
-// springs that a tear makes for its second edge. They are projected one by one, in order, after the strands of their
-// colour: the constraint is that of strand_kernel.h on a chain of one spring,
+// Springs that tears have taken out of their strands. A strand is a chain in a lane, each node shared by two springs: a
+// spring that gets another end by a split is removed from its lane (weight 0) and continues here, and so do the springs
+// that a tear makes for its second edge. They are projected one by one, in order, after the strands of their colour:
+// the constraint is that of strand_kernel.h on a chain of one spring,
 //
 //   mu = W E/((w_a + w_b) ((1 + r/2) D + y max(E - g D, 0)) + (c/h^2) D),   x_a += w_a d mu,  x_b -= w_b d mu
 //
@@ -16,7 +16,7 @@
 #include <math.h>
 #include <string.h>
 
-/// Lists springs that are in no strand, by the lanes themselves: a spring whose ends are not the nodes of its slot.
+/// From the lanes themselves: a spring whose ends are not the nodes of its slot is in no strand.
 bool patch_is_in_strand(const DynamicsPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring,
                         size_t slot) {
     SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
@@ -43,27 +43,27 @@ void patches_free(Memory *memory, const Shell *shell, Patches *patches) {
     }
 }
 
-/// The slot of every strand's first spring is known; which strand a spring is in is found by halving.
+/// The slot of every strand's first spring is known; bisection finds the strand of a spring.
 static float strand_compliance(const StrandSet *set, const SpringSet *springs, uint32_t spring) {
     uint32_t low = 0, high = springs->strand_count;
     while (high - low > 1) {
-        uint32_t centroid = low + (high - low) / 2;
-        if (springs->strand_first[centroid] <= spring) low = centroid;
-        else high = centroid;
+        uint32_t middle = low + (high - low) / 2;
+        if (springs->strand_first[middle] <= spring) low = middle;
+        else high = middle;
     }
     return set->compliance[set->strand_slot[low] + (size_t)(spring - springs->strand_first[low]) * STRAND_LANES];
 }
 
 static void patch_push(Patches *patches, SingeColour colour, uint32_t spring, float compliance) {
     SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    if (patches->count[colour] == patches->capacity) return; // split_is_possible sees to it
+    if (patches->count[colour] == patches->capacity) return; // split_is_possible prevents it
     patches->items[colour][patches->count[colour]++] = (Patch){.spring = spring, .compliance = compliance};
 }
 
 bool patch_follow(DynamicsPlan *plan, const Shell *shell) {
     Patches *patches = &plan->patches;
     if (shell->spare_count == 0) return false;
-    // a step that was undone may have dropped what is alive again
+    // a step that was undone may have dropped springs that are alive again
     if (patches->split_count == shell->split_count && plan->strands_written) return false;
     patches->split_count = shell->split_count;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
@@ -133,7 +133,7 @@ typedef struct Gather {
     float scale;
 } Gather;
 
-/// What is held at both ends has a row without a diagonal, whose mu says nothing.
+/// A spring held at both ends has a row without a diagonal, whose mu is meaningless.
 static void gather_strands(void *task, int begin, int end) {
     const Gather *job = task;
     SINGE_ASSERT(begin >= 0 && begin <= end);

@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-/// What is left weighs at least this share of the unburnt particle: a mass of 0 would not move at all.
+/// Min mass of a particle that is left, as a share of the unburnt one: with a mass of 0 it would not move at all.
 static const float PREPARE_MASS_MIN = 0.01f;
 
 typedef struct Prepare {
@@ -110,7 +110,7 @@ void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, prepare_cells, &job);
     pool_for(pool, (int)shell->particle_count, POOL_BLOCK, prepare_particles, &job);
     bool torn = patch_follow(plan, shell);
-    // nothing has burnt, so what was written for an earlier step is still right
+    // nothing has burnt, so the values of an earlier step are still right
     bool same = plan->strands_written && state->burn->mass_burnt == 0 && !torn;
     plan->strands_written = false; // till the step is done: one that is undone may have written other weights
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {

@@ -1,17 +1,17 @@
-// Internal friction: bending paper loses energy, and what a projection leaves unsolved shows as jitter of
-// single particles and as a drumming of the whole sheet. Once a step, along every strand of both layers, the
-// second difference of velocities
+// Internal friction: bending paper loses energy, and the error that a projection leaves shows as jitter of single
+// particles and as drumming of the whole sheet. Once a step, along every strand of both layers, the second difference
+// of velocities
 //
 //   r = v_a - 2 v_b + v_c      (three nodes at equal distances along a strand)
 //
-// is lessened by the share 1 - exp(-smoothing h) with the impulse that keeps linear momentum:
+// is reduced by the share 1 - exp(-smoothing h) with the impulse that conserves linear momentum:
 //
 //   v_a -= w_a j,  v_b += 2 w_b j,  v_c -= w_c j,   j = share r / (w_a + 4 w_b + w_c)
 //
-// first over the nodes `smoothing_length` apart, then over next neighbours. The first takes the drumming: what
-// it takes from a wave falls with the fourth power of its length over smoothing_length, whatever the mesh. The
-// second takes what the first cannot see. A rigid motion of a flat sheet has r = 0 and is not touched. Where the nodes
-// are not in line or not equally far apart, r sees a rotation too: a curved sheet that spins loses angular momentum.
+// first over nodes `smoothing_length` apart, then over adjacent nodes. The first removes the drumming: what it takes
+// from a wave falls with the fourth power of its length over smoothing_length, whatever the mesh. The second removes
+// what the first cannot see. A rigid motion of a flat sheet has r = 0 and is unchanged. Where the nodes are not
+// collinear or not equally far apart, r sees a rotation too: a curved sheet that spins loses angular momentum.
 #include "common/check.h"
 #include "common/real.h"
 #include "common/float4.h"
@@ -40,13 +40,13 @@ static inline void smooth_triple(const Smooth *job, uint32_t a, uint32_t b, uint
     float4_store(job->velocity[c], vc - wc * j);
 }
 
-/// All triples of a strand whose outer nodes are `reach` springs from the centroid one, and no spring between is gone.
+/// All triples of a strand whose outer nodes are `reach` springs from the middle one, and no spring between is gone.
 static void smooth_strand(const Smooth *job, uint32_t begin, uint32_t end, uint32_t reach) {
     const uint32_t(*ends)[2] = job->set->ends;
-    uint32_t run = 0; // springs in a row that are there
+    uint32_t run = 0; // consecutive springs that are not gone
     for (uint32_t k = begin; k < end; k++) {
         if (!(job->flags[k] & SINGE_ALIVE)) run = 0;
-        else run = run > 0 && ends[k][0] != ends[k - 1][1] ? 1 : run + 1; // a tear has parted them
+        else run = run > 0 && ends[k][0] != ends[k - 1][1] ? 1 : run + 1; // a tear has separated them
         if (run >= 2 * reach) smooth_triple(job, ends[k + 1 - 2 * reach][0], ends[k + 1 - reach][0], ends[k][1]);
     }
 }
@@ -69,7 +69,7 @@ static void smooth_range(void *task, int begin, int end) {
     }
 }
 
-/// Strands of a family that make about 2,048 springs: the smallest a thread is given.
+/// Strands of a family that make about 2,048 springs: the min for a thread.
 static int smooth_grain(const SpringSet *set, uint32_t family) {
     uint32_t first = set->family_first[family], last = set->family_first[family + 1];
     uint32_t springs = set->strand_first[last] - set->strand_first[first];

@@ -1,17 +1,17 @@
-// From what a sheet should be to what its springs are. Blue, green and yellow springs have the material's compliance c,
-// the mean of their ends: on square cells the stiffness of stretch, bending and shear is then 1/c, t^2/c and 1/c
-// whatever the side s of the cells. Transverse shear by the angle gamma makes a red spring longer by
-// gamma t (s/2)/l; for the stiffness S = 1/c, a force per width over gamma, it needs
+// Compliances of springs from the material's. Blue, green and yellow springs have the material's compliance c, the mean
+// of their ends: on square cells the stiffness of stretch, bending and shear is then 1/c, t^2/c and 1/c whatever the
+// side s of the cells. Transverse shear by the angle gamma makes a red spring longer by gamma t (s/2)/l; for the
+// stiffness S = 1/c, a force per width over gamma, it needs
 //
 //   c_spring = c t^2/l^2,   l^2 = s^2/2 + t^2,   t the thickness
 //
-// A solver has softness of its own, which acts like a further compliance of a spring,
+// A solver has a softness of its own, which acts like a further compliance of a spring,
 //
 //   (a + r) h^2/m,   m = s^2 grammage/2 the mass of an unburnt particle, h the substep
 //
-// r is its floor, the `regularisation`. a comes of one projection of a colour a substep, which leaves the colours in
-// each other's way where forces change from spring to spring, as those of red do under transverse shear: 2.5 (measured)
-// for red and 0 for the others. This is taken from c_spring, so that the sum does not depend on h, as far as it goes:
+// r is its floor, the `regularisation`. a is due to projecting a colour once a substep: the colours interfere with each
+// other where forces change from spring to spring, as those of red do under transverse shear: 2.5 (measured) for red
+// and 0 for the others. It is subtracted from c_spring, so that the sum does not depend on h, as long as
 //
 //   h <= sqrt(c_spring m/(a + r))
 //
@@ -24,7 +24,7 @@
 /// a above, of red springs.
 static const float COUPLING = 2.5f;
 
-/// Mass of an unburnt particle in the centre of a sheet, kg.
+/// Mass of an unburnt particle in the interior of a sheet, kg.
 static float particle_mass(const Shell *shell, const Sheet *sheet) {
     double mass = 0, area = 0;
     for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {

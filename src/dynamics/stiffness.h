@@ -11,8 +11,8 @@ enum { STIFFNESS_MAX = 1000 };
 typedef struct Stiffness {
     const Shell *shell;
     SingeColour colour;
-    float softness; ///< s2, of the solver itself: over the mass of a particle a compliance
-    uint32_t sheet; ///< of the spring asked for last
+    float softness; ///< s2, of the solver itself; over a particle's mass it is a compliance
+    uint32_t sheet; ///< of the last spring asked for
     float own;      ///< m/N, of its springs without any compliance
 } Stiffness;
 

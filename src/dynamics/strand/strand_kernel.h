@@ -38,7 +38,7 @@ typedef struct Row {
     Lanes dx, dy, dz, right, diagonal;
 } Row;
 
-/// What is kept of a row between elimination and substitution.
+/// Values of a row that are kept between elimination and substitution.
 enum { KEEP_RIGHT, KEEP_FACTOR, KEEP_CYCLIC };
 
 typedef struct Group {
@@ -80,7 +80,7 @@ static inline Row group_row(const Group *restrict group, uint32_t k, const Node 
     Lanes dx = b->x - a->x, dy = b->y - a->y, dz = b->z - a->z;
     Lanes square = dx * dx + dy * dy + dz * dz, target = l * l;
     Lanes e = (square - target) * lanes_all(0.5f);
-    // a spring crushed below sqrt(2) - 1 of its length has hardly a direction: limit what its row asks for to C = -l
+    // a spring crushed below sqrt(2) - 1 of its length has hardly a direction: its row asks for at most C = -l
     Lanes crushed = target * lanes_all(0.17157288f);
     if (__builtin_expect(lanes_any_less(square, crushed), 0))
         e = lanes_where_less(square, crushed, -l * lanes_sqrt(square), e);
@@ -94,7 +94,7 @@ static inline Row group_row(const Group *restrict group, uint32_t k, const Node 
 /// Smallest pivot: both ends pinned gives an empty row, whose lambda moves nothing.
 static inline Lanes group_pivot(Lanes pivot) { return lanes_max(pivot, lanes_all(1e-20f)); }
 
-/// Forward: eliminates row after row. What the solution takes from the row after it is kept: with signs turned,
+/// Forward: eliminates row after row. Keeps the coefficient of the next row, with its sign turned:
 /// mu_k = right_k + factor_(k+1) mu_(k+1).
 static inline void chains_eliminate(const Group *group) {
     Lanes zero = lanes_all(0), endless = lanes_all(INFINITY);
@@ -103,7 +103,7 @@ static inline void chains_eliminate(const Group *group) {
     for (uint32_t k = 0; k < group->rows; k++) {
         Node b = group_node(group, k + 1);
         Row row = group_row(group, k, &a, &b);
-        // what is gone is infinitely stiff: its mu is 0, whatever its neighbours do
+        // a spring that is gone is infinitely stiff: its mu is 0, whatever its neighbours do
         Lanes weight = lanes_load(group->weight + (size_t)k * STRAND_LANES);
         row.diagonal = lanes_where_less(zero, weight, row.diagonal, endless);
         Lanes lower = a.w * (before_x * row.dx + before_y * row.dy + before_z * row.dz);
@@ -117,7 +117,7 @@ static inline void chains_eliminate(const Group *group) {
     }
 }
 
-/// Notes what a row asks of its springs.
+/// Adds a row's mu to the sums of its springs.
 static inline void group_pull(const Group *group, uint32_t k, Lanes mu) {
     float *pull = group->pull + (size_t)k * STRAND_LANES;
     lanes_store(pull, lanes_load(pull) + mu);
@@ -141,7 +141,7 @@ static inline void chains_substitute(const Group *group, const bool pulls) {
     group_put(group, 0, &b);
 }
 
-/// A row of a ring: what is gone has the equation mu = 0.
+/// A row of a ring: a spring that is gone has the equation mu = 0.
 static inline Row ring_row(const Group *group, uint32_t k, const Node *a, const Node *b) {
     Row row = group_row(group, k, a, b);
     Lanes weight = lanes_load(group->weight + (size_t)k * STRAND_LANES), zero = lanes_all(0);

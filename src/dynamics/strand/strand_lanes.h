@@ -49,7 +49,7 @@ typedef struct StrandSet {
     float *bend_limit;     ///< [row_count STRAND_LANES] m, as in curvature.c, at a node; NULL: none
     float *pull;           ///< [row_count STRAND_LANES] sums of mu, lambda over length; NULL: not needed
     float compliance_all;  ///< m/N, that of every spring; negative where they differ
-    void *block;           ///< that the five arrays lie in
+    void *block;           ///< memory of the five arrays
 } StrandSet;
 
 static inline uint32_t strand_lane(uint32_t width, uint32_t column) {

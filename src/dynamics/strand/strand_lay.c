@@ -1,10 +1,10 @@
-// Laying strands into lanes so that particles of consecutive numbers are contiguous, where kernels load them at
-// once. A run begins with the longest strand that is left, in a lane of its own. The lane to its right takes, row by
-// row, the strands through the next particles, p + 1 next to p, and so on until too little is found. In a mesh that is
-// numbered row by row, a strand across the rows so gets its neighbour next to it; and where a diagonal leaves the mesh
-// on one side, the row's last particle is followed by the first of the next row, with which a diagonal comes in on the
-// other side: lanes stay full. What no run takes fills the rest of the lanes, then lanes of its own, longest first.
-// Rings keep a lane each, and only rings of one length share a group.
+// Lays strands into lanes so that particles of consecutive numbers are contiguous, where kernels load them at once. A
+// run begins with the longest strand that is left, in a lane of its own. The lane to its right takes, row by row, the
+// strands through the next particles, p + 1 next to p, and so on until too few are found. In a mesh that is numbered
+// row by row, a strand across the rows thus gets its neighbour next to it; and where a diagonal leaves the mesh on one
+// side, the row's last particle is followed by the first of the next row, where a diagonal enters on the other side:
+// lanes stay full. Strands outside all runs fill the rest of the lanes, then lanes of their own, longest first. Rings
+// keep a lane each, and only rings of one length share a group.
 #include "dynamics/strand/strand_lanes.h"
 
 /// Where a strand's first node is.
@@ -31,7 +31,7 @@ typedef struct Lay {
     uint32_t laid_count;
 } Lay;
 
-/// Lanes that are worth a run; rows that a run may have above and below its first strand, beside a thirty-second of it.
+/// Min lanes of a run; rows that a run may have above and below its first strand, besides a thirty-second of it.
 enum { LAY_RUN_MIN = 12, LAY_MARGIN = 4 };
 
 static uint32_t strand_length(const SpringSet *springs, uint32_t s) {
@@ -115,7 +115,7 @@ static void lay_close_group(Lay *lay, uint32_t first) {
 
 // ---- runs
 
-/// Writes the particles of the family's chains, or takes them away again.
+/// Writes the particles of the family's chains, or removes them again.
 static void lay_own(Lay *lay, uint32_t family, bool own) {
     const SpringSet *springs = lay->springs;
     for (uint32_t s = springs->family_first[family]; s < springs->family_first[family + 1]; s++) {
@@ -138,8 +138,8 @@ static void lay_put_right(Lay *lay, uint32_t s, uint32_t column, uint32_t row) {
     lay_put(lay, s, lay->set->group_count - 1, column, row);
 }
 
-/// Fills the lane on the right with what runs next to the lane on the left. Returns how many particles have p + 1
-/// beside them.
+/// Fills the lane on the right with strands next to those of the lane on the left. Returns how many particles have p +
+/// 1 next to them.
 static uint32_t lay_right(Lay *lay, uint32_t column) {
     uint32_t contiguous = 0;
     lay->lane_serial++;
@@ -156,7 +156,7 @@ static uint32_t lay_right(Lay *lay, uint32_t column) {
     return contiguous;
 }
 
-/// From `s` to the left as long as strands are as long.
+/// Goes from `s` to the left while the strands are equally long.
 static uint32_t lay_leftmost(const Lay *lay, uint32_t s) {
     uint32_t start = s, length = strand_length(lay->springs, s);
     for (;;) {
@@ -251,7 +251,7 @@ static void lay_rest(Lay *lay, uint32_t family, uint32_t first) {
             if (lay_longest(lay, rows) == 0) break;
             lay_fill(lay, g, group->columns, 0, group->rows + 1);
         }
-    // every lane up to the longest: diagonals of a rectangle so pair up
+    // every lane up to the longest: diagonals of a rectangle thus pair up
     for (uint32_t longest = lay_longest(lay, lay->springs->longest); lay_longest(lay, longest) > 0;) {
         StrandGroup *group = lay_open_group(lay, false);
         for (; group->columns < STRAND_LANES && lay_longest(lay, longest) > 0; group->columns++) {

@@ -14,8 +14,8 @@ static size_t keep_floats(const Strands *strands) {
 }
 
 /// Operations of a row of the chain's solve and bytes it moves, counted in strand_kernel.h. The bytes: node, length,
-/// weight, compliance and position on the way there; node, position twice on the way back. Rows whose particles are
-/// contiguous do without the nodes.
+/// weight, compliance and position forward; node, position twice back. Rows whose particles are contiguous do without
+/// the nodes.
 enum { STRAND_FLOPS = 51, STRAND_BYTES = 4 * 4 + 16 + 4 + 2 * 16 };
 
 static void strands_comply(const Shell *shell, SingeColour colour, float h, float regularisation, StrandSet *set) {
