@@ -122,7 +122,8 @@ static bool sink_take(Sink *sink, const struct fy_event *event) {
     sink_location(sink, event, tag, anchor);
     unsigned flags = (tag ? YAML_TAGGED : 0) | (anchor ? YAML_ANCHORED : 0);
     if (value && fy_token_scalar_style(value) != FYSS_PLAIN) flags |= YAML_QUOTED;
-    if (kind == YAML_VALUE && !fy_event_start_mark((struct fy_event *)event)) flags |= YAML_ABSENT;
+    // no mark tells it: libfyaml 0.8 has one for what is not written, 0.7 has none
+    if (kind == YAML_VALUE && !(flags & YAML_QUOTED) && length == 0) flags |= YAML_ABSENT;
     sink_event(sink, kind, flags, text, length);
     sink->depth += (kind == YAML_MAP || kind == YAML_LIST) - (kind == YAML_CLOSE);
     sink_mark(sink, fy_event_end_mark((struct fy_event *)event));
