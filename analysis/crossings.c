@@ -70,8 +70,8 @@ static uint64_t crossings_spread(uint64_t bits) {
 static uint64_t morton_position(const Box *box, const Box *all, double scale) {
     uint64_t position = 0;
     for (int k = 0; k < 3; k++) {
-        double centroid = 0.5 * ((double)box->low[k] + (double)box->high[k]);
-        position |= crossings_spread((uint64_t)((centroid - (double)all->low[k]) * scale)) << k;
+        double centre = 0.5 * ((double)box->low[k] + (double)box->high[k]);
+        position |= crossings_spread((uint64_t)((centre - (double)all->low[k]) * scale)) << k;
     }
     return position;
 }

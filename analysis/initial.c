@@ -74,9 +74,9 @@ bool initial_count(const SingeSurface *surface, uint64_t *pairs, float at[3]) {
 static bool is_near(const Initial *initial, const InitialTriangle *entry) {
     size_t from = 0, to = initial->count;
     while (from < to) {
-        size_t centroid = from + (to - from) / 2;
-        if (initial->triangles[centroid].at[0] < entry->at[0] - initial->reach) from = centroid + 1;
-        else to = centroid;
+        size_t middle = from + (to - from) / 2;
+        if (initial->triangles[middle].at[0] < entry->at[0] - initial->reach) from = middle + 1;
+        else to = middle;
     }
     for (; from < initial->count && initial->triangles[from].at[0] <= entry->at[0] + initial->reach; from++) {
         const InitialTriangle *other = &initial->triangles[from];

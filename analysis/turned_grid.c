@@ -5,18 +5,18 @@
 #include <string.h>
 
 /// How far the centre of a cell lies within the outline at least, in cells: less of it would be a sliver.
-static const double centroid_inside = 0.25;
+static const double inside_min = 0.25;
 
 /// m, how far a point lies within the outline; below 0 it is outside.
 static double turned_grid_inside(const TurnedGrid *cut, const double p[2]) {
-    double from_centroid = cut->disc ? hypot(p[0], p[1]) : fmax(fabs(p[0]), fabs(p[1]));
-    return cut->size / 2 - from_centroid;
+    double from_centre = cut->disc ? hypot(p[0], p[1]) : fmax(fabs(p[0]), fabs(p[1]));
+    return cut->size / 2 - from_centre;
 }
 
 static void move_onto_outline(const TurnedGrid *cut, double p[2]) {
-    const double half = cut->size / 2, from_centroid = hypot(p[0], p[1]);
+    const double half = cut->size / 2, from_centre = hypot(p[0], p[1]);
     if (turned_grid_inside(cut, p) >= 0) return;
-    for (int k = 0; k < 2; k++) p[k] = cut->disc ? p[k] * half / from_centroid : fmax(-half, fmin(half, p[k]));
+    for (int k = 0; k < 2; k++) p[k] = cut->disc ? p[k] * half / from_centre : fmax(-half, fmin(half, p[k]));
 }
 
 static void turn_vertices(const TurnedGrid *cut, Mesh *mesh) {
@@ -32,7 +32,7 @@ static bool is_kept(const TurnedGrid *cut, const Mesh *mesh, const uint32_t *cor
     double centroid[2] = {0, 0};
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < 2; k++) centroid[k] += 0.25 * (double)mesh->positions[3 * (size_t)corner[i] + (size_t)k];
-    return turned_grid_inside(cut, centroid) > centroid_inside * cut->size / cut->cells;
+    return turned_grid_inside(cut, centroid) > inside_min * cut->size / cut->cells;
 }
 
 /// Leaves the cells within, and the vertices that they have; `number` has room for one of each vertex, all 0.

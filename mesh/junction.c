@@ -60,10 +60,10 @@ static void look_along(Junctions *j, uint32_t a, uint32_t b) {
         double at[3];
         for (int k = 0; k < 3; k++)
             at[k] = work->position[a][k] + (work->position[b][k] - work->position[a][k]) * s / steps;
-        int64_t centroid[3], box[3];
-        positions_box(&j->positions, at, centroid);
+        int64_t own[3], box[3];
+        positions_box(&j->positions, at, own);
         for (int i = 0; i < 27; i++) {
-            box[0] = centroid[0] + i % 3 - 1, box[1] = centroid[1] + i / 3 % 3 - 1, box[2] = centroid[2] + i / 9 - 1;
+            box[0] = own[0] + i % 3 - 1, box[1] = own[1] + i / 3 % 3 - 1, box[2] = own[2] + i / 9 - 1;
             look_in_box(j, a, b, box);
         }
     }

@@ -202,9 +202,9 @@ static bool find_mates(Pairs *pairs) {
 // ---- quads
 
 /// The triangle of `half` with a vertex in the centre of that side.
-static void push_halved(const Faces *old, uint32_t half, uint32_t centroid, Faces *out) {
+static void push_halved(const Faces *old, uint32_t half, uint32_t midpoint, Faces *out) {
     faces_push(out, old->corner[half], old, half);
-    faces_push_between(out, centroid, old, half, pair_next3(half));
+    faces_push_between(out, midpoint, old, half, pair_next3(half));
     faces_push(out, old->corner[pair_next3(half)], old, pair_next3(half));
     faces_push(out, old->corner[pair_last3(half)], old, pair_last3(half));
     faces_end(out, old->origin[half / 3]);
@@ -214,9 +214,9 @@ static void pair_halve(Pairs *pairs, uint32_t half, Faces *out) {
     Work *work = pairs->work;
     const Faces *old = &work->faces;
     const uint32_t ends[2] = {old->corner[half], old->corner[pair_next3(half)]};
-    uint32_t centroid = work_vertex(work, ends, 2);
-    push_halved(old, half, centroid, out);
-    if (work->twin[half] != MESH_NONE) push_halved(old, work->twin[half], centroid, out);
+    uint32_t midpoint = work_vertex(work, ends, 2);
+    push_halved(old, half, midpoint, out);
+    if (work->twin[half] != MESH_NONE) push_halved(old, work->twin[half], midpoint, out);
     work_did(work, MESH_HALVED, 1, work_face_name(work, old->origin[half / 3]));
 }
 

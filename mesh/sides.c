@@ -146,27 +146,27 @@ static bool is_second(const Work *work, const uint32_t *halves, uint32_t at) {
 }
 
 /// Gives all but the first of the sheets that share a side a vertex in its centre. Returns how many vertices.
-static uint32_t part_side(Work *work, const uint32_t *halves, uint32_t size, uint32_t *centroid) {
+static uint32_t part_side(Work *work, const uint32_t *halves, uint32_t size, uint32_t *midpoint) {
     const Faces *faces = &work->faces;
     uint32_t sheets = 0;
     for (uint32_t i = 0; i < size; i++) {
         const uint32_t half = halves[i], twin = work->twin[half];
         if (is_second(work, halves, i) || sheets++ == 0) continue;
         const uint32_t ends[2] = {faces->corner[half], faces->corner[faces_next(faces, work->face, half)]};
-        centroid[half] = work_vertex(work, ends, 2);
-        if (twin != MESH_NONE) centroid[twin] = centroid[half];
+        midpoint[half] = work_vertex(work, ends, 2);
+        if (twin != MESH_NONE) midpoint[twin] = midpoint[half];
     }
     return sheets - 1;
 }
 
 /// The faces with the new corners.
-static void add_corners(Work *work, const uint32_t *centroid, uint32_t added) {
+static void add_corners(Work *work, const uint32_t *midpoint, uint32_t added) {
     const Faces *old = &work->faces;
     Faces out = work_faces(work, old->count, old->corner_count + 2 * added);
     for (uint32_t f = 0; f < old->count && !work->no_memory; f++) {
         for (uint32_t h = old->first[f]; h < old->first[f + 1]; h++) {
             faces_push(&out, old->corner[h], old, h);
-            if (centroid[h] != MESH_NONE) faces_push_between(&out, centroid[h], old, h, faces_next(old, work->face, h));
+            if (midpoint[h] != MESH_NONE) faces_push_between(&out, midpoint[h], old, h, faces_next(old, work->face, h));
         }
         faces_end(&out, old->origin[f]);
     }
@@ -176,12 +176,12 @@ static void add_corners(Work *work, const uint32_t *centroid, uint32_t added) {
 void mesh_part_sides(Work *work) {
     const Faces *faces = &work->faces;
     uint32_t *order = work_sorted_edges(work), added = 0;
-    uint32_t *centroid = work_new(work, faces->corner_count, sizeof *centroid);
-    for (uint32_t h = 0; h < faces->corner_count && !work->no_memory; h++) centroid[h] = MESH_NONE;
+    uint32_t *midpoint = work_new(work, faces->corner_count, sizeof *midpoint);
+    for (uint32_t h = 0; h < faces->corner_count && !work->no_memory; h++) midpoint[h] = MESH_NONE;
     for (uint32_t k = 0, size; !work->no_memory && k < faces->corner_count; k += size) {
         size = work_edge_size(work, order, k);
         const bool two = size == 2 && faces->corner[order[k]] != faces->corner[order[k + 1]]; // which go on
-        if (size > 1 && !two) added += part_side(work, order + k, size, centroid);
+        if (size > 1 && !two) added += part_side(work, order + k, size, midpoint);
     }
-    if (added && !work->no_memory) add_corners(work, centroid, added);
+    if (added && !work->no_memory) add_corners(work, midpoint, added);
 }

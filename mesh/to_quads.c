@@ -6,16 +6,16 @@
 /// The vertex in the centre of each half-edge's side.
 static uint32_t *split_sides(Work *work) {
     const Faces *faces = &work->faces;
-    uint32_t *centroid = work_new(work, faces->corner_count, sizeof *centroid);
+    uint32_t *midpoint = work_new(work, faces->corner_count, sizeof *midpoint);
     for (uint32_t h = 0; h < faces->corner_count && !work->no_memory; h++) {
         if (work->twin[h] != MESH_NONE && work->twin[h] < h) {
-            centroid[h] = centroid[work->twin[h]];
+            midpoint[h] = midpoint[work->twin[h]];
             continue;
         }
         const uint32_t ends[2] = {faces->corner[h], faces->corner[faces_next(faces, work->face, h)]};
-        centroid[h] = work_vertex(work, ends, 2);
+        midpoint[h] = work_vertex(work, ends, 2);
     }
-    return centroid;
+    return midpoint;
 }
 
 static void push_centre(const Work *work, Faces *out, uint32_t face, uint32_t centre) {
@@ -34,7 +34,7 @@ void mesh_split(Work *work) {
     work_edges(work);
     if (work->no_memory) return;
     const Faces *old = &work->faces;
-    uint32_t *centroid = split_sides(work);
+    uint32_t *midpoint = split_sides(work);
     Faces out = work_faces(work, old->corner_count, 4 * old->corner_count);
     for (uint32_t f = 0; f < old->count && !work->no_memory; f++) {
         const uint32_t first = old->first[f], end = old->first[f + 1];
@@ -42,9 +42,9 @@ void mesh_split(Work *work) {
         for (uint32_t h = first; h < end; h++) {
             uint32_t before = faces_previous(old, work->face, h), next = faces_next(old, work->face, h);
             faces_push(&out, old->corner[h], old, h);
-            faces_push_between(&out, centroid[h], old, h, next);
+            faces_push_between(&out, midpoint[h], old, h, next);
             push_centre(work, &out, f, centre);
-            faces_push_between(&out, centroid[before], old, before, h);
+            faces_push_between(&out, midpoint[before], old, before, h);
             faces_end(&out, old->origin[f]);
         }
     }

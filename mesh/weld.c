@@ -34,11 +34,11 @@ void positions_add(const Work *work, Positions *positions, uint32_t v) {
 
 /// The vertex that `v` is joined to: the first in its box and those around it that is near enough.
 static uint32_t weld_find(const Work *work, const Positions *positions, uint32_t v) {
-    int64_t centroid[3], box[3];
+    int64_t own[3], box[3];
     uint32_t found = MESH_NONE;
-    positions_box(positions, work->position[v], centroid);
+    positions_box(positions, work->position[v], own);
     for (int i = 0; i < 27; i++) {
-        box[0] = centroid[0] + i % 3 - 1, box[1] = centroid[1] + i / 3 % 3 - 1, box[2] = centroid[2] + i / 9 - 1;
+        box[0] = own[0] + i % 3 - 1, box[1] = own[1] + i / 3 % 3 - 1, box[2] = own[2] + i / 9 - 1;
         for (uint32_t u = positions->head[positions_slot(positions, box)]; u != MESH_NONE; u = positions->next[u])
             if (u < found && distance3(work->position[u], work->position[v]) <= work->weld) found = u;
     }

@@ -137,9 +137,9 @@ static Hinge hinge_measure(const Shell *shell, uint32_t green) {
     const uint32_t *corner = shell->cells[cell[0]], *other = shell->cells[cell[1]];
     const uint32_t first = corner[hinge.side[0]], second = corner[(hinge.side[0] + 1) & 3];
     Float3 from = float3_load(x[first]), to = float3_load(x[second]);
-    Float3 edge = float3_sub(to, from), centroid = float3_scale(float3_add(from, to), 0.5f);
-    hinge.arc = float3_length(float3_sub(hinge_centroid(x, corner), centroid)) +
-                float3_length(float3_sub(hinge_centroid(x, other), centroid));
+    Float3 edge = float3_sub(to, from), midpoint = float3_scale(float3_add(from, to), 0.5f);
+    hinge.arc = float3_length(float3_sub(hinge_centroid(x, corner), midpoint)) +
+                float3_length(float3_sub(hinge_centroid(x, other), midpoint));
     float thickness = 0.5f * (field_at(shell->matter.thickness, ends[0]) + field_at(shell->matter.thickness, ends[1]));
     const Float3 normal = hinge_normal(x, corner), beyond = hinge_normal(x, other);
     float angle = hinge_angle(normal, beyond, edge);

@@ -58,7 +58,7 @@ static void solid_bounds(MeshSolid *solid) {
     solid->low = low, solid->high = high;
 }
 
-static Float3 solid_centroid(const MeshSolid *solid, int i, int j, int k) {
+static Float3 solid_cell_centre(const MeshSolid *solid, int i, int j, int k) {
     return float3(solid->origin.x + ((float)i + 0.5f) * solid->cell, solid->origin.y + ((float)j + 0.5f) * solid->cell,
                   solid->origin.z + ((float)k + 0.5f) * solid->cell);
 }
@@ -129,7 +129,7 @@ static bool solid_grid(Memory *memory, MeshSolid *solid) {
         for (int j = 0; j < solid->cells[1]; j++) {
             float square = INFINITY;
             for (int i = 0; i < solid->cells[0]; i++, coarse++) {
-                Float3 p = solid_centroid(solid, i, j, k), normal;
+                Float3 p = solid_cell_centre(solid, i, j, k), normal;
                 *coarse = solid_signed(solid, p, mesh_tree_nearest(solid, p, &square), &normal);
                 float next = fabsf(*coarse) + 1.01f * solid->cell;
                 square = next * next;
@@ -181,7 +181,7 @@ void mesh_solid_free(Memory *memory, MeshSolid *solid) {
 static float solid_look(const MeshSolid *solid, const int at[3], Float3 p, float *min, float *max) {
     size_t index = ((size_t)at[2] * (size_t)solid->cells[1] + (size_t)at[1]) * (size_t)solid->cells[0] + (size_t)at[0];
     float coarse = solid->coarse[index];
-    float distance = 1.0001f * float3_length(float3_sub(p, solid_centroid(solid, at[0], at[1], at[2])));
+    float distance = 1.0001f * float3_length(float3_sub(p, solid_cell_centre(solid, at[0], at[1], at[2])));
     *min = fabsf(coarse) - distance;
     *max = fabsf(coarse) + distance;
     return coarse;

@@ -288,7 +288,7 @@ static void add_lines(const float *const lines[3], uint32_t first, float (*posit
 
 static void test_hinges(void **state) {
     (void)state;
-    static const float left[3] = {-1, 0, 0}, centroid[3] = {0, 0, 0}, right[3] = {1, 0, 0};
+    static const float left[3] = {-1, 0, 0}, middle[3] = {0, 0, 0}, right[3] = {1, 0, 0};
     for (size_t i = 0; i < sizeof meetings / sizeof *meetings; i++)
         for (int apart = 0; apart < 4; apart++) { // lines at the same positions, or not; the sheets' order
             const Meeting *m = &meetings[i];
@@ -296,7 +296,7 @@ static void test_hinges(void **state) {
             uint32_t triangles[16][3];
             CrossingList list;
             const uint32_t first = apart & 1 ? 9 : 0;
-            add_lines((const float *const[3]){left, centroid, right}, first, position, triangles + (first ? 8 : 0));
+            add_lines((const float *const[3]){left, middle, right}, first, position, triangles + (first ? 8 : 0));
             const uint32_t second = 9 - first;
             add_lines((const float *const[3]){m->other, m->ridge, m->foot}, second, position,
                       triangles + (first ? 0 : 8));

@@ -167,8 +167,8 @@ static void test_sums_are_of_areas(void **state) {
     rim_sum(&large, &sum);
     near_to(sum.band[1].rest_area, small.band[1].rest_area + large.band[1].rest_area, 1e-12);
     assert_true(sum.curl_max == large.curl_max);
-    double centroid = rim_percentile(sum.curl, 0.5);
-    assert_true(centroid > rim_percentile(small.curl, 0.4) && centroid < rim_percentile(large.curl, 0.6));
+    double median = rim_percentile(sum.curl, 0.5);
+    assert_true(median > rim_percentile(small.curl, 0.4) && median < rim_percentile(large.curl, 0.6));
 }
 
 static void test_nothing_left(void **state) {

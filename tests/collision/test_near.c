@@ -65,9 +65,8 @@ static void distance_to_slivers(void **unused) {
         Float4 p = a + u * (0.5f * (b - a) + 0.5f * (c - a)) + far * normal;
         float weight[3], s, t;
         triangles = fmaxf(triangles, fabsf(length(feature_from_triangle(p, a, b, c, weight)) - far));
-        Float4 displacement = along + powf(10, -2 + 2 * uniform()) * side, centroid = 0.5f * (a + b) + far * normal;
-        float got =
-            length(feature_from_segment(a, b, centroid - u * displacement, centroid + 0.4f * displacement, &s, &t));
+        Float4 direction = along + powf(10, -2 + 2 * uniform()) * side, cross = 0.5f * (a + b) + far * normal;
+        float got = length(feature_from_segment(a, b, cross - u * direction, cross + 0.4f * direction, &s, &t));
         edges = fmaxf(edges, fabsf(got - far));
     }
     print_message("off by %.2g over triangles, %.2g at edges\n", (double)triangles, (double)edges);

@@ -216,13 +216,13 @@ static void test_single_edge(void **unused) {
     (void)unused;
     const SingeMaterialDef material = singe_default_material();
     const double yield = 1 / (double)material.crease_radius.value, share = (double)material.crease_share.value;
-    const float dx = 0.004f, centroid = 4 * dx, c = cosf(150 * dx), s = sinf(150 * dx);
+    const float dx = 0.004f, middle = 4 * dx, c = cosf(150 * dx), s = sinf(150 * dx);
     Rig rig;
     rig_open(&rig, test_grid(8, 4, dx, 0.003f), NULL, 1);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
         const float *rest = rig.shell.rest_position[i];
-        float *x = rig.state.dynamics.position[i], along = rest[0] - centroid;
-        if (along > 1e-5f) x[0] = centroid + c * along + s * rest[2], x[2] = c * rest[2] - s * along;
+        float *x = rig.state.dynamics.position[i], along = rest[0] - middle;
+        if (along > 1e-5f) x[0] = middle + c * along + s * rest[2], x[2] = c * rest[2] - s * along;
     }
     rig_pass(&rig, 200);
     int creased = 0;
