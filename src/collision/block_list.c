@@ -5,7 +5,7 @@
 
 bool block_list_create(Memory *memory, BlockList *list, size_t size, uint32_t capacity, uint32_t block_count) {
     *list = (BlockList){.size = size, .capacity = capacity, .block_count = block_count};
-    list->chunk_count = capacity / BLOCK_CHUNK + block_count; // a block's last chunk may be all but empty
+    list->chunk_count = capacity / BLOCK_CHUNK + block_count; // a block's last chunk may be almost empty
     return (list->items = memory_new(memory, (size_t)list->chunk_count * BLOCK_CHUNK, size)) &&
            NEW(memory, list->next, list->chunk_count) && NEW(memory, list->blocks, block_count);
 }
@@ -35,7 +35,7 @@ typedef struct Job {
     BlockWriteFn *write;
     BlockReadFn *read;
     void *context;
-    uint32_t count; ///< items that are read, or written again, or of a block at most
+    uint32_t count; ///< items to read, or to write again, or max per block
     bool again;
 } Job;
 
@@ -73,7 +73,7 @@ uint32_t block_list_settle(BlockList *list, Pool *pool, int blocks, uint64_t cou
                            void *context) {
     uint32_t kept = count < room ? (uint32_t)count : room;
     if (list->whole) return kept;
-    // which blocks found no room hung on the threads: now each has its own
+    // which blocks found no room depended on the threads: now each has its own
     Job job = {.list = list, .write = write, .context = context, .count = kept, .again = true};
     atomic_store(&list->taken, 0);
     pool_for(pool, blocks, 1, write_blocks, &job);

@@ -10,13 +10,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/// Items of a chunk.
+/// Items per chunk.
 enum { BLOCK_CHUNK = 64 };
 
 typedef struct ListBlock {
     uint32_t first; ///< chunk
     uint32_t count; ///< items; at the first writing also those that found no room
-    uint32_t room;  ///< items at most; those after them are not counted
+    uint32_t room;  ///< max items; those after them are not counted
     uint32_t start; ///< in the order of all blocks
 } ListBlock;
 
@@ -25,17 +25,17 @@ typedef struct BlockList {
     uint32_t capacity; ///< items, whatever blocks they are in
     uint32_t chunk_count, block_count;
     atomic_uint taken; ///< chunks
-    bool whole;        ///< what was written last is there
+    bool whole;        ///< the last written items are all there
     uint8_t *items;    ///< [chunk_count * BLOCK_CHUNK * size]
-    uint32_t *next;    ///< [chunk_count] the chunk after, of the same block
+    uint32_t *next;    ///< [chunk_count] the next chunk of the same block
     ListBlock *blocks; ///< [block_count]
 } BlockList;
 
 /// A list with room for `capacity` items of `size` bytes, whatever blocks they are in. False when out of memory.
 bool block_list_create(Memory *memory, BlockList *list, size_t size, uint32_t capacity, uint32_t block_count);
 
-/// Makes room for at least `capacity` items and `block_count` blocks; the items there were are lost, their number is
-/// not. When out of memory it returns false and the list is as it was.
+/// Makes room for at least `capacity` items and `block_count` blocks; the previous items are lost, their number is not.
+/// When out of memory it returns false and the list is unchanged.
 bool block_list_grow(Memory *memory, BlockList *list, uint32_t capacity, uint32_t block_count);
 void block_list_free(Memory *memory, BlockList *list);
 
@@ -51,10 +51,10 @@ static inline BlockWriter block_list_begin(BlockList *list, int block) {
     return (BlockWriter){.list = list, .target = target, .block = {.room = target->room, .start = target->start}};
 }
 
-/// Whether the block may stop, as nothing more of it counts.
+/// Whether the block may stop, as further items do not count.
 static inline bool block_list_is_full(const BlockWriter *writer) { return writer->block.count >= writer->block.room; }
 
-/// Room for the block's next item, or NULL. Where only the list is full the item is counted all the same.
+/// Room for the block's next item, or NULL. If only the list is full, the item is counted all the same.
 static inline void *block_list_add(BlockWriter *writer) {
     BlockList *list = writer->list;
     if (block_list_is_full(writer)) return NULL;
@@ -74,12 +74,12 @@ static inline void block_list_end(const BlockWriter *writer) { *writer->target =
 /// A job that writes blocks of a list.
 typedef void BlockWriteFn(void *context, BlockList *list, int block);
 
-/// Has `blocks` blocks written, at most block_count. Returns the number of items, of a block at most `max` and one,
-/// with or without room. The list is not to be read before block_list_settle.
+/// Writes `blocks` blocks by `write`, at most block_count. Returns the number of items with or without room, at most
+/// `max` and one per block. The list must not be read before block_list_settle.
 uint64_t block_list_write(BlockList *list, Pool *pool, int blocks, uint32_t max, BlockWriteFn *write, void *context);
 
 /// Returns how many of the `count` items that block_list_write has found can be read: the first `room` ones, which is
-/// at most the list's capacity. Where they had no room, or have been lost since, the blocks are written again.
+/// at most the list's capacity. If they had no room, or have been lost since, the blocks are written again.
 uint32_t block_list_settle(BlockList *list, Pool *pool, int blocks, uint64_t count, uint32_t room, BlockWriteFn *write,
                            void *context);
 

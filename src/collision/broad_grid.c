@@ -1,9 +1,9 @@
 // Pairs of cells whose swept boxes meet.
 //
-// Swept boxes are sorted into the cubes of a hashed grid (Teschner et al., Optimized spatial hashing, 2003), whose
-// edge follows the boxes' mean extent, so the work is linear in the number of cells for any pile. A pair that shares
-// several cubes counts in the one where its common region begins: along each axis that cube is the first of one of the
-// two. Within a bucket a box is held against four others at once.
+// Swept boxes are sorted into the cubes of a hashed grid (Teschner et al., Optimized spatial hashing, 2003), whose edge
+// follows the boxes' mean extent, so the work is linear in the number of cells for any pile. A pair that shares several
+// cubes counts in the one where its common region begins: along each axis that cube is the first of one of the two.
+// Within a bucket a box is tested against four others at once.
 #include "collision/broad_grid.h"
 
 #include <string.h>
@@ -15,7 +15,7 @@ typedef struct Find {
 
 // ---- the grid
 
-/// The cubes' edge to begin with: twice the boxes' mean longest side. 0 where nothing is left.
+/// The cubes' initial edge: twice the boxes' mean longest side. 0 if no cell is left.
 static float first_edge(const CollisionPlan *plan) {
     double sum = 0;
     uint32_t count = 0;
@@ -68,7 +68,7 @@ static void sort_into_grid(CollisionPlan *plan) {
     clear_buckets(plan);
     uint64_t count = 0;
     for (; plan->edge > 0; plan->edge *= 1.3f) {
-        if (!(plan->edge < 1e30f)) plan->edge = 0; // a position is not finite: the step will tell
+        if (!(plan->edge < 1e30f)) plan->edge = 0; // a position is not finite: the step will fail
         else if ((count = fill_grid(plan, false)) <= plan->sizes.entries) break;
         clear_buckets(plan);
     }
@@ -80,7 +80,7 @@ static void sort_into_grid(CollisionPlan *plan) {
 
 // ---- pairs
 
-/// How far apart b's corners lie from a's slab; negative where they do not.
+/// Gap between a's slab and b's corners along the slab's normal; negative if they overlap.
 static inline float slab_gap(const CollisionSlab *a, const CollisionSlab *b) {
     Float4 n = a->normal;
     Float4 along = (b->x - a->x[0]) * n[0] + (b->y - a->y[0]) * n[1] + (b->z - a->z[0]) * n[2];
@@ -93,7 +93,7 @@ static inline float slab_gap(const CollisionSlab *a, const CollisionSlab *b) {
 bool collision_is_listed(const CollisionPlan *plan, uint32_t a, uint32_t b, float *distance) {
     const CollisionBox *p = &plan->boxes[a], *q = &plan->boxes[b];
     Float4 displacement = q->displacement - p->displacement, zero = {0};
-    // b's box, on its displacement relative to a
+    // b's box, swept by its displacement relative to a
     Float4 low = q->low + float4_min(displacement, zero), high = q->high + float4_max(displacement, zero);
     if (!quads_meet(p->low - plan->reach, p->high + plan->reach, low, high)) return false;
     Float4 separation = float4_max(float4_max(q->low - p->high, p->low - q->high), zero);
@@ -114,7 +114,7 @@ static inline uint32_t corners_shared(const uint32_t a[4], const uint32_t b[4]) 
     memcpy(&p, a, sizeof p), memcpy(&q, b, sizeof q);
     Float4Mask same = (p == q) + (p == FLOAT4_SHUFFLE(q, q, 1, 2, 3, 0)) + (p == FLOAT4_SHUFFLE(q, q, 2, 3, 0, 1)) +
                       (p == FLOAT4_SHUFFLE(q, q, 3, 0, 1, 2));
-    return 0x4332322132212110u >> 4 * float4_bits(same < 0) & 7; // number of bits set; no two of a are one of b
+    return 0x4332322132212110u >> 4 * float4_bits(same < 0) & 7; // number of bits set; a cell's corners are distinct
 }
 
 uint32_t collision_bridge(const CollisionPlan *plan, const Shell *shell, uint32_t a, uint32_t b) {
@@ -141,7 +141,7 @@ static void list_pair(const Find *find, uint32_t a, uint32_t b, BlockWriter *wri
         (CollisionPair){.a = a, .b = b, .distance = bridge == SHELL_NONE ? distance : 0, .hit = 2, .bridge = bridge};
 }
 
-/// Entries of a bucket, a number after another.
+/// Entries of a bucket that are tested together.
 enum { TILE = 256 };
 typedef struct Tile {
     float low[3][TILE], high[3][TILE];

@@ -13,7 +13,8 @@ static inline Cube collision_cube(Float4 p, float inverse_edge) {
     return whole + (__builtin_convertvector(whole, Float4) > q); // a mask is -1
 }
 
-/// Cubes from one to another; more than `max` also where two of them would have one key, or a position is not finite.
+/// Number of cubes from one to another; more than `max` also where two of them would have one key, or a position is not
+/// finite.
 static inline uint64_t collision_cubes(Cube first, Cube last, uint64_t max) {
     uint64_t x = (uint64_t)((int64_t)last[0] - first[0]) + 1, y = (uint64_t)((int64_t)last[1] - first[1]) + 1;
     uint64_t z = (uint64_t)((int64_t)last[2] - first[2]) + 1;
@@ -21,13 +22,13 @@ static inline uint64_t collision_cubes(Cube first, Cube last, uint64_t max) {
     return x * y * z;
 }
 
-/// Cubes of one key are so far apart that no box is in two of them.
+/// Cubes with the same key are so far apart that no box is in two of them.
 static inline uint32_t collision_key(Cube cube) {
     return ((uint32_t)cube[0] & 1023) | ((uint32_t)cube[1] & 1023) << 10 | ((uint32_t)cube[2] & 511) << 20;
 }
 enum { COLLISION_KEY = (1 << 29) - 1 };
 
-/// Cubes in a row along x have buckets in a row: what is near each other lies together.
+/// Consecutive cubes along x have consecutive buckets: nearby entries are contiguous.
 static inline uint32_t collision_bucket(const CollisionPlan *plan, uint32_t key) {
     uint32_t h = key >> 10;
     h = (h ^ h >> 16) * 0x7feb352du;

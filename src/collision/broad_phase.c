@@ -1,8 +1,8 @@
-// The search for cells that are near each other.
+// The search for nearby cells.
 //
-// A cell is a box that moves along: its box at the search, widened by half of thickness + slack, on the way that its
+// A cell is a moving box: its box at the search, widened by half of thickness + slack, along the trajectory that its
 // corners were on. Two cells whose boxes do not meet in plan->steps steps stay farther apart than the thickness, as
-// long as no corner leaves its displacement by more than half the slack; ccd.c watches that.
+// long as no corner deviates from its trajectory by more than half the slack; ccd.c watches that.
 #include "common/check.h"
 #include "common/error.h"
 #include "collision/collision_plan.h"
@@ -12,7 +12,7 @@ typedef struct Find {
     const Shell *shell;
 } Find;
 
-// ---- what a cell counts as its own
+// ---- features that a cell owns
 
 static bool has_corners(const uint32_t cell[4], uint32_t a, uint32_t b) {
     bool first = false, second = false;
@@ -20,7 +20,7 @@ static bool has_corners(const uint32_t cell[4], uint32_t a, uint32_t b) {
     return first && second;
 }
 
-/// A side that a cell across has too belongs to the lower of the two.
+/// A side shared by two cells belongs to the lower of the two.
 static bool owns_side(const CollisionPlan *plan, const Shell *shell, uint32_t c, int side) {
     SINGE_ASSERT(side >= 0 && side < 4);
     uint32_t across = shell_neighbour(shell, c, side);
@@ -105,7 +105,7 @@ static void sweep_boxes(void *task, int begin, int end) {
 
 // ---- the search
 
-/// Also a cell with itself: it may fold upon itself.
+/// Also pairs a cell with itself: it may fold onto itself.
 static void add_cells(CollisionPlan *plan) {
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         if (!plan->alive[c]) continue;
@@ -123,7 +123,7 @@ static SingeResult find_pairs(Find *find, Pool *pool) {
         pool_for(pool, (int)plan->cell_count, 512, sweep_boxes, find);
         count = broad_grid_pairs(plan, find->shell, pool);
         if (count + plan->cell_count <= plan->sizes.pair_budget || trial == TRIALS) break;
-        plan->slack *= 0.5f; // too crowded: look less far
+        plan->slack *= 0.5f; // too crowded: search less far
     }
     if (!collision_grow_pairs(plan, count + plan->cell_count)) return SINGE_ERROR_MEMORY;
     broad_grid_keep(plan, find->shell, pool, count, plan->pair_capacity - plan->cell_count);
@@ -133,7 +133,7 @@ static SingeResult find_pairs(Find *find, Pool *pool) {
     return SINGE_OK;
 }
 
-/// Fewer steps where corners move fast against each other: in the mean by a third of a cell at most.
+/// Fewer steps where corners move fast relative to each other: on average by at most a third of a cell.
 static void choose_steps(CollisionPlan *plan, const Shell *shell) {
     Float4 mean = {0};
     double sum = 0, count = 0;
@@ -145,7 +145,7 @@ static void choose_steps(CollisionPlan *plan, const Shell *shell) {
         if (plan->alive[c]) sum += (double)sqrtf(float4_dot(off, off));
     }
     double step = sum / fmax(count, 1) * (double)plan->time_step, max = (double)plan->cell_size / 2;
-    // a step that is not finite, as of positions that overflow, has the fewest
+    // a step that is not finite, as with positions that overflow, gets the fewest
     plan->steps = step * COLLISION_STEPS < max ? COLLISION_STEPS : step * 2 <= max ? (uint32_t)(max / step) : 2;
 }
 

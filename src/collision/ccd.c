@@ -1,10 +1,11 @@
-// Continuous collision detection (CCD) at the end of a step: no displacement leads through another cell.
+// Continuous collision detection (CCD) at the end of a step: no displacement passes through another cell.
 //
-// Every corner has gone from x0, where the step began, to x1. What meets on these displacements (ccd_pairs.c) goes
-// otherwise (ccd_zones.c). As other cells may then be in the way, this is repeated with what has changed.
+// Every corner has moved from x0, where the step began, to x1. Cells that meet on these displacements (ccd_pairs.c) are
+// moved otherwise (ccd_zones.c). As this may put them in the path of other cells, it is repeated for the cells that
+// have changed.
 //
-// A corner that has left the box that the search gave its cell may have met what the search did not list: then the
-// search is repeated for this step's own displacements.
+// A corner that has left the box that the search gave its cell may have met a cell that the search did not list: then
+// the search is repeated for this step's own displacements.
 #include "common/check.h"
 #include "common/clock.h"
 #include "common/error.h"
@@ -13,15 +14,15 @@
 
 #include <string.h>
 
-/// Rounds after which impacts give way to zones, and zones to what is.
+/// Rounds after which impacts give way to zones, and after which zones leave the rest as it is.
 enum { IMPACT_ROUNDS = 64, ZONE_ROUNDS = 64 };
 
-/// Impacts give way to zones earlier where rounds have looked at this many times all pairs: a crowd in which each
-/// impact makes others, such as a hundred sheets around one line, is not parted by more of them.
+/// Impacts give way to zones earlier if their rounds have checked this many times the number of all pairs: further
+/// impacts do not separate a crowd in which each impact makes others, such as a hundred sheets around one line.
 enum { IMPACT_LOOKS = 4 };
 
-/// The part of all cells that may be outside their boxes before all are searched again; and that from which on the next
-/// step begins with a search.
+/// The fraction of all cells that may be outside their boxes before all are searched again; and the fraction from which
+/// on the next step begins with a search.
 enum { OUTSIDE_MAX = 8, OUTSIDE_PART = 32 };
 
 // ---- how cells have moved
@@ -77,7 +78,7 @@ void ccd_mark_around(const Ccd *ccd, uint32_t v) {
     for (uint32_t f = shell->fan_first[v]; f < shell->fan_first[v + 1]; f++) ccd_mark_changed(ccd, shell->fan[f]);
 }
 
-/// Marks the cells that have been moved since CCD was here before in this step.
+/// Marks the cells that have moved since CCD last ran in this step.
 static void mark_moved(const Ccd *ccd) {
     const CollisionPlan *plan = ccd->plan;
     ccd_forget_changed(ccd->plan);
@@ -143,7 +144,7 @@ static SingeResult search_again(Ccd *ccd, const StateInput *state, Pool *pool, f
 
 static void ccd_measure(Ccd *ccd, Pool *pool) { pool_for(pool, (int)ccd->plan->cell_count, 512, measure_range, ccd); }
 
-/// Looks at the pairs of cells that the last round has changed. Returns how many meet.
+/// Checks the pairs of cells that the last round has changed. Returns how many collide.
 static uint32_t meet_changed(Ccd *ccd, Pool *pool) {
     pool_for(pool, (int)ccd->plan->changed_count, 512, measure_changed, ccd);
     uint32_t count = list_changed(ccd->plan);
@@ -158,8 +159,8 @@ static uint32_t list_out_of_bounds(CollisionPlan *plan) {
     return count;
 }
 
-/// Lists what cells that have left their boxes may have met; all again where these are many. *first is the first pair
-/// that is new.
+/// Lists the pairs that cells outside their boxes may have met; searches all again if these are many. *first is the
+/// first new pair.
 static SingeResult follow_out_of_bounds(Ccd *ccd, const StateInput *state, Pool *pool, float h, uint32_t *first) {
     SINGE_ASSERT(h > 0);
     CollisionPlan *plan = ccd->plan;
@@ -178,7 +179,7 @@ static SingeResult follow_out_of_bounds(Ccd *ccd, const StateInput *state, Pool 
     return SINGE_OK;
 }
 
-/// One look at all that may have met, or at what the last round has changed; *hits is the number of pairs that have.
+/// Checks all pairs that may have met, or those that the last round has changed; *hits is the number that have.
 static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float h, bool changed, uint32_t *hits) {
     SINGE_ASSERT(h > 0);
     uint32_t first;
@@ -194,9 +195,9 @@ static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float
     return SINGE_OK;
 }
 
-/// A velocity after a shift at the step's end: what the shift takes or gives, but no more than there was before or has
-/// been gone in the step. What the step's last substep has brought in is in the velocity, in the way only by a small
-/// part.
+/// A velocity after a shift at the step's end: changed by the shift, but not beyond the larger of the previous velocity
+/// and the step's displacement over h. The velocity contains all of the change in the last substep, the displacement
+/// only a small part of it.
 static Float4 shifted_velocity(Float4 before, Float4 shift, Float4 displacement, float h) {
     SINGE_ASSERT(h > 0);
     Float4 after = before + shift / h, gone = displacement / h;
@@ -204,7 +205,7 @@ static Float4 shifted_velocity(Float4 before, Float4 shift, Float4 displacement,
     return square > max ? sqrtf(max / square) * after : after;
 }
 
-/// Velocities and centres follow what has been changed.
+/// Velocities and centres follow the changed positions.
 static void close_trajectories(const Ccd *ccd, float h) {
     SINGE_ASSERT(h > 0);
     CollisionPlan *plan = ccd->plan;
@@ -250,7 +251,7 @@ static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const Sta
     bool stopped = false;
     if (plan->closed) mark_moved(&ccd);
 
-    // stop what meets until nothing does: impacts one by one, then zones
+    // stop colliding cells until there are none: impacts one by one, then zones
     for (int impacts = 0, zones = 0;;) {
         uint32_t hits;
         TRY(ccd_look(&ccd, state, pool, h, stopped || plan->closed, &hits));
@@ -267,7 +268,7 @@ static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const Sta
         else ccd_impacts(&ccd), impacts++;
     }
 
-    // note where the step has ended, for the next one
+    // remember where the step has ended, for the next one
     plan->counters.looks += ccd.looked;
     if (stopped) close_trajectories(&ccd, h);
     memcpy(plan->end, dynamics->position, plan->vertex_count * sizeof *plan->end);

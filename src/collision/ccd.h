@@ -1,5 +1,5 @@
-// Shared declarations of continuous collision detection: ccd.c is the whole, ccd_pairs.c finds collisions, ccd_zones.c
-// resolves them.
+// Shared declarations of continuous collision detection: ccd.c is the algorithm, ccd_pairs.c finds collisions,
+// ccd_zones.c resolves them.
 #ifndef COLLISION_CCD_H
 #define COLLISION_CCD_H
 
@@ -27,11 +27,11 @@ typedef struct Swept {
     NarrowBoxes boxes;
 } Swept;
 
-/// Nodes of the pair's cells, in a frame that goes with the first corner of a.
+/// Nodes of the pair's cells, in a frame that moves with the first corner of a.
 void ccd_sweep_cells(const Ccd *ccd, const CollisionPair *pair, Swept *a, Swept *b);
 
-/// Looks at pairs from `first` on, or at the `count` ones of plan->active: where two meet, notes after what share of
-/// the step's displacement, and what meets. Lists them in plan->active; returns how many.
+/// Checks pairs from `first` on, or the `count` ones of plan->active: where two collide, stores after what share of the
+/// step's displacement, and which features. Lists them in plan->active; returns how many.
 uint32_t ccd_meet(const Ccd *ccd, Pool *pool, uint32_t first);
 uint32_t ccd_meet_active(const Ccd *ccd, Pool *pool, uint32_t count);
 

@@ -1,12 +1,12 @@
-// Which cells meet on their displacements.
+// Which cells collide on their displacements.
 //
-// Every corner has gone from x0, where the step began, to x1. A pair of cells that were at least d apart at x0 and have
-// moved since by less, relative to each other, cannot have met:
+// Every corner has moved from x0, where the step began, to x1. A pair of cells that were at least d apart at x0 and
+// have moved since by less, relative to each other, cannot have collided:
 //
 //   |mean displacement of a - mean displacement of b| + deviation of a + deviation of b < d
 //
-// Cells that share a side or a corner are free where they can be shown not to cross as the step ends, by their normals
-// or by a plane between them (feature_distance.c). What is left is swept, feature by feature.
+// Connected cells (that share a side or a corner) are free if their normals, or a plane between them, show that they do
+// not cross at the end of the step (feature_distance.c). The other pairs are swept, feature by feature.
 #include "common/check.h"
 #include "collision/ccd.h"
 #include "collision/feature_distance.h"
@@ -57,13 +57,13 @@ void ccd_sweep_cells(const Ccd *ccd, const CollisionPair *pair, Swept *p, Swept 
     sweep_nodes(ccd, pair->b, origin, mean, q);
 }
 
-/// Nodes that cell c owns, of p, against triangles of q that do not have them; bits of same[i] are the corners of q
+/// Nodes of p that cell c owns against triangles of q that do not contain them; bits of same[i] are the corners of q
 /// that are corner i of p.
 static void sweep_all_nodes(const Ccd *ccd, CollisionPair *pair, uint32_t c, const Swept *p, const Swept *q,
                             const unsigned same[4], int kind) {
     for (int i = 0; i < 5; i++) {
         if (!collision_owns_node(ccd->plan, c, i)) continue;
-        // of one cell, the centroid is in all triangles
+        // within one cell, the centroid is in all triangles
         unsigned meet = i < 4 ? 15 & ~narrow_around(same[i]) : pair->a == pair->b ? 0 : 15;
         if (meet) meet &= four_meet(&q->boxes.triangles, p->low[i] - ccd->plan->gap, p->high[i] + ccd->plan->gap);
         for (; meet; meet &= meet - 1) {
@@ -84,7 +84,7 @@ static void sweep_all_edges(const Ccd *ccd, CollisionPair *pair, const Swept *p,
         Float4 high = float4_max(p->high[k[0]], p->high[k[1]]) + plan->gap;
         unsigned sides = four_meet(&q->boxes.sides, low, high) & plan->owned[pair->b] >> 4 & ~narrow_around(corners);
         unsigned spokes = four_meet(&q->boxes.spokes, low, high) & ~corners;
-        if (pair->a == pair->b) sides &= 14u << i, spokes = i < 4 ? spokes : 0; // each two once
+        if (pair->a == pair->b) sides &= 14u << i, spokes = i < 4 ? spokes : 0; // each pair once
         for (unsigned meet = sides | spokes << 4; meet; meet &= meet - 1) {
             int j = __builtin_ctz(meet);
             note_hit(pair, sweep_edge(ccd, p, i, q, j), COLLISION_EDGES, i, j);
@@ -92,7 +92,7 @@ static void sweep_all_edges(const Ccd *ccd, CollisionPair *pair, const Swept *p,
     }
 }
 
-/// Finds the share of the step's displacement that two cells can go before they meet, and what meets.
+/// Finds the share of the step's displacement after which two cells collide, and the features that do.
 static void sweep_pair(const Ccd *ccd, CollisionPair *pair) {
     const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
     unsigned of_b[4], of_a[4];
@@ -105,9 +105,10 @@ static void sweep_pair(const Ccd *ccd, CollisionPair *pair) {
     sweep_all_edges(ccd, pair, &p, &q, of_b);
 }
 
-/// Whether a cell has not passed through itself: it is open and in shape as the step ends, and has moved within itself
-/// by less than an eighth of its width. One that is open may have passed through itself on the way: then it is on the
-/// wrong side of a cell that shares two sides with it, though it met no feature of that one.
+/// Whether a cell has not passed through itself: it is unfolded and in shape at the end of the step, and its corners
+/// have moved relative to each other by less than an eighth of its width. An unfolded cell may have passed through
+/// itself during the step: then it is on the wrong side of a cell that shares two sides with it, though it met no
+/// feature of that cell.
 static bool own_is_free(const Ccd *ccd, uint32_t cell) {
     SINGE_ASSERT(cell < ccd->shell->cell_count);
     const Float4 *motion = ccd->plan->motion[cell];
@@ -120,8 +121,8 @@ static bool own_is_free(const Ccd *ccd, uint32_t cell) {
     return displacement * displacement * (float4_dot(one, one) + float4_dot(two, two)) < float4_dot(area, area);
 }
 
-/// Of four pairs, those that are free by how far apart they are, or, as they are connected, by their normals, of which
-/// feature_distance.c has the proof: bits.
+/// Bits of those of four pairs that are free: by their distance or, if connected, by their normals (proof in
+/// feature_distance.c).
 static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
     const CollisionPlan *plan = ccd->plan;
     CollisionFourPairs four = collision_four_pairs(plan, number);
@@ -144,8 +145,8 @@ static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
     return free;
 }
 
-/// Cells that are connected, by a plane that parts them at both ends of the step, and has not been turned over: then
-/// they have not passed through each other about what they share.
+/// Whether a plane separates two connected cells at both ends of the step, and has not turned over: then they have not
+/// passed through each other around what they share.
 static bool plane_parts(const Ccd *ccd, const CollisionPair *pair) {
     const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
     const float(*positions[2])[4] = {(const float(*)[4])ccd->plan->start, (const float(*)[4])ccd->dynamics->position};
@@ -163,7 +164,7 @@ static bool plane_parts(const Ccd *ccd, const CollisionPair *pair) {
     return float4_dot(normal[0], normal[1]) > 0;
 }
 
-/// Returns whether a pair meets.
+/// Returns whether a pair collides.
 static bool look_at_pair(const Ccd *ccd, CollisionPair *pair) {
     if (!ccd_is_alive(ccd, pair->a) || !ccd_is_alive(ccd, pair->b)) return false;
     if (initial_is_crossing(ccd->plan, pair)) return false;
@@ -171,7 +172,7 @@ static bool look_at_pair(const Ccd *ccd, CollisionPair *pair) {
     return pair->hit < 2;
 }
 
-/// Looks at the pairs whose numbers are given, four at a time. Returns how many meet.
+/// Checks the pairs whose numbers are given, four at a time. Returns how many collide.
 static uint32_t look_at_four(const Ccd *ccd, const uint32_t number[4], uint32_t count) {
     CollisionPlan *plan = ccd->plan;
     uint32_t hits = 0;

@@ -1,21 +1,21 @@
-// What is done where displacements meet.
+// Resolves collisions.
 //
-// An impact moves the two points that meet apart, each by what it weighs. Where many rounds of impacts have not parted
-// all, the corners of both cells form a zone, with all zones that they touch, and go
+// An impact moves the two colliding points apart, each according to its mass. If many rounds of impacts have not
+// separated all pairs, the corners of both cells form a zone, merged with all zones that share a corner, and move to
 //
 //   x0 + u + a (x1 - x0 - u),   u the mean displacement of the zone by mass,
 //
-// with a the share of the displacement that was free: the zone keeps its momentum and loses what would have closed it.
-// A zone that meets again halves its share, and has 0 from round ZONE_PATIENCE on, when it moves as one piece (the
-// impact zones of Provot, 1997). Zones are only ever joined, and shares lessened, so the rounds end. Held corners go
-// their own displacement.
+// with a the share of the displacement that was free: the zone keeps its momentum and loses the motion that would have
+// closed the gap. A zone that collides again halves its share, and has 0 from round ZONE_PATIENCE on, when it moves as
+// one piece (the impact zones of Provot, 1997). Zones are only ever joined, and shares only reduced, so the rounds end.
+// Held corners keep their own displacement.
 #include "common/check.h"
 #include "collision/ccd.h"
 #include "collision/feature_distance.h"
 
 #include <string.h>
 
-/// Gaps by which an impact parts what meets.
+/// Gaps by which an impact separates colliding points.
 enum { IMPACT_PART = 3 };
 /// Rounds after which a zone moves as one piece.
 enum { ZONE_PATIENCE = 4 };
@@ -27,7 +27,8 @@ static void zones_spread(float corner[4], int node, float weight) {
     for (int i = 0; i < 4; i++) corner[i] += node == i ? weight : node == 4 ? 0.25f * weight : 0;
 }
 
-/// Where what meets first meets: weights of the corners of a and b, and from the second point to the first.
+/// Points of the first collision: weights of the corners of a and b. Returns the vector from the second point to the
+/// first.
 static Float4 impact_points(const CollisionPair *pair, const Swept *p, const Swept *q, float wa[4], float wb[4]) {
     const Swept *one = pair->kind == COLLISION_NODE_OF_B ? q : p, *two = pair->kind == COLLISION_NODE_OF_B ? p : q;
     float *w1 = pair->kind == COLLISION_NODE_OF_B ? wb : wa, *w2 = pair->kind == COLLISION_NODE_OF_B ? wa : wb;
@@ -58,9 +59,9 @@ static Float4 impact_points(const CollisionPair *pair, const Swept *p, const Swe
     return pair->kind == COLLISION_NODE_OF_B ? -separation : separation;
 }
 
-/// What each corner of a side goes of a shift of its point: as its weight and inverse mass say, but that no corner
-/// counts as lighter than a quarter of the heaviest. Else a light corner, far from the point, would be thrown far to
-/// move it. Returns the point's own inverse mass.
+/// Share of each corner in a shift of its point: by its weight and inverse mass, but no corner counts as lighter than a
+/// quarter of the heaviest. Otherwise a light corner, far from the point, would be thrown far to move it. Returns the
+/// point's own inverse mass.
 static float impact_lever(const Ccd *ccd, uint32_t cell, const float w[4], float lever[4]) {
     SINGE_ASSERT(cell < ccd->shell->cell_count);
     const uint32_t *corner = ccd->shell->cells[cell];
@@ -75,7 +76,7 @@ static float impact_lever(const Ccd *ccd, uint32_t cell, const float w[4], float
     return own;
 }
 
-/// Moves the points that meet by `shift` relative to each other, each by what it weighs.
+/// Moves the colliding points by `shift` relative to each other, each according to its mass.
 static void impact_move(const Ccd *ccd, const CollisionPair *pair, const float wa[4], const float wb[4], Float4 shift) {
     float lever[2][4], a = impact_lever(ccd, pair->a, wa, lever[0]), b = impact_lever(ccd, pair->b, wb, lever[1]);
     for (int k = 0; a + b > 0 && k < 8; k++) {
@@ -96,8 +97,9 @@ static Float4 impact_slip(const Ccd *ccd, const CollisionPair *pair, const float
     return sum;
 }
 
-/// An impact without bounce, and with friction: the points part at the end as far as when they met, and a little
-/// farther, so that what others push back does not meet again at once: else the rounds are eight times as many.
+/// An impact without bounce, and with friction: at the end the points are as far apart as when they met, and a little
+/// farther, so that reactions of other pairs do not make them collide again at once: otherwise there are eight times as
+/// many rounds.
 static void impact(const Ccd *ccd, const CollisionPair *pair) {
     Swept p, q;
     float wa[4] = {0}, wb[4] = {0};
@@ -108,7 +110,7 @@ static void impact(const Ccd *ccd, const CollisionPair *pair) {
     normal = normal / distance;
     Float4 end = impact_slip(ccd, pair, wa, wb, (const float(*)[4])ccd->dynamics->position);
     Float4 slip = end - impact_slip(ccd, pair, wa, wb, (const float(*)[4])ccd->plan->start);
-    // where impacts before this one have changed the displacements, these are farther apart by now than where they met
+    // after previous impacts have changed the displacements, these points are already farther apart than where they met
     float repulsion = fminf(distance, 2 * ccd->plan->gap) + IMPACT_PART * ccd->plan->gap - float4_dot(end, normal);
     if (repulsion <= 0) return;
     slip -= float4_dot(slip, normal) * normal;
@@ -135,7 +137,7 @@ static uint32_t zone_root(CollisionPlan *plan, uint32_t v) {
     return v;
 }
 
-/// Puts a vertex into a zone of its own, with all of its displacement, unless it is in one.
+/// Puts a vertex into a zone of its own, with all of its displacement, unless it already is in a zone.
 static void zone_enter(const Ccd *ccd, uint32_t v) {
     CollisionPlan *plan = ccd->plan;
     if (plan->zone[v] != SHELL_NONE) return;
@@ -145,7 +147,7 @@ static void zone_enter(const Ccd *ccd, uint32_t v) {
     memcpy(plan->goal[v], ccd->dynamics->position[v], sizeof *plan->goal);
 }
 
-/// Joins the corners of a pair that meets, and lessens their share of the displacement.
+/// Joins the corners of a colliding pair, and reduces their share of the displacement.
 static void zone_join(const Ccd *ccd, const CollisionPair *pair, int round) {
     CollisionPlan *plan = ccd->plan;
     const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
@@ -160,12 +162,12 @@ static void zone_join(const Ccd *ccd, const CollisionPair *pair, int round) {
         if (other < root) plan->zone[root] = other, root = other;
         else plan->zone[other] = root;
     }
-    // in the first round the share is what was free; later the zone's own displacements have changed
+    // in the first round the share is the free one; later the displacements of the zone itself have changed
     float less = round == 0 ? 0.9f * pair->hit : round < ZONE_PATIENCE ? 0.5f * share : 0;
     plan->share[root] = fminf(share, less);
 }
 
-/// Mean displacements by mass; those of held corners count alone where there are any.
+/// Mean displacements by mass; if there are held corners, only theirs count.
 static void zone_drift(const Ccd *ccd) {
     CollisionPlan *plan = ccd->plan;
     for (uint32_t k = 0; k < plan->stopped_count; k++) plan->drift[plan->stopped[k]] = (Float4){0};
@@ -178,7 +180,7 @@ static void zone_drift(const Ccd *ccd) {
     }
 }
 
-/// Moves what is in zones, and marks the cells around.
+/// Moves the vertices in zones, and marks the cells around them.
 static void zone_move(const Ccd *ccd) {
     CollisionPlan *plan = ccd->plan;
     zone_drift(ccd);

@@ -40,7 +40,8 @@ void collision_plan_forget(CollisionPlan *plan);
 SingeResult collision_open(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
                            const DynamicsState *dynamics);
 
-/// Pushes points apart that are too near, in a substep of h seconds from `predicted` less h times the velocities.
+/// Pushes points apart that are too near, in a substep of h seconds that began at `predicted` less h times the
+/// velocities.
 void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics);
 
 /// Closes the step: no cell of the drawn mesh has passed through another since collision_open.

@@ -1,9 +1,8 @@
-// Room for what is found. The lists have room for what folds and heaps come to; where sheets crowd more than that they
-// grow to what is needed, up to a max that only sheets lying within each other reach. What is found beyond that is
-// dropped and counted.
+// Room for pairs and repulsions. The lists have room for folds and heaps; in denser crowds they grow as needed, up to a
+// max that only sheets lying within each other reach. Items beyond that are dropped and counted.
 //
-// What a list has grown to decides nothing: the same is found with as much room or with more, so that a run which goes
-// on from a snapshot, where lists begin small again, has the same bytes.
+// The size of a list does not affect results: any sufficient size gives the same items, so that a run continued from a
+// snapshot, where lists begin small again, has the same bytes.
 #include "collision/collision_plan.h"
 
 #include <string.h>
@@ -33,7 +32,7 @@ static bool grow_rooms(Memory *memory, const Room *room, int count) {
     return true;
 }
 
-/// A quarter more than is needed, so that it does not come to growing at every step.
+/// A quarter more than needed, so that lists do not grow at every step.
 static uint32_t with_margin(uint64_t wanted, uint32_t max) {
     wanted += wanted / 4;
     return wanted < max ? (uint32_t)wanted : max;

@@ -1,8 +1,8 @@
-// What a step opens with: pairs of cells that are near, and what of them its substeps may have to push.
+// Opens a step: finds the nearby pairs of cells, and the pairs of points that its substeps may have to push apart.
 //
-// A pair's distance is kept as a bound: it is at least that of the last time it was measured, less what the two cells
-// have moved against each other since. Only where the bound does not tell that all features stay apart in this step are
-// they looked at. So what is found depends on the pair's positions and speeds alone, not on when it was measured.
+// A pair's distance is kept as a bound: it is at least the last measured distance, less the relative motion of the two
+// cells since. Features are checked only where the bound does not show that all of them stay apart in this step. So the
+// result depends on the pair's positions and speeds alone, not on when it was measured.
 #include "common/check.h"
 #include "common/clock.h"
 #include "common/error.h"
@@ -11,11 +11,11 @@
 
 #include <string.h>
 
-/// m/s with which is mended what is too near.
+/// m/s at which points that are too near move apart.
 #define COLLISION_PART 0.1f
 
-/// Of the thickness: where a slab as thick parts two cells, their nodes keep them apart well enough without their
-/// edges.
+/// Fraction of the thickness: if a slab of this thickness separates two cells, their nodes keep them apart well enough
+/// without their edges.
 #define FEATURE_SEPARATED 0.6f
 
 typedef struct Opening {
@@ -23,17 +23,17 @@ typedef struct Opening {
     const Shell *shell;
     const DynamicsState *dynamics;
     const uint8_t *cell_flags;
-    bool searched; ///< just now
+    bool searched; ///< in this step
     bool again;    ///< the pairs' distances are already this step's
 } Opening;
 
 // ---- how cells move
 
-/// Whether a cell is as the last step's CCD has left, and measured, it.
+/// Whether a cell is as CCD has left and measured it in the last step.
 static bool is_as_left(const CollisionPlan *plan, const uint32_t corner[4], const float (*x)[4]) {
     Float4Mask moved = {0};
     for (int i = 0; i < 4; i++) moved |= float4_load(x[corner[i]]) != float4_load(plan->end[corner[i]]);
-    return !(float4_bits(moved) & 7); // the fourths are inverse masses
+    return !(float4_bits(moved) & 7); // the fourth components are inverse masses
 }
 
 static void measure_range(void *task, int begin, int end) {
@@ -55,7 +55,7 @@ static void measure_range(void *task, int begin, int end) {
     }
 }
 
-/// Notes where corners are and how they move: as since the last search, for what lies trembles; else by their
+/// Stores where corners are and how they move: as since the last search, as resting corners tremble; else by their
 /// velocities.
 static void note_search(CollisionPlan *plan, const StateInput *state, const DynamicsState *dynamics) {
     bool known = plan->searched && state->step > plan->step;
@@ -73,16 +73,16 @@ static void note_search(CollisionPlan *plan, const StateInput *state, const Dyna
 
 // ---- what is near
 
-/// Two cells that are looked at.
+/// Two cells whose features are measured.
 typedef struct Look {
     NarrowCell a, b;
     Float4 speed_a[5], speed_b[5]; ///< m/s, of nodes
-    float due;                     ///< m, distance from which on nothing can touch in this step
+    float due;                     ///< m, distance beyond which there is no contact in this step
 } Look;
 
 static inline float open_min(float a, float b) { return a < b ? a : b; }
 
-/// Distance at which features of two cells that near each other by `approach` m/s may touch.
+/// Distance at which features of two cells that approach each other by `approach` m/s may come into contact.
 static inline float due(float thickness, const CollisionPlan *plan, float approach) {
     return 1.25f * thickness + 1.5f * plan->time_step * (approach > 0 ? approach : 0);
 }
@@ -143,7 +143,7 @@ static bool near_at_rest(const Opening *job, const CollisionPair *pair, const Ne
     return float4_dot(separation, separation) < far * far;
 }
 
-/// How far two features are to be kept apart in this step; 0 where they need not be looked after.
+/// Distance that two features must keep in this step; 0 if they need no repulsion.
 static float target(const Opening *job, const CollisionPair *pair, const Look *look, const NearFeatures *near) {
     const CollisionPlan *plan = job->plan;
     float thickness = open_min(plan->thin[pair->a], plan->thin[pair->b]), distance = near->distance;
@@ -164,7 +164,7 @@ static void node_velocities(const Opening *job, uint32_t cell, Float4 speed[5]) 
     speed[4] = 0.25f * ((speed[0] + speed[1]) + (speed[2] + speed[3]));
 }
 
-/// Measures a pair that may touch, and lists what of it does.
+/// Measures a pair that may be in contact, and lists its points that are.
 static void measure_pair(const Opening *job, uint32_t k, float due_distance, BlockWriter *writer) {
     CollisionPlan *plan = job->plan;
     CollisionPair *pair = &plan->pairs[k];
@@ -180,16 +180,16 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Blo
     separation = narrow_slabs_distance(&look.a, &look.b) - plan->noise;
     pair->distance = separation > pair->distance ? separation : pair->distance;
     if (pair->distance > look.due) return;
-    // beside a triangle a node may be over the next one: a normal that stays would make a ridge of the edge between
+    // a node beside a triangle may be over the next one: a fixed normal would make a ridge of the edge between
     FeatureRange far = {look.due, look.due, open_min(plan->thin[pair->a], plan->thin[pair->b]),
                         separation < FEATURE_SEPARATED * plan->thickness};
-    // measuring a little farther, not every step has to look again
+    // measures a little farther, so that not every step must measure again
     if (far.edges) far.measured += 0.25f * plan->thickness;
     NearFeatures near[NARROW_MAX];
     float nearest;
     int count = narrow_features(job->shell, pair, &look.a, &look.b, &far, near, &nearest);
     float doubt = narrow_error_bound(&look.a) + narrow_error_bound(&look.b);
-    if (doubt > 0.5f * plan->gap) nearest -= doubt; // CCD leaves a gap itself, which has room for less
+    if (doubt > 0.5f * plan->gap) nearest -= doubt; // CCD keeps a gap, which covers less doubt
     if (far.edges && nearest > pair->distance) pair->distance = nearest;
     if (count == 0) return;
     node_velocities(job, pair->a, look.speed_a);
@@ -203,7 +203,7 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Blo
     }
 }
 
-/// Looks at four pairs, from `first` on, of which `count` are left.
+/// Measures those of four pairs, from `first` on, of which `count` are left.
 static void look_at_four(const Opening *job, uint32_t first, uint32_t count, BlockWriter *writer) {
     CollisionPlan *plan = job->plan;
     uint32_t number[4];
@@ -241,7 +241,7 @@ static void look_block(void *context, BlockList *list, int block) {
     block_list_end(&writer);
 }
 
-// ---- what is pushed
+// ---- repulsions
 
 static void open_gather(Repulsion *repulsion, const uint32_t corner[4], const float weight[4], float sign) {
     for (int i = 0; i < 4; i++) {
@@ -338,7 +338,7 @@ void collision_clearance(const CollisionPlan *plan, const Shell *shell, const St
 
         // the distance is the room of all corners
         for (int i = 0; i < 16; i++)
-            if (a[i / 4] == b[i % 4]) nearest = 0; // towards what they share
+            if (a[i / 4] == b[i % 4]) nearest = 0; // towards shared corners
         for (int i = 0; i < 4; i++) room[a[i]] = fminf(room[a[i]], nearest), room[b[i]] = fminf(room[b[i]], nearest);
     }
 }

@@ -1,4 +1,4 @@
-// The plan: what it is made of, how long it is remembered.
+// The plan: its memory, sizes and snapshot.
 #include "common/error.h"
 #include "collision/feature_distance.h"
 #include "collision/collision_plan.h"
@@ -54,7 +54,7 @@ typedef struct Array {
 
 enum { ARRAYS = 35 };
 
-/// The plan's arrays, for what makes and what frees them.
+/// The plan's arrays, to create and to free them.
 static void list_arrays(CollisionPlan *plan, Array list[ARRAYS]) {
     size_t cells = plan->cell_count, vertices = plan->vertex_count;
 #define ARRAY(name, length) \
@@ -127,8 +127,8 @@ void collision_plan_free(Memory *memory, CollisionPlan *plan) {
     FREE(memory, plan, 1);
 }
 
-/// Where cells are at rest, and how thick they may be: those far smaller than the rest of their sheet would be torn
-/// apart by what keeps their own corners apart.
+/// Centroids at rest, and the thickness of cells: cells far smaller than the rest of their sheet would be torn apart by
+/// the contact of their own corners.
 static void measure_cells(CollisionPlan *plan, const Shell *shell) {
     float min = plan->cell_size;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
@@ -172,7 +172,7 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     return SINGE_OK;
 }
 
-/// Whether what was read back is what a search may have been for; cells that are left now were left then.
+/// Whether the data read back may be that of a search; cells that are alive now were alive then.
 static bool collision_fits(const CollisionPlan *plan, const uint8_t *cell_flags) {
     if (plan->searched > 1 || plan->restless > 1) return false;
     for (uint32_t v = 0; v < plan->vertex_count; v++)
@@ -187,7 +187,7 @@ static bool collision_fits(const CollisionPlan *plan, const uint8_t *cell_flags)
     return true;
 }
 
-/// The pairs that have intersected since the start: how many each cell has, then their other cells.
+/// The pairs that have intersected since the start: the number of each cell, then their other cells.
 static SingeResult stream_initial(CollisionPlan *plan, Stream *stream) {
     uint32_t *first = plan->initial_first, count = first[plan->cell_count];
     STREAM(stream, count);
@@ -222,7 +222,7 @@ SingeResult collision_plan_stream(CollisionPlan *plan, const Shell *shell, const
     uint32_t restless = plan->restless;
     TRY(broad_search(plan, shell, NULL));
     plan->restless = restless;
-    // how far pairs have moved since is not known
+    // how far pairs have moved since is unknown
     for (uint32_t k = 0; k < plan->listed_count; k++) plan->pairs[k].distance = 0;
     return SINGE_OK;
 }

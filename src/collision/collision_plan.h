@@ -11,8 +11,8 @@
 enum { COLLISION_STEPS = 10 };
 /// Buckets, pairs or cells in one work item of a thread.
 enum { COLLISION_BUCKETS = 128, COLLISION_BLOCK = 256, COLLISION_OUTSIDE = 16 };
-/// Room for a cell, of each list. Lists of pairs and repulsions grow where that is too little, by COLLISION_GROWTH, or
-/// to COLLISION_LIST_MIN items where that is more.
+/// Items per cell in each list. Lists of pairs and repulsions grow if that is too little, by COLLISION_GROWTH, or to
+/// COLLISION_LIST_MIN items if that is more.
 enum {
     COLLISION_ENTRIES = 12,
     COLLISION_PAIRS = 40,
@@ -26,8 +26,8 @@ _Static_assert(COLLISION_OUTSIDE <= COLLISION_BLOCK, "a block of cells outside i
 /// Kinds of features that collide.
 enum { COLLISION_NODE_OF_A, COLLISION_NODE_OF_B, COLLISION_EDGES };
 
-/// A cell's box at the search, in a frame that goes with the mean of its corners' displacements over plan->steps, and
-/// that displacement, with the largest deviation of a corner's as fourth. The box holds what the deviations make of it.
+/// A cell's box at the search, in a frame that moves with the mean of its corners' displacements over plan->steps, and
+/// that displacement, with the largest deviation of a corner's as fourth. The box includes the deviations.
 typedef struct CollisionBox {
     Float4 low, high, displacement;
     Float4 swept_low, swept_high; ///< the region that the widened box passes over
@@ -56,7 +56,7 @@ typedef struct CollisionPair {
     uint32_t bridge;
     float distance;   ///< m, at least that at plan->start
     float hit;        ///< of the step's displacement, the share after which they meet; 2: never
-    uint8_t first[2]; ///< what meets first: node of the one and triangle of the other, or edges
+    uint8_t first[2]; ///< the first features to collide: node of the one and triangle of the other, or edges
     uint8_t kind;     ///< COLLISION_NODE_OF_A, COLLISION_NODE_OF_B or COLLISION_EDGES
 } CollisionPair;
 
@@ -79,7 +79,7 @@ typedef struct Repulsion {
     uint32_t count;
 } Repulsion;
 
-/// The region that a cell passes over in a step, a little widened.
+/// The slightly widened region that a cell passes over in a step.
 typedef struct OutsideBox {
     Float4 low, high;
 } OutsideBox;
@@ -94,18 +94,18 @@ typedef struct OutsideEntry {
 /// opened in m/s, with the largest deviation of one as fourth; and its normals, as of feature_normals.
 enum { COLLISION_DISPLACEMENT, COLLISION_VELOCITY, COLLISION_NORMAL, COLLISION_MOTIONS };
 
-/// Items of the lists, to begin with and at most.
+/// Initial and max items of the lists.
 typedef struct CollisionSizes {
     uint32_t entries;         ///< at least 8 a cell
     uint32_t pairs, pair_max; ///< at least 1 a cell
     uint32_t repulsions, repulsion_max;
-    uint32_t pair_budget; ///< that a search is content with: where there are more it looks less far
+    uint32_t pair_budget; ///< enough for a search: if there are more it searches less far
 } CollisionSizes;
 
-/// What is enough for all but crowds.
+/// Sizes for all but crowds.
 CollisionSizes collision_sizes(const Shell *shell);
 
-/// collision_plan_create with other sizes than those.
+/// collision_plan_create with other sizes than collision_sizes.
 SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
                                         const CollisionSizes *sizes, CollisionPlan **plan);
 
@@ -118,14 +118,14 @@ struct CollisionPlan {
     float cell_size; ///< m, of the smallest
     float thickness; ///< m, of contact; at most 2/5 of a sheet's typical cell
     float *thin;     ///< [cells] m, the same; at most 2/5 of this cell's shortest side
-    float slack_max; ///< m, that cells may move otherwise than foreseen before the search is repeated
-    float gap;       ///< m, that displacements keep free in front of what they would meet
-    float noise;     ///< m, that rounding moves positions by
+    float slack_max; ///< m, max deviation of cells from their trajectories before the search is repeated
+    float gap;       ///< m, that displacements keep free before a collision
+    float noise;     ///< m, rounding error of positions
 
     // the last search: part of a snapshot
     uint32_t searched;    ///< 0: never
     uint32_t restless;    ///< many cells have left their boxes since: search as the next step opens
-    uint64_t step;        ///< it was for the displacement from this step's start
+    uint64_t step;        ///< it was for displacements from this step's start
     float (*position)[4]; ///< [vertices] m
     float (*speed)[4];    ///< [vertices] m/s
     uint8_t *alive;       ///< [cells]
@@ -136,7 +136,7 @@ struct CollisionPlan {
     uint8_t *intersecting; ///< [cells] 1: in one of these pairs
 
     // what was found
-    uint32_t steps;     ///< that the search is for
+    uint32_t steps;     ///< for which the search is valid
     float slack, reach; ///< m; reach is thickness + slack
     float edge;         ///< m, of the grid's cubes
     uint32_t entry_count, bucket_count, repulsion_count;
@@ -157,20 +157,20 @@ struct CollisionPlan {
 
     // the step
     float (*start)[4]; ///< [vertices] m
-    float (*end)[4];   ///< [vertices] m, where CCD has left them, if it has been here in this step:
+    float (*end)[4];   ///< [vertices] m, where CCD has left them, if it has run in this step:
     bool closed;
-    float (*want)[4];                    ///< [vertices] m, where the step has brought them
-    float (*goal)[4];                    ///< [vertices] m, of those in zones: where they were going
+    float (*want)[4];                    ///< [vertices] m, where the step has moved them
+    float (*goal)[4];                    ///< [vertices] m, of those in zones: their position without the zone
     Float4 (*motion)[COLLISION_MOTIONS]; ///< [cells]
-    uint32_t *zone;                      ///< [vertices] of those that meet: parent in a disjoint set, or SHELL_NONE
-    float *share;                        ///< [vertices] at a root: of their displacements within the zone, what they go
+    uint32_t *zone;                      ///< [vertices] of those that collide: parent in a disjoint set, or SHELL_NONE
+    float *share;                        ///< [vertices] at a root: free share of displacements within the zone
     Float4 *drift;                       ///< [vertices] at a root: mean displacement of the zone; fourth: its mass
     uint32_t *stopped;                   ///< [stopped_count] vertices in zones
     uint32_t stopped_count;
-    uint8_t *changed;       ///< [cells] that the last round has moved
+    uint8_t *changed;       ///< [cells] 1: moved by the last round
     uint32_t *changed_list; ///< [changed_count] of them
     uint32_t changed_count;
-    uint32_t *active; ///< [hit_count] pairs that meet
+    uint32_t *active; ///< [hit_count] pairs that collide
     uint32_t hit_count;
     uint32_t *around_first; ///< [cells + 2] a cell's pairs are around[around_first[c]] to around[around_first[c + 1]]
     uint32_t *around;       ///< [2 pair_capacity]
@@ -188,29 +188,29 @@ struct CollisionPlan {
 /// then there are none.
 SingeResult broad_search(CollisionPlan *plan, const Shell *shell, Pool *pool);
 
-/// The pairs of cells whose swept boxes meet, in broad_grid.c: sorts them into the grid, and writes plan->found_pairs,
-/// of those that `reach` allows. Returns how many there are, with or without room.
+/// Pairs of cells whose swept boxes meet (broad_grid.c): sorts them into the grid, and writes those that `reach` allows
+/// to plan->found_pairs. Returns how many there are, with or without room.
 uint64_t broad_grid_pairs(CollisionPlan *plan, const Shell *shell, Pool *pool);
 
 /// Keeps the first `room` of the `count` pairs that broad_grid_pairs has found, as plan->pairs.
 void broad_grid_keep(CollisionPlan *plan, const Shell *shell, Pool *pool, uint64_t count, uint32_t room);
 
-/// Blocks in which pairs are looked at.
+/// Number of blocks in which pairs are checked.
 static inline uint32_t collision_look_blocks(uint32_t pairs) { return (pairs + COLLISION_BLOCK - 1) / COLLISION_BLOCK; }
 
-/// Makes room for `wanted` pairs or repulsions, or as many as there may be at most; plan->found_pairs and plan->found
-/// lose what they hold. False when out of memory.
+/// Makes room for `wanted` pairs or repulsions, or the max if that is less; plan->found_pairs and plan->found lose
+/// their content. False when out of memory.
 bool collision_grow_pairs(CollisionPlan *plan, uint64_t wanted);
 bool collision_grow_repulsions(CollisionPlan *plan, uint64_t wanted);
 
-/// Whether the search has listed two cells, a before b; *distance is at most how far apart they are at plan->position.
+/// Whether the search has listed two cells, a before b; *distance is a lower bound of their distance at plan->position.
 bool collision_is_listed(const CollisionPlan *plan, uint32_t a, uint32_t b, float *distance);
 
 /// See CollisionPair.bridge.
 uint32_t collision_bridge(const CollisionPlan *plan, const Shell *shell, uint32_t a, uint32_t b);
 
-/// Lists, after the search's own pairs, those that cells which have left their boxes may have met on their displacement
-/// from plan->start to `x`. SINGE_ERROR_MEMORY.
+/// Lists, after the search's own pairs, those that cells outside their boxes may have met on their displacement from
+/// plan->start to `x`. SINGE_ERROR_MEMORY.
 SingeResult broad_search_outside(CollisionPlan *plan, const Shell *shell, Pool *pool, uint32_t outside_count,
                                  const float (*x)[4]);
 
@@ -218,7 +218,7 @@ SingeResult broad_search_outside(CollisionPlan *plan, const Shell *shell, Pool *
 /// SINGE_ERROR_MEMORY: there are none.
 SingeResult initial_find(CollisionPlan *plan, const Shell *shell, bool first);
 
-/// Makes room for so many such pairs; what was there is lost. False when out of memory.
+/// Makes room for `count` such pairs; the previous content is lost. False when out of memory.
 bool initial_reserve(CollisionPlan *plan, uint32_t count);
 
 /// Sets plan->intersecting, and counts the cells.
@@ -232,17 +232,17 @@ static inline Float4 collision_mean(const Float4 vector[4]) {
     return float4_with(mean, sqrtf(float4_largest(four_dot(off, off))));
 }
 
-/// Ways of a cell's corners since plan->start, as their mean.
+/// Mean displacement of a cell's corners since plan->start; fourth: the largest deviation.
 static inline Float4 collision_displacement(const CollisionPlan *plan, const uint32_t corner[4], const float (*x)[4]) {
-    Float4 displacement[4]; // fourths: of positions inverse masses, which count for nothing
+    Float4 displacement[4]; // fourth components: of positions inverse masses, which are ignored
     for (int i = 0; i < 4; i++) displacement[i] = float4_load(x[corner[i]]) - float4_load(plan->start[corner[i]]);
     return collision_mean(displacement);
 }
 
-/// Four pairs of the list, and what two cells of each differ in.
+/// Four pairs of the list, and the motions of their cells.
 typedef struct CollisionFourPairs {
     const Float4 (*motion)[COLLISION_MOTIONS];
-    uint32_t a[4], b[4], bridge[4]; ///< where there is none, bridge is a
+    uint32_t a[4], b[4], bridge[4]; ///< bridge is a if there is none
     unsigned bridged;               ///< bits
     Float4 distance;                ///< m
 } CollisionFourPairs;
@@ -261,7 +261,7 @@ static inline CollisionFourPairs collision_four_pairs(const CollisionPlan *plan,
     return four;
 }
 
-/// Difference of a motion of cells a and b; *deviations: the sums of the fourths.
+/// Difference of a motion of cells a and b; *deviations: the sums of the fourth components.
 static inline FourVectors collision_four_off(const CollisionFourPairs *four, const uint32_t a[4], const uint32_t b[4],
                                              int motion, Float4 *deviations) {
     const Float4 sign = {0, 0, 0, -0.0f};
@@ -306,7 +306,7 @@ static inline void collision_same(const uint32_t first[4], const uint32_t second
     for (int i = 0; i < 4; i++) same[i] = float4_bits(other == (int32_t)first[i]);
 }
 
-/// Whether a cell counts node or edge i as its own: what several share is looked at once.
+/// Whether a cell owns node or edge i: features of several cells are checked once.
 static inline bool collision_owns_node(const CollisionPlan *plan, uint32_t cell, int i) {
     return i == 4 || (plan->owned[cell] >> i & 1);
 }
@@ -314,7 +314,8 @@ static inline bool collision_owns_edge(const CollisionPlan *plan, uint32_t cell,
     return i >= 4 || (plan->owned[cell] >> (4 + i) & 1);
 }
 
-/// Where a pair of cells, a before b, is among those that have intersected since the start; SHELL_NONE: it is not.
+/// The index of a pair of cells, a before b, among those that have intersected since the start; SHELL_NONE if it is
+/// not.
 static inline uint32_t initial_index(const CollisionPlan *plan, uint32_t a, uint32_t b) {
     for (uint32_t k = plan->initial_first[a]; k < plan->initial_first[a + 1]; k++)
         if (plan->initial_other[k] == b) return k;

@@ -1,4 +1,4 @@
-// Invariants of the plan of contact, for assertions and for tests.
+// Invariants of the contact plan, for assertions and tests.
 #include "collision/collision_plan.h"
 
 static const char *validate_pairs(const CollisionPlan *plan) {

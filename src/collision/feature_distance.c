@@ -2,7 +2,7 @@
 #include "collision/collision_plan.h"
 
 // In float, the nearest point of a triangle 200 times as long as it is high is off by a two-thousandth of its length:
-// then what passes through it seems to pass by. So weights are computed in double.
+// then a node that passes through it seems to pass by. So weights are computed in double.
 
 static double feature_dot(Float4 a, Float4 b) {
     return (double)a[0] * (double)b[0] + (double)a[1] * (double)b[1] + (double)a[2] * (double)b[2];
@@ -16,7 +16,7 @@ static void set_weights(float w[3], double b, double c) { w[0] = (float)(1 - b -
 static void triangle_weights(Float4 p, Float4 a, Float4 b, Float4 c, float w[3]) {
     Float4 ab = b - a, ac = c - a, ap = p - a;
     double d1 = feature_dot(ab, ap), d2 = feature_dot(ac, ap), both = feature_dot(ab, ac);
-    // not from p - b and p - c, whose rounding would fit ill
+    // not from p - b and p - c, whose rounding would not match
     double d3 = d1 - feature_dot(ab, ab), d4 = d2 - both, d5 = d1 - both, d6 = d2 - feature_dot(ac, ac);
     double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
     if (d1 <= 0 && d2 <= 0) set_weights(w, 0, 0);
@@ -31,25 +31,26 @@ static void triangle_weights(Float4 p, Float4 a, Float4 b, Float4 c, float w[3])
 
 Float4 feature_from_triangle(Float4 p, Float4 a, Float4 b, Float4 c, float weight[3]) {
     triangle_weights(p, a, b, c, weight);
-    // a triangle without area has no weights in its centroid: then its first corner stands for it
+    // a triangle without area has no weights in its interior: then its first corner is used
     if (!(weight[0] + weight[1] + weight[2] > 0.5f)) weight[0] = 1, weight[1] = weight[2] = 0;
     return p - mix3(a, b, c, weight);
 }
 
 // ---- cells that are connected
 //
-// Two cells that share a side or a corner do not cross where
+// Two cells that share a side or a corner do not cross if
 //
-//   a plane through what they share has the rest of one on one side and the rest of the other on the other
-//   (feature_is_separated), or, which costs less and holds nearly everywhere,
+//   a plane through the shared corners has the other corners of one cell on one side and those of the other on the
+//   other
+//   (feature_is_separated), or, which is cheaper and true nearly everywhere,
 //
 //   all their triangles' normals lie within a cone, and all corners have angles of at most 115 degrees (Volino and
-//   Magnenat-Thalmann, Efficient self-collision detection, 1994, with the condition on the contour made one on angles).
+//   Magnenat-Thalmann, Efficient self-collision detection, 1994, with the contour condition replaced by one on angles).
 //
-// For seen along the first one's mean normal n, all triangles of both are turned the same way, so that each cell is
-// a star about its centroid, and its corners' angles, which are at most 115 degrees seen along its own normal, are less
-// than 2 atan(tan 57.5 / cos c) plus 2 c tan c, c half the cone. At 35 degrees that is below 135: both are convex, on
-// either side of the line through a shared side. At 20 degrees it is below 120: three cells around a corner, two of
+// Proof: seen along the first cell's mean normal n, all triangles of both have the same orientation, so that each cell
+// is a star about its centroid, and its corners' angles, which are at most 115 degrees seen along its own normal, are
+// less than 2 atan(tan 57.5 / cos c) plus 2 c tan c, c half the cone. At 35 degrees that is below 135: both are convex,
+// on either side of the line through a shared side. At 20 degrees it is below 120: three cells around a corner, two of
 // which share a side each with the third, take less than a full turn, and convex ones stay within their angles.
 
 /// Whether a cell's corners have angles of 30 to 115 degrees, seen along the unit `normal`.
@@ -140,7 +141,7 @@ static float sweep_distance(const FeatureSweep *sweep, float time) {
     return sqrtf(float4_dot(separation, separation));
 }
 
-/// The fastest that the two can come nearer in: their longest displacements, without what is common to all.
+/// Max speed at which the two approach each other: their longest displacements, without the mean of all.
 static float sweep_approach(const FeatureSweep *sweep) {
     Float4 mean =
         0.25f * ((sweep->displacement[0] + sweep->displacement[1]) + (sweep->displacement[2] + sweep->displacement[3]));
@@ -151,8 +152,8 @@ static float sweep_approach(const FeatureSweep *sweep) {
     return sweep->edges ? fmaxf(length[0], length[1]) + late : length[0] + fmaxf(length[1], late);
 }
 
-/// How long from `time` on two planes across the shortest displacement between the two keep them `keep` apart, which
-/// move along with the nearest of their points.
+/// How long from `time` on two planes across the shortest segment between the two, each moving with the nearest of its
+/// points, keep them `keep` apart.
 static float sweep_planes(const FeatureSweep *sweep, float time, float keep) {
     Float4 x[4], normal = sweep_separation(sweep, time, x);
     int own = sweep->edges ? 2 : 1;
@@ -172,14 +173,14 @@ static float sweep_planes(const FeatureSweep *sweep, float time, float keep) {
 float feature_sweep(const FeatureSweep *sweep, float gap, float noise) {
     enum { ROUNDS = 64, SIMPLE_ROUNDS = 12 };
     float approach = sweep_approach(sweep), distance = sweep_distance(sweep, 0), time = 0;
-    bool close = distance <= 2 * gap; // then it may only part
+    bool close = distance <= 2 * gap; // then the distance may only grow
     if (close && sweep_distance(sweep, 1) < distance - noise) return 0;
-    // impacts part what meets by more than `stop`, however far it has come
+    // impacts separate features by more than `stop`, however far they have moved
     float keep = close ? 0.5f * distance : gap, stop = keep + 0.1f * fminf(distance - keep, 10 * gap);
     if (approach < distance - keep) return 2;
     for (int round = 0; round < ROUNDS; round++) {
         float next = time + 0.9f * (distance - keep) / approach;
-        // what slides by, fast for its distance, makes small steps only
+        // features that slide past each other, fast for their distance, make small steps only
         if (round >= SIMPLE_ROUNDS) next = fmaxf(next, time + 0.9f * sweep_planes(sweep, time, keep));
         if (next > 1) return 2;
         distance = sweep_distance(sweep, next);

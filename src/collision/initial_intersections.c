@@ -1,6 +1,6 @@
-// Cells that intersect or coincide at the start have no side on which to keep each other. Such a pair is left alone
-// until it has separated; then, and with all other cells, each of the two is in contact as usual. So a pair that never
-// crossed is guarded, whatever else its cells cross.
+// Cells that intersect or coincide at the start have no side on which to keep each other. Such a pair is ignored until
+// it has separated; then it is in contact as usual, and each of its cells is always in contact with all other cells. So
+// a pair that never crossed is protected, whatever else its cells cross.
 //
 // The pairs (a, b), a <= b, are stored by a: those of cell a are initial_other[initial_first[a]] up to
 // initial_other[initial_first[a + 1]].
@@ -13,7 +13,7 @@
 /// Marks an entry of initial_other, which is a cell's number: there are fewer than 2^31.
 #define KEPT (1u << 31)
 
-/// Whether two cells that are not connected are as near as rounding can tell.
+/// Whether two cells that are not connected coincide within rounding.
 static bool cells_coincide(const CollisionPlan *plan, const Shell *shell, const CollisionPair *pair) {
     if (pair->bridge != SHELL_NONE) return false;
     const float(*x)[4] = (const float(*)[4])plan->position;
@@ -59,7 +59,7 @@ bool initial_reserve(CollisionPlan *plan, uint32_t count) {
     return true;
 }
 
-/// The first search: lists all pairs that intersect. plan->active is free until CCD and marks them.
+/// The first search: lists all pairs that intersect. plan->active is free until CCD, and marks them.
 static SingeResult list_all(CollisionPlan *plan, const Shell *shell) {
     uint32_t *first = plan->initial_first, count = 0;
 
@@ -82,12 +82,12 @@ static SingeResult list_all(CollisionPlan *plan, const Shell *shell) {
     return SINGE_OK;
 }
 
-/// A later search: keeps those of the pairs that still intersect, in their order. What the search has not listed has
+/// A later search: keeps the pairs that still intersect, in their order. Pairs that the search has not listed have
 /// separated.
 static void keep_crossing(CollisionPlan *plan, const Shell *shell) {
     uint32_t *first = plan->initial_first, kept = 0, begin = 0;
 
-    // mark what has not separated
+    // mark the pairs that have not separated
     for (uint32_t k = 0; k < plan->pair_count; k++) {
         const CollisionPair *pair = &plan->pairs[k];
         const uint32_t at = initial_index(plan, pair->a, pair->b);

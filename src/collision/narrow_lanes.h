@@ -70,7 +70,7 @@ typedef struct NarrowBoxes {
     FourBoxes triangles, sides, spokes;
 } NarrowBoxes;
 
-/// Of a cell whose corners and centroid are somewhere from `low` to `high`.
+/// Boxes of a cell whose corners and centroid are somewhere from `low` to `high`.
 static inline void narrow_boxes(FourVectors low, FourVectors high, Float4 centroid_low, Float4 centroid_high,
                                 NarrowBoxes *out) {
     FourVectors min = four_all(centroid_low), max = four_all(centroid_high);

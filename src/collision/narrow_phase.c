@@ -8,7 +8,8 @@
 
 static inline Float4 narrow_clamp01(Float4 a) { return float4_min(float4_max(a, float4_all(0)), float4_all(1)); }
 
-/// Four pairs of points: from the second to the first, the square of its length, and where on the features they are.
+/// Four pairs of points: the vector from the second to the first, its squared length, and their positions on the
+/// features.
 typedef struct FourNear {
     FourVectors separation;
     Float4 square, u, v;
@@ -36,7 +37,7 @@ static FourNear from_triangles(FourVectors p, FourVectors a, FourVectors b, Four
     Float4Mask at_a = (d1 <= 0) & (d2 <= 0), at_b = (d3 >= 0) & (d4 <= d3), at_c = (d6 >= 0) & (d5 <= d6);
     u = float4_select(at_c, zero, u), v = float4_select(at_c, one, v);
     u = float4_select(at_b, one, u), v = float4_select(at_b, zero, v);
-    // a triangle without area has no weights in its centroid: then its first corner stands for it
+    // a triangle without area has no weights in its interior: then its first corner is used
     at_a |= ~((u > -0.5f) & (v > -0.5f) & (u + v < 2));
     out.u = float4_select(at_a, zero, u), out.v = float4_select(at_a, zero, v);
     out.separation = four_along(four_along(ap, -out.u, ab), -out.v, ac);
@@ -60,8 +61,8 @@ static FourNear from_segments(FourVectors a, FourVectors b, FourVectors c, FourV
     FourNear out = {.u = s, .v = t};
     out.separation = four_along(four_along(r, s, along), -t, others);
     out.square = four_dot(out.separation, out.separation);
-    // where an end is the nearest point, that node's triangles see it too; and edges side by side, less than 10 degrees
-    // apart, would make ridges of a flat sheet
+    // if an end is the nearest point, that node's triangles find it too; and nearly parallel edges, less than 10
+    // degrees apart, would make ridges of a flat sheet
     out.faces = (s > 0) & (s < one) & (t > 0) & (t < one) & (uv * uv < 0.97f * uu * vv);
     return out;
 }
@@ -109,8 +110,8 @@ float narrow_slabs_distance(const NarrowCell *a, const NarrowCell *b) {
 }
 
 // Rounding by eps moves a triangle's nearest point along its longest side l by about l eps (l^2 / 2 area)^2: four
-// products of lengths over the square of the area. Edges side by side are taken for parallel below 6e-4 rad, and are
-// off by half of that.
+// products of lengths over the square of the area. Edges are taken for parallel below 6e-4 rad, with an error of half
+// of that.
 float narrow_error_bound(const NarrowCell *cell) {
     const float eps = 6e-8f, parallel = 3e-4f;
     FourVectors arm = four_minus(cell->corner, four_all(cell->node[4]));
@@ -125,12 +126,12 @@ float narrow_error_bound(const NarrowCell *cell) {
 typedef struct Search {
     NearFeatures *near;
     int count;
-    float far;               ///< m, that is looked
+    float far;               ///< m, search distance
     Float4 square;           ///< smallest so far of each of the four
-    Float4 listed, adjacent; ///< squares of what a FeatureRange tells; adjacent is -1 for edges
+    Float4 listed, adjacent; ///< squares of those of a FeatureRange; adjacent is -1 for edges
 } Search;
 
-/// Notes those of four that are near enough; `meet` are those that count.
+/// Lists those of four that are near enough; only those in `meet` count.
 static void narrow_note(Search *search, const FourNear *four, unsigned meet, int kind, int first, int second,
                         float sign) {
     const Float4Mask bits = {1, 2, 4, 8};

@@ -4,12 +4,12 @@
 
 #include "collision/collision_plan.h"
 
-/// A cell's nodes about an origin, and all that follows from them.
+/// A cell's nodes about an origin, and values that follow from them.
 typedef struct NarrowCell {
-    Float4 node[5];     ///< fourth numbers are 0
+    Float4 node[5];     ///< fourth components are 0
     FourVectors corner; ///< 0 to 3
     FourVectors turned; ///< 1, 2, 3, 0
-    uint32_t owned;     ///< bit i: node i is this cell's, the centroid too; bit 8 + i: edge i
+    uint32_t owned;     ///< bit i: the cell owns node i, the centroid included; bit 8 + i: edge i
     NarrowBoxes boxes;
 } NarrowCell;
 
@@ -30,23 +30,23 @@ void narrow_cell_set(const CollisionPlan *plan, const Shell *shell, uint32_t cel
 /// Lower bound of the distance of two cells, by the boxes around them.
 float narrow_boxes_distance(const NarrowCell *a, const NarrowCell *b);
 
-/// The same by the slabs that they lie in; negative where slabs give no bound.
+/// Lower bound by the slabs that they lie in; negative if slabs give no bound.
 float narrow_slabs_distance(const NarrowCell *a, const NarrowCell *b);
 
-/// m by which narrow_features may tell more than there is between a feature of the cell and another: its numbers are
-/// float. Next to nothing, but for slivers.
+/// m by which narrow_features may overestimate a distance of a feature of the cell, as it computes in float. Negligible
+/// except for slivers.
 float narrow_error_bound(const NarrowCell *cell);
 
 /// Search distances of features.
 typedef struct FeatureRange {
-    float measured; ///< m, to tell the smallest distance; see narrow_error_bound
-    float listed;   ///< m, at most as far: of a node over a triangle, or edges that cross each other
-    float adjacent; ///< m, at most as far: of a node beside a triangle
-    bool edges;     ///< they count
+    float measured; ///< m, for the smallest distance; see narrow_error_bound
+    float listed;   ///< m, max distance of a node over a triangle, or of edges that cross each other
+    float adjacent; ///< m, max distance of a node beside a triangle
+    bool edges;     ///< edges count
 } FeatureRange;
 
 /// Lists nodes and triangles, and edges, that share no node and are near; each is counted by the cell that owns it.
-/// *nearest is the smallest distance of all, or far->measured. Returns how many are listed, NARROW_MAX at most.
+/// *nearest is the smallest distance of all, or far->measured. Returns how many are listed, at most NARROW_MAX.
 int narrow_features(const Shell *shell, const CollisionPair *pair, NarrowCell *a, NarrowCell *b,
                     const FeatureRange *far, NearFeatures *near, float *nearest);
 

@@ -1,4 +1,4 @@
-// Cells that have left the boxes that the search foresaw: what they may have met in this step.
+// Cells that have left their boxes of the search: pairs that they may have met in this step.
 #include "common/check.h"
 #include "collision/broad_grid.h"
 
@@ -49,7 +49,7 @@ static void against_box(const OutsideSearch *job, uint32_t a, const OutsideBox *
         add_pair(job, a, b, writer);
 }
 
-/// Cells in their boxes that a strayed one may have met.
+/// Cells in their boxes that one out of bounds may have met.
 static void against_boxes(const OutsideSearch *job, uint32_t a, const OutsideBox *box, BlockWriter *writer) {
     const CollisionPlan *plan = job->plan;
     float inverse = 1 / plan->edge;

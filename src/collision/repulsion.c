@@ -1,14 +1,14 @@
-// Contact of sheets with themselves and each other, as positions.
+// Contact of sheets with themselves and each other, by positions.
 //
-// A touch is a point of one cell, P = sum w_i x_i over its corners, and one of another, Q, both taken where the two
-// features are nearest as the step opens, and the normal n from Q to P then. In every substep
+// A contact is a point of one cell, P = sum w_i x_i over its corners, and one of another, Q, both where the two
+// features are nearest at the start of the step, and the normal n from Q to P then. In every substep
 //
 //   C = n . (P - Q) - g < 0   is projected:   x_i += m_i^-1 w_i n lambda,   lambda = -C / sum w_i^2 m_i^-1
 //
-// one after another. g is the thickness, or, of what is nearer already, so much more than it has that the two part by
-// COLLISION_PART m/s. Slip across n since the substep began is taken back by at most mu |C| (Coulomb), as contact with
-// colliders does. A virtual centre stands for its four corners by quarters. What lies
-// nearer at rest than twice the thickness (the edges of a tear) is kept apart by four times CCD's gap only.
+// one after another. g is the thickness; for points that are nearer at the start, it is their distance plus as much as
+// separates them at COLLISION_PART m/s. Slip across n since the substep began is taken back by at most mu |C|
+// (Coulomb), as in contact with colliders. A virtual centre is replaced by its four corners, a quarter each. Points
+// nearer at rest than twice the thickness (the edges of a tear) are kept apart by four times CCD's gap only.
 #include "common/check.h"
 #include "common/clock.h"
 #include "collision/collision_plan.h"
@@ -42,7 +42,7 @@ void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, 
     for (uint32_t k = 0; k < plan->repulsion_count; k++) {
         const Repulsion *repulsion = &plan->repulsions[k];
 
-        // how far the two points are too near
+        // how much too near the two points are
         Float4 separation = {0};
         for (uint32_t i = 0; i < repulsion->count; i++)
             separation += repulsion->weight[i] * float4_load(x[repulsion->node[i]]);
