@@ -1,22 +1,22 @@
-// The flow carries what the gas has. Of a density q
+// Advection: the flow carries the fields of the gas. For a density q
 //
 //   dq/dt + div(u q) = 0
 //
-// axis after axis: along each, with c = u dt/cell of the lower and upper face and q0 of before the first axis,
+// axis after axis: along each, with c = u dt/cell of the lower and upper face and q0 the values before the first axis,
 //
 //   q <- q - (F_upper - F_lower) + q0 (c_upper - c_lower)
 //   F = c (q_up + (1 - |c|)/2 phi(a, b)) - open D dt/cell^2 b
 //
-// with q_up of the cell that the flow comes from, b the difference across the face, a that on the flow's side before it
-// and phi the least of |a + b|/2, 2 |a| and 2 |b|, signed, where they agree in sign, else 0 (van Leer 1977): of second
-// order where q is smooth, and no new extremes. The last term keeps what is even even on the way (Weymouth & Yue 2010);
-// after the last axis, q0 sum(c_upper - c_lower) is taken off again: so what leaves a cell enters the next to the last
-// bit. Velocities go as momentum, (1 - L) u.
+// with q_up of the upstream cell, b the difference across the face, a that across the next face upstream and phi the
+// least of |a + b|/2, 2 |a| and 2 |b|, signed, where they agree in sign, else 0 (van Leer 1977): of second order where
+// q is smooth, and without new extremes. The last term keeps uniform fields uniform in between (Weymouth & Yue 2010);
+// after the last axis, q0 sum(c_upper - c_lower) is subtracted again: so what leaves a cell enters the next to the last
+// bit. Velocities are carried as momentum, (1 - L) u.
 //
-// D mixes: hot air does by itself, and eddies that the cells do not show do by the shear of those that they show
+// D is the mixing of hot air by itself, and of eddies smaller than the cells by the shear of the resolved flow
 // (Smagorinsky 1963): D = D_0 + (C cell)^2 |grad u|.
 //
-// The displacement of a step is divided so that along no axis more than a cell is passed at once.
+// The displacement of a step is divided so that along no axis it passes more than a cell at once.
 #include "common/check.h"
 #include "gas/sweep.h"
 
@@ -25,10 +25,10 @@
 
 enum { ADVECT_PARTS_MAX = 8 };
 static const float ADVECT_COURANT = 0.9f;
-static const float ADVECT_CALM = 0.2f, ADVECT_LIGHT = 0.02f; ///< m/s and L from which momentum is carried
+static const float ADVECT_CALM = 0.2f, ADVECT_LIGHT = 0.02f; ///< m/s and L above which momentum is carried
 static const float ADVECT_MIXING = 2e-4f;                    ///< m2/s, of hot air: 1.9e-4 at 1100 K
 static const float ADVECT_EDDY = 0.2f;                       ///< C
-static const float ADVECT_MIX_MAX = 0.1f;                    ///< twice as much must be stable along one axis
+static const float ADVECT_MIX_MAX = 0.1f;                    ///< twice this must be stable along one axis
 
 static void advect_tasks(void *context, int begin, int end) {
     const Sweep *sweep = context;
@@ -41,7 +41,7 @@ static void advect_tasks(void *context, int begin, int end) {
         }
 }
 
-/// Copies the box and the cells that are read about it.
+/// Copies the box and the cells around it that are read.
 static void advect_frame(const GasGrid *grid, const GasBox *box, const float *from, float *to) {
     int count = box->high[0] - box->low[0] + 2 * GAS_GHOSTS;
     for (int k = box->low[2] - GAS_GHOSTS; k < box->high[2] + GAS_GHOSTS; k++)
@@ -51,7 +51,7 @@ static void advect_frame(const GasGrid *grid, const GasBox *box, const float *fr
         }
 }
 
-/// Carries one field over the displacement of a step. Outside of the box it stays as it is.
+/// Carries one field over the displacement of a step. Outside the box it does not change.
 static void advect_field(GasPass *pass, int f, const GasBox *box, int parts) {
     GasPlan *plan = pass->plan;
     const float *start = f < GAS_VELOCITY ? pass->from->field[f] : plan->spare[2];
@@ -141,8 +141,8 @@ static void advect_look(void *context, int begin, int end) {
     }
 }
 
-/// The boxes outside of which nothing is carried: for heat and fuel, for smoke, and for momentum, which still air has
-/// little of. In a part of the displacement nothing gets farther than a cell.
+/// The boxes outside which nothing is carried: for heat and fuel, for smoke, and for momentum, of which still air has
+/// little. In a part of the displacement nothing moves farther than a cell.
 static void advect_boxes(GasPass *pass, int parts) {
     GasPlan *plan = pass->plan;
     for (int b = 0; b < GAS_BOXES; b++) {
@@ -157,7 +157,7 @@ static void advect_boxes(GasPass *pass, int parts) {
     }
 }
 
-/// Half the share of a difference that a face evens out: D dt/cell^2/2.
+/// Half the share of a difference that mixes through a face: D dt/cell^2/2.
 static void advect_mixing(void *context, int begin, int end) {
     const GasPass *pass = context;
     SINGE_ASSERT(begin >= 0 && begin <= end);
@@ -188,7 +188,7 @@ static void advect_mixing(void *context, int begin, int end) {
         }
 }
 
-/// (1 - L) u of the field of the pass, of which the velocity is carried.
+/// Converts a velocity field of the pass to the momentum (1 - L) u.
 static void advect_to_momentum(void *context, int begin, int end) {
     const GasPass *pass = context;
     SINGE_ASSERT(begin >= 0 && begin <= end);
@@ -223,7 +223,7 @@ void gas_advect(GasPass *pass) {
     for (int k = 0; k < plan->grid.n[2]; k++) fastest = plan->partial[k] > fastest ? plan->partial[k] : fastest;
     float displacement = (float)fastest * pass->dt / (plan->cell * ADVECT_COURANT);
     int parts = displacement > 1 ? displacement < ADVECT_PARTS_MAX ? (int)ceilf(displacement) : ADVECT_PARTS_MAX : 1;
-    // a wind so strong that it blows everything away in a few steps may do so more slowly
+    // slows a wind so strong that it blows everything away in a few steps
     float slower = displacement > ADVECT_PARTS_MAX ? ADVECT_PARTS_MAX / displacement : 1;
     pass->courant = slower * pass->dt / (plan->cell * (float)parts);
     advect_boxes(pass, parts);

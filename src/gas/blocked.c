@@ -1,5 +1,5 @@
-// What blocks the gas: cells whose centroid is inside a collider have no gas, and a sheet's cell of area A and
-// normal n covers A |n_d| of the faces across axis d nearest to it, shared among the four about it.
+// Obstacles of the gas: cells whose centre is inside a collider have no gas, and a sheet's cell of area A and normal n
+// covers A |n_d| of the nearest faces across axis d, shared among the four about it.
 #include "common/check.h"
 #include "gas/gas_plan.h"
 
@@ -31,13 +31,12 @@ static void blocked_planes(void *context, int begin, int end) {
         }
 }
 
-/// Adds to what is covered of the faces across axis d.
+/// Adds to the covered share of faces across axis d.
 static void blocked_cover(GasPlan *plan, int d, const float position[3], float share) {
     const GasGrid *grid = &plan->grid;
     int e = (d + 1) % 3, f = (d + 2) % 3, at[3];
     float part[3];
-    at[d] =
-        (int)floorf(position[d] + 1); // the face nearest: that of the cell whose lower half, or the one below's upper
+    at[d] = (int)floorf(position[d] + 1); // the nearest face: the lower one of the cell, or that of the cell above
     for (int q = 0; q < 3; q++)
         if (q != d) at[q] = (int)(position[q] + 1) - 1, part[q] = position[q] - (float)at[q];
     size_t c = gas_at(grid, at[0], at[1], at[2]);
@@ -61,7 +60,7 @@ static void blocked_by_sheets(const GasPass *pass) {
     }
 }
 
-/// From the share that is covered to the one that is open.
+/// Converts the covered share to the open one.
 static void blocked_open(void *context, int begin, int end) {
     const GasPass *pass = context;
     SINGE_ASSERT(begin >= 0 && begin <= end);

@@ -1,15 +1,15 @@
-// Fuel burns as air comes to it. Where the gas is as hot as a flame, all of its air is used up:
+// Fuel burns as air mixes with it. Where the gas is as hot as a flame, all of its air is used up:
 //
 //   dE/dt = -(E/tau) (1 - L/L_f)+,   dL/dt = -dE/dt/GAS_HEAT
 //
-// E fuel J/m3, tau the time in which air and fuel mix, L_f = 1 - Ta/T_f of the hottest flame. L never passes L_f. So
-// fuel that comes in hot gas burns further up, where it has met cooler air: flames stand above what feeds them. Smoke
-// grows by what burns, and thins in the time it takes to be spread finer than the grid.
+// E fuel J/m3, tau the time in which air and fuel mix, L_f = 1 - Ta/T_f of the hottest flame. L never exceeds L_f. So
+// fuel that enters hot gas burns further up, where it has met cooler air: flames stand above their fuel. Smoke grows
+// with the burnt fuel, and thins in the time in which it spreads finer than the grid.
 #include "common/check.h"
 #include "gas/gas_plan.h"
 
 static const float FLAME_TIME = 0.01f, SMOKE_TIME = 4;
-static const float FLAME_FUEL_HEAT = 13e6f; ///< J/kg that smoke is reckoned with: of the gas of paper and cotton
+static const float FLAME_FUEL_HEAT = 13e6f; ///< J/kg for the smoke: of the gas of paper and cotton
 static const float FLAME_FUEL_MIN = 1, FLAME_LIGHTNESS_MIN = 1e-4f, FLAME_SMOKE_MIN = 1e-7f;
 
 static void flame_planes(void *context, int begin, int end) {
@@ -40,7 +40,7 @@ static void flame_planes(void *context, int begin, int end) {
                 expansion[i] = burnt / GAS_HEAT;
                 flame[i] = burnt * shown;
                 smoke[i] = (smoke[i] + burnt * sooty) * thin;
-                // what is next to nothing is nothing: numbers near the smallest are slow
+                // flush small values to 0: denormal numbers are slow
                 fuel[i] = fuel[i] > FLAME_FUEL_MIN ? fuel[i] : 0;
                 L[i] = L[i] > FLAME_LIGHTNESS_MIN ? L[i] < GAS_LIGHTEST ? L[i] : GAS_LIGHTEST : 0;
                 smoke[i] = smoke[i] > FLAME_SMOKE_MIN ? smoke[i] : 0;

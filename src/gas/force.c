@@ -2,7 +2,7 @@
 //
 //   du/dt = -g L/(1 - L)
 //
-// and the unrest that the air of a room has and cells do not show: across the way up a noise, in proportion to the
+// and the unrest that the air of a room has and cells do not resolve: a horizontal noise, in proportion to the
 // buoyancy, that makes flames lick and plumes sway:
 //
 //   du/dt = FORCE_UNREST |g| L/(1 - L) (2 noise(x/size, t/time) - 1)
@@ -12,15 +12,15 @@
 #include "common/random.h"
 
 static const float FORCE_UNREST = 0.6f, FORCE_SIZE = 0.02f, FORCE_TIME = 0.08f; ///< -, m, s
-static const float FORCE_LIGHT = 0.02f;                                         ///< L from which there is any
+static const float FORCE_LIGHT = 0.02f;                                         ///< L above which there is any
 
-/// What a row has of it along axis d.
+/// Adds the unrest to a row along axis d.
 static void force_unrest(const GasPass *pass, int d, int j, int k, float strength) {
     const GasPlan *plan = pass->plan;
     size_t c = gas_at(&plan->grid, 0, j, k);
     const float *L = pass->to->field[GAS_LIGHTNESS] + c;
     float *u = pass->to->field[GAS_VELOCITY + d] + c, step = plan->cell / FORCE_SIZE;
-    // time runs along its own diagonal, as that of the wind's gusts
+    // time runs along its own diagonal, as for the wind's gusts
     float t = (float)(pass->state->time / (double)FORCE_TIME);
     for (int i = 0; i < plan->grid.n[0]; i++)
         if (L[i] > FORCE_LIGHT)

@@ -1,9 +1,9 @@
 // One step of the gas:
 //
-//   carry    lightness, fuel, smoke and momentum go with the flow (advect.c)
-//   feed     what left the sheets since the last step comes in as fuel (gas_sheets.c)
-//   burn     fuel burns as air comes to it; it heats and makes smoke (flame.c)
-//   meet     sheets are warmed, and cool the gas; their air is reported to the dynamics (gas_sheets.c)
+//   carry    lightness, fuel, smoke and momentum move with the flow (advect.c)
+//   feed     the gas that left the sheets since the last step enters as fuel (gas_sheets.c)
+//   burn     fuel burns as air mixes with it; it heats and makes smoke (flame.c)
+//   meet     sheets are heated, and cool the gas; their air is reported to the dynamics (gas_sheets.c)
 //   force    buoyancy, swirl (force.c)
 //   project  a pressure makes the flow's divergence that of the expansion, past sheets and colliders (project.c)
 #include "common/check.h"
@@ -13,16 +13,16 @@
 
 #include "world/wind.h"
 
-/// Below these all is at rest: a kelvin, and smoke that nobody sees.
+/// If all cells are below these, the gas is at rest: a kelvin, and invisible smoke.
 static const float REST_LIGHTNESS = 3e-3f, REST_FUEL = 100, REST_SMOKE = 2e-6f;
 
 void gas_planes(const GasPass *pass, const GasGrid *grid, SingeTaskFn *run) {
-    // about a thousand cells make a range worth its while
+    // a range for a thread has at least about a thousand cells
     int plane = grid->n[0] * grid->n[1], grain = 1 + 1024 / (plane + 1);
     pool_for(pass->pool, grid->n[2], grain, run, (void *)(uintptr_t)pass);
 }
 
-/// Notes per plane whether anything is left in it.
+/// Records for each plane whether any gas in it is not at rest.
 static void gas_look(void *context, int begin, int end) {
     const GasPass *pass = context;
     SINGE_ASSERT(begin >= 0 && begin <= end);
@@ -48,7 +48,7 @@ static bool gas_is_over(GasPass *pass) {
     return !left;
 }
 
-/// Puts a turn to rest; its fuel stays.
+/// Sets a turn to rest; its fuel stays.
 static void gas_calm(const GasPlan *plan, GasTurn *turn) {
     for (int f = 0; f < GAS_FIELDS; f++) memset(turn->field[f], 0, plan->grid.cells * sizeof(float));
     memset(turn->conductance, 0, plan->particles * sizeof(float));

@@ -1,4 +1,4 @@
-// The gas around what burns: hot air, flames and smoke on a grid.
+// The gas around a fire: hot air, flames and smoke on a grid.
 #ifndef GAS_GAS_H
 #define GAS_GAS_H
 
@@ -12,7 +12,7 @@
 /// Checks the numbers of a Def.
 SingeResult gas_check(const SingeGasDef *def, SingeError *error);
 
-/// What the stage needs and does not change while it runs.
+/// Constant input of the stage.
 typedef struct GasSettings {
     SingeGasDef def;
     float gravity[3];          ///< m/s2
@@ -25,11 +25,11 @@ typedef struct GasSettings {
 /// The grid, its two sets of fields and the scratch of a step.
 typedef struct GasPlan GasPlan;
 
-/// Lays the grid about the sheets as they are at rest. The arrays of *gas belong to the plan.
+/// Places the grid around the sheets at rest. The arrays of *gas belong to the plan.
 SingeResult gas_plan_create(Memory *memory, const Shell *shell, const GasSettings *settings, GasPlan **plan,
                             GasState *gas);
 void gas_plan_free(Memory *memory, GasPlan *plan);
-/// Passes the fields through a stream, as they do not follow from anything else.
+/// Passes the fields through a stream, as they cannot be derived from other data.
 void gas_plan_stream(GasPlan *plan, GasState *gas, Stream *stream);
 
 /// From the next step on. Gravity must keep the axis along which it is largest.
@@ -39,11 +39,11 @@ void gas_plan_set_pace(GasPlan *plan, float pace);
 /// To be called when a tear has split a vertex.
 void gas_plan_torn(GasPlan *plan, uint32_t vertex, uint32_t spare);
 
-/// Called at the end of a step, with what it has made of the sheets; cannot fail. The gas has a step of its own, of
-/// about 1/96 s: it moves at every n-th call, and not while there is nothing hot.
+/// Called at the end of a step, with the sheets after it; cannot fail. The gas has a step of its own, of about 1/96 s:
+/// it moves at every n-th call, and not while nothing is hot.
 void gas_step(GasPlan *plan, const StepContext *context, GasState *gas);
 
-/// What readers see of the last step.
+/// The last step for readers.
 SingeGas gas_view(const GasPlan *plan);
 
 #endif

@@ -31,7 +31,8 @@ static GasGrid plan_grid(const int n[3]) {
     return grid;
 }
 
-/// Cells of size `cell` over low to high with their margins, in eights so that coarser grids fit; returns how many.
+/// Fits cells of size `cell` to the box low to high with its margins, in multiples of eight so that coarser grids fit;
+/// returns how many.
 static double plan_fit(GasPlan *plan, const float low[3], const float high[3], float cell) {
     int up = 2;
     const float *g = plan->settings.gravity;
@@ -78,7 +79,7 @@ static void plan_lay(GasPlan *plan, const Shell *shell) {
     }
     for (int d = 0; d < 3; d++) diagonal += (high[d] - low[d]) * (high[d] - low[d]);
 
-    // a cell size that is asked for, or in proportion; larger until the grid fits the limits
+    // the requested cell size, or one in proportion; larger until the grid fits the limits
     float cell = sqrtf(diagonal) / PLAN_CELLS_ACROSS;
     if (wanted > 0) cell = wanted;
     else if (cell < PLAN_CELL_MIN) cell = PLAN_CELL_MIN;
@@ -154,7 +155,7 @@ static bool plan_allocate(Memory *memory, GasPlan *plan) {
            NEW(memory, plan->hot, (size_t)plan->grid.n[2]) && NEW(memory, plan->plane_busy, (size_t)plan->grid.n[2]);
 }
 
-/// Points a state's arrays at the turn that holds.
+/// Points a state's arrays at the current turn.
 static void plan_expose(const GasPlan *plan, GasState *gas) {
     const GasTurn *turn = &plan->turn[gas->turn];
     gas->conductance = turn->conductance, gas->temperature = turn->temperature, gas->fuel = turn->fuel;
@@ -215,7 +216,7 @@ void gas_plan_set_gravity(GasPlan *plan, const float gravity[3]) {
 void gas_plan_set_pace(GasPlan *plan, float pace) { plan->settings.pace = pace; }
 
 void gas_plan_torn(GasPlan *plan, uint32_t vertex, uint32_t spare) {
-    for (int t = 0; t < 2; t++) { // only one of them holds, and nobody asks the other before it is written
+    for (int t = 0; t < 2; t++) { // only one is current; the other is written before it is read
         GasTurn *turn = &plan->turn[t];
         turn->conductance[spare] = turn->conductance[vertex];
         turn->temperature[spare] = turn->temperature[vertex];

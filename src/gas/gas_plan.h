@@ -23,8 +23,8 @@ enum {
     GAS_BOXES = 3,
 };
 
-/// Fields of a cell. The first ones are advected. GAS_THROUGH + d is the speed through its lower face
-/// along axis d, of the whole face, where a sheet may cover part of it.
+/// Fields of a cell. The first ones are advected. GAS_THROUGH + d is the speed through its lower face along axis d,
+/// averaged over the whole face, of which a sheet may cover a part.
 typedef enum GasField {
     GAS_LIGHTNESS, ///< L
     GAS_FUEL,      ///< J/m3 of unburnt gas
@@ -33,7 +33,7 @@ typedef enum GasField {
     GAS_CARRIED = GAS_VELOCITY + 3,
     GAS_THROUGH = GAS_CARRIED,      ///< three
     GAS_PRESSURE = GAS_THROUGH + 3, ///< m/s: times rho_a cell/dt it is Pa
-    GAS_FLAME,                      ///< W/m3 released, in motion's time
+    GAS_FLAME,                      ///< W/m3 released, at the pace of the motion
     GAS_FIELDS,
 } GasField;
 
@@ -88,7 +88,7 @@ struct GasPlan {
     float cell;      ///< m
     float origin[3]; ///< m
     uint64_t every;  ///< steps of the simulation in one of the gas
-    int parts;       ///< steps of the gas in one of its calls, where the simulation's is long
+    int parts;       ///< steps of the gas in one of its calls, if those of the simulation are long
     float dt;        ///< s
     uint32_t particles, cell_count;
 
@@ -99,7 +99,7 @@ struct GasPlan {
     // scratch
     float *spare[3];
     float *open[3]; ///< uncovered share of a cell's lower face
-    uint8_t *solid; ///< a collider's
+    uint8_t *solid; ///< inside a collider
     GasLevel level[GAS_LEVELS];
     int levels;
     float *mixing;                   ///< half the share of a difference that mixes through a face of the cell
@@ -108,7 +108,7 @@ struct GasPlan {
     GasBox (*plane_busy)[GAS_BOXES]; ///< [planes] where there is heat or fuel, smoke, momentum to carry
     float (*normal)[3];              ///< [particles] unit
     int *hot;                        ///< [planes] whether anything there is warmer than the air around
-    float *scratch;                  ///< all of them but normals
+    float *scratch;                  ///< all of them but the normals
     size_t scratch_size;
 
     // for readers: without ghosts

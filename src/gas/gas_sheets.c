@@ -1,25 +1,25 @@
-// Where gas and sheets meet.
+// Exchange between gas and sheets.
 //
-// What a particle's fuel lost since the gas's last step, dm = (1 - nu) df, brings the gas the fuel (char glows without
+// The fuel that a particle lost since the gas's last step, dm = (1 - nu) df, gives the gas the fuel (char glows without
 // a flame)
 //
 //   E = (1 - radiated) dm H_gas/pace
 //
-// half a cell off the sheet on the particle's own side (the upper one, where the sheet lies level), H_gas J/kg being
-// what of the heat of combustion did not stay in the sheet (shell/matter.c). The fire runs `pace` times as fast as the
-// gas moves, and its power is that of the real fire.
+// half a cell off the sheet on the particle's own side (the upper one, where the sheet lies level), where H_gas J/kg is
+// the heat of combustion that did not stay in the sheet (shell/matter.c). The fire runs `pace` times as fast as the gas
+// moves, and its power is that of the real fire.
 //
-// In turn the gas heats, from the position that the flow has come from, so that heat arrives by the flow only and not
-// by the size of the cells:
+// In turn the gas heats the sheet, with the temperature upstream, so that heat arrives only by the flow and not because
+// of the size of the cells:
 //
 //   g = g_0 B/(e^B - 1),   B = m'' cp/g_0,   T = T_gas(x + side cell/2 - reach u/(|u| + u_0))
 //
 // Gas that leaves the sheet pushes the hot gas away from it: m'' kg/(m2 s) of it lower the conductance by the classical
-// factor for transpiration (Bird, Stewart & Lightfoot, Transport Phenomena, 22.8). Char that glows takes less by its
-// front thickening F_c (burn/glow.c). The gas loses what the sheet takes.
+// factor for transpiration (Bird, Stewart & Lightfoot, Transport Phenomena, 22.8). Glowing char takes less by its front
+// thickening F_c (burn/glow.c). The gas loses the heat that the sheet takes.
 //
-// The air that drags at a particle is the gas's own speed times the share of the faces about it that is open: past a
-// whole sheet the gas flows along it, and only flakes and edges are in its way.
+// The air that drags at a particle is the gas's own speed times the open share of the faces about it: the gas flows
+// along an intact sheet, and only flakes and edges are in its path.
 #include "common/check.h"
 #include "common/real.h"
 #include "gas/gas_plan.h"
@@ -27,8 +27,8 @@
 static const float SHEET_REACH = 1.25f; ///< cells
 static const float SHEET_LAYER = 7e-3f; ///< m, of the gas that flows along a sheet
 static const float SHEET_STILL = 0.05f; ///< m/s, u_0
-static const float SHEET_LEVEL = 0.5f;  ///< cosine between down and a side that looks down
-static const float SHEET_MIN = 1;       ///< K above the ambient that are felt
+static const float SHEET_LEVEL = 0.5f;  ///< cosine between down and the normal of a side that faces down
+static const float SHEET_MIN = 1;       ///< K, min excess over the ambient that has an effect
 static const float SHEET_CP = 1005;     ///< J/(kg K)
 
 static void sheets_cells(void *context, int begin, int end) {
@@ -65,15 +65,15 @@ void gas_normals(GasPass *pass) {
 /// A particle's own side of the sheet.
 static float sheets_side(const GasPass *pass, uint32_t i) { return shell_is_corner(pass->shell, i) ? -0.5f : 0.5f; }
 
-/// The side on which its gas comes out: its own, unless that looks down. Then the gas goes up through what has burnt.
+/// The side on which its gas leaves: its own, unless that faces down. Then the gas goes up through the burnt sheet.
 static float sheets_vent(const GasPass *pass, uint32_t i) {
     float side = sheets_side(pass, i);
     Float3 down = float3_unit(float3_load(pass->plan->settings.gravity)), normal = float3_load(pass->plan->normal[i]);
     return 2 * side * float3_dot(normal, down) > SHEET_LEVEL ? -side : side;
 }
 
-/// The particle's position half a cell off the sheet, on that side or, where it is a collider's, on the other. False
-/// outside of the grid.
+/// The particle's position half a cell off the sheet, on that side or, if that is inside a collider, on the other.
+/// False outside the grid.
 static bool sheets_position(const GasPass *pass, uint32_t i, float side, Float3 *x) {
     const GasPlan *plan = pass->plan;
     Float3 at = float3_load(pass->state->dynamics->position[i]), normal = float3_load(plan->normal[i]);
@@ -91,7 +91,7 @@ static bool sheets_position(const GasPass *pass, uint32_t i, float side, Float3 
     return false;
 }
 
-/// Adds to a field, shared among the cells whose centres are about x and where there is gas.
+/// Adds to a field, shared among the cells with gas whose centres are about x.
 static void sheets_add(const GasPlan *plan, float *field, Float3 x, float amount) {
     float position[3];
     if (!gas_position(plan, x, position)) return;
@@ -100,7 +100,7 @@ static void sheets_add(const GasPlan *plan, float *field, Float3 x, float amount
     size_t cell[8];
     for (int d = 0; d < 3; d++) at[d] = (int)(position[d] + 1) - 1, part[d] = position[d] - (float)at[d];
 
-    // trilinear weights of the eight cells that are open
+    // trilinear weights of the eight cells, if they are open
     for (int e = 0; e < 8; e++) {
         weight[e] = 1;
         bool inside = true;
@@ -145,7 +145,7 @@ void gas_feed(GasPass *pass) {
 /// B/(e^B - 1).
 static float sheets_blown(float b) { return b > 1e-3f ? b < 30 ? b / real_expm1f(b) : 0 : 1; }
 
-/// Where the gas comes from that meets a particle.
+/// The upstream position from which gas reaches a particle at x.
 static Float3 sheets_upstream(const GasPass *pass, Float3 x) {
     const GasPlan *plan = pass->plan;
     float position[3], u[3];
@@ -156,7 +156,7 @@ static Float3 sheets_upstream(const GasPass *pass, Float3 x) {
     return float3_mad(x, v, -SHEET_REACH * plan->cell / (float3_length(v) + SHEET_STILL));
 }
 
-/// Share of the air that can pass by at a particle: nearly all at a flake, nothing where the sheet is whole.
+/// Share of the air that can pass at a particle: nearly all at a flake, nothing where the sheet is intact.
 static float sheets_open(const GasPlan *plan, const float position[3], const float normal[3]) {
     float sum = 0;
     for (int d = 0; d < 3; d++) {
@@ -167,8 +167,8 @@ static float sheets_open(const GasPlan *plan, const float position[3], const flo
     return sum;
 }
 
-/// L of the gas that flows along a sheet at a position: a cell's heat, where it is thicker than that layer, is all in
-/// it.
+/// L of the gas that flows along a sheet at a position: if a cell is thicker than that layer, all of its heat is in the
+/// layer.
 static float sheets_lightness(const GasPlan *plan, const float *L, const float position[3]) {
     float thick = plan->cell / SHEET_LAYER, max = 1 - plan->settings.ambient_temperature / GAS_HOTTEST;
     float light = gas_sample(&plan->grid, L, position), layer = thick > 1 ? light * thick : light;
@@ -195,7 +195,7 @@ static void sheets_meet(void *context, int begin, int end) {
         for (int d = 0; d < 3; d++)
             air[d] = open * gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], position);
 
-        // temperature of the gas that has flowed here
+        // temperature of the gas upstream
         if (!(g0 > 0) || !sheets_position(pass, i, sheets_side(pass, i), &x)) continue;
         if (!gas_position(plan, sheets_upstream(pass, x), position)) continue;
         float temperature = ambient / (1 - sheets_lightness(plan, pass->to->field[GAS_LIGHTNESS], position));
@@ -210,7 +210,7 @@ static void sheets_meet(void *context, int begin, int end) {
     }
 }
 
-/// Takes from the gas what it gives to the sheets in a step.
+/// Removes from the gas the heat that it gives to the sheets in a step.
 static void sheets_cool(GasPass *pass) {
     const GasPlan *plan = pass->plan;
     const float *sheet = pass->state->heat->temperature;

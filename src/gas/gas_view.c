@@ -1,4 +1,4 @@
-// What readers see: the cells without their ghosts, in the units of SingeGas.
+// The view for readers: the cells without their ghosts, in the units of SingeGas.
 #include "common/check.h"
 #include "gas/gas_plan.h"
 

@@ -1,9 +1,9 @@
 // Multigrid for the pressure (Brandt 1977), on cells: sum over a cell's faces of w (p_beyond - p) = rhs.
 //
-// A cell of the next level is eight of this one; its faces' weights are the means of the four that they consist of, its
-// rhs half the sum of what its cells lack (a face is four times as large and twice as far). What it finds is added to
-// each of its cells. Smoothing is by Gauss and Seidel, red cells and black cells by turns: cells of a colour do not
-// see each other.
+// A cell of the next level is eight of this one; the weights of its faces are the means of the four that they consist
+// of, its rhs half the sum of its cells' residuals (a face is four times as large and twice as far). Its solution is
+// added to each of its cells. Smoothing is by Gauss and Seidel, alternating red and black cells: cells of a colour do
+// not see each other.
 #include "common/check.h"
 #include "gas/gas_plan.h"
 
@@ -11,7 +11,7 @@
 
 enum { SWEEPS = 2, SWEEPS_COARSEST = 10 };
 
-/// What a cell's equation lacks.
+/// Residual of a cell's equation.
 static inline float grid_residual(const GasLevel *level, size_t c) {
     const float *p = level->p;
     size_t y = level->grid.stride[1], z = level->grid.stride[2];
@@ -55,7 +55,7 @@ static void grid_sweep(void *context, int begin, int end) {
         }
 }
 
-/// The cells of the finer level that make up a cell of the level of the pass begin here.
+/// The first cell of the finer level in a cell of the pass's level.
 static inline size_t grid_fine(const GasLevel *fine, int i, int j, int k) {
     return gas_at(&fine->grid, 2 * i, 2 * j, 2 * k);
 }

@@ -2,15 +2,15 @@
 //
 //   u = u* - dt/rho grad p,   div u = q/GAS_HEAT
 //
-// on faces, of which `open` is what nothing covers. u* of a face is the mean of its cells. With p in m/s for a face's
+// on faces, of which the share `open` is uncovered. u* of a face is the mean of its cells. With p in m/s for a face's
 // difference in air of the ambient density, and the face's weight w = open rho_a/rho = open/(1 - L),
 //
 //   u_face = open u* - w (p_upper - p_lower)
 //   sum over a cell's faces of w (p_beyond - p) = sum(open u*) - cell q/GAS_HEAT
 //
 // Beyond the border p = 0, half a cell away. A cell's velocity changes by the mean of its faces' changes, so that
-// it loses little to the averaging (as FLIP does for particles), and takes a small part of the faces' own mean, for
-// what is too short to be seen by faces at all.
+// averaging removes little of it (as FLIP does for particles), and takes a small part of the faces' own mean, for
+// motion too short for faces to see.
 #include "common/check.h"
 #include "gas/gas_plan.h"
 
@@ -128,7 +128,7 @@ static void project_all_faces(GasPass *pass, SingeTaskFn *run) {
 
 void gas_project(GasPass *pass) {
     GasPlan *plan = pass->plan;
-    // what held before is near the answer
+    // the last pressure is close to the solution
     memcpy(pass->to->field[GAS_PRESSURE], pass->from->field[GAS_PRESSURE], plan->grid.cells * sizeof(float));
     plan->level[0].p = pass->to->field[GAS_PRESSURE];
     project_all_faces(pass, project_faces);

@@ -17,13 +17,13 @@ struct Sweep {
     const float *from, *start; ///< before this axis, before the first one
     float *to;
     int axis, across; ///< `across`: the axis that the tasks are cut along
-    bool last;        ///< takes off what the divergence added
+    bool last;        ///< removes what the divergence added
     SweepFn *rows;
 };
 
 extern SweepFn sweep_plain, sweep_v3;
 
-/// Those for these instructions.
+/// The sweep for these instructions.
 SweepFn *sweep_choose(SingeInstructions instructions);
 
 #endif

@@ -14,7 +14,7 @@ static void sweep_faces(const Sweep *sweep, size_t c, int count, float *restrict
                           *restrict high = q + beyond;
     for (int i = 0; i < count; i++) {
         float displacement = (through[i] + wind) * courant, size = fabsf(displacement);
-        float q0 = lowest[i], q1 = low[i], q2 = q[i], q3 = high[i]; // read before they are chosen from: this vectorises
+        float q0 = lowest[i], q1 = low[i], q2 = q[i], q3 = high[i]; // read before selection: this vectorises
         float b = q2 - q1, before = q1 - q0, behind = q3 - q2, a = displacement > 0 ? before : behind;
         float up = displacement > 0 ? q1 : q2, side = displacement > 0 ? 1.f : -1.f;
         float centre = 0.25f * fabsf(a + b), min = fabsf(a) < fabsf(b) ? fabsf(a) : fabsf(b);
@@ -23,7 +23,7 @@ static void sweep_faces(const Sweep *sweep, size_t c, int count, float *restrict
     }
 }
 
-/// The new values of a row whose faces' fluxes are known.
+/// New values of a row from the fluxes through its faces.
 static void sweep_update(const Sweep *sweep, size_t c, int count, const float *restrict lower,
                          const float *restrict upper) {
     const GasPass *pass = sweep->pass;
@@ -34,7 +34,7 @@ static void sweep_update(const Sweep *sweep, size_t c, int count, const float *r
     for (int i = 0; i < count; i++) to[i] = from[i] - (upper[i] - lower[i]) + start[i] * courant * (v[i] - u[i]);
 }
 
-/// Takes off q0 sum(c_upper - c_lower).
+/// Subtracts q0 sum(c_upper - c_lower).
 static void sweep_spread(const Sweep *sweep, size_t c, int count) {
     const GasPass *pass = sweep->pass;
     const float *restrict start = sweep->start + c;
