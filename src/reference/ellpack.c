@@ -5,10 +5,10 @@
 //   A_ij = +- w_p g_i . g_j      + where p is the same end of both, - where it is not
 //
 // so a row has as many entries as the spring has neighbours: 6 where every particle has four springs of the colour, and
-// the diagonal makes the paper's 7. Around irregular vertices rows are longer. Plain ELLPACK would make every row as
-// long as the longest; here that holds within slices of 8 rows (Monakov, Lokhmotov and Avetisyan, HiPEAC 2010), whose
-// entries lie side by side, so that 8 rows are multiplied at once. Where the 8 columns follow each other, as they do
-// on grids whose springs are numbered cell by cell, they are loaded as a run instead of one by one.
+// the diagonal makes the paper's 7. Around irregular vertices rows are longer. Plain ELLPACK would pad every row to the
+// longest; here that holds within slices of 8 rows (Monakov, Lokhmotov and Avetisyan, HiPEAC 2010), whose entries are
+// contiguous, so that 8 rows are multiplied at once. Where the 8 columns are consecutive, as on grids whose springs are
+// numbered cell by cell, they are loaded as a run instead of one by one.
 #include "common/check.h"
 #include "reference/spring_network.h"
 

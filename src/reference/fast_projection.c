@@ -1,5 +1,5 @@
-// One projection of a group of springs: Newton's step of the fast projection method (Goldenthal et al. 2007) as
-// eq 16 to 19 have it, with masses.
+// One projection of a group of springs: Newton's step of the fast projection method (Goldenthal et al. 2007) as in eq
+// 16 to 19, with masses.
 //
 // A spring of target length l from a to b, d = x_b - x_a, has the row (row-normalised: eq 10 over the length of its
 // gradient, eq 11)
@@ -31,7 +31,7 @@ static Row projection_row(const Network *network, const SpringGroup *group, uint
     double d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, l = group->length[k];
     double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], distance = sqrt(square);
     if (network->rules.literal) return (Row){{2 * d[0] / l, 2 * d[1] / l, 2 * d[2] / l}, square / l - l};
-    // a spring crushed below half its length has hardly a direction: limit what its row asks for
+    // a spring crushed below half its length has hardly a direction: its row's request is limited
     double inverse = 1 / fmax(distance, 1e-30), divisor = 2 * fmax(distance, 0.5 * l);
     return (Row){{d[0] * inverse, d[1] * inverse, d[2] * inverse}, (square - l * l) / divisor};
 }
@@ -40,7 +40,7 @@ double network_constraint(const Network *network, uint32_t group, uint32_t sprin
     return projection_row(network, &network->groups[group], spring).constraint;
 }
 
-/// Gradients, scales and right-hand sides of [begin, end); the sum of the latters' squares.
+/// Gradients, scales and right-hand sides of [begin, end); returns the sum of squares of the right-hand sides.
 static double projection_rows(void *task, int begin, int end) {
     const Rows *job = task;
     SINGE_ASSERT(begin >= 0 && begin <= end);
@@ -77,7 +77,7 @@ double network_rows(Network *network, uint32_t group, Pool *pool) {
     return pool_sum(pool, (int)job.group->padded, projection_rows, &job, network->partial);
 }
 
-/// The target lengths in the norm of the residual: what its tolerance is relative to for the early exit.
+/// The target lengths in the norm of the residual: the reference of its tolerance for the early exit.
 static double projection_lengths(void *task, int begin, int end) {
     const Rows *job = task;
     SINGE_ASSERT(begin >= 0 && begin <= end);

@@ -1,9 +1,9 @@
-// Springs by Hooke's law, what section 8 compares with, by the semi-implicit Euler method: forces at the positions
+// Springs by Hooke's law, the comparison of section 8, by the semi-implicit Euler method: forces at the positions
 // before the substep, then velocities, then positions.
 //
 //   f   = [k W (|d| - l) + c (v_b - v_a) . u] u,   u = d/|d|,   on a; -f on b
 //   c   = 2 zeta sqrt(k W/(w_a + w_b)),   zeta = 0.1 of the damping that is critical for the spring alone
-//   x^  = x~ + h^2 w sum f,   and eq 13 makes v^ = v~ + h w sum f
+//   x^  = x~ + h^2 w sum f,   and eq 13 gives v^ = v~ + h w sum f
 //
 // k is `stiffness`, the same for every spring, times its weight W. The method is stable while h times the highest
 // frequency is below 2 - about h < sqrt(1/(6 k w)), each particle being in up to twelve springs - and blows up above.
@@ -36,7 +36,7 @@ static void hooke_forces(void *task, int begin, int end) {
         if (both <= 0 || stiffness <= 0) continue;
         for (int i = 0; i < 3; i++) {
             double v = (double)vb[i] - (double)va[i];
-            // positions before the substep: x~ less the displacement by v~; what is held has v~ all the same
+            // positions before the substep: x~ less the displacement by v~; held particles have v~ too
             d[i] = xb[i] - xa[i] - job->h * v;
             square += d[i] * d[i], closing += d[i] * v;
         }

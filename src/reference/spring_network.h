@@ -10,7 +10,7 @@
 
 struct ConjugateKernel;
 
-/// Rows that are worked on together. A slice of the matrix has this many rows, each lane of it one.
+/// Rows that are processed together. A slice of the matrix has this many rows, one in each lane.
 enum { NETWORK_LANES = 8 };
 #define NETWORK_NO_RUN UINT32_MAX
 
@@ -19,7 +19,7 @@ typedef struct SpringGroup {
     uint32_t count, padded;
     uint32_t (*ends)[2];   ///< [padded]
     double *length;        ///< [padded] m, targets, > 0
-    double *weight;        ///< [padded] W of eq 19; 0 takes the spring out
+    double *weight;        ///< [padded] W of eq 19; 0 removes the spring
     double *compliance;    ///< [padded] m/N
     double regularisation; ///< floor on the diagonal, relative to the mean of w_a and w_b
     // the springs of each particle: incident[first[i]] up to first[i + 1], as 2 spring + end
@@ -34,10 +34,10 @@ typedef struct SpringGroup {
 
 /// Settings of a projection.
 typedef struct ProjectionRules {
-    bool literal;        ///< C = |d|^2/l - l as eq 10 has it, and neither floor nor compliance; else row-normalised
-    bool early_exit;     ///< the iterations end, too, when the residual is below `tolerance` of the lengths
+    bool literal;        ///< C = |d|^2/l - l as in eq 10, and neither floor nor compliance; else row-normalised
+    bool early_exit;     ///< the iterations also end when the residual is below `tolerance` of the lengths
     double tolerance;    ///< of the residual, relative to the right-hand side
-    uint32_t iterations; ///< of the conjugate gradients, at most
+    uint32_t iterations; ///< max, of the conjugate gradients
     double inverse_h2;   ///< 1/s2, 1/h^2: compliance times it is on the diagonal
 } ProjectionRules;
 
@@ -50,10 +50,10 @@ typedef struct Network {
     ProjectionRules rules;
     const struct ConjugateKernel *kernel; ///< never NULL
     bool matrix;                          ///< patterns and scratch of the projection are there
-    // scratch that the groups share, as long as the largest needs
+    // scratch shared by the groups, as long as the largest needs
     double (*gradient)[3];                             ///< of C at end b; at end a it is the opposite
     double *value;                                     ///< of the matrix, scaled to a unit diagonal
-    double *scale;                                     ///< 1/sqrt(diagonal), 0 for what is not in the system
+    double *scale;                                     ///< 1/sqrt(diagonal), 0 for rows outside the system
     double *solution, *residual, *direction, *product; ///< of the conjugate gradients
     double *partial;
     uint32_t row_max;
@@ -65,8 +65,8 @@ typedef struct NetworkSprings {
     const uint32_t (*ends)[2];
 } NetworkSprings;
 
-/// Positions, masses, lengths and weights are left for the caller to fill in. `matrix`: with what network_project
-/// needs. On failure (out of memory) *network holds nothing.
+/// The caller fills in positions, masses, lengths and weights. `matrix`: with the scratch of network_project. On
+/// failure (out of memory) *network holds nothing.
 SingeResult network_create(Memory *memory, uint32_t particle_count, uint32_t group_count, const NetworkSprings *springs,
                            bool matrix, Network *network);
 void network_free(Memory *memory, Network *network);
@@ -75,7 +75,7 @@ void network_free(Memory *memory, Network *network);
 typedef struct ProjectionReport {
     uint32_t iterations;
     bool broken;         ///< the system is not positive definite, or something is not finite: nothing was moved
-    double residual;     ///< what is left, relative to the right-hand side; 0 where that is 0
+    double residual;     ///< relative to the right-hand side; 0 where that is 0
     double flops, bytes; ///< counted from the source, see SingeTimers
 } ProjectionReport;
 
@@ -101,7 +101,7 @@ void ellpack_dense(const Network *network, uint32_t group, double *dense);
 /// Counts and lists the pattern of a group (ellpack.c). False when out of memory.
 bool ellpack_create(Memory *memory, SpringGroup *group);
 void ellpack_free(Memory *memory, SpringGroup *group);
-/// Entries, those that fill short rows up included.
+/// Number of entries, with those that pad short rows.
 static inline size_t ellpack_entries(const SpringGroup *group) {
     return NETWORK_LANES * group->slice_first[group->padded / NETWORK_LANES];
 }
@@ -109,8 +109,8 @@ static inline size_t ellpack_entries(const SpringGroup *group) {
 /// The fastest sweeps that the processor supports among those requested. Results are the same.
 const struct ConjugateKernel *conjugate_choose(SingeInstructions instructions);
 
-/// Solves the scaled system for `solution`, from zero; `residual` holds the right-hand side and then what is left of
-/// it. `square` is the right-hand side's square, and the iterations end below `enough` (conjugate_gradient.c).
+/// Solves the scaled system for `solution`, from zero; `residual` holds the right-hand side and then the residual.
+/// `square` is the right-hand side's square, and the iterations end below `enough` (conjugate_gradient.c).
 ProjectionReport conjugate_gradient(Network *network, uint32_t group, Pool *pool, double square, double enough);
 
 #endif
