@@ -1,9 +1,9 @@
-// Steps of a fixed length for frames of any.
+// Steps of a fixed length for frames of any length.
 #include "sim/sim_internal.h"
 
 #include <string.h>
 
-/// Of a step: what a time that is meant to be whole steps may miss. A time_step is a float, and so it is off by up to
+/// Fraction of a step by which a time of whole steps may fall short. A time_step is a float, and so it is off by up to
 /// 6e-8 of itself in each step.
 static const double ADVANCE_SLACK = 0.01;
 
@@ -38,7 +38,7 @@ SingeResult singe_sim_advance(SingeSim *sim, double seconds, uint32_t steps_max,
     sim->gathers = true;
     sim->remainder += seconds;
     while (sim->remainder >= h * (1 - ADVANCE_SLACK)) {
-        if (steps_max && done == steps_max) { // who falls behind slows down: whole steps are dropped
+        if (steps_max && done == steps_max) { // a caller that falls behind slows down: whole steps are dropped
             sim->remainder = fmod(sim->remainder, h);
             break;
         }

@@ -1,5 +1,5 @@
-// Whether sheets begin inside colliders, which throw out in the first step what is inside: as far as it is deep, in one
-// time step, one vertex farther than the next.
+// Whether sheets begin inside colliders. A collider throws particles inside it out in the first step, over their whole
+// depth in one time step, each vertex by a different distance.
 #include "sim/sim_internal.h"
 
 enum { BURIED_SAMPLES = 4096 }; // vertices that are looked at, evenly spread

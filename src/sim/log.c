@@ -1,4 +1,4 @@
-// What a simulation reports to its host's log. Errors are results, not lines: the log has what no result says.
+// Reports of a simulation to its host's log. Errors are results, not lines: the log has what no result contains.
 #include "sim/sim_internal.h"
 
 #include "common/format.h"
@@ -14,7 +14,7 @@ static void sim_log(const SingeSim *sim, SingeLogLevel level, const char *format
     log->write(log->context, level, line);
 }
 
-/// A sheet that falls far within a substep, against its cells, is stretched visibly where it is held.
+/// A sheet that falls farther than this within a substep, over its cells' size, stretches visibly where it is held.
 static const float fall_max = 0.02f;
 
 static void sim_log_sheet(const SingeSim *sim, uint32_t index) {

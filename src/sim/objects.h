@@ -1,10 +1,10 @@
-// What the calls for sources, colliders and pins share.
+// Shared by the calls for sources, colliders and pins.
 #ifndef SIM_OBJECTS_H
 #define SIM_OBJECTS_H
 
 #include "sim/sim_internal.h"
 
-/// The part of a caller's Def that it knows, over the defaults; fails where its struct_size is not set.
+/// Reads the part of a caller's Def that it knows, over the defaults; fails if its struct_size is not set.
 #define OBJECT_DEF(sim, stage, local, given, defaults)                             \
     do {                                                                           \
         (local) = (defaults)();                                                    \

@@ -1,5 +1,5 @@
-// Pins: added, moved and removed at any time. What is added before the commit waits for it as it was given, as the
-// textures of sources do, and is settled there.
+// Pins: added, moved and removed at any time. A pin added before the commit waits for it as it was given, as the
+// textures of sources do, and its particles are found there.
 #include "common/check.h"
 #include "sim/objects.h"
 
@@ -7,7 +7,7 @@
 #include <string.h>
 
 static void pin_stop_waiting(SingeSim *sim, Pin *pin) {
-    float *points = (float *)(uintptr_t)pin->waiting.points; // its own, as the vertices
+    float *points = (float *)(uintptr_t)pin->waiting.points; // owned by the pin, as are the vertices
     uint32_t *vertices = (uint32_t *)(uintptr_t)pin->waiting.vertices;
     FREE(&sim->memory, points, 3 * (size_t)pin->waiting.point_count);
     FREE(&sim->memory, vertices, pin->waiting.vertex_count);
@@ -52,7 +52,7 @@ static float pin_distance2(const Shell *shell, uint32_t particle, const float *p
     return float3_dot(d, d);
 }
 
-/// Nearest vertex of the sheet to a point; the first of equals. Vertices without cells are not looked at.
+/// Nearest vertex of the sheet to a point; the first of equals. Vertices without cells are skipped.
 static uint32_t pin_nearest(const Shell *shell, const Sheet *sheet, const float *point) {
     uint32_t best = sheet->vertex_first;
     float min = INFINITY;
@@ -63,13 +63,13 @@ static uint32_t pin_nearest(const Shell *shell, const Sheet *sheet, const float 
     return best;
 }
 
-/// Whether a pin takes a particle; `nearest` are the points' nearest vertices.
+/// Whether a pin holds a particle; `nearest` are the points' nearest vertices.
 static bool pin_takes(const Shell *shell, const SingePinDef *def, const uint32_t *nearest, const uint8_t *listed,
                       uint32_t particle) {
     SINGE_ASSERT(particle < shell->particle_count);
     if (listed[particle]) return true;
     if (shell_is_corner(shell, particle) && shell_is_spare(shell, particle)) return false;
-    // centres lie a thickness off the mesh, where points are given
+    // centres lie a thickness off the mesh, but points are given on the mesh
     float reach = def->radius + (shell_is_corner(shell, particle) ? 0 : field_at(shell->matter.thickness, particle));
     for (uint32_t k = 0; k < def->point_count; k++)
         if (nearest[k] == particle ||
@@ -141,7 +141,7 @@ static bool pin_gather(SingeSim *sim, const SingePinDef *def, Pin *pin) {
     return ok;
 }
 
-/// Makes a pin hold what its Def says.
+/// Finds the particles of a pin's Def, and holds them.
 static SingeResult pin_hold(SingeSim *sim, const SingePinDef *def, Pin *pin) {
     if (!pin_gather(sim, def, pin)) return sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
     for (uint32_t k = 0; k < pin->count; k++) {
@@ -165,7 +165,7 @@ SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *given, SingePinI
     TRY(path_set(&pin->path, &sim->memory, def.path_count, def.path, "pin", &sim->error));
     pin->user_data = def.user_data;
 
-    // particles now, or at the commit
+    // find particles now, or at the commit
     SingeResult result = SINGE_OK;
     if (sim->committed) result = pin_hold(sim, &def, pin);
     else if (!pin_wait(sim, &def, pin)) result = sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
@@ -174,7 +174,7 @@ SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *given, SingePinI
         return result;
     }
 
-    // only now is the slot taken
+    // take the slot last, as nothing can fail any more
     if (sim->committed) dynamics_plan_hold(sim->dynamics, &sim->shell, &sim->state);
     pin->generation = sim_take_slot(sim, &sim->pins.count, index);
     *id = (SingePinId){index, pin->generation};
@@ -210,7 +210,7 @@ const uint32_t *singe_sim_pin_particles(const SingeSim *sim, SingePinId id, uint
     return pin && pin->count ? pin->particles : NULL;
 }
 
-/// A motion that begins where the path has the particles now.
+/// A motion that begins at the particles' present positions on the path.
 static bool pin_set_out(SingeSim *sim, Pin *pin) {
     if (pin->motion.to) return true;
     float(*now)[3] = NULL;
@@ -238,7 +238,7 @@ SingeResult singe_sim_set_pin_positions(SingeSim *sim, SingePinId id, const floa
 
 // ---- the commit
 
-/// All objects wait again; the State is about to go.
+/// All objects wait again; the State is about to be freed.
 static void sim_unsettle_objects(SingeSim *sim) {
     for (uint32_t i = 0; i < sim->sources.count; i++)
         source_unsettle(&sim->memory, &sim->shell, &sim->sources.items[i]);

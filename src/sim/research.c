@@ -1,4 +1,4 @@
-// The public face of the paper's solver on networks of the caller's own (singe/research.h).
+// The public interface to the paper's solver on the caller's own networks (singe/research.h).
 #include "common/error.h"
 #include "reference/spring_network.h"
 #include "singe/research.h"

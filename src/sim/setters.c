@@ -1,8 +1,8 @@
-// What a caller changes while the simulation runs: gravity, pace, ambient temperature, velocities, materials.
+// Changes by the caller while the simulation runs: gravity, pace, ambient temperature, velocities, materials.
 //
-// Gravity, pace and velocities are read anew in every step. What plans were built from (the ambient temperature and the
-// materials: the operator of heat, the front's thickening, springs' weights) is changed in the description, and the
-// simulation is built again from it as a load would do it: so it is at once what a load of its snapshot gives.
+// Gravity, pace and velocities are read anew in every step. Plans are built from the ambient temperature and the
+// materials (the operator of heat, the front's thickening, springs' weights): these are changed in the description, and
+// the simulation is rebuilt from it as by a load, so that it equals a load of its snapshot at once.
 #include "sim/objects.h"
 
 #include "common/real.h"
@@ -14,9 +14,9 @@ static SingeResult setter_bad(SingeSim *sim, const char *stage, const char *what
     return sim_fail(sim, SINGE_ERROR_ARGUMENT, stage, -1, what);
 }
 
-// ---- what plans read anew
+// ---- read in every step
 
-/// The axis along which gravity is largest, 1 to 3, with the sign that it has: the gas has room at one end of it.
+/// The axis along which gravity is largest, 1 to 3, with the sign of gravity: the gas has room at one end of it.
 static int gravity_axis(const float gravity[3]) {
     int up = 2;
     for (int d = 0; d < 3; d++)
@@ -85,9 +85,9 @@ SingeResult singe_sim_set_velocity(SingeSim *sim, SingeSheetId id, uint32_t firs
     return SINGE_OK;
 }
 
-// ---- what plans are built from
+// ---- part of the plans
 
-/// Builds the simulation again from its description, with its State and objects. On failure nothing has changed.
+/// Rebuilds the simulation from its description, with its State and objects. On failure nothing has changed.
 static SingeResult sim_rebuild(SingeSim *sim) {
     SingeSim *fresh;
     if (!sim->committed) return SINGE_OK;
@@ -109,19 +109,19 @@ SingeResult singe_sim_set_ambient_temperature(SingeSim *sim, float temperature) 
     const float before = sim->def.ambient_temperature;
     const double start = sim->heat_start, stored = sim->committed ? sim_enthalpy(sim) : 0;
     sim->def.ambient_temperature = temperature;
-    if (sim->committed) sim->heat_start += sim_enthalpy(sim) - stored; // what is stored is counted from elsewhere now
+    if (sim->committed) sim->heat_start += sim_enthalpy(sim) - stored; // enthalpy has a new reference
     SingeResult result = sim_rebuild(sim);
     if (result) sim->def.ambient_temperature = before, sim->heat_start = start;
     return result;
 }
 
-/// Parameters that the sheet's mass, shape or start were made of: these stay.
+/// Parameters that determined the sheet's mass, shape or start: these stay.
 static bool material_stays(int param) {
     return param == PARAM_GRAMMAGE || param == PARAM_SPECIFIC_HEAT || param == PARAM_THICKNESS ||
            param == PARAM_TEMPERATURE;
 }
 
-/// A sheet's share of a new material at one of its particles.
+/// The share of a new material at a particle of a sheet.
 static float material_share(const SheetSource *source, const float *share, uint32_t i) {
     const uint32_t vertices = source->sheet.vertex_count;
     if (!share) return 1;
@@ -137,14 +137,14 @@ typedef struct MaterialValues {
     float *values[PARAM_COUNT];
 } MaterialValues;
 
-/// Keeps one value where all are the same to the bit.
+/// Keeps a single value if all are equal bit by bit.
 static void material_keep(SingeSim *sim, MaterialValues *mixed, int p, uint32_t total) {
     float *values = mixed->values[p];
     mixed->value[p] = values[0];
     if (memcmp(values, values + 1, (total - 1) * sizeof *values) == 0) FREE(&sim->memory, mixed->values[p], total);
 }
 
-/// What lies between two sheets' parameters; false when out of memory.
+/// Interpolates between two sheets' parameters; false when out of memory.
 static bool material_mix(SingeSim *sim, const SheetSource *old, const SheetSource *other, const float *share,
                          MaterialValues *mixed) {
     const uint32_t total = old->sheet.vertex_count + old->sheet.cell_count;
@@ -162,7 +162,7 @@ static bool material_mix(SingeSim *sim, const SheetSource *old, const SheetSourc
     return true;
 }
 
-/// A Def of the sheet as it is, for the evaluation of another material.
+/// A Def of the present sheet, to evaluate another material.
 static SingeSheetDef material_sheet(const SheetSource *source, const SingeMaterialDef *material) {
     SingeSheetDef def = singe_default_sheet();
     def.name = source->sheet.name;
@@ -183,7 +183,7 @@ static void material_swap(SheetSource *source, MaterialValues *with) {
     }
 }
 
-/// Builds the simulation with other parameters of a sheet; *values becomes those that are to be freed.
+/// Rebuilds the simulation with other parameters of a sheet; *values then holds those to free.
 static SingeResult material_take(SingeSim *sim, SheetSource *source, MaterialValues *values) {
     material_swap(source, values);
     SingeResult result = sheet_source_check(source, &sim->error);
@@ -207,7 +207,7 @@ SingeResult singe_sim_set_material(SingeSim *sim, SingeSheetId id, const SingeMa
     const SingeSheetDef def = material_sheet(source, &material);
     TRY(sheet_source_create(&sim->memory, &def, &other, &sim->error));
     MaterialValues values = {0};
-    Memory before = sim->memory; // a simulation that was built again counts its own
+    Memory before = sim->memory; // a rebuilt simulation counts its own
     SingeResult result = SINGE_OK;
     if (!material_mix(sim, source, &other, share, &values))
         result = sim_fail(sim, SINGE_ERROR_MEMORY, "material", -1, "out of memory");

@@ -72,8 +72,8 @@ bool sim_read_def(void *def, size_t size, const void *given, size_t given_size) 
     return true;
 }
 
-/// Reads a simulation's Def of any version. Wind, solver, gas and contact lie inside and grow by themselves, so that
-/// what comes after each is found by the size that the caller's header gave it.
+/// Reads a simulation's Def of any version. Wind, solver, gas and contact lie inside and grow separately, so the field
+/// after each is found by the size that the caller's header gave it.
 static bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
     const size_t head = offsetof(SingeSimDef, wind);
     const char *bytes = (const char *)given;
@@ -84,7 +84,7 @@ static bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
     def->struct_size = sizeof *def;
     if (rest <= head) return true;
 
-    // Defs inside, each of its own size
+    // the Defs inside, each of its own size
     bytes += head, rest -= head;
     if (!sim_read_def(&def->wind, sizeof def->wind, bytes, rest)) return false;
     memcpy(&wind, bytes, sizeof wind);
@@ -199,7 +199,7 @@ SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSh
     return SINGE_OK;
 }
 
-/// Vertices that a sheet has in reserve for tears: half as many as it has, and some for small ones.
+/// Vertices that a sheet has in reserve for tears: half as many as its own, and some more for small sheets.
 static uint32_t sim_spares(const SingeSim *sim, const Sheet *sheet) {
     const SingeSolverDef *solver = &sim->def.solver;
     return solver->tearing && solver->method == SINGE_SOLVER_STRAND ? sheet->vertex_count / 2 + 16 : 0;
@@ -214,7 +214,7 @@ SingeResult sim_build(SingeSim *sim) {
     TRY(shell_create(memory, sim->sheets, sim->sheet_count, shell, &sim->error));
     shell->creases = def->solver.creases && def->solver.method == SINGE_SOLVER_STRAND;
 
-    // a particle ignites once, a hole has a cell of its own and so has every piece
+    // a particle ignites once; a hole has a cell of its own, and so has every piece
     size_t events = shell->particle_count + 2 * (size_t)shell->cell_count;
     HeatSettings heat = {.ambient_temperature = def->ambient_temperature,
                          .tolerance = def->heat_tolerance,
@@ -248,7 +248,7 @@ SingeResult sim_build(SingeSim *sim) {
     ok = ok && NEW(memory, sim->partial, pool_blocks((int)shell->particle_count));
     ok = ok && NEW(memory, sim->sample, shell->springs[SINGE_BLUE].count);
     if (!ok) return sim_fail(sim, SINGE_ERROR_MEMORY, "commit", -1, "out of memory");
-    // events come after the heat stage and are gone when the next one begins
+    // events are written after the heat stage and are gone when the next one begins
     sim->events = (EventList){.items = heat_scratch(sim->heat), .capacity = events};
     for (uint32_t s = 0; s < shell->sheet_count; s++) sim->thickening[s] = heat_thickening(sim->heat, s);
     return SINGE_OK;
@@ -262,7 +262,7 @@ SingeResult singe_sim_commit(SingeSim *sim) {
         sim_unbuild(sim);
         return result;
     }
-    // the first look: pieces are labelled before anything burns
+    // the first ablation: pieces are labelled before anything burns
     StepContext context = sim_context(sim, NULL);
     context.state.ablate = NULL;
     ablate_step(sim->ablate, &context, &sim->state.ablate);

@@ -6,7 +6,7 @@
 
 SingeParam singe_param(float value) { return (SingeParam){.value = value, .to = value}; }
 
-/// What the parameters of the default material follow; zeroed where it is nothing.
+/// Fields that the parameters of the default material follow; zeroed if there is none.
 static const struct {
 #define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) SingeField name;
 #define SINGE_PARAM_BACK SINGE_PARAM
@@ -153,7 +153,7 @@ static SingeSimDef standard_sim(void) {
     };
 }
 
-/// Fills a caller's part of `size` bytes with ours of `known`; zero where it is longer.
+/// Fills a caller's part of `size` bytes with our `known` bytes; zero where it is longer.
 static void defaults_fill(void *part, size_t size, const void *standard, size_t known) {
     memset(part, 0, size);
     memcpy(part, standard, size < known ? size : known);
@@ -165,7 +165,7 @@ static void fill_def(void *def, size_t size, const void *standard, size_t known)
     memcpy(def, &size, sizeof size);
 }
 
-/// The size that a Def inside another holds, at most what is left.
+/// The size stored in a Def inside another, at most the bytes left.
 static size_t inner_size(const void *inner, size_t left) {
     size_t size = 0;
     if (left >= sizeof size) memcpy(&size, inner, sizeof size);
@@ -216,8 +216,8 @@ void singe_init_solver_method(SingeSolverDef *def, size_t struct_size, SingeSolv
     fill_def(def, struct_size, &standard, sizeof standard);
 }
 
-// The Defs inside these have grown by themselves: what comes after one is found by the size that the caller's
-// header gave it.
+// The Defs inside these have grown separately: the field after one is found by the size that the caller's header gave
+// it.
 
 void singe_init_sheet(SingeSheetDef *def, size_t struct_size) {
     const SingeSheetDef standard = standard_sheet();

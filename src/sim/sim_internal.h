@@ -25,13 +25,13 @@ struct SingeSim {
     Shell shell;
     float *thickening; ///< [sheet_count] F
 
-    // what the sheets meet
+    // what the sheets interact with
     uint32_t next_generation;
     SourceList sources;
     ColliderList colliders;
     PinList pins;
 
-    // what changes
+    // the changing part
     State state;
     double heat_start; ///< J, enthalpy at the start
     void *backup;      ///< the state's basic part before the step
@@ -57,14 +57,14 @@ struct SingeSim {
 /// One step, for singe_sim_step and singe_sim_advance.
 SingeResult sim_step(SingeSim *sim);
 
-/// Notes a failure in sim->error and returns it.
+/// Stores a failure in sim->error and returns it.
 SingeResult sim_fail(SingeSim *sim, SingeResult code, const char *stage, int64_t element, const char *message);
 
-/// Copies what both headers know of a caller's Def, which begins with its struct_size, over *def of `size`
+/// Copies the part of a caller's Def that both headers know, which begins with its struct_size, over *def of `size`
 /// bytes that holds the defaults. `given_size` bounds what may be read. False when struct_size is not set.
 bool sim_read_def(void *def, size_t size, const void *given, size_t given_size);
 
-/// Fills the caller's `size` bytes of a result of ours; 0 where the caller's is longer.
+/// Fills the caller's `size` bytes from our result; 0 where the caller's is longer.
 static inline void sim_write_result(void *result, size_t size, const void *ours, size_t known) {
     memset(result, 0, size);
     memcpy(result, ours, size < known ? size : known);
@@ -73,13 +73,13 @@ static inline void sim_write_result(void *result, size_t size, const void *ours,
 /// Checks the numbers of a simulation's Def.
 SingeResult sim_check_def(const SingeSimDef *def, SingeError *error);
 
-/// What the stages of a step are given, with all parts of the State; `view` may be NULL (step.c).
+/// Input of the stages of a step, with all parts of the State; `view` may be NULL (step.c).
 StepContext sim_context(SingeSim *sim, const SingeView *view);
 
 /// Everything commit builds from sim->sheets, without the first state (also used by load).
 SingeResult sim_build(SingeSim *sim);
 
-/// Logs what was committed, and what will look bad.
+/// Logs what was committed, and warns of what will look bad.
 void sim_log_commit(const SingeSim *sim);
 /// Logs once that conduction is less exact than requested.
 void sim_log_unconverged(SingeSim *sim);
@@ -88,22 +88,23 @@ void sim_log_turned(const SingeSim *sim, uint32_t collider);
 /// Logs once that a sheet has no spare vertices left for tears.
 void sim_log_short_of_spares(SingeSim *sim);
 
-/// Logs each once: cells that cross from the start, pairs that could not be kept apart, lists that were full.
+/// Logs each of these once: cells that intersect from the start, pairs that could not be kept apart, lists that were
+/// full.
 void sim_log_contacts(SingeSim *sim, const CollisionCounters *contacts);
 
-/// Logs colliders that sheets begin deep inside of.
+/// Logs colliders deep inside which sheets begin.
 void sim_find_buried(const SingeSim *sim);
-/// Logs one, `depth` m deep at `position`.
+/// Logs one of them, `depth` m deep at `position`.
 void sim_log_buried(const SingeSim *sim, uint32_t collider, double share, float depth, Float3 position);
 
-/// Enthalpy of what is left above ambient, J, sum of capacity (T - T_amb).
+/// Enthalpy above ambient of the remaining particles, J, sum of capacity (T - T_amb).
 double sim_enthalpy(const SingeSim *sim);
 
-/// Evaluates the textures and gathers the particles of what was added before the commit, which goes on waiting after a
+/// Evaluates the textures and gathers the particles of objects added before the commit, which keep waiting after a
 /// failure.
 SingeResult sim_settle_objects(SingeSim *sim);
 
-/// Callbacks and user data, from one simulation to another with the same objects.
+/// Copies callbacks and user data from one simulation to another with the same objects.
 void sim_copy_hooks(const SingeSim *from, SingeSim *to);
 
 void sim_free_source(SingeSim *sim, Source *source);

@@ -1,9 +1,9 @@
-// Numbers about the present state. Sums are in double and in order of particle, so that they do not
-// depend on the number of threads.
+// Statistics of the present state. Sums are in double and in order of particle, so that they do not depend on the
+// number of threads.
 //
-// Enthalpy H = sum over what is left of C (T - T_amb), C the heat capacity of the unburnt particle
-// (eq 1 adds heat to T without regard to the mass left). What is removed takes its enthalpy along; that
-// counts as lost. Ledger: heat_in + heat_of_combustion - heat_lost = H - H_start.
+// Enthalpy H = sum over the remaining particles of C (T - T_amb), C the heat capacity of the unburnt particle (eq 1
+// adds heat to T without regard to the mass left). Removed particles take their enthalpy along; that counts as lost.
+// Ledger: heat_in + heat_of_combustion - heat_lost = H - H_start.
 #include "sim/sim_internal.h"
 
 #include <math.h>
@@ -39,8 +39,8 @@ static float stats_select(float *values, size_t n, size_t k) {
     return values[k];
 }
 
-/// Strain of the mesh's edges: |length/target - 1| of blue springs that are drawn, wholly or in part. Those between two
-/// held particles are left out: nothing in the step can change them.
+/// Strain of the mesh's edges: |length/target - 1| of blue springs that are drawn, wholly or in part. Springs between
+/// two held particles are left out: nothing in the step can change them.
 static void stats_strain(const SingeSim *sim, SingeStats *stats) {
     const SpringSet *blue = &sim->shell.springs[SINGE_BLUE];
     size_t n = 0;
@@ -67,7 +67,7 @@ static void stats_strain(const SingeSim *sim, SingeStats *stats) {
     stats->strain_p99 = (double)stats_select(sim->sample, n, (size_t)(0.99 * (double)(n - 1)));
 }
 
-/// |grad t|^2, s2/m2, of a time that is bilinear over the rest shape of a cell, at its centre.
+/// |grad t|^2, s2/m2, at the centre of a cell, of a time that is bilinear over its rest shape.
 static float stats_slope2(const SingeSim *sim, const uint32_t *corner, const float *time) {
     Float3 p[4];
     for (int i = 0; i < 4; i++) p[i] = float3_load(sim->shell.rest_position[corner[i]]);
@@ -92,7 +92,7 @@ static double stats_front_speed(const SingeSim *sim) {
     return n ? (double)stats_select(sim->sample, n, n / 2) : 0;
 }
 
-/// A cell of no area has no front on which its centre could be missing.
+/// Cells with the centre on the wrong side. A cell of no area has no side.
 static uint32_t stats_inverted(const SingeSim *sim) {
     const float(*x)[4] = (const float(*)[4])sim->state.dynamics.position;
     uint32_t inverted = 0;

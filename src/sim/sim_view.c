@@ -91,7 +91,7 @@ void singe_sim_read_counts(const SingeSim *sim, SingeCounts *out, size_t struct_
     sim_write_result(out, struct_size, &counts, sizeof counts);
 }
 
-/// Less than half of what contact keeps between surfaces, wherever it does not say that they are near.
+/// Less than half of the distance that contact keeps between surfaces, where it does not report them as near.
 static float bulge_max(const SingeSim *sim) {
     float cell = INFINITY;
     if (!sim->def.contact.enabled) return 0;

@@ -1,10 +1,10 @@
-// Save, load and clone. One function walks everything that makes up a simulation, measuring, writing or
-// reading; the shell and the plans are built again from the sheets, which gives the same ones.
+// Save, load and clone. One function walks all parts of a simulation, measuring, writing or reading; the shell and the
+// plans are rebuilt from the sheets, which gives the same ones.
 //
-// Layout: SnapshotHeader, then the body that snapshot_body walks. Numbers are in the machine's order. Defs
-// go field by field (snapshot_def.c): their padding and pointers differ from run to run. The checksum finds
-// damage, and no malice: what is read is held against the checks that calls of the public functions pass, and a State
-// against what steps can leave (snapshot_check.c).
+// Layout: SnapshotHeader, then the body that snapshot_body walks. Numbers are in the machine's byte order. Defs are
+// stored field by field (snapshot_def.c): their padding and pointers differ from run to run. The checksum finds damage,
+// not malice: data read back must pass the checks of the public functions, and a State those of what steps can leave
+// (snapshot_check.c).
 #include "shell/split.h"
 #include "sim/snapshot_check.h"
 #include "sim/snapshot_def.h"
@@ -18,7 +18,7 @@ typedef struct SnapshotHeader {
     char magic[8];           ///< "SINGESIM"
     uint32_t version, order; ///< order reads 0x01020304 on a machine of the same byte order
     uint64_t size, checksum; ///< of the body
-    uint32_t sizes[4];       ///< of what the body is made of: another build's layout is refused
+    uint32_t sizes[4];       ///< of structs in the body: another build's layout is refused
     uint32_t reserved[2];    ///< 0
 } SnapshotHeader;
 _Static_assert(sizeof(SnapshotHeader) == 56, "a snapshot begins with these bytes, without padding");
@@ -57,19 +57,19 @@ static SingeResult snapshot_state(Stream *stream, SingeSim *sim) {
     stream_data(stream, state->arena, state->arena_size);
 
     // tears change the Shell: repeat them
-    if (stream->mode == STREAM_READ && !stream->failed) // the shell is as built: it tears again as it did
+    if (stream->mode == STREAM_READ && !stream->failed) // the shell is as built: it tears again in the same order
         stream->failed = state->tear.split_count > sim->shell.spare_count ||
                          !split_replay(&sim->shell, state->tear.splits, state->tear.split_count) ||
                          !snapshot_state_fits(sim);
-    if (stream->failed) return SINGE_OK; // the caller tells
+    if (stream->failed) return SINGE_OK; // the caller reports it
 
-    // plans that keep something
+    // plans with data of their own
     SingeResult result = dynamics_plan_stream(sim->dynamics, &sim->shell, state, stream);
     if (sim->gas) gas_plan_stream(sim->gas, &sim->state.gas, stream);
     return result;
 }
 
-/// Of each pin, whether it follows positions, and those.
+/// For each pin, whether it follows positions, and these positions.
 static bool snapshot_pin_motions(Stream *stream, SingeSim *sim) {
     for (uint32_t i = 0; i < sim->pins.count; i++) {
         Pin *pin = &sim->pins.items[i];
@@ -87,8 +87,7 @@ static bool snapshot_follows(const SingeSim *sim) {
     return false;
 }
 
-/// What most simulations have nothing of comes last, and only where there is something: a word that says what, and
-/// that.
+/// Parts that most simulations do not have come last, and only if there are any: a word of flags, then the parts.
 static bool snapshot_more(Stream *stream, SingeSim *sim) {
     enum { MORE_REMAINDER = 1, MORE_PINS = 2, MORE_ALL = 3 };
     uint32_t more = (sim->remainder != 0 ? MORE_REMAINDER : 0) | (snapshot_follows(sim) ? MORE_PINS : 0);
@@ -171,7 +170,7 @@ SingeResult singe_sim_load(const SingeSimDef *hooks, const uint8_t *bytes, size_
     TRY(snapshot_check(bytes, size, error));
     SingeSim *sim;
     TRY(singe_sim_create(hooks, &sim, error));
-    // the stream only reads: the cast takes nothing's constness away in fact
+    // the stream only reads: the cast does not drop constness in effect
     Stream read = {.mode = STREAM_READ,
                    .bytes = (uint8_t *)(uintptr_t)(bytes + sizeof(SnapshotHeader)),
                    .size = size - sizeof(SnapshotHeader)};

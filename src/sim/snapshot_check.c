@@ -41,7 +41,7 @@ bool snapshot_remainder_fits(const SingeSim *sim) {
 
 static bool double_within(double x, double low, double high) { return x >= low && x <= high; }
 
-/// A moment that may have been: -1 for never.
+/// A possible time of an event: -1 for never.
 static bool moment_fits(float moment, double now) {
     return moment == -1 || double_within((double)moment, 0, (float)now);
 }
@@ -75,7 +75,7 @@ static bool dynamics_fits(const SingeSim *sim) {
     return true;
 }
 
-/// Every particle is held by as many pins as its count says.
+/// Every particle is held by as many pins as its count tells.
 static bool pins_fit(SingeSim *sim) {
     uint8_t *held = sim->state.dynamics.pinned;
     bool fits = true;

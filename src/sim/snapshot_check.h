@@ -5,20 +5,20 @@
 
 #include "sim/sim_internal.h"
 
-/// Points in motion have finite positions and finite times.
+/// Whether points in motion have finite positions and finite times.
 bool snapshot_motion_fits(const Motion *motion);
 
 /// Whether an advance can have left such a remainder.
 bool snapshot_remainder_fits(const SingeSim *sim);
 
-/// Objects have generations that were given out.
+/// Whether all generations of objects were given out.
 bool snapshot_generations_fit(const SingeSim *sim);
 
-/// A pin's particles are in order and exist; its anchors are positions.
+/// Whether a pin's particles are in order and exist, and its anchors are positions.
 bool snapshot_pin_fits(const Shell *shell, const Pin *pin);
 
-/// The State holds what steps can leave there, for the shell as it has torn and the pins that there are. Target lengths
-/// and the slots of lanes without a strand follow from the rest: they are put as they should be.
+/// Whether the State is one that steps can leave, for the torn shell and the present pins. Target lengths and the slots
+/// of lanes without a strand follow from other data: they are set to that.
 bool snapshot_state_fits(SingeSim *sim);
 
 #endif

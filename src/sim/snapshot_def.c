@@ -1,4 +1,4 @@
-// A field that is added to a Def is added here; a test counts the bytes that are not.
+// A new field of a Def must be added here; a test counts the bytes that are missing.
 #include "sim/snapshot_def.h"
 
 #include "shell/sheet.h"

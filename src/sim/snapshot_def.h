@@ -5,7 +5,7 @@
 #include "common/stream.h"
 #include "sim/sim_internal.h"
 
-/// All but hooks and thread count, which stay as they are when reading.
+/// All but hooks and thread count, which do not change when reading.
 void snapshot_sim_def(Stream *stream, SingeSimDef *def);
 
 /// Name, counts, material and the rest of a sheet as it was added.

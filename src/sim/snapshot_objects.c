@@ -1,4 +1,4 @@
-// Sheets, sources, colliders and pins in a snapshot. What is read passes the checks of the calls that make them.
+// Sheets, sources, colliders and pins in a snapshot. Data read back passes the checks of the calls that make them.
 #include "sim/snapshot_objects.h"
 
 #include "sim/snapshot_check.h"
@@ -110,7 +110,7 @@ static bool snapshot_source(Stream *stream, SingeSim *sim, Source *source) {
            snapshot_held(stream, source_check_read(&sim->shell, source, NULL) == SINGE_OK);
 }
 
-/// A mesh as its solid has it; the rest follows from it.
+/// A mesh as its solid stores it; the rest follows from that.
 static bool snapshot_mesh(Stream *stream, Memory *memory, MeshSolid *mesh) {
     MeshSolid saved = *mesh;
     STREAM(stream, saved.vertex_count);
@@ -181,7 +181,7 @@ static bool snapshot_collider(Stream *stream, SingeSim *sim, Collider *collider)
     snapshot_collider_def(stream, &collider->def);
     if (stream->failed || !snapshot_path(stream, &sim->memory, &collider->path)) return false;
     SingeColliderDef def = collider->def;
-    def.path_count = collider->path.count; // it may have been given another one
+    def.path_count = collider->path.count; // it may have been given another path
     if (!snapshot_held(stream, def.path_count > 0 && collider_check(&def, NULL) == SINGE_OK)) return false;
     if (collider->def.kind == SINGE_COLLIDER_MESH) return snapshot_mesh(stream, &sim->memory, &collider->mesh);
     if (collider->def.kind == SINGE_COLLIDER_DEFORMING) return snapshot_deform(stream, &sim->memory, &collider->deform);

@@ -5,7 +5,7 @@
 #include "common/stream.h"
 #include "sim/sim_internal.h"
 
-/// Fails the stream where something was read that a check refuses. Returns whether the stream is still good.
+/// Fails the stream if a check refuses data read back. Returns whether the stream is still good.
 bool snapshot_held(Stream *stream, bool good);
 
 bool snapshot_motion(Stream *stream, Memory *memory, uint32_t count, Motion *motion);

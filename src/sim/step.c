@@ -26,7 +26,7 @@ static void step_note_contacts(SingeSim *sim) {
     sim_log_contacts(sim, &found);
 }
 
-/// What is kept for a vertex beside the State, for its new half.
+/// Copies what is stored for a vertex outside the State to its new half.
 static void step_share(SingeSim *sim, uint32_t vertex, uint32_t spare) {
     dynamics_plan_torn(sim->dynamics, vertex, spare);
     if (sim->gas) gas_plan_torn(sim->gas, vertex, spare);
@@ -34,7 +34,7 @@ static void step_share(SingeSim *sim, uint32_t vertex, uint32_t spare) {
         if (sim->sources.items[i].texture) sim->sources.items[i].texture[spare] = sim->sources.items[i].texture[vertex];
 }
 
-/// Tears, and what follows from them.
+/// Tears, and updates after them.
 static void step_tear(SingeSim *sim, StepContext context) {
     State *state = &sim->state;
     bool short_of_spares = false;
@@ -67,7 +67,7 @@ StepContext sim_context(SingeSim *sim, const SingeView *view) {
                          .ambient_temperature = sim->def.ambient_temperature};
 }
 
-/// Notes what the stages counted.
+/// Stores the counters of the stages.
 static void step_note(SingeSim *sim, const HeatCounters *heat, const DynamicsCounters *dynamics) {
     SingeTimers *timers = &sim->timers;
     timers->heat_iterations += heat->iterations;
@@ -81,7 +81,7 @@ static void step_note(SingeSim *sim, const HeatCounters *heat, const DynamicsCou
     step_note_contacts(sim);
 }
 
-/// A stage's context is without the part of the State that the stage writes.
+/// A stage's context lacks the part of the State that the stage writes.
 static SingeResult step_stages(SingeSim *sim) {
     const SingeView view = singe_sim_view(sim);
     const StepContext all = sim_context(sim, &view);
@@ -98,13 +98,13 @@ static SingeResult step_stages(SingeSim *sim) {
     if (heat.unconverged) sim_log_unconverged(sim);
     step_lap(sim, SINGE_STAGE_HEAT, &start);
 
-    // 2. masses of what is above the ignition point, and target lengths (eq 4 to 6)
+    // 2. masses of particles above the ignition point, and target lengths (eq 4 to 6)
     context = all;
     context.state.burn = NULL;
     TRY(burn_step(&context, sim->thickening, sim->partial, &state->burn));
     step_lap(sim, SINGE_STAGE_BURN, &start);
 
-    // 3. burnt springs and particles go (eq 7)
+    // 3. burnt springs and particles are removed (eq 7)
     context = all;
     context.state.ablate = NULL;
     ablate_step(sim->ablate, &context, &state->ablate);
@@ -116,11 +116,11 @@ static SingeResult step_stages(SingeSim *sim) {
     TRY(dynamics_step(sim->dynamics, &context, &state->dynamics, &dynamics));
     step_lap(sim, SINGE_STAGE_DYNAMICS, &start);
 
-    // 5. what was pulled at too hard has torn; as it cannot fail, no step has to be undone that tore
+    // 5. tears by too large forces; this cannot fail, so no step that tore has to be undone
     if (sim->tear) step_tear(sim, all);
     step_lap(sim, SINGE_STAGE_ABLATE, &start);
 
-    // 6. the gas above what burns; what it does to the sheets is felt from the next step on
+    // 6. the gas above the fire; its effect on the sheets begins with the next step
     context = all;
     context.state.gas = NULL;
     if (sim->gas) gas_step(sim->gas, &context, &state->gas);
@@ -130,7 +130,7 @@ static SingeResult step_stages(SingeSim *sim) {
     return SINGE_OK;
 }
 
-/// With assertions: everything that a step may have changed.
+/// With assertions: checks everything that a step may have changed.
 static void step_validate(const SingeSim *sim) {
     SINGE_ASSERT(shell_validate(&sim->shell) == NULL);
     SINGE_ASSERT(state_validate(&sim->shell, &sim->state) == NULL);

@@ -1,4 +1,4 @@
-// Objects that there are, and what callers keep with them.
+// Lists of the existing objects, and the callers' data for them.
 #include "sim/objects.h"
 
 /// The handles of a list's objects, at most `capacity` of them, in the order of their slots. Returns how many there
