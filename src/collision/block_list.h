@@ -34,7 +34,7 @@ typedef struct BlockList {
 /// A list with room for `capacity` items of `size` bytes, whatever blocks they are in. False when out of memory.
 bool block_list_create(Memory *memory, BlockList *list, size_t size, uint32_t capacity, uint32_t block_count);
 
-/// Makes room for at least `capacity` items and `block_count` blocks; the previous items are lost, their number is not.
+/// Makes room for at least `capacity` items and `block_count` blocks; the previous items are lost, not their number.
 /// When out of memory it returns false and the list is unchanged.
 bool block_list_grow(Memory *memory, BlockList *list, uint32_t capacity, uint32_t block_count);
 void block_list_free(Memory *memory, BlockList *list);

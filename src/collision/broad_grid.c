@@ -141,7 +141,7 @@ static void list_pair(const Find *find, uint32_t a, uint32_t b, BlockWriter *wri
         (CollisionPair){.a = a, .b = b, .distance = bridge == SHELL_NONE ? distance : 0, .hit = 2, .bridge = bridge};
 }
 
-/// Entries of a bucket that are tested together.
+/// Entries of a bucket, with one array per number: four are tested at once.
 enum { TILE = 256 };
 typedef struct Tile {
     float low[3][TILE], high[3][TILE];

@@ -1,7 +1,7 @@
 // Continuous collision detection (CCD) at the end of a step: no displacement passes through another cell.
 //
 // Every corner has moved from x0, where the step began, to x1. Cells that meet on these displacements (ccd_pairs.c) are
-// moved otherwise (ccd_zones.c). As this may put them in the path of other cells, it is repeated for the cells that
+// moved differently (ccd_zones.c). As this may put them in the path of other cells, it is repeated for the cells that
 // have changed.
 //
 // A corner that has left the box that the search gave its cell may have met a cell that the search did not list: then
@@ -58,7 +58,7 @@ static void measure_changed(void *task, int begin, int end) {
     for (int k = begin; k < end; k++) measure_cell(ccd, ccd->plan->changed_list[k]);
 }
 
-// ---- what the last round has changed
+// ---- cells that the last round has changed
 
 void ccd_forget_changed(CollisionPlan *plan) {
     for (uint32_t k = 0; k < plan->changed_count; k++) plan->changed[plan->changed_list[k]] = 0;

@@ -16,7 +16,7 @@ typedef struct Ccd {
 
 static inline bool ccd_is_alive(const Ccd *ccd, uint32_t c) { return ccd->cell_flags[c] & SINGE_ALIVE; }
 
-/// Forgets what has changed; marks a cell, or those around a vertex, as changed.
+/// Forgets all changed cells; marks a cell, or those around a vertex, as changed.
 void ccd_forget_changed(CollisionPlan *plan);
 void ccd_mark_changed(const Ccd *ccd, uint32_t cell);
 void ccd_mark_around(const Ccd *ccd, uint32_t v);

@@ -71,7 +71,7 @@ static void note_search(CollisionPlan *plan, const StateInput *state, const Dyna
     plan->step = state->step;
 }
 
-// ---- what is near
+// ---- nearby features
 
 /// Two cells whose features are measured.
 typedef struct Look {

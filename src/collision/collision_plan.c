@@ -187,7 +187,7 @@ static bool collision_fits(const CollisionPlan *plan, const uint8_t *cell_flags)
     return true;
 }
 
-/// The pairs that have intersected since the start: the number of each cell, then their other cells.
+/// The pairs that have intersected since the start: the count of each cell, then their other cells.
 static SingeResult stream_initial(CollisionPlan *plan, Stream *stream) {
     uint32_t *first = plan->initial_first, count = first[plan->cell_count];
     STREAM(stream, count);

@@ -119,7 +119,7 @@ struct CollisionPlan {
     float thickness; ///< m, of contact; at most 2/5 of a sheet's typical cell
     float *thin;     ///< [cells] m, the same; at most 2/5 of this cell's shortest side
     float slack_max; ///< m, max deviation of cells from their trajectories before the search is repeated
-    float gap;       ///< m, that displacements keep free before a collision
+    float gap;       ///< m, distance that displacements keep before a collision
     float noise;     ///< m, rounding error of positions
 
     // the last search: part of a snapshot
@@ -135,7 +135,7 @@ struct CollisionPlan {
     uint32_t initial_capacity;
     uint8_t *intersecting; ///< [cells] 1: in one of these pairs
 
-    // what was found
+    // results of the search, and of collision_open
     uint32_t steps;     ///< for which the search is valid
     float slack, reach; ///< m; reach is thickness + slack
     float edge;         ///< m, of the grid's cubes

@@ -40,8 +40,7 @@ Float4 feature_from_triangle(Float4 p, Float4 a, Float4 b, Float4 c, float weigh
 //
 // Two cells that share a side or a corner do not cross if
 //
-//   a plane through the shared corners has the other corners of one cell on one side and those of the other on the
-//   other
+//   a plane through the shared corners has the other corners of the two cells on different sides
 //   (feature_is_separated), or, which is cheaper and true nearly everywhere,
 //
 //   all their triangles' normals lie within a cone, and all corners have angles of at most 115 degrees (Volino and

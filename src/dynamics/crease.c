@@ -26,8 +26,8 @@
 // away from the centres, and less than pi - 2 beta towards them. Creases are limited to CREASE_HOLDS of both angles.
 //
 // Plasticity, in curvatures k = angle/s (1/m), which mean the same on every mesh. The elastic part is neither crease
-// nor due to eq 6, k_e = k - k_6 - k_p, where layers that shrink by ratios a (green) and b (blue) curl by cos(phi +
-// theta_6/2) = a/b cos phi. With k_y = 1/crease_radius, c = crease_share,
+// nor due to eq 6, k_e = k - k_6 - k_p, where layers that shrink by ratios a (green) and b (blue) curl by
+// cos(phi + theta_6/2) = a/b cos phi. With k_y = 1/crease_radius, c = crease_share,
 //
 //   |k_e| > k_y + (1/c - 1)|k_p|:   k_p += c (|k_e| - k_y - (1/c - 1)|k_p|) sign k_e
 //
@@ -147,7 +147,7 @@ static Hinge hinge_measure(const Shell *shell, uint32_t green) {
     hinge.twist = hinge_twist(normal, beyond, edge);
     hinge.max = real_atan2f(2 * thickness, hinge.arc);
     hinge.limit = hinge_limit(shell, first, second, hinge.max / hinge.arc);
-    // of what is folded into a point at rest no length is made
+    // limited, so that the length at rest, r cos phi, is not 0
     hinge.lean = fmaxf(-1.5f, fminf(0.5f * hinge.angle - hinge.max, 1.5f));
     return hinge;
 }

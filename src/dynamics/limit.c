@@ -6,9 +6,9 @@
 //
 //   C = |d| - s l > 0,   u = d/|d|,   lambda = C/(w_a + w_b),   x_a += w_a lambda u,   x_b -= w_b lambda u
 //
-// and the velocity that still stretches them is removed, without bounce: v_a += w_a mu u, v_b -= w_b mu u with mu =
-// max((v_b - v_a) . u, 0)/(w_a + w_b). Both conserve linear and angular momentum. A count finds the blocks with springs
-// to shorten; sweeps go over those, and then they are counted again. Nearly all steps end with the first count.
+// and the velocity that still stretches them is removed, without bounce: v_a += w_a mu u, v_b -= w_b mu u with
+// mu = max((v_b - v_a) . u, 0)/(w_a + w_b). Both conserve linear and angular momentum. A count finds the blocks with
+// springs to shorten; sweeps go over those, and then they are counted again. Nearly all steps end with the first count.
 //
 // This is done in every step. CCD comes after it and takes displacements back towards the start of the step: a spring
 // that was too long then would be so again.

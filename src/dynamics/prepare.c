@@ -1,4 +1,4 @@
-// What stays the same during a step: masses, weights, normals, drag and wind.
+// Values that stay the same during a step: masses, weights, normals, drag and wind.
 //
 // Weight of a spring (eq 19): the mean of its ends' material weights, times a factor that goes from 1
 // for fresh material to the ends' mean char_weight at m_min: char is soft.

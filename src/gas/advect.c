@@ -125,7 +125,7 @@ static void advect_look(void *context, int begin, int end) {
         float max = 0;
         for (int b = 0; b < GAS_BOXES; b++) box[b] = GAS_NO_BOX;
 
-        // boxes around what moves in this plane, and its max speed
+        // boxes around the moving gas in this plane, and its max speed
         for (int j = 0; j < grid->n[1]; j++)
             for (int first = 0; first < grid->n[0]; first += SWEEP_RUN) {
                 int count = grid->n[0] - first, busy[GAS_BOXES][2] = {{INT_MAX, -1}, {INT_MAX, -1}, {INT_MAX, -1}};

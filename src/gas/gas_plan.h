@@ -146,7 +146,7 @@ void gas_blocked(GasPass *pass);
 void gas_normals(GasPass *pass);
 /// Whether anything burnt since the gas's last step.
 bool gas_fed(const GasPass *pass);
-/// Adds the gas of what burnt as fuel.
+/// Adds the gas of the burnt material as fuel.
 void gas_feed(GasPass *pass);
 /// Effect of the gas on each particle until its next step, and the heat that the gas loses.
 void gas_meet(GasPass *pass);

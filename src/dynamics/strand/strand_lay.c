@@ -52,7 +52,7 @@ static void lay_put(Lay *lay, uint32_t s, uint32_t group, uint32_t column, uint3
     lay->laid[lay->laid_count++] = (Laid){s, group, column, row};
 }
 
-// ---- what is left, by length
+// ---- strands left, by length
 
 /// Lists the chains or the rings of a family that are not laid; true where there are any.
 static bool lay_list(Lay *lay, uint32_t family, bool ring) {
@@ -70,7 +70,7 @@ static bool lay_list(Lay *lay, uint32_t family, bool ring) {
     return any;
 }
 
-/// The longest length with a strand that is at most `max`; 0 for none. Forgets what has been laid meanwhile.
+/// The longest length with a strand that is at most `max`; 0 for none. Forgets strands laid meanwhile.
 static uint32_t lay_longest(Lay *lay, uint32_t max) {
     uint32_t found = max;
     while (found > 0) {
@@ -138,8 +138,8 @@ static void lay_put_right(Lay *lay, uint32_t s, uint32_t column, uint32_t row) {
     lay_put(lay, s, lay->set->group_count - 1, column, row);
 }
 
-/// Fills the lane on the right with strands next to those of the lane on the left. Returns how many particles have p +
-/// 1 next to them.
+/// Fills the lane on the right with strands next to those of the lane on the left. Returns how many particles have
+/// p + 1 next to them.
 static uint32_t lay_right(Lay *lay, uint32_t column) {
     uint32_t contiguous = 0;
     lay->lane_serial++;
@@ -168,7 +168,7 @@ static uint32_t lay_leftmost(const Lay *lay, uint32_t s) {
     }
 }
 
-/// Takes back what was laid since there were `count` strands.
+/// Removes the strands laid since there were `count`.
 static void lay_take_back(Lay *lay, uint32_t count) {
     while (lay->laid_count > count) lay->set->strand_slot[lay->laid[--lay->laid_count].strand] = SHELL_NONE;
 }
@@ -214,9 +214,10 @@ static void lay_runs(Lay *lay, uint32_t family) {
     lay_own(lay, family, false);
 }
 
-// ---- what no run has taken
+// ---- strands outside runs
 
-/// Lays what fits into `nodes` free rows of a column from `row` on, longest first. Returns the row after its last node.
+/// Lays strands that fit into `nodes` free rows of a column from `row` on, longest first. Returns the row after the
+/// last node.
 static uint32_t lay_fill(Lay *lay, uint32_t group, uint32_t column, uint32_t row, uint32_t nodes) {
     while (nodes > 1) {
         uint32_t longest = lay->springs->longest, length = lay_longest(lay, nodes - 1 < longest ? nodes - 1 : longest);

@@ -61,8 +61,8 @@ typedef struct Project {
     uint32_t first_group;
 } Project;
 
-/// A room of the scratch for this thread: a bit of `taken`. A host's scheduler may run more threads than there are
-/// rooms; they wait.
+/// Takes a room of the scratch for this thread, a bit of `taken`. A host's scheduler may run more threads than there
+/// are rooms; they wait.
 static int strands_enter(Strands *strands) {
     for (;; thread_yield())
         for (int room = 0; room < strands->room_count; room++) {
