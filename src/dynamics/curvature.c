@@ -7,8 +7,8 @@
 //
 // with r_0 the value at rest and kappa = curvature_max: an arc of the curvature kappa turns by kappa l from one spring
 // to the next. Cells s that are large for the thickness t cannot bear that: their moment is largest at about
-// beta = atan(2 t/s), and kappa is at most beta/s (with l/s times the chord of beta for the chord of beta l/s). Cells of
-// more than 8 t, which show no folds of paper, would be held nearly flat by that, and have no limit.
+// beta = atan(2 t/s), and kappa is at most beta/s (with l/s times the chord of beta for the chord of beta l/s). Cells
+// of more than 8 t, which show no folds of paper, would be held nearly flat by that, and have no limit.
 //
 // Once a substep the excess is reduced by BEND_GAIN of itself, with momentum conserved:
 //

@@ -11,7 +11,7 @@
 //
 // r is its floor, the `regularisation`. a is due to projecting a colour once a substep: the colours interfere with each
 // other where forces change from spring to spring, as those of red do under transverse shear: 2.5 (measured) for red
-// and 0 for the others. It is subtracted from c_spring, so that the sum does not depend on h, as long as
+// and 0 for the others. This compliance is subtracted from c_spring, so that the sum does not depend on h, as long as
 //
 //   h <= sqrt(c_spring m/(a + r))
 //
