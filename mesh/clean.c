@@ -1,4 +1,4 @@
-// Faces that are none: without area, there twice, or touching themselves; and those that no centre sees.
+// Cleans up faces that have no area, are duplicates, touch themselves, or are not visible from their centroid.
 #include "mesh/loops.h"
 
 #include <string.h>
@@ -13,7 +13,7 @@ static void push_loop(Work *work, const Loops *loops, uint32_t loop, uint32_t or
     push_ring(work, loops->corner + loops->end[loop], loops->end[loop + 1] - loops->end[loop], origin, out);
 }
 
-/// A loop as it is where its centre sees all of it, or else its triangles.
+/// Pushes a loop as it is if it is entirely visible from its centroid, else its triangles.
 static void push_cut_loop(Work *work, Loops *loops, uint32_t loop, uint32_t origin, Faces *out) {
     const uint32_t first = loops->triangles[loop], end = loops->triangles[loop + 1];
     if (first == end) return;
@@ -27,7 +27,7 @@ static void push_cut_loop(Work *work, Loops *loops, uint32_t loop, uint32_t orig
     }
 }
 
-/// Copies faces that are whole; others fall apart into loops and triangles.
+/// Copies a whole face; splits others into loops and triangles.
 static SingeResult clean_face(Work *work, uint32_t face, Loops *loops, Faces *out) {
     const Faces *old = &work->faces;
     const uint32_t origin = old->origin[face], name = work_face_name(work, origin);
@@ -64,8 +64,8 @@ static bool same_corners(const Faces *faces, uint32_t a, uint32_t b) {
     return true;
 }
 
-/// Marks faces whose corners an earlier one has, and returns how many. They are looked for among those with the same
-/// least vertex.
+/// Marks faces with the same corners as an earlier one, and returns how many. Only faces with the same lowest vertex are
+/// compared.
 static uint32_t find_duplicates(Work *work, uint8_t *gone) {
     const Faces *faces = &work->faces;
     uint32_t *head = work_new(work, work->vertex_count, sizeof *head);

@@ -1,7 +1,7 @@
-// Short sides go: springs that are far shorter than the rest cannot be held (docs/meshes.md), and what they show is
-// less than a cell. Vertices at the ends of short sides become one, the shortest first, as long as what becomes one
-// vertex is no larger than such a side. Of two vertices one of which is on an open edge, that one stays; two on open
-// edges become one only along such an edge, so that nothing is pinched off.
+// Collapses short sides: springs that are far shorter than the rest cannot be held (docs/meshes.md), and the detail they
+// show is smaller than a cell. The ends of short sides are merged, the shortest side first, as long as the set that
+// becomes one vertex is no larger than the limit for sides. Of two vertices one of which is on an open edge, that one
+// stays; two on open edges are merged only along such an edge, so that nothing is pinched off.
 #include "mesh/work.h"
 
 #include <math.h>
@@ -16,9 +16,9 @@ typedef struct Short {
 typedef struct Shrink {
     Work *work;
     double min;                   ///< sides shorter than this
-    uint32_t *set, *stays;        ///< [vertices] what becomes one; the vertex that stays, of a root
-    uint8_t *open;                ///< [vertices] of a root: has a vertex on an open edge
-    double (*low)[3], (*high)[3]; ///< [vertices] of a root
+    uint32_t *set, *stays;        ///< [vertices] sets to merge; of a root, the vertex that stays
+    uint8_t *open;                ///< [vertices] of a root: its set has a vertex on an open edge
+    double (*low)[3], (*high)[3]; ///< [vertices] of a root: the box around its set
 } Shrink;
 
 static int by_length(const void *a, const void *b) {
@@ -58,7 +58,7 @@ static Short *list_short(Work *work, double min, uint32_t *count) {
     return list;
 }
 
-/// Makes one of what the ends of a side belong to, if that stays small.
+/// Merges the sets of a side's ends, if the result is small enough.
 static bool join_ends(Shrink *shrink, uint32_t half) {
     const Work *work = shrink->work;
     const Faces *faces = &work->faces;
@@ -98,7 +98,7 @@ static Shrink shrink_begin(Work *work, double min) {
     return shrink;
 }
 
-/// uv at a vertex that was several differ a little: those that differ by less than what became one are the first's.
+/// The uv at a merged vertex differ slightly: those that differ by no more than the merged set is large get the first's.
 static void join_uv(Shrink *shrink, const uint8_t *several) {
     Work *work = shrink->work;
     const Faces *faces = &work->faces;

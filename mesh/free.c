@@ -1,4 +1,4 @@
-// What owns the arrays of meshes frees them.
+// Frees the arrays of meshes.
 #include "formats/mesh_reader.h"
 #include "formats/store.h"
 #include "mesh/mesh.h"

@@ -1,4 +1,4 @@
-// Rectangles of quads, and how they come off the drawing board.
+// Rectangles of quads, and their imperfections.
 //
 // Noise is a sum of plane waves whose directions are spread evenly over the half circle, so that it favours neither
 // the grid's lines nor any other:
@@ -37,13 +37,13 @@ static double grid_noise(double x, double y, double wavelength, uint32_t seed) {
 
 void mesh_grid_wear(Mesh *mesh, uint32_t cells_x, uint32_t cells_y, const GridWear *wear) {
     if (!(wear->jitter > 0) && !(wear->displacement > 0)) return;
-    const double jitter_wavelength = 3.7; // cells: neighbours move much alike, cells stay convex
+    const double jitter_wavelength = 3.7; // cells: neighbours move nearly alike, so cells stay convex
     uint32_t row = cells_x + 1, last = mesh->vertex_count - 1;
     double size_x = (double)mesh->positions[3 * last] * 2, size_y = (double)mesh->positions[3 * last + 1] * 2;
     double wavelength = 0.45 * fmin(size_x, size_y);
     for (uint32_t v = 0; v <= last; v++) {
         uint32_t i = v % row, j = v / row;
-        // the border slides along itself only
+        // border vertices move only along the border
         bool free_x = i > 0 && i<cells_x, free_y = j> 0 && j < cells_y;
         double dx = free_x ? fmax(-1, fmin(1, 0.5 * grid_noise(i, j, jitter_wavelength, 2 * wear->seed))) : 0;
         double dy = free_y ? fmax(-1, fmin(1, 0.5 * grid_noise(i, j, jitter_wavelength, 2 * wear->seed + 1))) : 0;

@@ -1,16 +1,16 @@
-// T-junctions: a vertex of an open edge that lies on another open edge belongs to that face, too, which gets it as a
-// corner, where that closes the gap.
+// T-junctions: a vertex of an open edge that lies on another open edge becomes a corner of that edge's face, too, if
+// that closes the gap.
 #include "mesh/loops.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/// How far beside a side a vertex may lie, as a share of it.
+/// Max distance of a vertex from a side that it lies on, as a share of the side's length.
 static const double beside = 1e-5;
 
 typedef struct OnSide {
-    double t; ///< along it, 0 to 1
+    double t; ///< along the side, 0 to 1
     uint32_t vertex;
 } OnSide;
 
@@ -20,7 +20,7 @@ typedef struct Junctions {
     Work *work;
     Positions positions;
     uint32_t *open_first, *open_to; ///< open edges by their ends
-    uint32_t face;                  ///< whose side is looked along
+    uint32_t face;                  ///< whose side is searched
     OnSide found[ON_SIDE_MAX + 2];
     int count;
 } Junctions;
@@ -37,7 +37,7 @@ static void look_in_box(Junctions *j, uint32_t a, uint32_t b, const int64_t box[
     sub3(work->position[b], work->position[a], d);
     const double square = dot3(d, d), max = fmax(work->weld, beside * sqrt(square));
     for (uint32_t v = j->positions.head[positions_slot(&j->positions, box)]; v != MESH_NONE; v = j->positions.next[v]) {
-        bool known = false; // also a corner that its own face has already
+        bool known = false; // found before, or a corner of the face itself
         for (uint32_t h = work->faces.first[j->face]; h < work->faces.first[j->face + 1]; h++)
             known = known || work->faces.corner[h] == v;
         for (int i = 0; i < j->count && !known; i++) known = j->found[i].vertex == v;
@@ -50,7 +50,7 @@ static void look_in_box(Junctions *j, uint32_t a, uint32_t b, const int64_t box[
     }
 }
 
-/// Finds what lies on a side, in its order.
+/// Finds the vertices on a side, in their order along it.
 static void look_along(Junctions *j, uint32_t a, uint32_t b) {
     const Work *work = j->work;
     const double length = distance3(work->position[a], work->position[b]);
@@ -76,7 +76,7 @@ static bool open_edge(const Junctions *j, uint32_t a, uint32_t b) {
     return false;
 }
 
-/// Keeps those that an open edge joins to the one before or behind: the rest touch nothing.
+/// Keeps the vertices that an open edge joins to the previous or the next one: the others close no gap.
 static void keep_joined(Junctions *j, uint32_t a, uint32_t b) {
     int kept = 0;
     uint32_t before = a;
@@ -121,7 +121,7 @@ static bool list_open(Junctions *j) {
     return true;
 }
 
-/// uv of a vertex on a side, straight between its ends.
+/// Pushes a vertex on a side, with the uv interpolated between the side's ends.
 static void push_on_side(const Junctions *j, Faces *out, int i, uint32_t half, uint32_t next) {
     const Faces *old = &j->work->faces;
     uint32_t at = out->corner_count;
@@ -131,8 +131,8 @@ static void push_on_side(const Junctions *j, Faces *out, int i, uint32_t half, u
         out->uv[at][k] += (float)j->found[i].t * (old->uv[next][k] - old->uv[half][k]);
 }
 
-/// Puts vertices into the sides of all faces but those that are to be left as they are, and writes the faces unless
-/// `out` is NULL. Returns how many vertices.
+/// Inserts vertices into the sides of all faces except those marked in `left`, and writes the faces unless `out` is
+/// NULL. Returns the number of vertices inserted.
 static uint32_t put_all(Junctions *j, const uint8_t *left, Faces *out) {
     const Work *work = j->work;
     const Faces *old = &work->faces;
@@ -153,7 +153,7 @@ static uint32_t put_all(Junctions *j, const uint8_t *left, Faces *out) {
     return added;
 }
 
-/// Marks faces that cross themselves now that they have more corners, as those narrower than `weld` may.
+/// Marks faces that cross themselves because of their new corners; faces narrower than `weld` may.
 static bool any_crossed(Work *work, const Faces *before, uint8_t *left) {
     const Faces *faces = &work->faces;
     Loops loops = {0};

@@ -1,11 +1,11 @@
-// A face's ring of corners taken apart into loops that can be cut: what goes out and comes back is left out, and where
-// the ring comes to a vertex once more it falls into two, unless what lies between is a hole.
+// Splits a face's ring of corners into loops that can be cut into triangles. Parts that double back are left out. Where
+// the ring returns to a vertex it is split in two, unless the part in between is a hole.
 #include "mesh/loops.h"
 
 #include <math.h>
 #include <string.h>
 
-/// How far beside a side a corner of the same face may lie, as a share of it, and still be on it.
+/// Max distance from a side at which a corner of the same face lies on it, as a share of the side's length.
 static const double beside = 1e-5;
 
 static uint32_t vertex_of(const Loops *loops, uint32_t half) { return loops->cut.faces->corner[half]; }
@@ -24,9 +24,9 @@ bool loops_begin(Loops *loops, Work *work, const Faces *faces) {
     return !work->no_memory;
 }
 
-// ---- there and back
+// ---- spikes
 
-/// Whether the ring turns back at b: at a vertex, or without area.
+/// Whether the ring doubles back at b, to the same vertex or without area, or repeats a vertex.
 static bool turns_back(const Loops *loops, uint32_t a, uint32_t b, uint32_t c) {
     double p[3], q[3], n[3];
     if (vertex_of(loops, a) == vertex_of(loops, c) || vertex_of(loops, a) == vertex_of(loops, b)) return true;
@@ -35,9 +35,9 @@ static bool turns_back(const Loops *loops, uint32_t a, uint32_t b, uint32_t c) {
     return dot3(p, q) > 0 && dot3(n, n) <= FACE_THIN * FACE_THIN * dot3(p, p) * dot3(q, q);
 }
 
-/// Leaves out corners at which the ring turns back, and vertices that follow themselves. Returns how many are left.
+/// Leaves out corners at which the ring doubles back, and repeated vertices. Returns the number of corners left.
 static uint32_t leave_out_spikes(const Loops *loops, uint32_t *ring, uint32_t n) {
-    uint32_t good = 0; // corners in a row that stay
+    uint32_t good = 0; // consecutive corners that stay
     for (uint32_t at = 0; n >= 3 && good < n;) {
         at %= n;
         const uint32_t before = (at + n - 1) % n;
@@ -47,7 +47,7 @@ static uint32_t leave_out_spikes(const Loops *loops, uint32_t *ring, uint32_t n)
         }
         memmove(ring + at, ring + at + 1, (n - 1 - at) * sizeof *ring);
         n--;
-        at = (at + n - 1) % (n ? n : 1); // the corner before may turn back now
+        at = (at + n - 1) % (n ? n : 1); // the corner before may be a spike now
         good = good > 2 ? good - 2 : 0;
     }
     return n >= 3 ? n : 0;
@@ -62,7 +62,7 @@ static bool has_repeats(const Loops *loops, const uint32_t *ring, uint32_t n) {
 
 // ---- corners on the face's own sides
 
-/// The corner of the ring nearest to `a` on the side from there to `b`; MESH_NONE where there is none.
+/// The corner of the ring nearest to `a` on the side from there to `b`; MESH_NONE if there is none.
 static uint32_t corner_on(const Loops *loops, uint32_t n, uint32_t a, uint32_t b) {
     double d[3], nearest = 1;
     uint32_t found = MESH_NONE;
@@ -80,7 +80,7 @@ static uint32_t corner_on(const Loops *loops, uint32_t n, uint32_t a, uint32_t b
     return found;
 }
 
-/// Where a corner of the ring lies on one of its sides, the side gets it as a corner.
+/// Inserts corners of the ring into those of its sides that they lie on. Returns the new number of corners.
 static uint32_t part_sides(Loops *loops, uint32_t n) {
     for (uint32_t i = 0; i < n && n < loops->cut.capacity; i++) {
         uint32_t on = corner_on(loops, n, loops->ring[i], loops->ring[(i + 1) % n]);
@@ -109,8 +109,8 @@ static double area_along(const Loops *loops, const uint32_t *ring, uint32_t n, c
     return dot3(own, normal);
 }
 
-/// Takes a ring apart at the vertices that it names twice: at all, or where both parts are wound as the whole is, so
-/// that holes stay with what is around them.
+/// Splits a ring at the vertices that it names twice: at all of them, or only where both parts have the winding of the
+/// whole, so that holes stay with their surroundings.
 static void fall_apart(Loops *loops, uint32_t n, bool all) {
     double normal[3];
     polygon_normal(&loops->cut, loops->ring, n, normal);
@@ -156,7 +156,7 @@ bool loops_is_flat(const Loops *loops, const uint32_t *ring, uint32_t n) {
     return !(area > FACE_THIN * longest * longest);
 }
 
-/// Whether a loop has no area, or the corners of an earlier one.
+/// Whether a loop has no area, or the same corners as an earlier one.
 static bool is_idle(const Loops *loops, uint32_t loop) {
     const uint32_t first = loops->end[loop], n = loops->end[loop + 1] - first;
     if (loops_is_flat(loops, loops->corner + first, n)) return true;
@@ -165,7 +165,7 @@ static bool is_idle(const Loops *loops, uint32_t loop) {
     return false;
 }
 
-/// Cuts the loops. False where one crosses itself or another.
+/// Cuts the loops into triangles. False if one crosses itself or another.
 static bool cut_loops(Loops *loops) {
     double largest[3] = {0}, normal[3];
     loops->cut.count = 0;

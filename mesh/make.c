@@ -1,4 +1,4 @@
-// The steps from polygons to quads, in their order, and the mesh that comes out.
+// The steps from polygons to quads, in their order, and the resulting mesh.
 #include "mesh/work.h"
 
 #include "formats/store.h"
@@ -46,7 +46,7 @@ static void take_vertices(Work *work) {
     }
 }
 
-/// The diagonal of the box around what faces use.
+/// The diagonal of the box around the vertices of faces.
 static double size_of(const Work *work) {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t h = 0; h < work->faces.corner_count; h++)
@@ -78,7 +78,7 @@ static SingeResult check_values(const Work *work) {
 
 // ---- out
 
-/// Numbers the vertices that are left in their order.
+/// Numbers the remaining vertices in their order.
 static uint32_t *number_vertices(Work *work, uint32_t *count) {
     uint32_t *number = work_new(work, work->vertex_count, sizeof *number);
     *count = 0;
@@ -118,7 +118,7 @@ static bool hand_over_attributes(const Work *work, const uint32_t *number, Mesh 
     return true;
 }
 
-/// uv of the vertices, the first that a corner has; and of corners, where some vertex has several.
+/// A vertex gets the uv of its first corner. The uv of corners stay only if some vertex has several (simplify).
 static void hand_over_uv(Work *work, const uint32_t *number, Mesh *mesh, uint8_t *has) {
     const Faces *faces = &work->faces;
     for (uint32_t h = 0; h < faces->corner_count; h++) {
@@ -171,12 +171,12 @@ static bool hand_over(Work *work, Mesh *mesh) {
     return true;
 }
 
-/// Leaves out what says nothing: uv of corners without a seam, numbers that are those of the file.
+/// Leaves out redundant arrays: the uv of corners if there is no seam, and numbers that equal those of the file.
 static void simplify(const Work *work, Mesh *mesh) {
     bool same = mesh->vertex_count == mesh->source_count, faces = true;
     for (uint32_t v = 0; v < mesh->vertex_count && same; v++) same = mesh->source[v] == (int32_t)v;
     for (uint32_t c = 0; c < mesh->cell_count && faces; c++) faces = mesh->cell_faces[c] == c;
-    bool several = false; // a vertex of the sheet was more than one of the file
+    bool several = false; // some vertex of the sheet was several in the file
     for (size_t i = 0; mesh->corner_source && i < 4 * (size_t)mesh->cell_count; i++)
         several = several || mesh->corner_source[i] != mesh->source[mesh->cells[i]];
     if (mesh->corner_source && !(several && work->report->seam_vertices)) {
@@ -207,7 +207,7 @@ static bool all_quads(const Faces *faces) {
     return true;
 }
 
-/// Whether no side has more than two quads, which the ways through polygons may bring about.
+/// Whether no side has more than two quads. Pairing across polygons may cause this.
 static bool sides_are_simple(Work *work) {
     uint32_t *order = work_sorted_edges(work);
     for (uint32_t k = 0, size; order && k < work->faces.corner_count; k += size)
@@ -215,7 +215,7 @@ static bool sides_are_simple(Work *work) {
     return true;
 }
 
-/// A quad that lacks one of its four corners or an area; MESH_NONE where there is none.
+/// A quad with a repeated corner or without area; MESH_NONE if there is none.
 static uint32_t unsound_quad(const Work *work) {
     const Faces *faces = &work->faces;
     for (uint32_t f = 0; f < faces->count; f++) {
@@ -233,7 +233,7 @@ static uint32_t unsound_quad(const Work *work) {
     return MESH_NONE;
 }
 
-/// Joins triangles to quads. False, and all as it was, where that leads to no sheet.
+/// Joins triangles to quads. False, with the old faces restored, if that gives no valid sheet.
 static bool pair_faces(Work *work) {
     const Faces faces = work->faces;
     if (mesh_pair(work) && !work->no_memory && sides_are_simple(work) && unsound_quad(work) == MESH_NONE) return true;
@@ -264,7 +264,7 @@ static SingeResult run_steps(Work *work, const MeshOptions *options) {
     bool pair = options->quads == MESH_QUADS_PAIR;
     if (pair && !all_quads(&work->faces)) pair = pair_faces(work);
     if (!pair && !work->no_memory) mesh_split(work);
-    if (!work->no_memory) mesh_leave_out_copies(work); // two triangles on a quad are one as well
+    if (!work->no_memory) mesh_leave_out_copies(work); // two triangles on top of a quad become a copy of it
     if (work->no_memory) return SINGE_OK;
     uint32_t unsound = unsound_quad(work);
     if (unsound != MESH_NONE)
@@ -281,7 +281,7 @@ SingeResult mesh_make(const char *name, const Polygons *polygons, const MeshOpti
     memset(mesh, 0, sizeof *mesh);
     mesh->allocator = allocator;
     SingeResult result = run_steps(&work, options);
-    if (result == SINGE_ERROR_MESH && work.report->count[MESH_SHRUNK]) { // it may be the shrinking's doing
+    if (result == SINGE_ERROR_MESH && work.report->count[MESH_SHRUNK]) { // shrinking may be the cause
         MeshOptions kept = *options;
         kept.smallest = 0;
         work_free(&work);

@@ -1,5 +1,5 @@
-// A surface that the core takes: an edge has one face or two, which run along it in opposite ways, and the faces at a
-// vertex are one fan.
+// Makes a surface that the core accepts: an edge has one face, or two that run along it in opposite directions, and the
+// faces at a vertex are one fan.
 #include "mesh/work.h"
 
 #include <math.h>
@@ -7,13 +7,13 @@
 
 typedef struct Turn {
     uint8_t *flip, *seen; ///< [faces]
-    uint32_t *queue;      ///< [faces] a component's faces lie in a row
+    uint32_t *queue;      ///< [faces] the faces of a component are contiguous
 } Turn;
 
-// ---- the same way round
+// ---- consistent winding
 
-/// Turns the faces of a component as its first one is; they lie from `begin` to `end` in the queue. Where it comes back
-/// to itself the other way round, as on a Moebius strip, it is cut.
+/// Gives the faces of a component the winding of its first one; they are `begin` to `end` in the queue. Where the surface
+/// returns to itself with the opposite winding, as on a Moebius strip, it is cut.
 static void manifold_spread(Work *work, Turn *turn, uint32_t begin, uint32_t *end) {
     const Faces *faces = &work->faces;
     for (uint32_t i = begin; i < *end; i++) {
@@ -32,7 +32,7 @@ static void manifold_spread(Work *work, Turn *turn, uint32_t begin, uint32_t *en
     }
 }
 
-/// Six times the volume under the faces, as they are turned.
+/// Six times the signed volume between a face and `origin`.
 static double volume_under(const Work *work, uint32_t face, const double *origin) {
     const Faces *faces = &work->faces;
     double a[3], b[3], c[3], n[3], volume = 0;
@@ -46,7 +46,7 @@ static double volume_under(const Work *work, uint32_t face, const double *origin
     return volume;
 }
 
-/// Most of the area stays as it was; a closed surface has its front outside.
+/// Keeps the winding of most of the area; a closed surface gets its front outside.
 static void decide(Work *work, Turn *turn, uint32_t begin, uint32_t end) {
     const Faces *faces = &work->faces;
     const double *origin = work->position[faces->corner[faces->first[turn->queue[begin]]]];
@@ -70,7 +70,7 @@ static void decide(Work *work, Turn *turn, uint32_t begin, uint32_t end) {
     if (inside_out) work_did(work, MESH_INSIDE_OUT, 1, work_face_name(work, faces->origin[turn->queue[begin]]));
 }
 
-/// Where corner h of a face lies once the face is turned over: side h runs backwards, from its old end.
+/// The number of corner h after its face is flipped: side h runs backwards, from its old end.
 static uint32_t turned_position(const Faces *faces, uint32_t face, uint32_t h) {
     uint32_t first = faces->first[face], n = faces->first[face + 1] - first;
     return first + (2 * n - 2 - (h - first)) % n;
@@ -111,13 +111,13 @@ static void turn_faces(Work *work) {
     turn_over(work, &turn);
 }
 
-// ---- one fan a vertex
+// ---- one fan per vertex
 
-/// Of the way to the centre of its faces, what a copy is drawn back by.
+/// Share of the distance to the centroid of its faces by which a copy is moved back.
 static const double PART_GAP = 0.03;
 
-/// Draws the copies of vertices, those from `first` on, back into their own faces: what lies on each other from the
-/// start could not be seen in what has crossed.
+/// Moves the copies of vertices, those from `first` on, back into their own faces: parts in contact from the start could
+/// not be told from parts that have crossed.
 static void draw_back(Work *work, uint32_t first) {
     const Faces *faces = &work->faces;
     const uint32_t copies = work->vertex_count - first;

@@ -1,22 +1,22 @@
-// The largest matching of a graph: paths from a node alone to another, along which pairs change over, with odd circles
-// shrunk to a point where they are met (Edmonds, Paths, trees, and flowers, 1965). The search for one path looks at a
+// A maximum matching of a graph: pairs are swapped along paths from one single node to another, and odd cycles are
+// shrunk to a point when they are met (Edmonds, Paths, trees, and flowers, 1965). The search for one path visits a
 // limited number of nodes, so that the whole is linear in practice.
 #include "mesh/work.h"
 
 #include <string.h>
 
 enum {
-    MATCH_REACH = 6000,    ///< nodes that a search may look at, where there are many searches
-    MATCH_WORK = 20000000, ///< and that all searches may
+    MATCH_REACH = 6000,    ///< max nodes that a search may visit if there are many searches
+    MATCH_WORK = 20000000, ///< max nodes of all searches together, if there are few
 };
 
 typedef struct Match {
     const uint32_t *arc_first, *arc_to;
     const uint8_t *open;
     uint32_t *mate;
-    uint32_t *parent, *base; ///< of the search; MESH_NONE and the node itself where it has not been
+    uint32_t *parent, *base; ///< of the search; MESH_NONE and the node itself if not visited
     uint8_t *outer, *blossom;
-    uint32_t *queue, *touched; ///< outer nodes to go on from; all nodes that the search has written
+    uint32_t *queue, *touched; ///< outer nodes to continue from; all nodes that the search has changed
     uint32_t queued, touched_count;
     uint8_t *is_touched;
     uint32_t *on_path; ///< stamp
@@ -37,7 +37,7 @@ static void forget(Match *m) {
     m->touched_count = m->queued = 0;
 }
 
-/// The first base that the ways from two outer nodes to the root have in common.
+/// The first base that the paths from two outer nodes to the root have in common.
 static uint32_t common_base(Match *m, uint32_t a, uint32_t b) {
     m->stamp++;
     for (;;) {
@@ -53,7 +53,7 @@ static uint32_t common_base(Match *m, uint32_t a, uint32_t b) {
     }
 }
 
-/// Marks the bases on the way from v down to `base`, and turns the way's parents round.
+/// Marks the bases on the path from v down to `base`, and reverses its parents.
 static void mark_path(Match *m, uint32_t v, uint32_t base, uint32_t child) {
     while (m->base[v] != base) {
         m->blossom[m->base[v]] = m->blossom[m->base[m->mate[v]]] = 1;
@@ -63,7 +63,7 @@ static void mark_path(Match *m, uint32_t v, uint32_t base, uint32_t child) {
     }
 }
 
-static void shrink_circle(Match *m, uint32_t v, uint32_t u) {
+static void shrink_cycle(Match *m, uint32_t v, uint32_t u) {
     uint32_t base = common_base(m, v, u);
     for (uint32_t i = 0; i < m->touched_count; i++) m->blossom[m->touched[i]] = 0;
     mark_path(m, v, base, u);
@@ -76,7 +76,7 @@ static void shrink_circle(Match *m, uint32_t v, uint32_t u) {
     }
 }
 
-/// Changes the pairs over on the way from `v`, an inner or a lone node, to the root.
+/// Swaps the pairs along the path from `v`, an inner or a single node, to the root.
 static void change_over(Match *m, uint32_t v) {
     while (v != MESH_NONE) {
         uint32_t before = m->parent[v], next = m->mate[before];
@@ -96,7 +96,7 @@ static bool search(Match *m, uint32_t root) {
             uint32_t u = m->arc_to[i];
             if (m->base[v] == m->base[u] || m->mate[v] == u) continue;
             if (u == root || (m->mate[u] != MESH_NONE && m->parent[m->mate[u]] != MESH_NONE)) {
-                shrink_circle(m, v, u);
+                shrink_cycle(m, v, u);
             } else if (m->parent[u] == MESH_NONE) {
                 touch(m, u);
                 m->parent[u] = v;

@@ -1,10 +1,10 @@
-// What a mesh is and what was done to it, in sentences.
+// Describes a mesh and its changes in sentences.
 #include "mesh/mesh.h"
 
 #include <stdio.h>
 
 typedef struct RepairText {
-    const char *one, *many, *at; ///< `at`: "line" or "face", "vertex", or NULL where it is no matter where
+    const char *one, *many, *at; ///< `at`: "line" or "face", "vertex", or NULL if the location does not matter
 } RepairText;
 
 static const RepairText texts[MESH_REPAIRS] = {

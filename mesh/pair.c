@@ -5,12 +5,12 @@
 //
 //   max |angle - 90| over the quad's four corners + the fold between the two triangles
 //
-// and less where the quad continues the rows of an existing one: at an end of the side that both share, their angles
-// add up to 180 where the other sides run straight through. The cheapest pairs are made first, so rows grow from where
-// quads fit best, and opposite sides run through many quads: strands are long. Single triangles that remain are
-// resolved by match.c, which shifts pairs along a path of triangles until two single ones meet, or one reaches the
-// border. A pair that would make a bad quad (an angle above 175 degrees, a sharp fold, a seam of the uv) gets a new
-// vertex at the centre of its shared side, which makes both triangles quads; so does a single triangle at the border.
+// and less if the quad continues the rows of an existing one: at an end of the side that both share, their angles add
+// up to 180 if the other sides run straight through. The cheapest pairs are made first, so rows grow from where quads
+// fit best, and opposite sides run through many quads: strands are long. Single triangles that remain are resolved by
+// match.c, which shifts pairs along a path of triangles until two single ones meet, or one reaches the border. A pair
+// that would make a bad quad (an angle above 175 degrees, a sharp fold, a seam of the uv) gets a new vertex at the
+// midpoint of its shared side, which makes both triangles quads; so does a single triangle at the border.
 #include "mesh/pair.h"
 
 #include <math.h>
@@ -27,7 +27,7 @@ static uint32_t pair_name(const Pairs *pairs, uint32_t half) {
     return twin < half ? twin : half;
 }
 
-/// The angle at the corner of a half-edge's triangle that it leaves.
+/// The angle of a half-edge's triangle at the corner where the half-edge begins.
 static double corner_angle(const Pairs *pairs, uint32_t half) {
     const uint32_t *corner = pairs->work->faces.corner;
     return pair_angle(pairs->work, corner[pair_last3(half)], corner[half], corner[pair_next3(half)]);
@@ -54,7 +54,7 @@ static void cost_pair(Pairs *pairs, uint32_t half, uint32_t twin) {
                        corner_angle(pairs, pair_last3(half)), corner_angle(pairs, pair_last3(twin))};
     double worst = 0, max = 0, fold = fold_between(pairs, half / 3, twin / 3);
     for (int i = 0; i < 4; i++) worst = fmax(worst, fabs(angle[i] - 90)), max = fmax(max, angle[i]);
-    bool thin_fan = corner[pair_last3(half)] == corner[pair_last3(twin)]; // a vertex inside must keep three cells
+    bool thin_fan = corner[pair_last3(half)] == corner[pair_last3(twin)]; // an interior vertex must keep three cells
     for (int i = 0; i < 2; i++) {
         uint32_t v = corner[i ? pair_next3(half) : half];
         thin_fan = thin_fan || (!pairs->rim[v] && pairs->degree[v] <= 3);
@@ -79,8 +79,8 @@ static void cost_all(Pairs *pairs) {
 
 // ---- the cheapest first
 
-/// The angle of the quad made of a triangle and its mate at the corner that `corner_half` leaves. `half` is the
-/// triangle's side that both share, `twin` the mate's.
+/// The angle of the quad of a triangle and its mate, at the corner where `corner_half` begins. `half` is the shared side
+/// of the triangle, `twin` that of the mate.
 static double quad_angle(const Pairs *pairs, uint32_t corner_half, uint32_t half, uint32_t twin) {
     double angle = corner_angle(pairs, corner_half);
     if (corner_half == half) angle += corner_angle(pairs, pair_next3(twin));
@@ -96,7 +96,7 @@ static uint32_t shared_half(const Pairs *pairs, uint32_t triangle) {
     return MESH_NONE;
 }
 
-/// What the pair across `half` gains by going on the rows of the quads around it.
+/// The gain of the pair across `half` from continuing the rows of the quads around it.
 static double pair_gain(const Pairs *pairs, uint32_t half) {
     const Work *work = pairs->work;
     uint32_t twin = work->twin[half];
@@ -116,7 +116,7 @@ static double pair_gain(const Pairs *pairs, uint32_t half) {
     return straight_gain * gain;
 }
 
-/// Offers the pairs of a triangle that is alone.
+/// Offers the pairs of a single triangle.
 static void offer(Pairs *pairs, uint32_t triangle) {
     const Work *work = pairs->work;
     for (uint32_t h = 3 * triangle; h < 3 * triangle + 3; h++) {
@@ -147,7 +147,7 @@ static void join_cheapest(Pairs *pairs) {
     }
 }
 
-// ---- what is left alone
+// ---- triangles that stay single
 
 static bool any_alone(const Pairs *pairs) {
     for (uint32_t t = 0; t < pairs->work->faces.count; t++)
@@ -155,7 +155,7 @@ static bool any_alone(const Pairs *pairs) {
     return false;
 }
 
-/// Grows the pairs over the graph of good pairs or of all.
+/// Grows the matching over the graph of good pairs, or of all pairs.
 static void pair_grow(Pairs *pairs, bool all, const uint8_t *open) {
     Work *work = pairs->work;
     const uint32_t count = work->faces.count;
@@ -171,7 +171,7 @@ static void pair_grow(Pairs *pairs, bool all, const uint8_t *open) {
     match_grow(work, count, first, to, open, pairs->mate);
 }
 
-/// The open side of a triangle that is best cut in two, the longest.
+/// The best open side of a triangle to halve: the longest.
 static uint32_t open_side(const Pairs *pairs, uint32_t triangle) {
     const Work *work = pairs->work;
     uint32_t best = MESH_NONE;
@@ -201,7 +201,7 @@ static bool find_mates(Pairs *pairs) {
 
 // ---- quads
 
-/// The triangle of `half` with a vertex in the centre of that side.
+/// Pushes the triangle of `half` with a vertex at the midpoint of that side.
 static void push_halved(const Faces *old, uint32_t half, uint32_t midpoint, Faces *out) {
     faces_push(out, old->corner[half], old, half);
     faces_push_between(out, midpoint, old, half, pair_next3(half));
@@ -220,7 +220,7 @@ static void pair_halve(Pairs *pairs, uint32_t half, Faces *out) {
     work_did(work, MESH_HALVED, 1, work_face_name(work, old->origin[half / 3]));
 }
 
-/// A pair as a quad; one that was a quad of the file as it was.
+/// Pushes a pair as a quad; a pair that was a quad of the file, as it was.
 static void push_quad(Pairs *pairs, uint32_t half, Faces *out) {
     Work *work = pairs->work;
     const Faces *old = &work->faces;

@@ -15,7 +15,7 @@ typedef struct PairHeap {
     uint32_t count, capacity;
 } PairHeap;
 
-/// Adds a pair; work->no_memory where it cannot.
+/// Adds a pair; sets work->no_memory when out of memory.
 void pair_heap_push(Work *work, PairHeap *heap, PairItem item);
 
 /// Takes the cheapest; the heap must not be empty.

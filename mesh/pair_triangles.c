@@ -1,4 +1,4 @@
-// Faces cut into triangles, before these are joined to quads (pair.c).
+// Cuts faces into triangles, which pair.c joins to quads.
 #include "mesh/pair.h"
 #include "mesh/polygon.h"
 
@@ -19,7 +19,7 @@ double pair_angle(const Work *work, uint32_t a, uint32_t b, uint32_t c) {
     return DEGREES * acos(cosine_at(work, a, b, c));
 }
 
-/// The smallest angle of a triangle, in degrees; negative where it is turned over against the normal.
+/// The smallest angle of a triangle, in degrees; negative if it is flipped against the normal.
 static double worth_of(const Pairs *pairs, const uint32_t half[3], const double normal[3]) {
     const Work *work = pairs->work;
     const uint32_t a = work->faces.corner[half[0]], b = work->faces.corner[half[1]], c = work->faces.corner[half[2]];
@@ -30,7 +30,7 @@ static double worth_of(const Pairs *pairs, const uint32_t half[3], const double 
     return dot3(m, normal) > 0 ? min : -1 - min;
 }
 
-/// Corners are those of the faces before.
+/// Pushes a triangle of corners of `before`.
 static void push_triangle(Pairs *pairs, Faces *out, uint32_t a, uint32_t b, uint32_t c, uint32_t origin) {
     const Faces *old = &pairs->before;
     uint32_t *from = pairs->from + out->corner_count;
@@ -41,7 +41,7 @@ static void push_triangle(Pairs *pairs, Faces *out, uint32_t a, uint32_t b, uint
     faces_end(out, origin);
 }
 
-/// Cuts a quad along the diagonal that leaves the better triangles; they are a pair from the start.
+/// Cuts a quad along the diagonal that gives the better triangles, and pairs them.
 static void cut_quad(Pairs *pairs, uint32_t face, Faces *out) {
     const Faces *old = &pairs->work->faces;
     const uint32_t h = old->first[face], ring[4] = {h, h + 1, h + 2, h + 3};
@@ -59,7 +59,7 @@ static void cut_quad(Pairs *pairs, uint32_t face, Faces *out) {
     pairs->whole[t] = pairs->whole[t + 1] = h;
 }
 
-/// Cuts a triangle, or a polygon of more than four corners. False where that is not possible.
+/// Cuts a triangle, or a polygon of more than four corners. False if that is not possible.
 static bool cut_polygon(Pairs *pairs, PolygonCut *cut, uint32_t face, uint32_t *ring, Faces *out) {
     const Faces *old = &pairs->work->faces;
     const uint32_t first = old->first[face], n = old->first[face + 1] - first;
@@ -97,7 +97,7 @@ bool pair_cut_faces(Pairs *pairs) {
     return true;
 }
 
-/// The same diagonal in another triangle of its face.
+/// The half-edge of the same diagonal in the other triangle of its face.
 static uint32_t other_side(const Pairs *pairs, uint32_t half) {
     const uint32_t *from = pairs->from, face = pairs->before_face[from[half]], count = pairs->work->faces.corner_count;
     uint32_t a = from[half], b = from[half - half % 3 + (half + 1) % 3], low = half - half % 3, high = low + 3;
@@ -108,7 +108,7 @@ static uint32_t other_side(const Pairs *pairs, uint32_t half) {
     return MESH_NONE;
 }
 
-// By half-edges and not by vertices, since a diagonal may run between the ends of another side.
+// By half-edges and not by vertices, since a diagonal may have the same ends as another side.
 void pair_find_twins(Pairs *pairs) {
     Work *work = pairs->work;
     const uint32_t count = work->faces.corner_count, *from = pairs->from;

@@ -1,12 +1,12 @@
-// Polygons cut into triangles that cover exactly their area.
+// Cuts polygons into triangles that cover exactly their area.
 //
-// A polygon is looked at along its normal, the mean of its vertex products (Newell), on the plane of two axes. It may
-// touch itself: a hole is connected by a bridge, a side that is gone along twice, and corners may meet in a vertex. The
-// triangles cover each point as often as the polygon winds around it if all of them are turned as it is; that none lies
-// on another is looked at, too, so the points inside are covered once and all others never. What cannot be cut so
-// crosses itself.
+// A polygon is projected along its normal, the mean of its vertex products (Newell), onto the plane of two axes. It may
+// touch itself: a hole is connected by a bridge, a side that the ring follows twice, and corners may share a vertex. If
+// all triangles have the winding of the polygon, they cover each point as often as the polygon winds around it. The
+// triangles are also checked for overlaps, so the points inside are covered once and all others never. A polygon that
+// cannot be cut like this crosses itself.
 //
-// Small polygons are cut so that the smallest angle is largest, by parts of the ring (Klincsek, 1980); of large ones
+// Small polygons are cut so that the smallest angle is largest, by parts of the ring (Klincsek, 1980). From large ones
 // the best corner is cut off (Meisters' ears, 1975) until they are small.
 #include "mesh/polygon.h"
 
@@ -16,9 +16,9 @@
 
 #define DEGREES (180 / 3.14159265358979323846)
 
-/// What the worth of a triangle falls to by a diagonal between vertices that have a side already.
+/// Factor on the worth of a triangle with a diagonal between vertices that already have a side.
 static const double taken_worth = 1e-3;
-/// The sharpest fold of a quad that crosses itself only as it is seen from the mean of its normals.
+/// Max fold, in degrees, of a quad that crosses itself only in its projection along the mean of its normals.
 static const double fold_max = 150;
 
 bool polygon_begin(PolygonCut *cut, Work *work, const Faces *faces) {
@@ -34,7 +34,7 @@ bool polygon_begin(PolygonCut *cut, Work *work, const Faces *faces) {
     return !work->no_memory;
 }
 
-// ---- seen along the normal
+// ---- projection along the normal
 
 static const double *position_of(const PolygonCut *cut, uint32_t half) {
     return cut->work->position[cut->faces->corner[half]];
@@ -51,8 +51,8 @@ void polygon_normal(const PolygonCut *cut, const uint32_t *ring, uint32_t n, dou
     }
 }
 
-/// Places without the normal's largest axis, turned so that the polygon runs against the clock: their differences are
-/// the file's own.
+/// Positions without the normal's largest axis, oriented so that the polygon runs counter-clockwise. Their differences
+/// are those in the file.
 static void project(PolygonCut *cut, const uint32_t *ring, uint32_t n, const double normal[3]) {
     int axis = fabs(normal[1]) > fabs(normal[0]) ? 1 : 0;
     if (fabs(normal[2]) > fabs(normal[axis])) axis = 2;
@@ -63,15 +63,15 @@ static void project(PolygonCut *cut, const uint32_t *ring, uint32_t n, const dou
     }
 }
 
-/// Twice the area of a triangle, negative where it runs with the clock.
+/// Twice the area of a triangle, negative if it is clockwise.
 static double turn2(const double *a, const double *b, const double *c) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/// Whether the mean of corners sees all sides of their ring, once around.
+/// Whether all sides of a ring are visible from the mean of its corners and wind around it once.
 static bool is_star(double (*at)[2], uint32_t n) {
     double centroid[2] = {0, 0};
-    uint32_t rounds = 0; // a ring that winds twice comes twice to a height from below
+    uint32_t rounds = 0; // a ring that winds twice crosses the centroid's height upwards twice
     for (uint32_t i = 0; i < n; i++)
         for (int k = 0; k < 2; k++) centroid[k] += at[i][k] / n;
     for (uint32_t i = 0; i < n; i++) {
@@ -104,7 +104,7 @@ bool polygon_is_star(PolygonCut *cut, const uint32_t *ring, uint32_t n) {
     return star;
 }
 
-// ---- what a triangle is worth
+// ---- worth of a triangle
 
 static double angle_at(const PolygonCut *cut, uint32_t a, uint32_t b, uint32_t c) {
     double p[3], q[3];
@@ -113,7 +113,7 @@ static double angle_at(const PolygonCut *cut, uint32_t a, uint32_t b, uint32_t c
     return square > 0 ? DEGREES * acos(fmax(-1, fmin(1, dot3(p, q) / sqrt(square)))) : 0;
 }
 
-/// Its smallest angle, in degrees; negative where it is turned over or has no area. Corners are indices of the ring.
+/// A triangle's smallest angle, in degrees; negative if it is flipped or has no area. Corners are indices of the ring.
 static double worth_of(const PolygonCut *cut, uint32_t i, uint32_t k, uint32_t j) {
     const uint32_t a = cut->ring[i], b = cut->ring[k], c = cut->ring[j];
     double min = fmin(angle_at(cut, a, b, c), fmin(angle_at(cut, b, c, a), angle_at(cut, c, a, b)));
@@ -155,12 +155,12 @@ static void add_triangle(PolygonCut *cut, uint32_t i, uint32_t k, uint32_t j) {
 
 static bool same_position(const double *a, const double *b) { return a[0] == b[0] && a[1] == b[1]; }
 
-/// Whether `p` lies between the directions from `a` to `b` and to `c`, less than half a turn on.
+/// Whether `p` lies between the directions from `a` to `b` and to `c`, which are less than half a turn apart.
 static bool in_wedge(const double *a, const double *b, const double *c, const double *p) {
     return turn2(a, b, p) > 0 && turn2(a, p, c) > 0;
 }
 
-/// Whether the ring, where it comes to a corner of an ear once more, goes on inside it.
+/// Whether corner i of the ring lies in an ear or, at the position of one of the ear's corners, the ring goes on inside.
 static bool enters(const PolygonCut *cut, uint32_t n, uint32_t i, const double *const ear[3]) {
     const double *before = cut->at[(i + n - 1) % n], *after = cut->at[(i + 1) % n];
     for (int k = 0; k < 3; k++)
@@ -171,7 +171,7 @@ static bool enters(const PolygonCut *cut, uint32_t n, uint32_t i, const double *
            turn2(ear[2], ear[0], cut->at[i]) >= 0;
 }
 
-/// How well corner k of the ring can be cut off; negative where it cannot.
+/// How well corner k of the ring can be cut off; negative if it cannot.
 static double ear_worth(PolygonCut *cut, uint32_t n, uint32_t k) {
     const uint32_t a = (k + n - 1) % n, c = (k + 1) % n;
     const double *const ear[3] = {cut->at[a], cut->at[k], cut->at[c]};
@@ -219,7 +219,7 @@ static uint32_t cut_ears(PolygonCut *cut, uint32_t n, uint32_t max) {
 
 enum { BEST_CUT_MAX = 40 };
 
-/// The triangles whose worst is best. False where some are turned over.
+/// Adds the triangles whose worst one is best. False if some are flipped.
 static bool cut_best(PolygonCut *cut, uint32_t n) {
     double worst[BEST_CUT_MAX][BEST_CUT_MAX];
     uint8_t apex[BEST_CUT_MAX][BEST_CUT_MAX], stack[2 * BEST_CUT_MAX][2];
@@ -247,7 +247,7 @@ static bool cut_best(PolygonCut *cut, uint32_t n) {
     return true;
 }
 
-/// A quad that is bent so far that its normals say nothing of it: along the diagonal at which it is folded less.
+/// Cuts a quad that is too bent for its normal to be useful, along the diagonal at which it is folded less.
 static bool cut_bent_quad(PolygonCut *cut) {
     double best = fold_max;
     uint32_t start = 4;
@@ -276,10 +276,10 @@ bool polygon_cut(PolygonCut *cut, const uint32_t *ring, uint32_t n) {
     return cut_best(cut, left) || (n == 4 && cut_bent_quad(cut));
 }
 
-// ---- whether triangles lie on each other
+// ---- overlapping triangles
 
 typedef struct Seen {
-    double at[3][2], high; ///< along the first axis up to `high`
+    double at[3][2], high; ///< along the first axis from `low` to `high`
     double low;
 } Seen;
 

@@ -14,7 +14,7 @@ struct SingeMesh {
 
 // ---- Defs
 
-/// A caller's Def has `size` bytes, ours `known`: what both have is ours, the rest is 0.
+/// A caller's Def has `size` bytes, ours `known`: their common bytes are ours, the rest is 0.
 static void fill_def(void *def, size_t size, const void *standard, size_t known) {
     if (size < sizeof size) return;
     memset(def, 0, size);
@@ -22,7 +22,7 @@ static void fill_def(void *def, size_t size, const void *standard, size_t known)
     memcpy(def, &size, sizeof size);
 }
 
-/// Copies what both know of a caller's Def over *def, which holds the defaults. False where struct_size is not set.
+/// Copies the common bytes of a caller's Def over *def, which holds the defaults. False if struct_size is not set.
 static bool read_def(void *def, size_t size, const void *given) {
     size_t known;
     if (!given) return false;
@@ -49,7 +49,7 @@ static SingeResult bad(SingeError *error, const char *what) {
     return refuse(error, SINGE_ERROR_ARGUMENT, "mesh", -1, "%s", what);
 }
 
-/// Checks what mesh_make takes for granted, and counts the corners.
+/// Checks what mesh_make assumes, and counts the corners.
 static SingeResult check_def(const SingeMeshDef *def, const char *name, uint32_t *corners, SingeError *error) {
     uint64_t total = 0;
     if (!def->positions || !def->corners) return bad(error, "positions or corners are NULL");
@@ -76,7 +76,7 @@ static SingeResult check_def(const SingeMeshDef *def, const char *name, uint32_t
     return SINGE_OK;
 }
 
-/// The Def as mesh_make reads it; what it points to is not written to. False when out of memory.
+/// Converts the Def for mesh_make, which does not write to its arrays. False when out of memory.
 static bool take(const SingeMeshDef *def, uint32_t corners, Polygons *polygons) {
     *polygons = (Polygons){.vertex_count = def->vertex_count,
                            .face_count = def->face_count,
@@ -95,7 +95,7 @@ static bool take(const SingeMeshDef *def, uint32_t corners, Polygons *polygons) 
     if (def->corner_uv || !def->uv) return true;
     if (!(polygons->uv = store_new(def->allocator, corners, 2 * sizeof *polygons->uv))) return false;
     for (uint32_t h = 0; h < corners; h++) {
-        const uint32_t v = def->corners[h]; // checked by mesh_make, which comes after
+        const uint32_t v = def->corners[h]; // checked later, by mesh_make
         for (size_t k = 0; k < 2; k++)
             polygons->uv[2 * (size_t)h + k] = v < def->vertex_count ? def->uv[2 * (size_t)v + k] : 0;
     }

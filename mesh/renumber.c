@@ -1,7 +1,7 @@
-// Numbers of vertices and faces for locality. Lanes take strands beside each other that run through consecutive
-// numbers (src/dynamics/strand/strand_lay.c), as those of a mesh that is numbered row by row. Rows of quads are walked
-// along their opposite sides, one after the other from the lowest: a row's lower vertices are numbered as it is walked,
-// and the row above, which begins at the opposite side of its first quad, comes next.
+// Numbers vertices and faces for locality. Lanes take adjacent strands that run through consecutive numbers
+// (src/dynamics/strand/strand_lay.c), as the strands of a mesh that is numbered row by row do. Rows of quads are walked
+// across opposite sides, one after the other from the lowest: a row's lower vertices are numbered as it is walked, and
+// the row above, which begins at the opposite side of its first quad, comes next.
 #include "mesh/work.h"
 
 #include <string.h>
@@ -10,7 +10,7 @@ typedef struct Order {
     Work *work;
     uint32_t *vertex, *face; ///< new number, MESH_NONE before
     uint32_t vertices, faces;
-    uint32_t *row; ///< quads of the row that is walked, as the half-edges of their lower sides
+    uint32_t *row; ///< quads of the current row, as the half-edges of their lower sides
 } Order;
 
 static uint32_t next4(uint32_t half) { return (half & ~3u) | ((half + 1) & 3); }
@@ -46,7 +46,7 @@ static uint32_t renumber_walk(Order *order, uint32_t lower) {
         uint32_t twin = order->work->twin[across4(order->row[i])];
         if (twin != MESH_NONE && order->face[twin / 4] == MESH_NONE && above == MESH_NONE) above = twin;
     }
-    if (above == MESH_NONE) // the top: nothing will number it
+    if (above == MESH_NONE) // the top: no row above numbers it
         for (uint32_t i = 0; i < count; i++) {
             uint32_t top = across4(order->row[i]);
             renumber_number(order, faces->corner[next4(top)]);
@@ -55,7 +55,7 @@ static uint32_t renumber_walk(Order *order, uint32_t lower) {
     return above;
 }
 
-/// The quad to begin with: at a corner of the mesh if it has one, else at an open side.
+/// The side to begin at: at a corner of the mesh if it has one, else an open side.
 static uint32_t first_side(const Work *work, const uint32_t *face, uint32_t from) {
     uint32_t open = MESH_NONE;
     for (uint32_t h = 4 * from; h < work->faces.corner_count; h++) {
@@ -66,7 +66,7 @@ static uint32_t first_side(const Work *work, const uint32_t *face, uint32_t from
     return open != MESH_NONE ? open : 4 * from;
 }
 
-/// Share of the sides whose ends have consecutive numbers: one half where rows are numbered one after the other.
+/// Share of the sides whose ends have consecutive numbers: one half if rows are numbered one after the other.
 static double in_order(const Work *work) {
     uint32_t beside = 0;
     const Faces *faces = &work->faces;
@@ -120,7 +120,7 @@ void mesh_order(Work *work) {
     if (work->no_memory) return;
     memset(order.vertex, 0xff, work->vertex_count * sizeof *order.vertex);
     memset(order.face, 0xff, count * sizeof *order.face);
-    int searches = 64; // for good vertices to begin at; then anywhere, so that meshes of short rows take no longer
+    int searches = 64; // for good starts; later rows start anywhere, so that meshes of short rows take no longer
     for (uint32_t f = 0; f < count; f++) {
         if (order.face[f] != MESH_NONE) continue;
         uint32_t side = searches-- > 0 ? first_side(work, order.face, f) : 4 * f;

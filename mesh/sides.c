@@ -1,5 +1,5 @@
-// Which faces go on into each other at a side: the two that have it, and where it has more, which of them (Gueziec,
-// Taubin, Lazarus and Horn, Cutting and stitching, 2001). What is left alone there has an open edge.
+// Which faces stay joined at a side: its two, or if it has more, some pairs of them (Gueziec, Taubin, Lazarus and Horn,
+// Cutting and stitching, 2001). The remaining faces get an open edge.
 #include "mesh/work.h"
 
 #include <math.h>
@@ -31,7 +31,7 @@ static void away_from(const Work *work, uint32_t half, double out[3]) {
     for (int k = 0; k < 3; k++) out[k] /= length > 0 ? length : 1;
 }
 
-/// Joins the two faces that have no mate at an edge and go on into each other most nearly, if they are flat enough.
+/// Joins the flattest two faces that have no mate at an edge, if they are flat enough.
 static void join_flattest(Work *work, const uint32_t *halves, uint32_t size) {
     double flattest = -0.5; // cosine: within 60 degrees of flat
     uint32_t a = MESH_NONE, b = MESH_NONE;
@@ -50,11 +50,11 @@ static void join_flattest(Work *work, const uint32_t *halves, uint32_t size) {
 typedef struct Around {
     double angle; ///< around the side
     uint32_t half;
-    bool forwards; ///< runs along the side as the first one does
+    bool forwards; ///< runs along the side in the direction of the first one
 } Around;
 
-enum { AROUND_MAX = 64 }; ///< faces at a side that are looked at; more are left alone
-/// Faces that fold back on each other by more than this are no sheet, in radians.
+enum { AROUND_MAX = 64 }; ///< max faces at a side; if there are more, none are joined
+/// Max fold, in radians, between two faces of one sheet.
 static const double fold_max = 2.6;
 
 static int by_angle(const void *a, const void *b) {
@@ -81,8 +81,8 @@ static void sort_around(const Work *work, const uint32_t *halves, uint32_t size,
     qsort(around, size, sizeof *around, by_angle);
 }
 
-/// Joins faces that follow each other around a side and are wound alike, those first that are folded least: so no two
-/// sheets go through each other there.
+/// Joins faces that are consecutive around a side and have the same winding, the flattest first, so that no two sheets
+/// cross there.
 static void join_around(Work *work, const uint32_t *halves, uint32_t size) {
     const double turn = 6.283185307179586;
     Around around[AROUND_MAX];
@@ -106,8 +106,8 @@ static void join_around(Work *work, const uint32_t *halves, uint32_t size) {
     }
 }
 
-/// Parts the faces at an edge of more than two: two that are connected elsewhere stay together, and of the others those
-/// that go on into each other.
+/// Splits an edge of more than two faces: two that are connected elsewhere stay joined, and of the others those that
+/// continue each other.
 static void cut_edge(Work *work, const uint32_t *halves, uint32_t size, uint32_t *set) {
     bool same_sheet = false;
     for (uint32_t i = 0; i < size; i++) {
@@ -136,16 +136,16 @@ void mesh_join_sides(Work *work) {
     }
 }
 
-// ---- sides that are two
+// ---- distinct sides with the same ends
 
-/// Of the half-edges of one side, the first that goes on with the one at `at`, or has been given its corner.
+/// Whether the twin of half-edge `at` comes before it, so that it already has its corner.
 static bool is_second(const Work *work, const uint32_t *halves, uint32_t at) {
     for (uint32_t i = 0; i < at; i++)
         if (halves[i] == work->twin[halves[at]]) return true;
     return false;
 }
 
-/// Gives all but the first of the sheets that share a side a vertex in its centre. Returns how many vertices.
+/// Gives all but the first of the sheets at a side a vertex at its midpoint. Returns the number of vertices.
 static uint32_t part_side(Work *work, const uint32_t *halves, uint32_t size, uint32_t *midpoint) {
     const Faces *faces = &work->faces;
     uint32_t sheets = 0;
@@ -180,7 +180,7 @@ void mesh_part_sides(Work *work) {
     for (uint32_t h = 0; h < faces->corner_count && !work->no_memory; h++) midpoint[h] = MESH_NONE;
     for (uint32_t k = 0, size; !work->no_memory && k < faces->corner_count; k += size) {
         size = work_edge_size(work, order, k);
-        const bool two = size == 2 && faces->corner[order[k]] != faces->corner[order[k + 1]]; // which go on
+        const bool two = size == 2 && faces->corner[order[k]] != faces->corner[order[k + 1]]; // joined faces
         if (size > 1 && !two) added += part_side(work, order + k, size, midpoint);
     }
     if (added && !work->no_memory) add_corners(work, midpoint, added);

@@ -1,9 +1,9 @@
-// Every face of n corners becomes n quads: from a corner to the centre of its side, the face's centre, the centre of
-// the side before (Catmull and Clark, 1978, without their smoothing). Opposite sides of what was a quad still run
-// through.
+// Every face of n corners becomes n quads: from a corner to the midpoint of its side, the face's centroid and the
+// midpoint of the side before (Catmull and Clark, 1978, without their smoothing). Strands still run straight through
+// what was a quad.
 #include "mesh/work.h"
 
-/// The vertex in the centre of each half-edge's side.
+/// Makes the vertex at the midpoint of each half-edge's side.
 static uint32_t *split_sides(Work *work) {
     const Faces *faces = &work->faces;
     uint32_t *midpoint = work_new(work, faces->corner_count, sizeof *midpoint);

@@ -1,5 +1,5 @@
-// Vertices that are one. Only those on open edges are joined: there a file has cut what belongs together, along the
-// seams of its uv. Layers that touch have their vertices inside, and stay apart.
+// Merges vertices at the same position. Only those on open edges are merged: there files cut connected surfaces, along
+// the seams of their uv. The vertices of layers that touch are interior, and stay separate.
 #include "mesh/work.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@ uint32_t positions_slot(const Positions *positions, const int64_t box[3]) {
 }
 
 void positions_box(const Positions *positions, const double *position, int64_t box[3]) {
-    const double far = 0x1p62; // a position may be more boxes away than a number counts; those out there share the last
+    const double far = 0x1p62; // the number of a far box may overflow; all beyond share the last
     for (int k = 0; k < 3; k++) box[k] = (int64_t)fmin(fmax(floor(position[k] / positions->size), -far), far);
 }
 
@@ -32,7 +32,7 @@ void positions_add(const Work *work, Positions *positions, uint32_t v) {
     positions->head[slot] = v;
 }
 
-/// The vertex that `v` is joined to: the first in its box and those around it that is near enough.
+/// The vertex that `v` is merged with: the first in its box and those around it that is close enough.
 static uint32_t weld_find(const Work *work, const Positions *positions, uint32_t v) {
     int64_t own[3], box[3];
     uint32_t found = MESH_NONE;

@@ -189,7 +189,7 @@ void face_area(const Work *work, uint32_t face, double normal[3]) {
     }
 }
 
-// ---- what is said
+// ---- reports
 
 void work_did(Work *work, MeshRepair repair, uint32_t count, uint32_t first) {
     if (count && !work->report->count[repair]) work->report->first[repair] = first;

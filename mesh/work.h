@@ -5,16 +5,16 @@
 #include "mesh/mesh.h"
 
 #define MESH_NONE UINT32_MAX
-/// A face is degenerate when twice its area is this small beside the square of its longest side; the core refuses half
-/// of it (src/shell/sheet.c).
+/// A face is degenerate if twice its area is at most this times the square of its longest side. The core's limit is half
+/// of this (src/shell/sheet.c).
 #define FACE_THIN 4e-6
 
-/// Memory that goes all at once.
+/// Memory that is freed all at once.
 typedef struct WorkBlock {
     struct WorkBlock *next;
 } WorkBlock;
 
-/// Faces, whose corners lie one after the other. A half-edge has the number of the corner that it leaves.
+/// Faces with contiguous corners. A half-edge has the number of the corner at which it begins.
 typedef struct Faces {
     uint32_t count, corner_count;
     uint32_t capacity, corner_capacity;
@@ -32,26 +32,26 @@ typedef struct Work {
     SingeError *error;
     WorkBlock *blocks;
     bool no_memory;
-    bool shrunk; ///< faces vanish because their sides did, which has been said
+    bool shrunk; ///< faces vanish because their sides collapsed, which is already reported
     uint32_t vertex_count, vertex_capacity, attribute_count;
     double (*position)[3];
     int32_t *source;   ///< vertex of the file, -1 for a new one
-    uint32_t *became;  ///< [file's vertices] the vertex that it is now
+    uint32_t *became;  ///< [file's vertices] the vertex that each became
     float *attributes; ///< [vertex_capacity * attribute_count]
     Faces faces;
-    uint32_t *face;  ///< [corner_count] whose corner it is (work_edges)
+    uint32_t *face;  ///< [corner_count] the corner's face (work_edges)
     uint32_t *twin;  ///< [corner_count] the same side in the other face; MESH_NONE (work_edges)
-    double weld;     ///< distance at which vertices are one
-    double smallest; ///< sides below this share of the median side shrink
+    double weld;     ///< distance within which vertices are merged
+    double smallest; ///< sides below this share of the median side collapse
 } Work;
 
-/// Zeroed memory; NULL and work->no_memory when there is none.
+/// Zeroed memory; NULL, and work->no_memory is set, when out of memory.
 void *work_new(Work *work, size_t count, size_t size);
 void work_free(Work *work);
 
-/// Empty faces with room; their uv only where the mesh has it.
+/// Empty faces with these capacities; with uv if the mesh has it.
 Faces work_faces(Work *work, uint32_t faces, uint32_t corners);
-/// Makes room for more faces and corners. False without memory.
+/// Makes room for more faces and corners. False when out of memory.
 bool work_faces_room(Work *work, Faces *faces, uint32_t more_faces, uint32_t more_corners);
 /// Appends a corner to the face that is being made, with the uv of corner `from` of `old`.
 void faces_push(Faces *faces, uint32_t vertex, const Faces *old, uint32_t from);
@@ -60,7 +60,7 @@ void faces_push_between(Faces *faces, uint32_t vertex, const Faces *old, uint32_
 /// Ends the face that is being made.
 void faces_end(Faces *faces, uint32_t origin);
 
-/// A new vertex in the mean of others; MESH_NONE when there is no memory.
+/// A new vertex at the mean of others; MESH_NONE when out of memory.
 uint32_t work_vertex(Work *work, const uint32_t *of, uint32_t count);
 /// A copy of a vertex, with its number in the file.
 uint32_t work_copy(Work *work, uint32_t vertex);
@@ -79,7 +79,7 @@ uint32_t work_edge_size(const Work *work, const uint32_t *order, uint32_t at);
 /// Fills work->face and twin; an edge of more than two faces has no twins.
 void work_edges(Work *work);
 
-/// Notes that something was done to a face or vertex of the file.
+/// Counts a change to a face or vertex of the file.
 void work_did(Work *work, MeshRepair repair, uint32_t count, uint32_t first);
 /// The line of a face of the file, or its number.
 uint32_t work_face_name(const Work *work, uint32_t origin);
@@ -110,13 +110,13 @@ double distance3(const double *a, const double *b);
 /// Twice the area times the normal.
 void face_area(const Work *work, uint32_t face, double normal[3]);
 
-/// Vertices become others: renames corners and what the file's vertices are.
+/// Replaces each vertex v by to[v], in the corners and in work->became.
 void work_rename(Work *work, const uint32_t *to);
 
 /// Marks the vertices on open edges; work->twin is filled.
 void work_mark_open(const Work *work, uint8_t *open);
 
-/// Vertices by the box of a grid in which they lie, by a hash (weld.c).
+/// A hash table of vertices by their box in a grid (weld.c).
 typedef struct Positions {
     double size;
     uint32_t slots;
@@ -128,41 +128,41 @@ void positions_add(const Work *work, Positions *positions, uint32_t vertex);
 void positions_box(const Positions *positions, const double *position, int64_t box[3]);
 uint32_t positions_slot(const Positions *positions, const int64_t box[3]);
 
-// ---- the steps, each of which leaves new faces
+// ---- the steps, each of which makes new faces
 
-/// Joins vertices on open edges that are as near as work->weld (weld.c).
+/// Merges vertices on open edges within work->weld of each other (weld.c).
 void mesh_weld(Work *work);
-/// Makes one of the ends of very short sides; work->smallest is a share of the median side (collapse.c).
+/// Merges the ends of sides shorter than work->smallest times the median side (collapse.c).
 SingeResult mesh_shrink(Work *work);
-/// Leaves out what has no area and what is there twice; faces that touch themselves, or that are not seen from their
-/// centre, fall apart (clean.c).
+/// Leaves out faces without area and duplicates; splits faces that touch themselves or are not visible from their
+/// centroid (clean.c).
 SingeResult mesh_clean(Work *work);
-/// Leaves out faces whose corners an earlier one has (clean.c).
+/// Leaves out faces with the same corners as an earlier one (clean.c).
 void mesh_leave_out_copies(Work *work);
-/// Puts vertices into the open sides that they lie on (junction.c).
+/// Inserts vertices into the open sides that they lie on (junction.c).
 SingeResult mesh_junctions(Work *work);
-/// Cuts edges of more than two faces, turns faces one way, closed surfaces outside out, and gives every fan of faces a
-/// vertex of its own (manifold.c).
+/// Splits edges of more than two faces, makes the winding consistent, outwards on closed surfaces, and gives every fan
+/// of faces its own vertex (manifold.c).
 void mesh_manifold(Work *work);
-/// Fills work->face and twin, with two faces at a side at most (sides.c).
+/// Fills work->face and twin, with at most two faces at a side (sides.c).
 void mesh_join_sides(Work *work);
-/// Gives sides that lie between the same vertices, though they are not one, corners of their own (sides.c).
+/// Gives distinct sides between the same two vertices corners of their own (sides.c).
 void mesh_part_sides(Work *work);
-/// Cuts polygons into triangles and joins these to quads (pair.c, match.c). False when some triangle stays alone.
+/// Cuts polygons into triangles and joins these to quads (pair.c, match.c). False if some triangle stays single.
 bool mesh_pair(Work *work);
-/// Every face of n corners into n quads (to_quads.c).
+/// Splits every face of n corners into n quads (to_quads.c).
 void mesh_split(Work *work);
 
-/// Share of sides between consecutive numbers from which on a mesh keeps its order.
+/// A mesh keeps its order if at least this share of its sides has ends with consecutive numbers.
 #define MESH_IN_ORDER 0.25
-/// Cells below which a mesh keeps its order.
+/// A mesh with fewer cells keeps its order.
 #define MESH_ORDER_MIN 256
-/// Numbers vertices and quads row by row, unless they are (renumber.c).
+/// Numbers vertices and quads row by row, unless the mesh keeps its order (renumber.c).
 void mesh_order(Work *work);
 
-/// Pairs of a graph's nodes: a largest set of edges that share no node, grown from `mate` (match.c). Node v's edges are
-/// arc_to[arc_first[v]] up to arc_first[v + 1]; mate is MESH_NONE where a node is alone. `open` nodes may stay alone,
-/// and do so rather than others.
+/// Grows `mate` to a maximum matching of a graph: a largest set of edges that share no node (match.c). Node v's edges are
+/// arc_to[arc_first[v]] up to arc_first[v + 1]; mate is MESH_NONE for a single node. `open` nodes may stay single, and do
+/// so in preference to others.
 void match_grow(Work *work, uint32_t count, const uint32_t *arc_first, const uint32_t *arc_to, const uint8_t *open,
                 uint32_t *mate);
 
