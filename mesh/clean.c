@@ -64,8 +64,8 @@ static bool same_corners(const Faces *faces, uint32_t a, uint32_t b) {
     return true;
 }
 
-/// Marks faces with the same corners as an earlier one, and returns how many. Only faces with the same lowest vertex are
-/// compared.
+/// Marks faces with the same corners as an earlier one, and returns how many. Only faces with the same lowest vertex
+/// are compared.
 static uint32_t find_duplicates(Work *work, uint8_t *gone) {
     const Faces *faces = &work->faces;
     uint32_t *head = work_new(work, work->vertex_count, sizeof *head);

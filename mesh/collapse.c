@@ -1,7 +1,7 @@
-// Collapses short sides: springs that are far shorter than the rest cannot be held (docs/meshes.md), and the detail they
-// show is smaller than a cell. The ends of short sides are merged, the shortest side first, as long as the set that
-// becomes one vertex is no larger than the limit for sides. Of two vertices one of which is on an open edge, that one
-// stays; two on open edges are merged only along such an edge, so that nothing is pinched off.
+// Collapses short sides: springs that are far shorter than the rest cannot be held (docs/meshes.md), and the detail
+// they show is smaller than a cell. The ends of short sides are merged, the shortest side first, as long as the set
+// that becomes one vertex is no larger than the limit for sides. Of two vertices one of which is on an open edge, that
+// one stays; two on open edges are merged only along such an edge, so that nothing is pinched off.
 #include "mesh/work.h"
 
 #include <math.h>
@@ -98,7 +98,7 @@ static Shrink shrink_begin(Work *work, double min) {
     return shrink;
 }
 
-/// The uv at a merged vertex differ slightly: those that differ by no more than the merged set is large get the first's.
+/// The uv at a merged vertex differ slightly: those within about the size of a merged set of the first's become equal.
 static void join_uv(Shrink *shrink, const uint8_t *several) {
     Work *work = shrink->work;
     const Faces *faces = &work->faces;

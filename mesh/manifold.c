@@ -12,8 +12,8 @@ typedef struct Turn {
 
 // ---- consistent winding
 
-/// Gives the faces of a component the winding of its first one; they are `begin` to `end` in the queue. Where the surface
-/// returns to itself with the opposite winding, as on a Moebius strip, it is cut.
+/// Gives the faces of a component the winding of its first one; they are `begin` to `end` in the queue. Where the
+/// surface returns to itself with the opposite winding, as on a Moebius strip, it is cut.
 static void manifold_spread(Work *work, Turn *turn, uint32_t begin, uint32_t *end) {
     const Faces *faces = &work->faces;
     for (uint32_t i = begin; i < *end; i++) {
@@ -116,8 +116,8 @@ static void turn_faces(Work *work) {
 /// Share of the distance to the centroid of its faces by which a copy is moved back.
 static const double PART_GAP = 0.03;
 
-/// Moves the copies of vertices, those from `first` on, back into their own faces: parts in contact from the start could
-/// not be told from parts that have crossed.
+/// Moves the copies of vertices, those from `first` on, back into their own faces: parts in contact from the start
+/// could not be told from parts that have crossed.
 static void draw_back(Work *work, uint32_t first) {
     const Faces *faces = &work->faces;
     const uint32_t copies = work->vertex_count - first;

@@ -34,8 +34,8 @@ typedef struct GridWear {
     uint32_t seed;
 } GridWear;
 
-/// Moves the vertices of a mesh_grid off its lines, so that folds and fronts have no lines to follow, and up and down in
-/// smooth waves about half as long as the shorter side. The outline from above and the meaning of uv stay.
+/// Moves the vertices of a mesh_grid off its lines, so that folds and fronts have no lines to follow, and up and down
+/// in smooth waves about half as long as the shorter side. The outline from above and the meaning of uv stay.
 void mesh_grid_wear(Mesh *mesh, uint32_t cells_x, uint32_t cells_y, const GridWear *wear);
 void mesh_free(Mesh *mesh);
 

@@ -79,8 +79,8 @@ static void cost_all(Pairs *pairs) {
 
 // ---- the cheapest first
 
-/// The angle of the quad of a triangle and its mate, at the corner where `corner_half` begins. `half` is the shared side
-/// of the triangle, `twin` that of the mate.
+/// The angle of the quad of a triangle and its mate, at the corner where `corner_half` begins. `half` is the shared
+/// side of the triangle, `twin` that of the mate.
 static double quad_angle(const Pairs *pairs, uint32_t corner_half, uint32_t half, uint32_t twin) {
     double angle = corner_angle(pairs, corner_half);
     if (corner_half == half) angle += corner_angle(pairs, pair_next3(twin));

@@ -160,7 +160,7 @@ static bool in_wedge(const double *a, const double *b, const double *c, const do
     return turn2(a, b, p) > 0 && turn2(a, p, c) > 0;
 }
 
-/// Whether corner i of the ring lies in an ear or, at the position of one of the ear's corners, the ring goes on inside.
+/// Whether corner i of the ring lies in an ear, or the ring enters the ear from there if it is at one of its corners.
 static bool enters(const PolygonCut *cut, uint32_t n, uint32_t i, const double *const ear[3]) {
     const double *before = cut->at[(i + n - 1) % n], *after = cut->at[(i + 1) % n];
     for (int k = 0; k < 3; k++)

@@ -5,8 +5,8 @@
 #include "mesh/mesh.h"
 
 #define MESH_NONE UINT32_MAX
-/// A face is degenerate if twice its area is at most this times the square of its longest side. The core's limit is half
-/// of this (src/shell/sheet.c).
+/// A face is degenerate if twice its area is at most this times the square of its longest side. The core's limit is
+/// half of this (src/shell/sheet.c).
 #define FACE_THIN 4e-6
 
 /// Memory that is freed all at once.
@@ -160,9 +160,9 @@ void mesh_split(Work *work);
 /// Numbers vertices and quads row by row, unless the mesh keeps its order (renumber.c).
 void mesh_order(Work *work);
 
-/// Grows `mate` to a maximum matching of a graph: a largest set of edges that share no node (match.c). Node v's edges are
-/// arc_to[arc_first[v]] up to arc_first[v + 1]; mate is MESH_NONE for a single node. `open` nodes may stay single, and do
-/// so in preference to others.
+/// Grows `mate` to a maximum matching of a graph: a largest set of edges that share no node (match.c). Node v's edges
+/// are arc_to[arc_first[v]] up to arc_first[v + 1]; mate is MESH_NONE for a single node. `open` nodes may stay single,
+/// and do so in preference to others.
 void match_grow(Work *work, uint32_t count, const uint32_t *arc_first, const uint32_t *arc_to, const uint8_t *open,
                 uint32_t *mate);
 
