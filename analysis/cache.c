@@ -34,7 +34,7 @@ static bool is_named(const PlyProperty *property, const char *name) {
            (strcmp(name, "burnt") == 0 && text_word_is(property->name, property->name_end, "char"));
 }
 
-/// Where the promised properties are in a vertex.
+/// Finds the offsets of the promised properties in a vertex.
 static SingeResult find_columns(const Ply *ply, const PlyElement *vertices, CacheFrame *frame) {
     for (size_t i = 0; i < vertices->property_count; i++) {
         const PlyProperty *property = &ply->header.properties[vertices->first_property + i];

@@ -1,4 +1,5 @@
-// A frame of a cache as it lies in its file, bad values and all: formats/ply_surface.c refuses what is to be counted.
+// A frame of a cache as stored in its file, with its bad values: formats/ply_surface.c refuses those that verify
+// counts.
 #ifndef ANALYSIS_CACHE_H
 #define ANALYSIS_CACHE_H
 
@@ -19,25 +20,25 @@ enum {
 };
 
 typedef struct CacheFrame {
-    double time; ///< s, NaN where the header does not say
+    double time; ///< s, NaN if it is not in the header
     uint32_t vertex_count, triangle_count;
-    bool there[CACHE_COLUMNS]; ///< a property of that name and type
+    bool there[CACHE_COLUMNS]; ///< whether there is a property of that name and type
     float (*position)[3];      ///< [vertex_count]
-    float (*rest)[3];          ///< [vertex_count], 0 where there are none
+    float (*rest)[3];          ///< [vertex_count], 0 if there are none
     uint32_t (*triangles)[3];  ///< [triangle_count] as in the file: they may be out of range
     Bytes bytes;
-    size_t row, offset[CACHE_COLUMNS]; ///< bytes of a vertex, and where in it a property is
+    size_t row, offset[CACHE_COLUMNS]; ///< bytes per vertex, and the offset of a property in them
     const uint8_t *rows;
 } CacheFrame;
 
 const char *cache_column_name(int column);
 bool cache_column_is_integer(int column);
 
-/// A value of a vertex as the file has it; of an integer, its bits. 0 where the property is missing.
+/// A value of a vertex as stored; of an integer, its bits. 0 if the property is missing.
 float cache_value(const CacheFrame *frame, int column, uint32_t vertex);
 
-/// Reads a frame. Refuses what is no binary little-endian PLY of vertices with positions and faces of three corners, or
-/// is not as long as its header says. Free it, after failure too.
+/// Reads a frame. Refuses files that are not a binary little-endian PLY of vertices with positions and faces of three
+/// corners, or are not as long as their header says. Free it, after failure too.
 SINGE_NODISCARD SingeResult cache_read(const char *path, CacheFrame *frame, SingeError *error);
 void cache_free(CacheFrame *frame);
 

@@ -1,7 +1,7 @@
 // Broad phase: a tree of boxes over the triangles in the order of their centres along a Morton curve. Node k has the
-// children 2k + 1 and 2k + 2; the leaves, a power of two of them, are the tree's last level and share the triangles out
-// evenly. Pairs of nodes whose boxes meet are taken apart until they are leaves: linear in the triangles and the pairs
-// that are close, whatever lies on top of each other.
+// children 2k + 1 and 2k + 2; the leaves, a power of two of them, are the tree's last level and have equal shares of
+// the triangles. Pairs of nodes whose boxes overlap are split until they are leaves: linear in the triangles and the
+// pairs that are close, however they are layered.
 #include "analysis/crossings.h"
 
 #include <math.h>
@@ -58,7 +58,7 @@ static Box triangle_box(const Tree *tree, uint32_t triangle) {
     return box;
 }
 
-/// Spreads the low 21 bits to every third.
+/// Spreads the low 21 bits to every third bit.
 static uint64_t crossings_spread(uint64_t bits) {
     bits = (bits | bits << 32) & 0x001f00000000ffffu;
     bits = (bits | bits << 16) & 0x001f0000ff0000ffu;
@@ -154,7 +154,7 @@ static bool list_add(CrossingList *list, uint32_t a, uint32_t b) {
     return true;
 }
 
-/// Neighbours along an edge have nothing else in common.
+/// Whether two triangles share an edge: then they have nothing else in common.
 static bool are_neighbours(const uint32_t *s, const uint32_t *t) {
     int same = 0;
     for (int i = 0; i < 9; i++) same += s[i / 3] == t[i % 3];
@@ -181,7 +181,7 @@ static bool test_leaves(Tree *tree, uint32_t a, uint32_t b, CrossingList *list) 
     return true;
 }
 
-/// The two nodes are of one level at all times, so that the stack holds three pairs a level beside the one in hand.
+/// Both nodes are always of the same level, so the stack holds three pairs per level besides the current one.
 static bool tree_pairs(Tree *tree, CrossingList *list) {
     uint32_t stack[4 * 33][2] = {{0, 0}};
     for (int depth = 1; depth > 0;) {
@@ -198,7 +198,7 @@ static bool tree_pairs(Tree *tree, CrossingList *list) {
     return true;
 }
 
-/// Adds those of the touching pairs that cross all the same.
+/// Adds the touching pairs that cross nevertheless.
 static bool add_hinges(Tree *tree, CrossingList *list) {
     CrossingList *touching = &tree->touching;
     if (!hinges_find(tree->position, tree->triangles, tree->count, touching->pairs, &touching->count)) return false;

@@ -1,4 +1,4 @@
-// Pairs of triangles of a surface that go through each other (docs/cli.md, verify), found without any of the solver.
+// Pairs of triangles of a surface that cross (docs/cli.md, verify), found without any code of the solver.
 #ifndef ANALYSIS_CROSSINGS_H
 #define ANALYSIS_CROSSINGS_H
 
@@ -10,11 +10,11 @@ typedef struct CrossingList {
     size_t count;         ///< pairs
     uint32_t (*pairs)[2]; ///< [count] the lower number first, in ascending order
     size_t capacity;
-    uint64_t tested; ///< pairs whose boxes met
+    uint64_t tested; ///< pairs whose boxes overlapped
 } CrossingList;
 
-/// Finds the pairs that cross among triangles of finite corners that are not on a line: by triangle_pair.h or hinges.h.
-/// False when out of memory. The list is to be freed, after failure too.
+/// Finds the pairs of triangles that cross, by triangle_pair.h or hinges.h. Corners must be finite and not on a line.
+/// False when out of memory. Free the list, after failure too.
 bool crossings_find(const float (*position)[3], const uint32_t (*triangles)[3], uint32_t count, CrossingList *list);
 void crossings_free(CrossingList *list);
 

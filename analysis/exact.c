@@ -9,8 +9,8 @@
 // sum with all products positive (its permanent), e = 2^-53. Else the determinant is multiplied out: 24 products of
 // three coordinates, or 6 of two. A product of two floats is a double exactly (24 + 24 bits of 53); cut into halves of
 // 26 bits it gives two exact doubles with a third. These are added up as an expansion, a sum of doubles that do not
-// overlap, whose largest part has the sign of the whole (Shewchuk's Grow-Expansion, theorem 10). The same serves for
-// the differences themselves, with 6 products, where they are exact and have no more than 26 bits: points close
+// overlap, in which the largest part has the sign of the whole (Shewchuk's Grow-Expansion, theorem 10). The same serves
+// for the differences themselves, with 6 products, if they are exact and have no more than 26 bits: points close
 // together. Floats lie between 2^-149 and 2^128, so nothing under- or overflows.
 #include "analysis/exact.h"
 
@@ -73,7 +73,7 @@ static bool is_short(const float a[3], const float d[3], const double p[3]) {
     return true;
 }
 
-/// Where the differences from d are short they will do; else the determinant of the four with a column of ones.
+/// Uses the differences from d if they are short, else the determinant of the four points with a column of ones.
 static int orient3_slowly(const float *const points[4], const double p[3], const double q[3], const double r[3]) {
     Expansion sum = {0};
     const float *d = points[3];
@@ -102,7 +102,7 @@ int exact_orient3(const float a[3], const float b[3], const float c[3], const fl
         value += p[k] * (one - other);
         permanent += fabs(p[k]) * (fabs(one) + fabs(other));
     }
-    // a difference is 0 only where it is so exactly, and then so are the products with it
+    // a rounded difference is 0 only if the exact one is, and then its products are 0, too
     if (permanent == 0) return 0;
     if (fabs(value) > (7 + 56 * rounding) * rounding * permanent) return sign_of(value);
     return orient3_slowly((const float *const[4]){a, b, c, d}, p, q, r);

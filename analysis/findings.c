@@ -63,7 +63,7 @@ void check_values(const CacheFrame *frame, Findings *findings) {
 
 static bool is_finite_point(const float p[3]) { return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]); }
 
-/// The corners are vertices at finite positions.
+/// Whether the corners are vertices at finite positions.
 static bool has_corners(const CacheFrame *frame, uint32_t triangle) {
     for (int k = 0; k < 3; k++) {
         const uint32_t vertex = frame->triangles[triangle][k];
@@ -72,7 +72,7 @@ static bool has_corners(const CacheFrame *frame, uint32_t triangle) {
     return true;
 }
 
-/// Numbers of the triangles that have an area, into `sound`; those without are counted.
+/// Writes the numbers of the triangles with an area to `sound`, and counts those without as faults.
 static uint32_t keep_sound(const CacheFrame *frame, uint32_t *sound, Findings *findings) {
     uint32_t count = 0;
     for (uint32_t t = 0; t < frame->triangle_count; t++) {
@@ -94,7 +94,7 @@ static double findings_distance(const float a[3], const float b[3]) {
     return sqrt(sum);
 }
 
-/// Between the nearest corners of two triangles at rest, m. *side gets the longest of their edges.
+/// Distance between the nearest corners of two triangles at rest, m. *side gets the longest of their edges.
 static double rest_gap(const CacheFrame *frame, uint32_t a, uint32_t b, double *side) {
     const uint32_t *s = frame->triangles[a], *t = frame->triangles[b];
     double gap = (double)INFINITY;
@@ -214,7 +214,7 @@ static void normal_of(const float a[3], const float b[3], const float c[3], doub
     for (int k = 0; k < 3; k++) normal[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
 }
 
-/// Cosine between the triangles of an edge, both wound as the first says.
+/// Cosine between the normals of the triangles of an edge, both with the winding of the first.
 static double findings_bend(float (*const at)[3], const Side *one, const Side *other) {
     double m[3], n[3], mn = 0, mm = 0, nn = 0;
     normal_of(at[one->low], at[one->high], at[one->opposite], m);
@@ -229,7 +229,7 @@ static bool has_rest(const CacheFrame *frame, const Side *side) {
            is_finite_point(frame->rest[side->opposite]);
 }
 
-/// How far the length of an edge may be off because its ends are stored as floats, half a last bit each.
+/// Max error of the length of an edge because its ends are stored as floats, half a last bit each.
 static double rounding(const float from[3], const float to[3]) {
     double squares = 0;
     for (int k = 0; k < 3; k++) {

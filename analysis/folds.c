@@ -1,14 +1,13 @@
-// Zippers: a fold that runs slantwise to the rows of cells is a saw where cells are drawn with facets, in shading and
-// in silhouette. Along a fold little should change within a few cells, so that what does is measured, of the unit
-// normal N over the sheet at rest (rest_raster.h), in cells of the mesh, c long:
+// Zippers: a fold that is oblique to the rows of cells looks like a saw if cells are drawn with facets, in shading and
+// in silhouette. Along a fold little should change within a few cells. So the change is measured there, of the unit
+// normal N over the sheet at rest (rest_raster.h), with c the length of the mesh's cells:
 //
-//   folds   where N, smoothed by a Gaussian of one c, turns by more than 10 degrees in c; their direction is that in
-//   which
-//           it turns least (the matrix J of wrinkles.c)
+//   folds   where N, smoothed by a Gaussian of one c, turns by more than 10 degrees in c; their direction is that
+//           in which it turns least (the matrix J of wrinkles.c)
 //   N'      N on a line of 6 c along the fold, 8 samples a cell, less its mean under a Hann window of 3 c
 //
-// The measure is the root mean square of |N'| over the centre 3 c of all lines that are on the sheet, 3 c and more from
-// its border and from what has burnt.
+// The measure is the root mean square of |N'| over the middle 3 c of all lines that are on the sheet, at least 3 c from
+// its border and from burnt parts.
 #include "analysis/folds.h"
 
 #include <math.h>
@@ -16,7 +15,7 @@
 
 #include "analysis/rest_raster.h"
 
-enum { SAMPLES_A_CELL = 8, WINDOW = 24, LINE = 48, CENTROID = LINE - WINDOW, SHEETS_MAX = UINT16_MAX };
+enum { SAMPLES_A_CELL = 8, WINDOW = 24, LINE = 48, MIDDLE = LINE - WINDOW, SHEETS_MAX = UINT16_MAX };
 
 static const double turn_min = 0.1745, far_off = 3; ///< rad in a cell; cells
 static const float burnt_min = 0.02f;
@@ -42,7 +41,7 @@ static double cell_length(const SingeSurface *surface, int32_t sheet) {
 
 typedef struct Work {
     const RestRaster *raster;
-    float *scratch, *weight, *smooth[3], *distance; ///< the first is two fields; the last in m, to what does not count
+    float *scratch, *weight, *smooth[3], *distance; ///< scratch: two fields; distance: m, to pixels that do not count
 } Work;
 
 static bool work_make(const RestRaster *raster, Work *work) {
@@ -54,7 +53,7 @@ static bool work_make(const RestRaster *raster, Work *work) {
     return true;
 }
 
-/// Whether the normal turns enough at pixel p, inside the raster; the direction along the fold then, in pixels.
+/// Whether the normal turns enough at pixel p, inside the raster. `along` gets the direction along the fold, in pixels.
 static bool fold_at(const Work *work, int p, double cell, double along[2]) {
     const int w = work->raster->width;
     const double step = 2 * work->raster->spacing;
@@ -69,7 +68,7 @@ static bool fold_at(const Work *work, int p, double cell, double along[2]) {
     return bend * cell > turn_min;
 }
 
-/// N at a position between pixels. False where one of them does not count.
+/// N at a position between pixels. False if one of them does not count.
 static bool normal_at(const Work *work, double x, double y, double normal[3]) {
     const RestRaster *raster = work->raster;
     int i = (int)floor(x), j = (int)floor(y);
@@ -91,7 +90,7 @@ static void add_line(const Work *work, int i, int j, const double along[2], doub
         double s = (n - 0.5 * (LINE - 1)) * step;
         if (!normal_at(work, i + s * along[0], j + s * along[1], normal[n])) return;
     }
-    for (int n = 0; n < CENTROID; n++)
+    for (int n = 0; n < MIDDLE; n++)
         for (int k = 0; k < 3; k++) {
             double mean = 0, total = 0;
             for (int m = 0; m <= WINDOW; m++) {
@@ -100,11 +99,11 @@ static void add_line(const Work *work, int i, int j, const double along[2], doub
             }
             power += pow(normal[n + WINDOW / 2][k] - mean / total, 2);
         }
-    folds->power += power / CENTROID, folds->count += 1;
+    folds->power += power / MIDDLE, folds->count += 1;
 }
 
-/// Distance to what has burnt and to where the sheet ends, less `far_off` cells. What is not covered counts as burnt
-/// from then on.
+/// Distance to burnt pixels and to the border of the sheet, minus `far_off` cells. From then on, pixels that are not
+/// covered count as burnt.
 static void find_distances(RestRaster *raster, float *distance, double cell) {
     const int pixels = raster->width * raster->height;
     for (int p = 0; p < pixels; p++)

@@ -11,10 +11,10 @@ typedef struct Folds {
     double power, count; ///< rad2, and samples: the normal's angle along folds in wavelengths below three cells
 } Folds;
 
-/// Adds a frame's. False when out of memory.
+/// Adds a frame. False when out of memory.
 bool folds_add(const SingeSurface *surface, Folds *folds);
 
-/// Degrees, root mean square; NaN where there is no fold.
+/// Degrees, root mean square; NaN if there is no fold.
 double folds_angle(const Folds *folds);
 
 #endif

@@ -1,10 +1,10 @@
-// An edge pq between triangles with the third corners a and b, against
+// An edge pq between triangles with the third corners a and b crosses
 //
-//   a triangle t in whose plane it lies: it must run through t's inside, with a and b on opposite sides of t;
-//   an edge of t on the same line, between t and u: they must have a length in common, and the half-planes of a and b
-//   around the line must part those of t and u.
+//   a triangle t in whose plane it lies: if it runs through t's interior, with a and b on opposite sides of t;
+//   an edge of t on the same line, between t and u: if they have a length in common, and the half-planes of a and b
+//   around the line separate those of t and u.
 //
-// Together with insides that meet these are all the ways for two surfaces to go through each other along a line.
+// Together with interiors that meet, these are all cases in which two surfaces cross along a line.
 #include "analysis/hinges.h"
 
 #include <stdlib.h>
@@ -18,21 +18,21 @@ typedef struct Hinges {
     const float (*position)[3];
     const uint32_t (*triangles)[3];
     uint32_t count;
-    uint32_t (*across)[3]; ///< the other triangle at the edge that begins at a corner; NONE at a border or of several
-    uint8_t (*far)[3];     ///< which corner of it is not on the edge
+    uint32_t (*across)[3]; ///< the other triangle at the edge that begins at a corner; NONE if there is none or several
+    uint8_t (*far)[3];     ///< its corner that is not on the edge
 } Hinges;
 
 static void corners_of(const Hinges *hinges, uint32_t triangle, Corners corners) {
     for (int k = 0; k < 3; k++) corners[k] = hinges->position[hinges->triangles[triangle][k]];
 }
 
-// ---- who is across an edge
+// ---- the triangle across an edge
 
 typedef struct Side {
     const float *at[2]; ///< the edge's ends in ascending order of their positions
     uint32_t ends[2];   ///< their vertices
     uint32_t triangle;
-    uint8_t corner; ///< where the edge begins in it
+    uint8_t corner; ///< of the triangle, where the edge begins
 } Side;
 
 static int compare_points(const float a[3], const float b[3]) {
@@ -71,8 +71,8 @@ static void hinges_join(Hinges *hinges, const Side *a, const Side *b) {
     hinges->far[b->triangle][b->corner] = (uint8_t)((a->corner + 2) % 3);
 }
 
-/// Joins the triangles of edges at the same position: two of the same vertices, then two that have nobody else, as at a
-/// seam.
+/// Joins the triangles of edges at the same position: two with the same vertices, then two without such a partner, as
+/// at a seam.
 static void join_at(Hinges *hinges, const Side *sides, size_t count) {
     const Side *alone[2];
     size_t loose = 0;
@@ -101,7 +101,7 @@ static bool join_all(Hinges *hinges) {
 
 // ---- an edge and a triangle
 
-/// Whether the segment p q, which lies in t's plane, has points of t's inside.
+/// Whether the segment p q, which lies in t's plane, has points in t's interior.
 static bool runs_inside(const float *p, const float *q, const Corners t) {
     int x = 0, turn = 0;
     for (; x < 3 && !turn; x++) turn = exact_orient2(t[0], t[1], t[2], x, (x + 1) % 3);
@@ -124,7 +124,7 @@ static bool goes_through(const float *p, const float *q, const float *a, const f
 
 // ---- an edge and an edge
 
-/// Whether two segments lie on one line and have a length of it in common.
+/// Whether two segments lie on one line and overlap in a length.
 static bool share_length(const float *p, const float *q, const float *r, const float *s) {
     if (!exact_collinear(p, q, r) || !exact_collinear(p, q, s)) return false;
     const int k = p[0] != q[0] ? 0 : p[1] != q[1] ? 1 : 2;
@@ -133,8 +133,8 @@ static bool share_length(const float *p, const float *q, const float *r, const f
     return low < max && min < high;
 }
 
-/// Whether, turning about p q, c is met strictly on the way from a to b.
-static bool is_on_the_way(const float *p, const float *q, const float *a, const float *b, const float *c) {
+/// Whether the rotation about p q from a to b passes c strictly in between.
+static bool is_between(const float *p, const float *q, const float *a, const float *b, const float *c) {
     const int ab = exact_orient3(p, q, a, b), ac = exact_orient3(p, q, a, c), cb = exact_orient3(p, q, c, b);
     if (ab > 0) return ac > 0 && cb > 0;
     if (ab < 0) return ac > 0 || cb > 0;
@@ -151,13 +151,14 @@ static bool is_folded(const float *p, const float *q, const float *a, const floa
 
 static bool parts(const float *p, const float *q, const float *a, const float *b, const float *t, const float *u) {
     if (exact_orient3(p, q, a, b) == 0 && is_folded(p, q, a, b)) return false;
-    return (is_on_the_way(p, q, a, b, t) && is_on_the_way(p, q, b, a, u)) ||
-           (is_on_the_way(p, q, a, b, u) && is_on_the_way(p, q, b, a, t));
+    return (is_between(p, q, a, b, t) && is_between(p, q, b, a, u)) ||
+           (is_between(p, q, a, b, u) && is_between(p, q, b, a, t));
 }
 
 // ---- pairs
 
-/// Whether the edge at this corner of `one` and its other triangle cross `two`, in `two` or at its edges.
+/// Whether the two triangles at this corner's edge of `one` cross `two`, in its interior or, with `edges`, at its
+/// edges.
 static bool crosses_at(const Hinges *hinges, uint32_t one, int corner, uint32_t two, bool edges) {
     const uint32_t other = hinges->across[one][corner];
     if (other == NONE || other == two || other < one) return false;

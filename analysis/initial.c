@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// Of the longest side at rest of a triangle that crosses in the first frame, how far around it that counts: what
-/// crosses slides, and is left alone until it has parted.
+/// Reach of an initial crossing around its triangle, in longest sides of the triangle at rest: parts that cross slide,
+/// and are ignored until they have separated.
 static const float reach_of_side = 2;
 
 static float initial_distance(const float *a, const float *b) {
@@ -18,7 +18,7 @@ static bool has_rest(const CacheFrame *frame) {
     return frame->there[CACHE_REST] && frame->there[CACHE_REST + 1] && frame->there[CACHE_REST + 2];
 }
 
-static InitialTriangle position_of(const CacheFrame *frame, uint32_t triangle) {
+static InitialTriangle entry_of(const CacheFrame *frame, uint32_t triangle) {
     const uint32_t *t = frame->triangles[triangle];
     const float bits = cache_value(frame, CACHE_SHEET, t[0]);
     InitialTriangle entry = {{0}, 0, 0};
@@ -42,7 +42,7 @@ bool initial_take(Initial *initial, const CacheFrame *frame, const uint32_t (*pa
     if (!initial->triangles) return false;
     initial->count = 2 * count;
     for (size_t i = 0; i < 2 * count; i++) {
-        initial->triangles[i] = position_of(frame, pairs[i / 2][i % 2]);
+        initial->triangles[i] = entry_of(frame, pairs[i / 2][i % 2]);
         initial->reach = fmaxf(initial->reach, initial->triangles[i].reach);
     }
     qsort(initial->triangles, initial->count, sizeof *initial->triangles, by_x);
@@ -87,6 +87,6 @@ static bool is_near(const Initial *initial, const InitialTriangle *entry) {
 
 bool initial_has(const Initial *initial, const CacheFrame *frame, uint32_t a, uint32_t b) {
     if (!initial->count || !has_rest(frame)) return false;
-    const InitialTriangle one = position_of(frame, a), other = position_of(frame, b);
+    const InitialTriangle one = entry_of(frame, a), other = entry_of(frame, b);
     return is_near(initial, &one) && is_near(initial, &other);
 }

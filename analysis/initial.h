@@ -1,4 +1,4 @@
-// The triangles that cross others in the first frame of a cache: what begins so has no side to be kept on.
+// The triangles that cross others in the first frame of a cache: these have no side to be kept on.
 #ifndef ANALYSIS_INITIAL_H
 #define ANALYSIS_INITIAL_H
 
@@ -18,14 +18,14 @@ typedef struct Initial {
     float reach; ///< m, the largest
 } Initial;
 
-/// Takes the triangles of pairs that cross. False when out of memory. Free it, after failure too.
+/// Records the triangles of pairs that cross. False when out of memory. Free it, after failure too.
 bool initial_take(Initial *initial, const CacheFrame *frame, const uint32_t (*pairs)[2], size_t count);
 void initial_free(Initial *initial);
 
-/// Counts the pairs of triangles of a surface that cross, and says where the first is. False when out of memory.
+/// Counts the crossing pairs of triangles of a surface; `at` gets a corner of the first, m. False when out of memory.
 bool initial_count(const SingeSurface *surface, uint64_t *pairs, float at[3]);
 
-/// Whether both triangles lie where something crossed at the start.
+/// Whether both triangles are near an initial crossing.
 bool initial_has(const Initial *initial, const CacheFrame *frame, uint32_t a, uint32_t b);
 
 #endif

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// The raster lies a sixteenth of a turn off the mesh's sides and diagonals, and so favours neither.
+/// The raster is rotated by a sixteenth of a turn from the mesh's sides and diagonals, and so favours neither.
 static const double turned = 0.39269908169872414;
 
-/// More pixels a side than this, and they are made larger.
+/// Max pixels per side; they are made larger to stay below it.
 enum { SIDE_MAX = 4096 };
 
 /// The plane of the raster: pixel (x, y) is origin + spacing (x e1 + y e2).
@@ -28,7 +28,7 @@ static bool rest_raster_unit(double *a) {
     return true;
 }
 
-/// A triangle at rest: two sides and its vector area twice.
+/// A triangle at rest: two sides and twice its vector area.
 typedef struct RestTriangle {
     double a[3], b[3], normal[3];
 } RestTriangle;
@@ -57,7 +57,7 @@ static void add_along_u(const SingeSurface *surface, const uint32_t *t, const Re
     for (int k = 0; k < 3; k++) along[k] += d[k] * sqrt(rest_raster_dot(triangle->normal, triangle->normal));
 }
 
-/// Axes of the sheet's plane, turned; the origin is left at a point of the sheet.
+/// Finds the rotated axes of the sheet's plane; the origin is some point of the sheet.
 static bool find_plane(const SingeSurface *surface, int32_t sheet, Plane *plane) {
     double normal[3] = {0}, along[3] = {0}, across[3];
     for (uint32_t f = 0; f < surface->triangle_count; f++) {
@@ -71,7 +71,7 @@ static bool find_plane(const SingeSurface *surface, int32_t sheet, Plane *plane)
     if (!rest_raster_unit(normal)) return false;
     double lift = rest_raster_dot(along, normal);
     for (int k = 0; k < 3; k++) along[k] -= lift * normal[k];
-    if (!rest_raster_unit(along)) { // no uv: the axis of space that lies flattest
+    if (!rest_raster_unit(along)) { // no uv: x, or y if x is too close to the normal
         int axis = fabs(normal[0]) < 0.9 ? 0 : 1;
         for (int k = 0; k < 3; k++) along[k] = (k == axis) - normal[axis] * normal[k];
         rest_raster_unit(along);
@@ -90,7 +90,7 @@ static void rest_raster_position(const SingeSurface *surface, const Plane *plane
     *x = rest_raster_dot(d, plane->e1), *y = rest_raster_dot(d, plane->e2);
 }
 
-/// Moves the origin to the lower corner of what the sheet covers and sets the size.
+/// Moves the origin to the lower corner of the area that the sheet covers, and sets the size.
 static void fit(const SingeSurface *surface, int32_t sheet, double spacing, Plane *plane, RestRaster *raster) {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, at[2];
     for (uint32_t v = 0; v < surface->vertex_count; v++) {
@@ -164,7 +164,7 @@ void rest_raster_free(RestRaster *raster) {
 
 enum { REACH_MAX = 64 };
 
-/// Adds to a line that of another, times `share`.
+/// Adds another line, times `share`, to a line.
 static void line_add(float *restrict to, const float *restrict from, float share, int count) {
     for (int i = 0; i < count; i++) to[i] += share * from[i];
 }
@@ -181,7 +181,7 @@ static void blur_rows(const float *from, float *to, int width, int height, const
     }
 }
 
-/// Row by row as well: memory is read in its order.
+/// Also row by row, to read memory in its order.
 static void blur_columns(const float *from, float *to, int width, int height, const float *kernel, int reach) {
     for (int j = 0; j < height; j++) {
         const float *line = from + (size_t)j * (size_t)width;

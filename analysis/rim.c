@@ -1,8 +1,8 @@
-// Triangles are sampled about every 0.75 mm. A sample belongs to the band of its distance from the nearest point of the
-// rim, in space, on the sheet at rest. Its area now over that at rest is its triangle's.
+// Triangles are sampled about every 0.75 mm. A sample belongs to a band by its straight distance at rest from the
+// nearest point of the rim. The ratio of its area to that at rest is its triangle's.
 //
-// Curl is the angle between a sample's normal 10 mm inland and the mean normal of what lies within 1.5 mm of the rim
-// and within 2 mm of the nearest point on it: a ragged rim has no other normal worth the name.
+// Curl is the angle between a sample's normal 10 mm inland and the mean normal of the samples within 1.5 mm of the rim
+// and within 2 mm of the nearest point on it: a ragged rim has no other useful normal.
 #include "analysis/rim.h"
 
 #include <math.h>
@@ -61,7 +61,7 @@ static double degrees_between(const double *a, const double *b) {
 typedef struct Piece {
     const SingeSurface *surface;
     int32_t id;
-    double origin[3], normal[3]; ///< of the plane that it began in
+    double origin[3], normal[3]; ///< of its plane at rest
 } Piece;
 
 static bool is_of(const Piece *piece, uint32_t f) {
@@ -97,7 +97,7 @@ static bool find_largest(const SingeSurface *surface, int32_t *id) {
     return true;
 }
 
-/// The plane through the piece at rest; false where it has no area.
+/// Finds the plane through the piece at rest; false if it has no area.
 static bool find_plane(Piece *piece) {
     const SingeSurface *surface = piece->surface;
     double total = 0;
@@ -123,7 +123,7 @@ typedef struct Sample {
     double rest_area, area, mass;           ///< m2, m2, fraction
 } Sample;
 
-/// What lies 10 mm inland, to be compared with the rim once its normals are known.
+/// A sample 10 mm inland, to be compared with the rim once its normals are known.
 typedef struct Inland {
     uint32_t nearest;
     double normal[3], area;
@@ -135,7 +135,7 @@ typedef struct Work {
     Inland *inland;
     size_t inland_count, inland_room;
     Rim *rim;
-    uint32_t nearest; ///< point to the last sample: the next one is not far
+    uint32_t nearest; ///< rim point to the last sample: that to the next is not far
 } Work;
 
 static bool inland_add(Work *work, const Sample *sample, uint32_t nearest) {
@@ -192,7 +192,7 @@ static int samples_along(const SingeSurface *surface, const uint32_t *t) {
     return count < 1 ? 1 : count > SAMPLES_A_SIDE_MAX ? SAMPLES_A_SIDE_MAX : (int)count;
 }
 
-/// Fills in a sample at these weights of the triangle's corners; false where it has no normal.
+/// Fills in a sample at these weights of the triangle's corners; false if it has no normal.
 static bool sample_at(const SingeSurface *surface, const uint32_t *t, const double *weight, Sample *sample) {
     sample->mass = 0;
     memset(sample->rest, 0, sizeof sample->rest);
@@ -209,7 +209,7 @@ static bool sample_at(const SingeSurface *surface, const uint32_t *t, const doub
     return rim_unit(sample->normal);
 }
 
-/// Cuts a triangle into n by n like itself, and takes the centre of each.
+/// Cuts a triangle into n by n similar ones, and samples the centroid of each.
 static bool take_triangle(Work *work, const uint32_t *t) {
     const SingeSurface *surface = work->piece.surface;
     const int n = samples_along(surface, t);
@@ -217,7 +217,7 @@ static bool take_triangle(Work *work, const uint32_t *t) {
                      .area = area_of(surface->position, t) / n / n};
     for (int i = 0; i < n; i++)
         for (int j = 0; j < 2 * (n - i) - 1; j++) {
-            // of the row's triangles every second stands on its head
+            // every second triangle of a row is upside down
             double third = j % 2 ? 2.0 / 3 : 1.0 / 3;
             double weight[3] = {0, (i + third) / n, (j / 2 + third) / n};
             weight[0] = 1 - weight[1] - weight[2];

@@ -1,4 +1,4 @@
-// What a burnt edge looks like: how far a sheet shrinks, slopes and curls by the distance from it.
+// The shape of a burnt edge: how far a sheet shrinks, slopes and curls, by the distance from the edge.
 #ifndef ANALYSIS_RIM_H
 #define ANALYSIS_RIM_H
 
@@ -16,7 +16,7 @@ extern const double rim_band_limits[RIM_BANDS + 1];
 typedef struct RimBand {
     double rest_area, area;   ///< m2, at rest and now
     double mass;              ///< m2, mass fraction times area
-    double height;            ///< m3, above the plane that the sheet began in
+    double height;            ///< m3, above the plane of the piece at rest
     double slope[RIM_ANGLES]; ///< m2, by the angle between the normal and that plane's
 } RimBand;
 
@@ -27,13 +27,13 @@ typedef struct Rim {
     double curl_max;         ///< degrees
 } Rim;
 
-/// Adds a frame's: of its largest piece, where that has a burnt edge. False when out of memory.
+/// Adds the largest piece of a frame, if it has a burnt edge. False when out of memory.
 bool rim_add(const SingeSurface *surface, Rim *rim);
 
 /// Adds the sums of one to the other.
 void rim_sum(const Rim *rim, Rim *sum);
 
-/// Degrees below which this share of the counted area lies; NaN where nothing was counted.
+/// Degrees below which this share of the counted area lies; NaN if nothing was counted.
 double rim_percentile(const double histogram[RIM_ANGLES], double share);
 
 #endif

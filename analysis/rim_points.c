@@ -1,5 +1,5 @@
-// Edges are open where no second triangle has the same two rest positions: so neither the edges of a tear nor seams of
-// the uv are taken for a rim. A grid of cells finds the nearest point.
+// An edge is open if no second triangle has the same two rest positions, so neither tear edges nor seams of the uv are
+// taken for a rim. A grid of cells finds the nearest point.
 #include "analysis/rim_points.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 /// m
 static const double point_spacing = 0.25e-3, grid_cell = 5e-3;
 
-/// Burn progress above which an open edge is a burnt one. Where sheets are removed it is .8 and more.
+/// Burn progress above which an open edge counts as burnt. Where sheets are removed it is .8 and more.
 static const float burnt_min = 0.4f;
 
 enum { GRID_SIDE_MAX = 128 };
@@ -184,14 +184,14 @@ bool rim_points_make(const SingeSurface *surface, int32_t piece, RimPoints *poin
     return good;
 }
 
-/// m, no more than the distance of cell `at` from a position along an axis. Points have been rounded to cells.
+/// m, a lower bound on the distance of cell `at` from a position along an axis; `slack` is for points rounded to cells.
 static double gap_along(const RimPoints *points, const double *position, int at, int axis) {
     const double low = points->low[axis] + at * points->cell, slack = 1e-6 * points->cell;
     const double below = low - position[axis] - slack, above = position[axis] - low - points->cell - slack;
     return below > 0 ? below : above > 0 ? above : 0;
 }
 
-/// Visits the points of a cell, to find one nearer than *square.
+/// Searches the points of a cell for one nearer than *square.
 static void look_at_cell(const RimPoints *points, const double *position, size_t cell, double *square,
                          uint32_t *nearest) {
     for (uint32_t i = points->first[cell]; i < points->first[cell + 1]; i++) {
@@ -202,7 +202,7 @@ static void look_at_cell(const RimPoints *points, const double *position, size_t
     }
 }
 
-/// Visits the cells that are `ring` cells from that of a position, but for those that are farther than *square.
+/// Searches the cells that are `ring` cells from that of a position, except those farther than *square.
 static void look_at_ring(const RimPoints *points, const double *position, const int *centre, int ring, double *square,
                          uint32_t *nearest) {
     int low[3], high[3];
@@ -216,7 +216,7 @@ static void look_at_ring(const RimPoints *points, const double *position, const 
         for (at[1] = low[1]; at[1] <= high[1]; at[1]++) {
             const double y = gap_along(points, position, at[1], 1), row = y * y + z * z;
             if (row >= *square) continue;
-            // rows inside the ring have its two ends alone
+            // rows inside the ring have only its two ends
             const bool whole = abs(at[2] - centre[2]) == ring || abs(at[1] - centre[1]) == ring;
             const int step = whole ? 1 : 2 * ring, begin = whole ? low[0] : centre[0] - ring;
             for (at[0] = begin; at[0] <= high[0]; at[0] += step) {
@@ -237,7 +237,7 @@ double rim_points_distance(const RimPoints *points, const double position[3], do
         if (centre[k] < -rings || centre[k] >= points->size[k] + rings) return INFINITY;
     }
 
-    // nothing farther than the point nearest to the position before; a little more, so that this one is found again
+    // no farther than the hinted point; a little more, so that this point itself is found
     if (*nearest < points->count) {
         const double *point = points->position[*nearest];
         double d[3] = {point[0] - position[0], point[1] - position[1], point[2] - position[2]};
@@ -245,7 +245,7 @@ double rim_points_distance(const RimPoints *points, const double position[3], do
     }
     bool found = false;
     for (int ring = 0; ring <= rings; ring++) {
-        if (ring > 0 && square <= pow((ring - 1) * points->cell, 2)) break; // nothing nearer can be that far
+        if (ring > 0 && square <= pow((ring - 1) * points->cell, 2)) break; // the remaining cells are farther
         double before = square;
         look_at_ring(points, position, centre, ring, &square, nearest);
         found = found || square < before;
@@ -253,7 +253,7 @@ double rim_points_distance(const RimPoints *points, const double position[3], do
     return found ? sqrt(square) : (double)INFINITY;
 }
 
-/// Adds to a point's normal what lies near the points of a cell.
+/// Adds the normals near the points of a cell to a point's normal.
 static void add_near(RimPoints *points, size_t p, size_t cell, double reach) {
     for (uint32_t i = points->first[cell]; i < points->first[cell + 1]; i++) {
         const double *at = points->position[p], *other = points->position[points->order[i]];

@@ -1,5 +1,5 @@
-// One-sided Jacobi (Hestenes 1958): the vectors of the shorter side are turned in pairs until all are orthogonal; then
-// their lengths are the singular values. A pair a, b with p = a.a, q = b.b, r = a.b is turned by the angle with
+// One-sided Jacobi (Hestenes 1958): the vectors of the shorter side are rotated in pairs until all are orthogonal; then
+// their lengths are the singular values. A pair a, b with p = a.a, q = b.b, r = a.b is rotated by the angle with
 //
 //   tan = sign(z)/(|z| + sqrt(1 + z^2)),   z = (q - p)/(2 r)
 //
@@ -18,7 +18,7 @@ static double singular_dot(const double *a, const double *b, size_t n) {
     return sum;
 }
 
-/// True when they were not orthogonal.
+/// Makes two vectors orthogonal. True if they were not.
 static bool singular_turn(double *a, double *b, size_t n, double floor) {
     double p = singular_dot(a, a, n), q = singular_dot(b, b, n), r = singular_dot(a, b, n);
     if (fabs(r) <= 1e-15 * sqrt(p * q) || (p <= floor && q <= floor)) return false;
@@ -45,7 +45,7 @@ int singular_values(const double *matrix, size_t rows, size_t columns, double *v
         for (size_t k = 0; k < length; k++)
             vectors[i * length + k] = upright ? matrix[k * columns + i] : matrix[i * columns + k];
     for (size_t i = 0; i < count * length; i++) norm += vectors[i] * vectors[i];
-    double floor = 1e-30 * norm; // below it vectors are rounding, and turning them would not end
+    double floor = 1e-30 * norm; // below it vectors are rounding errors, and rotating them would not end
     for (int sweep = 0; sweep < SWEEPS && turned; sweep++) {
         turned = false;
         for (size_t i = 0; i + 1 < count; i++)

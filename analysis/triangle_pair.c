@@ -2,8 +2,8 @@
 // using orientation predicates, J. Graphics Tools 8, 2003), here of open triangles.
 //
 // Each must have corners strictly on both sides of the other's plane. Then each meets the line of the two planes in an
-// open interval. With p the corner that is alone on its side, and that side made positive by turning the other triangle
-// over, these overlap where
+// open interval. With p the corner that is alone on its side, and that side made positive by flipping the other
+// triangle, these intervals overlap if
 //
 //   orient3(p1, q1, p2, q2) < 0   and   orient3(p1, r1, r2, p2) < 0
 //
@@ -28,7 +28,7 @@ static bool on_both_sides(const int sign[3]) {
     return above && below;
 }
 
-/// A corner with neither of the others on its side; there is one.
+/// A corner that is alone on its side; there is one.
 static int lonely(const int sign[3]) {
     for (int k = 0; k < 2; k++)
         if (sign[k] && sign[(k + 1) % 3] != sign[k] && sign[(k + 2) % 3] != sign[k]) return k;
@@ -48,7 +48,7 @@ static bool intervals_overlap(const Corners a, const int sign_a[3], const Corner
     return exact_orient3(s[0], s[1], t[0], t[1]) < 0 && exact_orient3(s[0], s[2], t[2], t[0]) < 0;
 }
 
-/// Whether an edge of `a` has all of `b` on its outer side, or on its line; `turn` is that of a's corners.
+/// Whether an edge of `a` has all of `b` on its outer side, or on its line; `turn` is the orientation of `a`.
 static bool edge_parts(const Corners a, int turn, const Corners b, int x, int y) {
     for (int i = 0; i < 3; i++) {
         int outside = 0;
@@ -61,7 +61,7 @@ static bool edge_parts(const Corners a, int turn, const Corners b, int x, int y)
 static bool overlap_in_plane(const Corners a, const Corners b) {
     for (int x = 0; x < 3; x++) {
         const int y = (x + 1) % 3, turn = exact_orient2(a[0], a[1], a[2], x, y);
-        if (!turn) continue; // seen from its side
+        if (!turn) continue; // seen edge-on
         const int other = exact_orient2(b[0], b[1], b[2], x, y);
         return !edge_parts(a, turn, b, x, y) && !edge_parts(b, other, a, x, y);
     }

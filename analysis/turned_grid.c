@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// How far the centre of a cell lies within the outline at least, in cells: less of it would be a sliver.
+/// Min depth of a cell's centroid within the outline, in cells: with less, the cell would be a sliver.
 static const double inside_min = 0.25;
 
-/// m, how far a point lies within the outline; below 0 it is outside.
+/// m, depth of a point within the outline; negative outside.
 static double turned_grid_inside(const TurnedGrid *cut, const double p[2]) {
     double from_centre = cut->disc ? hypot(p[0], p[1]) : fmax(fabs(p[0]), fabs(p[1]));
     return cut->size / 2 - from_centre;
@@ -35,7 +35,7 @@ static bool is_kept(const TurnedGrid *cut, const Mesh *mesh, const uint32_t *cor
     return turned_grid_inside(cut, centroid) > inside_min * cut->size / cut->cells;
 }
 
-/// Leaves the cells within, and the vertices that they have; `number` has room for one of each vertex, all 0.
+/// Keeps the cells within, and their vertices; `number` has an entry for each vertex, all 0.
 static void keep_inside(const TurnedGrid *cut, Mesh *mesh, uint32_t *number) {
     uint32_t cells = 0, vertices = 0;
     for (uint32_t c = 0; c < mesh->cell_count; c++) {
@@ -63,7 +63,7 @@ static void lay_to_outline(const TurnedGrid *cut, Mesh *mesh) {
 }
 
 SingeResult turned_grid(const TurnedGrid *cut, Mesh *mesh, SingeError *error) {
-    // a square turned by 45 degrees is sqrt 2 as wide; as many cells on either side keep the lines where they were
+    // a square rotated by 45 degrees is sqrt 2 times as wide; equal extra cells on both sides keep the lines in place
     const uint32_t wide = (uint32_t)cut->cells + 2 * (uint32_t)ceil(0.21 * cut->cells + 1);
     const float size = (float)(cut->size * wide / cut->cells);
     SingeResult result = mesh_grid(size, size, wide, wide, (SingeAllocator){0}, mesh, error);

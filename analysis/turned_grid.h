@@ -1,4 +1,4 @@
-// Meshes for what must not depend on how a mesh lies: squares and discs cut from a grid that is turned.
+// Meshes for tests that results do not depend on a mesh's orientation: squares and discs cut from a rotated grid.
 #ifndef ANALYSIS_TURNED_GRID_H
 #define ANALYSIS_TURNED_GRID_H
 
@@ -12,8 +12,8 @@ typedef struct TurnedGrid {
     GridWear wear; ///< of the grid before it is cut
 } TurnedGrid;
 
-/// The cells whose centre lies within the outline. Their vertices beyond it move onto it: a side that cuts across cells
-/// has teeth of half a cell at most. uv goes from (0,0) at (-x,-y) to (1,1), as the outline lies, whatever the angle.
+/// Makes the cells whose centroid lies within the outline. Their vertices beyond it move onto it: a side that cuts
+/// across cells has teeth of at most half a cell. uv goes from (0,0) at (-x,-y) to (1,1) on the outline.
 SINGE_NODISCARD SingeResult turned_grid(const TurnedGrid *cut, Mesh *mesh, SingeError *error);
 
 #endif

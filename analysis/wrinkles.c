@@ -1,15 +1,15 @@
-// Both measures look at the unit normal N over the sheet at rest, on pixels that know nothing of the mesh
+// Both measures use the unit normal N over the sheet at rest, on pixels that are independent of the mesh
 // (rest_raster.h).
 //
-// Creases. N is smoothed by a Gaussian of 2 mm, so that facets are not seen. The matrix
+// Creases. N is smoothed by a Gaussian of 2 mm to hide facets. The matrix
 //
 //   J_ij = sum over k of dN_k/dx_i dN_k/dx_j
 //
 // has the squares of the two principal bends as eigenvalues, and the direction across a crease is that of the larger.
-// A pixel counts with its area times the difference of the bends: round spots have no direction.
+// The weight of a pixel is its area times the difference of the bends: round spots have no direction.
 //
-// Roughness. The band of wavelengths from 3 to 15 mm is N smoothed less N smoothed more, by Gaussians that halve waves
-// of 3 and of 15 mm: deviation = wavelength sqrt(2 ln 2)/(2 pi). Its square is the square of an angle.
+// Roughness. The band of wavelengths from 3 to 15 mm is the difference of N smoothed by Gaussians that halve waves of 3
+// and of 15 mm: deviation = wavelength sqrt(2 ln 2)/(2 pi). Its square is the square of an angle.
 #include "analysis/wrinkles.h"
 
 #include <math.h>
@@ -25,7 +25,7 @@ static const float around_burnt = 0.010f, far_from_burnt = 0.025f;
 /// Burn progress above which a pixel counts as burnt.
 static const float burnt_min = 0.05f;
 
-/// Beside an edge a Gaussian sees less than its whole: where it sees less than this share it is not trusted.
+/// Min share of a Gaussian that must be covered: next to an edge, a Gaussian with less is not trusted.
 static const float covered_min = 0.6f;
 
 enum { SHEETS_MAX = UINT16_MAX };
@@ -36,7 +36,7 @@ typedef struct Work {
 } Work;
 
 static bool work_make(size_t pixels, Work *work) {
-    work->scratch = calloc(10 * pixels, sizeof *work->scratch); // the first is two fields
+    work->scratch = calloc(10 * pixels, sizeof *work->scratch); // scratch is two fields
     if (!work->scratch) return false;
     work->weight = work->scratch + 2 * pixels, work->distance = work->scratch + 3 * pixels;
     for (size_t k = 0; k < 3; k++)
@@ -44,7 +44,7 @@ static bool work_make(size_t pixels, Work *work) {
     return true;
 }
 
-/// Adds a crease of this bend and direction across, rad from that of growing u.
+/// Adds a crease of this weight and this direction across it, rad from that of growing u.
 static void add_crease(Wrinkles *wrinkles, double weight, double across) {
     const double pi = acos(-1), quarter = pi / 2;
     double along = across + quarter;

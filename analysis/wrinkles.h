@@ -1,4 +1,4 @@
-// What can be measured of a drawn sheet's shape: which way its creases run, how rough it is.
+// Measures of a drawn sheet's shape: the directions of its creases, and its roughness.
 #ifndef ANALYSIS_WRINKLES_H
 #define ANALYSIS_WRINKLES_H
 
@@ -14,16 +14,17 @@ typedef struct Wrinkles {
     double crease[WRINKLE_BINS];        ///< area times bend, m2/m
     double axis, diagonal;              ///< the same within 11.25 degrees of the sheet's axes and of their diagonals
     double burnt_power, burnt_area;     ///< rad2 m2 and m2: the normal's angle in wavelengths of 3 to 15 mm
-    double unburnt_power, unburnt_area; ///< the same where nothing has burnt far and wide
+    double unburnt_power, unburnt_area; ///< the same far from everything burnt
 } Wrinkles;
 
-/// Adds a frame's. False when out of memory.
+/// Adds a frame. False when out of memory.
 bool wrinkles_add(const SingeSurface *surface, Wrinkles *wrinkles);
 
-/// Axis over diagonal; NaN where there is no crease.
+/// Axis over diagonal; NaN if there is no crease.
 double wrinkles_bias(const Wrinkles *wrinkles);
 
-/// rad2, of what is burnt and 10 mm around it, and of what has not burnt and is 25 mm from it; NaN where there is none.
+/// rad2, of burnt parts and 10 mm around them, and of parts that never ignited at least 25 mm from burnt ones; NaN if
+/// there are none.
 double wrinkles_burnt(const Wrinkles *wrinkles);
 double wrinkles_unburnt(const Wrinkles *wrinkles);
 
