@@ -1,6 +1,7 @@
 #!/bin/bash
-# Draws docs/gallery: burns every example, keeps its best frame and a contact sheet, and writes down how long it took
-# and what `singe measure` says. Usage: scripts/draw_gallery.sh [EXAMPLE...], after a build in build/.
+# Draws docs/gallery: burns every example, keeps its best frame and a contact sheet, prints how long it took, and writes
+# down what `singe measure` says, in the table of docs/gallery/README.md too.
+# Usage: scripts/draw_gallery.sh [EXAMPLE...], after a build in build/.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 declare -A best=([letter]=0078 [letter-hanging]=0125 [hot-sphere]=0068 [page-hot]=0064 [newspaper]=0110
@@ -28,3 +29,4 @@ for name in "${order[@]}"; do
     awk -v name="$name" -v a="$begun" -v b="$burnt" -v c="$drawn" -v frames="$(ls "$out/ply" | wc -l)" -v n="$(nproc)" \
         'BEGIN { printf "%-15s %3d frames in %5.1f s, a picture in %.2f s, on %d threads\n", name, frames, b - a, c - b, n }'
 done
+scripts/gallery_table.py
