@@ -12,8 +12,9 @@ typedef struct TurnedGrid {
     GridWear wear; ///< of the grid before it is cut
 } TurnedGrid;
 
-/// Makes the cells whose centroid lies within the outline. Their vertices beyond it move onto it: a side that cuts
-/// across cells has teeth of at most half a cell. uv goes from (0,0) at (-x,-y) to (1,1) on the outline.
+/// Makes the cells whose centroid lies a quarter of a cell or more within the outline. Their vertices beyond it move
+/// onto it: a side that cuts across cells has teeth of at most half a cell. uv goes from (0,0) at (-x,-y) to (1,1) on
+/// the outline.
 SINGE_NODISCARD SingeResult turned_grid(const TurnedGrid *cut, Mesh *mesh, SingeError *error);
 
 #endif

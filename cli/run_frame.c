@@ -129,7 +129,7 @@ static SingeResult write_picture(Run *run, int frame, SingeError *error) {
     return result ? result : frame_write_picture(run->pictures, rgb, png, exr, error);
 }
 
-/// What runs beside the simulation: it touches neither that nor the totals.
+/// Runs concurrently with the simulation, and uses neither it nor the totals.
 static void *write_files(void *argument) {
     Run *run = argument;
     FrameWriting *writing = &run->writing;
@@ -157,7 +157,7 @@ static SingeResult take_frame(Run *run, SingeError *error) {
     return result ? result : frame_take_gas(run->sim, &run->frame, error);
 }
 
-/// Tells of what crosses in the first frame: it has no side to be kept on.
+/// Reports what crosses in the first frame: contact cannot separate it.
 static SingeResult tell_of_crossings(Run *run, SingeError *error) {
     float at[3];
     if (!initial_count(&run->frame.surface, &run->totals->crossed, at)) {

@@ -134,8 +134,8 @@ SINGE_NODISCARD SingeResult ply_read_surface(const char *name, const uint8_t *by
 
 // ---- the gas: one OpenVDB file per frame (docs/formats.md)
 
-/// What files have instead of soot and of heat set free, so that renderers take them as they are: extinction (1/m) and
-/// flame in units of 10 MW/m3, of which flames have 0 to 1 and few cells more.
+/// Files hold these instead of the soot and the heat release rate, so that renderers can use them unchanged: extinction
+/// (1/m), and flame in units of 10 MW/m3, which is 0 to 1 in flames and more in a few cells.
 #define GAS_EXTINCTION 8700.0f ///< m2/kg of soot
 #define GAS_FLAME_UNIT 1e7f    ///< W/m3
 

@@ -86,7 +86,7 @@ static void put_rotation(Root *r, const OutputPose *pose) {
 
 static void put_visible(Root *r, const OutputPose *pose) { put(r, pose->visible ? "\"inherited\"" : "\"invisible\""); }
 
-/// Its way: one value where it stands still.
+/// Its trajectory: one value if it does not move.
 static void put_poses(Root *r, const char *attribute, const OutputShape *shape,
                       void (*value)(Root *, const OutputPose *)) {
     bool still = true;

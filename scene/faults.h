@@ -12,7 +12,7 @@ typedef enum FaultScope {
     FAULTS_OF_SHEETS, ///< everything
 } FaultScope;
 
-/// Tells the first fault of each sheet, those of a mesh at the name of its file. Returns whether there was one.
+/// Reports the first fault of each sheet, those of a mesh at the name of its file. Returns whether there was one.
 bool sheet_faults(const Scene *scene, const SceneAssets *assets, FaultScope scope, SceneMessages *messages);
 
 #endif

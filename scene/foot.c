@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-/// The share of the way from a to b at which p is nearest.
+/// The fraction of the segment from a to b at which p is nearest.
 static double along(const double p[3], const double a[3], const double b[3]) {
     double side[3], to[3];
     for (int k = 0; k < 3; k++) side[k] = b[k] - a[k], to[k] = p[k] - a[k];

@@ -1,7 +1,7 @@
 // A sequence of mesh files, a frame each, as the motion of a collider or of what a pin holds.
 //
 // A pin's particle is bonded to the triangle of the first frame that is nearest to it: with the weights w of its foot
-// there and its way d from the foot in the triangle's frame of axes e, so that at another frame it is at
+// there and its displacement d from the foot in the triangle's frame of axes e, so that at another frame it is at
 //
 //   x = sum_k w_k v_k + sum_i d_i e_i,   e_0 along the first side, e_2 the normal, e_1 = e_2 x e_0.
 //
