@@ -79,9 +79,10 @@ check:
 check-examples: build
 	ctest --preset release -j2 -R '^($(LONG)|example_Letter)$$'
 
-# real models of some packages, which are got into build/gate, burnt and verified: docs/meshes.md has the table
+# real models of some packages, which are got into build/gate, burnt and verified: docs/meshes.md has the table. 209 are
+# clean or cross themselves in the file; one more that is strained, refused or fails is a fault
 gate: build
-	tests/gate/gate.py --singe build/cli/singe --folder build/gate --least 210 --failed 0
+	tests/gate/gate.py --singe build/cli/singe --folder build/gate --least 209 --failed 0
 
 # other programs, which are installed into build/clients, on what a burn leaves: docs/usd.md and others have the table
 check-clients: build

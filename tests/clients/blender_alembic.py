@@ -88,3 +88,5 @@ def main():
 
 
 main()
+sys.stdout.flush()
+os._exit(0)  # bpy 4.5 may hang while it is taken down

@@ -42,7 +42,8 @@ find_python() {
 client() {
     local work=${3:-$1}
     echo "== $work"
-    if ! PYTHONDONTWRITEBYTECODE=1 "$folder/$1/bin/python" "$here/$2" "$singe" "$folder/work/$work" > "$folder/$work.log" 2>&1; then
+    if ! PYTHONDONTWRITEBYTECODE=1 timeout -k 5 150 "$folder/$1/bin/python" "$here/$2" "$singe" "$folder/work/$work" \
+        > "$folder/$work.log" 2>&1; then
         failed=1
         tail -30 "$folder/$work.log"
         echo "$work: failed; all of it is in $folder/$work.log"
