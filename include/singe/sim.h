@@ -26,7 +26,7 @@ SINGE_API void singe_sim_destroy(SingeSim *sim);
 SINGE_API const SingeError *singe_sim_error(const SingeSim *sim);
 
 /// Adds a sheet, before singe_sim_commit. SINGE_ERROR_MESH and, for a parameter out of its range, SINGE_ERROR_ARGUMENT
-/// name the cell or vertex. On failure *id is zeroed, here and below.
+/// name the cell or vertex. Here and below, *id (may be NULL) is the new handle; on failure it is zeroed.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSheetId *id);
 
 /// Builds the shell (springs, strands, families) and every buffer that a step needs. Sheets cannot be added

@@ -46,9 +46,9 @@ static void height_mend(const Height *job, uint32_t c, Float4 normal, float squa
     float weight = centre[3] + (w[0] + w[1] + w[2] + w[3]) / 16;
     if (weight <= 0) return;
     float gain = job->plan->settings.solver.height_gain;
-    Float4 push = gain * (missing < max ? missing : max) / (weight * length) * normal;
-    float4_store(centre, float4_load(centre) + centre[3] * push);
-    for (int i = 0; i < 4; i++) float4_store(x[corner[i]], float4_load(x[corner[i]]) - 0.25f * w[i] * push);
+    Float4 correction = gain * (missing < max ? missing : max) / (weight * length) * normal;
+    float4_store(centre, float4_load(centre) + centre[3] * correction);
+    for (int i = 0; i < 4; i++) float4_store(x[corner[i]], float4_load(x[corner[i]]) - 0.25f * w[i] * correction);
 }
 
 /// Returns whether the centre is twice as high as it must be.

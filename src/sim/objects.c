@@ -12,7 +12,7 @@ void sim_free_source(SingeSim *sim, Source *source) {
 }
 
 SingeResult singe_sim_add_source(SingeSim *sim, const SingeSourceDef *given, SingeSourceId *id) {
-    *id = (SingeSourceId){0, 0};
+    if (id) *id = (SingeSourceId){0, 0};
     SingeSourceDef def;
     OBJECT_DEF(sim, "source", def, given, singe_default_source);
     uint32_t index;
@@ -21,7 +21,7 @@ SingeResult singe_sim_add_source(SingeSim *sim, const SingeSourceDef *given, Sin
     if (!source) return sim_fail(sim, SINGE_ERROR_MEMORY, "source", -1, "out of memory");
     TRY(source_create(&sim->memory, &sim->shell, &def, source, &sim->error));
     source->generation = sim_take_slot(sim, &sim->sources.count, index);
-    *id = (SingeSourceId){index, source->generation};
+    if (id) *id = (SingeSourceId){index, source->generation};
     return SINGE_OK;
 }
 
@@ -56,7 +56,7 @@ SingeResult singe_sim_move_source(SingeSim *sim, SingeSourceId id, uint32_t coun
 // ---- colliders
 
 SingeResult singe_sim_add_collider(SingeSim *sim, const SingeColliderDef *given, SingeColliderId *id) {
-    *id = (SingeColliderId){0, 0};
+    if (id) *id = (SingeColliderId){0, 0};
     SingeColliderDef def;
     OBJECT_DEF(sim, "collider", def, given, singe_default_collider);
     uint32_t index;
@@ -68,7 +68,7 @@ SingeResult singe_sim_add_collider(SingeSim *sim, const SingeColliderDef *given,
     if (collider->mesh.turned || (collider->deform.pose && deform_solid(&collider->deform)->turned))
         sim_log_turned(sim, index);
     collider->generation = sim_take_slot(sim, &sim->colliders.count, index);
-    *id = (SingeColliderId){index, collider->generation};
+    if (id) *id = (SingeColliderId){index, collider->generation};
     return SINGE_OK;
 }
 

@@ -155,7 +155,7 @@ static SingeResult pin_hold(SingeSim *sim, const SingePinDef *def, Pin *pin) {
 }
 
 SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *given, SingePinId *id) {
-    *id = (SingePinId){0, 0};
+    if (id) *id = (SingePinId){0, 0};
     SingePinDef def;
     OBJECT_DEF(sim, "pin", def, given, singe_default_pin);
     TRY(pin_check(sim, &def));
@@ -177,7 +177,7 @@ SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *given, SingePinI
     // take the slot last, as nothing can fail any more
     if (sim->committed) dynamics_plan_hold(sim->dynamics, &sim->shell, &sim->state);
     pin->generation = sim_take_slot(sim, &sim->pins.count, index);
-    *id = (SingePinId){index, pin->generation};
+    if (id) *id = (SingePinId){index, pin->generation};
     return SINGE_OK;
 }
 

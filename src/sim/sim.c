@@ -182,7 +182,7 @@ void *sim_slot(SingeSim *sim, void *items_pointer, uint32_t *count, uint32_t *ca
 }
 
 SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSheetId *id) {
-    *id = (SingeSheetId){0, 0};
+    if (id) *id = (SingeSheetId){0, 0};
     if (sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "sheet", -1, "sheets must be added before singe_sim_commit");
     if (sim->sheet_count == UINT16_MAX) return sim_fail(sim, SINGE_ERROR_LIMIT, "sheet", -1, "more than 65535 sheets");
@@ -195,7 +195,8 @@ SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSh
     SheetSource source = {0};
     TRY(sheet_source_create(&sim->memory, def, &source, &sim->error));
     sim->sheets[sim->sheet_count] = source;
-    *id = (SingeSheetId){sim->sheet_count++, 1};
+    if (id) *id = (SingeSheetId){sim->sheet_count, 1};
+    sim->sheet_count++;
     return SINGE_OK;
 }
 

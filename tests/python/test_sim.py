@@ -75,15 +75,15 @@ class Burning(Case):
             self.skipTest("SINGE_BURN names no program")
         sim = singe.Sim(pace=5)
         sheet = sim.sheet(*singe.grid((0.15, 0.15), (40, 40)))
-        sim.commit()
-        sim.spot((0.075, 0, 0), radius=0.01, falloff=0.01, temperature=1123, end=0.5)
         sim.pin(sheet, vertices=[0, 40], radius=0.005)
+        sim.spot((0.075, 0, 0), radius=0.01, falloff=0.01, temperature=1123, end=0.5)
+        sim.commit()
         lines = []
         for frame in range(1, 49):
             sim.advance(1 / 24)
             alive = sim.alive
             lines.append(f"frame {frame:2d}: lowest at {1e3 * float(sim.position[alive, 2].min()):4.0f} mm, hottest "
-                         f"{sim.temperature[alive].max():4.0f} K, {100 * sim.stats()['burnt_fraction']:3.0f} % burnt")
+                         f"{sim.temperature[alive].max():4.0f} K")
         self.assertEqual(lines, subprocess.run([program], capture_output=True, text=True).stdout.splitlines())
 
     def test_advance_and_events(self):

@@ -122,6 +122,42 @@ static void without_a_path_it_stands_still(void **state) {
     singe_sim_destroy(sims[1]);
 }
 
+/// Handles that the caller has no use for may be left out; the objects are there all the same.
+static void handles_may_be_left_out(void **state) {
+    (void)state;
+    SingeSim *sims[2];
+    for (int k = 0; k < 2; k++) {
+        SingeSimDef def = singe_default_sim();
+        test_ok(NULL, singe_sim_create(&def, &sims[k], NULL));
+        TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
+        SingeSheetDef sheet = test_sheet(&mesh);
+        SingePinDef pin = singe_default_pin();
+        SingeSourceDef spot = singe_default_source();
+        SingeColliderDef plane = singe_default_collider();
+        SingeSourceId source;
+        SingeColliderId collider;
+        SingePinId pin_id;
+        const uint32_t corner = 0;
+        pin.vertex_count = 1, pin.vertices = &corner;
+        plane.position[2] = -0.02f;
+        test_ok(sims[k], singe_sim_add_sheet(sims[k], &sheet, k ? NULL : &pin.sheet));
+        test_ok(sims[k], singe_sim_add_sheet(sims[k], &sheet, &pin.sheet));
+        assert_int_equal(pin.sheet.index, 1);
+        test_ok(sims[k], singe_sim_add_pin(sims[k], &pin, k ? NULL : &pin_id));
+        test_ok(sims[k], singe_sim_add_source(sims[k], &spot, k ? NULL : &source));
+        test_ok(sims[k], singe_sim_add_collider(sims[k], &plane, k ? NULL : &collider));
+        pin.vertex_count = 0;
+        test_refused(sims[k], SINGE_ERROR_ARGUMENT, singe_sim_add_pin(sims[k], &pin, k ? NULL : &pin_id));
+        test_ok(sims[k], singe_sim_commit(sims[k]));
+        test_steps(sims[k], 10);
+        test_mesh_free(&mesh);
+    }
+    test_assert_same(sims[0], sims[1]);
+    assert_true(singe_sim_stats(sims[1]).heat_in > 0);
+    singe_sim_destroy(sims[0]);
+    singe_sim_destroy(sims[1]);
+}
+
 static void user_data_is_the_callers(void **state) {
     (void)state;
     int ours[5];
@@ -198,9 +234,10 @@ static void every_allocation_fails_once(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_order_does_not_matter), cmocka_unit_test(what_waits_can_be_refused),
-        cmocka_unit_test(removed_while_waiting),     cmocka_unit_test(without_a_path_it_stands_still),
-        cmocka_unit_test(user_data_is_the_callers),  cmocka_unit_test(every_allocation_fails_once),
+        cmocka_unit_test(the_order_does_not_matter),   cmocka_unit_test(what_waits_can_be_refused),
+        cmocka_unit_test(removed_while_waiting),       cmocka_unit_test(without_a_path_it_stands_still),
+        cmocka_unit_test(handles_may_be_left_out),     cmocka_unit_test(user_data_is_the_callers),
+        cmocka_unit_test(every_allocation_fails_once),
     };
     return cmocka_run_group_tests_name("sim_early", tests, NULL, NULL);
 }

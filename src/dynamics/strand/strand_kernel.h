@@ -71,7 +71,7 @@ static inline void group_put(const Group *group, uint32_t k, const Float4s *floa
 
 static inline Node group_node(const Group *group, uint32_t k) {
     Float4s float4s = group_float4s(group, k);
-    return quads_node(&float4s);
+    return float4s_node(&float4s);
 }
 
 static inline Row group_row(const Group *restrict group, uint32_t k, const Node *a, const Node *b) {
@@ -131,13 +131,13 @@ static inline void chains_substitute(const Group *group, const bool pulls) {
         mu = lanes_load(keep_at(group, k, KEEP_RIGHT)) + factor * mu;
         factor = lanes_load(keep_at(group, k, KEEP_FACTOR));
         if (pulls) group_pull(group, k, mu);
-        Float4s a = group_float4s(group, k), push = float4s_correction(&a, &b, mu);
-        quads_move(&b, &after, &push);
+        Float4s a = group_float4s(group, k), correction = float4s_correction(&a, &b, mu);
+        float4s_move(&b, &after, &correction);
         group_put(group, k + 1, &b);
-        b = a, after = push;
+        b = a, after = correction;
     }
     Float4s none = float4s_correction(&b, &b, lanes_all(0));
-    quads_move(&b, &after, &none);
+    float4s_move(&b, &after, &none);
     group_put(group, 0, &b);
 }
 
@@ -217,10 +217,10 @@ static inline void rings_move(const Group *group, Lanes scale, const bool pulls)
         Float4s b = k == end ? start : group_float4s(group, k + 1);
         Lanes mu = ring_mu(group, k, scale);
         if (pulls) group_pull(group, k, mu);
-        Float4s push = float4s_correction(&a, &b, mu);
-        quads_move(&a, &push, &before);
+        Float4s correction = float4s_correction(&a, &b, mu);
+        float4s_move(&a, &correction, &before);
         group_put(group, k, &a);
-        a = b, before = push;
+        a = b, before = correction;
     }
 }
 

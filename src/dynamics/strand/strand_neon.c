@@ -42,16 +42,16 @@ static inline void float4s_scatter(float *position, const uint32_t *node, const 
     for (int e = 0; e < 4; e++) float4_store(position + node[e], float4s->at[e]);
 }
 
-static inline Node quads_node(const Float4s *float4s) {
+static inline Node float4s_node(const Float4s *float4s) {
     Float4 q[4] = {float4s->at[0], float4s->at[1], float4s->at[2], float4s->at[3]};
     float4_transpose(q);
     return (Node){q[0], q[1], q[2], q[3]};
 }
 
 static inline Float4s float4s_correction(const Float4s *a, const Float4s *b, Lanes factor) {
-    Float4s push;
-    for (int e = 0; e < 4; e++) push.at[e] = (b->at[e] - a->at[e]) * float4_all(factor[e]);
-    return push;
+    Float4s correction;
+    for (int e = 0; e < 4; e++) correction.at[e] = (b->at[e] - a->at[e]) * float4_all(factor[e]);
+    return correction;
 }
 
 /// Adds to the first three numbers; the fourth stays.
@@ -59,13 +59,13 @@ static inline Float4 float4_add_position(Float4 x, Float4 displacement) {
     return float4_select((Float4Mask){-1, -1, -1, 0}, x + displacement, x);
 }
 
-static inline void quads_move(Float4s *x, const Float4s *forth, const Float4s *back) {
+static inline void float4s_move(Float4s *x, const Float4s *forth, const Float4s *back) {
     for (int e = 0; e < 4; e++)
         x->at[e] = float4_add_position(x->at[e], float4_all(x->at[e][3]) * (forth->at[e] - back->at[e]));
 }
 
 /// x += (x - anchor) factor.
-static inline void quads_pull(Float4s *x, const float *anchor, Lanes factor) {
+static inline void float4s_pull(Float4s *x, const float *anchor, Lanes factor) {
     Float4 a = {anchor[0], anchor[1], anchor[2], 0};
     Float4s from = {{a, a, a, a}}, displacement = float4s_correction(&from, x, factor);
     for (int e = 0; e < 4; e++) x->at[e] = float4_add_position(x->at[e], displacement.at[e]);

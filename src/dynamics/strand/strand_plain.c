@@ -37,20 +37,20 @@ static inline void float4s_scatter(float *position, const uint32_t *node, const 
     float4s_store_contiguous(position + *node, 0, float4s);
 }
 
-static inline Node quads_node(const Float4s *float4s) { return *float4s; }
+static inline Node float4s_node(const Float4s *float4s) { return *float4s; }
 
 static inline Float4s float4s_correction(const Float4s *a, const Float4s *b, Lanes factor) {
     return (Float4s){(b->x - a->x) * factor, (b->y - a->y) * factor, (b->z - a->z) * factor, 0};
 }
 
-static inline void quads_move(Float4s *x, const Float4s *forth, const Float4s *back) {
+static inline void float4s_move(Float4s *x, const Float4s *forth, const Float4s *back) {
     x->x += x->w * (forth->x - back->x);
     x->y += x->w * (forth->y - back->y);
     x->z += x->w * (forth->z - back->z);
 }
 
 /// x += (x - anchor) factor.
-static inline void quads_pull(Float4s *x, const float *anchor, Lanes factor) {
+static inline void float4s_pull(Float4s *x, const float *anchor, Lanes factor) {
     x->x += (x->x - anchor[0]) * factor;
     x->y += (x->y - anchor[1]) * factor;
     x->z += (x->z - anchor[2]) * factor;

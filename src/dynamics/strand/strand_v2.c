@@ -43,7 +43,7 @@ static inline void float4s_scatter(float *position, const uint32_t *node, const 
     for (int e = 0; e < 4; e++) _mm_storeu_ps(position + node[e], float4s->at[e]);
 }
 
-static inline Node quads_node(const Float4s *float4s) {
+static inline Node float4s_node(const Float4s *float4s) {
     const __m128 *q = float4s->at;
     __m128 xy01 = _mm_unpacklo_ps(q[0], q[1]), zw01 = _mm_unpackhi_ps(q[0], q[1]);
     __m128 xy23 = _mm_unpacklo_ps(q[2], q[3]), zw23 = _mm_unpackhi_ps(q[2], q[3]);
@@ -57,15 +57,15 @@ static inline Float4s float4s_correction(const Float4s *a, const Float4s *b, Lan
     return (Float4s){{FLOAT4_CORRECTION(0), FLOAT4_CORRECTION(1), FLOAT4_CORRECTION(2), FLOAT4_CORRECTION(3)}};
 }
 
-static inline void quads_move(Float4s *x, const Float4s *forth, const Float4s *back) {
+static inline void float4s_move(Float4s *x, const Float4s *forth, const Float4s *back) {
     for (int e = 0; e < 4; e++) {
-        __m128 w = _mm_shuffle_ps(x->at[e], x->at[e], 0xFF), push = _mm_sub_ps(forth->at[e], back->at[e]);
-        x->at[e] = _mm_blend_ps(_mm_add_ps(x->at[e], _mm_mul_ps(w, push)), x->at[e], 8);
+        __m128 w = _mm_shuffle_ps(x->at[e], x->at[e], 0xFF), correction = _mm_sub_ps(forth->at[e], back->at[e]);
+        x->at[e] = _mm_blend_ps(_mm_add_ps(x->at[e], _mm_mul_ps(w, correction)), x->at[e], 8);
     }
 }
 
 /// x += (x - anchor) factor.
-static inline void quads_pull(Float4s *x, const float *anchor, Lanes factor) {
+static inline void float4s_pull(Float4s *x, const float *anchor, Lanes factor) {
     __m128 a = _mm_setr_ps(anchor[0], anchor[1], anchor[2], 0);
     Float4s from = {{a, a, a, a}}, displacement = float4s_correction(&from, x, factor);
     for (int e = 0; e < 4; e++) x->at[e] = _mm_blend_ps(_mm_add_ps(x->at[e], displacement.at[e]), x->at[e], 8);

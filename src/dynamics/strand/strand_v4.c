@@ -57,7 +57,7 @@ static inline void float4s_scatter(float *position, const uint32_t *node, const 
     }
 }
 
-static inline Node quads_node(const Float4s *float4s) {
+static inline Node float4s_node(const Float4s *float4s) {
     const __m512 *q = float4s->at;
     __m512 xy01 = _mm512_unpacklo_ps(q[0], q[1]), zw01 = _mm512_unpackhi_ps(q[0], q[1]);
     __m512 xy23 = _mm512_unpacklo_ps(q[2], q[3]), zw23 = _mm512_unpackhi_ps(q[2], q[3]);
@@ -71,15 +71,15 @@ static inline Float4s float4s_correction(const Float4s *a, const Float4s *b, Lan
     return (Float4s){{FLOAT4_CORRECTION(0), FLOAT4_CORRECTION(1), FLOAT4_CORRECTION(2), FLOAT4_CORRECTION(3)}};
 }
 
-static inline void quads_move(Float4s *x, const Float4s *forth, const Float4s *back) {
+static inline void float4s_move(Float4s *x, const Float4s *forth, const Float4s *back) {
     for (int e = 0; e < 4; e++) {
-        __m512 w = _mm512_permute_ps(x->at[e], 0xFF), push = _mm512_sub_ps(forth->at[e], back->at[e]);
-        x->at[e] = _mm512_add_ps(x->at[e], _mm512_maskz_mul_ps(0x7777, w, push));
+        __m512 w = _mm512_permute_ps(x->at[e], 0xFF), correction = _mm512_sub_ps(forth->at[e], back->at[e]);
+        x->at[e] = _mm512_add_ps(x->at[e], _mm512_maskz_mul_ps(0x7777, w, correction));
     }
 }
 
 /// x += (x - anchor) factor.
-static inline void quads_pull(Float4s *x, const float *anchor, Lanes factor) {
+static inline void float4s_pull(Float4s *x, const float *anchor, Lanes factor) {
     __m512 a = _mm512_broadcast_f32x4(_mm_setr_ps(anchor[0], anchor[1], anchor[2], 0));
     Float4s from = {{a, a, a, a}}, displacement = float4s_correction(&from, x, factor);
     for (int e = 0; e < 4; e++) x->at[e] = _mm512_mask_add_ps(x->at[e], 0x7777, x->at[e], displacement.at[e]);
