@@ -2,7 +2,7 @@
 #ifndef ANALYSIS_TURNED_GRID_H
 #define ANALYSIS_TURNED_GRID_H
 
-#include "mesh/mesh.h"
+#include "mesh/to_quads.h"
 
 typedef struct TurnedGrid {
     double size; ///< m, side of the square or diameter of the disc, centred at the origin in the x-y plane

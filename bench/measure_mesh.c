@@ -4,7 +4,7 @@
 // rows of nearly equilateral ones; and the Delaunay triangles of a grid whose vertices are moved by up to a third of a
 // cell; beside these the quads of the same vertices, which show what is the vertices' doing. The right motion and the
 // bars are those of `swing`.
-#include "mesh/mesh.h"
+#include "mesh/to_quads.h"
 
 #include <math.h>
 #include <stdlib.h>

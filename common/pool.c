@@ -7,7 +7,7 @@
 //
 // Idle workers watch for the next job for a short while, as a step has many, and then block; no more of them watch, or
 // are woken, than there are processors to run them.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/pool.h"
 
 #include "common/error.h"

@@ -1,6 +1,6 @@
 #include "formats/assimp_files.h"
 
-#include "formats/beside.h"
+#include "formats/path_inside.h"
 #include "formats/store.h"
 
 #include <stdlib.h>
@@ -49,7 +49,7 @@ static void note_refused(Source *source, const char *why) {
 }
 
 static bool open_beside(Source *source, const char *path, Opened *opened) {
-    if (!beside_is(source->name, path)) {
+    if (!path_is_inside(source->name, path)) {
         note_refused(source, "; it refers to something that is not a file in its folder or below");
         return false;
     }

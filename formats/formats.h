@@ -45,7 +45,7 @@ void file_discard(char *draft);
 // ---- meshes
 
 /// A mesh as a file has it: faces of three corners or more, in the file's order. What a sheet is made of comes from it
-/// by mesh_make (mesh/mesh.h).
+/// by mesh_make (mesh/to_quads.h).
 typedef struct Polygons {
     uint32_t vertex_count, face_count, corner_count, attribute_count;
     float *positions;           ///< [3 * vertex_count], file units

@@ -2,7 +2,7 @@
 // and accessors, which are arrays in a view.
 #include "formats/gltf.h"
 
-#include "formats/beside.h"
+#include "formats/path_inside.h"
 #include "formats/mesh_reader.h"
 #include "formats/store.h"
 
@@ -107,7 +107,7 @@ static bool make_path(const Gltf *gltf, const uint8_t *at, const uint8_t *end, c
 
 static SingeResult load_file(Gltf *gltf, uint32_t number, const uint8_t *at, const uint8_t *end, Bytes *bytes) {
     char path[PATH_LIMIT];
-    if (!make_path(gltf, at, end, path) || !beside_is(gltf->name, path))
+    if (!make_path(gltf, at, end, path) || !path_is_inside(gltf->name, path))
         return gltf_bad(gltf, "buffers", number, "it refers to something that is not a file in its folder or below");
     SingeError error = {0};
     SingeResult result = file_read_max(path, BUFFERS_LIMIT - gltf->loaded_size, gltf->allocator, bytes, &error);

@@ -267,7 +267,7 @@ void usd_put_root(Sink *sink, const OutputScene *scene) {
     if (scene->gas) put_gas(r);
     put_camera(r);
     put_lights(r);
-    usd_put_things(r);
+    usd_put_props(r);
     put_materials(r);
     put(r, "}\n");
     *sink = r->sink;

@@ -38,7 +38,7 @@ static inline void put_triple(Root *r, const char *before, float x, float y, flo
 
 static inline float usd_dot(const float a[3], const float b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// usd_things.c: the prim `things`, the ground and the shapes, with their motion.
-void usd_put_things(Root *r);
+/// usd_props.c: the prim `props`, the ground and the shapes, with their motion.
+void usd_put_props(Root *r);
 
 #endif

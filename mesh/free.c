@@ -1,7 +1,7 @@
 // Frees the arrays of meshes.
 #include "formats/mesh_reader.h"
 #include "formats/store.h"
-#include "mesh/mesh.h"
+#include "mesh/to_quads.h"
 
 #include <string.h>
 

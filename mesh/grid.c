@@ -9,7 +9,7 @@
 
 #include "formats/mesh_reader.h"
 #include "formats/store.h"
-#include "mesh/mesh.h"
+#include "mesh/to_quads.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // Describes a mesh and its changes in sentences.
-#include "mesh/mesh.h"
+#include "mesh/to_quads.h"
 
 #include <stdio.h>
 

@@ -2,7 +2,7 @@
 #include "singe/mesh.h"
 
 #include "formats/store.h"
-#include "mesh/mesh.h"
+#include "mesh/to_quads.h"
 
 #include <math.h>
 #include <string.h>

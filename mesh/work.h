@@ -2,7 +2,7 @@
 #ifndef MESH_WORK_H
 #define MESH_WORK_H
 
-#include "mesh/mesh.h"
+#include "mesh/to_quads.h"
 
 #define MESH_NONE UINT32_MAX
 /// A face is degenerate if twice its area is at most this times the square of its longest side. The core's limit is

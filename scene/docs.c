@@ -14,7 +14,7 @@ typedef struct Sections {
 static const char introduction[] =
     "# Scene files\n"
     "\n"
-    "*This page is made from the schema by `scene/document.c`; edit `scene/schema*.c` or `scene/docs.c` instead.*\n"
+    "*This page is made from the schema by `scene/write_docs.c`; edit `scene/schema*.c` or `scene/docs.c` instead.*\n"
     "\n"
     "A scene file says what burns, what heats it, what it rests on and how it is drawn. It is\n"
     "[YAML](https://yaml.org), and JSON reads too. The smallest scene:\n"

@@ -2,7 +2,7 @@
 // corners, as it is drawn where it is flat.
 #include "scene/probes.h"
 
-#include "scene/foot.h"
+#include "scene/closest_point.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,7 +16,7 @@ static double nearest_in_cell(const double p[3], const double corners[4][3], dou
         double triangle[3][3], share[3] = {0};
         memcpy(triangle[0], centre, sizeof centre);
         memcpy(triangle[1], corners[i], sizeof centre), memcpy(triangle[2], corners[j], sizeof centre);
-        const double gap = foot_on_triangle(p, (const double(*)[3])triangle, share);
+        const double gap = closest_on_triangle(p, (const double(*)[3])triangle, share);
         if (!(gap < best)) continue;
         best = gap;
         for (int k = 0; k < 4; k++) weight[k] = share[0] / 4;

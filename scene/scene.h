@@ -13,7 +13,7 @@
 
 #include "formats/formats.h"
 #include "formats/output.h"
-#include "mesh/mesh.h"
+#include "mesh/to_quads.h"
 #include "preview/preview.h"
 #include "singe/singe.h"
 

@@ -9,7 +9,7 @@
 #include "scene/sequence.h"
 
 #include "formats/store.h"
-#include "scene/foot.h"
+#include "scene/closest_point.h"
 #include "scene/solid.h"
 
 #include <math.h>
@@ -150,7 +150,7 @@ static void axes_of(const double v[3][3], double e[3][3]) {
     for (int k = 0; k < 3; k++)
         e[2][k] = side[(k + 1) % 3] * other[(k + 2) % 3] - side[(k + 2) % 3] * other[(k + 1) % 3];
     for (int i = 0; i < 3; i += 2) {
-        const double length = sqrt(foot_dot(e[i], e[i]));
+        const double length = sqrt(closest_dot(e[i], e[i]));
         for (int k = 0; k < 3; k++) e[i][k] = length > 0 ? e[i][k] / length : 0; // one without extent has none
     }
     for (int k = 0; k < 3; k++) e[1][k] = e[2][(k + 1) % 3] * e[0][(k + 2) % 3] - e[2][(k + 2) % 3] * e[0][(k + 1) % 3];
@@ -161,7 +161,7 @@ static void bond(const PreviewSolid *frame, const float position[4], SceneBond *
     double v[3][3], e[3][3], weights[3], best = INFINITY, away[3];
     for (uint32_t t = 0; t < frame->triangle_count; t++) {
         corners_of(frame, t, v);
-        const double square = foot_on_triangle(p, (const double(*)[3])v, weights);
+        const double square = closest_on_triangle(p, (const double(*)[3])v, weights);
         if (!(square < best)) continue;
         best = square;
         made->triangle = t;
@@ -171,7 +171,7 @@ static void bond(const PreviewSolid *frame, const float position[4], SceneBond *
     axes_of((const double(*)[3])v, e);
     for (int k = 0; k < 3; k++)
         away[k] = p[k] - made->weights[0] * v[0][k] - made->weights[1] * v[1][k] - made->weights[2] * v[2][k];
-    for (int i = 0; i < 3; i++) made->away[i] = foot_dot(away, e[i]);
+    for (int i = 0; i < 3; i++) made->away[i] = closest_dot(away, e[i]);
 }
 
 /// Bonds a pin's particles, where they are at rest, to the first frame.

@@ -14,22 +14,22 @@
 #   mesh            formats
 #   materials       formats/store.h
 #   preview         formats, common/allocator.h, common/float3.h
-#   scene           formats, mesh/mesh.h, preview/preview.h
-#   analysis        formats, mesh/mesh.h
-#   bench           mesh/mesh.h
-#   cli             analysis, bench, scene, formats, mesh/mesh.h, preview/preview.h, common/allocator.h
+#   scene           formats, mesh/to_quads.h, preview/preview.h
+#   analysis        formats, mesh/to_quads.h
+#   bench           mesh/to_quads.h
+#   cli             analysis, bench, scene, formats, mesh/to_quads.h, preview/preview.h, common/allocator.h
 #   experiments     cli, and what it may include
 #   sweep           the same
 #
 # and everyone the own folder and the public headers. Only src and tests see src. include/singe sees itself alone. No
-# header includes itself, directly or through others.
+# header includes itself, directly or through others. No two files in all these folders have the same name.
 set -euo pipefail
 root=${1:-$(cd "$(dirname "$0")/.." && pwd)}
 cd "$root"
 bad=0
 
 # check FOLDER ALLOWED: every quoted include of its files begins with one of the allowed words, or names a file
-# beside the one that includes it.
+# next to the one that includes it.
 check() {
     local folder=$1 allowed=$2 file line name
     [ -d "$folder" ] || return 0
@@ -58,14 +58,14 @@ check src/collision "$public|(common|shell|collision)/.*"
 check src/reference "$public|(common|reference)/.*"
 check src/dynamics "$public|(common|shell|world|collision|reference|dynamics)/.*"
 check src/sim "$public|(common|$rooms)/.*"
-outside="formats/.*|mesh/mesh\.h|preview/preview\.h"
+outside="formats/.*|mesh/to_quads\.h|preview/preview\.h"
 check formats "$public|common/allocator\.h|formats/.*"
 check mesh "$public|(formats|mesh)/.*"
 check materials "$public|formats/store\.h|materials/.*"
 check preview "$public|(formats|preview)/.*|common/(allocator|float3)\.h"
 check scene "$public|$outside|scene/.*"
-check analysis "$public|(formats|analysis)/.*|mesh/mesh\.h"
-check bench "$public|mesh/mesh\.h|bench/.*"
+check analysis "$public|(formats|analysis)/.*|mesh/to_quads\.h"
+check bench "$public|mesh/to_quads\.h|bench/.*"
 check cli "$public|$outside|(scene|analysis|bench|cli)/.*|common/allocator\.h"
 check experiments "$public|$outside|(scene|analysis|bench|cli|experiments)/.*"
 check sweep "$public|$outside|(scene|analysis|bench|cli|sweep)/.*"
@@ -86,6 +86,14 @@ circles=$(find "${library[@]}" formats mesh scene preview analysis bench cli exp
     tsort 2>&1 >/dev/null || true)
 if [ -n "$circles" ]; then
     echo "headers include each other: $circles"
+    bad=1
+fi
+
+# the name of a file says which one is meant
+twice=$(find src common formats mesh materials scene preview analysis bench cli experiments sweep -name '*.[ch]' \
+    -exec basename {} \; 2>/dev/null | sort | uniq -d || true)
+if [ -n "$twice" ]; then
+    echo "files with the same name: $twice"
     bad=1
 fi
 [ $bad -eq 0 ] && echo "includes follow the arrows"

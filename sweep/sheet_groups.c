@@ -1,7 +1,7 @@
 // The rows of method `sheets`: sheets that can meet are in one row, those that cannot are in different ones.
 //
 // Two sheets can meet if the boxes around them, as they start, are nearer than a margin. Along gravity all distances
-// count as none: what is above may fall. It is a guess; the report checks the caches (sheets_apart.c).
+// count as none: what is above may fall. It is a guess; the report checks the caches (sheet_clearance.c).
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

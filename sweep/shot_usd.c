@@ -17,7 +17,7 @@ static bool has_root(const Sweep *sweep, uint32_t row) {
 }
 
 static void write_row(const Sweep *sweep, uint32_t row, FILE *file) {
-    static const char *const shared[] = {"camera", "sun", "sky", "things"};
+    static const char *const shared[] = {"camera", "sun", "sky", "props"};
     fprintf(file, "\n    def \"row_%04u\" (\n        prepend references = @./rows/%04u/%s.usda@\n    )\n    {\n",
             row + 1, row + 1, sweep->name);
     for (size_t i = 0; row && i < sizeof shared / sizeof *shared; i++)

@@ -5,7 +5,7 @@
 //   rows/0001/              a whole row: what `singe run` leaves there, measure.csv and log.txt
 //   unfinished/0001/        a row that is running, was stopped, or failed (then with failed.txt)
 //   report.csv, index.html, sheet.svg   of the whole rows (sweep_report.c)
-//   apart.csv, NAME.usda    of a sweep of sheets (sheets_apart.c, shot_usd.c)
+//   apart.csv, NAME.usda    of a sweep of sheets (sheet_clearance.c, shot_usd.c)
 //   slurm/                  scripts and logs of jobs (slurm_jobs.c)
 //
 // A row's folder moves from unfinished/ to rows/ as the last step: it is complete there, or absent.
@@ -81,8 +81,8 @@ ExitCode sweep_submit(Sweep *sweep);
 ExitCode sweep_report(Sweep *sweep);
 
 /// Of a sweep of sheets whose rows are complete: writes apart.csv, how near the rows' sheets and hot gas came to each
-/// other (sheets_apart.c). False where some met; messages have been printed.
-bool sweep_sheets_apart(Sweep *sweep);
+/// other (sheet_clearance.c). False where some met; messages have been printed.
+bool sweep_sheet_clearance(Sweep *sweep);
 
 /// NAME.usda, which refers to the USD roots of all rows; nothing where a row has none. False after an error.
 bool sweep_write_shot(const Sweep *sweep, double fps);

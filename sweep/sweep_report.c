@@ -303,7 +303,7 @@ static bool report_sheets(const Report *report) {
     for (uint32_t row = 0; row < report->sweep->plan.row_count; row++)
         if (!report->complete[row]) return true;
     const bool written = sweep_write_shot(report->sweep, report->fps);
-    return sweep_sheets_apart(report->sweep) && written;
+    return sweep_sheet_clearance(report->sweep) && written;
 }
 
 ExitCode sweep_report(Sweep *sweep) {

@@ -2,7 +2,7 @@
 #ifndef ABLATE_ABLATE_PLAN_H
 #define ABLATE_ABLATE_PLAN_H
 
-#include "common/check.h"
+#include "common/assertion.h"
 #include "ablate/ablate.h"
 
 /// Corners, virtual centres, cuts of blue springs and cuts of red springs, numbered in this order: every

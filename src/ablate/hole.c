@@ -4,7 +4,7 @@
 // were connected with it by springs at the start is burnt through or gone, and if it is not at the mesh's boundary,
 // where it leaves a notch. Of neighbours that burn through in the same step only the first in order of particle opens a
 // hole. A centre is never at the boundary.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "ablate/ablate_plan.h"
 
 typedef struct HoleSearch {

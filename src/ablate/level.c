@@ -3,7 +3,7 @@
 //   m' = m - m_loss
 //
 // The sheet is left where it is not negative. A sheet that is not ablated is inside everywhere.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "ablate/ablate_plan.h"
 
 float ablate_level(const Shell *shell, const State *state, uint32_t particle) {

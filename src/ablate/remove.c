@@ -11,7 +11,7 @@
 // and a particle goes with its last spring, with its mass and its enthalpy C (T - T_amb). The mass that it burnt in the
 // step that removes it is in mass_burnt, but that step's heat of combustion is not released: heat is released in the
 // next step, to particles that are then alive. It is not counted either, so that the ledger closes.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "ablate/ablate_plan.h"
 
 static void remove_particle(Removal *removal, uint32_t particle) {

@@ -30,7 +30,7 @@
 // ratio of CO to CO2 (Arthur, Trans. Faraday Soc. 47, 1951, 164-178), and h = .28 the share of the heat that burning to
 // CO gives: 9.2 of 32.8 MJ/kg of carbon. So a hotter ember gives less heat, and more air makes it faster rather than
 // hotter.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/real.h"
 #include "burn/burn_job.h"
 

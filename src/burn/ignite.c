@@ -1,5 +1,5 @@
 // Ignition: a particle ignites when its temperature first reaches its ignition temperature.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "burn/burn_job.h"
 
 #define NEVER (-1.0f)

@@ -25,7 +25,7 @@
 //   else      f (1 - (1 - r)^(1/(1 - p))),  r = (1 - p) k f^(p - 1), and all of f once r >= 1
 //
 // Pyrolysis heats the sheet by eta (1 - nu) df, eq 1.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/real.h"
 #include "burn/burn_job.h"
 

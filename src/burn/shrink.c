@@ -17,7 +17,7 @@
 // p b^2 replaces b^2. Its `grain` already contains p (shell/fibre.c).
 //
 // v depends only on the mass, so only springs with an end that lost mass need a new length.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "burn/burn_job.h"
 
 #include <math.h>

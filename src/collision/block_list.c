@@ -1,4 +1,4 @@
-#include "common/check.h"
+#include "common/assertion.h"
 #include "collision/block_list.h"
 
 #include <string.h>

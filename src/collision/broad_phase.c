@@ -3,7 +3,7 @@
 // A cell is a moving box: its box at the search, widened by half of thickness + slack, along the trajectory that its
 // corners were on. Two cells whose boxes do not meet in plan->steps steps stay farther apart than the thickness, as
 // long as no corner deviates from its trajectory by more than half the slack; ccd.c watches that.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/error.h"
 #include "collision/collision_plan.h"
 

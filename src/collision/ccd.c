@@ -6,7 +6,7 @@
 //
 // A corner that has left the box that the search gave its cell may have met a cell that the search did not list: then
 // the search is repeated for this step's own displacements.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/clock.h"
 #include "common/error.h"
 #include "collision/ccd.h"

@@ -7,7 +7,7 @@
 //
 // Connected cells (that share a side or a corner) are free if their normals, or a plane between them, show that they do
 // not cross at the end of the step (feature_distance.c). The other pairs are swept, feature by feature.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "collision/ccd.h"
 #include "collision/feature_distance.h"
 

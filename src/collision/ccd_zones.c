@@ -9,7 +9,7 @@
 // closed the gap. A zone that collides again halves its share, and has 0 from round ZONE_PATIENCE on, when it moves as
 // one piece (the impact zones of Provot, 1997). Zones are only ever joined, and shares only reduced, so the rounds end.
 // Held corners keep their own displacement.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "collision/ccd.h"
 #include "collision/feature_distance.h"
 

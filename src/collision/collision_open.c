@@ -3,7 +3,7 @@
 // A pair's distance is kept as a bound: it is at least the last measured distance, less the relative motion of the two
 // cells since. Features are checked only where the bound does not show that all of them stay apart in this step. So the
 // result depends on the pair's positions and speeds alone, not on when it was measured.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/clock.h"
 #include "common/error.h"
 #include "collision/narrow_phase.h"

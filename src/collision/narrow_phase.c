@@ -1,7 +1,7 @@
 // Nearest points of all features of two cells: a node against the four triangles of the other at once, an edge against
 // its four sides and against the four lines to its centroid. The regions are those of Ericson, Real-time collision
 // detection (2005), 5.1.5 and 5.1.9, as in feature_distance.c, but chosen by masks.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "collision/narrow_phase.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 // Cells that have left their boxes of the search: pairs that they may have met in this step.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "collision/broad_grid.h"
 
 typedef struct OutsideSearch {

@@ -9,7 +9,7 @@
 // separates them at COLLISION_PART m/s. Slip across n since the substep began is taken back by at most mu |C|
 // (Coulomb), as in contact with colliders. A virtual centre is replaced by its four corners, a quarter each. Points
 // nearer at rest than twice the thickness (the edges of a tear) are kept apart by four times CCD's gap only.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/clock.h"
 #include "collision/collision_plan.h"
 

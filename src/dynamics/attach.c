@@ -15,7 +15,7 @@
 // lengths of vertices that are too far from a source that replaces a burnt one, and of vertices that moved too far
 // while a tight sheet that may tear was left to its springs. Vertices that have come free of a source are released at
 // the end of the step. A sheet whose mesh may stretch by its compliance has no attachments.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "dynamics/attach.h"
 
 #include "common/float3.h"

@@ -6,7 +6,7 @@
 // is kept out of colliders like a particle, with friction, and its corners move with it; held corners stay. Cells of
 // one family share no corner; families follow each other. Contact of the particles comes after it and has the last
 // word.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "dynamics/dynamics_plan.h"
 
 typedef struct Centroid {

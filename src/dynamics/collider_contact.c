@@ -9,7 +9,7 @@
 // displacement over the collider in this substep is longer than its distance, its path is followed from the start, in
 // the collider's frame, by steps that the distance allows (contact_enters); a particle that enters goes back to the
 // plane that touches the surface there.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 

@@ -15,7 +15,7 @@
 //   m = gain (|r| - B)/|r| r/(w_a + 4 w_b + w_c),   x_a -= w_a m,   x_b += 2 w_b m,   x_c -= w_c m
 //
 // Families of strands follow each other; strands of one family share no particle.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/real.h"
 #include "dynamics/dynamics_plan.h"
 

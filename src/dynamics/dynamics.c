@@ -2,7 +2,7 @@
 //
 // One projection of every colour a substep instead of several a step: the same cost and a smaller
 // error (Macklin et al., Small steps in physics simulation, 2019).
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/clock.h"
 #include "dynamics/stiffness.h"
 #include "dynamics/paper_solver.h"

@@ -10,7 +10,7 @@
 //
 // This is exact in the plane and on what unrolls to it (Novotni and Klein, Computing geodesic distances on
 // triangular meshes, 2002). The metric is intrinsic: target lengths of blue and yellow springs, wherever the sheet is.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "dynamics/geodesic.h"
 
 #include "common/float3.h"

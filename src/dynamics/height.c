@@ -11,7 +11,7 @@
 // momentum where the centre stands over the mean of its corners; a centre that leans aside gets a small moment. Cells
 // of one family share no corner; families follow each other. Blocks of cells whose centres are all twice as high as
 // they must be are skipped for some substeps.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 

@@ -12,7 +12,7 @@
 //
 // A cell whose diagonals are parallel has no normal, and no front for its centre to be on: it is left as it is and
 // counts neither as inverted nor as in order (sim/sim_stats.c).
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 

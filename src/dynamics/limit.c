@@ -15,7 +15,7 @@
 //
 // Where a spring has burnt, a load on its cell may pull it open: if it were held, it would stretch intact cells next to
 // it.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 

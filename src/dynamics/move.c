@@ -11,7 +11,7 @@
 // implicitly (v_n <- v_n / (1 + h k |v_n|)), so that no time step makes it overshoot. Damping: v <- v / (1 + h d).
 //
 // The fourth component: of a position, the inverse mass, which its prediction repeats; of a velocity, 0.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 

@@ -3,7 +3,7 @@
 //
 // With early_exit the projection steps also end after one in which every colour began with a residual below `tolerance`
 // of its target lengths, so that there was nothing to solve.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "dynamics/paper_solver.h"
 
 #include "common/clock.h"

@@ -8,7 +8,7 @@
 // The force f of a spring, from which line forces come, by the sums of mu = lambda/|d| over the projections of a step:
 //
 //   pull = f/|d| l/L = (sum mu) l/(L substeps h^2)    [N/m], target length l, length at rest L
-#include "common/check.h"
+#include "common/assertion.h"
 #include "dynamics/dynamics_plan.h"
 
 #include "common/float4.h"

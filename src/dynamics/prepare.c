@@ -5,7 +5,7 @@
 //
 // Drag of a sheet of area A on its normal velocity v_n: F = 1/2 rho C_d A v_n |v_n|; each layer
 // takes half of it.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "dynamics/dynamics_plan.h"
 
 #include <string.h>

@@ -12,7 +12,7 @@
 // from a wave falls with the fourth power of its length over smoothing_length, whatever the mesh. The second removes
 // what the first cannot see. A rigid motion of a flat sheet has r = 0 and is unchanged. Where the nodes are not
 // collinear or not equally far apart, r sees a rotation too: a curved sheet that spins loses angular momentum.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/real.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"

@@ -16,7 +16,7 @@
 //   h <= sqrt(c_spring m/(a + r))
 //
 // Sheets have one s and one grammage here, their median and mean.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "dynamics/stiffness.h"
 
 #include <math.h>

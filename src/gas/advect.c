@@ -17,8 +17,8 @@
 // (Smagorinsky 1963): D = D_0 + (C cell)^2 |grad u|.
 //
 // The displacement of a step is divided so that along no axis it passes more than a cell at once.
-#include "common/check.h"
-#include "gas/sweep.h"
+#include "common/assertion.h"
+#include "gas/advect_axis.h"
 
 #include <limits.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 // Obstacles of the gas: cells whose centre is inside a collider have no gas, and a sheet's cell of area A and normal n
 // covers A |n_d| of the nearest faces across axis d, shared among the four about it.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "gas/gas_plan.h"
 
 #include <string.h>

@@ -6,7 +6,7 @@
 // buoyancy, that makes flames lick and plumes sway:
 //
 //   du/dt = FORCE_UNREST |g| L/(1 - L) (2 noise(x/size, t/time) - 1)
-#include "common/check.h"
+#include "common/assertion.h"
 #include "gas/gas_plan.h"
 
 #include "common/random.h"

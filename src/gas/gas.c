@@ -6,7 +6,7 @@
 //   meet     sheets are heated, and cool the gas; their air is reported to the dynamics (gas_sheets.c)
 //   force    buoyancy, swirl (force.c)
 //   project  a pressure makes the flow's divergence that of the expansion, past sheets and colliders (project.c)
-#include "common/check.h"
+#include "common/assertion.h"
 #include "gas/gas_plan.h"
 
 #include <string.h>

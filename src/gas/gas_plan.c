@@ -2,7 +2,7 @@
 //
 // The grid reaches from a few cells beside and below the sheets, as they are at rest, to `height` above them. A face
 // of cells lies at the lower end of the sheets along each axis: a flat sheet is then between two layers of cells.
-#include "gas/sweep.h"
+#include "gas/advect_axis.h"
 
 #include <string.h>
 

@@ -20,7 +20,7 @@
 //
 // The air that drags at a particle is the gas's own speed times the open share of the faces about it: the gas flows
 // along an intact sheet, and only flakes and edges are in its path.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/real.h"
 #include "gas/gas_plan.h"
 

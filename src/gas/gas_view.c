@@ -1,5 +1,5 @@
 // The view for readers: the cells without their ghosts, in the units of SingeGas.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "gas/gas_plan.h"
 
 typedef struct Show {

@@ -4,7 +4,7 @@
 // of, its rhs half the sum of its cells' residuals (a face is four times as large and twice as far). Its solution is
 // added to each of its cells. Smoothing is by Gauss and Seidel, alternating red and black cells: cells of a colour do
 // not see each other.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "gas/gas_plan.h"
 
 #include <string.h>

@@ -11,7 +11,7 @@
 // Beyond the border p = 0, half a cell away. A cell's velocity changes by the mean of its faces' changes, so that
 // averaging removes little of it (as FLIP does for particles), and takes a small part of the faces' own mean, for
 // motion too short for faces to see.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "gas/gas_plan.h"
 
 #include <string.h>

@@ -12,7 +12,7 @@
 // range, and heat is conserved. For the umbrella, which does not conserve heat, it is counted as made.
 #include <math.h>
 
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/random.h"
 #include "heat/heat_plan.h"
 

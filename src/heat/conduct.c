@@ -24,7 +24,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/random.h"
 #include "heat/heat_plan.h"
 

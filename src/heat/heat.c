@@ -20,7 +20,7 @@
 // capacity C, as in the stored enthalpy C (T - Ta).
 #include <math.h>
 
-#include "common/check.h"
+#include "common/assertion.h"
 #include "heat/heat_plan.h"
 
 static const float STEFAN_BOLTZMANN = 5.670374e-8f; // W/(m2 K4)

@@ -1,5 +1,5 @@
 // Memory of the stage.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "heat/heat_plan.h"
 
 /// More is an error in the material: on cells of a millimetre its front would be a nanometre thick.

@@ -2,7 +2,7 @@
 // entries of a removed spring become 0, and the springs themselves need not be stored.
 #include <string.h>
 
-#include "common/check.h"
+#include "common/assertion.h"
 #include "heat/heat_plan.h"
 
 /// Counts the entries of every row in `length`, or fills them in if `fill` is set. If tears have given a vertex more

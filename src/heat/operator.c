@@ -35,7 +35,7 @@
 //   springs, too. See heat_conduct for how the ledger accounts for that.
 #include <math.h>
 
-#include "common/check.h"
+#include "common/assertion.h"
 #include "heat/heat_plan.h"
 
 static double operator_triangle(Float3 a, Float3 b, Float3 c, Float3 normal) {

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "common/check.h"
+#include "common/assertion.h"
 #include "heat/heat_plan.h"
 
 // --- creating a source ----------------------------------------------------------------------------------

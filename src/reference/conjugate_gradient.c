@@ -6,7 +6,7 @@
 // in three sweeps an iteration: the product with its dot, r with its dot, and x with p. The scaling to a unit diagonal
 // is Jacobi's preconditioner, folded into the matrix. Sums run in NETWORK_LANES lanes over blocks of POOL_BLOCK rows:
 // the same for any number of threads and any width of the processor's registers.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "reference/conjugate.h"
 
 #include "common/cpu.h"

@@ -9,7 +9,7 @@
 // longest; here that holds within slices of 8 rows (Monakov, Lokhmotov and Avetisyan, HiPEAC 2010), whose entries are
 // contiguous, so that 8 rows are multiplied at once. Where the 8 columns are consecutive, as on grids whose springs are
 // numbered cell by cell, they are loaded as a run instead of one by one.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "reference/spring_network.h"
 
 enum { LINK_MINUS = 2, LINK_EMPTY = 4 };

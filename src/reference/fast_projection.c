@@ -12,7 +12,7 @@
 //   S = compliance/h^2 + regularisation (w_a + w_b)/2
 //
 // is solved for mu = D^(1/2) lambda, D the diagonal:  D^(-1/2) (J M^-1 J^T + S) D^(-1/2) mu = D^(-1/2) W C.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "reference/spring_network.h"
 
 #include <math.h>

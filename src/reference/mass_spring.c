@@ -7,7 +7,7 @@
 //
 // k is `stiffness`, the same for every spring, times its weight W. The method is stable while h times the highest
 // frequency is below 2 - about h < sqrt(1/(6 k w)), each particle being in up to twelve springs - and blows up above.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "reference/spring_network.h"
 
 #include <math.h>

@@ -8,7 +8,7 @@
 // Springs continue in others, their mates, which strand.c follows: a green spring in the one across the opposite side
 // of the cell, a red one at the centre in that of the opposite corner, and each one at a vertex in the opposite one in
 // the fan of cells, where there is one.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "shell/family.h"
 #include "shell/fibre.h"
 #include "shell/half_edge.h"

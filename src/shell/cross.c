@@ -1,4 +1,4 @@
-#include "common/check.h"
+#include "common/assertion.h"
 #include "shell/cross.h"
 
 bool cross_pierces(Float4 p, Float4 q, Float4 a, Float4 b, Float4 c) {

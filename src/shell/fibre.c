@@ -6,7 +6,7 @@
 //
 // which is cos 2(angle to the fibres) in the plane of the sheet, and less for a spring out of the plane. A spring of
 // two cells has the mean of both.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/real.h"
 #include "shell/fibre.h"
 

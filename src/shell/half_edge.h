@@ -5,7 +5,7 @@
 #ifndef SHELL_HALF_EDGE_H
 #define SHELL_HALF_EDGE_H
 
-#include "common/check.h"
+#include "common/assertion.h"
 #include "shell/shell.h"
 
 typedef struct HalfEdges {

@@ -6,7 +6,7 @@
 #ifndef SHELL_SHELL_H
 #define SHELL_SHELL_H
 
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/error.h"
 #include "shell/field.h"
 #include "singe/sim.h"

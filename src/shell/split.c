@@ -1,4 +1,4 @@
-#include "common/check.h"
+#include "common/assertion.h"
 #include "shell/split.h"
 
 #include "shell/matter.h"

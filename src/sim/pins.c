@@ -1,6 +1,6 @@
 // Pins: added, moved and removed at any time. A pin added before the commit waits for it as it was given, as the
 // textures of sources do, and its particles are found there.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "sim/objects.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 // A simulation's life: create, add sheets, commit, destroy.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/real.h"
-#include "shell/validate.h"
+#include "shell/shell_validate.h"
 #include "sim/sim_internal.h"
 
 #include <stddef.h>

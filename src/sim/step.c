@@ -1,7 +1,7 @@
 // The step, in the order of the paper's section 4, and after it the gas.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/clock.h"
-#include "shell/validate.h"
+#include "shell/shell_validate.h"
 #include "sim/sim_internal.h"
 
 #include <string.h>

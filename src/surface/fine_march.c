@@ -10,7 +10,7 @@
 // sides from the centre, at rest and now:
 //
 //   lambda^2 > TORN^2,   lambda^2 the larger eigenvalue of C^-1 C'
-#include "common/check.h"
+#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>

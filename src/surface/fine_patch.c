@@ -14,7 +14,7 @@
 // ignore torn cells, which are drawn flat. Where the surface may not be this far from a corner, all points around the
 // corner are moved by the same vector. This keeps tangent planes; moved by the whole distance, the patches pass through
 // the corners.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 static bool is_sound(const Fine *fine, uint32_t cell) {

@@ -7,7 +7,7 @@
 //
 // A bent cell that is not split gets points to show its shape, in fewer parts. A side is drawn in the max of the
 // numbers of parts of its two cells.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>

@@ -16,7 +16,7 @@
 //
 // Both edges of a tear coincide until they separate. They are cut differently on either side, so their corners are
 // drawn back from each other, by a small fraction of a cell's side.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>

@@ -15,7 +15,7 @@
 // (Zwart 1973; Peters and Reif, The simplest subdivision scheme for smoothing polyhedra, 1997, for meshes that are not
 // regular: C1 except at their irregular vertices). All weights are positive: if no particle's mass grows, S does not
 // grow. It is exact for linear fields on parallelograms, and its isolines have no corners where cells meet.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>

@@ -13,7 +13,7 @@
 // cell torn off on all sides is drawn, too.
 //
 // Nothing is drawn outside the cells, so tear edges intersect only what the cells intersect.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/real.h"
 #include "surface/surface_fine.h"
 #include "common/random.h"

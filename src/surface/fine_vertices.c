@@ -2,7 +2,7 @@
 // corners of the cell's triangle and its virtual centre. Temperatures and rates follow their splines. The mass is the
 // one found with the level. The time of ignition is the weighted mean over the corners that have ignited. Positions and
 // normals come from fine_position.c.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 /// Interpolates between a triangle's corners: two particles, and the mean of four for the virtual centre.

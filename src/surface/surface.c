@@ -9,7 +9,7 @@
 // order, virtual centres, cuts. A cut at its inside end becomes that end; polygons with fewer than three corners are
 // dropped. Cuts keep a distance from ends, and quadrilaterals are divided along the diagonal that gives the rounder
 // triangles, so that no triangle is as thin as the rounding of its vertices.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "ablate/ablate_plan.h"
 #include "common/float3.h"
 

@@ -2,7 +2,7 @@
 #ifndef SURFACE_SURFACE_FINE_H
 #define SURFACE_SURFACE_FINE_H
 
-#include "common/check.h"
+#include "common/assertion.h"
 #include "ablate/ablate_plan.h"
 #include "common/float3.h"
 

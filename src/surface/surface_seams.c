@@ -6,7 +6,7 @@
 //
 // Only cells whose uv differ from those of their vertices (Shell.uv) are visited. If the input had several vertices on
 // a seam, each copy keeps its own source vertex.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "ablate/ablate_plan.h"
 #include "common/float3.h"
 

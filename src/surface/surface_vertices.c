@@ -5,7 +5,7 @@
 // with end 0 inside (m' >= 0) and end 1 outside, for the position and every other field alike. A virtual
 // centre lies at the mean of its cell's four corners, in space, at rest and in velocity; temperature,
 // mass and times are those of the cell's centre particle.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "ablate/ablate_plan.h"
 #include "common/float3.h"
 

@@ -17,7 +17,7 @@
 // with the mean over all substeps of a step for N_step, whatever h; where a sheet is released, N follows at once. N is
 // also averaged over a process zone of a fixed length: one pass, 1/8 of each neighbour and 1/2 of the cell itself,
 // spreads by s^2/4 (variance, an axis), and so does the mean over the cells at a vertex.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/real.h"
 #include "tear/tear_plan.h"
 

@@ -1,5 +1,5 @@
 // The effect of a split on the State: the new particle copies the old one, and the edges of a tear separate slightly.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "shell/cross.h"
 #include "tear/tear_plan.h"
 

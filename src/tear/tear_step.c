@@ -24,7 +24,7 @@
 // with its mass per area rho, and it stretches. Its own weight needs far less. But if it is held farther apart than its
 // geodesic length, by more than paper stretches before it breaks, it must tear though it is stronger: all its fresh
 // strengths are then lowered by one factor, so that the smallest is half of this.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/random.h"
 #include "tear/tear_plan.h"
 

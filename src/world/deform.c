@@ -94,7 +94,7 @@ Float3 deform_drift(const Deform *deform, Float3 p) {
     const uint32_t *corner = before->triangles[t];
     Float3 v[3], drift = {0, 0, 0};
     for (int i = 0; i < 3; i++) v[i] = float3_load(before->vertices[corner[i]]);
-    const TriangleFoot foot = triangle_foot(p, v[0], v[1], v[2]);
+    const TriangleClosest foot = triangle_closest(p, v[0], v[1], v[2]);
     const float weights[3] = {(float)(1 - foot.s - foot.t), (float)foot.s, (float)foot.t};
     for (int i = 0; i < 3; i++)
         drift = float3_mad(drift, float3_sub(float3_load(after->vertices[corner[i]]), v[i]), weights[i]);

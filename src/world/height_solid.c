@@ -109,7 +109,7 @@ typedef struct HeightFoot {
     double square, away[3];
 } HeightFoot;
 
-static void height_offer(HeightFoot *best, const TriangleFoot *foot) {
+static void height_offer(HeightFoot *best, const TriangleClosest *foot) {
     if (!(foot->square < best->square)) return;
     *best = (HeightFoot){foot->square, {foot->away[0], foot->away[1], foot->away[2]}};
 }
@@ -144,7 +144,7 @@ static void height_block(const HeightSolid *solid, Float3 p, uint32_t bi, uint32
             for (int upper = 0; upper < 2; upper++) {
                 Float3 corner[3];
                 height_triangle(solid, i, j, upper, corner);
-                TriangleFoot foot = triangle_foot(p, corner[0], corner[1], corner[2]);
+                TriangleClosest foot = triangle_closest(p, corner[0], corner[1], corner[2]);
                 height_offer(best, &foot);
             }
 }
@@ -167,7 +167,7 @@ static void height_walls(const HeightSolid *solid, Float3 p, HeightFoot *best) {
         at[axis] = side * solid->half[axis];
         at[1 - axis] = fminf(fmaxf(at[1 - axis], -solid->half[1 - axis]), solid->half[1 - axis]);
         Float3 normal;
-        TriangleFoot foot = {.away = {(double)p.x - (double)at[0], (double)p.y - (double)at[1], 0}};
+        TriangleClosest foot = {.away = {(double)p.x - (double)at[0], (double)p.y - (double)at[1], 0}};
         foot.square = triangle_dot(foot.away, foot.away);
         if (foot.square < best->square && p.z <= height_at(solid, at[0], at[1], &normal)) height_offer(best, &foot);
     }

@@ -94,7 +94,7 @@ static Float3 solid_pseudonormal(const MeshSolid *solid, uint32_t t, int feature
 /// The signed distance from triangle t, the nearest one.
 static float solid_signed(const MeshSolid *solid, Float3 p, uint32_t t, Float3 *normal) {
     Float3 a = solid_corner(solid, t, 0), b = solid_corner(solid, t, 1), c = solid_corner(solid, t, 2);
-    TriangleFoot foot = triangle_foot(p, a, b, c);
+    TriangleClosest foot = triangle_closest(p, a, b, c);
     Float3 pseudo = solid_pseudonormal(solid, t, foot.feature);
     const double n[3] = {(double)pseudo.x, (double)pseudo.y, (double)pseudo.z};
     double along = triangle_dot(foot.away, n), distance = sqrt(foot.square);

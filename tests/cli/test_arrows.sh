@@ -42,3 +42,10 @@ expect bad cli/a.c '"experiments/paper.h"'
 echo '#include "heat/b.h"' >"$tree/src/heat/c.h"
 expect good src/heat/b.h '"common/error.h"'
 expect bad src/heat/b.h '"heat/c.h"'
+
+# two files with the same name
+rm "$tree/src/heat/c.h"
+echo >"$tree/src/burn/volume.h"
+expect good src/heat/b.h '"common/error.h"'
+echo >"$tree/scene/volume.h"
+expect bad src/heat/b.h '"common/error.h"'

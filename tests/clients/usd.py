@@ -77,10 +77,10 @@ def check_rest(stage, out):
         for prim in fields:
             path = prim.GetAttribute("filePath").Get(frame).resolvedPath
             assert os.path.samefile(path, os.path.join(out, "gas", "burn.%04d.vdb" % frame)), path
-    ball = UsdGeom.Xformable(stage.GetPrimAtPath("/burn/things/shape0"))
+    ball = UsdGeom.Xformable(stage.GetPrimAtPath("/burn/props/shape0"))
     x = [ball.ComputeLocalToWorldTransform(frame).ExtractTranslation()[0] for frame in (1, 13, 24)]
     assert np.allclose(x, [-0.08, -0.07, -0.08 + 0.02 * 23 / 24], atol=1e-6), x
-    deforms = UsdGeom.Mesh(stage.GetPrimAtPath("/burn/things/shape1"))
+    deforms = UsdGeom.Mesh(stage.GetPrimAtPath("/burn/props/shape1"))
     for frame in range(1, FRAMES + 1):
         same(np.array(deforms.GetPointsAttr().Get(frame)), body(frame)[0], ("body", frame))
         place = UsdGeom.Xformable(deforms).ComputeLocalToWorldTransform(frame).ExtractTranslation()

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "mesh/mesh.h"
+#include "mesh/to_quads.h"
 #include "input.h"
 
 static inline void demand_mesh(const Polygons *mesh) {

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "mesh/mesh.h"
+#include "mesh/to_quads.h"
 #include "sim_state.h"
 
 enum { SHEETS = 16, SIDE = 6, VERTICES = 64, FACES = 24, STEPS = 3 };

@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "mesh/mesh.h"
+#include "mesh/to_quads.h"
 
 typedef struct Text {
     char bytes[200000];

@@ -1,7 +1,7 @@
 // Grids: exact where they are plain, and with their outline where they are worn.
 #include <math.h>
 
-#include "mesh/mesh.h"
+#include "mesh/to_quads.h"
 #include "support/support.h"
 
 static void grid_is_exact(void **state) {

@@ -1,7 +1,7 @@
 // Projection of one colour: the groups of a family side by side, family after family. Families follow each other as
 // in block Gauss-Seidel; groups of a family share no particle, so that their order and the number of threads do not
 // matter.
-#include "common/check.h"
+#include "common/assertion.h"
 #include "common/thread.h"
 #include "dynamics/stiffness.h"
 #include "dynamics/dynamics_plan.h"

@@ -1,7 +1,7 @@
 // The validators that assertions call: a good shell and state pass, and each broken invariant is named.
 #include "ablate/burning_sheet.h"
 
-#include "shell/validate.h"
+#include "shell/shell_validate.h"
 
 static void good_ones_pass(void **unused) {
     (void)unused;

@@ -1,4 +1,4 @@
-#include "scene/foot.h"
+#include "scene/closest_point.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -8,8 +8,8 @@
 static double along(const double p[3], const double a[3], const double b[3]) {
     double side[3], to[3];
     for (int k = 0; k < 3; k++) side[k] = b[k] - a[k], to[k] = p[k] - a[k];
-    const double length = foot_dot(side, side);
-    return length > 0 ? fmin(fmax(foot_dot(to, side) / length, 0), 1) : 0;
+    const double length = closest_dot(side, side);
+    return length > 0 ? fmin(fmax(closest_dot(to, side) / length, 0), 1) : 0;
 }
 
 static double distance2(const double p[3], const double corner[3][3], const double weight[3]) {
@@ -22,12 +22,12 @@ static double distance2(const double p[3], const double corner[3][3], const doub
 }
 
 /// Weights of p's foot in the plane of a triangle. False where it lies outside, or the triangle has no area.
-static bool foot_inside(const double p[3], const double corner[3][3], double weight[3]) {
+static bool closest_inside(const double p[3], const double corner[3][3], double weight[3]) {
     double u[3], v[3], w[3];
     for (int k = 0; k < 3; k++)
         u[k] = corner[1][k] - corner[0][k], v[k] = corner[2][k] - corner[0][k], w[k] = p[k] - corner[0][k];
-    const double uu = foot_dot(u, u), uv = foot_dot(u, v), vv = foot_dot(v, v), wu = foot_dot(w, u),
-                 wv = foot_dot(w, v);
+    const double uu = closest_dot(u, u), uv = closest_dot(u, v), vv = closest_dot(v, v), wu = closest_dot(w, u),
+                 wv = closest_dot(w, v);
     const double area = uu * vv - uv * uv;
     if (!(area > 1e-12 * uu * vv)) return false;
     weight[1] = (vv * wu - uv * wv) / area, weight[2] = (uu * wv - uv * wu) / area;
@@ -35,8 +35,8 @@ static bool foot_inside(const double p[3], const double corner[3][3], double wei
     return weight[0] >= 0 && weight[1] >= 0 && weight[2] >= 0;
 }
 
-double foot_on_triangle(const double p[3], const double corner[3][3], double weight[3]) {
-    if (foot_inside(p, corner, weight)) return distance2(p, corner, weight);
+double closest_on_triangle(const double p[3], const double corner[3][3], double weight[3]) {
+    if (closest_inside(p, corner, weight)) return distance2(p, corner, weight);
     double best = INFINITY;
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3;

@@ -1,7 +1,7 @@
 // An assertion ends the program where assertions are on, and computes nothing where they are off.
 #include "support/support.h"
 
-#include "common/check.h"
+#include "common/assertion.h"
 
 #include <signal.h>
 #include <stdio.h>

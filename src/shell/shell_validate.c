@@ -1,4 +1,4 @@
-#include "shell/validate.h"
+#include "shell/shell_validate.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 // Sweeps for every processor.
 #define SWEEP_ROWS sweep_plain
-#include "gas/sweep_kernel.h"
+#include "gas/advect_kernel.h"
 
 #include "common/cpu.h"
 

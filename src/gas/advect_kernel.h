@@ -1,6 +1,6 @@
 // The loops over cells of advect.c, which has the formulas. One file per instruction set defines SWEEP_ROWS, the name
 // of its function, and includes this. Every operation rounds according to IEEE 754, so all give the same bytes.
-#include "gas/sweep.h"
+#include "gas/advect_axis.h"
 
 /// Fluxes through the lower faces of `count` cells in a row from c on.
 static void sweep_faces(const Sweep *sweep, size_t c, int count, float *restrict flux) {

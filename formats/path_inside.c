@@ -2,7 +2,7 @@
 #define _XOPEN_SOURCE 700 // realpath
 #endif
 
-#include "formats/beside.h"
+#include "formats/path_inside.h"
 
 #include <stddef.h>
 #include <stdlib.h>
@@ -29,7 +29,7 @@ static bool leads_inside(const char *folder, const char *path) {
     return inside;
 }
 
-bool beside_is(const char *name, const char *path) {
+bool path_is_inside(const char *name, const char *path) {
     const char *slash = strrchr(name, '/');
     size_t length = slash ? (size_t)(slash - name) + 1 : 0;
     const char *inside = path + length;

@@ -1,6 +1,6 @@
 // Invariants of a Shell and of a State on it: for assertions, and for tests. Each call checks everything.
-#ifndef SHELL_VALIDATE_H
-#define SHELL_VALIDATE_H
+#ifndef SHELL_SHELL_VALIDATE_H
+#define SHELL_SHELL_VALIDATE_H
 
 #include "shell/shell.h"
 

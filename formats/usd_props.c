@@ -162,8 +162,8 @@ static void put_ground(Root *r) {
     put(r, "        }\n");
 }
 
-void usd_put_things(Root *r) {
-    put(r, "\n    def Xform \"things\"\n    {");
+void usd_put_props(Root *r) {
+    put(r, "\n    def Xform \"props\"\n    {");
     put_ground(r);
     for (uint32_t i = 0; i < r->scene->shape_count; i++) put_shape(r, i);
     put(r, "    }\n");

@@ -1,6 +1,6 @@
 // Advection of advect.c along one axis: the loops over cells, with one file per instruction set.
-#ifndef GAS_SWEEP_H
-#define GAS_SWEEP_H
+#ifndef GAS_ADVECT_AXIS_H
+#define GAS_ADVECT_AXIS_H
 
 #include "gas/gas_plan.h"
 

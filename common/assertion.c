@@ -1,10 +1,10 @@
-#include "common/check.h"
+#include "common/assertion.h"
 
 #ifdef SINGE_ASSERTIONS
 #include <stdio.h>
 #include <stdlib.h>
 
-void check_failed(const char *condition, const char *file, int line) {
+void assertion_failed(const char *condition, const char *file, int line) {
     fprintf(stderr, "%s:%d: assertion failed: %s\n", file, line, condition);
     abort();
 }

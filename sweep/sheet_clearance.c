@@ -173,7 +173,7 @@ static void close_apart(Apart *apart) {
     free(apart->folders), free(apart->boxes), free(apart->pairs);
 }
 
-bool sweep_sheets_apart(Sweep *sweep) {
+bool sweep_sheet_clearance(Sweep *sweep) {
     Apart apart = {.sweep = sweep, .count = sweep->plan.row_count};
     Job job;
     SetList none = {0};

@@ -1,7 +1,7 @@
 // Makes the quads of a sheet from the polygons of a file (docs/meshes.md): vertices are welded, faults are repaired or
 // refused, and triangles and polygons become quads. The core accepts only quads.
-#ifndef MESH_MESH_H
-#define MESH_MESH_H
+#ifndef MESH_TO_QUADS_H
+#define MESH_TO_QUADS_H
 
 #include "formats/formats.h"
 
