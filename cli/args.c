@@ -55,7 +55,7 @@ const char *args_nearest(const char *word, const void *first, int count, unsigne
         memcpy(&name, (const char *)first + (unsigned long)i * stride, sizeof name);
         int distance = edit_distance(word, name);
         size_t length = strlen(word);
-        if (length >= 3 && strncmp(word, name, length) == 0) distance = 1; // a beginning of it
+        if (length >= 3 && strncmp(word, name, length) == 0) distance = 1; // `word` is its beginning
         if (distance < best_distance && distance < (int)strlen(name)) best_distance = distance, best = name;
     }
     return best;

@@ -1,4 +1,4 @@
-// Command lines: long options with "--name value" or "--name=value", one-letter ones, operands.
+// Command lines: long options ("--name value" or "--name=value"), one-letter options, operands.
 #ifndef CLI_ARGS_H
 #define CLI_ARGS_H
 
@@ -7,7 +7,7 @@
 typedef struct ArgOption {
     const char *name;  ///< without its dashes
     char letter;       ///< 0 for none
-    const char *value; ///< what it takes, for the help ("DIR"); NULL for a switch
+    const char *value; ///< name of the value in the help ("DIR"); NULL for a switch
     const char *help;
 } ArgOption;
 
@@ -17,10 +17,10 @@ typedef struct ArgCommand {
     const char *summary;
     const ArgOption *options;
     int option_count;
-    const char *footer; ///< below the options in the help, or NULL
+    const char *footer; ///< printed below the options in the help, or NULL
 } ArgCommand;
 
-/// What args_next met besides an option (those are their index in `options`, from 0).
+/// Results of args_next besides an option, which is its index in `options`, from 0.
 enum { ARG_END = -1, ARG_OPERAND = -2, ARG_HELP = -3, ARG_ERROR = -4 };
 
 typedef struct ArgReader {
@@ -34,13 +34,13 @@ typedef struct ArgReader {
 
 ArgReader args_begin(const ArgCommand *command, int argc, char **argv);
 
-/// The next argument. ARG_ERROR: a message with a hint has been printed. ARG_HELP: the help has been. At ARG_END
-/// a missing operand has been complained of (ARG_ERROR).
+/// The next argument. ARG_ERROR: a message with a hint has been printed, also for a missing operand at the end.
+/// ARG_HELP: the help has been printed.
 int args_next(ArgReader *reader, const char **value);
 
 void args_help(const ArgCommand *command);
 
-/// Reads a whole number within [low, high], or prints what was expected of the option and returns false.
+/// Reads a whole number within [low, high], or prints what the option expects and returns false.
 bool args_int(const ArgReader *reader, int option, const char *text, int low, int high, int *number);
 
 /// Reads "A-B", or "A" for both, with 1 <= A <= B, or prints what was expected of the option and returns false.
@@ -53,7 +53,7 @@ int args_complain(const ArgReader *reader, const char *format, ...)
 #endif
     ;
 
-/// The nearest of `count` words to `word`, or NULL where none is near. `stride` is the distance between the words'
+/// The most similar of `count` words to `word`, or NULL if none is similar. `stride` is the distance between the words'
 /// pointers in bytes, so that a table's names can be passed.
 const char *args_nearest(const char *word, const void *first, int count, unsigned long stride);
 

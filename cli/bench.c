@@ -1,4 +1,4 @@
-// singe bench MEASUREMENT: what the solver costs and how well it holds, measured on this machine.
+// singe bench MEASUREMENT: cost and accuracy of the solver, measured on this machine.
 #include <stdio.h>
 #include <string.h>
 
@@ -98,7 +98,7 @@ static void bench_help(void) {
 
 static void print_csv(FILE *file, const void *context) { table_write_csv(context, file); }
 
-/// A refused argument is the user's, all else went wrong on the way.
+/// A refused argument is the user's error; everything else is a failure.
 static ExitCode exit_code(SingeResult result) { return result == SINGE_ERROR_ARGUMENT ? EXIT_INPUT : EXIT_FAILED; }
 
 static ExitCode bench_measure(int m, const BenchRequest *request) {

@@ -32,7 +32,7 @@ static const ArgOption all_options[BENCH_OPT_COUNT] = {
     [BENCH_OPT_CSV] = {"csv", 0, "FILE", "writes the table to FILE, too"},
 };
 
-/// A command with the accepted options alone, and which of all each of them is.
+/// A command with only the accepted options, and the index of each among all options.
 typedef struct Parser {
     ArgOption options[BENCH_OPT_COUNT];
     int which[BENCH_OPT_COUNT];

@@ -5,7 +5,7 @@
 #include "bench/options.h"
 #include "cli/args.h"
 
-/// Every option that some measurement takes.
+/// The options of all measurements.
 typedef enum BenchOption {
     BENCH_OPT_CELLS,
     BENCH_OPT_THICKNESS,

@@ -1,13 +1,15 @@
-// How much the folds of what burns follow the mesh: the same burn on a grid and on the grid turned by 45 degrees.
+// How much the folds of a burning sheet follow the mesh: the same burn on a grid and on the grid turned by 45 degrees.
 //
-// A sheet of 14 cm, a square or a disc, lies on the ground and is lit in its centre; its layers shrink by equation 6
-// near its full strength, differently, and char stays in spots. r is the bend of creases along the sheet's axes over
-// that along its diagonals (analysis/wrinkles.h), summed over MOMENTS of the second half of the burn. With O what the
-// outline and the fibres do to it, and M what the mesh does, r_0 = O M on the grid and r_45 = O/M on the turned one:
+// A sheet of 14 cm, a square or a disc, lies on the ground and is lit in its centre; its layers shrink by different
+// amounts, by equation 6 near its full strength, and char remains in spots. r is the bending of creases along the
+// sheet's axes divided by that along its diagonals (analysis/wrinkles.h), summed over MOMENTS of the second half of the
+// burn. If O is the effect of the outline and the fibres, and M that of the mesh, then r_0 = O M on the grid and r_45 =
+// O/M on the turned one:
 //
-//   mesh effect M = sqrt(r_0/r_45),   1 where folds know nothing of the mesh
+//   mesh effect M = sqrt(r_0/r_45),   1 if folds do not depend on the mesh
 //
-// Seeds are those of the material's noise: where it burns, shrinks and stays. Both grids of a pair have the same.
+// Seeds are those of the material's noise: where it burns, shrinks and remains. Both grids of a pair have the same
+// seed.
 #include "cli/bench_isotropy.h"
 
 #include <math.h>
@@ -116,7 +118,7 @@ static double total(const double *numbers, int count) {
     return sum;
 }
 
-/// Burns it and adds up its wrinkles.
+/// Burns the sheet and sums its wrinkles.
 static SingeResult isotropy_run(const Burn *burn, double angle, Wrinkles *wrinkles, SingeError *error) {
     const double seconds = burn->options->time > 0 ? burn->options->time : 1.1;
     SingeSim *sim = NULL;
@@ -135,7 +137,7 @@ static SingeResult isotropy_run(const Burn *burn, double angle, Wrinkles *wrinkl
     return result;
 }
 
-/// One row, the `index`-th seed's; *sum is that of the effects' logarithms.
+/// The row of the `index`-th seed; *sum is the sum of the logarithms of the effects.
 static SingeResult isotropy_compare(const Burn *burn, int index, BenchTable *table, double *sum, SingeError *error) {
     Wrinkles straight = {0}, turned = {0};
     SingeResult result = isotropy_run(burn, 0, &straight, error);

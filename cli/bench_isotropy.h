@@ -3,7 +3,7 @@
 
 #include "bench/bench.h"
 
-/// How much the folds of what burns follow the mesh: the same burn on a grid and on the grid turned by 45 degrees.
+/// How much the folds of a burning sheet follow the mesh: the same burn on a grid and on the grid turned by 45 degrees.
 BenchFn bench_isotropy;
 
 #endif

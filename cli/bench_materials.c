@@ -17,7 +17,7 @@ BenchMaterial bench_material(const SceneMaterial *material) {
     return bench;
 }
 
-/// A material is read as that of a scene's sheet, so that its errors are reported as a scene's are.
+/// A material is read as the material of a sheet in a scene, so that its errors are reported in the same way.
 static ExitCode read_one(const char *name, size_t length, BenchMaterials *materials) {
     static const char text[] = "sheets: [{grid: {size: [1, 1], cells: [1, 1]}}]";
     char *set = text_format("sheets.0.material.base=%.*s", (int)length, name);

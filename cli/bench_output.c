@@ -1,6 +1,6 @@
-// singe bench output: what a frame's file costs in each format, of half a burning sheet that is made here. Files go to
-// memory where the system has a folder there: what is measured is the writer, and what it makes the system do, not the
-// disk. As in a run, each frame is written in a thread of its own.
+// singe bench output: the cost of a frame's file in each format, for a synthetic sheet that has burnt halfway. Files go
+// to a folder in memory if the system has one, so that the writer and its system calls are measured, not the disk. As
+// in a run, each frame is written in a thread of its own.
 #include "cli/bench_output.h"
 
 #include <math.h>
@@ -40,7 +40,7 @@ typedef struct OutputBench {
     SingeError error;
 } OutputBench;
 
-/// Digits that no packing foretells.
+/// Digits that cannot be compressed.
 static float output_noise(uint32_t *seed) {
     *seed = *seed * 1664525u + 1013904223u;
     return (float)(*seed >> 8) * 0x1p-24f;
@@ -99,9 +99,9 @@ static void *output_write(void *argument) {
 
 static double seconds_of(struct timeval t) { return (double)t.tv_sec + 1e-6 * (double)t.tv_usec; }
 
-/// Seconds a frame of the program, of the system and of the clock: those of the fastest of some times.
+/// Seconds per frame: of the program, of the system and by the clock; the fastest of several repetitions.
 static void output_measure(OutputBench *b, double min[3]) {
-    const int frames = b->format == OUTPUT_textures ? 1 : FRAMES; // which take a hundred times as long
+    const int frames = b->format == OUTPUT_textures ? 1 : FRAMES; // textures take a hundred times as long
     for (int k = 0; k < 3; k++) min[k] = INFINITY;
     for (int times = 0; times < REPEATS && !b->result; times++) {
         struct rusage before, after;

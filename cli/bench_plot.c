@@ -1,4 +1,4 @@
-// singe bench plot: cost against springs, the paper's Table 2 beside ours, as SVG.
+// singe bench plot: cost against springs, the paper's Table 2 and ours, as SVG.
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -34,7 +34,7 @@ static ExitCode plot(Curves *curves, const char *out) {
     return EXIT_FAILED;
 }
 
-/// Reads all that is named, and `*out`.
+/// Reads all named curves, and `*out`.
 static ExitCode read_all(ArgReader *reader, Curves *curves, const char **out, bool *help) {
     Console console = console_make(false);
     const char *value;

@@ -1,4 +1,4 @@
-// singe bench preview: what a picture costs, of a burning sheet of about 100,000 triangles that is made here.
+// singe bench preview: the cost of a picture of a synthetic burning sheet of about 100,000 triangles.
 #include "cli/bench_preview.h"
 
 #include <math.h>
@@ -32,7 +32,7 @@ static float from_edge(float x, float y) {
     return sqrtf(dx * dx + dy * dy) - hole_radius * wobble;
 }
 
-/// Height of the sheet: curled where it burns, a corner raised.
+/// Height of the sheet: it curls where it burns, and one corner is raised.
 static float height_at(float x, float y) {
     float s = from_edge(x, y), angle = atan2f(y - 0.02f, x - 0.012f);
     float curl = expf(-fmaxf(s, 0) / 0.016f) * (0.006f + 0.0045f * sinf(6 * angle) + 0.002f * sinf(17 * angle));
@@ -93,7 +93,7 @@ static void *make_surface(SingeSurface *s) {
 
 enum { GAS_X = 30, GAS_Y = 42, GAS_Z = 24, GAS_CELLS = GAS_X * GAS_Y * GAS_Z };
 
-/// Gas about the sheet, in cells of 8 mm: it burns above the edge of the hole, less the higher, and rises.
+/// Gas around the sheet, in cells of 8 mm: it burns above the edge of the hole, less at greater heights, and rises.
 typedef struct Flames {
     float temperature[GAS_CELLS], smoke[GAS_CELLS], flame[GAS_CELLS], velocity[GAS_CELLS][3];
     SingeGas gas;
@@ -148,7 +148,7 @@ static SingeResult preview_bench_measure(const BenchOptions *options, const Shot
     SingeResult result = rgb ? preview_create(&def, (SingeAllocator){0}, &preview, error) : SINGE_ERROR_MEMORY;
     Flames *flames = shot->fire && !result ? make_flames() : NULL;
     if (shot->fire && !result) result = flames ? preview_set_gas(preview, &flames->gas, error) : SINGE_ERROR_MEMORY;
-    // the first picture also finds the table's looks, which a film does once
+    // the first picture also prepares the table's appearance, which a film does once
     if (!result) result = preview_draw(preview, surface, 1, rgb, error);
     for (int i = 0; i < REPEATS && !result; i++) {
         double began = machine_cpu_clock(), clock = machine_clock();

@@ -3,7 +3,7 @@
 
 #include "bench/bench.h"
 
-/// Pictures of 1280 x 720 with 16 samples of a burning sheet: seconds of processor time each.
+/// Pictures of 1280 x 720 with 16 samples of a burning sheet: seconds of processor time for each.
 BenchFn bench_preview;
 
 #endif

@@ -1,4 +1,4 @@
-// singe check: everything that run would trip over, and what the scene amounts to. Writes no files.
+// singe check: finds every error that run would find, and prints what the scene amounts to. Writes no files.
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -29,7 +29,7 @@ static const ArgCommand check_command = {
     "Exit codes: 0 the scene is valid; 1 a step fails, memory runs out, or standard output cannot be written;\n"
     "2 bad input."};
 
-/// Real steps are timed until there are this many or this much time has gone.
+/// Steps are timed until this many are done or this much time has passed.
 enum { CHECK_STEPS = 10 };
 static const double check_seconds = 3;
 
@@ -37,7 +37,7 @@ typedef struct CheckTimes {
     double step, surface, picture; ///< s each
 } CheckTimes;
 
-/// Rays that the timed picture has about at most: one of more is drawn with fewer samples, and its time is scaled.
+/// Max rays of the timed picture, roughly: a larger one is drawn with fewer samples, and its time is scaled.
 static const double check_rays = 16e6;
 
 static double pixels_of(const ScenePreview *preview) { return (double)preview->size[0] * (double)preview->size[1]; }
@@ -59,7 +59,8 @@ static SingeResult try_picture(const Job *job, const Frame *frame, double *secon
     return result;
 }
 
-/// All that run makes of its first frame, but for the files and, where a picture takes long, some of its samples.
+/// Computes what run computes for its first frame, except the files and, if the picture takes long, some of its
+/// samples.
 static SingeResult try_frame(const Job *job, SingeSim *sim, CheckTimes *times, SingeError *error) {
     Frame frame = {0};
     double begun = console_clock();
@@ -85,7 +86,7 @@ static SingeResult time_steps(SingeSim *sim, CheckTimes *times, SingeError *erro
     return SINGE_OK;
 }
 
-/// What was read and what was done to it, sheet by sheet.
+/// Prints what was read and how it was repaired, sheet by sheet.
 static void report_meshes(const Job *job) {
     for (uint32_t i = 0; i < job->assets.sheet_count; i++) {
         char text[200];
@@ -114,13 +115,13 @@ static void report_shell(const SingeCounts *c) {
     printf("instructions  %s\n", options_instructions_name(c->instructions));
 }
 
-/// Office paper takes 8,000 pieces of work (StripSetup.work_max), a third of a second in all; a fire that creeps by
+/// Office paper takes 8,000 units of work (StripSetup.work_max), a third of a second in all; a front that advances by
 /// less than a cell in as many steps has gone out.
 enum { CHECK_MATERIALS = 4, CHECK_STRIP_WORK = 60000, CHECK_STRIP_PATIENCE = 4000 };
 static const float check_strip_length = 0.06f; ///< m, of which the first 2 cm are lit
 
-/// What a strip of the material does in steps of that length, a few seconds' work at most; a speed of 0 where it does
-/// not burn, and no end where that cannot be known. Fails only without memory.
+/// Burns a strip of the material in steps of that length, for a few seconds at most. The speed is 0 if it does not
+/// burn, and the end is missing if it cannot be known. Fails only when out of memory.
 static SingeResult front_of(const BenchMaterial *material, float step, StripResult *front, SingeError *error) {
     StripSetup setup = strip_setup(&material->def);
     setup.length = check_strip_length, setup.time_step = step, setup.patience = CHECK_STRIP_PATIENCE,
@@ -131,8 +132,8 @@ static SingeResult front_of(const BenchMaterial *material, float step, StripResu
     return result == SINGE_ERROR_MEMORY ? result : SINGE_OK;
 }
 
-/// Says how fast the material burns, and whether the scene's steps are too long for it. Lighter paper burns faster, and
-/// a front that is thickened by F burns as it would in steps 1/F as long.
+/// Prints how fast the material burns, and whether the scene's steps are too long for it. Lighter paper burns faster,
+/// and a front thickened by F burns as it would with steps 1/F as long.
 static SingeResult report_front(const Scene *scene, const BenchMaterial *material, float thickening,
                                 SingeError *error) {
     StripResult front, rough;
@@ -154,7 +155,7 @@ static SingeResult report_front(const Scene *scene, const BenchMaterial *materia
     return SINGE_OK;
 }
 
-/// The sheets' materials, those of a name and weight once, and how fast their fire is going to be.
+/// The sheets' materials, each name and grammage once, and the predicted speed of their fronts.
 static SingeResult report_materials(const Scene *scene, float thickening, SingeError *error) {
     SingeResult result = SINGE_OK;
     for (uint32_t i = 0, reported = 0; !result && i < scene->sheet_count && reported < CHECK_MATERIALS; i++) {
@@ -193,7 +194,7 @@ static void report_size(const Job *job, const SceneAssets *assets, double pictur
     fflush(stdout);
 }
 
-/// What it takes is said before anything is made, and again when meshes have been read.
+/// The needs are printed before anything is built, and again when meshes have been read.
 static ExitCode load_and_build(Job *job, Console *console, SingeSim **sim) {
     double pictures = pictures_available() ? scene_picture_memory(job->scene) : 0;
     bool unread = scene_size(job->scene, NULL).unread > 0;
@@ -229,7 +230,7 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
             code = EXIT_FAILED;
         } else {
             report_times(&job, &times, thickening);
-            printf("%s: good\n", shown_path(path).text); // now that it has made its first steps
+            printf("%s: good\n", shown_path(path).text); // only now, after its first steps
         }
     }
     singe_sim_destroy(sim);

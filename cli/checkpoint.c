@@ -8,8 +8,8 @@
 
 #include "cli/text.h"
 
-/// At the end of the file, so that the snapshot need not be copied. The byte order is the machine's, as is the
-/// snapshot's.
+/// At the end of the file, so that the snapshot need not be copied. The byte order is the machine's, as in the
+/// snapshot.
 typedef struct Trailer {
     char magic[8];
     uint64_t snapshot_size, frame, step;
@@ -36,7 +36,7 @@ static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size) {
 
 static const uint64_t hash_start = 14695981039346656037u;
 
-/// What is in front of an array says where it ends, and that it is there.
+/// The prefix of an array states its length and that it is present.
 static uint64_t hash_array(uint64_t hash, const void *data, size_t count, size_t size) {
     uint64_t length = data ? count : 0;
     hash = hash_bytes(hash, &length, sizeof length);
@@ -103,7 +103,7 @@ static bool hash_scene(const Scene *scene, uint64_t *hash) {
 }
 
 SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets, SceneHash *hash, SingeError *error) {
-    Scene bare = *scene; // a longer run or other looks may go on from the same checkpoint
+    Scene bare = *scene; // a run with more frames or another preview may resume from the same checkpoint
     bare.frames = 1;
     bare.output = (SceneOutput){0};
     bare.gas_detail = 0;
@@ -118,8 +118,8 @@ SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets,
     return SINGE_ERROR_MEMORY;
 }
 
-/// The result's hash with what the moving meshes have been up to there; a longer run has more of them. Without any it
-/// stays as it is.
+/// The result's hash with the frames of moving meshes up to there; a longer run has more of them. Unchanged if there
+/// are none.
 static uint64_t hash_so_far(uint64_t hash, const SceneAssets *assets, Progress progress) {
     const uint32_t frames = (uint32_t)progress.frame + (progress.step > 0);
     for (uint32_t i = 0; i < assets->collider_count; i++)
@@ -163,7 +163,7 @@ SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator
     memcpy(grown + size, &trailer, sizeof trailer);
     SingeResult result =
         file_write_backup(folder->checkpoint, folder->previous_checkpoint, grown, size + sizeof trailer, error);
-    // given back as it came: the library counts what it lent
+    // freed with its own size: the library counts its allocations
     uint8_t *shrunk = allocator.resize(allocator.context, grown, size + sizeof trailer, size);
     taken->bytes = shrunk ? shrunk : grown;
     checkpoint_drop(sim, taken);
@@ -224,7 +224,7 @@ SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, Scen
     if (!last && !before) return SINGE_OK;
     if (last) {
         SingeResult result = read_file(folder->checkpoint, hooks, hash, assets, checkpoint, error);
-        // the one before it would be of another scene, too, or need the same memory
+        // the previous one would be of another scene, too, or need the same memory
         if (!result || !before || result == SINGE_ERROR_STATE || result == SINGE_ERROR_MEMORY) return result;
     }
     const SingeError refused = last ? *error : (SingeError){0};

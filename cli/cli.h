@@ -2,7 +2,7 @@
 #ifndef CLI_CLI_H
 #define CLI_CLI_H
 
-/// What the program returns to the shell (docs/cli.md).
+/// The program's exit codes (docs/cli.md).
 typedef enum ExitCode {
     EXIT_GOOD = 0,
     EXIT_FAILED = 1, ///< the run failed (diverged, full disk, unwritable folder, no memory) or was interrupted

@@ -78,7 +78,7 @@ static void log_line(void *context, SingeLogLevel level, const char *line) {
     if (level == SINGE_LOG_ERROR) console_error(console, "%s", line);
     else if (level == SINGE_LOG_WARNING) console_warn(console, "%s", line);
     else if (strncmp(line, "solver: ", 8) == 0) console_note(console, "%s", line);
-    // other information stands in `check` and in run.json
+    // `check` and run.json have the other information
 }
 
 SingeLog console_log(Console *console) { return (SingeLog){log_line, console}; }

@@ -1,4 +1,4 @@
-// What the program says: errors, warnings, notes, and the progress line, all on standard error.
+// The program's output on standard error: errors, warnings, notes and the progress line.
 #ifndef CLI_CONSOLE_H
 #define CLI_CONSOLE_H
 
@@ -8,7 +8,7 @@
 
 typedef struct Console {
     bool quiet;    ///< errors only
-    bool terminal; ///< standard error is one
+    bool terminal; ///< standard error is a terminal
     bool colour;
     bool line_open; ///< a progress line is on the screen
     double last;    ///< s, when progress was last shown
@@ -17,7 +17,7 @@ typedef struct Console {
 typedef struct ConsoleProgress {
     int frame, frames;
     double burnt_fraction, temperature_max; ///< fraction, K
-    double frame_seconds;                   ///< a frame's, smoothed
+    double frame_seconds;                   ///< time of a frame, smoothed
 } ConsoleProgress;
 
 Console console_make(bool quiet);
@@ -31,8 +31,8 @@ void console_more(const char *text);
 /// Prints a library's error: its stage and message.
 void console_result(Console *console, const SingeError *error);
 
-/// On a terminal one line, redrawn at most ten times a second; else a line every two seconds. The last
-/// frame is always shown.
+/// On a terminal: one line, redrawn at most ten times a second. Otherwise: a line every two seconds. The last frame is
+/// always shown.
 void console_progress(Console *console, const ConsoleProgress *progress);
 
 /// The same while pictures are drawn again.
@@ -46,7 +46,7 @@ typedef struct ConsoleSweep {
 } ConsoleSweep;
 void console_sweep(Console *console, const ConsoleSweep *progress);
 
-/// Takes the progress line off the screen, so that other text can follow.
+/// Clears the progress line, so that other text can follow.
 void console_clear(Console *console);
 
 /// A log hook that writes to this console.

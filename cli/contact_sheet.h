@@ -1,4 +1,4 @@
-// Many frames in one picture, small: how a run looks at a glance.
+// Many small frames in one picture: an overview of a run.
 #ifndef CLI_CONTACT_SHEET_H
 #define CLI_CONTACT_SHEET_H
 
@@ -6,7 +6,7 @@
 
 typedef struct ContactSheet {
     int columns, rows;
-    int frame_width, frame_height; ///< of the frames put in
+    int frame_width, frame_height; ///< of the source frames
     int shrink;                    ///< frames are averaged over shrink × shrink pixels
     int width, height;
     uint8_t *rgb;

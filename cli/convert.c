@@ -1,4 +1,4 @@
-// singe convert: a cache in another format, of the same bytes that a run with that format writes.
+// singe convert: writes a cache in another format, with the same bytes as a run that writes that format.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,7 +50,7 @@ static int format_named(const char *name) {
     return -1;
 }
 
-/// The names of formats of frames, or of those that may be single files, and of what is one anyway.
+/// The names of the formats of frames, or of the formats that can be single files or always are.
 static void list_names(bool single, char *known, size_t size) {
     *known = 0;
     for (int i = 0; i < OUTPUT_COUNT + OUTPUT_SINGLE_COUNT; i++) {
@@ -122,7 +122,7 @@ static SingeResult convert_frames(const Outputs *outputs, Console *console, int 
     return result || *interrupted ? result : outputs_write_roots(outputs, last, error);
 }
 
-/// How far a single file is.
+/// Progress of a single file.
 typedef struct SingleProgress {
     Console *console;
     double begun;
@@ -177,7 +177,7 @@ static void print_results(const Outputs *outputs, const ConvertOptions *o) {
     }
 }
 
-/// The cache is held against runs meanwhile.
+/// The cache is locked against runs meanwhile.
 static ExitCode convert(const ConvertOptions *o, Console *console, const Job *job, const Folder *folder, Lock *lock) {
     SingeError error = {0};
     Outputs outputs = {0};

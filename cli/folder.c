@@ -49,7 +49,7 @@ void folder_free(Folder *folder) {
 
 SingeResult folder_fail(const char *path, const char *what, int reason, SingeError *error) {
     *error = (SingeError){.code = SINGE_ERROR_FILE, .stage = "output", .element = -1};
-    // "too many levels of symbolic links" would be one: none is followed
+    // no link is followed, so "too many levels of symbolic links" would mislead
     const char *why = reason == ELOOP ? "it is a link" : reason ? strerror(reason) : "not a regular file";
     snprintf(error->message, sizeof error->message, "%.200s: cannot %s: %s", path, what, why);
     return SINGE_ERROR_FILE;
@@ -83,7 +83,7 @@ SingeResult folder_make(const char *path, SingeError *error) {
 /// The folders of frames: those of formats first.
 enum { INNER_FRAMES = OUTPUT_COUNT, INNER_GAS, INNER_GAS_DETAIL, INNER_EXR, INNER_COUNT };
 
-/// A folder's name, and how its files end.
+/// A folder's name, and the ending of its files.
 typedef struct Inner {
     const char *name, *ending;
 } Inner;
@@ -135,7 +135,7 @@ char *folder_single(const Folder *folder, int single) {
     return text_format("%s/%s/%s", folder->path, s->name, folder->name);
 }
 
-/// The frame of a file name NAME.0001ENDING, or 0 when it is not such a name. *rest points behind the ending.
+/// The frame of a file name NAME.0001ENDING, or 0 if it is no such name. *rest points behind the ending.
 static int frame_of(const Folder *folder, const char *file, const char *ending, const char **rest) {
     size_t length = strlen(folder->name);
     if (strncmp(file, folder->name, length) != 0 || file[length] != '.') return 0;
@@ -147,8 +147,8 @@ static int frame_of(const Folder *folder, const char *file, const char *ending, 
     return (int)strtol(digits, NULL, 10);
 }
 
-/// Whether this is what file_write and file_draft add to a name until the file is whole: ".PID-N.tmp", once for a
-/// draft and once for what is written in its place.
+/// Whether this is the suffix that file_write and file_draft add until the file is whole: ".PID-N.tmp", once for a
+/// draft and once more for a file written in its place.
 static bool is_temporary(const char *rest) {
     for (int times = 0; times < 2; times++) {
         if (*rest++ != '.') return false;
@@ -163,7 +163,7 @@ static bool is_temporary(const char *rest) {
     return false;
 }
 
-/// Opens a folder, but no link to one. NULL with *result set, or good where nothing of ours can be there.
+/// Opens a folder, but no link to one. NULL with *result set, which is good if it cannot hold any of our files.
 static DIR *open_own(const char *path, SingeResult *result, SingeError *error) {
     int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     DIR *dir = fd < 0 ? NULL : fdopendir(fd);
@@ -185,7 +185,7 @@ static SingeResult remove_at(DIR *dir, const char *path, const char *name, int *
     return SINGE_OK;
 }
 
-/// The next entry of a folder; NULL at its end, and with *result where it cannot be read.
+/// The next entry of a folder; NULL at its end, or with *result set if it cannot be read.
 static struct dirent *next_entry(DIR *dir, const char *path, SingeResult *result, SingeError *error) {
     errno = 0;
     struct dirent *entry = readdir(dir);
@@ -193,7 +193,7 @@ static struct dirent *next_entry(DIR *dir, const char *path, SingeResult *result
     return entry;
 }
 
-/// Removes frames, where `frames` is set, or else what a killed run left half written.
+/// Removes frames if `frames` is set, otherwise the half-written files of a killed run.
 static SingeResult clean_frames(const Folder *folder, int which, bool frames, int *removed, SingeError *error) {
     char *path = text_format("%s/%s", folder->path, inner(which).name);
     SingeResult result;
@@ -209,7 +209,7 @@ static SingeResult clean_frames(const Folder *folder, int which, bool frames, in
     return result;
 }
 
-/// Whether a file's name is that of a root which is half written.
+/// Whether a file name is that of a half-written root.
 static bool is_half_root(const Folder *folder, const char *file) {
     size_t length = strlen(folder->name);
     if (strncmp(file, folder->name, length) != 0) return false;
@@ -222,7 +222,7 @@ static bool is_half_root(const Folder *folder, const char *file) {
     return false;
 }
 
-/// The half-written ones of the files that exist once.
+/// Removes half-written files other than frames.
 static SingeResult clean_top(const Folder *folder, int *removed, SingeError *error) {
     static const char *const names[] = {"run.json",  "checkpoint.singe", "checkpoint.previous.singe",
                                         "sheet.png", "preview.mp4",      "preview.gif"};
@@ -254,7 +254,7 @@ static SingeResult remove_file(const char *path, int *removed, SingeError *error
 }
 
 SingeResult folder_forget(const Folder *folder, int *removed, SingeError *error) {
-    // the older one first: what is left after a failure is the newer one
+    // the older one first, so that a failure leaves the newer one
     SingeResult result = remove_file(folder->previous_checkpoint, removed, error);
     return result ? result : remove_file(folder->checkpoint, removed, error);
 }
@@ -274,7 +274,7 @@ SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, 
         result = clean_frames(folder, i, true, removed, error);
         if (result || is_asked(parts, i)) continue;
         char *path = text_format("%s/%s", folder->path, inner(i).name);
-        rmdir(path); // fails, and may, where something else is in it
+        rmdir(path); // may fail: other files are in it
         free(path);
     }
     return result;
@@ -285,7 +285,7 @@ bool folder_has(const char *path) {
     return stat(path, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0;
 }
 
-/// The smallest and greatest frame with a PLY; *last is 0 when there is none.
+/// The first and last frame with a PLY; *last is 0 if there is none.
 static SingeResult find_frames(const Folder *folder, int *first, int *last, SingeError *error) {
     char *path = text_format("%s/ply", folder->path);
     DIR *dir = opendir(path);

@@ -1,6 +1,6 @@
-// Where a run's files are: DIR/ply/NAME.0001.ply, DIR/gas/NAME.0001.vdb, DIR/frames/NAME.0001.png,
-// DIR/exr/NAME.0001.exr, those of the formats of formats/output.h (DIR/vtp/NAME.0001.vtp, DIR/NAME.pvd) and those that
-// exist once.
+// Paths of a run's files: DIR/ply/NAME.0001.ply, DIR/gas/NAME.0001.vdb, DIR/frames/NAME.0001.png,
+// DIR/exr/NAME.0001.exr, the formats of formats/output.h (DIR/vtp/NAME.0001.vtp, DIR/NAME.pvd), and files that are not
+// per frame.
 #ifndef CLI_FOLDER_H
 #define CLI_FOLDER_H
 
@@ -25,21 +25,21 @@ typedef struct Folder {
     char *cache_lock, *pictures_lock; ///< DIR/cache.lock, DIR/pictures.lock: while they are written
 } Folder;
 
-/// Names only; nothing is made. `path` NULL is out/NAME.
+/// Names only; nothing is created. `path` NULL is out/NAME.
 Folder folder_name(const char *path, const char *name);
 void folder_free(Folder *folder);
 
-/// Makes a folder and those above it. `path` is not empty.
+/// Creates a folder and those above it. `path` is not empty.
 SINGE_NODISCARD SingeResult folder_make(const char *path, SingeError *error);
 
-/// What a run writes besides the cache: a folder of its own each, or a table.
+/// What a run writes besides the cache: folders, each for one kind of file, and tables.
 typedef struct FolderParts {
     bool pictures, gas, gas_detail, exr, events, probes;
     OutputSet outputs;
 } FolderParts;
 
-/// Makes ply/ and, as `parts` ask, frames/, gas/, gas_detail/, exr/ and those of formats in the folder, which must be
-/// there. A link instead of one of them is refused: what it points at is not ours.
+/// Creates ply/ and, as `parts` ask, frames/, gas/, gas_detail/, exr/ and the folders of formats in the folder, which
+/// must exist. A link in place of one of them is refused: its target is not ours.
 SINGE_NODISCARD SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *error);
 
 /// Paths of a frame, from malloc.
@@ -49,30 +49,31 @@ char *folder_vdb(const Folder *folder, int frame);
 char *folder_gas_detail(const Folder *folder, int frame);
 char *folder_exr(const Folder *folder, int frame);
 char *folder_output(const Folder *folder, int format, int frame);
-/// Path of what has all frames, from malloc: DIR/NAME.usdc, or DIR/vat/NAME, to which endings are added.
+/// Path of a file with all frames, from malloc: DIR/NAME.usdc, or DIR/vat/NAME, to which endings are added.
 char *folder_single(const Folder *folder, int single);
 /// Path of a format's root, from malloc.
 char *folder_root(const Folder *folder, int format);
 
-/// Removes the checkpoints of an earlier run: without its frames no run may resume from them. Adds to *removed.
+/// Removes the checkpoints of an earlier run: without its frames no run can resume from them. Adds to *removed.
 SINGE_NODISCARD SingeResult folder_forget(const Folder *folder, int *removed, SingeError *error);
 
-/// Removes what else an earlier run of the same name left (its frames, video, GIF, and tables that are not asked for),
-/// and nothing that is not named as such files are or lies behind a link. Adds to *removed. The folders that `parts` do
-/// not ask for go too when they are empty.
+/// Removes the other files of an earlier run of the same name: frames, video, GIF, and tables that are not asked for.
+/// Files with other names, or behind a link, remain. Adds to *removed. Empty folders that `parts` do not ask for are
+/// removed, too.
 SINGE_NODISCARD SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, SingeError *error);
 
-/// Removes what a killed run left half written under temporary names.
+/// Removes half-written files that a killed run left under temporary names.
 SINGE_NODISCARD SingeResult folder_sweep(const Folder *folder, SingeError *error);
 
-/// Whether a file is there and holds something.
+/// Whether a file exists and is not empty.
 bool folder_has(const char *path);
 
-/// Checks that there are PLYs of the frames asked for, from *first to *last, or sets both to all where *first is 0.
-/// A message has been printed unless the result is EXIT_GOOD.
+/// Checks that the PLYs of frames *first to *last exist; sets both to the range of all frames if *first is 0. A message
+/// has been printed unless the result is EXIT_GOOD.
 ExitCode folder_span(const Folder *folder, Console *console, int *first, int *last);
 
-/// Fills *error with the path and the system's reason, 0 for what is no regular file. Returns SINGE_ERROR_FILE.
+/// Fills *error with the path and the system's error number, 0 for anything but a regular file. Returns
+/// SINGE_ERROR_FILE.
 SingeResult folder_fail(const char *path, const char *what, int reason, SingeError *error);
 
 #endif

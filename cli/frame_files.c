@@ -23,7 +23,7 @@ SingeResult frame_take_gas(SingeSim *sim, Frame *frame, SingeError *error) {
     return gas.size[0] > 0 ? gas_copy(&gas, (SingeAllocator){0}, &frame->gas, error) : SINGE_OK;
 }
 
-/// None where the cache has no file of it.
+/// Empty if the cache has no file of it.
 static SingeResult read_gas(const Folder *folder, int number, Gas *gas, SingeError *error) {
     Bytes bytes = {0};
     SingeResult result = SINGE_OK;

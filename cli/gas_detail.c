@@ -1,6 +1,6 @@
-// Smoke and flame are the preview's, at the fine cells' centres. The velocity is interpolated between the coarse cells'
-// centres. The temperature is that of a black body as bright as the flame: renderers that draw one, whose light goes
-// with its fourth power, show the same tongues, in a flame's colours.
+// Smoke and flame are the preview's, at the centres of the fine cells. The velocity is interpolated between the centres
+// of the coarse cells. The temperature is that of a black body as bright as the flame: renderers whose blackbody
+// emission goes with its fourth power show the same tongues, in a flame's colours.
 #include "cli/gas_detail.h"
 
 #include <stdlib.h>
@@ -10,9 +10,9 @@
 #include "cli/text.h"
 #include "formats/gas_grid.h"
 
-#define BRIGHTEST 2500.0f ///< K, where `flame` is 1: so that pictures by it have the colours of our own
+#define BRIGHTEST 2500.0f ///< K, where `flame` is 1: gives other renderers' pictures the colours of ours
 
-/// Between which coarse cells along an axis a fine one's centre lies, and how far.
+/// The coarse cells on either side of a fine cell's centre along an axis, and the weight between them.
 static uint32_t neighbours(uint32_t fine, int detail, uint32_t size, uint32_t pair[2], float *share) {
     const float at = ((float)fine + 0.5f) / (float)detail - 0.5f, low = at > 0 ? at : 0;
     pair[0] = (uint32_t)low < size - 1 ? (uint32_t)low : size - 1;
@@ -49,7 +49,8 @@ static void glow(Gas *fine) {
         fine->temperature[i] = fine->flame_share[i] > 0 ? BRIGHTEST * sqrtf(sqrtf(fine->flame_share[i])) : 0;
 }
 
-/// What is as good as clear air becomes it: half a metre of it hides a quarter of a percent. Most warm blocks go by it.
+/// Removes smoke that is practically clear air: half a metre of it hides a quarter of a percent. This empties most warm
+/// blocks.
 static void clear_air(Gas *fine) {
     const size_t count = gas_cells(&fine->view);
     for (size_t i = 0; i < count; i++) {

@@ -7,7 +7,7 @@
 
 #include "cli/cli.h"
 
-// The statics of the program: a signal handler has no other way to pass a word on, nor to receive one.
+// The only statics of the program: a signal handler cannot exchange data in another way.
 static volatile sig_atomic_t interrupt_flag;
 enum { DRAFTS_MAX = 8 };
 static const char *volatile interrupt_drafts[DRAFTS_MAX];

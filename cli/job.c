@@ -72,7 +72,8 @@ ExitCode job_read(Job *job, Console *console, const char *scene_path, const SetL
 ExitCode job_load(Job *job, Console *console, double pictures) {
     SceneMessages messages = {0};
     SingeResult result = SINGE_OK;
-    for (int loaded = 0; loaded < 2 && !result; loaded++) { // the cells of meshes in files are known when they are read
+    for (int loaded = 0; loaded < 2 && !result;
+         loaded++) { // the cells of mesh files are known only when they have been read
         const SceneAssets *assets = loaded ? &job->assets : NULL;
         double wanted = scene_size(job->scene, assets).memory + pictures;
         if (!scene_fits(job->scene, assets, wanted, machine_memory(), &messages)) result = SINGE_ERROR_LIMIT;
@@ -138,7 +139,7 @@ void job_note_long(const Job *job, Console *console, const char *doing) {
     const double substeps = solver->substeps > 10 ? solver->substeps : 10; // 0: a few
     const double cells = (double)scene_size(job->scene, &job->assets).cells;
     if (cells * 0.1 * substeps * solver->projections < 200e3) return; // from so many on a stage takes seconds
-    fflush(stdout);                                                   // what is printed comes before it
+    fflush(stdout);                                                   // so that earlier output comes first
     console_note(console, "%s", doing);
 }
 

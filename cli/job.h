@@ -1,4 +1,4 @@
-// A scene read and ready to be built: what run, check and render begin with.
+// A scene that has been read and can be built: run, check and render begin with it.
 #ifndef CLI_JOB_H
 #define CLI_JOB_H
 
@@ -6,7 +6,7 @@
 #include "cli/console.h"
 #include "scene/scene.h"
 
-/// Texts PATH=VALUE of --set, in their order. The array points into the command line or to `owned`.
+/// The PATH=VALUE texts of --set, in order. The array points into the command line or to `owned`.
 typedef struct SetList {
     int count, capacity;
     const char **items;
@@ -14,7 +14,7 @@ typedef struct SetList {
 } SetList;
 
 void set_add(SetList *sets, const char *text);
-/// Lays `frames=count` over everything else.
+/// Adds `frames=count`, which overrides everything else.
 void set_frames(SetList *sets, int count);
 void set_free(SetList *sets);
 
@@ -24,11 +24,11 @@ typedef struct Job {
     SingeSimDef hooks; ///< allocator, log and threads
 } Job;
 
-/// Reads the scene file alone. Messages have been printed unless the result is EXIT_GOOD, and the job is closed.
+/// Reads only the scene file. Messages have been printed unless the result is EXIT_GOOD, and the job is closed.
 ExitCode job_read(Job *job, Console *console, const char *scene_path, const SetList *sets, int threads);
 
-/// Reads all that the scene names. Refuses one that needs more memory than the machine has, before and after its meshes
-/// are read; `pictures` are the bytes that what is drawn of it takes.
+/// Reads all files that the scene names. Refuses a scene that needs more memory than the machine has, before and after
+/// its meshes are read; `pictures` is the memory for drawing it, bytes.
 ExitCode job_load(Job *job, Console *console, double pictures);
 
 /// Both, for a scene that is not drawn.
@@ -38,23 +38,24 @@ ExitCode job_open(Job *job, Console *console, const char *scene_path, const SetL
 ExitCode job_parse(Job *job, Console *console, const char *name, const char *text, size_t size, const char *folder,
                    const SetList *sets, int threads);
 
-/// The scene of a run's record, FOLDER/run.json.
+/// Reads the scene in a run's record, FOLDER/run.json.
 ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetList *sets, int threads);
 
-/// Notes what meshes were read and what was done to them.
+/// Prints which meshes were read and how they were repaired.
 void job_note_meshes(const Job *job, Console *console);
 
-/// Notes what comes next where the scene is so large that it takes a while.
+/// Prints the next stage if the scene is so large that it takes a while.
 void job_note_long(const Job *job, Console *console, const char *doing);
 
 ExitCode job_build(Job *job, Console *console, SingeSim **sim);
 void job_close(Job *job);
 
-/// As many as the machine has, at most what the library takes.
+/// As many as the machine has, at most the library's limit.
 int job_threads(void);
 enum { JOB_THREADS_MAX = 64 };
 
-/// The exit code of a library's result: memory and files of ours fail, all else is bad input.
+/// The exit code of a library result: out of memory and errors of our own files are failures, everything else is bad
+/// input.
 ExitCode job_exit(SingeResult result);
 
 #endif

@@ -25,7 +25,7 @@ SingeResult lines_append(LineFile *file, const char *text, size_t size, SingeErr
     return SINGE_OK;
 }
 
-/// Bytes of the header and of so many lines, or -1 when they are not all there.
+/// Bytes of the header and of so many lines, or -1 if some are missing.
 static int64_t kept_size(const Bytes *bytes, const char *header, uint64_t count, LineCheck *check, void *context) {
     size_t at = strlen(header);
     if (bytes->size < at || memcmp(bytes->data, header, at) != 0) return -1;
@@ -73,7 +73,7 @@ SingeResult lines_begin(LineFile *file, const char *header, SingeError *error) {
 }
 
 SingeResult lines_sync(LineFile *file, SingeError *error) {
-    // file systems that cannot flush say so by EINVAL
+    // EINVAL: the file system cannot flush
     if (fsync(file->fd) == 0 || errno == EINVAL || errno == ENOTSUP) return SINGE_OK;
     return folder_fail(file->path, "write", errno, error);
 }

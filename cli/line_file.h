@@ -1,5 +1,5 @@
-// Files that grow by whole lines beside the frames, and that a resumption cuts back to what its checkpoint stands for:
-// stats.csv, events.csv, probes.csv.
+// Files that grow by whole lines with the frames: stats.csv, events.csv, probes.csv. A resumed run truncates them to
+// the state of its checkpoint.
 #ifndef CLI_LINE_FILE_H
 #define CLI_LINE_FILE_H
 
@@ -20,12 +20,12 @@ typedef struct LineFile {
 SINGE_NODISCARD SingeResult lines_open(LineFile *file, const char *path, SingeError *error);
 /// Empties the file and writes the header, which has its line end.
 SINGE_NODISCARD SingeResult lines_begin(LineFile *file, const char *header, SingeError *error);
-/// Appends whole lines; what does not fit on the disk is taken back.
+/// Appends whole lines; if they do not fit on the disk, none is left.
 SINGE_NODISCARD SingeResult lines_append(LineFile *file, const char *text, size_t size, SingeError *error);
-/// Whether a line, from 0 behind the header, is what it must be. Its end is not counted.
+/// Whether a line (from 0, after the header) is as expected. The length excludes its end.
 typedef bool LineCheck(uint64_t line, const char *text, size_t size, void *context);
-/// Cuts the file behind the header and `count` lines, which must be there and pass the check (NULL: any do). `what` is
-/// for the message: "frames 1 to 12".
+/// Truncates the file to the header and `count` lines, which must exist and pass the check (NULL: none). `what` is for
+/// the message: "frames 1 to 12".
 SINGE_NODISCARD SingeResult lines_cut(LineFile *file, const char *header, uint64_t count, LineCheck *check,
                                       void *context, const char *what, SingeError *error);
 /// Asks the system to put the lines on the disk, as a checkpoint relies on them.

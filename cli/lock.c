@@ -1,5 +1,5 @@
-// A lock's file is removed by its last holder. So whoever has locked a file looks whether it still has its name: if
-// not, it is one that was removed in between, and the next of that name is tried.
+// The last holder of a lock removes its file. A process that has locked a file therefore checks that the file still has
+// its name: if not, it was removed in between, and the new file of that name is tried.
 #include "cli/lock.h"
 
 #include <errno.h>
@@ -41,7 +41,7 @@ static void note_holder(int fd) {
     char host[256] = "", text[HOLDER_SIZE];
     gethostname(host, sizeof host - 1);
     int length = snprintf(text, sizeof text, "%ld %s\n", (long)getpid(), host);
-    // only a message would lack it
+    // only needed for a message
     if (ftruncate(fd, 0) != 0 || pwrite(fd, text, (size_t)length, 0) < 0) return;
 }
 

@@ -39,8 +39,8 @@ static void main_help(void) {
            "Exit codes: 0 good, 1 the run failed or was interrupted, 2 bad input.\n");
 }
 
-/// Memory that a frame's files took is kept for the next one's. Given back, as glibc does by itself, each of its pages
-/// is a fault again: 2 to 3 ms of the system for 25,000 vertices (singe bench output).
+/// Keeps the memory of a frame's files for the next frame. By default glibc returns it to the system, and each of its
+/// pages faults again: 2 to 3 ms for 25,000 vertices (singe bench output).
 static void keep_memory(void) {
 #ifdef __GLIBC__
     mallopt(M_MMAP_THRESHOLD, 32 << 20);

@@ -1,7 +1,7 @@
-// singe measure: what a cache looks like in numbers, frame by frame and as a whole.
+// singe measure: the appearance of a cache in numbers, frame by frame and as a whole.
 //
-// Jitter is what a vertex's velocity has that its trajectory does not show: of vertices that never ignited, in three
-// frames dt apart,
+// Jitter is the part of a vertex's velocity that its trajectory does not show: for vertices that never ignited, in
+// three frames dt apart,
 //
 //   j = v(t) - (x(t + dt) - x(t - dt))/(2 dt)
 //
@@ -38,7 +38,7 @@ static const ArgCommand measure_command = {
     "measure",       "DIR",     "Measures what a cache looks like: creases, wrinkles, jitter, embers.",
     measure_options, OPT_COUNT, "docs/cli.md describes the numbers. Exit codes: 0 good, 1 failed, 2 bad input."};
 
-/// A number of every frame, and how it is summed up.
+/// A number of every frame, and how it is summarized.
 typedef enum Number { BIAS, BEND, BURNT, UNBURNT, FOLD, CURL, CURL_STRONG, CURL_MAX, JITTER, EMBER, NUMBERS } Number;
 
 static const struct {
@@ -122,7 +122,7 @@ static bool moment_take(const SingeSurface *surface, double time, Moment *moment
     return true;
 }
 
-/// m/s, root mean square; NaN where nothing is left of it.
+/// m/s, root mean square; NaN if no such vertex is left.
 static double jitter(const Moment *before, const Moment *now, const Moment *after) {
     double sum = 0, inverse = 1 / (after->time - before->time);
     uint32_t count = now->count, counted = 0;
@@ -184,7 +184,7 @@ static SingeResult out_of_memory(SingeError *error) {
     return SINGE_ERROR_MEMORY;
 }
 
-/// Embers are measured on EMBER_FRAMES frames spread over those asked for: each is drawn large.
+/// Embers are measured in EMBER_FRAMES of the frames, evenly spread, as each is drawn large.
 static bool is_drawn(const Measure *measure, int frame) {
     const int count = measure->last - measure->first + 1, index = frame - measure->first;
     return count <= EMBER_FRAMES || (index + 1) * EMBER_FRAMES / count > index * EMBER_FRAMES / count;
@@ -221,7 +221,7 @@ static SingeResult measure_frame(Measure *measure, int frame, SingeError *error)
 
 // ---- the whole
 
-/// Median and worst over the frames that have the number, and the worst one's frame; false where none has.
+/// Median and worst over the frames that have the number, and the frame of the worst; false if none has.
 static bool summary(const Measure *measure, Number number, double *median, double *worst, int *worst_frame) {
     const int frames = measure->last - measure->first + 1;
     double *values = malloc((size_t)frames * sizeof *values);
@@ -244,7 +244,7 @@ static void print_number(const char *format, double number) {
     printf("%10s", text);
 }
 
-/// Of all frames together, each with its area, or NaN where that says nothing.
+/// Mean over all frames, weighted by area, or NaN if that is meaningless.
 static double of_all(const Measure *measure, Number number) {
     double row[NUMBERS];
     fill_row(&measure->all, &measure->all_folds, &measure->all_rim, 0, row);

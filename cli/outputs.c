@@ -11,9 +11,9 @@ static SingeResult no_memory(SingeError *error) {
     return SINGE_ERROR_MEMORY;
 }
 
-// ---- the scene, as writers get it
+// ---- the scene, as passed to writers
 
-/// The way from a folder to a file, both as they are on this machine; the file's own path where one cannot be found.
+/// The relative path from a folder to a file, with links resolved; the file's own path if either cannot be found.
 static char *path_from(const char *folder, const char *file) {
     char *from = realpath(folder, NULL), *to = realpath(file, NULL), *relative = NULL;
     if (from && to) {
@@ -133,7 +133,7 @@ SingeResult outputs_convert(const Outputs *outputs, int number, OutputSet format
 
 // ---- roots
 
-/// What is drawn at a slot of the scene, and its trajectory through the frames. False where nothing ever is.
+/// The shape drawn at a slot of the scene, and its trajectory over the frames. False if nothing is ever drawn there.
 static bool follow_shape(const Outputs *outputs, uint32_t slot, int frames, OutputPose *poses, OutputShape *shape) {
     const Job *job = outputs->job;
     bool ever = false;
@@ -159,7 +159,7 @@ static bool follow_shape(const Outputs *outputs, uint32_t slot, int frames, Outp
     return ever;
 }
 
-/// The scene with what it has besides sheets, and its trajectory through the frames.
+/// The scene's objects other than sheets, and their trajectories over the frames.
 typedef struct WholeScene {
     OutputScene scene;
     OutputPose *poses;

@@ -1,4 +1,4 @@
-// The formats that a run or a conversion writes besides pictures and gas: frames, and the roots that name them.
+// The formats that a run or a conversion writes besides pictures and gas: frames, and the roots that refer to them.
 #ifndef CLI_OUTPUTS_H
 #define CLI_OUTPUTS_H
 
@@ -15,7 +15,7 @@ typedef struct Outputs {
     char **pictures; ///< [sheet_count] paths from the folder, or NULL
 } Outputs;
 
-/// The job and the folder must outlive it, and the folder must be there. `gas`: the frames have some.
+/// The job and the folder must outlive it, and the folder must exist. `gas`: the frames have gas.
 SINGE_NODISCARD SingeResult outputs_open(Outputs *outputs, const Job *job, const Folder *folder, OutputSet formats,
                                          bool gas, SingeError *error);
 void outputs_close(Outputs *outputs);
@@ -24,7 +24,7 @@ void outputs_close(Outputs *outputs);
 SINGE_NODISCARD SingeResult outputs_write(const Outputs *outputs, int format, const char *path, const Frame *frame,
                                           int number, SingeError *error);
 
-/// The formats in which a frame is not there.
+/// The formats in which a frame is missing.
 OutputSet outputs_missing(const Outputs *outputs, int number);
 
 /// Writes a frame of the cache in those formats.

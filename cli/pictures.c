@@ -74,7 +74,7 @@ SingeResult pictures_open_sharp(const Job *job, int scale, Pictures **pictures, 
 
 const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, const SingeGas *gas, double time,
                              SingeError *error) {
-    // a ball may be hot at one time and not at another, so the number may have grown
+    // a ball may become hot later, so the number may have grown
     uint32_t count = scene_shapes(pictures->scene, pictures->assets, time, NULL, 0);
     if (count > pictures->shape_max) {
         PreviewShape *shapes = realloc(pictures->shapes, count * sizeof *shapes);

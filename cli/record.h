@@ -1,4 +1,4 @@
-// DIR/run.json: what was run, with which program, how long it took and how it ended.
+// DIR/run.json: the scene, the program, the time taken and the outcome of a run.
 #ifndef CLI_RECORD_H
 #define CLI_RECORD_H
 
@@ -12,17 +12,17 @@ typedef struct Record {
     const char *result; ///< "running", "complete", "interrupted" or "failed"
     SingeError error;   ///< when failed
     int frames_done;
-    int resumed_from; ///< frame of the checkpoint that the last start went on from, 0 for none
+    int resumed_from; ///< frame of the checkpoint from which the last start resumed, 0 for none
     bool preview, video;
     SingeCounts counts;
     float thickening;
-    uint32_t triangles, fine_triangles; ///< of the last frame drawn
+    uint32_t triangles, fine_triangles; ///< of the last surface
     Totals totals;
 } Record;
 
 Record record_make(const char *scene_path);
 
-/// Writes the file whole or leaves the one that was there. `path` is the folder's, or a draft of it.
+/// Writes the file whole, or leaves the existing one. `path` is the folder's record, or a draft of it.
 SINGE_NODISCARD SingeResult record_write(const Record *record, const char *path, const Job *job, SingeError *error);
 
 #endif

@@ -1,5 +1,5 @@
-// singe render: the pictures, video and contact sheet of a cache, drawn again from its PLYs and the scene that its
-// run.json holds.
+// singe render: draws the pictures, video and contact sheet of a cache again, from its PLYs and the scene in its
+// run.json.
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -55,7 +55,7 @@ typedef struct Render {
     Lock lock;       ///< of the pictures
 } Render;
 
-/// Two whole numbers with `between` between them. Where `single` is allowed one number stands for both.
+/// Two whole numbers separated by `between`. If `single` is allowed, one number stands for both.
 static bool pair(const char *text, char between, bool single, int *a, int *b) {
     char *end;
     long first = strtol(text, &end, 10), second = first;
@@ -135,7 +135,7 @@ static SingeResult write_frame(Render *render, int frame, const uint8_t *rgb, Si
     return result;
 }
 
-/// Puts the frame on every tile of the sheet that shows it. Returns whether any does.
+/// Copies the frame to every tile of the sheet that shows it. Returns whether there is one.
 static bool put_tiles(Render *render, int frame, const uint8_t *rgb) {
     int tiles = render->sheet.columns * render->sheet.rows;
     bool any = false;
@@ -165,7 +165,8 @@ static SingeResult draw_all(Render *render, bool *interrupted, SingeError *error
     return png_write(render->folder.sheet, render->sheet.width, render->sheet.height, render->sheet.rgb, error);
 }
 
-/// Processes may draw parts of a run side by side; who draws all of it makes the video, and is alone.
+/// Several processes may draw parts of a run at the same time. A process that draws all of it makes the video, and must
+/// be the only one.
 static SingeResult hold_pictures(Render *render, SingeError *error) {
     bool kept, part = render->options->first > 0;
     SingeResult result = lock_take(&render->lock, render->folder.pictures_lock, "pictures", part, &kept, error);

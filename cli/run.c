@@ -65,7 +65,7 @@ static ExitCode run_parse(int argc, char **argv, RunOptions *options, bool *done
 
 static SingeResult stop(Run *run, Progress progress, SingeError *error) {
     run->record.result = "interrupted";
-    // before the first frame stands there is nothing to go on from
+    // before the first frame is whole there is nothing to resume from
     if (progress.frame <= 0) return SINGE_OK;
     SingeResult result = tables_write_steps(&run->tables, progress.frame + 1, error);
     return result ? result : run_write_checkpoint(run, progress, error);
@@ -77,14 +77,14 @@ static void show_progress(Run *run, int frame, const SingeStats *stats, double s
                                                       (double)stats->temperature_max, run->frame_seconds});
 }
 
-/// From this strain of one edge in a hundred on, sheets do not look like sheets any more.
+/// From this 99th percentile of strain on, sheets no longer look like sheets.
 static const double strain_max = 0.5;
 
 static void note_strain(Run *run, int frame, const SingeStats *stats) {
     if (stats->strain_p99 > fmax(strain_max, run->strain)) run->strain = stats->strain_p99, run->strained = frame;
 }
 
-/// Ends the frame in writing, if any, and says so.
+/// Waits for the frame being written, if any, and reports it.
 static SingeResult end_frame(Run *run, SingeError *error) {
     int frame = run->writing.frame;
     SingeStats stats;
@@ -97,7 +97,7 @@ static SingeResult end_frame(Run *run, SingeError *error) {
     return SINGE_OK;
 }
 
-/// Steps to a frame; meanwhile the one before it is written, and is whole when this returns.
+/// Steps to a frame. Meanwhile the previous frame is written; it is whole when this returns.
 static SingeResult reach_frame(Run *run, int frame, SingeError *error) {
     SingeError step_error;
     SingeResult stepped = frame > 1 ? run_advance(run, frame, &step_error) : SINGE_OK;
@@ -140,7 +140,7 @@ static SingeResult run_all(Run *run, SingeError *error) {
 
 // ---- before and after
 
-/// The end of every run that has begun: record, video, and where things are.
+/// Ends every run that has begun: writes the record and the video, and prints the paths.
 static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
     Record *record = &run->record;
     SingeError write_error = {0};
@@ -163,7 +163,7 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
         console_result(run->console, &write_error);
         return EXIT_FAILED;
     }
-    // an earlier run of which nothing has been replaced keeps its record
+    // an earlier run keeps its record as long as nothing of it has been replaced
     bool ours = run->begun || access(run->folder.record, F_OK) != 0;
     if (ours && record_write(record, run->folder.record, &run->job, &write_error)) {
         console_result(run->console, &write_error);

@@ -1,5 +1,5 @@
-// singe run, inside: a run in progress, and its parts. run.c is the command, run_begin.c how a run begins and goes on,
-// run_frame.c what a frame is and leaves.
+// Internals of singe run: a run in progress, and its parts. run.c is the command, run_begin.c begins or resumes a run,
+// run_frame.c steps to a frame and writes it.
 #ifndef CLI_RUN_H
 #define CLI_RUN_H
 
@@ -24,15 +24,14 @@ typedef struct RunOptions {
     bool resume, no_preview, exr, quiet;
 } RunOptions;
 
-/// A file of the frame in hand.
+/// A file of the current frame.
 typedef struct FrameFile {
     char *path;
-    char *draft; ///< where it is written until it is published; NULL: at once
+    char *draft; ///< the temporary file until it is published; NULL: written directly
 } FrameFile;
 enum { FRAME_FILES_MAX = 4 + OUTPUT_COUNT };
 
-/// A frame whose files are being written and whose picture is being drawn, in a thread of its own, while the simulation
-/// steps on to the next.
+/// A frame that a thread of its own writes and draws while the simulation steps on to the next.
 typedef struct FrameWriting {
     int frame; ///< 0: none
     bool threaded;
@@ -57,7 +56,7 @@ typedef struct Run {
     SingeSim *sim;
     Pictures *pictures; ///< NULL without a preview
     Pictures *baker;    ///< of finer gas: `pictures`, or its own without a preview; NULL where none is asked for
-    bool layers;        ///< written as EXR, too
+    bool layers;        ///< also written as EXR
     Frame frame;
     Outputs outputs;
     FrameFile files[FRAME_FILES_MAX];
@@ -71,43 +70,43 @@ typedef struct Run {
     SceneHash hash;
     double started, wall_before; ///< s, clock at the start and time spent before a resumption
     double checkpoint_time, checkpoint_cost;
-    double frame_ended, frame_seconds; ///< s, clock at the end of the last frame, and what one takes
+    double frame_ended, frame_seconds; ///< s, clock at the end of the last frame, and the time of a frame
     int first;                         ///< frame to begin with
-    int step;                          ///< steps that are done of the frame in hand
-    int strained;                      ///< the frame in which most is stretched by more than half; 0
-    double strain;                     ///< of one edge in a hundred there (strain_p99)
-    bool begun;                        ///< what is in the folder is this run's: its first frame stands, or it goes on
+    int step;                          ///< steps done towards the next frame
+    int strained;                      ///< the frame with the largest strain_p99 above the limit; 0: none
+    double strain;                     ///< strain_p99 in that frame
+    bool begun;                        ///< the folder belongs to this run: its first frame is whole, or it has resumed
 } Run;
 
-/// What the run writes besides the surface.
+/// The outputs of the run besides the surface.
 FolderParts run_parts(const Run *run);
 
-/// Reads, builds and locks all that the run needs, and with --resume goes back to its checkpoint. Nothing of an earlier
-/// run has been touched but for half-written files.
+/// Reads, builds and locks everything that the run needs, and with --resume loads its checkpoint. Of an earlier run
+/// only half-written files have been removed.
 ExitCode run_prepare(Run *run, const RunOptions *options);
 
-/// Puts the first frame of a run from the start, which is written whole, over an earlier run's files.
+/// Replaces an earlier run's files by the first frame of a new run, which has been written whole.
 SINGE_NODISCARD SingeResult run_take_over(Run *run, SingeError *error);
 
-/// Draws pictures that frames of before lack. False in *whole when Ctrl-C came in between.
+/// Draws missing pictures of earlier frames. *whole is false if Ctrl-C interrupted it.
 SINGE_NODISCARD SingeResult run_draw_missing(Run *run, bool *whole, SingeError *error);
 
-/// Writes the frames of before in formats that they are not there in, and their finer gas, as the cache has them. False
-/// in *whole as above.
+/// Writes earlier frames in the formats in which they are missing, and their finer gas, from the cache. *whole as
+/// above.
 SINGE_NODISCARD SingeResult run_convert_missing(Run *run, bool *whole, SingeError *error);
 
-/// Steps on to the next frame, or, when the run is asked to stop, by at least one step: run->step tells.
+/// Steps to the next frame, or by at least one step if the run is asked to stop; run->step says how far.
 SINGE_NODISCARD SingeResult run_advance(Run *run, int frame, SingeError *error);
 
-/// Takes the frame that the simulation is at, and a snapshot when a checkpoint is due, as after the last frame, and
-/// begins to write its files. The first frame of a run is written at once.
+/// Takes the current frame of the simulation and begins to write its files; also a snapshot if a checkpoint is due, as
+/// after the last frame. The first frame of a run is written at once.
 SINGE_NODISCARD SingeResult run_begin_frame(Run *run, int frame, bool last, SingeError *error);
 
-/// Waits until the files of the frame in writing are there; then its line and its checkpoint follow. Nothing where none
-/// is in writing. `stats` are the frame's.
+/// Waits until the files of the frame being written are complete, then writes its line and its checkpoint. Does nothing
+/// if no frame is being written. `stats` are the frame's.
 SINGE_NODISCARD SingeResult run_end_frame(Run *run, SingeStats *stats, SingeError *error);
 
-/// Writes a checkpoint of now. No frame is in writing.
+/// Writes a checkpoint of the current state. No frame may be in writing.
 SINGE_NODISCARD SingeResult run_write_checkpoint(Run *run, Progress progress, SingeError *error);
 
 #endif

@@ -1,8 +1,8 @@
-// How a run begins: from the start, over what an earlier run left, or from a checkpoint.
+// Begins a run: from the start, replacing an earlier run, or from a checkpoint.
 //
-// An earlier run is left alone until the first frame of the new one and its run.json stand beside it, whole, under
-// temporary names. Then the earlier run's checkpoint goes, run.json becomes the new run's, the earlier run's frames go,
-// the frame takes its name, and stats.csv starts again: so frames of two runs never lie side by side.
+// An earlier run remains until the first frame of the new one and its run.json are whole, under temporary names. Then
+// the earlier checkpoint is removed, run.json is replaced, the earlier frames are removed, the new frame gets its name,
+// and stats.csv starts again. Frames of two runs are thus never mixed.
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -35,7 +35,7 @@ static SingeResult take_lock(Run *run, Lock *lock, const char *path, const char 
     return result;
 }
 
-/// Makes the folder, unless it is there, and keeps other processes from writing it.
+/// Creates the folder if necessary, and keeps other processes from writing to it.
 static ExitCode hold_folder(Run *run) {
     SingeError error = {0};
     if (run->cache_lock.fd >= 0) return EXIT_GOOD;
@@ -47,7 +47,7 @@ static ExitCode hold_folder(Run *run) {
 
 // ---- going on
 
-/// Frames cannot be made again but from the start; pictures can.
+/// Frames can only be computed again from the start; pictures can be drawn again.
 static ExitCode expect_frames(Run *run, int last) {
     bool gas = run_parts(run).gas;
     for (int frame = 1; frame <= last; frame++) {
@@ -69,7 +69,7 @@ static SingeResult open_tables(Run *run, SingeError *error) {
     return result ? result : tables_open(&run->tables, &run->folder, run->job.scene, &run->job.assets, error);
 }
 
-/// Goes on from a checkpoint. run->sim stays NULL when there is none.
+/// Resumes from a checkpoint. run->sim remains NULL if there is none.
 static ExitCode resume(Run *run) {
     Checkpoint checkpoint;
     ExitCode code;
@@ -108,7 +108,7 @@ static ExitCode resume(Run *run) {
     return EXIT_GOOD;
 }
 
-/// Whether a frame lacks a picture that the run is to leave.
+/// Whether a picture that the run should have written is missing.
 static bool lacks_picture(const Run *run, int frame) {
     char *png = folder_png(&run->folder, frame), *exr = folder_exr(&run->folder, frame);
     bool lacks = !folder_has(png) || (run->layers && !folder_has(exr));
@@ -168,7 +168,7 @@ SingeResult run_convert_missing(Run *run, bool *whole, SingeError *error) {
 
 // ---- from the start
 
-/// run.json of this run, over an earlier run's, which can no longer be continued.
+/// Replaces an earlier run's run.json by this run's; the earlier run can no longer be resumed.
 static SingeResult replace_record(Run *run, int *removed, SingeError *error) {
     char *draft;
     SingeResult result = file_draft(run->folder.record, &draft, error);
@@ -216,7 +216,7 @@ static ExitCode open_pictures(Run *run, const RunOptions *options) {
     return EXIT_GOOD;
 }
 
-/// The folders and files that the run writes, as far as that can be known before anything is lost.
+/// Checks that the folders and files of the run can be written, as far as possible before anything is removed.
 static ExitCode open_outputs(Run *run) {
     SingeError error = {0};
     SingeResult result = folder_create(&run->folder, run_parts(run), &error);

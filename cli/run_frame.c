@@ -1,10 +1,10 @@
-// A frame of a run. Its order is PLY, other formats, VDB, PNG, lines of the tables, roots and checkpoint: whatever a
-// checkpoint stands for is on the disk. The first one of a run from the start is written under temporary names, so that
-// an earlier run stays until it is whole.
+// A frame of a run. Its files are written in this order: PLY, other formats, VDB, PNG, lines of the tables, roots,
+// checkpoint. Everything before a checkpoint is then on the disk. The first frame of a run from the start is written
+// under temporary names, so that an earlier run remains until it is whole.
 //
-// The others are written and drawn in a thread of their own while the simulation steps on: from a copy of the surface
-// and the gas, and with the numbers and the snapshot that were taken at the frame. A frame is whole before the next one
-// is taken, so at most one is in writing. With one thread all is done in turn.
+// The other frames are written and drawn by a thread of their own while the simulation steps on: from a copy of the
+// surface and the gas, with the numbers and the snapshot taken at the frame. A frame is whole before the next one is
+// taken, so at most one is being written. With one thread everything is done in turn.
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 #include "cli/interrupt.h"
 #include "cli/run.h"
 
-/// What takes less than this part of the run's time: a checkpoint is due when ten times its cost has passed.
+/// Max share of the run's time that checkpoints take: the next is due when ten times the cost of the last has passed.
 static const double checkpoint_share = 0.1;
 static const double checkpoint_every = 5; ///< s, however expensive it is
 
@@ -30,7 +30,7 @@ static void count_events(Run *run) {
     }
 }
 
-/// Adds what the stages did since the last reading to the totals, and gives the frame's share.
+/// Adds the stages' work since the last reading to the totals, and returns the frame's share.
 static void read_timers(Run *run, FrameCost *cost) {
     SingeTimers now = singe_sim_timers(run->sim), *before = &run->timers;
     for (int i = 0; i < SINGE_STAGE_COUNT; i++) {
@@ -64,7 +64,7 @@ SingeResult run_advance(Run *run, int frame, SingeError *error) {
     return SINGE_OK;
 }
 
-/// Moves the clock on to now.
+/// Advances the clock to the current time.
 static double seconds_since(double *clock) {
     double now = console_clock(), seconds = now - *clock;
     *clock = now;
@@ -73,7 +73,7 @@ static double seconds_since(double *clock) {
 
 // ---- files
 
-/// Where to write a file of the frame; `path` is freed with the others.
+/// The path to which a file of the frame is written; `path` is freed with the others.
 static SingeResult file_begin(Run *run, char *path, const char **name, SingeError *error) {
     FrameFile *file = &run->files[run->file_count++];
     *file = (FrameFile){.path = path};
@@ -86,7 +86,7 @@ static SingeResult file_begin(Run *run, char *path, const char **name, SingeErro
     return SINGE_OK;
 }
 
-/// Drafts that have not been published go.
+/// Removes drafts that have not been published.
 static void files_end(Run *run) {
     for (int i = 0; i < run->file_count; i++) {
         interrupt_disown(run->files[i].draft);
@@ -96,7 +96,7 @@ static void files_end(Run *run) {
     run->file_count = 0;
 }
 
-/// The frame in all formats, the cache first.
+/// Writes the frame in all formats, the cache first.
 static SingeResult write_surface(Run *run, int frame, SingeError *error) {
     SingeResult result = SINGE_OK;
     for (int i = 0; i < OUTPUT_COUNT && !result; i++) {
@@ -144,7 +144,7 @@ static void *write_files(void *argument) {
     return NULL;
 }
 
-/// Copies what the files are made of.
+/// Copies the data of the files.
 static SingeResult take_frame(Run *run, SingeError *error) {
     FrameCost *cost = &run->writing.cost;
     double clock = console_clock();
@@ -157,7 +157,7 @@ static SingeResult take_frame(Run *run, SingeError *error) {
     return result ? result : frame_take_gas(run->sim, &run->frame, error);
 }
 
-/// Reports what crosses in the first frame: contact cannot separate it.
+/// Reports triangles that cross in the first frame: contact cannot separate them.
 static SingeResult tell_of_crossings(Run *run, SingeError *error) {
     float at[3];
     if (!initial_count(&run->frame.surface, &run->totals->crossed, at)) {
@@ -179,7 +179,7 @@ static bool checkpoint_due(const Run *run) {
     return since >= run->checkpoint_cost * (1 / checkpoint_share - 1) || since >= checkpoint_every;
 }
 
-/// The time that this takes is what the next one waits for.
+/// The time that this takes determines when the next one is due.
 static SingeResult take_checkpoint(Run *run, CheckpointBytes *taken, SingeError *error) {
     double clock = console_clock();
     SingeResult result = checkpoint_take(run->sim, taken, error);
@@ -206,7 +206,7 @@ static SingeResult write_checkpoint(Run *run, CheckpointBytes *taken, Progress p
 
 SingeResult run_write_checkpoint(Run *run, Progress progress, SingeError *error) {
     CheckpointBytes taken = {0};
-    FrameCost cost; // of steps without a frame as yet
+    FrameCost cost; // of steps after the last frame
     read_timers(run, &cost);
     SingeResult result = take_checkpoint(run, &taken, error);
     if (!result) result = write_checkpoint(run, &taken, progress, run->totals, error);
@@ -220,7 +220,7 @@ static void start_writing(Run *run) {
     FrameWriting *writing = &run->writing;
     bool beside = run->begun && run->job.hooks.thread_count != 1;
     writing->threaded = beside && pthread_create(&writing->thread, NULL, write_files, run) == 0;
-    if (!writing->threaded) write_files(run); // also where a thread cannot be had
+    if (!writing->threaded) write_files(run); // also if a thread cannot be created
 }
 
 SingeResult run_begin_frame(Run *run, int frame, bool last, SingeError *error) {

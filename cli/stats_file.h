@@ -5,17 +5,17 @@
 #include "cli/line_file.h"
 #include "cli/totals.h"
 
-/// What a frame took (ms) and drew.
+/// The times of a frame (ms) and its triangles.
 typedef struct FrameCost {
-    double stage[SINGE_STAGE_COUNT], surface, output; ///< output is with the surface
+    double stage[SINGE_STAGE_COUNT], surface, output; ///< output includes the surface
     uint64_t triangles, fine_triangles;
 } FrameCost;
 
 /// Empties the file and writes the header.
 SINGE_NODISCARD SingeResult stats_begin(LineFile *file, SingeError *error);
-/// Cuts the file behind the lines of so many frames, which must be there.
+/// Truncates the file after the lines of so many frames, which must exist.
 SINGE_NODISCARD SingeResult stats_cut(LineFile *file, int frames_kept, SingeError *error);
-/// Appends a line; a line that does not fit on the disk is taken back whole.
+/// Appends a line; nothing of it is left if it does not fit on the disk.
 SINGE_NODISCARD SingeResult stats_write(LineFile *file, int frame, const SingeStats *stats, const Totals *totals,
                                         const FrameCost *cost, SingeError *error);
 

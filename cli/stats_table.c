@@ -14,7 +14,7 @@
 enum { FRAME, TIME, TRIANGLES, INVERTED, COLUMNS };
 static const char *const names[COLUMNS] = {"frame", "time", "triangles", "inverted_cells"};
 
-/// The cell at the cursor, which goes to the next one of the line.
+/// Reads the cell at the cursor, which advances to the next cell of the line.
 static void next_cell(Text *text, const uint8_t **begin, const uint8_t **end) {
     *begin = text->at;
     while (!text_at_line_end(text) && *text->at != ',') text->at++;
@@ -40,7 +40,7 @@ static bool read_header(Text *text, int column[COLUMNS]) {
     return all && !twice;
 }
 
-/// As the rows are read: a line may end in other ways than by a line feed.
+/// Counts lines as the rows are read: a line need not end with a line feed.
 static size_t count_lines(Text text) {
     size_t lines = 0;
     for (; text.at < text.end; lines++) {

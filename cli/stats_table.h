@@ -6,7 +6,7 @@
 #include "cli/console.h"
 
 typedef struct StatsRow {
-    double frame, time, triangles, inverted_cells; ///< as docs/formats.md has them
+    double frame, time, triangles, inverted_cells; ///< columns of docs/formats.md
 } StatsRow;
 
 typedef struct StatsTable {
@@ -14,7 +14,7 @@ typedef struct StatsTable {
     int count;
 } StatsTable;
 
-/// Reads the file. Where it is missing a warning says so; one that is not such a table is bad input.
+/// Reads the file. If it is missing, a warning is printed; any other table is bad input.
 ExitCode stats_table_read(StatsTable *table, const char *path, Console *console);
 void stats_table_free(StatsTable *table);
 

@@ -13,14 +13,14 @@
 #include "formats/formats.h"
 
 int streams_open(void) {
-    // open takes the lowest that is free. Standard output is for reading only, so that writing to it fails
+    // open takes the lowest free descriptor. Standard output is opened for reading only, so that writing to it fails
     static const int modes[] = {[STDIN_FILENO] = O_RDONLY, [STDOUT_FILENO] = O_RDONLY, [STDERR_FILENO] = O_WRONLY};
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
         if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", modes[fd]) != fd) return -1;
     return 0;
 }
 
-/// To what is no file of ours to replace.
+/// Whether the path is something other than a file that we may replace.
 static int write_through(const char *path, const char *text, size_t size) {
     int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0666);
     if (fd < 0) return errno;

@@ -31,7 +31,7 @@ SingeResult tables_begin(Tables *tables, SingeError *error) {
     return result;
 }
 
-/// Lines of a frame follow each other, one a probe.
+/// The lines of a frame are consecutive, one per probe.
 static bool is_of_frame(uint64_t line, const char *text, size_t size, void *context) {
     const Tables *tables = context;
     char number[24];
@@ -81,7 +81,7 @@ static void put_event(FILE *file, const HeldEvent *held, int frame) {
     else fprintf(file, "%.9g,%.9g\n", (double)held->uv[0], (double)held->uv[1]);
 }
 
-/// Writes the first of the events that are held, and forgets them.
+/// Writes the first of the held events, and drops them.
 static SingeResult write_events(Tables *tables, size_t count, int frame, SingeError *error) {
     char *text = NULL;
     size_t size = 0;
@@ -104,7 +104,7 @@ static double weighted(const SceneProbePoint *point, const uint32_t corner[4], c
     return sum;
 }
 
-/// When the fire came by, between corners that it has reached; -1 before.
+/// Time at which the fire arrived, interpolated between corners that it has reached; -1 before.
 static double ignited_at(const SceneProbePoint *point, const uint32_t corner[4], const float *times) {
     for (int i = 0; i < 4; i++)
         if (point->weight[i] > 0 && times[corner[i]] < 0) return -1;
@@ -114,7 +114,7 @@ static double ignited_at(const SceneProbePoint *point, const uint32_t corner[4],
 static void put_probe(FILE *file, const SingeView *view, const SceneProbe *probe, const SceneProbePoint *point,
                       int frame) {
     const bool there = view->cell_flags[point->cell] & SINGE_ALIVE;
-    const char *quote = strchr(probe->name, ',') ? "\"" : ""; // names have no quotes
+    const char *quote = strchr(probe->name, ',') ? "\"" : ""; // names contain no quotes
     fprintf(file, "%d,%.9g,%s%s%s,%" PRIu32 ",%d,", frame, view->time, quote, probe->name, quote, probe->sheet_index,
             there);
     if (!there) {

@@ -31,7 +31,7 @@ char *text_format(const char *format, ...) {
 bool text_stream_end(FILE *stream, char **text) {
     bool good = stream && !ferror(stream);
     if (stream && fclose(stream) != 0) good = false;
-    return good && *text; // without memory for the last change of its size there is no text, and no error
+    return good && *text; // if memory ran out when it last grew there is no text, and no error
 }
 
 void text_json_string(FILE *file, const char *text) {
@@ -58,7 +58,7 @@ static const char *skip_space(const char *p, const char *end) {
     return p;
 }
 
-/// The end of the string that begins at p, behind its closing quote, or NULL.
+/// The end of the string that begins at p, after its closing quote, or NULL.
 static const char *skip_string(const char *p, const char *end) {
     if (p >= end || *p != '"') return NULL;
     for (p++; p < end; p++) {
@@ -124,7 +124,7 @@ static int32_t read_hex(const char *text, const char *end) {
     return value;
 }
 
-/// Appends a character; one of \udc80 to \udcff is the byte that it stands for.
+/// Appends a character; \udc80 to \udcff stand for single bytes.
 static char *put_code(char *out, uint32_t code) {
     if (code >= 0xdc80 && code <= 0xdcff) {
         *out++ = (char)(code - 0xdc00);
@@ -137,7 +137,8 @@ static char *put_code(char *out, uint32_t code) {
     return out;
 }
 
-/// Reads what follows a backslash and appends it. Returns the position behind it, or NULL where it is no escape.
+/// Reads the escape after a backslash and appends its character. Returns the position after it, or NULL if it is no
+/// escape.
 static const char *put_escape(const char *p, const char *end, char **out) {
     static const char kinds[] = "\"\\/bfnrt", meanings[] = "\"\\/\b\f\n\r\t";
     const char *kind = p < end && *p ? strchr(kinds, *p) : NULL;
@@ -162,7 +163,7 @@ static const char *put_escape(const char *p, const char *end, char **out) {
 char *text_json_unquote(const char *value, size_t size) {
     while (size && (value[size - 1] == ' ' || value[size - 1] == '\n')) size--;
     if (size < 2 || value[0] != '"' || value[size - 1] != '"') return NULL;
-    char *text = need(malloc(size)), *out = text; // no escape is shorter than what it stands for
+    char *text = need(malloc(size)), *out = text; // no escape is shorter than its character
     const char *p = value + 1, *end = value + size - 1;
     while (p && p < end) {
         if (*p == '\\') p = put_escape(p + 1, end, &out);

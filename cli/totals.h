@@ -1,4 +1,4 @@
-// What a run has spent and met since its first frame, over every resumption.
+// Totals of a run since its first frame, over all resumptions.
 #ifndef CLI_TOTALS_H
 #define CLI_TOTALS_H
 

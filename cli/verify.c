@@ -1,4 +1,4 @@
-// singe verify: reads a cache again and counts what a good one has none of, frame by frame.
+// singe verify: reads a cache and counts its faults, frame by frame.
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -67,7 +67,7 @@ typedef struct Verify {
 
 // ---- one frame
 
-/// What the run wrote of the frame beside its surface.
+/// What the run wrote about the frame besides its surface.
 static void check_stats(const StatsTable *stats, int frame, const CacheFrame *cache, Findings *findings) {
     const StatsRow *row = stats_table_row(stats, frame);
     if (!stats->rows) return;
@@ -118,7 +118,7 @@ static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError 
     return result;
 }
 
-/// What crosses from the start, where the first frame is not among those that are asked for.
+/// Finds what crosses from the start, if the first frame is not among those asked for.
 static bool look_at_start(Verify *verify) {
     CacheFrame cache;
     SingeError error;
@@ -139,7 +139,7 @@ static uint64_t faults_of(const Row *row) {
     return sum;
 }
 
-/// Frames that have faults, a column a kind that occurs.
+/// Prints the frames with faults, with a column for each kind that occurs.
 static void print_frames(const Verify *verify, const uint64_t *total) {
     printf("%7s%11s", "frame", "triangles");
     for (int f = 0; f < FAULT_COUNT; f++)
@@ -202,7 +202,7 @@ static void print_csv(FILE *file, const void *context) {
     }
 }
 
-/// A second is waited for before progress is shown.
+/// Progress is shown after a second.
 static void show_progress(Verify *verify, double begun) {
     const double seconds = console_clock() - begun;
     if (seconds > 1)
@@ -247,7 +247,7 @@ static bool began_crossed(const Bytes *record) {
            text_json_member(totals, size, "crossed_at_start", &value, &size) && size && *value >= '1' && *value <= '9';
 }
 
-/// The name of the run's files, as its record has it.
+/// The name of the run's files, from its record.
 static ExitCode find_folder(Verify *verify, const char *path) {
     SingeError error = {0};
     Bytes bytes = {0};

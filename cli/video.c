@@ -18,7 +18,7 @@ extern char **environ;
 
 enum { WHY_SIZE = sizeof(((SingeError *)0)->message) };
 
-/// The text with every % doubled, as ffmpeg's frame patterns want it.
+/// The text with every % doubled, as ffmpeg's frame patterns require.
 static char *pattern_escape(const char *text) {
     char *copy = text_format("%s%s", text, text), *out = copy; // never longer than twice
     for (const char *c = text; *c; c++) {
@@ -44,11 +44,11 @@ static void tell_command(Console *console, const char *what, VideoResult result,
     free(line);
 }
 
-/// Runs the program and waits. Unless it ended well, `why` says why not.
+/// Runs the program and waits. If it failed, `why` is the reason.
 static VideoResult spawn(char *const *arguments, char why[WHY_SIZE]) {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
-    sigset_t shielded; // what the program ignores the child must not
+    sigset_t shielded; // the child must not ignore what this program ignores
     pid_t child;
     sigemptyset(&shielded);
     sigaddset(&shielded, SIGPIPE);
@@ -65,7 +65,7 @@ static VideoResult spawn(char *const *arguments, char why[WHY_SIZE]) {
         snprintf(why, WHY_SIZE, "cannot run ffmpeg (%s)", strerror(reason));
         return reason == ENOENT ? VIDEO_NO_PROGRAM : VIDEO_FAILED;
     }
-    int status = 0; // kept where the system has reaped the child itself; then the file tells
+    int status = 0; // stays 0 if the system has reaped the child itself; then the file decides
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return VIDEO_MADE;
@@ -74,16 +74,16 @@ static VideoResult spawn(char *const *arguments, char why[WHY_SIZE]) {
     return VIDEO_FAILED;
 }
 
-/// What ffmpeg makes of the frames.
+/// A film that ffmpeg makes from the frames.
 typedef struct Movie {
-    const char *what, *path;    ///< for messages; where it goes
+    const char *what, *path;    ///< for messages; the output file
     const char *const *options; ///< NULL-terminated, after the input
     const char *format;
 } Movie;
 
 enum { OPTIONS_MAX = 16 };
 
-/// Runs ffmpeg into a draft, whose name is put into the arguments, and publishes what it has written.
+/// Makes ffmpeg write to a draft, whose name is put into the arguments, and publishes the draft.
 static VideoResult write_movie(const Movie *movie, char *const *arguments, char **output, char why[WHY_SIZE]) {
     SingeError error = {0};
     char *draft;
@@ -132,7 +132,7 @@ static VideoResult movie_make(Console *console, const Folder *folder, const Movi
 }
 
 VideoResult video_make(Console *console, const Folder *folder, double fps, int first, int last) {
-    // H.264 in 4:2:0 wants even sides
+    // H.264 in 4:2:0 needs even sides
     static const char *const options[] = {"-vf",       "pad=ceil(iw/2)*2:ceil(ih/2)*2",
                                           "-c:v",      "libx264",
                                           "-crf",      "18",
@@ -144,7 +144,7 @@ VideoResult video_make(Console *console, const Folder *folder, double fps, int f
 }
 
 VideoResult gif_make(Console *console, const Folder *folder, double fps, int first, int last) {
-    // one palette for the whole film, else still areas flicker; GIF tells time in hundredths of a second
+    // one palette for the whole film, or still areas flicker; GIF measures time in hundredths of a second
     char *filter = text_format("fps=%.9g,scale='min(640,iw)':-2:flags=lanczos,split[a][b];"
                                "[a]palettegen=stats_mode=full[p];[b][p]paletteuse=dither=bayer:bayer_scale=4",
                                fps < 25 ? fps : 25);
