@@ -1,4 +1,4 @@
-// Memory of a scene: blocks that are freed together.
+// The memory of a scene: blocks that are freed together.
 #ifndef SCENE_ARENA_H
 #define SCENE_ARENA_H
 
@@ -14,7 +14,7 @@ void arena_destroy(SceneArena *arena);
 void *arena_new(SceneArena *arena, size_t count, size_t element_size);
 /// A zero-terminated copy.
 char *arena_text(SceneArena *arena, const char *text, size_t length);
-/// Remembers that memory was refused elsewhere.
+/// Records that an allocation failed elsewhere.
 void arena_fail(SceneArena *arena);
 int arena_failed(const SceneArena *arena);
 

@@ -1,5 +1,5 @@
-// The material that another begins as: one of those that are built in, or a file. Either is a map of the same keys as
-// `material` in a scene, and may have a base of its own.
+// The base of a material: a built-in material or a file. Either is a map with the keys of `material` in a scene, and
+// may have a base of its own.
 #include "formats/printable.h"
 #include "scene/builtin.h"
 #include "scene/values.h"
@@ -7,13 +7,13 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { BASES_MAX = 16 }; ///< one in the other
+enum { BASES_MAX = 16 }; ///< depth of bases
 
-/// A file that is being read, and the one that names it.
+/// A file being read, and the file that names it.
 typedef struct BaseChain {
     const struct BaseChain *outer;
     const SceneText *text;
-    struct stat status; ///< of a file: two paths may lead to one
+    struct stat status; ///< of a file: two paths may lead to the same one
     int depth;
 } BaseChain;
 
@@ -37,7 +37,7 @@ static bool ends_in(const char *text, const char *ending) {
     return length > tail && strcmp(text + length - tail, ending) == 0;
 }
 
-/// Names of files have an ending or a slash, those of built-in materials neither.
+/// Names of files have an ending or a slash; names of built-in materials have neither.
 static bool names_file(const char *text) {
     return strchr(text, '/') || ends_in(text, ".yaml") || ends_in(text, ".yml") || ends_in(text, ".json");
 }
@@ -48,7 +48,7 @@ static char *base_stem(SceneArena *arena, const char *path) {
     return arena_text(arena, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
 }
 
-/// The text of that name, as it was read before or new; NULL when out of memory.
+/// The text of that name, already read or new; NULL when out of memory.
 static SceneText *base_text(Reader *reader, const char *name, const char *bytes, size_t size) {
     SceneText *text = arena_new(reader->arena, 1, sizeof *text);
     char *copy = arena_text(reader->arena, bytes, size);
@@ -90,7 +90,7 @@ static SceneText *base_file(Reader *reader, const SchemaRow *row, const Node *no
     Bytes bytes = {0};
     SingeError error;
     SceneText *text = NULL;
-    value_file(reader, row, node, file); // says when it is not there
+    value_file(reader, row, node, file); // reports a missing file
     if (message_total(reader->messages) != before || !file->path) return NULL;
     if ((text = base_known(reader, file->path))) return text;
     if (file_read_max(file->path, SCENE_BYTES_MAX, (SingeAllocator){0}, &bytes, &error))
@@ -100,7 +100,7 @@ static SceneText *base_file(Reader *reader, const SchemaRow *row, const Node *no
     return text;
 }
 
-/// Whether the file may be read: not while it is being read already.
+/// Whether the file may be read: not if it is being read already.
 static bool chain_open(Reader *reader, const Node *node, const SceneFile *file, BaseChain *link) {
     if (file->path && stat(file->path, &link->status)) link->status = (struct stat){0};
     for (const BaseChain *outer = link->outer; outer; outer = outer->outer)
@@ -129,7 +129,7 @@ void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMate
         return;
     }
     bool from_file = names_file(node->text);
-    if (from_file && !reader->base_dir) // files are not looked for
+    if (from_file && !reader->base_dir) // files are not read
         return;
     SceneText *text = from_file ? base_file(reader, row, node, &file) : base_builtin(reader, node);
     BaseChain link = {.outer = reader->chain, .text = text, .depth = reader->chain ? reader->chain->depth + 1 : 1};

@@ -1,4 +1,4 @@
-// From a scene and its files to a simulation.
+// Creates a simulation from a scene and its files.
 #include "scene/faults.h"
 #include "scene/rotation.h"
 #include "scene/schema.h"
@@ -64,7 +64,7 @@ void scene_sheet_def(const Scene *scene, const SceneAssets *assets, uint32_t ind
     def->drop_pieces_below = sheet->drop_pieces_below;
 }
 
-/// Adds the sheets and commits. When one is refused, the others are looked at as well.
+/// Adds the sheets and commits. If one is refused, the others are checked as well.
 static SingeResult build_sheets(SceneBuilder *builder) {
     const Scene *scene = builder->scene;
     SingeResult result = SINGE_OK;
@@ -122,8 +122,8 @@ static SingeResult build_collider(SceneBuilder *builder, uint32_t index) {
     return result ? build_fail(builder, result, collider->location, singe_sim_error(builder->sim)) : SINGE_OK;
 }
 
-/// The sheet's vertices that those of the file have become, with the copies of one that was parted. NULL when out of
-/// memory; *bad is set to a number that no face of the file has.
+/// The sheet's vertices for vertices of the file; one that was split has several. NULL when out of memory; *bad is set
+/// to a vertex that no face of the file has.
 static uint32_t *sheet_vertices(const Mesh *mesh, const ScenePin *pin, uint32_t *found, uint32_t *bad) {
     uint8_t *held = calloc((size_t)mesh->source_count + 1, 1);
     uint32_t *list = malloc(((size_t)mesh->vertex_count + 1) * sizeof *list);
@@ -143,7 +143,7 @@ static uint32_t *sheet_vertices(const Mesh *mesh, const ScenePin *pin, uint32_t 
     return list;
 }
 
-/// Adds a pin by numbers of vertices of a mesh that has others than its file.
+/// Adds a pin by vertex numbers of the file, if the mesh has other numbers.
 static SingeResult pin_by_file(SceneBuilder *builder, const ScenePin *pin, SingePinDef *def) {
     uint32_t bad = UINT32_MAX;
     SingePinId id;
@@ -167,7 +167,7 @@ static SingeResult build_pin(SceneBuilder *builder, uint32_t index) {
     if (!path) return no_memory(builder, pin->location);
     def.sheet = builder->sheets[pin->sheet_index];
     def.point_count = pin->point_count;
-    def.points = pin->points ? pin->points->position : NULL; // points lie one after the other
+    def.points = pin->points ? pin->points->position : NULL; // points are contiguous
     def.radius = pin->radius;
     def.vertex_count = pin->vertex_count;
     def.vertices = pin->vertices;

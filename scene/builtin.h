@@ -1,4 +1,4 @@
-// The materials that the program brings along: the files of materials/, embedded as they are by cmake/embed.cmake.
+// The built-in materials: the files of materials/, embedded unchanged by cmake/embed.cmake.
 #ifndef SCENE_BUILTIN_H
 #define SCENE_BUILTIN_H
 
@@ -10,7 +10,7 @@ typedef struct SceneBuiltin {
     size_t size;
 } SceneBuiltin;
 
-/// In the order of their names; a row of zeros behind the last.
+/// Sorted by name; a row of zeros follows the last.
 extern const SceneBuiltin scene_builtins[];
 
 #endif

@@ -1,9 +1,9 @@
-// Where the camera stands when the scene does not say: so that the sheets fill the picture.
+// The default camera: the sheets fill the picture.
 #include "scene/scene.h"
 
 #include <math.h>
 
-/// As far from the origin as a camera may be, m.
+/// Max distance of a camera from the origin, m.
 static const double farthest = 1e4;
 
 typedef struct Box {
@@ -37,8 +37,8 @@ static void unit3(double v[3]) {
     for (int i = 0; i < 3; i++) v[i] /= length;
 }
 
-/// Unit vectors from the box to the camera and, across it, to the right and up in the picture. What lies flat is
-/// seen from above, what stands from the front (-y), a little from the side.
+/// Unit vectors from the box to the camera, and to the right and up in the picture. Flat sheets are seen from above,
+/// upright ones from the front (-y), a little from the side.
 static void camera_look(const Box *box, const float up[3], double back[3], double right[3], double top[3]) {
     double vertical[3] = {(double)up[0], (double)up[1], (double)up[2]}, front[3] = {0, -1, 0}, height = 0, max = 0;
     unit3(vertical);
@@ -48,7 +48,7 @@ static void camera_look(const Box *box, const float up[3], double back[3], doubl
         max = fmax(max, box->high[i] - box->low[i]);
     }
     double lift = 0.15 + 0.85 * (1 - fmin(height / max, 1));
-    cross3(vertical, front, right); // for the picture's right, seen from the front
+    cross3(vertical, front, right); // to the right in the picture, seen from the front
     unit3(right);
     cross3(right, vertical, front);
     for (int i = 0; i < 3; i++) back[i] = front[i] + 0.25 * right[i] + lift * vertical[i];

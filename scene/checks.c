@@ -1,4 +1,4 @@
-// Checks that need more than one key.
+// Checks that involve more than one key.
 #include "formats/printable.h"
 #include "scene/schema.h"
 
@@ -8,7 +8,7 @@ static void complain(Reader *reader, SceneLocation location, const char *what) {
     message_add(reader->messages, reader->text, location, "%s", what);
 }
 
-// Entries of a list whose times do not increase.
+// Refuses lists whose times do not increase.
 static void check_times(Reader *reader, const Node *list, const void *items, size_t size, uint32_t count) {
     const Node *node = list && list->kind == NODE_LIST ? list->first : NULL;
     float before = -1;
@@ -21,7 +21,7 @@ static void check_times(Reader *reader, const Node *list, const void *items, siz
     }
 }
 
-// `path` and its short forms exclude each other. Returns whether one of them is given.
+// Refuses `path` together with its short forms. Returns whether one of them is given.
 static bool check_path(Reader *reader, const Node *map, const SceneKey *keys, uint32_t count) {
     const Node *path = node_find(map, "path"), *position = node_find(map, "position");
     const Node *rotation = node_find(map, "rotation"), *other = position ? position : rotation;
@@ -34,7 +34,7 @@ static bool check_path(Reader *reader, const Node *map, const SceneKey *keys, ui
     return path || position;
 }
 
-/// What was measured of the base does not hold for what is changed.
+/// Measured values of the base do not hold for a changed material.
 void finish_material(Reader *reader, const Node *map, void *object) {
     SceneMaterial *material = object;
     const Node *measured = node_find(map, "measured");
@@ -91,7 +91,7 @@ void finish_pin(Reader *reader, const Node *map, void *object) {
     if (path && motion) complain(reader, motion->key_location, "'path' and 'motion' exclude each other; give one");
 }
 
-/// Whether the scene says where the camera is; otherwise scene_frame places it.
+/// Whether the scene places the camera; otherwise scene_frame does.
 static bool camera_given(const Node *map) { return node_find(map, "eye") || node_find(map, "target"); }
 
 void finish_camera(Reader *reader, const Node *map, void *object) {
@@ -107,7 +107,7 @@ void finish_camera(Reader *reader, const Node *map, void *object) {
         across += cross[i] * cross[i];
     }
     const float *up = camera->up;
-    const double min = 1.1e-12; // as the preview has it, which squares floats
+    const double min = 1.1e-12; // the preview's limit: it squares floats
     if ((double)up[0] * (double)up[0] + (double)up[1] * (double)up[1] + (double)up[2] * (double)up[2] < min)
         complain(reader, map->location, "the camera's up must be longer than 1e-6");
     else if (!camera_given(map)) return;
@@ -124,7 +124,7 @@ void finish_preview(Reader *reader, const Node *map, void *object) {
         complain(reader, direction->location, "the light's direction must be longer than 1e-9");
 }
 
-// Sheets without a name are numbered; two must not share one.
+// Numbers sheets without a name, and refuses equal names.
 static void check_names(Reader *reader, const Node *list, Scene *scene) {
     const Node *node = list->first;
     for (uint32_t i = 0; i < scene->sheet_count && node; i++, node = node->next) {
@@ -171,7 +171,7 @@ static void resolve_sheet(Reader *reader, const Node *node, const Scene *scene, 
                 shown(word).text, nearest_hint(&nearest, hint, sizeof hint));
 }
 
-/// Probes without a name are numbered; two must not share one.
+/// Numbers probes without a name, and refuses equal names.
 static void check_probes(Reader *reader, const Node *list, Scene *scene) {
     if (list->count > 1000) {
         complain(reader, list->location, "a scene has at most 1000 probes");

@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-/// The fraction of the segment from a to b at which p is nearest.
+/// The fraction of the segment from a to b that is closest to p.
 static double along(const double p[3], const double a[3], const double b[3]) {
     double side[3], to[3];
     for (int k = 0; k < 3; k++) side[k] = b[k] - a[k], to[k] = p[k] - a[k];
@@ -21,7 +21,7 @@ static double distance2(const double p[3], const double corner[3][3], const doub
     return sum;
 }
 
-/// Weights of p's foot in the plane of a triangle. False where it lies outside, or the triangle has no area.
+/// Weights of p's projection onto the plane of a triangle. False if it lies outside, or the triangle has no area.
 static bool closest_inside(const double p[3], const double corner[3][3], double weight[3]) {
     double u[3], v[3], w[3];
     for (int k = 0; k < 3; k++)

@@ -1,4 +1,4 @@
-// What a scene has before it is read. Objects of the simulation start from the library's own defaults.
+// The defaults of a scene. Objects of the simulation have the library's defaults.
 #include "scene/schema.h"
 
 #include <math.h>
@@ -97,7 +97,7 @@ bool default_pin(SceneArena *arena, void *object) {
 
 void chosen_solver(void *object) {
     SingeSolverDef *solver = object;
-    const bool creases = solver->creases; // a key of the scene
+    const bool creases = solver->creases; // set by a key of the scene
     singe_init_solver_method(solver, sizeof *solver, solver->method);
     solver->creases = creases;
 }

@@ -1,4 +1,4 @@
-// docs/scene.md, made from the schema.
+// Writes docs/scene.md from the schema.
 #include "scene/dump.h"
 
 #include <stdlib.h>
@@ -134,7 +134,7 @@ static bool has_default(const SchemaRow *row, const void *object) {
 static void put_row(FILE *file, const SchemaRow *row, const void *object) {
     char range[80];
     row_range(row, range, sizeof range);
-    if (strcmp(range, "-1000000 to 1000000") == 0) // goes without saying
+    if (strcmp(range, "-1000000 to 1000000") == 0) // no real limit
         range[0] = 0;
     fprintf(file, "| `%s` | ", row->key);
     put_type(file, row);
@@ -156,7 +156,7 @@ static void put_table(FILE *file, const Schema *schema, const void *object, unsi
     }
 }
 
-// A section per map; where there are kinds, the shared keys come first and then those of each kind.
+// A section per map. If it has kinds, the shared keys come first, then those of each kind.
 static void put_section(FILE *file, const Schema *schema, const void *object) {
     put_heading(file, schema);
     put_table(file, schema, object, ~0u, true);
@@ -171,12 +171,12 @@ static void put_section(FILE *file, const Schema *schema, const void *object) {
     }
 }
 
-// An object of a schema with its defaults, found by way of the objects that hold it.
+// An object of a schema with its defaults, found through the objects that contain it.
 static const void *default_object(SceneArena *arena, const Schema *wanted, const Schema *schema, void *object) {
     if (wanted == schema) return object;
     for (int i = 0; i < schema->row_count && object; i++) {
         const SchemaRow *row = &schema->rows[i];
-        SchemaRow noise = {.type = ROW_LIST, .sub = &schema_noise}; // what a ROW_PARAM may hold
+        SchemaRow noise = {.type = ROW_LIST, .sub = &schema_noise}; // the list that a ROW_PARAM may have
         if (row->type == ROW_PARAM) row = &noise;
         void *begun = row->sub ? row_begin(arena, row, object) : NULL;
         const void *found = begun ? default_object(arena, wanted, row->sub, begun) : NULL;

@@ -1,4 +1,4 @@
-// A scene with every value it uses, as YAML or JSON, from the schema's tables.
+// Writes a scene with every value it uses, as YAML or JSON, from the schema's tables.
 #include "scene/dump.h"
 
 #include <inttypes.h>
@@ -134,14 +134,14 @@ void dump_value(const SchemaRow *row, const void *object, FILE *file) {
     }
     case ROW_POSITION: put_numbers(file, ((const SceneKey *)items_at(object, row))->position, 3, row->dimension); break;
     case ROW_ROTATION: put_numbers(file, ((const SceneKey *)items_at(object, row))->rotation, 3, row->dimension); break;
-    case ROW_BASE: // what it made is all there
+    case ROW_BASE: // its values are all written
     case ROW_MAP:
     case ROW_LIST:
     case ROW_STRENGTH: break; // dump_row
     }
 }
 
-// Short keys, and what is absent, are left out.
+// Short keys and absent values are left out.
 static bool row_present(const SchemaRow *row, unsigned kind, const void *object) {
     if (!row_allowed(row, kind) || (row->flags & ROW_SHORT)) return false;
     switch (row->type) {
@@ -187,7 +187,7 @@ static void dump_row(const Dumper *dumper, const SchemaRow *row, const void *obj
     }
 }
 
-// `inline_first`: the map begins on the present line.
+// `inline_first`: the map begins on the current line.
 static void dump_map(const Dumper *dumper, const Schema *schema, const void *object, int indent, bool inline_first) {
     unsigned kind = schema_kind(schema, object);
     bool first = true;

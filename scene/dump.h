@@ -1,4 +1,4 @@
-// Values as text.
+// Writes values as text.
 #ifndef SCENE_DUMP_H
 #define SCENE_DUMP_H
 

@@ -1,5 +1,5 @@
-// What a scene takes, from its numbers and the sizes of its pictures: bytes a cell as measured on sheets of 10,000 to
-// 490,000 cells, which differ by 5 % (tests/cli/test_usage.py holds it against a run).
+// The memory that a scene needs, from its numbers and the sizes of its pictures. Bytes per cell were measured on sheets
+// of 10,000 to 490,000 cells, which differ by 5 % (tests/cli/test_usage.py compares the estimate with a run).
 #include "formats/formats.h"
 #include "scene/messages.h"
 #include "scene/rotation.h"
@@ -7,12 +7,11 @@
 
 #include <math.h>
 
-/// Bytes of a cell with its springs and its share of the drawn mesh, and what contact adds to them.
+/// Bytes of a cell with its springs and its share of the drawn mesh, and bytes added by contact.
 static const double cell_bytes = 3.6e3, contact_bytes = 6.9e3;
-/// Bytes of a cell of the gas, how many cells it has where the scene leaves them to it, and at most; and how far it
-/// reaches beyond the sheets to the sides and down, m.
+/// Gas: bytes per cell, default and max number of cells, and the margin around and below the sheets, m.
 static const double gas_bytes = 160, gas_cells_usual = 200e3, gas_cells_max = 2e6, gas_margin = 0.045;
-/// Bytes of a pixel that is drawn; of one of a sheet's picture, of a parameter's texture while it is read, and of a
+/// Bytes per pixel: of the drawn picture, of a sheet's picture, of a parameter's texture while it is read, and of a
 /// heightfield, simulated and drawn (measured with 1 and 9 million pixels: 42 to 45 and 300 to 330).
 static const double pixel_bytes = 80, picture_bytes = 3, texture_bytes = 7, height_bytes = 45, drawn_height_bytes = 300;
 static const double program_bytes = 40e6;
@@ -23,7 +22,7 @@ static uint64_t sheet_cells(const Scene *scene, const SceneAssets *assets, uint3
     return sheet->grid.given ? (uint64_t)sheet->grid.cells[0] * (uint64_t)sheet->grid.cells[1] : 0;
 }
 
-/// A box around what is known of the sheets.
+/// A box around the sheets, as far as they are known.
 typedef struct Box {
     double low[3], high[3];
 } Box;
@@ -77,7 +76,7 @@ static double height_pixels(const SceneCollider *collider) {
     return collider->def.kind == SINGE_COLLIDER_HEIGHTFIELD ? pixels_of(&collider->picture) : 0;
 }
 
-/// Bytes of all that is read from pictures.
+/// Bytes of all pictures that are read.
 static double pictures_memory(const Scene *scene) {
     double memory = picture_bytes * pixels_of(&scene->preview.environment_picture);
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
@@ -109,7 +108,7 @@ double scene_picture_memory(const Scene *scene) {
     return memory;
 }
 
-/// The heightfield with the most pixels, where it takes more than half of what is wanted; NULL otherwise.
+/// The heightfield with the most pixels if it needs more than half of the memory; NULL otherwise.
 static const SceneCollider *largest_heights(const Scene *scene, double wanted) {
     const SceneCollider *largest = NULL;
     double pixels = 0;
@@ -133,7 +132,7 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
     uint32_t largest = 0;
     for (uint32_t i = 1; i < scene->sheet_count; i++)
         if (sheet_cells(scene, assets, i) > sheet_cells(scene, assets, largest)) largest = i;
-    message_add(messages, scene->text, scene->sheets[largest].location, // there is at least one
+    message_add(messages, scene->text, scene->sheets[largest].location, // there is at least one sheet
                 "the scene needs about %.1f GB of memory, and there are %.1f GB: give its sheets fewer cells",
                 1e-9 * wanted, 1e-9 * room);
     return false;

@@ -1,5 +1,5 @@
-// What the library refuses about sheets, each sheet by itself, so that all are reported in one go. Looked for only when
-// a scene is refused anyway: a good one is built once.
+// Finds every sheet that the library refuses, by trying each by itself, so that all are reported at once. Done only if
+// the scene has been refused: a good scene is built once.
 #include "scene/faults.h"
 
 #include "formats/printable.h"
@@ -20,7 +20,7 @@ static SingeResult sheet_try(const SingeSheetDef *def, SingeError *error) {
     return result;
 }
 
-/// The cell that an error is about, or the first at the vertex that it is about; cell_count where there is none.
+/// The cell of an error, or the first cell at its vertex; cell_count if there is none.
 static uint32_t fault_cell(const Mesh *mesh, const SingeError *error) {
     char cell[40];
     snprintf(cell, sizeof cell, "cell %lld", (long long)error->element);
@@ -49,7 +49,7 @@ static void mesh_fault(const Scene *scene, uint32_t index, const Mesh *mesh, con
 }
 
 bool sheet_faults(const Scene *scene, const SceneAssets *assets, FaultScope scope, SceneMessages *messages) {
-    static const char prefix[] = "sheet 'mesh': "; // the library begins its messages so, by the name it is given
+    static const char prefix[] = "sheet 'mesh': "; // the library begins its messages with the name of the sheet
     bool any = false;
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         SingeSheetDef def;

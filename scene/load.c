@@ -1,4 +1,4 @@
-// The files of a scene: meshes, transformed, and pictures.
+// Reads the files of a scene: meshes, which are transformed, and pictures.
 #include "formats/printable.h"
 #include "scene/faults.h"
 #include "scene/probes.h"
@@ -42,7 +42,7 @@ static void load_luminance(Loader *loader, const SceneFile *file, SingeTexture *
     image_free(&image);
 }
 
-/// What lies farther out the simulation takes for a failure.
+/// The simulation reports positions farther out as divergence.
 static const float coordinate_max = 1e4f;
 
 /// Grids are in metres.
@@ -55,7 +55,7 @@ double metres_per_unit(int unit, float scale) {
     return units[unit] * (double)scale;
 }
 
-/// Scales, turns and moves positions. Returns whether all of it lies where it can be simulated.
+/// Scales, rotates and translates positions. Returns whether all can be simulated.
 static bool transform(const SceneSheet *sheet, float *positions, uint32_t count) {
     const double scale = metres_per_unit(sheet->mesh.name ? sheet->units : SCENE_UNITS_M, sheet->scale);
     double r[9];
@@ -79,7 +79,7 @@ static bool transform(const SceneSheet *sheet, float *positions, uint32_t count)
 
 static const char too_far[] = "the sheet reaches beyond 10 km from the origin";
 
-/// Reads polygons and makes quads of them.
+/// Reads polygons and converts them to quads.
 static SingeResult load_file(const SceneSheet *sheet, Mesh *mesh, MeshReport *report, SingeError *error) {
     Bytes bytes = {0};
     Polygons polygons = {0};
@@ -125,7 +125,7 @@ static void check_attribute(Loader *loader, const char *key, const char *attribu
         nearest_offer(&nearest, mesh->attributes[i].name);
     }
     char hint[80];
-    if (file->location.file) // what stands in other files than the scene is not reported
+    if (file->location.file) // the contents of files other than the scene are not shown
         message_add(loader->messages, loader->scene->text, file->location, "%s: the mesh has no such attribute", key);
     else
         message_add(loader->messages, loader->scene->text, file->location, "%s: the mesh has no attribute '%s'%s", key,
@@ -158,7 +158,7 @@ static void load_sheet(Loader *loader, uint32_t index) {
     }
 }
 
-/// The files of something that moves with a mesh.
+/// Reads the files of a collider or pin that moves with a mesh.
 static void load_motion(Loader *loader, const SceneMotion *motion, SceneSequence *sequence) {
     SingeError error = {0};
     SingeResult result = sequence_read(motion, loader->scene->frames, sequence, &error);

@@ -8,7 +8,7 @@
 
 enum { MESSAGES_MAX = 200, LINE_WIDTH = 110 };
 
-// A copy as it may be printed (formats/printable.h); tabs are blanks.
+// A printable copy (formats/printable.h); tabs become blanks.
 static char *text_printable(const char *text, size_t length) {
     const char *end = text + length;
     char *copy = malloc(PRINTABLE_PIECE * length + 1);
@@ -37,7 +37,7 @@ static char *text_format(const char *format, va_list arguments) {
 
 static bool starts_character(char byte) { return ((unsigned char)byte & 0xc0) != 0x80; }
 
-// The line and, where it is long, only the part around the column; *caret counts characters of that part.
+// The line, or the part of a long line around the column; *caret counts characters of that part.
 static char *source_line(const SceneText *text, int line, int column, int *caret) {
     const char *start = text->bytes, *stop = text->bytes + text->size;
     for (int i = 1; i < line; i++) {
@@ -121,7 +121,7 @@ void message_add(SceneMessages *messages, const SceneText *text, SceneLocation l
         return;
     }
     const SceneText *file = text_of(text, location);
-    // a line is shown of the scene alone: other files may be none of whoever sees the message
+    // only lines of the scene are shown: whoever sees the message may not be allowed to read other files
     if (file && location.line > 0 && location.set == 0 && location.file == 0)
         message.source = source_line(file, location.line, location.column, &message.caret);
     items[messages->count++] = message;
@@ -135,7 +135,7 @@ void message_warn(const SingeLog *log, const SceneText *text, SceneLocation loca
     const size_t size = what && origin ? strlen(what) + strlen(origin) + 3 : 0;
     char *line = size ? malloc(size) : NULL;
     if (line) snprintf(line, size, "%s: %s", origin, what);
-    if (log->write) // without memory it comes without its location
+    if (log->write) // when out of memory, without the location
         log->write(log->context, SINGE_LOG_WARNING, line ? line : format);
     free(line);
     free(what);

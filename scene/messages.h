@@ -4,7 +4,7 @@
 
 #include "scene/scene.h"
 
-/// What a location refers to: the scene's name and bytes, and the --set texts; or those of a material file.
+/// The text that a location refers to: the scene's name and bytes, and the --set texts; or those of a material file.
 typedef struct SceneText {
     const char *name;
     const char *bytes;
@@ -14,12 +14,12 @@ typedef struct SceneText {
     int number;              ///< of a material file, 0 for the scene
     struct SceneText *files; ///< of the scene: the material files read so far, the last one first
     struct SceneText *next;  ///< of a material file: the one before it
-    struct Node *root;       ///< of a material file that was read: its tree, NULL where it is broken
+    struct Node *root;       ///< of a material file that was read: its tree, NULL if it is invalid
     bool was_read;
 } SceneText;
 
-/// Adds an error at a location; one in a material file that several sheets use is reported once. Never fails: what
-/// memory does not suffice for is counted in left_out.
+/// Adds an error at a location; an error in a material file that several sheets use is reported once. Never fails:
+/// errors that do not fit into memory are counted in left_out.
 void message_add(SceneMessages *messages, const SceneText *text, SceneLocation location, const char *format, ...)
     SINGE_PRINTF(4, 5);
 
@@ -27,10 +27,10 @@ void message_add(SceneMessages *messages, const SceneText *text, SceneLocation l
 void message_warn(const SingeLog *log, const SceneText *text, SceneLocation location, const char *format, ...)
     SINGE_PRINTF(4, 5);
 
-/// Puts the messages from `first` on into the order of the file, those of material files and of --set behind them.
+/// Sorts the messages from `first` on by their location in the file; those of material files and of --set follow.
 void messages_sort(SceneMessages *messages, uint32_t first);
 
-/// How many there are; more than before a call means that it found something.
+/// The number of messages; a call that increases it has found an error.
 static inline uint32_t message_total(const SceneMessages *messages) { return messages->count + messages->left_out; }
 
 #endif

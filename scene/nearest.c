@@ -1,5 +1,5 @@
-// The nearest word by Damerau and Levenshtein's distance (optimal string alignment): insertions,
-// deletions, substitutions and swaps of neighbours, upper and lower case alike.
+// The nearest word by the Damerau-Levenshtein distance (optimal string alignment): insertions, deletions, substitutions
+// and swaps of neighbours; case is ignored.
 #include "scene/schema.h"
 
 #include <string.h>

@@ -1,12 +1,12 @@
-// A part of a scene: `only_sheets` keeps some sheets, with their pins and probes, and leaves the others out. What acts
-// on all sheets stays: sources, colliders, wind.
+// A part of a scene: `only_sheets` keeps some sheets, with their pins and probes, and drops the others. Objects that
+// act on all sheets remain: sources, colliders, wind.
 #include "scene/schema.h"
 
 #include <string.h>
 
 enum { LEFT_OUT = -1 };
 
-/// Marks the sheets that are kept. False where a number is no sheet's, or is given twice.
+/// Marks the sheets that are kept. False if a number is out of range or given twice.
 static bool mark_kept(Reader *reader, const Node *node, const Scene *scene, int32_t *now) {
     const uint32_t before = message_total(reader->messages);
     for (uint32_t i = 0; i < scene->sheet_count; i++) now[i] = LEFT_OUT;
@@ -33,7 +33,7 @@ static void keep_sheets(Scene *scene, int32_t *now) {
     scene->sheet_count = kept;
 }
 
-/// Sheets are called by name from now on: their numbers have changed.
+/// Refers to sheets by name from now on, as their numbers have changed.
 static void keep_pins(Scene *scene, const int32_t *now) {
     uint32_t kept = 0;
     for (uint32_t i = 0; i < scene->pin_count; i++) {

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-// The text is kept with the scene, so that later messages can show its lines.
+// The scene keeps the text, so that later messages can show its lines.
 static SceneText *keep_text(SceneArena *arena, const SceneText *text) {
     SceneText *kept = arena_new(arena, 1, sizeof *kept);
     char *name = arena_text(arena, text->name, strlen(text->name));
@@ -19,8 +19,7 @@ static SceneText *keep_text(SceneArena *arena, const SceneText *text) {
     return kept;
 }
 
-// "dir/letter.yaml" → "letter". Bytes that are no UTF-8 become '_': the name is in run.json, whose reader knows no
-// other.
+// "dir/letter.yaml" → "letter". Bytes that are not UTF-8 become '_', as the name goes into run.json.
 static char *stem(SceneArena *arena, const char *path) {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
     size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
@@ -33,7 +32,7 @@ static char *stem(SceneArena *arena, const char *path) {
     return copy;
 }
 
-// The name of a scene that gives none. A file may be called what its outputs may not.
+// The default name of a scene. A file name is not always a valid name of outputs.
 static void take_name(Reader *reader, const Node *root) {
     SchemaRow row = {.key = "name", .type = ROW_NAME};
     char expected[240];

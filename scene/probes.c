@@ -1,5 +1,5 @@
-// The nearest found of a sheet to a probe's, in space or in uv. A cell is four triangles around the mean of its
-// corners, as it is drawn where it is flat.
+// Finds the point of a sheet nearest to a probe, in space or in uv. A cell is four triangles around the mean of its
+// corners, as drawn if it is flat.
 #include "scene/probes.h"
 
 #include "scene/closest_point.h"
@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/// Square of the distance from p to a cell, and the weights of the cell's corners.
+/// Squared distance from p to a cell, and the weights of the cell's corners.
 static double nearest_in_cell(const double p[3], const double corners[4][3], double weight[4]) {
     double centre[3], best = INFINITY;
     for (int k = 0; k < 3; k++) centre[k] = (corners[0][k] + corners[1][k] + corners[2][k] + corners[3][k]) / 4;

@@ -1,4 +1,4 @@
-// From the tree to the scene, row by row of the schema: maps, lists and parameters that vary.
+// Reads the scene from the tree by the rows of the schema: maps, lists and parameters that vary.
 #include "scene/values.h"
 
 #include <string.h>
@@ -16,11 +16,11 @@ static void read_noise(Reader *reader, const SchemaRow *row, const Node *node, S
     if (default_noise(reader->arena, noise)) schema_read(reader, &schema_noise, node, noise);
 }
 
-// What the parameter follows; returns how many such keys there are.
+// Finds the field that the parameter follows; returns the number of such keys.
 static int read_field(Reader *reader, const SchemaRow *row, const Node *map, SingeField *field, SceneFile *file) {
     const Node *texture = node_find(map, "texture"), *attribute = node_find(map, "attribute"),
                *noise = node_find(map, "noise");
-    if (!texture) texture = node_find(map, "picture"); // its name before
+    if (!texture) texture = node_find(map, "picture"); // its old name
     if (texture) {
         SchemaRow part = {.key = "texture", .type = ROW_FILE};
         field->kind = SINGE_FIELD_TEXTURE;
@@ -44,7 +44,7 @@ static int read_field(Reader *reader, const SchemaRow *row, const Node *map, Sin
 static void read_param(Reader *reader, const SchemaRow *row, const Node *node, SingeParam *param, SceneFile *file) {
     static const char *const keys[] = {"from", "to", "texture", "attribute", "noise"};
     SingeParam result = singe_param(param->value);
-    *file = (SceneFile){0}; // of the material that this one began as
+    *file = (SceneFile){0}; // drop that of the base material
     if (node->kind != NODE_MAP) {
         if (value_float(reader, row, node, &result.value)) {
             result.to = result.value;
@@ -169,7 +169,7 @@ static const SchemaRow *choice_row(const Schema *schema) {
     return row;
 }
 
-// The choice that the other defaults of an object follow.
+// The choice that determines an object's other defaults.
 static void read_choice(Reader *reader, const Schema *schema, const Node *node, void *object) {
     uint32_t before = message_total(reader->messages);
     read_row(reader, choice_row(schema), node, object);
@@ -182,7 +182,7 @@ void *row_begin(SceneArena *arena, const SchemaRow *row, void *object) {
 }
 
 static void read_submap(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
-    void *inner = row_begin(reader->arena, row, object); // nothing of what it was before, where it has own defaults
+    void *inner = row_begin(reader->arena, row, object); // a map with defaults of its own starts from these
     if (!inner) return;
     if (row->extra) *(bool *)read_at(object, row->extra) = true;
     if (node->kind == NODE_MAP) schema_read(reader, row->sub, node, inner);
@@ -229,10 +229,10 @@ static void read_row(Reader *reader, const SchemaRow *row, const Node *node, voi
     }
 }
 
-// A key that no row of this kind has: say whose it is, or which was meant.
+// Reports a key that no row of this kind has: says which kind has it, or which key was meant.
 static void unknown_key(Reader *reader, const Schema *schema, unsigned kind, const SchemaRow *other,
                         const Node *child) {
-    if (reader->messages->left_out) { // no need to say it well
+    if (reader->messages->left_out) { // the message will not be shown
         message_add(reader->messages, reader->text, child->key_location, "unknown key");
         return;
     }
@@ -280,7 +280,7 @@ void schema_read(Reader *reader, const Schema *schema, const Node *map, void *ob
         uint32_t before = message_total(reader->messages);
         read_row(reader, &schema->rows[0], first, object);
         given |= 1;
-        // with an unknown kind, only the keys that no kind has are wrong
+        // if the kind is unknown, only keys that no kind has are errors
         kind = message_total(reader->messages) == before ? schema_kind(schema, object) : ~0u;
     }
     if (schema->choice && (first = node_find(map, schema->choice))) {

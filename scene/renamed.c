@@ -1,4 +1,4 @@
-// Keys and words that had another name before this release. They are read for one release, and reported.
+// Keys and words that this release has renamed. Old names are read for one release, and reported.
 #include "scene/schema.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-// Rotations as scenes write them: about x, then y, then z, all fixed in the world. R = Rz Ry Rx.
+// Rotations in scenes: about the world's fixed x, then y, then z axis. R = Rz Ry Rx.
 #ifndef SCENE_ROTATION_H
 #define SCENE_ROTATION_H
 

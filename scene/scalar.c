@@ -1,11 +1,11 @@
 // fy_token_get_text of libfyaml 0.7 reads '''' (two quotes in quotes) as three quotes, finds that they do not fit,
-// leaks and returns an empty text. So single quotes are taken off here, and other styles are read chunk by chunk.
+// leaks and returns an empty text. So single quotes are removed here, and other styles are read chunk by chunk.
 #include "scene/scalar.h"
 
 #include <stdbool.h>
 #include <string.h>
 
-/// The bytes between the quotes of a single-quoted token; false when they are not where its marks say.
+/// The bytes between the quotes of a single-quoted token; false if they are not at its marks.
 static bool quoted_range(struct fy_token *token, const char *bytes, size_t size, const char **begin, const char **end) {
     const struct fy_mark *first = fy_token_start_mark(token), *last = fy_token_end_mark(token);
     if (!first || !last || first->input_pos < 1 || first->input_pos > last->input_pos || last->input_pos >= size)
@@ -23,10 +23,10 @@ static int line_break(const char *c, const char *end) {
     return *c == '\r' && end - c > 1 && c[1] == '\n' ? 2 : 1;
 }
 
-/// YAML 1.2, 7.3.2: '' is one quote. Lines are folded: blanks around a break vanish, one break is a space, and n
-/// breaks are n - 1 newlines. `out` has room for as many bytes as come in.
+/// YAML 1.2, 7.3.2: '' is one quote. Lines are folded: blanks around a break vanish, one break is a space, and n breaks
+/// are n - 1 newlines. `out` has room for as many bytes as the input.
 static size_t scalar_unquote(const char *c, const char *end, char *out) {
-    size_t length = 0, line = 0; // `line`: where blanks of the present line may begin
+    size_t length = 0, line = 0; // `line`: where trailing blanks of the current line may begin
     while (c < end) {
         int width = line_break(c, end);
         if (!width) {
@@ -47,7 +47,7 @@ static size_t scalar_unquote(const char *c, const char *end, char *out) {
     return length;
 }
 
-/// Bytes of a token, copied to `out` where that is not NULL.
+/// Bytes of a token, copied to `out` if that is not NULL.
 static size_t copy_chunks(struct fy_token_iter *iterator, char *out) {
     const struct fy_iter_chunk *chunk = NULL;
     size_t length = 0;

@@ -1,11 +1,11 @@
-// Scenes: what a scene file describes, apart from its syntax, and the way from a file to a simulation.
+// Scenes: the model of a scene file, and the steps from a file to a simulation.
 //
-//   scene_read  file → Scene      every error at once, each with its location
+//   scene_read  file → Scene      reports all errors, each with its location
 //   scene_load  Scene → meshes and pictures
 //   scene_build Scene, meshes, pictures → SingeSim
 //
-// A Scene holds the Defs of include/singe/types.h filled in, without the arrays they point to; those come
-// with scene_load. Lengths are metres, angles radians, temperatures kelvin, as in the Defs.
+// A Scene holds the filled-in Defs of include/singe/types.h, without the arrays they point to; scene_load reads those.
+// Lengths are metres, angles radians, temperatures kelvin, as in the Defs.
 #ifndef SCENE_SCENE_H
 #define SCENE_SCENE_H
 
@@ -19,20 +19,20 @@
 
 // ---- locations and messages
 
-/// Where something in a scene was written. A zeroed location is nowhere.
+/// The location of a value in a scene. A zeroed location is none.
 typedef struct SceneLocation {
-    int line, column; ///< counted from 1; 0 for nothing
-    int set;          ///< 1 + index of the --set that it came from, 0 for a file
-    int file;         ///< number of the material file that it is in, 0 for the scene's own
+    int line, column; ///< from 1; 0 for none
+    int set;          ///< 1 + index of the --set, 0 for a file
+    int file;         ///< number of the material file, 0 for the scene
 } SceneLocation;
 
-/// One error. `source` and the caret are absent (NULL, 0) where there is no line to show.
+/// One error. Without a line to show, `source` and the caret are absent (NULL, 0).
 typedef struct SceneMessage {
     char *origin; ///< "letter.yaml:12:9", "letter.yaml" or "--set frames=x"
-    char *text;   ///< what is wrong and what was expected
+    char *text;   ///< the error, and what was expected
     SceneLocation location;
     char *source; ///< the line of the file, or NULL
-    int caret;    ///< column of `source`, from 1, that the error begins at; 0 for none
+    int caret;    ///< column of `source`, from 1, at which the error begins; 0 for none
 } SceneMessage;
 
 /// All errors of a call, in the order of the file. Zero it before the first use.
@@ -50,18 +50,18 @@ void scene_messages_free(SceneMessages *messages);
 
 /// A file named in a scene.
 typedef struct SceneFile {
-    char *name; ///< as written; NULL when not given
+    char *name; ///< as written; NULL if not given
     char *path; ///< resolved against the scene's folder
     SceneLocation location;
 } SceneFile;
 
-/// A moment of a motion as it is written: the rotation turns about x, then y, then z (fixed axes).
+/// A key of a motion as written: the rotation is about x, then y, then z (fixed axes).
 typedef struct SceneKey {
     float time, position[3];
     float rotation[3]; ///< radians
 } SceneKey;
 
-/// A sheet made by the program.
+/// A sheet that is a grid.
 typedef struct SceneGrid {
     bool given;
     float size[2]; ///< m
@@ -69,18 +69,18 @@ typedef struct SceneGrid {
     GridWear wear;
 } SceneGrid;
 
-/// Slots for what belongs to a material's SingeParams. Each has its own: where it lies in the Def, counted in whole
-/// SingeParams, so that no list of them is needed.
+/// Slots for the textures of a material's SingeParams. A parameter's slot is its offset in the Def in units of
+/// SingeParam, so no list of parameters is needed.
 #define SCENE_PARAM_SLOT(member) (offsetof(SingeMaterialDef, member) / sizeof(SingeParam))
 enum { SCENE_PARAM_SLOTS = sizeof(SingeMaterialDef) / sizeof(SingeParam) };
 
-/// What sources say of a material's fire, each from .. to; 0 and 0 where they say nothing.
+/// A material's fire according to its sources, each a range; 0 and 0 if unknown.
 typedef struct SceneMeasured {
     bool given;
-    bool calibrated;      ///< the material was made to agree with it; otherwise it is held against a prediction
-    float speed[2];       ///< m/s of a front that runs level
+    bool calibrated;      ///< the material is calibrated to it; otherwise a prediction is compared with it
+    float speed[2];       ///< m/s of a level front
     float temperature[2]; ///< K, hottest
-    float residue[2];     ///< share of the mass that is left
+    float residue[2];     ///< share of the mass that remains
 } SceneMeasured;
 
 typedef struct SceneMaterial {
@@ -90,7 +90,7 @@ typedef struct SceneMaterial {
     SceneMeasured measured;
 } SceneMaterial;
 
-/// What a number in a mesh file is, and which of its axes points up.
+/// The unit of a mesh file, and its axis that points up.
 typedef enum SceneUnits { SCENE_UNITS_M, SCENE_UNITS_CM, SCENE_UNITS_MM, SCENE_UNITS_IN, SCENE_UNITS_FT } SceneUnits;
 typedef enum SceneUp { SCENE_UP_Z, SCENE_UP_Y } SceneUp;
 
@@ -101,7 +101,7 @@ typedef struct SceneSheet {
     SceneGrid grid;
     SceneFile picture;       ///< drawn on both sides, may be absent
     float colour[3];         ///< linear tint
-    float transmittance;     ///< share of light that comes through, in the preview
+    float transmittance;     ///< share of light transmitted, in the preview
     float scale;             ///< times what `units` says
     int units;               ///< SceneUnits of the mesh file
     int up;                  ///< SceneUp of the mesh file
@@ -143,7 +143,7 @@ typedef struct SceneCollider {
     int units;            ///< SceneUnits of the mesh file
     SceneMotion motion;   ///< of a mesh that deforms, in place of `mesh`
     SceneFile picture;    ///< of a heightfield
-    float heights[2];     ///< m, where the picture is black and where it is white
+    float heights[2];     ///< m, of black and of white pixels
     uint32_t key_count;   ///< at least 1
     SceneKey *keys;
     float colour[3]; ///< linear, in the preview
@@ -171,7 +171,7 @@ typedef struct ScenePin {
 /// How a probe's position is given.
 typedef enum SceneProbeKind { SCENE_PROBE_UV, SCENE_PROBE_POINT } SceneProbeKind;
 
-/// A point of a sheet that is followed through the run.
+/// A point of a sheet that is recorded through the run.
 typedef struct SceneProbe {
     SceneLocation location;
     char *name;
@@ -200,14 +200,14 @@ typedef struct ScenePreview {
     float shutter; ///< share of a frame's time
 } ScenePreview;
 
-/// What a run writes for other programs.
+/// The files that a run writes for other programs.
 typedef struct SceneOutput {
     OutputSet formats;
     bool events;      ///< events.csv
     int texture_size; ///< pixels
 } SceneOutput;
 
-/// A key or a word that the scene still calls by the name it had before this release.
+/// A key or a word that the scene still calls by its old name.
 typedef struct SceneRenamed {
     SceneLocation location;
     const char *before, *now;
@@ -221,12 +221,12 @@ typedef struct Scene {
     int frames;            ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
     float fps;             ///< frames a second
     int steps;             ///< steps a frame
-    int gas_detail;  ///< how many times finer along a side the cells of gas_detail/ are; 1: a run has no such files
-    bool tearing;    ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
-    SingeSimDef sim; ///< time_step is 1/(fps * steps); hooks and thread_count are not the scene's
+    int gas_detail;        ///< factor by which the cells of gas_detail/ are smaller; 1: a run has no such files
+    bool tearing;          ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
+    SingeSimDef sim;       ///< time_step is 1/(fps * steps); hooks and thread_count are not the scene's
     uint32_t sheet_count, source_count, collider_count, pin_count, probe_count;
     uint32_t only_sheet_count; ///< of only_sheets; 0: all
-    uint32_t *only_sheets;     ///< as the file has them; `sheets`, `pins` and `probes` hold nothing else
+    uint32_t *only_sheets;     ///< as in the file; `sheets`, `pins` and `probes` contain only these
     SceneSheet *sheets;
     SceneSource *sources;
     SceneCollider *colliders;
@@ -240,15 +240,14 @@ typedef struct Scene {
 
 // ---- syntax
 
-/// Reads a scene file (YAML, and so JSON). `sets` are texts PATH=VALUE laid over the file. On failure
-/// *scene is NULL and *messages holds every error. Results: SINGE_ERROR_FORMAT for errors in the scene,
-/// SINGE_ERROR_FILE when the file itself cannot be read, SINGE_ERROR_LIMIT above 1 MiB,
-/// SINGE_ERROR_MEMORY.
+/// Reads a scene file (YAML, and so JSON). `sets` are PATH=VALUE texts that override the file. On failure *scene is
+/// NULL and *messages holds every error. Results: SINGE_ERROR_FORMAT for errors in the scene, SINGE_ERROR_FILE when the
+/// file itself cannot be read, SINGE_ERROR_LIMIT above 1 MiB, SINGE_ERROR_MEMORY.
 SINGE_NODISCARD SingeResult scene_read(const char *path, const char *const *sets, int set_count, Scene **scene,
                                        SceneMessages *messages);
 
-/// The same from memory. `name` is used in messages. Files are looked for in `base_dir`; NULL: the files
-/// that the scene names are not looked for at all.
+/// The same from memory. `name` is used in messages. Files are read relative to `base_dir`; NULL: the existence of
+/// files is not checked.
 SINGE_NODISCARD SingeResult scene_parse(const char *name, const char *bytes, size_t size, const char *base_dir,
                                         const char *const *sets, int set_count, Scene **scene, SceneMessages *messages);
 
@@ -260,10 +259,10 @@ typedef enum SceneSyntax { SCENE_YAML = 0, SCENE_JSON = 1 } SceneSyntax;
 /// of spaces before each line but the first (for a JSON dump inside another document).
 void scene_dump(const Scene *scene, SceneSyntax syntax, int indent, FILE *file);
 
-/// The index-th material that the program brings along, in the order of their names; NULL behind the last.
+/// The index-th built-in material, sorted by name; NULL after the last.
 const char *scene_material_name(int index);
 
-/// Whether two materials are equal to the last parameter.
+/// Whether all parameters of two materials are equal.
 bool scene_material_same(const SceneMaterial *a, const SceneMaterial *b);
 
 /// Writes docs/scene.md, the reference of scene files, from the schema.
@@ -273,98 +272,98 @@ void scene_document(FILE *file);
 
 /// A collider's mesh or heights, in its own frame.
 typedef struct SceneSolid {
-    PreviewSolid surface;   ///< its arrays come from malloc; of a heightfield with walls down to its lowest point
+    PreviewSolid surface;   ///< its arrays come from malloc; a heightfield has walls down to its lowest point
     uint32_t columns, rows; ///< of a heightfield
-    float *heights;         ///< as SingeColliderDef has them
+    float *heights;         ///< as in SingeColliderDef
 } SceneSolid;
 
-/// Where a probe is in its sheet's mesh: values there are the weighted sum of those at a cell's corners.
+/// The location of a probe in its sheet's mesh: its values are weighted sums over a cell's corners.
 typedef struct SceneProbePoint {
     uint32_t cell;    ///< numbered over all sheets
-    double weight[4]; ///< of the cell's corners; they add up to 1
-    double distance;  ///< from what the scene asks for: m, or of uv
+    double weight[4]; ///< of the cell's corners; their sum is 1
+    double distance;  ///< from the point that the scene asks for: m, or in uv
 } SceneProbePoint;
 
-/// A pin's particle on a triangle of a moving mesh (sequence.c).
+/// Binds a pin's particle to a triangle of a moving mesh (sequence.c).
 typedef struct SceneBond {
     uint32_t triangle;
     double weights[3], away[3];
 } SceneBond;
 
-/// The frames of a moving mesh, in metres. All have the triangles of the first.
+/// The frames of a moving mesh, in metres. All have the first frame's triangles.
 typedef struct SceneSequence {
     uint32_t vertex_count, triangle_count, frame_count; ///< 0: there is none
     uint32_t *triangles;
     PreviewSolid *frames; ///< [frame_count] with vertices of their own
     uint32_t bond_count;
-    SceneBond *bonds; ///< of a pin; NULL until scene_follow has made them
+    SceneBond *bonds; ///< of a pin; NULL before scene_follow
 } SceneSequence;
 
 /// The meshes (transforms applied) and pictures that a scene names.
 typedef struct SceneAssets {
     uint32_t sheet_count, source_count, collider_count, pin_count;
     Mesh *meshes;                            ///< [sheet_count]
-    MeshReport *reports;                     ///< [sheet_count] what was done to those of files
-    Image *images;                           ///< [sheet_count], zeroed where there is none
-    const Image **pictures;                  ///< [sheet_count], for PreviewDef: NULL where there is none
+    MeshReport *reports;                     ///< [sheet_count] repairs of meshes from files
+    Image *images;                           ///< [sheet_count], zeroed if there is none
+    const Image **pictures;                  ///< [sheet_count], for PreviewDef; NULL if there is none
     float (*colours)[3];                     ///< [sheet_count], for PreviewDef
     float *transmittances;                   ///< the same
     SingeField (*fields)[SCENE_PARAM_SLOTS]; ///< [sheet_count] of parameters that vary, with their textures
     SingeTexture *source_textures;           ///< [source_count]
-    SceneSolid *solids;                      ///< [collider_count], zeroed where they are primitives
+    SceneSolid *solids;                      ///< [collider_count], zeroed for primitives
     SceneSequence *collider_motions;         ///< [collider_count]
     SceneSequence *pin_motions;              ///< [pin_count]
-    Image sky;                               ///< zeroed where there is none
+    Image sky;                               ///< zeroed if there is none
     SceneProbePoint *probes;                 ///< [Scene.probe_count]
 } SceneAssets;
 
-/// Reads every file that the scene names. On failure *assets is empty and *messages points at the names, and also at
-/// those of meshes that were read and that the library would refuse.
+/// Reads every file that the scene names. On failure *assets is empty and *messages has the locations of the files'
+/// names; also of meshes that the library would refuse.
 SINGE_NODISCARD SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *messages);
 void scene_assets_free(SceneAssets *assets);
 
-/// From a scene's numbers, before anything is made of it.
+/// An estimate from a scene's numbers, before anything is built.
 typedef struct SceneSize {
     uint64_t cells;  ///< of sheets
-    uint32_t unread; ///< sheets whose mesh is in a file that was not read: their cells do not count
-    double memory;   ///< bytes, about: of the simulation and its drawn mesh
+    uint32_t unread; ///< sheets whose mesh file has not been read: their cells are not counted
+    double memory;   ///< approximate bytes of the simulation and its drawn mesh
 } SceneSize;
 
-/// `assets` are NULL before scene_load.
+/// `assets` is NULL before scene_load.
 SceneSize scene_size(const Scene *scene, const SceneAssets *assets);
 
-/// Bytes that its pictures take, about.
+/// Approximate bytes of its pictures.
 double scene_picture_memory(const Scene *scene);
 
-/// Whether `wanted` bytes are there, of `room` (0: not known, and so they are); a message at the largest sheet
-/// otherwise. `assets` are NULL before scene_load.
+/// Whether `wanted` bytes fit into `room` (0: unknown, they do); otherwise there is a message at the largest sheet.
+/// `assets` is NULL before scene_load.
 bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, double room, SceneMessages *messages);
 
-/// Makes the simulation: sheets, commit, sources, colliders, pins. Allocator, log, tasks and thread_count
-/// are taken from `hooks`. On failure *sim is NULL and *messages names the scene's object: each sheet that is refused,
-/// or the first other object. What is certain to have no effect is reported to the log of `hooks`, with its location.
+/// Makes the simulation: sheets, commit, sources, colliders, pins. Allocator, log, tasks and thread_count are taken
+/// from `hooks`. On failure *sim is NULL and *messages names the scene's object: each refused sheet, or the first other
+/// object. Settings that certainly have no effect are reported to the log of `hooks`, with their locations.
 SINGE_NODISCARD SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const SingeSimDef *hooks,
                                         SingeSim **sim, SceneMessages *messages);
 
-/// Tells a simulation of this scene where what moves with meshes is at the end of frame `frame` (from 1), which is the
-/// start of the next. To be called before the first step of each frame. `assets` keep what pins are bonded to.
+/// Sets the positions at the end of frame `frame` (from 1) of colliders and pins that move with meshes. Call it before
+/// the first step of each frame. `assets` hold the bonds of pins.
 SINGE_NODISCARD SingeResult scene_follow(const Scene *scene, SceneAssets *assets, SingeSim *sim, int frame,
                                          SingeError *error);
 
 // ---- from scene to preview
 
-/// Places a camera that was not given so that all sheets, as they start, fill the picture. One that would have to
-/// stand farther than 10 km from the origin stays where it is by default.
+/// Places a camera that is not given so that all sheets, at their start, fill the picture. If that is more than 10 km
+/// from the origin, the camera keeps its default position.
 void scene_frame(Scene *scene, const SceneAssets *assets);
 
 /// Fills *def; the scene and the assets must outlive it. Threads: 1. Shapes: none (scene_shapes).
 void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *def);
 
-/// Writes the visible colliders (planes are not shapes; see the ground) and hot balls at a time, at most
-/// `max`, and returns how many the scene has then. shapes may be NULL when max is 0. They point into the assets.
+/// Writes the visible colliders (planes are not shapes; see the ground) and hot balls at a time, at most `max`, and
+/// returns their number. shapes may be NULL when max is 0. They point into the assets.
 uint32_t scene_shapes(const Scene *scene, const SceneAssets *assets, double time, PreviewShape *shapes, uint32_t max);
 
-/// The shape at a slot, which are the scene's colliders, then its sources. False where nothing is drawn then.
+/// The shape at a slot: slots are the scene's colliders, then its sources. False if nothing is drawn at that time.
 bool scene_shape(const Scene *scene, const SceneAssets *assets, uint32_t slot, double time, PreviewShape *shape);
 
 /// Seconds from one frame to the next, and the simulation's step.

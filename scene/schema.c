@@ -1,4 +1,4 @@
-// The scene itself, and what it has one of.
+// The tables of the scene itself, and of maps that it has once.
 #include "scene/schema_rows.h"
 
 #include <string.h>

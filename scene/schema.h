@@ -16,14 +16,14 @@ typedef enum RowType {
     ROW_VECTOR,   ///< float[length]
     ROW_INTS,     ///< int[length]
     ROW_TEXT,     ///< char *
-    ROW_NAME,     ///< char *, fit to be part of a file's name
+    ROW_NAME,     ///< char *, valid as part of a file name
     ROW_FILE,     ///< SceneFile
     ROW_ENUM,     ///< an enum, by `names`
     ROW_ORDER,    ///< SingeColour[4], each once
     ROW_FORMATS,  ///< OutputSet: formats of formats/output.h, each once; the cache is always one
-    ROW_BASE,     ///< the SceneMaterial at `offset`: a material's name or file, which it begins as
+    ROW_BASE,     ///< the SceneMaterial at `offset`: the name or file of its base
     ROW_PARAM,    ///< SingeParam, with its SceneFile at `extra`
-    ROW_MAP,      ///< a map by `sub`; `extra`, when not 0, is the bool that says it is given
+    ROW_MAP,      ///< a map by `sub`; `extra`, if not 0, is the bool that records that it is given
     ROW_LIST,     ///< pointer to maps by `sub`; their count at `extra`
     ROW_POINTS,   ///< ScenePoint *, count at `extra`
     ROW_INDICES,  ///< uint32_t *, count at `extra`
@@ -34,7 +34,7 @@ typedef enum RowType {
 
 enum {
     ROW_REQUIRED = 1,
-    ROW_OPEN_MIN = 2, ///< min itself is outside
+    ROW_OPEN_MIN = 2, ///< min itself is excluded
     ROW_OPEN_MAX = 4,
     ROW_INF = 8,       ///< "inf" is allowed
     ROW_NONE = 16,     ///< "none" is allowed: -INFINITY
@@ -55,14 +55,14 @@ typedef struct SchemaRow {
     const char *doc;
 } SchemaRow;
 
-/// What the reader knows while it works.
+/// The state of the reader.
 typedef struct Reader {
     SceneArena *arena;
     SceneText *text;
     SceneMessages *messages;
     const char *base_dir; ///< NULL: files are not looked for
-    const char *prefix;   ///< from base_dir to the folder of the material file that is read, "" or with its last slash
-    const struct BaseChain *chain; ///< the material files that are being read (base.c)
+    const char *prefix;   ///< from base_dir to the folder of the current material file, "" or ending in a slash
+    const struct BaseChain *chain; ///< the material files being read (base.c)
     Scene *scene;
 } Reader;
 
@@ -75,15 +75,15 @@ typedef struct Schema {
     const SchemaRow *rows;
     int row_count;
     size_t kind_offset; ///< of the enum that `kinds` are bits of; the row is called "kind"
-    /// The key of a choice that is read before the others, and what it makes of the object's defaults (NULL: nothing
-    /// more). A bare word in the map's stead is that choice. NULL: none.
+    /// The key of a choice that is read before the other keys, and a function that sets the defaults of that choice
+    /// (NULL: none). A bare word in place of the map is that choice. NULL: no such key.
     const char *choice;
     void (*chosen)(void *object); ///< NULL: nothing
     /// Fills in the defaults; false when out of memory. NULL: zeros, or what the enclosing map has set.
     bool (*defaults)(SceneArena *arena, void *object);
-    /// Checks what one row cannot see.
+    /// Checks that involve several rows.
     void (*finish)(Reader *reader, const Node *map, void *object);
-    /// Where the object keeps its location; NULL when it does not.
+    /// Where the object stores its location; NULL if it does not.
     SceneLocation *(*location)(void *object);
 } Schema;
 
@@ -94,40 +94,40 @@ extern const Schema schema_noise;
 unsigned schema_kind(const Schema *schema, const void *object);
 static inline bool row_allowed(const SchemaRow *row, unsigned kind) { return !row->kinds || (row->kinds & kind); }
 
-/// "1 to 100", "> 0 to 1e9", "0 to < 1" or, where a row is no number, "": its range in the unit of bare numbers.
+/// "1 to 100", "> 0 to 1e9", "0 to < 1" or "" if the row is no number: its range in the unit of bare numbers.
 void row_range(const SchemaRow *row, char *buffer, size_t size);
-/// What a row's value must be, for messages: "a temperature (K, C, F)".
+/// The type of a row's value, for messages: "a temperature (K, C, F)".
 void row_expected(const SchemaRow *row, char *buffer, size_t size);
 
 /// A parameter of a material that may vary over the sheet.
 typedef struct SceneParam {
     char key[40];  ///< "grammage", "weight.red"
     size_t offset; ///< in SingeMaterialDef
-    size_t slot;   ///< of its picture in SceneMaterial and SceneAssets
+    size_t slot;   ///< of its texture in SceneMaterial and SceneAssets
 } SceneParam;
 
-/// The index-th of them, in the order of the schema's rows; false behind the last.
+/// The index-th parameter, in the order of the schema's rows; false after the last.
 bool scene_param(int index, SceneParam *param);
 static inline SingeParam *scene_param_at(SingeMaterialDef *def, const SceneParam *param) {
     return (SingeParam *)((char *)def + param->offset);
 }
 
-/// What a word is called now: the word itself, or the name that has taken its place in this release, which is noted in
-/// the scene (renamed.c). `in`: a schema's title, RENAMED_PARAM for a parameter's map, or the key that has the word.
+/// The current name of a word: the word itself, or the name that this release has given it; then the scene records it
+/// (renamed.c). `in`: a schema's title, RENAMED_PARAM for a parameter's map, or the key that has the word.
 #define RENAMED_PARAM "a parameter"
 const char *renamed(Reader *reader, const char *in, const char *word, SceneLocation location);
 
 /// Reads a map into an object whose defaults are set.
 void schema_read(Reader *reader, const Schema *schema, const Node *map, void *object);
 
-/// What a row with a `sub` has before a key of it is read: the map in the object, or a new entry of a list, with its
-/// defaults. The reader and docs/scene.md begin by it. NULL when out of memory.
+/// The object of a row with a `sub` before its keys are read: the map in the object, or a new list entry, with its
+/// defaults. Used by the reader and docs/scene.md. NULL when out of memory.
 void *row_begin(SceneArena *arena, const SchemaRow *row, void *object);
 
-/// Makes maps of bare words in a map's stead, so that --set reaches into them.
+/// Replaces bare words in place of maps by maps, so that --set can set their keys.
 void schema_spell_out(SceneArena *arena, const Schema *schema, Node *map);
 
-/// A material that another begins as: one that is built in, or a file (base.c).
+/// Reads the base of a material: a built-in material or a file (base.c).
 void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMaterial *material);
 extern const Schema schema_material;
 /// "cotton, newsprint, ..."
@@ -155,10 +155,10 @@ bool default_pin(SceneArena *arena, void *object);
 bool default_measured(SceneArena *arena, void *object);
 bool default_noise(SceneArena *arena, void *object);
 bool default_grid(SceneArena *arena, void *object);
-/// What suits the solver's method.
+/// Sets the defaults of the solver's method.
 void chosen_solver(void *object);
 
-/// The candidate nearest to a mistyped word, or NULL when none is near. (nearest.c)
+/// The candidate nearest to a mistyped word, or NULL if none is near (nearest.c).
 typedef struct Nearest {
     const char *word, *best;
     int distance;

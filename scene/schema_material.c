@@ -1,4 +1,4 @@
-// A material: values that may vary over the sheet, and what sources say of its fire.
+// A material: values that may vary over the sheet, and its fire according to its sources.
 #include "scene/schema_rows.h"
 
 #include <stdio.h>
@@ -19,7 +19,7 @@ const Schema schema_noise = {.title = "a noise",
                              .defaults = default_noise,
                              .doc = "A random field from 0 to 1, smooth at its scale, fixed to the sheet."};
 
-// The ranges of singe/material.def, as far as scenes go.
+// The ranges of singe/material.def for scenes.
 #define POSITIVE OVER(0)
 #define POSITIVE_OR_INFINITE OVER_OR_INF(0)
 #define NOT_NEGATIVE FROM(0)
@@ -30,7 +30,7 @@ const Schema schema_noise = {.title = "a noise",
 #define SHARE_ABOVE_ZERO OVER_UP_TO(0, 1)
 #define IN_SCENES(range, low, high) WITHIN(low, high)
 
-// A value that may vary over the sheet; where its texture is kept follows from the member.
+// A value that may vary over the sheet; the slot of its texture follows from the member.
 #define PARAM(name, member, dim, text, ...)                                                                            \
     {                                                                                                                  \
         name, ROW_PARAM, dim, AT(SceneMaterial, def.member), EXTRA(SceneMaterial, textures[SCENE_PARAM_SLOT(member)]), \
@@ -82,7 +82,7 @@ static const Schema schema_measured = {
     .doc = "Published measurements of the material's fire, for `singe bench front`. They do not affect the "
            "simulation. 0 and 0: unknown."};
 
-// those that are one for the sheet
+// parameters that do not vary over the sheet
 #define SCALAR_reference_grammage ROW_FLOAT, DIM_GRAMMAGE, WITHIN(0, 1e6)
 #define SCALAR_heat_operator ROW_ENUM, DIM_NONE, .names = operator_names
 #define SCALAR_thickening ROW_FLOAT, DIM_NONE, FROM(0)

@@ -1,4 +1,4 @@
-// What a scene has lists of: sheets, sources, colliders, pins and probes.
+// The objects of a scene: sheets, sources, colliders, pins and probes.
 #include "scene/schema_rows.h"
 
 static const char *const source_names[] = {

@@ -1,4 +1,4 @@
-// How frames are drawn.
+// The table of the preview.
 #include "scene/schema_rows.h"
 
 static const char *const sky_names[] = {

@@ -1,4 +1,4 @@
-// What the schema's tables are written with.
+// Macros for the schema's tables.
 #ifndef SCENE_SCHEMA_ROWS_H
 #define SCENE_SCHEMA_ROWS_H
 
@@ -12,7 +12,7 @@
 // ranges, in held units, never wider than what the library takes (tests/scene/test_ranges.c)
 #define MUCH 1e9
 #define ANY .min = -1e6, .max = 1e6
-#define LOCATION .min = -1e4, .max = 1e4 // of what is drawn
+#define LOCATION .min = -1e4, .max = 1e4 // of drawn objects
 #define TURN .min = -1e6 * DEGREE, .max = 1e6 * DEGREE
 #define KELVIN .min = 1, .max = 1e4
 #define OVER(low) .flags = ROW_OPEN_MIN, .min = (low), .max = MUCH
@@ -22,7 +22,7 @@
 #define WITHIN(low, high) .min = (low), .max = (high)
 #define BELOW(low, high) .flags = ROW_OPEN_MAX, .min = (low), .max = (high)
 
-// the maps that the scene has, besides those that schema.c is about
+// the scene's maps, besides those in schema.c
 extern const Schema schema_sheet, schema_source, schema_collider, schema_pin, schema_probe, schema_preview;
 
 #endif

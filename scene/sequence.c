@@ -1,11 +1,11 @@
-// A sequence of mesh files, a frame each, as the motion of a collider or of what a pin holds.
+// A sequence of mesh files, one per frame, as the motion of a collider or of a pin's particles.
 //
-// A pin's particle is bonded to the triangle of the first frame that is nearest to it: with the weights w of its foot
-// there and its displacement d from the foot in the triangle's frame of axes e, so that at another frame it is at
+// A pin's particle is bound to the nearest triangle of the first frame, by the weights w of the closest point and the
+// displacement d from it in the triangle's axes e. At another frame it is at
 //
 //   x = sum_k w_k v_k + sum_i d_i e_i,   e_0 along the first side, e_2 the normal, e_1 = e_2 x e_0.
 //
-// So a pin follows the mesh that its sheet was made from, vertex for vertex, as well as another one, of a body.
+// A pin can thus follow the mesh that its sheet was made from, vertex by vertex, or another mesh, of a body.
 #include "scene/sequence.h"
 
 #include "formats/store.h"
@@ -40,7 +40,7 @@ static char *sequence_path(const SceneMotion *motion, int frame) {
     return made;
 }
 
-/// Turns a frame of y up to z up.
+/// Rotates a frame from y up to z up.
 static void sequence_transform(const SceneMotion *motion, float *positions, uint32_t count) {
     for (uint32_t v = 0; motion->up == SCENE_UP_Y && v < count; v++) {
         float *p = positions + 3 * (size_t)v, y = p[1];
@@ -48,7 +48,7 @@ static void sequence_transform(const SceneMotion *motion, float *positions, uint
     }
 }
 
-/// Reads a frame; the first one makes room for all.
+/// Reads a frame; the first one allocates all.
 static SingeResult sequence_read_frame(const SceneMotion *motion, const char *path, int frame, int frames,
                                        SceneSequence *sequence, SingeError *error) {
     Bytes bytes = {0};
@@ -88,8 +88,8 @@ static SingeResult sequence_check_frame(const PreviewSolid *frame, const char *p
     return SINGE_OK;
 }
 
-/// How many of the frames have files, one at least: the motion stands still after the last. SINGE_ERROR_FILE where one
-/// is missing before another.
+/// The number of frames with files, at least one: the motion stops after the last. SINGE_ERROR_FILE if one is missing
+/// in between.
 static SingeResult sequence_length(const SceneMotion *motion, int frames, int *length, SingeError *error) {
     bool there = true, next;
     for (*length = 0; *length < frames && there; ++*length) {
@@ -151,7 +151,7 @@ static void axes_of(const double v[3][3], double e[3][3]) {
         e[2][k] = side[(k + 1) % 3] * other[(k + 2) % 3] - side[(k + 2) % 3] * other[(k + 1) % 3];
     for (int i = 0; i < 3; i += 2) {
         const double length = sqrt(closest_dot(e[i], e[i]));
-        for (int k = 0; k < 3; k++) e[i][k] = length > 0 ? e[i][k] / length : 0; // one without extent has none
+        for (int k = 0; k < 3; k++) e[i][k] = length > 0 ? e[i][k] / length : 0; // an axis without extent remains 0
     }
     for (int k = 0; k < 3; k++) e[1][k] = e[2][(k + 1) % 3] * e[0][(k + 2) % 3] - e[2][(k + 2) % 3] * e[0][(k + 1) % 3];
 }
@@ -174,7 +174,7 @@ static void bond(const PreviewSolid *frame, const float position[4], SceneBond *
     for (int i = 0; i < 3; i++) made->away[i] = closest_dot(away, e[i]);
 }
 
-/// Bonds a pin's particles, where they are at rest, to the first frame.
+/// Binds a pin's particles, at their rest positions, to the first frame.
 static bool bond_all(const SingeSim *sim, SingePinId pin, SceneSequence *sequence) {
     const SingeView view = singe_sim_view(sim);
     uint32_t count;
@@ -217,7 +217,7 @@ static SingeResult follow_pin(SingeSim *sim, SingePinId pin, SceneSequence *sequ
 SingeResult scene_follow(const Scene *scene, SceneAssets *assets, SingeSim *sim, int frame, SingeError *error) {
     const double time = frame / (double)scene->fps;
     SingeResult result = SINGE_OK;
-    // scene_build has added them in their order, and a load keeps handles
+    // scene_build has added them in order, and a load keeps handles
     SingeColliderId *colliders = calloc((size_t)scene->collider_count + 1, sizeof *colliders);
     SingePinId *pins = calloc((size_t)scene->pin_count + 1, sizeof *pins);
     if (!colliders || !pins) result = sequence_no_memory(error);

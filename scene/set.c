@@ -1,5 +1,5 @@
-// --set PATH=VALUE: paths are keys and numbers of list entries, "sheets.0.material.grammage" or
-// "sources[1].start"; maps on the way are made where the file lacks them.
+// --set PATH=VALUE: paths are keys and numbers of list entries, "sheets.0.material.grammage" or "sources[1].start";
+// maps that the file lacks are created.
 #include "scene/tree.h"
 
 #include <string.h>
@@ -11,10 +11,10 @@ typedef struct Setter {
     const SceneText *text;
     SceneMessages *messages;
     SceneLocation location;
-    const char *path, *rest, *stop; // the path, what is still to be read of it, its end
+    const char *path, *rest, *stop; // the path, its unread rest, its end
 } Setter;
 
-// The next step of the path; false at its end or where the path is badly formed (then *bad).
+// The next part of the path; false at its end or if the path is malformed (then *bad).
 static bool setter_step(Setter *setter, char step[STEP_MAX], bool *bad) {
     const char *c = setter->rest;
     if (c == setter->stop) return false;
@@ -57,7 +57,7 @@ static Node *child_new(Setter *setter, Node *map, const char *step) {
     return child;
 }
 
-// The node that the path leads to, made where it is missing. NULL with a message, or without memory.
+// The node at the path, created if it is missing. NULL with a message, or when out of memory.
 static Node *setter_walk(Setter *setter, Node *root) {
     char step[STEP_MAX], seen[NODE_WORDS];
     bool bad = false;
@@ -101,7 +101,7 @@ static void set_one(SceneArena *arena, const SceneText *text, int index, Node *r
         message_add(messages, text, setter.location, "expected PATH=VALUE, such as sheets.0.material.grammage=60 g/m2");
         return;
     }
-    // the value first: a bad one must leave no half-made maps behind
+    // the value first: a bad one must not leave partly created maps
     Node *value = tree_read(arena, text, equals + 1, strlen(equals + 1), setter.location, messages);
     Node *target = value ? setter_walk(&setter, root) : NULL;
     if (!target) return;

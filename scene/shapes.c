@@ -1,4 +1,4 @@
-// What the preview draws of a scene.
+// The shapes of a scene that the preview draws.
 #include "scene/rotation.h"
 #include "scene/scene.h"
 
@@ -35,7 +35,7 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
     memcpy(def->background, preview->background, sizeof def->background);
 }
 
-// As the library moves things: linear positions, normalised linear quaternions, held beyond the ends.
+// Interpolates like the library: positions linearly, quaternions linearly and normalised, constant beyond the ends.
 static void shape_pose(const SceneKey *keys, uint32_t count, double time, PreviewShape *shape) {
     uint32_t next = 0;
     while (next < count && (double)keys[next].time <= time) next++;
@@ -55,7 +55,7 @@ static void shape_pose(const SceneKey *keys, uint32_t count, double time, Previe
         shape->position[i] = (float)((1 - s) * (double)a->position[i] + s * (double)b->position[i]);
 }
 
-/// Where the shape goes: its displacement over a thousandth of a second. Turning blurs nothing.
+/// The velocity of the shape, from its displacement over a thousandth of a second. Rotation causes no blur.
 static void shape_move(const SceneKey *keys, uint32_t count, double time, PreviewShape *shape) {
     PreviewShape later = *shape;
     const float span = 1e-3f;

@@ -1,7 +1,7 @@
-// Colliders that files describe: a mesh's faces become triangles, a picture's pixels heights.
+// Colliders from files: faces of a mesh become triangles, pixels of a picture become heights.
 //
-// A face is cut by ears in the plane across its mean normal (Newell's): the ear that leaves the shortest new edge
-// first, so that a quad is cut along its shorter diagonal where both are inside.
+// A face is triangulated by clipping ears in the plane across its mean normal (Newell's): the ear with the shortest new
+// edge first, so that a quad is cut along its shorter diagonal if both are inside.
 #include "scene/solid.h"
 
 #include <math.h>
@@ -39,7 +39,7 @@ static void face_normal(const float *vertices, const uint32_t *corners, uint32_t
     }
 }
 
-/// Twice the area of the triangle as seen along the normal; negative where it turns the other way.
+/// Twice the area of the triangle as seen along the normal; negative if it turns the other way.
 static double solid_turn(const float *vertices, uint32_t a, uint32_t b, uint32_t c, const double normal[3]) {
     const float *p = vertices + 3 * (size_t)a, *q = vertices + 3 * (size_t)b, *r = vertices + 3 * (size_t)c;
     double u[3], v[3], sum = 0;
@@ -51,7 +51,7 @@ static double solid_turn(const float *vertices, uint32_t a, uint32_t b, uint32_t
     return sum;
 }
 
-/// Square of the edge that cutting off corner i of those left makes new; infinite where the corner is no ear.
+/// Square of the new edge when corner i of the remaining ones is clipped; infinite if the corner is no ear.
 static double ear(const float *vertices, const uint32_t *left, uint32_t count, uint32_t i, const double normal[3]) {
     uint32_t a = left[(i + count - 1) % count], b = left[i], c = left[(i + 1) % count];
     if (!(solid_turn(vertices, a, b, c, normal) > 0)) return INFINITY;
@@ -70,12 +70,12 @@ static double ear(const float *vertices, const uint32_t *left, uint32_t count, u
     return square;
 }
 
-/// Cuts a face into count - 2 triangles; `left` has its corners and is used up.
+/// Cuts a face into count - 2 triangles; `left` has its corners and is consumed.
 static void face_cut(const float *vertices, uint32_t *left, uint32_t count, uint32_t *triangles) {
     double normal[3];
     face_normal(vertices, left, count, normal);
     for (; count >= 3; count--, triangles += 3) {
-        uint32_t best = 1; // of a face that crosses itself: any
+        uint32_t best = 1; // if the face crosses itself: any
         double min = INFINITY;
         for (uint32_t i = 0; i < count && count > 3; i++) {
             double square = ear(vertices, left, count, i, normal);
@@ -87,7 +87,7 @@ static void face_cut(const float *vertices, uint32_t *left, uint32_t count, uint
     }
 }
 
-/// Cuts all faces; false when out of memory. Names of a corner twice in a row make no triangle of extent, which the
+/// Cuts all faces; false when out of memory. A corner named twice in a row gives triangles without area, which the
 /// library leaves out.
 static bool cut_faces(const Polygons *polygons, PreviewSolid *surface) {
     uint32_t max = 0;
@@ -137,7 +137,7 @@ static void put_vertex(PreviewSolid *surface, float x, float y, float z) {
     vertex[0] = x, vertex[1] = y, vertex[2] = z;
 }
 
-/// Walls along the border, whose k-th node from the least corner counter-clockwise is `node`.
+/// Walls along the border, whose k-th node, counter-clockwise from the min corner, is `node`.
 static size_t border_node(const SceneSolid *solid, size_t k) {
     size_t columns = solid->columns, rows = solid->rows;
     if (k < columns - 1) return k;
@@ -146,7 +146,7 @@ static size_t border_node(const SceneSolid *solid, size_t k) {
     return (rows - 1 - (k - (columns - 1))) * columns;
 }
 
-/// The surface as the library has it, and walls down to the lowest height.
+/// The library's surface, and walls down to the lowest height.
 static void draw_heights(SceneSolid *solid, const float size[2]) {
     PreviewSolid *surface = &solid->surface;
     size_t columns = solid->columns, rows = solid->rows, border = 2 * (columns + rows) - 4;

@@ -1,4 +1,4 @@
-// Colliders that files describe.
+// Colliders from files.
 #ifndef SCENE_SOLID_H
 #define SCENE_SOLID_H
 
@@ -8,12 +8,12 @@
 SINGE_NODISCARD SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size, double scale,
                                             SceneSolid *solid, SingeError *error);
 
-/// Heights from a picture, between those of black and of white, over a rectangle of that size, and the surface that is
-/// drawn.
+/// Heights from a picture, between the heights of black and of white, over a rectangle of that size, and the drawn
+/// surface.
 SINGE_NODISCARD SingeResult solid_make_heights(const SingeTexture *picture, const float size[2], const float heights[2],
                                                SceneSolid *solid, SingeError *error);
 
-/// m, of a number in a file of these SceneUnits, times `scale` (load.c).
+/// Metres per unit of a file with these SceneUnits, times `scale` (load.c).
 double metres_per_unit(int unit, float scale);
 
 void solid_free(SceneSolid *solid);

@@ -14,7 +14,7 @@ typedef struct Builder {
     SceneMessages *messages;
     SceneLocation origin;   // --set or file, without line and column
     Node *stack[DEPTH_MAX]; // open lists and maps
-    char *keys[DEPTH_MAX];  // key that waits for its value, in each open map
+    char *keys[DEPTH_MAX];  // pending key of each open map
     SceneLocation key_locations[DEPTH_MAX];
     int depth;
     Node *root;
@@ -102,7 +102,7 @@ static void builder_value(Builder *builder, const YamlEvent *event, SceneLocatio
         return;
     }
     int top = builder->depth - 1;
-    if ((event->flags & YAML_ABSENT) && top >= 0) // reported at the key whose value it is
+    if ((event->flags & YAML_ABSENT) && top >= 0) // reported at its key
         location = builder->stack[top]->kind == NODE_MAP ? builder->key_locations[top] : builder->stack[top]->location;
     node->kind = NODE_VALUE;
     node->location = location;
@@ -111,7 +111,7 @@ static void builder_value(Builder *builder, const YamlEvent *event, SceneLocatio
     builder_attach(builder, node);
 }
 
-// The events come from a process that may have gone astray: an order that no text has is refused.
+// The events come from a process that may have failed: an impossible order is refused.
 static void builder_close(Builder *builder, SceneLocation location) {
     int top = builder->depth - 1;
     if (top < 0 || (builder->stack[top]->kind == NODE_MAP && builder->keys[top]))
@@ -143,7 +143,7 @@ static void builder_take(Builder *builder, const YamlEvent *event) {
 // libfyaml takes any bytes; a scene is UTF-8 without control characters, so that messages can show it.
 static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
     int line = 1, column = 1;
-    bool begins = true; // a line, as libfyaml counts them: behind a lone \r and behind a byte order mark too
+    bool begins = true; // of a line as libfyaml counts them: also after a lone \r and after a byte order mark
     const unsigned char *c = (const unsigned char *)bytes, *end = c + size;
     while (c < end) {
         const int length = utf8_length((const char *)c); // a zero follows all texts
@@ -167,7 +167,7 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
     return true;
 }
 
-// What is wrong ends the tree, but all faults of the syntax are reported.
+// An error ends the tree, but all syntax errors are reported.
 static void builder_run(Builder *builder, YamlEvents *events) {
     YamlEvent event = {0};
     while (event.kind != YAML_END && (!builder->bad || event.kind == YAML_FAULT)) {
@@ -181,7 +181,7 @@ static void builder_run(Builder *builder, YamlEvents *events) {
         builder_fail(builder, location_at(builder, (int)event.line, (int)event.column), not_read);
 }
 
-// A --set's value that is a word or a number, with a unit perhaps, and so needs no YAML.
+// A --set value that is a word or a number, perhaps with a unit, and so needs no YAML.
 static bool is_plain(const char *bytes, size_t size) {
     static const char inside[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789./%+-_() ";
     if (!size || strspn(bytes, inside) != size || bytes[size - 1] == ' ') return false;
@@ -204,7 +204,7 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
     YamlEvents events;
     SingeError error = {0};
     if (!bytes_are_text(&builder, bytes, size)) return NULL;
-    if (origin.set && (!size || is_plain(bytes, size))) // PATH= with nothing behind it is a value, too
+    if (origin.set && (!size || is_plain(bytes, size))) // PATH= alone is a value, too
         return plain_node(arena, bytes, size, origin);
     if (size == 0) { // libfyaml takes length 0 for "count yourself"
         bytes = "\n";
@@ -223,7 +223,7 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
     builder_run(&builder, &events);
     yaml_free(&events);
     if (builder.bad) return NULL;
-    if (!builder.root && origin.set && !arena_failed(arena)) // a comment alone
+    if (!builder.root && origin.set && !arena_failed(arena)) // only a comment
         return plain_node(arena, "", 0, origin);
     if (!builder.root && !arena_failed(arena))
         message_add(messages, text, location_at(&builder, 1, 1),
@@ -245,7 +245,7 @@ const char *node_describe(const Node *node, char *buffer, size_t size) {
         return buffer;
     }
     if (!node->quoted && (!node->text[0] || !strcmp(node->text, "~") || !strcmp(node->text, "null"))) return "nothing";
-    if (node->location.file) // what stands in other files than the scene is not reported
+    if (node->location.file) // the contents of files other than the scene are not shown
         return "this value";
     snprintf(buffer, size, "'%s'", shown(node->text).text);
     return buffer;

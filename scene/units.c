@@ -16,7 +16,7 @@ enum { UNIT_MAX = 6 };
 
 typedef struct DimensionRow {
     const char *name;
-    Unit units[UNIT_MAX]; // the first is that of bare numbers
+    Unit units[UNIT_MAX]; // the first is the unit of bare numbers
 } DimensionRow;
 
 static const DimensionRow dimensions[DIM_COUNT] = {
@@ -48,7 +48,7 @@ static const DimensionRow dimensions[DIM_COUNT] = {
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// The length of a decimal number at the start of a text; 0 where there is none.
+// The length of a decimal number at the start of a text; 0 if there is none.
 static size_t number_length(const char *text) {
     const char *c = text + (*text == '+' || *text == '-');
     const char *digits = c;
@@ -70,7 +70,7 @@ static size_t number_length(const char *text) {
     return (size_t)(c - text);
 }
 
-// How a piece of a unit's name may also be written. Longer spellings come first.
+// Other spellings of parts of unit names. Longer spellings come first.
 static const struct Spelling {
     const char *piece, *text;
 } spellings[] = {
@@ -97,7 +97,7 @@ static bool unit_spelt(const char *text, const char *name) {
     return !*text;
 }
 
-// The unit of that spelling; the first where there is none; NULL for one that the dimension has not.
+// The unit of a spelling; the first if the spelling is empty; NULL if the dimension has no such unit.
 static const Unit *unit_find(const DimensionRow *row, const char *text) {
     for (int i = 0; i < UNIT_MAX && row->units[i].name && *text; i++)
         if (unit_spelt(text, row->units[i].name)) return &row->units[i];
@@ -129,7 +129,7 @@ void quantity_units(Dimension dimension, char *buffer, size_t size) {
                                      dimensions[dimension].units[i].name);
 }
 
-// The locale's decimal sign, whatever and however long it is, becomes a point.
+// Replaces the locale's decimal sign, which may be several bytes, by a point.
 static void point_mend(char *number) {
     char *to = number;
     for (const char *c = number; *c; c++) {
@@ -139,7 +139,7 @@ static void point_mend(char *number) {
     *to = 0;
 }
 
-// %g turns 1200 into 1.2e+03; where a plain notation is as short, it is written so.
+// %g turns 1200 into 1.2e+03; plain notation is preferred if it is as short.
 static void number_print_plain(double bare, int digits, char *buffer, size_t size) {
     double magnitude = fabs(bare);
     int whole = 1;

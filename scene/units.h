@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/// What a number measures. Bare numbers are in the first unit of each, which is SI but for angles (degrees).
+/// The dimension of a number. Bare numbers are in the first unit of each, which is SI except for angles (degrees).
 typedef enum Dimension {
     DIM_NONE,
     DIM_FRACTION,

@@ -1,4 +1,4 @@
-// Single values: numbers, words and names of files.
+// Reads single values: numbers, words and file names.
 #include "scene/values.h"
 
 #include "formats/printable.h"
@@ -25,7 +25,7 @@ static bool between(const SchemaRow *row, double value, double low, double high)
 
 static bool in_range(const SchemaRow *row, double value) { return between(row, value, row->min, row->max); }
 
-/// The bounds are floats as the value is, so that the bound itself, as it is printed, is inside.
+/// The bounds are floats like the value, so that the bound itself, as printed, is inside.
 static bool float_in_range(const SchemaRow *row, float value) {
     return between(row, (double)value, (double)(float)row->min, (double)(float)row->max);
 }
@@ -219,7 +219,7 @@ bool value_is_text(const Node *node) {
 }
 
 bool value_names_files(const char *text) {
-    // 200 bytes leave room for the endings of files' names, of which systems take 255 bytes
+    // systems take file names of 255 bytes; 200 leave room for endings
     bool good = *text && *text != '.' && strlen(text) <= 200 && printable_count(text) <= 100 && printable_is(text);
     return good && !strpbrk(text, "/\\:*?\"<>|%");
 }
@@ -229,7 +229,7 @@ void value_name(Reader *reader, const SchemaRow *row, const Node *node, char **f
     else value_wrong(reader, node, row);
 }
 
-// A name behind a folder, unless it begins at the root. NULL when out of memory.
+// A name relative to a folder, unless it is absolute. NULL when out of memory.
 static char *value_join(SceneArena *arena, const char *folder, const char *slash, char *name) {
     size_t length = strlen(folder) + strlen(slash) + strlen(name) + 1;
     if (name[0] == '/' || !(folder[0] || slash[0])) return name;

@@ -1,5 +1,5 @@
-// From one node of the tree to one value, checked against its row. What is wrong is reported with its location and
-// leaves the value as it was.
+// Reads one value from one node of the tree, and checks it against its row. Errors are reported with their location and
+// leave the value unchanged.
 #ifndef SCENE_VALUES_H
 #define SCENE_VALUES_H
 
@@ -19,10 +19,10 @@ bool value_word(Reader *reader, const SchemaRow *row, const Node *node, const ch
 void value_order(Reader *reader, const SchemaRow *row, const Node *node, SingeColour *field);
 void value_formats(Reader *reader, const SchemaRow *row, const Node *node, OutputSet *field);
 bool value_is_text(const Node *node);
-/// Whether a name may be part of files' names: the rule of ROW_NAME.
+/// Whether a name may be part of file names: the rule of ROW_NAME.
 bool value_names_files(const char *text);
 void value_name(Reader *reader, const SchemaRow *row, const Node *node, char **field);
-/// Also looks whether the file is there, where the reader knows a folder.
+/// Also checks that the file exists, if the reader has a folder.
 void value_file(Reader *reader, const SchemaRow *row, const Node *node, SceneFile *field);
 
 #endif

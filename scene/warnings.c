@@ -1,4 +1,4 @@
-// What is certain to have no effect, or not the one that was meant, though it can be simulated.
+// Warns of valid settings that certainly have no effect, or not the intended one.
 #include "scene/messages.h"
 #include "scene/warnings.h"
 
@@ -31,8 +31,8 @@ static double diagonal(const Mesh *mesh) {
     return sqrt(sum);
 }
 
-/// A point that misses its sheet: farther beyond its radius than a tenth of the sheet's diagonal. What is a cell or two
-/// off still holds the vertex that was meant.
+/// A point that misses its sheet: farther beyond its radius than a tenth of the sheet's diagonal. A point that is a
+/// cell or two off still holds the intended vertex.
 static void warn_of_pin(const Scene *scene, const SceneAssets *assets, const ScenePin *pin, const SingeLog *log) {
     const Mesh *mesh = &assets->meshes[pin->sheet_index];
     const double reach = (double)pin->radius + 0.1 * diagonal(mesh);
@@ -44,11 +44,11 @@ static void warn_of_pin(const Scene *scene, const SceneAssets *assets, const Sce
             log, scene->text, pin->location,
             "the pin's point [%.6g, %.6g, %.6g] m misses the sheet: it holds only the nearest vertex, %.3g m away",
             (double)p[0], (double)p[1], (double)p[2], gap);
-        return; // one of them is enough
+        return; // one warning is enough
     }
 }
 
-/// A probe whose point is not on the sheet: uv by more than rounding, points as those of pins.
+/// A probe whose point is not on the sheet: for uv by more than rounding, for points as for pins.
 static void warn_of_probe(const Scene *scene, const SceneAssets *assets, uint32_t index, const SingeLog *log) {
     const SceneProbe *probe = &scene->probes[index];
     const double gap = assets->probes[index].distance;
@@ -77,7 +77,7 @@ static bool is_weak(const SceneSource *source) {
     return weak;
 }
 
-/// A source that can heat nothing, whatever moves where.
+/// A source that cannot heat anything, whatever moves.
 static void warn_of_source(const Scene *scene, const SceneSource *source, const SingeLog *log) {
     const SingeSourceDef *def = &source->def;
     const double end = (scene->frames - 1) / (double)scene->fps;

@@ -4,7 +4,7 @@
 
 #include "scene/scene.h"
 
-/// Tells the log what is certain to have no effect, or not the one that was meant, each with its location in the scene.
+/// Logs settings that certainly have no effect, or not the intended one, each with its location in the scene.
 void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *log);
 
 #endif

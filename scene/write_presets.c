@@ -10,7 +10,7 @@
 typedef struct PresetRow {
     const char *name;
     size_t offset;
-    int colours; ///< SINGE_COLOUR_COUNT where there is one for each, else 0
+    int colours; ///< SINGE_COLOUR_COUNT if there is one for each colour, else 0
 } PresetRow;
 
 static const PresetRow params[] = {
@@ -22,7 +22,7 @@ static const PresetRow params[] = {
 #include "singe/material.def"
 };
 
-/// The shortest decimal that reads back as the value.
+/// The shortest decimal number that reads back as the value.
 static void write_float(FILE *out, float value) {
     char text[40] = "";
     if (value == (float)(int)value && fabsf(value) < 1e6f) {
@@ -91,7 +91,7 @@ static void write_material(FILE *out, const char *name, const SingeMaterialDef *
     fprintf(out, "}\n\n");
 }
 
-/// A material as a scene reads it.
+/// Reads a material as a scene does.
 static bool read_material(const char *name, Scene **scene) {
     char text[200];
     SceneMessages messages = {0};

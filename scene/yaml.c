@@ -8,10 +8,10 @@
 #include "formats/isolate.h"
 #include "scene/scalar.h"
 
-/// More than any text of a megabyte needs (0.4 GB and some seconds: brackets that never close).
+/// More than any text of a megabyte needs (0.4 GB and some seconds, for brackets that never close).
 static const IsolateLimits limits = {.memory = (size_t)1 << 30, .seconds = 10};
 
-/// An event as it goes from the child to the parent; its text and a zero follow.
+/// An event as sent from the child to the parent; its text and a zero follow.
 typedef struct Record {
     uint32_t kind, flags, line, column, length;
 } Record;
@@ -61,7 +61,7 @@ static void sink_event(Sink *sink, YamlKind kind, unsigned flags, const char *te
     sink_put(sink, "", 1);
 }
 
-/// libfyaml ends a text whose last line does not: what it finds there is behind that line.
+/// libfyaml adds a line end to a text without one: what it finds there is after that line.
 static void sink_move(Sink *sink, int line, int column) {
     if (line < 0 || column < 0) return;
     sink->line = (uint32_t)line + 1;
@@ -83,19 +83,19 @@ static void sink_measure(Sink *sink) {
         else sink->last_length += ((unsigned char)sink->bytes[i] & 0xc0) != 0x80;
 }
 
-/// An event without a location of its own is where the last one ended.
+/// An event without a location gets the end of the last one.
 static void sink_location(Sink *sink, const struct fy_event *event, struct fy_token *tag, struct fy_token *anchor) {
     struct fy_token *value = event->type == FYET_SCALAR ? event->scalar.value : NULL;
     const struct fy_mark *mark = fy_event_start_mark((struct fy_event *)event);
     if (!mark && (tag || anchor)) mark = fy_token_start_mark(tag ? tag : anchor);
     sink_mark(sink, mark);
-    // libfyaml's mark of a quoted text lies behind the quote, that of an alias behind the star
+    // libfyaml's mark of a quoted text is after the quote, that of an alias after the star
     enum fy_scalar_style style = value ? fy_token_scalar_style(value) : FYSS_PLAIN;
     bool behind = style == FYSS_SINGLE_QUOTED || style == FYSS_DOUBLE_QUOTED || event->type == FYET_ALIAS;
     if (mark && behind && sink->column > 1) sink->column--;
 }
 
-/// Returns whether there is more to say: an event that no scene has is the last.
+/// Returns whether there are more events: one that no scene may have is the last.
 static bool sink_take(Sink *sink, const struct fy_event *event) {
     struct fy_token *tag = NULL, *anchor = NULL, *value = NULL;
     YamlKind kind = YAML_CLOSE;
@@ -122,7 +122,7 @@ static bool sink_take(Sink *sink, const struct fy_event *event) {
     sink_location(sink, event, tag, anchor);
     unsigned flags = (tag ? YAML_TAGGED : 0) | (anchor ? YAML_ANCHORED : 0);
     if (value && fy_token_scalar_style(value) != FYSS_PLAIN) flags |= YAML_QUOTED;
-    // no mark tells it: libfyaml 0.8 has one for what is not written, 0.7 has none
+    // no mark shows it: libfyaml 0.8 has one for absent values, 0.7 has none
     if (kind == YAML_VALUE && !(flags & YAML_QUOTED) && length == 0) flags |= YAML_ABSENT;
     sink_event(sink, kind, flags, text, length);
     sink->depth += (kind == YAML_MAP || kind == YAML_LIST) - (kind == YAML_CLOSE);
@@ -130,7 +130,7 @@ static bool sink_take(Sink *sink, const struct fy_event *event) {
     return !tag && !anchor && kind != YAML_ALIAS && sink->depth <= YAML_DEPTH;
 }
 
-/// What libfyaml has found, or nothing where it does not say.
+/// libfyaml's message, or nothing if it has none.
 static void sink_faults(Sink *sink, struct fy_diag *diag) {
     void *iterator = NULL;
     struct fy_diag_error *found;
@@ -159,7 +159,7 @@ static void sink_run(Sink *sink, struct fy_diag *diag) {
         fy_parser_event_free(parser, event);
     }
     if (more && (!ended || fy_parser_get_stream_error(parser))) {
-        if (errno == ENOMEM) // libfyaml tells it no other way
+        if (errno == ENOMEM) // libfyaml reports it in no other way
             sink->no_memory = true;
         else sink_faults(sink, diag);
     }
@@ -195,20 +195,20 @@ static SingeResult sink_work(void *context, IsolateAnswer *answer, SingeError *e
 // ---- in the parent
 
 #ifdef SCENE_YAML_HERE
-static const bool always_here = true; // fuzzers look into libfyaml, and make no process for each of their texts
+static const bool always_here = true; // fuzzers instrument libfyaml, and start no process per text
 #else
 static const bool always_here = false;
 #endif
 
 static SingeResult yaml_run(const char *name, Sink *sink, YamlEvents *events, SingeError *error) {
-    // commands that simulate before they read have nothing but scenes of their own: `paper` and `validate`
+    // commands that simulate before they read (`paper`, `validate`) read only their own scenes
     if (always_here || !isolate_possible()) {
         SingeResult result = sink_work(sink, NULL, error);
         events->bytes = (Bytes){.data = (uint8_t *)sink->out, .size = sink->used};
         return result;
     }
     SingeResult result = isolate_run(name, sink_work, sink, limits, (SingeAllocator){0}, &events->bytes, error);
-    if (result == SINGE_ERROR_LIMIT) // no text takes as much memory: so it was refused
+    if (result == SINGE_ERROR_LIMIT) // no text needs as much memory: so an allocation failed
         result = error->element < 0 ? SINGE_ERROR_FORMAT : SINGE_ERROR_MEMORY;
     return result;
 }
