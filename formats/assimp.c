@@ -1,7 +1,7 @@
-// Meshes by assimp's C interface: FBX, COLLADA, 3DS, X3D and glTF 1. It is much code that was not written for
-// hostile files, so it runs in a child process, which puts polygons as mesh_answer.h has them. Nothing is triangulated,
-// smoothed or joined there: mesh_make does that by position. All meshes of all nodes are taken with their transforms,
-// in the order of a walk over the nodes.
+// Meshes by assimp's C interface: FBX, COLLADA, 3DS, X3D and glTF 1. assimp is large and was not written for hostile
+// files, so it runs in a child process, which answers with polygons (mesh_answer.h). Nothing is triangulated, smoothed
+// or joined there: mesh_make does that by position. All meshes of all nodes are read with their transforms, in
+// depth-first order of the nodes.
 #include "formats/assimp_files.h"
 #include "formats/isolate.h"
 #include "formats/mesh_reader.h"
@@ -14,7 +14,7 @@
 #include <errno.h>
 #include <string.h>
 
-enum { DEPTH_LIMIT = 1000 }; ///< of nodes in nodes
+enum { DEPTH_LIMIT = 1000 }; ///< of nested nodes
 
 bool assimp_available(void) { return true; }
 
@@ -60,7 +60,7 @@ static SingeResult walk_scene(Walk *walk, Visit *visit) {
     return walk_node(walk, walk->scene->mRootNode, unit);
 }
 
-// ---- what is put, each by a walk of its own
+// ---- parts of the answer, each by a walk of its own
 
 static void put(Walk *walk, const void *bytes, size_t size) {
     if (walk->held + size > sizeof walk->buffer) {
@@ -94,7 +94,7 @@ static SingeResult count_mesh(Walk *walk, const struct aiMesh *mesh, const struc
     for (unsigned f = 0; f < mesh->mNumFaces; f++) {
         unsigned corners = mesh->mFaces[f].mNumIndices;
         TRY(check_face(walk, mesh, f));
-        if (corners < 3) continue; // points and lines carry nothing that burns
+        if (corners < 3) continue; // points and lines have no area
         counts->faces++, counts->corners += corners;
     }
     counts->vertices += mesh->mNumVertices;
@@ -124,7 +124,7 @@ static SingeResult put_sizes(Walk *walk, const struct aiMesh *mesh, const struct
     return SINGE_OK;
 }
 
-/// The i-th corner of a face: a mirror turns faces over.
+/// The i-th corner of a face: mirroring flips faces.
 static unsigned corner(const struct aiFace *face, const struct aiMatrix4x4 *at, unsigned i) {
     float turn = (at->a1 * (at->b2 * at->c3 - at->b3 * at->c2) - at->a2 * (at->b1 * at->c3 - at->b3 * at->c1) +
                   at->a3 * (at->b1 * at->c2 - at->b2 * at->c1));
@@ -164,7 +164,7 @@ static SingeResult put_scene(Walk *walk) {
     put(walk, &counts, sizeof counts);
     TRY(walk_scene(walk, put_positions));
     TRY(walk_scene(walk, put_sizes));
-    walk->counts.vertices = 0; // so far, again
+    walk->counts.vertices = 0; // start again
     TRY(walk_scene(walk, put_corners));
     if (counts.uv) TRY(walk_scene(walk, put_uv));
     isolate_put(walk->answer, walk->buffer, walk->held);
@@ -173,13 +173,13 @@ static SingeResult put_scene(Walk *walk) {
 
 // ---- in the child
 
-/// assimp leaves out or moves some indices that are out of range, and only its log tells.
+/// assimp omits or changes some indices that are out of range, and reports that only in its log.
 static void note_complaint(const char *message, char *bad_index) {
     if (!strstr(message, "ndex")) return;
     if (strstr(message, "range") || strstr(message, "overflow") || strstr(message, "nvalid")) *bad_index = 1;
 }
 
-/// assimp's words without what it quotes: the file may not be one that whoever sees the message may read.
+/// assimp's message without its quotes: whoever sees it may not be allowed to read the file.
 static void assimp_unquote(char *to, size_t max, const char *words) {
     size_t length = 0;
     bool quoted = false;
@@ -220,7 +220,7 @@ static SingeResult read_in_child(void *context, IsolateAnswer *answer, SingeErro
 
 // ---- in the parent
 
-/// assimp takes a file for what it looks like, whatever its name: of other formats, too.
+/// assimp detects the format from the contents, whatever the name, so it may read other formats, too.
 static SingeResult check_kind(const char *name, const uint8_t *bytes, size_t size, SingeError *error) {
     static const struct {
         const char *ending, *begins;

@@ -9,7 +9,7 @@
 typedef struct Opened {
     const uint8_t *bytes;
     size_t size, at;
-    Bytes own; ///< of a file beside the first
+    Bytes own; ///< of a file other than the first
 } Opened;
 
 // ---- one file
@@ -36,7 +36,7 @@ static void opened_flush(struct aiFile *file) { (void)file; }
 static enum aiReturn opened_seek(struct aiFile *file, size_t offset, enum aiOrigin origin) {
     Opened *opened = (void *)file->UserData;
     size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? opened->at : opened->size;
-    size_t to = from + offset; // wraps where it goes back
+    size_t to = from + offset; // wraps for negative offsets
     if (to > opened->size) return aiReturn_FAILURE;
     opened->at = to;
     return aiReturn_SUCCESS;
@@ -62,7 +62,7 @@ static bool open_beside(Source *source, const char *path, Opened *opened) {
     return true;
 }
 
-// ---- what assimp calls
+// ---- assimp's callbacks
 
 static struct aiFile *source_open(struct aiFileIO *io, const char *name, const char *mode) {
     Source *source = (void *)io->UserData;

@@ -1,4 +1,4 @@
-// FBX and the like in a build without assimp: nothing is read.
+// A build without assimp: FBX and similar formats are refused.
 #include "formats/formats.h"
 #include "formats/store.h"
 

@@ -1,8 +1,8 @@
-// Paper browns by the highest temperature P that it had, evenly with ln(P - 293 K), and with what is burnt; char is
-// black, ash grey. The stops are those by which the preview draws it, less what the preview adds below a vertex's size.
+// Paper browns with its peak temperature P, linearly in ln(P - 293 K), and with its burnt fraction; char is black, ash
+// grey. The colour stops are the preview's, without the detail that the preview adds below a vertex's size.
 //
-// An ember of temperature T gives off, at a wavelength l, exp(-c2 / (l T)) with c2 = 14388 um K (Wien): red 0.61 um,
-// green 0.55 um, blue 0.465 um.
+// An ember of temperature T emits, at a wavelength l, exp(-c2 / (l T)) with c2 = 14388 um K (Wien): red 0.61 um, green
+// 0.55 um, blue 0.465 um.
 #include "formats/burn_colour.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@ static float between(float low, float high, float x) {
 
 static float linear(uint8_t encoded) {
     const float c = (float)encoded / 255;
-    return c * (c * (c * 0.305306011f + 0.682171111f) + 0.012522878f); // of sRGB, to a thousandth
+    return c * (c * (c * 0.305306011f + 0.682171111f) + 0.012522878f); // from sRGB, to a thousandth
 }
 
 static void fresh_colour(const OutputSheet *sheet, const float uv[2], float colour[3]) {

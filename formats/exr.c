@@ -1,4 +1,4 @@
-// EXR by OpenEXRCore: one part of scan lines, ZIP-packed, whole in memory before it goes to the file.
+// EXR by OpenEXRCore: one part of scan lines, ZIP-compressed, complete in memory before the file is written.
 #include "formats/codec.h"
 #include "formats/store.h"
 
@@ -12,12 +12,12 @@ typedef struct ExrJob {
     bool out_of_memory;
 } ExrJob;
 
-/// Called with the library's lock held, so that it cannot ask for the job; the code alone tells what went wrong.
+/// Called with the library's lock held, so it cannot access the job; the error code is all that is kept.
 static void exr_hush(exr_const_context_t context, exr_result_t code, const char *message) {
     (void)context, (void)code, (void)message;
 }
 
-/// The library also goes back: to the table of the lines' offsets, when all are there.
+/// The library also seeks back: to the table of the lines' offsets, at the end.
 static int64_t exr_put(exr_const_context_t context, void *data, const void *buffer, uint64_t size, uint64_t offset,
                        exr_stream_error_func_ptr_t fail) {
     ExrJob *job = data;
@@ -49,7 +49,7 @@ static exr_result_t exr_describe(exr_context_t file, int width, int height, cons
     return result ? result : exr_write_header(file);
 }
 
-/// Tells the encoder where the channels of the lines from `y` lie. It has them by name in its own order.
+/// Gives the encoder the channels of the lines from `y`. It lists them by name in its own order.
 static void exr_aim(exr_encode_pipeline_t *encoder, const ExrChannel *channels, int count, int width, int y) {
     for (int16_t i = 0; i < encoder->channel_count; i++) {
         exr_coding_channel_info_t *to = &encoder->channels[i];

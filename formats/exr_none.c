@@ -1,4 +1,4 @@
-// EXR in a build without OpenEXR: nothing is written.
+// A build without OpenEXR: no EXR is written.
 #include "formats/formats.h"
 #include "formats/store.h"
 

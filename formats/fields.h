@@ -1,4 +1,4 @@
-// The fields of a drawn vertex, by the names that they have in every format.
+// The fields of a drawn vertex, by their names in every format.
 #ifndef FORMATS_FIELDS_H
 #define FORMATS_FIELDS_H
 
@@ -13,7 +13,7 @@ typedef struct SurfaceField {
     bool integer;
 } SurfaceField;
 
-/// Fields of one value; vectors go by names of each format's own.
+/// Scalar fields; each format has names of its own for vectors.
 static const SurfaceField surface_fields[] = {
     {"temperature", offsetof(SingeSurface, temperature), false},
     {"temperature_peak", offsetof(SingeSurface, temperature_peak), false},

@@ -110,11 +110,11 @@ static int write_bytes(int file, const uint8_t *data, size_t size) {
         data += count;
         size -= (size_t)count;
     }
-    // file systems that cannot flush say so by EINVAL
+    // EINVAL: the file system cannot flush
     return fsync(file) && errno != EINVAL && errno != ENOTSUP ? errno : 0;
 }
 
-// Opens a new file beside `target`.
+// Opens a new file next to `target`.
 static int temporary_open(const char *target, char *temporary, size_t length, int *file) {
     for (int attempt = 0; attempt < 100; attempt++) {
         int needed = snprintf(temporary, length, "%s.%ld-%d.tmp", target, (long)getpid(), attempt);
@@ -126,7 +126,7 @@ static int temporary_open(const char *target, char *temporary, size_t length, in
     return EEXIST;
 }
 
-// The rename itself lasts only when the folder is flushed too. A failure here loses no data.
+// The rename itself is durable only after the folder is flushed, too. A failure here loses no data.
 static void flush_folder(const char *target) {
     char folder[PATH_MAX];
     strcpy(folder, target);
@@ -139,7 +139,7 @@ static void flush_folder(const char *target) {
     close(file);
 }
 
-// A rename replaces a link, and never what it points at; but it would put a plain file instead of a device.
+// A rename replaces a link, never its target; but it would replace a device by a regular file.
 static SingeResult check_target(const char *path, SingeError *error) {
     struct stat about;
     if (!*path) return refuse_system(error, "write", "(no name)", ENOENT);
@@ -155,7 +155,7 @@ static int put_in_place(const char *temporary, const char *target) {
     return 0;
 }
 
-/// What the target holds becomes the backup; a target that is not there leaves the earlier backup.
+/// The target becomes the backup; without a target the earlier backup remains.
 static int put_aside(const char *target, const char *backup) {
     return backup && rename(target, backup) && errno != ENOENT ? errno : 0;
 }

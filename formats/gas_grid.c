@@ -1,4 +1,4 @@
-// A gas of one's own: copied, cut to what it holds, freed.
+// A gas that owns its arrays: copied, pruned, freed.
 #include "formats/gas_grid.h"
 #include "formats/store.h"
 

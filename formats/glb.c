@@ -1,7 +1,6 @@
-// Frames as binary glTF 2.0: a mesh for each sheet of which something is left, in metres, y up ((x, y, z) of the cache
-// is (x, z, -y) here). Fields are attributes of their own names in capitals behind an underscore; whole numbers are
-// floats there, for glTF has no others (exact to 16,777,216). COLOR_0 is how far it is burnt, which multiplies the
-// picture.
+// Frames as binary glTF 2.0: a mesh for each sheet that is not gone, in metres, y up ((x, y, z) of the cache is (x, z,
+// -y) here). Fields are attributes: an underscore and their names in capitals. Integers are floats, as glTF requires
+// (exact up to 16,777,216). COLOR_0 is the burn colour, which multiplies the picture.
 #include "formats/burn_colour.h"
 #include "formats/fields.h"
 #include "formats/glb_file.h"
@@ -15,7 +14,7 @@ typedef struct GlbMeshes {
     GlbFile *file;
     const SingeSurface *surface;
     SheetParts parts;
-    bool lean; ///< only what is drawn, or asked for by most
+    bool lean; ///< only drawn and common attributes
 } GlbMeshes;
 
 static void put_named(GlbMeshes *w, const char *name, size_t begin, uint32_t count, int width, const float *box) {
@@ -40,7 +39,7 @@ static void put_vectors(GlbMeshes *w, const SheetPart *part, const char *name, f
     put_named(w, name, begin, part->count, 3, box ? bounds : NULL);
 }
 
-/// v of glTF counts from the picture's top.
+/// v of glTF runs from the picture's top.
 static void put_uv(GlbMeshes *w, const SheetPart *part) {
     const size_t begin = w->file->data.size;
     for (uint32_t i = 0; i < part->count; i++) {
@@ -89,7 +88,7 @@ static void put_corners(GlbMeshes *w, const SheetPart *part) {
 
 static bool is_lean(const char *name) { return strcmp(name, "temperature") == 0 || strcmp(name, "burnt") == 0; }
 
-/// The mesh of a sheet. False where nothing of it is left: glTF has no meshes of nothing.
+/// The mesh of a sheet. False if nothing of it is left: glTF has no empty meshes.
 static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
     const SheetPart part = sheet_part(&w->parts, sheet);
     const SingeSurface *s = w->surface;

@@ -23,7 +23,7 @@ void glb_free(GlbFile *f) {
 
 // ---- JSON
 
-/// All but letters, digits and the usual marks is escaped byte by byte where that is possible: names are UTF-8.
+/// Escapes everything but letters, digits and common marks, byte by byte if possible: names are UTF-8.
 void glb_put_string(Sink *sink, const char *text) {
     sink_bytes(sink, "\"", 1);
     for (const char *c = text; *c; c++) {
@@ -34,7 +34,7 @@ void glb_put_string(Sink *sink, const char *text) {
     sink_bytes(sink, "\"", 1);
 }
 
-/// A path as a URI, behind `up` where it is relative.
+/// A path as a URI, prefixed by `up` if it is relative.
 static void put_uri(Sink *sink, const char *up, const char *path) {
     sink_text(sink, "\"%s", *path == '/' ? "" : up);
     for (const unsigned char *c = (const unsigned char *)path; *c; c++) {
@@ -129,7 +129,7 @@ static void put_scene(GlbFile *f, const char *up, const char *extras) {
     while (f->text.size % 4 && !f->text.failed) sink_bytes(&f->text, " ", 1);
 }
 
-/// The header and the two chunks; the data are whole numbers of 4 bytes anyway.
+/// The header and the two chunks; the data are multiples of 4 bytes anyway.
 SingeResult glb_finish(GlbFile *f, const char *up, const char *extras, const char *path, SingeError *error) {
     put_scene(f, up, extras);
     if (f->data.size + f->text.size > UINT32_MAX / 2)

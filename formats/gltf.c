@@ -1,5 +1,5 @@
-// glTF 2.0 and GLB: what is where in the file. Every offset and count is checked here, once: of buffers, views of them,
-// and accessors, which are arrays in a view.
+// glTF 2.0 and GLB: locates the data in the file. Every offset and count is checked here, once: of buffers, of views of
+// buffers, and of accessors, which are arrays in a view.
 #include "formats/gltf.h"
 
 #include "formats/path_inside.h"
@@ -37,7 +37,7 @@ SingeResult gltf_index(const Gltf *gltf, int64_t object, const char *key, uint32
     return SINGE_OK;
 }
 
-/// A member that counts, or `otherwise` without it. False where it does not count, or above `max`.
+/// A member that is a count, or `otherwise` if it is missing. False if it is no count, or above `max`.
 static bool take_count(const Gltf *gltf, int64_t object, const char *key, uint64_t otherwise, uint64_t max,
                        uint64_t *count) {
     int64_t value = json_member(&gltf->json, object, key);
@@ -72,7 +72,7 @@ static SingeResult decode_base64(Gltf *gltf, uint32_t number, const uint8_t *at,
     size_t done = 0;
     for (int held = 0; at < end; at++) {
         int digit = base64_digit(*at);
-        if (digit < 0 && *at == '\\' && at + 1 < end && at[1] == '/') continue; // JSON may write / so
+        if (digit < 0 && *at == '\\' && at + 1 < end && at[1] == '/') continue; // an escaped / of JSON
         if (digit < 0) return gltf_bad(gltf, "buffers", number, "its data are not base64");
         bits = bits << 6 | (uint32_t)digit, held += 6;
         if (held >= 8) held -= 8, bytes->data[done++] = (uint8_t)(bits >> held);
@@ -87,7 +87,7 @@ static int hex_digit(uint8_t c) {
     return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
-/// The path that a URI names from the folder of the file. False where it is too long or no path.
+/// The path of a URI, relative to the folder of the file. False if it is too long or no path.
 static bool make_path(const Gltf *gltf, const uint8_t *at, const uint8_t *end, char path[PATH_LIMIT]) {
     const char *slash = strrchr(gltf->name, '/');
     size_t length = slash ? (size_t)(slash - gltf->name) + 1 : 0;
@@ -116,7 +116,7 @@ static SingeResult load_file(Gltf *gltf, uint32_t number, const uint8_t *at, con
     return result ? gltf_bad(gltf, "buffers", number, "the file that it refers to cannot be read") : SINGE_OK;
 }
 
-/// The bytes of a buffer, read when they are first needed.
+/// The bytes of a buffer, read at first use.
 static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **bytes, uint64_t *size) {
     int64_t buffer = gltf->buffers[number], uri = json_member(&gltf->json, buffer, "uri");
     Bytes *loaded = &gltf->loaded[number];
@@ -145,10 +145,10 @@ static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **byte
 
 // ---- views and accessors
 
-/// An offset in a view, from which `size` bytes are left.
+/// An offset in a view; `size` bytes follow it.
 typedef struct Slice {
     const uint8_t *bytes;
-    uint64_t size, stride; ///< 0: close together
+    uint64_t size, stride; ///< 0: contiguous
 } Slice;
 
 static SingeResult find_view(Gltf *gltf, uint32_t number, uint64_t offset, Slice *slice) {
@@ -180,7 +180,7 @@ static uint32_t type_width(const Gltf *gltf, int64_t type) {
     return 0;
 }
 
-/// Finds `count` elements of `size` bytes; *stride gets how far apart they are.
+/// Finds `count` elements of `size` bytes; *stride is their distance.
 static SingeResult find_elements(Gltf *gltf, int64_t object, uint32_t number, uint64_t count, uint32_t size,
                                  const uint8_t **bytes, uint32_t *stride) {
     int64_t view;
@@ -320,7 +320,7 @@ static void free_all(Gltf *gltf) {
 
 // ---- the file
 
-/// Finds the two chunks of a GLB. `json` gets where the text is.
+/// Finds the two chunks of a GLB. `json` becomes the range of the text.
 static SingeResult find_chunks(Gltf *gltf, const uint8_t *bytes, size_t size, const uint8_t **json, size_t *json_size) {
     if (size < 20 || load_u32_little(bytes + 8) > size || load_u32_little(bytes + 8) < 20)
         return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "byte 8: the file is shorter than it says");
@@ -339,7 +339,7 @@ static SingeResult find_chunks(Gltf *gltf, const uint8_t *bytes, size_t size, co
     return SINGE_OK;
 }
 
-/// Whether this is glTF 1, which has objects where 2 has arrays, or compressed by Draco, which assimp can read.
+/// Whether this is glTF 1, which has objects in place of arrays, or compressed by Draco; assimp can read both.
 static bool is_for_assimp(const Json *json) {
     int64_t accessors = json_member(json, 0, "accessors"), used = json_member(json, 0, "extensionsRequired");
     if (accessors != JSON_NONE && json->values[accessors].kind == JSON_OBJECT) return true;

@@ -1,4 +1,4 @@
-// What of a glTF makes its meshes, in arrays (gltf.c), from which gltf_mesh.c makes polygons.
+// The parts of a glTF that form its meshes, as arrays (gltf.c); gltf_mesh.c makes polygons from them.
 #ifndef FORMATS_GLTF_H
 #define FORMATS_GLTF_H
 
@@ -18,7 +18,7 @@ struct GltfAccessor {
 };
 
 typedef struct GltfPrimitive {
-    uint32_t number, mesh;         ///< from 0; of which mesh
+    uint32_t number, mesh;         ///< from 0; the mesh
     uint32_t mode;                 ///< 0 to 6
     int64_t position, indices, uv; ///< accessors, or -1
 } GltfPrimitive;
@@ -36,7 +36,7 @@ typedef struct Gltf {
     Json json;
     uint32_t *views, *accessors, *buffers, *meshes, *nodes; ///< values of the JSON
     uint32_t view_count, accessor_count, buffer_count, mesh_count, node_count;
-    Bytes *loaded;      ///< [buffer_count] of those that were needed
+    Bytes *loaded;      ///< [buffer_count] of the buffers that were used
     size_t loaded_size; ///< of all of them
     size_t beside_size; ///< of those in other files
     GltfAccessor *read; ///< [accessor_count]; those used have a width
@@ -47,7 +47,7 @@ typedef struct Gltf {
 
 SingeResult gltf_refuse(const Gltf *gltf, SingeResult code, const char *format, ...) SINGE_PRINTF(3, 4);
 
-/// The number of an element in a member, which must be below `count`; JSON_NONE without the member.
+/// The index in a member, which must be below `count`; JSON_NONE without the member.
 SINGE_NODISCARD SingeResult gltf_index(const Gltf *gltf, int64_t object, const char *key, uint32_t count,
                                        int64_t *index);
 

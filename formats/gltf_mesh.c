@@ -1,5 +1,4 @@
-// Polygons of a glTF's scene: a walk over its nodes, in whose order the vertices of their meshes' primitives follow
-// each other.
+// Polygons of a glTF's scene: a walk over its nodes. The vertices of their meshes' primitives follow in this order.
 #include "formats/gltf.h"
 #include "formats/mesh_reader.h"
 #include "formats/store.h"
@@ -14,7 +13,7 @@ typedef struct Transform {
     float m[3][4];
 } Transform;
 
-/// What is where in the scene.
+/// State of the walk.
 typedef struct Instance {
     uint32_t mesh;
     Transform at;
@@ -42,7 +41,7 @@ static Transform chain(const Transform *outer, const Transform *inner) {
     return both;
 }
 
-/// The numbers of a member. False where there are others than so many; without the member they stay.
+/// The numbers of a member. False if their count differs; unchanged without the member.
 static bool take_numbers(const Json *json, int64_t object, const char *key, uint32_t count, float *numbers) {
     int64_t list = json_member(json, object, key), at = list + 1;
     if (list == JSON_NONE) return true;
@@ -84,7 +83,7 @@ static SingeResult node_transform(const Gltf *gltf, uint32_t node, Transform *at
 
 // ---- the walk
 
-/// Adds up what a primitive comes to.
+/// Adds the counts of a primitive.
 static SingeResult count_primitive(Walk *walk, const GltfPrimitive *primitive) {
     const Gltf *gltf = walk->gltf;
     uint64_t vertices = gltf->read[primitive->position].count, faces = 0;
@@ -193,7 +192,7 @@ static void load_elements(const GltfAccessor *a, uint32_t count, float *values) 
     }
 }
 
-/// What is being filled, its counts rising.
+/// The polygons being filled; their counts increase.
 typedef struct Fill {
     const Gltf *gltf;
     Polygons *mesh;
@@ -209,7 +208,7 @@ static void fill_positions(Fill *fill, const GltfAccessor *accessor, const Trans
     }
 }
 
-/// The i-th corner of the primitive, a vertex of it.
+/// The vertex of the primitive's i-th corner.
 static SingeResult take_corner(const Fill *fill, const GltfPrimitive *primitive, uint64_t i, uint32_t *vertex) {
     const GltfAccessor *indices = primitive->indices < 0 ? NULL : &fill->gltf->read[primitive->indices];
     uint32_t count = fill->gltf->read[primitive->position].count;
@@ -220,7 +219,7 @@ static SingeResult take_corner(const Fill *fill, const GltfPrimitive *primitive,
                        primitive->mesh, primitive->number, (unsigned long long)i, *vertex, count);
 }
 
-/// A triangle's three corners, from the primitive's: f is its number.
+/// The three corners of the primitive's f-th triangle.
 static void triangle_corners(const GltfPrimitive *primitive, uint64_t f, uint64_t corners[3]) {
     bool odd = primitive->mode == 5 && f % 2;
     corners[0] = primitive->mode == 4 ? 3 * f : primitive->mode == 6 ? 0 : f + odd;
@@ -291,7 +290,7 @@ static SingeResult make_polygons(const Walk *walk, Polygons *polygons) {
     if (room) made.first[0] = 0;
     SingeResult result = room ? fill_all(walk, &fill) : refuse_memory(gltf->error, "gltf", gltf->name);
     store_free(a, fill.uv, walk->vertices, 2 * sizeof *fill.uv);
-    // as they were made, so that polygons_free knows
+    // the allocated counts, for polygons_free
     made.vertex_count = (uint32_t)walk->vertices, made.face_count = (uint32_t)walk->faces;
     made.corner_count = (uint32_t)walk->corners;
     if (result) polygons_free(&made);

@@ -14,7 +14,7 @@ SingeResult image_read(const char *name, const uint8_t *bytes, size_t size, Sing
     return refuse(error, SINGE_ERROR_FORMAT, "image", -1, "%s: neither a PNG nor a JPEG picture", short_name(name));
 }
 
-// ---- size alone
+// ---- size only
 
 static int be16(const uint8_t *p) { return p[0] << 8 | p[1]; }
 
@@ -37,7 +37,7 @@ bool image_size(const char *path, int *width, int *height) {
     const size_t size = file_read_head(path, head, sizeof head);
     *width = *height = 0;
     if (size >= 24 && memcmp(head, "\x89PNG\r\n\x1a\n", 8) == 0) {
-        if (head[16] || head[17] || head[20] || head[21]) return false; // more than a reader takes
+        if (head[16] || head[17] || head[20] || head[21]) return false; // larger than the reader accepts
         *width = be16(head + 18), *height = be16(head + 22);
         return true;
     }
@@ -49,8 +49,8 @@ void image_free(Image *image) {
     memset(image, 0, sizeof *image);
 }
 
-// Luma of Rec. 709 on the encoded values, Y = (2126 R + 7152 G + 722 B) / (10000 * 255): whole numbers up to
-// the last division, so that white is 1 exactly.
+// Luma of Rec. 709 on the encoded values, Y = (2126 R + 7152 G + 722 B) / (10000 * 255): integers up to the last
+// division, so that white is exactly 1.
 SingeResult image_luminance(const Image *image, SingeAllocator allocator, SingeTexture *picture, SingeError *error) {
     memset(picture, 0, sizeof *picture);
     size_t pixels = (size_t)image->width * (size_t)image->height;

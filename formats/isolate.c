@@ -1,6 +1,6 @@
-// By fork, as POSIX has it: a system without it gets another isolate_run.
+// Uses fork of POSIX: other systems need another isolate_run.
 //
-// The child writes its answer to a pipe and an Ending behind it. It leaves by _exit, so that nothing of the parent's is
+// The child writes its answer and then an Ending to a pipe. It exits by _exit, so that nothing of the parent's is
 // flushed, freed or reported twice. The parent reads until the pipe closes, and kills a child that is over its limits.
 #if defined(__APPLE__)
 #define _DARWIN_C_SOURCE
@@ -41,7 +41,7 @@
 #endif
 
 #ifdef SINGE_COVERAGE
-void __gcov_dump(void); // _exit leaves out what gcc's counters need
+void __gcov_dump(void); // gcc's counters need it before _exit
 #endif
 
 enum { LOOK_MS = 20, EXIT_NO_MEMORY = 77, CRASH_STACK = 1 << 16 };
@@ -49,7 +49,7 @@ enum { LOOK_MS = 20, EXIT_NO_MEMORY = 77, CRASH_STACK = 1 << 16 };
 /// What follows the answer in the pipe.
 typedef struct Ending {
     uint32_t magic;
-    uint32_t no_memory; ///< the work failed when memory had been refused
+    uint32_t no_memory; ///< the work failed after an allocation had failed
     SingeError error;   ///< code 0: the answer is whole
 } Ending;
 
@@ -73,7 +73,7 @@ void isolate_put(IsolateAnswer *answer, const void *bytes, size_t size) {
     errno = before;
 }
 
-// Few libraries survive an allocation that fails. errno still tells that one has.
+// Few libraries survive a failed allocation. errno still shows that one failed.
 static void note_crash(int number) {
     if (errno == ENOMEM) _exit(EXIT_NO_MEMORY);
     signal(number, SIG_DFL);
@@ -135,7 +135,7 @@ static void set_limits(IsolateLimits limits) {
 
 static _Noreturn void child_main(int pipe, pid_t parent, const sigset_t *mask, IsolateWork *work, void *context,
                                  IsolateLimits limits) {
-    if (pipe < 3) pipe = fcntl(pipe, F_DUPFD, 3); // where the parent has closed these
+    if (pipe < 3) pipe = fcntl(pipe, F_DUPFD, 3); // the parent has closed these
     if (pipe < 0) _exit(1);
 #if defined(__linux__)
     prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -160,7 +160,7 @@ static _Noreturn void child_main(int pipe, pid_t parent, const sigset_t *mask, I
 
 // ---- in the parent
 
-/// A child that is waited for.
+/// A child process that the parent waits for.
 typedef struct Child {
     const char *name;
     IsolateLimits limits;
@@ -168,8 +168,8 @@ typedef struct Child {
     pid_t process;
     int pipe;
     double waited;        ///< s so far
-    double looked;        ///< s, the clock when it was last looked at
-    size_t memory_before; ///< bytes that it began with
+    double looked;        ///< s, clock at the last check
+    size_t memory_before; ///< bytes at its start
 } Child;
 
 static double clock_now(void) {
@@ -178,7 +178,7 @@ static double clock_now(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/// Bytes that the process has in memory; 0 where that is not known.
+/// Resident memory of the process, bytes; 0 if unknown.
 static size_t memory_of(pid_t process) {
 #if defined(__linux__)
     unsigned long long pages[2];
@@ -212,7 +212,7 @@ static SingeResult refuse_signal(const Child *child, int number) {
                   short_name(child->name), number);
 }
 
-/// Looks at the child's time and memory. Time in which this process itself was stopped does not count.
+/// Checks the child's time and memory. Time during which this process was stopped does not count.
 static SingeResult isolate_look(Child *child) {
     double now = clock_now(), passed = now - child->looked;
     if (passed < 1e-3 * LOOK_MS) return SINGE_OK;
@@ -259,7 +259,7 @@ static SingeResult reap(Child *child, int *status) {
     return SINGE_OK;
 }
 
-/// Takes the ending off the answer and says what it means.
+/// Removes the ending from the answer and interprets it.
 static SingeResult isolate_judge(const Child *child, Bytes *answer, int status) {
     if (WIFSIGNALED(status)) return refuse_signal(child, WTERMSIG(status));
     if (WEXITSTATUS(status) == EXIT_NO_MEMORY) return refuse_size(child);
@@ -292,7 +292,7 @@ static SingeResult wait_for(Child *child, Bytes *answer) {
         while (waitpid(child->process, NULL, 0) < 0 && errno == EINTR) {
         }
     }
-    // as bytes_free expects it
+    // for bytes_free
     if (!result && !store_trim(answer->allocator, &answer->data, &capacity, answer->size + 1, 1))
         result = refuse_memory(child->error, "file", child->name);
     if (!result) answer->data[answer->size] = 0;
@@ -303,7 +303,7 @@ static SingeResult wait_for(Child *child, Bytes *answer) {
     return result;
 }
 
-/// A child would find the locks of other threads locked for good.
+/// In a child, locks held by other threads would remain locked forever.
 bool isolate_possible(void) {
 #if defined(__linux__)
     struct stat tasks;

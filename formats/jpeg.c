@@ -34,7 +34,7 @@ static void jpeg_fail_with(JpegJob *job, const char *message) {
     longjmp(job->jump, 1);
 }
 
-// Warnings after which pixels are made up count as errors; the others are about harmless oddities.
+// Warnings after which pixels are invented count as errors; the others are harmless.
 static void jpeg_notice(j_common_ptr jpeg, int level) {
     if (level >= 0) return;
     switch (jpeg->err->msg_code) {
@@ -50,7 +50,7 @@ static void jpeg_notice(j_common_ptr jpeg, int level) {
 
 static void jpeg_say_nothing(j_common_ptr jpeg) { (void)jpeg; }
 
-// Each scan of a progressive file costs a pass over the picture, however short it is.
+// Each scan of a progressive file, however short, costs a pass over the picture.
 static void jpeg_watch(j_common_ptr jpeg) {
     if (jpeg->is_decompressor && ((j_decompress_ptr)jpeg)->input_scan_number > 100)
         jpeg_fail_with((JpegJob *)jpeg->err, "more than 100 scans");
@@ -84,7 +84,7 @@ static bool jpeg_decode(JpegJob *job, const uint8_t *bytes, size_t size) {
     jpeg->progress = &job->progress;
     jpeg_mem_src(jpeg, bytes, (unsigned long)size);
     jpeg_read_header(jpeg, TRUE);
-    // a coded block of 64 pixels takes a bit at least, or libjpeg would be asked for gigabytes by a few bytes
+    // a coded block of 64 pixels takes at least a bit; otherwise a few bytes could request gigabytes
     if ((uint64_t)jpeg->image_width * jpeg->image_height / 4096 > size)
         jpeg_fail_with(job, "the file is too short for its width and height");
     bool ink = jpeg->jpeg_color_space == JCS_CMYK || jpeg->jpeg_color_space == JCS_YCCK;

@@ -10,7 +10,7 @@ typedef struct Parser {
     const char *name;
     const uint8_t *at, *end;
     SingeError *error;
-    uint32_t open[JSON_DEPTH]; ///< what the cursor is in
+    uint32_t open[JSON_DEPTH]; ///< the open values around the cursor
     int depth;
 } Parser;
 
@@ -56,7 +56,7 @@ static SingeResult take_plain(Parser *parser) {
     return json_add(parser, JSON_PLAIN, begin, parser->at);
 }
 
-/// A value, or the beginning of one that has others in it.
+/// Reads a value, or the beginning of an object or array.
 static SingeResult take_value(Parser *parser) {
     skip_blanks(parser);
     if (parser->at == parser->end) return json_bad(parser, "the text ends too soon");
@@ -70,7 +70,7 @@ static SingeResult take_value(Parser *parser) {
     return SINGE_OK;
 }
 
-/// Goes on in what is open: to its end, or to its next value.
+/// Continues in the innermost open value: to its end, or to its next value.
 static SingeResult go_on(Parser *parser) {
     JsonValue *open = &parser->json->values[parser->open[parser->depth - 1]];
     bool object = open->kind == JSON_OBJECT;
@@ -105,7 +105,7 @@ SingeResult json_read(const char *name, const uint8_t *text, size_t size, SingeA
     TRY(take_value(&parser));
     while (parser.depth) TRY(go_on(&parser));
     for (skip_blanks(&parser); parser.at < parser.end && *parser.at == 0; parser.at++) {
-    } // some chunks are filled so
+    } // padding of some chunks
     return parser.at < parser.end ? json_bad(&parser, "there is data after the end") : SINGE_OK;
 }
 

@@ -21,14 +21,14 @@ static inline size_t text_end_length(const uint8_t *p, const uint8_t *end) {
     return *p == '\r' && p + 1 < end && p[1] == '\n' ? 2 : 1;
 }
 
-/// Past spaces and tabs.
+/// Moves past spaces and tabs.
 static inline void text_skip_blanks(Text *text) {
     while (text->at < text->end && text_is_blank(*text->at)) text->at++;
 }
 
 static inline bool text_at_line_end(const Text *text) { return text->at == text->end || text_is_end(*text->at); }
 
-/// Past the end of the line.
+/// Moves past the end of the line.
 static inline void text_next_line(Text *text) {
     while (!text_at_line_end(text)) text->at++;
     size_t length = text_end_length(text->at, text->end);
@@ -43,7 +43,7 @@ static inline const uint8_t *text_word_end(const Text *text) {
     return p;
 }
 
-/// Where the cursor is in its line, from 1, in bytes. `begin` is the file's first.
+/// The cursor's column, from 1, in bytes. `begin` is the start of the file.
 static inline int64_t text_column(const Text *text, const uint8_t *begin) {
     const uint8_t *p = text->at;
     while (p > begin && !text_is_end(p[-1])) p--;

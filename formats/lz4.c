@@ -1,7 +1,7 @@
 // A block is a row of sequences: a byte with two lengths (of literals in its upper half, of a match less 4 in its lower
-// one; 15 goes on in bytes up to one below 255), the literals, and the match's distance back (u16). The last sequence
-// has literals alone, at least 5, and no match begins in the last 12 bytes. Matches are found by a table of where each
-// hash of 4 bytes came last; what does not match is passed faster and faster.
+// one; 15 continues in bytes up to one below 255), the literals, and the match's distance back (u16). The last sequence
+// has only literals, at least 5, and no match begins in the last 12 bytes. Matches are found by a table with the last
+// position of each hash of 4 bytes; the stride grows while nothing matches.
 #include "formats/lz4.h"
 
 #include <string.h>

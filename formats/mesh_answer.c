@@ -28,7 +28,7 @@ static SingeResult take_positions(const char *name, const Polygons *made, SingeE
     return SINGE_OK;
 }
 
-/// Where faces begin, from their sizes, which lie behind the first entry. False where they do not agree.
+/// The faces' first corners, from their sizes, which are stored after the first entry. False if their sum is wrong.
 static bool take_sizes(Polygons *made) {
     uint64_t corner = 0;
     made->first[0] = 0;

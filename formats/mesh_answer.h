@@ -1,4 +1,4 @@
-// Polygons as the bytes that a reader in a child process puts for its parent, which trusts none of them.
+// Polygons as the answer of a reader in a child process; the parent validates all of it.
 //
 //     MeshCounts
 //     float     positions[3 * vertices]
@@ -15,8 +15,8 @@ typedef struct MeshCounts {
     uint64_t uv; ///< 1 or 0
 } MeshCounts;
 
-/// Makes polygons of an answer. Sizes that do not agree and indices out of range are SINGE_ERROR_FORMAT, positions
-/// that are not finite and no faces at all SINGE_ERROR_MESH; uv that are not finite become 0.
+/// Makes polygons from an answer. Inconsistent sizes and indices out of range are SINGE_ERROR_FORMAT; positions that
+/// are not finite, or no faces, are SINGE_ERROR_MESH; uv that are not finite become 0.
 SINGE_NODISCARD SingeResult mesh_answer_take(const char *name, const uint8_t *bytes, size_t size,
                                              SingeAllocator allocator, Polygons *polygons, SingeError *error);
 

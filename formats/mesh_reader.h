@@ -1,4 +1,4 @@
-// What the mesh readers share.
+// Shared by the mesh readers.
 #ifndef FORMATS_MESH_READER_H
 #define FORMATS_MESH_READER_H
 
@@ -7,11 +7,11 @@
 /// The largest number of vertices, faces or corners: they are numbered by int32_t.
 enum { MESH_COUNT_LIMIT = 0x7fffffff };
 
-/// A file that uses its meshes over and over may come to so many bytes of positions, corners and uv, and so many times
-/// its size and that of the files that it refers to.
+/// Limits for files that instance their meshes: bytes of positions, corners and uv, absolute and as a multiple of the
+/// size of the file and of the files that it refers to.
 enum { MESH_ANSWER_BASE = 16 << 20, MESH_ANSWER_TIMES = 64 };
 
-/// Whether a file's name has this ending (".obj"), in capitals or not.
+/// Whether a file's name has this ending (".obj"), in any case.
 bool mesh_name_ends(const char *name, const char *ending);
 
 #endif

@@ -2,10 +2,9 @@
 //
 //     q 2^k,  q = round(M 10^e / 2^k),  2^(p-1) <= q < 2^p,
 //
-// k raised where needed to the exponent of the smallest subnormal. The slow path finds q by exact long
-// division of big integers. The fast path computes M 10^e in double precision (M of up to 19 digits,
-// |e| <= 22, relative error below 2^-51) and takes it wherever that error cannot change the rounding to
-// a float.
+// with k at least the exponent of the smallest subnormal. The slow path finds q by exact long division of big integers.
+// The fast path computes M 10^e in double precision (M of up to 19 digits, |e| <= 22, relative error below 2^-51) and
+// uses it if that error cannot change the rounding to a float.
 #include "formats/number.h"
 
 #include <math.h>
@@ -39,7 +38,7 @@ static NumberStatus decimal_word(const uint8_t *at, const uint8_t *end) {
     return NUMBER_JUNK;
 }
 
-// The digits before and behind the point.
+// The digits before and after the point.
 static const uint8_t *decimal_digits(const uint8_t *at, const uint8_t *end, Decimal *number) {
     bool point = false, any = false;
     int64_t behind = 0, count = 0, kept = 0;
@@ -151,8 +150,8 @@ static void big_subtract(Big *a, const Big *b) {
 
 // ---- rounding
 
-// Rounds quotient 2^-shift (a little more where `rest`) to `bits` bits, ties to even; the last bit is worth
-// at least 2^lowest.
+// Rounds quotient 2^-shift (a little more if `rest`) to `bits` bits, ties to even; the last bit is worth at least
+// 2^lowest.
 static double round_bits(uint64_t quotient, int shift, bool rest, int bits, int lowest) {
     int have = 0;
     for (uint64_t q = quotient; q; q >>= 1) have++;
@@ -180,7 +179,7 @@ static double decimal_round(const Decimal *number, int bits, int lowest) {
             else over.count = 1, over.words[0] = digit;
             taken++;
         }
-    // what lies behind 800 digits can only break a tie
+    // digits beyond 800 can only break a tie
     if (number->digit_count > count) big_multiply_add(&over, 10, 1), exponent--;
     if (exponent >= 0) big_times_power_of_ten(&over, exponent);
     else big_times_power_of_ten(&under, -exponent);

@@ -1,4 +1,4 @@
-// Decimal numbers in text, whatever the locale.
+// Decimal numbers in text, independent of the locale.
 #ifndef FORMATS_NUMBER_H
 #define FORMATS_NUMBER_H
 
@@ -12,8 +12,8 @@ typedef enum NumberStatus {
     NUMBER_RANGE,      ///< larger than the type holds
 } NumberStatus;
 
-/// Reads [+-] digits [. digits] [e [+-] digits] from *at and moves *at behind it. The result is the
-/// nearest float (ties to even); what is too small becomes 0. On failure *at stays.
+/// Reads [+-] digits [. digits] [e [+-] digits] from *at and moves *at past it. The result is the nearest float (ties
+/// to even); numbers that are too small become 0. On failure *at is unchanged.
 NumberStatus number_float(const uint8_t **at, const uint8_t *end, float *value);
 NumberStatus number_double(const uint8_t **at, const uint8_t *end, double *value);
 

@@ -1,4 +1,4 @@
-// Wavefront OBJ: v, vt and f; everything about looks and grouping is passed over.
+// Wavefront OBJ: v, vt and f; everything about appearance and groups is ignored.
 #include "formats/mesh_reader.h"
 #include "formats/number.h"
 #include "formats/store.h"
@@ -36,8 +36,8 @@ static SingeResult obj_refuse(const Obj *obj, SingeResult code, const char *what
     return obj_refuse_at(obj, code, obj->text.line, what);
 }
 
-/// The word at the cursor is reported by its position only: the file may not be one that whoever sees the message may
-/// read.
+/// The word at the cursor is reported only by its position: whoever sees the message may not be allowed to read the
+/// file.
 static SingeResult obj_refuse_word(const Obj *obj, const char *what) {
     return refuse(obj->error, SINGE_ERROR_FORMAT, "obj", obj->text.line, "%s:%lld:%lld: this %s", short_name(obj->name),
                   (long long)obj->text.line, (long long)text_column(&obj->text, obj->begin), what);
@@ -111,7 +111,7 @@ static SingeResult obj_uv(Obj *obj) {
     return SINGE_OK;
 }
 
-// An index counts from 1, or backwards from the last one so far. A positive one may lie ahead.
+// An index counts from 1, or backwards from the last one so far. A positive one may be of a later vertex.
 static SingeResult obj_index(Obj *obj, size_t so_far, const char *what, int32_t *index) {
     int64_t value;
     const uint8_t *word = obj->text.at;
@@ -174,7 +174,7 @@ static SingeResult obj_face(Obj *obj) {
     return SINGE_OK;
 }
 
-// What is about looks, groups, points and lines carries nothing that burns.
+// Lines about appearance, groups, points and lines are ignored.
 static bool obj_is_passed_over(const uint8_t *begin, const uint8_t *end) {
     static const char *const known[] = {"vn",     "vp",     "g",        "o",        "s",          "mg",
                                         "usemtl", "mtllib", "usemap",   "maplib",   "shadow_obj", "trace_obj",

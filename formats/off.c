@@ -1,10 +1,10 @@
-// OFF: counts, a line of text for each vertex, then one for each face. Behind what is needed a line may have colours,
-// normals or texture coordinates, which are passed over.
+// OFF: counts, a line of text for each vertex, then one for each face. Further values of a line (colours, normals or
+// texture coordinates) are ignored.
 #include "formats/mesh_reader.h"
 #include "formats/scan.h"
 #include "formats/store.h"
 
-/// The header word may say what vertices have beside their positions: "OFF", "COFF", "STCNOFF".
+/// The header word may state what vertices have besides their positions: "OFF", "COFF", "STCNOFF".
 static SingeResult off_header(Scan *scan) {
     if (!scan_to_word(scan, '#')) return scan_refuse(scan, SINGE_ERROR_FORMAT, "the file has nothing but comments");
     const uint8_t *at = scan->text.at, *end = text_word_end(&scan->text);
@@ -20,7 +20,7 @@ static SingeResult off_header(Scan *scan) {
     return SINGE_OK;
 }
 
-// Counts are checked against the bytes that are there before anything is allocated by them.
+// Counts are checked against the size of the file before memory is allocated.
 static SingeResult off_counts(Scan *scan, Polygons *mesh) {
     int64_t vertices, faces, sides;
     TRY(scan_count(scan, &vertices));
@@ -41,7 +41,7 @@ static SingeResult off_counts(Scan *scan, Polygons *mesh) {
     return SINGE_OK;
 }
 
-/// To the next line that has something on it.
+/// Moves to the next line that is not empty.
 static SingeResult off_next_line(Scan *scan) {
     text_next_line(&scan->text);
     return scan_to_word(scan, '#') ? SINGE_OK : scan_refuse(scan, SINGE_ERROR_FORMAT, "the file ends too soon");

@@ -1,12 +1,12 @@
-// What a run leaves for other programs: formats of frames, each a file of its own and one row here. A format writes a
-// file a frame and, where it has one, a root: a file that names all of them. Writers are pure: the same frame and scene
-// give the same bytes, whether a simulation or the cache is where they come from.
+// Output for other programs: formats of frames, each in a source file of its own and one row here. A format writes a
+// file per frame and may have a root: a file that refers to all frames. Writers are pure: the same frame and scene give
+// the same bytes, whether they come from a simulation or from the cache.
 #ifndef FORMATS_OUTPUT_H
 #define FORMATS_OUTPUT_H
 
 #include "formats/formats.h"
 
-/// A frame as writers get it.
+/// A frame as passed to writers.
 typedef struct OutputFrame {
     const SingeSurface *surface;
     double time; ///< s
@@ -18,31 +18,31 @@ typedef struct OutputMesh {
     uint32_t vertex_count, cell_count;
     const float *positions; ///< [3 * vertex_count] m
     const float *uv;        ///< [2 * vertex_count] or NULL
-    const float *corner_uv; ///< [8 * cell_count] of each cell's corners, where there are seams; else NULL
+    const float *corner_uv; ///< [8 * cell_count] of each cell's corners if there are seams; else NULL
     const uint32_t *cells;  ///< [4 * cell_count]
-    const int32_t *source;  ///< [vertex_count] the file's vertex, -1 for a new one; NULL where they are the same
+    const int32_t *source;  ///< [vertex_count] the file's vertex, -1 for a new one; NULL if they are the same
     const uint32_t *became; ///< [source_count] the vertex that the file's vertex is now; NULL with source
     uint32_t source_count;  ///< vertices of the file
 } OutputMesh;
 
 static inline bool output_mesh_has_uv(const OutputMesh *mesh) { return mesh->uv || mesh->corner_uv; }
-/// The uv of a cell's corner, 0 to 3, of a mesh that has some.
+/// The uv of a cell's corner, 0 to 3, of a mesh with uv.
 static inline void output_mesh_uv(const OutputMesh *mesh, uint32_t cell, int corner, float uv[2]) {
     const size_t at = 4 * (size_t)cell + (size_t)corner;
     const float *from = mesh->corner_uv ? mesh->corner_uv + 2 * at : mesh->uv + 2 * (size_t)mesh->cells[at];
     uv[0] = from[0], uv[1] = from[1];
 }
 
-/// What is drawn of a sheet besides its surface.
+/// The appearance of a sheet besides its surface.
 typedef struct OutputSheet {
     const char *name;    ///< as in the scene
-    const char *picture; ///< path of its picture, from the root file if it is relative; NULL: none
+    const char *picture; ///< path of its picture, relative paths from the root file; NULL: none
     const Image *image;  ///< the picture; NULL: none
     float colour[3];     ///< linear, multiplies the picture
     OutputMesh mesh;     ///< textures and VAT need it
 } OutputSheet;
 
-/// Where a shape is in a frame.
+/// The pose of a shape in a frame.
 typedef struct OutputPose {
     float position[3], rotation[4]; ///< m; quaternion x, y, z, w
     const float *vertices;          ///< [3 * OutputShape.vertex_count] m, of a mesh that deforms; NULL: the shape's
@@ -61,21 +61,20 @@ typedef struct OutputShape {
     const OutputPose *poses;               ///< [OutputScene.frames]
 } OutputShape;
 
-/// What does not change from frame to frame. A writer of frames looks at `name`, `fps`, `texture_size` and the
-/// sheets only.
+/// The data common to all frames. Writers of frames use only `name`, `fps`, `texture_size` and the sheets.
 typedef struct OutputScene {
     const char *name; ///< of the files
     float fps;
-    int frames;       ///< that are written, from 1
+    int frames;       ///< number of frames, from 1
     int texture_size; ///< pixels a side of textures
-    bool gas;         ///< gas/NAME.0001.vdb are there
-    bool gas_detail;  ///< gas_detail/NAME.0001.vdb, too: the root names those
+    bool gas;         ///< gas/NAME.0001.vdb exist
+    bool gas_detail;  ///< gas_detail/NAME.0001.vdb exist, too: the root refers to those
     uint32_t sheet_count, shape_count;
     const OutputSheet *sheets;
     const OutputShape *shapes;
     float eye[3], target[3], up[3]; ///< m, of the camera
     float fov, aspect;              ///< radians, vertical; width over height
-    float aperture, focus;          ///< m: of the lens, and the distance that is sharp; 0: all is
+    float aperture, focus;          ///< m: of the lens, and the distance in focus; 0: everything is
     float light_direction[3], light_angle, light_colour[3]; ///< towards it; radians, radius; linear
     float sky[3];                                           ///< linear
     float ground_height, ground_colour[3];                  ///< m, -INFINITY for none; linear
@@ -97,7 +96,7 @@ SINGE_NODISCARD SingeResult glb_write_frame(const char *path, const OutputScene 
 SINGE_NODISCARD SingeResult textures_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame,
                                                  SingeError *error);
 
-/// The frames of a finished cache, from 1. What `read` gives lasts until the next is read.
+/// The frames of a finished cache, from 1. The result of `read` is valid until the next call.
 typedef struct OutputCache {
     int frames;
     SingeResult (*read)(void *context, int number, OutputFrame *frame, SingeError *error);
@@ -118,8 +117,8 @@ typedef SingeResult OutputWriteFrame(const char *path, const OutputScene *scene,
                                      SingeError *error);
 typedef SingeResult OutputWriteRoot(const char *path, const OutputScene *scene, SingeError *error);
 
-/// ROW(name, ending of frames, writer, ending of the root or NULL, its writer or NULL): frames lie in name/, the root
-/// beside that folder. The first is the cache, which every run writes and from which the others can be made.
+/// ROW(name, ending of frames, writer, ending of the root or NULL, its writer or NULL): frames are in name/, the root
+/// is next to that folder. The first is the cache, which every run writes and from which the others can be made.
 #define OUTPUT_FORMATS(ROW)                                     \
     ROW(ply, ".ply", ply_write_frame, NULL, NULL)               \
     ROW(usd, ".usdc", usd_write_frame, ".usda", usd_write_root) \
@@ -145,8 +144,8 @@ typedef SingeResult OutputWriteSingle(const char *path, const OutputScene *scene
 /// A form of delivery: all frames at once, made from a finished cache.
 typedef struct OutputSingle {
     const char *name;
-    bool by_option;     ///< `--single` asks for it: frames have the same name
-    const char *ending; ///< of the file beside the folders; where it is NULL, several lie in a folder of that name
+    bool by_option;     ///< written by `--single`: the format of frames has the same name
+    const char *ending; ///< of the file next to the folders; NULL: several files in a folder of that name
     OutputWriteSingle *write;
 } OutputSingle;
 enum { OUTPUT_SINGLE_COUNT = 4 };

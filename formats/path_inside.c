@@ -18,7 +18,7 @@ static bool goes_up(const char *path) {
     }
 }
 
-/// Whether links, too, lead into the folder or below.
+/// Whether the path with links resolved is in the folder or below.
 static bool leads_inside(const char *folder, const char *path) {
     char *real_folder = realpath(folder, NULL), *real = realpath(path, NULL);
     size_t length = real_folder ? strlen(real_folder) : 0;

@@ -1,5 +1,5 @@
 // PLY meshes: ascii and binary of both byte orders. Elements other than "vertex" and "face", lists of a vertex and
-// whatever else a face has are passed over.
+// other properties of a face are ignored.
 #include "formats/ply.h"
 
 #include "formats/mesh_reader.h"
@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-// Where a property of a vertex goes: every `stride`th float from `values`, times `scale`; NULL is nowhere.
+// The target of a vertex property: every `stride`th float from `values`, times `scale`; NULL: ignored.
 typedef struct PlyTarget {
     float *values;
     size_t stride;
@@ -49,7 +49,7 @@ static SingeResult ply_text_value(Ply *ply, PlyType type, double *value) {
     float single = 0;
     NumberStatus status = number_float(&text->at, end, &single);
     *value = single;
-    // an integer is read as one, for a float would round it
+    // an integer is read as one: a float would round it
     if (type < PLY_FLOAT32 && status == NUMBER_OK) {
         int64_t integer = 0;
         text->at = word;
@@ -135,7 +135,7 @@ static const PlyProperty *ply_scalar(const Ply *ply, const PlyElement *element, 
     return NULL;
 }
 
-// Any other number than position, picture coordinates and normal is an attribute.
+// Any scalar other than position, uv and normal is an attribute.
 static bool ply_is_attribute(const PlyProperty *property, const PlyTarget *target) {
     static const char *const normals[] = {"nx", "ny", "nz"};
     for (int i = 0; i < 3; i++)
@@ -156,7 +156,7 @@ static SingeResult ply_plan_attribute(Ply *ply, const PlyProperty *property, uin
     if (!values) return refuse_memory(ply->error, "ply", ply->name);
     attribute->values = values;
     *target = (PlyTarget){values, 1, 1};
-    // painted colours of 8 bits count from 0 to 1, as they do everywhere else
+    // 8-bit colours map to 0 to 1, as everywhere else
     for (int i = 0; i < 4; i++)
         if (property->type == PLY_UINT8 && strcmp(name, colours[i]) == 0) target->scale = 1 / 255.0f;
     return SINGE_OK;
@@ -183,7 +183,7 @@ static SingeResult ply_plan_vertices(Ply *ply, const PlyElement *element, Polygo
     static const char *const axes[] = {"x", "y", "z"};
     static const char *const uvs[][2] = {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}};
     size_t index, other;
-    for (int i = 0; i < 3; i++) // before the memory: without properties a count needs no bytes in the file
+    for (int i = 0; i < 3; i++) // before allocating: without properties a count needs no bytes in the file
         if (!ply_scalar(ply, element, axes[i], &index))
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "vertices have no property \"%s\"", axes[i]);
     mesh->positions = store_new(ply->allocator, mesh->vertex_count, 3 * sizeof *mesh->positions);
@@ -231,7 +231,7 @@ static SingeResult ply_read_vertices(Ply *ply, const PlyElement *element, Polygo
 
 // ---- faces
 
-/// The faces that are being read.
+/// The faces being read.
 typedef struct PlyFaces {
     Polygons *mesh;
     const PlyProperty *corners, *uvs; ///< lists; uvs may be NULL
@@ -260,7 +260,7 @@ static SingeResult ply_read_corners(Ply *ply, PlyFaces *faces) {
     return SINGE_OK;
 }
 
-// A list of u and v of each corner. It may stand before the corners.
+// A list of u and v of each corner. It may precede the corners.
 static SingeResult ply_read_uvs(Ply *ply, PlyFaces *faces, size_t *uv_count) {
     Polygons *mesh = faces->mesh;
     uint64_t count = 0;
@@ -299,7 +299,7 @@ static SingeResult ply_read_face(Ply *ply, const PlyElement *element, PlyFaces *
     return SINGE_OK;
 }
 
-// Arrays as polygons_free expects them: with their counts.
+// Sets the arrays and their counts, for polygons_free.
 static SingeResult ply_trim_faces(Ply *ply, PlyFaces *faces) {
     Polygons *mesh = faces->mesh;
     bool good =
@@ -310,7 +310,7 @@ static SingeResult ply_trim_faces(Ply *ply, PlyFaces *faces) {
     return good ? SINGE_OK : refuse_memory(ply->error, "ply", ply->name);
 }
 
-// What was read of faces that are not whole goes.
+// Drops a partially read face.
 static void ply_drop_faces(Ply *ply, PlyFaces *faces) {
     store_free(ply->allocator, faces->mesh->corners, faces->corner_capacity, sizeof *faces->mesh->corners);
     store_free(ply->allocator, faces->mesh->uv, faces->uv_capacity, sizeof *faces->mesh->uv);

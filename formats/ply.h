@@ -40,7 +40,7 @@ typedef struct PlyHeader {
     const uint8_t *note, *note_end; ///< the first comment that begins with "singe", or NULL
 } PlyHeader;
 
-/// A position in a PLY file, with what is needed to complain about it.
+/// A position in a PLY file, with the context of error messages.
 typedef struct Ply {
     const char *name;
     const uint8_t *begin;
@@ -50,8 +50,8 @@ typedef struct Ply {
     SingeError *error;
 } Ply;
 
-/// Reads the header of ply->text and leaves the cursor at the body. The element counts are known to fit
-/// into the bytes that follow. Free with ply_header_free, after failure too.
+/// Reads the header of ply->text and leaves the cursor at the body. The element counts fit into the bytes that follow.
+/// Free with ply_header_free, also after failure.
 SINGE_NODISCARD SingeResult ply_read_header(Ply *ply);
 void ply_header_free(Ply *ply);
 

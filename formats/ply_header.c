@@ -7,7 +7,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-// Names are compared with all before them.
+// Each name is compared with all earlier ones.
 enum { PLY_ELEMENT_LIMIT = 100, PLY_PROPERTY_LIMIT = 1000 };
 
 // Each type has an old and a new name.
@@ -167,7 +167,7 @@ static SingeResult ply_header_line(Ply *ply, bool *format_known, bool *ended) {
     return SINGE_OK;
 }
 
-// Counts are checked against the bytes that are there before anything is allocated by them.
+// Counts are checked against the size of the file before memory is allocated.
 static SingeResult ply_check_counts(const Ply *ply) {
     const PlyHeader *header = &ply->header;
     uint64_t left = (uint64_t)(ply->text.end - ply->text.at) + (header->format == PLY_ASCII);
@@ -176,7 +176,7 @@ static SingeResult ply_check_counts(const Ply *ply) {
         uint64_t min = 0;
         for (size_t k = 0; k < element->property_count; k++) {
             const PlyProperty *property = &header->properties[element->first_property + k];
-            if (header->format == PLY_ASCII) min += 2; // a digit and what parts it from the next
+            if (header->format == PLY_ASCII) min += 2; // a digit and a separator
             else min += ply_type_size(property->is_list ? property->count_type : property->type);
         }
         // the product is below 2^31 * 8000
@@ -194,7 +194,7 @@ SingeResult ply_read_header(Ply *ply) {
     if (!word_is(ply_word(ply), "ply") || text_end_length(text->at, text->end) == 0)
         return ply_refuse(ply, SINGE_ERROR_FORMAT, "not a PLY file: it must begin with a line \"ply\"");
     bool known = false, ended = false;
-    // the first line tells how lines end: behind a lone CR, a first body byte of 10 is no part of the line end
+    // the first line shows how lines end: after a lone CR, a first body byte of 10 is not part of the line end
     bool lone_return = text_end_length(text->at, text->end) == 1 && *text->at == '\r';
     while (!ended) {
         text->at += lone_return ? 1 : text_end_length(text->at, text->end);

@@ -59,7 +59,7 @@ static uint8_t *column_array(const SingeSurface *surface, const Column *column) 
     return array;
 }
 
-// Bytes behind the header.
+// Bytes after the header.
 static uint64_t surface_data_size(const SingeSurface *surface) {
     return (uint64_t)VERTEX_SIZE * surface->vertex_count + (uint64_t)FACE_SIZE * surface->triangle_count;
 }
@@ -117,7 +117,7 @@ SingeResult ply_write_surface(const char *path, const SingeSurface *surface, dou
 
 // ---- reading
 
-// The name that `burnt` had up to version 0.2: it is reserved in shading languages.
+// The old name of `burnt`, before version 0.2: it is reserved in shading languages.
 static bool is_column(const PlyProperty *property, const char *name) {
     return text_word_is(property->name, property->name_end, name) ||
            (strcmp(name, "burnt") == 0 && text_word_is(property->name, property->name_end, "char"));

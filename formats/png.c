@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// ---- what reading and writing share
+// ---- reading and writing
 
 typedef struct PngJob {
     jmp_buf jump;
@@ -37,7 +37,7 @@ static void png_fail(png_structp png, png_const_charp message) {
 
 static void png_ignore(png_structp png, png_const_charp message) { (void)png, (void)message; }
 
-// libpng frees without saying how much: each block begins with its size.
+// libpng frees blocks without their size, so each block begins with it.
 typedef union PngBlock {
     size_t size;
     max_align_t align;
@@ -69,7 +69,8 @@ static void png_pull(png_structp png, png_bytep data, size_t length) {
     job->at += length;
 }
 
-// Deflate packs at most 1032 to 1, so a short file that claims a large picture is refused before memory is taken.
+// Deflate compresses at most 1032 to 1, so a short file that claims a large picture is refused before memory is
+// allocated.
 static void png_check_size(PngJob *job) {
     uint64_t raw = (uint64_t)png_get_rowbytes(job->png, job->info) * png_get_image_height(job->png, job->info);
     if (raw / 1032 > job->size) png_error(job->png, "the file is too short for its width and height");
@@ -105,7 +106,7 @@ static void png_pull_rows(PngJob *job) {
         job->out_of_memory = true;
         png_error(png, "out of memory");
     }
-    // rows of an interlaced picture are made of earlier passes
+    // rows of an interlaced picture build on earlier passes
     memset(job->pixels, 0, job->pixel_count * (size_t)job->channels);
     for (int pass = 0; pass < passes; pass++)
         for (int y = 0; y < job->height; y++) png_read_row(png, job->pixels + row * (size_t)y, NULL);
@@ -125,7 +126,7 @@ static bool png_decode(PngJob *job) {
     return true;
 }
 
-// Lays the picture over white, in place, and cuts the array to three bytes a pixel.
+// Blends the picture with white, in place, and reduces the array to three bytes a pixel.
 static bool png_flatten(PngJob *job) {
     if (job->channels == 3) return true;
     const uint8_t *in = job->pixels;
@@ -187,7 +188,7 @@ static bool png_encode(PngJob *job) {
     }
     png_structp png = job->png;
     png_set_write_fn(png, job, png_push, png_flush_nothing);
-    // frames are written by the hundred: a fast level, and one filter that suits smooth pictures
+    // hundreds of frames are written: a fast level, and one filter that suits smooth pictures
     png_set_compression_level(png, 2);
     png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     png_set_IHDR(png, job->info, (png_uint_32)job->width, (png_uint_32)job->height, 8, PNG_COLOR_TYPE_RGB,

@@ -4,7 +4,7 @@
 
 #include "formats/utf8.h"
 
-/// Characters of Unicode that are controls, have no width of their own or turn the direction of writing.
+/// Unicode characters that are controls, have no width or change the direction of writing.
 static const struct Range {
     uint32_t first, last;
 } unseen[] = {
@@ -13,7 +13,7 @@ static const struct Range {
     {0xfeff, 0xfeff}, {0xffa0, 0xffa0}, {0xfff0, 0xfffb}, {0x1d173, 0x1d17a}, {0xe0000, 0xe0fff},
 };
 
-/// Length of the UTF-8 character at `c`, and its code; 0 where the bytes are not one.
+/// Length of the UTF-8 character at `c`, and its code; 0 if the bytes are invalid.
 static int character_at(const char *c, const char *end, uint32_t *code) {
     const int length = utf8_length(c);
     if (length == 0 || end - c < length) return 0;

@@ -1,4 +1,4 @@
-// The mesh formats, by the ending of the name. A new format is a file of its own and a line here.
+// The mesh formats, by the ending of the name. A new format needs a file of its own and a line here.
 #include "formats/mesh_reader.h"
 #include "formats/store.h"
 

@@ -25,8 +25,8 @@ bool scan_to_word(Scan *scan, char comment) {
     return false;
 }
 
-/// The word at the cursor is reported by its position only: the file may not be one that whoever sees the message may
-/// read.
+/// The word at the cursor is reported only by its position: whoever sees the message may not be allowed to read the
+/// file.
 static SingeResult refuse_word(const Scan *scan, const uint8_t *end, NumberStatus status, const char *what) {
     if (scan->text.at == end) return scan_refuse(scan, SINGE_ERROR_FORMAT, "the line has too few values");
     return scan_refuse(scan, SINGE_ERROR_FORMAT, "the value in column %lld is %s",

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/// Sorts 0 to count - 1 by sheet. first[sheet_count] is how many there are.
+/// Sorts 0 to count - 1 by sheet. first[sheet_count] is the count.
 static void sort_by_sheet(const SheetParts *p, const uint32_t (*triangles)[3], uint32_t count, uint32_t *first,
                           uint32_t *sorted) {
     const int32_t *sheets = p->surface->sheet;

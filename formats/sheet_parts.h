@@ -1,4 +1,4 @@
-// A surface sheet by sheet, for formats that have a mesh for each.
+// Splits a surface by sheet, for formats with a mesh for each.
 #ifndef FORMATS_SHEET_PARTS_H
 #define FORMATS_SHEET_PARTS_H
 
@@ -13,14 +13,14 @@ typedef struct SheetParts {
     uint32_t *local;                         ///< [vertex_count] a vertex's number in its sheet
 } SheetParts;
 
-/// A sheet's part of it.
+/// The part of one sheet.
 typedef struct SheetPart {
     uint32_t sheet, count, triangle_count;
     const uint32_t *vertices, *triangles;
 } SheetPart;
 
-/// Sorts a surface whose sheets are 0 to sheet_count - 1. SINGE_ERROR_FORMAT where they are not, or a triangle is of
-/// two. Free it after failure, too.
+/// Sorts a surface whose sheets are 0 to sheet_count - 1. SINGE_ERROR_FORMAT if they are not, or if a triangle belongs
+/// to two. Free it also after failure.
 SINGE_NODISCARD SingeResult sheet_parts_make(SheetParts *parts, const SingeSurface *surface, uint32_t sheet_count,
                                              const char *path, SingeError *error);
 void sheet_parts_free(SheetParts *parts);

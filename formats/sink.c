@@ -13,7 +13,7 @@ void sink_free(Sink *sink) {
 }
 
 void sink_reserve(Sink *sink, size_t size) {
-    // failing now changes nothing: it is tried again when bytes come
+    // a failure now is harmless: it is tried again when bytes come
     (void)store_grow(sink->allocator, &sink->bytes, &sink->capacity, size, 1);
 }
 

@@ -1,4 +1,4 @@
-// Bytes of a file in the making, in memory. A sink that could not grow stays as it is and says so at the end.
+// Collects the bytes of a file in memory. A sink that cannot grow remains unchanged and reports that at the end.
 #ifndef FORMATS_SINK_H
 #define FORMATS_SINK_H
 
@@ -14,15 +14,15 @@ typedef struct Sink {
 
 void sink_free(Sink *sink);
 
-/// Makes room for so many bytes in all, so that it need not grow by and by. It may fail without harm.
+/// Reserves so many bytes in total, so that it need not grow step by step. A failure is harmless.
 void sink_reserve(Sink *sink, size_t size);
 
-/// Room for `count` bytes at the end, which they become; NULL where there is no memory.
+/// Appends `count` bytes for the caller to fill; NULL when out of memory.
 uint8_t *sink_room(Sink *sink, size_t count);
 
 void sink_bytes(Sink *sink, const void *bytes, size_t count);
 void sink_zeros(Sink *sink, size_t count);
-/// Zeros up to a whole number of `unit` bytes.
+/// Pads with zeros to a multiple of `unit` bytes.
 void sink_align(Sink *sink, size_t unit);
 
 // little-endian
@@ -32,11 +32,12 @@ void sink_double(Sink *sink, double value);
 /// Values of 4 bytes each.
 void sink_words(Sink *sink, const void *values, size_t count);
 
-/// Text without its zero, at most 4000 bytes. Numbers in it must be whole: others are a locale's to print.
+/// Text without its zero, at most 4000 bytes. Numbers in it must be integers: printf's other numbers depend on the
+/// locale.
 void sink_text(Sink *sink, const char *format, ...) SINGE_PRINTF(2, 3);
 /// A number that reads back exactly, in every locale.
 void sink_number(Sink *sink, double value);
-/// A float so that it reads back exactly, and no longer than that.
+/// The shortest text of a float that reads back exactly.
 void sink_float(Sink *sink, float value);
 
 /// Writes the file, whole or not at all, and frees the sink.

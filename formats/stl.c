@@ -1,5 +1,5 @@
-// STL: triangles, each with its own three vertices, in text or in bytes. Their normals, names and the two bytes behind
-// each binary triangle are passed over.
+// STL: triangles, each with its own three vertices, in text or binary. Their normals, names and the two bytes after
+// each binary triangle are ignored.
 #include "formats/mesh_reader.h"
 #include "formats/scan.h"
 #include "formats/store.h"
@@ -8,7 +8,7 @@
 
 enum { HEAD = 84, TRIANGLE = 50 }; // bytes of a binary file: 80 of anything, the count; a normal, three points, 2 more
 
-/// The arrays for so many triangles, all but the positions filled.
+/// Allocates the arrays for so many triangles and fills all but the positions.
 static SingeResult stl_arrays(Polygons *mesh, const char *name, size_t count, SingeError *error) {
     SingeAllocator a = mesh->allocator;
     mesh->vertex_count = mesh->corner_count = (uint32_t)(3 * count), mesh->face_count = (uint32_t)count;
@@ -50,7 +50,7 @@ static SingeResult stl_read_bytes(const char *name, const uint8_t *bytes, size_t
 
 // ---- text
 
-/// True, and past it, where the word at the cursor is this one, in capitals or not.
+/// If the word at the cursor is this one, in any case, moves past it and returns true.
 static bool stl_word(Scan *scan, const char *word) {
     if (!scan_to_word(scan, 0)) return false;
     const uint8_t *at = scan->text.at, *end = text_word_end(&scan->text);
@@ -67,10 +67,10 @@ static SingeResult stl_expect(Scan *scan, const char *first, const char *second)
                        second ? second : "");
 }
 
-// facet normal x y z / outer loop / vertex x y z, three times / endloop / endfacet, behind the word "facet"
+// facet normal x y z / outer loop / vertex x y z, three times / endloop / endfacet, after the word "facet"
 static SingeResult stl_facet(Scan *scan, float position[9]) {
     TRY(stl_expect(scan, "normal", NULL));
-    text_next_line(&scan->text); // often not a number
+    text_next_line(&scan->text); // the normal is often not a number
     TRY(stl_expect(scan, "outer", "loop"));
     for (size_t v = 0; v < 3; v++) {
         TRY(stl_expect(scan, "vertex", NULL));
@@ -101,7 +101,7 @@ static SingeResult stl_read_text(Scan *scan, Polygons *mesh) {
     SingeResult result = stl_solids(scan, mesh, &vertices, &capacity);
     if (!result && !store_trim(scan->allocator, &mesh->positions, &capacity, vertices, 3 * sizeof *mesh->positions))
         result = refuse_memory(scan->error, "stl", scan->name);
-    mesh->vertex_count = (uint32_t)capacity; // as polygons_free expects it
+    mesh->vertex_count = (uint32_t)capacity; // for polygons_free
     return result ? result : stl_arrays(mesh, scan->name, vertices / 3, scan->error);
 }
 
@@ -112,7 +112,7 @@ SingeResult stl_read(const char *name, const uint8_t *bytes, size_t size, SingeA
     Scan scan = {name, "stl", bytes, {bytes, bytes + size, 1}, allocator, error}, ahead = scan;
     if (size == 0) return scan_refuse(&scan, SINGE_ERROR_FORMAT, "the file is empty");
     if (size > MESH_COUNT_LIMIT) return scan_refuse(&scan, SINGE_ERROR_LIMIT, "the file is too large");
-    // binary files may begin with "solid", too: their size tells
+    // binary files may begin with "solid", too: their size decides
     bool binary = size >= HEAD && size == HEAD + TRIANGLE * (uint64_t)load_u32_little(bytes + 80);
     SingeResult result = !binary && stl_word(&ahead, "solid") ? stl_read_text(&scan, mesh)
                                                               : stl_read_bytes(name, bytes, size, mesh, error);

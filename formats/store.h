@@ -1,4 +1,4 @@
-// What every reader and writer here needs: memory from the caller's hook, and messages.
+// Memory from the caller's hook, and messages, for all readers and writers.
 #ifndef FORMATS_STORE_H
 #define FORMATS_STORE_H
 
@@ -10,15 +10,15 @@
         if (try_result_) return try_result_; \
     } while (0)
 
-/// An uninitialised array; NULL when out of memory or when its size overflows. At least one byte is
-/// allocated, so NULL always means failure; free it with the same count.
+/// An uninitialised array; NULL when out of memory or if its size overflows. At least one byte is allocated, so NULL
+/// always means failure; free it with the same count.
 void *store_new(SingeAllocator allocator, size_t count, size_t element_size);
 void store_free(SingeAllocator allocator, void *array, size_t count, size_t element_size);
 
-/// Makes room in *array (of *capacity elements) for `count` elements, at least doubling it. False when out of memory.
+/// Grows *array (of *capacity elements) to hold `count` elements, at least doubling it. False when out of memory.
 bool store_grow(SingeAllocator allocator, void *array_pointer, size_t *capacity, size_t count, size_t element_size);
 
-/// Cuts an array down to `count` elements, as store_new would have allocated it. False when out of memory.
+/// Shrinks an array to `count` elements, as allocated by store_new. False when out of memory.
 bool store_trim(SingeAllocator allocator, void *array_pointer, size_t *capacity, size_t count, size_t element_size);
 
 /// Frees the names and the values, [count] each, and the array.
@@ -29,7 +29,7 @@ SingeResult refuse(SingeError *error, SingeResult code, const char *stage, int64
     SINGE_PRINTF(5, 6);
 SingeResult refuse_memory(SingeError *error, const char *stage, const char *name);
 
-/// The end of a path, short enough that a message keeps its reason.
+/// The end of a path, short enough to leave room for the reason in a message.
 const char *short_name(const char *name);
 
 static inline uint32_t load_u32_little(const uint8_t *p) {

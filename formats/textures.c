@@ -1,9 +1,10 @@
-// A frame as textures over the sheets' uv, for programs that keep the sheet's mesh and burn its material: an EXR whose
-// R is the temperature (K), G what is burnt (0 fresh to 1 ash), B the light of embers (in red, 2.5 at 1200 K) and A
-// whether anything is left there. The first sheet with uv has these names; a later one has its own before them.
+// A frame as textures over the sheets' uv, for programs that keep the sheet's mesh and burn its material: an EXR with R
+// the temperature (K), G the burnt fraction (0 fresh to 1 ash), B the emission of embers (in red, 2.5 at 1200 K) and A
+// 1 where the sheet remains. The first sheet with uv has these channel names; those of later sheets have the sheet's
+// name as a prefix.
 //
-// Values are spread 16 pixels beyond what is left, so that a filter at a seam or at a rim takes no others. What is left
-// (A) is spread beyond the uncut sheet's charts alone: a hole stays one.
+// Values are dilated by 16 pixels beyond the remaining sheet, so that filters at a seam or a rim see no others. A is
+// dilated only beyond the charts of the uncut sheet: holes remain.
 #include "formats/burn_colour.h"
 #include "formats/output.h"
 #include "formats/store.h"
@@ -19,8 +20,8 @@ typedef struct Canvas {
     int size;
     size_t pixels;
     float *values;                      ///< [pixels][4] R G B A
-    uint8_t *covered;                   ///< [pixels] something is left
-    uint8_t *chart;                     ///< [pixels] the uncut sheet has it
+    uint8_t *covered;                   ///< [pixels] the sheet remains
+    uint8_t *chart;                     ///< [pixels] in a chart of the uncut sheet
     uint32_t *nearest, *queue;          ///< [pixels]
     float corners[3][TEXTURE_CHANNELS]; ///< of the triangle that is drawn
 } Canvas;
@@ -55,7 +56,7 @@ static void draw_chart(void *context, size_t pixel, const float weight[3]) {
     ((Canvas *)context)->chart[pixel] = 1;
 }
 
-/// The uncut sheet: each cell as four triangles about the mean of its corners.
+/// The uncut sheet: each cell as four triangles around the mean of its corners.
 static void draw_mesh(Canvas *c, const OutputMesh *mesh) {
     for (uint32_t cell = 0; cell < mesh->cell_count; cell++) {
         float uv[4][2], centroid[2] = {0, 0};

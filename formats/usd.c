@@ -38,6 +38,6 @@ void usd_sheet_name(const OutputScene *scene, uint32_t sheet, char prim[USD_NAME
         usd_name(scene->sheets[i].name, other);
         if (strcmp(other, prim) != 0 || (i > sheet && !tries)) continue;
         snprintf(prim + length, USD_NAME - length, "_%u", (unsigned)(sheet + 1 + 1000 * tries++));
-        i = UINT32_MAX; // look at all again
+        i = UINT32_MAX; // check all names again
     }
 }

@@ -1,8 +1,8 @@
-// What the frames and the root of the USD format share: names and how a stage is laid out.
+// Shared by the frames and the root of the USD format: names and the layout of a stage.
 //
 //     /NAME                 Xform
-//     /NAME/sheets/SHEET    Mesh, a sheet each; with a picture its faces are in the subsets `fresh` and `burnt`
-//     /NAME/gas, /NAME/camera, /NAME/light, /NAME/materials, /NAME/shapes: of the root alone
+//     /NAME/sheets/SHEET    Mesh of a sheet; with a picture its faces are in the subsets `fresh` and `burnt`
+//     /NAME/gas, /NAME/camera, /NAME/light, /NAME/materials, /NAME/props: only in the root
 #ifndef FORMATS_USD_H
 #define FORMATS_USD_H
 
@@ -11,12 +11,12 @@
 
 enum { USD_NAME = 160 };
 
-/// A name that a prim may have: letters, digits and underscores, all else becomes one.
+/// A valid prim name: letters, digits and underscores; other characters become underscores.
 void usd_name(const char *name, char prim[USD_NAME]);
-/// That of a sheet, which no sheet before it has.
+/// The prim name of a sheet, different from those of earlier sheets.
 void usd_sheet_name(const OutputScene *scene, uint32_t sheet, char prim[USD_NAME]);
 
-/// A frame as usd_write_frame writes it, in memory; free the bytes, after failure too. `path` is for messages.
+/// The file of usd_write_frame in memory; free the bytes, also after failure. `path` is for messages.
 SINGE_NODISCARD SingeResult usd_frame_bytes(const char *path, const OutputScene *scene, const OutputFrame *frame,
                                             Sink *bytes, SingeError *error);
 /// The root's text.

@@ -7,14 +7,14 @@
 enum { HEADER_SIZE = 88, PACKED_MIN = 16, SECTIONS = 6 };
 static const CrateValue flag_array = (uint64_t)1 << 63, flag_packed = (uint64_t)1 << 61;
 
-/// Room for one more entry of a list; false, and the crate fails, where there is no memory.
+/// Makes room for one more entry of a list; when out of memory the crate fails and this is false.
 static bool grow(Crate *crate, void *list, size_t *capacity, size_t count, size_t size) {
     if (store_grow(crate->sink.allocator, list, capacity, count + 1, size)) return true;
     crate->sink.failed = true;
     return false;
 }
 
-/// A word's number; it is added where it is new.
+/// A word's number; a new word is added.
 static uint32_t word_number(Crate *crate, const char *text) {
     for (size_t i = 0; i < crate->word_count; i++)
         if (strcmp((const char *)crate->words.bytes + crate->offsets[i], text) == 0) return (uint32_t)i;
@@ -34,7 +34,7 @@ void crate_begin(Crate *crate, SingeAllocator allocator) {
                      .scratch = {.allocator = allocator},
                      .packed = {.allocator = allocator}};
     sink_zeros(&crate->sink, HEADER_SIZE);
-    word_number(crate, ""); // number 0 has no sign, by which names of properties are known: it is the root's
+    word_number(crate, ""); // properties have negative numbers and 0 has no sign, so 0 is the root's
 }
 
 void crate_free(Crate *crate) {
@@ -52,7 +52,7 @@ void crate_free(Crate *crate) {
 
 // ---- packing
 
-/// `size` bytes by LZ4 behind the mark of a single chunk, and its length before it.
+/// Writes `size` bytes compressed by LZ4: the length, the mark of a single chunk, and the data.
 static void put_packed(Crate *crate, Sink *sink, const uint8_t *bytes, size_t size) {
     const size_t offset = sink->size;
     sink_u64(sink, 0);
@@ -66,7 +66,7 @@ static void put_packed(Crate *crate, Sink *sink, const uint8_t *bytes, size_t si
     if (sink->failed) crate->sink.failed = true;
 }
 
-/// The difference of one byte that comes most often, among one in seven where there are many.
+/// The most frequent one-byte difference; of many differences one in seven is counted.
 static int32_t common_difference(const int32_t *values, size_t count) {
     uint32_t counts[256] = {0};
     const size_t stride = count > 1000 ? 7 : 1;

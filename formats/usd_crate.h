@@ -76,13 +76,13 @@ static inline CrateValue crate_inline(CrateType type, uint32_t value) {
     return (uint64_t)type << 48 | (uint64_t)1 << 62 | value;
 }
 CrateValue crate_token(Crate *crate, const char *text);
-/// A number that a float holds.
+/// A number stored as a float.
 CrateValue crate_double(float value);
 CrateValue crate_token_list(Crate *crate, const char *const *texts, size_t count);
 CrateValue crate_ints(Crate *crate, const int32_t *values, size_t count);
-/// Arrays of one, two or three floats an entry.
+/// Arrays with one, two or three floats per entry.
 CrateValue crate_floats(Crate *crate, int width, const float *values, size_t count);
-/// Times from `first` on, one apart.
+/// Consecutive times from `first` on.
 CrateValue crate_times(Crate *crate, double first, size_t count);
 /// The values at those times.
 CrateValue crate_series(Crate *crate, CrateValue times, const CrateValue *values, size_t count);
@@ -91,7 +91,7 @@ CrateValue crate_series(Crate *crate, CrateValue times, const CrateValue *values
 uint32_t crate_path(Crate *crate, const char *name, bool property, uint32_t parent);
 void crate_spec(Crate *crate, uint32_t path, CrateSpec kind, const CrateField *fields, size_t count);
 
-/// Ends the file and gives its bytes away, to be freed. False where there was no memory.
+/// Ends the file and returns its bytes, to be freed. False when out of memory.
 bool crate_take(Crate *crate, Sink *bytes);
 /// Ends the file, writes it whole or not at all, and frees the crate.
 SINGE_NODISCARD SingeResult crate_write(Crate *crate, const char *path, SingeError *error);

@@ -1,5 +1,5 @@
 // A frame as a stage of its own in a crate file: a mesh for each sheet, every attribute at the frame's time, so that
-// the root's value clips can take them, and complete enough to be opened alone.
+// the root's value clips can use it, and complete enough to be opened alone.
 //
 // Vertices of a sheet keep their order. Colours are indexed: they are rounded to 5, 6 and 5 bits of their square roots.
 #include "formats/burn_colour.h"
@@ -13,15 +13,16 @@
 
 enum { ATTRIBUTES_MAX = USD_OWN + SURFACE_FIELDS, COLOURS = 1 << 16, PRIM_FIELDS = 4 };
 
-/// What a sheet has at a time: own attributes, fields, and the faces of its subsets, burnt and fresh.
+/// The values of a sheet at a time: own attributes, fields, and the faces of its subsets, burnt and fresh.
 enum { SLOT_FIELDS = USD_OWN, SLOT_SUBSETS = SLOT_FIELDS + SURFACE_FIELDS, SLOTS = SLOT_SUBSETS + 2 };
 
 typedef struct UsdWriter {
     Crate crate;
     const OutputScene *scene;
     const SingeSurface *surface;
-    CrateValue time;    ///< of all samples
-    CrateValue *kept;   ///< [frames][sheets][SLOTS] values of many frames; NULL where there is one, in the surface
+    CrateValue time; ///< of all samples
+    CrateValue
+        *kept; ///< [frames][sheets][SLOTS] values of many frames; NULL for one frame, whose values are in the surface
     CrateValue *column; ///< [frames]
     size_t frames;
     SheetParts parts;
@@ -52,7 +53,7 @@ static void writer_free(UsdWriter *w) {
 
 // ---- values
 
-/// A sheet's values of 4 bytes, `width` a vertex: in place where they follow each other, as those of one sheet do.
+/// A sheet's values of 4 bytes, `width` per vertex: not copied if they are contiguous, as for a single sheet.
 static const void *gather(UsdWriter *w, const SheetPart *part, const void *values, int width) {
     const uint32_t *v = part->vertices;
     if (!part->count) return values;
@@ -68,7 +69,7 @@ static CrateValue put_vectors(UsdWriter *w, const SheetPart *part, const void *v
     return crate_floats(&w->crate, width, gather(w, part, values, width), part->count);
 }
 
-/// The colours that occur, and of each vertex which.
+/// The palette of colours, and the index of each vertex.
 static void put_colours(UsdWriter *w, const SheetPart *part, CrateValue *palette, CrateValue *indices) {
     uint32_t found = 0;
     memset(w->palette, 0xff, COLOURS * sizeof *w->palette);
@@ -94,7 +95,7 @@ static void put_colours(UsdWriter *w, const SheetPart *part, CrateValue *palette
     *indices = crate_ints(&w->crate, w->numbers, part->count);
 }
 
-/// What of it glows: the dark and as many steps as occur.
+/// The palette of glow: dark and the steps that occur.
 static void put_embers(UsdWriter *w, const SheetPart *part, CrateValue *palette, CrateValue *indices) {
     float colours[EMBER_STEPS][3];
     int32_t entries[EMBER_STEPS], found = 0;
@@ -134,7 +135,7 @@ static CrateValue put_extent(UsdWriter *w, const SheetPart *part) {
 
 // ---- prims
 
-/// The samples of a slot of a sheet: `value` where there is one frame, else what was kept.
+/// The samples of a slot of a sheet: `value` for one frame, otherwise the kept values.
 static CrateValue put_samples(UsdWriter *w, uint32_t sheet, int slot, CrateValue value) {
     if (!w->kept) return crate_series(&w->crate, w->time, &value, 1);
     for (size_t i = 0; i < w->frames; i++)
@@ -156,7 +157,7 @@ static void put_uniform(UsdWriter *w, uint32_t prim, const char *name, const cha
     crate_spec(&w->crate, crate_path(&w->crate, name, true, prim), CRATE_ATTRIBUTE, fields, 3);
 }
 
-/// Faces whose corners all look as at the start, or the others.
+/// The faces whose corners all look unburnt, or the other faces.
 static CrateValue put_subset_faces(UsdWriter *w, const SheetPart *part, bool fresh) {
     const SingeSurface *s = w->surface;
     size_t count = 0;
@@ -209,7 +210,7 @@ static void put_mesh(UsdWriter *w, uint32_t sheets, uint32_t sheet) {
     const SheetPart part = w->kept ? (SheetPart){.sheet = sheet} : sheet_part(&w->parts, sheet);
     const bool pictured = w->scene->sheets[sheet].picture != NULL;
     const char *names[ATTRIBUTES_MAX + 4];
-    // the first is that of all faces where a program binds no subsets, such as Blender from the second frame on
+    // programs that bind no subsets, such as Blender from the second frame on, use the first for all faces
     const char *children[] = {"burnt", "fresh"};
     char primvars[SURFACE_FIELDS][40], name[USD_NAME];
     size_t count = 0;
@@ -289,7 +290,7 @@ static void put_stage(UsdWriter *w, int first, int last) {
     store_free(w->crate.sink.allocator, list, count, sizeof *list);
 }
 
-/// A frame in the crate of a writer, which is to be freed, after failure too.
+/// Writes a frame into the crate of a writer; free the writer, also after failure.
 static SingeResult put_one(UsdWriter *w, const OutputScene *scene, const OutputFrame *frame, const char *path,
                            SingeError *error) {
     *w = (UsdWriter){.scene = scene, .surface = frame->surface};
@@ -332,7 +333,7 @@ static SingeResult keep_frame(UsdWriter *w, const OutputFrame *frame, CrateValue
         for (int k = 0; k < SURFACE_FIELDS; k++) kept[SLOT_FIELDS + k] = put_field(&one, &part, &surface_fields[k]);
         for (int k = 0; k < 2; k++) kept[SLOT_SUBSETS + k] = put_subset_faces(&one, &part, k);
     }
-    w->crate = one.crate; // all that has come into it stays
+    w->crate = one.crate; // keep everything written so far
     one.crate = (Crate){.sink = {.allocator = frame->surface->allocator}};
     writer_free(&one);
     return result;

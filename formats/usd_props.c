@@ -1,5 +1,5 @@
-// What stands in a USD root besides sheets: the ground, and colliders and hot balls with their motion. A collider that
-// deforms has its vertices for each frame.
+// The props of a USD root: the ground, and colliders and hot balls with their motion. A deforming collider has its
+// vertices for each frame.
 #include "formats/usd_text.h"
 
 #include <math.h>
@@ -27,8 +27,8 @@ static void put_box(Root *r, const float *vertices, uint32_t count) {
     put(r, "]");
 }
 
-/// Vertices that move: how many frames differ from the one before them, as far as the last that does. 1 for a rigid
-/// one.
+/// The number of samples of moving vertices: up to the last frame that differs from the one before it. 1 for a rigid
+/// shape.
 static int moving_frames(const Root *r, const OutputShape *shape) {
     int last = 0;
     for (int i = 1; shape && i < r->scene->frames; i++)
@@ -36,7 +36,7 @@ static int moving_frames(const Root *r, const OutputShape *shape) {
     return last + 1;
 }
 
-/// An array that follows from the vertices, with a sample a frame where they move.
+/// An array derived from the vertices, with a sample per frame if they move.
 static void put_samples(Root *r, const char *attribute, const float *vertices, uint32_t count, const OutputShape *shape,
                         void (*array)(Root *, const float *, uint32_t)) {
     const int frames = moving_frames(r, shape);
@@ -57,7 +57,7 @@ static void put_samples(Root *r, const char *attribute, const float *vertices, u
     put(r, "            }\n");
 }
 
-/// `shape`: whose poses may have vertices of their own; NULL: it stands still.
+/// `shape`: its poses may have vertices of their own; NULL: it does not move.
 static void put_mesh_arrays(Root *r, const float *vertices, uint32_t vertex_count, const uint32_t *corners,
                             uint32_t face_count, int sides, const OutputShape *shape) {
     put(r, "            uniform token subdivisionScheme = \"none\"\n");

@@ -1,6 +1,6 @@
-// The root of the USD format, as text: a stage that takes sheets from the frames by value clips, gas from the VDB
-// files, and has the camera, the lights, the ground, colliders with their motion and materials. What is given to the
-// lights is what the preview gives to its own, in units in which white paper under them is nearly white.
+// The root of the USD format, as text: a stage that takes sheets from the frames by value clips and gas from the VDB
+// files, and has the camera, the lights, the ground, colliders with their motion and materials. The lights have the
+// preview's intensities, in units in which white paper under them is nearly white.
 #include "formats/burn_colour.h"
 #include "formats/fields.h"
 #include "formats/usd_text.h"
@@ -14,7 +14,7 @@
 
 // ---- names of files
 
-/// A path between the marks that its characters allow.
+/// A path in asset delimiters that its characters allow.
 static void put_asset(Root *r, const char *path) {
     const char *mark = strchr(path, '@') ? "@@@" : "@";
     put(r, mark);
@@ -124,7 +124,7 @@ static void unit(float v[3]) {
     for (int i = 0; i < 3; i++) v[i] = length > 0 ? v[i] / length : (float)(i == 2);
 }
 
-/// A frame whose z axis is `back`, its x axis level as far as `up` tells, at `position`.
+/// A transform at `position` with z axis `back` and an x axis that is level with respect to `up`.
 static void put_frame(Root *r, const float back[3], const float up[3], const float position[3]) {
     float x[3], y[3], z[3] = {back[0], back[1], back[2]};
     unit(z);
@@ -147,7 +147,7 @@ static void put_frame(Root *r, const float back[3], const float up[3], const flo
     put(r, " )\n        uniform token[] xformOpOrder = [\"xformOp:transform\"]\n");
 }
 
-/// Lengths of the lens are in millimetres of a film 36 mm wide, as programs take them.
+/// Lens lengths are in millimetres for a film 36 mm wide, as programs expect.
 static void put_camera(Root *r) {
     const OutputScene *s = r->scene;
     const float height = 36 / s->aspect, focal = 0.5f * height / tanf(0.5f * s->fov);
@@ -197,7 +197,7 @@ static void put_reader(Root *r, const char *shader, const char *primvar, const c
               shader, width, primvar, type);
 }
 
-/// A colour of one's own and, of what is hot, its glow.
+/// A plain colour and, for hot shapes, their glow.
 static void put_plain(Root *r, const char *material, const float colour[3], float temperature) {
     float glow[3];
     ember_colour(ember_step(temperature), glow);

@@ -1,4 +1,4 @@
-// The root of the USD format in the making, and pieces of its text.
+// The text of the USD root, and functions that append to it.
 #ifndef FORMATS_USD_TEXT_H
 #define FORMATS_USD_TEXT_H
 

@@ -1,5 +1,5 @@
-// All of a burn in one archive: the root, the frames that it names, and the sheets' pictures. No gas: the format allows
-// no VDB.
+// A whole burn in one archive: the root, the frames that it refers to, and the sheets' pictures. No gas: the format
+// allows no VDB.
 #include "formats/usd.h"
 #include "formats/zip.h"
 
@@ -9,7 +9,7 @@
 
 typedef char PictureName[32];
 
-/// Where a picture is, whose path may be from the archive's folder.
+/// The path of a picture, which may be relative to the archive's folder.
 static SingeResult read_picture(const char *path, const char *picture, Bytes *bytes, SingeError *error) {
     char name[8192];
     const char *slash = strrchr(path, '/');

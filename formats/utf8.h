@@ -1,11 +1,11 @@
-// UTF-8 in names of files and texts, which may be anything.
+// UTF-8 in file names and texts, which may contain any bytes.
 #ifndef FORMATS_UTF8_H
 #define FORMATS_UTF8_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/// Bytes of the character that begins at `text`, which ends with a zero; 0 where the bytes are no UTF-8.
+/// Bytes of the character at `text`, which is zero-terminated; 0 if the bytes are not UTF-8.
 static inline int utf8_length(const char *text) {
     static const uint32_t min[] = {0, 0, 0x80, 0x800, 0x10000};
     const unsigned char *c = (const unsigned char *)text;

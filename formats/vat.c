@@ -1,16 +1,16 @@
-// Vertex animation textures: the uncut mesh, whose vertices a shader moves by textures, and takes away where they have
-// burnt. For engines, which have no meshes that change from frame to frame.
+// Vertex animation textures: the uncut mesh, whose vertices a shader moves by textures, and hides where they have
+// burnt. For engines, whose meshes cannot change from frame to frame.
 //
 //     NAME.glb           the mesh as in frame 1, y up: TEXCOORD_0 the sheet's uv, TEXCOORD_1 where its texel is
 //     NAME.position.exr  R G B position (m, in the GLB's axes), A 1 where the vertex is there, 0 where it is gone
 //     NAME.normal.exr    R G B unit normal
 //     NAME.json          frames, rows a frame, bounds
 //
-// A texel a vertex and frame: vertex i of frame f (both from 0) is in column i mod width, row f * rows + i / width, so
-// that the v of frame f is TEXCOORD_1's plus f * rows / height, from the first row on.
+// One texel per vertex and frame: vertex i of frame f (both from 0) is in column i mod width, row f * rows + i / width,
+// so that the v of frame f is TEXCOORD_1's plus f * rows / height, from the first row on.
 //
-// A vertex of the cache is one of the mesh by its rest position, its sheet, and its number in the file, where it has
-// one. One that is gone goes on with those of its neighbours that are left: faces at the rim keep their shape.
+// Vertices of the cache and the mesh are matched by rest position, sheet and, if present, number in the file. A vertex
+// that is gone follows its remaining neighbours, so that faces at the rim keep their shape.
 #include "formats/glb_file.h"
 #include "formats/number.h"
 #include "formats/store.h"
@@ -28,12 +28,12 @@ typedef struct Vat {
     uint32_t count;                     ///< vertices of all sheets
     int width, rows, height;            ///< of the textures
     float (*position)[4], (*normal)[4]; ///< [width * height]
-    float (*at)[3], (*facing)[3];       ///< [count] as in the frame in hand, in the GLB's axes
-    float (*moved)[4];                  ///< [count] sum and number of the displacements of neighbours, or the own one's
-    uint8_t *found;                     ///< [count]
-    uint32_t *table, *next;             ///< hash of (sheet, rest): the first vertex + 1, and the next of the same hash
-    uint32_t *first;                    ///< [sheet_count + 1] vertices
-    uint32_t *source_first;             ///< [sheet_count + 1] vertices of the files
+    float (*at)[3], (*facing)[3];       ///< [count] in the current frame, in the GLB's axes
+    float (*moved)[4];      ///< [count] sum and count of the neighbours' displacements, or its own displacement
+    uint8_t *found;         ///< [count]
+    uint32_t *table, *next; ///< hash of (sheet, rest): the first vertex + 1, and the next of the same hash
+    uint32_t *first;        ///< [sheet_count + 1] vertices
+    uint32_t *source_first; ///< [sheet_count + 1] vertices of the files
     int log;
 } Vat;
 
@@ -78,7 +78,7 @@ static void vat_free(Vat *vat) {
     free(vat->table), free(vat->next), free(vat->first), free(vat->source_first);
 }
 
-// ---- which vertex of the cache is which
+// ---- matching vertices
 
 static uint32_t *vat_slot(const Vat *vat, uint32_t sheet, const float rest[3]) {
     uint32_t hash = 2166136261u ^ sheet;
@@ -103,8 +103,8 @@ static void vat_index(Vat *vat) {
     }
 }
 
-/// Whether a vertex of the cache with that number may be vertex v of a sheet's mesh. On a seam the cache has the
-/// numbers of all the vertices of the file that are one.
+/// Whether a vertex of the cache with that number may be vertex v of a sheet's mesh. On a seam, where several vertices
+/// of the file are one, the cache has the numbers of all of them.
 static bool vat_numbers_fit(const Vat *vat, uint32_t sheet, uint32_t v, int32_t number) {
     const OutputMesh *mesh = &vat->scene->sheets[sheet].mesh;
     const int32_t own = mesh->source ? mesh->source[v] : (int32_t)v;
@@ -114,7 +114,7 @@ static bool vat_numbers_fit(const Vat *vat, uint32_t sheet, uint32_t v, int32_t 
     return mesh->became && of_file < mesh->source_count && mesh->became[of_file] == v;
 }
 
-/// The mesh's vertex, or UINT32_MAX: one that a cut or a tear has made.
+/// The mesh's vertex, or UINT32_MAX if a cut or a tear created it.
 static uint32_t vat_find(const Vat *vat, const SingeSurface *s, uint32_t i) {
     const uint32_t sheet = (uint32_t)s->sheet[i];
     if (sheet >= vat->scene->sheet_count) return UINT32_MAX;
@@ -132,7 +132,7 @@ static uint32_t vat_find(const Vat *vat, const SingeSurface *s, uint32_t i) {
 
 // ---- frames
 
-/// Moves the vertices that are there, and says by how much.
+/// Moves the remaining vertices, and records their displacements.
 static void take_found(Vat *vat, const SingeSurface *s) {
     memset(vat->found, 0, vat->count);
     memset(vat->moved, 0, vat->count * sizeof *vat->moved);
@@ -148,7 +148,7 @@ static void take_found(Vat *vat, const SingeSurface *s) {
     }
 }
 
-/// Those that are gone, by the mean displacement of what is left in their cells.
+/// Moves the vertices that are gone by the mean displacement of the remaining ones in their cells.
 static void take_gone(Vat *vat) {
     for (uint32_t s = 0; s < vat->scene->sheet_count; s++) {
         const OutputMesh *mesh = &vat->scene->sheets[s].mesh;
@@ -200,14 +200,14 @@ static SingeResult write_texture(const char *path, const char *ending, const Vat
     return exr_write(name, vat->width, vat->height, channels, count, error);
 }
 
-/// A vertex of the GLB: one of the mesh with a uv of its own.
+/// A vertex of the GLB: a vertex of the mesh with one uv.
 typedef struct VatCorner {
     uint32_t vertex;
     float uv[2];
 } VatCorner;
 
-/// The corners of a mesh's cells as vertices, equal ones once: `number` [4 * cell_count] and how many there are, or 0
-/// where there is no memory.
+/// Merges equal corners of a mesh's cells to vertices: `number` [4 * cell_count], and returns their count, or 0 when
+/// out of memory.
 static uint32_t number_corners(const OutputMesh *mesh, VatCorner *corners, uint32_t *number) {
     const size_t count = 4 * (size_t)mesh->cell_count;
     uint32_t *first = calloc(mesh->vertex_count, 4), *next = calloc(count, 4), made = 0;
@@ -232,7 +232,7 @@ static void put_attribute(GlbFile *f, const char *name, size_t begin, uint32_t c
     sink_text(&f->meshes, "\"%s\":%u,", name, glb_put_accessor(f, begin, count, width, GLB_OF_VERTICES, box));
 }
 
-/// Values of a vertex of the mesh, `stride` floats apart, at its corners.
+/// Copies values of the mesh's vertices, `stride` floats apart, to their corners.
 static void put_values(GlbFile *f, const char *name, const VatCorner *corners, uint32_t count, float (*values)[4],
                        bool boxed) {
     const size_t begin = f->data.size;

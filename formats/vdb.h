@@ -5,12 +5,12 @@
 //     metadata, number of grids (u32), then for each grid its name, type and the grid whose tree it shares (strings),
 //     the offsets in the file of its body, of its buffers and of its end (3 i64), and there
 //     body: compression (u32), metadata, map (a string and 15 doubles), number of buffers (u32, 1), topology
-// Metadata: their number (u32), each a name, a type (strings), a size (u32) and the bytes.
-// Topology, depth first: the root has its background value, no tiles and at most one child at (0, 0, 0) (2 u32,
-// 3 i32): a node of 32^3 children, each a node of 16^3 leaves of 8^3 cells. A node is the mask of its children, the
-// mask of its values and, as the compression is by active values alone and there are none, one zero byte; a leaf is
-// the mask of its cells. The buffers hold of each leaf the mask again, a zero byte and the values of its cells.
-// A node's entries, and a mask's bits from the lowest, are numbered with z fastest.
+// Metadata: their number (u32), each a name, a type (strings), a size (u32) and the bytes. Topology, depth first: the
+// root has its background value, no tiles and at most one child at (0, 0, 0) (2 u32, 3 i32): a node of 32^3 children,
+// each a node of 16^3 leaves of 8^3 cells. A node is the mask of its children, the mask of its values and, as the
+// compression is by active values alone and there are none, one zero byte; a leaf is the mask of its cells. The buffers
+// hold, for each leaf, the mask again, a zero byte and the values of its cells. A node's entries, and a mask's bits
+// from the lowest, are numbered with z fastest.
 #ifndef FORMATS_VDB_H
 #define FORMATS_VDB_H
 
@@ -21,7 +21,7 @@ enum {
     VDB_VERSION = 224,
     VDB_LIBRARY_MAJOR = 10,
     VDB_LIBRARY_MINOR = 0,
-    VDB_ACTIVE_VALUES = 2, ///< compression: values of cells that are not active are left out
+    VDB_ACTIVE_VALUES = 2, ///< compression: values of inactive cells are omitted
     VDB_ID = 36,
     VDB_UPPER_LOG = 5,
     VDB_LOWER_LOG = 4,
@@ -32,11 +32,11 @@ enum {
 };
 
 #define VDB_MAP "UniformScaleTranslateMap"
-// metadata of the file, by which smoke and flame are computed from what it has
+// metadata for computing smoke and flame from the file's grids
 #define VDB_EXTINCTION "extinction_of_soot" ///< m2/kg
 #define VDB_FLAME_UNIT "flame_unit"         ///< W/m3
 
-/// The grids of a file, in its order. `vel` is `velocity` by the name that Houdini looks for: it shares the tree.
+/// The grids of a file, in its order. `vel` is `velocity` under Houdini's name: it shares the tree.
 typedef enum VdbField { VDB_DENSITY, VDB_FLAME, VDB_TEMPERATURE, VDB_VELOCITY, VDB_FIELDS } VdbField;
 
 typedef struct VdbFieldInfo {

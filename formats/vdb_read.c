@@ -1,5 +1,5 @@
-// The OpenVDB files of vdb_write.c, and no others, back as a gas. Nothing in the bytes is believed before it is
-// checked; entries of the tree outside of the gas are refused.
+// Reads the OpenVDB files of vdb_write.c, and no others. Everything is validated; tree entries outside the gas are
+// refused.
 #include "formats/store.h"
 #include "formats/vdb.h"
 
@@ -18,7 +18,7 @@ static SingeResult vdb_read_bad(const Reader *r, const char *what) {
                   (long long)(r->at - r->begin), what);
 }
 
-// ---- bytes; what is read past the end is 0 and `at` stays behind it
+// ---- bytes; reads past the end give 0 and leave `at` beyond it
 
 static bool has(const Reader *r, uint64_t size) { return (uint64_t)(r->end - r->at) >= size; }
 
@@ -73,7 +73,7 @@ static bool is(Text text, const char *word) {
 
 // ---- the file's head
 
-/// Goes over the metadata; of those of the file it keeps time and size.
+/// Reads the metadata; keeps time and size from the file's metadata.
 static SingeResult read_metadata(Reader *r, bool of_file) {
     uint32_t count = get_u32(r);
     for (uint32_t i = 0; i < count; i++) {
@@ -104,7 +104,7 @@ static SingeResult read_head(Reader *r) {
         return vdb_read_bad(r, "not a gas of Singe: no time or no size");
     if (r->extinction != (double)GAS_EXTINCTION || r->flame_unit != (double)GAS_FLAME_UNIT)
         return vdb_read_bad(r, "its density or its flame is in other units than those of this version");
-    r->gas->view.cell = 1; // the grids tell
+    r->gas->view.cell = 1; // set by the grids
     if (!gas_shape_is_good(&r->gas->view)) return vdb_read_bad(r, "more cells than a gas can have");
     if (get_u32(r) != VDB_FIELDS + 1) return vdb_read_bad(r, "other grids than those of Singe");
     return SINGE_OK;
@@ -130,7 +130,7 @@ static SingeResult read_map(Reader *r, bool first) {
 
 static bool vdb_read_bit(const uint8_t *mask, uint32_t n) { return mask[n >> 3] >> (n & 7) & 1; }
 
-/// An inner node: gives the mask of its children. Values of its own it may not have.
+/// An inner node: returns the mask of its children. It must not have values.
 static const uint8_t *take_node(Reader *r, size_t mask_bytes) {
     const uint8_t *node = vdb_read_take(r, 2 * mask_bytes + 1);
     if (!node || node[2 * mask_bytes]) return NULL;
@@ -196,7 +196,7 @@ static SingeResult read_tree(Reader *r, Reader *buffers, VdbField field) {
     return SINGE_OK;
 }
 
-/// A position in the file; NULL outside of it.
+/// A pointer into the file; NULL if outside.
 static const uint8_t *vdb_read_position(const Reader *r, uint64_t offset) {
     return offset <= (uint64_t)(r->end - r->begin) ? r->begin + offset : NULL;
 }

@@ -1,5 +1,5 @@
-// A gas as an OpenVDB file (formats/vdb.h): one leaf for every block of cells that holds something, all of whose
-// cells are active.
+// A gas as an OpenVDB file (formats/vdb.h): one leaf for every block of cells that is not still air; all of its cells
+// are active.
 #include "formats/store.h"
 #include "formats/vdb.h"
 
@@ -8,7 +8,7 @@
 
 enum { HEADER_MAX = 2048, GRID_MAX = 2048, NODE_SIDE = 1 << VDB_LOWER_LOG };
 
-/// Blocks that are leaves, in the order of the tree; those of a node follow each other.
+/// Blocks that are leaves, in the order of the tree; those of a node are contiguous.
 typedef struct Leaf {
     uint16_t block[3];
     bool opens; ///< the first of its node
@@ -51,13 +51,13 @@ static void put_float(Writer *w, float value) {
     put_u32(w, bits);
 }
 
-/// To the nearest 16-bit float, ties to the even one.
+/// Rounds to the nearest 16-bit float, ties to even.
 static uint16_t to_half(float value) {
     uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
     const uint16_t sign = (uint16_t)(bits >> 16 & 0x8000);
     bits &= 0x7fffffffu;
-    if (bits >= 0x477ff000u) return sign | 0x7bff; // the largest there is
+    if (bits >= 0x477ff000u) return sign | 0x7bff; // the largest finite number
     if (bits < 0x38800000u) {                      // below 2^-14 they are multiples of 2^-24
         float magnitude;
         memcpy(&magnitude, &bits, sizeof magnitude);
@@ -132,7 +132,7 @@ static void put_header(Writer *w, double time) {
     put_u32(w, VDB_FIELDS + 1);
 }
 
-/// What lets a program know a grid by its first kilobyte.
+/// Lets a program identify a grid from its first kilobyte.
 static void put_grid_metadata(Writer *w, const char *name, bool vector) {
     uint32_t low[3] = {UINT32_MAX, UINT32_MAX, UINT32_MAX}, high[3] = {0, 0, 0};
     uint64_t cells = 0;
@@ -244,7 +244,7 @@ static void put_buffers(Writer *w, VdbField field) {
     }
 }
 
-/// A grid with its tree, or, where `parent` is named, one that shares the parent's.
+/// A grid with its tree, or, if `parent` is given, one that shares the parent's.
 static void put_grid(Writer *w, const char *name, VdbField field, const char *parent) {
     put_string(w, name);
     char type[64];
@@ -293,7 +293,7 @@ static void find_tree(Writer *w) {
             for (node[2] = 0; node[2] * side < n[2]; node[2]++) find_leaves(w, node);
 }
 
-/// Bytes that are enough for the whole file.
+/// Max bytes of the whole file.
 static size_t size_max(const Writer *w) {
     size_t leaf = 2 * VDB_LEAF_MASK + 1, cells = GAS_BLOCK * GAS_BLOCK * GAS_BLOCK, all = HEADER_MAX + GRID_MAX;
     for (int f = 0; f < VDB_FIELDS; f++)

@@ -1,20 +1,20 @@
-// VTK's XML files of polygons, with their arrays appended raw, and the collection of them (ParaView, VTK, PyVista).
+// VTK's XML files of polygons, with raw appended arrays, and their collection file (ParaView, VTK, PyVista).
 //
-// Each array is its length in bytes (u64) and its values, little-endian; an XML element says where it begins.
+// Each array is its length in bytes (u64) and its values, little-endian; an XML element has its offset.
 #include "formats/fields.h"
 #include "formats/output.h"
 #include "formats/sink.h"
 
 typedef struct VtpArray {
     const char *name, *type;
-    int width; ///< values an item
+    int width; ///< values per item
     const void *values;
     size_t count; ///< items
 } VtpArray;
 
 static size_t value_size(const VtpArray *array) { return strcmp(array->type, "Int64") == 0 ? 8 : 4; }
 
-/// The element of an array that begins at *offset, which moves on.
+/// Writes the element of an array that begins at *offset, and advances *offset.
 static void put_element(Sink *xml, const VtpArray *array, uint64_t *offset) {
     sink_text(xml,
               "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"appended\" offset=\"%llu\"/>\n",

@@ -32,7 +32,7 @@ static void put_u16(Sink *sink, uint32_t value) {
     sink_bytes(sink, bytes, 2);
 }
 
-/// What an entry and its line in the directory have in common.
+/// Fields common to an entry and its line in the directory.
 static void put_entry(Sink *sink, uint32_t sum, size_t size, size_t name, size_t extra) {
     put_u16(sink, ZIP_VERSION), put_u16(sink, ZIP_UTF8), put_u16(sink, 0);
     put_u16(sink, 0), put_u16(sink, ZIP_DAY);
@@ -42,7 +42,7 @@ static void put_entry(Sink *sink, uint32_t sum, size_t size, size_t name, size_t
 
 void zip_add(Zip *zip, const char *name, const void *bytes, size_t size) {
     const size_t offset = zip->sink.size, length = strlen(name), head = offset + 30 + length;
-    // an extra field of no meaning takes up what is missing: 4 bytes and its contents
+    // an extra field without meaning is the padding: 4 bytes and its contents
     const size_t extra = (ZIP_ALIGNMENT - (head + 4) % ZIP_ALIGNMENT) % ZIP_ALIGNMENT + 4;
     const uint32_t sum = zip_sum(bytes, size);
     zip->too_large =

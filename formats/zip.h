@@ -1,4 +1,4 @@
-// An archive of files that are not packed, each 64 bytes aligned, as USDZ has it.
+// An archive of uncompressed files, each aligned to 64 bytes, as USDZ requires.
 #ifndef FORMATS_ZIP_H
 #define FORMATS_ZIP_H
 
