@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Singe in Blender: sheets of the scene burn in a process of its own, and the cache comes in as it grows."""
+"""Singe in Blender: burns sheets of the scene in a separate process, and loads the cache as it grows."""
 
 from . import operators, panels, properties
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Blender scene as a scene of Singe: meshes as PLY, all else as JSON (which is YAML).
+"""Writes a Blender scene as a scene of Singe: meshes as PLY, everything else as JSON (which is YAML).
 
-Singe's frame 1 is the scene's first frame. Lengths are metres: the scene's units times its scale.
+Singe's frame 1 is the scene's first frame. Lengths are in metres: Blender's units times the scene's unit scale.
 """
 
 import json
@@ -19,7 +19,7 @@ GROUPS = ("lit_group", "rate_group", "pin_group")
 
 
 class ExportError(Exception):
-    """What the user can mend, in words."""
+    """An error that the user can fix, with a message for the user."""
 
 
 def objects(scene, role):
@@ -27,7 +27,8 @@ def objects(scene, role):
 
 
 def first_mesh(scene, candidate):
-    """The object as it is drawn now: modifiers applied, in the world, m. Weights of groups that its settings name."""
+    """The object's mesh at the current frame: modifiers applied, in world coordinates, m; a sheet's with the weights of
+    the vertex groups that its settings name."""
     graph = bpy.context.evaluated_depsgraph_get()
     evaluated = candidate.evaluated_get(graph)
     data = evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=graph)
@@ -85,7 +86,7 @@ def moves(candidate):
 
 
 class Exporter:
-    """Writes one burn's files into a folder. `frames` are walked once, for all that moves."""
+    """Writes the files of a burn into a folder, in one pass over `frames` for everything that moves."""
 
     def __init__(self, context, folder, preview=False):
         self.scene, self.folder, self.preview = context.scene, folder, preview
@@ -96,7 +97,7 @@ class Exporter:
         self.moving, self.followed, self.paths = [], [], []
 
     def write(self):
-        """The path of the scene file."""
+        """Writes all files and returns the path of the scene file."""
         sheets = objects(self.scene, "SHEET")
         if not sheets:
             raise ExportError("no object is a sheet: choose one and set Singe to Sheet")
@@ -136,8 +137,9 @@ class Exporter:
         return document
 
     def _save_texture(self, image, sheet, name):
-        """A copy beside the scene, of the image as it is in this file: changed, packed or of another format."""
-        scene = bpy.data.scenes.new("singe texture")  # its settings, not the user's
+        """Saves the image next to the scene file, as a PNG: the image in Blender may be edited, packed or of another
+        format."""
+        scene = bpy.data.scenes.new("singe texture")  # so that the user's render settings remain
         try:
             scene.view_settings.view_transform = "Raw"
             scene.render.image_settings.file_format = "PNG"
@@ -214,14 +216,14 @@ class Exporter:
         if moves(lighter):
             self.paths.append((lighter, source, False))
         else:
-            source["position"] = self._place(lighter)
+            source["position"] = self._position(lighter)
         return source
 
     def _radius(self, lighter):
         size = [abs(d) for d in lighter.dimensions] if lighter.type == "MESH" else [lighter.empty_display_size * 2] * 3
         return max(0.5 * sum(size) / 3 * self.unit, 1e-3)
 
-    def _place(self, candidate):
+    def _position(self, candidate):
         return [self.unit * float(x) for x in candidate.matrix_world.translation]
 
     def _pin(self, sheet, mesh, name):
@@ -234,7 +236,7 @@ class Exporter:
             self.followed.append((sheet, f"{name}-pin", False))
         return pin
 
-    # what they meet
+    # colliders and wind
 
     def _collider(self, collider):
         mesh = first_mesh(self.scene, collider)
@@ -256,7 +258,7 @@ class Exporter:
         return entry
 
     def _wind(self):
-        """The sum of the scene's wind force fields, along their own z, their strength in m/s."""
+        """The sum of the scene's wind force fields. Each blows along its local z axis, with its strength in m/s."""
         velocity, gust = np.zeros(3), 0.0
         for candidate in self.scene.objects:
             field = candidate.field
@@ -268,10 +270,10 @@ class Exporter:
             return None
         return {"velocity": velocity.tolist(), "gust": float(gust)}
 
-    # what moves
+    # moving objects
 
     def _walk(self):
-        """One pass over the frames writes the meshes and paths of all that moves."""
+        """Writes the meshes and paths of everything that moves, in one pass over the frames."""
         if not (self.moving or self.followed or self.paths):
             return
         keys = {index: [] for index in range(len(self.paths))}
@@ -282,13 +284,13 @@ class Exporter:
                 mesh.uv, mesh.weights = None, {}
                 meshes.write_ply(os.path.join(self.folder, f"{file}.{number + 1:04}.ply"), mesh)
             for index, (candidate, *_) in enumerate(self.paths):
-                keys[index].append({"time": number / self.fps, "position": self._place(candidate)})
+                keys[index].append({"time": number / self.fps, "position": self._position(candidate)})
         for index, (_, entry, _) in enumerate(self.paths):
             entry["path"] = keys[index]
 
 
 def _plane_angles(mesh):
-    """Degrees about x, y, z that turn +z to the plane's normal, on the side that its faces show."""
+    """Rotation about x, y, z, degrees, that turns +z to the plane's normal, on the front of its faces."""
     normal = np.zeros(3)
     following = mesh.next_corners()
     for a, b in zip(mesh.points[mesh.corners], mesh.points[mesh.corners[following]]):

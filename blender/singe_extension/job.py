@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The program, running beside Blender: started, watched by its own files, stopped so that it can resume."""
+"""Runs the program as a separate process: starts it, follows its output files, and stops it so that it can resume."""
 
 import json
 import os
@@ -10,7 +10,7 @@ import stat
 import subprocess
 import sys
 
-RUNNING = {}  # by folder: jobs of this Blender
+RUNNING = {}  # jobs of this Blender, by folder
 
 
 class ProgramError(Exception):
@@ -18,7 +18,7 @@ class ProgramError(Exception):
 
 
 def find_program(override=""):
-    """The one that is asked for, the one in the extension's wheel, or the one in PATH."""
+    """The program `override` if given, else that of the extension's wheel, else that in PATH."""
     if override:
         if not os.path.isfile(override):
             raise ProgramError(f"there is no program {override}")
@@ -29,7 +29,7 @@ def find_program(override=""):
     except ImportError:
         path = ""
     if os.path.isfile(path):
-        if not os.access(path, os.X_OK):  # Blender's installer drops it
+        if not os.access(path, os.X_OK):  # Blender's installer drops this permission
             os.chmod(path, os.stat(path).st_mode | stat.S_IXUSR)
         return path
     found = shutil.which("singe")
@@ -62,8 +62,8 @@ class Job:
             return None
 
     def frames_done(self):
-        """Whole frames of this run; those of an earlier one in the same folder do not count."""
-        if not self.counting:  # the new run's record comes before its table
+        """Complete frames of this run; frames of an earlier run in the same folder do not count."""
+        if not self.counting:  # a new run writes run.json before stats.csv
             mark, stats = self._mark(), os.path.join(self.cache, "stats.csv")
             self.counting = (mark not in (None, self.started) and os.path.exists(stats)
                              and os.stat(stats).st_mtime_ns >= mark[1])
@@ -73,25 +73,25 @@ class Job:
         return self.process.poll() is None
 
     def stop(self):
-        """It ends after its step and leaves a checkpoint."""
+        """Asks the program to end after its current step, with a checkpoint."""
         if self.running():
             self.process.send_signal(signal.SIGINT if sys.platform != "win32" else signal.SIGTERM)
 
     def finish(self):
-        """Its exit code, and what it said was wrong."""
+        """Waits for the program and returns its exit code and its errors."""
         code = self.process.wait()
         RUNNING.pop(self.folder, None)
-        # its last record is newer than its table, so a run that ends between two looks is seen here only
+        # at its end a run writes run.json after stats.csv, so one that ends between two polls is noticed only here
         self.counting = self.counting or self._mark() not in (None, self.started)
         with open(self.log, encoding="utf-8", errors="replace") as file:
             lines = file.read().splitlines()
-        # with the line of the file below where there is one
+        # only the lines of errors; the lines of the scene quoted below them are dropped
         said = [line for line in lines if "error:" in line]
         return code, "\n".join(re.sub(r"^singe: error: ", "", line) for line in said[:6])
 
 
 def frames_in(cache):
-    """Whole frames of a cache."""
+    """The number of complete frames of a cache."""
     try:
         with open(os.path.join(cache, "stats.csv"), "rb") as file:
             return max(file.read().count(b"\n") - 1, 0)
@@ -104,7 +104,7 @@ def can_resume(cache, frames):
 
 
 def root_frames(root):
-    """Frames that a USD root names; a run writes it again now and then."""
+    """The number of frames that a USD root refers to. A run rewrites the root from time to time."""
     try:
         with open(root, encoding="utf-8") as file:
             found = re.search(r"endTimeCode = (\d+)", file.read(4096))
@@ -114,7 +114,7 @@ def root_frames(root):
 
 
 def root_of(cache):
-    """The cache's USD root, its first frame's gas (None: there is none), and its frame rate; None where there is no root."""
+    """The cache's USD root, the gas of its first frame (or None) and its frame rate; None if there is no root."""
     try:
         with open(os.path.join(cache, "run.json"), encoding="utf-8") as file:
             record = json.load(file)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A cache in the scene: each sheet by a Mesh Sequence Cache on its USD, the gas as a volume. Blender's own means: what
-is loaded renders where this extension is not installed."""
+"""Loads a cache into the scene: each sheet as a Mesh Sequence Cache of the USD, the gas as a volume. These are features
+of Blender itself, so the result renders without this extension."""
 
 import os
 
@@ -12,11 +12,11 @@ COLLECTION = "Singe"
 
 
 class LoadError(Exception):
-    """What the user can mend, in words."""
+    """An error that the user can fix, with a message for the user."""
 
 
 def relative(path):
-    """From the .blend file where there is one, so that both can be moved together."""
+    """The path relative to the .blend file, if there is one, so that both can be moved together."""
     try:
         return bpy.path.relpath(path) if bpy.data.filepath else path
     except ValueError:  # another drive
@@ -24,7 +24,7 @@ def relative(path):
 
 
 def collection_of(context, cache):
-    """The collection of a cache; it knows its folder."""
+    """The collection of a cache, created if necessary. It stores the cache's folder."""
     for collection in bpy.data.collections:
         if collection.get("singe_cache") == os.path.abspath(cache):
             return collection
@@ -35,7 +35,7 @@ def collection_of(context, cache):
 
 
 def clear(context, cache):
-    """Takes what was loaded of a cache out of the scene."""
+    """Removes from the scene everything loaded from a cache, and shows all sheets again."""
     for collection in [c for c in bpy.data.collections if c.get("singe_cache") == os.path.abspath(cache)]:
         for loaded in list(collection.objects):
             data = loaded.data
@@ -50,14 +50,14 @@ def clear(context, cache):
 
 
 def _close(context, cache):
-    """OpenUSD shares files that are open: one that is held would show an earlier burn's frames in a later one."""
+    """OpenUSD shares open files: a file kept open would show frames of an earlier burn in a later one."""
     folder = os.path.abspath(cache)
     for file in list(bpy.data.cache_files):
         if os.path.dirname(os.path.abspath(bpy.path.abspath(file.filepath))) != folder:
             continue
         if file.users == 0:
             bpy.data.batch_remove([file])
-        else:  # of an object that was copied out of the collection, say
+        else:  # used by an object that was copied out of the collection, for example
             _reload(context, file)
 
 
@@ -67,7 +67,7 @@ def _reload(context, file):
 
 
 def load(context, cache):
-    """The first time: objects for the sheets and the gas. Returns how many frames there are."""
+    """Loads a cache anew: makes objects for the sheets and the gas. Returns the number of frames."""
     found = job.root_of(cache)
     if not found:
         raise LoadError(f"{cache} has no USD: add `usd` to the formats of its scene, or run singe convert --to usd")
@@ -114,7 +114,7 @@ def _import_sheets(context, root, collection):
     for file in bpy.data.cache_files:
         if file not in files:
             file.filepath = relative(root)
-            # Singe's frame 1 is the scene's first
+            # Singe's frame 1 is the scene's first frame
             file.frame_offset = float(context.scene.frame_start - 1)
     for o in chosen:
         o.select_set(True)
@@ -123,7 +123,7 @@ def _import_sheets(context, root, collection):
 
 
 def _dress(context, loaded):
-    """Materials of the objects that burn, which are hidden while their cache is there."""
+    """Gives the loaded sheets materials, made from those of their source objects, and hides the source objects."""
     sources = export.objects(context.scene, "SHEET")
     for i, sheet in enumerate(sorted(loaded, key=lambda o: o.name)):
         source = sources[i] if i < len(sources) else None
@@ -133,7 +133,7 @@ def _dress(context, loaded):
         sheet.data.materials.append(materials.sheet_material(f"Singe {sheet.name}", image, colour))
         for modifier in sheet.modifiers:
             if modifier.type == "MESH_SEQUENCE_CACHE":
-                modifier.use_vertex_interpolation = False  # vertices are others in each frame
+                modifier.use_vertex_interpolation = False  # each frame has its own vertices
         if source:
             source.hide_render = True
             source.hide_set(True)
@@ -147,7 +147,7 @@ def _add_gas(context, collection, path, frames):
     volume.frame_duration = max(frames, 1)
     volume.sequence_mode = "CLIP"
     volume.velocity_unit = "SECOND"
-    if os.path.basename(os.path.dirname(path)) == "gas":  # the finer one has no velocity
+    if os.path.basename(os.path.dirname(path)) == "gas":  # the finer gas has no velocity
         volume.velocity_grid = "velocity"
     volume.materials.append(materials.fire_material())
     gas = bpy.data.objects.new("Singe Gas", volume)
@@ -156,7 +156,7 @@ def _add_gas(context, collection, path, frames):
 
 
 def grow(context, cache):
-    """Takes in frames that have come since: the root is read again, and the gas lasts longer."""
+    """Loads frames written since: reads the root again, and extends the gas. Returns the number of frames."""
     frames = job.frames_in(cache)
     for collection in bpy.data.collections:
         if collection.get("singe_cache") != os.path.abspath(cache):

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What burns, drawn: paper or cloth by the cache's attributes, and the gas. Plain nodes, which need no extension."""
+"""Materials of burning paper and cloth, from the cache's attributes, and of the gas. Their nodes need no extension."""
 
 import bpy
 
-# of `temperature_peak`, K: where paper browns, and where it is black
+# `temperature_peak` at which paper begins to brown, and at which it is black, K
 BROWN, BLACK = 470.0, 640.0
-# the flame's light a metre where `flame` is 1 (docs/blender.md)
+# the flame's emission per metre where `flame` is 1 (docs/blender.md)
 FLAME_LIGHT = 118.0
-# of `ember`: so that it is seen beside a lit sheet
+# strength of `ember`, high enough for embers to be visible next to a lit sheet
 EMBER_LIGHT = 1.5
 
 
@@ -71,7 +71,7 @@ def base_of(sheet):
 
 
 def sheet_material(name, image, colour):
-    """Paper or cloth: its own picture, browned and charred by how hot it has been, grey where it is ash, embers."""
+    """Paper or cloth: its picture or colour, browned and blackened by its peak temperature, grey ash, and embers."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     tree = material.node_tree
@@ -97,8 +97,8 @@ def sheet_material(name, image, colour):
                   0.05, 0.16, (-500, -400))
     coloured = _mix(tree, grey, black, (0.30, 0.29, 0.28, 1), (-100, 200))
 
-    # embers: hot char glows in patches, as air comes to it. By `ember`, the cache's colour of that glow: Cycles keeps the
-    # name `temperature` for volumes and finds 0 in a mesh's
+    # embers: hot char glows in patches, where air reaches it. `ember` is the cache's colour of that glow. The attribute
+    # `temperature` cannot be used: Cycles reserves the name for volumes, and reads 0 for meshes
     ember = _attribute(tree, "ember", (-1100, -800)).outputs["Color"]
     patches = _node(tree, "ShaderNodeTexNoise", (-900, -900), Scale=220.0, Detail=5.0, Roughness=0.7)
     links.new(_attribute(tree, "rest", (-1100, -1000)).outputs["Vector"], patches.inputs["Vector"])
@@ -113,7 +113,7 @@ def sheet_material(name, image, colour):
     through = _node(tree, "ShaderNodeBsdfTranslucent", (150, -150))
     links.new(coloured, through.inputs["Color"])
     mixed = _node(tree, "ShaderNodeMixShader", (400, 200))
-    # what is burnt lets no light through
+    # burnt parts transmit no light
     links.new(_math(tree, "MULTIPLY", (150, 400), _math(tree, "SUBTRACT", (-50, 400), 1.0, burnt), 0.22),
               mixed.inputs["Fac"])
     links.new(paper.outputs[0], mixed.inputs[1])
@@ -124,7 +124,7 @@ def sheet_material(name, image, colour):
 
 
 def fire_material():
-    """Smoke by `density`, light by `flame`: one for all burns of a file."""
+    """Smoke from `density`, light from `flame`. All burns of a file share this material."""
     material = bpy.data.materials.get("Singe Fire")
     if material:
         return material
@@ -135,7 +135,7 @@ def fire_material():
     volume = _node(tree, "ShaderNodeVolumePrincipled", (200, 0))
     volume.inputs["Color"].default_value = (0.05, 0.05, 0.05, 1)
     flame = _attribute(tree, "flame", (-600, -100)).outputs["Fac"]
-    # orange at the edge, yellow within
+    # orange at the edge, yellow inside
     hue = _node(tree, "ShaderNodeMix", (-150, -250), data_type="RGBA")
     hue.inputs[6].default_value, hue.inputs[7].default_value = (1, 0.22, 0.03, 1), (1, 0.45, 0.12, 1)
     tree.links.new(_range(tree, flame, 0.0, 0.5, (-350, -250)), hue.inputs[0])

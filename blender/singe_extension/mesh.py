@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes of polygons as arrays: finer ones, and PLY files. Knows no Blender."""
+"""Polygon meshes as arrays: subdivision and PLY files. Does not need Blender."""
 
 import numpy as np
 
@@ -15,14 +15,14 @@ class Mesh:
         self.weights = {name: np.asarray(values, np.float64).ravel() for name, values in (weights or {}).items()}
 
     def next_corners(self):
-        """For each corner the index of the face's next one."""
+        """For each corner, the index of the next corner of its face."""
         following = np.arange(1, len(self.corners) + 1)
         ends = np.cumsum(self.sizes)
         following[ends - 1] = ends - self.sizes
         return following
 
     def edge_length(self):
-        """The mean side, m."""
+        """The mean length of a side, m."""
         sides = self.points[self.corners[self.next_corners()]] - self.points[self.corners]
         return float(np.sqrt((sides**2).sum(1)).mean()) if len(sides) else 0.0
 
@@ -33,21 +33,22 @@ class Mesh:
         return len(self.points) >= 3 and size[2] <= 1e-3 * size[0]
 
     def is_closed(self):
-        """Whether each edge has two faces."""
+        """Whether each edge belongs to two faces."""
         a, b = self.corners, self.corners[self.next_corners()]
         _, counts = np.unique(np.sort(np.stack((a, b), 1), 1), axis=0, return_counts=True)
         return bool((counts == 2).all())
 
 
 def _split_edges(mesh):
-    """The vertex in the middle of the side that begins at each corner, numbered behind the others, and the sides' ends."""
+    """For each corner, the new vertex at the midpoint of the side that begins there, numbered after the old ones; and
+    the two ends of each new vertex's side."""
     a, b = mesh.corners, mesh.corners[mesh.next_corners()]
     ends, index = np.unique(np.sort(np.stack((a, b), 1), 1), axis=0, return_inverse=True)
     return len(mesh.points) + index.ravel(), ends
 
 
 def subdivide(mesh):
-    """Each face of n corners as n quads, with sides half as long: nothing is smoothed."""
+    """Splits each face of n corners into n quads with sides half as long, without smoothing."""
     face_of = np.repeat(np.arange(len(mesh.sizes)), mesh.sizes)
     middle, ends = _split_edges(mesh)
     centre = len(mesh.points) + len(ends) + face_of
@@ -73,14 +74,15 @@ def subdivide(mesh):
 
 
 def refine(mesh, cell_size, cells_max=2_000_000):
-    """Subdivided until its sides are at most `cell_size` m on average; no further than `cells_max` cells."""
+    """Subdivides until the mean side is at most `cell_size` m, to 5 %; no further than `cells_max` cells."""
     while mesh.edge_length() > cell_size * 1.05 and 4 * len(mesh.sizes) <= cells_max:
         mesh = subdivide(mesh)
     return mesh
 
 
 def spread(points, count):
-    """Points far from each other: their indices, at most `count`, and the max distance of a point from one of them."""
+    """Chooses at most `count` points far from each other. Returns their indices, and the max distance of a point from
+    the nearest of them."""
     chosen = [0]
     distance = ((points - points[0])**2).sum(1)
     while len(chosen) < min(count, len(points)) and distance.max() > 0:
@@ -90,7 +92,7 @@ def spread(points, count):
 
 
 def write_ply(path, mesh):
-    """Binary, with the uv of corners and the weights as properties of vertices."""
+    """Writes a binary PLY with the uv of corners, and with the weights as properties of vertices."""
     lines = ["ply", "format binary_little_endian 1.0", f"element vertex {len(mesh.points)}"]
     lines += [f"property float {name}" for name in ("x", "y", "z", *mesh.weights)]
     lines += [f"element face {len(mesh.sizes)}", "property list int int vertex_indices"]

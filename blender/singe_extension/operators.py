@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Burn, preview, cancel, resume, free and load."""
+"""The operators: burn (also preview and resume), cancel, free and load."""
 
 import os
 import shutil
@@ -9,7 +9,7 @@ from bpy.props import BoolProperty, StringProperty
 
 from . import export, job, load
 
-EVERY = 0.25  # s
+EVERY = 0.25  # s between polls
 
 
 def burn_folder(scene, preview=False):
@@ -35,7 +35,7 @@ def frame_count(scene):
 
 
 class Burning:
-    """A job and what the scene shows of it; shared by burn, preview and resume."""
+    """A job and its display in the scene; shared by burn, preview and resume."""
 
     def begin_job(self, context, preview, resume):
         scene = context.scene
@@ -54,7 +54,7 @@ class Burning:
         say(scene, "burning")
 
     def look(self, context):
-        """Takes in what is new. False when the job has ended."""
+        """Updates the progress and loads new frames. Returns False if the job had already ended."""
         scene, running = context.scene, self.job.running()
         frames = self.job.frames_done()
         if frames != self.shown:
@@ -64,7 +64,7 @@ class Burning:
             redraw(context)
         found = job.root_of(self.job.cache) if frames else None
         time = os.stat(found[0]).st_mtime_ns if found else None
-        # a root of one frame has nothing that moves: Blender makes no cache of it
+        # in a root of one frame nothing moves, and Blender makes no Mesh Sequence Cache of it
         if found and time != self.root_time and job.root_frames(found[0]) > 1 and (self.job.resumed or time > (self.job.started or (0, 0))[1]):
             self.root_time = time
             if load.is_loaded(self.job.cache):
@@ -74,7 +74,7 @@ class Burning:
         return running
 
     def end_job(self, context):
-        """Whether it has come to its end; the scene says why not."""
+        """Returns whether the job has completed. If not, the scene's message says why."""
         code, said = self.job.finish()
         self.look(context)
         scene, frames = context.scene, job.frames_in(self.job.cache)
@@ -90,7 +90,7 @@ class Burning:
 
 
 class SINGE_OT_burn(bpy.types.Operator, Burning):
-    """Burn the scene's sheets in the background; the cache comes in as it grows"""
+    """Burn the scene's sheets in the background; the cache is loaded as it grows"""
     bl_idname = "singe.burn"
     bl_label = "Burn"
 
@@ -107,7 +107,7 @@ class SINGE_OT_burn(bpy.types.Operator, Burning):
         return True
 
     def execute(self, context):
-        """Waits: for scripts and for Blender without a window."""
+        """Waits until the burn ends; for scripts and for Blender without a window."""
         if not self._begin(context):
             return {"CANCELLED"}
         try:
@@ -161,7 +161,7 @@ class SINGE_OT_cancel(bpy.types.Operator):
 
 
 class SINGE_OT_free(bpy.types.Operator):
-    """Delete the cache's files, and what was loaded of it"""
+    """Delete the cache's files and everything loaded from it"""
     bl_idname = "singe.free"
     bl_label = "Free Cache"
 
@@ -176,7 +176,7 @@ class SINGE_OT_free(bpy.types.Operator):
                     self.report({"ERROR"}, "it is burning: cancel first")
                     return {"CANCELLED"}
                 load.clear(context, os.path.join(folder, "cache"))
-                if os.path.exists(os.path.join(folder, "burn.yaml")):  # ours
+                if os.path.exists(os.path.join(folder, "burn.yaml")):  # a burn's folder
                     shutil.rmtree(folder)
         except (export.ExportError, OSError) as error:
             self.report({"ERROR"}, str(error))

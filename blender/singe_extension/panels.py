@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The panel of an object, and that of the burn, in the Physics tab and the sidebar."""
+"""The object's panel, in the Physics tab, and the burn's panel, there and in the sidebar."""
 
 import os
 

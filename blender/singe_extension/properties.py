@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a scene and its objects say about a burn. All of it is saved with the .blend file."""
+"""Settings of a burn, in the scene and in its objects. All are saved with the .blend file."""
 
 import bpy
 from bpy.props import (BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty)
@@ -52,7 +52,7 @@ class SceneSettings(bpy.types.PropertyGroup):
     creases: BoolProperty(name="Creases", description="Sharp bends stay in part", default=False)
     program: StringProperty(name="Program", subtype="FILE_PATH",
                             description="Another singe than the one that came with this extension")
-    # where a burn is; not animated
+    # state of a burn; not animated
     progress: FloatProperty(min=0, max=1, options={"SKIP_SAVE"})
     message: StringProperty()
     failed: BoolProperty()
