@@ -1,5 +1,5 @@
-// The measurements behind `singe bench`. Each fills the table that it is given, whose `text` is set, and returns
-// what stopped it. A simulation that diverges is a result, not a failure.
+// The measurements behind `singe bench`. Each fills the given table, whose `text` is set, and returns the error that
+// stopped it, if any. A simulation that diverges is a result, not a failure.
 #ifndef BENCH_BENCH_H
 #define BENCH_BENCH_H
 
@@ -10,45 +10,45 @@ typedef SingeResult BenchFn(const BenchOptions *options, BenchTable *table, Sing
 
 /// A sheet falls from the horizontal and swings, held at corner points: cost, strain and motion.
 BenchFn bench_swing;
-/// The swinging sheet made of triangles, as mesh_make makes quads of them: cells, strands, strain and motion.
+/// The swinging sheet made from triangles, which mesh_make joins to quads: cells, strands, strain and motion.
 BenchFn bench_mesh;
-/// A sheet that hangs and shrinks to 0.8 of its size: cost, strain, speed.
+/// A hanging sheet that shrinks to 0.8 of its size: cost, strain, speed.
 BenchFn bench_hang_and_shrink;
 
-/// A strip with a weak line that is pulled apart: the load at which it breaks, over cell size and time step.
+/// A strip with a weak line is pulled apart: the load at which it breaks, over cell size and time step.
 BenchFn bench_tear;
 
 /// The stage dynamics and its projection by size, against the machine's peaks.
 BenchFn bench_dynamics;
-/// Whole burning steps with a sphere and the ground, held against a limit if one is given (SINGE_ERROR_LIMIT).
+/// Whole burning steps with a sphere and the ground; SINGE_ERROR_LIMIT if they exceed a given limit.
 BenchFn bench_step;
 /// One stage of burning steps.
 BenchFn bench_heat;
 BenchFn bench_ablate;
 /// The drawn surface of a burning sheet by detail: triangles and cost.
 BenchFn bench_surface;
-/// A cloth that falls over a sphere in folds: cost of contact, strain.
+/// A cloth falls over a sphere in folds: cost of contact, strain.
 BenchFn bench_heap;
 BenchFn bench_collapse;
-/// Bytes a spring.
+/// Bytes per spring.
 BenchFn bench_memory;
 
-/// The burning front of options->materials on strips, beside what sources say.
+/// The burning front of options->materials on strips, compared with sources.
 BenchFn bench_front;
-/// How fast fire runs level, down and up in the gas that rises from it.
+/// The speed of fire that spreads level, down and up in its own rising gas.
 BenchFn bench_spread;
 
 /// The paper's solver and ours on the same trajectories.
 BenchFn bench_compare;
-/// The same run with each set of instructions.
+/// The same run with each instruction set.
 BenchFn bench_width;
-/// Over thickness, resolution and time step: does it hold?
+/// Stability over thickness, resolution and time step.
 BenchFn bench_stability;
-/// How much the look depends on time step, substeps and resolution.
+/// The dependence of the appearance on time step, substeps and resolution.
 BenchFn bench_look;
-/// What a strip that was folded and let go keeps of the fold.
+/// The angle that remains after a strip was folded and released.
 BenchFn bench_fold;
-/// The spectrum of the wrinkles of a burning edge, and how much its peak depends on time step and resolution.
+/// The spectrum of the wrinkles of a burning edge, and the dependence of its peak on time step and resolution.
 BenchFn bench_spectrum;
 
 #endif

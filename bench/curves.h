@@ -17,7 +17,7 @@ typedef struct Curves {
     Curve list[CURVES_MAX];
 } Curves;
 
-/// Adds the paper's Table 2, with and without its early end.
+/// Adds the paper's Table 2, with and without early exit.
 void curves_add_paper(Curves *curves);
 
 /// Adds a curve for every solver and number of threads in a file with columns `springs` and `step_ms`.

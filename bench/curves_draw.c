@@ -10,7 +10,7 @@ enum { WIDTH = 920, HEIGHT = 560, LEFT = 76, RIGHT = 340, TOP = 24, BOTTOM = 56 
 static const char *const colours[CURVES_MAX] = {"#888888", "#444444", "#c8401c", "#1c6cc8", "#2c8c3c", "#8c3ca0",
                                                 "#c89018", "#18a0a0", "#a03c5c", "#5c5cc8", "#6c8c1c", "#7c5c3c"};
 
-/// Whole powers of ten around all points.
+/// Powers of ten that enclose all points.
 typedef struct Frame {
     int springs_low, springs_high, ms_low, ms_high;
 } Frame;
@@ -35,7 +35,7 @@ static double position_y(const Frame *f, double power) {
     return HEIGHT - BOTTOM - (power - f->ms_low) / (f->ms_high - f->ms_low) * (HEIGHT - TOP - BOTTOM);
 }
 
-/// A line at every power of ten, its number beside it: from 0.01 to 1000 in full, else as a power.
+/// A line at every power of ten, with its number: from 0.01 to 1000 in full, else as a power.
 static void draw_number(FILE *file, double x, double y, const char *anchor, int power) {
     fprintf(file, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", x, y, anchor);
     if (power >= -2 && power <= 3) fprintf(file, "%.*f", power < 0 ? -power : 0, pow(10, power));

@@ -22,7 +22,7 @@ void curves_add_paper(Curves *curves) {
 
 enum { COLUMNS_MAX = 64, LINE_MAX_LENGTH = 4096 };
 
-/// Splits a line at its commas, in place. Quotes are not known: the tables need none.
+/// Splits a line at its commas, in place. Quotes are not supported: the tables need none.
 static int curves_read_split(char *line, char **fields) {
     int count = 0;
     line[strcspn(line, "\r\n")] = 0;
@@ -48,7 +48,7 @@ static SingeResult curves_read_fail(SingeError *error, SingeResult code, const c
     return code;
 }
 
-/// The curve of that name, made when it is new; NULL when there is no room.
+/// The curve of that name, added if it is new; NULL if there is no room.
 static Curve *curve_named(Curves *curves, int first, const char *name) {
     for (int i = first; i < curves->count; i++)
         if (strcmp(curves->list[i].name, name) == 0) return &curves->list[i];
@@ -60,7 +60,7 @@ static Curve *curve_named(Curves *curves, int first, const char *name) {
 }
 
 typedef struct Columns {
-    int springs, ms, solver, threads; ///< of the columns; -1 where there is none
+    int springs, ms, solver, threads; ///< of the columns; -1 if there is none
 } Columns;
 
 /// "strand, 2 threads, zen4" of a file zen4.csv.

@@ -1,11 +1,11 @@
 // Twelve independent chains x = x m + a: two units with a latency of four to five cycles need at least eight to ten.
-// The numbers stay near 1 and the result is kept, so that nothing can be left out.
+// The numbers remain near 1 and the result is used, so that the compiler cannot remove the work.
 #include "bench/fma.h"
 
 enum { CHAINS = 12 };
 
 static const float factor = 0.999f, addend = 0.001f;
-static volatile float start = 1.01f, kept; // volatile: a compiler that knew where a chain begins could leave it out
+static volatile float start = 1.01f, kept; // volatile: otherwise a compiler could compute the chain in advance
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>
@@ -31,7 +31,7 @@ FMA_KERNEL(fma_512, "avx512f", __m512, _mm512_set1_ps, _mm512_fmadd_ps, _mm512_s
 FMA_KERNEL(fma_256, "avx2,fma", __m256, _mm256_set1_ps, _mm256_fmadd_ps, _mm256_storeu_ps, 8)
 #endif
 
-/// Lanes that any compiler turns into what the target has.
+/// Lanes that any compiler maps to the target's vectors.
 static double fma_plain(long rounds) {
     enum { LANES = 4 };
     float x[CHAINS][LANES], sum = 0;

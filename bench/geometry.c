@@ -35,7 +35,7 @@ double geometry_speed(const SingeView *view) {
     double max = 0;
     for (uint32_t i = 0; i < view->particle_count; i++) {
         double v = square(view->velocity[i]);
-        if (!(v <= max)) max = v; // NaN stays
+        if (!(v <= max)) max = v; // keeps NaN
     }
     return sqrt(max);
 }
@@ -100,7 +100,7 @@ double geometry_reach(const SingeView *view, const float *position) {
         double rest = geometry_distance(view->rest_position[i], position);
         if (rest < 0.2) continue;
         double ratio = geometry_distance(view->position[i], position) / rest;
-        if (!(ratio <= max)) max = ratio; // NaN stays
+        if (!(ratio <= max)) max = ratio; // keeps NaN
     }
     return max;
 }

@@ -1,16 +1,16 @@
-// What a square sheet of `cells` a side looks like, from its vertices.
+// The geometry of a square sheet with `cells` per side, from its vertices.
 #ifndef BENCH_GEOMETRY_H
 #define BENCH_GEOMETRY_H
 
 #include "singe/singe.h"
 
-/// J/kg of motion and weight together, each particle with its mass; heights are measured from z = 0.
+/// J/kg, kinetic plus potential energy, weighted by particle mass; heights are measured from z = 0.
 double geometry_energy(const SingeView *view, double gravity);
 
 /// m, mean height of all mass.
 double geometry_height(const SingeView *view);
 
-/// m/s, the greatest; NaN where one is.
+/// m/s, the max; NaN if one is NaN.
 double geometry_speed(const SingeView *view);
 
 /// m, root mean square distance of the particles from their centre.
@@ -19,11 +19,11 @@ double geometry_gyration(const SingeView *view);
 /// Share of the inner edges whose two cells' normals are more than a right angle apart.
 double geometry_folded(const SingeView *view, int cells);
 
-/// Cells whose centre is not on the front of their corners; such as have no area are in order.
+/// Cells whose centre is not in front of their corners; cells without area do not count.
 double geometry_inverted(const SingeView *view);
 
-/// The max ratio of a particle's distance from a point on the sheet to that at rest, of particles farther from
-/// it than 0.2 m at rest.
+/// The max ratio of a particle's distance from a point on the sheet to that at rest, for particles more than 0.2 m from
+/// it at rest.
 double geometry_reach(const SingeView *view, const float *position);
 
 /// The sheet's point at (u, v) in [0, 1] of the square, bilinear between vertices.

@@ -65,8 +65,8 @@ void sheet_inert(SingeMaterialDef *material) {
     material->ablate = false;
 }
 
-/// Hot all over from the start, it loses one hundredth of its mass within a second; by eq 5 and 6 the ratio of
-/// lengths ends at m_min/ash_density = `ratio`. It never burns through, for mass_loss is below m_min.
+/// The sheet is hot from the start and loses one hundredth of its mass within a second; by eq 5 and 6 the ratio of
+/// lengths becomes m_min/ash_density = `ratio`. It never burns through, as mass_loss is below m_min.
 static void material_shrinks(SingeMaterialDef *material, float ratio) {
     const float min = 0.99f, excess = 100; // excess in K
     material->ignition_temperature = singe_param(500);
@@ -80,7 +80,7 @@ static void material_shrinks(SingeMaterialDef *material, float ratio) {
     material->shrink_front = material->shrink_back = material->fibre_shrink = singe_param(1);
 }
 
-/// A corner's vertex alone where the sheet swings, else a patch.
+/// Only a corner's vertex if the sheet swings, else a patch.
 static SingeResult pins_add(SingeSim *sim, const BenchSetup *setup, SingeSheetId sheet) {
     const bool upright = setup->state != BENCH_SWING;
     const float high = upright ? size : 0, corners[2][3] = {{0, 0, high}, {size, 0, high}};

@@ -10,33 +10,33 @@ typedef struct BenchSetup {
     int pins;        ///< corners held, 1 or 2
     float thickness; ///< m
     float time_step; ///< s
-    float shrink;    ///< what the lengths end at in BENCH_SHRINK
+    float shrink;    ///< final ratio of lengths in BENCH_SHRINK
     float damping;   ///< 1/s
-    float approach;  ///< m that the second patch moves towards the first within half a second (BENCH_HANG)
-    bool rigid;      ///< springs do not give, as in eq 16: no compliance
+    float approach;  ///< m, displacement of the second patch towards the first within half a second (BENCH_HANG)
+    bool rigid;      ///< inextensible springs as in eq 16: no compliance
     int threads;
     SingeInstructions instructions;
     SingeSolverDef solver;
-    const SingeSheetDef *shape; ///< whose vertices and cells are taken, in the xy plane; NULL: the grid
+    const SingeSheetDef *shape; ///< its vertices and cells are used, in the xy plane; NULL: the grid
 } BenchSetup;
 
 /// Frames a second at which trajectories are sampled.
 enum { BENCH_FPS = 24 };
 
-/// A setup with the solver, threads and time step that the options ask for: `steps` a frame.
+/// A setup with the options' solver, threads and time step: `steps` per frame.
 BenchSetup sheet_setup(const BenchOptions *options, BenchState state, int steps);
 
-/// Adds the sheet alone, flat in the xy plane or upright in the xz plane, `cells` a side.
+/// Adds only the sheet, flat in the xy plane or upright in the xz plane, `cells` per side.
 SingeResult sheet_add(SingeSim *sim, SingeSheetDef *def, int cells, float size, bool upright, SingeSheetId *id);
 
 /// The same for a rectangle of cells[0] by cells[1] cells.
 SingeResult sheet_add_strip(SingeSim *sim, SingeSheetDef *def, const int cells[2], const float sides[2], bool upright,
                             SingeSheetId *id);
 
-/// Nothing but the sheet's own weight acts on what is of this material, and no heat flows.
+/// Only weight acts on a sheet of this material, and no heat flows.
 void sheet_inert(SingeMaterialDef *material);
 
-/// Makes a simulation and commits it. On failure *sim is NULL.
+/// Creates a simulation and commits it. On failure *sim is NULL.
 SingeResult sheet_build(const BenchSetup *setup, SingeSim **sim, SingeError *error);
 
 #endif

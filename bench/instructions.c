@@ -1,5 +1,5 @@
 // A fixed scene of about 10,000 springs for scripts/count_instructions.py: a hanging sheet burns while a ball crosses
-// it, over a plane, on one thread, by instructions that valgrind knows. What valgrind counts is measured_steps.
+// it, over a plane, on one thread, with instructions that valgrind knows. valgrind counts those of measured_steps.
 #include "singe/singe.h"
 
 #include <stdio.h>

@@ -1,19 +1,19 @@
-// The machine that is measured on: its name, its clocks and what of it can be found out.
+// The machine of the measurement: its name and its clocks.
 #ifndef BENCH_MACHINE_H
 #define BENCH_MACHINE_H
 
 #include "singe/singe.h"
 
-/// The processor's name as the system gives it, or its architecture.
+/// The processor's name from the system, or its architecture.
 const char *machine_name(void);
 
-/// Processors that the system has.
+/// Number of processors of the system.
 int machine_processors(void);
 
-/// s, of the wall's clock.
+/// s, wall clock.
 double machine_clock(void);
 
-/// s of processor time that this process has used, all threads together.
+/// s, processor time of this process, all threads together.
 double machine_cpu_clock(void);
 
 #endif

@@ -1,10 +1,10 @@
 // The paper's solver and ours on the same trajectories: errors, cost, and the ratio at equal or lower error; and the
-// cost of seven projections of all colours without an early end.
+// cost of seven projections of all colours without early exit.
 //
-// Both start from the same state and are followed over the same frames, of which there are as many as the paper's
-// solver gets done in its share of time. The error is the strain of springs over all of them: of the mesh's edges
-// and of all springs. It is compared by p99 and mean: the greatest of the whole run is that of a single spring, which
-// jumps. Ours runs at several numbers of substeps, so that its cheapest run with no more error shows.
+// Both start from the same state and run the same frames, as many as the paper's solver completes in its share of the
+// time. The error is the strain over all frames: of the mesh's edges and of all springs. p99 and mean are compared: the
+// max is that of a single spring, and jumps. Ours runs with several numbers of substeps, to find its cheapest run with
+// no more error.
 #include <math.h>
 #include <stdlib.h>
 
@@ -32,7 +32,7 @@ static const BenchColumn columns[COLUMNS] = {
     [LESS] = {"no_more_error", NULL, 13, NULL},
 };
 
-/// What one trajectory came to.
+/// The results of a trajectory.
 typedef struct Outcome {
     int frames;
     double step_ms, fall;
@@ -43,7 +43,7 @@ typedef struct Comparison {
     const BenchOptions *options;
     BenchTable *table;
     SingeError *error;
-    double budget; ///< s of the wall's clock for a trajectory of the paper's solver
+    double budget; ///< s of wall clock for a trajectory of the paper's solver
     int frames;
 } Comparison;
 
@@ -63,12 +63,12 @@ static SingeResult compare_follow(const Comparison *c, const BenchSetup *setup, 
 }
 
 static bool no_more(const BenchValue *ours, const BenchValue *theirs) {
-    bool less = true; // NaN of theirs is a divergence, which anything is better than
+    bool less = true; // the paper's NaN is a divergence: anything is better
     for (int i = 1; i < 3; i++) less = less && (ours->number[i] <= theirs->number[i] || isnan(theirs->number[i]));
     return less && !isnan(ours->number[0]);
 }
 
-/// "edges" and "all": where p99 and mean are all no more than the paper's.
+/// "edges" and "all": whether p99 and mean are at most the paper's.
 static const char *verdict(const Outcome *ours, const Outcome *paper) {
     bool edges = no_more(&ours->blue, &paper->blue), all = no_more(&ours->all, &paper->all);
     return edges && all ? "edges and all" : edges ? "edges" : all ? "all" : "no";
@@ -136,7 +136,7 @@ static SingeResult full(const Comparison *c, double springs, SingeSolverMethod m
     setup.solver.substeps = 1, setup.solver.projections = 7, setup.solver.early_exit = false;
     SingeResult result = sheet_build(&setup, &sim, c->error);
     if (result) return result;
-    // the same steps for both solvers, and few: a step of the paper's takes seconds at 100,000 springs
+    // the same few steps for both solvers: a step of the paper's takes seconds at 100,000 springs
     int warm_up = springs > 5e4 ? 5 : 40, steps = springs > 5e4 ? 5 : 11;
     result = timing_measure(&timing, sim, NULL, warm_up, steps);
     if (result) *c->error = *singe_sim_error(sim);

@@ -1,4 +1,4 @@
-// The stage dynamics and its projection alone, by size: time, arithmetic and traffic against the machine's peaks.
+// The stage dynamics and its projection, by size: time, arithmetic and memory traffic relative to the machine's peaks.
 #include <math.h>
 #include <stdlib.h>
 

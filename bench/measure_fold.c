@@ -1,14 +1,14 @@
-// What a fold leaves: a strip is rolled over the arc between two halves that are held, to an angle, and let go.
+// The angle that remains after folding: a strip between two held halves is rolled to an angle, and released.
 //
-// The strip is 80 mm by 12.5 mm, 1.5 mm thick in the model, D = 9e-6 N m. Its centre, 15 mm long, is rolled as about a
-// rod: to a radius of 4.8 mm at 180 degrees. The half that moves gets there in 0.6 s, stays for 0.3 s and is let go;
-// only friction acts then. The other half stays held. `left` is the angle between the halves 2 s later.
+// The strip is 80 mm by 12.5 mm, 1.5 mm thick in the model, D = 9e-6 N m. Its central 15 mm are rolled as around a rod,
+// to a radius of 4.8 mm at 180 degrees. The moving half arrives in 0.6 s, rests for 0.3 s and is released; then only
+// friction acts. The other half remains held. `left` is the angle between the halves 2 s later.
 //
-//   expected  crease_share (angle - arc/crease_radius), what continuous bending keeps (docs/equations.md, Creases)
+//   expected  crease_share (angle - arc/crease_radius), as for continuous bending (docs/equations.md, Creases)
 //   elastic   left without creases: it should spring back
 //
-// Folds go towards the layer of centres and towards that of corners. At half the cells' size and at half the time step
-// the angles should agree.
+// Folds are towards the layer of centres and towards that of corners. The angles should agree at half the cell size and
+// at half the time step.
 #include <math.h>
 #include <stdlib.h>
 
@@ -39,7 +39,7 @@ typedef struct Fold {
 
 enum { KEYS = 65 };
 
-/// The moving half's start on the roll's way.
+/// The pose of the moving half's start as it rolls.
 static void fill_path(double angle, SingePoseKey *path) {
     for (int k = 0; k < KEYS; k++) {
         double share = k / (KEYS - 1.0), turn = angle * share, curvature = turn / arc;
@@ -66,7 +66,7 @@ static SingeResult hold(SingeSim *sim, SingeSheetId sheet, const SingeView *view
     return result;
 }
 
-/// How far the free half is turned from the held one, about the strip's width, within a right angle of `near`.
+/// The angle between the free half and the held one, about the strip's width, within a right angle of `near`.
 static double turned(const SingeView *view, double near) {
     double along[2] = {0, 0};
     for (uint32_t v = 0; v < view->vertex_count; v++) {
@@ -119,7 +119,7 @@ static SingeResult fold_run(const BenchOptions *options, Fold *fold, bool crease
     SingeSim *sim;
     def.thread_count = options->threads, def.instructions = options->instructions;
     def.time_step = (float)fold->step;
-    def.solver.substeps = options->substeps; // 0: what the strip's stiffness needs
+    def.solver.substeps = options->substeps; // 0: as many as the strip's stiffness needs
     def.solver.creases = creases;
     for (int axis = 0; axis < 3; axis++) def.gravity[axis] = 0;
     fold->inverted = 0;

@@ -1,4 +1,4 @@
-// The burning front of materials: speed, hottest temperature and residue on strips, beside what sources say.
+// The burning front of materials: speed, max temperature and residue on strips, compared with sources.
 #include "bench/bench.h"
 #include "bench/strip.h"
 
@@ -35,7 +35,7 @@ static const BenchColumn front_columns[FRONT_COLUMNS] = {
     [FINDING] = {"finding", NULL, 15, NULL},
 };
 
-/// What is measured, and from where to where a source has it; 0 and 0 where none has.
+/// A measured value, and its range in sources; 0 and 0 if there is none.
 static BenchValue beside(double is, const float range[2], double scale, double zero) {
     bool known = range[1] > 0;
     return (BenchValue){.number = {is * scale - zero, known ? (double)range[0] * scale - zero : NAN,
@@ -55,8 +55,8 @@ typedef enum FrontDirection {
 static const char *const direction_names[] = {
     [FRONT_STILL] = "still", [FRONT_LEVEL] = "level", [FRONT_DOWN] = "down", [FRONT_UP] = "up"};
 
-/// The strips of a material: first still air, where the resolution and the time step are changed one after the other;
-/// then with the gas that it makes, on strips that are wide enough to make any.
+/// The strips of a material: first in still air, with changed resolution and time step; then with gas, on strips wide
+/// enough to produce it.
 typedef struct FrontCase {
     FrontDirection direction;
     float cell, step; ///< m; in default steps
@@ -77,7 +77,7 @@ static StripSetup front_setup(const BenchOptions *options, const BenchMaterial *
     return setup;
 }
 
-/// What the strips of a material have in common with each other.
+/// Values shared by the strips of a material.
 typedef struct FrontKnown {
     double usual, level, down; ///< m/s: of the first strip; with gas, level and down
 } FrontKnown;
@@ -107,7 +107,7 @@ static void fill_row(BenchValue *row, const BenchMaterial *material, FrontDirect
     row[THICKENING] = bench_number(result->thickening);
     row[SPEED] = beside(result->speed, level ? material->speed : nothing, 1e3, 0);
     row[CHANGE] = bench_number(known->usual > 0 ? 100 * (result->speed / known->usual - 1) : NAN);
-    // what has climbed to the end has not burnt yet
+    // the front that has climbed to the end has not burnt through yet
     const bool burnt = direction != FRONT_UP;
     row[HOTTEST] = beside(burnt ? result->hottest : (double)NAN, level ? material->temperature : nothing, 1, 273.15);
     row[RESIDUE] = beside(burnt ? result->residue : (double)NAN, level ? material->residue : nothing, 100, 0);

@@ -1,5 +1,5 @@
-// What contact of a sheet with itself costs, while it falls, while it crashes and while it lies there: a cloth on edge
-// that falls over a sphere and onto the ground in folds, and a ball of paper, a closed mesh, that collapses.
+// The cost of self-contact while a sheet falls, lands and lies: an upright cloth falls over a sphere and onto the
+// ground in folds, and a ball of paper, a closed mesh, collapses.
 #include <math.h>
 #include <stdlib.h>
 
@@ -62,7 +62,7 @@ static const BenchColumn columns[COLUMNS] = {
     [SPEED] = {"speed", "%.3f", 8, NULL},
 };
 
-/// A cloth in the x-z plane in slight waves, so that it folds and does not stand.
+/// A cloth in the x-z plane with slight waves, so that it folds instead of standing.
 static SingeResult add_cloth(SingeSim *sim, int n) {
     uint32_t row = (uint32_t)n + 1;
     float *x = malloc(3 * (size_t)row * row * sizeof *x), cell = side / (float)n;
@@ -90,7 +90,7 @@ static SingeResult add_cloth(SingeSim *sim, int n) {
     return result;
 }
 
-/// Where a point of a cube's surface is in the list of its (n + 1) x (n + 1) points below and above, and rings between.
+/// The index of a point of a cube's surface: (n + 1) x (n + 1) points at the bottom and the top, and rings in between.
 static uint32_t ball_vertex(const uint32_t at[3], uint32_t n) {
     uint32_t i = at[0], j = at[1], k = at[2], row = n + 1;
     if (k == 0 || k == n) return (k ? row * row : 0) + j * row + i;
@@ -98,7 +98,7 @@ static uint32_t ball_vertex(const uint32_t at[3], uint32_t n) {
     return 2 * row * row + (k - 1) * 4 * n + ring;
 }
 
-/// The six faces of a cube of n x n cells each, drawn out to a sphere that lies on the ground.
+/// The six faces of a cube of n x n cells each, projected to a sphere that lies on the ground.
 static void fill_ball(uint32_t n, float *x, uint32_t *cells) {
     for (uint32_t c = 0; c < 6 * n * n; c++) {
         uint32_t axis = c / (2 * n * n), upper = c / (n * n) % 2, i = c / n % n, j = c % n;

@@ -1,14 +1,14 @@
-// How much the look depends on numerical settings: rest shape, sag and wrinkles at twice and half the time step, twice
-// the substeps and half the cell size, against a base.
+// The dependence of the appearance on numerical settings: rest shape, sag and wrinkles at twice and half the time step,
+// twice the substeps and half the cell size, relative to a base.
 //
-// Rest: a sheet hangs from two corner patches that come 10 cm nearer to each other, and comes to rest.
+// Rest: a sheet hangs from two corner patches that move 10 cm closer, and comes to rest.
 //   sag    m, height of the patches over the centre of the upper edge
 //   drop   m, fall of the centre of mass
 //   shape  mm, root mean square distance of points of the sheet to the same points of the base
 // Wrinkles: a sheet that hangs from two corner patches shrinks uniformly to 0.8.
 //   wavelength  mm, where the power spectrum of the displacement off its plane is highest: along level lines of
 //               the sheet, mean and slope taken out, Hann window, power summed over the lines
-//   mean        mm, one over the mean wave number weighted by power: less jumpy than the peak
+//   mean        mm, one over the mean wave number weighted by power: more stable than the peak
 //   height      mm, root mean square of that displacement
 #include <math.h>
 #include <stdlib.h>
@@ -72,7 +72,7 @@ static void read_rest(Look *look, const SingeView *view, int cells, double heigh
     look->drop = height_start - geometry_height(view);
 }
 
-/// Takes mean and slope out and lays a Hann window over it. Returns the mean square before the window.
+/// Removes mean and slope and applies a Hann window. Returns the mean square before the window.
 static double prepare_line(double *line) {
     const double centre = 0.5 * (SAMPLES - 1), pi = acos(-1);
     double mean = 0, slope = 0, squares = 0, power = 0;

@@ -1,5 +1,4 @@
-// Bytes a spring by size: what a simulation holds, what contact adds to it, what building it takes at most, and what
-// its drawn mesh takes.
+// Bytes per spring by size: of a simulation, added by contact, the peak while building it, and of its drawn mesh.
 #include <stdlib.h>
 
 #include "bench/bench.h"
@@ -36,7 +35,7 @@ static void *resize(void *context, void *block, size_t old_size, size_t new_size
     return moved;
 }
 
-/// What a simulation holds with contact, after a step.
+/// Memory of a simulation with contact, after a step.
 static SingeResult measure_contact(const BenchOptions *options, double springs, size_t *held_bytes, SingeError *error) {
     Held held = {0};
     const SingeAllocator counting = {resize, &held};

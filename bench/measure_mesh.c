@@ -1,9 +1,10 @@
-// The swinging sheet made of triangles: what mesh_make makes of them, and whether it is held as the sheet of quads is.
+// The swinging sheet made from triangles: the quads that mesh_make makes, and whether the result is as inextensible as
+// a sheet of quads.
 //
-// Triangles are those of a grid with its diagonals in order, in turns or at random; the same with all numbers shuffled;
-// rows of nearly equilateral ones; and the Delaunay triangles of a grid whose vertices are moved by up to a third of a
-// cell; beside these the quads of the same vertices, which show what is the vertices' doing. The right motion and the
-// bars are those of `swing`.
+// The triangles are those of a grid with equal, alternating or random diagonals; the same with shuffled numbers; rows
+// of nearly equilateral ones; and the Delaunay triangles of a grid whose vertices are moved by up to a third of a cell.
+// The quads of the same vertices show the effect of the vertices alone. The correct motion and the bars are those of
+// `swing`.
 #include "mesh/to_quads.h"
 
 #include <math.h>
@@ -217,7 +218,7 @@ static SingeResult make_grid(const Plane *plane, uint32_t n, Mesh *mesh, SingeEr
     return result;
 }
 
-/// Share of the vertices inside the square that have other than four cells.
+/// Share of the vertices inside the square whose number of cells is not four.
 static double irregular_percent(const Mesh *mesh) {
     uint32_t *cells = calloc(mesh->vertex_count, sizeof *cells), inside = 0, irregular = 0;
     for (size_t i = 0; cells && i < 4 * (size_t)mesh->cell_count; i++) cells[mesh->cells[i]]++;

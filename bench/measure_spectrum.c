@@ -1,16 +1,15 @@
-// The spectrum of the wrinkles that burning leaves, and how much it depends on numerical settings: at twice and half
-// the time step and half the cell size it should stay, at twice the thickness it should not.
+// The spectrum of the wrinkles of burning, and its dependence on numerical settings: it should not change at twice and
+// half the time step and half the cell size, but should at twice the thickness.
 //
-// A sheet hangs from its upper edge and burns from its lower one, lit all along. Four times from then on, lines along
-// the edge, 2 mm apart, from the char to 12 mm above what has begun to burn, are looked at where they are whole: the
-// angle by which the line leaves the sheet's plane, its mean and slope taken out, under a Hann window. Its power is
-// summed over lines, times and seeds of the noise, and given for bands of half an octave in rest wavelength: the mean
-// of k times the power of k waves a line, so that a band does not count by how many waves fit.
-//   peak  mm, the centre of the squares of the bands' power: where the strong ones are, without a jump from one to the
-//         next where two are alike
-//   mean  mm, the centre of power, both over the logarithm of the wavelength
+// A sheet hangs from its upper edge and burns from its lower one, lit all along. At four later times, lines along the
+// edge are measured, 2 mm apart, from the char to 12 mm above the start of burning, if they are whole: the angle of the
+// line to the sheet's plane, without its mean and slope, under a Hann window. Its power is summed over lines, times and
+// seeds of the noise, and given for bands of half an octave in rest wavelength: the mean of k times the power of k
+// waves per line, so that a band's weight does not depend on the number of waves in it.
+//   peak  mm, the centroid of the squares of the bands' power: near the strongest bands, without jumps if two are alike
+//   mean  mm, the centroid of power, both over the logarithm of the wavelength
 //   rms   degrees, of the angle
-// The front is thickened as the base's cells need, whatever the cells: with it the width of the char would change.
+// The front is always thickened as the base's cells need, because the width of the char depends on it.
 #include <math.h>
 #include <stdlib.h>
 
@@ -51,7 +50,7 @@ static double band_wave(int band) { return shortest * pow(2, (band + 0.5) / 2); 
 
 static int wave_band(double wave) { return (int)floor(2 * log2(wave / shortest) + 1e-9); }
 
-/// How many whole numbers of waves on the line are in a band.
+/// The number of integer wave counts in a band.
 static int band_waves(int band) {
     int count = 0;
     for (int k = 1; k <= SAMPLES / 2; k++) count += wave_band(width / k) == band;
@@ -75,7 +74,7 @@ static SingeResult strip_add(SingeSim *sim, const Strip *strip, SingeSheetDef *d
             double z = v / row * strip->cell;
             positions[3 * v] = (float)(v % row * strip->cell), positions[3 * v + 1] = 0;
             positions[3 * v + 2] = (float)z;
-            hot[v] = (float)fmax(0, 1 - z / 0.004); // K above ignition at the edge, falling to nothing in 4 mm
+            hot[v] = (float)fmax(0, 1 - z / 0.004); // K above ignition at the edge, falling to 0 within 4 mm
         }
         for (uint32_t v = 0; v + row < row * rows; v++) {
             if (v % row + 1 == row) continue;
@@ -135,7 +134,7 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
     return result;
 }
 
-// ---- what it looks like
+// ---- its shape
 
 /// The line at the rest height z: the angle out of the plane at each sample. False where it is not whole.
 static bool read_line(const SingeView *view, const Strip *strip, double z, double *angle) {
@@ -161,7 +160,7 @@ static bool read_line(const SingeView *view, const Strip *strip, double z, doubl
     return true;
 }
 
-/// Takes mean and slope out of a line, lays a Hann window over it and adds its power to the bands.
+/// Removes mean and slope of a line, applies a Hann window and adds its power to the bands.
 static void add_line(Spectrum *spectrum, double *line) {
     const double centre = 0.5 * (SAMPLES - 1), pi = acos(-1);
     double mean = 0, slope = 0, squares = 0;
@@ -185,7 +184,7 @@ static void add_line(Spectrum *spectrum, double *line) {
     }
 }
 
-/// The rest height up to which the centre of the sheet has lost mass.
+/// The rest height up to which the sheet's centre line has lost mass.
 static double burnt_height(const SingeView *view, const Strip *strip) {
     const int row = strip->across + 1;
     int j = 0;
@@ -223,7 +222,7 @@ static SingeResult spectrum_observe(const BenchOptions *options, int setting, ui
 
 // ---- the numbers
 
-/// Centre of a power of the power, over the logarithm of the wavelength.
+/// Centroid of a power of the power, over the logarithm of the wavelength.
 static double centre(const Spectrum *spectrum, double exponent) {
     double sum = 0, moment = 0;
     for (int b = 0; b < BANDS; b++) {

@@ -1,4 +1,5 @@
-// Which way fire runs faster: strips of office paper in the gas, level, hanging lit above and hanging lit below.
+// The direction in which fire spreads faster: strips of office paper in gas: level, hanging and lit at the top, hanging
+// and lit at the bottom.
 #include "bench/bench.h"
 #include "bench/strip.h"
 

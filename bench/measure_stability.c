@@ -1,18 +1,18 @@
-// Where the solver holds: swing and strong shrink over thickness, resolution and time step.
+// Stability of the solver: swing and strong shrinkage over thickness, resolution and time step.
 //
 // Swing is that of `singe bench swing`. Strong shrink: a sheet hangs from one corner patch and shrinks to half its
 // size within a second. Neither has drag or damping. A case is
 //
 //   NaN       a step failed, or a position, a speed or a strain is not a finite number
-//   exploded  motion and weight together hold more than they began with and 0.5 J/kg (swing; 10 J/kg for shrink,
+//   exploded  kinetic plus potential energy exceeds its initial value by more than 0.5 J/kg (swing; 10 J/kg for shrink,
 //             whose springs do work: as much as lifting all of the sheet by its side), or a speed is above 100 m/s
-//   stretched a point is more than 1.5 times as far from a pin as the sheet lets it
+//   stretched a point is more than 1.5 times as far from a pin as the sheet allows
 //   crumpled  at the end the root mean square distance from the sheet's centre is below 0.35 of that of a flat sheet
 //             of its size (one that hangs from a corner has 0.7), or more than a quarter of the inner edges fold
 //             sharper than a right angle
 //   ok        else
 //
-// Beside it: the most cells that were inverted, their centre not in front of their corners, at the end of any step.
+// Also: the max number of inverted cells, whose centre is not in front of their corners, at the end of any step.
 #include <math.h>
 #include <stdlib.h>
 
@@ -42,7 +42,7 @@ typedef struct Case {
     double t_over_s, seconds;
     bool finite;
     double speed, energy_gain, reach, gyration, folded; ///< the greatest, and the last two at the end
-    double inverted;                                    ///< cells, the most after any step
+    double inverted;                                    ///< cells, the max after any step
     BenchValue strain;
     SingeResult failed; ///< could not be built
     SingeError error;

@@ -84,8 +84,7 @@ static void fill_stage(BenchValue *row, int stage, const BenchOptions *options, 
     row[STAGE_GONE] = bench_number(springs - singe_sim_stats(sim).springs);
 }
 
-/// Holds the step against the limit of the reference machine, where a slower machine has as much more time as the
-/// yardstick takes longer there.
+/// Compares the step with the limit of the reference machine, scaled by the yardstick's time on this machine.
 static SingeResult stages_judge(const BenchOptions *options, const Timing *timing, BenchTable *table,
                                 SingeError *error) {
     double step = timing_median(timing, TIMED_SCALED), limit = options->limit_ms;
@@ -109,7 +108,7 @@ static SingeResult stages_measure(const BenchOptions *options, int stage, double
     SingeSim *sim;
     Timing timing = {0};
     BenchValue row[STEP_COLUMNS] = {0};
-    const float pace = stage == SINGE_STAGE_ABLATE ? 20 : 1; // so that much goes while it is timed
+    const float pace = stage == SINGE_STAGE_ABLATE ? 20 : 1; // so that much is removed while it is timed
     if (burning_build(options, NULL, springs, pace, &sim, error)) return error->code;
     int steps = options->steps ? options->steps : timing_steps(springs, 10, 200);
     SingeResult result = timing_measure(&timing, sim, yardstick, WARM_UP, steps);

@@ -1,4 +1,4 @@
-// What the drawn surface of a burning sheet costs, with the cells as they are and refined near the front.
+// The cost of the drawn surface of a burning sheet, with plain cells and refined near the front.
 #include "bench/bench.h"
 #include "bench/burning.h"
 #include "bench/machine.h"
@@ -6,7 +6,7 @@
 #include "bench/timing.h"
 
 enum { BURNING_STEPS = 240, DRAWINGS = 15 };
-static const float fire_pace = 20; // so that much has gone after so many steps
+static const float fire_pace = 20; // so that much is gone after these steps
 
 enum { SPRINGS, THREADS, DETAIL, TRIANGLES, FINE, VERTICES, MEDIAN, CPU, CACHE, COLUMNS };
 
@@ -18,7 +18,7 @@ static const BenchColumn columns[COLUMNS] = {
     [CACHE] = {"cache_mb", "%.2f", 8, NULL},
 };
 
-/// Draws the present state some times; medians of wall and processor time.
+/// Draws the current state several times; medians of wall and processor time.
 static SingeResult time_drawings(SingeSim *sim, SingeSurface *surface, double *wall, double *cpu) {
     double walls[DRAWINGS], cpus[DRAWINGS];
     for (int i = 0; i < DRAWINGS; i++) {

@@ -1,16 +1,16 @@
 // Trajectories: swing and hang-and-shrink.
 //
-// The right motion of `swing` held at two corners is that to which all solvers converge with finer time steps: the
-// centre of mass at .33, .50 and .67 s. A sheet that looks stiff because it barely falls has it wrong. Inextensible
-// means, for `swing` over at least .67 s and by `bars`: strain of the mesh's edges of .5 % at most and .05 % at the
-// 99th percentile, 5 % and .5 % where one corner bears all, and with two the right motion within 2 cm.
+// The correct motion of `swing` held at two corners is that to which all solvers converge with finer time steps: the
+// centre of mass at .33, .50 and .67 s. A sheet that looks stiff because it barely falls is wrong. Inextensible means,
+// for `swing` over at least .67 s (see `bars`): strain of the mesh's edges of at most .5 %, and .05 % at the 99th
+// percentile; 5 % and .5 % if one corner bears all; with two corners also the correct motion within 2 cm.
 #include <math.h>
 
 #include "bench/bench.h"
 #include "bench/trajectory.h"
 
-/// Steps a frame: of the shrinking sheet; the swinging one, where nothing burns, takes one of more substeps.
-/// What hangs from one corner whips: from 100 cells on, the more cells, the more substeps.
+/// Steps per frame of the shrinking sheet; the swinging one, where nothing burns, takes one step of more substeps. A
+/// sheet held at one corner whips, so from 100 cells on the substeps grow with the cells.
 enum { DEFAULT_STEPS = 20, SWING_SUBSTEPS = 60, ONE_CORNER_SUBSTEPS = 240, ONE_CORNER_CELLS = 100 };
 
 enum {
@@ -52,7 +52,7 @@ static const BenchColumn columns[COLUMNS] = {
     [RESULT] = {"result", NULL, 8, NULL},
 };
 
-/// Whether the sheet is inextensible and moves as it should; "-" where that is not known.
+/// Whether the sheet is inextensible and moves correctly; "-" if unknown.
 static const char *bars_held(const BenchSetup *setup, const Trajectory *t, double off) {
     const double scale = setup->pins == 1 ? 10 : 1, max = 0.5 * scale, p99 = 0.05 * scale, off_max = 2;
     const BenchValue blue = strain_percent(&t->strain[SINGE_BLUE]);

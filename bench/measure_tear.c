@@ -1,7 +1,7 @@
 // A strip that is pulled apart. Paper of 120 mm x 60 mm, of a stretch stiffness of 500 N/m, is held at its short sides,
-// which part at 4 mm/s. Across it, at 50 mm, runs a line that a picture weakens from 2 to 1 N/m. The load is the mean
-// over the strip's cells, between the grips, of the line force along it; it should break at the weak line, at about its
-// strength, whatever cells and steps.
+// which separate at 4 mm/s. Across it, at 50 mm, a texture weakens a line from 2 to 1 N/m. The load is the mean line
+// force along the strip over the cells between the grips. It should break at the weak line, at about its strength, for
+// any cells and steps.
 #include <math.h>
 #include <stdlib.h>
 
@@ -20,16 +20,16 @@ static const BenchColumn columns[COLUMNS] = {
     [STEP] = {"step_ms", "%.3f", 7, NULL},
     [SUBSTEP] = {"substeps", "%.0f", 8, NULL},
     [LOAD] = {"load_n_m", "%.3f", 9, NULL},
-    [ERROR] = {"off_pct", "%.1f", 8, NULL}, // of the first row's load
+    [ERROR] = {"off_pct", "%.1f", 8, NULL}, // relative to the first row's load
     [STRETCH] = {"stretch_pct", "%.2f", 11, NULL},
     [TEARS] = {"tears", "%.0f", 6, NULL},
     [PIECES] = {"pieces", "%.0f", 6, NULL},
-    [ASIDE] = {"aside", "%.0f", 6, NULL}, // vertices that tore elsewhere than at the line
+    [ASIDE] = {"aside", "%.0f", 6, NULL}, // vertices that tore away from the line
 };
 
 typedef struct Pulled {
-    double load;    ///< N/m, the most
-    double stretch; ///< then
+    double load;    ///< N/m, the max
+    double stretch; ///< at that time
     int tears, aside;
     uint32_t pieces;
 } Pulled;
@@ -92,7 +92,7 @@ static double load_now(const SingeView *view, uint32_t nx) {
     return sum / count;
 }
 
-/// Vertices from `first` on are those that tears have made.
+/// Vertices from `first` on were created by tears.
 static int torn_aside(const SingeView *view, uint32_t first, float cell) {
     int aside = 0;
     for (uint32_t v = first; v < view->vertex_count; v++)

@@ -1,4 +1,4 @@
-// The same run with each set of instructions: what it costs, and whether the positions end up with the same bytes.
+// The same run with each instruction set: its cost, and whether the final positions have the same bytes.
 #include <math.h>
 #include <stdlib.h>
 
@@ -15,7 +15,7 @@ static const BenchColumn columns[COLUMNS] = {
     [RATIO] = {"plain_over_this", "%.2f", 15, NULL},    [BYTES] = {"bytes", NULL, 8, NULL},
 };
 
-/// What the plain run came to, which the others are held against.
+/// The result of the plain run, with which the others are compared.
 typedef struct Reference {
     uint64_t hash;
     double projection_ms;

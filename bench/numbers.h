@@ -4,7 +4,7 @@
 
 double numbers_mean(const double *numbers, int count);
 
-/// Sorts the numbers; the middle one, or the mean of the middle two.
+/// Sorts the numbers and returns their median.
 double numbers_median(double *numbers, int count);
 
 #endif

@@ -1,4 +1,4 @@
-// What a measurement is asked for. Zero, or an empty list, means the measurement's own default.
+// The options of a measurement. Zero, or an empty list, means the measurement's own default.
 #ifndef BENCH_OPTIONS_H
 #define BENCH_OPTIONS_H
 
@@ -13,34 +13,34 @@ typedef struct BenchList {
     double values[BENCH_LIST_MAX];
 } BenchList;
 
-/// What a sheet does while it is measured.
+/// The motion of a measured sheet.
 typedef enum BenchState {
-    BENCH_SWING,  ///< held at corner points, lets go horizontally
-    BENCH_SHRINK, ///< hangs from two corner patches, all target lengths shrink to 0.8 of themselves within a second
-    BENCH_HANG,   ///< hangs from two corner patches that come nearer to each other
+    BENCH_SWING,  ///< held at corner points, released from the horizontal
+    BENCH_SHRINK, ///< hangs from two corner patches; all target lengths shrink to 0.8 within a second
+    BENCH_HANG,   ///< hangs from two corner patches that move closer
 } BenchState;
 
-/// What sheets are cut to.
+/// The outline of sheets.
 typedef enum BenchOutline { BENCH_ALL_OUTLINES, BENCH_SQUARE, BENCH_DISC } BenchOutline;
 
-/// A material, and what sources say of its fire, from .. to; 0 and 0 where they say nothing.
+/// A material, and the ranges of its fire's values in sources; 0 and 0 if unknown.
 typedef struct BenchMaterial {
     const char *name;
     SingeMaterialDef def;
-    bool calibrated;      ///< it was made to agree with them
-    float speed[2];       ///< m/s of a front that runs level
+    bool calibrated;      ///< it is calibrated to them
+    float speed[2];       ///< m/s of a level front
     float temperature[2]; ///< K, hottest
     float residue[2];     ///< share of the mass
 } BenchMaterial;
 
 typedef struct BenchOptions {
-    BenchList cells;     ///< a side of the square sheet
+    BenchList cells;     ///< per side of the square sheet
     BenchList thickness; ///< m
     BenchList springs;
     BenchList curvature; ///< 1/m, limits of it; 0: none
     BenchList seeds;     ///< of noise
     BenchOutline outline;
-    bool creases; ///< sharp bends stay
+    bool creases; ///< sharp bends are plastic
     bool contact; ///< with themselves
     BenchState state;
     SingeSolverMethod solver;
@@ -51,7 +51,7 @@ typedef struct BenchOptions {
     int threads;
     double time;      ///< s
     double smoothing; ///< 1/s; below 0: the measurement's default
-    double detail;    ///< m, of the drawn surface; 0: cells as they are
+    double detail;    ///< m, of the drawn surface; 0: plain cells
     double limit_ms;  ///< 0: none
     bool quick;
     int material_count;
@@ -60,10 +60,10 @@ typedef struct BenchOptions {
 
 static inline BenchOptions bench_options(void) { return (BenchOptions){.threads = 1, .smoothing = -1}; }
 
-/// The list asked for, or these defaults.
+/// The given list, or these defaults.
 BenchList bench_list(const BenchList *asked, int count, const double *defaults);
 
-/// Cells a side of a square sheet with about so many springs, ten a cell.
+/// Cells per side of a square sheet with about so many springs, ten per cell.
 int options_cells(double springs);
 
 const char *options_solver_name(SingeSolverMethod method);

@@ -1,8 +1,8 @@
 // Each thread works on memory of its own, all start together, and the rates of all are added. The best of several
-// trials counts: what the machine can do when nothing else disturbs it.
+// trials counts: the machine undisturbed.
 //
-// The triad is McCalpin's: 12 bytes an element are counted, two reads and a write. The line that a write fetches
-// first is not, as it is not in the bytes that the solver counts.
+// The triad is McCalpin's: 12 bytes an element are counted, two reads and a write. The cache line that a write fetches
+// first is not counted, as it is not counted for the solver either.
 #include "bench/peaks.h"
 
 #include <math.h>
@@ -23,7 +23,7 @@ typedef struct Worker {
     double rate; ///< operations or bytes a second, best trial
 } Worker;
 
-// run-time choice by the loader, which glibc has and which starts before sanitizers do
+// chosen by glibc's loader at run time, which happens before sanitizers start
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 __attribute__((target_clones("avx512f", "avx2", "default")))

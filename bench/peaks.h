@@ -1,11 +1,11 @@
-// What the machine can do at best: fused multiply-adds from registers, and streaming through arrays.
+// Peak rates of the machine: fused multiply-adds from registers, and streaming through arrays.
 #ifndef BENCH_PEAKS_H
 #define BENCH_PEAKS_H
 
 #include "bench/table.h"
 
-/// Sizes of the three arrays of the triad together, each four times the one before; from a first-level cache to
-/// beyond the last.
+/// Total sizes of the triad's three arrays, each four times the previous one: from a first-level cache to beyond the
+/// last level.
 enum { PEAKS_SIZES = 8 };
 
 typedef struct Peaks {

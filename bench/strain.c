@@ -42,7 +42,7 @@ void strain_merge(Strain *strain, const Strain *other) {
     strain->finite = strain->finite && other->finite;
 }
 
-/// The centre of the bin below or in which 99 of 100 samples lie.
+/// The centre of the bin up to which 99 of 100 samples lie.
 static double percentile(const Strain *strain) {
     uint64_t below = 0, wanted = strain->count - strain->count / 100;
     for (uint32_t bin = 0; bin < STRAIN_BINS; bin++) {

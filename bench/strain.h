@@ -1,4 +1,4 @@
-// Strain of springs, |length/target - 1|, over any number of samples: the greatest, the mean, the 99th percentile.
+// Strain of springs, |length/target - 1|, over any number of samples: max, mean, 99th percentile.
 #ifndef BENCH_STRAIN_H
 #define BENCH_STRAIN_H
 
@@ -7,8 +7,8 @@
 #include "bench/table.h"
 #include "singe/singe.h"
 
-/// A histogram over the top bits of the strain as a float, sign aside: 8 of the exponent and 7 of the mantissa, so
-/// that a percentile is right to 1/128 of itself.
+/// A histogram over the top bits of the strain as a float, without the sign: 8 of the exponent and 7 of the mantissa,
+/// so that a percentile has a relative error of 1/128.
 enum { STRAIN_BINS = 1 << 15 };
 
 typedef struct Strain {
@@ -19,8 +19,7 @@ typedef struct Strain {
 
 void strain_clear(Strain *strain);
 
-/// Adds every spring of a colour that is left. Springs between two held particles are left out: no solver can
-/// change them.
+/// Adds every remaining spring of a colour, except springs between two held particles: no solver can change them.
 void strain_add(Strain *strain, const SingeView *view, SingeColour colour);
 
 /// Adds the samples of another.

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 static const double strip_lit = 0.02;                  // m
-static const double gate_first = 0.4, gate_last = 0.9; // of the length, between which the front is looked at
+static const double gate_first = 0.4, gate_last = 0.9; // shares of the length between which the front is measured
 
 typedef struct Strip {
     SingeSim *sim;
@@ -52,7 +52,7 @@ static bool strip_mesh(Strip *strip, const StripSetup *setup) {
     return true;
 }
 
-/// A strip has neither uv nor the mesh's attributes, and one speed: the mean of what varies.
+/// A strip has no uv, no attributes and one speed: varying parameters take their mean.
 static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
     SingeMaterialDef material = *from;
     SingeParam *params[] = {&material.grammage,
@@ -86,7 +86,7 @@ static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
                             &material.curvature_max};
     for (size_t i = 0; i < sizeof params / sizeof *params; i++)
         if (params[i]->field) *params[i] = singe_param(0.5f * (params[i]->value + params[i]->to));
-    // char glows in patches, and the hottest of them counts
+    // char glows in patches; the hottest counts
     SingeParam *chars[] = {&material.char_yield, &material.char_density, &material.char_heat, &material.char_rate,
                            &material.char_air};
     for (size_t i = 0; i < sizeof chars / sizeof *chars; i++)
@@ -116,7 +116,7 @@ static SingeResult strip_fill(Strip *strip, const StripSetup *setup) {
     return result ? result : singe_sim_add_pin(strip->sim, &pin, &pin_id);
 }
 
-/// How far along the centre the fire has come.
+/// The position of the fire along the centre.
 static double strip_front(const Strip *strip, const SingeView *view) {
     const float *ignited = view->time_ignited + (strip->across / 2) * (strip->along + 1);
     uint32_t i = strip->along;
@@ -124,7 +124,7 @@ static double strip_front(const Strip *strip, const SingeView *view) {
     return (double)view->rest_position[i][0];
 }
 
-/// The line through positions and times of ignition between the gates, by least squares.
+/// The least-squares line through positions and times of ignition between the gates.
 static double strip_speed(const Strip *strip, const SingeView *view) {
     double n = 0, x1 = 0, t1 = 0, xt = 0, tt = 0;
     for (uint32_t v = 0; v < view->vertex_count; v++) {

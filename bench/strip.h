@@ -1,20 +1,20 @@
-// A strip of sheet, held all over and lit at one end: how fast its front runs, how hot it gets and what it leaves.
+// A strip of sheet, held everywhere and lit at one end: the speed of its front, its max temperature and its residue.
 #ifndef BENCH_STRIP_H
 #define BENCH_STRIP_H
 
 #include "singe/singe.h"
 
 typedef struct StripSetup {
-    SingeMaterialDef material; ///< what varies over the sheet counts by its mean
+    SingeMaterialDef material; ///< varying parameters take their mean
     float cell;                ///< m
     float time_step;           ///< s
     float length, width;       ///< m
     float gravity[3];          ///< m/s2; the strip lies in the xy plane, and its front runs along x
     float pace;
     bool gas;
-    float gas_cell; ///< m, 0: as it comes
+    float gas_cell; ///< m, 0: the default
     int threads;
-    int patience;      ///< steps without progress, after which the fire has gone out
+    int patience;      ///< steps without progress after which the fire counts as out
     uint64_t work_max; ///< steps, and iterations of their conduction, in all
     /// Moves a vertex from its position on the grid; NULL: none.
     void (*shape)(float x[3], uint32_t column, uint32_t row, float cell);
@@ -30,9 +30,9 @@ typedef enum StripEnd {
 typedef struct StripResult {
     StripEnd end;
     uint64_t work;     ///< as in work_max
-    double speed;      ///< m/s of the front along the strip; 0 where it has not passed along it
-    double hottest;    ///< K, of what the front has passed
-    double residue;    ///< share of its mass that did not go as gas
+    double speed;      ///< m/s of the front along the strip; 0 if it has not passed along it
+    double hottest;    ///< K, of the part that the front has passed
+    double residue;    ///< share of its mass that did not become gas
     double thickening; ///< F
 } StripResult;
 

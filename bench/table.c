@@ -80,7 +80,7 @@ static void write_key(FILE *file, const BenchColumn *column, int part) {
     fprintf(file, "_%.*s", length, name);
 }
 
-/// `nothing` stands for a number that is not finite.
+/// `nothing` replaces a number that is not finite.
 static void write_number(FILE *file, double number, const char *nothing) {
     if (isfinite(number)) fprintf(file, "%.7g", number);
     else fputs(nothing, file);

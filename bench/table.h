@@ -1,4 +1,4 @@
-// A table of results: printed row by row as they come, and as JSON or CSV when all are there.
+// A table of results: printed row by row as they arrive, and as JSON or CSV at the end.
 #ifndef BENCH_TABLE_H
 #define BENCH_TABLE_H
 
@@ -33,14 +33,14 @@ typedef struct BenchTable {
     const BenchColumn *columns;
     int column_count, row_count, capacity;
     BenchValue *values; ///< [row_count * column_count]
-    FILE *text;         ///< where rows are printed as they come, or NULL
+    FILE *text;         ///< where rows are printed as they arrive, or NULL
     BenchFact facts[BENCH_FACTS_MAX];
     int fact_count;
 } BenchTable;
 
 BenchTable table_begin(const char *command, const BenchColumn *columns, int column_count, FILE *text);
 
-/// Says a number about the table as a whole; before the first row.
+/// Adds a number about the whole table; before the first row.
 void table_fact(BenchTable *table, const char *name, double number);
 
 /// Adds a row of `column_count` values. False when out of memory.

@@ -42,7 +42,7 @@ static void timing_note(Timing *timing, int step, const SingeTimers *before, con
     timing->ms[TIMED_STEP][step] = total;
     timing->ms[TIMED_PROJECTION][step] = 1e3 * (after->projection_seconds - before->projection_seconds);
     timing->ms[TIMED_YARDSTICK][step] = yardstick_ms;
-    // by the yardstick just before it: a machine that is slow for a while slows both
+    // scaled by the yardstick just before it: a temporarily slow machine slows both
     timing->ms[TIMED_SCALED][step] = total / fmax(1, yardstick_ms / yardstick_reference_ms);
 }
 

@@ -7,22 +7,22 @@
 #include "bench/yardstick.h"
 #include "singe/singe.h"
 
-/// What is timed of a step, in milliseconds by the wall's clock; the stages come first, in their own order.
+/// The timed parts of a step, in milliseconds of wall clock; the stages come first, in order.
 typedef enum Timed {
     TIMED_STEP = SINGE_STAGE_COUNT, ///< all stages
     TIMED_PROJECTION,               ///< of the stage dynamics
     TIMED_YARDSTICK,
-    TIMED_SCALED, ///< the step as the reference machine would take it
+    TIMED_SCALED, ///< the step's time on the reference machine
     TIMED_COUNT
 } Timed;
 
 typedef struct Timing {
     int steps;
     double *ms[TIMED_COUNT]; ///< [steps] each, ascending when measured
-    SingeTimers total;       ///< over the timed steps alone
+    SingeTimers total;       ///< over the timed steps only
 } Timing;
 
-/// What the yardstick takes on the reference machine, ms.
+/// The yardstick's time on the reference machine, ms.
 double timing_yardstick_reference(void);
 
 /// Runs `warm_up` steps and times `steps` more. With a yardstick, that is run before every step.
@@ -32,7 +32,7 @@ double timing_median(const Timing *timing, int what);
 double timing_min(const Timing *timing, int what);
 void timing_free(Timing *timing);
 
-/// How many steps of a sheet of so many springs make up a good share of a second.
+/// The number of steps of a sheet with so many springs that take a good share of a second.
 int timing_steps(double springs, int min, int max);
 
 /// Springs of all colours, as they were at the commit.

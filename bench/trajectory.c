@@ -23,7 +23,7 @@ static void trajectory_sample(Trajectory *trajectory, const SingeSim *sim, doubl
         if (trajectory->frames == marks[m]) trajectory->fall[m] = trajectory->fall_end;
 }
 
-/// Runs the frames until one fails or the time is over.
+/// Runs the frames until one fails or time runs out.
 static void trajectory_follow(Trajectory *trajectory, SingeSim *sim, int frames, int steps, double budget) {
     const double until = machine_clock() + budget;
     SingeView start = singe_sim_view(sim);
@@ -76,7 +76,7 @@ double trajectory_off(const BenchSetup *setup, const Trajectory *trajectory) {
     if (setup->state != BENCH_SWING || setup->pins != 2) return NAN;
     for (int m = 0; m < TRAJECTORY_MARKS; m++) {
         double off = 100 * fabs(trajectory->fall[m] - right[m]);
-        if (!(off <= max)) max = off; // NaN stays: not reached
+        if (!(off <= max)) max = off; // keeps NaN: not reached
     }
     return max;
 }

@@ -36,7 +36,7 @@ void workers_run(int count, int threads, void (*run)(void *context, int i), void
     pthread_t ids[THREADS_MAX];
     bool started[THREADS_MAX] = {false};
     w.ran = calloc((size_t)count, sizeof *w.ran);
-    if (!w.ran) { // then one after the other
+    if (!w.ran) { // no threads: one after the other
         for (int i = 0; i < count; i++) run(context, i), done(context, i);
         return;
     }

@@ -1,7 +1,7 @@
-// Chains of links over a grid of particles, in both directions, 5 MB in all. One run goes over them as a strand
-// projection does: gather two particles, a square root and two divisions, a recurrence that runs forward and one
-// that runs back, scatter. It is written out here, so that it stays as it is when the library changes, and takes
-// about as long as a step of 100,000 springs, so that being interrupted costs both alike.
+// Chains of links over a grid of particles, in both directions, 5 MB in all. One run does the work of a strand
+// projection: gather two particles, a square root and two divisions, a forward and a backward recurrence, scatter. It
+// is a copy, so that it does not change with the library, and takes about as long as a step of 100,000 springs, so that
+// interruptions affect both alike.
 #include "bench/yardstick.h"
 
 #include <math.h>
@@ -35,7 +35,7 @@ Yardstick *yardstick_create(void) {
     return yardstick;
 }
 
-/// The same positions before every run: the same work, and no numbers so small that they slow it.
+/// The same positions before every run: the same work, and no denormal numbers.
 static void particles_lay_out(float (*position)[4]) {
     for (uint32_t i = 0; i < PARTICLES; i++) {
         float *x = position[i];
@@ -67,8 +67,8 @@ static void chain_solve(float (*position)[4], Link *links, int count) {
         lambda = link->direction[3] - factor * lambda;
         factor = link->factor;
         for (int i = 0; i < 3; i++) {
-            float push = 0.5f * lambda * link->direction[i];
-            a[i] += push, b[i] -= push;
+            float pull = 0.5f * lambda * link->direction[i];
+            a[i] += pull, b[i] -= pull;
         }
     }
 }

@@ -1,4 +1,4 @@
-// How fast this machine is now: a fixed piece of work of the same character as a step.
+// The current speed of this machine: a fixed workload similar to a step.
 #ifndef BENCH_YARDSTICK_H
 #define BENCH_YARDSTICK_H
 
@@ -8,7 +8,7 @@ typedef struct Yardstick Yardstick;
 Yardstick *yardstick_create(void);
 void yardstick_destroy(Yardstick *yardstick);
 
-/// Does the work once; milliseconds that it took.
+/// Does the work once; returns its time in milliseconds.
 double yardstick_run(Yardstick *yardstick);
 
 #endif

@@ -1,4 +1,4 @@
-// Boxes along the axes.
+// Axis-aligned boxes.
 #ifndef SWEEP_BOX_H
 #define SWEEP_BOX_H
 
@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 typedef struct Box {
-    double min[3], max[3]; ///< m; an empty one has min above max
+    double min[3], max[3]; ///< m; an empty box has min above max
 } Box;
 
 static inline Box box_empty(void) {
@@ -16,7 +16,7 @@ static inline Box box_empty(void) {
 
 static inline bool box_is_empty(const Box *box) { return !(box->min[0] <= box->max[0]); }
 
-/// Takes in the box around `position` (m) that reaches `around` (m) to both sides.
+/// Extends the box by the cube around `position` (m) with half side `around` (m).
 static inline void box_add(Box *box, const float position[3], const double around[3]) {
     for (int k = 0; k < 3; k++) {
         box->min[k] = fmin(box->min[k], (double)position[k] - around[k]);
@@ -30,7 +30,7 @@ static inline Box box_union(const Box *a, const Box *b) {
     return both;
 }
 
-/// m; 0 where they overlap, INFINITY where one is empty.
+/// Distance, m; 0 if they overlap, INFINITY if one is empty.
 static inline double box_gap(const Box *a, const Box *b) {
     double sum = 0;
     for (int k = 0; k < 3; k++) {
@@ -40,7 +40,7 @@ static inline double box_gap(const Box *a, const Box *b) {
     return sqrt(sum);
 }
 
-/// m; 0 of an empty one.
+/// m; 0 for an empty box.
 static inline double box_diagonal(const Box *box) {
     double sum = 0;
     for (int k = 0; k < 3 && !box_is_empty(box); k++) sum += (box->max[k] - box->min[k]) * (box->max[k] - box->min[k]);

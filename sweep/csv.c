@@ -21,7 +21,8 @@ static Text csv_text(const Csv *csv) {
     return (Text){at, at ? at + csv->bytes.size : at, 1};
 }
 
-/// The cell at the cursor, which goes to the next one of the line. Quotes are not looked at: numbers have none.
+/// Reads the cell at the cursor, which advances to the next cell of the line. Quotes are not interpreted: numbers have
+/// none.
 static void next_cell(Text *text, const uint8_t **begin, const uint8_t **end) {
     *begin = text->at;
     while (!text_at_line_end(text) && *text->at != ',') text->at++;
@@ -48,7 +49,7 @@ int csv_column(const Csv *csv, const char *name) {
     return -1;
 }
 
-/// The cell of a line that `text` is at the start of.
+/// The cell of the line that begins at `text`.
 static void cell_of(Text text, int column, const uint8_t **begin, const uint8_t **end) {
     *begin = *end = text.at;
     for (int i = 0; i <= column; i++) next_cell(&text, begin, end);

@@ -1,4 +1,4 @@
-// CSV tables read back: a header, and lines of as many cells.
+// Reads CSV tables: a header, and lines with as many cells.
 #ifndef SWEEP_CSV_H
 #define SWEEP_CSV_H
 
@@ -14,20 +14,20 @@ typedef struct Csv {
 ExitCode csv_read(Csv *csv, const char *path, Console *console);
 void csv_free(Csv *csv);
 
-/// The index of a column, -1 where there is none.
+/// The index of a column, -1 if there is none.
 int csv_column(const Csv *csv, const char *name);
 
-/// The name of a column, by its bytes; false behind the last.
+/// The name of a column, as a range of bytes; false after the last.
 bool csv_column_name(const Csv *csv, int column, const char **name, size_t *size);
 
-/// Lines to read: those whose cell in the column `where` is `is`, and that have a number in the column `with`.
+/// Selects lines whose cell in the column `where` is `is`, and that have a number in the column `with`.
 typedef struct CsvLines {
     const char *where, *is; ///< NULL: all
     const char *with;       ///< NULL: all
 } CsvLines;
 
-/// The numbers of a column in those lines, from malloc; cells that are no numbers are left out. NULL with *count 0
-/// where there is none, or no such column.
+/// The numbers of a column in those lines, from malloc; other cells are skipped. NULL with *count 0 if there is none,
+/// or no such column.
 double *csv_numbers(const Csv *csv, int column, CsvLines lines, uint32_t *count);
 
 #endif

@@ -1,7 +1,7 @@
 // singe fit: the command, and the optimiser (NLopt).
 //
-// Each evaluation is a row of a sweep. The optimiser is deterministic, so a fit that was stopped asks for the same rows
-// again: those that are complete and whose line is in fit.csv are not run again.
+// Each evaluation is a row of a sweep. The optimiser is deterministic, so an interrupted fit asks for the same rows
+// again: rows that are complete and have their line in fit.csv are not run again.
 #include "sweep/fit.h"
 
 #include <math.h>
@@ -68,10 +68,10 @@ static char *table_line(const Fit *fit, uint32_t row) {
     return NULL;
 }
 
-/// The error that is noted of a row. False: none. `other`: its line has other parameters.
+/// The error in fit.csv of a row. False: none. `other`: its line has other parameters.
 static bool noted_error(const Fit *fit, const char *line, uint32_t row, double *error, bool *other) {
     const char *at = fit->noted;
-    for (uint32_t i = 0; i <= row && at; i++) { // behind the header and the rows before
+    for (uint32_t i = 0; i <= row && at; i++) { // after the header and the earlier rows
         at = strchr(at, '\n');
         if (at) at++;
     }
@@ -141,7 +141,7 @@ static void show_evaluation(const Fit *fit, uint32_t row, double value) {
     free(text);
 }
 
-/// The error of a row whose values are set: as noted, or after running it.
+/// The error of a row whose values are set: from fit.csv, or after running it.
 static ExitCode row_error(Fit *fit, uint32_t row, double *value) {
     bool other = false;
     char *line = table_line(fit, row);
@@ -162,7 +162,7 @@ static ExitCode row_error(Fit *fit, uint32_t row, double *value) {
     return code;
 }
 
-/// An earlier row with the values of `row`, or `row`: the optimiser comes back to points, and numbers are rounded.
+/// An earlier row with the values of `row`, or `row`: the optimiser returns to points, and numbers are rounded.
 static uint32_t same_row(const Plan *plan, uint32_t row) {
     for (uint32_t r = 0; r < row; r++) {
         uint32_t p = 0;
@@ -178,7 +178,7 @@ static double stop(Fit *fit, ExitCode code) {
     return HUGE_VAL;
 }
 
-/// What NLopt calls.
+/// NLopt's objective function.
 static double objective(unsigned count, const double *coordinates, double *gradient, void *context) {
     Fit *fit = context;
     Plan *plan = &fit->sweep->plan;
@@ -205,7 +205,7 @@ static bool set_up(Fit *fit, unsigned count) {
     nlopt_opt optimiser = fit->optimiser = nlopt_create(global ? NLOPT_GN_DIRECT_L : NLOPT_LN_SBPLX, count);
     return optimiser && nlopt_set_lower_bounds1(optimiser, 0) > 0 && nlopt_set_upper_bounds1(optimiser, 1) > 0 &&
            nlopt_set_min_objective(optimiser, objective, fit) > 0 &&
-           nlopt_set_maxeval(optimiser, 10 * (int)fit->sweep->plan.evaluations) > 0 && // with those that come back
+           nlopt_set_maxeval(optimiser, 10 * (int)fit->sweep->plan.evaluations) > 0 && // including repeated points
            nlopt_set_xtol_abs1(optimiser, parameter_tolerance) > 0 && nlopt_set_initial_step1(optimiser, 0.25) > 0;
 }
 
@@ -235,7 +235,7 @@ static ExitCode search(Fit *fit) {
         return EXIT_FAILED;
     }
     const nlopt_result result = nlopt_optimize(fit->optimiser, coordinates, &least);
-    // rounding ends a search near a minimum: what was found stands
+    // rounding ends a search near a minimum: the best point is valid
     const bool spent = result == NLOPT_FORCED_STOP && fit->row == fit->sweep->plan.evaluations;
     if (!fit->code && result < 0 && !spent && result != NLOPT_ROUNDOFF_LIMITED) {
         console_error(fit->sweep->console, "the search failed: %s", nlopt_result_to_string(result));

@@ -1,4 +1,4 @@
-// singe fit in a program that was built without NLopt.
+// singe fit in a build without NLopt.
 #include <stdio.h>
 
 #include "cli/cli.h"

@@ -1,4 +1,4 @@
-// How far a row is from what was measured.
+// The distance of a row from the measurements.
 #include "sweep/fit.h"
 
 #include <math.h>
@@ -70,7 +70,7 @@ static bool curve_error(const FitTarget *target, const Sweep *sweep, uint32_t ro
     Csv csv = {0};
     uint32_t count = 0, times_count = 0;
     bool good = !csv_read(&csv, path, sweep->console);
-    const CsvLines lines = {"probe", target->plan->probe, "temperature"}; // none where the paper is gone
+    const CsvLines lines = {"probe", target->plan->probe, "temperature"}; // none once the paper is gone
     double *values = csv_numbers(&csv, csv_column(&csv, "temperature"), lines, &count);
     double *times = csv_numbers(&csv, csv_column(&csv, "time"), lines, &times_count);
     if (good && (count == 0 || times_count != count)) {
@@ -79,7 +79,7 @@ static bool curve_error(const FitTarget *target, const Sweep *sweep, uint32_t ro
     }
     double sum = 0, low = INFINITY, high = -INFINITY;
     for (uint32_t i = 0; good && i < measured->count; i++) {
-        // once the paper is gone the last temperature stays
+        // once the paper is gone the last temperature remains
         const double simulated = curve_at(times, values, count, measured->times[i]);
         sum += pow(simulated - measured->temperatures[i], 2);
         low = fmin(low, measured->temperatures[i]), high = fmax(high, measured->temperatures[i]);
@@ -117,14 +117,14 @@ typedef struct MaskDrawing {
     float burn[3]; ///< of the triangle's corners; all 0: the sheet as a whole
 } MaskDrawing;
 
-/// What is less than half burnt counts as paper.
+/// A pixel that is less than half burnt counts as paper.
 static void draw_fresh(void *context, size_t pixel, const float weight[3]) {
     MaskDrawing *drawing = context;
     const float *burn = drawing->burn;
     if (weight[0] * burn[0] + weight[1] * burn[1] + weight[2] * burn[2] < 0.5f) drawing->pixels[pixel] = 1;
 }
 
-/// 1 where a frame's first sheet is paper. Everything of it counts if `whole`.
+/// 1 where a frame's first sheet is paper; everywhere on it if `whole`.
 static bool draw_mask(const Folder *folder, int number, bool whole, uint8_t *pixels, Console *console) {
     Frame frame = {0};
     SingeError error = {0};
@@ -162,7 +162,7 @@ static bool read_mask(const char *path, Image *image, Console *console) {
     return good;
 }
 
-/// Share of the sheet's pixels that are burnt in one and not in the other.
+/// Share of the sheet's pixels that are burnt in only one of the two.
 static double mask_difference(const Image *image, const uint8_t *fresh, const uint8_t *sheet) {
     uint32_t different = 0, all = 0;
     for (int y = 0; y < MASK_SIZE; y++)

@@ -1,4 +1,4 @@
-// What the readers of a plan's parts share.
+// Shared by the readers of a plan's parts.
 #ifndef SWEEP_PLAN_READER_H
 #define SWEEP_PLAN_READER_H
 
@@ -9,10 +9,10 @@ typedef struct PlanReader {
     Plan *plan;
     SceneText text;
     SceneMessages messages;
-    const char *folder; ///< of the plan, "" or with its last slash
+    const char *folder; ///< of the plan, "" or ending in a slash
 } PlanReader;
 
-/// An error: what was expected at a node, and what is there.
+/// Reports an error: what was expected at a node, and what it is.
 void plan_complain(PlanReader *reader, const Node *node, const char *key, const char *expected);
 
 /// A path from the plan's folder; NULL after an error.

@@ -1,7 +1,7 @@
-// The rows of a plan: every combination, one after another, or drawn at random.
+// The rows of a plan: every combination, a list, or random.
 //
 // A Latin hypercube of n rows cuts each parameter's range into n parts of equal size, draws a number in each part and
-// deals the parts to the rows in a random order: McKay, Beckman and Conover, Technometrics 21 (1979) 239.
+// assigns the parts to the rows in random order: McKay, Beckman and Conover, Technometrics 21 (1979) 239.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,7 +20,7 @@ static uint64_t draw(uint64_t *state) {
 
 static double draw_unit(uint64_t *state) { return (double)(draw(state) >> 11) * 0x1p-53; }
 
-/// The text of a range's number at `unit` in [0, 1] of it.
+/// The text of the number at `unit` in [0, 1] of a range.
 static char *range_text(Plan *plan, const PlanParameter *parameter, double unit) {
     const double from = parameter->from, to = parameter->to;
     double number = parameter->logarithmic ? exp(log(from) + (log(to) - log(from)) * unit) : from + (to - from) * unit;
@@ -28,14 +28,14 @@ static char *range_text(Plan *plan, const PlanParameter *parameter, double unit)
     if (unit == 0) number = from;
     if (unit == 1) number = to;
     if (parameter->whole) number = round(number);
-    // 9 digits: more than a float holds, and 0.1 stays 0.1
+    // 9 digits: more than a float has, and 0.1 remains 0.1
     int length = snprintf(text, sizeof text, "%.9g", number);
     char *value = arena_new(plan->arena, (size_t)length + strlen(parameter->unit) + 2, 1);
     if (value) sprintf(value, "%s%s%s", text, parameter->unit[0] ? " " : "", parameter->unit);
     return value;
 }
 
-/// How many values a grid or a list has of the parameter; 0: it does not say.
+/// The number of the parameter's values in a grid or a list; 0: not given.
 static uint32_t choices(const PlanParameter *parameter) {
     return parameter->count ? parameter->count : parameter->steps;
 }
@@ -45,11 +45,11 @@ static char *choice(Plan *plan, const PlanParameter *parameter, uint32_t index) 
     return range_text(plan, parameter, (double)index / (parameter->steps - 1));
 }
 
-/// The value at a coordinate in [0, 1) of all that the parameter may be.
+/// The parameter's value at a coordinate in [0, 1).
 static char *value_at(Plan *plan, const PlanParameter *parameter, double unit) {
     if (!parameter->count && !parameter->whole) return range_text(plan, parameter, unit);
     if (parameter->count) return parameter->values[(uint32_t)(unit * parameter->count)];
-    // each whole number as often as the others
+    // all integers are equally likely
     PlanParameter wide = *parameter;
     wide.from = ceil(fmin(parameter->from, parameter->to)), wide.to = floor(fmax(parameter->from, parameter->to));
     const double number = wide.from + floor(unit * (wide.to - wide.from + 1));

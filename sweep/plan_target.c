@@ -1,4 +1,4 @@
-// What a fit is to match, read from its plan.
+// Reads the target of a fit from its plan.
 #include <stdio.h>
 #include <string.h>
 

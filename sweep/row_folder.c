@@ -1,4 +1,4 @@
-// What a sweep has on disk: the plan that its rows belong to, and the state of each row.
+// A sweep on disk: the plan of its rows, and the state of each row.
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -25,7 +25,7 @@ static bool row_has(const Sweep *sweep, uint32_t row, bool complete, const char 
     return has;
 }
 
-/// Whether another process holds the lock of the row's folder.
+/// Whether another process has locked the row's folder.
 static bool row_is_locked(const Sweep *sweep, uint32_t row) {
     char *folder = sweep_row_folder(sweep, row, false);
     char *path = text_format("%s/cache.lock", folder);
@@ -82,7 +82,7 @@ ExitCode sweep_check_rows(Sweep *sweep) {
 
 // ---- the plan
 
-/// Of a fit the parameters and the target: its values follow from them.
+/// For a fit the parameters and the target: the values follow from them.
 static void write_target(FILE *file, const Plan *plan) {
     const PlanTarget *target = &plan->target;
     for (uint32_t p = 0; p < plan->parameter_count; p++) {
@@ -120,7 +120,7 @@ static char *plan_table(const Sweep *sweep) {
     return NULL;
 }
 
-/// The scene as it is without the rows' parameters, with the contents of its files.
+/// The scene without the rows' parameters, with the contents of its files.
 static ExitCode scene_note(Sweep *sweep, char **note) {
     SetList sets = {0};
     Job job;
@@ -148,7 +148,7 @@ static int line_of_difference(const char *a, const char *b) {
     return line;
 }
 
-/// Compares a text with that of a file, which is written where there is none yet.
+/// Compares a text with that of a file; if there is no file yet, writes it.
 static ExitCode note_or_compare(Sweep *sweep, const char *name, const char *text, bool table) {
     char *path = text_format("%s/%s", sweep->folder, name);
     Bytes bytes = {0};

@@ -1,5 +1,5 @@
-// Rows on this machine: some at a time, each a process of its own that does what a person would: singe run, then singe
-// measure. A row that ends well moves to rows/. Ctrl-C and SIGTERM are passed on, so that each leaves a checkpoint.
+// Runs rows on this machine: several at a time, each as a process of its own: singe run, then singe measure. A row that
+// succeeds moves to rows/. Ctrl-C and SIGTERM are passed on, so that each row leaves a checkpoint.
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -21,7 +21,7 @@ extern char **environ;
 
 typedef enum Stage { STAGE_IDLE, STAGE_RUN, STAGE_MEASURE } Stage;
 
-/// A row in hand.
+/// A running row.
 typedef struct Slot {
     Stage stage;
     uint32_t row;
@@ -32,11 +32,11 @@ typedef struct Pool {
     Sweep *sweep;
     Slot *slots;
     int slot_count;
-    uint32_t *queue; ///< rows to begin, in their order
+    uint32_t *queue; ///< rows to start, in order
     uint32_t queued, next;
-    uint32_t complete, failed, due; ///< rows; due: of this sweep
+    uint32_t complete, failed, due; ///< rows; due: to be run by this sweep
     double started;
-    uint64_t frames_before; ///< that were there when it began
+    uint64_t frames_before; ///< frames that existed at its start
     bool stopping;
 } Pool;
 
@@ -46,13 +46,14 @@ typedef struct Pool {
 static int start(char *const *command, const char *log, pid_t *process) {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
-    sigset_t shielded; // what this program ignores the child must not
+    sigset_t shielded; // the child must not ignore what this program ignores
     sigemptyset(&shielded);
     sigaddset(&shielded, SIGPIPE);
     sigaddset(&shielded, SIGXFSZ);
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setsigdefault(&attributes, &shielded);
-    // a group of its own: Ctrl-C in a terminal would reach it twice, and the second ends a run at once
+    // a process group of its own: otherwise Ctrl-C in a terminal would reach it twice, and the second ends a run at
+    // once
     posix_spawnattr_setpgroup(&attributes, 0);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
     posix_spawn_file_actions_init(&actions);
@@ -94,7 +95,7 @@ static void start_stage(Pool *pool, Slot *slot, Stage stage) {
     free(csv), free(log), free(folder);
 }
 
-/// Its folder is made before its log; an earlier failure is forgotten.
+/// Creates the folder before the log, and clears an earlier failure.
 static void begin_row(Pool *pool, Slot *slot, uint32_t row) {
     SingeError error = {0};
     char *folder = sweep_row_folder(pool->sweep, row, false), *failed = text_format("%s/failed.txt", folder);
@@ -116,19 +117,19 @@ static void complete_row(Pool *pool, Slot *slot) {
     free(from), free(to);
 }
 
-/// What a row does next when its process has ended.
+/// The next stage of a row whose process has ended.
 static void next_stage(Pool *pool, Slot *slot, int status) {
     const bool stopped = WIFSIGNALED(status) && (WTERMSIG(status) == SIGTERM || WTERMSIG(status) == SIGINT);
     const bool good = WIFEXITED(status) && WEXITSTATUS(status) == 0;
     const char *doing = slot->stage == STAGE_RUN ? "run" : "measure";
     char *why;
-    // a fit compares by itself
+    // a fit measures by itself
     if (good && (slot->stage == STAGE_MEASURE || pool->sweep->plan.target.given)) {
         complete_row(pool, slot);
         return;
     }
     if (pool->stopping || stopped || interrupt_asked()) {
-        slot->stage = STAGE_IDLE; // goes on another time
+        slot->stage = STAGE_IDLE; // it resumes another time
         return;
     }
     if (good) {
@@ -153,7 +154,7 @@ static void reap(Pool *pool) {
 
 // ---- progress
 
-/// Lines of a file but the first: the frames of stats.csv that are whole.
+/// Lines of a file except the first: the complete frames of stats.csv.
 static uint64_t frames_of(const Sweep *sweep, uint32_t row, bool complete) {
     char *folder = sweep_row_folder(sweep, row, complete), *path = text_format("%s/stats.csv", folder), block[4096];
     FILE *file = fopen(path, "rb");
@@ -199,7 +200,7 @@ static int running_count(const Pool *pool) {
     return running;
 }
 
-/// A row that another process is running waits its turn behind the others.
+/// A row that another process is running goes to the end of the queue.
 static void fill_slots(Pool *pool) {
     for (int i = 0; i < pool->slot_count && !pool->stopping; i++) {
         if (pool->slots[i].stage != STAGE_IDLE || pool->next == pool->queued) continue;
@@ -233,7 +234,7 @@ static void run_queue(Pool *pool) {
     console_clear(pool->sweep->console);
 }
 
-/// The rows that are due. With --retry those that failed, too; of a row that is named, it.
+/// Queues the rows to run: with --retry also failed ones; only the named row if there is one.
 static void make_queue(Pool *pool) {
     const SweepOptions *options = pool->sweep->options;
     for (uint32_t row = 0; row < pool->sweep->plan.row_count; row++) {

@@ -1,8 +1,9 @@
 // Whether sheets of different rows stayed apart (method `sheets`), from the rows' caches.
 //
-// Boxes: of a row's sheets in a frame, each vertex with the distance that its speed takes it in half a frame; two
-// frames' boxes together hold all that is between them. Of a row's hot gas, that of the cells which are HOT above the
-// air or have flame. Rows may stay apart if no two boxes of sheets meet and no gas meets the sheets of another row.
+// A row has two boxes in a frame. The sheets' box contains each vertex with the distance that it travels in half a
+// frame, so the boxes of two frames contain everything in between. The gas's box contains the cells that are `hot`
+// above the air or have flame. Rows are independent if no two boxes of sheets meet and no gas meets the sheets of
+// another row.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,7 +21,7 @@ typedef struct RowBoxes {
     Box sheets, sheets_before, gas;
 } RowBoxes;
 
-/// Two rows: how near they came.
+/// The min distances of two rows.
 typedef struct RowPair {
     double gap, gas_gap; ///< m
     int frame, gas_frame;
@@ -108,14 +109,14 @@ static SingeResult compare_frames(Apart *apart, SingeError *error) {
     return result;
 }
 
-// ---- what is said of them
+// ---- report
 
 static void write_gap(FILE *file, double gap, int frame) {
     if (isfinite(gap)) fprintf(file, ",%.6g,%d", gap, frame);
     else fputs(",,", file);
 }
 
-/// apart.csv; how many pairs met.
+/// Writes apart.csv; returns the number of pairs that met.
 static uint32_t report_pairs(const Apart *apart, FILE *file) {
     const RowPair *pair = apart->pairs;
     uint32_t met = 0;

@@ -1,7 +1,7 @@
 // The rows of method `sheets`: sheets that can meet are in one row, those that cannot are in different ones.
 //
-// Two sheets can meet if the boxes around them, as they start, are nearer than a margin. Along gravity all distances
-// count as none: what is above may fall. It is a guess; the report checks the caches (sheet_clearance.c).
+// Two sheets can meet if their boxes at the start are nearer than a margin. Distances along gravity count as zero: a
+// sheet above may fall. This is a guess; the report checks the caches (sheet_clearance.c).
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,12 +13,12 @@
 typedef struct Groups {
     uint32_t count; ///< of sheets
     Box *boxes;
-    uint32_t *group; ///< [count] the lowest sheet of each one's group
+    uint32_t *group; ///< [count] the lowest sheet of each sheet's group
 } Groups;
 
 static double larger_diagonal(const Box *a, const Box *b) { return fmax(box_diagonal(a), box_diagonal(b)); }
 
-/// The distance of two boxes, without the axes along which gravity acts.
+/// The distance of two boxes, ignoring the axes along which gravity acts.
 static double level_gap(const Box *a, const Box *b, const float gravity[3]) {
     Box low = *a, high = *b;
     for (int k = 0; k < 3; k++)

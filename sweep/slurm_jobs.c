@@ -1,7 +1,8 @@
 // Jobs for Slurm: an array of rows, an array of renderings that waits for it, and the report that waits for both.
 //
 // A row's job may be preempted, requeued and started on another node at any time: SIGTERM comes ten seconds before the
-// end, the row writes a checkpoint, and the requeued job resumes from it. Without a warning it resumes from the last.
+// end, the row writes a checkpoint, and the requeued job resumes from it. Without a warning it resumes from the last
+// one.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -104,7 +105,7 @@ static char *write_job(const Sweep *sweep, JobKind kind, const char *rows, Singe
     return NULL;
 }
 
-/// Runs sbatch. Its answer is the job's number.
+/// Runs sbatch, which prints the job's number.
 static bool submit_job(const Sweep *sweep, const char *path, const char *after, char id[ID_SIZE]) {
     char *script = text_shell_quote(path);
     char *line = text_format("sbatch --parsable %s%s %s", *after ? "--dependency=afterany:" : "", after, script);

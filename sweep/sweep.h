@@ -1,10 +1,10 @@
 // singe sweep: many runs of a scene with other parameters. A sweep's folder:
 //
-//   plan.csv                a line a row: its number and its parameters
-//   sweep.json              the scene's hash: a changed plan or scene is noticed
-//   rows/0001/              a whole row: what `singe run` leaves there, measure.csv and log.txt
+//   plan.csv                a line per row: its number and its parameters
+//   sweep.json              the scene's hash, to detect a changed plan or scene
+//   rows/0001/              a complete row: the output of `singe run`, measure.csv and log.txt
 //   unfinished/0001/        a row that is running, was stopped, or failed (then with failed.txt)
-//   report.csv, index.html, sheet.svg   of the whole rows (sweep_report.c)
+//   report.csv, index.html, sheet.svg   of complete rows (sweep_report.c)
 //   apart.csv, NAME.usda    of a sweep of sheets (sheet_clearance.c, shot_usd.c)
 //   slurm/                  scripts and logs of jobs (slurm_jobs.c)
 //
@@ -17,18 +17,18 @@
 #include "sweep/sweep_plan.h"
 
 typedef enum RowState {
-    ROW_ABSENT, ///< or stopped: it starts or resumes
+    ROW_ABSENT, ///< or interrupted: it starts or resumes
     ROW_COMPLETE,
-    ROW_FAILED,    ///< the next sweep leaves it out unless --retry is given
+    ROW_FAILED,    ///< the next sweep skips it unless --retry is given
     ROW_ELSEWHERE, ///< another process is running it
 } RowState;
 
 typedef struct SweepOptions {
     const char *plan, *output;
     int jobs, threads; ///< rows at a time, threads of each
-    int row;           ///< this row alone, from 1; 0: all
+    int row;           ///< only this row, from 1; 0: all
     int max_running;   ///< Slurm: rows at a time; 0: no limit
-    int frames;        ///< Slurm: a job of rendering draws so many
+    int frames;        ///< Slurm: frames drawn by a rendering job
     SetList slurm;     ///< further options of sbatch
     bool retry, print, submit, report, no_preview, quiet;
 } SweepOptions;
@@ -48,43 +48,43 @@ typedef struct Sweep {
 Sweep sweep_make(Console *console, const SweepOptions *options);
 void sweep_close(Sweep *sweep);
 
-/// Of a sweep whose plan is read: makes and locks its folder, and notes the plan there or compares it with what is
-/// noted.
+/// Creates and locks the folder of a sweep whose plan has been read, and writes the plan there or compares it with the
+/// one there.
 ExitCode sweep_prepare(Sweep *sweep);
 
 /// Paths from malloc; rows are numbered from 0 here and from 1 in names.
 char *sweep_row_folder(const Sweep *sweep, uint32_t row, bool complete);
 RowState sweep_row_state(const Sweep *sweep, uint32_t row);
 
-/// Checks the scene of a row, and notes how many frames it has.
+/// Checks the scene of a row, and stores its number of frames.
 ExitCode sweep_check_row(Sweep *sweep, uint32_t row);
 
 /// Checks the scene of every row, or of one. Messages have been printed unless the result is EXIT_GOOD.
 ExitCode sweep_check_rows(Sweep *sweep);
 
-/// Makes the parts of the folder and notes the plan there, or compares it with what is noted.
+/// Creates the subfolders, and writes the plan there or compares it with the one there.
 ExitCode sweep_note_plan(Sweep *sweep);
 
 /// The command of a row's run, NULL-terminated: the array and its texts come from malloc.
 char **sweep_run_command(const Sweep *sweep, uint32_t row);
-/// That of a row as a whole, `singe sweep PLAN --row N`, quoted for a shell.
+/// The command for a whole row, `singe sweep PLAN --row N`, quoted for a shell.
 char *sweep_row_line(const Sweep *sweep, const char *number);
 void sweep_free_command(char **command);
 
-/// Runs the rows that are due (row_pool.c). EXIT_FAILED where one failed or the sweep was interrupted.
+/// Runs the rows that are due (row_pool.c). EXIT_FAILED if one failed or the sweep was interrupted.
 ExitCode sweep_run_rows(Sweep *sweep);
 
 /// Writes the jobs' scripts, and submits them (slurm_jobs.c).
 ExitCode sweep_submit(Sweep *sweep);
 
-/// report.csv, index.html and sheet.svg of the rows that are complete (sweep_report.c).
+/// Writes report.csv, index.html and sheet.svg of the complete rows (sweep_report.c).
 ExitCode sweep_report(Sweep *sweep);
 
-/// Of a sweep of sheets whose rows are complete: writes apart.csv, how near the rows' sheets and hot gas came to each
-/// other (sheet_clearance.c). False where some met; messages have been printed.
+/// For a sweep of sheets whose rows are complete: writes apart.csv, the min distances between the rows' sheets and hot
+/// gas (sheet_clearance.c). False if some met; messages have been printed.
 bool sweep_sheet_clearance(Sweep *sweep);
 
-/// NAME.usda, which refers to the USD roots of all rows; nothing where a row has none. False after an error.
+/// Writes NAME.usda, which refers to the USD roots of all rows; nothing if a row has none. False after an error.
 bool sweep_write_shot(const Sweep *sweep, double fps);
 
 #endif

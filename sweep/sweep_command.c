@@ -52,7 +52,7 @@ static const ArgCommand sweep_command = {
     "docs/sweep.md describes plans. The same command continues a sweep that was stopped.\n"
     "Exit codes: 0 all rows are complete, 1 a row failed or the sweep was interrupted, 2 bad input."};
 
-/// One of the options that take a number. False where it is none of them.
+/// Parses an option with a number. False if it is none.
 static bool number_option(const ArgReader *reader, int option, const char *value, SweepOptions *o, bool *good) {
     switch (option) {
     case OPT_JOBS: *good = args_int(reader, option, value, 1, 1024, &o->jobs); return true;
@@ -97,7 +97,7 @@ static ExitCode sweep_parse(int argc, char **argv, SweepOptions *o, bool *done) 
     return EXIT_GOOD;
 }
 
-/// This program, as it is found again by other nodes that see the same files.
+/// The path of this program, valid on other nodes that see the same files.
 static char *own_path(void) {
     char path[4096];
     const ssize_t size = readlink("/proc/self/exe", path, sizeof path - 1);
@@ -105,7 +105,7 @@ static char *own_path(void) {
     return text_format("%s", size > 0 ? path : "singe");
 }
 
-/// Absolute, so that jobs may begin anywhere.
+/// Absolute, so that jobs may start in any folder.
 static char *absolute(const char *path) {
     char *whole = realpath(path, NULL);
     char *text = text_format("%s", whole ? whole : path);
@@ -132,7 +132,7 @@ static ExitCode sweep_make_room(Sweep *sweep) {
     return EXIT_FAILED;
 }
 
-/// A sweep that runs or submits rows is alone in its folder; a row's job and a report are not.
+/// A sweep that runs or submits rows locks its folder; a row's job and a report do not.
 static ExitCode hold_folder(Sweep *sweep) {
     const SweepOptions *o = sweep->options;
     if (o->row || o->report || o->print) return EXIT_GOOD;

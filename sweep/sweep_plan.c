@@ -1,4 +1,4 @@
-// A plan read from its file: YAML by the tree of scene files, so that errors have their lines.
+// Reads a plan: YAML by the tree of scene files, so that errors have their lines.
 #include "sweep/plan_reader.h"
 
 #include <stdio.h>
@@ -85,7 +85,7 @@ static bool read_switch(PlanReader *reader, const Node *node, const char *key) {
     return yes;
 }
 
-/// "850 C": the number, and the unit as it is written.
+/// "850 C": the number, and the unit as written.
 static void read_quantity(PlanReader *reader, const Node *node, const char *key, double *number, const char **unit) {
     *unit = "";
     if (node->kind == NODE_VALUE && !node->quoted) {
@@ -221,7 +221,7 @@ static void read_key(PlanReader *reader, const Node *node) {
             shown(key).text);
 }
 
-/// Rows of sheets follow from the scene, when it is read (plan_split_sheets).
+/// Rows of sheets are determined when the scene is read (plan_split_sheets).
 static void check_sheets(PlanReader *reader, const Node *root, bool fit) {
     const Plan *plan = reader->plan;
     if (fit) message_add(&reader->messages, &reader->text, root->location, "a fit has no method 'sheets'");

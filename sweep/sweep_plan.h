@@ -9,14 +9,14 @@
 
 typedef enum PlanMethod {
     PLAN_GRID,            ///< every combination of the values; the last parameter varies fastest
-    PLAN_LIST,            ///< the first values of all, the second, ...
-    PLAN_RANDOM,          ///< each value on its own
-    PLAN_LATIN_HYPERCUBE, ///< each parameter's range in as many parts as there are rows, each part once
-    PLAN_SHEETS,          ///< sheets that cannot meet in rows of their own
+    PLAN_LIST,            ///< the first values of all parameters, then the second, ...
+    PLAN_RANDOM,          ///< each value independently
+    PLAN_LATIN_HYPERCUBE, ///< each parameter's range is cut into as many parts as there are rows, and each part is used once
+    PLAN_SHEETS,          ///< sheets that cannot meet, in separate rows
     PLAN_METHODS
 } PlanMethod;
 
-/// What a parameter may be: one of `values`, or a number between `from` and `to`, both included.
+/// The values of a parameter: `values`, or numbers from `from` to `to`, both included.
 typedef struct PlanParameter {
     char *key;       ///< PATH of --set
     uint32_t count;  ///< of values; 0: a range
@@ -28,18 +28,18 @@ typedef struct PlanParameter {
     SceneLocation location;
 } PlanParameter;
 
-/// What a fit is to match (docs/sweep.md): the sum of what is given.
+/// The target of a fit (docs/sweep.md): the sum of the given terms.
 typedef struct PlanTarget {
     bool given;
     double front_speed; ///< m/s; 0: none
     char *curve;        ///< path of a CSV table with columns time (s) and temperature (K); NULL: none
-    char *probe;        ///< the scene's probe that has the curve
+    char *probe;        ///< the scene's probe for the curve
     char *masks;        ///< path of PNGs with # for the frame's number, white where the sheet has burnt; NULL: none
 } PlanTarget;
 
 typedef enum PlanSearch {
-    PLAN_SEARCH_LOCAL,  ///< from the middle of the ranges: Subplex (Rowan 1990)
-    PLAN_SEARCH_GLOBAL, ///< over all of the ranges: DIRECT-L (Gablonsky and Kelley 2001)
+    PLAN_SEARCH_LOCAL,  ///< from the centre of the ranges: Subplex (Rowan 1990)
+    PLAN_SEARCH_GLOBAL, ///< over the whole ranges: DIRECT-L (Gablonsky and Kelley 2001)
     PLAN_SEARCHES
 } PlanSearch;
 
@@ -51,23 +51,23 @@ typedef struct Plan {
     char *scene;       ///< path of the scene
     PlanMethod method;
     uint32_t samples, seed;
-    double margin; ///< m, of PLAN_SHEETS: sheets this near to each other can meet; negative: not given
+    double margin; ///< m, of PLAN_SHEETS: sheets nearer than this can meet; negative: not given
     PlanTarget target;
     PlanSearch search;
-    uint32_t evaluations; ///< of a fit, at most: its rows
+    uint32_t evaluations; ///< max rows of a fit
     uint32_t set_count, parameter_count, row_count;
     char **sets; ///< [set_count] PATH=VALUE for all rows
     PlanParameter *parameters;
     char **values; ///< [row_count * parameter_count], row by row
 } Plan;
 
-/// Reads the plan of a sweep, or of a fit, and makes its rows. All errors have been printed, with their lines, unless
-/// the result is EXIT_GOOD.
+/// Reads the plan of a sweep or a fit, and creates its rows. All errors have been printed, with their lines, unless the
+/// result is EXIT_GOOD.
 ExitCode plan_read(const char *path, bool fit, Console *console, Plan *plan);
 void plan_free(Plan *plan);
 
-/// Makes the rows of PLAN_SHEETS from the scene's meshes (sheet_groups.c). Messages have been printed unless the result
-/// is EXIT_GOOD.
+/// Creates the rows of PLAN_SHEETS from the scene's meshes (sheet_groups.c). Messages have been printed unless the
+/// result is EXIT_GOOD.
 ExitCode plan_split_sheets(Plan *plan, Console *console);
 
 /// Sets a row's values from coordinates in [0, 1] of the ranges. False when out of memory.
@@ -78,11 +78,11 @@ static inline const char *plan_value(const Plan *plan, uint32_t row, uint32_t pa
     return plan->values[(size_t)row * plan->parameter_count + parameter];
 }
 
-/// A parameter's short name for people: the part behind the last dot, longer where others end alike.
+/// A parameter's short name: the part after the last dot, longer if others have the same end.
 const char *plan_label(const Plan *plan, uint32_t parameter);
 
-/// Makes the rows of a plan whose parameters are read (plan_rows.c). False: `message` says why not, about `parameter`.
-/// A fit's rows are as many as its evaluations, and have no values yet.
+/// Creates the rows of a plan whose parameters have been read (plan_rows.c). False: `message` says why, about
+/// `parameter`. A fit has as many rows as evaluations, without values yet.
 bool plan_make_rows(Plan *plan, uint32_t *parameter, char *message, size_t size);
 
 #endif

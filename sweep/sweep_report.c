@@ -1,8 +1,8 @@
-// What came of a sweep: report.csv, a line a row; index.html, to sort and compare; sheet.svg, three
-// pictures of each row with its parameters below.
+// The results of a sweep: report.csv, a line per row; index.html, to sort and compare; sheet.svg, three pictures of
+// each row above its parameters.
 //
-// A row's numbers are those of its tables: of stats.csv the last frame's, of measure.csv the median over the frames
-// that have the number.
+// A row's numbers come from its tables: from stats.csv those of the last frame, from measure.csv the median over the
+// frames that have the number.
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -32,14 +32,14 @@ typedef struct Report {
     Sweep *sweep;
     Column columns[NUMBERS_MAX];
     int column_count;
-    double *numbers; ///< [row_count * NUMBERS_MAX], NaN where a row has none
+    double *numbers; ///< [row_count * NUMBERS_MAX], NaN if a row has none
     bool *complete;  ///< [row_count]
     double fps;
 } Report;
 
 // ---- tables
 
-/// The index of a column, which is added where it is new; -1 where there is no room.
+/// The index of a column, which is added if it is new; -1 if the table is full.
 static int find_column(Report *report, const char *table, const char *cell, size_t size) {
     char name[sizeof(Column)];
     snprintf(name, sizeof name, "%s.%.*s", table, (int)size, cell);
@@ -50,7 +50,7 @@ static int find_column(Report *report, const char *table, const char *cell, size
     return report->column_count++;
 }
 
-/// The number of a column: the last line's, or the median of all; NaN where there is none.
+/// The number of a column: the last line's, or the median of all; NaN if there is none.
 static double summarize(const Csv *csv, int column, bool median) {
     uint32_t count;
     double *values = csv_numbers(csv, column, (CsvLines){0}, &count), number = (double)NAN;
@@ -92,9 +92,9 @@ static double number_of(const Report *report, uint32_t row, int column) {
     return report->numbers[(size_t)row * NUMBERS_MAX + (size_t)column];
 }
 
-// ---- what each row left
+// ---- the files of a row
 
-/// A path inside the sweep's folder, or NULL where there is no such file.
+/// A path inside the sweep's folder, or NULL if there is no such file.
 static char *row_file(const Report *report, uint32_t row, const char *name) {
     char *inside = text_format("rows/%04u/%s", row + 1, name);
     char *path = text_format("%s/%s", report->sweep->folder, inside);
@@ -196,7 +196,7 @@ static void write_json(const Report *report, FILE *file) {
     fputs("]}", file);
 }
 
-/// A text inside a script or a page: no '<' ends an element.
+/// Escapes a text inside a script or a page: no '<' may end an element.
 static void write_safe(FILE *file, const char *text) {
     for (; *text; text++)
         if (*text == '<') fputs("\\u003c", file);
@@ -283,7 +283,7 @@ static bool write_file(const Report *report, const char *name, void (*write)(con
     return good;
 }
 
-/// Frames a second of the first row that is complete.
+/// Frames per second of the first complete row.
 static double read_fps(const Sweep *sweep, const bool *complete) {
     Job job;
     SetList none = {0};
@@ -298,7 +298,7 @@ static double read_fps(const Sweep *sweep, const bool *complete) {
     return fps;
 }
 
-/// Of a sweep of sheets: the check and the shot of all rows together.
+/// For a sweep of sheets: the check and the shot of all rows.
 static bool report_sheets(const Report *report) {
     for (uint32_t row = 0; row < report->sweep->plan.row_count; row++)
         if (!report->complete[row]) return true;
