@@ -1,10 +1,9 @@
-// The colour of what glows.
+// The colour of glowing surfaces.
 //
-// Planck: B(lambda, T) ~ lambda^-5 / (exp(c2/(lambda T)) - 1), c2 = 1.438777e-2 m K.
-// CIE 1931 observer by the multi-lobe Gaussians of Wyman, Sloan & Shirley 2013 (JCGT 2(2)), then XYZ to linear
-// Rec. 709. Below about 1900 K blue lies outside the gamut: negative values are cut.
-// The luminance of an ember grows 50-fold from 1020 to 1220 K; the eye and the film follow only part of
-// that, so the table holds chromaticity * (Y(T)/Y(1200 K))^0.55.
+// Planck: B(lambda, T) ~ lambda^-5 / (exp(c2/(lambda T)) - 1), c2 = 1.438777e-2 m K. CIE 1931 observer by the
+// multi-lobe Gaussians of Wyman, Sloan & Shirley 2013 (JCGT 2(2)), then XYZ to linear Rec. 709. Below about 1900 K blue
+// lies outside the gamut: negative values are clipped. The luminance of an ember increases 50-fold from 1020 to 1220 K;
+// eye and film compress that, so the table holds chromaticity * (Y(T)/Y(1200 K))^0.55.
 
 #include "preview/internal.h"
 

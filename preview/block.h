@@ -1,10 +1,10 @@
-// A block of pixels on its way through the renderer: what its 16 lanes see, and the light that falls there.
+// A block of pixels in the renderer: the points that its 16 lanes see, and the light there.
 #ifndef PREVIEW_BLOCK_H
 #define PREVIEW_BLOCK_H
 
 #include "preview/internal.h"
 
-/// What the layers of a pixel are made of.
+/// Sums for the layers of a pixel.
 typedef struct LayerSum {
     Float3 normal, glow, fire;
     float fire_hides, temperature, burn, depth;
@@ -23,21 +23,21 @@ typedef struct Block {
     float time[LANES]; ///< of the ray within the exposure, 0 to 1
     Point point[LANES];
     FireTile *tile;                         ///< flame and smoke; NULL: none
-    float fire_from[LANES], fire_to[LANES]; ///< distances for which the next two are known
+    float fire_from[LANES], fire_to[LANES]; ///< distances for which the next two are valid
     Float3 fire_light[LANES];
     float fire_clear[LANES];
     float low[LANES], high[LANES];
     float clear[LANES]; ///< of a shadow ray
-    float sun_seen;     ///< sum of those to the sun
+    float sun_seen;     ///< sum over rays to the sun
     int sun_asked;
-    float open[LANES], sky_seen[LANES]; ///< share of the sky, of a sample and summed
+    float open[LANES], sky_seen[LANES]; ///< visible share of the sky, of a sample and summed
     int sky_asked[LANES];
     bool clouded;        ///< whether anything hid sky
-    bool sunlit, shaded; ///< whether any ray to the sun came through, and whether any did not
-    Float3 lamp[LANES];  ///< light of flames and embers, summed over samples, as if nothing hid it
+    bool sunlit, shaded; ///< whether any ray reached the sun, and whether any was blocked
+    Float3 lamp[LANES];  ///< light of flames and embers, summed over samples, without occlusion
     Float3 lamp_position[LANES], lamp_normal[LANES],
-        lamp_white[LANES];                     ///< where it was found last, and what it was on white
-    float lamp_seen[LANES], lamp_asked[LANES]; ///< luminance of it that a ray found, and that of what it asked for
+        lamp_white[LANES];                     ///< where it was last computed, and its value on white
+    float lamp_seen[LANES], lamp_asked[LANES]; ///< luminance that rays found visible, and luminance that they tested
     LayerSum layer[LANES];
 } Block;
 
@@ -53,12 +53,12 @@ static inline void rest_ray(struct RTCRay16 *ray, int lane) {
     aim_ray(ray, lane, float3(0, 0, 0), float3(0, 0, 1), 0, -1, 0);
 }
 
-/// Instead of a sample's number: the centre of the sun and an open sky, for where nothing can hide them.
+/// In place of a sample's number: the centre of the sun and an open sky, if nothing can occlude them.
 enum { SAMPLE_CENTRE = -1 };
 
 // layers.c
 void layers_begin(LayerSum *sum);
-/// `fire` is the light of flame and smoke before the point, `clear` what they leave of its own.
+/// `fire` is the light of flame and smoke in front of the point, `clear` their transmittance.
 void layers_add(const Preview *preview, const Point *point, Float3 fire, float clear, Float3 direction, LayerSum *sum);
 void layers_write(const Preview *preview, size_t pixel, const LayerSum *sum);
 
@@ -68,21 +68,21 @@ void layers_finish(const Preview *preview);
 // lighting.c
 /// Reflected share of the light along l, per unit of irradiance: diffuse and a Blinn-Phong lobe.
 Float3 light_reflect(const Point *point, Float3 l);
-/// Whether light falls on what the lane sees.
+/// Whether the point that the lane sees is lit.
 bool light_reaches(const Block *block, const int *active, int lane);
-/// Adds the light of the sun and the sky that reaches the eye from block->point: the sun's by `rays` rays each, the
-/// sky's by one, or where they are not to ask by what was found before.
+/// Adds the light of the sun and the sky that reaches the eye from block->point: the sun by `rays` rays each, the sky
+/// by one, or by earlier results if no rays are to be traced.
 void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, int rays);
 void light_add_sky(const Preview *preview, Block *block, const int *active, int sample, bool ask);
-/// Whether anything could keep sun or sky from any of the points.
+/// Whether anything could occlude sun or sky at any of the points.
 bool light_may_be_hidden(const Preview *preview, const Block *block, const int *active);
 
 // lamps.c
-/// Adds the light of flames and embers that reaches block->point, times `through`, and asks what is hidden of it.
+/// Adds the light of flames and embers that reaches block->point, times `through`, and tests its visibility.
 void lamps_add(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES]);
 void lamps_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples);
-/// Of a block, once all are written: first smoothed along rows, then, all blocks, along columns and added to the
-/// picture.
+/// Called per block once all blocks are written: first smooths along rows; then, for all blocks, along columns, and
+/// adds the result to the picture.
 void lamps_smooth(Preview *preview, Block *block);
 void lamps_finish(Preview *preview, Block *block);
 

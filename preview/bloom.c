@@ -1,7 +1,7 @@
-// The halo around what is over-bright: light scattered in a lens.
+// The halo around overexposed parts: light scattered in a lens.
 //
-// out = picture + k1 G(s1) * over + k2 G(s2) * over, with over = max(picture - 1, 0) at a quarter of the
-// resolution and G a Gaussian whose width is a share of the picture's height.
+// out = picture + k1 G(s1) * over + k2 G(s2) * over, with over = max(picture - 1, 0) at a quarter of the resolution and
+// G a Gaussian with a width relative to the picture's height.
 
 #include "preview/internal.h"
 
@@ -17,7 +17,7 @@ static bool shrink(const Preview *preview, int w, int h, Float3 *out) {
                 for (int i = 0; i < SHRINK && x * SHRINK + i < preview->def.width; i++) {
                     size_t at = (size_t)(y * SHRINK + j) * (size_t)preview->def.width + (size_t)(x * SHRINK + i);
                     Float3 c = float3_scale(preview->picture[at], exposure);
-                    // only what glows, not a white sheet in the sun
+                    // only glow, not a white sheet in the sun
                     float peak = maxf(c.x, maxf(c.y, c.z)), over = maxf(peak - 1.1f, 0) / maxf(peak, 1e-6f);
                     sum = float3_mad(sum, c, over);
                 }

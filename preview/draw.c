@@ -1,10 +1,10 @@
 // One frame: tiles of blocks of 4 x 4 pixels, a packet of 16 rays per block and sample.
 //
-// A sample is: the nearest surface; its look; light = sun (a ray to a random point of its disc) + sky and bounce
+// A sample is: the nearest surface; its appearance; light = sun (a ray to a random point of its disc) + sky and bounce
 // (one ambient-occlusion ray); see lighting.c. The light of flames and embers comes last (lamps.c). Pixels whose first
-// samples agree stop there. Blocks that no sheet or shape can touch show only the table or what lies behind it: nothing
-// is intersected, and where no shadow can fall one sample is enough.
-// Everything random comes from the pixel's position and the sample's number, so threads do not matter.
+// samples agree get no more. Blocks that no sheet or shape can touch show only the table or the background: nothing is
+// intersected, and where no shadow can fall one sample is enough. Random numbers depend only on the pixel's position
+// and the sample's number, not on threads.
 
 #include "preview/block.h"
 
@@ -13,7 +13,7 @@
 
 enum {
     HOLE_LIMIT = 4,
-    RIM_RAYS = 4, ///< to the sun, a sample, where a shadow has its rim
+    RIM_RAYS = 4, ///< rays to the sun per sample at the rim of a shadow
 };
 
 typedef struct Job {
@@ -21,7 +21,7 @@ typedef struct Job {
     void (*draw)(Preview *preview, Block *block); ///< one block
     atomic_int next, threads;
     int across, count;
-    bool fire; ///< flame and smoke are looked at
+    bool fire; ///< flame and smoke are drawn
 } Job;
 
 /// A sample's position in the pixel: a tent of radius 0.9 pixel, softer than a box and without ringing.
@@ -56,7 +56,7 @@ static void miss_point(Point *point, const Preview *preview, Float3 direction) {
     *point = (Point){.glow = background_colour(preview, direction), .distance = INFINITY, .sheet = -1, .piece = -1};
 }
 
-/// The look of the sheet at a hit; false at a hole.
+/// The appearance of the sheet at a hit; false at a hole.
 static bool hit_paper(const Preview *preview, const Block *block, int lane, float distance, Point *point) {
     const struct RTCHit16 *hit = &block->rays.hit;
     const uint32_t *t = preview->scene.triangles[hit->primID[lane]];
@@ -86,7 +86,7 @@ static size_t pixel_index(const Preview *preview, const Block *block, int lane) 
     return (size_t)block->y[lane] * (size_t)preview->def.width + (size_t)block->x[lane];
 }
 
-/// The table, or what lies behind it.
+/// The table, or the background.
 static void see_ground(const Preview *preview, Block *block, int lane) {
     Float3 d = block->direction[lane];
     Point *point = &block->point[lane];
@@ -99,7 +99,7 @@ static void see_ground(const Preview *preview, Block *block, int lane) {
     ground_shade(preview, distance, &preview->table[pixel_index(preview, block, lane)], point);
 }
 
-/// What the ray of a lane sees; false when it passes through a hole and must go on.
+/// The point that a lane's ray sees; false if it passes through a hole and must continue.
 static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
     Float3 o = block->origin[lane], d = block->direction[lane], normal = {0, 0, 1}, found = {0, 0, 1};
     Point *point = &block->point[lane];
@@ -148,7 +148,8 @@ static void find_points(const Preview *preview, Block *block, const int *active)
     }
 }
 
-/// The light of the fire before a point, and what it leaves. A pixel's points mostly lie at nearly one distance.
+/// The light of the fire in front of a point, and its transmittance. A pixel's points mostly have nearly the same
+/// distance.
 static void look_through(Block *block, int lane, float distance) {
     if (distance >= block->fire_from[lane] && distance <= block->fire_to[lane]) return;
     const float same = 1e-3f; // m, less than flames are thick
@@ -183,7 +184,7 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
     lamps_add(preview, block, active, sample, through);
 }
 
-/// Of a bare block the rays stay the same, unless the lens spreads them.
+/// In a bare block the rays stay the same, unless the lens spreads them.
 static void add_sample(const Preview *preview, Block *block, const int *active, bool bare, int sample, int rays) {
     if (!bare || preview->camera.lens > 0) {
         float at[2];
@@ -208,22 +209,22 @@ static bool is_mixed(const Block *block, const int *active) {
 
 /// The lanes whose first samples differ, from each other or from their neighbours'. Returns how many.
 static int find_restless(const Preview *preview, const Block *block, const int *active, bool bare, int *more) {
-    // where a lens or a shutter spreads things thin, some pixels' first samples all miss what their neighbours' meet
-    // ... and where a shadow has its rim on the table, all but few of a pixel's first rays to the sun may agree
+    // where a lens or a shutter blurs strongly, all first samples of some pixels miss what their neighbours' hit ...
+    // and at the rim of a shadow on the table, nearly all of a pixel's first rays to the sun may agree
     bool mixed = (is_blurred(preview) && is_mixed(block, active)) || (bare && block->sunlit && block->shaded);
     float low = INFINITY, high = -INFINITY;
     for (int i = 0; i < LANES; i++) low = minf(low, block->low[i]), high = maxf(high, block->high[i]);
     int count = 0;
     for (int i = 0; i < LANES; i++) {
         const LayerSum *sum = &block->layer[i];
-        bool edge = sum->hits > 0 && sum->hits < sum->samples; // even where only fire lights it, which is not in `high`
+        bool edge = sum->hits > 0 && sum->hits < sum->samples; // also if only fire lights it, which is not in `high`
         bool calm = !edge && block->high[i] - block->low[i] < 0.026f && high - low < 0.15f && !mixed;
         more[i] = active[i] && !calm ? -1 : 0, count += more[i] != 0;
     }
     return count;
 }
 
-/// After half of the samples: goes on where they still differ by so much that as many more would be seen.
+/// After half of the samples: keeps lanes whose samples still differ so much that more would be visible.
 static bool keep_restless(const Block *block, int *more, int sample, int *taken) {
     bool any = false;
     for (int i = 0; i < LANES; i++) {
@@ -252,7 +253,7 @@ static void start_block(const Preview *preview, Block *block, int *active) {
     }
 }
 
-/// The picture gets the mean of what was summed.
+/// The picture gets the mean of the sums.
 static void write_block(Preview *preview, const Block *block, const int *active, const int *taken) {
     for (int i = 0; i < LANES; i++) {
         if (!active[i]) continue;
@@ -263,9 +264,8 @@ static void write_block(Preview *preview, const Block *block, const int *active,
     }
 }
 
-/// Takes a quarter of the samples, but at least 4, of every pixel, and the rest of those that need it; half of them
-/// where a lens or a shutter blurs a sheet or a shape. Of a bare block whose first rays find nothing in the way one is
-/// enough.
+/// Takes a quarter of the samples, but at least 4, of every pixel (half if a lens or a shutter blurs a sheet or a
+/// shape), and the rest of pixels that need it. A bare block whose first rays are not blocked needs only one.
 static void add_samples(const Preview *preview, Block *block, const int *active, bool bare, int *taken) {
     int more[LANES], samples = preview->def.samples, first = samples;
     int share = is_blurred(preview) && !bare ? 2 : 4;
@@ -277,7 +277,7 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
     }
     if (first == 1 && bare) samples = 1;
     bool on = first < samples && find_restless(preview, block, active, bare, more);
-    // where a shadow has its rim more rays are sent, and where there is none the first have reported all
+    // at the rim of a shadow more rays are traced; elsewhere the first are enough
     int rays = block->sunlit && block->shaded ? (bare ? RIM_RAYS : 1) : 0;
     for (int i = 0; i < LANES; i++) taken[i] = on && more[i] ? samples : first;
     for (int s = first; s < samples && on; s++) {
@@ -304,7 +304,7 @@ static void draw_block(Preview *preview, Block *block) {
     write_block(preview, block, active, taken);
 }
 
-/// The table's own colour in every pixel. The camera stands still, so it is found once.
+/// The table's own colour in every pixel. The camera does not move, so it is computed once.
 static void fill_table(Preview *preview, Block *block) {
     Table sum[LANES] = {{{0, 0, 0}, {0, 0}, 0}};
     int count[LANES] = {0}, samples = preview->camera.lens > 0 ? 24 : 4;
@@ -359,7 +359,7 @@ static void draw_all(Preview *preview, void (*draw)(Preview *, Block *)) {
     atomic_init(&job.next, 0), atomic_init(&job.threads, 0);
     pthread_t threads[THREAD_LIMIT];
     int started = 0;
-    // a thread that cannot be had only makes it slower
+    // a thread that cannot be created only makes it slower
     while (started < preview->def.thread_count - 1 && !pthread_create(&threads[started], NULL, draw_tiles, &job))
         started++;
     draw_tiles(&job);

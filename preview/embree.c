@@ -1,7 +1,7 @@
 // The device, the acceleration structure and packets of rays, on Embree.
 //
-// One builder thread: the tree, and with it the order in which equal hits are met, must not depend on the
-// number of threads. Debian's Embree checks its arguments: lanes that are not in use must hold a valid ray.
+// One builder thread: the tree, and with it the order in which equal hits are met, must not depend on the number of
+// threads. Debian's Embree checks its arguments: unused lanes must hold a valid ray.
 
 #include "preview/internal.h"
 
@@ -12,13 +12,13 @@ static SingeResult embree_check(const Preview *preview, SingeError *error) {
     return preview_fail(error, SINGE_ERROR_STATE, -1, "Embree refused the surface (error %d)", (int)code);
 }
 
-/// What a packet of shadow rays has met on its way.
+/// The transmittance along a packet of shadow rays.
 typedef struct Passage {
     TraceContext context; ///< first: Embree hands it back
     float clear[LANES];
 } Passage;
 
-/// What a sheet lets through of a ray: most of the light that comes through it goes other ways.
+/// Share of a ray that a sheet transmits straight: most of the light through it is scattered.
 static float let_through(const Preview *preview, const uint32_t t[3], float burn) {
     const Scene *scene = &preview->scene;
     return 0.5f * paper_transmittance(preview, scene->vertices[t[0]].sheet) * (1 - stepf(0.08f, PAPER_WHOLE, burn));
@@ -33,7 +33,7 @@ void tracer_close(Preview *preview) {
     if (preview->device) rtcReleaseDevice(preview->device);
 }
 
-/// Lets shadow rays through the holes that the picture shows in a burnt sheet, and a part of them through the sheet.
+/// Lets shadow rays pass through the holes drawn in a burnt sheet, and partly through the sheet.
 static void pass_sheets(const struct RTCFilterFunctionNArguments *arguments) {
     const Preview *preview = arguments->geometryUserPtr;
     const Scene *scene = &preview->scene;

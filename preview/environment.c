@@ -1,10 +1,10 @@
-// The light from all around: a small picture of the sky by direction, the same blurred for dull mirrors, and the light
-// that falls on a surface by its normal, as spherical harmonics of order 2 (Ramamoorthi & Hanrahan 2001):
+// Ambient light: a small picture of the sky by direction, a blurred copy for dull reflections, and the irradiance by
+// normal, as spherical harmonics of order 2 (Ramamoorthi & Hanrahan 2001):
 //
 //     E(n)/pi = sum_lm A_l L_lm Y_lm(n),   L_lm = integral L Y_lm dw,   A_0 = 1, A_1 = 2/3, A_2 = 1/4
 //
-// Below the horizon it is what the ground sends back. A sky of one kind or another is scaled so that an upward surface
-// in the open gets as much of it as of an even one.
+// Below the horizon it is the light reflected by the ground. Every kind of sky is scaled so that an upward surface in
+// the open gets as much light as from an even sky.
 
 #include "preview/internal.h"
 
@@ -20,7 +20,7 @@ static float solid_angle(int row) {
     return (top - bottom) * 2 * PI_F / SKY_ACROSS;
 }
 
-/// A soft-edged lamp about a direction, by angles across and up from it.
+/// A soft-edged lamp around a direction, by angles across and up from it.
 static float lamp(Float3 d, float azimuth, float height, float half_width, float half_height, float soft) {
     float a = atan2f(d.x, d.y) - azimuth, h = asinf(clampf(d.z, -1, 1)) - height;
     if (a > PI_F) a -= 2 * PI_F;
@@ -38,7 +38,7 @@ static Float3 studio(Float3 d, float sun_azimuth) {
     return float3_mad(light, float3(4.2f, 2.9f, 1.7f), warm);
 }
 
-/// Outdoors: bluer overhead, pale at the horizon and about the sun.
+/// Outdoors: bluer overhead, pale at the horizon and around the sun.
 static Float3 open_sky(Float3 d, Float3 sun) {
     float haze = expf(-4.5f * maxf(d.z, 0)), near = maxf(float3_dot(d, sun), 0), near2 = near * near,
           near8 = near2 * near2;
@@ -62,7 +62,7 @@ static Float3 pictured(const Preview *preview, int row, int column) {
     return float3_scale(sum, 1 / (float)((x1 - x0) * (y1 - y0)));
 }
 
-/// The sky as it is by itself, above the horizon or, for a picture, all around.
+/// The unscaled sky, above the horizon or, for a picture, all around.
 static Float3 sky_light(const Preview *preview, int row, int column) {
     Float3 d = sky_direction(row, column), sun = preview->sun;
     float turn = -preview->def.sky_turn, c = cosf(turn), s = sinf(turn);

@@ -1,21 +1,21 @@
-// Rays against closed meshes, on Embree: one tree a solid, in the solid's own frame, to which rays are brought. So a
-// mesh that moves is built once, and blurs as other shapes do.
+// Rays against closed meshes, on Embree: one tree per solid, in the solid's own frame, into which rays are transformed.
+// A moving mesh is thus built once, and blurs like other shapes.
 //
-// Normals are smooth over edges that are blunter than FACETS_CREASE: a corner's is the sum of those of the faces about
-// it that turn less than that from its own, weighed by their areas.
+// Normals are smooth over edges blunter than FACETS_CREASE: a corner's normal is the sum, weighted by area, of those of
+// the surrounding faces within that angle.
 
 #include "preview/internal.h"
 
 #include <string.h>
 
 static const float FACETS_CREASE = 0.82f; ///< cosine of 35 degrees
-static const Float3 UP = {0, 0, 1};       ///< for the normal of what has no area
+static const Float3 UP = {0, 0, 1};       ///< the normal of a face without area
 
 static Float3 facets_corner(const PreviewSolid *solid, uint32_t triangle, int corner) {
     return float3_load(solid->vertices + 3 * (size_t)solid->triangles[3 * (size_t)triangle + (size_t)corner]);
 }
 
-/// Along the normal, twice the area long.
+/// The normal times twice the area.
 static Float3 facets_cross(const PreviewSolid *solid, uint32_t t) {
     Float3 a = facets_corner(solid, t, 0);
     return float3_cross(float3_sub(facets_corner(solid, t, 1), a), float3_sub(facets_corner(solid, t, 2), a));
@@ -124,7 +124,7 @@ SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets
                            .next = preview->facets};
         preview->facets = facets;
         result = facets_build(preview, facets, error);
-        if (result) facets->solid = NULL; // stays in the list till it is freed, but is not found
+        if (result) facets->solid = NULL; // stays in the list until it is freed, but is not found
         if (result) return result;
     }
     *found = facets;
@@ -190,7 +190,7 @@ float facets_intersect(const Facets *facets, Float3 o, Float3 d, float near, flo
     float u = hit.hit.u, v = hit.hit.v;
     Float3 smooth = float3_mad(float3_mad(float3_scale(corner[0], 1 - u - v), corner[1], u), corner[2], v);
     Float3 flat = float3_unit_or(facets_cross(facets->solid, hit.hit.primID), UP);
-    // a smooth normal that looks away from the eye where the face does not would be turned round
+    // a smooth normal that faces away from the eye although the face does not would be flipped
     *normal = float3_dot(smooth, d) * float3_dot(flat, d) > 0 ? float3_unit_or(smooth, flat) : flat;
     return hit.ray.tfar;
 }

@@ -1,17 +1,16 @@
-// The gas made ready to be looked at: what burns and what smokes, cell by cell, and where there is nothing.
+// Prepares the gas for drawing: flame and smoke, cell by cell, and the empty regions.
 //
-// Burning is q / (q + q0) of the heat released, q (W/m3). The height of a flame's gas above the paper is that above
-// the paper that burns in its cell, and elsewhere found by following the velocity back, layer by layer from below:
-// r(x) = (r(x - v dt) + dz) times the share that was burning there; it tells the clear base from the bright centre and
-// the torn tip. Smoke is its extinction, 8.7 m2/g times its
-// density (Mulholland & Croarkin 2000, for the soot of flames).
+// Burning is q / (q + q0) of the heat released, q (W/m3). The height of a flame's gas above the paper is that above the
+// paper that burns in its cell, and elsewhere found by following the velocity back, layer by layer from below: r(x) =
+// (r(x - v dt) + dz) times the share that was burning there; it distinguishes the clear base, the bright centre and the
+// torn tip. Smoke is its extinction, 8.7 m2/g times its density (Mulholland & Croarkin 2000, for the soot of flames).
 
 #include "preview/internal.h"
 
 #include <string.h>
 
 #define BURNING 2e6f      ///< W/m3, q0
-#define FLAME_SEEN 0.085f ///< less is below the edge of a flame wherever noise puts it
+#define FLAME_SEEN 0.085f ///< a smaller value is outside the flame, whatever the noise
 #define SMOKE_SEEN 0.08f  ///< 1/m
 
 static size_t fire_at(const Fire *fire, int x, int y, int z) {
@@ -39,7 +38,7 @@ static void fill_cells(Fire *fire, const SingeGas *gas) {
             }
 }
 
-// ---- how high
+// ---- height above the paper
 
 /// Where paper burns: the mean height in each cell, weighted by the rate.
 static void find_roots(Preview *preview) {
@@ -60,7 +59,7 @@ static void find_roots(Preview *preview) {
     }
 }
 
-/// The layer below as the gas came from there: flame and rise at (x - vx/vz, y - vy/vz).
+/// The layer below, where the gas came from: flame and rise at (x - vx/vz, y - vy/vz).
 static FireCell upstream(const Fire *fire, int x, int y, int z) {
     const float *drift = fire->source[fire_at(fire, x, y, z)];
     float fx, fy;
@@ -76,7 +75,7 @@ static void raise_cell(Fire *fire, int x, int y, int z) {
     FireCell *cell = &fire->cells[here];
     cell->rise = 0, cell->flame = fire->source[here][2];
     if (cell->flame <= 0) return;
-    // the paper in the cell, or that just above it, which the flame has yet to reach
+    // the paper in the cell, or just above it, where the flame has not arrived yet
     const float *root = fire->roots[fire->roots[here][0] > 0 ? here : above];
     if (root[0] > 0) {
         float height = fire->origin.z + (float)z * fire->cell - root[1] / root[0];
@@ -109,7 +108,7 @@ static void mark_bricks(Fire *fire, int x, int y, int z, float reach, uint8_t wh
             for (int i = low[0]; i <= high[0]; i++) fire->seen[brick_at(fire, i, j, k)] |= what;
 }
 
-/// Marks the cells about (x, y, z), itself included.
+/// Marks the cells around (x, y, z), itself included.
 static void mark_cells(Fire *fire, int x, int y, int z) {
     int reach = 1 + (int)minf(FIRE_WARP_FINE / fire->cell, 1000), low[3], high[3];
     const int position[3] = {x, y, z};
@@ -122,8 +121,8 @@ static void mark_cells(Fire *fire, int x, int y, int z) {
             memset(&fire->burns[fire_at(fire, low[0], j, k)], 1, (size_t)(high[0] - low[0] + 1));
 }
 
-/// The most that the spline can be in a cell's box: the largest of its Bezier points, which are the means of the
-/// cells that meet in its faces, edges and corners.
+/// The max of the spline in a cell's box: the largest of its Bezier points, which are the means of the cells that meet
+/// in its faces, edges and corners.
 static float max_flame(const Fire *fire, int x, int y, int z) {
     float max = 0;
     for (int k = 0; k < 27; k++) {
@@ -152,7 +151,7 @@ static void mark_all(Fire *fire) {
             }
 }
 
-/// Bounds of what is not empty. False where all is.
+/// Bounds of the bricks that are not empty. False if all are.
 static bool find_bounds(Fire *fire) {
     Float3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     float side = FIRE_BRICK * fire->cell;
@@ -169,7 +168,7 @@ static bool find_bounds(Fire *fire) {
     return low.x < high.x;
 }
 
-/// Flames have an end: what still burns above it is too thin to be seen.
+/// Flames have a max height: above it they are too thin to be seen.
 static void end_flames(Fire *fire) {
     for (size_t i = 0; i < fire->cell_capacity; i++) {
         FireCell *cell = &fire->cells[i];
@@ -195,7 +194,7 @@ void fire_raise(Preview *preview) {
 
 // ---- the whole
 
-/// A block that could not be had is NULL and has no size.
+/// A block that could not be allocated is NULL and has no size.
 static void free_cells(const Preview *preview, const Fire *fire) {
     const SingeAllocator *allocator = &preview->allocator;
     allocator_resize(*allocator, fire->cells, fire->cells ? fire->cell_capacity * sizeof *fire->cells : 0, 0);
@@ -243,7 +242,7 @@ static SingeResult check_gas(const SingeGas *gas, SingeError *error) {
                         "gas: size, cell, origin or a value is out of range, or no array");
 }
 
-/// Fills what does not change with the gas.
+/// Initialises data that does not change with the gas.
 static bool make_tables(Preview *preview) {
     Fire *fire = &preview->fire;
     if (fire->noise && fire->tiles) return true;
@@ -293,7 +292,7 @@ void fire_light_smoke(Preview *preview) {
                 Float3 p = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), fire->cell);
                 for (int k = 0; k < preview->scene.light_count; k++) {
                     Float3 to = float3_sub(float3(lights->x[k], lights->y[k], lights->z[k]), p);
-                    // scattered to all sides alike: a quarter of what white paper would send back
+                    // scattered equally in all directions: a quarter of the reflection of white paper
                     cell->glow += 0.25f * lights->strength[0][k] / (float3_dot(to, to) + lights->softness[k] + 4e-4f);
                 }
             }

@@ -1,4 +1,4 @@
-// Flame and smoke as the renderer keeps and meets them.
+// Flame and smoke in the renderer.
 #ifndef PREVIEW_FIRE_H
 #define PREVIEW_FIRE_H
 
@@ -10,22 +10,21 @@
 
 enum {
     FIRE_BORDER = 2, ///< empty cells around the gas, so that interpolation needs no bounds
-    FIRE_BRICK = 2,  ///< cells along the side of a brick, the unit of what is skipped
-    FIRE_STEPS = 96, ///< a ray's steps through what is not empty
+    FIRE_BRICK = 2,  ///< cells along the side of a brick, the unit of empty space that is skipped
+    FIRE_STEPS = 96, ///< max steps of a ray outside empty bricks
     FIRE_NOISE = 16, ///< corners along the side of the lattice of noise, a power of two
     FIRE_COLOURS = 64,
 };
 
-/// What is looked up at a position. Four floats: interpolated together.
+/// The values of a cell. Four floats, interpolated together.
 typedef struct FireCell {
     float flame; ///< 0 none to 1 burning fully
-    float rise;  ///< m times flame: how far above the paper the flame is
+    float rise;  ///< m times flame: height of the flame above the paper
     float smoke; ///< 1/m, extinction
     float glow;  ///< light of the flames that reaches the smoke, per unit of albedo
 } FireCell;
 
-/// What a ray meets in steps from `from` to `distance`: behind one, `light` has been added and `clear` of what comes
-/// from farther is left.
+/// The steps of a ray from `from` to `distance`: after a step, `light` has been added and `clear` is the transmittance.
 typedef struct FireView {
     int count;
     float from[FIRE_STEPS], distance[FIRE_STEPS], clear[FIRE_STEPS];
@@ -33,38 +32,38 @@ typedef struct FireView {
 } FireView;
 
 /// Flames have no edges as sharp as a sheet's: one ray for each second pixel across and down, through the corners that
-/// four of them share, and pixels take the mean of the four rays about them, weighted by nearness.
+/// four of them share, and pixels take the mean of the four surrounding rays, weighted by nearness.
 enum { FIRE_TILE = 32, FIRE_ACROSS = FIRE_TILE / 2 + 1 };
 typedef struct FireTile {
     FireView views[FIRE_ACROSS * FIRE_ACROSS];
-    bool empty; ///< nothing is met by any of them
+    bool empty; ///< no ray meets anything
 } FireTile;
 
 typedef struct Fire {
-    int size[3];   ///< cells with their border; all 0 where there is no gas
+    int size[3];   ///< cells with their border; all 0 if there is no gas
     bool visible;  ///< whether any of it is seen
     float cell;    ///< m
     Float3 origin; ///< m, centre of cell (0, 0, 0), border included
     FireCell *cells;
     size_t cell_capacity;
     int bricks[3];
-    uint8_t *seen;      ///< [bricks] FIRE_FLAME and FIRE_SMOKE of what the eddies may bring there
-    float (*source)[3]; ///< [cells] how far the gas goes along x and y as it rises by one; what burns there
+    uint8_t *seen;      ///< [bricks] FIRE_FLAME and FIRE_SMOKE that eddies may bring there
+    float (*source)[3]; ///< [cells] displacement of the gas along x and y as it rises by one; its flame
     float (*roots)[2];  ///< [cells] rate at which paper burns there, and its height times that
-    uint8_t *burns;     ///< [cells] whether flame may be in reach of the small eddies alone
+    uint8_t *burns;     ///< [cells] whether flame may be within reach of the small eddies
     size_t brick_capacity;
-    float moment;      ///< s, by which the eddies have risen
+    float moment;      ///< s, time for which the eddies have risen
     Float3 daylight;   ///< of sun and sky, per unit of the smoke's albedo
     Float3 low, high;  ///< m, bounds of the bricks that are not empty
-    FireTile *tiles;   ///< [def.thread_count] what each thread works on; NULL before the first gas
+    FireTile *tiles;   ///< [def.thread_count] work area of each thread; NULL before the first gas
     float (*noise)[4]; ///< [FIRE_NOISE^3] four numbers from -1 to 1 at every corner; NULL before the first gas
     Float3 colours[FIRE_COLOURS]; ///< radiance of a thick flame from its coolest to its hottest
 } Fire;
 
-#define FLAME_HEIGHT 0.058f ///< m, about which tongues end
-#define FLAME_END 0.17f     ///< m, above which there is none
+#define FLAME_HEIGHT 0.058f ///< m, typical height of tongues
+#define FLAME_END 0.17f     ///< m, max height of a flame
 
-// m, how far eddies shift what is seen, at most
+// m, max displacement by eddies
 #define FIRE_WARP_WIDE 0.0055f
 #define FIRE_WARP_FINE 0.0018f
 
@@ -80,9 +79,9 @@ static inline size_t fire_noise_at(int x, int y, int z) {
 
 // fire.c
 void fire_free(Preview *preview);
-/// How high above the paper each flame is, and where there is something to be seen. The surface has been loaded.
+/// Computes the height of each flame above the paper, and the visible regions. The surface has been loaded.
 void fire_raise(Preview *preview);
-/// The light that falls on smoke: the day's and the flames'. The lights have been gathered.
+/// Computes the light on smoke, from daylight and flames. The lights have been gathered.
 void fire_light_smoke(Preview *preview);
 
 /// The values at a position, per metre.
@@ -94,18 +93,17 @@ typedef struct Matter {
 
 // fire_shade.c
 void fire_fill_colours(Preview *preview);
-/// Light of a full flame, radiance a metre, for the lamps that stand for it, and how much of it a cell gives.
+/// Light of a full flame, radiance per metre, for its lamps, and the share of it that a cell emits.
 Float3 fire_emission(const Preview *preview);
 float fire_share(const FireCell *cell);
-/// The same for other programs: light of flame alone, a share of the brightest there is, and 1/m of smoke.
+/// The same for other programs: light of the flame as a share of the brightest flame, and extinction of smoke, 1/m.
 void fire_look(const Preview *preview, Float3 p, float *flame, float *smoke);
 Matter fire_matter(const Preview *preview, Float3 p, int what);
 
 // fire_march.c
 /// Fills a tile whose upper left pixel is (x, y).
 void fire_see(const Preview *preview, int x, int y, FireTile *tile);
-/// The light of the fire as far as `distance` from a pixel of the tile, counted from its upper left, and what it leaves
-/// of the light from there.
+/// The light of the fire up to `distance` for a pixel of the tile, counted from its upper left, and the transmittance.
 void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear);
 
 #endif

@@ -1,5 +1,5 @@
-// The gas on finer cells, with the tongues and streaks that pictures add by noise: for programs that draw what cells
-// hold.
+// The gas on finer cells, with the tongues and streaks that pictures add by noise, for programs that draw the cells
+// themselves.
 
 #include "preview/internal.h"
 

@@ -1,4 +1,4 @@
-// What a ray sees of flame and smoke on its way.
+// Marches rays through flame and smoke.
 //
 //     dL/ds = j - (a + k) L + k S,   front to back in steps, with j, a of the flame and k, S of the smoke
 //                                    (fire_shade.c)
@@ -12,7 +12,7 @@ typedef struct Gathered {
 
 static void add_step(Gathered *g, const Matter *m, float step) {
     float depth = m->dense * step;
-    // light of the step, dimmed on its own way out: (1 - exp(-d)) / d
+    // light of the step, absorbed within the step: (1 - exp(-d)) / d
     float kept = expf(-depth), mean = depth > 1e-3f ? (1 - kept) / depth : 1 - 0.5f * depth;
     g->light = float3_mad(g->light, m->light, g->clear * step * mean);
     g->clear *= kept;
@@ -20,7 +20,7 @@ static void add_step(Gathered *g, const Matter *m, float step) {
 
 // ---- along the ray
 
-/// Enters and leaves the bounds. False where the ray misses them.
+/// Where the ray enters and leaves the bounds. False if it misses them.
 static bool fire_clip(const Fire *fire, Float3 eye, Float3 d, float *near, float *far) {
     const float from[3] = {eye.x, eye.y, eye.z}, ray[3] = {d.x, d.y, d.z};
     const float low[3] = {fire->low.x, fire->low.y, fire->low.z}, high[3] = {fire->high.x, fire->high.y, fire->high.z};
@@ -33,7 +33,7 @@ static bool fire_clip(const Fire *fire, Float3 eye, Float3 d, float *near, float
     return *near < *far;
 }
 
-/// What the brick at p holds, and how far the ray runs in it from there.
+/// The contents of the brick at p, and the length of the ray in it from there.
 static int look_ahead(const Fire *fire, Float3 p, Float3 d, float *run) {
     float side = FIRE_BRICK * fire->cell;
     Float3 g = float3_scale(float3_sub(p, fire->origin), 1 / side);
@@ -57,9 +57,9 @@ static void see_ray(const Preview *preview, Float3 d, FireView *view) {
     view->count = 0;
     if (!fire_clip(fire, eye, d, &t, &far)) return;
     Gathered g = {{0, 0, 0}, 1};
-    // far away a step must still be one in floats
+    // far away a step must still change a float
     float fine = minf(0.35f * fire->cell, 0.0028f), min = maxf((far - t) / (4 * FIRE_STEPS), 1e-5f * far);
-    bool dark = true; // longer steps until there is flame
+    bool dark = true; // long steps until there is flame
     while (t < far && g.clear > 0.02f) {
         int what = look_ahead(fire, float3_mad(eye, d, t + 1e-5f), d, &run);
         if (!what) {
@@ -73,9 +73,9 @@ static void see_ray(const Preview *preview, Float3 d, FireView *view) {
         step = next - t;
         Matter m = fire_matter(preview, float3_mad(eye, d, t + 0.5f * step), what);
         dark = !m.flame;
-        if (seek && m.flame) continue; // the same way again in short steps
+        if (seek && m.flame) continue; // the same distance again in short steps
         add_step(&g, &m, step);
-        // the last step is as long as what is left
+        // the last step is the remaining length
         int k = view->count < FIRE_STEPS ? view->count++ : FIRE_STEPS - 1;
         view->from[k] = t, t = next, view->distance[k] = t;
         view->light[k] = g.light, view->clear[k] = g.clear;
@@ -95,7 +95,7 @@ void fire_see(const Preview *preview, int x, int y, FireTile *tile) {
     }
 }
 
-/// Adds a ray's light and what it leaves, times a weight.
+/// Adds a ray's light and transmittance, times a weight.
 static void add_view(const FireView *view, float distance, float weight, Float3 *light, float *clear) {
     int low = 0, high = view->count;
     if (high && view->distance[high - 1] <= distance) low = high;
@@ -104,7 +104,7 @@ static void add_view(const FireView *view, float distance, float weight, Float3 
         if (view->distance[mid] <= distance) low = mid + 1;
         else high = mid;
     }
-    // `low` steps lie wholly in front, and of the next a part
+    // `low` steps are wholly in front, the next one partly
     Float3 sum = low ? view->light[low - 1] : float3(0, 0, 0);
     float left = low ? view->clear[low - 1] : 1;
     if (low < view->count && view->from[low] < distance) {
@@ -115,7 +115,7 @@ static void add_view(const FireView *view, float distance, float weight, Float3 
 }
 
 void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear) {
-    const float near = 0.75f, far = 0.25f; // a pixel's centre lies a quarter of the way from one ray to the next
+    const float near = 0.75f, far = 0.25f; // a pixel's centre lies at a quarter of the distance between two rays
     float right = x % 2 ? near : far, down = y % 2 ? near : far;
     const FireView *view = &tile->views[y / 2 * FIRE_ACROSS + x / 2];
     *light = float3(0, 0, 0), *clear = 0;

@@ -1,33 +1,33 @@
 // Flame and smoke at a position.
 //
-// The gas comes in cells of several millimetres and is interpolated by quadratic B-splines, so its cells do not
-// show. What is finer is added: the position that is looked up is shifted by noise (domain warping), stretched upwards
-// and rising with the gas, so flames have tongues and streaks and flicker.
+// The gas comes in cells of several millimetres and is interpolated by quadratic B-splines, so its cells are not
+// visible. Finer detail is added: the lookup position is shifted by noise (domain warping), which is stretched upwards
+// and rises with the gas, so flames have tongues and streaks and flicker.
 //
-// A flame over paper is a thin sheet of burning gas about clear, hot vapour. With f the share that burns, r the height
+// A flame over paper is a thin sheet of burning gas around clear, hot vapour. With f the share that burns, r the height
 // above the paper and N noise of the width of a tongue, it lies where
 //
 //     e = f + a(r) N - c (r / H)^2 = EDGE,   H = (1 + h N) FLAME_HEIGHT,
 //
 // thin, with a fainter glow inside. It stands off the paper by some millimetres, is faint and blue where there is no
 // soot yet, yellow above, orange and torn at its tips. Soot glows as a black body between FLAME_COOL and FLAME_HOT; it
-// hides next to nothing of what lies behind it.
+// hides almost nothing behind it.
 
 #include "preview/internal.h"
 
 #include <string.h>
 
-#define RISE 0.75f ///< m/s, how fast the eddies go up
+#define RISE 0.75f ///< m/s, speed at which eddies rise
 
 #define FLAME_COOL 1350.0f ///< K
 #define FLAME_HOT 2050.0f
 #define FLAME_DIM 0.4f ///< radiance of a thick flame at its coolest and its hottest
 #define FLAME_BRIGHT 3.7f
-#define SOOT_DENSE 32.0f   ///< 1/m: radiance gathered a metre over that of a thick flame
+#define SOOT_DENSE 32.0f   ///< 1/m: radiance per metre relative to that of a thick flame
 #define SOOT_OPAQUE 6.0f   ///< 1/m, extinction
-#define BLUE_DENSE 0.55f   ///< 1/m: radiance of the base gathered a metre
-#define EDGE 0.19f         ///< share of burning at which a flame has its edge
-#define STAND_OFF 0.002f   ///< m above the paper, where nothing is seen yet
+#define BLUE_DENSE 0.55f   ///< 1/m: radiance of the base per metre
+#define EDGE 0.19f         ///< burning share at a flame's edge
+#define STAND_OFF 0.002f   ///< m above the paper, below which nothing is visible
 #define SOOT_BEGINS 0.010f ///< m
 #define SOOT_FULL 0.030f
 
@@ -72,7 +72,7 @@ typedef struct Noise {
     float a, b, c, d;
 } Noise;
 
-/// The whole number below x, and what is left. Places lie within some kilometres, so that it is an int.
+/// The integer part of x, and the rest. Positions are within some kilometres, so it fits an int.
 static inline int fire_split(float x, float *rest) {
     int whole = (int)x - (x < (float)(int)x);
     *rest = x - (float)whole;
@@ -96,15 +96,15 @@ static inline Noise noise_at(const Fire *fire, Float3 q) {
     return (Noise){n[0], n[1], n[2], n[3]};
 }
 
-/// Noise of eddies `width` across and `stretch` times as long, that rise; turned so that it lies along no axis.
+/// Noise of eddies `width` across and `stretch` times as long, that rise; rotated away from the axes.
 static inline Noise eddies(const Fire *fire, Float3 p, float time, float width, float stretch) {
-    const float c = 0.829f, s = 0.559f, tilt = 0.21f; // 34 degrees about the vertical
+    const float c = 0.829f, s = 0.559f, tilt = 0.21f; // 34 degrees around the vertical
     float across = 1 / width, z = p.z - RISE * time;
     return noise_at(fire, float3((c * p.x - s * p.y + tilt * z / stretch) * across,
                                  (s * p.x + c * p.y) * across + 1.3f * time, z * across / stretch));
 }
 
-// ---- what is there
+// ---- flame and smoke
 
 void fire_fill_colours(Preview *preview) {
     for (int i = 0; i < FIRE_COLOURS; i++) {
@@ -129,7 +129,7 @@ float fire_share(const FireCell *cell) {
     return stepf(0.1f, 0.6f, cell->flame) * stepf(SOOT_BEGINS, SOOT_FULL, rise);
 }
 
-/// Light that a metre of flame adds and the share that it keeps back.
+/// Emission and absorption of flame per metre.
 static Float3 shade_flame(const Fire *fire, const FireCell *cell, Noise wide, Noise fine, float *opaque) {
     float rise = cell->rise / cell->flame, stand = stepf(STAND_OFF, 4 * STAND_OFF, rise);
     if (stand <= 0) return float3(0, 0, 0);
@@ -149,7 +149,7 @@ static Float3 shade_flame(const Fire *fire, const FireCell *cell, Noise wide, No
 }
 
 static Float3 smoke_colour(const Preview *preview, float glow) {
-    // soot and tar send back about a third, to all sides
+    // soot and tar scatter about a third, in all directions
     return float3_mad(float3_scale(preview->fire.daylight, 0.35f), float3(1, 0.5f, 0.16f), 0.35f * glow);
 }
 

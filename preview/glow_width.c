@@ -1,9 +1,9 @@
-// How wide the line of embers is in a picture.
+// The width of the ember line in a picture.
 //
-// A pixel glows that sends at least a tenth of what the brightest hundredth of the glowing pixels send. From each such
-// pixel one walks along eight directions both ways to where the glow, or the sheet, ends. The shortest of the eight
-// ways, as long as its ends lie apart in space, is the line's width there; eight directions miss the shortest one by
-// 2 % at most. The frame's width is the median over its pixels.
+// A pixel glows if its luminance is at least a tenth of that of the brightest hundredth of the glowing pixels. From
+// each such pixel, lines in eight directions run both ways to the end of the glow or the sheet. The shortest of the
+// eight, measured between its ends in space, is the width of the ember line there; with eight directions its error is
+// at most 2 %. The frame's width is the median over its pixels.
 
 #include "preview/internal.h"
 
@@ -15,7 +15,7 @@ typedef struct GlowPicture {
     const PreviewLayers *layers;
     Camera camera;
     int width, height;
-    float min; ///< luminance of what glows
+    float min; ///< min luminance of glow
 } GlowPicture;
 
 static float luminance(const GlowPicture *picture, size_t pixel) {
@@ -34,7 +34,7 @@ static bool glows(const GlowPicture *picture, int x, int y) {
     return luminance(picture, (size_t)y * (size_t)picture->width + (size_t)x) >= picture->min;
 }
 
-/// The last pixel that glows on the way from (x, y) along (dx, dy).
+/// The last glowing pixel from (x, y) along (dx, dy).
 static void glow_walk(const GlowPicture *picture, int x, int y, float dx, float dy, int end[2]) {
     end[0] = x, end[1] = y;
     for (int step = 1; step <= WALK_LIMIT; step++) {
@@ -52,7 +52,7 @@ static float width_at(const GlowPicture *picture, int x, int y) {
         int a[2], b[2];
         glow_walk(picture, x, y, dx, dy, a), glow_walk(picture, x, y, -dx, -dy, b);
         float depth = picture->layers->depth[(size_t)y * (size_t)picture->width + (size_t)x];
-        // between the centres of the last pixels, and half of each
+        // between the centres of the end pixels, plus half of each
         float width = float3_length(float3_sub(glow_position(picture, a[0], a[1]), glow_position(picture, b[0], b[1])));
         min = minf(min, width + depth * picture->camera.pixel);
     }

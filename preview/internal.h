@@ -1,4 +1,4 @@
-// What the files of the preview share.
+// Shared by the files of the preview.
 #ifndef PREVIEW_INTERNAL_H
 #define PREVIEW_INTERNAL_H
 
@@ -24,24 +24,24 @@ enum {
 /// Exposed for white paper: a sun of 2.2 and a sky of 0.4 bring it to about 0.8.
 #define FILM_SPEED 0.45f
 
-/// What shading reads of a vertex.
+/// The data of a vertex for shading.
 typedef struct PaperVertex {
     float normal[3];
     float rest[3]; ///< m
     float uv[2];
     float temperature;   ///< K
-    float peak;          ///< K, highest so far
-    float burn;          ///< how far it looks burnt, 0 to 1
+    float peak;          ///< K, peak so far
+    float burn;          ///< apparent burnt share, 0 to 1
     float burn_rate;     ///< 1/s
-    float flaming;       ///< 1/s, of it what feeds a flame: none where char glows
+    float flaming;       ///< 1/s, the part of it that feeds a flame: 0 where char glows
     float gradient;      ///< 1/m, of burn in rest space
     int32_t sheet;       ///< -1: none
     float rim;           ///< 1 on the border of a piece, 0 inside
     float slope[3];      ///< 1/m, gradient of burn in rest space, of which `gradient` is the length
-    float warming[3];    ///< K/m, the same of the highest temperature
+    float warming[3];    ///< K/m, the same for the peak temperature
     float heat_gradient; ///< K/m
-    float spacing;       ///< m, size of the triangles about it at rest
-    float age;           ///< s since it caught fire, as a fire of real pace has it; 0: not yet
+    float spacing;       ///< m, size of the surrounding triangles at rest
+    float age;           ///< s of the fire's real time since ignition; 0: not yet
     int32_t piece;
 } PaperVertex;
 
@@ -56,25 +56,25 @@ typedef struct Texture {
 typedef struct EmberLights {
     float x[LIGHT_LIMIT], y[LIGHT_LIMIT], z[LIGHT_LIMIT];
     float softness[LIGHT_LIMIT];    ///< m2, added to the distance squared
-    float extent[LIGHT_LIMIT];      ///< m, within which the light comes from
+    float extent[LIGHT_LIMIT];      ///< m, extent of the light
     float power[LIGHT_LIMIT];       ///< luminance of the strength
     float strength[3][LIGHT_LIMIT]; ///< linear colour; radiance times area over 2 pi: divide by distance squared
 } EmberLights;
 
-/// The light of the sky and what the ground sends back of it, as seen from a point in the open.
+/// The light of the sky and its reflection by the ground, seen from a point in the open.
 enum { SKY_ACROSS = 48, SKY_DOWN = 24 };
 typedef struct Sky {
     Float3 radiance[SKY_DOWN][SKY_ACROSS]; ///< latitudes from the top
-    Float3 blurred[SKY_DOWN][SKY_ACROSS];  ///< as a dull surface mirrors it
-    Float3 ambient[9];                     ///< spherical harmonics of what white paper sends back
+    Float3 blurred[SKY_DOWN][SKY_ACROSS];  ///< as reflected by a dull surface
+    Float3 ambient[9];                     ///< spherical harmonics of the light reflected by white paper
 } Sky;
 
-/// The light of embers and flames in a pixel, before what hides it is taken away.
+/// The light of embers and flames in a pixel, before occlusion.
 typedef struct Lamp {
     Float3 light;   ///< as it reaches the eye
     Float3 normal;  ///< of the last sample
     float distance; ///< m, the same
-    float seen;     ///< share of it that nothing hides, by few rays
+    float seen;     ///< visible share, by few rays
     int32_t sheet;
 } Lamp;
 
@@ -82,13 +82,13 @@ typedef struct Lamp {
 typedef struct Table {
     Float3 albedo;
     float tilt[2]; ///< slope of its surface along x and y
-    float polish;  ///< how much it mirrors
+    float polish;  ///< its reflectance
 } Table;
 
 typedef struct Camera {
     Float3 eye, right, up, forward; ///< right and up reach the border of the picture at distance 1
     Float3 lens_right, lens_up;     ///< the lens' radius
-    float lens, focus;              ///< m, its radius and the distance that is sharp
+    float lens, focus;              ///< m, its radius and the distance in focus
     float pixel;                    ///< size of a pixel at distance 1
     float reach;                    ///< m, eye to target
 } Camera;
@@ -97,7 +97,7 @@ typedef struct Scene {
     RTCScene embree; ///< NULL when there is no triangle
     PaperVertex *vertices;
     float (*positions)[4]; ///< in the centre of the exposure
-    float (*moved[2])[4];  ///< when it begins and ends; not used without a shutter
+    float (*moved[2])[4];  ///< at its beginning and end; not used without a shutter
     uint32_t (*triangles)[3];
     uint32_t vertex_count, triangle_count;
     uint32_t vertex_capacity, position_capacity, moved_capacity[2], triangle_capacity;
@@ -107,7 +107,7 @@ typedef struct Scene {
     int light_count;
 } Scene;
 
-/// What rays need of a PreviewSolid.
+/// The data of a PreviewSolid for rays.
 typedef struct Facets {
     const PreviewSolid *solid;
     RTCScene embree;
@@ -115,7 +115,7 @@ typedef struct Facets {
     Float3 centre;   ///< of its bounds, in its own frame
     float extent;    ///< m, from the centre
     uint32_t triangle_count;
-    bool passing; ///< goes when no shape has it any more
+    bool passing; ///< freed when no shape uses it any more
     struct Facets *next;
 } Facets;
 
@@ -125,12 +125,12 @@ struct Preview {
     RTCDevice device;
     Camera camera;
     Float3 sun, sun_right, sun_up; ///< unit, towards the light, and a frame across it
-    Float3 sun_light;              ///< what white paper sends back of it
+    Float3 sun_light;              ///< its reflection by white paper
     Sky sky;
     float sun_spread; ///< tangent of the light's apparent radius
     PreviewShape *shapes;
     uint32_t shape_count;
-    Facets *facets;    ///< of the solids that were drawn
+    Facets *facets;    ///< of the solids drawn so far
     Texture *textures; ///< [def.sheet_count]
     float linear[256]; ///< sRGB byte to linear
     Float3 blackbody[BLACKBODY_COUNT];
@@ -139,7 +139,7 @@ struct Preview {
     float *seen;     ///< [height * width] of the lamps, smoothed along rows
     Table *table;    ///< [height * width], once `table_known`
     bool table_known;
-    uint8_t *mask;   ///< [mask_size] of each block: whether a sheet or a shape may touch it
+    uint8_t *mask;   ///< [mask_size] for each block, whether a sheet or a shape may touch it
     Float3 *glow[2]; ///< [quarter height * quarter width] for the bloom
     Scene scene;
     Fire fire;
@@ -150,14 +150,14 @@ struct Preview {
 /// A point to be lit. All normals face the viewer.
 typedef struct Point {
     Float3 position, normal, geometric, view; ///< view: unit, towards the eye
-    Float3 albedo, glow;                      ///< glow: what it gives off itself
-    float transmission;                       ///< share of the light from behind that comes through
+    Float3 albedo, glow;                      ///< glow: its own emission
+    float transmission;                       ///< share of the light from behind that is transmitted
     float gloss, shininess;                   ///< Blinn-Phong lobe of the sun
-    float mirror;                             ///< share of the blurred sky that it mirrors
+    float mirror;                             ///< reflectance for the blurred sky
     float footprint;                          ///< m, a pixel's size here
-    float fade;                               ///< 0 here to 1 lost in the background
-    bool lit;                                 ///< false: glow is all
-    float distance;                           ///< m, from the lens; infinite: nothing there
+    float fade;                               ///< 0 visible to 1 faded into the background
+    bool lit;                                 ///< false: glow only
+    float distance;                           ///< m, from the lens; infinite: nothing
     float temperature, burn;
     int32_t sheet, piece; ///< -1: none
     bool hit;             ///< a sheet or a shape
@@ -175,12 +175,12 @@ void camera_ray(const Camera *camera, float x, float y, const float disc[2], Flo
 float camera_blur(const Camera *camera, float depth);
 /// Point `index` of a low-discrepancy sequence in the square, turned by (a, b).
 void sample_square(uint32_t index, float a, float b, float out[2]);
-/// The same for the lens, and a number for the time, by a pixel's key: they have nothing to do with the others.
+/// The same for the lens, and a number for the time, by a pixel's key, independent of the others.
 void sample_lens(uint32_t index, uint32_t key, float out[2]);
 float sample_time(uint32_t index, uint32_t key);
 /// A pixel's own random number.
 uint32_t sample_key(int x, int y, uint32_t seed);
-/// Two numbers for a pixel that differ well from its neighbours'.
+/// Two numbers for a pixel that differ strongly from its neighbours'.
 void sample_pixel(int x, int y, uint32_t seed, float out[2]);
 Float3 sample_cosine(Float3 normal, const float square[2]);
 void sample_disc(const float square[2], float out[2]);
@@ -204,21 +204,21 @@ void tracer_release(Preview *preview);
 bool tracer_near(const Scene *scene, Float3 origin, Float3 direction, float far, float margin);
 /// Nearest hits of the lanes with valid = -1; `geomID` is RTC_INVALID_GEOMETRY_ID where there is none.
 void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit16 *rays);
-/// clear[i] tells of the lanes with valid = -1 what share of the light comes through whatever is in the way, shapes
-/// included; of the others it is 1. Changes `valid`. A ray's id is its lane.
+/// clear[i] is the transmittance along the ray of a lane with valid = -1, shapes included; for other lanes it is 1.
+/// Changes `valid`. A ray's id is its lane.
 void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *rays, float clear[LANES]);
 
 // environment.c
 void sky_fill(Preview *preview);
-/// What white paper with that normal sends back of all the light but the sun's.
+/// The reflection by white paper with that normal of all light except the sun's.
 Float3 sky_ambient(const Sky *sky, Float3 normal);
 Float3 sky_mirrored(const Sky *sky, Float3 direction);
 
 // facets.c
 
-/// Finds or makes those of a solid.
+/// Finds or creates those of a solid.
 SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets **facets, SingeError *error);
-/// Frees what was made for passing solids that no shape has.
+/// Frees the data of passing solids that no shape uses.
 void facets_drop(Preview *preview);
 void facets_free(Preview *preview);
 /// Distance along a ray in the solid's frame, in (near, far), or -1; *normal points outward.
@@ -231,9 +231,9 @@ static inline float shutter_moment(const Preview *preview, float time) { return 
 float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Float3 direction, float near, float far,
                       Float3 *normal);
 
-/// Centre of a sphere that holds the shape in the centre of the frame's time.
+/// Centre of a sphere around the shape at the middle of the exposure.
 Float3 shape_centre(const PreviewShape *shape);
-/// Radius of a sphere about its centre that holds the shape while the shutter is open.
+/// Radius of a sphere around that centre that contains the shape while the shutter is open.
 float shape_extent(const PreviewShape *shape, float shutter);
 
 // mask.c
@@ -250,36 +250,36 @@ void blackbody_fill(Float3 table[BLACKBODY_COUNT]);
 Float3 blackbody_glow(const Float3 table[BLACKBODY_COUNT], float temperature);
 
 // shade_paper.c
-/// What the look of a hit depends on, interpolated.
+/// The interpolated fields that determine the appearance of a hit.
 typedef struct PaperState {
     Float3 rest;
     float uv[2], temperature, peak, burn, burn_rate, gradient, heat_gradient, rim, spacing;
-    float glowing; ///< 1/s, of burn_rate what char without fuel burns at
-    float age;     ///< s since it caught fire, as a fire of real pace has it; 0: not yet
+    float glowing; ///< 1/s, the part of burn_rate due to char without fuel
+    float age;     ///< s of the fire's real time since ignition; 0: not yet
     int32_t sheet, piece;
 } PaperState;
 /// The sheet's fields at a point in a triangle.
 void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperState *state);
 /// Whether the burnt sheet has a hole there at the picture's scale. Only where burn > PAPER_WHOLE.
 bool paper_is_hole(const PaperState *state, float footprint);
-/// Share of the light on one side of a fresh sheet that leaves it on the other.
+/// Share of the light on one side of a fresh sheet that is transmitted to the other.
 float paper_transmittance(const Preview *preview, int32_t sheet);
 #define PAPER_WHOLE 0.35f
-/// False where there is a hole.
+/// False at a hole.
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
 
 // shade_ember.c
-/// Width of the glowing line, m, and the share of burn around which it lies.
+/// Width of the glowing line, m, and the burn value at its centre.
 #define EMBER_WIDTH 0.00042f
 #define EMBER_BURN 0.74f
-/// The share at which a leaf of char rests until it glows away: short of the embers.
+/// The burn value of a leaf of char until it glows away: below that of the embers.
 #define CHAR_LEAF 0.64f
 #define EMBER_GAIN 3.4f
-/// The glowing skin is hotter than the mean over the sheet's thickness that the simulation keeps.
+/// The glowing skin is hotter than the simulation's mean over the sheet's thickness.
 static inline float ember_temperature(float mean) { return mean + 110; }
-/// How readily a point glows, 0 to 1, by its rate of burning (1/s).
+/// Strength of a point's glow, 0 to 1, from its burn rate (1/s).
 static inline float ember_activity(float burn_rate) { return burn_rate > 0 ? burn_rate / (burn_rate + 0.12f) : 0; }
-/// The air that reaches a point now, about 1: it comes and goes.
+/// The varying air supply of a point, about 1.
 float ember_air(const Preview *preview, Float3 position);
 
 // shade_ground.c

@@ -1,15 +1,15 @@
 // The light of flames, embers and hot shapes, with shadows.
 //
-// The light that would come if nothing were in the way, U = sum_k U_k over the lamps k, is exact. What is hidden of it
-// is asked by one ray a sample, to a random point of a lamp taken with probability U_k / U: its mean, V, is free of
-// noise wherever all lamps are seen or none is. What noise is left lies in V alone, so V is smoothed over the pixels
-// that show the same face, and the picture gets V U: print and edges stay sharp.
+// The unoccluded light U = sum_k U_k over the lamps k is exact. Visibility is tested by one ray per sample, to a random
+// point of a lamp chosen with probability U_k / U: its mean, V, has no noise where all lamps or none are visible. All
+// noise is in V, so V is smoothed over the pixels that show the same face, and the picture gets V U: print and edges
+// remain sharp.
 
 #include "preview/block.h"
 
 #include <string.h>
 
-enum { LAMP_SAMPLES = 4 }; ///< of a pixel that ask; the rest only add light
+enum { LAMP_SAMPLES = 4 }; ///< samples of a pixel that trace rays; the rest only add light
 static const float too_faint = 4e-3f;
 
 /// Four lamps at a time.
@@ -28,8 +28,8 @@ static inline Four four_max(Four a, Four b) {
 
 static inline float four_sum(Four a) { return a[0] + a[1] + (a[2] + a[3]); }
 
-/// What white paper at the point sends back of all lights, and the luminance in each. A normal that faces away from a
-/// light is lit through the sheet.
+/// The reflection by white paper at the point of all lights, and the luminance of each. A surface that faces away from
+/// a light is lit through the sheet.
 static Float3 lamps_gather(const EmberLights *l, const Point *point, int count, float weight[LIGHT_LIMIT]) {
     Float3 p = point->position, n = point->normal;
     Four r = {0, 0, 0, 0}, g = r, b = r, zero = r;
@@ -37,7 +37,7 @@ static Float3 lamps_gather(const EmberLights *l, const Point *point, int count, 
         Four x = four(l->x + k) - p.x, y = four(l->y + k) - p.y, z = four(l->z + k) - p.z;
         Four d2 = x * x + y * y + z * z + four(l->softness + k), cosine = n.x * x + n.y * y + n.z * z;
         for (int i = 0; i < 4; i++) cosine[i] /= sqrtf(d2[i]);
-        // wrapped: clusters have an extent that a point does not, and the sheet they lie in must be lit too
+        // wrapped: clusters have an extent that points do not, and their own sheet must be lit, too
         Four seen = four_max(four_max((cosine + 0.2f) * (1 / 1.2f), -point->transmission * cosine), zero) / d2;
         r += seen * four(l->strength[0] + k), g += seen * four(l->strength[1] + k);
         b += seen * four(l->strength[2] + k);
@@ -56,7 +56,7 @@ static int choose(const float weight[LIGHT_LIMIT], int count, float random) {
     return count - 1;
 }
 
-/// Aims at a random point of a lamp; what stands within it does not hide it.
+/// Aims at a random point of a lamp; objects within it do not occlude it.
 static void lamps_aim(const Preview *preview, Block *block, int lane, int sample, int lamp) {
     const EmberLights *l = &preview->scene.lights;
     const Point *point = &block->point[lane];
@@ -69,7 +69,7 @@ static void lamps_aim(const Preview *preview, Block *block, int lane, int sample
     Float3 centre = float3_sub(float3(l->x[lamp], l->y[lamp], l->z[lamp]), point->position),
            to_light = float3_sub(to, point->position);
     float distance = float3_length(to_light), free = float3_length(centre) - extent;
-    if (free < 0.1f * extent || distance < 1e-6f) return; // beside it, or in it
+    if (free < 0.1f * extent || distance < 1e-6f) return; // at it, or in it
     float side = float3_dot(point->geometric, to_light) > 0 ? preview->scene.epsilon : -preview->scene.epsilon;
     aim_ray(&block->shadow, lane, float3_mad(point->position, point->geometric, side),
             float3_scale(to_light, 1 / distance), 0, minf(free, distance), block->time[lane]);
@@ -91,8 +91,8 @@ static void ask(const Preview *preview, Block *block, const float wanted[LANES],
         if (wanted[i] > 0) block->lamp_asked[i] += wanted[i], block->lamp_seen[i] += wanted[i] * block->clear[i];
 }
 
-/// What white paper sends back at the lane's point. It is known where the last one was next to it and faced as it does,
-/// or where that makes little of a difference, on char.
+/// The reflection by white paper at the lane's point. The last result is reused if its point was nearby with the same
+/// normal, or if it hardly matters, on char.
 static Float3 white_light(const Preview *preview, Block *block, int lane, bool ask, float weight[LIGHT_LIMIT]) {
     const Point *point = &block->point[lane];
     Float3 moved = float3_sub(point->position, block->lamp_position[lane]);
@@ -139,7 +139,7 @@ static bool is_same(const Lamp *a, const Lamp *b) {
            float3_dot(a->normal, b->normal) > 0.8f;
 }
 
-/// Mean of `values` along a line of pixels `stride` apart, from `before` of them to `after`, each at its nearness.
+/// Mean of `values` along a line of pixels `stride` apart, from `before` to `after`, weighted by nearness.
 static float lamps_smooth_line(const Lamp *lamp, const float *values, size_t values_stride, ptrdiff_t stride,
                                int before, int after, int reach) {
     float sum = 0, total = 0;

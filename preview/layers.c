@@ -1,5 +1,4 @@
-// What a frame's pixels are made of, for compositors and for measuring: sums over a pixel's samples, written as the
-// pixel is done.
+// Layers of a frame, for compositors and measurements: sums over a pixel's samples, written when the pixel is done.
 
 #include "preview/block.h"
 

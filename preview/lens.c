@@ -1,10 +1,10 @@
 // Camera rays and the points at which a picture is sampled.
 //
-// Sequence: R2 (M. Roberts 2018), x_i = frac(a + i/g), y_i = frac(b + i/g^2) with g = 1.3247..., the root of
-// g^3 = g + 1; turned per pixel (Cranley & Patterson 1976) by interleaved gradient noise (Jimenez 2014), whose
-// neighbours differ, so that what is left of the noise is fine-grained. The lens takes its points from R3, the time
-// from R1, so that they are not tied to the light's, turned at random: where a lens spreads a point over many pixels
-// the gradient would show as a weave.
+// Sequence: R2 (M. Roberts 2018), x_i = frac(a + i/g), y_i = frac(b + i/g^2) with g = 1.3247..., the root of g^3 = g +
+// 1; turned per pixel (Cranley & Patterson 1976) by interleaved gradient noise (Jimenez 2014), whose neighbours differ,
+// so that the remaining noise is fine-grained. The lens takes its points from R3 and the time from R1, so that they are
+// independent of the light's. They are rotated at random: where a lens spreads a point over many pixels, the gradient
+// noise would be visible as a weave.
 //
 // Thin lens of radius R, sharp at distance f: rays from its points c meet at f. A point at depth z is spread over
 // R |1/f - 1/z| at distance 1.
@@ -17,7 +17,7 @@ Camera camera_make(const PreviewDef *def) {
     camera.forward = float3_unit_or(forward, float3(0, 1, 0));
     Float3 up = float3_unit_or(float3_load(def->camera.up), float3(0, 0, 1));
     Float3 right = float3_cross(camera.forward, up);
-    // looking along `up`: any other direction will do
+    // looking along `up`: any other direction works
     if (float3_dot(right, right) < 1e-8f)
         right = float3_cross(camera.forward, fabsf(camera.forward.y) < 0.9f ? float3(0, 1, 0) : float3(1, 0, 0));
     right = float3_unit_or(right, float3(1, 0, 0));
@@ -73,7 +73,7 @@ void sample_pixel(int x, int y, uint32_t seed, float out[2]) {
     out[1] = fraction(52.9829189f * fraction(0.06711056f * (py + 47) + 0.00583715f * (px + 17)));
 }
 
-/// sin(pi x) for x in [-1, 1], to 1e-3: enough to choose a direction by.
+/// sin(pi x) for x in [-1, 1], to 1e-3: enough to choose a direction.
 static float sine(float x) {
     float y = 4 * x * (1 - fabsf(x));
     return y * (0.775f + 0.225f * fabsf(y));

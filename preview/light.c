@@ -1,9 +1,9 @@
 // Light cast by embers and hot shapes, as a few point sources.
 //
-// A patch of area A and radiance L that glows to both sides lights a point at distance r by about L A / (2 pi r^2)
-// per unit of its albedo. Triangles are summed in the cells of a grid over the surface; the strongest cells become
-// lights, scaled so that the total is kept. A sphere of radius R gives L R^2 / r^2. A flame of volume V that emits j
-// (radiance a metre) gives j V / (pi r^2); its clusters are made and chosen in the same way.
+// A patch of area A and radiance L that glows on both sides lights a point at distance r by about L A / (2 pi r^2) per
+// unit of its albedo. Triangles are summed in the cells of a grid over the surface; the strongest cells become lights,
+// scaled to preserve the total. A sphere of radius R gives L R^2 / r^2. A flame of volume V that emits j (radiance a
+// metre) gives j V / (pi r^2); its clusters are created and chosen in the same way.
 
 #include "preview/internal.h"
 
@@ -14,8 +14,8 @@ typedef struct Cluster {
     float weight;
 } Cluster;
 
-/// Embers are drawn on film's scale, which holds back what is bright (blackbody.c). The light they cast is not held
-/// back, and an eye in the dark sees it better than a camera set for daylight does.
+/// Embers are drawn on the film's scale, which compresses bright parts (blackbody.c). The light they cast is not
+/// compressed, and an eye in the dark sees it better than a camera set for daylight.
 static const float EMBER_CAST = 5;
 
 /// Share of a triangle that the ember's line covers: the overlap of the two ranges of burn.
@@ -97,7 +97,7 @@ static void gather_flames(const Preview *preview, Cluster *clusters) {
             }
 }
 
-/// Makes the strongest clusters lights until there are `limit`, and scales them to what all clusters have.
+/// Turns the strongest clusters into lights until there are `limit`, and scales them to the total of all clusters.
 static void choose_lights(Scene *scene, Cluster *clusters, int limit, float softness) {
     float total = 0, kept = 0;
     int first = scene->light_count;

@@ -2,17 +2,17 @@
 //
 //     L = a [ E_sun max(n.l, 0) V + tau E_sun max(-n.l, 0) V + (E(n) + tau E(-n)) A + lamps ] + m S(r) F A
 //
-// with V, A the visibilities, tau the paper's transmission and E the light of all around (environment.c); V by a ray to
-// a random point of the sun's disc, or several where the block has found the rim of a shadow; A by an ambient-occlusion
-// ray. What shines mirrors the blurred sky S along r. Lamps are flames and embers (lamps.c).
+// with V, A the visibilities, tau the paper's transmission and E the ambient light (environment.c); V by a ray to a
+// random point of the sun's disc, or several if the block contains the rim of a shadow; A by an ambient-occlusion ray.
+// Glossy surfaces reflect the blurred sky S along r. Lamps are flames and embers (lamps.c).
 
 #include "preview/block.h"
 
-static const float occluded_sky = 0.22f; ///< light that still comes from where the sky is hidden
+static const float occluded_sky = 0.22f; ///< light from occluded directions
 
 Float3 light_reflect(const Point *point, Float3 l) {
     float cosine = float3_dot(point->normal, l), side = float3_dot(point->geometric, l);
-    // what comes through has been scattered often, and is warmer for it
+    // transmitted light has been scattered often, so it is warmer
     const Float3 warm = {1.35f, 1.12f, 0.80f};
     if (side <= 0) return float3_scale(float3_mul(point->albedo, warm), point->transmission * maxf(-cosine, 0));
     if (cosine <= 0) return float3(0, 0, 0);
@@ -34,7 +34,7 @@ bool light_reaches(const Block *block, const int *active, int lane) {
     return active[lane] && block->point[lane].lit && block->point[lane].fade < 0.995f;
 }
 
-/// One ray a lane; `share` of what it finds is added.
+/// Traces one ray per lane and adds `share` of its result.
 static void add_sun_ray(const Preview *preview, Block *block, const int *active, int index, float share) {
     Float3 reflected[LANES];
     int asked[LANES];
@@ -65,7 +65,7 @@ static void add_sun_ray(const Preview *preview, Block *block, const int *active,
     }
 }
 
-/// Light from the sun's centre, of which as much comes as the block's rays have found: without another one.
+/// Light from the sun's centre, times the visibility found by the block's earlier rays.
 static void add_known_sun(const Preview *preview, Block *block, const int *active) {
     float seen = block->sun_asked ? block->sun_seen / (float)block->sun_asked : 1;
     for (int i = 0; i < LANES; i++)
@@ -87,7 +87,7 @@ static bool within(const Scene *scene, Float3 p, float reach) {
            p.y < scene->high.y + reach && p.z > scene->low.z - reach && p.z < scene->high.z + reach;
 }
 
-/// Length of the rays that ask how much of the sky is hidden.
+/// Length of ambient-occlusion rays.
 static float sky_reach(const Scene *scene) {
     return 0.28f * float3_length(float3_sub(scene->high, scene->low)) + 0.01f;
 }
@@ -102,7 +102,7 @@ static bool sky_may_be_hidden(const Preview *preview, Float3 p, float reach) {
     return false;
 }
 
-/// The sun is a disc: its rays spread by sun_spread of the way they go. The margin is a little more than that.
+/// The sun is a disc: its rays spread by sun_spread times their length. The margin is a little more than that.
 static bool sun_may_be_hidden(const Preview *preview, Float3 p, float margin) {
     const Scene *scene = &preview->scene;
     Float3 sun = preview->sun;
@@ -118,8 +118,8 @@ static bool sun_may_be_hidden(const Preview *preview, Float3 p, float margin) {
     return false;
 }
 
-/// A low sheet far away hides too little of the table's sky to be seen: under 2 % where its height is less than
-/// 0.28 of the distance.
+/// A low sheet far away occludes too little of the table's sky to be seen: under 2 % where its height is less than 0.28
+/// of the distance.
 static float table_reach(const Scene *scene, Float3 p) {
     return minf(sky_reach(scene), 3.5f * maxf(scene->high.z - p.z, 0));
 }
@@ -137,14 +137,14 @@ bool light_may_be_hidden(const Preview *preview, const Block *block, const int *
            sun_may_be_hidden(preview, p, spread);
 }
 
-/// The sky in a dull gloss, more of it at grazing angles (Schlick 1994), though less than a smooth face would.
+/// The reflection of the sky by a dull surface, more at grazing angles (Schlick 1994), but less than by a smooth one.
 static Float3 mirror_sky(const Sky *sky, const Point *point) {
     float cosine = maxf(float3_dot(point->normal, point->view), 0), rest = 1 - cosine, rest2 = rest * rest;
     Float3 out = float3_mad(float3_scale(point->view, -1), point->normal, 2 * cosine);
     return float3_scale(sky_mirrored(sky, out), point->mirror * (0.06f + 0.54f * rest2 * rest2 * rest));
 }
 
-/// Asks by a ray each what share of the points' sky is open.
+/// Finds the open share of each point's sky by one ray.
 static void ask_sky(const Preview *preview, Block *block, const int *active, int sample) {
     float reach = sky_reach(&preview->scene);
     for (int i = 0; i < LANES; i++) {
@@ -175,7 +175,7 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
         if (!light_reaches(block, active, i)) continue;
         const Point *point = &block->point[i];
         Float3 ambient = sky_ambient(&preview->sky, point->normal);
-        // thin paper also passes some of what falls on its other side
+        // thin paper also transmits light from its other side
         if (point->transmission > 0)
             ambient =
                 float3_mad(ambient, sky_ambient(&preview->sky, float3_scale(point->normal, -1)), point->transmission);

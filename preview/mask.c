@@ -1,7 +1,7 @@
 // Which blocks of the picture a sheet or a shape may touch: the rest needs no rays from the camera.
 //
-// A triangle marks the rectangle around its three corners in the picture, a shape that of the sphere around it,
-// widened by the reach of a pixel's samples. What reaches behind the camera marks everything.
+// A triangle marks the rectangle around its three corners in the picture, a shape the rectangle of the sphere around
+// it, widened by the reach of a pixel's samples. Anything that reaches behind the camera marks all blocks.
 
 #include "preview/internal.h"
 

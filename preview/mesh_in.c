@@ -1,8 +1,8 @@
-// From a surface to what shading reads: fields packed by vertex, what is not finite mended or left out.
+// Converts a surface for shading: fields packed by vertex; values that are not finite are repaired or left out.
 //
-// The gradient of burn in rest space is constant on a triangle: with edges e1, e2, N = e1 x e2,
-// grad b = [(b1 - b0) e2 x N + (b2 - b0) N x e1] / |N|^2; a vertex takes the mean by area of its triangles'.
-// Where the angles of a vertex's triangles in rest space fall short of 2 pi, it lies on the border of a piece.
+// The gradient of burn in rest space is constant on a triangle: with edges e1, e2, N = e1 x e2, grad b = [(b1 - b0) e2
+// x N + (b2 - b0) N x e1] / |N|^2; a vertex takes the mean of its triangles, weighted by area. Where the angles of a
+// vertex's triangles in rest space fall short of 2 pi, it lies on the border of a piece.
 
 #include "preview/internal.h"
 
@@ -36,14 +36,13 @@ static bool near_enough(const float p[3]) {
     return fabsf(p[0]) < 1e4f && fabsf(p[1]) < 1e4f && fabsf(p[2]) < 1e4f; // false for NaN
 }
 
-/// How far the look of a point has gone from fresh (0) by black char (CHAR_LEAF) to ash (1). Where pyrolysis leaves
-/// char that glows away later, the share of the mass does not tell: with the fractions c of char, a of ash and f of
-/// fuel, and about half of the char staying as ash, q = c / (c + 2 a) is the share of what has burnt that is still
-/// char, and
+/// The appearance of a point, from fresh (0) through black char (CHAR_LEAF) to ash (1). If pyrolysis leaves char that
+/// glows away later, it does not follow from the mass alone: with the fractions c of char, a of ash and f of fuel, and
+/// about half of the char staying as ash, q = c / (c + 2 a) is the share of what has burnt that is still char, and
 ///
 ///     look = q CHAR_LEAF (1 - f) + (1 - q) burn
 ///
-/// which is `burn` where there is one reaction, without char.
+/// which is `burn` if there is one reaction, without char.
 static float look_of(const SingeSurface *surface, uint32_t i, float burn) {
     if (!surface->char_fraction || !surface->ash_fraction || !surface->mass) return burn;
     float charred = clampf(finite_or(surface->char_fraction[i], 0), 0, 1);
@@ -53,7 +52,7 @@ static float look_of(const SingeSurface *surface, uint32_t i, float burn) {
     return mixf(burn, CHAR_LEAF * (1 - fuel), charred / (charred + 2 * ash));
 }
 
-/// What of the rate feeds a flame: char that has no fuel left glows without one.
+/// The part of the rate that feeds a flame: char without fuel glows without one.
 static float flaming_rate(const SingeSurface *surface, uint32_t i, float rate) {
     if (!surface->char_fraction || !surface->ash_fraction || !surface->mass) return rate;
     float fuel = surface->mass[i] - surface->char_fraction[i] - surface->ash_fraction[i];
@@ -77,7 +76,7 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
         .sheet = surface->sheet[i],
         .piece = surface->piece ? surface->piece[i] : -1,
     };
-    // what burnt at an unknown time did so long ago
+    // an unknown time of ignition counts as long ago
     if (surface->time_ignited && surface->time_ignited[i] >= 0)
         out->age = clampf((float)(preview->time - (double)surface->time_ignited[i]) * preview->def.pace, 0, 1e6f);
     else if (out->burn > 0) out->age = 60;
@@ -86,7 +85,7 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
     position[3] = 0;
 }
 
-/// Where the vertex is as the exposure begins and ends.
+/// The vertex's positions at the beginning and the end of the exposure.
 static void move_vertex(Preview *preview, const SingeSurface *surface, uint32_t i) {
     const float zero[3] = {0, 0, 0}, *position = preview->scene.positions[i];
     const float *velocity = surface->velocity ? surface->velocity[i] : zero;

@@ -1,4 +1,4 @@
-// Value noise on an integer lattice, inline because every sample near a burnt edge asks for it.
+// Value noise on an integer lattice, inline because every sample near a burnt edge evaluates it.
 #ifndef PREVIEW_NOISE_H
 #define PREVIEW_NOISE_H
 

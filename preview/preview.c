@@ -1,4 +1,4 @@
-// Making and unmaking a preview: the Def is checked field by field, then everything a frame needs is allocated.
+// Creates and destroys a preview: the Def is checked field by field, then everything for a frame is allocated.
 
 #include "preview/internal.h"
 
@@ -205,7 +205,7 @@ SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Prev
 SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uint32_t count, SingeError *error) {
     SingeResult result = check_shapes(shapes, count, error);
     if (result) return result;
-    uint32_t drawn = 0; // planes are left to the ground
+    uint32_t drawn = 0; // planes are drawn as the ground only
     for (uint32_t i = 0; i < count; i++) drawn += shapes[i].kind != SINGE_COLLIDER_PLANE;
     PreviewShape *copy = allocator_resize(preview->allocator, NULL, 0, drawn * sizeof *copy);
     if (drawn && !copy) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for %u shapes", count);

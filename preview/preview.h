@@ -1,4 +1,4 @@
-// Preview: a small path from a drawn surface to a picture, on Embree. Knows surfaces, not simulations.
+// Preview: a small renderer for surfaces, on Embree. It depends on surfaces, not on simulations.
 #ifndef PREVIEW_PREVIEW_H
 #define PREVIEW_PREVIEW_H
 
@@ -7,39 +7,39 @@
 typedef struct PreviewCamera {
     float eye[3], target[3], up[3]; ///< m
     float fov;                      ///< vertical, radians
-    float aperture;                 ///< m, diameter of the lens; 0: all is sharp
-    float focus;                    ///< m, distance along the view that is sharp; 0: the target's
+    float aperture;                 ///< m, diameter of the lens; 0: everything is sharp
+    float focus;                    ///< m, distance in focus along the view; 0: the target's
 } PreviewCamera;
 
 /// A closed surface of triangles, counter-clockwise from outside. It must not change while a Preview draws it, and must
-/// outlive that.
+/// outlive the Preview.
 typedef struct PreviewSolid {
     uint32_t vertex_count, triangle_count;
     float *vertices;     ///< [3 * vertex_count] m
     uint32_t *triangles; ///< [3 * triangle_count]
-    bool passing;        ///< one of many that a shape has in turn: what is made for it goes with the next shapes
+    bool passing;        ///< one of many that a shape has in turn: its data is freed with the next shapes
 } PreviewSolid;
 
-/// A rigid thing that is drawn: the scene's colliders and hot balls at the frame's time.
+/// A rigid shape: one of the scene's colliders and hot balls at the frame's time.
 typedef struct PreviewShape {
     SingeColliderKind kind;
     float position[3], rotation[4], radius, half_size[3], height;
-    float velocity[3];           ///< m/s, for the blur of what moves
+    float velocity[3];           ///< m/s, for motion blur
     float colour[3];             ///< linear albedo
     float temperature;           ///< K; glows by black-body colour above about 800 K
     const PreviewSolid *solid;   ///< of a heightfield or a mesh, in the shape's frame
     const struct Facets *facets; ///< the preview's own; NULL
 } PreviewShape;
 
-/// The light from all around, of mean `sky_colour`.
+/// Ambient light with mean `sky_colour`.
 typedef enum PreviewSky {
     PREVIEW_SKY_EVEN,    ///< the same from everywhere above
     PREVIEW_SKY_STUDIO,  ///< a dim room with a tall window, a lamp behind and a pale ceiling
-    PREVIEW_SKY_OPEN,    ///< outdoors: pale towards the horizon and about the sun
+    PREVIEW_SKY_OPEN,    ///< outdoors: pale towards the horizon and around the sun
     PREVIEW_SKY_PICTURE, ///< `sky_picture`
 } PreviewSky;
 
-/// What the table is made of.
+/// The material of the table.
 typedef enum PreviewGround {
     PREVIEW_GROUND_WOOD,
     PREVIEW_GROUND_STONE,
@@ -58,19 +58,19 @@ typedef struct PreviewDef {
     float sun_colour[3];    ///< of about 2.2 with a sky of 0.4, white paper comes to 230 of 255
     float sky_colour[3];    ///< ambient light from above
     PreviewSky sky;
-    const Image *sky_picture; ///< latitudes from the top, longitudes about z; its centre lies towards +y
-    float sky_turn;           ///< radians about z, counted from above
+    const Image *sky_picture; ///< latitudes from the top, longitudes around z; its centre is towards +y
+    float sky_turn;           ///< radians around z, seen from above
     float ground_height;      ///< m, z of the ground; -INFINITY for none
     PreviewGround ground;
     float ground_colour[3]; ///< linear
     float background[3];
     float exposure; ///< multiplies before tone mapping
-    float shutter;  ///< s that a frame is open, its time in the centre; 0: nothing blurs
-    float pace;     ///< how many times as fast as a real one fire burns: ages are reported by it
+    float shutter;  ///< s, exposure, centred at the frame's time; 0: no blur
+    float pace;     ///< speed of the fire relative to a real one, to convert ages
     uint32_t seed;
     const Image *const *pictures; ///< [sheet_count] picture on both sides of each sheet, NULL entries are white
     const float (*colours)[3];    ///< [sheet_count] tint of each sheet, linear
-    const float *transmittances;  ///< [sheet_count] share of light that comes through; NULL: PREVIEW_TRANSMITTANCE
+    const float *transmittances;  ///< [sheet_count] share of light transmitted; NULL: PREVIEW_TRANSMITTANCE
     uint32_t sheet_count;
     uint32_t shape_count;
     const PreviewShape *shapes;
@@ -87,42 +87,41 @@ SINGE_NODISCARD SingeResult preview_create(const PreviewDef *def, SingeAllocator
 /// Replaces the shapes (they move from frame to frame); the array is copied.
 SINGE_NODISCARD SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uint32_t count,
                                                SingeError *error);
-/// Replaces the gas (it changes from frame to frame), of which flame, smoke and velocity are looked at; what is needed
-/// is copied. NULL or one of size 0: none.
+/// Replaces the gas (it changes from frame to frame); flame, smoke and velocity are used, and copied as needed. NULL or
+/// size 0: none.
 SINGE_NODISCARD SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *error);
 enum { PREVIEW_BAKE_MAX = 4 };
-/// The gas that was set, on cells `detail` times as fine along each side, with the tongues and streaks that pictures
-/// add by noise; the surface is that of its frame. smoke and flame are [detail^3 * the gas's cells], x fastest:
-/// extinction in 1/m, and the flame's light as a share of the brightest there is (118 times that of white paper a
-/// metre).
+/// The current gas on cells `detail` times as fine along each side, with the tongues and streaks that pictures add by
+/// noise. `surface` is that of its frame. smoke and flame are [detail^3 * the gas's cells], x fastest: extinction in
+/// 1/m, and the flame's light as a share of the brightest flame's (118 times that of white paper per metre).
 SINGE_NODISCARD SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, double time, int detail,
                                              float *smoke, float *flame, SingeError *error);
-/// Draws one frame into rgb[height * width * 3], 8-bit sRGB, rows from the top. `time` drives what
-/// flickers. The picture depends neither on the number of threads nor on the frames drawn before. Triangles of a piece
-/// share their vertices: by that its borders are known.
+/// Draws one frame into rgb[height * width * 3], 8-bit sRGB, rows from the top. `time` drives flicker. The picture
+/// depends neither on the number of threads nor on earlier frames. Triangles of a piece must share their vertices,
+/// which shows its borders.
 SINGE_NODISCARD SingeResult preview_draw(Preview *preview, const SingeSurface *surface, double time, uint8_t *rgb,
                                          SingeError *error);
 
-/// Pictures beside the one that is seen, [height * width], rows from the top. NULL: not wanted. *Mean* is over all
-/// samples of a pixel, *of hits* over those that met a sheet or a shape (0 where none did), *first* that of one sample.
+/// Additional pictures, [height * width], rows from the top. NULL: not wanted. *Mean* is over all samples of a pixel,
+/// *of hits* over those that hit a sheet or a shape (0 if none did), *first* of one sample.
 typedef struct PreviewLayers {
     float (*beauty)[3];     ///< mean; linear Rec. 709, before halo, exposure and film
-    float (*glow)[3];       ///< mean; the part of beauty that what is hot gives off itself
+    float (*glow)[3];       ///< mean; the part of beauty emitted by hot surfaces
     float *coverage;        ///< share of the samples that are hits
     float (*normal)[3];     ///< of hits, in the world's axes, towards the eye
     float *temperature;     ///< of hits, K
     float *burn;            ///< of hits, 0 fresh to 1 ash; 0 on shapes
-    float *depth;           ///< first, m along the camera's view; infinite where there is nothing
-    int32_t *sheet, *piece; ///< first; -1 where there is none
-    float (*fire)[4];       ///< mean; light of flame and smoke alone, and the share that they hide of what is behind
+    float *depth;           ///< first, m along the camera's view; infinite if there is nothing
+    int32_t *sheet, *piece; ///< first; -1 if there is none
+    float (*fire)[4];       ///< mean; light of flame and smoke, and their opacity
 } PreviewLayers;
 
 /// As preview_draw, and fills the layers. `rgb` may be NULL.
 SINGE_NODISCARD SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, double time,
                                                 uint8_t *rgb, const PreviewLayers *layers, SingeError *error);
 
-/// Median width in m of the line that glows on the sheets (glow_width.c), from a frame's glow, depth and sheet, drawn
-/// with a sharp lens; NaN where nothing does.
+/// Median width in m of the glowing line on the sheets (glow_width.c), from a frame's glow, depth and sheet, drawn with
+/// a sharp lens; NaN if nothing glows.
 SINGE_NODISCARD SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layers, double *width,
                                                SingeError *error);
 void preview_destroy(Preview *preview);

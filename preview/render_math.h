@@ -1,4 +1,4 @@
-// What a renderer needs of vectors and numbers beside common/float3.h.
+// Functions of vectors and numbers for the renderer, in addition to common/float3.h.
 #ifndef PREVIEW_RENDER_MATH_H
 #define PREVIEW_RENDER_MATH_H
 
@@ -13,7 +13,7 @@ static inline Float3 float3_blend(const float *a, const float *b, const float *c
     float w = 1 - u - v;
     return float3(w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1], w * a[2] + u * b[2] + v * c[2]);
 }
-/// The unit vector along a, or `otherwise` when a has no direction.
+/// The unit vector along a, or `otherwise` if a has no direction.
 static inline Float3 float3_unit_or(Float3 a, Float3 otherwise) {
     float l2 = float3_dot(a, a);
     return l2 > 1e-30f && l2 < 1e30f ? float3_scale(a, 1 / sqrtf(l2)) : otherwise;
@@ -22,8 +22,8 @@ static inline bool float3_finite(Float3 a) { return isfinite(a.x) && isfinite(a.
 /// Linear Rec. 709 luminance.
 static inline float float3_luminance(Float3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
-/// Two unit vectors that make a right-handed frame with the unit vector n (Duff et al. 2017,
-/// "Building an orthonormal basis, revisited").
+/// Two unit vectors that form a right-handed frame with the unit vector n (Duff et al. 2017, "Building an orthonormal
+/// basis, revisited").
 static inline void float3_frame(Float3 n, Float3 *a, Float3 *b) {
     float sign = n.z >= 0 ? 1.0f : -1.0f, p = -1 / (sign + n.z), q = n.x * n.y * p;
     *a = float3(1 + sign * n.x * n.x * p, sign * q, -sign * n.x);
@@ -36,7 +36,7 @@ static inline Float3 float3_rotate(const float q[4], Float3 v, float sign) {
     return float3_add(float3_mad(v, t, q[3]), float3_cross(u, t));
 }
 
-// one instruction each where fminf and fmaxf are calls; b where either is NaN
+// one instruction each, where fminf and fmaxf are calls; b if either is NaN
 static inline float minf(float a, float b) { return a < b ? a : b; }
 static inline float maxf(float a, float b) { return a > b ? a : b; }
 static inline float clampf(float x, float low, float high) { return x < low ? low : x > high ? high : x; }

@@ -1,6 +1,5 @@
-// What is left when all that can burn has: a leaf of mineral fibres, thin enough that light comes through. It is sooty
-// as the fire leaves it and pales within some ten seconds, in patches; veins and the rims of holes are palest. Print
-// stays on it as a change of tone.
+// Ash: the remaining leaf of mineral fibres, thin enough to transmit light. It is sooty at first and pales within about
+// ten seconds, in patches; veins and the rims of holes are palest. Print remains on it as a change of tone.
 
 #include "preview/shade_paper.h"
 
@@ -20,7 +19,7 @@ static float fibres(Float3 position, float footprint) {
     return visible * ridge(noise3(float3_scale(along, 2100), 12), 0.5f);
 }
 
-/// Creases that the shrinking leaf threw up: long and fine, forking. 1 on a vein.
+/// Creases of the shrinking leaf: long, fine and forking. 1 on a vein.
 static float veins(const Bent *bent, float footprint) {
     Float3 bowed = float3_mad(bent->position, float3(bent->medium, bent->coarse, bent->fine), 1.1e-3f);
     float large = ridge(paper_noise(bowed, 8.5f, footprint, 14), 0.10f);

@@ -1,11 +1,11 @@
-// What glows: the line where char turns to ash, a Gaussian of the distance to the isoline b' = EMBER_BURN,
+// Glow: the line where char turns to ash, a Gaussian of the distance to the isoline b' = EMBER_BURN,
 //
 //     d = (b' - EMBER_BURN) / |grad b|,   glow = blackbody(T') exp(-(d / w)^2),   w about EMBER_WIDTH,
 //
 // steep towards the char, slower to fade towards the ash. It is thinned, thickened and broken by noise that crawls
-// along the paper, brighter where air comes and goes, and flickers. Behind it sparks creep: a spot of the ash glows
-// again for a moment when the time since it caught fire passes a delay that noise gives to it, so that the lines of one
-// delay wander over the ash as time goes by.
+// along the paper, brighter where the air supply varies, and flickers. Sparks creep behind it: a spot of the ash glows
+// again for a moment when the time since its ignition passes a delay given by noise, so that lines of equal delay
+// wander over the ash.
 
 #include "preview/shade_paper.h"
 
@@ -18,7 +18,7 @@ float ember_air(const Preview *preview, Float3 p) {
     return clampf(1 + 0.42f * slow + 0.22f * quick, 0.3f, 1.7f);
 }
 
-/// How alive the line is at a point, 0 dead to 1.
+/// Activity of the line at a point, 0 (dead) to 1.
 static float line_life(const Preview *preview, const Bent *bent) {
     float t = seconds(preview);
     Float3 drift = float3_add(float3_scale(bent->position, 190), float3(0.5f * t, -0.35f * t, 0.8f * t));
@@ -38,14 +38,14 @@ static Float3 ember_line(const Preview *preview, const PaperState *state, const 
     float temperature = ember_temperature(state->temperature) + 210 * (life - 0.6f) + 60 * bent->fine;
     if (distance > 0) temperature -= 45 * minf(x, 3);
     float strength = activity * profile * (0.05f + 0.95f * life * life) * (0.85f + 0.4f * bent->fine) * air;
-    // red-hot cracks in the char beside it
+    // red-hot cracks in the char next to it
     float near = 0.10f * activity * life * expf(-0.05f * x * x);
     if (near > 0.003f) strength += near * paper_cracks(bent, 1.6f, 0.12f, footprint);
     return float3_scale(blackbody_glow(preview->blackbody, temperature), EMBER_GAIN * maxf(strength, 0));
 }
 
-/// A leaf of char that glows away: as hot as it is, where it burns. Its heat spreads over a cell or two, and real lines
-/// of embers are thinner: they follow threads of noise, and break.
+/// A leaf of char that glows away, at its own temperature where it burns. Its heat spreads over a cell or two, but real
+/// ember lines are thinner: they follow threads of noise, and break.
 static Float3 leaf(const Preview *preview, const PaperState *state, const Bent *bent, float air) {
     float activity = ember_activity(state->glowing);
     if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return float3(0, 0, 0);

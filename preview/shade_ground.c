@@ -1,9 +1,9 @@
-// The table and what lies behind it.
+// The table and the background.
 //
-// Wood is planks along x, each cut from a trunk of its own: its year rings are cylinders about an axis that lies askew
-// to the plank, so that the saw shows them as parallel lines or as pointed arches. A ring darkens towards its end, the
-// late wood, and breaks off there. Stone is a honed slab: clouds, grains and a few pale veins, with an uneven face.
-// Every octave fades when a pixel no longer resolves it.
+// Wood is planks along x, each cut from its own trunk: the year rings are cylinders around an axis oblique to the
+// plank, so that the cut shows parallel lines or pointed arches. A ring darkens towards its end, the late wood, and
+// ends abruptly. Stone is a honed slab: clouds, grains and a few pale veins, with an uneven face. Every octave fades
+// when a pixel no longer resolves it.
 
 #include "preview/internal.h"
 
@@ -45,7 +45,7 @@ static float year_rings(const Plank *p, uint32_t seed, float footprint) {
     float within;
     int ring = noise_floor(year, &within);
     float strength = 0.45f + 0.55f * hash_unit((uint32_t)ring * 0x27d4eb2fu + seed + (uint32_t)(1024 * p->tone));
-    float slope = maxf(fabsf(aside) / maxf(radius, 1e-4f), 0.12f); // how steeply the saw cuts the rings
+    float slope = maxf(fabsf(aside) / maxf(radius, 1e-4f), 0.12f); // slope of the cut through the rings
     float late = stepf(0.25f, 0.9f, within) * (1 - stepf(0.9f, 1.0f, within));
     return mixf(0.33f, late, visible(0.0035f / slope, footprint)) * strength;
 }
@@ -63,7 +63,7 @@ static void wood(const Preview *preview, Float3 position, float footprint, Table
     float value = 1.10f + 0.34f * (p.tone - 0.5f) - 0.50f * late + 0.055f * fibre + 0.10f * blotch + 0.05f * wear;
     value += 0.05f * hair;
     value *= 1 - 0.38f * stepf(0.25f, 0.7f, pores);
-    // a joint: dark and a little soft, with a bevel beside it
+    // a joint: dark and slightly soft, with a bevel next to it
     float soft = maxf(0.0009f, 0.7f * footprint), joint = 1 - stepf(0.0002f, soft + 0.0002f, p.edge);
     value *= 1 - 0.8f * joint * minf(1, 0.0016f / footprint);
     // late wood is redder, early wood more golden; planks differ
@@ -94,7 +94,7 @@ static void stone(const Preview *preview, Float3 position, float footprint, Tabl
     float speck = noise2(x * 900, y * 900, seed + 6) * visible(0.0011f, footprint);
     float value = 0.95f + 0.30f * cloud + 0.22f * patch + 0.13f * rough + 0.10f * grain;
     value += 0.35f * stepf(0.55f, 0.9f, speck) - 0.2f * stepf(0.5f, 0.9f, -speck);
-    // pale veins, thick and thin by turns, that break off
+    // pale veins of varying thickness that break off
     float line = fabsf(noise2((x + warp + fold) * 7.5f + 3, (y + fold + warp) * 2.6f, seed + 7));
     float width = 0.008f + 0.022f * (0.5f + 0.5f * noise2(x * 21, y * 21, seed + 8));
     float vein = 1 - stepf(0.3f * width, width + 1.5f * footprint, line);

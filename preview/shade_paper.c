@@ -1,20 +1,19 @@
-// How paper looks while it burns.
+// The appearance of burning paper.
 //
-// The simulation's cells are coarser than the look needs, so its fields are bent at the picture's scale. With
-// b the share burnt, T the temperature, P the highest temperature so far and N noise of the rest position (it sticks
-// to the paper),
+// The simulation's cells are too coarse for the picture, so its fields are perturbed at the picture's scale. With b the
+// burnt share, T the temperature, P the peak temperature and N noise of the rest position (it moves with the paper),
 //
 //     b' = b + |grad b| delta + floor,   P' = P + |grad P| delta,
 //     delta = k (1.5 N(4 mm) + 0.7 N(1.3 mm) + 0.22 N(0.45 mm))  in mm:
 //
-// isolines move by delta whatever the front's width is, so they turn ragged and lose the grid; k is 1 for triangles of
-// 2 mm and more and falls where finer ones bring raggedness of their own. The colours then follow b' and P', for paper
-// that browned stays brown: white - yellow - tan - brown by ln(P' - 293 K), which runs evenly over the distance to
-// the front; char by b' > 0.1, ash by b' > 0.8 once it has cooled (shade_ash.c), ember at b' = 0.74 (shade_ember.c).
+// isolines move by delta for any width of the front, so they become ragged and hide the grid; k is 1 for triangles of 2
+// mm and more and decreases for finer ones, which are ragged themselves. The colours follow b' and P', because browned
+// paper stays brown: white - yellow - tan - brown by ln(P' - 293 K), which is linear in the distance to the front; char
+// by b' > 0.1, ash by b' > 0.8 once it has cooled (shade_ash.c), ember at b' = 0.74 (shade_ember.c).
 
 #include "preview/shade_paper.h"
 
-/// Linear colours that multiply the paper's, by how far it is scorched in [0, 1].
+/// Linear colours that multiply the paper's, by its scorching in [0, 1].
 static Float3 scorch_colour(float s) {
     static const float stop[7][4] = {{0.00f, 1.00f, 1.00f, 1.00f},    {0.14f, 0.965f, 0.90f, 0.74f},
                                      {0.32f, 0.85f, 0.655f, 0.36f},   {0.50f, 0.55f, 0.315f, 0.105f},
@@ -26,7 +25,7 @@ static Float3 scorch_colour(float s) {
     return float3_mix(float3_load(stop[i - 1] + 1), float3_load(stop[i] + 1), f);
 }
 
-/// Where noise is read: the rest position turned, so that the noise's lattice lies askew to sheets and their grids.
+/// The position for noise: the rest position, rotated so that the noise's lattice is oblique to sheets and their grids.
 static Float3 askew(Float3 r) {
     return float3(0.7654f * r.x - 0.5321f * r.y + 0.3622f * r.z, 0.6133f * r.x + 0.7718f * r.y - 0.1673f * r.z,
                   -0.1905f * r.x + 0.3481f * r.y + 0.9179f * r.z);
@@ -48,7 +47,7 @@ void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperS
         .heat_gradient = w * a->heat_gradient + u * b->heat_gradient + v * c->heat_gradient,
         .spacing = w * a->spacing + u * b->spacing + v * c->spacing,
         .age = w * a->age + u * b->age + v * c->age,
-        // a triangle with no corner inside tells nothing of the distance: a strip or a crumb, which is to stay
+        // a triangle without inner corner has no distance information: a strip or a crumb, which should remain
         .rim = min > 0.5f ? 0.25f : w * a->rim + u * b->rim + v * c->rim,
         .sheet = a->sheet,
         .piece = a->piece,
@@ -67,7 +66,7 @@ static Bent shade_paper_bend(const PaperState *state, float footprint) {
     bent.burn = state->burn + slope * delta + inside * (0.03f * bent.coarse + 0.05f * bent.medium + 0.03f * bent.fine);
     float jitter = (0.17f * bent.coarse + 0.08f * bent.medium + 0.025f * bent.fine) * (1 - 0.6f * inside);
     float peak = maxf(state->peak, state->temperature);
-    // nothing where there was no heat to speak of
+    // 0 where there was hardly any heat
     bent.temperature = state->temperature + (state->temperature - 293) * jitter * stepf(320, 420, state->temperature);
     float steep = minf(state->heat_gradient, 1.2e5f);
     bent.peak = peak + (0.25f * (peak - 293) * jitter + steep * delta) * stepf(310, 350, peak);
@@ -76,13 +75,14 @@ static Bent shade_paper_bend(const PaperState *state, float footprint) {
 
 float paper_cracks(const Bent *bent, float millimetres, float width, float footprint) {
     Float3 p = float3_mad(bent->position, float3(bent->medium, bent->fine, bent->coarse), 0.5e-3f);
-    float min = 0.5f * footprint * 1000 / millimetres; // no thinner than a pixel, but paler then
+    float min = 0.5f * footprint * 1000 / millimetres; // at least a pixel wide, but paler
     float open = width * maxf(0, 0.75f + 0.9f * bent->coarse + 0.5f * bent->medium);
     float wall = noise_walls(float3_scale(p, 1000 / millimetres), 13);
     return minf(1, open / min) * (1 - stepf(0.4f, 1, wall / maxf(open, min)));
 }
 
-/// `folded`: the height is the noise's size, with an edge where it changes sign, and steep slopes are flattened.
+/// `folded`: the height is the noise's absolute value, with an edge where it changes sign, and steep slopes are
+/// flattened.
 static void tilt(Float3 position, float millimetres, float height, bool folded, uint32_t seed, Point *point) {
     height *= clampf(1.6f - point->footprint * 1000 / millimetres, 0, 1);
     if (height < 0.02f) return;
@@ -106,7 +106,7 @@ void paper_fold(Float3 position, float millimetres, float height, uint32_t seed,
     tilt(position, millimetres, height, true, seed, point);
 }
 
-/// Burnt borders crumble, so that the cut's straight pieces turn ragged within a triangle, and ash wears.
+/// Burnt borders crumble, so that straight cuts become ragged within a triangle, and ash wears.
 static bool is_hole(const PaperState *state, const Bent *bent, float footprint) {
     float bite = 0.40f + 0.38f * bent->medium + 0.20f * bent->fine + 0.28f * bent->coarse;
     float burnt = stepf(PAPER_WHOLE, 0.65f, state->burn);
@@ -134,20 +134,20 @@ static void fresh(const Preview *preview, const PaperState *state, Point *point)
                                     0.45f * point->footprint * texture->texels_per_metre);
         if (preview->def.colours) colour = float3_mul(colour, float3_load(preview->def.colours[state->sheet]));
     }
-    // the cloudiness of its fibres
+    // uneven density of the fibres
     float cloud = 1 + 0.018f * paper_noise(askew(state->rest), 2.4f, point->footprint, 5);
     point->albedo = float3_scale(float3_mul(white, colour), cloud);
     point->transmission = paper_transmittance(preview, state->sheet);
 }
 
-/// How far heat browned it, 0 to 0.76.
+/// Browning by heat, 0 to 0.76.
 static float heat_scorch(float peak) {
     const float first = 55, last = 360; // K above a room's
     float above = peak - 293;
     return above > first ? 0.76f * minf(logf(above / first) / logf(last / first), 1) : 0;
 }
 
-/// Char: browner where it is thin, bluer where it is done; print (1) stays readable on it, as a dull grey.
+/// Char: browner where it is thin, bluer where complete; print (1) remains readable on it, as a dull grey.
 static Float3 char_colour(const Bent *bent, float ink, float footprint) {
     float value = 1 + 0.35f * bent->medium + 0.3f * bent->fine + 0.35f * bent->coarse;
     Float3 soot =

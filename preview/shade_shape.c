@@ -1,5 +1,5 @@
-// Balls, boxes, capsules and solids: plain matter when cold; hot, they glow as metal does, with scale on it that is
-// cooler and darker, and a limb that is a little dimmer because a rough oxide emits less at grazing angles.
+// Balls, boxes, capsules and solids: matt when cold; hot, they glow like metal, with cooler and darker scale, and a
+// slightly dimmer limb because rough oxide emits less at grazing angles.
 
 #include "preview/internal.h"
 

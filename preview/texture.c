@@ -1,5 +1,5 @@
-// Pictures on sheets, with smaller copies so that print does not shimmer: each level halves the one before,
-// averaged in linear light.
+// Pictures on sheets, with smaller copies so that print does not shimmer: each level halves the previous one, averaged
+// in linear light.
 
 #include "preview/internal.h"
 

@@ -1,10 +1,9 @@
 // Radiance to bytes.
 //
-// Film curve: linear but for a short toe, f = x (1 - 0.4 exp(-x / 0.06)), and a shoulder above s = 0.6,
-// s + (1 - s) (1 - exp(-(f - s) / (1 - s))). White paper in the sun, 0.8, comes to 0.76 (0.89 in sRGB), and the
-// slope there is still 0.6, so that its wrinkles show.
-// Before it, each channel leaks a little into the others, as film does: what is very bright grows pale.
-// Then IEC 61966-2-1 and one level of triangular dither.
+// Film curve: linear but for a short toe, f = x (1 - 0.4 exp(-x / 0.06)), and a shoulder above s = 0.6, s + (1 - s) (1
+// - exp(-(f - s) / (1 - s))). White paper in the sun, 0.8, becomes 0.76 (0.89 in sRGB), and the slope there is still
+// 0.6, so that its wrinkles are visible. Before it, each channel leaks a little into the others, as in film: very
+// bright colours become pale. Then IEC 61966-2-1 and one level of triangular dither.
 
 #include "preview/internal.h"
 

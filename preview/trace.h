@@ -1,5 +1,5 @@
-// Embree 4 and 3 by one set of names: what a query of rays takes is a context in Embree 3, arguments in Embree 4.
-// SINGE_EMBREE, 3 or 4, is the version that CMake has found; 0 is a build without the preview, which traces nothing.
+// One set of names for Embree 4 and 3: ray queries take a context in Embree 3, arguments in Embree 4. SINGE_EMBREE, 3
+// or 4, is the version found by CMake; 0 is a build without the preview.
 #ifndef PREVIEW_TRACE_H
 #define PREVIEW_TRACE_H
 
