@@ -5,7 +5,7 @@
 
 enum { RIM_NEAR = 3 }; ///< bands: 4 mm
 
-/// Drops the triangles that have no more than this mass in the mean.
+/// Drops the triangles with at most this mean mass.
 static void cut_surface(SingeSurface *surface, double cut) {
     uint32_t kept = 0;
     for (uint32_t t = 0; t < surface->triangle_count; t++) {

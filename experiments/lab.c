@@ -16,7 +16,7 @@ SingeResult play_open(Play *play, Lab *lab, const char *scene, const char *const
     for (; sets && *sets; sets++)
         if (**sets) set_add(&list, *sets);
     char *path = text_format("%s/%s", lab->scenes, scene);
-    lab->console.quiet = true; // of the scene's own notes
+    lab->console.quiet = true; // suppress the scene's own messages
     ExitCode code = job_open(&play->job, &lab->console, path, &list, lab->threads);
     if (!code) code = job_build(&play->job, &lab->console, &play->sim);
     lab->console.quiet = false;
@@ -45,7 +45,7 @@ SingeResult play_surface(Play *play, SingeError *error) {
     return result;
 }
 
-/// What has burnt in a shape's scene stands for shrinkage and should not look like char.
+/// In a scene about shapes, burning only stands for shrinkage and should not look like char.
 static void make_plain(SingeSurface *surface) {
     for (uint32_t v = 0; v < surface->vertex_count; v++) {
         surface->temperature[v] = surface->temperature_peak[v] = 293;
@@ -115,7 +115,7 @@ LabGrid lab_grid(int across, int along, float cell) {
     return grid;
 }
 
-/// Leaves out cells, and the vertices that no cell is left at.
+/// Drops cells, and vertices without cells.
 static void cut_grid(Mesh *mesh, bool (*inside)(double x, double y)) {
     uint32_t cells = 0, vertices = 0, *number = calloc(mesh->vertex_count, sizeof *number);
     for (uint32_t c = 0; c < mesh->cell_count && number; c++) {
@@ -303,8 +303,8 @@ double shape_border(const SingeSurface *surface) {
 
 // ---- spectrum
 
-/// Adds the power of a line of heights: the angle out of the rest plane, its mean and slope taken out, under a Hann
-/// window; the power of the height follows from that of its slope by (wavelength/2 pi)^2.
+/// Adds the power of a line of heights: the angle to the rest plane, without its mean and slope, under a Hann window;
+/// the power of the height follows from that of its slope by (wavelength/2 pi)^2.
 static void add_line(const SingeView *view, uint32_t first, uint32_t stride, int count, double cell, double *line,
                      ShapeSpectrum *spectrum) {
     const double pi = acos(-1), centre = 0.5 * (count - 1);
@@ -339,7 +339,7 @@ SingeResult shape_spectrum(const SingeView *view, int across, int along, double 
     for (int i = 0; i <= across; i++) add_line(view, (uint32_t)i, row, along, cell, line, spectrum);
     for (int b = 0; b < SHAPE_BANDS; b++) {
         spectrum->wave[b] = 2 * cell * pow(2, (b + 0.5) / 2);
-        int waves = 0; // whole numbers of them on a line that lie in the band
+        int waves = 0; // integer numbers of waves on a line that lie in the band
         for (int k = 1; k <= across / 2; k++) waves += (int)floor(2 * log2(across / (2.0 * k)) + 1e-9) == b;
         spectrum->height[b] = waves ? sqrt(spectrum->height[b] / (across + along + 2)) : (double)NAN;
     }

@@ -9,7 +9,7 @@
 #include "formats/printable.h"
 #include "scene/builtin.h"
 
-extern const SceneBuiltin paper_files[]; // of the folder `paper`, embedded as they are
+extern const SceneBuiltin paper_files[]; // of the folder `paper`, embedded unchanged
 
 // ---- the command line
 
@@ -19,7 +19,7 @@ typedef struct Request {
     int threads;
 } Request;
 
-/// Whether there is an item of that name, or a message.
+/// Whether there is an item of that name; otherwise prints a message.
 static bool take_item(const Page *page, const ArgReader *reader, int option, const char *word, Request *request) {
     request->name = word;
     for (int i = 0; i < page->count; i++)
@@ -33,7 +33,7 @@ static bool take_item(const Page *page, const ArgReader *reader, int option, con
     return false;
 }
 
-/// False where the value is not good, which has been said.
+/// False if the value is invalid; a message has been printed.
 static bool take(const Page *page, const ArgReader *reader, int option, const char *value, Request *request) {
     const char *name = option == ARG_OPERAND ? "only" : reader->command->options[option].name;
     if (strcmp(name, "only") == 0) return take_item(page, reader, option, value, request);
@@ -46,7 +46,7 @@ static bool take(const Page *page, const ArgReader *reader, int option, const ch
 
 // ---- the report
 
-/// Lays the scenes beside the report, where `singe run` finds them.
+/// Writes the scenes next to the report, where `singe run` finds them.
 static SingeResult write_scenes(const Lab *lab, SingeError *error) {
     SingeResult result = folder_make(lab->scenes, error);
     for (const SceneBuiltin *file = paper_files; file->name && !result; file++) {
@@ -57,16 +57,16 @@ static SingeResult write_scenes(const Lab *lab, SingeError *error) {
     return result;
 }
 
-/// The items of a page that are run, by several threads.
+/// The items of a page, run by several threads.
 typedef struct Queue {
     const Page *page;
     const Request *request;
-    const Lab *lab; ///< what all have in common
+    const Lab *lab; ///< common to all
     ReportPage *report;
     pthread_mutex_t lock; ///< of all below
-    int next, added;      ///< items: the next to take; those before it are in the report
-    Report **done;        ///< [items] run, and not yet in the report
-    SingeResult result;   ///< the first failure; no further items are taken
+    int next, added;      ///< items: the next to run; the first that is not yet in the report
+    Report **done;        ///< [items] run, but not yet in the report
+    SingeResult result;   ///< the first failure; no further items are started
     SingeError error;
 } Queue;
 
@@ -80,7 +80,7 @@ static bool is_alone(const Queue *queue, int item) {
     return false;
 }
 
-/// Adds to the report what has been run, up to the first item that has not.
+/// Adds the items that have been run to the report, up to the first that has not.
 static void add_done(Queue *queue) {
     for (; queue->added < queue->page->count; queue->added++) {
         Report *report = queue->done[queue->added];

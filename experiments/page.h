@@ -1,4 +1,4 @@
-// A command that makes a page of experiments, as `singe paper` and `singe validate` do: its command line, its items.
+// A command that writes a page of experiments (`singe paper`, `singe validate`): its command line and its items.
 #ifndef EXPERIMENTS_PAGE_H
 #define EXPERIMENTS_PAGE_H
 
@@ -16,16 +16,16 @@ typedef struct PageItem {
 typedef struct Page {
     const PageItem *items;
     int count;
-    const char *folder;       ///< where it goes unless --output tells another
+    const char *folder;       ///< the default of --output
     const char *title, *lead; ///< of the report
-    const char *const *alone; ///< items, ends with NULL, that run after the others and one by one: they take times, or
-                              ///< need the measures of the others
+    const char *const *
+        alone; ///< items, ends with NULL, that run after the others and one by one: they measure time, or need the measures of others
 } Page;
 
-/// Reads a command line and runs what it asks for into a report: all items, or the one that an operand (or `all`) or
-/// --only names. All items run at once on as many threads as there are, each with one; then those that run alone, each
-/// with all. The page and what is printed are in the order of the items. Of options `command` may have output, only,
-/// quick and threads. Returns EXIT_FAILED where an item fails or a measure does not hold.
+/// Reads a command line and runs items into a report: all, or the one named by an operand (or `all`) or --only. Items
+/// run in parallel, one thread each; then those that run alone, each with all threads. The page and the output are in
+/// the order of the items. `command` may have the options output, only, quick and threads. Returns EXIT_FAILED if an
+/// item fails or a measure does not hold.
 ExitCode page_run(const Page *page, const ArgCommand *command, int argc, char **argv);
 
 #endif

@@ -1,4 +1,4 @@
-// singe paper: every experiment of the paper, computed here, beside what the paper shows.
+// singe paper: every experiment of the paper, computed here and compared with the paper.
 #include "experiments/paper.h"
 
 /// In the order of the page.

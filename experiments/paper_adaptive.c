@@ -1,6 +1,6 @@
-// Section 8.2, adaptivity: what cells that are refined near the front could save, and what they look like, beside
-// uniform cells. A strip burns from its left end; one mesh of it is graded as refining would have it when the front is
-// half way.
+// Section 8.2, adaptivity: the possible savings of cells that are refined near the front, and their appearance,
+// compared with uniform cells. A strip burns from its left end; one of its meshes is graded as refinement would grade
+// it when the front is halfway.
 #include <math.h>
 #include <stdio.h>
 
@@ -24,10 +24,10 @@ static const struct {
 typedef struct Strip {
     Look look;
     double springs, speed; ///< mm/s
-    double cells, first;   ///< of all fine ones, that refining needs: the mean over the burn, and as it begins
+    double cells, first;   ///< share of the fine cells that refinement needs: mean over the burn, and at its start
 } Strip;
 
-/// The share of the strip that refined cells would have to hold: all that has ignited, and 10 mm before it.
+/// The share of the strip that needs refined cells: everything that has ignited, and 10 mm in front of it.
 static double needed_share(const SingeView *view) {
     double front = -INFINITY, low = INFINITY, high = -INFINITY;
     for (uint32_t v = 0; v < view->vertex_count; v++) {
@@ -63,7 +63,7 @@ static SingeResult strip_run(Lab *lab, int i, Strip *strip, SingeError *error) {
 
 enum { IRREGULAR_STEPS = 96 };
 
-/// Steps of IRREGULAR_STEPS that a solver of the paper's takes on the graded strip, all finite.
+/// The number of IRREGULAR_STEPS that the paper's solver completes on the graded strip with finite results.
 static SingeResult steps_taken(Lab *lab, const char *solver, int *steps, SingeError *error) {
     Play play;
     const char *sets[] = {solver, "sheets.0.material.compliance={red: 0, green: 0, blue: 0, yellow: 0}", NULL};

@@ -1,6 +1,6 @@
-// Section 7.1's reason for projecting colour after colour: all springs in one system have more constraints than there
-// are degrees of freedom, 10 to 6, so the matrix is singular, and fast projection diverges. Here both are looked at on
-// a sheet that has swung for a while: ranks and singular values of J M^-1/2, and errors over projection steps.
+// Section 7.1's reason for projecting one colour after another: all springs in one system give more constraints than
+// degrees of freedom, 10 to 6, so the matrix is singular, and fast projection diverges. Both are tested on a sheet that
+// has swung for a while: ranks and singular values of J M^-1/2, and errors over projection steps.
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,9 +10,9 @@
 
 enum { CELLS = 6, WARM_STEPS = 200, STEPS = 7 };
 
-static const double zero_share = 1e-10; // of the largest singular value: below it one is 0
+static const double zero_share = 1e-10; // of the largest singular value; smaller values count as 0
 
-/// A row about one set; *spare is how many of its constraints are too many.
+/// The row of a set; *spare is the number of its redundant constraints.
 static SingeResult set_print(Lab *lab, SingeNetwork *network, uint32_t set, const char *name, uint32_t particles,
                              double *spare) {
     size_t rows = singe_network_set_size(network, set), columns = 3 * (size_t)particles;
@@ -67,7 +67,7 @@ typedef struct Contender {
     uint32_t sets;
 } Contender;
 
-/// Takes a projection step, but for step 0, and returns the error after it.
+/// Makes a projection step, except for step 0, and returns the error after it.
 static double contender_step(const Contender *contender, int step, uint32_t *iterations, bool *broken) {
     double errors[SINGE_COLOUR_COUNT], square = 0;
     for (uint32_t set = 0; set < contender->sets && step > 0; set++) {

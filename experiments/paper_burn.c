@@ -1,4 +1,4 @@
-// What burns in the paper: figures 1, 4, 11 and 12, section 6's claims, and the rival idea of sections 2 and 3.
+// The paper's burning sheets: figures 1, 4, 11 and 12, section 6's claims, and the alternative of sections 2 and 3.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@ static const char *const small_grid = "sheets.0.grid.cells=[30, 42]";
 
 // ---- Fig 1, 12: hot from the start, a texture for the rate
 
-/// Degrees from cell to cell where nothing of both cells' mass is below a bar: what has hardly burnt bends, too.
+/// Degrees between neighbouring cells whose mass is nowhere below a bar: hardly burnt parts bend, too.
 static double bend_of_unburnt(const SingeView *view, float bar) {
     double sum = 0, count = 0;
     for (uint32_t s = 0; s < view->spring_count[SINGE_GREEN]; s++) {
@@ -25,10 +25,10 @@ static double bend_of_unburnt(const SingeView *view, float bar) {
 
 enum { FIG1_SHOTS = 6, FIG1_RUNS = 2 };
 
-/// What a run of Fig 1 comes to; `plain`: it does not shrink.
+/// The results of a run of Fig 1; `plain`: without shrinkage.
 typedef struct Fig1 {
-    double correlation, mirrored; ///< of the texture with what has burnt after 0.1 s
-    double inner;                 ///< degrees from cell to cell of what has most of its mass, at most
+    double correlation, mirrored; ///< of the texture with the burnt share after 0.1 s
+    double inner;                 ///< max degrees from cell to cell where most of the mass remains
     double gone;                  ///< share of the cells after 0.1 s
     Look look;                    ///< from 2.2 s on
 } Fig1;
@@ -85,9 +85,9 @@ SingeResult paper_fig1(Lab *lab, SingeError *error) {
 
 enum { COLUMNS = 4, ROWS = 4 };
 
-enum { FIG4_MEAN = COLUMNS }; ///< a fifth run, not drawn: the mean of the texture of (d) all over
+enum { FIG4_MEAN = COLUMNS }; ///< a fifth run, not drawn: the mean of (d)'s texture everywhere
 
-/// *rate: the mean of (d)'s, which the run after it takes.
+/// *rate: the mean of (d)'s rate, which the next run uses.
 static SingeResult fig4_column(Lab *lab, int i, Look *look, double *rate, uint8_t **rgb, int size[2],
                                SingeError *error) {
     static const double times[ROWS] = {0.9, 1.6, 2.3, 2.7};
@@ -174,7 +174,7 @@ SingeResult paper_fig4(Lab *lab, SingeError *error) {
 
 // ---- Fig 11: the torus burns
 
-/// Of 12 sectors around the hole, those in which a fifth of the vertices have ignited.
+/// The number of sectors, of 12 around the hole, in which a fifth of the vertices have ignited.
 static int sectors_lit(const SingeView *view) {
     double lit[12] = {0}, all[12] = {0};
     int count = 0;
@@ -187,7 +187,7 @@ static int sectors_lit(const SingeView *view) {
     return count;
 }
 
-/// The largest error of the heat ledger if what is lost to the air were forgotten in it.
+/// The largest error of the heat ledger if losses to the air were omitted from it.
 static double ledger_without_losses(const SingeStats *stats) {
     const double in = stats->heat_in + stats->heat_of_combustion;
     return fabs(in - stats->heat_stored) / fmax(fabs(in), fabs(stats->heat_stored));
@@ -284,11 +284,12 @@ SingeResult paper_mass_loss(Lab *lab, SingeError *error) {
     return SINGE_OK;
 }
 
-// ---- the rival idea: bending by the difference of temperature
+// ---- the alternative: bending by the difference of temperature
 
 enum { RIVAL_LOOKS = 145 };
 
-/// K that the front is hotter than the back, and 1/m of the strip along its centre line, positive towards the back.
+/// K, temperature of the front minus that of the back; 1/m, curvature along the strip's centre line, positive towards
+/// the back.
 static void rival_look(const SingeView *view, double *difference, double *curvature) {
     enum { ALONG = 30 };
     double front = 0, back = 0, angle = 0, length = 0;
@@ -311,7 +312,7 @@ static void scale_to_one(double *values, int count) {
     for (int i = 0; i < count && max > 0; i++) values[i] = fabs(values[i]) / max;
 }
 
-/// The strip from its side at some moments: ours above, the rival's arc of the same length below.
+/// The strip from the side at some times: ours above, the alternative's arc of the same length below.
 enum { RIVAL_SHOTS = 4, RIVAL_POINTS = 31 };
 static const int rival_shots[RIVAL_SHOTS] = {8, 24, 48, 144}; // looks
 
@@ -339,7 +340,7 @@ static void rival_draw(FILE *file, const double (*profile)[RIVAL_POINTS][2], con
     fprintf(file, "</svg>\n");
 }
 
-/// The centre line about its own centre, for rival_draw.
+/// The centre line relative to its own centre, for rival_draw.
 static void rival_profile(const SingeView *view, double profile[RIVAL_POINTS][2]) {
     double mean[2] = {0};
     for (int i = 0; i < RIVAL_POINTS; i++)

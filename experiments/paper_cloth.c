@@ -1,4 +1,4 @@
-// What the paper shows without fire: figures 7 and 10 and the inhomogeneous weights of section 7.2.
+// The paper's results without fire: figures 7 and 10 and the inhomogeneous weights of section 7.2.
 #include <math.h>
 #include <stdio.h>
 
@@ -45,7 +45,7 @@ SingeResult paper_fig7ab(Lab *lab, SingeError *error) {
         }
         play_close(&play);
     }
-    for (int i = 0; i < 4 && !result; i++) // what stays up against the soft one, and the other way round
+    for (int i = 0; i < 4 && !result; i++) // the cloth that stays up against the soft one, and vice versa
         report_bar(lab->report,
                    &(ReportBar){toruses[i].measure, toruses[i].what, lowest[i], toruses[i].held ? 0.05 : -INFINITY,
                                 toruses[i].held ? INFINITY : 0.02, lowest[toruses[i].held ? 2 : 0],
@@ -57,7 +57,7 @@ SingeResult paper_fig7ab(Lab *lab, SingeError *error) {
     return result;
 }
 
-// ---- Fig 7 c, d: the blue layer shrinks all over
+// ---- Fig 7 c, d: the blue layer shrinks everywhere
 
 enum { SHRINK_CASES = 4, MOMENTS = 20 };
 
@@ -106,7 +106,7 @@ static SingeResult shrink_run(Lab *lab, int i, int n, Wrinkling *out, SingeError
     return result;
 }
 
-/// Of moments `from` on, the share in which a has higher wrinkles than b.
+/// The share of the moments from `from` on in which a has higher wrinkles than b.
 static double shrink_share(const Wrinkling *a, const Wrinkling *b, int from) {
     int count = 0;
     for (int k = from; k < MOMENTS; k++) count += a->height[k] > b->height[k];
@@ -163,8 +163,8 @@ SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
 
 enum { SHELLS = 4 };
 
-/// m, how far the centre of the sheet is above the mean of its border; degrees, by how much the sheet has bent from
-/// there: the mean slope of the border's cells, across the border.
+/// m, height of the sheet's centre above the mean of its border; degrees, bending of the sheet from there: the mean
+/// slope of the border's cells, across the border.
 static void shell_measure(const SingeView *view, int n, double *sag, double *bend) {
     const uint32_t row = (uint32_t)n + 1, last = (uint32_t)n;
     double border = 0, slope = 0, count = 0;
@@ -193,11 +193,11 @@ static const Shell10 shells[SHELL_RUNS] = {{"(a) 1:20, 1.0", "10 mm", NULL},
                                            {"(b) 1:80, 1.0", "2.5 mm", NULL},
                                            {"(c) 1:400, 1.0", "0.5 mm", NULL},
                                            {"(d) 1:400, 0.1", "0.5 mm", "0.1"},
-                                           // hardly anything changes: what the bars must not take for a difference
+                                           // almost no change: the bars must not accept it as a difference
                                            {"1:80, 0.9", "2.5 mm", "0.9"},
                                            {"1:400, 0.9", "0.5 mm", "0.9"}};
 
-/// How a sheet folds over the sphere changes with its mesh: by strands the measures are means over these.
+/// The folds over the sphere depend on the mesh: for strands the measures are means over these.
 enum { FIG10_MESHES = 4, FIG10_DRAWN = 32, FIG10_PAPERS = 16 };
 static const int fig10_meshes[FIG10_MESHES] = {24, 28, FIG10_DRAWN, 36};
 
@@ -275,7 +275,7 @@ SingeResult paper_fig10(Lab *lab, SingeError *error) {
 
 // ---- section 7.2: weights that vary over one sheet
 
-/// m, how far the outer 2 cm hang, of the stiff half and of the soft one.
+/// m, sag of the outer 2 cm, of the stiff half and of the soft one.
 static void weights_fall(const SingeView *view, double fall[2]) {
     double count[2] = {0};
     fall[0] = fall[1] = 0;
@@ -288,7 +288,7 @@ static void weights_fall(const SingeView *view, double fall[2]) {
 }
 
 SingeResult paper_weights(Lab *lab, SingeError *error) {
-    double fall[2][2] = {{0}}; // of the scene, and with the soft weight all over
+    double fall[2][2] = {{0}}; // of the scene, and with the soft weight everywhere
     SingeResult result = SINGE_OK;
     report_pictures(lab->report, 3);
     for (int even = 0; even < 2 && !result; even++) {

@@ -1,6 +1,6 @@
 // Fig 8: the error |C| of each colour and their sum, over the projection steps of successive fast projection, in two
-// states: a sheet that swings (at 0.4 s) and one that shrinks (at 0.1 s). And in how many of all states of either run
-// the sum rises in a projection step, which the paper says it never does.
+// states: a sheet that swings (at 0.4 s) and one that shrinks (at 0.1 s). Also the number of states of either run in
+// which the sum rises in a projection step, which the paper excludes.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,12 +18,12 @@ typedef struct Fig8 {
 
 typedef struct Fig8Run {
     PaperState state;
-    int shown, last; ///< simulation steps: whose state the figure shows, and that are counted
+    int shown, last; ///< simulation steps: shown in the figure, and the last that is counted
 } Fig8Run;
 
 static const Fig8Run runs[] = {{PAPER_SWING, 200, 250}, {PAPER_SHRINK, 50, 200}};
 
-/// Projects `steps` times and notes the errors.
+/// Projects `steps` times and records the errors.
 static SingeResult fig8_project(const SingeSim *sim, PaperState state, int steps, Fig8 *fig, SingeError *error) {
     SingeNetwork *network;
     double errors[SINGE_COLOUR_COUNT];
@@ -42,8 +42,9 @@ static SingeResult fig8_project(const SingeSim *sim, PaperState state, int steps
 
 /// Of all states of a run.
 typedef struct Fig8Count {
-    int states, rises, lower; ///< in which the sum rises in one of the first 7 steps; in which it is lower after them
-    double worst;             ///< sum after 7 steps over that before, the largest
+    int states, rises,
+        lower;    ///< states in which the sum rises in one of the first 7 steps, and in which it is lower after them
+    double worst; ///< sum after 7 steps over that before, max
 } Fig8Count;
 
 static bool fig8_rises(const Fig8 *fig, int steps) {

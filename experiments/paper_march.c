@@ -1,4 +1,4 @@
-// Figure 6: the cases of marching triangles, as the drawn surface has them.
+// Figure 6: the cases of marching triangles in the drawn surface.
 #include <math.h>
 #include <stdio.h>
 
@@ -7,13 +7,13 @@
 enum { MARCH_CELLS = 6 };
 static const double march_loss = 0.5;
 
-/// What is left of the triangle of three levels, as a share, by eq 7; *inside is how many of them are.
+/// The remaining share of a triangle with three levels, by eq 7; *inside is the number of corners inside.
 static double march_share(const double *level, int *inside) {
     *inside = (level[0] >= 0) + (level[1] >= 0) + (level[2] >= 0);
     if (*inside == 0 || *inside == 3) return *inside / 3;
     for (int k = 0; k < 3; k++) {
         double a = level[k], b = level[(k + 1) % 3], c = level[(k + 2) % 3];
-        if ((a >= 0) == (b >= 0) || (a >= 0) == (c >= 0)) continue; // the one that is alone
+        if ((a >= 0) == (b >= 0) || (a >= 0) == (c >= 0)) continue; // the corner with a different sign
         double corner = a / (a - b) * (a / (a - c));
         return *inside == 1 ? corner : 1 - corner;
     }

@@ -207,12 +207,12 @@ enum { STATES = 5, STATE_COLUMNS = STATES + 1 };
 static const double state_mass[STATE_COLUMNS][2] = {{1, .75}, {.75, .5}, {.95, .2}, {.8, .2}, {.1, .05}, {.1, .1}};
 static const double state_loss = 0.3;
 
-/// What is left of an end's mass above m_loss.
+/// An end's mass above m_loss.
 static double state_left(int i, int end) { return state_mass[i][end] - state_loss; }
-/// Whether one end is left and the other is not.
+/// Whether exactly one end is left.
 static bool state_is_cut(int i) { return state_left(i, 0) * state_left(i, 1) < 0; }
 
-/// The target length of the blue spring up column i over that at rest; -1 where it is gone.
+/// The target length of column i's blue spring over its rest length; -1 if it is gone.
 static double state_ratio(const SingeView *view, uint32_t i) {
     for (uint32_t s = 0; s < view->spring_count[SINGE_BLUE]; s++) {
         const uint32_t *end = view->springs[SINGE_BLUE][s];
@@ -223,7 +223,7 @@ static double state_ratio(const SingeView *view, uint32_t i) {
     return -1;
 }
 
-/// Where the drawn surface ends on column i, as a share of the way up; -1 where nothing of it is cut.
+/// The end of the drawn surface on column i, as a share of its height; -1 if it is not cut.
 static double state_cut(const SingeSurface *surface, int i, double cell) {
     for (uint32_t v = 0; v < surface->vertex_count; v++) {
         double x = (double)surface->rest_position[v][0], y = (double)surface->rest_position[v][1];

@@ -1,4 +1,4 @@
-// What the paper states in sections 5 to 8, what came of it here, and the measure that says so.
+// The statements of the paper's sections 5 to 8, the result here, and the measure that shows it.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@ typedef enum Verdict { REPRODUCED, NOT_REPRODUCED, REFUTED } Verdict;
 static const char *const verdicts[] = {
     [REPRODUCED] = "reproduced", [NOT_REPRODUCED] = "not reproduced", [REFUTED] = "refuted"};
 
-/// A measure of `singe paper`, or where `item` begins with "validate " one of `singe validate`.
+/// A measure of `singe paper`, or of `singe validate` if `item` begins with "validate ".
 typedef struct Statement {
     const char *section, *statement;
     Verdict verdict;

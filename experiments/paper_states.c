@@ -6,7 +6,7 @@ const char *const paper_state_names[PAPER_STATE_COUNT] = {[PAPER_SWING] = "swing
 
 static const float grammage = 0.1f; // kg/m2
 
-/// Burns at one rate, down to 0.8 of its mass in half a second, and lengths follow the mass; nothing goes.
+/// Burns at one rate, down to 0.8 of its mass in half a second; lengths follow the mass, and nothing is removed.
 static void shrink_material(SingeMaterialDef *material) {
     const float rate = 4e-3f; // 1/(K s), at 100 K above ignition
     material->temperature = singe_param(600), material->ignition_temperature = singe_param(500);
@@ -83,7 +83,7 @@ SingeResult paper_sim(PaperState state, int cells, const SingeSolverDef *solver,
     return result;
 }
 
-/// Where and what the particles are after eq 8 and 9.
+/// The particles' positions and masses after eq 8 and 9.
 static void network_particles(const SingeView *view, PaperState state, double *positions, double *inverse_masses) {
     double h = (double)PAPER_TIME_STEP, g = state == PAPER_SWING ? -9.81 : 0;
     for (uint32_t i = 0; i < view->particle_count; i++) {

@@ -1,12 +1,12 @@
-// The sheets that `singe paper` runs its comparisons on, through the public headers alone.
+// The sheets of the comparisons of `singe paper`, through the public headers only.
 #ifndef EXPERIMENTS_PAPER_STATES_H
 #define EXPERIMENTS_PAPER_STATES_H
 
 #include "singe/singe.h"
 
 typedef enum PaperState {
-    PAPER_SWING, ///< 1 m x 1 m of 0.1 kg/m2, 1 mm thick, held at two corners, let go from level; no drag or damping
-    /// the same sheet free in space, all of it burning at one rate until lengths are 0.8 of what they were
+    PAPER_SWING, ///< 1 m x 1 m of 0.1 kg/m2, 1 mm thick, held at two corners, released from level; no drag or damping
+    /// the same sheet free in space, burning everywhere at one rate until lengths are 0.8 of their initial values
     PAPER_SHRINK,
     PAPER_STATE_COUNT
 } PaperState;
@@ -20,9 +20,9 @@ static const float PAPER_TIME_STEP = 0.002f;
 SINGE_NODISCARD SingeResult paper_sim(PaperState state, int cells, const SingeSolverDef *solver, int threads,
                                       SingeSim **sim, SingeError *error);
 
-/// The springs of a sheet as a network in its present positions, or where they are after eq 8 and 9. A set is a colour
-/// in the order red, green, blue, yellow, or with `one_set` all of them are one, whose conjugate gradients end after as
-/// many iterations as there are unknowns.
+/// The springs of a sheet as a network at its current positions, or at those after eq 8 and 9. The sets are the colours
+/// red, green, blue, yellow; with `one_set` all springs are one set, whose conjugate gradients end after as many
+/// iterations as there are unknowns.
 SINGE_NODISCARD SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, double regularisation,
                                           SingeNetwork **network, SingeError *error);
 

@@ -1,6 +1,6 @@
 // Table 1 and Fig 9: a particle between two fixed points, tied to the left one by a green and to the right one by a
-// blue spring. From target lengths of 1 they go to 1.65 and 0.55, which exclude each other. The paper's digits come
-// out when the system takes the fixed points for free and they are put back after each projection.
+// blue spring. Their target lengths change from 1 to 1.65 and 0.55, which are incompatible. The paper's digits are
+// reproduced if the system treats the fixed points as free and they are reset after each projection.
 #include <math.h>
 #include <stdio.h>
 

@@ -8,7 +8,7 @@
 #include "experiments/paper_states.h"
 
 typedef struct Table2Row {
-    int cells;          ///< a side: 10 springs each
+    int cells;          ///< per side: 10 springs each
     double early, full; ///< ms, the paper's columns b and c
 } Table2Row;
 
@@ -58,7 +58,7 @@ static SingeSolverDef table2_solver(SingeSolverMethod method, bool early_exit) {
     return def;
 }
 
-/// What the table has of a size, and the plot.
+/// The paper's values for a size, and the plot.
 typedef struct Table2 {
     int count;
     double springs[ROW_COUNT], early[ROW_COUNT], iterations[ROW_COUNT], early_iterations[ROW_COUNT], full[ROW_COUNT],

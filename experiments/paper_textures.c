@@ -1,5 +1,5 @@
-// Textures of sections 5 and 8 that no figure shows alone, heat and diffusivity, and what section 8.2 says of layers
-// that may cross.
+// Textures of sections 5 and 8 without a figure of their own, heat and diffusivity, and section 8.2's claim about
+// layers that may cross.
 #include <math.h>
 #include <stdio.h>
 
@@ -46,7 +46,7 @@ SingeResult paper_heat(Lab *lab, SingeError *error) {
 
 // ---- diffusivity by a texture
 
-/// How far fire has come to the left of the centre, over how far to the right.
+/// The distance of the fire to the left of the centre over that to the right.
 static double lopsided(const SingeView *view) {
     double left = 0, right = 0;
     for (uint32_t v = 0; v < view->vertex_count; v++) {

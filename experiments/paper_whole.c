@@ -1,7 +1,7 @@
 // The paper as one system: its heat (eq 1 without losses, the umbrella of eq 3), its loss of mass (eq 4, a straight
 // line without a ceiling), eq 6 at full strength, its shell without compliance, and its solver with its order of
-// colours and its end, in its scenes of fire: Figs 1, 4 and 11. Beside it ours, on the same sheets. Both are looked at
-// when as much has burnt, since their fires are not equally fast.
+// colours and its early exit, in its scenes of fire: Figs 1, 4 and 11. Ours runs on the same sheets. Both are compared
+// at equal burnt mass, as their fires are not equally fast.
 #include <math.h>
 #include <stdio.h>
 
@@ -11,7 +11,7 @@
 enum { FIGURES = 3, SYSTEMS = 2, MARKS = 3 };
 enum { PAPERS, OURS };
 
-/// All that makes the paper's system of a scene; its layers may cross, nothing tears, edges are those of eq 7.
+/// The settings of the paper's system: its layers may cross, nothing tears, edges follow eq 7.
 static const char *const papers[] = {
     "solver={method: paper, order: [red, green, blue, yellow], projections: 7, tolerance: 1e-7}",
     "sheets.0.material.heat_operator=umbrella",
@@ -37,8 +37,8 @@ enum { PAPERS_COUNT = sizeof papers / sizeof *papers };
 typedef struct Figure {
     const char *name, *scene, *size, *small;
     const char *rates[3]; ///< of the paper's system
-    double marks[MARKS];  ///< share that has burnt
-    double ends[SYSTEMS]; ///< s, by which all marks should be reached
+    double marks[MARKS];  ///< burnt share
+    double ends[SYSTEMS]; ///< s, time limit for all marks
 } Figure;
 
 static const Figure figures[FIGURES] = {
@@ -72,7 +72,7 @@ typedef struct Run {
     double times[MARKS];
 } Run;
 
-/// Plays until the marks are reached. That a system fails is a result, and no error.
+/// Runs until the marks are reached. The failure of a system is a result, not an error.
 static SingeResult run_marks(Play *play, const Figure *figure, int system, bool drawn, Run *run, SingeError *error) {
     static const char *const names[SYSTEMS] = {"the paper's system", "ours"};
     SingeResult result = SINGE_OK;
@@ -91,7 +91,7 @@ static SingeResult run_marks(Play *play, const Figure *figure, int system, bool 
     return result;
 }
 
-/// `more`, which ends with NULL, is laid over a system; NULL for nothing. Such runs are not drawn.
+/// `more` (ends with NULL; NULL for none) overrides settings of a system. Such runs are not drawn.
 static SingeResult whole_run(Lab *lab, const Figure *figure, int system, const char *const *more, Run *run,
                              SingeError *error) {
     const char *sets[PAPERS_COUNT + 8] = {lab->quick || more ? figure->small : figure->size};
@@ -102,7 +102,7 @@ static SingeResult whole_run(Lab *lab, const Figure *figure, int system, const c
     const bool drawn = count == (system == PAPERS ? 1 + PAPERS_COUNT + 3 : 1);
     Play play;
     SingeResult result = play_open(&play, lab, figure->scene, sets, error);
-    play.glow = 1050; // without losses it gets so hot that nothing else would be seen
+    play.glow = 1050; // without losses it gets so hot that nothing else would be visible
     if (!result) result = run_marks(&play, figure, system, drawn, run, error);
     play_close(&play);
     return result;

@@ -10,7 +10,7 @@ enum { WIDTH = 720, HEIGHT = 400, LEFT = 76, RIGHT = 220, TOP = 48, BOTTOM = 50 
 
 typedef struct Axis {
     bool log;
-    double low, high, step; ///< of the logarithm where log
+    double low, high, step; ///< of the logarithm if log
     double first, last;     ///< pixels
 } Axis;
 
@@ -23,7 +23,7 @@ static double pixel(const Axis *axis, double value) {
 
 static double line_x(const PlotLine *line, int i) { return line->x ? line->x[i] : i; }
 
-/// 1, 2 or 5 times a power of ten that makes about `parts` of a span.
+/// 1, 2 or 5 times a power of ten that divides a span into about `parts`.
 static double round_step(double span, int parts) {
     double raw = span / parts, power = pow(10, floor(log10(raw))), f = raw / power;
     return power * (f < 1.5 ? 1 : f < 3.5 ? 2 : f < 7.5 ? 5 : 10);

@@ -9,9 +9,9 @@
 
 typedef struct PlotLine {
     const char *name, *colour; ///< of SVG
-    const double *x, *y;       ///< [count]; x NULL: 0, 1, 2, ...; values that an axis cannot show are left out
+    const double *x, *y;       ///< [count]; x NULL: 0, 1, 2, ...; values that an axis cannot show are skipped
     int count;
-    bool dots, dashed; ///< marks at the values alone; a broken line
+    bool dots, dashed; ///< only marks; a dashed line
 } PlotLine;
 
 enum { PLOT_LINES_MAX = 12 };

@@ -10,14 +10,14 @@
 #include "cli/text.h"
 #include "formats/formats.h"
 
-/// A text that grows.
+/// A growing text.
 typedef struct Draft {
     FILE *file;
     char *text;
     size_t size;
 } Draft;
 
-/// What the end of the body must close.
+/// Elements that must be closed at the end of the body.
 typedef enum Block { BLOCK_NONE, BLOCK_TABLE, BLOCK_PICTURES, BLOCK_MEASURES } Block;
 static const char *const block_ends[] = {[BLOCK_NONE] = "",
                                          [BLOCK_TABLE] = "</table></div>\n",
@@ -41,7 +41,7 @@ struct ReportPage {
 
 struct Report {
     const ReportPage *page;
-    Draft body, csv, json, echo; ///< `echo` has no file where lines are printed at once
+    Draft body, csv, json, echo; ///< `echo` has no file if lines are printed at once
     Block block;
     char *name, *heading;
     int pictures, measures, failed;
@@ -121,7 +121,7 @@ Report *report_begin(const ReportPage *page, const char *name, const char *headi
     return report;
 }
 
-/// Goes on with blocks of one kind, or ends them.
+/// Continues blocks of one kind, or ends them.
 static FILE *body(Report *report, Block block) {
     if (report->block != block) fputs(block_ends[report->block], report->body.file);
     report->block = block;
@@ -138,7 +138,7 @@ void report_text(Report *report, const char *format, ...) {
     va_end(list);
 }
 
-/// The same row as it is printed, in columns.
+/// The same row for printing, in columns.
 static void echo(FILE *file, const char *text) {
     fprintf(file, " ");
     while (*text) {

@@ -1,9 +1,9 @@
-// A page of experiments, as `singe paper` and `singe validate` write it: FOLDER/index.html, which needs nothing but the
-// pictures beside it, and its numbers as measures.csv and measures.json.
+// A page of experiments of `singe paper` and `singe validate`: FOLDER/index.html, which needs only the pictures next to
+// it, and its numbers as measures.csv and measures.json.
 //
-// A page is a list of reports, one an item: what a source shows, then tables, plots and pictures as they are added, and
-// measures. A measure is a number with the bar it is held against. Texts are HTML; captions and names plain. Several
-// reports of a page may be filled at once, each by one thread.
+// A page is a list of reports, one per item: the source's result, then tables, plots and pictures as they are added,
+// and measures. A measure is a number with a bar. Texts are HTML; captions and names plain. Several reports of a page
+// may be filled at once, each by one thread.
 #ifndef EXPERIMENTS_REPORT_H
 #define EXPERIMENTS_REPORT_H
 
@@ -16,11 +16,11 @@
 typedef struct ReportPage ReportPage;
 typedef struct Report Report;
 
-/// Makes the folder. NULL on failure, with *error filled.
+/// Creates the folder. NULL on failure, with *error filled.
 ReportPage *report_page_open(const char *folder, const char *title, const char *lead, SingeError *error);
 
-/// Begins an item. `name` is that of its pictures and measures. Tables and measures are also printed: at once if `echo`
-/// is set, else by report_end. NULL without memory. May be called by any thread.
+/// Begins an item. `name` prefixes its pictures and measures. Tables and measures are also printed: at once if `echo`
+/// is set, else by report_end. NULL when out of memory. May be called by any thread.
 Report *report_begin(const ReportPage *page, const char *name, const char *heading, const char *shows, bool echo);
 
 /// Adds an item to the page, after those added before, and frees it.
@@ -33,20 +33,20 @@ void report_text(Report *report, const char *format, ...) SINGE_PRINTF(2, 3);
 void report_heads(Report *report, const char *heads);
 void report_row(Report *report, const char *format, ...) SINGE_PRINTF(2, 3);
 
-/// Pictures that follow each other stand side by side, `columns` in a row.
+/// Consecutive pictures are side by side, `columns` in a row.
 void report_pictures(Report *report, int columns);
 void report_picture(Report *report, const char *caption, int width, int height, const uint8_t *rgb);
 
 void report_plot(Report *report, const Plot *plot);
 
-/// Where a drawing of one's own goes: SVG, whole elements with widths of their own.
+/// The stream for a custom drawing: SVG, whole elements with their own widths.
 FILE *report_drawing(Report *report);
 
-/// Holds a number against a bar: low <= value <= high, either infinite where there is none. NaN does not hold.
+/// Compares a number with a bar: low <= value <= high; infinite for no limit. NaN does not hold.
 void report_measure(Report *report, const char *name, const char *what, double value, double low, double high);
 
-/// The same, with a case that must not hold: where `bad` passes the bar too, the bar tells nothing, and the measure
-/// fails. `bad_what` says what was measured for it.
+/// The same, with a case that must not hold: if `bad` passes the bar, too, the bar cannot fail, and the measure fails.
+/// `bad_what` describes the bad case.
 typedef struct ReportBar {
     const char *name, *what;
     double value, low, high, bad;
@@ -56,10 +56,10 @@ void report_bar(Report *report, const ReportBar *bar);
 
 typedef enum ReportVerdict { REPORT_UNKNOWN, REPORT_HOLDS, REPORT_FAILS } ReportVerdict;
 
-/// Whether a measure of an item that has been added holds, and its value; REPORT_UNKNOWN where it has not been taken.
+/// Whether a measure of an added item holds, and its value; REPORT_UNKNOWN if it was not measured.
 ReportVerdict report_find(const Report *report, const char *item, const char *name, double *value);
 
-/// Where the report is.
+/// The path of the report.
 const char *report_folder(const Report *report);
 
 /// Writes the files and frees the page. *failed is the number of measures that do not hold.

@@ -1,10 +1,10 @@
-// Textures of the experiments: shown, and against what they did.
+// Textures of the experiments: shown, and correlated with results.
 #ifndef EXPERIMENTS_SHOW_TEXTURE_H
 #define EXPERIMENTS_SHOW_TEXTURE_H
 
 #include "experiments/lab.h"
 
-/// As it lies on the sheet, into the report.
+/// Adds the texture, as it lies on the sheet, to the report.
 void texture_show(Lab *lab, const SingeTexture *picture);
 
 /// The mean of its values.

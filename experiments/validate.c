@@ -1,4 +1,4 @@
-// singe validate: the physics against sources outside the project.
+// singe validate: compares the physics with independent sources.
 #include "experiments/validate.h"
 
 static const PageItem items[] = {

@@ -1,4 +1,4 @@
-// `singe validate`: a function per check of the physics against sources outside the project.
+// `singe validate`: a function per comparison of the physics with independent sources.
 #ifndef EXPERIMENTS_VALIDATE_H
 #define EXPERIMENTS_VALIDATE_H
 

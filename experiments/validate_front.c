@@ -1,5 +1,5 @@
-// The burning front against what sources say: materials by grammage, direction, resolution and time step; thin PMMA
-// against measurements and the formula of de Ris.
+// The burning front compared with sources: materials by grammage, direction, resolution and time step; thin PMMA with
+// measurements and the formula of de Ris.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -105,7 +105,7 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
     for (int i = 0; i < SHEETS && !result; i++) {
         SingeMaterialDef material = singe_default_material();
         StripResult strip;
-        // what is known of PMMA; all that stands for the flame stays office paper's
+        // known values of PMMA; parameters of the flame are those of office paper
         material.grammage = singe_param((float)(pmma_rho * bass_um[i] * 1e-6));
         material.specific_heat = singe_param((float)pmma_c);
         material.ignition_temperature = singe_param((float)pmma_vapour);

@@ -1,4 +1,4 @@
-// The heat equation against its solutions, and what the umbrella of eq 3 makes of it.
+// The heat equation compared with its solutions, and the effect of the umbrella of eq 3.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -98,7 +98,7 @@ static double spot(const void *context, double x, double y) {
     return 2 * exp(-(pow(x - centre[0], 2) + pow(y - centre[1], 2)) / (2 * centre[2] * centre[2]));
 }
 
-/// Variances along x and y of what both layers are warmer, weighted by area.
+/// Variances along x and y of both layers' temperature rise, weighted by area.
 static void variances(const SingeView *view, double out[2]) {
     double sum = 0, mean[2] = {0}, square[2] = {0};
     for (uint32_t i = 0; i < view->particle_count; i++) {
@@ -138,7 +138,7 @@ static SingeResult spread_measure(Lab *lab, const MeshCase *mesh, SingeHeatOpera
     return result;
 }
 
-/// docs/equations.md: what the umbrella makes of alpha along x on cells dx by dy of no thickness.
+/// docs/equations.md: the umbrella's effective alpha along x on cells dx by dy without thickness.
 static double umbrella_factor(double dx, double dy) {
     double q = hypot(dx, dy), r = q / 2;
     return (2 * dx + 2 * dx * dx / q + dx * dx / r) / (2 * dx + 2 * dy + 2 * q + 4 * r);

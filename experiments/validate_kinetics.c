@@ -1,4 +1,4 @@
-// Cellulose by Arrhenius kinetics, beside the threshold of eq 4; and the ledgers of heat and mass.
+// Cellulose by Arrhenius kinetics, compared with the threshold of eq 4; and the ledgers of heat and mass.
 //
 // Kashiwagi & Nambu (1992), as FDS has them: cellulose becomes char and gas without air (1) and with it (2), char
 // becomes ash (3). With x the share of the initial mass of each, in air at a steady rate of heating b:
@@ -6,7 +6,7 @@
 //     dx1/dt = -(k1 x1^1.8 + k2 x1^1.3),   dx2/dt = 0.24 k1 x1^1.8 + 0.21 k2 x1^1.3 - k3 x2,   dx3/dt = 0.03 k3 x2
 //     k = A exp(-E/(R T)),   T = 300 K + b t
 //
-// The simulation has one reaction (`pre_exponential`, `activation_energy`): it gets (2), with char for what is left.
+// The simulation has one reaction (`pre_exponential`, `activation_energy`): it gets (2), with char as the residue.
 #include <math.h>
 #include <stdio.h>
 
@@ -32,7 +32,8 @@ typedef struct KineticsRun {
     double peak, peak_rate, residue, half;
 } KineticsRun;
 
-/// The classical Runge-Kutta method in steps of so many kelvin, from 300 K to 1000 K. Peak and half by temperature.
+/// The classical Runge-Kutta method in steps of so many kelvin, from 300 K to 1000 K. Returns the temperatures of the
+/// peak and of the half.
 static KineticsRun kinetics_run(double kelvin_per_minute, double step, double *rate_at, int looks) {
     const double b = kelvin_per_minute / 60, h = step / b;
     Kinetics x = {1, 0, 0};
@@ -62,7 +63,7 @@ static KineticsRun kinetics_run(double kelvin_per_minute, double step, double *r
 
 static const double char_left = 0.21, one_a = 4.276e11, one_e = 160e3, one_order = 1.3;
 
-/// dx/dt = -A exp(-E/(R T)) x^1.3 of what can still burn, by Runge-Kutta as above; peak of the mass' loss.
+/// dx/dt = -A exp(-E/(R T)) x^1.3 of the burnable rest, by Runge-Kutta as above; returns the peak of the mass loss.
 static KineticsRun one_reaction(double kelvin_per_minute, double step) {
     const double b = kelvin_per_minute / 60, h = step / b, r = 8.314462618;
     double x = 1;
@@ -80,7 +81,7 @@ static KineticsRun one_reaction(double kelvin_per_minute, double step) {
     return run;
 }
 
-/// A furnace: everything is as hot as it says.
+/// A furnace: it sets the temperature everywhere.
 typedef struct Furnace {
     double pace, rate;
 } Furnace;

@@ -1,4 +1,5 @@
-// The shell's elasticity against theory: a clamped strip that sags, and a disc of two layers that shrink differently.
+// The shell's elasticity compared with theory: a clamped strip that sags, and a disc of two layers that shrink
+// differently.
 #include <math.h>
 #include <stdio.h>
 
@@ -14,7 +15,7 @@ typedef struct Beam {
     float cell;
 } Beam;
 
-/// Holds what lies over a rectangle of the grid, both layers of it.
+/// Holds both layers over a rectangle of the grid.
 static SingeResult hold(SingeSim *sim, const double from[2], const double to[2], double cell, uint32_t keys,
                         const SingePoseKey *path, SingeError *error) {
     float points[3 * 1024];
@@ -123,7 +124,7 @@ static SingeResult disc_bend(Lab *lab, double shrink, int cells, double principa
     grid.material.shrink_front = singe_param(0);
     grid.material.thickness = singe_param((float)disc_thickness);
     grid.material.damping = singe_param(4);
-    grid.solver.substeps = 0; // as stiff as it should be
+    grid.solver.substeps = 0; // full stiffness
     SingeSim *sim;
     SingeResult result = lab_build(lab, &grid, &sim, error);
     if (result) return result;
@@ -151,8 +152,8 @@ static double diagonal_poisson(const Stiffness *c) {
     return (c->along + c->coupled - 2 * c->shear) / (c->along + c->coupled + 2 * c->shear);
 }
 
-/// Pulls a strip by its ends, or shears it. Only its layer of centres has stiffness, as only that gives when the sheet
-/// bends. Reads strain and line force in the centre.
+/// Pulls a strip by its ends, or shears it. Only its layer of centres has stiffness, as only that layer is strained
+/// when the sheet bends. Reads strain and line force in the centre.
 static SingeResult pull_test(Lab *lab, bool shear, Stiffness *out, SingeError *error) {
     enum { ALONG = 30, ACROSS = 10, REACH = 2 };
     const double cell = 2e-3, length = ALONG * cell, width = ACROSS * cell;
