@@ -18,8 +18,8 @@ typedef struct Page {
     int count;
     const char *folder;       ///< the default of --output
     const char *title, *lead; ///< of the report
-    const char *const *
-        alone; ///< items, ends with NULL, that run after the others and one by one: they measure time, or need the measures of others
+    /// Items (the list ends with NULL) that run one by one after the others: they measure time, or need others' measures
+    const char *const *alone;
 } Page;
 
 /// Reads a command line and runs items into a report: all, or the one named by an operand (or `all`) or --only. Items

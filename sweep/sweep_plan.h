@@ -11,7 +11,7 @@ typedef enum PlanMethod {
     PLAN_GRID,            ///< every combination of the values; the last parameter varies fastest
     PLAN_LIST,            ///< the first values of all parameters, then the second, ...
     PLAN_RANDOM,          ///< each value independently
-    PLAN_LATIN_HYPERCUBE, ///< each parameter's range is cut into as many parts as there are rows, and each part is used once
+    PLAN_LATIN_HYPERCUBE, ///< each range is cut into as many parts as there are rows; each is used once
     PLAN_SHEETS,          ///< sheets that cannot meet, in separate rows
     PLAN_METHODS
 } PlanMethod;

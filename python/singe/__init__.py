@@ -9,8 +9,8 @@
     sim.advance(2)
     print(sim.temperature.max())
 
-Units are SI and kelvin. Arrays of a simulation show its own memory: read-only, never copied, and changed by each step.
-docs/python.md is the guide. What bears the name of a field of the C headers is what they say it is.
+Units are SI and kelvin. Arrays of a simulation are read-only views of its memory: they are not copied, and each step
+changes them. docs/python.md is the guide. Names of fields have the meaning that the C headers give them.
 """
 
 from ._abi import VERSION as __version__

@@ -1,4 +1,4 @@
-"""Python's values become the fields of Defs: numbers, names of enumerators, arrays, parameters that vary."""
+"""Converts Python's values to fields of Defs: numbers, names of enumerators, arrays, parameters that vary."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def default(struct: Any, init: str) -> Any:
 
 
 def floats(values: Any, width: int, what: str) -> np.ndarray:
-    """Contiguous float32 [n, width], or [n] where width is 0; ValueError names `what`."""
+    """Contiguous float32 [n, width], or [n] if width is 0; ValueError names `what`."""
     array = np.ascontiguousarray(values, dtype=np.float32)
     if array.ndim != (2 if width else 1) or (width and array.shape[1] != width):
         raise ValueError(f"{what} must have the shape [n{f', {width}' if width else ''}], not {list(array.shape)}")
@@ -53,7 +53,7 @@ def floats(values: Any, width: int, what: str) -> np.ndarray:
 
 
 def indices(values: Any, what: str) -> np.ndarray:
-    """Contiguous uint32 [n] of whole numbers that fit; ValueError names `what`."""
+    """Contiguous uint32 [n] from integers in range; ValueError names `what`."""
     array = np.asarray(values)
     if array.size == 0:
         return np.zeros(0, np.uint32)
@@ -65,7 +65,7 @@ def indices(values: Any, what: str) -> np.ndarray:
 
 
 def pointer(array: np.ndarray, kind: Any, keep: List[Any]) -> Any:
-    """A pointer to an array that `keep` holds for as long as the call lasts."""
+    """A pointer to an array that `keep` holds during the call."""
     keep.append(array)
     return array.ctypes.data_as(ctypes.POINTER(kind))
 
@@ -102,7 +102,7 @@ def _number(kind: Any, value: Any, what: str) -> Any:
 
 
 def assign(made: Any, values: Mapping[str, Any], keep: List[Any], sheet: Optional["Attributes"] = None) -> None:
-    """Sets fields of a Def by name. `sheet` takes arrays of parameters; without it they are refused."""
+    """Sets fields of a Def by name. `sheet` collects arrays of parameters; without it they are refused."""
     kinds = {name: kind for name, kind in made._fields_ if name not in _HIDDEN}
     for name, value in values.items():
         if name not in kinds:
@@ -149,7 +149,7 @@ def _colours(params: Any, value: Any, name: str, keep: List[Any], sheet: Optiona
 
 
 class Attributes:
-    """The named values of a sheet's vertices: the caller's, and those made of parameters that are arrays."""
+    """The attributes of a sheet: the caller's, and those made from parameters that are arrays."""
 
     def __init__(self, count: int, given: Mapping[str, Any]):
         self.count = count
@@ -173,7 +173,7 @@ class Attributes:
 
 
 def _param(value: Any, name: str, keep: List[Any], sheet: Optional[Attributes]) -> _abi.SingeParam:
-    """A parameter of a number, a Vary, or an array with a value for each vertex."""
+    """A parameter from a number, a Vary, or an array with a value per vertex."""
     made = _abi.SingeParam()
     if not isinstance(value, Vary):
         if np.ndim(value) == 0:

@@ -1,4 +1,4 @@
-"""Alembic from a cache, for pipelines that have nothing newer: shape, uv and velocity.
+"""Alembic from a cache, for pipelines without USD: shape, uv and velocity.
 
 Needs `pip install singe[alembic]`.
 USD and PLY keep every field; Alembic's readers drop scalars of vertices, so none are written (docs/formats.md).
@@ -31,7 +31,7 @@ def _modules() -> Any:
 
 
 def _names(cache: "Cache") -> List[str]:
-    """Of the sheets, each a name of its own: letters, digits and underscores."""
+    """A unique name for each sheet: letters, digits and underscores."""
     names: List[str] = []
     for number, sheet in enumerate(cache.scene["sheets"]):
         name = re.sub("[^A-Za-z0-9_]", "_", sheet["name"]) or "_"
@@ -42,7 +42,7 @@ def _names(cache: "Cache") -> List[str]:
 
 
 def _up(vectors: np.ndarray) -> np.ndarray:
-    """Alembic's y is up."""
+    """Rotates to Alembic's y up."""
     return np.ascontiguousarray(np.stack([vectors[:, 0], vectors[:, 2], -vectors[:, 1]], 1), np.float32)
 
 
@@ -81,7 +81,7 @@ class _Writer:
 
 def write(cache: "Cache", path: Union[str, "os.PathLike[str]", None] = None,
           progress: Optional[Callable[[int, int], None]] = None) -> pathlib.Path:
-    """What Cache.write_alembic says."""
+    """See Cache.write_alembic."""
     frames = cache.frames
     if frames != list(range(1, len(frames) + 1)) or not frames:
         raise errors.FormatError(f"{cache.folder} lacks frames: Alembic needs all from 1", "alembic")

@@ -119,7 +119,7 @@ class Cache:
 
     @property
     def frames(self) -> List[int]:
-        """The numbers of the frames that there are now, increasing; a run in progress adds to them."""
+        """The numbers of the existing frames, increasing; a run in progress adds to them."""
         pattern = re.compile(re.escape(self.name) + r"\.(\d{4,})\.ply")
         folder = self.folder / "ply"
         found = [pattern.fullmatch(path.name) for path in folder.iterdir()] if folder.is_dir() else []
@@ -147,7 +147,7 @@ class Cache:
 
     @property
     def stats(self) -> Dict[str, np.ndarray]:
-        """stats.csv: arrays by the names of its columns (docs/formats.md), an entry a frame."""
+        """stats.csv: arrays by the names of its columns (docs/formats.md), an entry per frame."""
         return self.table("stats")
 
     def table(self, name: str) -> Dict[str, np.ndarray]:
@@ -163,7 +163,7 @@ class Cache:
         return {title: column(rows[1:], i) for i, title in enumerate(rows[0])}
 
     def picture(self, number: int = -1) -> Optional[pathlib.Path]:
-        """The path of a frame's picture; None where the run has drawn none. -1: the last."""
+        """The path of a frame's picture; None if the run has drawn none. -1: the last."""
         numbers = self.frames
         if number < 0:
             number = numbers[number] if -number <= len(numbers) else 0
@@ -191,7 +191,7 @@ class Cache:
 
 
 def column(rows: List[List[str]], index: int) -> np.ndarray:
-    """A column of a table: floats, NaN where a cell is empty or "-"; texts where one is no number."""
+    """A column of a table: floats, NaN if a cell is empty or "-"; texts if one is not a number."""
     cells = [row[index] for row in rows]
     try:
         return np.array([float(cell) if cell not in ("", "-") else np.nan for cell in cells])

@@ -1,4 +1,4 @@
-"""The command `singe`, which is in the package: run, check, measure, render."""
+"""The command `singe` of the package: run, check, measure, render."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Path = Union[str, "os.PathLike[str]"]
 
 
 def command_path() -> pathlib.Path:
-    """The program: the one that the environment's SINGE_PROGRAM names, or else the one in the package.
+    """The path of the program: SINGE_PROGRAM of the environment, or the one in the package.
 
     Installers that drop the executable bit are put right. CommandMissingError where there is none.
     """
@@ -40,7 +40,7 @@ def command_path() -> pathlib.Path:
 
 
 def main() -> None:
-    """The console script: becomes the command."""
+    """The console script: replaces itself by the command."""
     try:
         path = str(command_path())
     except errors.CommandMissingError as error:
@@ -49,7 +49,7 @@ def main() -> None:
 
 
 class _Process:
-    """The command, running. Its standard error is read as it comes: warnings go to the logger."""
+    """A running command. Its standard error is read as it arrives: warnings go to the logger."""
 
     def __init__(self, arguments: Iterable[str]):
         # a session of its own, so that Ctrl-C comes to us and we say it once
@@ -78,7 +78,7 @@ class _Process:
         self.printed = self.child.stdout.read()
 
     def _stop(self) -> None:
-        """As Ctrl-C does: the command finishes its step and writes what it resumes from. A second one kills it."""
+        """Interrupts like Ctrl-C: the command finishes its step and writes a checkpoint. A second one kills it."""
         if self.child.poll() is None:
             self.child.send_signal(signal.SIGINT)
         try:
@@ -94,7 +94,7 @@ class _Process:
                 pipe.close()
 
     def finish(self, every: Callable[[], None]) -> str:
-        """Waits, and calls `every` ten times a second; what was printed. Raises what the command refuses."""
+        """Waits, and calls `every` ten times a second; returns the output. Raises the command's errors."""
         try:
             while True:
                 try:
@@ -127,7 +127,7 @@ def _options(frames: Any, threads: Optional[int], settings: Optional[Mapping[str
 
 
 def _plain(value: Any) -> Any:
-    """numpy's numbers and arrays as Python's."""
+    """Converts numpy's numbers and arrays to Python's."""
     if isinstance(value, (np.generic, np.ndarray)):
         return value.tolist()
     if isinstance(value, (list, tuple)):
@@ -136,13 +136,13 @@ def _plain(value: Any) -> Any:
 
 
 def _positional(path: Path) -> str:
-    """A path that no option is mistaken for."""
+    """A path that cannot be mistaken for an option."""
     text = os.fspath(path)
     return os.path.join(".", text) if text.startswith("-") else text
 
 
 class _Progress:
-    """Calls back with (frames done, frames asked for) as the run's own files grow."""
+    """Calls back with (frames done, frames in total) as the run's files grow."""
 
     def __init__(self, folder: pathlib.Path, call: Callable[[int, int], None]):
         self._folder, self._call, self._told, self._frames = folder, call, -1, 0
@@ -191,12 +191,12 @@ def run(scene: Path, out: Optional[Path] = None, *, frames: Optional[int] = None
 
 def check(scene: Path, *, frames: Optional[int] = None, threads: Optional[int] = None,
           settings: Optional[Mapping[str, Any]] = None) -> str:
-    """What the scene is made of and how long it will take, as text. Writes nothing. SceneError: it would not run."""
+    """Describes the scene and its expected time, as text. Writes nothing. SceneError: it would not run."""
     return _Process(["check", _positional(scene), *_options(frames, threads, settings)]).finish(lambda: None)
 
 
 def measure(folder: Path, frames: Optional[Tuple[int, int]] = None) -> Dict[str, np.ndarray]:
-    """The shape of the sheets of a cache, frame by frame: arrays by name (docs/cli.md, measure). NaN: not there."""
+    """The shape of the sheets of a cache, frame by frame: arrays by name (docs/cli.md, measure). NaN: undefined."""
     with tempfile.TemporaryDirectory() as place:
         table = os.path.join(place, "measure.csv")
         _Process(["measure", _positional(folder), "--csv", table, *_options(frames, None, None)]).finish(lambda: None)

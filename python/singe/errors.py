@@ -1,4 +1,4 @@
-"""Errors, each with the text of the library or of the command."""
+"""Exceptions, each with the message of the library or of the command."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import NamedTuple, Optional
 
 
 class Error(Exception):
-    """What the library refuses or cannot do. `str()` of it is the library's own text.
+    """An error of the library. `str()` of it is the library's message.
 
     `stage` says where it happened ("sheet", "heat", "dynamics", ...), `element` is the index of the cell, vertex or
     particle concerned, or -1.
@@ -31,7 +31,7 @@ class MeshError(Error, ValueError):
 
 
 class HandleError(Error, LookupError):
-    """An object was removed before."""
+    """The object has been removed."""
 
 
 class StateError(Error, RuntimeError):
@@ -39,7 +39,7 @@ class StateError(Error, RuntimeError):
 
 
 class DivergedError(Error, ArithmeticError):
-    """A stage of a step gave a value that is not finite. The simulation is as it was before that step."""
+    """A stage of a step produced a value that is not finite. The simulation is unchanged by that step."""
 
 
 class FormatError(Error, ValueError):
@@ -55,7 +55,7 @@ class LimitError(Error, ValueError):
 
 
 class Problem(NamedTuple):
-    """One error of a scene: where it is, counted from 1, and what it is."""
+    """One error of a scene: its location, counted from 1, and its message."""
 
     file: str
     line: int

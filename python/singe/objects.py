@@ -1,4 +1,4 @@
-"""Handles of what is in a simulation: sheets, sources, pins, colliders. And meshes before they are sheets."""
+"""Handles of objects in a simulation: sheets, sources, pins, colliders. Also meshes before they become sheets."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Grid(NamedTuple):
-    """What `Sim.sheet` takes: `sim.sheet(*singe.grid())`."""
+    """Arguments for `Sim.sheet`: `sim.sheet(*singe.grid())`."""
 
     points: npt.NDArray[np.float32]
     faces: npt.NDArray[np.uint32]
@@ -26,7 +26,7 @@ class Grid(NamedTuple):
 
 
 class Mesh:
-    """Quads that the library has made of a mesh; freed with the last array that shows them."""
+    """Quads that the library has made from a mesh; freed with the last array that refers to them."""
 
     def __init__(self, create: Any, made: Any):
         self.pointer = ctypes.c_void_p()
@@ -46,7 +46,7 @@ class Mesh:
             setattr(sheet, name, getattr(self.view, name))
 
     def became(self, count: int) -> npt.NDArray[np.int64]:
-        """[vertices of the input] which vertex of the sheet each is now; -1: of no face."""
+        """[vertices of the input] the sheet's vertex for each; -1: not in any face."""
         if not self.view.became:
             return np.where(np.arange(count) < self.view.vertex_count, np.arange(count), -1)
         now = shown(self.view.became, (self.view.source_count,), np.uint32, self).astype(np.int64)
@@ -55,7 +55,7 @@ class Mesh:
 
 
 def grid(size: Tuple[float, float] = (0.2, 0.2), cells: Tuple[int, int] = (50, 50), **options: Any) -> Grid:
-    """A flat rectangle of `cells` about the origin of the x-y plane, `size` in m, front upwards.
+    """A flat rectangle of `cells` around the origin of the x-y plane, `size` in m, front upwards.
 
     Options: `jitter`, of a cell, how far vertices lie off the grid at most (0.15); `displacement`, m, root mean square
     height of waves (0); `seed` (1).
@@ -71,7 +71,7 @@ def grid(size: Tuple[float, float] = (0.2, 0.2), cells: Tuple[int, int] = (50, 5
 
 def make_mesh(points: Any, faces: Any, uv: Any, corner_uv: Any, attributes: Attributes, options: Any,
               keep: List[Any]) -> Mesh:
-    """Quads of a caller's mesh. `faces` is [n, corners], or a list of faces of any sizes."""
+    """Makes quads from a caller's mesh. `faces` is [n, corners], or a list of faces of any sizes."""
     made = default(_abi.SingeMeshDef, "singe_init_mesh")
     assign(made, options, keep)
     made.log.write = log_callback
@@ -99,7 +99,7 @@ def make_mesh(points: Any, faces: Any, uv: Any, corner_uv: Any, attributes: Attr
 
 
 class Object:
-    """Something in a simulation. A handle of what was removed, or of another simulation, is refused."""
+    """The handle of an object. Handles of removed objects, or of another simulation, are refused."""
 
     _name = ""
 
@@ -121,7 +121,7 @@ class Placed(Object):
     """An object that can be moved and removed."""
 
     def remove(self) -> None:
-        """Takes it out of the simulation."""
+        """Removes it from the simulation."""
         self._sim._call(f"singe_sim_remove_{self._name}", self.id)
 
     def move(self, path: Sequence[Any]) -> None:
@@ -132,12 +132,12 @@ class Placed(Object):
 
 
 class Source(Placed):
-    """Something that heats."""
+    """A heat source."""
 
     _name = "source"
 
     def set_callback(self, callback: Optional[Callable[[StepView], Any]]) -> None:
-        """What heats, of a source of the kind `callback`, also after a load, as no snapshot has it; None: nothing.
+        """Sets the function of a `callback` source; None: no heat. Also necessary after a load: snapshots lack it.
 
         It is called in each step with a StepView, whose arrays show the particles as they are in it, and returns the
         flux into each layer in W/m2, a number or [particles], or (flux, conductance, temperature): conductance in
@@ -147,7 +147,7 @@ class Source(Placed):
         self._sim._set_callback(self.id, callback)
 
     def remove(self) -> None:
-        """Takes it out of the simulation."""
+        """Removes it from the simulation."""
         super().remove()
         self._sim._forget_callback(self.id)
 
@@ -158,7 +158,7 @@ class Collider(Placed):
     _name = "collider"
 
     def set_vertices(self, vertices: Any, time: float) -> None:
-        """Where the vertices of a deforming collider are at `time` (s): [vertices, 3] m in its own frame."""
+        """Sets the positions of a deforming collider's vertices at `time` (s): [vertices, 3] m in its own frame."""
         keep: List[Any] = []
         array = floats(vertices, 3, "vertices")
         wanted = self._sim._collider_sizes.get((self.id.index, self.id.generation))
@@ -170,20 +170,20 @@ class Collider(Placed):
 
 
 class Pin(Placed):
-    """What holds particles of a sheet."""
+    """Holds particles of a sheet."""
 
     _name = "pin"
 
     @property
     def particles(self) -> npt.NDArray[np.uint32]:
-        """[held] the particles that it holds, increasing; none before the commit."""
+        """[held] the held particles, increasing; none before the commit."""
         count = ctypes.c_uint32()
         with self._sim._locked() as handle:
             held = library.singe_sim_pin_particles(handle.pointer, self.id, ctypes.byref(count))
-            return shown(held, (count.value,), np.uint32, handle).copy()  # they go with the pin
+            return shown(held, (count.value,), np.uint32, handle).copy()  # freed with the pin
 
     def set_positions(self, positions: Any, time: float) -> None:
-        """Where what it holds is at `time` (s): [len(particles), 3] m, in their order."""
+        """Sets the positions of its particles at `time` (s): [len(particles), 3] m, in their order."""
         keep: List[Any] = []
         array = floats(positions, 3, "positions")
         if len(array) != len(self.particles):
@@ -192,8 +192,7 @@ class Pin(Placed):
 
 
 class Sheet(Object):
-    """A sheet. `became` says which of its vertices each vertex of the caller's mesh is, -1 for none; it is None after
-    a load."""
+    """A sheet. `became` maps the caller's vertices to those of the sheet, -1 for none; it is None after a load."""
 
     _name = "sheet"
 
@@ -209,7 +208,7 @@ class Sheet(Object):
 
     @property
     def vertices(self) -> slice:
-        """Its vertices in arrays, those of tears too: sim.position[sheet.vertices].
+        """Indices of its vertices, including those made by tears: sim.position[sheet.vertices].
 
         Empty before the commit."""
         r = self._range()
@@ -217,25 +216,25 @@ class Sheet(Object):
 
     @property
     def cells(self) -> slice:
-        """Its cells: sim.cells[sheet.cells]."""
+        """Indices of its cells: sim.cells[sheet.cells]."""
         r = self._range()
         return slice(r.cell_first, r.cell_first + r.cell_count)
 
     @property
     def centres(self) -> slice:
-        """The centres of its cells, which are particles: sim.position[sheet.centres]."""
+        """Indices of its cells' centres, which are particles: sim.position[sheet.centres]."""
         r = self._range()
         return slice(r.centre_first, r.centre_first + r.cell_count)
 
     def set_velocity(self, velocity: Any, first: int = 0) -> None:
-        """m/s of its vertices from `first` on: [n, 3]. From the next step on."""
+        """Sets the velocities of its vertices from `first` on: [n, 3] m/s. Takes effect in the next step."""
         keep: List[Any] = []
         array = floats(velocity, 3, "velocity")
         self._sim._call("singe_sim_set_velocity", self.id, first, len(array), pointer(array, ctypes.c_float, keep))
 
     def set_material(self, material: Any, share: Any = None) -> None:
-        """Another material for a region: share[vertices of the sheet], 0 (as it was) to 1 (as `material` says).
+        """Changes the material of a region: share[vertices of the sheet], 0 (unchanged) to 1 (`material`).
 
-        The simulation is built again; arrays that were read before go on showing what was then.
+        The simulation is rebuilt; earlier arrays keep their values.
         """
         self._sim._set_material(self, material, share)

@@ -1,4 +1,4 @@
-"""A quick picture of a surface for a notebook, with numpy alone: flat light, the colours of burning paper, embers."""
+"""A quick picture of a surface for a notebook, using only numpy: flat light, the colours of burning paper, embers."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _samples(surface: Any, pixels: np.ndarray, most: int = 8_000_000) -> Tuple[n
 
 
 def draw(surface: Any, width: int = 480, height: int = 360) -> np.ndarray:
-    """A picture [height, width, 3] of 8 bits of what is left of a surface, which fills it."""
+    """A picture [height, width, 3] of 8 bits; the remaining surface fills it."""
     picture = np.broadcast_to(_GROUND, (height * width, 3)).copy()
     if not len(surface.triangles):
         return picture.reshape(height, width, 3).astype(np.uint8)
@@ -92,6 +92,6 @@ def draw_png(surface: Any, width: int = 480, height: int = 360) -> bytes:
 
 
 def html_picture(data: bytes, caption: str) -> str:
-    """HTML with the picture inside."""
+    """HTML that contains the picture."""
     code = base64.b64encode(data).decode()
     return f'<figure><img src="data:image/png;base64,{code}"/><figcaption>{caption}</figcaption></figure>'

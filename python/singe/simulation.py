@@ -1,4 +1,4 @@
-"""A simulation: sheets, what lights and holds them, and steps."""
+"""A simulation: sheets, sources, pins, colliders and steps."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _SLICE = 16  # steps between which advance() can be interrupted
 
 
 class _Handle:
-    """A simulation of the library, destroyed when neither a Sim nor an array holds it any more."""
+    """A simulation of the library, destroyed when no Sim and no array refers to it any more."""
 
     def __init__(self, pointer_: ctypes.c_void_p):
         self.pointer = pointer_
@@ -109,7 +109,7 @@ class Sim(Views):
             raise_for(library.singe_sim_error(handle.pointer).contents)
 
     def _stepped(self, call: Callable[[_Handle], Result]) -> Result:
-        """`call`, of steps or the commit: aside where it may take long and Ctrl-C can interrupt this thread."""
+        """Runs `call`, steps or the commit; in another thread if it may take long and Ctrl-C can interrupt this one."""
         def timed(handle: _Handle) -> Result:
             begun, self._raised = time.perf_counter(), None
             try:
@@ -145,11 +145,11 @@ class Sim(Views):
         """Adds a sheet, before the commit.
 
         points: [vertices, 3] m. faces: [n, corners], or a list of faces of any sizes, counter-clockwise seen from the
-        front; triangles become quads. uv: [vertices, 2], or corner_uv [corners, 2] where the mesh has seams.
-        material: a name (singe.materials()), or a dict of parameters over the one named `base`; each is a number, an
-        array [vertices] or a singe.Vary. attributes: arrays [vertices] that parameters may follow by name. velocity:
-        m/s at the start. drop_pieces_below: m2, loose pieces smaller than this vanish. mesh: options of the repair:
-        {"quads": "split", "weld": 1e-4}.
+        front; triangles become quads. uv: [vertices, 2], or corner_uv [corners, 2] if the mesh has seams.
+        material: a name (singe.materials()), or a dict of parameters that override those of `base`; each is a
+        number, an array [vertices] or a singe.Vary. attributes: arrays [vertices] that parameters may follow by name.
+        velocity: m/s at the start. drop_pieces_below: m2, smaller loose pieces are removed. mesh: options of the
+        repair: {"quads": "split", "weld": 1e-4}.
         """
         keep: List[Any] = []
         points = floats(points, 3, "points")
@@ -164,13 +164,13 @@ class Sim(Views):
         return Sheet(self, id_, quads.became(len(points)))
 
     def commit(self) -> None:
-        """Builds what steps need. No sheet can be added after it."""
+        """Builds the shell and all buffers. No sheet can be added afterwards."""
         self._stepped(lambda handle: self._checked(handle, library.singe_sim_commit(handle.pointer)))
-        self._seconds = None  # which says nothing about steps
+        self._seconds = None  # not the time of a step
 
     def source(self, kind: str = "spot", *, path: Any = None, texture: Any = None, strength: Any = None,
                callback: Optional[Callback] = None, **fields: Any) -> Source:
-        """Adds something that heats: `spot`, `ball` (on a path), `texture` (a flux over uv) or `callback`.
+        """Adds a heat source: `spot`, `ball` (on a path), `texture` (a flux over uv) or `callback`.
 
         Fields are those of SingeSourceDef. path: rows (time, x, y, z) in s and m. texture: [rows, columns] 0 to 1.
         strength: rows (time, factor). callback: see Source.set_callback.
@@ -199,7 +199,7 @@ class Sim(Views):
             self._call("singe_sim_set_source_callback", id_, _abi.SingeFluxFn(), None)
             self._forget_callback(id_)
             return
-        own = weakref.ref(self)  # so that a Sim goes when nobody holds it
+        own = weakref.ref(self)  # so that a Sim is freed when nobody holds it
 
         def heat(_context: object, view: int, *sums: Any) -> None:
             sim = own()
@@ -220,12 +220,12 @@ class Sim(Views):
         self._callbacks.pop((id_.index, id_.generation), None)
 
     def _take_callbacks(self, other: "Sim") -> None:
-        """Those of another Sim of the same sources; C has copied what calls into the other one."""
+        """Takes the callbacks of another Sim with the same sources; C's copies still call the other one's."""
         for (index, generation), (callback, _) in list(other._callbacks.items()):
             self._set_callback(_abi.SingeSourceId(index, generation), callback)
 
     def spot(self, position: Vector, radius: float = 0.005, temperature: float = 1200, **fields: Any) -> Source:
-        """Adds a hot spot that stands still: position and radius in m, temperature in K; at any time.
+        """Adds a hot spot at rest, at any time: position and radius in m, temperature in K.
 
         Fields: `start` and `end` in s, `conductance` in W/(m2 K) (150), `falloff` in m (0.01).
         """
@@ -233,7 +233,7 @@ class Sim(Views):
 
     def pin(self, sheet: Sheet, points: Any = None, vertices: Any = None, radius: float = 0.005,
             path: Any = None) -> Pin:
-        """Holds vertices of the caller's mesh, and what is within `radius` (m) of points [n, 3] (m, at rest).
+        """Holds vertices of the caller's mesh, and particles within `radius` (m) of points [n, 3] (m, at rest).
 
         path: rows (time, x, y, z) or (time, x, y, z, qx, qy, qz, qw), relative to the pose at the time it is added.
         """
@@ -289,15 +289,15 @@ class Sim(Views):
         self._call("singe_sim_set_wind", ctypes.byref(made))
 
     def set_gravity(self, gravity: Vector) -> None:
-        """m/s2, from the next step on."""
+        """Sets gravity, m/s2, from the next step on."""
         self._call("singe_sim_set_gravity", (ctypes.c_float * 3)(*gravity))
 
     def set_pace(self, pace: float) -> None:
-        """Seconds of fire per second of motion, from the next step on."""
+        """Sets the seconds of fire per second of motion, from the next step on."""
         self._call("singe_sim_set_pace", float(pace))
 
     def set_ambient_temperature(self, temperature: float) -> None:
-        """K. The simulation is built again; arrays that were read before go on showing what was then."""
+        """Sets the temperature, K. The simulation is rebuilt; earlier arrays keep their values."""
         self._rebuilt("singe_sim_set_ambient_temperature", float(temperature))
 
     def _set_material(self, sheet: Sheet, material: Material, share: Any) -> None:
@@ -312,7 +312,7 @@ class Sim(Views):
         self._rebuilt("singe_sim_set_material", sheet.id, ctypes.byref(made), array)
 
     def _rebuilt(self, name: str, *arguments: Any) -> None:
-        """A call that frees what views show: made on a clone, so that arrays of the old one stay."""
+        """A call that frees memory of views, made on a clone, so that arrays of the old simulation remain valid."""
         copy = self.clone() if self.committed else self
         copy._call(name, *arguments)
         if copy is not self:
@@ -323,9 +323,9 @@ class Sim(Views):
     # time
 
     def step(self, n: int = 1) -> None:
-        """`n` steps of `time_step`. A step that fails changes nothing.
+        """Makes `n` steps of `time_step`. A step that fails changes nothing.
 
-        Ctrl-C ends it at once. A step that is under way then ends by itself, and calls of this simulation wait for it.
+        Ctrl-C ends the call at once. A step in progress then ends by itself, and later calls wait for it.
         """
         found: List[np.ndarray] = []
 
@@ -340,10 +340,10 @@ class Sim(Views):
             self._events = np.concatenate(found) if found else np.zeros(0, EVENT)
 
     def advance(self, seconds: float, steps_max: int = 0) -> int:
-        """As many steps as fit in `seconds` plus what earlier calls left; returns how many.
+        """Makes as many steps as fit in `seconds` plus the remainder of earlier calls; returns their number.
 
-        With `steps_max` whole steps beyond that many are dropped. Ctrl-C ends it at once, and what is left of `seconds`
-        is lost but for the steps under way, 16 at most without `steps_max`: they end by themselves.
+        Whole steps beyond `steps_max` are dropped. Ctrl-C ends the call at once; the rest of `seconds` is lost, except
+        for steps in progress, at most 16 without `steps_max`, which end by themselves.
         """
         whole = float(seconds)
         part = whole if steps_max else _SLICE * (self._time_step or self._mean_step() or 1e-3)
@@ -382,27 +382,27 @@ class Sim(Views):
         PIECE_FREED), `element` (the particle, or the piece's id), `time` (s), `position` ([3] m). A copy."""
         return self._events.copy()
 
-    # what is read
+    # reading
 
     @property
     def time(self) -> float:
-        """s."""
+        """Time of the simulation, s."""
         return self._view()[0].time
 
     @property
     def steps(self) -> int:
-        """Steps done."""
+        """Number of steps done."""
         return self._view()[0].step
 
     @property
     def remainder(self) -> float:
-        """s that the last advance() left."""
+        """The remainder of the last advance(), s."""
         with self._locked() as handle:
             return library.singe_sim_remainder(handle.pointer)
 
     @property
     def topology_version(self) -> int:
-        """Grows whenever something is removed or torn."""
+        """Increases whenever something is removed or torn."""
         return self._view()[0].topology_version
 
     @property
@@ -412,15 +412,15 @@ class Sim(Views):
 
     @property
     def alive(self) -> np.ndarray:
-        """[particles] bool: what is still part of a sheet. A copy."""
+        """[particles] bool: whether a particle is still part of a sheet. A copy."""
         return (self.particle_flags & 1) != 0
 
     def stats(self) -> Dict[str, Any]:
-        """Numbers about the present state, by the names of SingeStats (include/singe/sim.h)."""
+        """Statistics of the current state, by the names of SingeStats (include/singe/sim.h)."""
         return as_dict(self._read(_abi.SingeStats, "singe_sim_read_stats"))
 
     def counts(self) -> Dict[str, Any]:
-        """Counts of its elements and its memory, by the names of SingeCounts."""
+        """Counts of elements, and memory, by the names of SingeCounts."""
         return as_dict(self._read(_abi.SingeCounts, "singe_sim_read_counts"))
 
     def timers(self) -> Dict[str, Any]:
@@ -428,13 +428,13 @@ class Sim(Views):
         return as_dict(self._read(_abi.SingeTimers, "singe_sim_read_timers"))
 
     def surface(self) -> Surface:
-        """The drawn surface of now: a mesh of its own, cut where the sheets have burnt."""
+        """The current drawn surface: a mesh of its own, cut where the sheets have burnt."""
         owner = OwnedSurface()
         self._call("singe_sim_draw", ctypes.byref(owner.struct), ctypes.sizeof(owner.struct))
         return Surface(owner, self.time)
 
     def gas(self) -> Gas:
-        """The gas of now; without `gas` it has no cells."""
+        """The current gas; without `gas` it has no cells."""
         made = _abi.SingeGas()
         with self._locked() as handle:
             library.singe_sim_read_gas(handle.pointer, ctypes.byref(made), ctypes.sizeof(made))
@@ -466,7 +466,7 @@ class Sim(Views):
     # copies
 
     def save(self, path: Union[str, "os.PathLike[str]", None] = None) -> bytes:
-        """The whole simulation as bytes; with `path` also in a file, which is whole or as it was."""
+        """The whole simulation as bytes; with `path` also written to a file, which is replaced whole or not at all."""
         data, size = ctypes.POINTER(ctypes.c_uint8)(), ctypes.c_size_t()
         with self._locked() as handle:
             self._checked(handle, library.singe_sim_save(handle.pointer, ctypes.byref(data), ctypes.byref(size)))
@@ -485,7 +485,7 @@ class Sim(Views):
 
     @classmethod
     def load(cls, saved: Union[bytes, str, "os.PathLike[str]"], threads: int = 1) -> "Sim":
-        """A simulation of saved bytes or a file of them. It steps to the bit as the saved one would have."""
+        """Loads a simulation from saved bytes or a file. Its steps give the same bits as those of the saved one."""
         data = saved if isinstance(saved, (bytes, bytearray, memoryview)) else pathlib.Path(saved).read_bytes()
         hooks = default(_abi.SingeSimDef, "singe_init_sim")
         hooks.log.write = log_callback
@@ -510,7 +510,7 @@ class Sim(Views):
         return Sim.load, (self.save(),)
 
     def close(self) -> None:
-        """Lets go of the simulation. Its memory goes with the last array that shows it."""
+        """Releases the simulation. Its memory is freed with the last array that refers to it."""
         with self._lock:
             self._handle = None
 
@@ -534,7 +534,7 @@ class Sim(Views):
 
 
 def _now(sheet: Sheet, vertices: np.ndarray) -> np.ndarray:
-    """What vertices of the caller's mesh are in the sheet; those of no face are left out."""
+    """Maps vertices of the caller's mesh to the sheet; vertices without a face are left out."""
     if sheet.became is None:
         return vertices
     if len(vertices) and vertices.max() >= len(sheet.became):
@@ -555,7 +555,7 @@ def _material(material: Material, keep: List[Any], sheet: Optional[Attributes]) 
 
 
 def materials() -> List[str]:
-    """The names of the materials that Singe brings along."""
+    """The names of the built-in materials."""
     names: List[str] = []
     while True:
         name = library.singe_material_preset_name(len(names))

@@ -1,4 +1,4 @@
-"""What is read from a simulation: arrays that are the simulation's own memory, the drawn surface, the gas.
+"""Data read from a simulation: arrays that are views of its memory, the drawn surface, the gas.
 
 Every array is read-only and copies nothing. It keeps what it shows alive: it may be used after `Sim.close()` and after
 the simulation is gone. Its contents change with every step; `.copy()` keeps those of now.
@@ -75,7 +75,7 @@ class Views:
 
     @property
     def fuel(self) -> Floats:
-        """[particles] 1 unburnt, 0 where all has pyrolysed to char and ash."""
+        """[particles] 1 unburnt, 0 fully pyrolysed to char and ash."""
         return self._array("fuel", np.float32)
 
     @property
@@ -85,7 +85,7 @@ class Views:
 
     @property
     def temperature_peak(self) -> Floats:
-        """[particles] K, highest so far."""
+        """[particles] K, peak so far."""
         return self._array("temperature_peak", np.float32)
 
     @property
@@ -95,17 +95,17 @@ class Views:
 
     @property
     def time_ignited(self) -> Floats:
-        """[particles] s; -1 before."""
+        """[particles] time of ignition, s; -1 before."""
         return self._array("time_ignited", np.float32)
 
     @property
     def time_burnt(self) -> Floats:
-        """[particles] s, when so little was left that it goes; -1 before."""
+        """[particles] s, time at which the mass fell below m_loss; -1 before."""
         return self._array("time_burnt", np.float32)
 
     @property
     def piece(self) -> Integers:
-        """[particles] id of the connected piece; -1 where it is gone."""
+        """[particles] id of the connected piece; -1 if the particle is gone."""
         return self._array("piece", np.int32)
 
     @property
@@ -125,7 +125,7 @@ class Views:
 
     @property
     def line_force(self) -> Optional[Floats]:
-        """[cells, 6] N/m, by which sheets tear, in rest coordinates: xx, yy, zz, yz, zx, xy. None where none can."""
+        """[cells, 6] N/m, line force for tears, in rest coordinates: xx, yy, zz, yz, zx, xy. None without tears."""
         view, keeper = self._view()
         return shown(view.line_force, (view.cell_count, 6), np.float32, keeper) if view.line_force else None
 
@@ -156,7 +156,7 @@ class Views:
 
 
 class StepView(Views):
-    """What the callback of a source sees: the arrays of a simulation within a step, and `time` in s."""
+    """The view of a source's callback: the arrays of a simulation within a step, and `time` in s."""
 
     def __init__(self, view: _abi.SingeView, keeper: object):
         self._shown = view, keeper
@@ -167,7 +167,7 @@ class StepView(Views):
 
 
 def add_fluxes(returned: Any, sums: Any, count: int) -> None:
-    """Adds what a callback returned to the library's sums: flux, conductance, conductance times temperature."""
+    """Adds a callback's result to the library's sums: flux, conductance, conductance times temperature."""
     parts = returned if isinstance(returned, tuple) else (returned, 0, 0)
     if len(parts) != 3:
         raise ValueError(f"a callback returns a flux, or (flux, conductance, temperature), not {len(parts)} parts")
@@ -180,7 +180,7 @@ def add_fluxes(returned: Any, sums: Any, count: int) -> None:
 
 
 class Surface:
-    """The drawn surface of a simulation at one time, as the cache has it. Its arrays stay as they are.
+    """The drawn surface of a simulation at one time, as in the cache. Its arrays do not change.
 
     position, normal, velocity, rest_position: [vertices, 3] m, unit, m/s, m. uv: [vertices, 2]. temperature,
     temperature_peak: [vertices] K. mass, char_fraction, ash_fraction: [vertices] fractions of the initial mass.
@@ -225,7 +225,7 @@ class Surface:
 
 
 class OwnedSurface:
-    """A surface of the library, freed with the last array that shows it."""
+    """A surface of the library, freed with the last array that refers to it."""
 
     def __init__(self) -> None:
         self.struct = _abi.SingeSurface()
@@ -236,7 +236,7 @@ class OwnedSurface:
 
 
 class Gas:
-    """The gas about what burns: cubes of side `cell` (m), the first of which has its lower corner at `origin` (m).
+    """The gas around the sheets: cubes of side `cell` (m); the first has its lower corner at `origin` (m).
 
     Arrays are indexed [z, y, x]. temperature: K. smoke: kg/m3 of soot. flame: W/m3. velocity: [z, y, x, 3] m/s. They
     are the simulation's, and the next step writes to them: read them before it, or copy.
