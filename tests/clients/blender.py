@@ -1,7 +1,7 @@
 """A burn by Singe in Blender (PyPI's bpy, 4.5 to 5.2): every value, the camera, blur from velocities, and pictures to look at.
 
-usage: blender.py SINGE FOLDER    FOLDER is emptied; its pictures are sheet.png, gas-flame.png, gas-blackbody.png and
-preview.png, Singe's own
+usage: blender.py SINGE FOLDER    FOLDER is emptied; its pictures are sheet.png, gas-flame.png, gas-blackbody.png,
+night.png and preview.png, Singe's own
 """
 
 import math
@@ -63,8 +63,8 @@ def check_values(scene, out):
             uv = np.empty(2 * len(mesh.loops), np.float32)
             mesh.attributes["st"].data.foreach_get("vector", uv)
             same(uv.reshape(-1, 2), cache.stack("s t")[corners], (name, frame, "uv"))
-        things = bpy.data.objects["shape1"].evaluated_get(graph)
-        same(values(things.data, "position", 3, np.float32), body(frame)[0], ("body", frame))
+        moving = bpy.data.objects["shape1"].evaluated_get(graph)
+        same(values(moving.data, "position", 3, np.float32), body(frame)[0], ("body", frame))
     print("every value of frames %s, counts of %d" % (CHECKED, FRAMES))
 
 
@@ -123,6 +123,21 @@ def check_gas(scene, folder, sharp):
     assert alike > 0.7
 
 
+def check_gas_by_night(scene, folder):
+    """A Principled Volume with its own tint: in a room that only the fire lights, exposed for it."""
+    sky, sun, gas = scene.world.node_tree.nodes["Background"].inputs[1], bpy.data.objects["sun"], bpy.data.objects["gas"]
+    gas_material(Temperature=1, Blackbody_Intensity=1)
+    sky.default_value, sun.hide_render, scene.view_settings.exposure = 0, True, 7
+    flame = (slice(150, 200), slice(290, 345), slice(0, 3))
+    gas.hide_render = True
+    dark = draw(scene, os.path.join(folder, "night-without.png"), False)[flame].mean((0, 1))
+    gas.hide_render = False
+    red, green, blue = draw(scene, os.path.join(folder, "night.png"), False)[flame].mean((0, 1)) - dark
+    print("by night, at exposure 7, the flame adds %.3f, %.3f, %.3f there" % (red, green, blue))
+    assert red > 0.05 and red > green > blue
+    sky.default_value, sun.hide_render, scene.view_settings.exposure = 1, False, 0
+
+
 def check_gas_blur(scene, folder):
     """Flames are blurred by the velocity of the gas: all else that moves is blurred in both pictures."""
     gas = bpy.data.objects["gas"].data
@@ -171,6 +186,8 @@ def main():
     assert difference > 1e-4 + 20 * again
     gas.hide_render = False
     check_gas(scene, folder, sharp)
+    check_gas_by_night(scene, folder)
+    light_by_flame()
     check_gas_blur(scene, folder)
     check_gone(singe, folder)
     print("Blender %s: pictures in %s" % (bpy.app.version_string, folder))
