@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks that every relative link of the Markdown files leads to a file and, where it names one, to a heading there; and
-that every folder of C sources has a README.md, which says what it is for.
+"""Checks that every relative link of the Markdown files leads to a file and, where it names one, to a heading there;
+that source files which they name exist; and that every folder of C sources has a README.md, which says what it is for.
 
 usage: check_links.py ROOT
 """
@@ -10,6 +10,7 @@ import re
 import sys
 
 LINK = re.compile(r"\]\(([^)\s]+)\)")
+SOURCE = re.compile(r"`((?:[\w-]+/)*[a-z][a-z0-9_]*\.(?:c|h|def|py|sh))`")  # `_v3.c` and `formats/NAME.c` are no names
 CODE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 SKIPPED = re.compile(r"^(build.*|out|\..*|node_modules)$")
 
@@ -30,14 +31,29 @@ def silent_folders(root):
             and not (root / f / "README.md").exists()]
 
 
+def sources(root):
+    """Source files by their names, and by every end of their paths."""
+    found = set()
+    for file in root.rglob("*.*"):
+        parts = file.relative_to(root).parts
+        if file.suffix in (".c", ".h", ".def", ".py", ".sh") and not any(SKIPPED.match(part) for part in parts[:-1]):
+            found.update("/".join(parts[i:]) for i in range(len(parts)))
+    return found
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
     files = [f for f in sorted(root.rglob("*.md")) if not any(SKIPPED.match(p) for p in f.relative_to(root).parts[:-1])]
     texts = {f.resolve(): f.read_text(encoding="utf-8") for f in files}
     bad = links = 0
+    known = sources(root)
     for file in files:
         body = CODE.sub(lambda match: "\n" * match.group().count("\n"), texts[file.resolve()])
         for number, line in enumerate(body.split("\n"), 1):
+            for name in SOURCE.findall(line):
+                if name not in known and file.name != "CHANGELOG.md":
+                    print(f"{file.relative_to(root)}:{number}: there is no {name}")
+                    bad += 1
             for link in LINK.findall(re.sub(r"`[^`]*`", "", line)):
                 if re.match(r"[a-z]+:", link):
                     continue

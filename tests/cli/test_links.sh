@@ -25,5 +25,8 @@ expect bad "$good [none](none.md)"
 expect bad "$good [none](../src/heat/README.md#none)"
 expect bad "$good [none](#none)"
 expect bad 'no link at all'
+expect good "$good \`heat.c\` \`heat/heat.c\` \`src/NAME.c\` \`_v3.c\`"
+expect bad "$good \`cold.c\`"
+expect bad "$good \`burn/heat.c\`"
 mkdir "$tree"/src/burn && touch "$tree"/src/burn/burn.c
 expect bad "$good"
