@@ -26,7 +26,8 @@ int main(void) {
     singe_mesh_fill_sheet(mesh, &sheet);
     int failed = singe_sim_add_sheet(sim, &sheet, &corners.sheet) || singe_sim_add_pin(sim, &corners, NULL) ||
                  singe_sim_add_source(sim, &match, NULL) || singe_sim_commit(sim);
-    for (int frame = 1; frame <= 48 && !failed && !(failed = singe_sim_advance(sim, 1.0 / 24, 0, NULL)); frame++) {
+    for (int frame = 1; frame <= 48 && !failed; frame++) {
+        failed = singe_sim_advance(sim, 1.0 / 24, 0, NULL);
         const SingeView view = singe_sim_view(sim);
         float lowest = INFINITY, hottest = 0;
         for (uint32_t i = 0; i < view.particle_count; i++)
