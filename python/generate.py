@@ -188,7 +188,7 @@ def wrapped(head, items, tail):
 
 def written(reader, include):
     version = re.search(r'#define SINGE_VERSION "(.*)"', (include / "singe/base.h").read_text()).group(1)
-    out = [HEAD, f'VERSION = "{version}"\n', "# by the name of the enumeration, \"\" for what has none", "ENUMS = {"]
+    out = [HEAD, f'VERSION = "{version}"\n', "# by the name of the enumeration, \"\" for unnamed ones", "ENUMS = {"]
     for name, values in reader.enums.items():
         out.append(wrapped(f'    "{name}": {{', [f'"{key}": {value}' for key, value in values.items()], "},"))
     out.append("}\n")

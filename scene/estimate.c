@@ -61,7 +61,7 @@ static double gas_cells(const Scene *scene, const SceneAssets *assets) {
     double cells = 1;
     for (int i = 0; i < 3; i++) {
         const double room = i == 2 ? gas_margin + (double)scene->sim.gas.height : 2 * gas_margin;
-        cells *= (fmax(box.high[i] - box.low[i], 0) + room) / cell + 8; // a multiple of 8
+        cells *= (fmax(box.high[i] - box.low[i], 0) + room) / cell + 8; // at most a multiple of 8
     }
     return fmin(cells, gas_cells_max);
 }

@@ -102,7 +102,7 @@ typedef struct SceneSheet {
     SceneFile picture;       ///< drawn on both sides, may be absent
     float colour[3];         ///< linear tint
     float transmittance;     ///< share of light transmitted, in the preview
-    float scale;             ///< times what `units` says
+    float scale;             ///< factor, in addition to `units`
     int units;               ///< SceneUnits of the mesh file
     int up;                  ///< SceneUp of the mesh file
     float weld;              ///< m, or 0 for MESH_WELD of the size
@@ -130,7 +130,7 @@ typedef struct SceneMotion {
     bool given;
     SceneFile mesh; ///< with a run of # for the number
     int first;      ///< number of the file of frame 1
-    float scale;    ///< times what `units` says
+    float scale;    ///< factor, in addition to `units`
     int units;      ///< SceneUnits of the files
     int up;         ///< SceneUp of the files
 } SceneMotion;
@@ -139,7 +139,7 @@ typedef struct SceneCollider {
     SceneLocation location;
     SingeColliderDef def; ///< its pointers are empty
     SceneFile mesh;       ///< of a mesh
-    float scale;          ///< times what `units` says
+    float scale;          ///< factor, in addition to `units`
     int units;            ///< SceneUnits of the mesh file
     SceneMotion motion;   ///< of a mesh that deforms, in place of `mesh`
     SceneFile picture;    ///< of a heightfield
@@ -246,8 +246,8 @@ typedef struct Scene {
 SINGE_NODISCARD SingeResult scene_read(const char *path, const char *const *sets, int set_count, Scene **scene,
                                        SceneMessages *messages);
 
-/// The same from memory. `name` is used in messages. Files are read relative to `base_dir`; NULL: the existence of
-/// files is not checked.
+/// The same from memory. `name` is used in messages. Files are read relative to `base_dir`; NULL: files are neither
+/// checked nor read.
 SINGE_NODISCARD SingeResult scene_parse(const char *name, const char *bytes, size_t size, const char *base_dir,
                                         const char *const *sets, int set_count, Scene **scene, SceneMessages *messages);
 
@@ -345,8 +345,8 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
 SINGE_NODISCARD SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const SingeSimDef *hooks,
                                         SingeSim **sim, SceneMessages *messages);
 
-/// Sets the positions at the end of frame `frame` (from 1) of colliders and pins that move with meshes. Call it before
-/// the first step of each frame. `assets` hold the bonds of pins.
+/// Sets the positions at the end of frame `frame` (from 1) of colliders and pins that move with meshes. This is the
+/// start of the next frame. Call it before the first step of each frame. `assets` hold the bonds of pins.
 SINGE_NODISCARD SingeResult scene_follow(const Scene *scene, SceneAssets *assets, SingeSim *sim, int frame,
                                          SingeError *error);
 
@@ -359,8 +359,8 @@ void scene_frame(Scene *scene, const SceneAssets *assets);
 /// Fills *def; the scene and the assets must outlive it. Threads: 1. Shapes: none (scene_shapes).
 void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *def);
 
-/// Writes the visible colliders (planes are not shapes; see the ground) and hot balls at a time, at most `max`, and
-/// returns their number. shapes may be NULL when max is 0. They point into the assets.
+/// Writes at most `max` shapes of a time: visible colliders (planes are not shapes; see the ground) and hot balls.
+/// Returns how many there are in total, which may be more. shapes may be NULL if max is 0. They point into the assets.
 uint32_t scene_shapes(const Scene *scene, const SceneAssets *assets, double time, PreviewShape *shapes, uint32_t max);
 
 /// The shape at a slot: slots are the scene's colliders, then its sources. False if nothing is drawn at that time.

@@ -60,7 +60,7 @@ typedef struct Reader {
     SceneArena *arena;
     SceneText *text;
     SceneMessages *messages;
-    const char *base_dir; ///< NULL: files are not looked for
+    const char *base_dir; ///< NULL: files are neither checked nor read
     const char *prefix;   ///< from base_dir to the folder of the current material file, "" or ending in a slash
     const struct BaseChain *chain; ///< the material files being read (base.c)
     Scene *scene;
@@ -79,7 +79,7 @@ typedef struct Schema {
     /// (NULL: none). A bare word in place of the map is that choice. NULL: no such key.
     const char *choice;
     void (*chosen)(void *object); ///< NULL: nothing
-    /// Fills in the defaults; false when out of memory. NULL: zeros, or what the enclosing map has set.
+    /// Fills in the defaults; false when out of memory. NULL: zeros, or the values set by the enclosing map.
     bool (*defaults)(SceneArena *arena, void *object);
     /// Checks that involve several rows.
     void (*finish)(Reader *reader, const Node *map, void *object);

@@ -9,7 +9,7 @@
 #define DEGREE (3.14159265358979323846 / 180)
 #define ROWS(table) .rows = (table), .row_count = (int)(sizeof(table) / sizeof *(table))
 
-// ranges, in held units, never wider than what the library takes (tests/scene/test_ranges.c)
+// ranges, in held units, never wider than the library's (tests/scene/test_ranges.c)
 #define MUCH 1e9
 #define ANY .min = -1e6, .max = 1e6
 #define LOCATION .min = -1e4, .max = 1e4 // of drawn objects

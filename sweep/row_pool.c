@@ -200,15 +200,27 @@ static int running_count(const Pool *pool) {
     return running;
 }
 
-/// A row that another process is running goes to the end of the queue.
+/// Takes the next row that no other process is running; such rows go to the end of the queue. False if there is none.
+static bool take_row(Pool *pool, uint32_t *row, RowState *state) {
+    for (uint32_t left = pool->queued - pool->next; left > 0; left--) {
+        uint32_t *first = &pool->queue[pool->next];
+        *row = *first, *state = sweep_row_state(pool->sweep, *row);
+        if (*state != ROW_ELSEWHERE) {
+            pool->next++;
+            return true;
+        }
+        memmove(first, first + 1, (pool->queued - pool->next - 1) * sizeof *first);
+        pool->queue[pool->queued - 1] = *row;
+    }
+    return false;
+}
+
 static void fill_slots(Pool *pool) {
     for (int i = 0; i < pool->slot_count && !pool->stopping; i++) {
-        if (pool->slots[i].stage != STAGE_IDLE || pool->next == pool->queued) continue;
-        const uint32_t row = pool->queue[pool->next];
-        const RowState state = sweep_row_state(pool->sweep, row);
-        if (state == ROW_ELSEWHERE) continue;
-        pool->next++;
-        if (state == ROW_COMPLETE) pool->complete++; // by that process
+        uint32_t row;
+        RowState state;
+        if (pool->slots[i].stage != STAGE_IDLE || !take_row(pool, &row, &state)) continue;
+        if (state == ROW_COMPLETE) pool->complete++; // by another process
         else begin_row(pool, &pool->slots[i], row);
     }
 }

@@ -1,6 +1,6 @@
 // The rows of method `sheets`: sheets that can meet are in one row, those that cannot are in different ones.
 //
-// Two sheets can meet if their boxes at the start are nearer than a margin. Distances along gravity count as zero: a
+// Two sheets can meet if their boxes at the start are at most a margin apart. Distances along gravity count as zero: a
 // sheet above may fall. This is a guess; the report checks the caches (sheet_clearance.c).
 #include <math.h>
 #include <stdio.h>

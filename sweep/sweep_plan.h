@@ -51,7 +51,7 @@ typedef struct Plan {
     char *scene;       ///< path of the scene
     PlanMethod method;
     uint32_t samples, seed;
-    double margin; ///< m, of PLAN_SHEETS: sheets nearer than this can meet; negative: not given
+    double margin; ///< m, of PLAN_SHEETS: sheets at most this far apart can meet; negative: not given
     PlanTarget target;
     PlanSearch search;
     uint32_t evaluations; ///< max rows of a fit

@@ -5,7 +5,7 @@ from ctypes import (CFUNCTYPE, POINTER, Structure, c_bool, c_char, c_char_p, c_d
 
 VERSION = "0.2.0"
 
-# by the name of the enumeration, "" for what has none
+# by the name of the enumeration, "" for unnamed ones
 ENUMS = {
     "SingeResult": {"SINGE_OK": 0, "SINGE_ERROR_ARGUMENT": 1, "SINGE_ERROR_MEMORY": 2, "SINGE_ERROR_MESH": 3,
                     "SINGE_ERROR_HANDLE": 4, "SINGE_ERROR_STATE": 5, "SINGE_ERROR_DIVERGED": 6,

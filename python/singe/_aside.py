@@ -13,7 +13,7 @@ LONG = 0.005  # s: from here on a thread's 0.1 ms does not matter
 
 
 class Aside(Generic[Result]):
-    """`call(handle)` within `enter()`, in another thread. `wait` returns its result, or raises what it has raised.
+    """`call(handle)` within `enter()`, in another thread. `wait` returns its result, or raises its exception.
 
     Whatever ends `wait` early, as Ctrl-C does, leaves a call under way to its end, with the simulation locked until
     then. A call that has not begun never does. The interpreter ends after the call.

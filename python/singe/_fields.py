@@ -14,7 +14,7 @@ from . import _abi
 from ._library import library
 
 COLOURS = ("red", "green", "blue", "yellow")
-# counts and pointers that arrays set, and what is no business of a caller in Python
+# counts and pointers that arrays set, and fields that Python callers do not need
 _HIDDEN = {"struct_size", "user_data", "allocator", "log", "tasks", "callback", "callback_context"}
 
 

@@ -51,7 +51,7 @@ class _Writer:
         alembic3d, self.imath = _modules()
         self.geom = alembic3d.AbcGeom
         step = 1 / cache.scene["fps"]
-        # frame f is at f/fps, as other programs count; the DCC's rate is only told
+        # frame f is at f/fps, as in other programs; the DCC's rate is only information
         self.archive = alembic3d.Abc.CreateArchiveWithInfo(path, float(cache.scene["fps"]), "Singe", cache.name)
         sampling = self.archive.addTimeSampling(alembic3d.AbcCoreAbstract.TimeSampling(step, step))
         self.meshes = [self.geom.OPolyMesh(self.archive.getTop(), name) for name in _names(cache)]

@@ -27,7 +27,7 @@ Path = Union[str, "os.PathLike[str]"]
 def command_path() -> pathlib.Path:
     """The path of the program: SINGE_PROGRAM of the environment, or the one in the package.
 
-    Installers that drop the executable bit are put right. CommandMissingError where there is none.
+    Restores an executable bit that installers dropped. CommandMissingError if there is no program.
     """
     named = os.environ.get("SINGE_PROGRAM")
     path = pathlib.Path(named) if named else pathlib.Path(__file__).with_name("bin") / "singe"
@@ -177,7 +177,7 @@ def run(scene: Path, out: Optional[Path] = None, *, frames: Optional[int] = None
 
     settings: values of the scene to override, such as {"pace": 8, "sheets.0.grid.cells": [40, 60]}. progress: called
     with (frames done, frames). Ctrl-C, or an exception in `progress`, lets the command write a checkpoint, from which
-    resume=True goes on. SceneError has the file, line and column of what a scene has wrong.
+    resume=True goes on. SceneError has file, line and column of each error.
     """
     folder = pathlib.Path(out) if out is not None else pathlib.Path("out") / pathlib.Path(scene).stem
     arguments = ["run", _positional(scene), "-o", _positional(folder), *_options(frames, threads, settings)]

@@ -137,7 +137,7 @@ class Sim(Views):
             library.singe_sim_read_view(handle.pointer, ctypes.byref(made), ctypes.sizeof(made))
             return made, handle
 
-    # what is in it
+    # objects
 
     def sheet(self, points: Any, faces: Any, uv: Any = None, material: Material = "office-paper", *,
               corner_uv: Any = None, name: Optional[str] = None, velocity: Vector = (0, 0, 0),

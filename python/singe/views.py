@@ -1,7 +1,7 @@
 """Data read from a simulation: arrays that are views of its memory, the drawn surface, the gas.
 
-Every array is read-only and copies nothing. It keeps what it shows alive: it may be used after `Sim.close()` and after
-the simulation is gone. Its contents change with every step; `.copy()` keeps those of now.
+Every array is read-only and copies nothing. It keeps its memory alive: it may be used after `Sim.close()` and after the
+simulation is gone. Its contents change with every step; `.copy()` keeps the current ones.
 """
 
 from __future__ import annotations

@@ -176,8 +176,9 @@ static bool stands(const Row *row, int low, int high) {
 
 static void march_row(Marching *march, const Row *row) {
     Fine *fine = march->fine;
-    uint32_t rung[2 * FINE_SPLITS_MAX + 1] = {0}; // cuts of the sides between the lines
+    uint32_t rung[2 * FINE_SPLITS_MAX + 1]; // cuts of the sides between the lines
     int low = 0, high = 0, steps = row->lower + row->upper;
+    memset(rung, 0, ((size_t)steps + 1) * sizeof *rung);
     for (int step = 0; step < steps; step++) {
         Piece piece;
         bool on_lower = stands(row, low, high);
@@ -200,7 +201,7 @@ static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *f
     SINGE_ASSERT(side >= 0 && side < 4);
     const Fine *fine = march->fine;
     int splits = fine->splits[cell];
-    uint32_t line[2][FINE_SPLITS_MAX] = {{0}}; // cuts of the lines between rows
+    uint32_t line[2][FINE_SPLITS_MAX]; // cuts of the lines between rows
     for (int j = 0; j < splits; j++) {
         Row row = {cell,
                    side,
@@ -212,7 +213,7 @@ static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *f
                    .last = &last[j]};
 
         // cuts of the row's lower and upper line
-        memset(line[j & 1], 0, sizeof line[j & 1]);
+        memset(line[j & 1], 0, (size_t)splits * sizeof *line[0]);
         for (int i = 0; i < row.lower; i++)
             row.lower_cut[i] = j == 0 ? side_cut(fine, cell, side, row.lower, i) : &line[(j + 1) & 1][i];
         for (int i = 0; i < row.upper; i++) row.upper_cut[i] = &line[j & 1][i];
@@ -221,7 +222,8 @@ static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *f
 }
 
 static void march_cell(Marching *march, uint32_t cell) {
-    uint32_t line[4][FINE_SPLITS_MAX] = {{0}}; // cuts of the lines from the corners to the centre
+    uint32_t line[4][FINE_SPLITS_MAX]; // cuts of the lines from the corners to the centre
+    for (int side = 0; side < 4; side++) memset(line[side], 0, (size_t)march->fine->splits[cell] * sizeof *line[side]);
     for (int side = 0; side < 4; side++)
         if (!fine_is_torn(march->fine, cell, side)) march_triangle(march, cell, side, line[side], line[(side + 1) & 3]);
 }

@@ -1,6 +1,7 @@
 """Many runs of one scene: what rows a plan makes, what a stopped or failed sweep leaves, and what the report says."""
 
 import csv
+import fcntl
 import json
 import os
 import re
@@ -185,6 +186,18 @@ class Sweep(Case):
         self.assertIn("wait for it to end", self.sweep(expect=1)[1])
         first.terminate()
         self.assertEqual(first.wait(timeout=60), 1)
+
+    def test_a_row_that_runs_elsewhere_is_last(self):
+        """It keeps no other row waiting, and runs when its process has gone."""
+        self.write_plan("parameters:\n  pace: [2, 5, 7]\n")
+        os.makedirs(self.path("s", "unfinished", "0001"))
+        with open(self.path("s", "unfinished", "0001", "cache.lock"), "w") as lock:
+            fcntl.lockf(lock, fcntl.LOCK_EX)
+            sweep = self.begin("--jobs", "1")
+            self.wait_for(lambda: os.path.isdir(self.path("s", "rows")) and self.complete() == ["0002", "0003"])
+            self.assertIsNone(sweep.poll())
+        self.assertEqual(sweep.wait(timeout=60), 0)
+        self.assertEqual(self.complete(), ["0001", "0002", "0003"])
 
     # ---- stopped
 
