@@ -72,8 +72,8 @@ ExitCode job_read(Job *job, Console *console, const char *scene_path, const SetL
 ExitCode job_load(Job *job, Console *console, double pictures) {
     SceneMessages messages = {0};
     SingeResult result = SINGE_OK;
-    for (int loaded = 0; loaded < 2 && !result;
-         loaded++) { // the cells of mesh files are known only when they have been read
+    // twice, as the cells of mesh files are known only when they have been read
+    for (int loaded = 0; loaded < 2 && !result; loaded++) {
         const SceneAssets *assets = loaded ? &job->assets : NULL;
         double wanted = scene_size(job->scene, assets).memory + pictures;
         if (!scene_fits(job->scene, assets, wanted, machine_memory(), &messages)) result = SINGE_ERROR_LIMIT;

@@ -42,8 +42,9 @@ static SingeResult fig8_project(const SingeSim *sim, PaperState state, int steps
 
 /// Of all states of a run.
 typedef struct Fig8Count {
-    int states, rises,
-        lower;    ///< states in which the sum rises in one of the first 7 steps, and in which it is lower after them
+    int states;
+    int rises;    ///< states in which the sum rises in one of the first 7 steps
+    int lower;    ///< states in which it is lower after them
     double worst; ///< sum after 7 steps over that before, max
 } Fig8Count;
 

@@ -20,9 +20,8 @@ typedef struct UsdWriter {
     Crate crate;
     const OutputScene *scene;
     const SingeSurface *surface;
-    CrateValue time; ///< of all samples
-    CrateValue
-        *kept; ///< [frames][sheets][SLOTS] values of many frames; NULL for one frame, whose values are in the surface
+    CrateValue time;    ///< of all samples
+    CrateValue *kept;   ///< [frames][sheets][SLOTS] values of many frames; NULL for one, which has them in the surface
     CrateValue *column; ///< [frames]
     size_t frames;
     SheetParts parts;
