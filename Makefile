@@ -56,7 +56,7 @@ demo:
 	scripts/setup.sh
 	cmake --preset release
 	cmake --build --preset release --target singe_program
-	build/cli/singe run examples/letter/letter.yaml -o $(DEMO_DIR) $(DEMO_FLAGS)
+	build/singe run examples/letter/letter.yaml -o $(DEMO_DIR) $(DEMO_FLAGS)
 	@echo "the video: $$(realpath $(DEMO_DIR)/preview.mp4)"
 
 test:
@@ -69,7 +69,7 @@ check:
 	scripts/check_arrows.sh
 	$(MAKE) configure
 	$(MAKE) build build-asan build-fuzz build-shared build-tsan
-	build-shared/cli/singe --version
+	build-shared/singe --version
 	ctest --preset tsan -j2 -L '^threads$$'
 	ctest --preset asan -j2 -E '^($(MEASURING))$$'
 	tests/fuzz/run.sh build-fuzz $(FUZZ_SECONDS)
@@ -82,19 +82,19 @@ check-examples: build
 # real models of some packages, which are got into build/gate, burnt and verified: docs/meshes.md has the table. 209 are
 # clean or cross themselves in the file; one more that is strained, refused or fails is a fault
 gate: build
-	tests/gate/gate.py --singe build/cli/singe --folder build/gate --least 209 --failed 0
+	tests/gate/gate.py --singe build/singe --folder build/gate --least 209 --failed 0
 
 # other programs, which are installed into build/clients, on what a burn leaves: docs/usd.md and others have the table
 check-clients: build
-	tests/clients/check.sh build/cli/singe build/clients
+	tests/clients/check.sh build/singe build/clients
 
 # the extension in Blender 4.5 and 5.2: WHEELS=FOLDER installs it with its program, too
 check-blender: build
-	blender/tests/check.sh build/cli/singe build/blender $(WHEELS)
+	bindings/blender/tests/check.sh build/singe build/blender $(WHEELS)
 
 # a sweep on a Slurm of one node, preempted and resumed: needs root
 check-farm: build
-	tests/farm/check_slurm.py build/cli/singe --install
+	tests/farm/check_slurm.py build/singe --install
 
 # the prototype of one sheet on several nodes, on the ranks of this machine
 check-mpi:
@@ -137,7 +137,7 @@ fuzz-long: build-fuzz
 
 # random scenes for HOURS, or MINUTES, under the sanitizers: check, run, verify, resume; findings stay in build-asan/soak
 soak: build-asan
-	tests/soak/soak.py build-asan/cli/singe build-asan/tests/soak/draw_scene --minutes $(MINUTES) \
+	tests/soak/soak.py build-asan/singe build-asan/tests/soak/draw_scene --minutes $(MINUTES) \
 	    --seed $${SEED:-$$(date +%s)} --work build-asan/soak
 
 pictures:

@@ -1,100 +1,83 @@
 #!/bin/bash
-# Data flows one way (docs/architecture.md): checks every #include against the arrows.
-#
-#   common          common
-#   src/shell       common
-#   src/world       common, shell
-#   src/<stage>     common, shell, world: heat, burn, ablate, dynamics, tear and gas never meet
-#   src/surface     common, shell, ablate
-#   src/collision   common, shell
-#   src/reference   common
-#   src/dynamics    also collision and reference
-#   src/sim         everything in src
-#   formats         formats, common/allocator.h
-#   mesh            formats
-#   materials       formats/store.h
-#   preview         formats, common/allocator.h, common/float3.h
-#   scene           formats, mesh/to_quads.h, preview/preview.h
-#   analysis        formats, mesh/to_quads.h
-#   bench           mesh/to_quads.h
-#   cli             analysis, bench, scene, formats, mesh/to_quads.h, preview/preview.h, common/allocator.h
-#   experiments     cli, and what it may include
-#   sweep           the same
-#
-# and everyone the own folder and the public headers. Only src and tests see src. include/singe sees itself alone. No
-# header includes itself, directly or through others. No two files in all these folders have the same name.
+# Data flows one way (docs/architecture.md): checks every #include against the table below.
+#   check_arrows.sh [ROOT]
+# The first word of a row is a folder. The others are what its files may include, besides their own folder and
+# include/singe: folders, or single headers. Nothing else may see a folder: only tests see all of them.
 set -euo pipefail
-root=${1:-$(cd "$(dirname "$0")/.." && pwd)}
-cd "$root"
+cd "${1:-$(dirname "$0")/..}"
+
+library='shell world heat burn ablate tear gas surface collision reference dynamics sim'
+files='formats common/allocator.h common/store.h common/printable.h common/utf8.h mesh/polygons.h'
+program="$files mesh/to_quads.h preview/preview.h scene analysis"
+rules="
+include/singe
+src/common
+src/shell        common
+src/world        common shell
+src/heat         common shell world
+src/burn         common shell world
+src/ablate       common shell world
+src/tear         common shell world
+src/gas          common shell world
+src/surface      common shell ablate
+src/collision    common shell
+src/reference    common
+src/dynamics     common shell world collision reference
+src/sim          common $library
+src/mesh         common materials
+src/materials    common
+program/formats  $files
+program/preview  $files common/float3.h
+program/scene    $files mesh/to_quads.h preview/preview.h
+program/analysis $files mesh/to_quads.h
+program/cli      $program
+program/sweep    $program cli
+program/main.c   cli common/printable.h
+lab/bench        $program cli
+lab/page         $program cli bench
+lab/paper        $program cli bench page
+lab/validate     $program cli bench page
+examples
+"
+
 bad=0
+fault() { echo "$1"; bad=1; }
+includes() { grep -rHE '^[[:space:]]*#[[:space:]]*include' "$@" --include='*.[ch]' || true; }
 
-# check FOLDER ALLOWED: every quoted include of its files begins with one of the allowed words, or names a file
-# next to the one that includes it.
-check() {
-    local folder=$1 allowed=$2 file line name
-    [ -d "$folder" ] || return 0
-    while IFS=: read -r file line name; do
-        name=${name#*\"} name=${name%%\"*}
-        if [[ ! $name =~ ^($allowed)$ ]] && { [[ $name == */* ]] || [ ! -f "$(dirname "$file")/$name" ]; }; then
-            echo "$file:$line: must not include \"$name\""
-            bad=1
-        fi
-    done < <(grep -rnHE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' "$folder" --include='*.[ch]' || true)
-    # the library's own parts are never reached by angle brackets either
-    if grep -rnHE "^[[:space:]]*#[[:space:]]*include[[:space:]]*<(common|$rooms)/" "$folder" --include='*.[ch]'; then bad=1; fi
-}
+while read -r folder allowed; do
+    [ -e "$folder" ] || continue
+    pattern="singe/.*|${folder#*/}/.*"
+    for name in $allowed; do
+        case $name in *.h) pattern+="|${name//./\\.}" ;; *) pattern+="|$name/.*" ;; esac
+    done
+    # a name without a folder is a file next to the one that includes it
+    while IFS=: read -r file line; do
+        name=${line#*\"} name=${name%%\"*}
+        [[ $name =~ ^($pattern)$ ]] || { [[ $name != */* ]] && [ -f "$(dirname "$file")/$name" ]; } ||
+            fault "$file: must not include \"$name\""
+    done < <(includes "$folder" | grep '"' || true)
+    # the library's own parts are not reached by angle brackets either
+    while read -r line; do fault "$line"; done < <(includes "$folder" | grep -E "<(common|${library// /|})/" || true)
+done < <(grep . <<<"$rules")
 
-rooms='shell|world|heat|burn|ablate|tear|gas|surface|collision|reference|dynamics|sim'
-public='singe/.*'
-check include "$public"
-check common "$public|common/.*"
-check src/shell "$public|(common|shell)/.*"
-check src/world "$public|(common|shell|world)/.*"
-for stage in heat burn ablate tear gas; do
-    check src/$stage "$public|(common|shell|world|$stage)/.*"
-done
-check src/surface "$public|(common|shell|ablate|surface)/.*"
-check src/collision "$public|(common|shell|collision)/.*"
-check src/reference "$public|(common|reference)/.*"
-check src/dynamics "$public|(common|shell|world|collision|reference|dynamics)/.*"
-check src/sim "$public|(common|$rooms)/.*"
-outside="formats/.*|mesh/to_quads\.h|preview/preview\.h"
-check formats "$public|common/allocator\.h|formats/.*"
-check mesh "$public|(formats|mesh)/.*"
-check materials "$public|formats/store\.h|materials/.*"
-check preview "$public|(formats|preview)/.*|common/(allocator|float3)\.h"
-check scene "$public|$outside|scene/.*"
-check analysis "$public|(formats|analysis)/.*|mesh/to_quads\.h"
-check bench "$public|mesh/to_quads\.h|bench/.*"
-check cli "$public|$outside|(scene|analysis|bench|cli)/.*|common/allocator\.h"
-check experiments "$public|$outside|(scene|analysis|bench|cli|experiments)/.*"
-check sweep "$public|$outside|(scene|analysis|bench|cli|sweep)/.*"
-check examples "$public"
+parts=()
+for part in include src program lab; do [ -d $part ] && parts+=($part); done
+while read -r file; do fault "$file: no row of the table is about it"; done < <(
+    find "${parts[@]}" -name '*.[ch]' | grep -vE "^($(grep -oE '^[a-z/.]+' <<<"$rules" | paste -sd'|'))(/|$)" || true)
 
-# libsinge needs libc, libm and threads only
-library=()
-for folder in src common include; do [ -d $folder ] && library+=($folder); done
-if grep -rnHE '#[[:space:]]*include[[:space:]]*<(libfyaml|png|jpeglib|embree|openexr|xxhash)' "${library[@]}"; then
-    echo "libsinge must not need other libraries"
-    bad=1
-fi
+# the library needs libc, libm and threads only
+while read -r line; do fault "$line: the library must not need other libraries"; done < <(
+    includes $([ -d src ] && echo src) include | grep -E '<(libfyaml|png|jpeglib|embree|openexr|xxhash)' || true)
 
-# no circles: tsort names those that there are
-circles=$(find "${library[@]}" formats mesh scene preview analysis bench cli experiments sweep -name '*.h' 2>/dev/null |
-    xargs -r grep -HE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' |
-    sed -E 's,^(include|src)/,,; s,^([^:]*)/([^/:]*):[^"]*"([^"/]*)".*,\1/\2 \1/\3,; s,:[^"]*"([^"]*)".*, \1,' |
+# no header includes itself through others: tsort names the circles
+circles=$(find "${parts[@]}" -name '*.h' -print0 | xargs -0r grep -HE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' |
+    sed -E 's,^(include|src|program|lab)/,,; s,^([^:]*)/([^/:]*):[^"]*"([^"/]*)".*,\1/\2 \1/\3,; s,:[^"]*"([^"]*)".*, \1,' |
     tsort 2>&1 >/dev/null || true)
-if [ -n "$circles" ]; then
-    echo "headers include each other: $circles"
-    bad=1
-fi
+[ -z "$circles" ] || fault "headers include each other: $circles"
 
 # the name of a file says which one is meant
-twice=$(find src common formats mesh materials scene preview analysis bench cli experiments sweep -name '*.[ch]' \
-    -exec basename {} \; 2>/dev/null | sort | uniq -d || true)
-if [ -n "$twice" ]; then
-    echo "files with the same name: $twice"
-    bad=1
-fi
+twice=$(find "${parts[@]}" -name '*.[ch]' -exec basename {} \; | sort | uniq -d)
+[ -z "$twice" ] || fault "files with the same name: $twice"
+
 [ $bad -eq 0 ] && echo "includes follow the arrows"
 exit $bad

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that each promise of docs/guarantees.md and SECURITY.md names tests, and that these exist.
+"""Checks that each promise of docs/guarantees.md and docs/SECURITY.md names tests, and that these exist.
 
 usage: check_guarantees.py ROOT BUILD FILE...
 

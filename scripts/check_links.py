@@ -26,7 +26,7 @@ def anchors(text):
 
 def silent_folders(root):
     """Folders of C sources without a README.md, but for tests, examples, and parts of another folder."""
-    folders = {f.relative_to(root).parent for part in ("*/*.c", "src/*/*.c") for f in root.glob(part)}
+    folders = {f.relative_to(root).parent for part in ("src/*/*.c", "program/*/*.c", "lab/*/*.c") for f in root.glob(part)}
     return [f for f in sorted(folders) if not SKIPPED.match(f.parts[0]) and f.parts[0] not in ("tests", "examples")
             and not (root / f / "README.md").exists()]
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Counts the instructions of each stage of a step under valgrind and holds them against bench/instructions.csv.
+"""Counts the instructions of each stage of a step under valgrind and holds them against lab/bench/instructions.csv.
 
 Counts do not depend on what else the machine does, so a stage that got slower shows where times are too noisy. A stage
 may be up to 10 % off its baseline, either way: one that got faster must not get slower again unseen, so the baseline

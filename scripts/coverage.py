@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints how much of the folders src, formats, scene and mesh the tests reach, by gcov's counts.
+"""Prints how much of src, program/formats and program/scene the tests reach, by gcov's counts.
 
 coverage.py BUILD [--no-bars | --missing FILE...]
 
@@ -16,7 +16,7 @@ import re
 import subprocess
 import sys
 
-FOLDERS = ("common", "src", "formats", "scene", "mesh")
+FOLDERS = ("src", "program/formats", "program/scene")
 LINES, BRANCHES = 95.0, 85.0  # %, the bars
 
 
@@ -82,7 +82,7 @@ def collect(root, build):
         for found in pool.map(read_counts, objects(build)):
             for file in found:
                 name = os.path.relpath(os.path.join(build, file["file"]), root)
-                if name.split(os.sep)[0] not in FOLDERS:
+                if not name.startswith(FOLDERS):
                     continue
                 if name not in files:
                     files[name] = File(root, name)
@@ -117,7 +117,7 @@ def show(files):
     print()
     good = True
     for folder in FOLDERS:
-        lines, branches = row(folder, [f for n, f in files.items() if n.split(os.sep)[0] == folder])
+        lines, branches = row(folder, [f for n, f in files.items() if n.startswith(folder)])
         good = good and lines >= LINES and branches >= BRANCHES
     row("all", list(files.values()))
     return good

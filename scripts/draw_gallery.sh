@@ -18,14 +18,14 @@ jpeg() { ffmpeg -loglevel error -y -i "$1" -qscale:v 3 -update 1 "$2"; }
 for name in "${order[@]}"; do
     frame=${best[$name]} out=out/gallery/$name
     begun=$EPOCHREALTIME
-    build/cli/singe run "examples/$name/$name.yaml" -o "$out" --no-preview --quiet
+    build/singe run "examples/$name/$name.yaml" -o "$out" --no-preview --quiet
     burnt=$EPOCHREALTIME
-    build/cli/singe render "$out" --frames "$((10#$frame))" --quiet
+    build/singe render "$out" --frames "$((10#$frame))" --quiet
     drawn=$EPOCHREALTIME
-    build/cli/singe render "$out" --sheet 4x2 --only-sheet --quiet
+    build/singe render "$out" --sheet 4x2 --only-sheet --quiet
     jpeg "$out/frames/$name.$frame.png" "docs/gallery/$name.jpg"
     jpeg "$out/sheet.png" "docs/gallery/$name-sheet.jpg"
-    build/cli/singe measure "$out" --frames "${measured[$name]}" > "docs/gallery/$name.txt"
+    build/singe measure "$out" --frames "${measured[$name]}" > "docs/gallery/$name.txt"
     awk -v name="$name" -v a="$begun" -v b="$burnt" -v c="$drawn" -v frames="$(ls "$out/ply" | wc -l)" -v n="$(nproc)" \
         'BEGIN { printf "%-15s %3d frames in %5.1f s, a picture in %.2f s, on %d threads\n", name, frames, b - a, c - b, n }'
 done

@@ -1,12 +1,12 @@
 #!/bin/bash
-# Measures again what docs/performance.md says, into bench/results/NAME-*.csv: scripts/measure_performance.sh NAME, after
+# Measures again what docs/performance.md says, into lab/bench/results/NAME-*.csv: scripts/measure_performance.sh NAME, after
 # a build in build/, on a machine that does nothing else. Takes ten minutes on two cores.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 name=${1:?usage: measure_performance.sh NAME}
 bench() { # what is measured, and the end of its file's name where it differs
-    local file=bench/results/$name-${2:-$1}.csv begun=$SECONDS
-    build/cli/singe bench "$1" "${@:3}" --csv "$file" > /dev/null
+    local file=lab/bench/results/$name-${2:-$1}.csv begun=$SECONDS
+    build/singe bench "$1" "${@:3}" --csv "$file" > /dev/null
     echo "$file: $((SECONDS - begun)) s"
 }
 for threads in 1 2; do
@@ -18,4 +18,4 @@ bench swing "" --cells 32,50,100,150 --thickness 1,2,5
 bench surface
 bench compare
 bench stability
-build/cli/singe bench plot bench/results/"$name"-{dynamics,paper}.csv -o docs/performance.svg
+build/singe bench plot lab/bench/results/"$name"-{dynamics,paper}.csv -o docs/performance.svg

@@ -6,7 +6,7 @@
     singe-VERSION.tar.gz                  the sources
     singe-VERSION-linux-ARCH.tar.gz       the command, static: runs on any Linux, without preview, EXR, assimp and fit
     singe_VERSION_ARCH.deb, libsinge-dev_VERSION_ARCH.deb    for the Debian or Ubuntu that this runs on
-    *.whl                                 with --wheels (python/build_wheels.py says what that needs)
+    *.whl                                 with --wheels (bindings/python/build_wheels.py says what that needs)
     singe-VERSION.spdx.json               what is inside, with versions and licences (SPDX 2.3)
     SHA256SUMS
 

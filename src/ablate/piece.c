@@ -19,7 +19,8 @@ static uint32_t piece_find(uint32_t *root, uint32_t i) {
 }
 
 static void piece_join(uint32_t *root, uint32_t a, uint32_t b) {
-    a = piece_find(root, a), b = piece_find(root, b);
+    a = piece_find(root, a);
+    b = piece_find(root, b);
     if (a < b) root[b] = a;
     else root[a] = b;
 }

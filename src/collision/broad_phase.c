@@ -52,7 +52,8 @@ static CollisionBox moving_box(const Float4 position[4], const Float4 displaceme
         box.low = i ? float4_min(box.low, low) : low;
         box.high = i ? float4_max(box.high, high) : high;
     }
-    box.low = float4_flat(box.low), box.high = float4_flat(box.high);
+    box.low = float4_flat(box.low);
+    box.high = float4_flat(box.high);
     return box;
 }
 
@@ -67,7 +68,9 @@ static CollisionSlab slab(const Float4 position[4]) {
         slab.high = along > slab.high ? along : slab.high;
     }
     float4_transpose(corner);
-    slab.x = corner[0], slab.y = corner[1], slab.z = corner[2];
+    slab.x = corner[0];
+    slab.y = corner[1];
+    slab.z = corner[2];
     return slab;
 }
 
@@ -151,7 +154,8 @@ static void choose_steps(CollisionPlan *plan, const Shell *shell) {
 
 SingeResult broad_search(CollisionPlan *plan, const Shell *shell, Pool *pool) {
     Find find = {plan, shell};
-    plan->listed_count = plan->pair_count = 0, plan->restless = 0;
+    plan->listed_count = plan->pair_count = 0;
+    plan->restless = 0;
     choose_steps(plan, shell);
     find_owners(plan, shell);
     pool_for(pool, (int)plan->cell_count, 512, box_range, &find);

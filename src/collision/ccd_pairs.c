@@ -84,7 +84,10 @@ static void sweep_all_edges(const Ccd *ccd, CollisionPair *pair, const Swept *p,
         Float4 high = float4_max(p->high[k[0]], p->high[k[1]]) + plan->gap;
         unsigned sides = four_meet(&q->boxes.sides, low, high) & plan->owned[pair->b] >> 4 & ~narrow_around(corners);
         unsigned spokes = four_meet(&q->boxes.spokes, low, high) & ~corners;
-        if (pair->a == pair->b) sides &= 14u << i, spokes = i < 4 ? spokes : 0; // each pair once
+        if (pair->a == pair->b) {
+            sides &= 14u << i;
+            spokes = i < 4 ? spokes : 0;
+        } // each pair once
         for (unsigned meet = sides | spokes << 4; meet; meet &= meet - 1) {
             int j = __builtin_ctz(meet);
             note_hit(pair, sweep_edge(ccd, p, i, q, j), COLLISION_EDGES, i, j);

@@ -159,8 +159,10 @@ static void zone_join(const Ccd *ccd, const CollisionPair *pair, int round) {
         uint32_t other = zone_root(plan, v);
         share = fminf(share, plan->share[other]);
         if (root == SHELL_NONE) root = other;
-        if (other < root) plan->zone[root] = other, root = other;
-        else plan->zone[other] = root;
+        if (other < root) {
+            plan->zone[root] = other;
+            root = other;
+        } else plan->zone[other] = root;
     }
     // in the first round the share is the free one; later the displacements of the zone itself have changed
     float less = round == 0 ? 0.9f * pair->hit : round < ZONE_PATIENCE ? 0.5f * share : 0;

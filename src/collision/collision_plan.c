@@ -24,7 +24,8 @@ CollisionSizes collision_sizes(const Shell *shell) {
     CollisionSizes sizes = {.entries = capped(COLLISION_ENTRIES * cells + 64),
                             .pairs = capped(COLLISION_PAIRS * cells + 64),
                             .repulsions = capped(COLLISION_REPULSIONS * cells + 64)};
-    sizes.pair_max = capacity_max(sizes.pairs), sizes.repulsion_max = capacity_max(sizes.repulsions);
+    sizes.pair_max = capacity_max(sizes.pairs);
+    sizes.repulsion_max = capacity_max(sizes.repulsions);
     sizes.pair_budget = sizes.pairs;
     return sizes;
 }
@@ -32,9 +33,11 @@ CollisionSizes collision_sizes(const Shell *shell) {
 /// Finds the sizes of lists and lengths that follow from the shell.
 static void size_plan(CollisionPlan *plan, const Shell *shell, const CollisionSizes *sizes) {
     uint64_t cells = shell->cell_count;
-    plan->vertex_count = shell->vertex_count, plan->cell_count = shell->cell_count;
+    plan->vertex_count = shell->vertex_count;
+    plan->cell_count = shell->cell_count;
     plan->sizes = *sizes;
-    plan->pair_capacity = sizes->pairs, plan->repulsion_capacity = sizes->repulsions;
+    plan->pair_capacity = sizes->pairs;
+    plan->repulsion_capacity = sizes->repulsions;
     for (plan->bucket_count = 256; plan->bucket_count < 2 * cells;) plan->bucket_count *= 2;
     plan->cell_size = INFINITY;
     float far = 0;

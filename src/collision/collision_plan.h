@@ -253,7 +253,9 @@ static inline CollisionFourPairs collision_four_pairs(const CollisionPlan *plan,
     for (int i = 0; i < 4; i++) {
         const CollisionPair *pair = &plan->pairs[number[i]];
         bool bridged = pair->bridge != SHELL_NONE;
-        four.a[i] = pair->a, four.b[i] = pair->b, four.bridge[i] = bridged ? pair->bridge : pair->a;
+        four.a[i] = pair->a;
+        four.b[i] = pair->b;
+        four.bridge[i] = bridged ? pair->bridge : pair->a;
         four.bridged |= (unsigned)bridged << i;
         distance[i] = pair->distance;
     }

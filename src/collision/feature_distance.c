@@ -32,7 +32,10 @@ static void triangle_weights(Float4 p, Float4 a, Float4 b, Float4 c, float w[3])
 Float4 feature_from_triangle(Float4 p, Float4 a, Float4 b, Float4 c, float weight[3]) {
     triangle_weights(p, a, b, c, weight);
     // a triangle without area has no weights in its interior: then its first corner is used
-    if (!(weight[0] + weight[1] + weight[2] > 0.5f)) weight[0] = 1, weight[1] = weight[2] = 0;
+    if (!(weight[0] + weight[1] + weight[2] > 0.5f)) {
+        weight[0] = 1;
+        weight[1] = weight[2] = 0;
+    }
     return p - mix3(a, b, c, weight);
 }
 
@@ -124,7 +127,8 @@ Float4 feature_from_segment(Float4 a, Float4 b, Float4 c, Float4 d, float *s, fl
         other = feature_clamp01(other);
         along = uu > 0 ? feature_clamp01((other * uv - ur) / uu) : 0;
     }
-    *s = (float)along, *t = (float)other;
+    *s = (float)along;
+    *t = (float)other;
     return (a + *s * u) - (c + *t * v);
 }
 

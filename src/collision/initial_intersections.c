@@ -99,7 +99,8 @@ static void keep_crossing(CollisionPlan *plan, const Shell *shell) {
         const uint32_t end = first[a + 1];
         for (uint32_t k = begin; k < end; k++)
             if (plan->initial_other[k] & KEPT) plan->initial_other[kept++] = plan->initial_other[k] & ~KEPT;
-        begin = end, first[a + 1] = kept;
+        begin = end;
+        first[a + 1] = kept;
     }
 }
 

@@ -31,15 +31,21 @@ static FourNear from_triangles(FourVectors p, FourVectors a, FourVectors b, Four
     Float4Mask on_bc = (va <= 0) & (e43 >= 0) & (e56 >= 0), on_ac = (vb <= 0) & (d2 >= 0) & (d6 <= 0);
     Float4Mask on_ab = (vc <= 0) & (d1 >= 0) & (d3 <= 0);
     Float4 w = e43 / (e43 + e56);
-    u = float4_select(on_bc, one - w, u), v = float4_select(on_bc, w, v);
-    u = float4_select(on_ac, zero, u), v = float4_select(on_ac, d2 / (d2 - d6), v);
-    u = float4_select(on_ab, d1 / (d1 - d3), u), v = float4_select(on_ab, zero, v);
+    u = float4_select(on_bc, one - w, u);
+    v = float4_select(on_bc, w, v);
+    u = float4_select(on_ac, zero, u);
+    v = float4_select(on_ac, d2 / (d2 - d6), v);
+    u = float4_select(on_ab, d1 / (d1 - d3), u);
+    v = float4_select(on_ab, zero, v);
     Float4Mask at_a = (d1 <= 0) & (d2 <= 0), at_b = (d3 >= 0) & (d4 <= d3), at_c = (d6 >= 0) & (d5 <= d6);
-    u = float4_select(at_c, zero, u), v = float4_select(at_c, one, v);
-    u = float4_select(at_b, one, u), v = float4_select(at_b, zero, v);
+    u = float4_select(at_c, zero, u);
+    v = float4_select(at_c, one, v);
+    u = float4_select(at_b, one, u);
+    v = float4_select(at_b, zero, v);
     // a triangle without area has no weights in its interior: then its first corner is used
     at_a |= ~((u > -0.5f) & (v > -0.5f) & (u + v < 2));
-    out.u = float4_select(at_a, zero, u), out.v = float4_select(at_a, zero, v);
+    out.u = float4_select(at_a, zero, u);
+    out.v = float4_select(at_a, zero, v);
     out.separation = four_along(four_along(ap, -out.u, ab), -out.v, ac);
     out.square = four_dot(out.separation, out.separation);
     return out;

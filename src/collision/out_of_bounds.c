@@ -18,7 +18,8 @@ static OutsideBox outside_box(const OutsideSearch *job, uint32_t cell) {
     Float4 low = float4_load(job->x[corner[0]]), high = low;
     for (int i = 0; i < 4; i++) {
         Float4 start = float4_load(plan->start[corner[i]]), end = float4_load(job->x[corner[i]]);
-        low = float4_min(low, float4_min(start, end)), high = float4_max(high, float4_max(start, end));
+        low = float4_min(low, float4_min(start, end));
+        high = float4_max(high, float4_max(start, end));
     }
     low[3] = high[3] = 0;
     return (OutsideBox){low - 2 * plan->gap, high + 2 * plan->gap};
@@ -35,7 +36,8 @@ static void add_pair(const OutsideSearch *job, uint32_t a, uint32_t b, BlockWrit
     float distance;
     if (a > b) {
         uint32_t c = a;
-        a = b, b = c;
+        a = b;
+        b = c;
     }
     if (a == b || collision_is_listed(job->plan, a, b, &distance)) return;
     CollisionPair *pair = block_list_add(writer);

@@ -65,7 +65,10 @@ static uint32_t attach_farthest(const Shell *shell, const StateInput *state, con
                 float3_sub(float3_load(shell->rest_position[v]), float3_load(shell->rest_position[source[k]]));
             nearest = fminf(nearest, float3_dot(displacement, displacement));
         }
-        if (nearest > max) farthest = v, max = nearest;
+        if (nearest > max) {
+            farthest = v;
+            max = nearest;
+        }
     }
     if (count < 2 || farthest == SHELL_NONE) return farthest;
     Float3 first =
@@ -141,8 +144,10 @@ static void attach_follow(Attachments *attachments, const Shell *shell, const Dy
                 Float3 displacement = float3_sub(float3_load(dynamics->position[v]), position);
                 float *length = &attachments->length[v][k];
                 if (dynamics->position[v][3] == 0) continue;
-                if (float3_dot(displacement, displacement) > *length * *length)
-                    *length = float3_length(displacement), attachments->settled = false;
+                if (float3_dot(displacement, displacement) > *length * *length) {
+                    *length = float3_length(displacement);
+                    attachments->settled = false;
+                }
             }
         }
     }
@@ -242,7 +247,8 @@ void attach_range(const Attachments *attachments, const Shell *shell, AttachHold
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const AttachSpread *spread = &attachments->spread[s];
         int first = (int)shell->sheets[s].vertex_first, last = first + (int)shell->sheets[s].vertex_count;
-        first = first > begin ? first : begin, last = last < end ? last : end;
+        first = first > begin ? first : begin;
+        last = last < end ? last : end;
         if (spread->count == 0 || first >= last) continue;
         int whole = (last - first) / ATTACH_BLOCK * ATTACH_BLOCK, rest = first + whole;
         hold(spread, attachments->length[first], dynamics->position[first], whole);

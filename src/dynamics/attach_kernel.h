@@ -40,7 +40,9 @@ void ATTACH_HOLD(const AttachSpread *spread, const float *length, float *positio
                 pull = lanes_where_less(max_square, square, lanes_sqrt(limit / square) - one, pull);
             pull = lanes_where_less(limit, square, pull, zero);
             pull = lanes_where_less(zero, node.w, pull, zero); // held vertices stay
-            node.x += dx * pull, node.y += dy * pull, node.z += dz * pull;
+            node.x += dx * pull;
+            node.y += dy * pull;
+            node.z += dz * pull;
             float4s_pull(&point, anchor, pull);
             moved = true;
         }

@@ -27,7 +27,8 @@ static float contact_motion(const Pose *before, const Pose *after, float size) {
     float turn = 0, back = 0;
     for (int k = 0; k < 4; k++) {
         float a = after->rotation[k] - before->rotation[k], b = after->rotation[k] + before->rotation[k];
-        turn += a * a, back += b * b;
+        turn += a * a;
+        back += b * b;
     }
     float angle = 2 * sqrtf(fminf(turn, back)) * 1.05f; // the chord of half the angle, in the space of quaternions
     return float3_length(float3_sub(after->position, before->position)) + (angle > 1e-6f ? angle * size : 0);

@@ -263,10 +263,14 @@ static float crease_counts(const Crease *job, uint32_t k) {
     const SpringSet *green = &job->shell->springs[SINGE_GREEN];
     const float *bend = job->dynamics->bend;
     float sum = bend[k], weight = 1;
-    if (k > 0 && flags[k - 1] & SINGE_ALIVE && green->ends[k - 1][1] == green->ends[k][0])
-        sum += 0.5f * bend[k - 1], weight += 0.5f;
-    if (k + 1 < green->count && flags[k + 1] & SINGE_ALIVE && green->ends[k + 1][0] == green->ends[k][1])
-        sum += 0.5f * bend[k + 1], weight += 0.5f;
+    if (k > 0 && flags[k - 1] & SINGE_ALIVE && green->ends[k - 1][1] == green->ends[k][0]) {
+        sum += 0.5f * bend[k - 1];
+        weight += 0.5f;
+    }
+    if (k + 1 < green->count && flags[k + 1] & SINGE_ALIVE && green->ends[k + 1][0] == green->ends[k][1]) {
+        sum += 0.5f * bend[k + 1];
+        weight += 0.5f;
+    }
     const float max = CREASE_PEAK * fabsf(sum) / weight;
     return sum * bend[k] > 0 ? fmaxf(-max, fminf(bend[k], max)) : 0;
 }

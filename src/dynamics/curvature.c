@@ -68,7 +68,8 @@ void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour 
         uint32_t before = k - 1;
         size_t slot_before = slot - STRAND_LANES;
         if (k == first) { // a ring's first vertex lies behind its last spring
-            before = end - 1, slot_before = slot + (size_t)(end - 1 - first) * STRAND_LANES;
+            before = end - 1;
+            slot_before = slot + (size_t)(end - 1 - first) * STRAND_LANES;
             if (springs->ends[before][1] != b || end - first < 3) continue;
         }
 

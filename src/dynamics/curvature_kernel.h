@@ -29,7 +29,9 @@ static inline bool bend_straighten(Bend *bend, Lanes max) {
 static inline void group_straighten(const Group *group, const float *limit, bool ring) {
     Bend bend = {.b = group_float4s(group, 0), .c = group_float4s(group, 1)};
     for (uint32_t k = 1; k < group->rows; k++) {
-        bend.a = bend.b, bend.b = bend.c, bend.c = group_float4s(group, k + 1);
+        bend.a = bend.b;
+        bend.b = bend.c;
+        bend.c = group_float4s(group, k + 1);
         if (!bend_straighten(&bend, lanes_load(limit + (size_t)k * STRAND_LANES))) continue;
         group_put(group, k - 1, &bend.a);
         group_put(group, k, &bend.b);

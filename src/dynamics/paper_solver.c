@@ -52,7 +52,8 @@ static bool paper_number(Memory *memory, const Shell *shell, SingeColour colour,
             if (k == SHELL_NONE || seen[k]) continue;
             seen[k] = 1;
             uint32_t a = set->ends[k][0], b = set->ends[k][1];
-            ends[row][0] = a < b ? a : b, ends[row][1] = a < b ? b : a;
+            ends[row][0] = a < b ? a : b;
+            ends[row][1] = a < b ? b : a;
             paper->order[colour][row++] = k;
         }
     FREE(memory, seen, set->count);
@@ -230,7 +231,8 @@ static SingeResult paper_step(Paper *paper, Pool *pool, DynamicsCounters *counte
         ProjectionReport report = network_project(&paper->network, group, pool);
         counters->springs += paper->network.groups[group].count;
         counters->iterations += report.iterations;
-        counters->flops += report.flops, counters->bytes += report.bytes;
+        counters->flops += report.flops;
+        counters->bytes += report.bytes;
         if (report.broken) return paper_broken(paper, (SingeColour)group, error);
         if (report.iterations) *solved = true;
     }
@@ -241,7 +243,8 @@ static void paper_hooke(Paper *paper, Pool *pool, float h, const DynamicsState *
     SINGE_ASSERT(h > 0);
     ProjectionReport report = mass_spring_project(&paper->network, (double)paper->solver.stiffness,
                                                   (const float(*)[4])dynamics->velocity, (double)h, pool);
-    counters->flops += report.flops, counters->bytes += report.bytes;
+    counters->flops += report.flops;
+    counters->bytes += report.bytes;
     counters->springs += paper->network.groups[0].count;
 }
 

@@ -96,7 +96,9 @@ void patch_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *sta
             plan->patches.pull[colour][patch->spring] = 0;
             if (!(state->ablate->spring_flags[colour][patch->spring] & SINGE_ALIVE)) continue; // gone for good
             const uint32_t *ends = shell->springs[colour].ends[patch->spring];
-            patch->a = ends[0], patch->b = ends[1], patch->pull = 0;
+            patch->a = ends[0];
+            patch->b = ends[1];
+            patch->pull = 0;
             patch->length = state->burn->spring_length[colour][patch->spring];
             patch->weight = dynamics_weight(shell->matter.weight[colour], plan->soft, patch->a, patch->b);
             left++;

@@ -58,11 +58,14 @@ static void gas_calm(const GasPlan *plan, GasTurn *turn) {
 static void gas_turn_over(const GasPlan *plan, GasPass *pass, GasState *gas) {
     gas->turn = !gas->turn;
     const GasTurn *turn = &plan->turn[gas->turn];
-    gas->conductance = turn->conductance, gas->temperature = turn->temperature, gas->fuel = turn->fuel;
+    gas->conductance = turn->conductance;
+    gas->temperature = turn->temperature;
+    gas->fuel = turn->fuel;
     gas->air = (const float(*)[4])turn->air;
     gas->warm = false;
     for (uint32_t i = 0; i < plan->particles && !gas->warm; i++) gas->warm = turn->conductance[i] > 0;
-    pass->from = turn, pass->to = (GasTurn *)(uintptr_t)&plan->turn[!gas->turn];
+    pass->from = turn;
+    pass->to = (GasTurn *)(uintptr_t)&plan->turn[!gas->turn];
     gas->steps++;
 }
 

@@ -158,7 +158,9 @@ static bool plan_allocate(Memory *memory, GasPlan *plan) {
 /// Points a state's arrays at the current turn.
 static void plan_expose(const GasPlan *plan, GasState *gas) {
     const GasTurn *turn = &plan->turn[gas->turn];
-    gas->conductance = turn->conductance, gas->temperature = turn->temperature, gas->fuel = turn->fuel;
+    gas->conductance = turn->conductance;
+    gas->temperature = turn->temperature;
+    gas->fuel = turn->fuel;
     gas->air = (const float(*)[4])turn->air;
 }
 
@@ -169,7 +171,8 @@ SingeResult gas_plan_create(Memory *memory, const Shell *shell, const GasSetting
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
     plan->settings = *settings;
     plan->rows = sweep_choose(settings->instructions);
-    plan->particles = shell->particle_count, plan->cell_count = shell->cell_count;
+    plan->particles = shell->particle_count;
+    plan->cell_count = shell->cell_count;
 
     // steps of the simulation per step of the gas, and parts of the latter
     float steps = 1 / (PLAN_RATE * settings->time_step);
@@ -234,7 +237,8 @@ void gas_plan_stream(GasPlan *plan, GasState *gas, Stream *stream) {
     if (stream->mode != STREAM_READ) return;
     for (size_t i = 0; i < plan->block_size; i++) stream->failed |= !isfinite(plan->block[gas->turn][i]);
     if (stream->failed) return;
-    gas->awake = awake != 0, gas->warm = warm != 0;
+    gas->awake = awake != 0;
+    gas->warm = warm != 0;
     plan_expose(plan, gas);
     GasPass pass = {.plan = plan};
     gas_show(&pass, &plan->turn[gas->turn]);

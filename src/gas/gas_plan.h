@@ -185,7 +185,8 @@ static inline float gas_sample(const GasGrid *grid, const float *field, const fl
     size_t y = grid->stride[1], z = grid->stride[2];
     float a = q[0] + part[0] * (q[1] - q[0]), b = q[y] + part[0] * (q[y + 1] - q[y]);
     float c = q[z] + part[0] * (q[z + 1] - q[z]), e = q[y + z] + part[0] * (q[y + z + 1] - q[y + z]);
-    a += part[1] * (b - a), c += part[1] * (e - c);
+    a += part[1] * (b - a);
+    c += part[1] * (e - c);
     return a + part[2] * (c - a);
 }
 

@@ -185,7 +185,8 @@ static void sheets_meet(void *context, int begin, int end) {
     for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
         float *air = pass->to->air[i];
         air[0] = air[1] = air[2] = air[3] = 0;
-        pass->to->conductance[i] = 0, pass->to->temperature[i] = ambient;
+        pass->to->conductance[i] = 0;
+        pass->to->temperature[i] = ambient;
         if (!(pass->state->ablate->particle_flags[i] & SINGE_ALIVE)) continue;
         Float3 x = float3_load(pass->state->dynamics->position[i]);
         if (!gas_position(plan, x, position)) continue;

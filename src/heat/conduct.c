@@ -77,7 +77,8 @@ static void conduct_start_group(const HeatPass *pass, uint32_t group, double sum
             max = plan->alive[i] && star > max ? star : max;
         }
     }
-    sums[0] = residual, sums[1] = whole;
+    sums[0] = residual;
+    sums[1] = whole;
     sums[2] = fmin(sums[2], (double)min), sums[3] = fmax(sums[3], (double)max);
 }
 
@@ -88,7 +89,9 @@ static void conduct_start(void *context, int begin, int end) {
     HeatPlan *plan = pass->plan;
     for (int block = begin; block < end; block++) {
         double *sums = plan->partial[block];
-        sums[0] = sums[1] = 0, sums[2] = INFINITY, sums[3] = 0;
+        sums[0] = sums[1] = 0;
+        sums[2] = INFINITY;
+        sums[3] = 0;
         for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
             plan->rest.awake[0][g] = heat_rest_reaches(&plan->rest, plan->rest.warm, g);
             if (!plan->rest.awake[0][g]) continue;
@@ -256,7 +259,8 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
     }
 
     // solve, then check that no temperature has left the range
-    pass->min = (float)min, pass->max = (float)max;
+    pass->min = (float)min;
+    pass->max = (float)max;
     pass->slack = tolerance * fmax(max - min, 0) + 1e-6 * max; // the tolerance, and rounding
     pass->direction = 0;
     pass->turn = 0;

@@ -50,7 +50,8 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
         bool calm = T == ambient && burn_rate[i] == 0 && plan->flux[i] == 0 && plan->source_conductance[i] == 0 &&
                     plan->source_temperature[i] == 0;
         if (calm || !plan->alive[i]) {
-            plan->star[i] = T, plan->delta[i] = 0;
+            plan->star[i] = T;
+            plan->delta[i] = 0;
             continue;
         }
 

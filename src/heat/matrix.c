@@ -219,7 +219,8 @@ bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t 
     }
     for (; filled < width; filled++) {
         uint32_t entry = heat_entry(matrix, row, filled);
-        matrix->column[entry] = row, matrix->value[entry] = 0;
+        matrix->column[entry] = row;
+        matrix->value[entry] = 0;
     }
     matrix_invert(plan, row);
     return true;

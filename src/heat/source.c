@@ -116,7 +116,10 @@ SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceD
     SingeSourceDef def = *given;
     SingePoseKey still = {.rotation = {0, 0, 0, 1}};
     memcpy(still.position, def.position, sizeof still.position);
-    if (def.path_count == 0 && source_has_path(&def)) def.path_count = 1, def.path = &still;
+    if (def.path_count == 0 && source_has_path(&def)) {
+        def.path_count = 1;
+        def.path = &still;
+    }
     TRY(source_check(&def, error));
     uint32_t generation = source->generation;
     *source = (Source){.generation = generation, .def = def};
@@ -144,8 +147,10 @@ void source_unsettle(Memory *memory, const Shell *shell, Source *source) {
 
 SingeResult source_check_read(const Shell *shell, const Source *source, SingeError *error) {
     SingeSourceDef def = source->def;
-    def.path_count = source->path.count, def.path = source->path.keys;
-    def.strength_count = source->strength_count, def.strength = source->strength;
+    def.path_count = source->path.count;
+    def.path = source->path.keys;
+    def.strength_count = source->strength_count;
+    def.strength = source->strength;
     def.texture = (SingeTexture){(int)shell->particle_count, 1, source->texture};
     TRY(source_check(&def, error));
     if (source->texture && def.kind != SINGE_SOURCE_TEXTURE)

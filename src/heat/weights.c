@@ -171,9 +171,11 @@ static double weights_entropy(const WeightSpring s[SPRINGS], double k[SPRINGS]) 
         double a = slope[0] + 1e-9, b = slope[1], c = slope[2] + 1e-9, determinant = a * c - b * b;
         double u = (b * mean[1] - c * mean[0]) / determinant, v = (b * mean[0] - a * mean[1]) / determinant;
         double shorter = fmax(weights_length(u, v), 1);
-        lambda[0] += u / shorter, lambda[1] += v / shorter;
+        lambda[0] += u / shorter;
+        lambda[1] += v / shorter;
         double steep = fmax(weights_length(lambda[0], lambda[1]) / STEEPEST, 1);
-        lambda[0] /= steep, lambda[1] /= steep;
+        lambda[0] /= steep;
+        lambda[1] /= steep;
         moved = weights_length(lambda[0] - before[0], lambda[1] - before[1]);
         weights_mean(s, lambda, k, mean, slope);
     }

@@ -126,10 +126,13 @@ ProjectionReport network_project(Network *network, uint32_t group, Pool *pool) {
     if (!report.broken && square > enough) {
         ellpack_assemble(network, group, pool);
         report = conjugate_gradient(network, group, pool, square, enough);
-        report.flops += 8 * entries, report.bytes += 13 * entries + 32.0 * rows;
+        report.flops += 8 * entries;
+        report.bytes += 13 * entries + 32.0 * rows;
         if (!report.broken) pool_for(pool, (int)network->particle_count, POOL_BLOCK, projection_move, &job);
-        report.flops += 16.0 * rows + 6 * particles, report.bytes += 48.0 * rows + 56 * particles;
+        report.flops += 16.0 * rows + 6 * particles;
+        report.bytes += 48.0 * rows + 56 * particles;
     }
-    report.flops += 34.0 * rows, report.bytes += 120.0 * rows;
+    report.flops += 34.0 * rows;
+    report.bytes += 120.0 * rows;
     return report;
 }

@@ -38,7 +38,8 @@ static void hooke_forces(void *task, int begin, int end) {
             double v = (double)vb[i] - (double)va[i];
             // positions before the substep: x~ less the displacement by v~; held particles have v~ too
             d[i] = xb[i] - xa[i] - job->h * v;
-            square += d[i] * d[i], closing += d[i] * v;
+            square += d[i] * d[i];
+            closing += d[i] * v;
         }
         double distance = sqrt(square);
         if (!(distance > 0)) continue;

@@ -138,14 +138,20 @@ static void list_ends(const HalfEdges *mesh, int colour, LooseSprings *loose) {
         for (int i = 0; i < 4; i++) {
             uint32_t a = corner[i], b = corner[(i + 1) & 3], *ends;
             if (colour == SINGE_RED) {
-                ends = loose->ends[springs->red[i]], ends[0] = centre, ends[1] = a;
+                ends = loose->ends[springs->red[i]];
+                ends[0] = centre;
+                ends[1] = a;
             } else if (colour == SINGE_BLUE) {
-                ends = loose->ends[springs->blue[i]], ends[0] = a < b ? a : b, ends[1] = a < b ? b : a;
+                ends = loose->ends[springs->blue[i]];
+                ends[0] = a < b ? a : b;
+                ends[1] = a < b ? b : a;
             } else if (colour == SINGE_GREEN && springs->green[i] != SHELL_NONE && c < half_edge_across(mesh, c, i)) {
                 ends = loose->ends[springs->green[i]];
                 ends[0] = centre, ends[1] = shell_centre(shell, half_edge_across(mesh, c, i));
             } else if (colour == SINGE_YELLOW && i < 2) {
-                ends = loose->ends[springs->yellow[i]], ends[0] = a, ends[1] = corner[i + 2];
+                ends = loose->ends[springs->yellow[i]];
+                ends[0] = a;
+                ends[1] = corner[i + 2];
             }
         }
     }

@@ -33,7 +33,8 @@ static void order_by_breadth(const ItemNodes *items, const NodeItems *at, uint8_
     for (uint32_t seed = 0; seed < items->item_count; seed++) {
         if (seen[seed]) continue;
         uint32_t head = tail;
-        order[tail++] = seed, seen[seed] = 1;
+        order[tail++] = seed;
+        seen[seed] = 1;
         for (; head < tail; head++) {
             for (uint32_t k = items->first[order[head]]; k < items->first[order[head] + 1]; k++) {
                 uint32_t node = items->nodes[k];

@@ -51,7 +51,8 @@ static SingeResult match(const uint32_t *order, Shell *shell, HalfEdges *mesh, S
             uint32_t b = order[k + 1];
             if (half_from(shell, a) == half_from(shell, b))
                 return edge_fail(shell, b, "runs in the same direction in two cells (one is flipped):", error);
-            mesh->twin[a] = b, mesh->twin[b] = a;
+            mesh->twin[a] = b;
+            mesh->twin[b] = a;
             CellSprings *first = &shell->cell_springs[a / 4], *second = &shell->cell_springs[b / 4];
             second->blue[b & 3] = mesh->edge_count;
             first->green[a & 3] = second->green[b & 3] = mesh->shared_count++;

@@ -12,8 +12,10 @@ static const char *validate_sheets(const Shell *shell) {
         if (sheet->spare_used > sheet->spare_count) return "a sheet uses no more spares than it has";
         if (sheet->spare_count > sheet->vertex_count) return "spares are vertices of their sheet";
         if (!(sheet->cell_size > 0)) return "cells have a size";
-        vertices += sheet->vertex_count, cells += sheet->cell_count;
-        spares += sheet->spare_count, used += sheet->spare_used;
+        vertices += sheet->vertex_count;
+        cells += sheet->cell_count;
+        spares += sheet->spare_count;
+        used += sheet->spare_used;
     }
     if (vertices != shell->vertex_count || cells != shell->cell_count) return "sheets hold all vertices and cells";
     if (shell->particle_count != vertices + cells) return "particles are the vertices and the cells' centres";

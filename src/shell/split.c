@@ -46,7 +46,9 @@ bool split_reserve(Memory *memory, Shell *shell) {
     memcpy(rest, blue->rest, blue->count * sizeof *rest);
     FREE(memory, blue->ends, blue->count);
     FREE(memory, blue->rest, blue->count);
-    blue->ends = ends, blue->rest = rest, blue->count = count;
+    blue->ends = ends;
+    blue->rest = rest;
+    blue->count = count;
     shell->edge_spare_count = more;
     return NEW(memory, shell->edge_origin, more) != NULL;
 }

@@ -21,7 +21,10 @@ static Buried buried_in(const SingeSim *sim, const Collider *collider) {
         float depth = offset - collider_distance(collider, pose_unapply(&pose, position), offset + 1e-6f, &normal);
         buried.looked_at++;
         buried.inside += depth > 0;
-        if (depth > buried.deepest) buried.deepest = depth, buried.position = position;
+        if (depth > buried.deepest) {
+            buried.deepest = depth;
+            buried.position = position;
+        }
     }
     return buried;
 }

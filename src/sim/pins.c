@@ -22,8 +22,10 @@ static bool pin_wait(SingeSim *sim, const SingePinDef *def, Pin *pin) {
     if (ok && def->point_count) memcpy(points, def->points, 3 * (size_t)def->point_count * sizeof *points);
     if (ok && def->vertex_count) memcpy(vertices, def->vertices, def->vertex_count * sizeof *vertices);
     pin->waiting = *def;
-    pin->waiting.points = points, pin->waiting.vertices = vertices;
-    pin->waiting.path_count = 0, pin->waiting.path = NULL;
+    pin->waiting.points = points;
+    pin->waiting.vertices = vertices;
+    pin->waiting.path_count = 0;
+    pin->waiting.path = NULL;
     return ok;
 }
 
@@ -58,7 +60,10 @@ static uint32_t pin_nearest(const Shell *shell, const Sheet *sheet, const float 
     float min = INFINITY;
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
         float d = pin_distance2(shell, v, point);
-        if (d < min && shell->matter.area[v] > 0) min = d, best = v;
+        if (d < min && shell->matter.area[v] > 0) {
+            min = d;
+            best = v;
+        }
     }
     return best;
 }

@@ -93,8 +93,10 @@ static SingeResult sim_rebuild(SingeSim *sim) {
     if (!sim->committed) return SINGE_OK;
     TRY(singe_sim_clone(sim, &fresh));
     fresh->timers = sim->timers;
-    fresh->intersecting_warned = sim->intersecting_warned, fresh->crossing_warned = sim->crossing_warned;
-    fresh->crowd_warned = sim->crowd_warned, fresh->heat_warned = sim->heat_warned;
+    fresh->intersecting_warned = sim->intersecting_warned;
+    fresh->crossing_warned = sim->crossing_warned;
+    fresh->crowd_warned = sim->crowd_warned;
+    fresh->heat_warned = sim->heat_warned;
     fresh->tear_warned = sim->tear_warned;
     const SingeSim swap = *sim;
     *sim = *fresh;
@@ -111,7 +113,10 @@ SingeResult singe_sim_set_ambient_temperature(SingeSim *sim, float temperature) 
     sim->def.ambient_temperature = temperature;
     if (sim->committed) sim->heat_start += sim_enthalpy(sim) - stored; // enthalpy has a new reference
     SingeResult result = sim_rebuild(sim);
-    if (result) sim->def.ambient_temperature = before, sim->heat_start = start;
+    if (result) {
+        sim->def.ambient_temperature = before;
+        sim->heat_start = start;
+    }
     return result;
 }
 
@@ -166,9 +171,12 @@ static bool material_mix(SingeSim *sim, const SheetSource *old, const SheetSourc
 static SingeSheetDef material_sheet(const SheetSource *source, const SingeMaterialDef *material) {
     SingeSheetDef def = singe_default_sheet();
     def.name = source->sheet.name;
-    def.vertex_count = source->sheet.vertex_count, def.positions = (const float *)source->position;
-    def.cell_count = source->sheet.cell_count, def.cells = (const uint32_t *)source->cells;
-    def.uv = (const float *)source->uv, def.corner_uv = (const float *)source->corner_uv;
+    def.vertex_count = source->sheet.vertex_count;
+    def.positions = (const float *)source->position;
+    def.cell_count = source->sheet.cell_count;
+    def.cells = (const uint32_t *)source->cells;
+    def.uv = (const float *)source->uv;
+    def.corner_uv = (const float *)source->corner_uv;
     def.material = *material;
     return def;
 }
@@ -179,7 +187,8 @@ static void material_swap(SheetSource *source, MaterialValues *with) {
         const float value = source->value[p];
         float *values = source->values[p];
         source->value[p] = with->value[p], source->values[p] = with->values[p];
-        with->value[p] = value, with->values[p] = values;
+        with->value[p] = value;
+        with->values[p] = values;
     }
 }
 

@@ -85,18 +85,22 @@ static bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
     if (rest <= head) return true;
 
     // the Defs inside, each of its own size
-    bytes += head, rest -= head;
+    bytes += head;
+    rest -= head;
     if (!sim_read_def(&def->wind, sizeof def->wind, bytes, rest)) return false;
     memcpy(&wind, bytes, sizeof wind);
-    bytes += wind, rest -= wind;
+    bytes += wind;
+    rest -= wind;
     if (rest == 0) return true;
     if (!sim_read_def(&def->solver, sizeof def->solver, bytes, rest)) return false;
     memcpy(&solver, bytes, sizeof solver);
-    bytes += solver, rest -= solver;
+    bytes += solver;
+    rest -= solver;
     if (rest == 0) return true;
     if (!sim_read_def(&def->gas, sizeof def->gas, bytes, rest)) return false;
     memcpy(&gas, bytes, sizeof gas);
-    bytes += gas, rest -= gas;
+    bytes += gas;
+    rest -= gas;
     return rest == 0 || sim_read_def(&def->contact, sizeof def->contact, bytes, rest);
 }
 
@@ -133,7 +137,11 @@ static void sim_unbuild(SingeSim *sim) {
     dynamics_plan_free(memory, &sim->shell, sim->dynamics);
     gas_plan_free(memory, sim->gas);
     tear_plan_free(memory, sim->tear);
-    sim->heat = NULL, sim->ablate = NULL, sim->dynamics = NULL, sim->gas = NULL, sim->tear = NULL;
+    sim->heat = NULL;
+    sim->ablate = NULL;
+    sim->dynamics = NULL;
+    sim->gas = NULL;
+    sim->tear = NULL;
     FREE(memory, sim->thickening, sim->shell.sheet_count);
     FREE(memory, sim->partial, pool_blocks((int)sim->shell.particle_count));
     FREE(memory, sim->sample, sim->shell.springs[SINGE_BLUE].count);

@@ -255,7 +255,8 @@ void singe_init_sim(SingeSimDef *def, size_t struct_size) {
     fill_def(bytes + head, wind, &standard.wind, sizeof standard.wind);
     fill_def(bytes + head + wind, solver, &standard.solver, sizeof standard.solver);
     fill_def(bytes + head + wind + solver, gas, &standard.gas, sizeof standard.gas);
-    left -= solver + gas, bytes += head + wind + solver + gas;
+    left -= solver + gas;
+    bytes += head + wind + solver + gas;
     size_t contact = inner_size(bytes, left);
     fill_def(bytes, contact, &standard.contact, sizeof standard.contact);
     memset(bytes + contact, 0, left - contact);

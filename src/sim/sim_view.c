@@ -51,7 +51,8 @@ void singe_sim_read_sheet_range(const SingeSim *sim, SingeSheetId id, SingeSheet
         ours.vertex_count = sheet->vertex_count - sheet->spare_count;
         ours.reserve_count = sheet->spare_count;
         ours.torn_count = sheet->spare_used;
-        ours.cell_first = sheet->cell_first, ours.cell_count = sheet->cell_count;
+        ours.cell_first = sheet->cell_first;
+        ours.cell_count = sheet->cell_count;
         ours.centre_first = shell_centre(&sim->shell, sheet->cell_first);
     }
     sim_write_result(range, struct_size, &ours, sizeof ours);

@@ -122,7 +122,8 @@ static SingeResult snapshot_body(Stream *stream, SingeSim *sim) {
 }
 
 SingeResult singe_sim_save(SingeSim *sim, uint8_t **bytes, size_t *size) {
-    *bytes = NULL, *size = 0;
+    *bytes = NULL;
+    *size = 0;
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "save", -1, "singe_sim_commit must come before a save");
     Stream measure = {.mode = STREAM_MEASURE};
@@ -138,7 +139,8 @@ SingeResult singe_sim_save(SingeSim *sim, uint8_t **bytes, size_t *size) {
     }
     SnapshotHeader header = snapshot_header(write.bytes, write.size);
     memcpy(block, &header, sizeof header);
-    *bytes = block, *size = total;
+    *bytes = block;
+    *size = total;
     return SINGE_OK;
 }
 

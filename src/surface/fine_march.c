@@ -51,7 +51,10 @@ static uint32_t point_vertex(Fine *fine, const Piece *piece, int corner) {
 /// The vertex that cuts edge `edge`, which has one end inside.
 static uint32_t cut_vertex(Fine *fine, const Piece *piece, int edge) {
     int inside = edge, outside = edge == 2 ? 0 : edge + 1;
-    if (fine->values[piece->point[inside]].level < 0) inside = outside, outside = edge;
+    if (fine->values[piece->point[inside]].level < 0) {
+        inside = outside;
+        outside = edge;
+    }
     const FineValue *in = &fine->values[piece->point[inside]], *out = &fine->values[piece->point[outside]];
     float t = surface_cut(in->level, out->level, NEAREST);
     if (!(t > 0)) return point_vertex(fine, piece, inside);

@@ -83,7 +83,8 @@ FineValue fine_value(const Fine *fine, FineLocation location) {
     float min = smooth_level(fine, location), angle = 0, x, y;
     if (fine->sheets[sheet].reach > 0) {
         float depth = eaten(fine, location, &fine->sheets[sheet], &angle);
-        x = half_max(depth, fine->axes[location.cell][0]), y = half_max(depth, fine->axes[location.cell][1]);
+        x = half_max(depth, fine->axes[location.cell][0]);
+        y = half_max(depth, fine->axes[location.cell][1]);
 
         // the min over three directions
         float c = real_cosf(angle), s = real_sinf(angle);
@@ -93,7 +94,10 @@ FineValue fine_value(const Fine *fine, FineLocation location) {
         for (int i = 0; i < 3; i++) {
             FineLocation there = fine_walk(shell, location, x * direction[i][0], y * direction[i][1]);
             float value = smooth_level(fine, there);
-            if (value < min) min = value, min_location = there;
+            if (value < min) {
+                min = value;
+                min_location = there;
+            }
         }
     }
 

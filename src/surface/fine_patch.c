@@ -182,8 +182,14 @@ FinePatch fine_patch(const Fine *fine, uint32_t cell) {
 /// Bernstein polynomials of degree 3 and their derivatives.
 static void bernstein(float t, float value[4], float slope[4]) {
     float s = 1 - t;
-    value[0] = s * s * s, value[1] = 3 * s * s * t, value[2] = 3 * s * t * t, value[3] = t * t * t;
-    slope[0] = -3 * s * s, slope[1] = 3 * s * (s - 2 * t), slope[2] = 3 * t * (2 * s - t), slope[3] = 3 * t * t;
+    value[0] = s * s * s;
+    value[1] = 3 * s * s * t;
+    value[2] = 3 * s * t * t;
+    value[3] = t * t * t;
+    slope[0] = -3 * s * s;
+    slope[1] = 3 * s * (s - 2 * t);
+    slope[2] = 3 * t * (2 * s - t);
+    slope[3] = 3 * t * t;
 }
 
 FinePoint fine_patch_at(const FinePatch *patch, float u, float v) {

@@ -234,7 +234,8 @@ static bool differs(const Fine *fine, uint32_t cell, int splits) {
         for (int j = 0; j <= splits; j++)
             for (int i = 0; i + j <= splits; i++) {
                 float level = fine->values[fine_point(fine, cell, side, splits, i, j)].level;
-                inside |= level >= 0, outside |= level < 0;
+                inside |= level >= 0;
+                outside |= level < 0;
                 if (inside && outside) return true;
             }
     return false;
@@ -268,7 +269,8 @@ static void mark_split(void *context, int begin, int end) {
 static void points_settle(Fine *fine) {
     const Shell *shell = fine->shell;
     uint32_t *split_side = fine->bent_side; // swapped; sides of split cells get theirs back below
-    fine->bent_side = fine->side_point, fine->side_point = split_side;
+    fine->bent_side = fine->side_point;
+    fine->side_point = split_side;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         fine->splits[c] = fine->bent[c];
         if (!fine_is_split(fine, c)) fine->cell_point[c] = fine->bent_point[c];

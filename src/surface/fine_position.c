@@ -248,7 +248,10 @@ void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocati
 
     // position, limited in height
     float height = share * float3_dot(float3_sub(point.position, flat), beneath) / float3_dot(beneath, lean);
-    if (fabsf(height) > max) share *= max / fabsf(height), height = copysignf(max, height);
+    if (fabsf(height) > max) {
+        share *= max / fabsf(height);
+        height = copysignf(max, height);
+    }
     if (fabsf(height) > FLAT * float3_length(float3_sub(corner[1], corner[0])))
         float3_store(position, float3_mad(flat, lean, height));
 

@@ -71,10 +71,12 @@ void fine_spline_cells(const Fine *fine, Spline *spline) {
 
 void fine_spline_bounds(const Shell *shell, const Spline *spline, uint32_t cell, float *low, float *high) {
     SINGE_ASSERT(cell < shell->cell_count);
-    *low = INFINITY, *high = -INFINITY;
+    *low = INFINITY;
+    *high = -INFINITY;
     for (int i = 0; i < 4; i++) { // the other coefficients are means of these
         float side = spline->edge[shell->cell_springs[cell].blue[i]], corner = spline->corner[shell->cells[cell][i]];
-        *low = fminf(*low, fminf(side, corner)), *high = fmaxf(*high, fmaxf(side, corner));
+        *low = fminf(*low, fminf(side, corner));
+        *high = fmaxf(*high, fmaxf(side, corner));
     }
 }
 
@@ -94,10 +96,22 @@ void fine_coordinates(FineLocation location, float *x, float *y) {
     float out = 0.5f * (location.weight[0] + location.weight[1]),
           along = 0.5f * (location.weight[1] - location.weight[0]);
     switch (location.side) {
-    case 0: *x = along, *y = -out; break;
-    case 1: *x = out, *y = along; break;
-    case 2: *x = -along, *y = out; break;
-    default: *x = -out, *y = -along; break;
+    case 0:
+        *x = along;
+        *y = -out;
+        break;
+    case 1:
+        *x = out;
+        *y = along;
+        break;
+    case 2:
+        *x = -along;
+        *y = out;
+        break;
+    default:
+        *x = -out;
+        *y = -along;
+        break;
     }
 }
 
@@ -106,12 +120,16 @@ static FineLocation from_coordinates(uint32_t cell, float x, float y) {
     float out, along;
     if (fabsf(x) > fabsf(y)) {
         location.side = x > 0 ? 1 : 3;
-        out = fabsf(x), along = x > 0 ? y : -y;
+        out = fabsf(x);
+        along = x > 0 ? y : -y;
     } else {
         location.side = y > 0 ? 2 : 0;
-        out = fabsf(y), along = y > 0 ? -x : x;
+        out = fabsf(y);
+        along = y > 0 ? -x : x;
     }
-    location.weight[0] = out - along, location.weight[1] = out + along, location.weight[2] = 1 - 2 * out;
+    location.weight[0] = out - along;
+    location.weight[1] = out + along;
+    location.weight[2] = 1 - 2 * out;
     return location;
 }
 
@@ -127,7 +145,8 @@ FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, floa
     uint32_t cell = location.cell;
     float x, y;
     fine_coordinates(location, &x, &y);
-    x += dx, y += dy;
+    x += dx;
+    y += dy;
     for (int crossing = 0; crossing < 2 && fmaxf(fabsf(x), fabsf(y)) > 0.5f; crossing++) {
         int side = fabsf(x) > fabsf(y) ? (x > 0 ? 1 : 3) : (y > 0 ? 2 : 0);
         uint32_t other = shell_neighbour(shell, cell, side);
@@ -142,10 +161,12 @@ FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, floa
         int turns = (side_of(shell, other, shell->cell_springs[cell].blue[side]) + 2 - side) & 3;
         for (; turns > 0; turns--) {
             float turned = -y;
-            y = x, x = turned;
+            y = x;
+            x = turned;
         }
         cell = other;
     }
-    x = fmaxf(-0.5f, fminf(x, 0.5f)), y = fmaxf(-0.5f, fminf(y, 0.5f));
+    x = fmaxf(-0.5f, fminf(x, 0.5f));
+    y = fmaxf(-0.5f, fminf(y, 0.5f));
     return from_coordinates(cell, x, y);
 }

@@ -42,11 +42,13 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
     // means over the triangle's corners
     float mass_min = 0, yield = 0, u = 0, w = 0;
     for (int i = 0; i < 3; i++) {
-        u += location->weight[i] * shell->uv[particle[i]][0], w += location->weight[i] * shell->uv[particle[i]][1];
+        u += location->weight[i] * shell->uv[particle[i]][0];
+        w += location->weight[i] * shell->uv[particle[i]][1];
         mass_min += location->weight[i] * field_at(shell->matter.mass_min, particle[i]);
         yield += location->weight[i] * field_at(shell->matter.char_yield, particle[i]);
     }
-    surface->uv[v][0] = u, surface->uv[v][1] = w;
+    surface->uv[v][0] = u;
+    surface->uv[v][1] = w;
 
     // fields by splines
     surface->temperature[v] = fine_spline_at(shell, &fine->splines[SPLINE_TEMPERATURE], *location);
@@ -71,8 +73,10 @@ static void fill_range(void *context, int begin, int end) {
     FinePatch patch;
     uint32_t cell = SHELL_NONE;
     for (int v = begin; v < end; v++) {
-        if (fine->vertices[v].location.cell != cell)
-            cell = fine->vertices[v].location.cell, patch = fine_patch(fine, cell);
+        if (fine->vertices[v].location.cell != cell) {
+            cell = fine->vertices[v].location.cell;
+            patch = fine_patch(fine, cell);
+        }
         vertices_fill(fine, &patch, (uint32_t)v);
     }
 }

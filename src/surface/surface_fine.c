@@ -130,7 +130,8 @@ static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError
 SingeResult ablate_surface_fine(AblatePlan *plan, const Shell *shell, const State *state, const SurfaceDetail *detail,
                                 Memory *memory, Pool *pool, SingeSurface *surface, SingeError *error) {
     Fine fine = {.plan = plan, .shell = shell, .state = state, .memory = memory, .pool = pool, .surface = surface};
-    fine.room = detail->room, fine.bulge_max = detail->bulge_max > 0 ? detail->bulge_max : INFINITY;
+    fine.room = detail->room;
+    fine.bulge_max = detail->bulge_max > 0 ? detail->bulge_max : INFINITY;
     ablate_levels(plan, shell, &state->burn);
     surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
     SingeResult result = fine_draw(&fine, detail, error);

@@ -71,7 +71,10 @@ static int side_of(const Seams *seams, uint32_t cell, const uint32_t triangle[3]
         float weight[3];
         weights_at(seams->shell, cell, side, centroid, weight);
         float min = fminf(weight[0], fminf(weight[1], weight[2]));
-        if (min > max) max = min, best = side;
+        if (min > max) {
+            max = min;
+            best = side;
+        }
     }
     return best;
 }

@@ -20,8 +20,12 @@ static inline float tensor_across(const float *t, Float3 n) {
 
 /// t += s n n
 static inline void tensor_add(float *t, Float3 n, float s) {
-    t[0] += s * n.x * n.x, t[1] += s * n.y * n.y, t[2] += s * n.z * n.z;
-    t[3] += s * n.y * n.z, t[4] += s * n.z * n.x, t[5] += s * n.x * n.y;
+    t[0] += s * n.x * n.x;
+    t[1] += s * n.y * n.y;
+    t[2] += s * n.z * n.z;
+    t[3] += s * n.y * n.z;
+    t[4] += s * n.z * n.x;
+    t[5] += s * n.x * n.y;
 }
 
 /// The load at a vertex.

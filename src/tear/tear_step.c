@@ -64,8 +64,10 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
     TearPlan *plan;
     *out = NULL;
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
-    plan->cell_count = shell->cell_count, plan->vertex_count = shell->vertex_count;
-    plan->particle_count = shell->particle_count, plan->sheet_count = shell->sheet_count;
+    plan->cell_count = shell->cell_count;
+    plan->vertex_count = shell->vertex_count;
+    plan->particle_count = shell->particle_count;
+    plan->sheet_count = shell->sheet_count;
     if (!NEW(memory, plan->smooth[0], plan->cell_count) || !NEW(memory, plan->smooth[1], plan->cell_count) ||
         !NEW(memory, plan->ratio, plan->vertex_count) || !NEW(memory, plan->torn, plan->vertex_count) ||
         !NEW(memory, plan->leader, plan->particle_count) || !NEW(memory, plan->weakened, plan->sheet_count) ||

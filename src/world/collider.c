@@ -58,7 +58,9 @@ SingeResult collider_create(Memory *memory, const SingeColliderDef *def, Collide
     collider->def = *def;
     collider->def.path_count = stands ? 1 : def->path_count;
     collider->def.path = NULL;
-    collider->def.vertices = NULL, collider->def.triangles = NULL, collider->def.heights = NULL;
+    collider->def.vertices = NULL;
+    collider->def.triangles = NULL;
+    collider->def.heights = NULL;
 
     // its path and its solid
     SingeResult result =
@@ -110,7 +112,10 @@ void collider_bounds(const Collider *collider, Float3 *low, Float3 *high) {
     const SingeColliderDef *def = &collider->def;
     Float3 half = float3(INFINITY, INFINITY, INFINITY);
     switch (def->kind) {
-    case SINGE_COLLIDER_PLANE: *low = float3_scale(half, -1), *high = float3(INFINITY, INFINITY, 0); return;
+    case SINGE_COLLIDER_PLANE:
+        *low = float3_scale(half, -1);
+        *high = float3(INFINITY, INFINITY, 0);
+        return;
     case SINGE_COLLIDER_SPHERE: half = float3(def->radius, def->radius, def->radius); break;
     case SINGE_COLLIDER_BOX: half = float3_load(def->half_size); break;
     case SINGE_COLLIDER_CAPSULE: half = float3(def->radius, def->radius, def->radius + def->height / 2); break;
@@ -120,8 +125,12 @@ void collider_bounds(const Collider *collider, Float3 *low, Float3 *high) {
         *high = float3(heights->half[0], heights->half[1], heights->high);
         return;
     }
-    case SINGE_COLLIDER_MESH: *low = collider->mesh.low, *high = collider->mesh.high; return;
+    case SINGE_COLLIDER_MESH:
+        *low = collider->mesh.low;
+        *high = collider->mesh.high;
+        return;
     case SINGE_COLLIDER_DEFORMING: deform_bounds(&collider->deform, low, high); return;
     }
-    *low = float3_scale(half, -1), *high = half;
+    *low = float3_scale(half, -1);
+    *high = half;
 }

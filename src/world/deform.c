@@ -13,7 +13,9 @@ static SingeResult deform_no_memory(SingeError *error) {
 static bool deform_second(Memory *memory, DeformPose *pose) {
     MeshSolid *second = &pose->solid[1];
     *second = pose->solid[0];
-    second->vertices = NULL, second->leaves = NULL, second->nodes = NULL;
+    second->vertices = NULL;
+    second->leaves = NULL;
+    second->nodes = NULL;
     if (!NEW(memory, second->vertices, second->vertex_count) || !NEW(memory, second->leaves, second->leaf_count) ||
         !NEW(memory, second->nodes, second->node_count))
         return false;

@@ -15,7 +15,8 @@ static void height_ranges(HeightSolid *solid) {
     for (uint32_t bj = 0; bj < solid->blocks[1]; bj++)
         for (uint32_t bi = 0; bi < solid->blocks[0]; bi++) {
             float *range = solid->ranges[bj * solid->blocks[0] + bi];
-            range[0] = INFINITY, range[1] = -INFINITY;
+            range[0] = INFINITY;
+            range[1] = -INFINITY;
             for (uint32_t j = bj * HEIGHT_BLOCK; j <= height_solid_min((bj + 1) * HEIGHT_BLOCK, solid->rows - 1); j++)
                 for (uint32_t i = bi * HEIGHT_BLOCK; i <= height_solid_min((bi + 1) * HEIGHT_BLOCK, solid->columns - 1);
                      i++) {
@@ -60,7 +61,8 @@ SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows,
     // copy, ranges
     for (size_t k = 0; k < count; k++) {
         solid->heights[k] = heights[k];
-        solid->low = fminf(solid->low, heights[k]), solid->high = fmaxf(solid->high, heights[k]);
+        solid->low = fminf(solid->low, heights[k]);
+        solid->high = fmaxf(solid->high, heights[k]);
     }
     height_ranges(solid);
     return SINGE_OK;

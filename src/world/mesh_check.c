@@ -164,7 +164,9 @@ SingeResult mesh_solid_take(Memory *memory, uint32_t vertex_count, const float *
     TRY(mesh_check_numbers(vertex_count, vertices, triangle_count, triangles, error));
     uint32_t *first = NULL, *source = NULL;
     PairTable edges = {0};
-    solid->vertex_count = vertex_count, solid->triangle_count = triangle_count, solid->room = triangle_count + 1;
+    solid->vertex_count = vertex_count;
+    solid->triangle_count = triangle_count;
+    solid->room = triangle_count + 1;
 
     // memory
     bool ok = NEW(memory, solid->vertices, vertex_count) && NEW(memory, solid->triangles, solid->room) &&

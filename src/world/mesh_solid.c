@@ -55,7 +55,8 @@ static void solid_bounds(MeshSolid *solid) {
             low = float3(fminf(low.x, v.x), fminf(low.y, v.y), fminf(low.z, v.z));
             high = float3(fmaxf(high.x, v.x), fmaxf(high.y, v.y), fmaxf(high.z, v.z));
         }
-    solid->low = low, solid->high = high;
+    solid->low = low;
+    solid->high = high;
 }
 
 static Float3 solid_cell_centre(const MeshSolid *solid, int i, int j, int k) {

@@ -28,7 +28,8 @@ static void tree_count(uint32_t count, uint32_t *nodes) {
 }
 
 static void tree_box(const TreeBuild *build, uint32_t first, uint32_t count, Float3 *low, Float3 *high) {
-    *low = float3(INFINITY, INFINITY, INFINITY), *high = float3(-INFINITY, -INFINITY, -INFINITY);
+    *low = float3(INFINITY, INFINITY, INFINITY);
+    *high = float3(-INFINITY, -INFINITY, -INFINITY);
     for (uint32_t k = first; k < first + count; k++)
         for (int i = 0; i < 3; i++) {
             const float *v = build->solid->vertices[build->solid->triangles[build->solid->order[k]][i]];
@@ -45,9 +46,13 @@ static int tree_axis(const TreeBuild *build, uint32_t first, uint32_t count) {
         float low = INFINITY, high = -INFINITY;
         for (uint32_t k = first; k < first + count; k++) {
             float x = build->centroid[build->solid->order[k]][axis];
-            low = fminf(low, x), high = fmaxf(high, x);
+            low = fminf(low, x);
+            high = fmaxf(high, x);
         }
-        if (high - low > max) max = high - low, best = axis;
+        if (high - low > max) {
+            max = high - low;
+            best = axis;
+        }
     }
     return best;
 }
@@ -108,8 +113,12 @@ static int32_t tree_build(TreeBuild *build, uint32_t first, uint32_t count) {
         tree_box(build, first, parts[i], &low, &high);
         int32_t child = parts[i] ? tree_build(build, first, parts[i]) : 0;
         SolidNode *node = &build->solid->nodes[index];
-        node->low[0][i] = low.x, node->low[1][i] = low.y, node->low[2][i] = low.z;
-        node->high[0][i] = high.x, node->high[1][i] = high.y, node->high[2][i] = high.z;
+        node->low[0][i] = low.x;
+        node->low[1][i] = low.y;
+        node->low[2][i] = low.z;
+        node->high[0][i] = high.x;
+        node->high[1][i] = high.y;
+        node->high[2][i] = high.z;
         node->child[i] = child;
     }
     return (int32_t)index;
@@ -163,7 +172,8 @@ static void tree_child_box(const MeshSolid *solid, int32_t child, Float3 *low, F
                 bounds[0][i] = fminf(bounds[0][i], x), bounds[1][i] = fmaxf(bounds[1][i], x);
             }
         }
-    *low = float3_load(bounds[0]), *high = float3_load(bounds[1]);
+    *low = float3_load(bounds[0]);
+    *high = float3_load(bounds[1]);
 }
 
 void mesh_tree_refit(MeshSolid *solid) {
@@ -173,15 +183,20 @@ void mesh_tree_refit(MeshSolid *solid) {
         tree_leaf(&build, first, count - first < SOLID_WIDE ? count - first : SOLID_WIDE);
 
     // boxes from the leaves up
-    solid->low = float3(INFINITY, INFINITY, INFINITY), solid->high = float3(-INFINITY, -INFINITY, -INFINITY);
+    solid->low = float3(INFINITY, INFINITY, INFINITY);
+    solid->high = float3(-INFINITY, -INFINITY, -INFINITY);
     for (uint32_t n = solid->node_count; n-- > 0;) { // a node's children have higher numbers
         SolidNode *node = &solid->nodes[n];
         for (int i = 0; i < SOLID_WIDE; i++) {
             Float3 low, high;
             if (node->child[i] == 0) continue; // empty: the root is nobody's child
             tree_child_box(solid, node->child[i], &low, &high);
-            node->low[0][i] = low.x, node->low[1][i] = low.y, node->low[2][i] = low.z;
-            node->high[0][i] = high.x, node->high[1][i] = high.y, node->high[2][i] = high.z;
+            node->low[0][i] = low.x;
+            node->low[1][i] = low.y;
+            node->low[2][i] = low.z;
+            node->high[0][i] = high.x;
+            node->high[1][i] = high.y;
+            node->high[2][i] = high.z;
             if (n > 0) continue;
             solid->low = float3(fminf(solid->low.x, low.x), fminf(solid->low.y, low.y), fminf(solid->low.z, low.z));
             solid->high =

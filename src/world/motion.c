@@ -29,7 +29,8 @@ void motion_set(Motion *motion, const float *to, double now, double time) {
     const float share = motion_share(motion, now);
     for (uint32_t i = 0; i < motion->count; i++) float3_store(motion->from[i], motion_point(motion, i, share));
     memcpy(motion->to, to, motion->count * sizeof *motion->to);
-    motion->start = now, motion->end = time > now ? time : now;
+    motion->start = now;
+    motion->end = time > now ? time : now;
 }
 
 SingeResult motion_check(uint32_t count, const float *points, float max, const char *owner, SingeError *error) {

@@ -4,7 +4,7 @@ set -euo pipefail
 script=$1
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
-mkdir -p "$tree"/{common,src/heat,src/burn,src/dynamics,src/collision,src/reference,formats,preview,analysis,experiments,cli,scene,include/singe}
+mkdir -p "$tree"/{src/{common,heat,burn,dynamics,collision,reference},program/{formats,preview,analysis,cli,scene},lab/paper,include/singe}
 
 # expect RESULT FILE INCLUDE: a tree whose FILE holds that one include
 expect() {
@@ -21,22 +21,22 @@ expect bad src/heat/a.c '"burn/burn.h"'
 expect bad src/heat/a.c '"sim/sim_internal.h"'
 expect bad src/heat/a.c '"../burn/burn.h"'
 expect bad src/heat/a.c '<png.h>'
-expect good formats/a.c '"singe/sim.h"'
-expect bad formats/a.c '"common/error.h"'
-expect bad formats/a.c '"scene/scene.h"'
-expect good scene/a.c '"preview/preview.h"'
-expect bad scene/a.c '"preview/internal.h"'
-expect bad cli/a.c '"shell/shell.h"'
-expect bad cli/a.c '<shell/shell.h>'
+expect good program/formats/a.c '"singe/sim.h"'
+expect bad program/formats/a.c '"common/error.h"'
+expect bad program/formats/a.c '"scene/scene.h"'
+expect good program/scene/a.c '"preview/preview.h"'
+expect bad program/scene/a.c '"preview/internal.h"'
+expect bad program/cli/a.c '"shell/shell.h"'
+expect bad program/cli/a.c '<shell/shell.h>'
 expect bad include/singe/a.h '"common/error.h"'
 expect good src/dynamics/a.c '"collision/collision.h"'
 expect bad src/collision/a.c '"dynamics/dynamics.h"'
 expect bad src/reference/a.c '"dynamics/dynamics_plan.h"'
-expect bad common/a.c '"shell/shell.h"'
-expect good preview/a.c '"common/float3.h"'
-expect bad preview/a.c '"common/pool.h"'
-expect good experiments/a.c '"analysis/rim.h"'
-expect bad cli/a.c '"experiments/paper.h"'
+expect bad src/common/a.c '"shell/shell.h"'
+expect good program/preview/a.c '"common/float3.h"'
+expect bad program/preview/a.c '"common/pool.h"'
+expect good lab/paper/a.c '"analysis/rim.h"'
+expect bad program/cli/a.c '"paper/paper.h"'
 
 # headers that include each other
 echo '#include "heat/b.h"' >"$tree/src/heat/c.h"
@@ -47,5 +47,5 @@ expect bad src/heat/b.h '"heat/c.h"'
 rm "$tree/src/heat/c.h"
 echo >"$tree/src/burn/volume.h"
 expect good src/heat/b.h '"common/error.h"'
-echo >"$tree/scene/volume.h"
+echo >"$tree/program/scene/volume.h"
 expect bad src/heat/b.h '"common/error.h"'

@@ -45,7 +45,7 @@ def main():
     singe, folder = (os.path.abspath(path) for path in sys.argv[1:3])
     shutil.rmtree(folder, ignore_errors=True)
     os.environ["SINGE_LIBRARY"] = os.path.join(os.path.dirname(singe), "..", "python", "singe", "libsinge.so")
-    sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "python"))
+    sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "bindings", "python"))
     import singe as package
     out = make(singe, folder, [], "--no-preview", "--set", "gas=no")
     path = package.read_cache(out).write_alembic(os.path.join(folder, "burn.abc"))

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "experiments/paper_states.h"
+#include "paper/paper_states.h"
 #include "analysis/singular.h"
 
 static void test_singular_values(void **unused) {

@@ -1,7 +1,7 @@
 // Foreign text in messages: what is escaped, what is cut, and where.
 #include "format_test.h"
 
-#include "formats/printable.h"
+#include "common/printable.h"
 
 #include <stdio.h>
 #include <stdlib.h>

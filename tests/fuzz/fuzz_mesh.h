@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "formats/formats.h"
 #include "mesh/to_quads.h"
 #include "input.h"
 

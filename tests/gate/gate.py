@@ -284,7 +284,7 @@ def print_table(results):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--singe", default="build/cli/singe")
+    parser.add_argument("--singe", default="build/singe")
     parser.add_argument("--folder", default="build/gate")
     parser.add_argument("--sets", nargs="*", help="only these packages")
     parser.add_argument("--at", help="a folder that has models: those of --list are burnt, and no others")

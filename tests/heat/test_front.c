@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "bench/strip.h"
+#include "analysis/strip.h"
 
 /// Burns a strip of cells of `size` in steps of h.
 static StripResult burn_strip(float size, float h, const SingeMaterialDef *material) {

@@ -13,6 +13,7 @@
 
 #include <cmocka.h>
 
+#include "formats/formats.h"
 #include "mesh/to_quads.h"
 
 typedef struct Text {

@@ -1,4 +1,4 @@
-"""Meshes of every class that users bring (tools/make_meshes.py): two seconds of each, and what `singe verify` says.
+"""Meshes of every class that users bring (scripts/make_meshes.py): two seconds of each, and what `singe verify` says.
 
 A good mesh runs without a warning and without a fault, and its first frame has all of it: every vertex at its position
 with its uv. A broken one either runs, and then what was repaired is said

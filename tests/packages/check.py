@@ -76,7 +76,7 @@ def cache(folder):
 
 def expected(work):
     (work / "scene.yaml").write_text(SCENE)
-    run(ROOT / "build/cli/singe", "run", work / "scene.yaml", "-o", work / "expected", "--quiet", "--no-preview")
+    run(ROOT / "build/singe", "run", work / "scene.yaml", "-o", work / "expected", "--quiet", "--no-preview")
     return cache(work / "expected")
 
 
@@ -126,7 +126,7 @@ def static(work, wanted):
     if os.geteuid() == 0 and shutil.which("debootstrap"):
         roots += [(suite, bare_root(work, suite, f"{suite}-static")) for suite in ("bookworm", "trixie")]
     for name, root in roots:
-        shutil.copy(build / "cli/singe", root / "singe")
+        shutil.copy(build / "singe", root / "singe")
         (root / "tmp/scene.yaml").write_text(SCENE)
         run("chroot", root, "/singe", "run", "/tmp/scene.yaml", "-o", "/tmp/out", "--quiet")
         compare(f"static command in {name}", root / "tmp/out", wanted)
@@ -142,7 +142,7 @@ def conan(work, _):
     command = place / "bin/conan"
     run(command, "profile", "detect", "--force", env=environment)
     shown = run(command, "create", ROOT / "packaging/conan", env=environment, cwd=ROOT, both=True)
-    version = run(ROOT / "build/cli/singe", "--version").strip()
+    version = run(ROOT / "build/singe", "--version").strip()
     if f"\n{version}\n" not in shown:
         sys.exit(f"conan: the test package does not say '{version}'\n{shown[-2000:]}")
     print(f"conan: created; its test package is built and says '{version}'", flush=True)

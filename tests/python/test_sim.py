@@ -18,7 +18,7 @@ import numpy as np
 from singe import _abi
 from singe._library import library
 
-GENERATE = ROOT / "python/generate.py"
+GENERATE = ROOT / "bindings/python/generate.py"
 FIELDS = ("position velocity rest_position uv area mass fuel temperature temperature_peak burn_rate time_ignited "
           "time_burnt piece particle_flags cell_flags cells source_vertex").split()
 
@@ -36,7 +36,7 @@ class Layout(Case):
         made = self.dir / "abi.py"
         done = self.generate("--output", str(made))
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(made.read_text(), (ROOT / "python/singe/_abi.py").read_text(), "run python/generate.py")
+        self.assertEqual(made.read_text(), (ROOT / "bindings/python/singe/_abi.py").read_text(), "run bindings/python/generate.py")
 
     def test_is_that_of_c(self):
         done = self.generate("--check", str(self.dir / "abi"))
@@ -44,7 +44,7 @@ class Layout(Case):
         self.assertGreater(int(done.stdout.split()[0]), 450)
 
     def test_a_wrong_layout_is_found(self):
-        text = (ROOT / "python/singe/_abi.py").read_text()
+        text = (ROOT / "bindings/python/singe/_abi.py").read_text()
         wrong = self.dir / "abi.py"
         wrong.write_text(text.replace('("step", c_uint64), ("topology_version", c_uint64)',
                                       '("topology_version", c_uint64), ("step", c_uint64)'))

@@ -112,7 +112,9 @@ static inline void chains_eliminate(const Group *group) {
         right = (row.right + lower * right) * inverse;
         lanes_store(keep_at(group, k, KEEP_RIGHT), right);
         lanes_store(keep_at(group, k, KEEP_FACTOR), factor);
-        before_x = row.dx, before_y = row.dy, before_z = row.dz;
+        before_x = row.dx;
+        before_y = row.dy;
+        before_z = row.dz;
         a = b;
     }
 }
@@ -134,7 +136,8 @@ static inline void chains_substitute(const Group *group, const bool pulls) {
         Float4s a = group_float4s(group, k), correction = float4s_correction(&a, &b, mu);
         float4s_move(&b, &after, &correction);
         group_put(group, k + 1, &b);
-        b = a, after = correction;
+        b = a;
+        after = correction;
     }
     Float4s none = float4s_correction(&b, &b, lanes_all(0));
     float4s_move(&b, &after, &none);
@@ -185,7 +188,9 @@ static inline void rings_eliminate(const Group *group, const Corner *corner) {
         lanes_store(keep_at(group, k, KEEP_RIGHT), right);
         lanes_store(keep_at(group, k, KEEP_FACTOR), factor);
         lanes_store(keep_at(group, k, KEEP_CYCLIC), cyclic);
-        before_x = row.dx, before_y = row.dy, before_z = row.dz;
+        before_x = row.dx;
+        before_y = row.dy;
+        before_z = row.dz;
         a = b;
     }
 }
@@ -200,7 +205,10 @@ static inline Lanes rings_substitute(const Group *group, const Corner *corner) {
         lanes_store(keep_at(group, k, KEEP_RIGHT), right);
         lanes_store(keep_at(group, k, KEEP_CYCLIC), cyclic);
         factor = lanes_load(keep_at(group, k, KEEP_FACTOR));
-        if (k == end) right_end = right, cyclic_end = cyclic;
+        if (k == end) {
+            right_end = right;
+            cyclic_end = cyclic;
+        }
     }
     return (right + corner->ratio * right_end) / (lanes_all(1) + cyclic + corner->ratio * cyclic_end);
 }
@@ -220,7 +228,8 @@ static inline void rings_move(const Group *group, Lanes scale, const bool pulls)
         Float4s correction = float4s_correction(&a, &b, mu);
         float4s_move(&a, &correction, &before);
         group_put(group, k, &a);
-        a = b, before = correction;
+        a = b;
+        before = correction;
     }
 }
 

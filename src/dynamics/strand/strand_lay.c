@@ -188,7 +188,8 @@ static bool lay_run(Lay *lay, uint32_t s) {
     for (; 2 * contiguous > length; lanes++) {
         group->columns++;
         uint32_t *lane = lay->left;
-        lay->left = lay->right, lay->right = lane;
+        lay->left = lay->right;
+        lay->right = lane;
         if (group->columns == STRAND_LANES) {
             lay_close_group(lay, first);
             group = lay_open_group(lay, false);
@@ -223,7 +224,8 @@ static uint32_t lay_fill(Lay *lay, uint32_t group, uint32_t column, uint32_t row
         uint32_t longest = lay->springs->longest, length = lay_longest(lay, nodes - 1 < longest ? nodes - 1 : longest);
         if (length == 0) break;
         lay_put(lay, lay_take(lay, length), group, column, row);
-        row += length + 1, nodes -= length + 1;
+        row += length + 1;
+        nodes -= length + 1;
     }
     return row;
 }

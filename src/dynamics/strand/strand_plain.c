@@ -26,7 +26,9 @@ static inline Float4s float4s_load_contiguous(const float *x, size_t stride) {
 
 static inline void float4s_store_contiguous(float *x, size_t stride, const Float4s *float4s) {
     (void)stride;
-    x[0] = float4s->x, x[1] = float4s->y, x[2] = float4s->z;
+    x[0] = float4s->x;
+    x[1] = float4s->y;
+    x[2] = float4s->z;
 }
 
 static inline Float4s float4s_gather(const float *position, const uint32_t *node) {

@@ -41,7 +41,9 @@ static bool set_take_block(Memory *memory, StrandSet *set) {
     if (!words) return false;
     set->block = words;
     words += (64 - (uintptr_t)words % 64) % 64 / sizeof *words;
-    set->length = words, set->weight = words + slots, set->compliance = words + 2 * slots;
+    set->length = words;
+    set->weight = words + slots;
+    set->compliance = words + 2 * slots;
     set->node = (uint32_t *)(void *)(words + 3 * slots);
     set->contiguous = set->node + slots;
     return true;

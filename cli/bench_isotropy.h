@@ -1,9 +1,0 @@
-#ifndef CLI_BENCH_ISOTROPY_H
-#define CLI_BENCH_ISOTROPY_H
-
-#include "bench/bench.h"
-
-/// How much the folds of a burning sheet follow the mesh: the same burn on a grid and on the grid turned by 45 degrees.
-BenchFn bench_isotropy;
-
-#endif

@@ -1,0 +1,219 @@
+// How much the folds of a burning sheet follow the mesh: the same burn on a grid and on the grid turned by 45 degrees.
+//
+// A sheet of 14 cm, a square or a disc, lies on the ground and is lit in its centre; its layers shrink by different
+// amounts, by equation 6 near its full strength, and char remains in spots. r is the bending of creases along the
+// sheet's axes divided by that along its diagonals (analysis/wrinkles.h), summed over MOMENTS of the second half of the
+// burn. If O is the effect of the outline and the fibres, and M that of the mesh, then r_0 = O M on the grid and r_45 =
+// O/M on the turned one:
+//
+//   mesh effect M = sqrt(r_0/r_45),   1 if folds do not depend on the mesh
+//
+// Seeds are those of the material's noise: where it burns, shrinks and remains. Both grids of a pair have the same
+// seed.
+#include "bench/bench_isotropy.h"
+
+#include <math.h>
+
+#include "analysis/turned_grid.h"
+#include "analysis/wrinkles.h"
+
+enum { MOMENTS = 6 };
+
+enum { OUTLINE, CELL, THICKNESS, LIMIT, CREASES, SEED, STRAIGHT, TURNED, EFFECT, MEAN, BEND, COLUMNS };
+
+static const BenchColumn columns[COLUMNS] = {
+    [OUTLINE] = {"outline", NULL, 8, NULL},
+    [CELL] = {"cell_mm", "%.3g", 8, NULL},
+    [THICKNESS] = {"thickness_mm", "%.3g", 13, NULL},
+    [LIMIT] = {"curvature_max", "%.0f", 14, NULL},
+    [CREASES] = {"creases", NULL, 8, NULL},
+    [SEED] = {"seed", "%.0f", 5, NULL},
+    [STRAIGHT] = {"r_0", "%.3f", 7, NULL},
+    [TURNED] = {"r_45", "%.3f", 7, NULL},
+    [EFFECT] = {"effect", "%.3f", 7, NULL},
+    [MEAN] = {"mean", "%.3f", 7, NULL}, // of the seeds so far
+    [BEND] = {"bend_per_m", "%.2f", 11, NULL},
+};
+
+static const double size = 0.14; // m
+
+typedef struct Burn {
+    const BenchOptions *options;
+    int cells;
+    bool disc, creases;
+    double thickness, limit; ///< m, 1/m
+    uint32_t seed;
+} Burn;
+
+enum { NOISES = 4 };
+
+/// Office paper that shrinks strongly. It points to `noises`.
+static SingeMaterialDef isotropy_material(const Burn *burn, SingeField noises[NOISES]) {
+    SingeMaterialDef def = singe_default_material();
+    const uint32_t seed = 16 * burn->seed;
+    const SingeNoise noise[NOISES] = {
+        {0.03f, 5, seed + 1}, {0.025f, 5, seed + 7}, {0.015f, 4, seed + 3}, {0.05f, 2, seed + 2}};
+    for (int k = 0; k < NOISES; k++) noises[k] = (SingeField){.kind = SINGE_FIELD_NOISE, .noise = noise[k]};
+    def.thickness = singe_param((float)burn->thickness);
+    def.curvature_max = singe_param((float)burn->limit);
+    def.mass_rate = singe_param_field(4e-3f, 10e-3f, &noises[0]);
+    def.mass_loss = singe_param_field(0, 0.3f, &noises[1]);
+    def.char_strength = singe_param_field(1, 10, &noises[2]);
+    def.shrink_front = singe_param_field(0.5f, 1.3f, &noises[3]);
+    def.shrink_back = singe_param(0.65f);
+    def.char_yield = singe_param(0);
+    def.heat_share = singe_param(0.2f);
+    def.ash_density = singe_param(0.3f); // eq 4
+    return def;
+}
+
+static SingeResult isotropy_sheet(SingeSim *sim, const Burn *burn, double angle, SingeError *error) {
+    SingeSheetDef def = singe_default_sheet();
+    SingeSheetId id;
+    SingeField noises[NOISES];
+    Mesh mesh;
+    const TurnedGrid cut = {size, burn->cells, burn->disc, angle, {.jitter = 0.15f, .seed = 1}};
+    SingeResult result = turned_grid(&cut, &mesh, error);
+    if (result) return result;
+    for (uint32_t v = 0; v < mesh.vertex_count; v++) mesh.positions[3 * (size_t)v + 2] = 0.5e-3f;
+    def.vertex_count = mesh.vertex_count;
+    def.positions = mesh.positions;
+    def.uv = mesh.uv;
+    def.cell_count = mesh.cell_count;
+    def.cells = mesh.cells;
+    def.material = isotropy_material(burn, noises);
+    def.drop_pieces_below = 4e-6f;
+    result = singe_sim_add_sheet(sim, &def, &id);
+    if (!result) result = singe_sim_commit(sim);
+    if (result) *error = *singe_sim_error(sim);
+    mesh_free(&mesh);
+    return result;
+}
+
+static SingeResult add_world(SingeSim *sim, SingeError *error) {
+    const SingePoseKey centre = {0, {0, 0, 0}, {0, 0, 0, 1}};
+    SingeColliderDef ground = singe_default_collider();
+    SingeSourceDef spot = singe_default_source();
+    SingeColliderId collider;
+    SingeSourceId source;
+    ground.path_count = spot.path_count = 1;
+    ground.path = spot.path = &centre;
+    spot.radius = 0.01f;
+    spot.falloff = 0.015f;
+    spot.temperature = 1123.15f;
+    spot.end = 1.5f;
+    SingeResult result = singe_sim_add_collider(sim, &ground, &collider);
+    if (!result) result = singe_sim_add_source(sim, &spot, &source);
+    if (result) *error = *singe_sim_error(sim);
+    return result;
+}
+
+static SingeResult isotropy_build(const Burn *burn, double angle, SingeSim **sim, SingeError *error) {
+    SingeSimDef def = singe_default_sim();
+    const BenchOptions *options = burn->options;
+    def.thread_count = options->threads;
+    def.pace = 5;
+    def.instructions = options->instructions;
+    def.solver.substeps = options->substeps ? options->substeps : 8;
+    def.solver.creases = burn->creases;
+    def.solver.tearing = true;
+    def.contact.enabled = true;
+    SingeResult result = singe_sim_create(&def, sim, error);
+    if (result) return result;
+    result = isotropy_sheet(*sim, burn, angle, error);
+    if (!result) result = add_world(*sim, error);
+    if (result) singe_sim_destroy(*sim), *sim = NULL;
+    return result;
+}
+
+static double total(const double *numbers, int count) {
+    double sum = 0;
+    for (int i = 0; i < count; i++) sum += numbers[i];
+    return sum;
+}
+
+/// Burns the sheet and sums its wrinkles.
+static SingeResult isotropy_run(const Burn *burn, double angle, Wrinkles *wrinkles, SingeError *error) {
+    const double seconds = burn->options->time > 0 ? burn->options->time : 1.1;
+    SingeSim *sim = NULL;
+    SingeSurface surface = {0};
+    SingeResult result = isotropy_build(burn, angle, &sim, error);
+    if (result) return result;
+    for (int look = 1; look <= MOMENTS && !result; look++) {
+        double until = seconds * (0.5 + 0.5 * look / MOMENTS) - 1e-9;
+        while (!result && singe_sim_view(sim).time < until) result = singe_sim_step(sim);
+        if (!result) result = singe_sim_surface(sim, &surface);
+        if (result) *error = *singe_sim_error(sim);
+        else if (!wrinkles_add(&surface, wrinkles)) result = SINGE_ERROR_MEMORY;
+    }
+    singe_surface_free(&surface);
+    singe_sim_destroy(sim);
+    return result;
+}
+
+/// The row of the `index`-th seed; *sum is the sum of the logarithms of the effects.
+static SingeResult isotropy_compare(const Burn *burn, int index, BenchTable *table, double *sum, SingeError *error) {
+    Wrinkles straight = {0}, turned = {0};
+    SingeResult result = isotropy_run(burn, 0, &straight, error);
+    if (!result) result = isotropy_run(burn, acos(-1) / 4, &turned, error);
+    if (result) return result;
+    const double r_0 = wrinkles_bias(&straight), r_45 = wrinkles_bias(&turned);
+    const double bend = total(straight.crease, WRINKLE_BINS) + total(turned.crease, WRINKLE_BINS);
+    *sum += 0.5 * log(r_0 / r_45);
+    BenchValue row[COLUMNS] = {
+        [OUTLINE] = bench_text(burn->disc ? "disc" : "square"),
+        [CELL] = bench_number(1e3 * size / burn->cells),
+        [THICKNESS] = bench_number(1e3 * burn->thickness),
+        [LIMIT] = bench_number(burn->limit),
+        [CREASES] = bench_text(burn->creases ? "yes" : "no"),
+        [SEED] = bench_number(burn->seed),
+        [STRAIGHT] = bench_number(r_0),
+        [TURNED] = bench_number(r_45),
+        [EFFECT] = bench_number(sqrt(r_0 / r_45)),
+        [MEAN] = bench_number(exp(*sum / (index + 1))),
+        [BEND] = bench_number(bend / (2 * MOMENTS * size * size)),
+    };
+    return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
+}
+
+/// The same burn over the seeds.
+static SingeResult compare_seeds(Burn *burn, BenchTable *table, SingeError *error) {
+    static const double four[] = {1, 2, 3, 4};
+    const BenchList seeds = bench_list(&burn->options->seeds, burn->options->quick ? 2 : 4, four);
+    double sum = 0;
+    SingeResult result = SINGE_OK;
+    for (int i = 0; i < seeds.count && !result; i++) {
+        burn->seed = (uint32_t)seeds.values[i];
+        result = isotropy_compare(burn, i, table, &sum, error);
+    }
+    return result;
+}
+
+static SingeResult compare_outlines(Burn *burn, BenchTable *table, SingeError *error) {
+    SingeResult result = SINGE_OK;
+    for (int disc = 0; disc < 2 && !result; disc++) {
+        burn->disc = disc;
+        if (burn->options->outline != (disc ? BENCH_SQUARE : BENCH_DISC)) result = compare_seeds(burn, table, error);
+    }
+    return result;
+}
+
+SingeResult bench_isotropy(const BenchOptions *options, BenchTable *table, SingeError *error) {
+    const double cell = 2e-3, sheet = 1e-3, limit = (double)singe_default_material().curvature_max.value;
+    const double along = round(size / cell);
+    const BenchList cells = bench_list(&options->cells, 1, &along);
+    const BenchList thickness = bench_list(&options->thickness, 1, &sheet);
+    const BenchList limits = bench_list(&options->curvature, 1, &limit);
+    Burn burn = {.options = options, .creases = options->creases};
+    SingeResult result = SINGE_OK;
+    *table = table_begin("isotropy", columns, COLUMNS, table->text);
+    for (int c = 0; c < cells.count; c++)
+        for (int t = 0; t < thickness.count; t++)
+            for (int l = 0; l < limits.count && !result; l++) {
+                burn.cells = (int)cells.values[c];
+                burn.thickness = thickness.values[t];
+                burn.limit = limits.values[l];
+                result = compare_outlines(&burn, table, error);
+            }
+    return result;
+}

@@ -1,0 +1,150 @@
+#include "bench/hung_sheet.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const float size = 1; // m
+
+BenchSetup sheet_setup(const BenchOptions *options, BenchState state, int steps) {
+    BenchSetup setup = {
+        .state = state,
+        .cells = 100,
+        .pins = 2,
+        .thickness = 1e-3f,
+        .shrink = 0.8f,
+        .threads = options->threads,
+        .time_step = 1.0f / (float)(BENCH_FPS * steps),
+        .instructions = options->instructions,
+    };
+    singe_init_solver_method(&setup.solver, sizeof setup.solver, options->solver);
+    setup.rigid = options->solver != SINGE_SOLVER_STRAND;
+    if (options->substeps) setup.solver.substeps = options->substeps;
+    if (options->projections) setup.solver.projections = options->projections;
+    if (options->smoothing >= 0) setup.solver.smoothing = (float)options->smoothing;
+    return setup;
+}
+
+SingeResult sheet_add_strip(SingeSim *sim, SingeSheetDef *def, const int cells[2], const float sides[2], bool upright,
+                            SingeSheetId *id) {
+    uint32_t n = (uint32_t)cells[0], rows = (uint32_t)cells[1], row = n + 1, vertices = row * (rows + 1);
+    float *positions = malloc((size_t)3 * vertices * sizeof *positions);
+    uint32_t *corners = malloc((size_t)4 * n * rows * sizeof *corners);
+    SingeResult result = SINGE_ERROR_MEMORY;
+    if (positions && corners) {
+        for (uint32_t v = 0; v < vertices; v++) {
+            float across = sides[0] * (float)(v % row) / (float)n, along = sides[1] * (float)(v / row) / (float)rows;
+            float *x = positions + (size_t)3 * v;
+            x[0] = across;
+            x[1] = upright ? 0 : along;
+            x[2] = upright ? along : 0;
+        }
+        for (uint32_t c = 0; c < n * rows; c++) {
+            uint32_t v = c / n * row + c % n, *cell = corners + (size_t)4 * c;
+            cell[0] = v;
+            cell[1] = v + 1;
+            cell[2] = v + row + 1;
+            cell[3] = v + row;
+        }
+        def->vertex_count = vertices;
+        def->positions = positions;
+        def->cell_count = n * rows;
+        def->cells = corners;
+        result = singe_sim_add_sheet(sim, def, id);
+    }
+    free(positions);
+    free(corners);
+    return result;
+}
+
+SingeResult sheet_add(SingeSim *sim, SingeSheetDef *def, int cells, float side, bool upright, SingeSheetId *id) {
+    return sheet_add_strip(sim, def, (const int[]){cells, cells}, (const float[]){side, side}, upright, id);
+}
+
+void sheet_inert(SingeMaterialDef *material) {
+    material->grammage = singe_param(0.1f);
+    material->reference_grammage = 0;
+    material->diffusivity = material->layer_exchange = singe_param(0);
+    material->convection = material->emissivity = singe_param(0);
+    material->heat_share = singe_param(0);
+    material->thickening = 1;
+    material->drag = material->damping = singe_param(0);
+    material->char_weight = singe_param(1);
+    material->ablate = false;
+}
+
+/// The sheet is hot from the start and loses one hundredth of its mass within a second; by eq 5 and 6 the ratio of
+/// lengths becomes m_min/ash_density = `ratio`. It never burns through, as mass_loss is below m_min.
+static void material_shrinks(SingeMaterialDef *material, float ratio) {
+    const float min = 0.99f, excess = 100; // excess in K
+    material->ignition_temperature = singe_param(500);
+    material->temperature = singe_param(500 + excess);
+    material->rate_ceiling = singe_param(excess);
+    material->mass_rate = singe_param((1 - min) / excess);
+    material->ash_exponent = singe_param(0);
+    material->mass_min = singe_param(min);
+    material->mass_loss = singe_param(0);
+    material->ash_density = singe_param(min / ratio);
+    material->shrink_front = material->shrink_back = material->fibre_shrink = singe_param(1);
+}
+
+/// Only a corner's vertex if the sheet swings, else a patch.
+static SingeResult pins_add(SingeSim *sim, const BenchSetup *setup, SingeSheetId sheet) {
+    const bool upright = setup->state != BENCH_SWING;
+    const float high = upright ? size : 0, corners[2][3] = {{0, 0, high}, {size, 0, high}};
+    const SingePoseKey path[2] = {{0, {size, 0, high}, {0, 0, 0, 1}},
+                                  {0.5f, {size - setup->approach, 0, high}, {0, 0, 0, 1}}};
+    SingePinDef pin = singe_default_pin();
+    SingePinId id;
+    pin.sheet = sheet;
+    pin.point_count = 1;
+    pin.radius = upright ? 0.05f * size : 0;
+    for (int p = 0; p < setup->pins; p++) {
+        pin.points = corners[p];
+        if (p == 1 && setup->approach > 0) {
+            pin.path_count = 2;
+            pin.path = path;
+        }
+        SingeResult result = singe_sim_add_pin(sim, &pin, &id);
+        if (result) return result;
+    }
+    return SINGE_OK;
+}
+
+static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
+    SingeSheetDef sheet = singe_default_sheet();
+    SingeSheetId id;
+    sheet_inert(&sheet.material);
+    sheet.material.thickness = singe_param(setup->thickness);
+    if (setup->state == BENCH_SHRINK) material_shrinks(&sheet.material, setup->shrink);
+    sheet.material.damping = singe_param(setup->damping);
+    for (int c = 0; setup->rigid && c < SINGE_COLOUR_COUNT; c++) sheet.material.compliance[c] = singe_param(0);
+    SingeResult result;
+    if (setup->shape) {
+        sheet.vertex_count = setup->shape->vertex_count;
+        sheet.positions = setup->shape->positions;
+        sheet.cell_count = setup->shape->cell_count;
+        sheet.cells = setup->shape->cells;
+        result = singe_sim_add_sheet(sim, &sheet, &id);
+    } else {
+        result = sheet_add(sim, &sheet, setup->cells, size, setup->state != BENCH_SWING, &id);
+    }
+    if (!result) result = singe_sim_commit(sim);
+    return result ? result : pins_add(sim, setup, id);
+}
+
+SingeResult sheet_build(const BenchSetup *setup, SingeSim **sim, SingeError *error) {
+    SingeSimDef def = singe_default_sim();
+    def.thread_count = setup->threads;
+    def.instructions = setup->instructions;
+    def.time_step = setup->time_step;
+    def.solver = setup->solver;
+    SingeResult result = singe_sim_create(&def, sim, error);
+    if (result) return result;
+    result = hung_sheet_fill(*sim, setup);
+    if (!result) return SINGE_OK;
+    *error = *singe_sim_error(*sim);
+    error->code = result;
+    singe_sim_destroy(*sim);
+    *sim = NULL;
+    return result;
+}

@@ -1,0 +1,245 @@
+// The cost of self-contact while a sheet falls, lands and lies: an upright cloth falls over a sphere and onto the
+// ground in folds, and a ball of paper, a closed mesh, collapses.
+#include <math.h>
+#include <stdlib.h>
+
+#include "bench/bench.h"
+#include "bench/machine.h"
+#include "analysis/numbers.h"
+
+enum { STEPS = 20, ROOM = 4096 };
+static const float side = 1;                    // m
+static const float sphere = 0.12f, lift = 0.3f; // m
+static const float ball = 0.1f;                 // m, radius of the closed mesh
+static const double seconds = 3, collapse_seconds = 0.3;
+
+enum {
+    CELLS,
+    SPRINGS,
+    THREADS,
+    FRAME_MEDIAN,
+    FRAME_MAX,
+    STEP_MEAN,
+    HEAT,
+    BURN,
+    ABLATE,
+    DYNAMICS,
+    PROJECTION,
+    CONTACT,
+    CONTACT_STEP,
+    SEARCHES,
+    PAIRS,
+    PUSHES,
+    STOPS,
+    UNRESOLVED,
+    STRAIN,
+    INVERTED,
+    SPEED,
+    COLUMNS
+};
+
+static const BenchColumn columns[COLUMNS] = {
+    [CELLS] = {"cells", "%.0f", 5, NULL},
+    [SPRINGS] = {"springs", "%.0f", 8, NULL},
+    [THREADS] = {"threads", "%.0f", 7, NULL},
+    [FRAME_MEDIAN] = {"frame_ms", "%.4g", 8, NULL},
+    [FRAME_MAX] = {"max_ms", "%.4g", 8, NULL},
+    [STEP_MEAN] = {"step_ms", "%.4g", 8, NULL},
+    [HEAT] = {"heat_ms", "%.3g", 8, NULL},
+    [BURN] = {"burn_ms", "%.3g", 8, NULL},
+    [ABLATE] = {"ablate_ms", "%.3g", 9, NULL},
+    [DYNAMICS] = {"dynamics_ms", "%.4g", 11, NULL},
+    [PROJECTION] = {"projection_ms", "%.4g", 13, NULL},
+    [CONTACT] = {"contact_ms", "%.4g", 10, NULL},
+    [CONTACT_STEP] = {"contact_100k_ms", "%.3g", 15, NULL}, // a step, for 100,000 springs
+    [SEARCHES] = {"searches_step", "%.2f", 13, NULL},
+    [PAIRS] = {"pairs_step", "%.0f", 10, NULL},
+    [PUSHES] = {"repulsions_substep", "%.0f", 14, NULL},
+    [STOPS] = {"stops_step", "%.1f", 10, NULL},
+    [UNRESOLVED] = {"crossing", "%.0f", 8, NULL},
+    [STRAIN] = {"strain_pct", "%.3g", 20, "max/p99/mean"},
+    [INVERTED] = {"inverted", "%.0f", 8, NULL},
+    [SPEED] = {"speed", "%.3f", 8, NULL},
+};
+
+/// A cloth in the x-z plane with slight waves, so that it folds instead of standing.
+static SingeResult add_cloth(SingeSim *sim, int n) {
+    uint32_t row = (uint32_t)n + 1;
+    float *x = malloc(3 * (size_t)row * row * sizeof *x), cell = side / (float)n;
+    uint32_t *cells = malloc(4 * (size_t)n * (size_t)n * sizeof *cells);
+    SingeResult result = x && cells ? SINGE_OK : SINGE_ERROR_MEMORY;
+    for (uint32_t v = 0; v < row * row && !result; v++) {
+        float i = (float)(v % row) / (float)n, j = (float)(v / row) / (float)n;
+        x[3 * v] = side * (i - 0.5f);
+        x[3 * v + 1] = 0.02f * sinf(19 * j) + 0.01f * sinf(13 * i);
+        x[3 * v + 2] = lift + side * j;
+    }
+    for (uint32_t c = 0; c < (uint32_t)(n * n) && !result; c++) {
+        uint32_t v = c / (uint32_t)n * row + c % (uint32_t)n;
+        cells[4 * c] = v;
+        cells[4 * c + 1] = v + 1;
+        cells[4 * c + 2] = v + row + 1;
+        cells[4 * c + 3] = v + row;
+    }
+    if (!result) {
+        SingeSheetDef def = singe_default_sheet();
+        SingeSheetId id;
+        def.vertex_count = row * row;
+        def.positions = x;
+        def.cell_count = (uint32_t)(n * n);
+        def.cells = cells;
+        def.material.thickness = singe_param(0.8f * cell);
+        result = singe_sim_add_sheet(sim, &def, &id);
+    }
+    free(x), free(cells);
+    return result;
+}
+
+/// The index of a point of a cube's surface: (n + 1) x (n + 1) points at the bottom and the top, and rings in between.
+static uint32_t ball_vertex(const uint32_t at[3], uint32_t n) {
+    uint32_t i = at[0], j = at[1], k = at[2], row = n + 1;
+    if (k == 0 || k == n) return (k ? row * row : 0) + j * row + i;
+    uint32_t ring = j == 0 ? i : i == n ? n + j : j == n ? 3 * n - i : 4 * n - j;
+    return 2 * row * row + (k - 1) * 4 * n + ring;
+}
+
+/// The six faces of a cube of n x n cells each, projected to a sphere that lies on the ground.
+static void fill_ball(uint32_t n, float *x, uint32_t *cells) {
+    for (uint32_t c = 0; c < 6 * n * n; c++) {
+        uint32_t axis = c / (2 * n * n), upper = c / (n * n) % 2, i = c / n % n, j = c % n;
+        for (uint32_t k = 0; k < 4; k++) {
+            uint32_t at[3], turn = upper ? k : 3 - k;
+            at[axis] = upper * n;
+            at[(axis + 1) % 3] = i + (turn == 1 || turn == 2), at[(axis + 2) % 3] = j + turn / 2;
+            uint32_t v = cells[4 * c + k] = ball_vertex(at, n);
+            float square = 0, *p = x + 3 * (size_t)v;
+            for (int d = 0; d < 3; d++) {
+                p[d] = tanf(0.785398f * (2 * (float)at[d] / (float)n - 1));
+                square += p[d] * p[d];
+            }
+            for (int d = 0; d < 3; d++) p[d] = ball / sqrtf(square) * p[d] + (d == 2 ? ball + 2e-3f : 0);
+        }
+    }
+}
+
+static SingeResult add_ball(SingeSim *sim, int cells_a_side) {
+    uint32_t n = (uint32_t)cells_a_side;
+    SingeSheetDef def = singe_default_sheet();
+    SingeSheetId id;
+    def.vertex_count = 6 * n * n + 2;
+    def.cell_count = 6 * n * n;
+    float *x = malloc(3 * (size_t)def.vertex_count * sizeof *x);
+    uint32_t *cells = malloc(4 * (size_t)def.cell_count * sizeof *cells);
+    SingeResult result = x && cells ? SINGE_OK : SINGE_ERROR_MEMORY;
+    if (!result) {
+        fill_ball(n, x, cells);
+        def.positions = x;
+        def.cells = cells;
+        result = singe_sim_add_sheet(sim, &def, &id);
+    }
+    free(x), free(cells);
+    return result;
+}
+
+static SingeResult add_solids(SingeSim *sim, bool closed) {
+    SingeColliderDef def = singe_default_collider();
+    SingePoseKey key = {.rotation = {0, 0, 0, 1}};
+    SingeColliderId id;
+    def.path_count = 1;
+    def.path = &key;
+    def.friction = 0.4f;
+    def.offset = 1e-3f;
+    SingeResult result = singe_sim_add_collider(sim, &def, &id);
+    if (closed) return result;
+    def.kind = SINGE_COLLIDER_SPHERE;
+    def.radius = sphere;
+    key.position[2] = sphere;
+    return result ? result : singe_sim_add_collider(sim, &def, &id);
+}
+
+static SingeResult heap_build(const BenchOptions *options, int cells, bool closed, SingeSim **sim, SingeError *error) {
+    SingeSimDef def = singe_default_sim();
+    def.thread_count = options->threads;
+    def.contact.enabled = true;
+    if (!closed) def.contact.thickness = 1e-3f; // of a cloth
+    if (options->substeps) def.solver.substeps = options->substeps;
+    SingeResult result = singe_sim_create(&def, sim, error);
+    if (result) return result;
+    result = closed ? add_ball(*sim, cells) : add_cloth(*sim, cells);
+    if (!result) result = singe_sim_commit(*sim);
+    if (!result) result = add_solids(*sim, closed);
+    if (!result) return SINGE_OK;
+    *error = *singe_sim_error(*sim);
+    singe_sim_destroy(*sim);
+    return result;
+}
+
+static void heap_fill(BenchValue *row, const BenchOptions *options, const SingeSim *sim, int cells, double *frame_ms,
+                      int frames) {
+    SingeTimers t = singe_sim_timers(sim);
+    SingeCounts counts = singe_sim_counts(sim);
+    SingeStats stats = singe_sim_stats(sim);
+    double springs = 0, a_frame = 1e3 / frames, steps = (double)t.steps;
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += counts.springs[c];
+    double mean = numbers_mean(frame_ms, frames), median = numbers_median(frame_ms, frames);
+    row[CELLS] = bench_number(cells);
+    row[SPRINGS] = bench_number(springs);
+    row[THREADS] = bench_number(options->threads);
+    row[FRAME_MEDIAN] = bench_number(median);
+    row[FRAME_MAX] = bench_number(frame_ms[frames - 1]);
+    row[STEP_MEAN] = bench_number(mean * frames / steps);
+    row[HEAT] = bench_number(a_frame * t.seconds[SINGE_STAGE_HEAT]);
+    row[BURN] = bench_number(a_frame * t.seconds[SINGE_STAGE_BURN]);
+    row[ABLATE] = bench_number(a_frame * t.seconds[SINGE_STAGE_ABLATE]);
+    row[DYNAMICS] = bench_number(a_frame * t.seconds[SINGE_STAGE_DYNAMICS]);
+    row[PROJECTION] = bench_number(a_frame * t.projection_seconds);
+    row[CONTACT] = bench_number(a_frame * t.contact_seconds);
+    row[CONTACT_STEP] = bench_number(1e3 * t.contact_seconds / steps * 1e5 / springs);
+    row[SEARCHES] = bench_number((double)t.contact_searches / steps);
+    row[PAIRS] = bench_number((double)t.contact_pairs / steps);
+    row[PUSHES] = bench_number((double)t.contact_repulsions / steps / (options->substeps ? options->substeps : 3));
+    row[STOPS] = bench_number((double)t.contact_stops / steps);
+    row[UNRESOLVED] = bench_number((double)(t.contact_unresolved + t.contact_dropped));
+    row[STRAIN] = (BenchValue){.number = {100 * stats.strain_max, 100 * stats.strain_p99, 100 * stats.strain_mean}};
+    row[INVERTED] = bench_number(stats.inverted_cells);
+    row[SPEED] = bench_number(stats.speed_rms_unburnt);
+}
+
+static SingeResult heap_measure(const BenchOptions *options, int cells, bool closed, BenchTable *table,
+                                SingeError *error) {
+    SingeSim *sim;
+    double frame_ms[ROOM];
+    double time = options->time > 0 ? options->time : closed ? collapse_seconds : seconds;
+    int frames = (int)fmin(ROOM, fmax(1, 24 * time));
+    if (heap_build(options, cells, closed, &sim, error)) return error->code;
+    SingeResult result = SINGE_OK;
+    for (int f = 0; f < frames && !result; f++) {
+        double begun = machine_clock();
+        for (int step = 0; step < STEPS && !result; step++) result = singe_sim_step(sim);
+        frame_ms[f] = 1e3 * (machine_clock() - begun);
+    }
+    BenchValue row[COLUMNS] = {0};
+    if (result) *error = *singe_sim_error(sim);
+    else heap_fill(row, options, sim, cells, frame_ms, frames);
+    if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
+    singe_sim_destroy(sim);
+    return result;
+}
+
+SingeResult bench_heap(const BenchOptions *options, BenchTable *table, SingeError *error) {
+    BenchList cells = bench_list(&options->cells, 2, (const double[]){100, 200});
+    SingeResult result = SINGE_OK;
+    *table = table_begin("heap", columns, COLUMNS, table->text);
+    for (int i = 0; i < cells.count && !result; i++)
+        result = heap_measure(options, (int)cells.values[i], false, table, error);
+    return result;
+}
+
+SingeResult bench_collapse(const BenchOptions *options, BenchTable *table, SingeError *error) {
+    BenchList cells = bench_list(&options->cells, 2, (const double[]){40, 102});
+    SingeResult result = SINGE_OK;
+    *table = table_begin("collapse", columns, COLUMNS, table->text);
+    for (int i = 0; i < cells.count && !result; i++)
+        result = heap_measure(options, (int)cells.values[i], true, table, error);
+    return result;
+}

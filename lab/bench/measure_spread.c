@@ -1,0 +1,66 @@
+// The direction in which fire spreads faster: strips of office paper in gas: level, hanging and lit at the top, hanging
+// and lit at the bottom.
+#include "bench/bench.h"
+#include "analysis/strip.h"
+
+#include <math.h>
+
+enum { DIRECTION, CELL, GAS_CELL, SPEED, OVER_LEVEL, OVER_DOWN, SPREAD_COLUMNS };
+
+static const BenchColumn spread_columns[SPREAD_COLUMNS] = {
+    [DIRECTION] = {"direction", NULL, 9, NULL},      [CELL] = {"cell_mm", "%.2g", 7, NULL},
+    [GAS_CELL] = {"gas_cell_mm", "%.2g", 11, NULL},  [SPEED] = {"speed_mm_s", "%.3g", 10, NULL},
+    [OVER_LEVEL] = {"over_level", "%.2f", 10, NULL}, [OVER_DOWN] = {"over_down", "%.2f", 9, NULL},
+};
+
+/// In m; a gas cell of 0: without gas.
+typedef struct SpreadCase {
+    const char *direction;
+    float cell, gas_cell;
+} SpreadCase;
+
+static const SpreadCase cases[] = {
+    {"level", 2e-3f, 0},     {"level", 2e-3f, 6e-3f}, {"down", 2e-3f, 6e-3f}, {"up", 2e-3f, 6e-3f},
+    {"up", 1e-3f, 6e-3f},    {"up", 2e-3f, 4e-3f},    {"up", 2e-3f, 9e-3f},   {"level", 1e-3f, 6e-3f},
+    {"level", 2e-3f, 9e-3f}, {"down", 1e-3f, 6e-3f},  {"down", 2e-3f, 9e-3f},
+};
+enum { CASES = sizeof cases / sizeof *cases, CASES_QUICK = 7 };
+
+static SingeResult spread_case(const SpreadCase *it, int threads, double *speed, SingeError *error) {
+    const SingeMaterialDef paper = singe_default_material();
+    StripSetup setup = strip_setup(&paper);
+    StripResult result = {0};
+    setup.cell = it->cell;
+    setup.threads = threads;
+    setup.length = 0.15f;
+    setup.width = 0.05f;
+    setup.pace = 4;
+    setup.gas = it->gas_cell > 0;
+    setup.gas_cell = it->gas_cell;
+    if (it->direction[0] != 'l') setup.gravity[0] = it->direction[0] == 'u' ? -9.81f : 9.81f, setup.gravity[2] = 0;
+    SingeResult code = strip_burn(&setup, &result, error);
+    *speed = result.speed;
+    return code;
+}
+
+SingeResult bench_spread(const BenchOptions *options, BenchTable *table, SingeError *error) {
+    double level = NAN, down = NAN;
+    *table = table_begin("spread", spread_columns, SPREAD_COLUMNS, table->text);
+    for (int i = 0; i < (options->quick ? CASES_QUICK : CASES); i++) {
+        const SpreadCase *it = &cases[i];
+        BenchValue row[SPREAD_COLUMNS];
+        double speed;
+        SingeResult code = spread_case(it, options->threads, &speed, error);
+        if (code) return code;
+        if (i == 1) level = speed;
+        if (i == 2) down = speed;
+        row[DIRECTION] = bench_text(it->direction);
+        row[CELL] = bench_number(1e3 * (double)it->cell);
+        row[GAS_CELL] = bench_number(it->gas_cell > 0 ? 1e3 * (double)it->gas_cell : NAN);
+        row[SPEED] = bench_number(1e3 * speed);
+        row[OVER_LEVEL] = bench_number(speed / level);
+        row[OVER_DOWN] = bench_number(speed / down);
+        if (!table_add(table, row)) return SINGE_ERROR_MEMORY;
+    }
+    return SINGE_OK;
+}

@@ -1,0 +1,86 @@
+#include "bench/timing.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "analysis/numbers.h"
+
+/// One 2.6 GHz Zen 4 core (AMD EPYC, gcc 12 -O3), between steps.
+static const double yardstick_reference_ms = 8.6;
+
+double timing_yardstick_reference(void) { return yardstick_reference_ms; }
+
+int timing_steps(double springs, int min, int max) {
+    double steps = 2e7 / springs;
+    return steps < min ? min : steps > max ? max : (int)steps;
+}
+
+double timing_springs(const SingeSim *sim) {
+    SingeCounts counts = singe_sim_counts(sim);
+    double springs = 0;
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) springs += counts.springs[colour];
+    return springs;
+}
+
+static bool timing_allocate(Timing *timing, int steps) {
+    bool good = true;
+    *timing = (Timing){.steps = steps};
+    for (int what = 0; what < TIMED_COUNT; what++) {
+        timing->ms[what] = calloc((size_t)steps, sizeof *timing->ms[what]);
+        good = good && timing->ms[what];
+    }
+    return good;
+}
+
+static void timing_note(Timing *timing, int step, const SingeTimers *before, const SingeTimers *after,
+                        double yardstick_ms) {
+    double total = 0;
+    for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++) {
+        timing->ms[stage][step] = 1e3 * (after->seconds[stage] - before->seconds[stage]);
+        total += timing->ms[stage][step];
+    }
+    timing->ms[TIMED_STEP][step] = total;
+    timing->ms[TIMED_PROJECTION][step] = 1e3 * (after->projection_seconds - before->projection_seconds);
+    timing->ms[TIMED_YARDSTICK][step] = yardstick_ms;
+    // scaled by the yardstick just before it: a temporarily slow machine slows both
+    timing->ms[TIMED_SCALED][step] = total / fmax(1, yardstick_ms / yardstick_reference_ms);
+}
+
+static SingeTimers difference(SingeTimers after, const SingeTimers *before) {
+    for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++) after.seconds[stage] -= before->seconds[stage];
+    after.steps -= before->steps;
+    after.heat_iterations -= before->heat_iterations;
+    after.strands_projected -= before->strands_projected;
+    after.contacts -= before->contacts;
+    after.projection_seconds -= before->projection_seconds;
+    after.springs_projected -= before->springs_projected;
+    after.projection_iterations -= before->projection_iterations;
+    after.projection_flops -= before->projection_flops;
+    after.projection_bytes -= before->projection_bytes;
+    return after;
+}
+
+SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, int warm_up, int steps) {
+    if (!timing_allocate(timing, steps)) return SINGE_ERROR_MEMORY;
+    SingeTimers first = singe_sim_timers(sim);
+    for (int step = -warm_up; step < steps; step++) {
+        double yardstick_ms = yardstick ? yardstick_run(yardstick) : 0;
+        SingeTimers before = singe_sim_timers(sim);
+        if (step == 0) first = before;
+        SingeResult result = singe_sim_step(sim);
+        if (result) return result;
+        SingeTimers after = singe_sim_timers(sim);
+        if (step >= 0) timing_note(timing, step, &before, &after, yardstick_ms);
+    }
+    timing->total = difference(singe_sim_timers(sim), &first);
+    for (int what = 0; what < TIMED_COUNT; what++) numbers_median(timing->ms[what], steps); // sorts
+    return SINGE_OK;
+}
+
+double timing_median(const Timing *timing, int what) { return timing->ms[what][timing->steps / 2]; }
+double timing_min(const Timing *timing, int what) { return timing->ms[what][0]; }
+
+void timing_free(Timing *timing) {
+    for (int what = 0; what < TIMED_COUNT; what++) free(timing->ms[what]);
+    *timing = (Timing){0};
+}

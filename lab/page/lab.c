@@ -1,0 +1,366 @@
+#include "page/lab.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/hung_sheet.h"
+#include "cli/text.h"
+
+// ---- scenes
+
+SingeResult play_open(Play *play, Lab *lab, const char *scene, const char *const *sets, SingeError *error) {
+    SetList list = {0};
+    *play = (Play){.lab = lab};
+    if (lab->quick) set_add(&list, "preview.size=[320, 240]"), set_add(&list, "preview.samples=4");
+    for (; sets && *sets; sets++)
+        if (**sets) set_add(&list, *sets);
+    char *path = text_format("%s/%s", lab->scenes, scene);
+    lab->console.quiet = true; // suppress the scene's own messages
+    ExitCode code = job_open(&play->job, &lab->console, path, &list, lab->threads);
+    if (!code) code = job_build(&play->job, &lab->console, &play->sim);
+    lab->console.quiet = false;
+    set_free(&list);
+    if (code) {
+        *error = (SingeError){.code = SINGE_ERROR_FORMAT, .element = -1};
+        snprintf(error->message, sizeof error->message, "%s cannot be used", path);
+    }
+    free(path);
+    return code ? SINGE_ERROR_FORMAT : SINGE_OK;
+}
+
+SingeResult play_until(Play *play, double time, SingeError *error) {
+    while (singe_sim_view(play->sim).time < time - 1e-9) {
+        SingeResult result = singe_sim_step(play->sim);
+        if (!result) continue;
+        *error = *singe_sim_error(play->sim);
+        return result;
+    }
+    return SINGE_OK;
+}
+
+SingeResult play_surface(Play *play, SingeError *error) {
+    SingeResult result = singe_sim_surface(play->sim, &play->surface);
+    if (result) *error = *singe_sim_error(play->sim);
+    return result;
+}
+
+/// In a scene about shapes, burning only stands for shrinkage and should not look like char.
+static void make_plain(SingeSurface *surface) {
+    for (uint32_t v = 0; v < surface->vertex_count; v++) {
+        surface->temperature[v] = surface->temperature_peak[v] = 293;
+        surface->mass[v] = 1;
+        surface->burn[v] = surface->burn_rate[v] = 0;
+        surface->time_ignited[v] = -1;
+    }
+}
+
+static void dim(SingeSurface *surface, float glow) {
+    for (uint32_t v = 0; v < surface->vertex_count; v++) surface->temperature[v] = fminf(surface->temperature[v], glow);
+}
+
+static const uint8_t *draw(Play *play, int size[2], SingeError *error) {
+    if (!play->pictures && pictures_open(&play->job, &play->pictures, error)) return NULL;
+    if (play_surface(play, error)) return NULL;
+    if (play->plain) make_plain(&play->surface);
+    if (play->glow > 0) dim(&play->surface, play->glow);
+    SingeGas gas = singe_sim_gas(play->sim);
+    pictures_size(play->pictures, &size[0], &size[1]);
+    double time = singe_sim_view(play->sim).time;
+    return pictures_draw(play->pictures, &play->surface, gas.size[0] ? &gas : NULL, time, error);
+}
+
+SingeResult play_draw(Play *play, uint8_t **rgb, int size[2], SingeError *error) {
+    *rgb = NULL;
+    if (!pictures_available()) return SINGE_OK;
+    const uint8_t *drawn = draw(play, size, error);
+    if (!drawn) return error->code ? error->code : SINGE_ERROR_STATE;
+    size_t bytes = (size_t)size[0] * (size_t)size[1] * 3;
+    if ((*rgb = malloc(bytes))) memcpy(*rgb, drawn, bytes);
+    return *rgb ? SINGE_OK : SINGE_ERROR_MEMORY;
+}
+
+SingeResult play_shoot(Play *play, const char *caption, SingeError *error) {
+    if (!pictures_available()) return SINGE_OK;
+    int size[2];
+    const uint8_t *drawn = draw(play, size, error);
+    if (!drawn) return error->code ? error->code : SINGE_ERROR_STATE;
+    report_picture(play->lab->report, caption, size[0], size[1], drawn);
+    return SINGE_OK;
+}
+
+SingeResult play_shoot_at(Play *play, double time, SingeError *error) {
+    char caption[40];
+    snprintf(caption, sizeof caption, "%.1f s", time);
+    SingeResult result = play_until(play, time, error);
+    return result ? result : play_shoot(play, caption, error);
+}
+
+void play_close(Play *play) {
+    singe_surface_free(&play->surface);
+    pictures_close(play->pictures);
+    singe_sim_destroy(play->sim);
+    job_close(&play->job);
+    *play = (Play){0};
+}
+
+// ---- grids
+
+LabGrid lab_grid(int across, int along, float cell) {
+    LabGrid grid = {.cells = {across, along},
+                    .sides = {(float)across * cell, (float)along * cell},
+                    .material = singe_default_material(),
+                    .solver = singe_default_solver(),
+                    .time_step = singe_default_sim().time_step,
+                    .pace = 1};
+    sheet_inert(&grid.material);
+    return grid;
+}
+
+/// Drops cells, and vertices without cells.
+static void cut_grid(Mesh *mesh, bool (*inside)(double x, double y)) {
+    uint32_t cells = 0, vertices = 0, *number = calloc(mesh->vertex_count, sizeof *number);
+    for (uint32_t c = 0; c < mesh->cell_count && number; c++) {
+        uint32_t *corner = mesh->cells + 4 * (size_t)c;
+        const float *p = mesh->positions + 3 * (size_t)corner[0], *q = mesh->positions + 3 * (size_t)corner[2];
+        if (!inside((double)(p[0] + q[0]) / 2, (double)(p[1] + q[1]) / 2)) continue;
+        for (int k = 0; k < 4; k++) number[mesh->cells[4 * (size_t)cells + (size_t)k] = corner[k]] = 1;
+        cells++;
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count && number; v++) {
+        if (!number[v]) continue;
+        memmove(mesh->positions + 3 * (size_t)vertices, mesh->positions + 3 * (size_t)v, 3 * sizeof(float));
+        memmove(mesh->uv + 2 * (size_t)vertices, mesh->uv + 2 * (size_t)v, 2 * sizeof(float));
+        number[v] = vertices++;
+    }
+    for (size_t i = 0; i < 4 * (size_t)cells; i++) mesh->cells[i] = number[mesh->cells[i]];
+    if (number) {
+        mesh->cell_count = cells;
+        mesh->vertex_count = vertices;
+    }
+    free(number);
+}
+
+/// Adds the grid's mesh with its attributes.
+static SingeResult add_grid(const LabGrid *grid, SingeSim *sim, SingeError *error) {
+    SingeSheetDef sheet = singe_default_sheet();
+    SingeSheetId id;
+    Mesh mesh = {0};
+    const uint32_t nx = (uint32_t)grid->cells[0], ny = (uint32_t)grid->cells[1];
+    SingeResult result = mesh_grid(grid->sides[0], grid->sides[1], nx, ny, (SingeAllocator){0}, &mesh, error);
+    if (result) return result;
+    mesh_grid_wear(&mesh, nx, ny, &(GridWear){.jitter = grid->jitter});
+    float *field = malloc(mesh.vertex_count * sizeof *field);
+    for (uint32_t v = 0; v < mesh.vertex_count && field; v++) {
+        float *p = mesh.positions + 3 * (size_t)v;
+        for (int k = 0; k < 2; k++) p[k] += grid->sides[k] / 2;
+        field[v] = grid->field ? (float)grid->field(grid->context, (double)p[0], (double)p[1]) : 0;
+    }
+    if (grid->inside) cut_grid(&mesh, grid->inside);
+    const SingeAttribute attributes[] = {{"field", field}, {"mass", grid->mass ? grid->mass : field}};
+    sheet.material = grid->material;
+    sheet.vertex_count = mesh.vertex_count;
+    sheet.positions = mesh.positions;
+    sheet.uv = mesh.uv;
+    sheet.cell_count = mesh.cell_count;
+    sheet.cells = mesh.cells;
+    sheet.attribute_count = 2;
+    sheet.attributes = attributes;
+    result = field ? singe_sim_add_sheet(sim, &sheet, &id) : SINGE_ERROR_MEMORY;
+    if (!result) result = singe_sim_commit(sim);
+    if (result) *error = *singe_sim_error(sim);
+    free(field);
+    mesh_free(&mesh);
+    return result;
+}
+
+SingeResult lab_build(const Lab *lab, const LabGrid *grid, SingeSim **sim, SingeError *error) {
+    SingeSimDef def = singe_default_sim();
+    def.thread_count = lab->threads;
+    def.time_step = grid->time_step;
+    def.solver = grid->solver;
+    def.gravity[2] = -grid->gravity;
+    def.air_density = 0;
+    def.pace = grid->pace;
+    SingeResult result = singe_sim_create(&def, sim, error);
+    if (result) return result;
+    result = add_grid(grid, *sim, error);
+    if (result) singe_sim_destroy(*sim), *sim = NULL;
+    return result;
+}
+
+SingeResult lab_steps(SingeSim *sim, int count, SingeError *error) {
+    SingeResult result = SINGE_OK;
+    for (int step = 0; step < count && !result; step++) result = singe_sim_step(sim);
+    if (result) *error = *singe_sim_error(sim);
+    return result;
+}
+
+void lab_sets_mass(SingeMaterialDef *material) {
+    material->temperature = singe_param(600);
+    material->ignition_temperature = singe_param(500);
+    material->rate_ceiling = singe_param(1e6f);
+    material->mass_rate = singe_param(0.1f);
+    material->ash_exponent = singe_param(0);
+    material->ash_density = singe_param(1);
+    material->shrink_front = material->shrink_back = material->fibre_shrink = singe_param(1);
+    static const SingeField mass = {.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "mass"};
+    material->mass_min = singe_param_field(0, 1, &mass);
+    material->mass_loss = material->char_yield = singe_param(0);
+}
+
+// ---- shapes
+
+static void cell_normal(const SingeView *view, uint32_t cell, double n[3]) {
+    const uint32_t *c = view->cells[cell];
+    double a[3], b[3], length = 0;
+    for (int k = 0; k < 3; k++) {
+        a[k] = (double)view->position[c[2]][k] - (double)view->position[c[0]][k];
+        b[k] = (double)view->position[c[3]][k] - (double)view->position[c[1]][k];
+    }
+    for (int k = 0; k < 3; k++) {
+        n[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+        length += n[k] * n[k];
+    }
+    for (int k = 0; k < 3; k++) n[k] /= sqrt(fmax(length, 1e-300));
+}
+
+double shape_angle(const SingeView *view, uint32_t a, uint32_t b) {
+    double n[3], m[3], dot = 0;
+    cell_normal(view, a, n), cell_normal(view, b, m);
+    for (int k = 0; k < 3; k++) dot += n[k] * m[k];
+    return acos(fmin(1, fmax(-1, dot)));
+}
+
+double shape_bend(const SingeView *view) {
+    double sum = 0, count = 0;
+    for (uint32_t s = 0; s < view->spring_count[SINGE_GREEN]; s++) {
+        if (!(view->spring_flags[SINGE_GREEN][s] & SINGE_ALIVE)) continue;
+        const uint32_t *end = view->springs[SINGE_GREEN][s];
+        double angle = shape_angle(view, end[0] - view->vertex_count, end[1] - view->vertex_count);
+        sum += angle * angle, count++;
+    }
+    return count > 0 ? sqrt(sum / count) * 180 / acos(-1) : 0;
+}
+
+void shape_bounds(const SingeView *view, double low[3], double high[3]) {
+    for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+    for (uint32_t v = 0; v < view->vertex_count; v++) {
+        if (!(view->particle_flags[v] & SINGE_ALIVE)) continue;
+        for (int k = 0; k < 3; k++) {
+            low[k] = fmin(low[k], (double)view->position[v][k]);
+            high[k] = fmax(high[k], (double)view->position[v][k]);
+        }
+    }
+}
+
+double shape_left(const SingeView *view) {
+    double left = 0;
+    for (uint32_t c = 0; c < view->cell_count; c++) left += view->cell_flags[c] & SINGE_ALIVE ? 1 : 0;
+    return left / view->cell_count;
+}
+
+int shape_pieces(const SingeView *view, double share) {
+    enum { MAX = 4096 };
+    static const double none = 0;
+    double *area = calloc(MAX, sizeof *area), all = none;
+    int count = 0;
+    for (uint32_t i = view->vertex_count; area && i < view->particle_count; i++) {
+        all += (double)view->area[i];
+        if (view->particle_flags[i] & SINGE_ALIVE && view->piece[i] >= 0)
+            area[view->piece[i] % MAX] += (double)view->area[i];
+    }
+    for (int p = 0; area && p < MAX; p++) count += area[p] >= share * all && area[p] > 0;
+    free(area);
+    return count;
+}
+
+typedef struct Edge {
+    uint32_t low, high;
+} Edge;
+
+static int edge_order(const void *a, const void *b) {
+    const Edge *p = a, *q = b;
+    if (p->low != q->low) return p->low < q->low ? -1 : 1;
+    return (p->high > q->high) - (p->high < q->high);
+}
+
+static double rest_distance(const SingeSurface *surface, uint32_t a, uint32_t b) {
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        double d = (double)surface->rest_position[a][k] - (double)surface->rest_position[b][k];
+        square += d * d;
+    }
+    return sqrt(square);
+}
+
+double shape_border(const SingeSurface *surface) {
+    size_t count = 3 * (size_t)surface->triangle_count;
+    Edge *edges = malloc((count + 1) * sizeof *edges);
+    double length = 0, area = 0;
+    for (uint32_t t = 0; edges && t < surface->triangle_count; t++) {
+        const uint32_t *c = surface->triangles[t];
+        for (int k = 0; k < 3; k++) {
+            uint32_t a = c[k], b = c[(k + 1) % 3];
+            edges[3 * (size_t)t + (size_t)k] = a < b ? (Edge){a, b} : (Edge){b, a};
+        }
+        double p = rest_distance(surface, c[0], c[1]), q = rest_distance(surface, c[1], c[2]);
+        double r = rest_distance(surface, c[2], c[0]), s = (p + q + r) / 2;
+        area += sqrt(fmax(0, s * (s - p) * (s - q) * (s - r)));
+    }
+    if (edges) qsort(edges, count, sizeof *edges, edge_order);
+    for (size_t i = 0, j; edges && i < count; i = j) {
+        for (j = i + 1; j < count && edge_order(&edges[i], &edges[j]) == 0;) j++;
+        if (j == i + 1) length += rest_distance(surface, edges[i].low, edges[i].high);
+    }
+    free(edges);
+    return area > 0 ? length / sqrt(area) : NAN;
+}
+
+// ---- spectrum
+
+/// Adds the power of a line of heights: the angle to the rest plane, without its mean and slope, under a Hann window;
+/// the power of the height follows from that of its slope by (wavelength/2 pi)^2.
+static void add_line(const SingeView *view, uint32_t first, uint32_t stride, int count, double cell, double *line,
+                     ShapeSpectrum *spectrum) {
+    const double pi = acos(-1), centre = 0.5 * (count - 1);
+    double mean = 0, slope = 0, squares = 0;
+    for (int i = 0; i < count; i++) {
+        const float *p = view->position[first + (uint32_t)i * stride];
+        const float *q = view->position[first + (uint32_t)(i + 1) * stride];
+        double x = (double)q[0] - (double)p[0], y = (double)q[1] - (double)p[1], z = (double)q[2] - (double)p[2];
+        line[i] = atan2(z, sqrt(x * x + y * y));
+        mean += line[i] / count;
+        slope += line[i] * (i - centre);
+        squares += (i - centre) * (i - centre);
+    }
+    for (int i = 0; i < count; i++)
+        line[i] = (line[i] - mean - slope / squares * (i - centre)) * (0.5 - 0.5 * cos(2 * pi * (i + 0.5) / count));
+    for (int k = 1; k <= count / 2; k++) {
+        double re = 0, im = 0, wave = count * cell / k;
+        int band = (int)floor(2 * log2(wave / (2 * cell)) + 1e-9);
+        if (band < 0 || band >= SHAPE_BANDS) continue;
+        for (int i = 0; i < count; i++)
+            re += line[i] * cos(2 * pi * k * i / count), im += line[i] * sin(2 * pi * k * i / count);
+        // a wave's mean square is 2 |c_k|^2/n^2, and the window keeps 3/8 of it
+        double power = 2 * (re * re + im * im) / ((double)count * count) / 0.375;
+        spectrum->height[band] += power * wave * wave / (4 * pi * pi);
+    }
+}
+
+SingeResult shape_spectrum(const SingeView *view, int across, int along, double cell, ShapeSpectrum *spectrum) {
+    *spectrum = (ShapeSpectrum){0};
+    double *line = malloc((size_t)(across > along ? across : along) * sizeof *line);
+    if (!line) return SINGE_ERROR_MEMORY;
+    const uint32_t row = (uint32_t)across + 1;
+    for (int j = 0; j <= along; j++) add_line(view, (uint32_t)j * row, 1, across, cell, line, spectrum);
+    for (int i = 0; i <= across; i++) add_line(view, (uint32_t)i, row, along, cell, line, spectrum);
+    for (int b = 0; b < SHAPE_BANDS; b++) {
+        spectrum->wave[b] = 2 * cell * pow(2, (b + 0.5) / 2);
+        int waves = 0; // integer numbers of waves on a line that lie in the band
+        for (int k = 1; k <= across / 2; k++) waves += (int)floor(2 * log2(across / (2.0 * k)) + 1e-9) == b;
+        spectrum->height[b] = waves ? sqrt(spectrum->height[b] / (across + along + 2)) : (double)NAN;
+    }
+    free(line);
+    return SINGE_OK;
+}

@@ -1,0 +1,200 @@
+#include "page/page.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/folder.h"
+#include "cli/text.h"
+#include "common/printable.h"
+#include "scene/builtin.h"
+
+extern const SceneBuiltin paper_files[]; // of the folder `paper`, embedded unchanged
+
+// ---- the command line
+
+typedef struct Request {
+    const char *folder, *name; ///< name NULL: all items
+    bool quick;
+    int threads;
+} Request;
+
+/// Whether there is an item of that name; otherwise prints a message.
+static bool take_item(const Page *page, const ArgReader *reader, int option, const char *word, Request *request) {
+    request->name = word;
+    for (int i = 0; i < page->count; i++)
+        if (strcmp(word, page->items[i].name) == 0) return true;
+    if (option != ARG_OPERAND) return args_complain(reader, "--only: there is no '%s'", shown(word).text), false;
+    request->name = NULL;
+    if (strcmp(word, "all") == 0) return true;
+    const char *near = args_nearest(word, page->items, page->count, sizeof *page->items);
+    if (near) args_complain(reader, "unknown WHAT '%s'; did you mean '%s'?", shown(word).text, near);
+    else args_complain(reader, "unknown WHAT '%s': expected all, or one of the experiments", shown(word).text);
+    return false;
+}
+
+/// False if the value is invalid; a message has been printed.
+static bool take(const Page *page, const ArgReader *reader, int option, const char *value, Request *request) {
+    const char *name = option == ARG_OPERAND ? "only" : reader->command->options[option].name;
+    if (strcmp(name, "only") == 0) return take_item(page, reader, option, value, request);
+    if (strcmp(name, "quick") == 0) return request->quick = true;
+    if (strcmp(name, "threads") == 0) return args_int(reader, option, value, 1, JOB_THREADS_MAX, &request->threads);
+    request->folder = value;
+    if (!value[0]) args_complain(reader, "--output needs a folder");
+    return value[0] != 0;
+}
+
+// ---- the report
+
+/// Writes the scenes next to the report, where `singe run` finds them.
+static SingeResult write_scenes(const Lab *lab, SingeError *error) {
+    SingeResult result = folder_make(lab->scenes, error);
+    for (const SceneBuiltin *file = paper_files; file->name && !result; file++) {
+        char *path = text_format("%s/%s", lab->scenes, file->name);
+        result = file_write(path, file->bytes, file->size, error);
+        free(path);
+    }
+    return result;
+}
+
+/// The items of a page, run by several threads.
+typedef struct Queue {
+    const Page *page;
+    const Request *request;
+    const Lab *lab; ///< common to all
+    ReportPage *report;
+    pthread_mutex_t lock; ///< of all below
+    int next, added;      ///< items: the next to run; the first that is not yet in the report
+    Report **done;        ///< [items] run, but not yet in the report
+    SingeResult result;   ///< the first failure; no further items are started
+    SingeError error;
+} Queue;
+
+static bool is_wanted(const Queue *queue, int item) {
+    return !queue->request->name || strcmp(queue->request->name, queue->page->items[item].name) == 0;
+}
+
+static bool is_alone(const Queue *queue, int item) {
+    for (const char *const *name = queue->page->alone; *name; name++)
+        if (strcmp(*name, queue->page->items[item].name) == 0) return true;
+    return false;
+}
+
+/// Adds the items that have been run to the report, up to the first that has not.
+static void add_done(Queue *queue) {
+    for (; queue->added < queue->page->count; queue->added++) {
+        Report *report = queue->done[queue->added];
+        if (report) report_end(queue->report, report), queue->done[queue->added] = NULL;
+        else if (is_wanted(queue, queue->added)) return;
+    }
+}
+
+static void run_item(Queue *queue, int index, int threads, bool echo) {
+    const PageItem *item = &queue->page->items[index];
+    const double begun = console_clock();
+    SingeError error = {0};
+    SingeResult result = SINGE_ERROR_MEMORY;
+    Lab lab = *queue->lab;
+    lab.threads = threads;
+    lab.report = report_begin(queue->report, item->name, item->heading, item->shows, echo);
+    if (lab.report) result = item->run(&lab, &error);
+    char time[32];
+    console_duration(console_clock() - begun, time);
+    pthread_mutex_lock(&queue->lock);
+    console_note(&lab.console, "%s: %s", item->name, time);
+    if (result && !queue->result) {
+        queue->result = result;
+        queue->error = error;
+        if (error.code != result) queue->error = (SingeError){.code = result, .element = -1};
+    }
+    queue->done[index] = lab.report;
+    add_done(queue);
+    pthread_mutex_unlock(&queue->lock);
+}
+
+/// The next item that need not run alone, or -1.
+static int take_next(Queue *queue) {
+    int index = -1;
+    pthread_mutex_lock(&queue->lock);
+    for (; index < 0 && queue->next < queue->page->count && !queue->result; queue->next++)
+        if (is_wanted(queue, queue->next) && !is_alone(queue, queue->next)) index = queue->next;
+    pthread_mutex_unlock(&queue->lock);
+    return index;
+}
+
+static void *run_together(void *context) {
+    Queue *queue = context;
+    for (int index; (index = take_next(queue)) >= 0;) run_item(queue, index, 1, false);
+    return NULL;
+}
+
+/// Runs a page's items, each with one thread, and then those that run alone with all threads.
+static void run_items(Queue *queue) {
+    const int threads = queue->request->threads;
+    pthread_t others[JOB_THREADS_MAX];
+    int started = 0;
+    if (!queue->request->name) {
+        while (started < threads - 1 && !pthread_create(&others[started], NULL, run_together, queue)) started++;
+        run_together(queue);
+        for (int i = 0; i < started; i++) pthread_join(others[i], NULL);
+    }
+    for (int i = 0; i < queue->page->count && !queue->result; i++)
+        if (is_wanted(queue, i) && (queue->request->name || is_alone(queue, i))) run_item(queue, i, threads, true);
+}
+
+/// Prints the error.
+static ExitCode fail(const SingeError *error) {
+    Console console = console_make(false);
+    console_error(&console, "%s", error->message[0] ? error->message : singe_result_name(error->code));
+    return EXIT_FAILED;
+}
+
+/// Runs the items into the report, and closes it.
+static ExitCode fill(Queue *queue) {
+    ExitCode code = EXIT_GOOD;
+    pthread_mutex_init(&queue->lock, NULL);
+    run_items(queue);
+    pthread_mutex_destroy(&queue->lock);
+    if (queue->result) code = fail(&queue->error);
+    for (int i = 0; i < queue->page->count; i++)
+        if (queue->done[i]) report_end(queue->report, queue->done[i]);
+    int failed = 0;
+    SingeError error;
+    if (report_page_close(queue->report, &failed, &error)) code = fail(&error);
+    printf("\n%s/index.html: %s\n", queue->request->folder,
+           code     ? "not complete"
+           : failed ? "measures fail"
+                    : "all measures hold");
+    return code ? code : failed ? EXIT_FAILED : EXIT_GOOD;
+}
+
+static ExitCode run(const Page *page, const Request *request) {
+    SingeError error = {0};
+    Lab lab = {.quick = request->quick, .console = console_make(false)};
+    Queue queue = {
+        .page = page, .request = request, .lab = &lab, .done = calloc((size_t)page->count, sizeof *queue.done)};
+    if (queue.done) queue.report = report_page_open(request->folder, page->title, page->lead, &error);
+    else error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
+    ExitCode code = EXIT_FAILED;
+    if (queue.report) {
+        lab.scenes = text_format("%s/scenes", request->folder);
+        queue.result = write_scenes(&lab, &queue.error);
+        code = fill(&queue);
+        free(lab.scenes);
+    } else {
+        fail(&error);
+    }
+    free(queue.done);
+    return code;
+}
+
+ExitCode page_run(const Page *page, const ArgCommand *command, int argc, char **argv) {
+    ArgReader reader = args_begin(command, argc, argv);
+    Request request = {.folder = page->folder, .threads = job_threads()};
+    const char *value;
+    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
+        if (option == ARG_HELP) return EXIT_GOOD;
+        if (option == ARG_ERROR || !take(page, &reader, option, value, &request)) return EXIT_INPUT;
+    }
+    return run(page, &request);
+}

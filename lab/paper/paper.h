@@ -1,0 +1,16 @@
+// `singe paper`: a function per experiment.
+#ifndef PAPER_H
+#define PAPER_H
+
+#include "page/page.h"
+
+LabFn paper_fig1, paper_fig2, paper_fig3, paper_fig4, paper_fig5, paper_fig6, paper_fig7ab, paper_fig7cd, paper_fig8,
+    paper_fig10, paper_fig11, paper_table1, paper_table2, paper_all_at_once, paper_mass_loss, paper_weights,
+    paper_rival, paper_readings, paper_adaptive, paper_whole, paper_heat, paper_alpha, paper_crossing, paper_statements;
+
+/// Builds and burns a grid whose material has lab_sets_mass, and draws the rest. The caller destroys *sim, which may be
+/// NULL, and frees the surface in any case.
+SingeResult paper_burn_to(Lab *lab, LabGrid *grid, const float *mass, double mass_loss, SingeSim **sim,
+                          SingeSurface *surface, SingeError *error);
+
+#endif

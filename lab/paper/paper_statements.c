@@ -1,0 +1,136 @@
+// The statements of the paper's sections 5 to 8, the result here, and the measure that shows it.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "paper/paper.h"
+#include "cli/text.h"
+#include "formats/formats.h"
+
+typedef enum Verdict { REPRODUCED, NOT_REPRODUCED, REFUTED } Verdict;
+static const char *const verdicts[] = {
+    [REPRODUCED] = "reproduced", [NOT_REPRODUCED] = "not reproduced", [REFUTED] = "refuted"};
+
+/// A measure of `singe paper`, or of `singe validate` if `item` begins with "validate ".
+typedef struct Statement {
+    const char *section, *statement;
+    Verdict verdict;
+    const char *item, *measure, *found;
+} Statement;
+
+static const Statement statements[] = {
+    {"5", "heat balls light a shell", REPRODUCED, "fig11", "start", "a torus burns from where the ball was"},
+    {"5", "heat textures light a shell", REPRODUCED, "heat", "correlation", "it is hot where the texture is white"},
+    {"5", "eq 1: combustion adds eta times the change of mass", REFUTED, "readings", "eq1_printed",
+     "that change is negative: as printed a fire puts itself out"},
+    {"5", "eq 1 needs no losses", REFUTED, "readings", "losses", "without them the sheet is twice as hot in kelvin"},
+    {"5", "the umbrella transfers heat uniformly across irregular meshes", REFUTED, "validate umbrella",
+     "umbrella_long",
+     "on long cells it conducts several times as well along as across, on squares half of what it should"},
+    {"5", "backward Euler takes long steps and stays stable", REPRODUCED, "whole", "reached",
+     "the paper's system burns all three figures in steps of 2 ms, 4 to 17 ms of fire"},
+    {"6", "m_loss near m_init: the shell burns out quickly", REPRODUCED, "mass-loss", "quick", "a fifth is gone early"},
+    {"6", "m_loss below m_min: it wrinkles and stays whole", REPRODUCED, "mass-loss", "whole", "all cells are left"},
+    {"6", "springs are shrunk, partly burnt or burnt; eq 5, 6 and Fig 5", REPRODUCED, "fig5", "lengths",
+     "with m'_1 = m_1 - m_loss: as printed, with m_0, no spring is ever partly burnt"},
+    {"6", "eq 7 and marching triangles, Fig 6", REPRODUCED, "fig6", "area", "all four cases, and the area of eq 7"},
+    {"7", "eq 9: x + v", REFUTED, "readings", "literal_steps", "it lacks h: to the letter the sheet is lost at once"},
+    {"7", "eq 16 keeps momentum", REFUTED, "readings", "mass_centre", "it lacks M, with which the centre stays"},
+    {"7", "fast projection converges quickly to the target lengths", NOT_REPRODUCED, "whole", "strain_paper",
+     "seven projections leave a mean strain of some percent while it burns"},
+    {"7", "contacts within each projection: a torus stays on a sphere, Fig 7 a", REPRODUCED, "fig7ab", "paper",
+     "it stays, by the paper's solver and by strands"},
+    {"7.1", "all springs at once are more constraints than their rank", REPRODUCED, "all-at-once", "deficit_all",
+     "112 of 360 are too many"},
+    {"7.1", "so fast projection of all at once diverges", REPRODUCED, "all-at-once", "all_diverges",
+     "with nothing on the diagonal"},
+    {"7.1", "more constraints than degrees of freedom prevent a solution", REFUTED, "all-at-once", "floor_converges",
+     "a floor of 1e-4 on the diagonal, and all at once converges further than colour after colour with the same"},
+    {"7.1", "each colour alone meets the conditions", REPRODUCED, "all-at-once", "deficit_colours", "full rank"},
+    {"7.1", "colour after colour converges", REPRODUCED, "all-at-once", "colours_converge", "slowly"},
+    {"7.1", "the sum of all errors always decreases, Fig 8", REFUTED, "fig8", "rises",
+     "in one state of eight it rises in one of seven steps"},
+    {"7.1", "the error of one colour may rise while the sum falls", REPRODUCED, "fig8", "lower",
+     "over seven steps the sum falls in nearly all states"},
+    {"7.1", "two springs that exclude each other settle, Table 1", REPRODUCED, "table1", "largest_difference",
+     "all ten positions to the last digit"},
+    {"7.2", "dividing the displacement by w relaxes a spring", REFUTED, "readings", "divided",
+     "it diverges for w < 1/2"},
+    {"7.2", "eq 19: C times w relaxes a spring", REPRODUCED, "readings", "multiplied", "it converges more slowly"},
+    {"7.2", "thickness makes a plate of a cloth, Fig 10 a to c", REPRODUCED, "fig10", "bend_b_a",
+     "from 1:20 to 1:80 strongly, to 1:400 little more"},
+    {"7.2", "weights of 0.1 make it limper, Fig 10 d", REPRODUCED, "fig10", "bend_d_c", "by a fifth"},
+    {"7.2", "weights may vary over a shell", REPRODUCED, "weights", "ratio", "the soft half hangs"},
+    {"8", "a texture steers the rate of mass loss, Fig 1", REPRODUCED, "fig1", "correlation", "closely"},
+    {"8", "a texture steers the diffusivity", REPRODUCED, "alpha", "ratio", "fire runs where heat spreads"},
+    {"8", "partly burnt regions bend, Fig 1", REPRODUCED, "fig1", "curl",
+     "rims curl; without shrinkage they stay flat"},
+    {"8", "interior regions that keep their mass wrinkle too", REPRODUCED, "fig1", "inner", "they bend with the rest"},
+    {"8", "the shell of Fig 4 separates into two parts", REPRODUCED, "fig4", "c_parts", "(a), (c) and (d) do"},
+    {"8", "shrinkage makes it more detailed, Fig 4 b, c over a", REPRODUCED, "fig4", "c_curl",
+     "rims curl dozens of times as far"},
+    {"8", "a texture of the rate makes tears, Fig 4 d", REPRODUCED, "fig4", "d_border",
+     "longer borders; the texture's mean all over does not"},
+    {"8", "any quad mesh makes a shell, Fig 11", REPRODUCED, "fig11", "end", "fire goes both ways around a torus"},
+    {"8", "the paper's system as one burns Figs 1, 4 and 11", REPRODUCED, "whole", "curl", "it crumples as drawn"},
+    {"8", "a mass-spring torus passes the sphere, Fig 7 b", REPRODUCED, "fig7ab", "soft", "with springs of 1 N/m"},
+    {"8", "a mass-spring model cannot preserve strain", REFUTED, "fig7ab", "stiff",
+     "with springs of 100 N/m the torus stays, for three times the substeps"},
+    {"8", "a mass-spring sheet that shrinks loses its details, Fig 7 d", NOT_REPRODUCED, "fig7cd", "stiff",
+     "with 1 N/m it does; with 100 N/m it rolls up, with higher waves than by the paper's method"},
+    {"8.1", "dynamics takes most of the time", REPRODUCED, "whole", "dynamics", "nearly all of it"},
+    {"8.1", "time is proportional to the number of springs, Table 2", NOT_REPRODUCED, "table2", "iterations",
+     "an iteration is linear, but their number grows with the sheet"},
+    {"8.1", "fully iterated costs 7 to 22 times the early end, Table 2", NOT_REPRODUCED, "table2", "early_exit",
+     "less than twice; the paper does not say what it iterates"},
+    {"8.1", "a spring has seven neighbours in its matrix", REPRODUCED, "readings", "row", "itself and six, on a grid"},
+    {"8.2", "more than six neighbours: the simulation does not converge", REFUTED, "adaptive", "irregular",
+     "the paper's solver runs on a graded mesh"},
+    {"8.2", "not straightforward on adaptive meshes", REFUTED, "adaptive", "graded",
+     "strands take graded quads as they are and look alike; it saves too little to be worth it"},
+    {"8.2", "layers cross where forces are large", REPRODUCED, "crossing", "turned", "in a good part of the cells"},
+    {"8.2", "that helps to create complicated wrinkles", REPRODUCED, "crossing", "added", "about a tenth more"},
+};
+enum { COUNT = sizeof statements / sizeof *statements };
+
+static SingeResult write_csv(Report *report, SingeError *error) {
+    char *csv = NULL, *path = text_format("%s/statements.csv", report_folder(report));
+    size_t size = 0;
+    FILE *file = open_memstream(&csv, &size);
+    SingeResult result = SINGE_ERROR_MEMORY;
+    if (file) {
+        fprintf(file, "section,statement,verdict,item,measure,found\n");
+        for (const Statement *s = statements; s < statements + COUNT; s++)
+            fprintf(file, "%s,\"%s\",%s,%s,%s,\"%s\"\n", s->section, s->statement, verdicts[s->verdict], s->item,
+                    s->measure, s->found);
+        if (text_stream_end(file, &csv)) result = file_write(path, csv, size, error);
+    }
+    if (result && error->code != result) *error = (SingeError){.code = result, .element = -1};
+    free(csv), free(path);
+    return result;
+}
+
+SingeResult paper_statements(Lab *lab, SingeError *error) {
+    int counts[3] = {0}, taken = 0, holding = 0;
+    report_heads(lab->report, "section|the paper states|verdict|measure|is|found");
+    for (const Statement *s = statements; s < statements + COUNT; s++) {
+        double value = NAN;
+        const ReportVerdict found = report_find(lab->report, s->item, s->measure, &value);
+        const char *verdict = found == REPORT_FAILS ? "its measure fails" : verdicts[s->verdict];
+        counts[s->verdict]++;
+        taken += found != REPORT_UNKNOWN;
+        holding += found == REPORT_HOLDS;
+        report_row(lab->report, "%s|%s|%s|%s: %s|%.4g|%s", s->section, s->statement, verdict, s->item, s->measure,
+                   value, s->found);
+    }
+    report_text(
+        lab->report,
+        "%d reproduced, %d not reproduced, %d refuted. A statement's measure has its bar with its experiment: of a "
+        "refuted one it is what refutes it.",
+        counts[REPRODUCED], counts[NOT_REPRODUCED], counts[REFUTED]);
+    if (taken)
+        report_bar(lab->report,
+                   &(ReportBar){"measures", "share of these measures that hold, of those taken",
+                                (double)holding / taken, 1, 1, (double)(holding - 1) / taken, "one that does not"});
+    return write_csv(lab->report, error);
+}

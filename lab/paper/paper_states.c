@@ -1,0 +1,153 @@
+#include "paper/paper_states.h"
+
+#include <stdlib.h>
+
+const char *const paper_state_names[PAPER_STATE_COUNT] = {[PAPER_SWING] = "swing", [PAPER_SHRINK] = "shrink"};
+
+static const float grammage = 0.1f; // kg/m2
+
+/// Burns at one rate, down to 0.8 of its mass in half a second; lengths follow the mass, and nothing is removed.
+static void shrink_material(SingeMaterialDef *material) {
+    const float rate = 4e-3f; // 1/(K s), at 100 K above ignition
+    material->temperature = singe_param(600);
+    material->ignition_temperature = singe_param(500);
+    material->mass_rate = singe_param(rate);
+    material->rate_ceiling = singe_param(1e6f);
+    material->ash_exponent = singe_param(0);
+    material->heat_share = singe_param(0);
+    material->mass_min = singe_param(0.8f);
+    material->mass_loss = singe_param(0.1f);
+    material->char_yield = singe_param(0);
+    material->ash_density = singe_param(1);
+    material->char_weight = singe_param(1);
+    material->shrink_front = material->shrink_back = material->fibre_shrink = singe_param(1);
+    material->convection = material->emissivity = singe_param(0);
+    material->thickening = 1;
+}
+
+static SingeSheetDef state_sheet(PaperState state, float *positions, uint32_t *cells, uint32_t n) {
+    SingeSheetDef def = singe_default_sheet();
+    for (uint32_t j = 0, v = 0; j <= n; j++)
+        for (uint32_t i = 0; i <= n; i++) {
+            positions[v++] = (float)i / (float)n;
+            positions[v++] = (float)j / (float)n;
+            positions[v++] = 0;
+        }
+    for (uint32_t j = 0; j < n; j++)
+        for (uint32_t i = 0; i < n; i++) {
+            uint32_t *c = cells + 4 * (j * n + i), corner = j * (n + 1) + i;
+            c[0] = corner;
+            c[1] = corner + 1;
+            c[2] = corner + n + 2;
+            c[3] = corner + n + 1;
+        }
+    def.vertex_count = (n + 1) * (n + 1);
+    def.positions = positions;
+    def.cell_count = n * n;
+    def.cells = cells;
+    def.material.grammage = singe_param(grammage);
+    def.material.reference_grammage = 0; // rates are those of eq 4
+    def.material.thickness = singe_param(1e-3f);
+    def.material.drag = def.material.damping = singe_param(0);
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) def.material.compliance[c] = singe_param(0); // eq 16 has none
+    if (state == PAPER_SHRINK) shrink_material(&def.material);
+    return def;
+}
+
+static SingeResult state_build(SingeSim *sim, PaperState state, int n) {
+    SingeSheetId sheet;
+    SingeResult result = SINGE_ERROR_MEMORY;
+    float *positions = malloc(3 * sizeof *positions * (size_t)(n + 1) * (size_t)(n + 1));
+    uint32_t *cells = malloc(4 * sizeof *cells * (size_t)n * (size_t)n);
+    if (positions && cells) {
+        SingeSheetDef def = state_sheet(state, positions, cells, (uint32_t)n);
+        result = singe_sim_add_sheet(sim, &def, &sheet);
+        if (!result) result = singe_sim_commit(sim);
+    }
+    free(positions);
+    free(cells);
+    if (result || state != PAPER_SWING) return result;
+    SingePinDef pin = singe_default_pin();
+    const uint32_t corners[] = {0, (uint32_t)n};
+    SingePinId id;
+    pin.sheet = sheet;
+    pin.vertex_count = 2;
+    pin.vertices = corners;
+    return singe_sim_add_pin(sim, &pin, &id);
+}
+
+SingeResult paper_sim(PaperState state, int cells, const SingeSolverDef *solver, int threads, SingeSim **sim,
+                      SingeError *error) {
+    SingeSimDef def = singe_default_sim();
+    def.solver = *solver;
+    def.time_step = PAPER_TIME_STEP;
+    def.thread_count = threads;
+    def.air_density = 0;
+    if (state == PAPER_SHRINK) def.gravity[2] = 0;
+    SingeResult result = singe_sim_create(&def, sim, error);
+    if (result) return result;
+    result = state_build(*sim, state, cells);
+    if (!result) return SINGE_OK;
+    *error = *singe_sim_error(*sim);
+    error->code = result;
+    singe_sim_destroy(*sim);
+    *sim = NULL;
+    return result;
+}
+
+/// The particles' positions and masses after eq 8 and 9.
+static void network_particles(const SingeView *view, PaperState state, double *positions, double *inverse_masses) {
+    double h = (double)PAPER_TIME_STEP, g = state == PAPER_SWING ? -9.81 : 0;
+    for (uint32_t i = 0; i < view->particle_count; i++) {
+        bool held = view->particle_flags[i] & SINGE_PINNED;
+        inverse_masses[i] = held ? 0 : 2 / ((double)grammage * (double)view->area[i] * (double)view->mass[i]);
+        for (int c = 0; c < 3; c++) {
+            double v = held ? 0 : (double)view->velocity[i][c] + (c == 2 ? h * g : 0);
+            positions[3 * i + (uint32_t)c] = (double)view->position[i][c] + h * v;
+        }
+    }
+}
+
+SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, double regularisation,
+                          SingeNetwork **network, SingeError *error) {
+    SingeView view = singe_sim_view(sim);
+    SingeNetworkDef def = singe_default_network();
+    uint32_t springs = 0;
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += view.spring_count[c];
+    double *positions = malloc(3 * view.particle_count * sizeof *positions);
+    double *inverse_masses = malloc(view.particle_count * sizeof *inverse_masses);
+    double *lengths = malloc(springs * sizeof *lengths);
+    uint32_t(*ends)[2] = malloc(springs * sizeof *ends), *sets = malloc(springs * sizeof *sets);
+    SingeResult result = SINGE_ERROR_MEMORY;
+    *network = NULL;
+    if (positions && inverse_masses && lengths && ends && sets) {
+        network_particles(&view, state, positions, inverse_masses);
+        for (uint32_t c = 0, k = 0; c < SINGE_COLOUR_COUNT; c++)
+            for (uint32_t i = 0; i < view.spring_count[c]; i++, k++) {
+                ends[k][0] = view.springs[c][i][0], ends[k][1] = view.springs[c][i][1];
+                lengths[k] = (double)view.spring_length[c][i];
+                sets[k] = one_set ? 0 : c;
+            }
+        def.particle_count = view.particle_count;
+        def.positions = positions;
+        def.inverse_masses = inverse_masses;
+        def.spring_count = springs;
+        def.ends = ends[0];
+        def.lengths = lengths;
+        def.set_count = one_set ? 1 : SINGE_COLOUR_COUNT;
+        def.sets = sets;
+        def.regularisation = regularisation;
+        if (one_set) def.iterations = (int)springs;
+        result = singe_network_create(&def, network, error);
+    } else {
+        *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
+    }
+    free(positions), free(inverse_masses), free(lengths), free(ends), free(sets);
+    return result;
+}
+
+double paper_errors(const SingeNetwork *network, uint32_t sets, double *errors) {
+    double sum = 0;
+    for (uint32_t s = 0; s < sets; s++) sum += errors[s] = singe_network_errors(network, s, NULL);
+    return sum;
+}

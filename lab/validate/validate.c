@@ -1,0 +1,55 @@
+// singe validate: compares the physics with independent sources.
+#include "validate/validate.h"
+
+static const PageItem items[] = {
+    {"heat", "The heat equation, eq 2", "A slab's mode, insulated at both ends, decays as exp(-alpha k² t).",
+     validate_heat},
+    {"umbrella", "The umbrella's factor, eq 3", "A hot spot's variance grows by 2 alpha t in every direction.",
+     validate_umbrella},
+    {"front", "Speed of the front",
+     "Office paper of 80 g/m² 4.4 to 7.0 mm/s, speed in proportion to 1/grammage (Thomas &amp; Law, Fire Research Note "
+     "584); fire climbs many times as fast as it creeps.",
+     validate_front},
+    {"pmma", "Sheets of PMMA, downward",
+     "8.96 mm/s at 25 um to 0.435 mm/s at 402 um (BASS-II); de Ris (1969): V = sqrt 2 k_g (T_f - T_v)/(T_v - T_a)/(rho "
+     "c tau).",
+     validate_pmma},
+    {"beam", "A clamped strip", "Plate theory: w = rho g l&#8308;/(8 D) + rho g l²/(2 S).", validate_beam},
+    {"disc", "A bilayer disc",
+     "Bent far, a disc of two layers is a cylinder of (1 + nu)/2 of its natural mean curvature, 3/4 at nu = 1/2 (arXiv "
+     "1509.05259).",
+     validate_disc},
+    {"kinetics", "Kinetics of cellulose",
+     "Kashiwagi &amp; Nambu (1992), as in FDS: pyrolysis, oxidation and glow of cellulose in air at 1, 3 and 5 K/min.",
+     validate_kinetics},
+    {"ledgers", "Ledgers of heat and mass", "Energy and mass are kept.", validate_ledgers},
+};
+
+enum { OPT_OUTPUT, OPT_ONLY, OPT_QUICK, OPT_THREADS, OPT_COUNT };
+
+static const ArgOption validate_options[OPT_COUNT] = {
+    [OPT_OUTPUT] = {"output", 'o', "DIR", "folder of the page [out/validate]"},
+    [OPT_ONLY] = {"only", 0, "NAME", "one of heat, umbrella, front, pmma, beam, disc, kinetics, ledgers"},
+    [OPT_QUICK] = {"quick", 0, NULL, "small sizes, for a check of the measures"},
+    [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
+};
+
+static const ArgCommand validate_command = {
+    "validate",
+    NULL,
+    "Holds the physics against sources outside the project and writes a page about it, "
+    "DIR/index.html.",
+    validate_options,
+    OPT_COUNT,
+    "Exit codes: 0 good, 1 failed or a measure does not hold, 2 bad usage."};
+
+static const Page page = {
+    items,
+    sizeof items / sizeof *items,
+    "out/validate",
+    "The physics against outside truth",
+    "What this program computes beside solutions, formulas and measurements that come from elsewhere. Each item says "
+    "what the source has, what came out here, and whether stated measures hold.",
+    (const char *const[]){NULL}};
+
+int command_validate(int argc, char **argv) { return page_run(&page, &validate_command, argc, argv); }

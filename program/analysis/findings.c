@@ -1,0 +1,303 @@
+#include "analysis/findings.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/crossings.h"
+#include "analysis/exact.h"
+
+enum { REPORTED = 3 };
+static const double fold_cosine = -0.984807753; // triangles that enclose less than 10 degrees
+
+static void findings_say(const Findings *findings, bool fault, const char *format, ...) SINGE_PRINTF(3, 4);
+
+static void findings_say(const Findings *findings, bool fault, const char *format, ...) {
+    char message[1200];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(message, sizeof message, format, list);
+    va_end(list);
+    findings->report(findings->context, fault, message);
+}
+
+void findings_add(Findings *findings, Fault fault, const char *format, ...) {
+    char text[300];
+    va_list list;
+    findings->count[fault]++;
+    if (findings->reported[fault]++ >= REPORTED) return;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    const char *more = findings->reported[fault] == REPORTED ? "; more of this kind are only counted" : "";
+    findings_say(findings, true, "%s: %s%s", findings->file, text, more);
+}
+
+// ---- values
+
+void check_values(const CacheFrame *frame, Findings *findings) {
+    for (int c = 0; c < CACHE_COLUMNS; c++) {
+        if (!frame->there[c])
+            findings_add(findings, FAULT_MISSING, "vertices have no property \"%s %s\"",
+                         cache_column_is_integer(c) ? "int" : "float", cache_column_name(c));
+        if (!frame->there[c] || cache_column_is_integer(c)) continue;
+        for (uint32_t v = 0; v < frame->vertex_count; v++)
+            if (!isfinite(cache_value(frame, c, v)))
+                findings_add(findings, FAULT_NOT_FINITE, "%s of vertex %u is not finite", cache_column_name(c), v);
+    }
+    if (isnan(frame->time)) findings_add(findings, FAULT_MISSING, "the header has no \"comment singe ... time ...\"");
+    for (uint32_t t = 0; t < frame->triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            const uint32_t vertex = frame->triangles[t][k];
+            if (vertex < frame->vertex_count) continue;
+            findings_add(findings, FAULT_INDEX, "triangle %u names vertex %d of %u", t, (int)vertex,
+                         frame->vertex_count);
+            break;
+        }
+}
+
+// ---- triangles
+
+static bool is_finite_point(const float p[3]) { return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]); }
+
+/// Whether the corners are vertices at finite positions.
+static bool has_corners(const CacheFrame *frame, uint32_t triangle) {
+    for (int k = 0; k < 3; k++) {
+        const uint32_t vertex = frame->triangles[triangle][k];
+        if (vertex >= frame->vertex_count || !is_finite_point(frame->position[vertex])) return false;
+    }
+    return true;
+}
+
+/// Writes the numbers of the triangles with an area to `sound`, and counts those without as faults.
+static uint32_t keep_sound(const CacheFrame *frame, uint32_t *sound, Findings *findings) {
+    uint32_t count = 0;
+    for (uint32_t t = 0; t < frame->triangle_count; t++) {
+        const uint32_t *v = frame->triangles[t];
+        if (!has_corners(frame, t)) continue;
+        const float *a = frame->position[v[0]];
+        if (exact_collinear(a, frame->position[v[1]], frame->position[v[2]]))
+            findings_add(findings, FAULT_DEGENERATE,
+                         "triangle %u (vertices %u, %u, %u) at (%.4g, %.4g, %.4g) m has no area", t, v[0], v[1], v[2],
+                         (double)a[0], (double)a[1], (double)a[2]);
+        else sound[count++] = t;
+    }
+    return count;
+}
+
+static double findings_distance(const float a[3], const float b[3]) {
+    double sum = 0;
+    for (int k = 0; k < 3; k++) sum += ((double)a[k] - (double)b[k]) * ((double)a[k] - (double)b[k]);
+    return sqrt(sum);
+}
+
+/// Distance between the nearest corners of two triangles at rest, m. *side gets the longest of their edges.
+static double rest_gap(const CacheFrame *frame, uint32_t a, uint32_t b, double *side) {
+    const uint32_t *s = frame->triangles[a], *t = frame->triangles[b];
+    double gap = (double)INFINITY;
+    *side = 0;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) gap = fmin(gap, findings_distance(frame->rest[s[i]], frame->rest[t[k]]));
+        *side = fmax(*side, findings_distance(frame->rest[s[i]], frame->rest[s[(i + 1) % 3]]));
+        *side = fmax(*side, findings_distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
+    }
+    return gap;
+}
+
+static int32_t sheet_of(const CacheFrame *frame, uint32_t triangle) {
+    int32_t sheet;
+    const float bits = cache_value(frame, CACHE_SHEET, frame->triangles[triangle][0]);
+    memcpy(&sheet, &bits, sizeof sheet);
+    return sheet;
+}
+
+/// Counts a pair that crosses from the start, and reports it when it is one of the first.
+static void add_from_start(const CacheFrame *frame, uint32_t a, uint32_t b, Findings *findings) {
+    const float *p = frame->position[frame->triangles[a][0]];
+    if (findings->from_start++ < REPORTED && findings->begins)
+        findings_say(findings, false, "%s: triangles %u and %u cross from the start near (%.4g, %.4g, %.4g) m",
+                     findings->file, a, b, (double)p[0], (double)p[1], (double)p[2]);
+}
+
+static void add_crossing(const CacheFrame *frame, uint32_t a, uint32_t b, Findings *findings) {
+    const float *p = frame->position[frame->triangles[a][0]];
+    const int32_t one = sheet_of(frame, a), other = sheet_of(frame, b);
+    double side, gap = rest_gap(frame, a, b, &side);
+    char where[64];
+    if (one != other) snprintf(where, sizeof where, "of sheets %d and %d", (int)one, (int)other);
+    else snprintf(where, sizeof where, "%.3g mm apart at rest", 1e3 * gap);
+    findings->near += one == other && gap <= side;
+    findings_add(findings, FAULT_CROSSING, "triangles %u and %u, %s, cross near (%.4g, %.4g, %.4g) m", a, b, where,
+                 (double)p[0], (double)p[1], (double)p[2]);
+}
+
+static bool check_crossings(const CacheFrame *frame, const uint32_t *sound, uint32_t count, Findings *findings) {
+    uint32_t(*triangles)[3] = malloc(((size_t)count + 1) * sizeof *triangles);
+    CrossingList list = {0};
+    if (!triangles) return false;
+    for (uint32_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) triangles[i][k] = frame->triangles[sound[i]][k];
+    const float(*position)[3] = (const float(*)[3])frame->position;
+    bool good = crossings_find(position, (const uint32_t(*)[3])triangles, count, &list);
+    for (size_t i = 0; i < list.count; i++)
+        for (int k = 0; k < 2; k++) list.pairs[i][k] = sound[list.pairs[i][k]];
+    if (good && findings->begins)
+        good = initial_take(&findings->initial, frame, (const uint32_t(*)[2])list.pairs, list.count);
+    for (size_t i = 0; i < list.count; i++) {
+        const uint32_t a = list.pairs[i][0], b = list.pairs[i][1];
+        if (initial_has(&findings->initial, frame, a, b)) add_from_start(frame, a, b, findings);
+        else add_crossing(frame, a, b, findings);
+    }
+    crossings_free(&list);
+    free(triangles);
+    return good;
+}
+
+typedef struct Triple {
+    uint32_t vertex[3], triangle; ///< vertices ascending
+} Triple;
+
+static int by_vertices(const void *a, const void *b) {
+    const Triple *x = a, *y = b;
+    for (int k = 0; k < 3; k++)
+        if (x->vertex[k] != y->vertex[k]) return x->vertex[k] < y->vertex[k] ? -1 : 1;
+    return (x->triangle > y->triangle) - (x->triangle < y->triangle);
+}
+
+static Triple triple_of(const uint32_t v[3], uint32_t triangle) {
+    Triple t = {{v[0], v[1], v[2]}, triangle};
+    for (int k = 0; k < 3; k++) { // three exchanges sort three
+        const int i = k == 1, j = i + 1;
+        if (t.vertex[i] <= t.vertex[j]) continue;
+        const uint32_t kept = t.vertex[i];
+        t.vertex[i] = t.vertex[j], t.vertex[j] = kept;
+    }
+    return t;
+}
+
+static bool check_duplicates(const CacheFrame *frame, const uint32_t *sound, uint32_t count, Findings *findings) {
+    Triple *triples = malloc(((size_t)count + 1) * sizeof *triples);
+    if (!triples) return false;
+    for (uint32_t i = 0; i < count; i++) triples[i] = triple_of(frame->triangles[sound[i]], sound[i]);
+    qsort(triples, count, sizeof *triples, by_vertices);
+    for (uint32_t i = 1; i < count; i++) {
+        const Triple *one = &triples[i - 1], *other = &triples[i];
+        if (one->vertex[0] == other->vertex[0] && one->vertex[1] == other->vertex[1] &&
+            one->vertex[2] == other->vertex[2])
+            findings_add(findings, FAULT_DUPLICATE, "triangles %u and %u have the same vertices %u, %u, %u",
+                         one->triangle, other->triangle, one->vertex[0], one->vertex[1], one->vertex[2]);
+    }
+    free(triples);
+    return true;
+}
+
+// ---- edges
+
+typedef struct Side {
+    uint32_t low, high, triangle, opposite; ///< vertices of the edge, and the triangle's third
+    bool forward;                           ///< the triangle runs from low to high
+} Side;
+
+static int by_edge(const void *a, const void *b) {
+    const Side *x = a, *y = b;
+    if (x->low != y->low) return x->low < y->low ? -1 : 1;
+    if (x->high != y->high) return x->high < y->high ? -1 : 1;
+    return (x->triangle > y->triangle) - (x->triangle < y->triangle);
+}
+
+static void normal_of(const float a[3], const float b[3], const float c[3], double normal[3]) {
+    double u[3], v[3];
+    for (int k = 0; k < 3; k++) u[k] = (double)b[k] - (double)a[k], v[k] = (double)c[k] - (double)a[k];
+    for (int k = 0; k < 3; k++) normal[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+}
+
+/// Cosine between the normals of the triangles of an edge, both with the winding of the first.
+static double findings_bend(float (*const at)[3], const Side *one, const Side *other) {
+    double m[3], n[3], mn = 0, mm = 0, nn = 0;
+    normal_of(at[one->low], at[one->high], at[one->opposite], m);
+    normal_of(at[other->high], at[other->low], at[other->opposite], n);
+    for (int k = 0; k < 3; k++) mn += m[k] * n[k], mm += m[k] * m[k], nn += n[k] * n[k];
+    return mm > 0 && nn > 0 ? mn / sqrt(mm * nn) : 1;
+}
+
+static bool has_rest(const CacheFrame *frame, const Side *side) {
+    return frame->there[CACHE_REST] && frame->there[CACHE_REST + 1] && frame->there[CACHE_REST + 2] &&
+           is_finite_point(frame->rest[side->low]) && is_finite_point(frame->rest[side->high]) &&
+           is_finite_point(frame->rest[side->opposite]);
+}
+
+/// Max error of the length of an edge because its ends are stored as floats, half a last bit each.
+static double rounding(const float from[3], const float to[3]) {
+    double squares = 0;
+    for (int k = 0; k < 3; k++) {
+        const double bits = 0.5 * FLT_EPSILON * (fabs((double)from[k]) + fabs((double)to[k]));
+        squares += bits * bits;
+    }
+    return sqrt(squares);
+}
+
+/// An edge and the `count` triangles at it.
+static void check_edge(const CacheFrame *frame, const Side *sides, uint32_t count, Findings *findings) {
+    const uint32_t low = sides->low, high = sides->high;
+    if (count > 2)
+        findings_add(findings, FAULT_NON_MANIFOLD, "edge %u-%u has %u triangles: %u, %u, %u%s", low, high, count,
+                     sides[0].triangle, sides[1].triangle, sides[2].triangle, count > 3 ? ", ..." : "");
+    if (count == 2 && sides[0].forward == sides[1].forward)
+        findings_add(findings, FAULT_WINDING, "triangles %u and %u run the same way along edge %u-%u",
+                     sides[0].triangle, sides[1].triangle, low, high);
+    if (!has_rest(frame, sides)) return;
+    const double length = findings_distance(frame->position[low], frame->position[high]);
+    const double rest = findings_distance(frame->rest[low], frame->rest[high]);
+    const double shortest = length - rounding(frame->position[low], frame->position[high]);
+    const double longest = rest + rounding(frame->rest[low], frame->rest[high]);
+    if (shortest > findings->stretch * longest)
+        findings_add(findings, FAULT_STRETCHED, "edge %u-%u of triangle %u is %.4g mm long, %.4g mm at rest", low, high,
+                     sides->triangle, 1e3 * length, 1e3 * rest);
+    if (count == 2 && has_rest(frame, &sides[1]) &&
+        findings_bend(frame->position, &sides[0], &sides[1]) < fold_cosine &&
+        findings_bend(frame->rest, &sides[0], &sides[1]) > 0)
+        findings->folded++;
+}
+
+static bool check_edges(const CacheFrame *frame, const uint32_t *sound, uint32_t count, Findings *findings) {
+    const size_t side_count = 3 * (size_t)count;
+    Side *sides = malloc((side_count + 1) * sizeof *sides);
+    if (!sides) return false;
+    for (size_t i = 0; i < side_count; i++) {
+        const uint32_t triangle = sound[i / 3], *v = frame->triangles[triangle];
+        const uint32_t from = v[i % 3], to = v[(i + 1) % 3], opposite = v[(i + 2) % 3];
+        const bool forward = from < to;
+        sides[i] = (Side){forward ? from : to, forward ? to : from, triangle, opposite, forward};
+    }
+    qsort(sides, side_count, sizeof *sides, by_edge);
+    for (size_t i = 0, end; i < side_count; i = end) {
+        for (end = i + 1; end < side_count && sides[end].low == sides[i].low && sides[end].high == sides[i].high;)
+            end++;
+        check_edge(frame, &sides[i], (uint32_t)(end - i), findings);
+    }
+    free(sides);
+    return true;
+}
+
+bool check_start(const CacheFrame *frame, Findings *findings) {
+    Findings quiet = *findings;
+    for (int f = 0; f < FAULT_COUNT; f++) quiet.reported[f] = REPORTED;
+    quiet.begins = true;
+    quiet.from_start = REPORTED;
+    const bool good = check_surface(frame, &quiet);
+    findings->initial = quiet.initial;
+    return good;
+}
+
+bool check_surface(const CacheFrame *frame, Findings *findings) {
+    uint32_t *sound = malloc(((size_t)frame->triangle_count + 1) * sizeof *sound);
+    if (!sound) return false;
+    const uint32_t count = keep_sound(frame, sound, findings);
+    const bool good = check_crossings(frame, sound, count, findings) &&
+                      check_duplicates(frame, sound, count, findings) && check_edges(frame, sound, count, findings);
+    free(sound);
+    return good;
+}

@@ -1,0 +1,263 @@
+// singe check: finds every error that run would find, and prints what the scene amounts to. Writes no files.
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "analysis/strip.h"
+#include "cli/args.h"
+#include "cli/frame_files.h"
+#include "cli/job.h"
+#include "common/printable.h"
+
+enum { OPT_FRAMES, OPT_THREADS, OPT_SET, OPT_COUNT };
+
+static const ArgOption check_options[OPT_COUNT] = {
+    [OPT_FRAMES] = {"frames", 0, "N", "frames to estimate the time for"},
+    [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
+    [OPT_SET] = {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated"},
+};
+
+static const ArgCommand check_command = {
+    "check",
+    "SCENE",
+    "Reads a scene with its meshes and images, builds it, and prints its size and cost.",
+    check_options,
+    OPT_COUNT,
+    "Exit codes: 0 the scene is valid; 1 a step fails, memory runs out, or standard output cannot be written;\n"
+    "2 bad input."};
+
+/// Steps are timed until this many are done or this much time has passed.
+enum { CHECK_STEPS = 10 };
+static const double check_seconds = 3;
+
+typedef struct CheckTimes {
+    double step, surface, picture; ///< s each
+} CheckTimes;
+
+/// Max rays of the timed picture, roughly: a larger one is drawn with fewer samples, and its time is scaled.
+static const double check_rays = 16e6;
+
+static double pixels_of(const ScenePreview *preview) { return (double)preview->size[0] * (double)preview->size[1]; }
+
+static SingeResult try_picture(const Job *job, const Frame *frame, double *seconds, SingeError *error) {
+    Pictures *pictures = NULL;
+    const uint8_t *rgb;
+    int *samples = &job->scene->preview.samples;
+    const int wanted = *samples;
+    while (*samples > 1 && pixels_of(&job->scene->preview) * *samples > check_rays) *samples /= 2;
+    SingeResult result = pictures_open(job, &pictures, error);
+    if (!result) {
+        double begun = console_clock();
+        result = frame_draw(frame, pictures, &rgb, error);
+        *seconds = (console_clock() - begun) * wanted / *samples;
+    }
+    *samples = wanted;
+    pictures_close(pictures);
+    return result;
+}
+
+/// Computes what run computes for its first frame, except the files and, if the picture takes long, some of its
+/// samples.
+static SingeResult try_frame(const Job *job, SingeSim *sim, CheckTimes *times, SingeError *error) {
+    Frame frame = {0};
+    double begun = console_clock();
+    SingeResult result = frame_take_surface(sim, &frame, error);
+    times->surface = console_clock() - begun;
+    if (!result) result = frame_take_gas(sim, &frame, error);
+    if (!result && pictures_available()) result = try_picture(job, &frame, &times->picture, error);
+    frame_free(&frame);
+    return result;
+}
+
+static SingeResult time_steps(SingeSim *sim, CheckTimes *times, SingeError *error) {
+    int count = 0;
+    double begun = console_clock();
+    while (count < CHECK_STEPS && (count == 0 || console_clock() - begun < check_seconds)) {
+        if (singe_sim_step(sim)) {
+            *error = *singe_sim_error(sim);
+            return error->code;
+        }
+        count++;
+    }
+    times->step = (console_clock() - begun) / count;
+    return SINGE_OK;
+}
+
+/// Prints what was read and how it was repaired, sheet by sheet.
+static void report_meshes(const Job *job) {
+    for (uint32_t i = 0; i < job->assets.sheet_count; i++) {
+        char text[200];
+        for (int line = 0; mesh_report_line(&job->assets.reports[i], line, text, sizeof text); line++) {
+            if (line) printf("              %s\n", text);
+            else printf("mesh          %s: %s\n", shown_path(job->scene->sheets[i].mesh.name).text, text);
+        }
+    }
+}
+
+static const char *const instruction_names[] = {"best", "plain", "v2", "v3", "v4", "neon"};
+
+static void report_shell(const SingeCounts *c) {
+    static const struct {
+        const char *name;
+        SingeColour colour;
+    } rows[] = {{"red", SINGE_RED}, {"green", SINGE_GREEN}, {"blue", SINGE_BLUE}, {"yellow", SINGE_YELLOW}};
+    uint64_t springs = 0, strands = 0;
+    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) springs += c->springs[i], strands += c->strands[i];
+    printf("particles     %" PRIu32 "\n", c->particles);
+    printf("cells         %" PRIu32 " of %.3g mm\n", c->cells, 1e3 * (double)c->cell_size);
+    printf("springs       %" PRIu64 " in %" PRIu64 " strands of %.1f on average\n", springs, strands,
+           c->mean_strand_length);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        printf("  %-11s %" PRIu32 " in %" PRIu32 " strands, %" PRIu32 " families\n", rows[i].name,
+               c->springs[rows[i].colour], c->strands[rows[i].colour], c->families[rows[i].colour]);
+    printf("memory        %.1f MB\n", 1e-6 * (double)c->memory);
+    printf("instructions  %s\n", instruction_names[c->instructions]);
+}
+
+/// Office paper takes 8,000 units of work (StripSetup.work_max), a third of a second in all; a front that advances by
+/// less than a cell in as many steps has gone out.
+enum { CHECK_MATERIALS = 4, CHECK_STRIP_WORK = 60000, CHECK_STRIP_PATIENCE = 4000 };
+static const float check_strip_length = 0.06f; ///< m, of which the first 2 cm are lit
+
+/// Burns a strip of the material in steps of that length, for a few seconds at most. The speed is 0 if it does not
+/// burn, and the end is missing if it cannot be known. Fails only when out of memory.
+static SingeResult front_of(const SceneMaterial *material, float step, StripResult *front, SingeError *error) {
+    StripSetup setup = strip_setup(&material->def);
+    setup.length = check_strip_length;
+    setup.time_step = step;
+    setup.patience = CHECK_STRIP_PATIENCE;
+    setup.work_max = CHECK_STRIP_WORK;
+    *front = (StripResult){.end = STRIP_UNKNOWN};
+    SingeResult result = step < 10 ? strip_burn(&setup, front, error) : SINGE_ERROR_ARGUMENT;
+    if (result || !(front->speed > 0)) front->speed = 0;
+    return result == SINGE_ERROR_MEMORY ? result : SINGE_OK;
+}
+
+/// Prints how fast the material burns, and whether the scene's steps are too long for it. Lighter paper burns faster,
+/// and a front thickened by F burns as it would with steps 1/F as long.
+static SingeResult report_front(const Scene *scene, const SceneMaterial *material, float thickening,
+                                SingeError *error) {
+    StripResult front, rough;
+    const float pace = scene->sim.pace, weight = material->def.grammage.value / 0.080f;
+    const float fine = singe_default_sim().time_step * fmaxf(weight, 0.1f);
+    SingeResult result = front_of(material, fine, &front, error);
+    if (result) return result;
+    if (!(front.speed > 0)) {
+        if (front.end == STRIP_OUT) printf(": a level strip of it goes out");
+        if (front.end == STRIP_CUT) printf(": measuring its burning speed would take too long");
+        return SINGE_OK;
+    }
+    printf(": a level front of %.3g mm/s and %.0f C", 1e3 * front.speed, front.hottest - 273.15);
+    if (pace != 1) printf(", at this pace %.3g mm/s", 1e3 * front.speed * (double)pace);
+    float step = scene->sim.time_step * pace * (float)front.thickening / thickening;
+    if (step <= fine || (result = front_of(material, step, &rough, error))) return result;
+    double slower = 1 - rough.speed / front.speed;
+    if (slower > 0.1) printf("\n              in steps this long %.0f %% slower: raise `steps`", 100 * slower);
+    return SINGE_OK;
+}
+
+/// The sheets' materials, each name and grammage once, and the predicted speed of their fronts.
+static SingeResult report_materials(const Scene *scene, float thickening, SingeError *error) {
+    SingeResult result = SINGE_OK;
+    for (uint32_t i = 0, reported = 0; !result && i < scene->sheet_count && reported < CHECK_MATERIALS; i++) {
+        const SceneMaterial *material = &scene->sheets[i].material;
+        const float grammage = material->def.grammage.value;
+        uint32_t j = 0;
+        while (!scene_material_same(&scene->sheets[j].material, material)) j++;
+        if (j < i) continue;
+        printf("material      %s, %.4g g/m2", material->name ? shown(material->name).text : "its own",
+               1e3 * (double)grammage);
+        result = report_front(scene, material, thickening, error);
+        printf("\n");
+        reported++;
+    }
+    return result;
+}
+
+static void report_times(const Job *job, const CheckTimes *times, float thickening) {
+    const Scene *scene = job->scene;
+    char text[32];
+    double frame = scene->steps * times->step + times->surface + times->picture;
+    console_duration(frame * scene->frames, text);
+    printf("thickening    %.3g (of the front, by F)\n", (double)thickening);
+    printf("frames        %d at %.4g a second, %d steps of %.3g ms each\n", scene->frames, (double)scene->fps,
+           scene->steps, 1e3 * (double)scene->sim.time_step);
+    printf("time          about %s: a step %.2f ms, a surface %.2f ms, a picture %.0f ms, with %d threads\n", text,
+           1e3 * times->step, 1e3 * times->surface, 1e3 * times->picture, job->hooks.thread_count);
+}
+
+static void report_size(const Job *job, const SceneAssets *assets, double pictures) {
+    SceneSize size = scene_size(job->scene, assets);
+    printf("needs         about %.2f GB of memory for %" PRIu64 " cells", 1e-9 * (size.memory + pictures), size.cells);
+    if (size.unread) printf(" and those of %" PRIu32 " mesh file%s", size.unread, size.unread > 1 ? "s" : "");
+    printf("\n");
+    fflush(stdout);
+}
+
+/// The needs are printed before anything is built, and again when meshes have been read.
+static ExitCode load_and_build(Job *job, Console *console, SingeSim **sim) {
+    double pictures = pictures_available() ? scene_picture_memory(job->scene) : 0;
+    bool unread = scene_size(job->scene, NULL).unread > 0;
+    report_size(job, NULL, pictures);
+    ExitCode code = job_load(job, console, pictures);
+    if (code) return code;
+    if (unread) report_size(job, &job->assets, pictures);
+    return job_build(job, console, sim);
+}
+
+static ExitCode check_scene(Console *console, const char *path, const SetList *sets, int threads) {
+    Job job;
+    SingeSim *sim = NULL;
+    ExitCode code = job_read(&job, console, path, sets, threads);
+    if (!code) code = load_and_build(&job, console, &sim);
+    if (!code) {
+        SingeCounts counts = singe_sim_counts(sim);
+        float thickening = singe_sim_stats(sim).thickening;
+        CheckTimes times = {0};
+        SingeError error = {0};
+        report_meshes(&job);
+        report_shell(&counts);
+        job_note_long(&job, console, "burning a strip of each material");
+        SingeResult result = report_materials(job.scene, thickening, &error);
+        if (!result) job_note_long(&job, console, "timing steps");
+        if (!result && pictures_available() && pixels_of(&job.scene->preview) > check_rays)
+            console_note(console, "drawing");
+        if (!result) result = try_frame(&job, sim, &times, &error);
+        if (!result) result = time_steps(sim, &times, &error);
+        if (result) {
+            fflush(stdout);
+            console_result(console, &error);
+            code = EXIT_FAILED;
+        } else {
+            report_times(&job, &times, thickening);
+            printf("%s: good\n", shown_path(path).text); // only now, after its first steps
+        }
+    }
+    singe_sim_destroy(sim);
+    job_close(&job);
+    return code;
+}
+
+int command_check(int argc, char **argv) {
+    ArgReader reader = args_begin(&check_command, argc, argv);
+    const char *value, *scene = NULL;
+    SetList sets = {0};
+    int threads = job_threads(), frames = 0, option;
+    bool good = true;
+    while (good && (option = args_next(&reader, &value)) != ARG_END) {
+        switch (option) {
+        case OPT_FRAMES: good = args_int(&reader, option, value, 1, 1000000, &frames); break;
+        case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &threads); break;
+        case OPT_SET: set_add(&sets, value); break;
+        case ARG_OPERAND: scene = value; break;
+        case ARG_HELP: set_free(&sets); return EXIT_GOOD;
+        default: good = false;
+        }
+    }
+    if (frames) set_frames(&sets, frames);
+    Console console = console_make(false);
+    ExitCode code = good ? check_scene(&console, scene, &sets, threads) : EXIT_INPUT;
+    set_free(&sets);
+    return code;
+}

@@ -1,0 +1,137 @@
+#include "cli/console.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "common/printable.h"
+
+Console console_make(bool quiet) {
+    const char *kind = getenv("TERM"), *plain = getenv("NO_COLOR");
+    bool terminal = isatty(STDERR_FILENO) && kind && strcmp(kind, "dumb") != 0;
+    return (Console){.quiet = quiet, .terminal = terminal, .colour = terminal && !(plain && *plain), .last = -1e9};
+}
+
+double console_clock(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+void console_clear(Console *console) {
+    if (console->line_open) fputs("\r\033[K", stderr);
+    console->line_open = false;
+}
+
+static void say(Console *console, const char *kind, const char *colour, const char *format, va_list list) {
+    console_clear(console);
+    fputs("singe: ", stderr);
+    if (*kind) fprintf(stderr, "%s%s:%s ", console->colour ? colour : "", kind, console->colour ? "\033[0m" : "");
+    char text[16384];
+    vsnprintf(text, sizeof text, format, list);
+    printable_trim(text);
+    printable_write(text, stderr);
+    fputc('\n', stderr);
+}
+
+void console_error(Console *console, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    say(console, "error", "\033[1;31m", format, list);
+    va_end(list);
+}
+
+void console_warn(Console *console, const char *format, ...) {
+    if (console->quiet) return;
+    va_list list;
+    va_start(list, format);
+    say(console, "warning", "\033[1;33m", format, list);
+    va_end(list);
+}
+
+void console_note(Console *console, const char *format, ...) {
+    if (console->quiet) return;
+    va_list list;
+    va_start(list, format);
+    say(console, "", "", format, list);
+    va_end(list);
+}
+
+void console_more(const char *text) {
+    fputs("  ", stderr);
+    printable_write(text, stderr);
+    fputc('\n', stderr);
+}
+
+void console_result(Console *console, const SingeError *error) {
+    const char *text = error->message[0] ? error->message : singe_result_name(error->code);
+    if (error->stage[0]) console_error(console, "%s: %s", error->stage, text);
+    else console_error(console, "%s", text);
+}
+
+static void log_line(void *context, SingeLogLevel level, const char *line) {
+    Console *console = context;
+    if (level == SINGE_LOG_ERROR) console_error(console, "%s", line);
+    else if (level == SINGE_LOG_WARNING) console_warn(console, "%s", line);
+    else if (strncmp(line, "solver: ", 8) == 0) console_note(console, "%s", line);
+    // `check` and run.json have the other information
+}
+
+SingeLog console_log(Console *console) { return (SingeLog){log_line, console}; }
+
+void console_duration(double seconds, char text[32]) {
+    long s = seconds < 0 || seconds > 1e8 ? 0 : (long)(seconds + 0.5);
+    if (s < 60) snprintf(text, 32, "%ld s", s);
+    else if (s < 3600) snprintf(text, 32, "%ld:%02ld", s / 60, s % 60);
+    else snprintf(text, 32, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
+}
+
+enum { BAR = 24 };
+
+static void show(Console *console, int frame, int frames, const char *line) {
+    double now = console_clock(), gap = console->terminal ? 0.1 : 2.0;
+    if (console->quiet || (now - console->last < gap && frame != frames)) return;
+    console->last = now;
+    if (!console->terminal) {
+        fprintf(stderr, "%s\n", line);
+        return;
+    }
+    char bar[BAR + 1];
+    int full = frames > 0 ? (int)((long)frame * BAR / frames) : BAR;
+    for (int i = 0; i < BAR; i++) bar[i] = i < full ? '#' : '.';
+    bar[BAR] = 0;
+    const char *colour = console->colour ? "\033[33m" : "", *plain = console->colour ? "\033[0m" : "";
+    fprintf(stderr, "\r\033[K%s[%s]%s %s", colour, bar, plain, line);
+    console->line_open = frame != frames;
+    if (!console->line_open) fputc('\n', stderr);
+    fflush(stderr);
+}
+
+void console_progress(Console *console, const ConsoleProgress *p) {
+    char left[32], line[200];
+    console_duration(p->frame_seconds * (p->frames - p->frame), left);
+    snprintf(line, sizeof line, "frame %d/%d  burnt %.1f %%  T max %.0f C  %.0f ms/frame  %s left", p->frame, p->frames,
+             100 * p->burnt_fraction, p->temperature_max - 273.15, 1e3 * p->frame_seconds, left);
+    show(console, p->frame, p->frames, line);
+}
+
+void console_picture(Console *console, int frame, int frames, double frame_seconds) {
+    char left[32], line[200];
+    console_duration(frame_seconds * (frames - frame), left);
+    snprintf(line, sizeof line, "frame %d/%d  %.0f ms/frame  %s left", frame, frames, 1e3 * frame_seconds, left);
+    show(console, frame, frames, line);
+}
+
+void console_sweep(Console *console, const ConsoleSweep *p) {
+    char left[32] = "?", line[200];
+    if (p->seconds_left > 0) console_duration(p->seconds_left, left);
+    snprintf(line, sizeof line,
+             "rows %" PRIu32 "/%" PRIu32 "  %" PRIu32 " running  %" PRIu32 " failed  frame %" PRIu64 "/%" PRIu64
+             "  %s left",
+             p->complete, p->rows, p->running, p->failed, p->frames, p->frames_all, left);
+    show(console, (int)(p->frames_all ? 1000 * p->frames / p->frames_all : 1000), 1000, line);
+}

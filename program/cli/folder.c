@@ -1,0 +1,326 @@
+#include "cli/folder.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli/text.h"
+
+Folder folder_name(const char *path, const char *name) {
+    Folder folder = {.name = text_format("%s", name)};
+    folder.path = path ? text_format("%s", *path ? path : ".") : text_format("out/%s", name);
+    for (size_t n = strlen(folder.path); n > 1 && folder.path[n - 1] == '/'; n--) folder.path[n - 1] = 0;
+    folder.stats = text_format("%s/stats.csv", folder.path);
+    folder.events = text_format("%s/events.csv", folder.path);
+    folder.probes = text_format("%s/probes.csv", folder.path);
+    folder.record = text_format("%s/run.json", folder.path);
+    folder.checkpoint = text_format("%s/checkpoint.singe", folder.path);
+    folder.previous_checkpoint = text_format("%s/checkpoint.previous.singe", folder.path);
+    folder.video = text_format("%s/preview.mp4", folder.path);
+    folder.sheet = text_format("%s/sheet.png", folder.path);
+    folder.gif = text_format("%s/preview.gif", folder.path);
+    folder.cache_lock = text_format("%s/cache.lock", folder.path);
+    folder.pictures_lock = text_format("%s/pictures.lock", folder.path);
+    return folder;
+}
+
+void folder_free(Folder *folder) {
+    free(folder->path);
+    free(folder->name);
+    free(folder->stats);
+    free(folder->events);
+    free(folder->probes);
+    free(folder->record);
+    free(folder->checkpoint);
+    free(folder->previous_checkpoint);
+    free(folder->video);
+    free(folder->sheet);
+    free(folder->gif);
+    free(folder->cache_lock);
+    free(folder->pictures_lock);
+    *folder = (Folder){0};
+}
+
+SingeResult folder_fail(const char *path, const char *what, int reason, SingeError *error) {
+    *error = (SingeError){.code = SINGE_ERROR_FILE, .stage = "output", .element = -1};
+    // no link is followed, so "too many levels of symbolic links" would mislead
+    const char *why = reason == ELOOP ? "it is a link" : reason ? strerror(reason) : "not a regular file";
+    snprintf(error->message, sizeof error->message, "%.200s: cannot %s: %s", path, what, why);
+    return SINGE_ERROR_FILE;
+}
+
+static SingeResult make_one(const char *path, SingeError *error) {
+    if (mkdir(path, 0777) == 0) return SINGE_OK;
+    int reason = errno;
+    struct stat info;
+    if (stat(path, &info) == 0) {
+        if (S_ISDIR(info.st_mode)) return SINGE_OK;
+        reason = ENOTDIR;
+    }
+    return folder_fail(path, "make the folder", reason, error);
+}
+
+SingeResult folder_make(const char *path, SingeError *error) {
+    char *copy = text_format("%s", path);
+    SingeResult result = SINGE_OK;
+    for (char *p = copy + 1; *p && !result; p++) {
+        if (*p != '/') continue;
+        *p = 0;
+        result = make_one(copy, error);
+        *p = '/';
+    }
+    if (!result) result = make_one(copy, error);
+    free(copy);
+    return result;
+}
+
+/// The folders of frames: those of formats first.
+enum { INNER_FRAMES = OUTPUT_COUNT, INNER_GAS, INNER_GAS_DETAIL, INNER_EXR, INNER_COUNT };
+
+/// A folder's name, and the ending of its files.
+typedef struct Inner {
+    const char *name, *ending;
+} Inner;
+
+static Inner inner(int which) {
+    static const Inner others[] = {{"frames", ".png"}, {"gas", ".vdb"}, {"gas_detail", ".vdb"}, {"exr", ".exr"}};
+    if (which >= OUTPUT_COUNT) return others[which - OUTPUT_COUNT];
+    return (Inner){output_formats[which].name, output_formats[which].ending};
+}
+
+static bool is_asked(FolderParts parts, int which) {
+    const bool others[] = {parts.pictures, parts.gas, parts.gas_detail, parts.exr};
+    if (which >= OUTPUT_COUNT) return others[which - OUTPUT_COUNT];
+    return which == OUTPUT_ply || output_has(parts.outputs, which);
+}
+
+static char *frame_path(const Folder *folder, int which, int frame) {
+    return text_format("%s/%s/%s.%04d%s", folder->path, inner(which).name, folder->name, frame, inner(which).ending);
+}
+
+SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *error) {
+    SingeResult result = SINGE_OK;
+    for (int i = 0; i < INNER_COUNT && !result; i++) {
+        if (!is_asked(parts, i)) continue;
+        struct stat info;
+        char *path = text_format("%s/%s", folder->path, inner(i).name);
+        if (lstat(path, &info) == 0 && S_ISLNK(info.st_mode)) result = folder_fail(path, "write", ELOOP, error);
+        if (!result) result = make_one(path, error);
+        if (!result && access(path, W_OK) != 0) result = folder_fail(path, "write", errno, error);
+        free(path);
+    }
+    return result;
+}
+
+char *folder_ply(const Folder *folder, int frame) { return frame_path(folder, OUTPUT_ply, frame); }
+char *folder_png(const Folder *folder, int frame) { return frame_path(folder, INNER_FRAMES, frame); }
+char *folder_vdb(const Folder *folder, int frame) { return frame_path(folder, INNER_GAS, frame); }
+char *folder_gas_detail(const Folder *folder, int frame) { return frame_path(folder, INNER_GAS_DETAIL, frame); }
+char *folder_exr(const Folder *folder, int frame) { return frame_path(folder, INNER_EXR, frame); }
+char *folder_output(const Folder *folder, int format, int frame) { return frame_path(folder, format, frame); }
+
+char *folder_root(const Folder *folder, int format) {
+    return text_format("%s/%s%s", folder->path, folder->name, output_formats[format].root_ending);
+}
+
+char *folder_single(const Folder *folder, int single) {
+    const OutputSingle *s = &output_singles[single];
+    if (s->ending) return text_format("%s/%s%s", folder->path, folder->name, s->ending);
+    return text_format("%s/%s/%s", folder->path, s->name, folder->name);
+}
+
+/// The frame of a file name NAME.0001ENDING, or 0 if it is no such name. *rest points behind the ending.
+static int frame_of(const Folder *folder, const char *file, const char *ending, const char **rest) {
+    size_t length = strlen(folder->name);
+    if (strncmp(file, folder->name, length) != 0 || file[length] != '.') return 0;
+    const char *digits = file + length + 1;
+    size_t count = strspn(digits, "0123456789");
+    if (count < 4 || count > 9 || (count > 4 && digits[0] == '0')) return 0;
+    if (strncmp(digits + count, ending, strlen(ending)) != 0) return 0;
+    *rest = digits + count + strlen(ending);
+    return (int)strtol(digits, NULL, 10);
+}
+
+/// Whether this is the suffix that file_write and file_draft add until the file is whole: ".PID-N.tmp", once for a
+/// draft and once more for a file written in its place.
+static bool is_temporary(const char *rest) {
+    for (int times = 0; times < 2; times++) {
+        if (*rest++ != '.') return false;
+        size_t pid = strspn(rest, "0123456789");
+        if (pid == 0 || rest[pid] != '-') return false;
+        rest += pid + 1;
+        size_t attempt = strspn(rest, "0123456789");
+        if (attempt == 0 || strncmp(rest + attempt, ".tmp", 4) != 0) return false;
+        rest += attempt + 4;
+        if (!*rest) return true;
+    }
+    return false;
+}
+
+/// Opens a folder, but no link to one. NULL with *result set, which is good if it cannot hold any of our files.
+static DIR *open_own(const char *path, SingeResult *result, SingeError *error) {
+    int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    DIR *dir = fd < 0 ? NULL : fdopendir(fd);
+    bool not_ours = !dir && (errno == ENOENT || errno == ELOOP || errno == ENOTDIR);
+    *result = dir || not_ours ? SINGE_OK : folder_fail(path, "list", errno, error);
+    if (!dir && fd >= 0) close(fd);
+    return dir;
+}
+
+static SingeResult remove_at(DIR *dir, const char *path, const char *name, int *removed, SingeError *error) {
+    if (unlinkat(dirfd(dir), name, 0) == 0) (*removed)++;
+    else if (errno != ENOENT) {
+        int reason = errno;
+        char *file = text_format("%s/%s", path, name);
+        SingeResult result = folder_fail(file, "remove", reason, error);
+        free(file);
+        return result;
+    }
+    return SINGE_OK;
+}
+
+/// The next entry of a folder; NULL at its end, or with *result set if it cannot be read.
+static struct dirent *next_entry(DIR *dir, const char *path, SingeResult *result, SingeError *error) {
+    errno = 0;
+    struct dirent *entry = readdir(dir);
+    if (!entry && errno) *result = folder_fail(path, "list", errno, error);
+    return entry;
+}
+
+/// Removes frames if `frames` is set, otherwise the half-written files of a killed run.
+static SingeResult clean_frames(const Folder *folder, int which, bool frames, int *removed, SingeError *error) {
+    char *path = text_format("%s/%s", folder->path, inner(which).name);
+    SingeResult result;
+    DIR *dir = open_own(path, &result, error);
+    for (struct dirent *entry; dir && !result && (entry = next_entry(dir, path, &result, error));) {
+        const char *rest;
+        int frame = frame_of(folder, entry->d_name, inner(which).ending, &rest);
+        if (!frame || !(frames ? *rest == 0 : is_temporary(rest))) continue;
+        result = remove_at(dir, path, entry->d_name, removed, error);
+    }
+    if (dir) closedir(dir);
+    free(path);
+    return result;
+}
+
+/// Whether a file name is that of a half-written root.
+static bool is_half_root(const Folder *folder, const char *file) {
+    size_t length = strlen(folder->name);
+    if (strncmp(file, folder->name, length) != 0) return false;
+    for (int i = 0; i < OUTPUT_COUNT; i++) {
+        const char *ending = output_formats[i].root_ending;
+        if (ending && strncmp(file + length, ending, strlen(ending)) == 0 &&
+            is_temporary(file + length + strlen(ending)))
+            return true;
+    }
+    return false;
+}
+
+/// Removes half-written files other than frames.
+static SingeResult clean_top(const Folder *folder, int *removed, SingeError *error) {
+    static const char *const names[] = {"run.json",  "checkpoint.singe", "checkpoint.previous.singe",
+                                        "sheet.png", "preview.mp4",      "preview.gif"};
+    DIR *dir = opendir(folder->path);
+    SingeResult result = dir ? SINGE_OK : folder_fail(folder->path, "list", errno, error);
+    for (struct dirent *entry; !result && (entry = next_entry(dir, folder->path, &result, error));) {
+        bool ours = is_half_root(folder, entry->d_name);
+        for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+            size_t length = strlen(names[i]);
+            ours = ours || (strncmp(entry->d_name, names[i], length) == 0 && is_temporary(entry->d_name + length));
+        }
+        if (ours) result = remove_at(dir, folder->path, entry->d_name, removed, error);
+    }
+    if (dir) closedir(dir);
+    return result;
+}
+
+SingeResult folder_sweep(const Folder *folder, SingeError *error) {
+    int removed = 0;
+    SingeResult result = clean_top(folder, &removed, error);
+    for (int i = 0; i < INNER_COUNT && !result; i++) result = clean_frames(folder, i, false, &removed, error);
+    return result;
+}
+
+static SingeResult remove_file(const char *path, int *removed, SingeError *error) {
+    if (unlink(path) == 0) (*removed)++;
+    else if (errno != ENOENT) return folder_fail(path, "remove", errno, error);
+    return SINGE_OK;
+}
+
+SingeResult folder_forget(const Folder *folder, int *removed, SingeError *error) {
+    // the older one first, so that a failure leaves the newer one
+    SingeResult result = remove_file(folder->previous_checkpoint, removed, error);
+    return result ? result : remove_file(folder->checkpoint, removed, error);
+}
+
+SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, SingeError *error) {
+    SingeResult result = remove_file(folder->video, removed, error);
+    if (!result) result = remove_file(folder->gif, removed, error);
+    if (!result && !parts.events) result = remove_file(folder->events, removed, error);
+    if (!result && !parts.probes) result = remove_file(folder->probes, removed, error);
+    for (int i = 0; i < OUTPUT_COUNT && !result; i++) {
+        if (!output_formats[i].root_ending) continue;
+        char *root = folder_root(folder, i);
+        result = remove_file(root, removed, error);
+        free(root);
+    }
+    for (int i = 0; i < INNER_COUNT && !result; i++) {
+        result = clean_frames(folder, i, true, removed, error);
+        if (result || is_asked(parts, i)) continue;
+        char *path = text_format("%s/%s", folder->path, inner(i).name);
+        rmdir(path); // may fail: other files are in it
+        free(path);
+    }
+    return result;
+}
+
+bool folder_has(const char *path) {
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0;
+}
+
+/// The first and last frame with a PLY; *last is 0 if there is none.
+static SingeResult find_frames(const Folder *folder, int *first, int *last, SingeError *error) {
+    char *path = text_format("%s/ply", folder->path);
+    DIR *dir = opendir(path);
+    SingeResult result = dir || errno == ENOENT ? SINGE_OK : folder_fail(path, "list", errno, error);
+    *first = INT_MAX;
+    *last = 0;
+    for (struct dirent *entry; dir && !result && (entry = next_entry(dir, path, &result, error));) {
+        const char *rest;
+        int frame = frame_of(folder, entry->d_name, ".ply", &rest);
+        if (!frame || *rest) continue;
+        if (frame < *first) *first = frame;
+        if (frame > *last) *last = frame;
+    }
+    if (dir) closedir(dir);
+    free(path);
+    return result;
+}
+
+ExitCode folder_span(const Folder *folder, Console *console, int *first, int *last) {
+    int lowest, highest;
+    SingeError error = {0};
+    if (find_frames(folder, &lowest, &highest, &error)) {
+        console_result(console, &error);
+        return EXIT_FAILED;
+    }
+    if (highest == 0) {
+        console_error(console, "no frames %s/ply/%s.*.ply", folder->path, folder->name);
+        return EXIT_INPUT;
+    }
+    if (*first == 0) {
+        *first = lowest;
+        *last = highest;
+    }
+    if (*first >= lowest && *last <= highest) return EXIT_GOOD;
+    console_error(console, "frames %d-%d are requested, but %s has %d-%d", *first, *last, folder->path, lowest,
+                  highest);
+    return EXIT_INPUT;
+}

@@ -1,0 +1,406 @@
+// singe measure: the appearance of a cache in numbers, frame by frame and as a whole.
+//
+// Jitter is the part of a vertex's velocity that its trajectory does not show: for vertices that never ignited, in
+// three frames dt apart,
+//
+//   j = v(t) - (x(t + dt) - x(t - dt))/(2 dt)
+//
+// A smooth motion of frequency f leaves (2 pi f dt)^2/6 of its speed in j: 1 % at a hertz and 24 frames a second.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/numbers.h"
+#include "cli/args.h"
+#include "cli/cli.h"
+#include "cli/console.h"
+#include "cli/folder.h"
+#include "analysis/folds.h"
+#include "cli/job.h"
+#include "cli/pictures.h"
+#include "analysis/rim.h"
+#include "cli/streams.h"
+#include "cli/text.h"
+#include "analysis/wrinkles.h"
+#include "formats/formats.h"
+
+enum { OPT_FRAMES, OPT_CSV, OPT_NO_PREVIEW, OPT_COUNT };
+enum { EMBER_FRAMES = 4, EMBER_SCALE = 3 };
+
+static const ArgOption measure_options[OPT_COUNT] = {
+    [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone) [all]"},
+    [OPT_CSV] = {"csv", 0, "FILE", "writes the numbers of every frame to FILE, too"},
+    [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no frames, and so does not measure embers"},
+};
+
+static const ArgCommand measure_command = {
+    "measure",       "DIR",     "Measures what a cache looks like: creases, wrinkles, jitter, embers.",
+    measure_options, OPT_COUNT, "docs/cli.md describes the numbers. Exit codes: 0 good, 1 failed, 2 bad input."};
+
+/// A number of every frame, and how it is summarized.
+typedef enum Number { BIAS, BEND, BURNT, UNBURNT, FOLD, CURL, CURL_STRONG, CURL_MAX, JITTER, EMBER, NUMBERS } Number;
+
+static const struct {
+    const char *key, *title, *format;
+    bool more_is_worse;
+} numbers[NUMBERS] = {
+    [BIAS] = {"crease_axis_over_diagonal", "creases along axes over diagonals", "%.3f", true},
+    [BEND] = {"crease_bend_per_m", "bend of creases, 1/m", "%.2f", true},
+    [BURNT] = {"burnt_angle_deg", "normal at 3-15 mm where burnt, rms degrees", "%.3f", false},
+    [UNBURNT] = {"unburnt_angle_deg", "normal at 3-15 mm where not, rms degrees", "%.3f", true},
+    [FOLD] = {"fold_angle_deg", "normal along folds below 3 cells, rms degrees", "%.3f", true},
+    [CURL] = {"curl_p50_deg", "curl of the rim over 10 mm, median degrees", "%.1f", false},
+    [CURL_STRONG] = {"curl_p90_deg", "curl of the rim over 10 mm, p90", "%.1f", false},
+    [CURL_MAX] = {"curl_max_deg", "curl of the rim over 10 mm, max", "%.1f", false},
+    [JITTER] = {"jitter_mm_per_s", "jitter of the unburnt, mm/s rms", "%.3f", true},
+    [EMBER] = {"ember_width_mm", "width of the ember line, mm, of some frames", "%.2f", true},
+};
+
+/// Vertices of the input mesh that have not burnt, in one frame.
+typedef struct Moment {
+    double time;
+    uint32_t count; ///< room
+    float (*position)[3], (*velocity)[3];
+    bool *there;
+} Moment;
+
+typedef struct Measure {
+    Console console;
+    Folder folder;
+    const char *csv;
+    int first, last;         ///< frames; first 0: all
+    double (*rows)[NUMBERS]; ///< of every frame
+    double *times;
+    Rim *rims; ///< of every frame
+    Wrinkles all;
+    Folds all_folds;
+    Rim all_rim;
+    Moment moments[3]; ///< this frame's at index frame mod 3
+    Job job;
+    Pictures *pictures; ///< NULL where none are drawn
+} Measure;
+
+// ---- one frame
+
+static SingeResult read_frame(const Measure *measure, int frame, SingeSurface *surface, double *time,
+                              SingeError *error) {
+    Bytes bytes = {0};
+    char *path = folder_ply(&measure->folder, frame);
+    SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
+    if (!result) result = ply_read_surface(path, bytes.data, bytes.size, (SingeAllocator){0}, surface, time, error);
+    bytes_free(&bytes);
+    free(path);
+    return result;
+}
+
+static void moment_free(Moment *moment) {
+    free(moment->position);
+    free(moment->velocity);
+    free(moment->there);
+    *moment = (Moment){0};
+}
+
+static bool moment_take(const SingeSurface *surface, double time, Moment *moment) {
+    uint32_t count = 0;
+    for (uint32_t v = 0; v < surface->vertex_count; v++)
+        if (surface->source_vertex[v] >= 0 && (uint32_t)surface->source_vertex[v] >= count)
+            count = (uint32_t)surface->source_vertex[v] + 1;
+    moment_free(moment);
+    moment->position = malloc(((size_t)count + 1) * sizeof *moment->position);
+    moment->velocity = malloc(((size_t)count + 1) * sizeof *moment->velocity);
+    moment->there = calloc((size_t)count + 1, sizeof *moment->there);
+    moment->count = count;
+    moment->time = time;
+    if (!moment->position || !moment->velocity || !moment->there) return false;
+    for (uint32_t v = 0; v < surface->vertex_count; v++) {
+        if (surface->source_vertex[v] < 0 || surface->time_ignited[v] >= 0) continue;
+        uint32_t i = (uint32_t)surface->source_vertex[v];
+        memcpy(moment->position[i], surface->position[v], sizeof moment->position[i]);
+        memcpy(moment->velocity[i], surface->velocity[v], sizeof moment->velocity[i]);
+        moment->there[i] = true;
+    }
+    return true;
+}
+
+/// m/s, root mean square; NaN if no such vertex is left.
+static double jitter(const Moment *before, const Moment *now, const Moment *after) {
+    double sum = 0, inverse = 1 / (after->time - before->time);
+    uint32_t count = now->count, counted = 0;
+    if (count > before->count) count = before->count;
+    if (count > after->count) count = after->count;
+    for (uint32_t i = 0; i < count; i++) {
+        if (!before->there[i] || !now->there[i] || !after->there[i]) continue;
+        for (int k = 0; k < 3; k++) {
+            double moved = ((double)after->position[i][k] - (double)before->position[i][k]) * inverse;
+            sum += pow((double)now->velocity[i][k] - moved, 2);
+        }
+        counted++;
+    }
+    return counted && after->time > before->time ? sqrt(sum / counted) : (double)NAN;
+}
+
+static void sum_up(const Wrinkles *frame, Wrinkles *all) {
+    for (int b = 0; b < WRINKLE_BINS; b++) all->crease[b] += frame->crease[b];
+    all->axis += frame->axis;
+    all->diagonal += frame->diagonal;
+    all->burnt_power += frame->burnt_power;
+    all->burnt_area += frame->burnt_area;
+    all->unburnt_power += frame->unburnt_power;
+    all->unburnt_area += frame->unburnt_area;
+}
+
+static double degrees(double power) { return sqrt(power) * 180 / acos(-1); }
+
+/// The numbers of a frame's wrinkles and rim; `area` is what creases were looked for on.
+static void fill_row(const Wrinkles *frame, const Folds *folds, const Rim *rim, double area, double *row) {
+    double bend = 0;
+    for (int b = 0; b < WRINKLE_BINS; b++) bend += frame->crease[b];
+    row[BIAS] = wrinkles_bias(frame);
+    row[BEND] = area > 0 ? bend / area : (double)NAN;
+    row[BURNT] = degrees(wrinkles_burnt(frame));
+    row[UNBURNT] = degrees(wrinkles_unburnt(frame));
+    row[FOLD] = folds_angle(folds);
+    row[CURL] = rim_percentile(rim->curl, 0.5);
+    row[CURL_STRONG] = rim_percentile(rim->curl, 0.9);
+    row[CURL_MAX] = isnan(row[CURL]) ? (double)NAN : rim->curl_max;
+    row[JITTER] = row[EMBER] = (double)NAN;
+}
+
+static double rest_area(const SingeSurface *surface) {
+    double area = 0;
+    for (uint32_t f = 0; f < surface->triangle_count; f++) {
+        const uint32_t *t = surface->triangles[f];
+        double a[3], b[3], c[3];
+        for (int k = 0; k < 3; k++) {
+            a[k] = (double)surface->rest_position[t[1]][k] - (double)surface->rest_position[t[0]][k];
+            b[k] = (double)surface->rest_position[t[2]][k] - (double)surface->rest_position[t[0]][k];
+        }
+        for (int k = 0; k < 3; k++) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+        area += 0.5 * sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
+    }
+    return area;
+}
+
+static SingeResult out_of_memory(SingeError *error) {
+    *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
+    snprintf(error->message, sizeof error->message, "no memory to measure a frame");
+    return SINGE_ERROR_MEMORY;
+}
+
+/// Embers are measured in EMBER_FRAMES of the frames, evenly spread, as each is drawn large.
+static bool is_drawn(const Measure *measure, int frame) {
+    const int count = measure->last - measure->first + 1, index = frame - measure->first;
+    return count <= EMBER_FRAMES || (index + 1) * EMBER_FRAMES / count > index * EMBER_FRAMES / count;
+}
+
+static SingeResult measure_frame(Measure *measure, int frame, SingeError *error) {
+    SingeSurface surface = {0};
+    Wrinkles wrinkles = {0};
+    Folds folds = {0};
+    const int index = frame - measure->first;
+    SingeResult result = read_frame(measure, frame, &surface, &measure->times[index], error);
+    if (result) return result;
+    Rim *rim = &measure->rims[index];
+    if (!wrinkles_add(&surface, &wrinkles) || !folds_add(&surface, &folds) || !rim_add(&surface, rim) ||
+        !moment_take(&surface, measure->times[index], &measure->moments[index % 3]))
+        result = out_of_memory(error);
+    if (!result) {
+        fill_row(&wrinkles, &folds, rim, rest_area(&surface), measure->rows[index]);
+        sum_up(&wrinkles, &measure->all);
+        measure->all_folds.power += folds.power;
+        measure->all_folds.count += folds.count;
+        rim_sum(rim, &measure->all_rim);
+        const Moment *m = measure->moments;
+        if (index >= 2)
+            measure->rows[index - 1][JITTER] = 1e3 * jitter(&m[(index + 1) % 3], &m[(index + 2) % 3], &m[index % 3]);
+    }
+    if (!result && measure->pictures && is_drawn(measure, frame)) {
+        double width;
+        result = pictures_ember_width(measure->pictures, &surface, measure->times[index], &width, error);
+        if (!result) measure->rows[index][EMBER] = 1e3 * width;
+    }
+    singe_surface_free(&surface);
+    return result;
+}
+
+// ---- the whole
+
+/// Median and worst over the frames that have the number, and the frame of the worst; false if none has.
+static bool summary(const Measure *measure, Number number, double *median, double *worst, int *worst_frame) {
+    const int frames = measure->last - measure->first + 1;
+    double *values = malloc((size_t)frames * sizeof *values);
+    int count = 0;
+    for (int i = 0; values && i < frames; i++) {
+        double value = measure->rows[i][number];
+        if (isnan(value)) continue;
+        if (count == 0 || (numbers[number].more_is_worse ? value > *worst : value < *worst)) {
+            *worst = value;
+            *worst_frame = measure->first + i;
+        }
+        values[count++] = value;
+    }
+    if (count) *median = numbers_median(values, count);
+    free(values);
+    return count > 0;
+}
+
+static void print_number(const char *format, double number) {
+    char text[32];
+    snprintf(text, sizeof text, format, number);
+    printf("%10s", text);
+}
+
+/// Mean over all frames, weighted by area, or NaN if that is meaningless.
+static double of_all(const Measure *measure, Number number) {
+    double row[NUMBERS];
+    fill_row(&measure->all, &measure->all_folds, &measure->all_rim, 0, row);
+    return row[number];
+}
+
+/// A value of a band of the rim.
+typedef enum RimNumber { RIM_AREA, RIM_MASS, RIM_SLOPE, RIM_SLOPE_STRONG, RIM_HEIGHT, RIM_NUMBERS } RimNumber;
+
+static const struct {
+    const char *key, *title, *format;
+} rim_numbers[RIM_NUMBERS] = {
+    [RIM_AREA] = {"area", "area/rest", "%.3f"},           [RIM_MASS] = {"mass", "mass", "%.3f"},
+    [RIM_SLOPE] = {"slope_p50_deg", "slope p50", "%.1f"}, [RIM_SLOPE_STRONG] = {"slope_p90_deg", "slope p90", "%.1f"},
+    [RIM_HEIGHT] = {"height_mm", "height mm", "%.2f"},
+};
+
+/// NaN where the band has no area.
+static void fill_band(const RimBand *band, double *values) {
+    const double area = band->rest_area > 0 ? band->rest_area : (double)NAN;
+    values[RIM_AREA] = band->area / area;
+    values[RIM_MASS] = band->mass / area;
+    values[RIM_SLOPE] = rim_percentile(band->slope, 0.5);
+    values[RIM_SLOPE_STRONG] = rim_percentile(band->slope, 0.9);
+    values[RIM_HEIGHT] = 1e3 * band->height / area;
+}
+
+static void print_rim(const Rim *rim) {
+    printf("\nrim of the largest piece, by distance from its burnt edge at rest\n%-14s", "mm");
+    for (int n = 0; n < RIM_NUMBERS; n++) printf("%10s", rim_numbers[n].title);
+    for (int b = 0; b < RIM_BANDS; b++) {
+        double values[RIM_NUMBERS];
+        fill_band(&rim->band[b], values);
+        printf("\n%4.0f - %-7.0f", 1e3 * rim_band_limits[b], 1e3 * rim_band_limits[b + 1]);
+        for (int n = 0; n < RIM_NUMBERS; n++)
+            if (isnan(values[n])) printf("%10s", "-");
+            else print_number(rim_numbers[n].format, values[n]);
+    }
+    printf("\n");
+}
+
+static void print_summary(const Measure *measure) {
+    printf("%-44s%10s%10s%10s%7s\n", "measure", "all", "median", "worst", "frame");
+    for (int n = 0; n < NUMBERS; n++) {
+        double median = 0, worst = 0, all = of_all(measure, (Number)n);
+        int frame = 0;
+        printf("%-44s", numbers[n].title);
+        if (isnan(all)) printf("%10s", "-");
+        else print_number(numbers[n].format, all);
+        if (!summary(measure, (Number)n, &median, &worst, &frame)) {
+            printf("%10s%10s%7s\n", "-", "-", "-");
+            continue;
+        }
+        print_number(numbers[n].format, median);
+        print_number(numbers[n].format, worst);
+        printf("%7d\n", frame);
+    }
+    print_rim(&measure->all_rim);
+    printf("\ncreases by direction, degrees from that of growing u: share of all bend\n");
+    double total = 0;
+    for (int b = 0; b < WRINKLE_BINS; b++) total += measure->all.crease[b];
+    for (int b = 0; b < WRINKLE_BINS; b++)
+        printf("%s%5.1f %.4f%s", b % 6 ? "   " : "", (b + 0.5) * 180 / WRINKLE_BINS,
+               total > 0 ? measure->all.crease[b] / total : 0, b % 6 == 5 ? "\n" : "");
+}
+
+static void write_values(FILE *file, const double *values, int count) {
+    for (int n = 0; n < count; n++)
+        if (isfinite(values[n])) fprintf(file, ",%.6g", values[n]);
+        else fputc(',', file);
+}
+
+static void write_header(FILE *file) {
+    fputs("frame,time", file);
+    for (int n = 0; n < NUMBERS; n++) fprintf(file, ",%s", numbers[n].key);
+    for (int b = 0; b < RIM_BANDS; b++)
+        for (int n = 0; n < RIM_NUMBERS; n++)
+            fprintf(file, ",rim_%.0f_%.0f_%s", 1e3 * rim_band_limits[b], 1e3 * rim_band_limits[b + 1],
+                    rim_numbers[n].key);
+    fputc('\n', file);
+}
+
+static void write_row(FILE *file, const Measure *measure, int index) {
+    fprintf(file, "%d,%.9g", measure->first + index, measure->times[index]);
+    write_values(file, measure->rows[index], NUMBERS);
+    for (int b = 0; b < RIM_BANDS; b++) {
+        double values[RIM_NUMBERS];
+        fill_band(&measure->rims[index].band[b], values);
+        write_values(file, values, RIM_NUMBERS);
+    }
+    fputc('\n', file);
+}
+
+static void print_csv(FILE *file, const void *context) {
+    const Measure *measure = context;
+    write_header(file);
+    for (int i = 0; i <= measure->last - measure->first; i++) write_row(file, measure, i);
+}
+
+static ExitCode measure_all(Measure *measure) {
+    const size_t frames = (size_t)(measure->last - measure->first) + 1;
+    SingeError error = {0};
+    measure->rows = calloc(frames, sizeof *measure->rows);
+    measure->times = calloc(frames, sizeof *measure->times);
+    measure->rims = calloc(frames, sizeof *measure->rims);
+    SingeResult result = measure->rows && measure->times && measure->rims ? SINGE_OK : out_of_memory(&error);
+    for (int frame = measure->first; frame <= measure->last && !result; frame++)
+        result = measure_frame(measure, frame, &error);
+    ExitCode code = EXIT_GOOD;
+    if (result) {
+        console_result(&measure->console, &error);
+        code = result == SINGE_ERROR_MEMORY ? EXIT_FAILED : EXIT_INPUT;
+    } else {
+        print_summary(measure);
+        if (measure->csv) code = streams_write(&measure->console, measure->csv, print_csv, measure);
+    }
+    for (int k = 0; k < 3; k++) moment_free(&measure->moments[k]);
+    free(measure->rows);
+    free(measure->times);
+    free(measure->rims);
+    return code;
+}
+
+int command_measure(int argc, char **argv) {
+    Measure measure = {.console = console_make(false)};
+    bool draws = pictures_available();
+    ArgReader reader = args_begin(&measure_command, argc, argv);
+    const char *value, *path = NULL;
+    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
+        if (option == ARG_HELP) return EXIT_GOOD;
+        if (option == ARG_OPERAND) path = value;
+        else if (option == OPT_CSV) measure.csv = value;
+        else if (option == OPT_NO_PREVIEW) draws = false;
+        else if (option != OPT_FRAMES || !args_span(&reader, option, value, &measure.first, &measure.last))
+            return EXIT_INPUT;
+    }
+    SetList sets = {0};
+    ExitCode code = job_reopen(&measure.job, &measure.console, path, &sets, job_threads());
+    if (code) return code;
+    measure.folder = folder_name(path, measure.job.scene->name);
+    code = folder_span(&measure.folder, &measure.console, &measure.first, &measure.last);
+    SingeError error = {0};
+    if (!code && draws && pictures_open_sharp(&measure.job, EMBER_SCALE, &measure.pictures, &error)) {
+        console_result(&measure.console, &error);
+        code = EXIT_FAILED;
+    }
+    if (!code) code = measure_all(&measure);
+    pictures_close(measure.pictures);
+    folder_free(&measure.folder);
+    job_close(&measure.job);
+    return code;
+}

@@ -1,0 +1,192 @@
+#include "cli/pictures.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cli/interrupt.h"
+
+struct Pictures {
+    const Scene *scene;
+    const SceneAssets *assets;
+    PreviewDef def;
+    Preview *preview;
+    PreviewShape *shapes;
+    uint32_t shape_max;
+    uint8_t *rgb;
+    PreviewLayers layers; ///< empty unless they are kept
+};
+
+bool pictures_available(void) { return preview_draws(); }
+
+static SingeResult no_memory(SingeError *error) {
+    *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "preview", .element = -1};
+    return SINGE_ERROR_MEMORY;
+}
+
+static SingeResult open_def(const Job *job, const PreviewDef *def, Pictures **made, SingeError *error) {
+    *made = NULL;
+    Pictures *pictures = calloc(1, sizeof *pictures);
+    if (!pictures) return no_memory(error);
+    pictures->scene = job->scene;
+    pictures->assets = &job->assets;
+    pictures->def = *def;
+    pictures->shape_max = scene_shapes(job->scene, &job->assets, 0, NULL, 0);
+    pictures->shapes = calloc(pictures->shape_max + 1, sizeof *pictures->shapes);
+    pictures->rgb = malloc((size_t)pictures->def.width * (size_t)pictures->def.height * 3);
+    SingeResult result = pictures->shapes && pictures->rgb ? SINGE_OK : no_memory(error);
+    interrupt_guard_begin();
+    if (!result) result = preview_create(&pictures->def, (SingeAllocator){0}, &pictures->preview, error);
+    interrupt_guard_end();
+    if (result) pictures_close(pictures);
+    else *made = pictures;
+    return result;
+}
+
+static PreviewDef scene_def(const Job *job) {
+    PreviewDef def;
+    scene_preview(job->scene, &job->assets, &def);
+    def.thread_count = job->hooks.thread_count;
+    return def;
+}
+
+SingeResult pictures_open_baker(const Job *job, Pictures **pictures, SingeError *error) {
+    const PreviewDef def = scene_def(job);
+    return open_def(job, &def, pictures, error);
+}
+
+SingeResult pictures_open(const Job *job, Pictures **pictures, SingeError *error) {
+    if (pictures_available()) return pictures_open_baker(job, pictures, error);
+    *pictures = NULL;
+    *error = (SingeError){.code = SINGE_ERROR_STATE, .stage = "preview", .element = -1};
+    snprintf(error->message, sizeof error->message, "this singe was built without the preview");
+    return SINGE_ERROR_STATE;
+}
+
+SingeResult pictures_open_sharp(const Job *job, int scale, Pictures **pictures, SingeError *error) {
+    PreviewDef def = scene_def(job);
+    def.width *= scale;
+    def.height *= scale;
+    def.samples = 4;
+    def.camera.aperture = 0;
+    def.shutter = 0;
+    SingeResult result = open_def(job, &def, pictures, error);
+    if (!result) result = pictures_keep_layers(*pictures, error);
+    if (result) pictures_close(*pictures), *pictures = NULL;
+    return result;
+}
+
+const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, const SingeGas *gas, double time,
+                             SingeError *error) {
+    // a ball may become hot later, so the number may have grown
+    uint32_t count = scene_shapes(pictures->scene, pictures->assets, time, NULL, 0);
+    if (count > pictures->shape_max) {
+        PreviewShape *shapes = realloc(pictures->shapes, count * sizeof *shapes);
+        if (!shapes) {
+            *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "preview", .element = -1};
+            return NULL;
+        }
+        pictures->shapes = shapes;
+        pictures->shape_max = count;
+    }
+    count = scene_shapes(pictures->scene, pictures->assets, time, pictures->shapes, pictures->shape_max);
+    interrupt_guard_begin();
+    SingeResult result = preview_set_shapes(pictures->preview, pictures->shapes, count, error);
+    if (!result) result = preview_set_gas(pictures->preview, gas, error);
+    if (!result)
+        result = preview_draw_layers(pictures->preview, surface, time, pictures->rgb, &pictures->layers, error);
+    interrupt_guard_end();
+    return result ? NULL : pictures->rgb;
+}
+
+SingeResult pictures_bake(Pictures *pictures, const SingeSurface *surface, const SingeGas *gas, double time, int detail,
+                          float *smoke, float *flame, SingeError *error) {
+    interrupt_guard_begin();
+    SingeResult result = preview_set_gas(pictures->preview, gas, error);
+    if (!result) result = preview_bake_gas(pictures->preview, surface, time, detail, smoke, flame, error);
+    interrupt_guard_end();
+    return result;
+}
+
+SingeResult pictures_keep_layers(Pictures *pictures, SingeError *error) {
+    size_t count = (size_t)pictures->def.width * (size_t)pictures->def.height;
+    PreviewLayers *l = &pictures->layers;
+    l->beauty = calloc(count, sizeof *l->beauty);
+    l->glow = calloc(count, sizeof *l->glow);
+    l->normal = calloc(count, sizeof *l->normal);
+    l->coverage = calloc(count, sizeof *l->coverage);
+    l->fire = calloc(count, sizeof *l->fire);
+    l->temperature = calloc(count, sizeof *l->temperature);
+    l->burn = calloc(count, sizeof *l->burn);
+    l->depth = calloc(count, sizeof *l->depth);
+    l->sheet = calloc(count, sizeof *l->sheet);
+    l->piece = calloc(count, sizeof *l->piece);
+    bool all = l->beauty && l->glow && l->normal && l->coverage && l->fire && l->temperature && l->burn && l->depth &&
+               l->sheet && l->piece;
+    return all ? SINGE_OK : no_memory(error);
+}
+
+SingeResult pictures_ember_width(Pictures *pictures, const SingeSurface *surface, double time, double *width,
+                                 SingeError *error) {
+    if (!pictures_draw(pictures, surface, NULL, time, error)) return error->code;
+    return preview_glow_width(&pictures->def, &pictures->layers, width, error);
+}
+
+static void free_layers(PreviewLayers *l) {
+    free(l->beauty), free(l->glow), free(l->normal), free(l->coverage), free(l->temperature), free(l->burn);
+    free(l->fire), free(l->depth), free(l->sheet), free(l->piece);
+}
+
+/// Ids as they are written: counted from 1, so that 0 is none.
+static uint32_t *count_ids(const int32_t *ids, size_t count) {
+    uint32_t *counted = malloc(count * sizeof *counted);
+    for (size_t i = 0; counted && i < count; i++) counted[i] = ids[i] < 0 ? 0 : (uint32_t)ids[i] + 1;
+    return counted;
+}
+
+SingeResult pictures_write_layers(const Pictures *pictures, const char *path, SingeError *error) {
+    const PreviewLayers *l = &pictures->layers;
+    int width = pictures->def.width, height = pictures->def.height;
+    uint32_t *sheet = count_ids(l->sheet, (size_t)width * (size_t)height);
+    uint32_t *piece = count_ids(l->piece, (size_t)width * (size_t)height);
+    const ExrChannel channels[] = {
+        {"R", EXR_KIND_HALF, &l->beauty[0][0], 3},
+        {"G", EXR_KIND_HALF, &l->beauty[0][1], 3},
+        {"B", EXR_KIND_HALF, &l->beauty[0][2], 3},
+        {"Z", EXR_KIND_FLOAT, l->depth, 1},
+        {"glow.R", EXR_KIND_HALF, &l->glow[0][0], 3},
+        {"glow.G", EXR_KIND_HALF, &l->glow[0][1], 3},
+        {"glow.B", EXR_KIND_HALF, &l->glow[0][2], 3},
+        {"fire.R", EXR_KIND_HALF, &l->fire[0][0], 4},
+        {"fire.G", EXR_KIND_HALF, &l->fire[0][1], 4},
+        {"fire.B", EXR_KIND_HALF, &l->fire[0][2], 4},
+        {"fire.A", EXR_KIND_HALF, &l->fire[0][3], 4},
+        {"normal.X", EXR_KIND_HALF, &l->normal[0][0], 3},
+        {"normal.Y", EXR_KIND_HALF, &l->normal[0][1], 3},
+        {"normal.Z", EXR_KIND_HALF, &l->normal[0][2], 3},
+        {"temperature.K", EXR_KIND_FLOAT, l->temperature, 1},
+        {"char.Y", EXR_KIND_HALF, l->burn, 1},
+        {"coverage.Y", EXR_KIND_HALF, l->coverage, 1},
+        {"id.sheet", EXR_KIND_ID, sheet, 1},
+        {"id.piece", EXR_KIND_ID, piece, 1},
+    };
+    SingeResult result = sheet && piece ? SINGE_OK : no_memory(error);
+    if (!result) result = exr_write(path, width, height, channels, (int)(sizeof channels / sizeof *channels), error);
+    free(sheet), free(piece);
+    return result;
+}
+
+void pictures_size(const Pictures *pictures, int *width, int *height) {
+    *width = pictures->def.width;
+    *height = pictures->def.height;
+}
+
+void pictures_close(Pictures *pictures) {
+    if (!pictures) return;
+    interrupt_guard_begin();
+    preview_destroy(pictures->preview);
+    interrupt_guard_end();
+    free(pictures->shapes);
+    free(pictures->rgb);
+    free_layers(&pictures->layers);
+    free(pictures);
+}

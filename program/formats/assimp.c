@@ -1,0 +1,255 @@
+// Meshes by assimp's C interface: FBX, COLLADA, 3DS, X3D and glTF 1. assimp is large and was not written for hostile
+// files, so it runs in a child process, which answers with polygons (mesh_answer.h). Nothing is triangulated, smoothed
+// or joined there: mesh_make does that by position. All meshes of all nodes are read with their transforms, in
+// depth-first order of the nodes.
+#include "formats/assimp_files.h"
+#include "formats/isolate.h"
+#include "formats/mesh_reader.h"
+#include "formats/mesh_answer.h"
+#include "common/store.h"
+
+#include <assimp/cimport.h>
+#include <assimp/scene.h>
+
+#include <errno.h>
+#include <string.h>
+
+enum { DEPTH_LIMIT = 1000 }; ///< of nested nodes
+
+bool assimp_available(void) { return true; }
+
+// ---- a walk over the meshes of all nodes
+
+typedef struct Walk Walk;
+typedef SingeResult Visit(Walk *walk, const struct aiMesh *mesh, const struct aiMatrix4x4 *at);
+
+struct Walk {
+    const struct aiScene *scene;
+    const char *name;
+    SingeError *error;
+    Visit *visit;
+    MeshCounts counts; ///< so far
+    uint64_t max;      ///< bytes of the answer
+    int depth;
+    IsolateAnswer *answer;
+    size_t held; ///< bytes of `buffer` in use
+    uint8_t buffer[1 << 16];
+};
+
+static SingeResult walk_node(Walk *walk, const struct aiNode *node, struct aiMatrix4x4 parent) {
+    const struct aiScene *scene = walk->scene;
+    if (++walk->depth > DEPTH_LIMIT)
+        return refuse(walk->error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: nodes are nested more than %d deep",
+                      short_name(walk->name), DEPTH_LIMIT);
+    aiMultiplyMatrix4(&parent, &node->mTransformation);
+    for (unsigned i = 0; i < node->mNumMeshes; i++) {
+        if (node->mMeshes[i] >= scene->mNumMeshes)
+            return refuse(walk->error, SINGE_ERROR_MESH, "mesh", -1, "%s: a node uses mesh %u of %u",
+                          short_name(walk->name), node->mMeshes[i], scene->mNumMeshes);
+        TRY(walk->visit(walk, scene->mMeshes[node->mMeshes[i]], &parent));
+    }
+    for (unsigned i = 0; i < node->mNumChildren; i++) TRY(walk_node(walk, node->mChildren[i], parent));
+    walk->depth--;
+    return SINGE_OK;
+}
+
+static SingeResult walk_scene(Walk *walk, Visit *visit) {
+    struct aiMatrix4x4 unit;
+    aiIdentityMatrix4(&unit);
+    walk->visit = visit;
+    walk->depth = 0;
+    return walk_node(walk, walk->scene->mRootNode, unit);
+}
+
+// ---- parts of the answer, each by a walk of its own
+
+static void put(Walk *walk, const void *bytes, size_t size) {
+    if (walk->held + size > sizeof walk->buffer) {
+        isolate_put(walk->answer, walk->buffer, walk->held);
+        walk->held = 0;
+    }
+    memcpy(walk->buffer + walk->held, bytes, size);
+    walk->held += size;
+}
+
+/// The number of a mesh in its file.
+static unsigned mesh_number(const Walk *walk, const struct aiMesh *mesh) {
+    unsigned i = 0;
+    while (i < walk->scene->mNumMeshes && walk->scene->mMeshes[i] != mesh) i++;
+    return i;
+}
+
+static SingeResult check_face(Walk *walk, const struct aiMesh *mesh, unsigned f) {
+    const struct aiFace *face = &mesh->mFaces[f];
+    for (unsigned i = 0; i < face->mNumIndices; i++)
+        if (face->mIndices[i] >= mesh->mNumVertices)
+            return refuse(walk->error, SINGE_ERROR_MESH, "mesh", f,
+                          "%s: mesh %u, face %u (from 0): vertex index %u is out of range: the mesh has %u vertices",
+                          short_name(walk->name), mesh_number(walk, mesh), f, face->mIndices[i], mesh->mNumVertices);
+    return SINGE_OK;
+}
+
+static SingeResult count_mesh(Walk *walk, const struct aiMesh *mesh, const struct aiMatrix4x4 *at) {
+    (void)at;
+    MeshCounts *counts = &walk->counts;
+    for (unsigned f = 0; f < mesh->mNumFaces; f++) {
+        unsigned corners = mesh->mFaces[f].mNumIndices;
+        TRY(check_face(walk, mesh, f));
+        if (corners < 3) continue; // points and lines have no area
+        counts->faces++, counts->corners += corners;
+    }
+    counts->vertices += mesh->mNumVertices;
+    counts->uv = counts->uv || mesh->mTextureCoords[0];
+    if (12 * counts->vertices + 12 * counts->corners > walk->max)
+        return refuse(walk->error, SINGE_ERROR_LIMIT, "mesh", -1,
+                      "%s: too large: its nodes repeat meshes, which come to more than %llu MB", short_name(walk->name),
+                      (unsigned long long)walk->max / 1000000);
+    return SINGE_OK;
+}
+
+static SingeResult put_positions(Walk *walk, const struct aiMesh *mesh, const struct aiMatrix4x4 *m) {
+    for (unsigned v = 0; v < mesh->mNumVertices; v++) {
+        struct aiVector3D p = mesh->mVertices[v];
+        float moved[3] = {m->a1 * p.x + m->a2 * p.y + m->a3 * p.z + m->a4,
+                          m->b1 * p.x + m->b2 * p.y + m->b3 * p.z + m->b4,
+                          m->c1 * p.x + m->c2 * p.y + m->c3 * p.z + m->c4};
+        put(walk, moved, sizeof moved);
+    }
+    return SINGE_OK;
+}
+
+static SingeResult put_sizes(Walk *walk, const struct aiMesh *mesh, const struct aiMatrix4x4 *at) {
+    (void)at;
+    for (unsigned f = 0; f < mesh->mNumFaces; f++)
+        if (mesh->mFaces[f].mNumIndices >= 3) put(walk, &mesh->mFaces[f].mNumIndices, 4);
+    return SINGE_OK;
+}
+
+/// The i-th corner of a face: mirroring flips faces.
+static unsigned corner(const struct aiFace *face, const struct aiMatrix4x4 *at, unsigned i) {
+    float turn = (at->a1 * (at->b2 * at->c3 - at->b3 * at->c2) - at->a2 * (at->b1 * at->c3 - at->b3 * at->c1) +
+                  at->a3 * (at->b1 * at->c2 - at->b2 * at->c1));
+    return face->mIndices[turn < 0 ? face->mNumIndices - 1 - i : i];
+}
+
+static SingeResult put_corners(Walk *walk, const struct aiMesh *mesh, const struct aiMatrix4x4 *at) {
+    for (unsigned f = 0; f < mesh->mNumFaces; f++) {
+        const struct aiFace *face = &mesh->mFaces[f];
+        for (unsigned i = 0; face->mNumIndices >= 3 && i < face->mNumIndices; i++) {
+            uint32_t vertex = (uint32_t)walk->counts.vertices + corner(face, at, i);
+            put(walk, &vertex, sizeof vertex);
+        }
+    }
+    walk->counts.vertices += mesh->mNumVertices;
+    return SINGE_OK;
+}
+
+static SingeResult put_uv(Walk *walk, const struct aiMesh *mesh, const struct aiMatrix4x4 *at) {
+    const struct aiVector3D *given = mesh->mTextureCoords[0];
+    for (unsigned f = 0; f < mesh->mNumFaces; f++) {
+        const struct aiFace *face = &mesh->mFaces[f];
+        for (unsigned i = 0; face->mNumIndices >= 3 && i < face->mNumIndices; i++) {
+            unsigned v = corner(face, at, i);
+            float uv[2] = {given ? given[v].x : 0, given ? given[v].y : 0};
+            put(walk, uv, sizeof uv);
+        }
+    }
+    return SINGE_OK;
+}
+
+static SingeResult put_scene(Walk *walk) {
+    TRY(walk_scene(walk, count_mesh));
+    MeshCounts counts = walk->counts;
+    if (counts.vertices > MESH_COUNT_LIMIT || counts.corners > MESH_COUNT_LIMIT)
+        return refuse(walk->error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: is too large", short_name(walk->name));
+    put(walk, &counts, sizeof counts);
+    TRY(walk_scene(walk, put_positions));
+    TRY(walk_scene(walk, put_sizes));
+    walk->counts.vertices = 0; // start again
+    TRY(walk_scene(walk, put_corners));
+    if (counts.uv) TRY(walk_scene(walk, put_uv));
+    isolate_put(walk->answer, walk->buffer, walk->held);
+    return SINGE_OK;
+}
+
+// ---- in the child
+
+/// assimp omits or changes some indices that are out of range, and reports that only in its log.
+static void note_complaint(const char *message, char *bad_index) {
+    if (!strstr(message, "ndex")) return;
+    if (strstr(message, "range") || strstr(message, "overflow") || strstr(message, "nvalid")) *bad_index = 1;
+}
+
+/// assimp's message without its quotes: whoever sees it may not be allowed to read the file.
+static void assimp_unquote(char *to, size_t max, const char *words) {
+    size_t length = 0;
+    bool quoted = false;
+    for (; *words && length + 4 < max; words++) {
+        if (*words == '"' && !quoted) memcpy(to + length, "...", 3), length += 3;
+        if (*words == '"') quoted = !quoted;
+        else if (!quoted && (unsigned char)*words >= ' ') to[length++] = *words;
+    }
+    to[length] = 0;
+}
+
+static SingeResult refuse_import(const Source *source, SingeError *error) {
+    const char *why = aiGetErrorString();
+    char words[160];
+    if (why && strstr(why, "bad_alloc")) errno = ENOMEM; // tells isolate_run
+    assimp_unquote(words, sizeof words, why && why[0] ? why : "cannot be read");
+    return refuse(error, SINGE_ERROR_FORMAT, "mesh", -1, "%s: %s%s", short_name(source->name), words,
+                  source->refused ? source->refused : "");
+}
+
+static SingeResult read_in_child(void *context, IsolateAnswer *answer, SingeError *error) {
+    char bad_index = 0;
+    Source *source = context;
+    struct aiFileIO files = assimp_files(source);
+    struct aiLogStream log = {note_complaint, &bad_index};
+    aiAttachLogStream(&log);
+    const struct aiScene *scene = aiImportFileEx(source->name, 0, &files);
+    if (!scene || !scene->mRootNode) return refuse_import(source, error);
+    if (bad_index)
+        return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: an index is out of range", short_name(source->name));
+    Walk walk = {.scene = scene,
+                 .name = source->name,
+                 .error = error,
+                 .answer = answer,
+                 .max = MESH_ANSWER_BASE + MESH_ANSWER_TIMES * ((uint64_t)source->size + source->beside_size)};
+    return put_scene(&walk);
+}
+
+// ---- in the parent
+
+/// assimp detects the format from the contents, whatever the name, so it may read other formats, too.
+static SingeResult check_kind(const char *name, const uint8_t *bytes, size_t size, SingeError *error) {
+    static const struct {
+        const char *ending, *begins;
+    } kinds[] = {{".gltf", "{"},  {".glb", "glTF"}, {".fbx", "Kaydara FBX"}, {".fbx", ";"},
+                 {".fbx", "FBX"}, {".dae", "<"},    {".x3d", "<"},           {".3ds", "MM"}};
+    const uint8_t *at = bytes, *end = bytes + size;
+    if (end - at >= 3 && memcmp(at, "\xef\xbb\xbf", 3) == 0) at += 3;
+    while (at < end && (*at == ' ' || *at == '\t' || *at == '\n' || *at == '\r')) at++;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        size_t length = strlen(kinds[i].begins);
+        if (mesh_name_ends(name, kinds[i].ending) && (size_t)(end - at) >= length &&
+            memcmp(at, kinds[i].begins, length) == 0)
+            return SINGE_OK;
+    }
+    return refuse(error, SINGE_ERROR_FORMAT, "mesh", 0, "%s: the contents do not match the extension",
+                  short_name(name));
+}
+
+SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                        Polygons *polygons, SingeError *error) {
+    *polygons = (Polygons){.allocator = allocator};
+    if (size == 0) return refuse(error, SINGE_ERROR_FORMAT, "mesh", 0, "%s: is empty", short_name(name));
+    TRY(check_kind(name, bytes, size, error));
+    Source source = {.name = name, .bytes = bytes, .size = size};
+    IsolateLimits limits = {(512u << 20) + 32 * size, 10 + 5e-7 * (double)size};
+    Bytes answer;
+    TRY(isolate_run(name, read_in_child, &source, limits, allocator, &answer, error));
+    SingeResult result = mesh_answer_take(name, answer.data, answer.size, allocator, polygons, error);
+    bytes_free(&answer);
+    return result;
+}

@@ -1,0 +1,217 @@
+// Whole files: read into memory, and written under a temporary name that replaces the old file only when
+// every byte is on the disk.
+#ifndef _XOPEN_SOURCE
+#define _XOPEN_SOURCE 700
+#endif
+
+#include "formats/formats.h"
+#include "common/store.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#ifndef PATH_MAX
+#define PATH_MAX 4096
+#endif
+#ifndef O_CLOEXEC
+#define O_CLOEXEC 0
+#endif
+
+enum { FILE_LIMIT = 0x7fffffff };
+
+static SingeResult refuse_system(SingeError *error, const char *doing, const char *path, int reason) {
+    char text[120];
+    if (strerror_r(reason, text, sizeof text)) snprintf(text, sizeof text, "error %d", reason);
+    return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot %s: %s", short_name(path), doing, text);
+}
+
+// ---- reading
+
+static SingeResult read_bytes(int file, const char *path, Bytes *bytes, SingeError *error) {
+    size_t done = 0;
+    while (done < bytes->size) {
+        ssize_t count = read(file, bytes->data + done, bytes->size - done);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return refuse_system(error, "read", path, errno);
+        if (count == 0)
+            return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: became shorter while it was read",
+                          short_name(path));
+        done += (size_t)count;
+    }
+    bytes->data[done] = 0;
+    return SINGE_OK;
+}
+
+static SingeResult read_open(int file, const char *path, size_t max, SingeAllocator allocator, Bytes *bytes,
+                             SingeError *error) {
+    struct stat about;
+    if (fstat(file, &about)) return refuse_system(error, "read", path, errno);
+    if (S_ISDIR(about.st_mode)) return refuse_system(error, "read", path, EISDIR);
+    if (!S_ISREG(about.st_mode))
+        return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot read: not a regular file", short_name(path));
+    if (about.st_size > (off_t)max)
+        return refuse(error, SINGE_ERROR_LIMIT, "file", -1, "%s: larger than %zu MiB", short_name(path),
+                      (max + 1) >> 20);
+    bytes->size = (size_t)about.st_size;
+    bytes->allocator = allocator;
+    bytes->data = store_new(allocator, bytes->size + 1, 1);
+    if (!bytes->data) return refuse_memory(error, "file", path);
+    return read_bytes(file, path, bytes, error);
+}
+
+SingeResult file_read(const char *path, SingeAllocator allocator, Bytes *bytes, SingeError *error) {
+    return file_read_max(path, FILE_LIMIT, allocator, bytes, error);
+}
+
+SingeResult file_read_max(const char *path, size_t max, SingeAllocator allocator, Bytes *bytes, SingeError *error) {
+    memset(bytes, 0, sizeof *bytes);
+    // without O_NONBLOCK a named pipe would wait here for its writer
+    int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) return refuse_system(error, "read", path, errno);
+    SingeResult result = read_open(file, path, max, allocator, bytes, error);
+    close(file);
+    if (result) bytes_free(bytes);
+    return result;
+}
+
+size_t file_read_head(const char *path, uint8_t *bytes, size_t max) {
+    struct stat about;
+    int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) return 0;
+    size_t done = 0;
+    ssize_t count = fstat(file, &about) || !S_ISREG(about.st_mode) ? 0 : 1;
+    while (count > 0 && done < max) {
+        count = read(file, bytes + done, max - done);
+        if (count > 0) done += (size_t)count;
+        else if (count < 0 && errno == EINTR) count = 1;
+    }
+    close(file);
+    return done;
+}
+
+void bytes_free(Bytes *bytes) {
+    store_free(bytes->allocator, bytes->data, bytes->size + 1, 1);
+    memset(bytes, 0, sizeof *bytes);
+}
+
+// ---- writing
+
+static int write_bytes(int file, const uint8_t *data, size_t size) {
+    while (size) {
+        ssize_t count = write(file, data, size < FILE_LIMIT ? size : FILE_LIMIT);
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) return count < 0 ? errno : EIO;
+        data += count;
+        size -= (size_t)count;
+    }
+    // EINVAL: the file system cannot flush
+    return fsync(file) && errno != EINVAL && errno != ENOTSUP ? errno : 0;
+}
+
+// Opens a new file next to `target`.
+static int temporary_open(const char *target, char *temporary, size_t length, int *file) {
+    for (int attempt = 0; attempt < 100; attempt++) {
+        int needed = snprintf(temporary, length, "%s.%ld-%d.tmp", target, (long)getpid(), attempt);
+        if (needed < 0 || (size_t)needed >= length) return ENAMETOOLONG;
+        *file = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (*file >= 0) return 0;
+        if (errno != EEXIST) return errno;
+    }
+    return EEXIST;
+}
+
+// The rename itself is durable only after the folder is flushed, too. A failure here loses no data.
+static void flush_folder(const char *target) {
+    char folder[PATH_MAX];
+    strcpy(folder, target);
+    char *slash = strrchr(folder, '/');
+    if (!slash) strcpy(folder, ".");
+    else slash[slash == folder] = 0;
+    int file = open(folder, O_RDONLY | O_CLOEXEC);
+    if (file < 0) return;
+    (void)fsync(file);
+    close(file);
+}
+
+// A rename replaces a link, never its target; but it would replace a device by a regular file.
+static SingeResult check_target(const char *path, SingeError *error) {
+    struct stat about;
+    if (!*path) return refuse_system(error, "write", "(no name)", ENOENT);
+    if (strlen(path) >= PATH_MAX) return refuse_system(error, "write", path, ENAMETOOLONG);
+    if (lstat(path, &about) || S_ISREG(about.st_mode) || S_ISLNK(about.st_mode)) return SINGE_OK;
+    if (S_ISDIR(about.st_mode)) return refuse_system(error, "write", path, EISDIR);
+    return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot write: not a regular file", short_name(path));
+}
+
+static int put_in_place(const char *temporary, const char *target) {
+    if (rename(temporary, target)) return errno;
+    flush_folder(target);
+    return 0;
+}
+
+/// The target becomes the backup; without a target the earlier backup remains.
+static int put_aside(const char *target, const char *backup) {
+    return backup && rename(target, backup) && errno != ENOENT ? errno : 0;
+}
+
+SingeResult file_write_backup(const char *path, const char *backup, const void *data, size_t size, SingeError *error) {
+    char temporary[PATH_MAX + 64];
+    int file = -1;
+    SingeResult result = check_target(path, error);
+    if (!result && backup) result = check_target(backup, error);
+    if (result) return result;
+    int reason = temporary_open(path, temporary, sizeof temporary, &file);
+    if (!reason) {
+        reason = write_bytes(file, data, size);
+        if (close(file) && !reason) reason = errno;
+        if (!reason) reason = put_aside(path, backup);
+        if (!reason) reason = put_in_place(temporary, path);
+        if (reason) unlink(temporary);
+    }
+    return reason ? refuse_system(error, "write", path, reason) : SINGE_OK;
+}
+
+SingeResult file_write(const char *path, const void *data, size_t size, SingeError *error) {
+    return file_write_backup(path, NULL, data, size, error);
+}
+
+SingeResult file_draft(const char *path, char **draft, SingeError *error) {
+    int file = -1;
+    *draft = NULL;
+    SingeResult result = check_target(path, error);
+    if (result) return result;
+    char *name = malloc(PATH_MAX + 64);
+    if (!name) return refuse_memory(error, "file", path);
+    int reason = temporary_open(path, name, PATH_MAX + 64, &file);
+    if (reason) {
+        free(name);
+        return refuse_system(error, "write", path, reason);
+    }
+    close(file);
+    *draft = name;
+    return SINGE_OK;
+}
+
+SingeResult file_publish(char *draft, const char *path, SingeError *error) {
+    int file = open(draft, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+    int reason = file < 0 ? errno : fsync(file) && errno != EINVAL && errno != ENOTSUP ? errno : 0;
+    if (file >= 0) close(file);
+    if (!reason) reason = put_in_place(draft, path);
+    if (reason) {
+        file_discard(draft);
+        return refuse_system(error, "write", path, reason);
+    }
+    free(draft);
+    return SINGE_OK;
+}
+
+void file_discard(char *draft) {
+    if (draft) unlink(draft);
+    free(draft);
+}

@@ -1,0 +1,323 @@
+// Polygons of a glTF's scene: a walk over its nodes. The vertices of their meshes' primitives follow in this order.
+#include "formats/gltf.h"
+#include "formats/mesh_reader.h"
+#include "common/store.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { NODE_DEPTH = 1000 };
+
+/// Rows of a transform: three axes and an origin.
+typedef struct Transform {
+    float m[3][4];
+} Transform;
+
+/// State of the walk.
+typedef struct Instance {
+    uint32_t mesh;
+    Transform at;
+} Instance;
+
+typedef struct Walk {
+    Gltf *gltf;
+    Instance *instances;
+    size_t count, capacity;
+    uint8_t *seen; ///< [node_count]
+    uint64_t max, vertices, faces, corners, primitives;
+    bool uv;
+} Walk;
+
+// ---- transforms
+
+static Transform chain(const Transform *outer, const Transform *inner) {
+    Transform both;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 4; c++) {
+            both.m[r][c] =
+                inner->m[0][c] * outer->m[r][0] + inner->m[1][c] * outer->m[r][1] + inner->m[2][c] * outer->m[r][2];
+            if (c == 3) both.m[r][c] += outer->m[r][3];
+        }
+    return both;
+}
+
+/// The numbers of a member. False if their count differs; unchanged without the member.
+static bool take_numbers(const Json *json, int64_t object, const char *key, uint32_t count, float *numbers) {
+    int64_t list = json_member(json, object, key), at = list + 1;
+    if (list == JSON_NONE) return true;
+    if (json_items(json, list) != count) return false;
+    for (uint32_t i = 0; i < count; i++, at = json->values[at].after) {
+        double number;
+        if (!json_number(json, at, &number) || !(fabs(number) < 3e38)) return false;
+        numbers[i] = (float)number;
+    }
+    return true;
+}
+
+static Transform gltf_mesh_turn(const float q[4]) {
+    float x = q[0], y = q[1], z = q[2], w = q[3];
+    return (Transform){{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 0},
+                        {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), 0},
+                        {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), 0}}};
+}
+
+static SingeResult node_transform(const Gltf *gltf, uint32_t node, Transform *at) {
+    const Json *json = &gltf->json;
+    int64_t object = gltf->nodes[node];
+    float matrix[16] = {0}, move[3] = {0}, rotation[4] = {0, 0, 0, 1}, scale[3] = {1, 1, 1};
+    bool good = take_numbers(json, object, "matrix", 16, matrix) &&
+                take_numbers(json, object, "translation", 3, move) &&
+                take_numbers(json, object, "rotation", 4, rotation) && take_numbers(json, object, "scale", 3, scale);
+    if (!good) return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: its transform is not finite", node);
+    if (json_member(json, object, "matrix") != JSON_NONE) {
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 4; c++) at->m[r][c] = matrix[4 * c + r];
+        return SINGE_OK;
+    }
+    Transform moved = {{{1, 0, 0, move[0]}, {0, 1, 0, move[1]}, {0, 0, 1, move[2]}}}, turned = gltf_mesh_turn(rotation);
+    Transform scaled = {{{scale[0], 0, 0, 0}, {0, scale[1], 0, 0}, {0, 0, scale[2], 0}}};
+    *at = chain(&moved, &turned);
+    *at = chain(at, &scaled);
+    return SINGE_OK;
+}
+
+// ---- the walk
+
+/// Adds the counts of a primitive.
+static SingeResult count_primitive(Walk *walk, const GltfPrimitive *primitive) {
+    const Gltf *gltf = walk->gltf;
+    uint64_t vertices = gltf->read[primitive->position].count, faces = 0;
+    uint64_t corners = primitive->indices < 0 ? vertices : gltf->read[primitive->indices].count;
+    if (primitive->mode == 4 && corners % 3)
+        return gltf_refuse(gltf, SINGE_ERROR_MESH, "meshes[%u]: primitive %u: triangles have %llu corners",
+                           primitive->mesh, primitive->number, (unsigned long long)corners);
+    if (primitive->mode == 4) faces = corners / 3;
+    else if (primitive->mode > 4) faces = corners > 2 ? corners - 2 : 0;
+    walk->vertices += vertices;
+    walk->faces += faces;
+    walk->corners += 3 * faces;
+    walk->uv = walk->uv || primitive->uv >= 0;
+    walk->primitives++;
+    if (12 * walk->vertices + 12 * walk->corners + 100 * walk->primitives > walk->max)
+        return gltf_refuse(gltf, SINGE_ERROR_LIMIT,
+                           "too large: its nodes repeat meshes, which come to more than %llu MB",
+                           (unsigned long long)walk->max / 1000000);
+    return SINGE_OK;
+}
+
+static SingeResult walk_mesh(Walk *walk, uint32_t mesh, const Transform *at) {
+    const GltfMesh *range = &walk->gltf->ranges[mesh];
+    for (uint32_t i = 0; i < range->count; i++) TRY(count_primitive(walk, &walk->gltf->primitives[range->first + i]));
+    if (!store_grow(walk->gltf->allocator, &walk->instances, &walk->capacity, walk->count + 1, sizeof *walk->instances))
+        return refuse_memory(walk->gltf->error, "gltf", walk->gltf->name);
+    walk->instances[walk->count++] = (Instance){mesh, *at};
+    return SINGE_OK;
+}
+
+static SingeResult walk_nodes(Walk *walk, int64_t list, const Transform *parent, int depth);
+
+static SingeResult walk_node(Walk *walk, uint32_t node, const Transform *parent, int depth) {
+    const Gltf *gltf = walk->gltf;
+    int64_t object = gltf->nodes[node], mesh, extensions = json_member(&gltf->json, object, "extensions");
+    if (walk->seen[node])
+        return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: it contains itself, or has two parents", node);
+    if (depth > NODE_DEPTH)
+        return gltf_refuse(gltf, SINGE_ERROR_LIMIT, "nodes[%u]: nodes are nested more than %d deep", node, NODE_DEPTH);
+    if (json_member(&gltf->json, extensions, "EXT_mesh_gpu_instancing") != JSON_NONE)
+        return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: EXT_mesh_gpu_instancing is not supported", node);
+    walk->seen[node] = 1;
+    Transform own, at;
+    TRY(node_transform(gltf, node, &own));
+    at = chain(parent, &own);
+    TRY(gltf_index(gltf, object, "mesh", gltf->mesh_count, &mesh));
+    if (mesh >= 0) TRY(walk_mesh(walk, (uint32_t)mesh, &at));
+    return walk_nodes(walk, json_member(&gltf->json, object, "children"), &at, depth + 1);
+}
+
+static SingeResult walk_nodes(Walk *walk, int64_t list, const Transform *parent, int depth) {
+    const Gltf *gltf = walk->gltf;
+    uint32_t count = json_items(&gltf->json, list);
+    for (int64_t i = 0, at = list + 1; i < count; i++, at = gltf->json.values[at].after) {
+        uint64_t node;
+        if (!json_count(&gltf->json, at, &node) || node >= gltf->node_count)
+            return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "byte %u of its JSON: there are only %u nodes",
+                               gltf->json.values[at].begin, gltf->node_count);
+        TRY(walk_node(walk, (uint32_t)node, parent, depth));
+    }
+    return SINGE_OK;
+}
+
+static SingeResult walk_scene(Walk *walk) {
+    static const Transform unit = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    const Gltf *gltf = walk->gltf;
+    int64_t scenes = json_member(&gltf->json, 0, "scenes"), wanted, at = scenes + 1;
+    TRY(gltf_index(gltf, 0, "scene", json_items(&gltf->json, scenes), &wanted));
+    if (!json_items(&gltf->json, scenes)) return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "it has no scene");
+    for (; wanted > 0; wanted--) at = gltf->json.values[at].after;
+    walk->seen = store_new(gltf->allocator, gltf->node_count, 1);
+    if (!walk->seen) return refuse_memory(gltf->error, "gltf", gltf->name);
+    memset(walk->seen, 0, gltf->node_count);
+    return walk_nodes(walk, json_member(&gltf->json, at, "nodes"), &unit, 1);
+}
+
+// ---- values
+
+static uint32_t load_index(const uint8_t *p, uint32_t type) {
+    if (type == 5121) return *p;
+    return type == 5123 ? (uint32_t)p[0] | (uint32_t)p[1] << 8 : load_u32_little(p);
+}
+
+static float load_value(const uint8_t *p, uint32_t type, bool normalized) {
+    uint32_t bits = gltf_type_size(type) == 4 ? load_u32_little(p) : load_index(p, type < 5122 ? 5121 : 5123);
+    float value, max;
+    switch (type) {
+    case 5120:
+        value = (float)(int8_t)bits;
+        max = 127;
+        break;
+    case 5121:
+        value = (float)bits;
+        max = 255;
+        break;
+    case 5122:
+        value = (float)(int16_t)bits;
+        max = 32767;
+        break;
+    case 5123:
+        value = (float)bits;
+        max = 65535;
+        break;
+    case 5125: return (float)bits;
+    default: memcpy(&value, &bits, sizeof value); return value;
+    }
+    return normalized ? fmaxf(value / max, -1) : value;
+}
+
+/// All elements of an accessor.
+static void load_elements(const GltfAccessor *a, uint32_t count, float *values) {
+    uint32_t size = gltf_type_size(a->type);
+    for (size_t i = 0; i < count; i++)
+        for (size_t c = 0; c < a->width; c++)
+            values[i * a->width + c] = load_value(a->bytes + i * a->stride + c * size, a->type, a->normalized);
+    for (size_t i = 0; i < a->sparse_count; i++) {
+        size_t to = load_index(a->sparse_index + i * gltf_type_size(a->sparse_type), a->sparse_type);
+        for (size_t c = 0; to < count && c < a->width; c++)
+            values[to * a->width + c] = load_value(a->sparse_bytes + (i * a->width + c) * size, a->type, a->normalized);
+    }
+}
+
+/// The polygons being filled; their counts increase.
+typedef struct Fill {
+    const Gltf *gltf;
+    Polygons *mesh;
+    float *uv; ///< of a primitive's vertices
+} Fill;
+
+static void fill_positions(Fill *fill, const GltfAccessor *accessor, const Transform *at) {
+    float *positions = fill->mesh->positions + 3 * (size_t)fill->mesh->vertex_count;
+    load_elements(accessor, accessor->count, positions);
+    for (uint32_t v = 0; v < accessor->count; v++, positions += 3) {
+        float x = positions[0], y = positions[1], z = positions[2];
+        for (int r = 0; r < 3; r++) positions[r] = at->m[r][0] * x + at->m[r][1] * y + at->m[r][2] * z + at->m[r][3];
+    }
+}
+
+/// The vertex of the primitive's i-th corner.
+static SingeResult take_corner(const Fill *fill, const GltfPrimitive *primitive, uint64_t i, uint32_t *vertex) {
+    const GltfAccessor *indices = primitive->indices < 0 ? NULL : &fill->gltf->read[primitive->indices];
+    uint32_t count = fill->gltf->read[primitive->position].count;
+    *vertex = indices ? load_index(indices->bytes + i * indices->stride, indices->type) : (uint32_t)i;
+    if (*vertex < count) return SINGE_OK;
+    return gltf_refuse(fill->gltf, SINGE_ERROR_MESH,
+                       "meshes[%u]: primitive %u: index %llu (from 0): vertex %u is out of range: there are %u",
+                       primitive->mesh, primitive->number, (unsigned long long)i, *vertex, count);
+}
+
+/// The three corners of the primitive's f-th triangle.
+static void triangle_corners(const GltfPrimitive *primitive, uint64_t f, uint64_t corners[3]) {
+    bool odd = primitive->mode == 5 && f % 2;
+    corners[0] = primitive->mode == 4 ? 3 * f : primitive->mode == 6 ? 0 : f + odd;
+    corners[1] = primitive->mode == 4 ? 3 * f + 1 : primitive->mode == 6 ? f + 1 : f + !odd;
+    corners[2] = primitive->mode == 4 ? 3 * f + 2 : f + 2;
+}
+
+static SingeResult fill_primitive(Fill *fill, const GltfPrimitive *primitive, const Transform *at) {
+    const GltfAccessor *position = &fill->gltf->read[primitive->position];
+    Polygons *mesh = fill->mesh;
+    const float(*m)[4] = at->m;
+    bool mirrored = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                        m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                        m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) <
+                    0;
+    uint64_t corners = primitive->indices < 0 ? position->count : fill->gltf->read[primitive->indices].count;
+    uint64_t faces = primitive->mode < 4 ? 0 : primitive->mode == 4 ? corners / 3 : corners > 2 ? corners - 2 : 0;
+    fill_positions(fill, position, at);
+    if (primitive->uv >= 0) load_elements(&fill->gltf->read[primitive->uv], position->count, fill->uv);
+    for (uint64_t f = 0; f < faces; f++) {
+        uint64_t corner[3];
+        triangle_corners(primitive, f, corner);
+        for (int k = 0; k < 3; k++) {
+            uint32_t vertex, i = mesh->corner_count++;
+            TRY(take_corner(fill, primitive, corner[mirrored ? 2 - k : k], &vertex));
+            mesh->corners[i] = mesh->vertex_count + vertex;
+            if (!mesh->uv) continue;
+            const float none[2] = {0, 1}, *uv = primitive->uv < 0 ? none : fill->uv + 2 * (size_t)vertex;
+            float *to = mesh->uv + 2 * (size_t)i;
+            to[0] = uv[0], to[1] = 1 - uv[1]; // glTF's v runs down
+            if (!isfinite(to[0]) || !isfinite(to[1])) to[0] = to[1] = 0;
+        }
+        mesh->first[++mesh->face_count] = mesh->corner_count;
+    }
+    mesh->vertex_count += position->count;
+    return SINGE_OK;
+}
+
+static SingeResult fill_all(const Walk *walk, Fill *fill) {
+    const Gltf *gltf = walk->gltf;
+    Polygons *mesh = fill->mesh;
+    for (size_t n = 0; n < walk->count; n++) {
+        const GltfMesh *range = &gltf->ranges[walk->instances[n].mesh];
+        for (uint32_t i = 0; i < range->count; i++)
+            TRY(fill_primitive(fill, &gltf->primitives[range->first + i], &walk->instances[n].at));
+    }
+    for (size_t i = 0; i < 3 * (size_t)mesh->vertex_count; i++)
+        if (!isfinite(mesh->positions[i]))
+            return gltf_refuse(gltf, SINGE_ERROR_MESH, "vertex %llu (from 0) has a position that is not finite",
+                               (unsigned long long)(i / 3));
+    return SINGE_OK;
+}
+
+static SingeResult make_polygons(const Walk *walk, Polygons *polygons) {
+    const Gltf *gltf = walk->gltf;
+    SingeAllocator a = gltf->allocator;
+    if (walk->faces == 0) return gltf_refuse(gltf, SINGE_ERROR_MESH, "has no faces");
+    if (walk->vertices > MESH_COUNT_LIMIT || walk->corners > MESH_COUNT_LIMIT)
+        return gltf_refuse(gltf, SINGE_ERROR_LIMIT, "is too large");
+    Polygons made = {.allocator = a};
+    Fill fill = {.gltf = gltf, .mesh = &made};
+    made.positions = store_new(a, walk->vertices, 3 * sizeof *made.positions);
+    made.first = store_new(a, walk->faces + 1, sizeof *made.first);
+    made.corners = store_new(a, walk->corners, sizeof *made.corners);
+    if (walk->uv) made.uv = store_new(a, walk->corners, 2 * sizeof *made.uv);
+    if (walk->uv) fill.uv = store_new(a, walk->vertices, 2 * sizeof *fill.uv);
+    bool room = made.positions && made.first && made.corners && (!walk->uv || (made.uv && fill.uv));
+    if (room) made.first[0] = 0;
+    SingeResult result = room ? fill_all(walk, &fill) : refuse_memory(gltf->error, "gltf", gltf->name);
+    store_free(a, fill.uv, walk->vertices, 2 * sizeof *fill.uv);
+    // the allocated counts, for polygons_free
+    made.vertex_count = (uint32_t)walk->vertices;
+    made.face_count = (uint32_t)walk->faces;
+    made.corner_count = (uint32_t)walk->corners;
+    if (result) polygons_free(&made);
+    else *polygons = made;
+    return result;
+}
+
+SingeResult gltf_make(Gltf *gltf, uint64_t max, Polygons *polygons) {
+    Walk walk = {.gltf = gltf, .max = max};
+    SingeResult result = walk_scene(&walk);
+    if (!result) result = make_polygons(&walk, polygons);
+    store_free(gltf->allocator, walk.seen, gltf->node_count, 1);
+    store_free(gltf->allocator, walk.instances, walk.capacity, sizeof *walk.instances);
+    return result;
+}

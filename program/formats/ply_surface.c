@@ -1,0 +1,232 @@
+// The cache: a surface as a binary little-endian PLY file, one table for the writer and the reader.
+#include "formats/mesh_reader.h"
+#include "formats/number.h"
+#include "formats/ply.h"
+#include "common/store.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+
+// A property of a vertex: a column of one of the surface's arrays.
+typedef struct Column {
+    const char *name;
+    size_t array;  // offset of the array's pointer in SingeSurface
+    uint8_t width; // 4-byte values a vertex in that array
+    uint8_t index; // which of them
+    bool integer;
+} Column;
+
+#define COLUMN(name, member, width, index) \
+    { name, offsetof(SingeSurface, member), width, index, false }
+#define INTEGER(name, member) \
+    { name, offsetof(SingeSurface, member), 1, 0, true }
+
+static const Column columns[] = {
+    COLUMN("x", position, 3, 0),
+    COLUMN("y", position, 3, 1),
+    COLUMN("z", position, 3, 2),
+    COLUMN("nx", normal, 3, 0),
+    COLUMN("ny", normal, 3, 1),
+    COLUMN("nz", normal, 3, 2),
+    COLUMN("s", uv, 2, 0),
+    COLUMN("t", uv, 2, 1),
+    COLUMN("vx", velocity, 3, 0),
+    COLUMN("vy", velocity, 3, 1),
+    COLUMN("vz", velocity, 3, 2),
+    COLUMN("rest_x", rest_position, 3, 0),
+    COLUMN("rest_y", rest_position, 3, 1),
+    COLUMN("rest_z", rest_position, 3, 2),
+    COLUMN("temperature", temperature, 1, 0),
+    COLUMN("temperature_peak", temperature_peak, 1, 0),
+    COLUMN("mass", mass, 1, 0),
+    COLUMN("burn_rate", burn_rate, 1, 0),
+    COLUMN("char_fraction", char_fraction, 1, 0),
+    COLUMN("ash_fraction", ash_fraction, 1, 0),
+    COLUMN("burnt", burn, 1, 0),
+    COLUMN("time_ignited", time_ignited, 1, 0),
+    INTEGER("piece_id", piece),
+    INTEGER("vertex_id", source_vertex),
+    INTEGER("sheet", sheet),
+};
+
+enum { COLUMNS = sizeof columns / sizeof *columns };
+enum { VERTEX_SIZE = 4 * COLUMNS, FACE_SIZE = 1 + 3 * 4, HEADER_LIMIT = 2048 };
+
+static uint8_t *column_array(const SingeSurface *surface, const Column *column) {
+    uint8_t *array;
+    memcpy(&array, (const uint8_t *)surface + column->array, sizeof array);
+    return array;
+}
+
+// Bytes after the header.
+static uint64_t surface_data_size(const SingeSurface *surface) {
+    return (uint64_t)VERTEX_SIZE * surface->vertex_count + (uint64_t)FACE_SIZE * surface->triangle_count;
+}
+
+// ---- writing
+
+static size_t surface_header(char *text, const SingeSurface *surface, double time) {
+    char number[40];
+    number_print(time, number);
+    size_t n = (size_t)snprintf(text, HEADER_LIMIT,
+                                "ply\nformat binary_little_endian 1.0\ncomment singe %s time %s\nelement vertex %u\n",
+                                SINGE_VERSION, number, surface->vertex_count);
+    for (size_t i = 0; i < COLUMNS; i++)
+        n += (size_t)snprintf(text + n, HEADER_LIMIT - n, "property %s %s\n", columns[i].integer ? "int" : "float",
+                              columns[i].name);
+    n += (size_t)snprintf(text + n, HEADER_LIMIT - n,
+                          "element face %u\nproperty list uchar int vertex_indices\nend_header\n",
+                          surface->triangle_count);
+    return n;
+}
+
+static uint8_t *surface_pack(uint8_t *out, const SingeSurface *surface) {
+    const uint8_t *source[COLUMNS];
+    for (size_t i = 0; i < COLUMNS; i++)
+        source[i] = surface->vertex_count ? column_array(surface, &columns[i]) + 4 * columns[i].index : NULL;
+    for (uint32_t v = 0; v < surface->vertex_count; v++)
+        for (size_t i = 0; i < COLUMNS; i++, out += 4) {
+            uint32_t bits;
+            memcpy(&bits, source[i], sizeof bits);
+            source[i] += 4 * columns[i].width;
+            store_u32_little(out, bits);
+        }
+    for (uint32_t f = 0; f < surface->triangle_count; f++) {
+        *out++ = 3;
+        for (int k = 0; k < 3; k++, out += 4) store_u32_little(out, surface->triangles[f][k]);
+    }
+    return out;
+}
+
+SingeResult ply_write_surface(const char *path, const SingeSurface *surface, double time, SingeError *error) {
+    if (!isfinite(time))
+        return refuse(error, SINGE_ERROR_ARGUMENT, "cache", -1, "%s: the time is not finite", short_name(path));
+    if (surface->vertex_count > MESH_COUNT_LIMIT || surface->triangle_count > MESH_COUNT_LIMIT)
+        return refuse(error, SINGE_ERROR_LIMIT, "cache", -1, "%s: too many vertices or triangles", short_name(path));
+    uint64_t max = HEADER_LIMIT + surface_data_size(surface);
+    if (max > SIZE_MAX / 2) return refuse_memory(error, "cache", path);
+    uint8_t *bytes = store_new(surface->allocator, (size_t)max, 1);
+    if (!bytes) return refuse_memory(error, "cache", path);
+    size_t header = surface_header((char *)bytes, surface, time);
+    const uint8_t *end = surface_pack(bytes + header, surface);
+    SingeResult result = file_write(path, bytes, (size_t)(end - bytes), error);
+    store_free(surface->allocator, bytes, (size_t)max, 1);
+    return result;
+}
+
+// ---- reading
+
+// The old name of `burnt`, before version 0.2: it is reserved in shading languages.
+static bool is_column(const PlyProperty *property, const char *name) {
+    return text_word_is(property->name, property->name_end, name) ||
+           (strcmp(name, "burnt") == 0 && text_word_is(property->name, property->name_end, "char"));
+}
+
+static bool surface_has_columns(const Ply *ply, const PlyElement *vertices) {
+    if (vertices->property_count != COLUMNS) return false;
+    for (size_t i = 0; i < COLUMNS; i++) {
+        const PlyProperty *property = &ply->header.properties[vertices->first_property + i];
+        if (property->is_list || property->type != (columns[i].integer ? PLY_INT32 : PLY_FLOAT32) ||
+            !is_column(property, columns[i].name))
+            return false;
+    }
+    return true;
+}
+
+static bool surface_has_triangles(const Ply *ply, const PlyElement *faces) {
+    if (faces->property_count != 1) return false;
+    const PlyProperty *list = &ply->header.properties[faces->first_property];
+    return list->is_list && list->count_type == PLY_UINT8 && list->type == PLY_INT32 &&
+           text_word_is(list->name, list->name_end, "vertex_indices");
+}
+
+// "singe VERSION time SECONDS"
+static SingeResult surface_time(const Ply *ply, double *time) {
+    const PlyHeader *header = &ply->header;
+    const uint8_t *p = header->note, *end = header->note_end;
+    for (; p && end - p > 6; p++)
+        if (memcmp(p, " time ", 6) == 0) {
+            p += 6;
+            if (number_double(&p, end, time) == NUMBER_OK && p == end) return SINGE_OK;
+            break;
+        }
+    return ply_refuse(ply, SINGE_ERROR_FORMAT,
+                      "not a cache of Singe: the header has no \"comment singe ... time ...\"");
+}
+
+static SingeResult surface_check_header(const Ply *ply, SingeSurface *surface, double *time) {
+    const PlyHeader *header = &ply->header;
+    TRY(surface_time(ply, time));
+    const PlyElement *vertices = ply_element(ply, "vertex"), *faces = ply_element(ply, "face");
+    bool fits = header->format == PLY_LITTLE && header->element_count == 2 && vertices == &header->elements[0] && faces;
+    if (!fits || !surface_has_columns(ply, vertices) || !surface_has_triangles(ply, faces))
+        return ply_refuse(ply, SINGE_ERROR_FORMAT,
+                          "not a cache of this version of Singe: other elements or properties");
+    surface->vertex_count = vertices->count;
+    surface->triangle_count = faces->count;
+    uint64_t expected = surface_data_size(surface);
+    uint64_t actual = (uint64_t)(ply->text.end - ply->text.at);
+    if (actual != expected)
+        return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file has %llu bytes of data where its counts need %llu",
+                          (unsigned long long)actual, (unsigned long long)expected);
+    return SINGE_OK;
+}
+
+static SingeResult surface_allocate(Ply *ply, SingeSurface *surface) {
+    surface->allocator = ply->allocator;
+    uint32_t vertices = surface->vertex_count ? surface->vertex_count : 1;
+    uint32_t triangles = surface->triangle_count ? surface->triangle_count : 1;
+    surface->vertex_capacity = vertices;
+    surface->triangle_capacity = triangles;
+    for (size_t i = 0; i < COLUMNS; i++) {
+        if (columns[i].index) continue;
+        void *array = store_new(ply->allocator, vertices, 4 * (size_t)columns[i].width);
+        if (!array) return refuse_memory(ply->error, "ply", ply->name);
+        memcpy((uint8_t *)surface + columns[i].array, &array, sizeof array);
+    }
+    surface->triangles = store_new(ply->allocator, triangles, sizeof *surface->triangles);
+    return surface->triangles ? SINGE_OK : refuse_memory(ply->error, "ply", ply->name);
+}
+
+static SingeResult surface_unpack(Ply *ply, SingeSurface *surface) {
+    uint8_t *target[COLUMNS];
+    for (size_t i = 0; i < COLUMNS; i++) target[i] = column_array(surface, &columns[i]) + 4 * columns[i].index;
+    for (uint32_t v = 0; v < surface->vertex_count; v++)
+        for (size_t i = 0; i < COLUMNS; i++, ply->text.at += 4) {
+            uint32_t bits = load_u32_little(ply->text.at);
+            if (!columns[i].integer && (bits & 0x7f800000) == 0x7f800000)
+                return ply_refuse(ply, SINGE_ERROR_FORMAT, "%s of vertex %u is not a finite number", columns[i].name,
+                                  v);
+            memcpy(target[i], &bits, sizeof bits);
+            target[i] += 4 * columns[i].width;
+        }
+    for (uint32_t f = 0; f < surface->triangle_count; f++) {
+        if (*ply->text.at != 3)
+            return ply_refuse(ply, SINGE_ERROR_MESH, "face %u has %d corners where a cache has 3", f, *ply->text.at);
+        ply->text.at++;
+        for (int k = 0; k < 3; k++, ply->text.at += 4) {
+            uint32_t index = load_u32_little(ply->text.at);
+            if (index >= surface->vertex_count)
+                return ply_refuse(ply, SINGE_ERROR_MESH, "vertex index %u of face %u is out of range", index, f);
+            surface->triangles[f][k] = index;
+        }
+    }
+    return SINGE_OK;
+}
+
+SingeResult ply_read_surface(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                             SingeSurface *surface, double *time, SingeError *error) {
+    memset(surface, 0, sizeof *surface);
+    if (size == 0) return refuse(error, SINGE_ERROR_FORMAT, "ply", 1, "%s: is empty", short_name(name));
+    Ply ply = {.name = name, .begin = bytes, .text = {bytes, bytes + size, 1}, .allocator = allocator, .error = error};
+    double seconds = 0;
+    SingeResult result = ply_read_header(&ply);
+    if (!result) result = surface_check_header(&ply, surface, &seconds);
+    if (!result) result = surface_allocate(&ply, surface);
+    if (!result) result = surface_unpack(&ply, surface);
+    ply_header_free(&ply);
+    if (result) singe_surface_free(surface);
+    if (!result && time) *time = seconds;
+    return result;
+}

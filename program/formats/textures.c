@@ -1,0 +1,161 @@
+// A frame as textures over the sheets' uv, for programs that keep the sheet's mesh and burn its material: an EXR with R
+// the temperature (K), G the burnt fraction (0 fresh to 1 ash), B the emission of embers (in red, 2.5 at 1200 K) and A
+// 1 where the sheet remains. The first sheet with uv has these channel names; those of later sheets have the sheet's
+// name as a prefix.
+//
+// Values are dilated by 16 pixels beyond the remaining sheet, so that filters at a seam or a rim see no others. A is
+// dilated only beyond the charts of the uncut sheet: holes remain.
+#include "formats/burn_colour.h"
+#include "formats/output.h"
+#include "common/store.h"
+#include "formats/usd.h"
+#include "formats/uv_raster.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { TEXTURE_MARGIN = 16, TEXTURE_CHANNELS = 4, TEXTURE_SHEETS = 64 };
+
+typedef struct Canvas {
+    int size;
+    size_t pixels;
+    float *values;                      ///< [pixels][4] R G B A
+    uint8_t *covered;                   ///< [pixels] the sheet remains
+    uint8_t *chart;                     ///< [pixels] in a chart of the uncut sheet
+    uint32_t *nearest, *queue;          ///< [pixels]
+    float corners[3][TEXTURE_CHANNELS]; ///< of the triangle that is drawn
+} Canvas;
+
+static bool canvas_make(Canvas *c, SingeAllocator a, int size) {
+    *c = (Canvas){.size = size, .pixels = (size_t)size * (size_t)size};
+    c->values = store_new(a, c->pixels, TEXTURE_CHANNELS * sizeof(float));
+    c->covered = store_new(a, c->pixels, 1);
+    c->chart = store_new(a, c->pixels, 1);
+    c->nearest = store_new(a, c->pixels, 4);
+    c->queue = store_new(a, c->pixels, 4);
+    if (!c->values || !c->covered || !c->chart || !c->nearest || !c->queue) return false;
+    memset(c->values, 0, c->pixels * TEXTURE_CHANNELS * sizeof(float));
+    memset(c->covered, 0, c->pixels), memset(c->chart, 0, c->pixels);
+    return true;
+}
+
+static void canvas_free(Canvas *c, SingeAllocator a, bool with_values) {
+    if (with_values) store_free(a, c->values, c->pixels, TEXTURE_CHANNELS * sizeof(float));
+    store_free(a, c->covered, c->pixels, 1), store_free(a, c->chart, c->pixels, 1);
+    store_free(a, c->nearest, c->pixels, 4), store_free(a, c->queue, c->pixels, 4);
+}
+
+static void draw_values(void *context, size_t pixel, const float weight[3]) {
+    Canvas *c = context;
+    c->covered[pixel] = c->chart[pixel] = 1;
+    for (int k = 0; k < 3; k++)
+        c->values[TEXTURE_CHANNELS * pixel + (size_t)k] =
+            weight[0] * c->corners[0][k] + weight[1] * c->corners[1][k] + weight[2] * c->corners[2][k];
+}
+
+static void draw_chart(void *context, size_t pixel, const float weight[3]) {
+    (void)weight;
+    ((Canvas *)context)->chart[pixel] = 1;
+}
+
+/// The uncut sheet: each cell as four triangles around the mean of its corners.
+static void draw_mesh(Canvas *c, const OutputMesh *mesh) {
+    for (uint32_t cell = 0; cell < mesh->cell_count; cell++) {
+        float uv[4][2], centroid[2] = {0, 0};
+        for (size_t i = 0; i < 4; i++) {
+            output_mesh_uv(mesh, cell, (int)i, uv[i]);
+            for (int k = 0; k < 2; k++) centroid[k] += uv[i][k] / 4;
+        }
+        for (int i = 0; i < 4; i++) {
+            const int j = (i + 1) & 3;
+            const float triangle[3][2] = {{centroid[0], centroid[1]}, {uv[i][0], uv[i][1]}, {uv[j][0], uv[j][1]}};
+            uv_triangle(c->size, triangle, draw_chart, c);
+        }
+    }
+}
+
+static void draw_surface(Canvas *c, const SingeSurface *s, uint32_t sheet) {
+    for (uint32_t t = 0; t < s->triangle_count; t++) {
+        const uint32_t *v = s->triangles[t];
+        float uv[3][2];
+        if (s->sheet[v[0]] != (int32_t)sheet) continue;
+        for (int i = 0; i < 3; i++) {
+            memcpy(uv[i], s->uv[v[i]], sizeof uv[i]);
+            c->corners[i][0] = s->temperature[v[i]];
+            c->corners[i][1] = s->burn[v[i]];
+            c->corners[i][2] = s->burn[v[i]] > EMBER_BURNT ? ember_light(s->temperature[v[i]]) : 0;
+        }
+        uv_triangle(c->size, (const float(*)[2])uv, draw_values, c);
+    }
+}
+
+static void spread(Canvas *c) {
+    uv_spread(c->size, TEXTURE_MARGIN, c->chart, c->nearest, c->queue);
+    for (size_t i = 0; i < c->pixels; i++)
+        c->values[TEXTURE_CHANNELS * i + 3] = c->nearest[i] != UV_NONE && c->covered[c->nearest[i]];
+    uv_spread(c->size, TEXTURE_MARGIN, c->covered, c->nearest, c->queue);
+    for (size_t i = 0; i < c->pixels; i++)
+        if (c->nearest[i] != UV_NONE && c->nearest[i] != i)
+            memcpy(c->values + TEXTURE_CHANNELS * i, c->values + TEXTURE_CHANNELS * (size_t)c->nearest[i],
+                   3 * sizeof(float));
+}
+
+typedef struct Layers {
+    uint32_t count;
+    uint32_t sheets[TEXTURE_SHEETS];
+    float *values[TEXTURE_SHEETS];
+    char names[TEXTURE_SHEETS * TEXTURE_CHANNELS][USD_NAME + 8];
+    ExrChannel channels[TEXTURE_SHEETS * TEXTURE_CHANNELS];
+} Layers;
+
+static SingeResult draw_layer(Layers *layers, const OutputScene *scene, const OutputFrame *frame, uint32_t sheet,
+                              const char *path, SingeError *error) {
+    static const char letters[] = "RGBA";
+    const SingeAllocator a = frame->surface->allocator;
+    Canvas canvas;
+    const bool made = canvas_make(&canvas, a, scene->texture_size);
+    if (made) {
+        draw_mesh(&canvas, &scene->sheets[sheet].mesh);
+        draw_surface(&canvas, frame->surface, sheet);
+        spread(&canvas);
+        layers->values[layers->count] = canvas.values;
+    }
+    canvas_free(&canvas, a, !made);
+    if (!made) return refuse_memory(error, "textures", path);
+    char prim[USD_NAME];
+    usd_sheet_name(scene, sheet, prim);
+    for (uint32_t k = 0; k < TEXTURE_CHANNELS; k++) {
+        const uint32_t n = TEXTURE_CHANNELS * layers->count + k;
+        snprintf(layers->names[n], sizeof layers->names[n], "%s%s%c", layers->count ? prim : "",
+                 layers->count ? "." : "", letters[k]);
+        layers->channels[n] = (ExrChannel){layers->names[n], EXR_KIND_HALF, canvas.values + k, TEXTURE_CHANNELS};
+    }
+    layers->count++;
+    return SINGE_OK;
+}
+
+SingeResult textures_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame,
+                                 SingeError *error) {
+    const SingeAllocator a = frame->surface->allocator;
+    SingeResult result = SINGE_OK;
+    Layers *layers = store_new(a, 1, sizeof *layers);
+    if (!layers) return refuse_memory(error, "textures", path);
+    layers->count = 0;
+    for (uint32_t i = 0; i < scene->sheet_count && !result; i++) {
+        if (!output_mesh_has_uv(&scene->sheets[i].mesh)) continue;
+        if (layers->count == TEXTURE_SHEETS)
+            result = refuse(error, SINGE_ERROR_LIMIT, "textures", -1, "%s: more than %d sheets with uv",
+                            short_name(path), TEXTURE_SHEETS);
+        else result = draw_layer(layers, scene, frame, i, path, error);
+    }
+    if (!result && !layers->count)
+        result = refuse(error, SINGE_ERROR_MESH, "textures", -1, "%s: no sheet has uv", short_name(path));
+    if (!result)
+        result = exr_write(path, scene->texture_size, scene->texture_size, layers->channels,
+                           (int)(TEXTURE_CHANNELS * layers->count), error);
+    const size_t pixels = (size_t)scene->texture_size * (size_t)scene->texture_size;
+    for (uint32_t i = 0; i < layers->count; i++)
+        store_free(a, layers->values[i], pixels, TEXTURE_CHANNELS * sizeof(float));
+    store_free(a, layers, 1, sizeof *layers);
+    return result;
+}

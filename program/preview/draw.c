@@ -1,0 +1,417 @@
+// One frame: tiles of blocks of 4 x 4 pixels, a packet of 16 rays per block and sample.
+//
+// A sample is: the nearest surface; its appearance; light = sun (a ray to a random point of its disc) + sky and bounce
+// (one ambient-occlusion ray); see lighting.c. The light of flames and embers comes last (lamps.c). Pixels whose first
+// samples agree get no more. Blocks that no sheet or shape can touch show only the table or the background: nothing is
+// intersected, and where no shadow can fall one sample is enough. Random numbers depend only on the pixel's position
+// and the sample's number, not on threads.
+
+#include "preview/block.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+enum {
+    HOLE_LIMIT = 4,
+    RIM_RAYS = 4, ///< rays to the sun per sample at the rim of a shadow
+};
+
+typedef struct Job {
+    Preview *preview;
+    void (*draw)(Preview *preview, Block *block); ///< one block
+    atomic_int next, threads;
+    int across, count;
+    bool fire; ///< flame and smoke are drawn
+} Job;
+
+/// A sample's position in the pixel: a tent of radius 0.9 pixel, softer than a box and without ringing.
+static void sample_offset(int sample, float at[2]) {
+    sample_square((uint32_t)sample, 0.5f, 0.5f, at);
+    for (int c = 0; c < 2; c++) at[c] = 0.9f * (at[c] < 0.5f ? sqrtf(2 * at[c]) - 1 : 1 - sqrtf(2 - 2 * at[c]));
+}
+
+/// Rays of a sample through the pixels, each with its position on the lens and its time: SAMPLE_CENTRE of both.
+static void aim_block(const Preview *preview, Block *block, int sample, const float at[2]) {
+    bool lens = preview->camera.lens > 0 && sample >= 0, shutter = preview->def.shutter > 0 && sample >= 0;
+    for (int i = 0; i < LANES; i++) {
+        float x = 2 * ((float)block->x[i] + 0.5f + at[0]) / (float)preview->def.width - 1;
+        float y = 1 - 2 * ((float)block->y[i] + 0.5f + at[1]) / (float)preview->def.height;
+        float square[2], disc[2] = {0, 0};
+        if (lens) {
+            sample_lens((uint32_t)sample, block->key[i], square);
+            sample_disc(square, disc);
+        }
+        camera_ray(&preview->camera, x, y, disc, &block->origin[i], &block->direction[i]);
+        block->time[i] = shutter ? sample_time((uint32_t)sample, block->key[i]) : 0.5f;
+    }
+}
+
+static void start_point(Point *point, const Preview *preview, Float3 origin, Float3 direction, float distance) {
+    *point = (Point){.lit = true, .view = float3_scale(direction, -1), .distance = distance, .sheet = -1, .piece = -1};
+    point->position = float3_mad(origin, direction, distance);
+    point->footprint = preview->camera.pixel * distance;
+}
+
+static void miss_point(Point *point, const Preview *preview, Float3 direction) {
+    *point = (Point){.glow = background_colour(preview, direction), .distance = INFINITY, .sheet = -1, .piece = -1};
+}
+
+/// The appearance of the sheet at a hit; false at a hole.
+static bool hit_paper(const Preview *preview, const Block *block, int lane, float distance, Point *point) {
+    const struct RTCHit16 *hit = &block->rays.hit;
+    const uint32_t *t = preview->scene.triangles[hit->primID[lane]];
+    const PaperVertex *vertices = preview->scene.vertices;
+    const PaperVertex *a = &vertices[t[0]], *b = &vertices[t[1]], *c = &vertices[t[2]];
+    float u = hit->u[lane], v = hit->v[lane];
+    start_point(point, preview, block->origin[lane], block->direction[lane], distance);
+    Float3 geometric = float3_unit_or(float3(hit->Ng_x[lane], hit->Ng_y[lane], hit->Ng_z[lane]), point->view);
+    Float3 normal = float3_unit_or(float3_blend(a->normal, b->normal, c->normal, u, v), geometric);
+    point->geometric = float3_dot(geometric, point->view) >= 0 ? geometric : float3_scale(geometric, -1);
+    point->normal = float3_dot(normal, point->geometric) >= 0 ? normal : float3_scale(normal, -1);
+    PaperState state;
+    paper_state(&preview->scene, hit->primID[lane], u, v, &state);
+    point->hit = true;
+    point->sheet = state.sheet;
+    point->piece = state.piece;
+    point->temperature = state.temperature;
+    point->burn = state.burn;
+    return paper_shade(preview, &state, point);
+}
+
+static float hit_ground(const Preview *preview, Float3 origin, Float3 direction) {
+    float height = origin.z - preview->def.ground_height;
+    if (!isfinite(preview->def.ground_height) || height <= 0 || direction.z >= -1e-5f) return INFINITY;
+    float t = -height / direction.z;
+    return t < 1e4f ? t : INFINITY;
+}
+
+static size_t pixel_index(const Preview *preview, const Block *block, int lane) {
+    return (size_t)block->y[lane] * (size_t)preview->def.width + (size_t)block->x[lane];
+}
+
+/// The table, or the background.
+static void see_ground(const Preview *preview, Block *block, int lane) {
+    Float3 d = block->direction[lane];
+    Point *point = &block->point[lane];
+    float distance = hit_ground(preview, block->origin[lane], d);
+    if (!isfinite(distance)) {
+        miss_point(point, preview, d);
+        return;
+    }
+    start_point(point, preview, block->origin[lane], d, distance);
+    ground_shade(preview, distance, &preview->table[pixel_index(preview, block, lane)], point);
+}
+
+/// The point that a lane's ray sees; false if it passes through a hole and must continue.
+static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
+    Float3 o = block->origin[lane], d = block->direction[lane], normal = {0, 0, 1}, found = {0, 0, 1};
+    Point *point = &block->point[lane];
+    bool paper = block->rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
+    float distance = paper ? block->rays.ray.tfar[lane] : INFINITY;
+    const PreviewShape *shape = NULL;
+    float moment = shutter_moment(preview, block->time[lane]);
+    for (uint32_t k = 0; k < preview->shape_count; k++) {
+        float t = shape_intersect(&preview->shapes[k], moment, o, d, 0, distance, &normal);
+        if (t > 0) {
+            distance = t;
+            shape = &preview->shapes[k];
+            found = normal;
+        }
+    }
+    if (hit_ground(preview, o, d) < distance) {
+        see_ground(preview, block, lane);
+    } else if (shape) {
+        start_point(point, preview, o, d, distance);
+        point->hit = true;
+        point->temperature = shape->temperature;
+        point->normal = point->geometric = float3_dot(found, point->view) >= 0 ? found : float3_scale(found, -1);
+        shape_shade(preview, shape, moment, point);
+    } else if (paper) {
+        return hit_paper(preview, block, lane, distance, point) || last;
+    } else {
+        miss_point(point, preview, d);
+    }
+    return true;
+}
+
+static void find_points(const Preview *preview, Block *block, const int *active) {
+    int left = 0;
+    for (int i = 0; i < LANES; i++) {
+        aim_ray(&block->rays.ray, i, block->origin[i], block->direction[i], 0, INFINITY, block->time[i]);
+        block->valid[i] = active[i], left += active[i] != 0;
+    }
+    for (int pass = 0; pass < HOLE_LIMIT && left; pass++) {
+        tracer_intersect(preview, block->valid, &block->rays);
+        left = 0;
+        for (int i = 0; i < LANES; i++) {
+            if (!block->valid[i]) continue;
+            if (resolve(preview, block, i, pass == HOLE_LIMIT - 1)) {
+                block->valid[i] = 0;
+            } else {
+                block->rays.ray.tnear[i] = block->rays.ray.tfar[i] + preview->scene.epsilon;
+                block->rays.ray.tfar[i] = INFINITY;
+                left++;
+            }
+        }
+    }
+}
+
+/// The light of the fire in front of a point, and its transmittance. A pixel's points mostly have nearly the same
+/// distance.
+static void look_through(Block *block, int lane, float distance) {
+    if (distance >= block->fire_from[lane] && distance <= block->fire_to[lane]) return;
+    const float same = 1e-3f; // m, less than flames are thick
+    block->fire_from[lane] = distance - same;
+    block->fire_to[lane] = distance + same;
+    int x = block->x[lane] % TILE, y = block->y[lane] % TILE;
+    fire_until(block->tile, x, y, distance, &block->fire_light[lane], &block->fire_clear[lane]);
+}
+
+/// Adds the colour of block->point in the light of one sample, the sun's by `rays` rays.
+static void add_light(const Preview *preview, Block *block, const int *active, int sample, int rays) {
+    float through[LANES];
+    for (int i = 0; i < LANES; i++) block->light[i] = float3(0, 0, 0);
+    light_add_sun(preview, block, active, sample, rays);
+    light_add_sky(preview, block, active, sample, rays > 0);
+    for (int i = 0; i < LANES; i++) {
+        if (!active[i]) continue;
+        const Point *point = &block->point[i];
+        Float3 colour = float3_add(block->light[i], point->glow), fire = {0, 0, 0};
+        float l = float3_luminance(colour), shown = l / (1 + l), clear = 1;
+        block->low[i] = minf(block->low[i], shown), block->high[i] = maxf(block->high[i], shown);
+        if (point->fade > 0) colour = float3_mix(colour, background_colour(preview, block->direction[i]), point->fade);
+        if (block->tile) {
+            look_through(block, i, point->distance);
+            fire = block->fire_light[i];
+            clear = block->fire_clear[i];
+            colour = float3_mad(fire, colour, clear);
+        }
+        through[i] = clear * (1 - point->fade);
+        colour = float3(minf(colour.x, 40), minf(colour.y, 40), minf(colour.z, 40));
+        block->sum[i] = float3_add(block->sum[i], colour);
+        layers_add(preview, point, fire, clear, block->direction[i], &block->layer[i]);
+    }
+    lamps_add(preview, block, active, sample, through);
+}
+
+/// In a bare block the rays stay the same, unless the lens spreads them.
+static void add_sample(const Preview *preview, Block *block, const int *active, bool bare, int sample, int rays) {
+    if (!bare || preview->camera.lens > 0) {
+        float at[2];
+        sample_offset(sample, at);
+        aim_block(preview, block, sample, at);
+        if (!bare) find_points(preview, block, active);
+        for (int i = 0; bare && i < LANES; i++)
+            if (active[i]) see_ground(preview, block, i);
+    }
+    add_light(preview, block, active, sample, rays);
+}
+
+static bool is_blurred(const Preview *preview) { return preview->camera.lens > 0 || preview->def.shutter > 0; }
+
+/// Whether some of the block's samples met a sheet or a shape and some did not.
+static bool is_mixed(const Block *block, const int *active) {
+    int hits = 0, samples = 0;
+    for (int i = 0; i < LANES; i++)
+        if (active[i]) hits += block->layer[i].hits, samples += block->layer[i].samples;
+    return hits > 0 && hits < samples;
+}
+
+/// The lanes whose first samples differ, from each other or from their neighbours'. Returns how many.
+static int find_restless(const Preview *preview, const Block *block, const int *active, bool bare, int *more) {
+    // where a lens or a shutter blurs strongly, all first samples of some pixels miss what their neighbours' hit ...
+    // and at the rim of a shadow on the table, nearly all of a pixel's first rays to the sun may agree
+    bool mixed = (is_blurred(preview) && is_mixed(block, active)) || (bare && block->sunlit && block->shaded);
+    float low = INFINITY, high = -INFINITY;
+    for (int i = 0; i < LANES; i++) low = minf(low, block->low[i]), high = maxf(high, block->high[i]);
+    int count = 0;
+    for (int i = 0; i < LANES; i++) {
+        const LayerSum *sum = &block->layer[i];
+        bool edge = sum->hits > 0 && sum->hits < sum->samples; // also if only fire lights it, which is not in `high`
+        bool calm = !edge && block->high[i] - block->low[i] < 0.026f && high - low < 0.15f && !mixed;
+        more[i] = active[i] && !calm ? -1 : 0, count += more[i] != 0;
+    }
+    return count;
+}
+
+/// After half of the samples: keeps lanes whose samples still differ so much that more would be visible.
+static bool keep_restless(const Block *block, int *more, int sample, int *taken) {
+    bool any = false;
+    for (int i = 0; i < LANES; i++) {
+        const LayerSum *sum = &block->layer[i];
+        bool edge = sum->hits > 0 && sum->hits < sum->samples;
+        if (more[i] && !edge && block->high[i] - block->low[i] < 0.22f) {
+            more[i] = 0;
+            taken[i] = sample;
+        }
+        any = any || more[i];
+    }
+    return any;
+}
+
+static void start_block(const Preview *preview, Block *block, int *active) {
+    const PreviewDef *def = &preview->def;
+    block->sunlit = block->shaded = block->clouded = false;
+    block->sun_seen = 0;
+    block->sun_asked = 0;
+    for (int i = 0; i < LANES; i++) {
+        active[i] = block->x[i] < def->width && block->y[i] < def->height ? -1 : 0;
+        sample_pixel(block->x[i], block->y[i], def->seed, block->turn[i]);
+        block->key[i] = sample_key(block->x[i], block->y[i], def->seed);
+        block->sum[i] = float3(0, 0, 0);
+        block->low[i] = INFINITY;
+        block->high[i] = -INFINITY;
+        block->time[i] = 0.5f;
+        block->sky_seen[i] = 0;
+        block->sky_asked[i] = 0;
+        block->lamp[i] = float3(0, 0, 0), block->lamp_seen[i] = block->lamp_asked[i] = 0;
+        block->fire_from[i] = INFINITY;
+        block->fire_to[i] = -INFINITY;
+        layers_begin(&block->layer[i]);
+    }
+}
+
+/// The picture gets the mean of the sums.
+static void write_block(Preview *preview, const Block *block, const int *active, const int *taken) {
+    for (int i = 0; i < LANES; i++) {
+        if (!active[i]) continue;
+        size_t pixel = pixel_index(preview, block, i);
+        preview->picture[pixel] = float3_scale(block->sum[i], 1 / (float)taken[i]);
+        layers_write(preview, pixel, &block->layer[i]);
+        lamps_write(preview, pixel, block, i, taken[i]);
+    }
+}
+
+/// Takes a quarter of the samples, but at least 4, of every pixel (half if a lens or a shutter blurs a sheet or a
+/// shape), and the rest of pixels that need it. A bare block whose first rays are not blocked needs only one.
+static void add_samples(const Preview *preview, Block *block, const int *active, bool bare, int *taken) {
+    int more[LANES], samples = preview->def.samples, first = samples;
+    int share = is_blurred(preview) && !bare ? 2 : 4;
+    if (samples > 4) first = (samples / share + 3) / 4 * 4;
+    if (first > samples) first = samples;
+    for (int s = 0; s < first; s++) {
+        add_sample(preview, block, active, bare, s, 1);
+        if (bare && !block->shaded && !block->clouded && !is_blurred(preview)) first = s + 1;
+    }
+    if (first == 1 && bare) samples = 1;
+    bool on = first < samples && find_restless(preview, block, active, bare, more);
+    // at the rim of a shadow more rays are traced; elsewhere the first are enough
+    int rays = block->sunlit && block->shaded ? (bare ? RIM_RAYS : 1) : 0;
+    for (int i = 0; i < LANES; i++) taken[i] = on && more[i] ? samples : first;
+    for (int s = first; s < samples && on; s++) {
+        if (s == samples / 2 && !rays && !is_blurred(preview)) on = keep_restless(block, more, s, taken);
+        if (on) add_sample(preview, block, more, bare, s, rays);
+    }
+}
+
+static void draw_block(Preview *preview, Block *block) {
+    int active[LANES], taken[LANES];
+    start_block(preview, block, active);
+    bool bare = !mask_covers(preview, block->x[0], block->y[0]);
+    if (bare) {
+        aim_block(preview, block, SAMPLE_CENTRE, (const float[2]){0, 0});
+        for (int i = 0; i < LANES; i++)
+            if (active[i]) see_ground(preview, block, i);
+    }
+    if (bare && !light_may_be_hidden(preview, block, active)) {
+        add_light(preview, block, active, SAMPLE_CENTRE, 1);
+        for (int i = 0; i < LANES; i++) taken[i] = 1;
+    } else {
+        add_samples(preview, block, active, bare, taken);
+    }
+    write_block(preview, block, active, taken);
+}
+
+/// The table's own colour in every pixel. The camera does not move, so it is computed once.
+static void fill_table(Preview *preview, Block *block) {
+    Table sum[LANES] = {{{0, 0, 0}, {0, 0}, 0}};
+    int count[LANES] = {0}, samples = preview->camera.lens > 0 ? 24 : 4;
+    for (int i = 0; i < LANES; i++) block->key[i] = sample_key(block->x[i], block->y[i], preview->def.seed);
+    for (int s = 0; s < samples; s++) {
+        float at[2];
+        sample_offset(s, at);
+        aim_block(preview, block, s, at);
+        for (int i = 0; i < LANES; i++) {
+            float distance = hit_ground(preview, block->origin[i], block->direction[i]);
+            if (!isfinite(distance)) continue;
+            Table look;
+            Float3 position = float3_mad(block->origin[i], block->direction[i], distance);
+            ground_look(preview, position, block->direction[i].z, distance, &look);
+            sum[i].albedo = float3_add(sum[i].albedo, look.albedo), sum[i].polish += look.polish;
+            sum[i].tilt[0] += look.tilt[0], sum[i].tilt[1] += look.tilt[1];
+            count[i]++;
+        }
+    }
+    for (int i = 0; i < LANES; i++) {
+        if (block->x[i] >= preview->def.width || block->y[i] >= preview->def.height) continue;
+        float share = 1 / maxf((float)count[i], 1);
+        preview->table[pixel_index(preview, block, i)] =
+            (Table){.albedo = float3_scale(sum[i].albedo, share),
+                    .polish = share * sum[i].polish,
+                    .tilt = {share * sum[i].tilt[0], share * sum[i].tilt[1]}};
+    }
+}
+
+static void *draw_tiles(void *context) {
+    Job *job = context;
+    Block block = {.tile = NULL};
+    const PreviewDef *def = &job->preview->def;
+    FireTile *fire = job->fire ? &job->preview->fire.tiles[atomic_fetch_add(&job->threads, 1)] : NULL;
+    for (int tile; (tile = atomic_fetch_add(&job->next, 1)) < job->count;) {
+        int x0 = tile % job->across * TILE, y0 = tile / job->across * TILE;
+        if (fire) fire_see(job->preview, x0, y0, fire);
+        block.tile = fire && !fire->empty ? fire : NULL;
+        for (int y = y0; y < y0 + TILE && y < def->height; y += BLOCK)
+            for (int x = x0; x < x0 + TILE && x < def->width; x += BLOCK) {
+                for (int i = 0; i < LANES; i++) block.x[i] = x + i % BLOCK, block.y[i] = y + i / BLOCK;
+                job->draw(job->preview, &block);
+            }
+    }
+    return NULL;
+}
+
+static void draw_all(Preview *preview, void (*draw)(Preview *, Block *)) {
+    int across = (preview->def.width + TILE - 1) / TILE, down = (preview->def.height + TILE - 1) / TILE;
+    Job job = {.preview = preview, .draw = draw, .across = across, .count = across * down};
+    job.fire = draw == draw_block && preview->fire.visible;
+    atomic_init(&job.next, 0), atomic_init(&job.threads, 0);
+    pthread_t threads[THREAD_LIMIT];
+    int started = 0;
+    // a thread that cannot be created only makes it slower
+    while (started < preview->def.thread_count - 1 && !pthread_create(&threads[started], NULL, draw_tiles, &job))
+        started++;
+    draw_tiles(&job);
+    for (int i = 0; i < started; i++) pthread_join(threads[i], NULL);
+}
+
+bool preview_draws(void) { return true; }
+
+SingeResult preview_draw(Preview *preview, const SingeSurface *surface, double time, uint8_t *rgb, SingeError *error) {
+    return preview_draw_layers(preview, surface, time, rgb, &(PreviewLayers){NULL}, error);
+}
+
+SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, double time, uint8_t *rgb,
+                                const PreviewLayers *layers, SingeError *error) {
+    if (!isfinite(time)) return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the time is not finite");
+    preview->time = time;
+    SingeResult result = tracer_load(preview, surface, error);
+    if (result) return result;
+    preview->layers = *layers;
+    fire_raise(preview);
+    light_gather(preview);
+    fire_light_smoke(preview);
+    mask_fill(preview);
+    if (!preview->table_known) draw_all(preview, fill_table);
+    preview->table_known = true;
+    draw_all(preview, draw_block);
+    if (preview->scene.light_count) {
+        draw_all(preview, lamps_smooth);
+        draw_all(preview, lamps_finish);
+    }
+    layers_finish(preview);
+    if (rgb) {
+        bloom_apply(preview);
+        tonemap_write(preview, rgb);
+    }
+    return SINGE_OK;
+}

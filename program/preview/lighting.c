@@ -1,0 +1,188 @@
+// The light at the points that a block of rays sees. Radiance of a diffuse surface of albedo a:
+//
+//     L = a [ E_sun max(n.l, 0) V + tau E_sun max(-n.l, 0) V + (E(n) + tau E(-n)) A + lamps ] + m S(r) F A
+//
+// with V, A the visibilities, tau the paper's transmission and E the ambient light (environment.c); V by a ray to a
+// random point of the sun's disc, or several if the block contains the rim of a shadow; A by an ambient-occlusion ray.
+// Glossy surfaces reflect the blurred sky S along r. Lamps are flames and embers (lamps.c).
+
+#include "preview/block.h"
+
+static const float occluded_sky = 0.22f; ///< light from occluded directions
+
+Float3 light_reflect(const Point *point, Float3 l) {
+    float cosine = float3_dot(point->normal, l), side = float3_dot(point->geometric, l);
+    // transmitted light has been scattered often, so it is warmer
+    const Float3 warm = {1.35f, 1.12f, 0.80f};
+    if (side <= 0) return float3_scale(float3_mul(point->albedo, warm), point->transmission * maxf(-cosine, 0));
+    if (cosine <= 0) return float3(0, 0, 0);
+    Float3 out = float3_scale(point->albedo, cosine);
+    if (point->gloss > 0) {
+        Float3 half = float3_unit_or(float3_add(l, point->view), point->normal);
+        float aligned = float3_dot(half, point->normal);
+        if (aligned < 0.6f) return out; // the lobe is dark there
+        // aligned^shininess by (1 - x/8)^8, near enough to exp(-x)
+        float p = maxf(1 - (1 - aligned) * point->shininess * 0.125f, 0);
+        p *= p;
+        p *= p;
+        float lobe = point->gloss * p * p;
+        out = float3_add(out, float3(lobe, lobe, lobe));
+    }
+    return out;
+}
+
+bool light_reaches(const Block *block, const int *active, int lane) {
+    return active[lane] && block->point[lane].lit && block->point[lane].fade < 0.995f;
+}
+
+/// Traces one ray per lane and adds `share` of its result.
+static void add_sun_ray(const Preview *preview, Block *block, const int *active, int index, float share) {
+    Float3 reflected[LANES];
+    int asked[LANES];
+    for (int i = 0; i < LANES; i++) {
+        block->valid[i] = asked[i] = 0;
+        rest_ray(&block->shadow, i);
+        if (!light_reaches(block, active, i)) continue;
+        const Point *point = &block->point[i];
+        float square[2] = {0, 0}, disc[2];
+        if (index != SAMPLE_CENTRE) sample_square((uint32_t)index, block->turn[i][0], block->turn[i][1], square);
+        sample_disc(square, disc);
+        Float3 l = float3_mad(preview->sun, preview->sun_right, disc[0] * preview->sun_spread);
+        l = float3_unit_or(float3_mad(l, preview->sun_up, disc[1] * preview->sun_spread), preview->sun);
+        reflected[i] = light_reflect(point, l);
+        if (reflected[i].x + reflected[i].y + reflected[i].z < 1e-4f) continue;
+        float side = float3_dot(point->geometric, l) > 0 ? preview->scene.epsilon : -preview->scene.epsilon;
+        aim_ray(&block->shadow, i, float3_mad(point->position, point->geometric, side), l, 0, INFINITY, block->time[i]);
+        block->valid[i] = asked[i] = -1;
+    }
+    tracer_occlude(preview, block->valid, &block->shadow, block->clear);
+    for (int i = 0; i < LANES; i++) {
+        if (!asked[i]) continue;
+        block->light[i] =
+            float3_mad(block->light[i], float3_mul(reflected[i], preview->sun_light), share * block->clear[i]);
+        block->sunlit = block->sunlit || block->clear[i] > 0.99f;
+        block->shaded = block->shaded || block->clear[i] < 0.99f;
+        block->sun_seen += block->clear[i], block->sun_asked++;
+    }
+}
+
+/// Light from the sun's centre, times the visibility found by the block's earlier rays.
+static void add_known_sun(const Preview *preview, Block *block, const int *active) {
+    float seen = block->sun_asked ? block->sun_seen / (float)block->sun_asked : 1;
+    for (int i = 0; i < LANES; i++)
+        if (light_reaches(block, active, i))
+            block->light[i] = float3_mad(
+                block->light[i], float3_mul(light_reflect(&block->point[i], preview->sun), preview->sun_light), seen);
+}
+
+void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, int rays) {
+    if (!rays) add_known_sun(preview, block, active);
+    for (int k = 0; k < rays; k++)
+        add_sun_ray(preview, block, active, sample == SAMPLE_CENTRE ? SAMPLE_CENTRE : sample * rays + k,
+                    1 / (float)rays);
+}
+
+/// Whether the point is nearer than `reach` to the surface's bounds.
+static bool within(const Scene *scene, Float3 p, float reach) {
+    return p.x > scene->low.x - reach && p.x < scene->high.x + reach && p.y > scene->low.y - reach &&
+           p.y < scene->high.y + reach && p.z > scene->low.z - reach && p.z < scene->high.z + reach;
+}
+
+/// Length of ambient-occlusion rays.
+static float sky_reach(const Scene *scene) {
+    return 0.28f * float3_length(float3_sub(scene->high, scene->low)) + 0.01f;
+}
+
+static bool sky_may_be_hidden(const Preview *preview, Float3 p, float reach) {
+    if (within(&preview->scene, p, reach)) return true;
+    for (uint32_t k = 0; k < preview->shape_count; k++) {
+        float near = shape_extent(&preview->shapes[k], preview->def.shutter) + reach;
+        Float3 to = float3_sub(shape_centre(&preview->shapes[k]), p);
+        if (float3_dot(to, to) < near * near) return true;
+    }
+    return false;
+}
+
+/// The sun is a disc: its rays spread by sun_spread times their length. The margin is a little more than that.
+static bool sun_may_be_hidden(const Preview *preview, Float3 p, float margin) {
+    const Scene *scene = &preview->scene;
+    Float3 sun = preview->sun;
+    float spread = 1.5f * preview->sun_spread, rise = maxf(scene->high.z - p.z, 0) / maxf(sun.z, 0.02f);
+    if (scene->triangle_count && tracer_near(scene, p, sun, INFINITY, spread * rise + margin)) return true;
+    for (uint32_t k = 0; k < preview->shape_count; k++) {
+        Float3 to = float3_sub(shape_centre(&preview->shapes[k]), p);
+        float along = float3_dot(to, sun), extent = shape_extent(&preview->shapes[k], preview->def.shutter);
+        Float3 aside = float3_mad(to, sun, -along);
+        float near = extent + margin + spread * maxf(along + extent, 0);
+        if (along > -extent - margin && float3_dot(aside, aside) < near * near) return true;
+    }
+    return false;
+}
+
+/// A low sheet far away occludes too little of the table's sky to be seen: under 2 % where its height is less than 0.28
+/// of the distance.
+static float table_reach(const Scene *scene, Float3 p) {
+    return minf(sky_reach(scene), 3.5f * maxf(scene->high.z - p.z, 0));
+}
+
+bool light_may_be_hidden(const Preview *preview, const Block *block, const int *active) {
+    int first = 0;
+    while (first < LANES && !light_reaches(block, active, first)) first++;
+    if (first == LANES) return false;
+    Float3 p = block->point[first].position;
+    float spread = 0;
+    for (int i = first + 1; i < LANES; i++)
+        if (light_reaches(block, active, i))
+            spread = maxf(spread, float3_length(float3_sub(block->point[i].position, p)));
+    return sky_may_be_hidden(preview, p, table_reach(&preview->scene, p) + spread) ||
+           sun_may_be_hidden(preview, p, spread);
+}
+
+/// The reflection of the sky by a dull surface, more at grazing angles (Schlick 1994), but less than by a smooth one.
+static Float3 mirror_sky(const Sky *sky, const Point *point) {
+    float cosine = maxf(float3_dot(point->normal, point->view), 0), rest = 1 - cosine, rest2 = rest * rest;
+    Float3 out = float3_mad(float3_scale(point->view, -1), point->normal, 2 * cosine);
+    return float3_scale(sky_mirrored(sky, out), point->mirror * (0.06f + 0.54f * rest2 * rest2 * rest));
+}
+
+/// Finds the open share of each point's sky by one ray.
+static void ask_sky(const Preview *preview, Block *block, const int *active, int sample) {
+    float reach = sky_reach(&preview->scene);
+    for (int i = 0; i < LANES; i++) {
+        block->valid[i] = 0;
+        rest_ray(&block->shadow, i);
+        if (!light_reaches(block, active, i)) continue;
+        const Point *point = &block->point[i];
+        if (sample == SAMPLE_CENTRE || !sky_may_be_hidden(preview, point->position, reach)) continue;
+        float square[2];
+        sample_square((uint32_t)sample, block->turn[i][1], block->turn[i][0], square);
+        Float3 d = sample_cosine(point->normal, square);
+        if (float3_dot(d, point->geometric) <= 0.01f) continue;
+        aim_ray(&block->shadow, i, float3_mad(point->position, point->geometric, preview->scene.epsilon), d, 0, reach,
+                block->time[i]);
+        block->valid[i] = -1;
+    }
+    tracer_occlude(preview, block->valid, &block->shadow, block->clear);
+    for (int i = 0; i < LANES; i++) {
+        block->open[i] = mixf(occluded_sky, 1, block->clear[i]);
+        block->sky_seen[i] += block->open[i], block->sky_asked[i]++;
+        block->clouded = block->clouded || block->clear[i] < 1;
+    }
+}
+
+void light_add_sky(const Preview *preview, Block *block, const int *active, int sample, bool ask) {
+    if (ask) ask_sky(preview, block, active, sample);
+    for (int i = 0; i < LANES; i++) {
+        if (!light_reaches(block, active, i)) continue;
+        const Point *point = &block->point[i];
+        Float3 ambient = sky_ambient(&preview->sky, point->normal);
+        // thin paper also transmits light from its other side
+        if (point->transmission > 0)
+            ambient =
+                float3_mad(ambient, sky_ambient(&preview->sky, float3_scale(point->normal, -1)), point->transmission);
+        Float3 light = float3_mul(point->albedo, ambient);
+        if (point->mirror > 0) light = float3_add(light, mirror_sky(&preview->sky, point));
+        float open = ask ? block->open[i] : block->sky_seen[i] / (float)block->sky_asked[i];
+        block->light[i] = float3_mad(block->light[i], light, open);
+    }
+}

@@ -1,0 +1,248 @@
+// Creates and destroys a preview: the Def is checked field by field, then everything for a frame is allocated.
+
+#include "preview/internal.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+SingeResult preview_fail(SingeError *error, SingeResult code, int64_t element, const char *format, ...) {
+    if (!error) return code;
+    *error = (SingeError){.code = code, .stage = "preview", .element = element};
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error->message, sizeof error->message, format, arguments);
+    va_end(arguments);
+    return code;
+}
+
+PreviewDef preview_default(void) {
+    return (PreviewDef){
+        .width = 960,
+        .height = 540,
+        .samples = 8,
+        .thread_count = 1,
+        .camera = {.eye = {0, -0.42f, 0.34f}, .target = {0, -0.01f, 0}, .up = {0, 0, 1}, .fov = 0.6f},
+        .sun_direction = {-0.55f, 0.45f, 0.62f},
+        .sun_angle = 0.045f,
+        .sun_colour = {2.2f, 2.05f, 1.85f},
+        .sky_colour = {0.4f, 0.45f, 0.53f},
+        .ground_height = 0,
+        .ground_colour = {0.235f, 0.145f, 0.085f},
+        .background = {0.16f, 0.15f, 0.145f},
+        .exposure = 1,
+        .pace = 1,
+    };
+}
+
+static bool all_between(const float *values, int count, float low, float high) {
+    for (int i = 0; i < count; i++)
+        if (!(values[i] >= low && values[i] <= high)) return false;
+    return true;
+}
+
+static SingeResult preview_refuse(SingeError *error, int64_t element, const char *what) {
+    return preview_fail(error, SINGE_ERROR_ARGUMENT, element, "%s", what);
+}
+
+static SingeResult check_camera(const PreviewCamera *camera, SingeError *error) {
+    if (!all_between(camera->eye, 3, -1e4f, 1e4f) || !all_between(camera->target, 3, -1e4f, 1e4f) ||
+        !all_between(camera->up, 3, -1e4f, 1e4f))
+        return preview_refuse(error, -1, "camera: eye, target and up must be finite and within 10 km");
+    Float3 up = float3_load(camera->up), view = float3_sub(float3_load(camera->target), float3_load(camera->eye));
+    if (!(float3_dot(view, view) > 1e-12f))
+        return preview_refuse(error, -1, "camera: eye and target are the same point");
+    if (!(float3_dot(up, up) > 1e-12f)) return preview_refuse(error, -1, "camera: up has no direction");
+    if (!(camera->fov > 0.001f && camera->fov < 3.1f))
+        return preview_refuse(error, -1, "camera: fov must lie between 0.001 and 3.1 rad");
+    if (!(camera->aperture >= 0 && camera->aperture <= 10))
+        return preview_refuse(error, -1, "camera: aperture must lie between 0 and 10 m");
+    if (!(camera->focus >= 0 && camera->focus <= 1e4f))
+        return preview_refuse(error, -1, "camera: focus must lie between 0 and 10 km");
+    return SINGE_OK;
+}
+
+static SingeResult check_shape(const PreviewShape *shape, int64_t index, SingeError *error) {
+    bool good = all_between(shape->position, 3, -1e4f, 1e4f) && all_between(shape->velocity, 3, -1e4f, 1e4f) &&
+                all_between(shape->colour, 3, 0, 1e4f) && shape->temperature >= 0 && shape->temperature < 1e5f;
+    const float *q = shape->rotation;
+    float length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    switch (shape->kind) {
+    case SINGE_COLLIDER_PLANE: break;
+    case SINGE_COLLIDER_SPHERE: good = good && shape->radius > 0 && shape->radius <= 1e4f; break;
+    case SINGE_COLLIDER_BOX: good = good && all_between(shape->half_size, 3, 1e-7f, 1e4f); break;
+    case SINGE_COLLIDER_CAPSULE:
+        good = good && shape->radius > 0 && shape->radius <= 1e4f && shape->height >= 0 && shape->height <= 1e4f;
+        break;
+    case SINGE_COLLIDER_HEIGHTFIELD:
+    case SINGE_COLLIDER_MESH: good = good && shape->solid; break;
+    default: good = false;
+    }
+    if (shape->kind != SINGE_COLLIDER_SPHERE) good = good && fabsf(length - 1) < 0.01f;
+    return good ? SINGE_OK
+                : preview_refuse(error, index, "shape: kind, size, position, rotation or temperature is out of range");
+}
+
+static SingeResult check_shapes(const PreviewShape *shapes, uint32_t count, SingeError *error) {
+    if (count && !shapes) return preview_refuse(error, -1, "shapes: a count and no array");
+    for (uint32_t i = 0; i < count; i++) {
+        SingeResult result = check_shape(&shapes[i], i, error);
+        if (result) return result;
+    }
+    return SINGE_OK;
+}
+
+static bool image_is_good(const Image *image) {
+    return image->rgb && image->width >= 1 && image->height >= 1 && image->width <= SIZE_LIMIT &&
+           image->height <= SIZE_LIMIT;
+}
+
+static SingeResult check_light(const PreviewDef *def, SingeError *error) {
+    Float3 sun = float3_load(def->sun_direction);
+    if (!float3_finite(sun) || !(float3_dot(sun, sun) > 1e-20f) || !(float3_dot(sun, sun) < 1e20f))
+        return preview_refuse(error, -1, "sun_direction must be finite and not zero");
+    if (!(def->sun_angle >= 0 && def->sun_angle < 1.5f))
+        return preview_refuse(error, -1, "sun_angle must lie between 0 and 1.5 rad");
+    if (!all_between(def->sun_colour, 3, 0, 1e4f) || !all_between(def->sky_colour, 3, 0, 1e4f) ||
+        !all_between(def->ground_colour, 3, 0, 1e4f) || !all_between(def->background, 3, 0, 1e4f))
+        return preview_refuse(error, -1, "colours must be finite and not negative");
+    if (!(def->exposure > 0 && def->exposure < 1e4f)) return preview_refuse(error, -1, "exposure must be above 0");
+    if (!(def->shutter >= 0 && def->shutter <= 1e4f))
+        return preview_refuse(error, -1, "shutter must lie between 0 and 1e4 s");
+    if (!(def->pace > 0 && def->pace <= 1e9f)) return preview_refuse(error, -1, "pace must be above 0");
+    if ((unsigned)def->ground > PREVIEW_GROUND_PLAIN) return preview_refuse(error, -1, "ground is not a known kind");
+    if ((unsigned)def->sky > PREVIEW_SKY_PICTURE) return preview_refuse(error, -1, "sky is not a known kind");
+    if (!isfinite(def->sky_turn) || fabsf(def->sky_turn) > 1e6f)
+        return preview_refuse(error, -1, "sky_turn must be finite");
+    if (def->sky == PREVIEW_SKY_PICTURE && !(def->sky_picture && image_is_good(def->sky_picture)))
+        return preview_refuse(error, -1, "sky_picture is missing, empty or too large");
+    float ground = def->ground_height;
+    if (!(ground <= 1e4f) || (ground < -1e4f && isfinite(ground)))
+        return preview_refuse(error, -1, "ground_height must lie within 10 km, or be -infinity for none");
+    return SINGE_OK;
+}
+
+static SingeResult check_def(const PreviewDef *def, SingeError *error) {
+    if (def->width < 1 || def->height < 1 || def->width > SIZE_LIMIT || def->height > SIZE_LIMIT)
+        return preview_refuse(error, -1, "width and height must lie between 1 and 16384");
+    if (def->samples < 1 || def->samples > 4096)
+        return preview_refuse(error, -1, "samples must lie between 1 and 4096");
+    if (def->thread_count < 1 || def->thread_count > THREAD_LIMIT)
+        return preview_refuse(error, -1, "thread_count must lie between 1 and 64");
+    SingeResult result = check_camera(&def->camera, error);
+    if (!result) result = check_light(def, error);
+    if (!result) result = check_shapes(def->shapes, def->shape_count, error);
+    for (uint32_t s = 0; !result && def->pictures && s < def->sheet_count; s++) {
+        if (def->pictures[s] && !image_is_good(def->pictures[s]))
+            result = preview_refuse(error, s, "a sheet's picture is empty or too large");
+    }
+    for (uint32_t s = 0; !result && def->colours && s < def->sheet_count; s++)
+        if (!all_between(def->colours[s], 3, 0, 1e4f))
+            result = preview_refuse(error, s, "a sheet's colour is out of range");
+    for (uint32_t s = 0; !result && def->transmittances && s < def->sheet_count; s++)
+        if (!all_between(&def->transmittances[s], 1, 0, 1))
+            result = preview_refuse(error, s, "a sheet's transmittance must lie between 0 and 1");
+    return result;
+}
+
+static size_t pixel_count(const PreviewDef *def) { return (size_t)def->width * (size_t)def->height; }
+
+static size_t glow_count(const PreviewDef *def) {
+    return (size_t)((def->width + 3) / 4) * (size_t)((def->height + 3) / 4);
+}
+
+static SingeResult preview_allocate(Preview *preview, SingeError *error) {
+    const PreviewDef *def = &preview->def;
+    const SingeAllocator *allocator = &preview->allocator;
+    preview->picture = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(Float3));
+    preview->table = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(Table));
+    preview->lamps = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(Lamp));
+    preview->seen = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(float));
+    preview->mask = allocator_resize(*allocator, NULL, 0, mask_size(preview));
+    for (int i = 0; i < 2; i++)
+        preview->glow[i] = allocator_resize(*allocator, NULL, 0, glow_count(def) * sizeof(Float3));
+    preview->textures = allocator_resize(*allocator, NULL, 0, def->sheet_count * sizeof(Texture));
+    if (preview->textures) memset(preview->textures, 0, def->sheet_count * sizeof(Texture));
+    if (!preview->picture || !preview->lamps || !preview->seen || !preview->table || !preview->mask ||
+        !preview->glow[0] || !preview->glow[1] || (def->sheet_count && !preview->textures))
+        return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a picture of %d x %d", def->width,
+                            def->height);
+    for (uint32_t s = 0; s < def->sheet_count && def->pictures; s++) {
+        SingeResult result = texture_create(preview, &preview->textures[s], def->pictures[s], error);
+        if (result) return result;
+    }
+    return SINGE_OK;
+}
+
+static void preview_aim(Preview *preview) {
+    preview->camera = camera_make(&preview->def);
+    preview->sun = float3_unit_or(float3_load(preview->def.sun_direction), float3(0, 0, 1));
+    float3_frame(preview->sun, &preview->sun_right, &preview->sun_up);
+    preview->sun_light = float3_scale(float3_load(preview->def.sun_colour), FILM_SPEED);
+    preview->sun_spread = tanf(preview->def.sun_angle);
+    tonemap_fill_linear(preview->linear);
+    blackbody_fill(preview->blackbody);
+    sky_fill(preview);
+}
+
+SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Preview **out, SingeError *error) {
+    *out = NULL;
+    SingeResult result = check_def(def, error);
+    if (result) return result;
+    Preview *preview = allocator_resize(allocator, NULL, 0, sizeof *preview);
+    if (!preview) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory");
+    *preview = (Preview){.def = *def, .allocator = allocator};
+    preview_aim(preview);
+    result = preview_allocate(preview, error);
+    if (!result) result = tracer_open(preview, error);
+    if (!result) result = preview_set_shapes(preview, def->shapes, def->shape_count, error);
+    if (result) preview_destroy(preview);
+    else *out = preview;
+    return result;
+}
+
+SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uint32_t count, SingeError *error) {
+    SingeResult result = check_shapes(shapes, count, error);
+    if (result) return result;
+    uint32_t drawn = 0; // planes are drawn as the ground only
+    for (uint32_t i = 0; i < count; i++) drawn += shapes[i].kind != SINGE_COLLIDER_PLANE;
+    PreviewShape *copy = allocator_resize(preview->allocator, NULL, 0, drawn * sizeof *copy);
+    if (drawn && !copy) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for %u shapes", count);
+    for (uint32_t i = 0, next = 0; i < count && !result; i++) {
+        if (shapes[i].kind == SINGE_COLLIDER_PLANE) continue;
+        PreviewShape *shape = &copy[next++];
+        *shape = shapes[i];
+        shape->facets = NULL;
+        if (shape->solid) result = facets_get(preview, shape->solid, &shape->facets, error);
+    }
+    if (result) {
+        allocator_resize(preview->allocator, copy, drawn * sizeof *copy, 0);
+        return result;
+    }
+    allocator_resize(preview->allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
+    preview->shapes = copy;
+    preview->shape_count = drawn;
+    facets_drop(preview);
+    return SINGE_OK;
+}
+
+void preview_destroy(Preview *preview) {
+    if (!preview) return;
+    const PreviewDef *def = &preview->def;
+    SingeAllocator allocator = preview->allocator;
+    tracer_free(preview);
+    fire_free(preview);
+    facets_free(preview);
+    tracer_close(preview);
+    for (uint32_t s = 0; preview->textures && s < def->sheet_count; s++) texture_free(preview, &preview->textures[s]);
+    allocator_resize(allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);
+    allocator_resize(allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
+    allocator_resize(allocator, preview->picture, pixel_count(def) * sizeof(Float3), 0);
+    allocator_resize(allocator, preview->lamps, preview->lamps ? pixel_count(def) * sizeof(Lamp) : 0, 0);
+    allocator_resize(allocator, preview->seen, preview->seen ? pixel_count(def) * sizeof(float) : 0, 0);
+    allocator_resize(allocator, preview->table, pixel_count(def) * sizeof(Table), 0);
+    allocator_resize(allocator, preview->mask, mask_size(preview), 0);
+    for (int i = 0; i < 2; i++) allocator_resize(allocator, preview->glow[i], glow_count(def) * sizeof(Float3), 0);
+    allocator_resize(allocator, preview, sizeof *preview, 0);
+}

@@ -1,0 +1,138 @@
+// The table and the background.
+//
+// Wood is planks along x, each cut from its own trunk: the year rings are cylinders around an axis oblique to the
+// plank, so that the cut shows parallel lines or pointed arches. A ring darkens towards its end, the late wood, and
+// ends abruptly. Stone is a honed slab: clouds, grains and a few pale veins, with an uneven face. Every octave fades
+// when a pixel no longer resolves it.
+
+#include "preview/internal.h"
+
+#define PLANK_WIDTH 0.118f
+#define PLANK_LENGTH 1.3f
+
+static float visible(float metres, float footprint) { return clampf(1.5f - 0.9f * footprint / metres, 0, 1); }
+
+typedef struct Plank {
+    float along, across;    ///< m, from its own corner
+    float edge;             ///< m to the nearest joint
+    float tone, hue, shift; ///< its own
+} Plank;
+
+static Plank find_plank(uint32_t seed, float x, float y) {
+    float across, along;
+    int row = noise_floor(y / PLANK_WIDTH, &across);
+    float offset = hash_unit((uint32_t)row * 0x9e3779b1u + seed);
+    int column = noise_floor(x / PLANK_LENGTH + offset, &along);
+    uint32_t key = hash_u32((uint32_t)row * 0x9e3779b1u + (uint32_t)column * 0x85ebca6bu + seed);
+    float side = minf(across, 1 - across) * PLANK_WIDTH, end = minf(along, 1 - along) * PLANK_LENGTH;
+    return (Plank){.along = along * PLANK_LENGTH,
+                   .across = (across - 0.5f) * PLANK_WIDTH,
+                   .edge = minf(side, end),
+                   .tone = hash_unit(key),
+                   .hue = hash_unit(key + 1),
+                   .shift = 60 * hash_unit(key + 2)};
+}
+
+/// Late wood, 0 to 1, of the year rings.
+static float year_rings(const Plank *p, uint32_t seed, float footprint) {
+    float u = p->along + p->shift, bend = 0.011f * noise2(u * 2.3f, p->across * 9, seed);
+    bend += 0.0022f * noise2(u * 9, p->across * 40, seed + 1);
+    // the trunk's axis is below the plank and rises along it
+    float aside = p->across + 0.09f * (p->hue - 0.5f) + bend;
+    float depth = 0.012f + 0.09f * p->tone + 0.05f * (p->along - 0.6f);
+    float radius = sqrtf(aside * aside + depth * depth), year = radius / (0.0034f + 0.0018f * p->hue);
+    year += 0.35f * noise2(u * 1.3f, radius * 60, seed + 2);
+    float within;
+    int ring = noise_floor(year, &within);
+    float strength = 0.45f + 0.55f * hash_unit((uint32_t)ring * 0x27d4eb2fu + seed + (uint32_t)(1024 * p->tone));
+    float slope = maxf(fabsf(aside) / maxf(radius, 1e-4f), 0.12f); // slope of the cut through the rings
+    float late = stepf(0.25f, 0.9f, within) * (1 - stepf(0.9f, 1.0f, within));
+    return mixf(0.33f, late, visible(0.0035f / slope, footprint)) * strength;
+}
+
+static void wood(const Preview *preview, Float3 position, float footprint, Table *table) {
+    uint32_t seed = preview->def.seed + 77;
+    Plank p = find_plank(seed, position.x, position.y);
+    float u = p.along + p.shift, late = year_rings(&p, seed, footprint);
+    float bow = 0.011f * noise2(u * 2.3f, p.across * 9, seed); // fibres follow the rings
+    float fibre = noise2(u * 9, (position.y + 0.4f * bow) * 520, seed + 3) * visible(0.0022f, footprint);
+    float pores = noise2(u * 75, (position.y + 0.4f * bow) * 1700, seed + 4) * visible(0.0008f, footprint);
+    float hair = noise2(u * 16, position.y * 2100, seed + 7) * visible(0.0006f, footprint);
+    fibre += 0.8f * noise2(u * 14, (position.y + 0.4f * bow) * 1100, seed + 8) * visible(0.001f, footprint);
+    float blotch = noise2(u * 3.1f, p.across * 14, seed + 5), wear = noise2(position.x * 5, position.y * 5, seed + 6);
+    float value = 1.10f + 0.34f * (p.tone - 0.5f) - 0.50f * late + 0.055f * fibre + 0.10f * blotch + 0.05f * wear;
+    value += 0.05f * hair;
+    value *= 1 - 0.38f * stepf(0.25f, 0.7f, pores);
+    // a joint: dark and slightly soft, with a bevel next to it
+    float soft = maxf(0.0009f, 0.7f * footprint), joint = 1 - stepf(0.0002f, soft + 0.0002f, p.edge);
+    value *= 1 - 0.8f * joint * minf(1, 0.0016f / footprint);
+    // late wood is redder, early wood more golden; planks differ
+    float red = clampf(0.35f * late + 0.5f * (p.hue - 0.5f), -0.3f, 0.5f);
+    table->albedo = float3_scale(float3(1 + 0.22f * red, 1 - 0.10f * red, 1 - 0.42f * red), maxf(value, 0.04f));
+    table->polish = (0.42f - 0.18f * late + 0.10f * wear) * (1 - 0.8f * joint);
+    table->tilt[0] = 0.004f * wear;
+    table->tilt[1] = 0.012f * blotch + 0.012f * fibre;
+}
+
+/// Noise of the slab, its slope added to the tilt.
+static float uneven(float x, float y, float millimetres, float height, uint32_t seed, float footprint, Table *table) {
+    float scale = 1000 / millimetres, e = 0.25f, shown = visible(millimetres * 1e-3f, footprint);
+    if (shown <= 0) return 0;
+    float n = noise2(x * scale, y * scale, seed);
+    table->tilt[0] -= shown * height * (noise2(x * scale + e, y * scale, seed) - n) / e;
+    table->tilt[1] -= shown * height * (noise2(x * scale, y * scale + e, seed) - n) / e;
+    return shown * n;
+}
+
+static void stone(const Preview *preview, Float3 position, float footprint, Table *table) {
+    uint32_t seed = preview->def.seed + 177;
+    float x = 0.921f * position.x - 0.389f * position.y, y = 0.389f * position.x + 0.921f * position.y;
+    float warp = 0.03f * noise2(x * 9, y * 9, seed), fold = 0.012f * noise2(x * 31 + 7, y * 31, seed + 1);
+    float cloud = noise2(x * 7, y * 7, seed + 2), patch = uneven(x, y, 38, 0.010f, seed + 3, footprint, table);
+    float rough = uneven(x, y, 9, 0.022f, seed + 4, footprint, table);
+    float grain = uneven(x, y, 1.6f, 0.03f, seed + 5, footprint, table);
+    float speck = noise2(x * 900, y * 900, seed + 6) * visible(0.0011f, footprint);
+    float value = 0.95f + 0.30f * cloud + 0.22f * patch + 0.13f * rough + 0.10f * grain;
+    value += 0.35f * stepf(0.55f, 0.9f, speck) - 0.2f * stepf(0.5f, 0.9f, -speck);
+    // pale veins of varying thickness that break off
+    float line = fabsf(noise2((x + warp + fold) * 7.5f + 3, (y + fold + warp) * 2.6f, seed + 7));
+    float width = 0.008f + 0.022f * (0.5f + 0.5f * noise2(x * 21, y * 21, seed + 8));
+    float vein = 1 - stepf(0.3f * width, width + 1.5f * footprint, line);
+    vein *= stepf(-0.45f, 0.25f, noise2(x * 3, y * 3, seed + 9));
+    value += 1.1f * vein * minf(1, 0.003f / footprint + 0.35f);
+    float warm = 0.5f * cloud - 0.3f * patch;
+    table->albedo = float3_scale(float3(1 + 0.05f * warm, 1, 1 - 0.07f * warm), maxf(value, 0.1f));
+    table->polish = 0.42f + 0.12f * patch - 0.1f * vein;
+}
+
+Float3 background_colour(const Preview *preview, Float3 direction) {
+    Float3 base = float3_load(preview->def.background);
+    float height = clampf(direction.z * 1.6f, -0.6f, 1);
+    return float3_scale(base, height > 0 ? mixf(1.12f, 0.62f, height) : mixf(1.12f, 0.75f, -height));
+}
+
+/// A pixel's size on the table: the mean of along and across.
+static float footprint(const Preview *preview, float distance, float cosine) {
+    return preview->camera.pixel * distance / sqrtf(maxf(fabsf(cosine), 0.02f));
+}
+
+void ground_look(const Preview *preview, Float3 position, float cosine, float distance, Table *table) {
+    float size = footprint(preview, distance, cosine);
+    *table = (Table){.albedo = {1, 1, 1}, .polish = 0.1f};
+    if (preview->def.ground == PREVIEW_GROUND_WOOD) wood(preview, position, size, table);
+    if (preview->def.ground == PREVIEW_GROUND_STONE) stone(preview, position, size, table);
+    table->albedo = float3_mul(table->albedo, float3_load(preview->def.ground_colour));
+}
+
+void ground_shade(const Preview *preview, float distance, const Table *table, Point *point) {
+    float side = point->view.z >= 0 ? 1.0f : -1.0f;
+    point->footprint = footprint(preview, distance, maxf(fabsf(point->view.z), 0.02f));
+    float far = distance / (9 * preview->camera.reach);
+    point->fade = 1 - expf(-far * far * far);
+    point->geometric = float3(0, 0, side);
+    point->normal = float3_unit_or(float3(table->tilt[0], table->tilt[1], side), point->geometric);
+    point->albedo = table->albedo;
+    point->gloss = 0.10f * table->polish;
+    point->shininess = 26;
+    point->mirror = table->polish;
+}

@@ -1,0 +1,16 @@
+// The built-in materials: the files of materials/, embedded unchanged by packaging/cmake/embed.cmake.
+#ifndef SCENE_BUILTIN_H
+#define SCENE_BUILTIN_H
+
+#include <stddef.h>
+
+typedef struct SceneBuiltin {
+    const char *name; ///< the file's, without its ending
+    const char *bytes;
+    size_t size;
+} SceneBuiltin;
+
+/// Sorted by name; a row of zeros follows the last.
+extern const SceneBuiltin scene_builtins[];
+
+#endif

@@ -1,0 +1,142 @@
+// The memory that a scene needs, from its numbers and the sizes of its pictures. Bytes per cell were measured on sheets
+// of 10,000 to 490,000 cells, which differ by 5 % (tests/cli/test_usage.py compares the estimate with a run).
+#include "formats/formats.h"
+#include "scene/messages.h"
+#include "scene/rotation.h"
+#include "scene/scene.h"
+
+#include <math.h>
+
+/// Bytes of a cell with its springs and its share of the drawn mesh, and bytes added by contact.
+static const double cell_bytes = 3.6e3, contact_bytes = 6.9e3;
+/// Gas: bytes per cell, default and max number of cells, and the margin around and below the sheets, m.
+static const double gas_bytes = 160, gas_cells_usual = 200e3, gas_cells_max = 2e6, gas_margin = 0.045;
+/// Bytes per pixel: of the drawn picture, of a sheet's picture, of a parameter's texture while it is read, and of a
+/// heightfield, simulated and drawn (measured with 1 and 9 million pixels: 42 to 45 and 300 to 330).
+static const double pixel_bytes = 80, picture_bytes = 3, texture_bytes = 7, height_bytes = 45, drawn_height_bytes = 300;
+static const double program_bytes = 40e6;
+
+static uint64_t sheet_cells(const Scene *scene, const SceneAssets *assets, uint32_t index) {
+    const SceneSheet *sheet = &scene->sheets[index];
+    if (assets) return assets->meshes[index].cell_count;
+    return sheet->grid.given ? (uint64_t)sheet->grid.cells[0] * (uint64_t)sheet->grid.cells[1] : 0;
+}
+
+/// A box around the sheets, as far as they are known.
+typedef struct Box {
+    double low[3], high[3];
+} Box;
+
+static void box_add(Box *box, const double low[3], const double high[3]) {
+    for (int i = 0; i < 3; i++) {
+        box->low[i] = fmin(box->low[i], low[i]);
+        box->high[i] = fmax(box->high[i], high[i]);
+    }
+}
+
+static void box_add_sheet(Box *box, const SceneSheet *sheet, const Mesh *mesh) {
+    double turned[9], low[3], high[3];
+    rotation_matrix(sheet->rotate, turned);
+    for (int i = 0; i < 3 && sheet->grid.given; i++) {
+        const float *size = sheet->grid.size;
+        double half = fabs(turned[3 * i]) * (double)size[0] + fabs(turned[3 * i + 1]) * (double)size[1];
+        half *= 0.5 * (double)sheet->scale;
+        low[i] = (double)sheet->translate[i] - half;
+        high[i] = (double)sheet->translate[i] + half;
+    }
+    if (sheet->grid.given) box_add(box, low, high);
+    for (uint32_t v = 0; mesh && !sheet->grid.given && v < mesh->vertex_count; v++) {
+        const float *p = mesh->positions + 3 * (size_t)v;
+        const double point[3] = {(double)p[0], (double)p[1], (double)p[2]};
+        box_add(box, point, point);
+    }
+}
+
+static double gas_cells(const Scene *scene, const SceneAssets *assets) {
+    const double cell = (double)scene->sim.gas.cell_size;
+    if (!(cell > 0)) return gas_cells_usual;
+    Box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (uint32_t i = 0; i < scene->sheet_count; i++)
+        box_add_sheet(&box, &scene->sheets[i], assets ? &assets->meshes[i] : NULL);
+    double cells = 1;
+    for (int i = 0; i < 3; i++) {
+        const double room = i == 2 ? gas_margin + (double)scene->sim.gas.height : 2 * gas_margin;
+        cells *= (fmax(box.high[i] - box.low[i], 0) + room) / cell + 8; // at most a multiple of 8
+    }
+    return fmin(cells, gas_cells_max);
+}
+
+static double pixels_of(const SceneFile *file) {
+    int width, height;
+    return file->path && image_size(file->path, &width, &height) ? (double)width * (double)height : 0;
+}
+
+/// Pixels of a collider's heights.
+static double height_pixels(const SceneCollider *collider) {
+    return collider->def.kind == SINGE_COLLIDER_HEIGHTFIELD ? pixels_of(&collider->picture) : 0;
+}
+
+/// Bytes of all pictures that are read.
+static double pictures_memory(const Scene *scene) {
+    double memory = picture_bytes * pixels_of(&scene->preview.environment_picture);
+    for (uint32_t i = 0; i < scene->sheet_count; i++) {
+        memory += picture_bytes * pixels_of(&scene->sheets[i].picture);
+        for (size_t k = 0; k < SCENE_PARAM_SLOTS; k++)
+            memory += texture_bytes * pixels_of(&scene->sheets[i].material.textures[k]);
+    }
+    for (uint32_t i = 0; i < scene->source_count; i++) memory += texture_bytes * pixels_of(&scene->sources[i].texture);
+    for (uint32_t i = 0; i < scene->collider_count; i++) memory += height_bytes * height_pixels(&scene->colliders[i]);
+    return memory;
+}
+
+SceneSize scene_size(const Scene *scene, const SceneAssets *assets) {
+    SceneSize size = {.memory = program_bytes};
+    for (uint32_t i = 0; i < scene->sheet_count; i++) {
+        size.cells += sheet_cells(scene, assets, i);
+        size.unread += !assets && scene->sheets[i].mesh.name;
+    }
+    size.memory += (double)size.cells * (cell_bytes + (scene->sim.contact.enabled ? contact_bytes : 0));
+    size.memory += pictures_memory(scene);
+    if (scene->sim.gas.enabled) size.memory += gas_bytes * gas_cells(scene, assets);
+    return size;
+}
+
+double scene_picture_memory(const Scene *scene) {
+    double memory = pixel_bytes * (double)scene->preview.size[0] * (double)scene->preview.size[1];
+    for (uint32_t i = 0; i < scene->collider_count; i++)
+        if (scene->colliders[i].visible) memory += drawn_height_bytes * height_pixels(&scene->colliders[i]);
+    return memory;
+}
+
+/// The heightfield with the most pixels if it needs more than half of the memory; NULL otherwise.
+static const SceneCollider *largest_heights(const Scene *scene, double wanted) {
+    const SceneCollider *largest = NULL;
+    double pixels = 0;
+    for (uint32_t i = 0; i < scene->collider_count; i++) {
+        const double count = height_pixels(&scene->colliders[i]);
+        if (count > pixels) {
+            largest = &scene->colliders[i];
+            pixels = count;
+        }
+    }
+    return pixels * (height_bytes + (largest && largest->visible ? drawn_height_bytes : 0)) > 0.5 * wanted ? largest
+                                                                                                           : NULL;
+}
+
+bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, double room, SceneMessages *messages) {
+    if (!(room > 0) || wanted <= room) return true;
+    const SceneCollider *heights = largest_heights(scene, wanted);
+    if (heights) {
+        message_add(messages, scene->text, heights->picture.location,
+                    "the scene needs about %.1f GB of memory, and there are %.1f GB: give its heightfield fewer pixels",
+                    1e-9 * wanted, 1e-9 * room);
+        return false;
+    }
+    uint32_t largest = 0;
+    for (uint32_t i = 1; i < scene->sheet_count; i++)
+        if (sheet_cells(scene, assets, i) > sheet_cells(scene, assets, largest)) largest = i;
+    message_add(messages, scene->text, scene->sheets[largest].location, // there is at least one sheet
+                "the scene needs about %.1f GB of memory, and there are %.1f GB: give its sheets fewer cells",
+                1e-9 * wanted, 1e-9 * room);
+    return false;
+}

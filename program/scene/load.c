@@ -1,0 +1,270 @@
+// Reads the files of a scene: meshes, which are transformed, and pictures.
+#include "common/printable.h"
+#include "scene/faults.h"
+#include "scene/probes.h"
+#include "scene/rotation.h"
+#include "scene/schema.h"
+#include "scene/sequence.h"
+#include "scene/solid.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Loader {
+    const Scene *scene;
+    SceneAssets *assets;
+    SceneMessages *messages;
+    bool no_memory;
+} Loader;
+
+static SingeResult loader_fail(Loader *loader, const SceneFile *file, SingeResult result, const char *why) {
+    message_add(loader->messages, loader->scene->text, file->location, "%s", why);
+    if (result == SINGE_ERROR_MEMORY) loader->no_memory = true;
+    return result;
+}
+
+static SingeResult load_image(Loader *loader, const SceneFile *file, Image *image) {
+    Bytes bytes = {0};
+    SingeError error = {0};
+    SingeResult result = file_read(file->path, (SingeAllocator){0}, &bytes, &error);
+    if (!result) result = image_read(file->path, bytes.data, bytes.size, (SingeAllocator){0}, image, &error);
+    bytes_free(&bytes);
+    return result ? loader_fail(loader, file, result, error.message) : SINGE_OK;
+}
+
+static void load_luminance(Loader *loader, const SceneFile *file, SingeTexture *picture) {
+    Image image = {0};
+    SingeError error = {0};
+    if (load_image(loader, file, &image)) return;
+    SingeResult result = image_luminance(&image, (SingeAllocator){0}, picture, &error);
+    if (result) loader_fail(loader, file, result, error.message);
+    image_free(&image);
+}
+
+/// The simulation reports positions farther out as divergence.
+static const float coordinate_max = 1e4f;
+
+/// Grids are in metres.
+double metres_per_unit(int unit, float scale) {
+    static const double units[] = {[SCENE_UNITS_M] = 1,
+                                   [SCENE_UNITS_CM] = 0.01,
+                                   [SCENE_UNITS_MM] = 0.001,
+                                   [SCENE_UNITS_IN] = 0.0254,
+                                   [SCENE_UNITS_FT] = 0.3048};
+    return units[unit] * (double)scale;
+}
+
+/// Scales, rotates and translates positions. Returns whether all can be simulated.
+static bool transform(const SceneSheet *sheet, float *positions, uint32_t count) {
+    const double scale = metres_per_unit(sheet->mesh.name ? sheet->units : SCENE_UNITS_M, sheet->scale);
+    double r[9];
+    rotation_matrix(sheet->rotate, r);
+    bool near = true;
+    bool turned = sheet->rotate[0] != 0 || sheet->rotate[1] != 0 || sheet->rotate[2] != 0;
+    for (uint32_t v = 0; v < count; v++) {
+        float *p = positions + 3 * (size_t)v;
+        double x = (double)p[0] * scale, y = (double)p[1] * scale, z = (double)p[2] * scale;
+        if (sheet->mesh.name && sheet->up == SCENE_UP_Y) {
+            double up = y;
+            y = -z;
+            z = up;
+        }
+        double q[3] = {x, y, z};
+        for (int i = 0; i < 3 && turned; i++) q[i] = r[3 * i] * x + r[3 * i + 1] * y + r[3 * i + 2] * z;
+        for (int i = 0; i < 3; i++)
+            near = fabsf(p[i] = (float)(q[i] + (double)sheet->translate[i])) < coordinate_max && near;
+    }
+    return near;
+}
+
+static const char too_far[] = "the sheet reaches beyond 10 km from the origin";
+
+/// Reads polygons and converts them to quads.
+static SingeResult load_file(const SceneSheet *sheet, Mesh *mesh, MeshReport *report, SingeError *error) {
+    Bytes bytes = {0};
+    Polygons polygons = {0};
+    MeshOptions options = mesh_default_options();
+    options.weld = sheet->weld;
+    options.quads = (MeshQuads)sheet->quads;
+    SingeResult result = file_read(sheet->mesh.path, (SingeAllocator){0}, &bytes, error);
+    if (!result)
+        result = polygons_read(sheet->mesh.path, bytes.data, bytes.size, (SingeAllocator){0}, &polygons, error);
+    bytes_free(&bytes);
+    if (!result && !transform(sheet, polygons.positions, polygons.vertex_count)) {
+        snprintf(error->message, sizeof error->message, "%s", too_far);
+        result = SINGE_ERROR_MESH;
+    }
+    if (!result) result = mesh_make(sheet->mesh.path, &polygons, &options, (SingeAllocator){0}, mesh, report, error);
+    polygons_free(&polygons);
+    return result;
+}
+
+static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh, MeshReport *report) {
+    SingeError error = {0};
+    SceneFile file = sheet->mesh;
+    SingeResult result;
+    bool near = true;
+    if (file.name) {
+        result = load_file(sheet, mesh, report, &error);
+    } else {
+        file.location = sheet->location;
+        result = mesh_grid(sheet->grid.size[0], sheet->grid.size[1], (uint32_t)sheet->grid.cells[0],
+                           (uint32_t)sheet->grid.cells[1], (SingeAllocator){0}, mesh, &error);
+        if (!result)
+            mesh_grid_wear(mesh, (uint32_t)sheet->grid.cells[0], (uint32_t)sheet->grid.cells[1], &sheet->grid.wear);
+        near = result || transform(sheet, mesh->positions, mesh->vertex_count);
+    }
+    if (result) loader_fail(loader, &file, result, error.message);
+    else if (!near) message_add(loader->messages, loader->scene->text, file.location, "%s", too_far);
+}
+
+static void check_attribute(Loader *loader, const char *key, const char *attribute, const SceneFile *file,
+                            const Mesh *mesh) {
+    Nearest nearest = {.word = attribute};
+    for (uint32_t i = 0; i < mesh->attribute_count; i++) {
+        if (strcmp(mesh->attributes[i].name, attribute) == 0) return;
+        nearest_offer(&nearest, mesh->attributes[i].name);
+    }
+    char hint[80];
+    if (file->location.file) // the contents of files other than the scene are not shown
+        message_add(loader->messages, loader->scene->text, file->location, "%s: the mesh has no such attribute", key);
+    else
+        message_add(loader->messages, loader->scene->text, file->location, "%s: the mesh has no attribute '%s'%s", key,
+                    shown(attribute).text, nearest_hint(&nearest, hint, sizeof hint));
+}
+
+static void load_sheet(Loader *loader, uint32_t index) {
+    const SceneSheet *sheet = &loader->scene->sheets[index];
+    SceneAssets *assets = loader->assets;
+    Mesh *mesh = &assets->meshes[index];
+    load_mesh(loader, sheet, mesh, &assets->reports[index]);
+    memcpy(assets->colours[index], sheet->colour, sizeof sheet->colour);
+    assets->transmittances[index] = sheet->transmittance;
+    if (sheet->picture.name && !load_image(loader, &sheet->picture, &assets->images[index]))
+        assets->pictures[index] = &assets->images[index];
+    SingeMaterialDef material = sheet->material.def;
+    SceneParam row;
+    for (int i = 0; scene_param(i, &row); i++) {
+        const SingeField *field = scene_param_at(&material, &row)->field;
+        const SceneFile *file = &sheet->material.textures[row.slot];
+        if (field) assets->fields[index][row.slot] = *field;
+        if (field && field->kind == SINGE_FIELD_TEXTURE) {
+            load_luminance(loader, file, &assets->fields[index][row.slot].texture);
+            if (mesh->positions && !mesh->uv)
+                message_add(loader->messages, loader->scene->text, file->location,
+                            "%s follows a texture, but the mesh has no uv", row.key);
+        } else if (field && field->kind == SINGE_FIELD_ATTRIBUTE && mesh->positions) {
+            check_attribute(loader, row.key, field->attribute, file, mesh);
+        }
+    }
+}
+
+/// Reads the files of a collider or pin that moves with a mesh.
+static void load_motion(Loader *loader, const SceneMotion *motion, SceneSequence *sequence) {
+    SingeError error = {0};
+    SingeResult result = sequence_read(motion, loader->scene->frames, sequence, &error);
+    if (result) loader_fail(loader, &motion->mesh, result, error.message);
+}
+
+/// A collider's mesh or heights.
+static void load_solid(Loader *loader, uint32_t index) {
+    const SceneCollider *collider = &loader->scene->colliders[index];
+    SceneSolid *solid = &loader->assets->solids[index];
+    SingeError error = {0};
+    SingeResult result = SINGE_OK;
+    const SceneFile *file = &collider->mesh;
+    if (collider->def.kind == SINGE_COLLIDER_MESH && collider->motion.given) {
+        load_motion(loader, &collider->motion, &loader->assets->collider_motions[index]);
+    } else if (collider->def.kind == SINGE_COLLIDER_MESH) {
+        Bytes bytes = {0};
+        result = file_read(file->path, (SingeAllocator){0}, &bytes, &error);
+        if (!result)
+            result = solid_read_mesh(file->path, bytes.data, bytes.size,
+                                     metres_per_unit(collider->units, collider->scale), solid, &error);
+        bytes_free(&bytes);
+    } else if (collider->def.kind == SINGE_COLLIDER_HEIGHTFIELD) {
+        SingeTexture picture = {0};
+        file = &collider->picture;
+        load_luminance(loader, file, &picture);
+        if (picture.values) result = solid_make_heights(&picture, collider->def.size, collider->heights, solid, &error);
+        free((void *)picture.values);
+    }
+    if (result) loader_fail(loader, file, result, error.message);
+}
+
+static void *many(Loader *loader, size_t count, size_t size) {
+    void *items = calloc(count ? count : 1, size);
+    loader->no_memory = loader->no_memory || !items;
+    return items;
+}
+
+SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *messages) {
+    Loader loader = {scene, assets, messages, false};
+    uint32_t before = message_total(messages), first = messages->count;
+    *assets = (SceneAssets){.sheet_count = scene->sheet_count,
+                            .source_count = scene->source_count,
+                            .collider_count = scene->collider_count,
+                            .pin_count = scene->pin_count};
+    assets->meshes = many(&loader, scene->sheet_count, sizeof *assets->meshes);
+    assets->reports = many(&loader, scene->sheet_count, sizeof *assets->reports);
+    assets->images = many(&loader, scene->sheet_count, sizeof *assets->images);
+    assets->pictures = many(&loader, scene->sheet_count, sizeof *assets->pictures);
+    assets->colours = many(&loader, scene->sheet_count, sizeof *assets->colours);
+    assets->transmittances = many(&loader, scene->sheet_count, sizeof *assets->transmittances);
+    assets->fields = many(&loader, scene->sheet_count, sizeof *assets->fields);
+    assets->source_textures = many(&loader, scene->source_count, sizeof *assets->source_textures);
+    assets->solids = many(&loader, scene->collider_count, sizeof *assets->solids);
+    assets->probes = many(&loader, scene->probe_count, sizeof *assets->probes);
+    assets->collider_motions = many(&loader, scene->collider_count, sizeof *assets->collider_motions);
+    assets->pin_motions = many(&loader, scene->pin_count, sizeof *assets->pin_motions);
+    if (loader.no_memory) message_add(messages, scene->text, (SceneLocation){0}, "out of memory");
+    for (uint32_t i = 0; i < scene->sheet_count && !loader.no_memory; i++) load_sheet(&loader, i);
+    for (uint32_t i = 0; i < scene->source_count && !loader.no_memory; i++)
+        if (scene->sources[i].texture.name)
+            load_luminance(&loader, &scene->sources[i].texture, &assets->source_textures[i]);
+    for (uint32_t i = 0; i < scene->collider_count && !loader.no_memory; i++) load_solid(&loader, i);
+    for (uint32_t i = 0; i < scene->pin_count && !loader.no_memory; i++)
+        if (scene->pins[i].motion.given) load_motion(&loader, &scene->pins[i].motion, &assets->pin_motions[i]);
+    if (scene->preview.environment_picture.name && !loader.no_memory)
+        (void)load_image(&loader, &scene->preview.environment_picture, &assets->sky);
+    if (message_total(messages) == before && !loader.no_memory) probes_find(scene, assets, messages);
+    if (message_total(messages) == before && !loader.no_memory) return SINGE_OK;
+    if (!loader.no_memory) sheet_faults(scene, assets, FAULTS_OF_MESHES, messages);
+    messages_sort(messages, first);
+    scene_assets_free(assets);
+    return loader.no_memory ? SINGE_ERROR_MEMORY : SINGE_ERROR_FORMAT;
+}
+
+static void picture_free(SingeTexture *picture) {
+    free((void *)picture->values); // image_luminance allocated them with libc's allocator
+    *picture = (SingeTexture){0};
+}
+
+void scene_assets_free(SceneAssets *assets) {
+    for (uint32_t i = 0; i < assets->sheet_count; i++) {
+        if (assets->meshes) mesh_free(&assets->meshes[i]);
+        if (assets->images) image_free(&assets->images[i]);
+        for (int p = 0; p < SCENE_PARAM_SLOTS && assets->fields; p++) picture_free(&assets->fields[i][p].texture);
+    }
+    for (uint32_t i = 0; i < assets->source_count && assets->source_textures; i++)
+        picture_free(&assets->source_textures[i]);
+    for (uint32_t i = 0; i < assets->collider_count && assets->solids; i++) solid_free(&assets->solids[i]);
+    for (uint32_t i = 0; i < assets->collider_count && assets->collider_motions; i++)
+        sequence_free(&assets->collider_motions[i]);
+    for (uint32_t i = 0; i < assets->pin_count && assets->pin_motions; i++) sequence_free(&assets->pin_motions[i]);
+    image_free(&assets->sky);
+    free(assets->collider_motions);
+    free(assets->pin_motions);
+    free(assets->solids);
+    free(assets->probes);
+    free(assets->meshes);
+    free(assets->reports);
+    free(assets->images);
+    free(assets->pictures);
+    free(assets->colours);
+    free(assets->transmittances);
+    free(assets->fields);
+    free(assets->source_textures);
+    *assets = (SceneAssets){0};
+}

@@ -1,0 +1,240 @@
+// A sequence of mesh files, one per frame, as the motion of a collider or of a pin's particles.
+//
+// A pin's particle is bound to the nearest triangle of the first frame, by the weights w of the closest point and the
+// displacement d from it in the triangle's axes e. At another frame it is at
+//
+//   x = sum_k w_k v_k + sum_i d_i e_i,   e_0 along the first side, e_2 the normal, e_1 = e_2 x e_0.
+//
+// A pin can thus follow the mesh that its sheet was made from, vertex by vertex, or another mesh, of a body.
+#include "scene/sequence.h"
+
+#include "common/store.h"
+#include "scene/closest_point.h"
+#include "scene/solid.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static SingeResult sequence_no_memory(SingeError *error) {
+    return refuse(error, SINGE_ERROR_MEMORY, "scene", -1, "out of memory for a motion");
+}
+
+// ---- files
+
+bool sequence_name_fits(const char *name) {
+    const char *file = strrchr(name, '/'), *run = strchr(file ? file : name, '#');
+    if (!run || (file && memchr(name, '#', (size_t)(file - name)))) return false;
+    return !strchr(run + strspn(run, "#"), '#') && strspn(run, "#") <= 9;
+}
+
+/// The name of a frame's file, from malloc; NULL when out of memory.
+static char *sequence_path(const SceneMotion *motion, int frame) {
+    const char *path = motion->mesh.path, *file = strrchr(path, '/'), *run = strchr(file ? file : path, '#');
+    const size_t size = strlen(path) + 16;
+    char *made = malloc(size);
+    if (made)
+        snprintf(made, size, "%.*s%0*d%s", (int)(run - path), path, (int)strspn(run, "#"), motion->first + frame,
+                 run + strspn(run, "#"));
+    return made;
+}
+
+/// Rotates a frame from y up to z up.
+static void sequence_transform(const SceneMotion *motion, float *positions, uint32_t count) {
+    for (uint32_t v = 0; motion->up == SCENE_UP_Y && v < count; v++) {
+        float *p = positions + 3 * (size_t)v, y = p[1];
+        p[1] = -p[2], p[2] = y;
+    }
+}
+
+/// Reads a frame; the first one allocates all.
+static SingeResult sequence_read_frame(const SceneMotion *motion, const char *path, int frame, int frames,
+                                       SceneSequence *sequence, SingeError *error) {
+    Bytes bytes = {0};
+    SceneSolid solid = {0};
+    SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
+    if (!result)
+        result =
+            solid_read_mesh(path, bytes.data, bytes.size, metres_per_unit(motion->units, motion->scale), &solid, error);
+    bytes_free(&bytes);
+    const uint32_t vertices = solid.surface.vertex_count, triangles = solid.surface.triangle_count;
+    if (!result && frame == 0) {
+        sequence->vertex_count = vertices;
+        sequence->triangle_count = triangles;
+        sequence->triangles = solid.surface.triangles;
+        solid.surface.triangles = NULL;
+        sequence->frames = calloc((size_t)frames, sizeof *sequence->frames);
+        if (!sequence->frames) result = sequence_no_memory(error);
+    } else if (!result && (vertices != sequence->vertex_count || triangles != sequence->triangle_count)) {
+        result = refuse(error, SINGE_ERROR_MESH, "scene", -1,
+                        "%s: has %u vertices and %u triangles, the first of the motion %u and %u", short_name(path),
+                        vertices, triangles, sequence->vertex_count, sequence->triangle_count);
+    }
+    if (!result) {
+        sequence_transform(motion, solid.surface.vertices, vertices);
+        sequence->frames[frame] =
+            (PreviewSolid){vertices, triangles, solid.surface.vertices, sequence->triangles, true};
+        sequence->frame_count = (uint32_t)frame + 1;
+        solid.surface.vertices = NULL;
+    }
+    solid_free(&solid);
+    return result;
+}
+
+static SingeResult sequence_check_frame(const PreviewSolid *frame, const char *path, SingeError *error) {
+    for (size_t k = 0; k < 3 * (size_t)frame->vertex_count; k++)
+        if (!(fabsf(frame->vertices[k]) <= 1e4f))
+            return refuse(error, SINGE_ERROR_MESH, "scene", -1, "%s: vertex %zu (from 0) is not finite or beyond 10 km",
+                          short_name(path), k / 3);
+    return SINGE_OK;
+}
+
+/// The number of frames with files, at least one: the motion stops after the last. SINGE_ERROR_FILE if one is missing
+/// in between.
+static SingeResult sequence_length(const SceneMotion *motion, int frames, int *length, SingeError *error) {
+    bool there = true, next;
+    for (*length = 0; *length < frames && there; ++*length) {
+        char *path = sequence_path(motion, *length + 1);
+        if (!path) return sequence_no_memory(error);
+        there = access(path, F_OK) == 0;
+        free(path);
+    }
+    if (there || *length == frames) return SINGE_OK;
+    char *missing = sequence_path(motion, *length), *after = sequence_path(motion, *length + 1);
+    SingeResult result = missing && after ? SINGE_OK : sequence_no_memory(error);
+    next = !result && access(after, F_OK) == 0;
+    if (next)
+        result = refuse(error, SINGE_ERROR_FILE, "scene", -1, "%s: there is no such file, but the next one is there",
+                        short_name(missing));
+    free(missing);
+    free(after);
+    return result;
+}
+
+SingeResult sequence_read(const SceneMotion *motion, int frames, SceneSequence *sequence, SingeError *error) {
+    *sequence = (SceneSequence){0};
+    int length;
+    SingeResult result = sequence_length(motion, frames, &length, error);
+    for (int frame = 0; !result && frame < length; frame++) {
+        char *path = sequence_path(motion, frame);
+        result = path ? sequence_read_frame(motion, path, frame, length, sequence, error) : sequence_no_memory(error);
+        if (!result) result = sequence_check_frame(&sequence->frames[frame], path, error);
+        free(path);
+    }
+    if (!result && (sequence->vertex_count == 0 || sequence->triangle_count == 0))
+        result = refuse(error, SINGE_ERROR_MESH, "scene", -1, "%s: the motion's mesh has no faces",
+                        short_name(motion->mesh.path));
+    if (result) sequence_free(sequence);
+    return result;
+}
+
+void sequence_free(SceneSequence *sequence) {
+    for (uint32_t f = 0; f < sequence->frame_count; f++) free(sequence->frames[f].vertices);
+    free(sequence->frames);
+    free(sequence->triangles);
+    free(sequence->bonds);
+    *sequence = (SceneSequence){0};
+}
+
+// ---- bonds
+
+static void corners_of(const PreviewSolid *frame, uint32_t triangle, double v[3][3]) {
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            v[i][k] =
+                (double)frame->vertices[3 * (size_t)frame->triangles[3 * (size_t)triangle + (size_t)i] + (size_t)k];
+}
+
+static void axes_of(const double v[3][3], double e[3][3]) {
+    double side[3], other[3];
+    for (int k = 0; k < 3; k++) e[0][k] = side[k] = v[1][k] - v[0][k], other[k] = v[2][k] - v[0][k];
+    for (int k = 0; k < 3; k++)
+        e[2][k] = side[(k + 1) % 3] * other[(k + 2) % 3] - side[(k + 2) % 3] * other[(k + 1) % 3];
+    for (int i = 0; i < 3; i += 2) {
+        const double length = sqrt(closest_dot(e[i], e[i]));
+        for (int k = 0; k < 3; k++) e[i][k] = length > 0 ? e[i][k] / length : 0; // an axis without extent remains 0
+    }
+    for (int k = 0; k < 3; k++) e[1][k] = e[2][(k + 1) % 3] * e[0][(k + 2) % 3] - e[2][(k + 2) % 3] * e[0][(k + 1) % 3];
+}
+
+static void bond(const PreviewSolid *frame, const float position[4], SceneBond *made) {
+    const double p[3] = {(double)position[0], (double)position[1], (double)position[2]};
+    double v[3][3], e[3][3], weights[3], best = INFINITY, away[3];
+    for (uint32_t t = 0; t < frame->triangle_count; t++) {
+        corners_of(frame, t, v);
+        const double square = closest_on_triangle(p, (const double(*)[3])v, weights);
+        if (!(square < best)) continue;
+        best = square;
+        made->triangle = t;
+        memcpy(made->weights, weights, sizeof weights);
+    }
+    corners_of(frame, made->triangle, v);
+    axes_of((const double(*)[3])v, e);
+    for (int k = 0; k < 3; k++)
+        away[k] = p[k] - made->weights[0] * v[0][k] - made->weights[1] * v[1][k] - made->weights[2] * v[2][k];
+    for (int i = 0; i < 3; i++) made->away[i] = closest_dot(away, e[i]);
+}
+
+/// Binds a pin's particles, at their rest positions, to the first frame.
+static bool bond_all(const SingeSim *sim, SingePinId pin, SceneSequence *sequence) {
+    const SingeView view = singe_sim_view(sim);
+    uint32_t count;
+    const uint32_t *particles = singe_sim_pin_particles(sim, pin, &count);
+    sequence->bonds = calloc((size_t)count + 1, sizeof *sequence->bonds);
+    sequence->bond_count = sequence->bonds ? count : 0;
+    for (uint32_t k = 0; k < sequence->bond_count; k++)
+        bond(&sequence->frames[0], view.rest_position[particles[k]], &sequence->bonds[k]);
+    return sequence->bonds != NULL;
+}
+
+static void bonds_at(const SceneSequence *sequence, uint32_t frame, float *positions) {
+    for (uint32_t b = 0; b < sequence->bond_count; b++, positions += 3) {
+        const SceneBond *made = &sequence->bonds[b];
+        double v[3][3], e[3][3];
+        corners_of(&sequence->frames[frame], made->triangle, v);
+        axes_of((const double(*)[3])v, e);
+        for (int k = 0; k < 3; k++) {
+            double x = 0;
+            for (int i = 0; i < 3; i++) x += made->weights[i] * v[i][k] + made->away[i] * e[i][k];
+            positions[k] = (float)x;
+        }
+    }
+}
+
+// ---- the simulation
+
+static SingeResult follow_pin(SingeSim *sim, SingePinId pin, SceneSequence *sequence, uint32_t frame, double time,
+                              SingeError *error) {
+    if (!sequence->bonds && !bond_all(sim, pin, sequence)) return sequence_no_memory(error);
+    float *positions = malloc(3 * ((size_t)sequence->bond_count + 1) * sizeof *positions);
+    if (!positions) return sequence_no_memory(error);
+    bonds_at(sequence, frame, positions);
+    SingeResult result = singe_sim_set_pin_positions(sim, pin, positions, time);
+    free(positions);
+    if (result) *error = *singe_sim_error(sim);
+    return result;
+}
+
+SingeResult scene_follow(const Scene *scene, SceneAssets *assets, SingeSim *sim, int frame, SingeError *error) {
+    const double time = frame / (double)scene->fps;
+    SingeResult result = SINGE_OK;
+    // scene_build has added them in order, and a load keeps handles
+    SingeColliderId *colliders = calloc((size_t)scene->collider_count + 1, sizeof *colliders);
+    SingePinId *pins = calloc((size_t)scene->pin_count + 1, sizeof *pins);
+    if (!colliders || !pins) result = sequence_no_memory(error);
+    if (!result) singe_sim_colliders(sim, colliders, scene->collider_count);
+    if (!result) singe_sim_pins(sim, pins, scene->pin_count);
+    for (uint32_t i = 0; i < scene->collider_count && !result; i++) {
+        const SceneSequence *sequence = &assets->collider_motions[i];
+        if ((uint32_t)frame >= sequence->frame_count) continue;
+        result = singe_sim_set_collider_vertices(sim, colliders[i], sequence->frames[frame].vertices, time);
+        if (result) *error = *singe_sim_error(sim);
+    }
+    for (uint32_t i = 0; i < scene->pin_count && !result; i++)
+        if ((uint32_t)frame < assets->pin_motions[i].frame_count)
+            result = follow_pin(sim, pins[i], &assets->pin_motions[i], (uint32_t)frame, time, error);
+    free(colliders);
+    free(pins);
+    return result;
+}

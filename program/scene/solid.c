@@ -1,0 +1,204 @@
+// Colliders from files: faces of a mesh become triangles, pixels of a picture become heights.
+//
+// A face is triangulated by clipping ears in the plane across its mean normal (Newell's): the ear with the shortest new
+// edge first, so that a quad is cut along its shorter diagonal if both are inside.
+#include "scene/solid.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static SingeResult solid_fail(SingeError *error, SingeResult code, int64_t element, const char *text) {
+    *error = (SingeError){.code = code, .stage = "scene", .element = element};
+    snprintf(error->message, sizeof error->message, "%s", text);
+    return code;
+}
+
+static SingeResult solid_no_memory(SingeError *error) {
+    return solid_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a collider");
+}
+
+void solid_free(SceneSolid *solid) {
+    free(solid->surface.vertices);
+    free(solid->surface.triangles);
+    free(solid->heights);
+    *solid = (SceneSolid){0};
+}
+
+// ---- faces
+
+/// Twice the area of a face by components.
+static void face_normal(const float *vertices, const uint32_t *corners, uint32_t count, double normal[3]) {
+    normal[0] = normal[1] = normal[2] = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const float *a = vertices + 3 * (size_t)corners[i], *b = vertices + 3 * (size_t)corners[(i + 1) % count];
+        for (int k = 0; k < 3; k++) {
+            int e = (k + 1) % 3, f = (k + 2) % 3;
+            normal[k] += ((double)a[e] - (double)b[e]) * ((double)a[f] + (double)b[f]);
+        }
+    }
+}
+
+/// Twice the area of the triangle as seen along the normal; negative if it turns the other way.
+static double solid_turn(const float *vertices, uint32_t a, uint32_t b, uint32_t c, const double normal[3]) {
+    const float *p = vertices + 3 * (size_t)a, *q = vertices + 3 * (size_t)b, *r = vertices + 3 * (size_t)c;
+    double u[3], v[3], sum = 0;
+    for (int k = 0; k < 3; k++) u[k] = (double)q[k] - (double)p[k], v[k] = (double)r[k] - (double)p[k];
+    for (int k = 0; k < 3; k++) {
+        int e = (k + 1) % 3, f = (k + 2) % 3;
+        sum += normal[k] * (u[e] * v[f] - u[f] * v[e]);
+    }
+    return sum;
+}
+
+/// Square of the new edge when corner i of the remaining ones is clipped; infinite if the corner is no ear.
+static double ear(const float *vertices, const uint32_t *left, uint32_t count, uint32_t i, const double normal[3]) {
+    uint32_t a = left[(i + count - 1) % count], b = left[i], c = left[(i + 1) % count];
+    if (!(solid_turn(vertices, a, b, c, normal) > 0)) return INFINITY;
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t p = left[k];
+        if (p == a || p == b || p == c) continue;
+        if (solid_turn(vertices, a, b, p, normal) >= 0 && solid_turn(vertices, b, c, p, normal) >= 0 &&
+            solid_turn(vertices, c, a, p, normal) >= 0)
+            return INFINITY;
+    }
+    double square = 0;
+    for (size_t k = 0; k < 3; k++) {
+        double d = (double)vertices[3 * (size_t)a + k] - (double)vertices[3 * (size_t)c + k];
+        square += d * d;
+    }
+    return square;
+}
+
+/// Cuts a face into count - 2 triangles; `left` has its corners and is consumed.
+static void face_cut(const float *vertices, uint32_t *left, uint32_t count, uint32_t *triangles) {
+    double normal[3];
+    face_normal(vertices, left, count, normal);
+    for (; count >= 3; count--, triangles += 3) {
+        uint32_t best = 1; // if the face crosses itself: any
+        double min = INFINITY;
+        for (uint32_t i = 0; i < count && count > 3; i++) {
+            double square = ear(vertices, left, count, i, normal);
+            if (square < min) {
+                min = square;
+                best = i;
+            }
+        }
+        triangles[0] = left[(best + count - 1) % count], triangles[1] = left[best];
+        triangles[2] = left[(best + 1) % count];
+        memmove(left + best, left + best + 1, (count - best - 1) * sizeof *left);
+    }
+}
+
+/// Cuts all faces; false when out of memory. A corner named twice in a row gives triangles without area, which the
+/// library leaves out.
+static bool cut_faces(const Polygons *polygons, PreviewSolid *surface) {
+    uint32_t max = 0;
+    for (uint32_t f = 0; f < polygons->face_count; f++) {
+        uint32_t count = polygons->first[f + 1] - polygons->first[f];
+        max = count > max ? count : max;
+    }
+    uint32_t *left = malloc((max + 1) * sizeof *left);
+    for (uint32_t f = 0; left && f < polygons->face_count; f++) {
+        uint32_t first = polygons->first[f], count = polygons->first[f + 1] - first;
+        memcpy(left, polygons->corners + first, count * sizeof *left);
+        face_cut(surface->vertices, left, count, surface->triangles + 3 * (size_t)surface->triangle_count);
+        surface->triangle_count += count - 2;
+    }
+    free(left);
+    return left != NULL;
+}
+
+SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size, double scale, SceneSolid *solid,
+                            SingeError *error) {
+    Polygons polygons;
+    SingeResult result = polygons_read(name, bytes, size, (SingeAllocator){0}, &polygons, error);
+    if (result) return result;
+    PreviewSolid *surface = &solid->surface;
+    size_t count = (size_t)polygons.corner_count - 2 * (size_t)polygons.face_count;
+    surface->vertices = malloc(3 * (size_t)polygons.vertex_count * sizeof *surface->vertices);
+    surface->triangles = malloc(3 * count * sizeof *surface->triangles);
+    surface->vertex_count = polygons.vertex_count;
+    if (count > INT32_MAX / 4) result = solid_fail(error, SINGE_ERROR_LIMIT, -1, "the collider's mesh is too large");
+    else if (!surface->vertices || !surface->triangles) result = solid_no_memory(error);
+    for (size_t k = 0; !result && k < 3 * (size_t)polygons.vertex_count; k++)
+        surface->vertices[k] = (float)((double)polygons.positions[k] * scale);
+    if (!result && !cut_faces(&polygons, surface)) result = solid_no_memory(error);
+    polygons_free(&polygons);
+    return result;
+}
+
+// ---- heights
+
+static void put_triangle(PreviewSolid *surface, size_t a, size_t b, size_t c) {
+    uint32_t *triangle = surface->triangles + 3 * (size_t)surface->triangle_count++;
+    triangle[0] = (uint32_t)a, triangle[1] = (uint32_t)b, triangle[2] = (uint32_t)c;
+}
+
+static void put_vertex(PreviewSolid *surface, float x, float y, float z) {
+    float *vertex = surface->vertices + 3 * (size_t)surface->vertex_count++;
+    vertex[0] = x;
+    vertex[1] = y;
+    vertex[2] = z;
+}
+
+/// Walls along the border, whose k-th node, counter-clockwise from the min corner, is `node`.
+static size_t border_node(const SceneSolid *solid, size_t k) {
+    size_t columns = solid->columns, rows = solid->rows;
+    if (k < columns - 1) return k;
+    if ((k -= columns - 1) < rows - 1) return (k + 1) * columns - 1;
+    if ((k -= rows - 1) < columns - 1) return rows * columns - 1 - k;
+    return (rows - 1 - (k - (columns - 1))) * columns;
+}
+
+/// The library's surface, and walls down to the lowest height.
+static void draw_heights(SceneSolid *solid, const float size[2]) {
+    PreviewSolid *surface = &solid->surface;
+    size_t columns = solid->columns, rows = solid->rows, border = 2 * (columns + rows) - 4;
+    float low = INFINITY;
+    for (size_t j = 0; j < rows; j++)
+        for (size_t i = 0; i < columns; i++) {
+            float h = solid->heights[j * columns + i];
+            low = fminf(low, h);
+            put_vertex(surface, size[0] * ((float)i / (float)(columns - 1) - 0.5f),
+                       size[1] * ((float)j / (float)(rows - 1) - 0.5f), h);
+        }
+    for (size_t j = 0; j + 1 < rows; j++)
+        for (size_t i = 0; i + 1 < columns; i++) {
+            size_t a = j * columns + i, c = a + columns + 1;
+            put_triangle(surface, a, a + 1, c);
+            put_triangle(surface, a, c, a + columns);
+        }
+    low -= 1e-3f * (size[0] + size[1]);
+    for (size_t k = 0; k < border; k++) {
+        const float *top = surface->vertices + 3 * border_node(solid, k);
+        put_vertex(surface, top[0], top[1], low);
+    }
+    for (size_t k = 0; k < border; k++) {
+        size_t a = border_node(solid, k), b = border_node(solid, (k + 1) % border), below = columns * rows;
+        put_triangle(surface, a, below + k, below + (k + 1) % border);
+        put_triangle(surface, a, below + (k + 1) % border, b);
+    }
+}
+
+SingeResult solid_make_heights(const SingeTexture *picture, const float size[2], const float heights[2],
+                               SceneSolid *solid, SingeError *error) {
+    size_t columns = (size_t)picture->width, rows = (size_t)picture->height, nodes = columns * rows;
+    if (columns < 2 || rows < 2)
+        return solid_fail(error, SINGE_ERROR_FORMAT, -1, "a heightfield's picture needs 2 pixels along each side");
+    if (nodes > INT32_MAX / 8)
+        return solid_fail(error, SINGE_ERROR_LIMIT, -1, "a heightfield's picture has at most 268 million pixels");
+    size_t border = 2 * (columns + rows) - 4;
+    solid->columns = (uint32_t)columns;
+    solid->rows = (uint32_t)rows;
+    solid->heights = malloc(nodes * sizeof *solid->heights);
+    solid->surface.vertices = malloc(3 * (nodes + border) * sizeof *solid->surface.vertices);
+    solid->surface.triangles = malloc(3 * (2 * (columns - 1) * (rows - 1) + 2 * border) * sizeof(uint32_t));
+    if (!solid->heights || !solid->surface.vertices || !solid->surface.triangles) return solid_no_memory(error);
+    for (size_t j = 0; j < rows; j++) // the picture's rows run from the top
+        for (size_t i = 0; i < columns; i++)
+            solid->heights[j * columns + i] =
+                heights[0] + (heights[1] - heights[0]) * picture->values[(rows - 1 - j) * columns + i];
+    draw_heights(solid, size);
+    return SINGE_OK;
+}

@@ -1,0 +1,212 @@
+// A fork-join pool. A job is cut into ranges of `grain` items; the remaining ones are [first, last) in one word. The
+// caller takes them from the front and workers from the back, so that from job to job most items stay with the thread
+// whose cache they are in. Which thread takes which range does not matter for the result, since items are independent.
+//
+// A job is over when its ranges are done, not when every worker has seen it: a worker that sleeps, or is preempted,
+// delays nobody. A thread reads the job only after it has taken a range, and the job stays until that is done.
+//
+// Idle workers watch for the next job for a short while, as a step has many, and then block; no more of them watch, or
+// are woken, than there are processors to run them.
+#include "common/assertion.h"
+#include "common/pool.h"
+
+#include "common/error.h"
+#include "common/thread.h"
+
+#include <stdatomic.h>
+
+enum { POOL_PAUSES = 1000, POOL_YIELDS = 50, POOL_THREADS_MAX = 64 };
+
+struct Pool {
+    SingeTasks tasks; ///< the host's scheduler, when set
+    int thread_count, processors;
+    Thread threads[POOL_THREADS_MAX];
+    Mutex mutex;
+    Condition wake, over;
+    // the job: written while no range is left, published by `left`
+    SingeTaskFn *run;
+    void *context;
+    int count, grain, ranges;
+    _Atomic uint64_t left;       ///< first << 32 | last
+    atomic_int done;             ///< ranges
+    atomic_uint generation;      ///< of jobs
+    atomic_int watching, asleep; ///< workers
+    atomic_bool caller_asleep;
+    atomic_bool quit;
+};
+
+static inline void pool_pause(void) {
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    __asm__ volatile("yield");
+#endif
+}
+
+/// Takes a range from the front or the back. False when none is left.
+static bool pool_take(Pool *pool, bool back, uint32_t *range) {
+    uint64_t left = atomic_load_explicit(&pool->left, memory_order_relaxed);
+    for (;;) {
+        uint32_t first = (uint32_t)(left >> 32), last = (uint32_t)left;
+        if (first >= last) return false;
+        *range = back ? last - 1 : first;
+        uint64_t rest = back ? left - 1 : left + (UINT64_C(1) << 32);
+        if (atomic_compare_exchange_weak(&pool->left, &left, rest)) return true;
+    }
+}
+
+static void pool_run_ranges(Pool *pool, bool back) {
+    uint32_t range;
+    while (pool_take(pool, back, &range)) {
+        int ranges = pool->ranges, begin = (int)range * pool->grain;
+        int end = pool->count - begin < pool->grain ? pool->count : begin + pool->grain;
+        pool->run(pool->context, begin, end);
+        // the job may change from here on
+        if (atomic_fetch_add(&pool->done, 1) + 1 == ranges && atomic_load(&pool->caller_asleep)) {
+            mutex_lock(&pool->mutex);
+            condition_signal(&pool->over);
+            mutex_unlock(&pool->mutex);
+        }
+    }
+}
+
+/// Watches for a while for a job after `seen`.
+static bool pool_watch(Pool *pool, unsigned seen) {
+    bool found = false;
+    if (atomic_fetch_add(&pool->watching, 1) + 1 < pool->processors)
+        for (int i = 0; i < POOL_PAUSES + POOL_YIELDS && !found; i++) {
+            if (i < POOL_PAUSES) pool_pause();
+            else thread_yield();
+            found = atomic_load_explicit(&pool->generation, memory_order_relaxed) != seen;
+        }
+    atomic_fetch_sub(&pool->watching, 1);
+    return found;
+}
+
+static void pool_worker(void *argument) {
+    Pool *pool = argument;
+    unsigned seen = 0;
+    while (!atomic_load(&pool->quit)) {
+        if (!pool_watch(pool, seen)) {
+            mutex_lock(&pool->mutex);
+            atomic_fetch_add(&pool->asleep, 1); // before the generation is read: see pool_wake
+            while (atomic_load(&pool->generation) == seen) condition_wait(&pool->wake, &pool->mutex);
+            atomic_fetch_sub(&pool->asleep, 1);
+            mutex_unlock(&pool->mutex);
+        }
+        seen = atomic_load(&pool->generation);
+        pool_run_ranges(pool, true);
+    }
+}
+
+/// Wakes as many sleepers as the ranges and processors can use, less the threads awake. The generation is raised before
+/// `asleep` is read: a worker that is not counted as asleep here sees the new generation before it sleeps.
+static void pool_wake(Pool *pool, int ranges) {
+    atomic_fetch_add(&pool->generation, 1);
+    int asleep = atomic_load(&pool->asleep), awake = pool->thread_count - asleep;
+    int useful = ranges < pool->processors ? ranges : pool->processors;
+    if (asleep == 0 || awake >= useful) return;
+    mutex_lock(&pool->mutex);
+    for (; awake < useful && asleep > 0; awake++, asleep--) condition_signal(&pool->wake);
+    mutex_unlock(&pool->mutex);
+}
+
+/// Waits until the ranges taken by others are done.
+static void pool_join(Pool *pool, int ranges) {
+    for (int i = 0; i < POOL_PAUSES + POOL_YIELDS; i++) {
+        if (atomic_load(&pool->done) == ranges) return;
+        if (i < POOL_PAUSES) pool_pause();
+        else thread_yield();
+    }
+    mutex_lock(&pool->mutex);
+    atomic_store(&pool->caller_asleep, true);
+    while (atomic_load(&pool->done) != ranges) condition_wait(&pool->over, &pool->mutex);
+    atomic_store(&pool->caller_asleep, false);
+    mutex_unlock(&pool->mutex);
+}
+
+SingeResult pool_create(Memory *memory, SingeTasks tasks, int thread_count, Pool **out) {
+    *out = NULL;
+    Pool *pool = memory_new(memory, 1, sizeof *pool);
+    if (!pool) return SINGE_ERROR_MEMORY;
+    pool->tasks = tasks;
+    int processors = thread_processors();
+    pool->processors = processors > POOL_THREADS_MAX ? POOL_THREADS_MAX : processors;
+    mutex_open(&pool->mutex);
+    condition_open(&pool->wake);
+    condition_open(&pool->over);
+    if (thread_count > POOL_THREADS_MAX) thread_count = POOL_THREADS_MAX;
+    // works without threads that cannot be created: results are the same
+    int count = 1;
+    if (!tasks.enqueue)
+        while (count < thread_count && thread_start(&pool->threads[count], pool_worker, pool)) count++;
+    pool->thread_count = count;
+    *out = pool;
+    return SINGE_OK;
+}
+
+void pool_destroy(Memory *memory, Pool *pool) {
+    if (!pool) return;
+    atomic_store(&pool->quit, true);
+    mutex_lock(&pool->mutex);
+    atomic_fetch_add(&pool->generation, 1);
+    condition_broadcast(&pool->wake);
+    mutex_unlock(&pool->mutex);
+    for (int i = 1; i < pool->thread_count; i++) thread_join(&pool->threads[i]);
+    mutex_close(&pool->mutex);
+    condition_close(&pool->wake);
+    condition_close(&pool->over);
+    memory_free(memory, (void *)&pool, 1, sizeof *pool);
+}
+
+void pool_for(Pool *pool, int count, int grain, SingeTaskFn *run, void *context) {
+    if (count <= 0) return;
+    if (!pool || (!pool->tasks.enqueue && pool->thread_count == 1) || count <= grain) {
+        run(context, 0, count);
+        return;
+    }
+    if (pool->tasks.enqueue) {
+        void *token = pool->tasks.enqueue(pool->tasks.context, run, context, count, grain);
+        pool->tasks.finish(pool->tasks.context, token);
+        return;
+    }
+    // about four ranges a thread even out the load without much counting
+    int even = (count - 1) / (4 * pool->thread_count) + 1;
+    if (grain < even) grain = even;
+    int ranges = (count - 1) / grain + 1;
+    pool->run = run;
+    pool->context = context;
+    pool->count = count;
+    pool->grain = grain;
+    pool->ranges = ranges;
+    atomic_store(&pool->done, 0);
+    atomic_store(&pool->left, (uint64_t)ranges);
+    pool_wake(pool, ranges);
+    pool_run_ranges(pool, false);
+    pool_join(pool, ranges);
+}
+
+typedef struct PoolSum {
+    PoolSumFn *sum;
+    void *context;
+    double *partial;
+    int count;
+} PoolSum;
+
+static void pool_sum_blocks(void *task, int begin, int end) {
+    PoolSum *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
+    for (int block = begin; block < end; block++) {
+        int first = block * POOL_BLOCK, rest = job->count - first;
+        job->partial[block] = job->sum(job->context, first, first + (rest < POOL_BLOCK ? rest : POOL_BLOCK));
+    }
+}
+
+double pool_sum(Pool *pool, int count, PoolSumFn *sum, void *context, double *partial) {
+    PoolSum job = {sum, context, partial, count};
+    int blocks = pool_blocks(count);
+    pool_for(pool, blocks, 4, pool_sum_blocks, &job);
+    double total = 0;
+    for (int block = 0; block < blocks; block++) total += partial[block];
+    return total;
+}

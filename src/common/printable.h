@@ -1,0 +1,44 @@
+// Foreign text in messages: file names, keys, values of a scene. Characters that a terminal would act on or that are
+// invisible are escaped, and long text is shortened.
+#ifndef COMMON_PRINTABLE_H
+#define COMMON_PRINTABLE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+enum {
+    SHOWN_MAX = 80,       ///< characters of a word that a message repeats
+    SHOWN_PATH_MAX = 200, ///< of a path, its end
+    PRINTABLE_PIECE = 12, ///< max bytes of a character, with a zero
+};
+
+/// Writes the character at *at, of the bytes up to `end` (a zero follows there or later), in printable form,
+/// zero-terminated, and moves *at past it. `\n`, `\x1b`: control characters and bytes that are not UTF-8; `\u202e`,
+/// `\U000e0001`: characters that change the direction of writing, have no width, break lines or are control characters
+/// beyond ASCII. Returns the length written; *at must be before `end`.
+size_t printable_character(const char **at, const char *end, char piece[PRINTABLE_PIECE]);
+
+/// Whether a text needs no escapes.
+bool printable_is(const char *text);
+
+/// Characters of a text: code points, and bytes that are not UTF-8.
+size_t printable_count(const char *text);
+
+/// Writes a text in this form, on one line.
+void printable_write(const char *text, FILE *file);
+
+/// Foreign text in a message.
+typedef struct Shown {
+    char text[1040];
+} Shown;
+
+/// At most SHOWN_MAX characters of a text, followed by "..." if it is longer.
+Shown shown(const char *text);
+/// The last SHOWN_PATH_MAX characters of a path, after "..." if it is longer.
+Shown shown_path(const char *path);
+
+/// Removes an incomplete last character of a zero-terminated text.
+void printable_trim(char *text);
+
+#endif

@@ -1,0 +1,42 @@
+// Memory from the caller's hook, and messages, for all readers and writers.
+#ifndef COMMON_STORE_H
+#define COMMON_STORE_H
+
+#include "singe/material.h"
+
+#define TRY(call)                            \
+    do {                                     \
+        SingeResult try_result_ = (call);    \
+        if (try_result_) return try_result_; \
+    } while (0)
+
+/// An uninitialised array; NULL when out of memory or if its size overflows. At least one byte is allocated, so NULL
+/// always means failure; free it with the same count.
+void *store_new(SingeAllocator allocator, size_t count, size_t element_size);
+void store_free(SingeAllocator allocator, void *array, size_t count, size_t element_size);
+
+/// Grows *array (of *capacity elements) to hold `count` elements, at least doubling it. False when out of memory.
+bool store_grow(SingeAllocator allocator, void *array_pointer, size_t *capacity, size_t count, size_t element_size);
+
+/// Shrinks an array to `count` elements, as allocated by store_new. False when out of memory.
+bool store_trim(SingeAllocator allocator, void *array_pointer, size_t *capacity, size_t count, size_t element_size);
+
+/// Frees the names and the values, [count] each, and the array.
+void attributes_free(SingeAllocator allocator, SingeAttribute *attributes, uint32_t attribute_count, size_t count);
+
+/// Fills *error (may be NULL) and returns `code`.
+SingeResult refuse(SingeError *error, SingeResult code, const char *stage, int64_t element, const char *format, ...)
+    SINGE_PRINTF(5, 6);
+SingeResult refuse_memory(SingeError *error, const char *stage, const char *name);
+
+/// The end of a path, short enough to leave room for the reason in a message.
+const char *short_name(const char *name);
+
+static inline uint32_t load_u32_little(const uint8_t *p) {
+    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+}
+static inline void store_u32_little(uint8_t *p, uint32_t value) {
+    p[0] = (uint8_t)value, p[1] = (uint8_t)(value >> 8), p[2] = (uint8_t)(value >> 16), p[3] = (uint8_t)(value >> 24);
+}
+
+#endif

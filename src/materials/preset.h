@@ -1,0 +1,15 @@
+// The table of materials that have names: src/materials/presets.c, made from src/materials/*.yaml.
+#ifndef MATERIALS_PRESET_H
+#define MATERIALS_PRESET_H
+
+#include "singe/material.h"
+
+typedef struct MaterialPreset {
+    const char *name;
+    void (*apply)(SingeMaterialDef *def); ///< to the defaults
+} MaterialPreset;
+
+/// In the order of their names; a row of zeros behind the last.
+extern const MaterialPreset material_presets[];
+
+#endif

@@ -1,0 +1,211 @@
+// Splits a face's ring of corners into loops that can be cut into triangles. Parts that double back are left out. Where
+// the ring returns to a vertex it is split in two, unless the part in between is a hole.
+#include "mesh/loops.h"
+
+#include <math.h>
+#include <string.h>
+
+/// Max distance from a side at which a corner of the same face lies on it, as a share of the side's length.
+static const double beside = 1e-5;
+
+static uint32_t vertex_of(const Loops *loops, uint32_t half) { return loops->cut.faces->corner[half]; }
+static const double *position_of(const Loops *loops, uint32_t half) {
+    return loops->cut.work->position[vertex_of(loops, half)];
+}
+
+bool loops_begin(Loops *loops, Work *work, const Faces *faces) {
+    if (!polygon_begin(&loops->cut, work, faces)) return false;
+    const uint32_t max = loops->cut.capacity;
+    loops->ring = work_new(work, max, sizeof *loops->ring);
+    loops->stack = work_new(work, max, sizeof *loops->stack);
+    loops->corner = work_new(work, 2 * (size_t)max, sizeof *loops->corner);
+    loops->end = work_new(work, (size_t)max + 1, sizeof *loops->end);
+    loops->triangles = work_new(work, (size_t)max + 1, sizeof *loops->triangles);
+    return !work->no_memory;
+}
+
+// ---- spikes
+
+/// Whether the ring doubles back at b, to the same vertex or without area, or repeats a vertex.
+static bool turns_back(const Loops *loops, uint32_t a, uint32_t b, uint32_t c) {
+    double p[3], q[3], n[3];
+    if (vertex_of(loops, a) == vertex_of(loops, c) || vertex_of(loops, a) == vertex_of(loops, b)) return true;
+    sub3(position_of(loops, a), position_of(loops, b), p), sub3(position_of(loops, c), position_of(loops, b), q);
+    cross3(p, q, n);
+    return dot3(p, q) > 0 && dot3(n, n) <= FACE_THIN * FACE_THIN * dot3(p, p) * dot3(q, q);
+}
+
+/// Leaves out corners at which the ring doubles back, and repeated vertices. Returns the number of corners left.
+static uint32_t leave_out_spikes(const Loops *loops, uint32_t *ring, uint32_t n) {
+    uint32_t good = 0; // consecutive corners that stay
+    for (uint32_t at = 0; n >= 3 && good < n;) {
+        at %= n;
+        const uint32_t before = (at + n - 1) % n;
+        if (!turns_back(loops, ring[before], ring[at], ring[(at + 1) % n])) {
+            at++, good++;
+            continue;
+        }
+        memmove(ring + at, ring + at + 1, (n - 1 - at) * sizeof *ring);
+        n--;
+        at = (at + n - 1) % (n ? n : 1); // the corner before may be a spike now
+        good = good > 2 ? good - 2 : 0;
+    }
+    return n >= 3 ? n : 0;
+}
+
+static bool has_repeats(const Loops *loops, const uint32_t *ring, uint32_t n) {
+    for (uint32_t i = 1; i < n; i++)
+        for (uint32_t k = 0; k < i; k++)
+            if (vertex_of(loops, ring[i]) == vertex_of(loops, ring[k])) return true;
+    return false;
+}
+
+// ---- corners on the face's own sides
+
+/// The corner of the ring nearest to `a` on the side from there to `b`; MESH_NONE if there is none.
+static uint32_t corner_on(const Loops *loops, uint32_t n, uint32_t a, uint32_t b) {
+    double d[3], nearest = 1;
+    uint32_t found = MESH_NONE;
+    sub3(position_of(loops, b), position_of(loops, a), d);
+    const double square = dot3(d, d);
+    for (uint32_t i = 0; i < n; i++) {
+        const uint32_t half = loops->ring[i];
+        double e[3], off[3];
+        sub3(position_of(loops, half), position_of(loops, a), e);
+        double t = dot3(e, d) / square;
+        if (!(t > beside && t < 1 - beside && t < nearest)) continue;
+        for (int k = 0; k < 3; k++) off[k] = e[k] - t * d[k];
+        if (dot3(off, off) <= beside * beside * square) {
+            nearest = t;
+            found = half;
+        }
+    }
+    return found;
+}
+
+/// Inserts corners of the ring into those of its sides that they lie on. Returns the new number of corners.
+static uint32_t part_sides(Loops *loops, uint32_t n) {
+    for (uint32_t i = 0; i < n && n < loops->cut.capacity; i++) {
+        uint32_t on = corner_on(loops, n, loops->ring[i], loops->ring[(i + 1) % n]);
+        if (on == MESH_NONE) continue;
+        memmove(loops->ring + i + 2, loops->ring + i + 1, (n - 1 - i) * sizeof *loops->ring);
+        loops->ring[i + 1] = on;
+        n++;
+    }
+    return n;
+}
+
+// ---- loops
+
+static void end_loop(Loops *loops, const uint32_t *ring, uint32_t n) {
+    uint32_t *to = loops->corner + loops->end[loops->count];
+    memcpy(to, ring, n * sizeof *ring);
+    n = leave_out_spikes(loops, to, n);
+    if (n) loops->end[loops->count + 1] = loops->end[loops->count] + n, loops->count++;
+}
+
+/// The area of a ring along a normal.
+static double area_along(const Loops *loops, const uint32_t *ring, uint32_t n, const double normal[3]) {
+    double own[3];
+    if (n < 3) return 0;
+    polygon_normal(&loops->cut, ring, n, own);
+    return dot3(own, normal);
+}
+
+/// Splits a ring at the vertices that it names twice: at all of them, or only where both parts have the winding of the
+/// whole, so that holes stay with their surroundings.
+static void fall_apart(Loops *loops, uint32_t n, bool all) {
+    double normal[3];
+    polygon_normal(&loops->cut, loops->ring, n, normal);
+    double left = dot3(normal, normal);
+    const double min = 1e-9 * left;
+    uint32_t depth = 0;
+    loops->count = loops->end[0] = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        for (uint32_t at = depth; at-- > 0;) {
+            if (vertex_of(loops, loops->stack[at]) != vertex_of(loops, loops->ring[i])) continue;
+            double area = area_along(loops, loops->stack + at, depth - at, normal);
+            if (!all && fabs(area) > min && !(area > 0 && left - area > min)) continue;
+            end_loop(loops, loops->stack + at, depth - at);
+            left -= area;
+            depth = at;
+        }
+        loops->stack[depth++] = loops->ring[i];
+    }
+    end_loop(loops, loops->stack, depth);
+}
+
+static bool same_loop(const Loops *loops, uint32_t a, uint32_t b) {
+    const uint32_t n = loops->end[a + 1] - loops->end[a];
+    if (loops->end[b + 1] - loops->end[b] != n) return false;
+    for (uint32_t i = 0; i < n; i++) {
+        uint32_t k = 0, own = vertex_of(loops, loops->corner[loops->end[a] + i]);
+        while (k < n && vertex_of(loops, loops->corner[loops->end[b] + k]) != own) k++;
+        if (k == n) return false;
+    }
+    return true;
+}
+
+bool loops_is_flat(const Loops *loops, const uint32_t *ring, uint32_t n) {
+    double longest = 0, area = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        double p[3], q[3], m[3];
+        const double *a = position_of(loops, ring[i]), *b = position_of(loops, ring[(i + 1) % n]);
+        longest = fmax(longest, distance3(a, b));
+        sub3(a, position_of(loops, ring[0]), p), sub3(b, position_of(loops, ring[0]), q);
+        cross3(p, q, m);
+        area += sqrt(dot3(m, m));
+    }
+    return !(area > FACE_THIN * longest * longest);
+}
+
+/// Whether a loop has no area, or the same corners as an earlier one.
+static bool is_idle(const Loops *loops, uint32_t loop) {
+    const uint32_t first = loops->end[loop], n = loops->end[loop + 1] - first;
+    if (loops_is_flat(loops, loops->corner + first, n)) return true;
+    for (uint32_t other = 0; other < loop; other++)
+        if (same_loop(loops, loop, other)) return true;
+    return false;
+}
+
+/// Cuts the loops into triangles. False if one crosses itself or another.
+static bool cut_loops(Loops *loops) {
+    double largest[3] = {0}, normal[3];
+    loops->cut.count = 0;
+    for (uint32_t k = 0; k < loops->count; k++) {
+        const uint32_t *ring = loops->corner + loops->end[k], n = loops->end[k + 1] - loops->end[k];
+        loops->triangles[k] = loops->cut.count;
+        polygon_normal(&loops->cut, ring, n, normal);
+        if (is_idle(loops, k)) continue;
+        if (!polygon_cut(&loops->cut, ring, n)) return false;
+        if (dot3(normal, normal) > dot3(largest, largest)) memcpy(largest, normal, sizeof largest);
+    }
+    loops->triangles[loops->count] = loops->cut.count;
+    return loops->cut.count <= 2 || !polygon_overlaps(&loops->cut, largest);
+}
+
+bool loops_is_star(Loops *loops, uint32_t loop) {
+    return polygon_is_star(&loops->cut, loops->corner + loops->end[loop], loops->end[loop + 1] - loops->end[loop]);
+}
+
+FaceKind loops_find(Loops *loops, uint32_t face) {
+    const Faces *faces = loops->cut.faces;
+    const uint32_t corners = faces->first[face + 1] - faces->first[face];
+    for (uint32_t i = 0; i < corners; i++) loops->ring[i] = faces->first[face] + i;
+    loops->repeats = has_repeats(loops, loops->ring, corners);
+    uint32_t n = leave_out_spikes(loops, loops->ring, corners);
+    loops->spikes = n < corners && !loops->repeats;
+    if (n == 0) return FACE_IDLE;
+    const bool repeats = loops->repeats && has_repeats(loops, loops->ring, n);
+    if (!repeats && (n == 3 || polygon_is_star(&loops->cut, loops->ring, n))) {
+        loops->count = loops->end[0] = 0;
+        end_loop(loops, loops->ring, n);
+        return loops_is_flat(loops, loops->ring, n) ? FACE_IDLE : FACE_WHOLE;
+    }
+    n = part_sides(loops, n);
+    for (int all = 0; all < 2; all++) {
+        fall_apart(loops, n, all);
+        if (cut_loops(loops)) return loops->cut.count ? FACE_CUT : FACE_IDLE;
+    }
+    return FACE_CROSSED;
+}

@@ -1,0 +1,202 @@
+// The public functions of singe/mesh.h.
+#include "singe/mesh.h"
+
+#include "common/store.h"
+#include "mesh/to_quads.h"
+
+#include <math.h>
+#include <string.h>
+
+struct SingeMesh {
+    Mesh mesh;
+    SingeAllocator allocator;
+};
+
+// ---- Defs
+
+/// A caller's Def has `size` bytes, ours `known`: their common bytes are ours, the rest is 0.
+static void fill_def(void *def, size_t size, const void *standard, size_t known) {
+    if (size < sizeof size) return;
+    memset(def, 0, size);
+    memcpy(def, standard, size < known ? size : known);
+    memcpy(def, &size, sizeof size);
+}
+
+/// Copies the common bytes of a caller's Def over *def, which holds the defaults. False if struct_size is not set.
+static bool read_def(void *def, size_t size, const void *given) {
+    size_t known;
+    if (!given) return false;
+    memcpy(&known, given, sizeof known);
+    if (known < sizeof known) return false;
+    memcpy(def, given, known < size ? known : size);
+    memcpy(def, &size, sizeof size);
+    return true;
+}
+
+void singe_init_mesh(SingeMeshDef *def, size_t struct_size) {
+    const SingeMeshDef standard = {.quads = SINGE_MESH_PAIR, .smallest = MESH_SMALLEST};
+    fill_def(def, struct_size, &standard, sizeof standard);
+}
+
+void singe_init_grid(SingeGridDef *def, size_t struct_size) {
+    const SingeGridDef standard = {.size = {0.2f, 0.2f}, .cells = {50, 50}, .jitter = 0.15f, .seed = 1};
+    fill_def(def, struct_size, &standard, sizeof standard);
+}
+
+// ---- in
+
+static SingeResult bad(SingeError *error, const char *what) {
+    return refuse(error, SINGE_ERROR_ARGUMENT, "mesh", -1, "%s", what);
+}
+
+/// Checks what mesh_make assumes, and counts the corners.
+static SingeResult check_def(const SingeMeshDef *def, const char *name, uint32_t *corners, SingeError *error) {
+    uint64_t total = 0;
+    if (!def->positions || !def->corners) return bad(error, "positions or corners are NULL");
+    if (def->face_count == 0) return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: has no faces", short_name(name));
+    if (def->attribute_count && !def->attributes) return bad(error, "attributes are NULL");
+    for (uint32_t i = 0; i < def->attribute_count; i++)
+        if (!def->attributes[i].name || !def->attributes[i].values)
+            return bad(error, "an attribute has no name or no values");
+    if (def->quads != SINGE_MESH_PAIR && def->quads != SINGE_MESH_SPLIT)
+        return bad(error, "quads is not a known choice");
+    if (!(def->weld >= 0 && isfinite(def->weld))) return bad(error, "weld must be 0 or more");
+    if (!(def->smallest >= 0 && def->smallest <= 1)) return bad(error, "smallest must be between 0 and 1");
+    for (uint32_t f = 0; f < def->face_count; f++) {
+        uint32_t size = def->face_sizes ? def->face_sizes[f] : 3;
+        if (size < 3)
+            return refuse(error, SINGE_ERROR_MESH, "mesh", f, "%s: face %u (from 0) has %u corners", short_name(name),
+                          f, size);
+        total += size;
+    }
+    if (total > INT32_MAX || def->vertex_count > INT32_MAX || def->face_count > INT32_MAX)
+        return refuse(error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: more vertices or corners than 2147483647",
+                      short_name(name));
+    *corners = (uint32_t)total;
+    return SINGE_OK;
+}
+
+/// Converts the Def for mesh_make, which does not write to its arrays. False when out of memory.
+static bool take(const SingeMeshDef *def, uint32_t corners, Polygons *polygons) {
+    *polygons = (Polygons){.vertex_count = def->vertex_count,
+                           .face_count = def->face_count,
+                           .corner_count = corners,
+                           .attribute_count = def->attribute_count,
+                           .allocator = def->allocator,
+                           .positions = (float *)(uintptr_t)def->positions,
+                           .corners = (uint32_t *)(uintptr_t)def->corners,
+                           .attributes = (SingeAttribute *)(uintptr_t)def->attributes};
+    polygons->first = store_new(def->allocator, (size_t)def->face_count + 1, sizeof *polygons->first);
+    if (!polygons->first) return false;
+    polygons->first[0] = 0;
+    for (uint32_t f = 0; f < def->face_count; f++)
+        polygons->first[f + 1] = polygons->first[f] + (def->face_sizes ? def->face_sizes[f] : 3);
+    polygons->uv = (float *)(uintptr_t)def->corner_uv;
+    if (def->corner_uv || !def->uv) return true;
+    if (!(polygons->uv = store_new(def->allocator, corners, 2 * sizeof *polygons->uv))) return false;
+    for (uint32_t h = 0; h < corners; h++) {
+        const uint32_t v = def->corners[h]; // checked later, by mesh_make
+        for (size_t k = 0; k < 2; k++)
+            polygons->uv[2 * (size_t)h + k] = v < def->vertex_count ? def->uv[2 * (size_t)v + k] : 0;
+    }
+    return true;
+}
+
+static void give_back(const SingeMeshDef *def, Polygons *polygons) {
+    store_free(def->allocator, polygons->first, (size_t)def->face_count + 1, sizeof *polygons->first);
+    if (!def->corner_uv) store_free(def->allocator, polygons->uv, polygons->corner_count, 2 * sizeof *polygons->uv);
+}
+
+static SingeResult check_uv(const Polygons *polygons, const char *name, SingeError *error) {
+    for (size_t i = 0; polygons->uv && i < 2 * (size_t)polygons->corner_count; i++)
+        if (!isfinite(polygons->uv[i]))
+            return refuse(error, SINGE_ERROR_MESH, "mesh", (int64_t)(i / 2),
+                          "%s: corner %llu (from 0) has a uv that is not finite", short_name(name),
+                          (unsigned long long)(i / 2));
+    return SINGE_OK;
+}
+
+static SingeMesh *new_mesh(SingeAllocator allocator) {
+    SingeMesh *made = store_new(allocator, 1, sizeof *made);
+    if (made) *made = (SingeMesh){.allocator = allocator};
+    return made;
+}
+
+static void log_report(const SingeLog *log, const MeshReport *report) {
+    char line[256];
+    for (int i = 0; log->write && mesh_report_line(report, i, line, sizeof line); i++)
+        log->write(log->context, SINGE_LOG_INFO, line);
+}
+
+SingeResult singe_mesh_create(const SingeMeshDef *given, SingeMesh **mesh, SingeError *error) {
+    SingeMeshDef def = singe_default_mesh();
+    *mesh = NULL;
+    if (!read_def(&def, sizeof def, given))
+        return bad(error, "struct_size is not set; start from singe_default_mesh()");
+    const char *name = def.name ? def.name : "mesh";
+    uint32_t corners = 0;
+    TRY(check_def(&def, name, &corners, error));
+    Polygons polygons;
+    MeshReport report = {0};
+    const MeshOptions options = {(MeshQuads)def.quads, def.weld, def.smallest};
+    SingeMesh *made = new_mesh(def.allocator);
+    SingeResult result = take(&def, corners, &polygons) && made ? SINGE_OK : refuse_memory(error, "mesh", name);
+    if (!result) result = check_uv(&polygons, name, error);
+    if (!result) result = mesh_make(name, &polygons, &options, def.allocator, &made->mesh, &report, error);
+    give_back(&def, &polygons);
+    if (result) {
+        store_free(def.allocator, made, 1, sizeof *made);
+        return result;
+    }
+    log_report(&def.log, &report);
+    *mesh = made;
+    return SINGE_OK;
+}
+
+SingeResult singe_mesh_create_grid(const SingeGridDef *given, SingeMesh **mesh, SingeError *error) {
+    SingeGridDef def = singe_default_grid();
+    *mesh = NULL;
+    if (!read_def(&def, sizeof def, given))
+        return bad(error, "struct_size is not set; start from singe_default_grid()");
+    if (!(def.jitter >= 0 && def.jitter <= 0.3f)) return bad(error, "grid: jitter must be between 0 and 0.3");
+    if (!(def.displacement >= 0 && isfinite(def.displacement)))
+        return bad(error, "grid: displacement must be 0 or more");
+    SingeMesh *made = new_mesh(def.allocator);
+    if (!made) return refuse_memory(error, "grid", "grid");
+    SingeResult result =
+        mesh_grid(def.size[0], def.size[1], def.cells[0], def.cells[1], def.allocator, &made->mesh, error);
+    if (result) {
+        store_free(def.allocator, made, 1, sizeof *made);
+        return result;
+    }
+    mesh_grid_wear(&made->mesh, def.cells[0], def.cells[1], &(GridWear){def.jitter, def.displacement, def.seed});
+    *mesh = made;
+    return SINGE_OK;
+}
+
+void singe_mesh_destroy(SingeMesh *mesh) {
+    if (!mesh) return;
+    mesh_free(&mesh->mesh);
+    store_free(mesh->allocator, mesh, 1, sizeof *mesh);
+}
+
+// ---- out
+
+void singe_mesh_read(const SingeMesh *mesh, SingeMeshView *view, size_t struct_size) {
+    const Mesh *made = &mesh->mesh;
+    const SingeMeshView ours = {
+        .vertex_count = made->vertex_count,
+        .cell_count = made->cell_count,
+        .attribute_count = made->attribute_count,
+        .source_count = made->source ? made->source_count : 0,
+        .positions = made->positions,
+        .cells = made->cells,
+        .uv = made->uv,
+        .corner_uv = made->corner_uv,
+        .attributes = made->attributes,
+        .source_vertex = made->source,
+        .corner_source_vertex = made->corner_source,
+        .became = made->became,
+    };
+    fill_def(view, struct_size, &ours, sizeof ours);
+}
