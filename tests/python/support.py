@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "python"))
+sys.path.insert(0, str(ROOT / "bindings/python"))
 
 import singe  # noqa: E402
 
@@ -50,7 +50,7 @@ class Case(unittest.TestCase):
 
     def python(self, text, expect=0):
         """Runs a program of Python with singe; what it printed."""
-        text = f"import sys; sys.path[:0] = [{str(ROOT / 'python')!r}, {str(ROOT / 'tests/python')!r}]\n" + text
+        text = f"import sys; sys.path[:0] = [{str(ROOT / 'bindings/python')!r}, {str(ROOT / 'tests/python')!r}]\n" + text
         done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=300,
                               env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"})
         self.assertEqual(done.returncode, expect, done.stdout + done.stderr)

@@ -155,7 +155,7 @@ except KeyboardInterrupt:
 
     def test_the_program_is_found_and_made_executable(self):
         package = self.dir / "singe"
-        shutil.copytree(ROOT / "python/singe", package, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(ROOT / "bindings/python/singe", package, ignore=shutil.ignore_patterns("__pycache__"))
         (package / "bin").mkdir()
         program = package / "bin/singe"
         program.write_text("#!/bin/sh\necho it is \"$@\"\n")

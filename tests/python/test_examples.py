@@ -23,7 +23,7 @@ class Examples(Case):
             self.skipTest(f"needs {' and '.join(PACKAGES[name])}")
         picture = self.dir / "picture.png"
         done = subprocess.run([sys.executable, str(ROOT / f"examples/python/{name}.py"), str(picture)], text=True,
-                              capture_output=True, timeout=600, env={**os.environ, "PYTHONPATH": str(ROOT / "python")})
+                              capture_output=True, timeout=600, env={**os.environ, "PYTHONPATH": str(ROOT / "bindings/python")})
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(picture.read_bytes().startswith(b"\x89PNG"))
         return [float(number) for number in re.findall(r"[0-9.]+", done.stdout)]
