@@ -82,12 +82,15 @@ typedef enum SingeColour {
 /// What a sheet is made of and how it burns: the rows of singe/material.def, each with its unit, range, default and
 /// documentation. Mass is a fraction of the initial mass, 1 unburnt. A SingeParam may vary over the sheet; the others
 /// have one value for it.
+#define SINGE_TYPE_FLOAT float
+#define SINGE_TYPE_BOOL bool
+#define SINGE_TYPE_ENUM(name) name
 typedef struct SingeMaterialDef {
     size_t struct_size;
 #define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) SingeParam name;
 #define SINGE_PARAM_BACK SINGE_PARAM
 #define SINGE_PARAM_COLOURS(number, NAME, name, range, text) SingeParam name[SINGE_COLOUR_COUNT];
-#define SINGE_SCALAR(type, name, standard, text) type name;
+#define SINGE_SCALAR(TYPE, name, dimension, standard, range, text) SINGE_TYPE_##TYPE name;
 #include "singe/material.def"
 } SingeMaterialDef;
 

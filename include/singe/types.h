@@ -30,28 +30,28 @@ typedef struct SingeValueKey {
 /// A sheet: a quad mesh and its material. Cells are counter-clockwise seen from the front. The centre
 /// layer lies in front of the corner layer, at a distance of `thickness` along the normal.
 ///
-/// Defaults: singe_default_material(), at rest, drop_pieces_below 0; all else 0 or NULL.
+/// Defaults: material singe_default_material(); all else 0 or NULL.
 typedef struct SingeSheetDef {
     size_t struct_size;
-    const char *name; ///< for messages; NULL is "sheet"
-    uint32_t vertex_count;
-    const float *positions; ///< [3 * vertex_count] m, each within 1e15
-    uint32_t cell_count;
-    const uint32_t *cells; ///< [4 * cell_count], vertex indices
-    const float *uv;       ///< [2 * vertex_count], or NULL: textures are refused
-    uint32_t attribute_count;
+    const char *name;                 ///< for messages; NULL is "sheet"
+    uint32_t vertex_count;            ///< at least 4
+    const float *positions;           ///< [3 * vertex_count] m, each within 1e15
+    uint32_t cell_count;              ///< at least 1
+    const uint32_t *cells;            ///< [4 * cell_count], vertex indices
+    const float *uv;                  ///< [2 * vertex_count], or NULL: textures are refused
+    uint32_t attribute_count;         ///< 0 without attributes
     const SingeAttribute *attributes; ///< [attribute_count]
-    SingeMaterialDef material;
-    float velocity[3];       ///< m/s at the start
-    float drop_pieces_below; ///< m2, >= 0; loose pieces smaller than this vanish; 0 keeps all
+    SingeMaterialDef material;        ///< what it is made of
+    float velocity[3];                ///< m/s, finite; at the start
+    float drop_pieces_below;          ///< m2, >= 0; loose pieces smaller than this vanish; 0 keeps all
     /// [8 * cell_count] uv of each cell's corners, or NULL: those of the vertices. A vertex lies on a seam if its cells
-    /// have different uv: it is drawn once for each uv, at the same position. `uv` is needed as well: the particle of a
-    /// vertex has one uv.
+    /// have different uv: it is drawn once for each uv, at the same position. uv is needed as well: the particle of a
+    /// vertex has one uv
     const float *corner_uv;
     const int32_t *source_vertex; ///< [vertex_count] values of SingeSurface.source_vertex: below source_count, or -1
     uint32_t source_count;        ///< vertices of the mesh that this one was made from; 0 without source_vertex
     /// [4 * cell_count] the same for each cell's corners, where one vertex on a seam was several vertices of that mesh,
-    /// or NULL. Needs corner_uv and source_vertex.
+    /// or NULL. Needs corner_uv and source_vertex
     const int32_t *corner_source_vertex;
     void *user_data; ///< for the caller's use; see singe_sim_sheet_user_data
 } SingeSheetDef;
@@ -67,8 +67,8 @@ static inline SingeSheetDef singe_default_sheet(void) {
 
 typedef enum SingeSourceKind {
     SINGE_SOURCE_BALL = 0,     ///< a hot ball on a path; heats its neighbourhood
-    SINGE_SOURCE_TEXTURE = 1,  ///< a flux over uv, black none, white full
-    SINGE_SOURCE_SPOT = 2,     ///< a ball that stands still
+    SINGE_SOURCE_TEXTURE = 1,  ///< a flux drawn on the sheet: over uv, black none, white full
+    SINGE_SOURCE_SPOT = 2,     ///< a hot ball that stands still
     SINGE_SOURCE_CALLBACK = 3, ///< a function of the caller
 } SingeSourceKind;
 
@@ -85,27 +85,30 @@ typedef void SingeFluxFn(void *context, const struct SingeView *view, float *flu
 /// space, and falling smoothly to 0 at `radius + falloff`. Fluxes and conductances are those into one layer;
 /// a sheet has two layers, and takes up twice as much per square metre.
 ///
-/// Defaults: SINGE_SOURCE_SPOT, start 0, end INFINITY, temperature 1200, conductance 150, radius 0.005, falloff 0.01,
-/// flux 30e3; all else 0 or NULL: at rest at the origin.
+/// Defaults: kind SINGE_SOURCE_SPOT, end INFINITY, temperature 1200, conductance 150, radius 0.005, falloff 0.01, flux
+/// 30e3; all else 0 or NULL.
 typedef struct SingeSourceDef {
     size_t struct_size;
+    /// ball: a hot ball on a path; spot: a hot ball that stands still; texture: a flux drawn on the sheet
     SingeSourceKind kind;
-    float start, end;         ///< s, of its activity; any, end may be INFINITY
-    float temperature;        ///< K, of ball and spot, 1e-3 to 1e5
-    float conductance;        ///< W/(m2 K), of ball and spot, 0 to 1e9
-    float radius, falloff;    ///< m, of ball and spot, >= 0
-    uint32_t path_count;      ///< of ball and spot; 0: at rest at `position`. A spot has at most 1
+    float start;              ///< s, any, also infinite; time at which it starts
+    float end;                ///< s, any, also infinite; time at which it ends; inf: never
+    float temperature;        ///< K, ball and spot, 1e-3 to 1e5; of the ball or the flame
+    float conductance;        ///< W/(m2 K), ball and spot, 0 to 1e9; heat transfer coefficient to the sheet
+    float radius;             ///< m, ball and spot, >= 0; full heat within it
+    float falloff;            ///< m, ball and spot, >= 0; beyond the radius, over which the heat falls to nothing
+    uint32_t path_count;      ///< of ball and spot; 0: at rest at position. A spot has at most 1
     const SingePoseKey *path; ///< [path_count] positions only
     SingeTexture texture;     ///< texture source
-    /// W/m2 into each layer where the texture is white; times texture and strength at most 1e15. Below 0 it cools, but
-    /// not below 1 K
+    /// W/m2, texture, finite; into each of the sheet's two layers where the texture is white; times texture and
+    /// strength at most 1e15 W/m2. Below 0 it cools, but not below 1 K
     float flux;
-    uint32_t strength_count;       ///< texture: key frames that multiply `flux`; 0 means 1
+    uint32_t strength_count;       ///< texture: key frames that multiply flux; 0 means 1
     const SingeValueKey *strength; ///< [strength_count]
     SingeFluxFn *callback;         ///< not saved; must be set again after a load
-    void *callback_context;
-    float position[3]; ///< m, of a ball or spot without a path
-    void *user_data;   ///< for the caller's use; see singe_sim_source_user_data
+    void *callback_context;        ///< its first argument
+    float position[3];             ///< m, of a ball or spot without a path
+    void *user_data;               ///< for the caller's use; see singe_sim_source_user_data
 } SingeSourceDef;
 
 SINGE_API void singe_init_source(SingeSourceDef *def, size_t struct_size);
@@ -117,10 +120,10 @@ static inline SingeSourceDef singe_default_source(void) {
 }
 
 typedef enum SingeColliderKind {
-    SINGE_COLLIDER_PLANE = 0, ///< through `position`, normal = local z
-    SINGE_COLLIDER_SPHERE = 1,
+    SINGE_COLLIDER_PLANE = 0,       ///< through position, normal = local z
+    SINGE_COLLIDER_SPHERE = 1,      ///< of radius
     SINGE_COLLIDER_BOX = 2,         ///< half_size along the local axes
-    SINGE_COLLIDER_CAPSULE = 3,     ///< along local z, `height` between the centres of its caps
+    SINGE_COLLIDER_CAPSULE = 3,     ///< along local z, height between the centres of its caps
     SINGE_COLLIDER_HEIGHTFIELD = 4, ///< solid below heights over a rectangle around the origin, unbounded below
     SINGE_COLLIDER_MESH = 5,        ///< the inside of a closed triangle mesh
     SINGE_COLLIDER_DEFORMING = 6,   ///< the same; its vertices move (singe_sim_set_collider_vertices)
@@ -134,35 +137,41 @@ typedef enum SingeContactSides {
 
 /// A rigid solid that sheets rest on and slide over.
 ///
-/// Defaults: SINGE_COLLIDER_PLANE, radius 0.05, half_size 0.05, height 0.1, friction 0.4, offset 0.0005, temperature
-/// 293.15, conductance 0, contact_distance 0.002, SINGE_SIDES_TOUCHING, size 0.2, rotation {0,0,0,1}; all else 0 or
-/// NULL: at rest at the origin.
+/// Defaults: kind SINGE_COLLIDER_PLANE, radius 0.05, half_size {0.05, 0.05, 0.05}, height 0.1, friction 0.4, offset
+/// 0.0005, temperature 293.15, contact_distance 0.002, sides SINGE_SIDES_TOUCHING, size {0.2, 0.2}, rotation {0, 0, 0,
+/// 1}; all else 0 or NULL.
 typedef struct SingeColliderDef {
     size_t struct_size;
+    /// plane (its normal is its own z axis), sphere, box, capsule (along its own z axis), heightfield (solid below
+    /// heights over a rectangle of its own x-y plane) or mesh (what a closed mesh encloses)
     SingeColliderKind kind;
-    float radius;             ///< m, sphere and capsule, > 0
-    float half_size[3];       ///< m, box, > 0
-    float height;             ///< m, capsule, >= 0
-    float friction;           ///< Coulomb's coefficient, 0 to 1000
-    float offset;             ///< m, distance kept from the surface, 0 to 1000
-    float temperature;        ///< K, > 0; only used when conductance > 0
-    float conductance;        ///< W/(m2 K) in contact, >= 0; 0 for none
-    float contact_distance;   ///< m, distance within which heat is exchanged, >= 0
-    uint32_t path_count;      ///< 0: at rest at `position` and `rotation`
+    float radius;             ///< m, sphere and capsule, 1e-6 to 1e6; of the sphere or the capsule
+    float half_size[3];       ///< m, box, 1e-6 to 1e6; half of the box's lengths along its own axes
+    float height;             ///< m, capsule, 0 to 1e6; between the centres of the capsule's caps
+    float friction;           ///< 0 to 1000; Coulomb's coefficient
+    float offset;             ///< m, 0 to 1000; distance that sheets keep from the surface
+    float temperature;        ///< K, 1e-3 to 1e5; matters when conductance is not 0
+    float conductance;        ///< W/(m2 K), 0 to 1e9; heat exchanged in contact; 0 for none
+    float contact_distance;   ///< m, 0 to 1000; how near counts as contact for heat
+    uint32_t path_count;      ///< 0: at rest at position and rotation
     const SingePoseKey *path; ///< [path_count] of its own frame
-    SingeContactSides sides;  ///< layers of a sheet in contact that exchange heat
+    /// of a sheet's two layers in contact, touching: that which faces the collider exchanges heat; both: the one behind
+    /// it as well, as if heat were through the sheet at once
+    SingeContactSides sides;
     /// mesh and deforming: closed, so that each edge is shared by two triangles; counter-clockwise seen from outside,
     /// and free of self-intersections. Vertices at the same position are merged. A mesh that is inside out is flipped
     uint32_t vertex_count;
     const float *vertices;     ///< [3 * vertex_count] m, each within 1e4
     uint32_t triangle_count;   ///< at least 4
     const uint32_t *triangles; ///< [3 * triangle_count], vertex indices
-    uint32_t columns, rows;    ///< heightfield: nodes along local x and y, 2 to 32768
-    float size[2];             ///< m, heightfield: of its rectangle along local x and y, 1e-6 to 1e4
-    const float *heights;      ///< [rows * columns] m, each within 1e4; rows from the min y, columns from the min x
-    float position[3];         ///< m, without a path
-    float rotation[4];         ///< quaternion x, y, z, w, without a path; {0,0,0,1} is none
-    void *user_data;           ///< for the caller's use; see singe_sim_collider_user_data
+    uint32_t columns;          ///< heightfield: nodes along local x, 2 to 32768
+    uint32_t rows;             ///< heightfield: nodes along local y, 2 to 32768
+    /// m, heightfield, 1e-6 to 1e4; of the rectangle, from the first nodes to the last, along its own x and y
+    float size[2];
+    const float *heights; ///< [rows * columns] m, each within 1e4; rows from the min y, columns from the min x
+    float position[3];    ///< m, without a path
+    float rotation[4];    ///< quaternion x, y, z, w, without a path; {0,0,0,1} is none
+    void *user_data;      ///< for the caller's use; see singe_sim_collider_user_data
 } SingeColliderDef;
 
 SINGE_API void singe_init_collider(SingeColliderDef *def, size_t struct_size);
@@ -176,14 +185,16 @@ static inline SingeColliderDef singe_default_collider(void) {
 /// Holds particles of one sheet: those within `radius` of any of the points (rest position) and the
 /// listed vertices. They follow the path, relative to its pose at the time when the pin is added.
 ///
-/// Defaults: radius 0.005; all else 0 or NULL: held still.
+/// Defaults: radius 0.005; all else 0 or NULL.
 typedef struct SingePinDef {
     size_t struct_size;
-    SingeSheetId sheet;
-    uint32_t point_count;
-    const float *points; ///< [3 * point_count] m; a pin needs points or vertices
-    float radius;        ///< m, >= 0; 0 pins the nearest vertex of each point
-    uint32_t vertex_count;
+    SingeSheetId sheet;   ///< the sheet that it holds
+    uint32_t point_count; ///< a pin needs points or vertices
+    const float *points;  ///< [3 * point_count] m, each within 1e9
+    /// m, 0 to 1e6; all particles within this distance of a point are held, and at least the vertex nearest to each
+    /// point; a point that misses the sheet by a tenth of its diagonal causes a warning
+    float radius;
+    uint32_t vertex_count;    ///< 0 without a list of vertices
     const uint32_t *vertices; ///< [vertex_count] of the sheet's mesh, from 0
     uint32_t path_count;      ///< 0: held still
     const SingePoseKey *path; ///< [path_count]
@@ -200,14 +211,14 @@ static inline SingePinDef singe_default_pin(void) {
 
 /// The motion of the air: a mean velocity and seeded gusts that vary over time and space.
 ///
-/// Defaults: velocity 0, gust 0, gust_time 0.5, gust_size 0.3, seed 1.
+/// Defaults: gust_time 0.5, gust_size 0.3, seed 1; all else 0 or NULL.
 typedef struct SingeWindDef {
     size_t struct_size;
-    float velocity[3]; ///< m/s, each -1000 to 1000
-    float gust;        ///< m/s, amplitude, 0 to 1000
-    float gust_time;   ///< s, duration of a gust, > 0
-    float gust_size;   ///< m, size of a gust, > 0
-    uint32_t seed;     ///< of the gusts
+    float velocity[3]; ///< m/s, -1000 to 1000; mean velocity of the air
+    float gust;        ///< m/s, 0 to 1000; amplitude of the gusts
+    float gust_time;   ///< s, 1e-6 to 1e6; how long a gust lasts
+    float gust_size;   ///< m, 1e-6 to 1e6; how far a gust reaches
+    uint32_t seed;     ///< seed of the gusts
 } SingeWindDef;
 
 SINGE_API void singe_init_wind(SingeWindDef *def, size_t struct_size);
@@ -220,8 +231,8 @@ static inline SingeWindDef singe_default_wind(void) {
 
 /// How springs are kept at their lengths.
 typedef enum SingeSolverMethod {
-    SINGE_SOLVER_STRAND = 0,        ///< whole strands of springs, in SIMD lanes and single precision
-    SINGE_SOLVER_PAPER = 1,         ///< successive fast projection by conjugate gradients (section 7.1), double
+    SINGE_SOLVER_STRAND = 0, ///< projection along whole strands of springs, in SIMD lanes and single precision
+    SINGE_SOLVER_PAPER = 1,  ///< successive fast projection by conjugate gradients (section 7.1), in double precision
     SINGE_SOLVER_PAPER_LITERAL = 2, ///< the same exactly as printed in the paper; may fail
     SINGE_SOLVER_ALL_AT_ONCE = 3,   ///< fast projection of all colours in one system, which diverges (section 7.1)
     SINGE_SOLVER_MASS_SPRING = 4,   ///< Hooke's law, the comparison of section 8
@@ -229,27 +240,36 @@ typedef enum SingeSolverMethod {
 
 /// The solver of the shell's motion (docs/equations.md).
 ///
-/// Defaults: SINGE_SOLVER_STRAND, substeps 3, projections 1, order green, red, yellow, blue, regularisation 2 (red),
-/// 0.1 (green), 0.001 (blue), 0.01 (yellow), attachments, early_exit, tolerance 1e-7, stiffness 1000, smoothing 170,
-/// smoothing_length 0.02, height_min 0.3, height_gain 0.5; no creases, no tearing.
+/// Defaults: method SINGE_SOLVER_STRAND, substeps 3, projections 1, order {SINGE_GREEN, SINGE_RED, SINGE_YELLOW,
+/// SINGE_BLUE}, regularisation {2, 0.1, 1e-3, 0.01}, attachments true, early_exit true, tolerance 1e-7, stiffness 1000,
+/// smoothing 170, smoothing_length 0.02, height_min 0.3, height_gain 0.5; all else 0 or NULL.
 typedef struct SingeSolverDef {
     size_t struct_size;
+    /// in this order: projection along strands; the paper's successive fast projection; the same exactly as printed,
+    /// which may fail; all colours in one system; Hooke's law. The defaults below are those of strand
     SingeSolverMethod method;
-    int substeps;    ///< per step, 1 to 1000, or 0 for the fewest that give red springs their full stiffness
-    int projections; ///< of all colours, per substep, 1 to 1000
-    SingeColour order[SINGE_COLOUR_COUNT];    ///< order of projection, each colour once
-    float regularisation[SINGE_COLOUR_COUNT]; ///< floor on the diagonal, relative to w_a + w_b = 2; 1e-6 to 1e6
-    bool attachments;                         ///< keep vertices within their geodesic distance of the pins (strand)
-    bool early_exit;        ///< stop projecting when the error is below `tolerance` (paper, all-at-once)
-    float tolerance;        ///< of the conjugate gradients and the early exit, 1e-12 to 1 (paper, all-at-once)
-    float stiffness;        ///< N/m, of every spring (mass-spring), 1e-6 to 1e9
-    float smoothing;        ///< 1/s, internal friction: rate at which second differences of velocity are lost; >= 0
-    float smoothing_length; ///< m, distance of the nodes of these differences; >= 0, and at least a cell
-    float height_min;       ///< smallest height of a centre over its corners, in thicknesses, 0 to 1; 0 is off
-    float height_gain;      ///< share of a height's error corrected in a substep, 0 to 1
-    bool creases;           ///< bending beyond the material's crease_radius is partly plastic (strand)
-    /// sheets tear where the line force exceeds the material's `strength` (strand only). Each sheet then has a reserve
-    /// of vertices, which views show after its own vertices
+    /// 0 to 1000; substeps of a step; stiff, thick sheets of small cells need more; 0: as many as the red compliance
+    /// needs
+    int substeps;
+    int projections;                       ///< 1 to 1000; projections of all colours per substep
+    SingeColour order[SINGE_COLOUR_COUNT]; ///< order of the springs' colours, each once; the last is satisfied best
+    /// 1e-6 to 1e6; floor on the solver's diagonal by colour of spring, relative to w_a + w_b = 2
+    float regularisation[SINGE_COLOUR_COUNT];
+    bool attachments; ///< strand: keeps vertices within their geodesic distance of the pins
+    bool early_exit;  ///< paper, paper-literal, all-at-once: stops where the error is below tolerance of the lengths
+    float tolerance;  ///< 1e-12 to 1; the same: of the conjugate gradients and the early exit
+    float stiffness;  ///< N/m, 1e-6 to 1e9; mass-spring: of every spring
+    /// 1/s, 0 to 1e6; internal friction: rate at which second differences of velocity along strands are lost
+    float smoothing;
+    float smoothing_length; ///< m, 0 to 1000; distance of the nodes they are taken over; neighbours are always included
+    /// 0 to 1; smallest height of a cell's centre over its corners, in thicknesses; 0 is off, and cells may be inverted
+    float height_min;
+    float height_gain; ///< 0 to 1; share of a height's error that is corrected in a substep
+    /// yes: sharp bending is partly plastic, by the material's crease_radius and crease_share (solver strand); no:
+    /// bending is elastic, as in the paper
+    bool creases;
+    /// sheets tear where the line force exceeds the material's strength; needs the method strand. Each sheet then has a
+    /// reserve of vertices, which views show after its own vertices
     bool tearing;
 } SingeSolverDef;
 
@@ -275,15 +295,17 @@ typedef enum SingeInstructions {
 
 /// The gas around the sheets: hot air, flames and smoke on a grid. It rises, heats and lifts (docs/equations.md).
 ///
-/// Defaults: not enabled, cell_size 0, height 0.25, conductance 10, radiated 0.3, soot 0.01.
+/// Defaults: height 0.25, conductance 10, radiated 0.3, soot 0.01; all else 0 or NULL.
 typedef struct SingeGasDef {
     size_t struct_size;
-    bool enabled;
-    float cell_size;   ///< m, side of a cell of the grid, >= 0; 0: in proportion to the sheets
-    float height;      ///< m, height of the grid above the sheets at the start, > 0
-    float conductance; ///< W/(m2 K), from hotter gas to each side of a sheet, >= 0
-    float radiated;    ///< share of the flames' power that leaves as radiation, 0 to 0.95
-    float soot;        ///< kg of smoke per kg burnt, 0 to 1
+    bool enabled;    ///< no: sheets burn as in still air
+    float cell_size; ///< m, 0 to 1000; side of a cell of its grid; 0: 8.7 mm for a sheet of A4, in proportion to others
+    float height;    ///< m, above 0, to 1000; height of the grid above the sheets at the start
+    /// W/(m2 K), 0 to 1e9; heat transfer from hotter gas to each side of a sheet; a larger value makes fire climb
+    /// faster
+    float conductance;
+    float radiated; ///< 0 to 0.95; share of the flames' power that leaves as radiation
+    float soot;     ///< 0 to 1; mass of smoke over the mass burnt
 } SingeGasDef;
 
 SINGE_API void singe_init_gas(SingeGasDef *def, size_t struct_size);
@@ -296,14 +318,14 @@ static inline SingeGasDef singe_default_gas(void) {
 
 /// Contact of sheets with themselves and each other (docs/equations.md). Colliders have their own friction.
 ///
-/// Defaults: not enabled, thickness 0.0005, friction 0.3.
+/// Defaults: thickness 0.5e-3, friction 0.3; all else 0 or NULL.
 typedef struct SingeContactDef {
     size_t struct_size;
-    bool enabled; ///< false: sheets pass through themselves, as in the paper
-    /// m, distance kept between surfaces, > 0 to 1, and at most 2/5 of the smallest cell. It is not the material's
-    /// `thickness`, which is the distance between the model's layers
+    bool enabled; ///< no: sheets pass through themselves, as in the paper
+    /// m, above 0, to 1; distance kept between surfaces, at most 2/5 of the smallest cell; not the material's
+    /// thickness, which is the distance between the model's layers
     float thickness;
-    float friction; ///< Coulomb's coefficient, >= 0
+    float friction; ///< 0 to 1000; Coulomb's coefficient
 } SingeContactDef;
 
 SINGE_API void singe_init_contact(SingeContactDef *def, size_t struct_size);
@@ -316,30 +338,33 @@ static inline SingeContactDef singe_default_contact(void) {
 
 /// A simulation.
 ///
-/// Defaults: libc's allocator, no log, a pool of 1 thread, SINGE_INSTRUCTIONS_BEST, seed 1, time_step 1/480, pace 1,
-/// gravity {0,0,-9.81}, ambient_temperature 293.15, air_density 1.2, heat_tolerance 1e-5, surface_detail 0,
-/// surface_raggedness 0.002, and the defaults of the Defs inside.
+/// Defaults: thread_count 1, instructions SINGE_INSTRUCTIONS_BEST, seed 1, time_step 1.0 / 480, pace 1, gravity {0, 0,
+/// -9.81}, ambient_temperature 293.15, air_density 1.2, heat_tolerance 1e-5, surface_raggedness 2e-3, wind
+/// singe_default_wind(), solver singe_default_solver(), gas singe_default_gas(), contact singe_default_contact(); all
+/// else 0 or NULL.
 typedef struct SingeSimDef {
     size_t struct_size;
-    SingeAllocator allocator;
-    SingeLog log;
-    SingeTasks tasks;
-    int thread_count;               ///< of the simulation's own pool, 1 to 64
+    SingeAllocator allocator;       ///< zeroed: libc's
+    SingeLog log;                   ///< zeroed: none
+    SingeTasks tasks;               ///< zeroed: a pool of thread_count threads
+    int thread_count;               ///< 1 to 64; threads of the simulation's own pool
     SingeInstructions instructions; ///< refused where the processor lacks them
-    uint64_t seed;    ///< of ragged edges in the drawn surface, and for renderers; noise and wind have their own
-    float time_step;  ///< s, h of the paper, 1e-9 to 10
-    float pace;       ///< seconds of fire per second of motion, > 0; 1 is real
-    float gravity[3]; ///< m/s2
-    float ambient_temperature; ///< K, 1 to 1e4
-    float air_density;         ///< kg/m3, >= 0
-    /// relative residual of the implicit diffusion, > 0 to 1. It ends after 200 iterations; the log then warns once
+    uint64_t seed;                  ///< seed of ragged edges and of the preview; noise and wind have their own seeds
+    float time_step;                ///< s, 1e-9 to 10; h of the paper
+    float pace;       ///< 1e-6 to 1e6; seconds of fire per second of motion; 1 is real, 4 burns four times as fast
+    float gravity[3]; ///< m/s2, -1e4 to 1e4; z is up
+    float ambient_temperature; ///< K, 1 to 1e4; temperature of the air and the surroundings
+    float air_density;         ///< kg/m3, 0 to 1000; for drag and wind
+    /// 1e-9 to 1; relative tolerance of the heat equation; a step stops after 200 iterations and warns once
     float heat_tolerance;
-    /// m, distance of the sample points of the drawn surface near the front, at least 1/23 of a cell's side. The
-    /// surface is then smooth, and bent cells have more triangles, up to the same resolution. 0: cells are flat (Fig 6)
+    /// m, 0 to 1000; resolution of the drawn mesh near the front: distance of the sample points, at least 1/23 of a
+    /// cell's side. Bent cells are drawn on a smooth surface. 0: flat cells, sampled at their corners and centres, as
+    /// in the paper
     float surface_detail;
-    float surface_raggedness; ///< m, max depth of noise at burnt edges, at most half a cell; needs surface_detail
-    SingeWindDef wind;
-    SingeSolverDef solver;
+    /// m, 0 to 1000; maximum depth of noise at burnt edges, at most half a cell; needs detail
+    float surface_raggedness;
+    SingeWindDef wind;       ///< the air's motion
+    SingeSolverDef solver;   ///< how springs are kept at their lengths
     SingeGasDef gas;         ///< not enabled: still air
     SingeContactDef contact; ///< not enabled: sheets pass through themselves and each other
 } SingeSimDef;

@@ -44,7 +44,7 @@ static const BenchColumn step_columns[STEP_COLUMNS] = {
 static void fill_step(BenchValue *row, const BenchOptions *options, const SingeSim *sim, const Timing *timing) {
     double springs = timing_springs(sim), step = timing_median(timing, TIMED_STEP);
     row[SPRINGS] = bench_number(springs);
-    row[SOLVER] = bench_text(options_solver_name(options->solver));
+    row[SOLVER] = bench_text(words_SingeSolverMethod[options->solver]);
     row[LIMIT] = bench_number(options->curvature.values[0]);
     row[THREADS] = bench_number(options->threads);
     row[STEP_MEDIAN] = bench_number(step);

@@ -39,7 +39,7 @@ static SingeResult width_add_row(BenchTable *table, const BenchSetup *setup, con
     uint64_t hash = positions_hash(sim);
     if (setup->instructions == SINGE_INSTRUCTIONS_PLAIN) *plain = (Reference){hash, projection};
     BenchValue row[COLUMNS] = {
-        [INSTRUCTIONS] = bench_text(options_instructions_name(setup->instructions)),
+        [INSTRUCTIONS] = bench_text(words_SingeInstructions[setup->instructions]),
         [SPRINGS] = bench_number(springs),
         [STEP_MEDIAN] = bench_number(timing_median(timing, SINGE_STAGE_DYNAMICS)),
         [STEP_MIN] = bench_number(timing_min(timing, SINGE_STAGE_DYNAMICS)),
@@ -54,7 +54,7 @@ static SingeResult width_add_row(BenchTable *table, const BenchSetup *setup, con
 static SingeResult add_absent(BenchTable *table, const BenchSetup *setup) {
     BenchValue row[COLUMNS];
     for (int c = 0; c < COLUMNS; c++) row[c] = bench_number(NAN);
-    row[INSTRUCTIONS] = bench_text(options_instructions_name(setup->instructions));
+    row[INSTRUCTIONS] = bench_text(words_SingeInstructions[setup->instructions]);
     row[BYTES] = bench_text("not here");
     return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
 }

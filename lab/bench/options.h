@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+#include "scene/words.h"
 #include "singe/singe.h"
 
 enum { BENCH_LIST_MAX = 16 };
@@ -65,8 +66,5 @@ BenchList bench_list(const BenchList *asked, int count, const double *defaults);
 
 /// Cells per side of a square sheet with about so many springs, ten per cell.
 int options_cells(double springs);
-
-const char *options_solver_name(SingeSolverMethod method);
-const char *options_instructions_name(SingeInstructions instructions);
 
 #endif

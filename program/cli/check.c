@@ -9,6 +9,7 @@
 #include "cli/frame_files.h"
 #include "cli/job.h"
 #include "common/printable.h"
+#include "scene/words.h"
 
 enum { OPT_FRAMES, OPT_THREADS, OPT_SET, OPT_COUNT };
 
@@ -95,8 +96,6 @@ static void report_meshes(const Job *job) {
     }
 }
 
-static const char *const instruction_names[] = {"best", "plain", "v2", "v3", "v4", "neon"};
-
 static void report_shell(const SingeCounts *c) {
     static const struct {
         const char *name;
@@ -112,7 +111,7 @@ static void report_shell(const SingeCounts *c) {
         printf("  %-11s %" PRIu32 " in %" PRIu32 " strands, %" PRIu32 " families\n", rows[i].name,
                c->springs[rows[i].colour], c->strands[rows[i].colour], c->families[rows[i].colour]);
     printf("memory        %.1f MB\n", 1e-6 * (double)c->memory);
-    printf("instructions  %s\n", instruction_names[c->instructions]);
+    printf("instructions  %s\n", words_SingeInstructions[c->instructions]);
 }
 
 /// Office paper takes 8,000 units of work (StripSetup.work_max), a third of a second in all; a front that advances by

@@ -110,12 +110,13 @@ static void put_type(FILE *file, const SchemaRow *row) {
         if (row->type != ROW_MAP) fputs(row->type == ROW_STRENGTH ? "number, or list of " : "list of ", file);
         put_link(file, row->sub);
     } else if (row->type == ROW_ENUM) {
-        for (int i = 0; row->names[i]; i++) fprintf(file, "%s`%s`", i ? ", " : "", row->names[i]);
+        for (int i = 0; row->names[i]; i++)
+            if (row->names[i][0]) fprintf(file, "%s`%s`", i ? ", " : "", row->names[i]);
     } else if (row->type == ROW_INTS) {
         fprintf(file, "%d whole numbers", row->length);
     } else if (row->type == ROW_FLOAT || row->type == ROW_PARAM) {
         fprintf(file, "%s%s", unit[0] ? unit : "number", row->type == ROW_PARAM ? ", *varies*" : "");
-    } else if (row->length && row->type != ROW_POINTS) {
+    } else if (row->length && row->type != ROW_POINTS && row->type != ROW_ORDER) {
         fprintf(file, "%d \u00d7 %s", row->length, unit[0] ? unit : "number");
     } else {
         fputs(names[row->type], file);

@@ -1,6 +1,8 @@
 // Writes a scene with every value it uses, as YAML or JSON, from the schema's tables.
 #include "scene/dump.h"
 
+#include "scene/words.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -74,9 +76,7 @@ static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param,
 }
 
 static void put_order(FILE *file, const SingeColour *order) {
-    static const char *const names[] = {
-        [SINGE_RED] = "red", [SINGE_GREEN] = "green", [SINGE_BLUE] = "blue", [SINGE_YELLOW] = "yellow"};
-    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) fprintf(file, "%s\"%s\"", i ? ", " : "[", names[order[i]]);
+    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) fprintf(file, "%s\"%s\"", i ? ", " : "[", words_SingeColour[order[i]]);
     fputc(']', file);
 }
 

@@ -54,8 +54,10 @@ static size_t expected_add(char *buffer, size_t size, const char *text) {
 }
 
 static void add_names(char *buffer, size_t size, const char *const *names) {
-    for (int i = 0; names[i]; i++) {
-        if (i) expected_add(buffer, size, names[i + 1] ? ", " : " or ");
+    int count = 0; // of the words that scenes have; values without one come last
+    while (names[count] && names[count][0]) count++;
+    for (int i = 0; i < count; i++) {
+        if (i) expected_add(buffer, size, i + 1 < count ? ", " : " or ");
         expected_add(buffer, size, names[i]);
     }
 }

@@ -4,9 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const operator_names[] = {
-    [SINGE_HEAT_SURFACE] = "surface", [SINGE_HEAT_UMBRELLA] = "umbrella", NULL};
-
 static const SchemaRow noise_rows[] = {
     {"scale", ROW_FLOAT, DIM_LENGTH, AT(SingeNoise, scale), WITHIN(1e-6, 1e6), .doc = "size of the largest features"},
     {"octaves", ROW_INT, DIM_NONE, AT(SingeNoise, octaves), WITHIN(1, 8),
@@ -18,17 +15,6 @@ const Schema schema_noise = {.title = "a noise",
                              ROWS(noise_rows),
                              .defaults = default_noise,
                              .doc = "A random field from 0 to 1, smooth at its scale, fixed to the sheet."};
-
-// The ranges of singe/material.def for scenes.
-#define POSITIVE OVER(0)
-#define POSITIVE_OR_INFINITE OVER_OR_INF(0)
-#define NOT_NEGATIVE FROM(0)
-#define BELOW_ONE BELOW(0, 1)
-#define UP_TO_ONE WITHIN(0, 1)
-#define UP_TO_TWO WITHIN(0, 2)
-#define TENTH_TO_TEN WITHIN(0.1, 10)
-#define SHARE_ABOVE_ZERO OVER_UP_TO(0, 1)
-#define IN_SCENES(range, low, high) WITHIN(low, high)
 
 // A value that may vary over the sheet; the slot of its texture follows from the member.
 #define PARAM(name, member, dim, text, ...)                                                                            \
@@ -82,12 +68,6 @@ static const Schema schema_measured = {
     .doc = "Published measurements of the material's fire, for `singe bench front`. They do not affect the "
            "simulation. 0 and 0: unknown."};
 
-// parameters that do not vary over the sheet
-#define SCALAR_reference_grammage ROW_FLOAT, DIM_GRAMMAGE, WITHIN(0, 1e6)
-#define SCALAR_heat_operator ROW_ENUM, DIM_NONE, .names = operator_names
-#define SCALAR_thickening ROW_FLOAT, DIM_NONE, FROM(0)
-#define SCALAR_ablate ROW_BOOL, DIM_NONE
-
 static const SchemaRow material_rows[] = {
     {"base", ROW_BASE, DIM_NONE, .offset = 0, .flags = ROW_SHORT,
      .doc = "the material that the other keys change: a built-in one, or a file of the same keys "
@@ -98,7 +78,9 @@ static const SchemaRow material_rows[] = {
 #define SINGE_PARAM_BACK SINGE_PARAM
 #define SINGE_PARAM_COLOURS(number, NAME, name, range, text) \
     {#name, ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_##name, .doc = text},
-#define SINGE_SCALAR(type, name, standard, text) {#name, SCALAR_##name, AT(SceneMaterial, def.name), .doc = text},
+#define OF SceneMaterial
+#define SINGE_SCALAR(TYPE, name, dimension, standard, range, text) \
+    AS_ROW_AT(#name, TYPE, def.name, 1, dimension, ALWAYS, text, range)
 #include "singe/material.def"
     {"measured", ROW_MAP, DIM_NONE, AT(SceneMaterial, measured), EXTRA(SceneMaterial, measured.given),
      .sub = &schema_measured, .doc = "published measurements of its fire"},

@@ -1,33 +1,12 @@
 // The objects of a scene: sheets, sources, colliders, pins and probes.
 #include "scene/schema_rows.h"
 
-static const char *const source_names[] = {
-    [SINGE_SOURCE_BALL] = "ball", [SINGE_SOURCE_TEXTURE] = "texture", [SINGE_SOURCE_SPOT] = "spot", NULL};
+enum { COLLIDER_DRAWN = COLLIDER_SPHERE | COLLIDER_BOX | COLLIDER_CAPSULE | COLLIDER_HEIGHTFIELD | COLLIDER_MESH };
+
 static const char *const units_names[] = {[SCENE_UNITS_M] = "m",   [SCENE_UNITS_CM] = "cm", [SCENE_UNITS_MM] = "mm",
                                           [SCENE_UNITS_IN] = "in", [SCENE_UNITS_FT] = "ft", NULL};
 static const char *const up_names[] = {[SCENE_UP_Z] = "z", [SCENE_UP_Y] = "y", NULL};
 static const char *const quads_names[] = {[MESH_QUADS_PAIR] = "pair", [MESH_QUADS_SPLIT] = "split", NULL};
-static const char *const collider_names[] = {[SINGE_COLLIDER_PLANE] = "plane",
-                                             [SINGE_COLLIDER_SPHERE] = "sphere",
-                                             [SINGE_COLLIDER_BOX] = "box",
-                                             [SINGE_COLLIDER_CAPSULE] = "capsule",
-                                             [SINGE_COLLIDER_HEIGHTFIELD] = "heightfield",
-                                             [SINGE_COLLIDER_MESH] = "mesh",
-                                             NULL};
-static const char *const sides_names[] = {[SINGE_SIDES_TOUCHING] = "touching", [SINGE_SIDES_BOTH] = "both", NULL};
-
-enum {
-    BALL = 1 << SINGE_SOURCE_BALL,
-    TEXTURE = 1 << SINGE_SOURCE_TEXTURE,
-    SPOT = 1 << SINGE_SOURCE_SPOT,
-    PLANE = 1 << SINGE_COLLIDER_PLANE,
-    SPHERE = 1 << SINGE_COLLIDER_SPHERE,
-    BOX = 1 << SINGE_COLLIDER_BOX,
-    CAPSULE = 1 << SINGE_COLLIDER_CAPSULE,
-    HEIGHTFIELD = 1 << SINGE_COLLIDER_HEIGHTFIELD,
-    MESH = 1 << SINGE_COLLIDER_MESH,
-    DRAWN = SPHERE | BOX | CAPSULE | HEIGHTFIELD | MESH,
-};
 
 // ---- parts that several objects share
 
@@ -96,6 +75,9 @@ static const Schema schema_grid = {.title = "a grid",
                                    .doc = "A rectangle around the origin in the x-y plane, facing up (+z)."};
 
 static SceneLocation *sheet_location(void *object) { return &((SceneSheet *)object)->location; }
+#define OF SceneSheet
+#define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
+    AS_ROW_AT(#name, TYPE, name, length, dimension, kinds, text, range)
 static const SchemaRow sheet_rows[] = {
     {"name", ROW_NAME, DIM_NONE, AT(SceneSheet, name),
      .doc = "for pins and messages; `sheet1`, `sheet2`, ... by default"},
@@ -126,11 +108,10 @@ static const SchemaRow sheet_rows[] = {
      .doc = "about x, then y, then z, after the scaling and `up`"},
     {"translate", ROW_VECTOR, DIM_LENGTH, AT(SceneSheet, translate), .length = 3, WITHIN(-9000, 9000),
      .doc = "after the rotation; a sheet must lie within 10 km of the origin"},
-    {"velocity", ROW_VECTOR, DIM_SPEED, AT(SceneSheet, velocity), .length = 3, ANY, .doc = "at the start"},
-    {"drop_pieces_below", ROW_FLOAT, DIM_AREA, AT(SceneSheet, drop_pieces_below), FROM(0),
-     .doc = "loose pieces smaller than this vanish; 0 keeps all"},
+#include "singe/sheet.def"
     {"material", ROW_MAP, DIM_NONE, AT(SceneSheet, material), .sub = &schema_material, .doc = "what it is made of"},
 };
+#undef OF
 const Schema schema_sheet = {.title = "a sheet",
                              .size = sizeof(SceneSheet),
                              ROWS(sheet_rows),
@@ -142,34 +123,25 @@ const Schema schema_sheet = {.title = "a sheet",
 // ---- sources, colliders, pins
 
 static SceneLocation *source_location(void *object) { return &((SceneSource *)object)->location; }
-#define SOURCE(name, member, dim, kinds_, range_, text) \
-    { name, ROW_FLOAT, dim, AT(SceneSource, def.member), .kinds = (kinds_), range_, .doc = text }
+#define OF SceneSource
+#define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
+    AS_ROW_AT(#name, TYPE, def.name, length, dimension, kinds, text, range)
 static const SchemaRow source_rows[] = {
-    {"kind", ROW_ENUM, DIM_NONE, AT(SceneSource, def.kind), .names = source_names, .flags = ROW_REQUIRED,
-     .doc = "`ball`: a hot ball on a path; `spot`: a hot ball that stands still; `texture`: a flux drawn on the sheet"},
-    SOURCE("start", start, DIM_TIME, 0, FROM(0), "time at which it starts"),
-    {"end", ROW_FLOAT, DIM_TIME, AT(SceneSource, def.end), .flags = ROW_INF, FROM(0),
-     .doc = "time at which it ends; `inf`: never"},
-    SOURCE("temperature", temperature, DIM_TEMPERATURE, BALL | SPOT, KELVIN, "of the ball or the flame"),
-    SOURCE("conductance", conductance, DIM_CONDUCTANCE, BALL | SPOT, FROM(0), "heat transfer coefficient to the sheet"),
-    SOURCE("radius", radius, DIM_LENGTH, BALL, WITHIN(0, 1e4), "full heat within it"),
-    SOURCE("radius", radius, DIM_LENGTH, SPOT, FROM(0), "full heat within it"),
-    SOURCE("falloff", falloff, DIM_LENGTH, BALL | SPOT, FROM(0),
-           "beyond the radius, over which the heat falls to nothing"),
+#include "singe/source.def"
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
-     .kinds = SPOT, .flags = ROW_REQUIRED, ANY, .doc = "its centre"},
+     .kinds = SOURCE_SPOT, .flags = ROW_REQUIRED, SPACE, .doc = "its centre"},
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
-     .kinds = BALL, .flags = ROW_SHORT, LOCATION, .doc = "its centre, when it does not move; this or `path`"},
-    {"path", ROW_LIST, DIM_NONE, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .kinds = BALL,
+     .kinds = SOURCE_BALL, .flags = ROW_SHORT, LOCATION, .doc = "its centre, when it does not move; this or `path`"},
+    {"path", ROW_LIST, DIM_NONE, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .kinds = SOURCE_BALL,
      .sub = &schema_key, .doc = "its trajectory; this or `position`"},
-    {"texture", ROW_FILE, DIM_NONE, AT(SceneSource, texture), .kinds = TEXTURE, .flags = ROW_REQUIRED,
+    {"texture", ROW_FILE, DIM_NONE, AT(SceneSource, texture), .kinds = SOURCE_TEXTURE, .flags = ROW_REQUIRED,
      .doc = "PNG or JPEG over the sheets' uv: white is the full flux, black none"},
-    SOURCE("flux", flux, DIM_FLUX, TEXTURE, FROM(0), "into each of the sheet's two layers where the texture is white"),
     {"strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count),
-     .kinds = TEXTURE, .min = 0, .max = 1e6, .sub = &schema_strength,
+     .kinds = SOURCE_TEXTURE, .min = 0, .max = 1e6, .sub = &schema_strength,
      .doc = "multiplies the flux over time; 1 when not given"},
-    {"visible", ROW_BOOL, DIM_NONE, AT(SceneSource, visible), .kinds = BALL, .doc = "drawn in the preview"},
+    {"visible", ROW_BOOL, DIM_NONE, AT(SceneSource, visible), .kinds = SOURCE_BALL, .doc = "drawn in the preview"},
 };
+#undef OF
 const Schema schema_source = {.title = "a source",
                               .size = sizeof(SceneSource),
                               ROWS(source_rows),
@@ -180,35 +152,28 @@ const Schema schema_source = {.title = "a source",
                               .doc = "Something that heats the sheets. Its `kind` decides which other keys it has."};
 
 static SceneLocation *collider_location(void *object) { return &((SceneCollider *)object)->location; }
-#define COLLIDER(name, member, dim, kinds_, range_, text) \
-    { name, ROW_FLOAT, dim, AT(SceneCollider, def.member), .kinds = (kinds_), range_, .doc = text }
+#define OF SceneCollider
+#define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
+    AS_ROW_AT(#name, TYPE, def.name, length, dimension, kinds, text, range)
 static const SchemaRow collider_rows[] = {
-    {"kind", ROW_ENUM, DIM_NONE, AT(SceneCollider, def.kind), .names = collider_names, .flags = ROW_REQUIRED,
-     .doc = "`plane` (its normal is its own z axis), `sphere`, `box`, `capsule` (along its own z axis), `heightfield` "
-            "(solid below heights over a rectangle of its own x-y plane) or `mesh` (what a closed mesh encloses)"},
-    COLLIDER("radius", radius, DIM_LENGTH, SPHERE | CAPSULE, WITHIN(1e-6, 1e4), "of the sphere or the capsule"),
-    {"half_size", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, def.half_size), .length = 3, .kinds = BOX,
-     WITHIN(1e-6, 1e4), .doc = "half of the box's lengths along its own axes"},
-    COLLIDER("height", height, DIM_LENGTH, CAPSULE, WITHIN(0, 1e4), "between the centres of the capsule's caps"),
-    {"mesh", ROW_FILE, DIM_NONE, AT(SceneCollider, mesh), .kinds = MESH,
+#include "singe/collider.def"
+    {"mesh", ROW_FILE, DIM_NONE, AT(SceneCollider, mesh), .kinds = COLLIDER_MESH,
      .doc = "a closed mesh of triangles or polygons: OBJ, PLY, glTF and others, whose faces turn "
             "counter-clockwise seen from outside and do not pass through each other; one that is inside out is "
             "turned; this or `motion`"},
-    {"motion", ROW_MAP, DIM_NONE, AT(SceneCollider, motion), EXTRA(SceneCollider, motion.given), .kinds = MESH,
+    {"motion", ROW_MAP, DIM_NONE, AT(SceneCollider, motion), EXTRA(SceneCollider, motion.given), .kinds = COLLIDER_MESH,
      .sub = &schema_motion,
      .doc =
          "a mesh that deforms, such as a character, in the collider's own frame; sheets are pushed and carried along "
          "by it"},
-    {"scale", ROW_FLOAT, DIM_NONE, AT(SceneCollider, scale), .kinds = MESH, WITHIN(1e-6, 1e4),
+    {"scale", ROW_FLOAT, DIM_NONE, AT(SceneCollider, scale), .kinds = COLLIDER_MESH, WITHIN(1e-6, 1e4),
      .doc = "times `units`: how large the mesh file is made"},
-    {"units", ROW_ENUM, DIM_NONE, AT(SceneCollider, units), .kinds = MESH, .names = units_names,
+    {"units", ROW_ENUM, DIM_NONE, AT(SceneCollider, units), .kinds = COLLIDER_MESH, .names = units_names,
      .doc = "what the numbers of the mesh file are: `m`, `cm`, `mm`, `in` or `ft`"},
-    {"picture", ROW_FILE, DIM_NONE, AT(SceneCollider, picture), .kinds = HEIGHTFIELD, .flags = ROW_REQUIRED,
+    {"picture", ROW_FILE, DIM_NONE, AT(SceneCollider, picture), .kinds = COLLIDER_HEIGHTFIELD, .flags = ROW_REQUIRED,
      .doc = "PNG or JPEG of the heights seen from above, x to the right and y up: a height at each pixel's centre, "
             "straight between"},
-    {"size", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, def.size), .length = 2, .kinds = HEIGHTFIELD, WITHIN(1e-6, 1e4),
-     .doc = "of the rectangle, from the first pixels' centres to the last's, along x and y"},
-    {"heights", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, heights), .length = 2, .kinds = HEIGHTFIELD,
+    {"heights", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, heights), .length = 2, .kinds = COLLIDER_HEIGHTFIELD,
      WITHIN(-1e3, 1e3), .doc = "own z where the picture is black, and where it is white"},
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
      .flags = ROW_SHORT, LOCATION, .doc = "of its centre, when it does not move; instead of `path`"},
@@ -216,19 +181,11 @@ static const SchemaRow collider_rows[] = {
      .flags = ROW_SHORT, TURN, .doc = "about x, then y, then z, when it does not move; instead of `path`"},
     {"path", ROW_LIST, DIM_NONE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .sub = &schema_key,
      .doc = "its trajectory"},
-    COLLIDER("friction", friction, DIM_NONE, 0, WITHIN(0, 1000), "Coulomb's coefficient"),
-    COLLIDER("offset", offset, DIM_LENGTH, 0, WITHIN(0, 1000), "distance that sheets keep from the surface"),
-    COLLIDER("temperature", temperature, DIM_TEMPERATURE, 0, KELVIN, "matters when `conductance` is not 0"),
-    COLLIDER("conductance", conductance, DIM_CONDUCTANCE, 0, FROM(0), "heat exchanged in contact; 0 for none"),
-    COLLIDER("contact_distance", contact_distance, DIM_LENGTH, 0, WITHIN(0, 1000),
-             "how near counts as contact for heat"),
-    {"sides", ROW_ENUM, DIM_NONE, AT(SceneCollider, def.sides), .names = sides_names,
-     .doc = "of a sheet's two layers in contact, `touching`: that which faces the collider exchanges heat; `both`: the "
-            "one behind it as well, as if heat were through the sheet at once"},
-    {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneCollider, colour), .length = 3, .kinds = DRAWN, WITHIN(0, 1),
+    {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneCollider, colour), .length = 3, .kinds = COLLIDER_DRAWN, WITHIN(0, 1),
      .doc = "linear red, green, blue in the preview"},
-    {"visible", ROW_BOOL, DIM_NONE, AT(SceneCollider, visible), .kinds = DRAWN, .doc = "drawn in the preview"},
+    {"visible", ROW_BOOL, DIM_NONE, AT(SceneCollider, visible), .kinds = COLLIDER_DRAWN, .doc = "drawn in the preview"},
 };
+#undef OF
 const Schema schema_collider = {
     .title = "a collider",
     .size = sizeof(SceneCollider),
@@ -240,14 +197,15 @@ const Schema schema_collider = {
     .doc = "A solid that sheets rest on and slide over. Its `kind` decides which keys it has."};
 
 static SceneLocation *pin_location(void *object) { return &((ScenePin *)object)->location; }
+#define OF ScenePin
+#define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
+    AS_ROW_AT(#name, TYPE, name, length, dimension, kinds, text, range)
 static const SchemaRow pin_rows[] = {
     {"sheet", ROW_TEXT, DIM_NONE, AT(ScenePin, sheet),
      .doc = "name of the sheet, or its number from 0; the first by default"},
-    {"points", ROW_POINTS, DIM_LENGTH, AT(ScenePin, points), EXTRA(ScenePin, point_count), .length = 3, ANY,
+    {"points", ROW_POINTS, DIM_LENGTH, AT(ScenePin, points), EXTRA(ScenePin, point_count), .length = 3, SPACE,
      .doc = "points [x, y, z] in the world at the start"},
-    {"radius", ROW_FLOAT, DIM_LENGTH, AT(ScenePin, radius), WITHIN(0, 1e6),
-     .doc = "all particles within this distance of a point are held, and at least the vertex nearest to each point; "
-            "a point that misses the sheet by a tenth of its diagonal causes a warning"},
+#include "singe/pin.def"
     {"vertices", ROW_INDICES, DIM_NONE, AT(ScenePin, vertices), EXTRA(ScenePin, vertex_count), WITHIN(0, 4294967294.0),
      .doc = "numbers of the mesh's vertices, from 0"},
     {"path", ROW_LIST, DIM_NONE, AT(ScenePin, keys), EXTRA(ScenePin, key_count), .sub = &schema_key,
@@ -256,6 +214,7 @@ static const SchemaRow pin_rows[] = {
      .doc = "a moving mesh in world coordinates that the held part follows: each particle follows the triangle that is "
             "nearest to it at frame 1; instead of `path`"},
 };
+#undef OF
 const Schema schema_pin = {.title = "a pin",
                            .size = sizeof(ScenePin),
                            ROWS(pin_rows),
@@ -273,9 +232,9 @@ static const SchemaRow probe_rows[] = {
     {"sheet", ROW_TEXT, DIM_NONE, AT(SceneProbe, sheet),
      .doc = "name of the sheet, or its number from 0; the first by default"},
     {"at", ROW_VECTOR, DIM_NONE, AT(SceneProbe, uv), .length = 2, .kinds = 1u << SCENE_PROBE_UV, .flags = ROW_REQUIRED,
-     ANY, .doc = "[u, v]; the nearest point of the sheet is taken, with a warning where the sheet has no such uv"},
+     SPACE, .doc = "[u, v]; the nearest point of the sheet is taken, with a warning where the sheet has no such uv"},
     {"at", ROW_VECTOR, DIM_LENGTH, AT(SceneProbe, point), .length = 3, .kinds = 1u << SCENE_PROBE_POINT,
-     .flags = ROW_REQUIRED, ANY,
+     .flags = ROW_REQUIRED, SPACE,
      .doc = "[x, y, z]; the nearest point of the sheet is taken, with a warning where it is far off"},
 };
 const Schema schema_probe = {.title = "a probe",

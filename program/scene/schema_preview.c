@@ -27,7 +27,7 @@ static const Schema schema_camera = {.title = "the camera",
                                      .doc = "The camera of the preview."};
 
 static const SchemaRow light_rows[] = {
-    {"direction", ROW_VECTOR, DIM_NONE, AT(ScenePreview, light_direction), .length = 3, ANY,
+    {"direction", ROW_VECTOR, DIM_NONE, AT(ScenePreview, light_direction), .length = 3, SPACE,
      .doc = "towards the light, any length"},
     {"angle", ROW_FLOAT, DIM_ANGLE, AT(ScenePreview, light_angle), WITHIN(0, 85 * DEGREE),
      .doc = "its apparent radius: larger is softer"},

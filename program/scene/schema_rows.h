@@ -3,15 +3,17 @@
 #define SCENE_SCHEMA_ROWS_H
 
 #include "scene/schema.h"
+#include "scene/words.h"
 
 #define AT(type, member) .offset = offsetof(type, member)
 #define EXTRA(type, member) .extra = offsetof(type, member)
 #define DEGREE (3.14159265358979323846 / 180)
 #define ROWS(table) .rows = (table), .row_count = (int)(sizeof(table) / sizeof *(table))
 
-// ranges, in held units, never wider than the library's (tests/scene/test_ranges.c)
+// ranges, in held units; those of the library's tables may be narrower in scenes, never wider
 #define MUCH 1e9
-#define ANY .min = -1e6, .max = 1e6
+#define ANY .min = 0, .max = 0 // any number of the type
+#define SPACE .min = -1e6, .max = 1e6
 #define LOCATION .min = -1e4, .max = 1e4 // of drawn objects
 #define TURN .min = -1e6 * DEGREE, .max = 1e6 * DEGREE
 #define KELVIN .min = 1, .max = 1e4
@@ -20,7 +22,45 @@
 #define OVER_OR_INF(low) .flags = ROW_OPEN_MIN | ROW_INF, .min = (low), .max = MUCH
 #define OVER_UP_TO(low, high) .flags = ROW_OPEN_MIN, .min = (low), .max = (high)
 #define WITHIN(low, high) .min = (low), .max = (high)
+#define FINITE ANY
+#define NUMBER ANY
+#define IN_SCENES(range, low, high) WITHIN(low, high)
+#define IN_SCENES_OR_INF(range, low, high) .flags = ROW_INF, WITHIN(low, high)
 #define BELOW(low, high) .flags = ROW_OPEN_MAX, .min = (low), .max = (high)
+
+// bits of the kinds, as the library's tables name them
+enum {
+    ALWAYS = 0,
+    SOURCE_BALL = 1 << SINGE_SOURCE_BALL,
+    SOURCE_TEXTURE = 1 << SINGE_SOURCE_TEXTURE,
+    SOURCE_SPOT = 1 << SINGE_SOURCE_SPOT,
+    COLLIDER_SPHERE = 1 << SINGE_COLLIDER_SPHERE,
+    COLLIDER_BOX = 1 << SINGE_COLLIDER_BOX,
+    COLLIDER_CAPSULE = 1 << SINGE_COLLIDER_CAPSULE,
+    COLLIDER_HEIGHTFIELD = 1 << SINGE_COLLIDER_HEIGHTFIELD,
+    COLLIDER_MESH = 1 << SINGE_COLLIDER_MESH,
+};
+
+// Rows of the library's tables (singe/*.def), for an object of type OF that holds the Def at HELD, "def." or nothing.
+#define ROW_OF_FLOAT ROW_FLOAT
+#define ROW_OF_VECTOR ROW_VECTOR
+#define ROW_OF_INT ROW_INT
+#define ROW_OF_UINT32 ROW_UINT32
+#define ROW_OF_UINT64 ROW_UINT64
+#define ROW_OF_BOOL ROW_BOOL
+#define ROW_OF_ORDER ROW_ORDER
+#define ROW_OF_ENUM(name) ROW_ENUM, .names = words_##name
+#define ROW_OF_KIND(name) ROW_ENUM, .names = words_##name, .flags = ROW_REQUIRED
+/// The range comes last, as it is several initialisers.
+#define AS_ROW_AT(key_, type_, member, length_, dimension_, kinds_, text, ...) \
+    {.key = key_,                                                              \
+     .dimension = dimension_,                                                  \
+     AT(OF, member),                                                           \
+     .length = (length_) > 1 ? (length_) : 0,                                  \
+     .kinds = kinds_,                                                          \
+     .doc = text,                                                              \
+     __VA_ARGS__,                                                              \
+     .type = ROW_OF_##type_},
 
 // the scene's maps, besides those in schema.c
 extern const Schema schema_sheet, schema_source, schema_collider, schema_pin, schema_probe, schema_preview;

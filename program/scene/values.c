@@ -3,6 +3,7 @@
 
 #include "common/printable.h"
 #include "scene/sequence.h"
+#include "scene/words.h"
 
 #include <math.h>
 #include <string.h>
@@ -156,6 +157,7 @@ bool value_word(Reader *reader, const SchemaRow *row, const Node *node, const ch
     const char *word = renamed(reader, row->key, node->text, node->location);
     Nearest nearest = {.word = word};
     for (int i = 0; names[i]; i++) {
+        if (!names[i][0]) continue; // scenes have no word for it
         if (strcmp(word, names[i]) == 0) {
             *result = i;
             return true;
@@ -173,8 +175,6 @@ bool value_word(Reader *reader, const SchemaRow *row, const Node *node, const ch
 }
 
 void value_order(Reader *reader, const SchemaRow *row, const Node *node, SingeColour *field) {
-    static const char *const names[] = {
-        [SINGE_RED] = "red", [SINGE_GREEN] = "green", [SINGE_BLUE] = "blue", [SINGE_YELLOW] = "yellow", NULL};
     if (node->kind != NODE_LIST || node->count != SINGE_COLOUR_COUNT) {
         value_wrong(reader, node, row);
         return;
@@ -182,10 +182,10 @@ void value_order(Reader *reader, const SchemaRow *row, const Node *node, SingeCo
     int seen = 0;
     for (const Node *child = node->first; child; child = child->next) {
         int colour = 0;
-        if (!value_word(reader, row, child, names, &colour)) return;
+        if (!value_word(reader, row, child, words_SingeColour, &colour)) return;
         if (seen & 1 << colour) {
             message_add(reader->messages, reader->text, child->location, "'%s' is repeated; each colour comes once",
-                        names[colour]);
+                        words_SingeColour[colour]);
             return;
         }
         seen |= 1 << colour;

@@ -21,8 +21,6 @@
 
 typedef struct CollisionPlan CollisionPlan;
 
-SingeResult collision_check(const SingeContactDef *def, SingeError *error);
-
 /// Scratch for the shell, of `memory`, which outlives it; `time_step` in s. SINGE_ERROR_MEMORY.
 SingeResult collision_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
                                   CollisionPlan **plan);

@@ -5,13 +5,6 @@
 
 #include <string.h>
 
-SingeResult collision_check(const SingeContactDef *def, SingeError *error) {
-    const char *what = NULL;
-    if (!(def->thickness > 0 && def->thickness <= 1)) what = "thickness must be above 0 and at most 1 m";
-    if (!(def->friction >= 0 && def->friction <= 1e3f)) what = "friction must be between 0 and 1000";
-    return what ? error_set(error, SINGE_ERROR_ARGUMENT, "contact", -1, "%s", what) : SINGE_OK;
-}
-
 static uint32_t capped(uint64_t count) { return count < UINT32_MAX / 2 ? (uint32_t)count : UINT32_MAX / 2; }
 
 static uint32_t capacity_max(uint32_t capacity) {

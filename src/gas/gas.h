@@ -9,9 +9,6 @@
 #include "world/collider.h"
 #include "world/step_context.h"
 
-/// Checks the numbers of a Def.
-SingeResult gas_check(const SingeGasDef *def, SingeError *error);
-
 /// Constant input of the stage.
 typedef struct GasSettings {
     SingeGasDef def;

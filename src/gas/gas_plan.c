@@ -13,16 +13,6 @@ static const double PLAN_CELLS_USUAL = 200e3, PLAN_CELLS_MAX = 2e6;
 enum { PLAN_PARTS_MAX = 16, PLAN_COARSEST = 4 };
 enum { PLAN_SIDE_MAX = 4096 }; ///< cells along an axis: as many as a frame's file holds
 
-SingeResult gas_check(const SingeGasDef *def, SingeError *error) {
-    const char *what = NULL;
-    if (!(def->cell_size >= 0 && def->cell_size <= 1e3f)) what = "gas.cell_size must be between 0 and 1000 m";
-    if (!(def->height > 0 && def->height <= 1e3f)) what = "gas.height must be above 0 and at most 1000 m";
-    if (!(def->conductance >= 0 && def->conductance <= 1e9f)) what = "gas.conductance must be between 0 and 1e9";
-    if (!(def->radiated >= 0 && def->radiated <= 0.95f)) what = "gas.radiated must be between 0 and 0.95";
-    if (!(def->soot >= 0 && def->soot <= 1)) what = "gas.soot must be between 0 and 1";
-    return what ? error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "%s", what) : SINGE_OK;
-}
-
 static GasGrid plan_grid(const int n[3]) {
     GasGrid grid = {.n = {n[0], n[1], n[2]}};
     size_t cells = 1;

@@ -4,7 +4,28 @@
 #include <string.h>
 
 #include "common/assertion.h"
+#include "common/def_table.h"
 #include "heat/heat_plan.h"
+
+// --- the kinds
+
+static void source_ball(HeatPass *pass, const Source *source, const SingeView *view);
+static void source_texture(HeatPass *pass, const Source *source, const SingeView *view);
+static void source_callback(HeatPass *pass, const Source *source, const SingeView *view);
+static SingeResult source_check_ball(const SingeSourceDef *def, SingeError *error);
+static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *error);
+
+/// A kind of source: what it checks besides the ranges of its fields (NULL: nothing), and how it adds its heat.
+static const struct SourceKind {
+    SingeResult (*check)(const SingeSourceDef *def, SingeError *error);
+    void (*add)(HeatPass *pass, const Source *source, const SingeView *view);
+    bool has_path;
+} source_kinds[] = {
+    [SINGE_SOURCE_BALL] = {source_check_ball, source_ball, true},
+    [SINGE_SOURCE_TEXTURE] = {source_check_texture, source_texture, false},
+    [SINGE_SOURCE_SPOT] = {source_check_ball, source_ball, true},
+    [SINGE_SOURCE_CALLBACK] = {NULL, source_callback, false}, // its function may be set later
+};
 
 // --- creating a source ----------------------------------------------------------------------------------
 
@@ -12,16 +33,12 @@ static SingeResult source_bad(SingeError *error, const char *what) {
     return error_set(error, SINGE_ERROR_ARGUMENT, "source", -1, "%s", what);
 }
 
-static bool source_in(float x, float min, float max) { return x >= min && x <= max; }
-static bool source_not_negative(float x) { return x >= 0 && isfinite(x); }
-
 /// Max flux of a texture, W/m2: far beyond any fire, and finite in all computations of a step.
 static const float SOURCE_FLUX_MAX = 1e15f;
 
 static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *error) {
     const SingeTexture *texture = &def->texture;
     if (texture->width < 1 || texture->height < 1 || !texture->values) return source_bad(error, "the texture is empty");
-    if (!isfinite(def->flux)) return source_bad(error, "flux must be finite");
 
     // values of the texture
     float whitest = 0, strongest = def->strength_count ? 0 : 1;
@@ -49,29 +66,21 @@ static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *e
     return SINGE_OK;
 }
 
-static SingeResult source_check(const SingeSourceDef *def, SingeError *error) {
-    if (isnan(def->start) || isnan(def->end)) return source_bad(error, "start and end must be numbers");
-    switch (def->kind) {
-    case SINGE_SOURCE_BALL:
-    case SINGE_SOURCE_SPOT:
-        if (!source_in(def->temperature, 1e-3f, 1e5f))
-            return source_bad(error, "temperature must be between 0.001 and 100000 K");
-        if (!source_in(def->conductance, 0, 1e9f))
-            return source_bad(error, "conductance must be between 0 and 1e9 W/(m2 K)");
-        if (!source_not_negative(def->radius)) return source_bad(error, "radius must be at least 0 and finite");
-        if (!source_not_negative(def->falloff)) return source_bad(error, "falloff must be at least 0 and finite");
-        if (def->path_count < 1 || !def->path) return source_bad(error, "a ball or spot needs a path");
-        if (def->kind == SINGE_SOURCE_SPOT && def->path_count != 1)
-            return source_bad(error, "the path of a spot has exactly one key");
-        return SINGE_OK;
-    case SINGE_SOURCE_TEXTURE: return source_check_texture(def, error);
-    case SINGE_SOURCE_CALLBACK: return SINGE_OK; // may be set later
-    }
-    return source_bad(error, "there is no such kind of source");
+static SingeResult source_check_ball(const SingeSourceDef *def, SingeError *error) {
+    if (def->path_count < 1 || !def->path) return source_bad(error, "a ball or spot needs a path");
+    if (def->kind == SINGE_SOURCE_SPOT && def->path_count != 1)
+        return source_bad(error, "the path of a spot has exactly one key");
+    return SINGE_OK;
 }
 
+static SingeResult source_check(const SingeSourceDef *def, SingeError *error) {
+    TRY(def_check(&source_table, def, error));
+    return source_kinds[def->kind].check ? source_kinds[def->kind].check(def, error) : SINGE_OK;
+}
+
+/// An unknown kind has none, and is refused by source_check.
 static bool source_has_path(const SingeSourceDef *def) {
-    return def->kind == SINGE_SOURCE_BALL || def->kind == SINGE_SOURCE_SPOT;
+    return def_has_value("SingeSourceKind", (int)def->kind) && source_kinds[def->kind].has_path;
 }
 
 static size_t texture_size(const SingeTexture *texture) { return (size_t)texture->width * (size_t)texture->height; }
@@ -251,15 +260,6 @@ static void source_callback(HeatPass *pass, const Source *source, const SingeVie
                              plan->source_temperature);
 }
 
-typedef void SourceFn(HeatPass *pass, const Source *source, const SingeView *view);
-
-static SourceFn *const SOURCE_KINDS[] = {
-    [SINGE_SOURCE_BALL] = source_ball,
-    [SINGE_SOURCE_TEXTURE] = source_texture,
-    [SINGE_SOURCE_SPOT] = source_ball,
-    [SINGE_SOURCE_CALLBACK] = source_callback,
-};
-
 /// The sheet's normal at a particle, not normalised.
 static Float3 source_normal(const HeatPass *pass, uint32_t i) {
     const Shell *shell = pass->shell;
@@ -351,7 +351,7 @@ void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *
     for (uint32_t k = 0; sources && k < sources->count; k++) {
         const Source *source = &sources->items[k];
         if (source->generation && time >= source->def.start && time < source->def.end)
-            SOURCE_KINDS[source->def.kind](pass, source, view);
+            source_kinds[source->def.kind].add(pass, source, view);
     }
     for (uint32_t k = 0; colliders && k < colliders->count; k++) {
         const Collider *collider = &colliders->items[k];

@@ -6,6 +6,7 @@
 // mean of the corners.
 #include "shell/sheet.h"
 
+#include "common/def_table.h"
 #include "common/random.h"
 #include "shell/matter.h"
 
@@ -20,22 +21,8 @@ typedef struct ParamRule {
     size_t offset;
     int param;
     int positions;
-    float low, high;
-    bool low_open, high_open;
-    const char *range;
+    FieldRange range;
 } ParamRule;
-
-#define POSITIVE POSITIVE_RANGE, "above 0"
-#define POSITIVE_RANGE 0, INFINITY, true, true
-#define POSITIVE_OR_INFINITE 0, INFINITY, true, false, "above 0"
-#define NOT_NEGATIVE 0, INFINITY, false, true, "0 or more"
-#define BELOW_ONE 0, 1, false, true, "from 0 to below 1"
-#define UP_TO_TWO 0, 2, false, false, "from 0 to 2"
-#define FINITE -INFINITY, INFINITY, true, true, "finite"
-#define TENTH_TO_TEN 0.1f, 10, false, false, "from 0.1 to 10"
-#define UP_TO_ONE 0, 1, false, false, "from 0 to 1"
-#define SHARE_ABOVE_ZERO 0, 1, true, false, "above 0, to 1"
-#define IN_SCENES(range, low, high) range
 
 static const ParamRule param_rules[] = {
 #define RULE(member, param, where, ...) {#member, offsetof(SingeMaterialDef, member), param, where, __VA_ARGS__},
@@ -50,22 +37,31 @@ static const ParamRule param_rules[] = {
 };
 enum { RULE_COUNT = sizeof param_rules / sizeof param_rules[0] };
 
-/// NaN is outside every range. So is an infinity, unless the range ends there and is closed.
-static bool material_inside(float x, float low, float high, bool low_open, bool high_open) {
-    return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high);
-}
+/// The parameters that a sheet has one value of.
+static const struct ScalarRule {
+    const char *name;
+    FieldRange range;
+    size_t offset;
+} scalar_rules[] = {
+#define SINGE_SCALAR(TYPE, name, dimension, standard, range, text) {#name, range, offsetof(SingeMaterialDef, name)},
+#include "singe/material.def"
+};
 
 SingeResult material_check_scalars(const SingeMaterialDef *material, const char *sheet, SingeError *error) {
-    if (material->thickening != 0 && !(isfinite(material->thickening) && material->thickening >= 1))
+    for (size_t i = 0; i < sizeof scalar_rules / sizeof *scalar_rules; i++) {
+        const struct ScalarRule *rule = &scalar_rules[i];
+        float value;
+        memcpy(&value, (const char *)material + rule->offset, rule->range.words ? sizeof value : 0);
+        if (rule->range.words && !range_has(&rule->range, value))
+            return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s must be %s", sheet, rule->name,
+                             rule->range.words);
+    }
+    if (material->thickening > 0 && material->thickening < 1)
         return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': thickening must be 0, or 1 or more",
                          sheet);
-    if (!(isfinite(material->reference_grammage) && material->reference_grammage >= 0))
-        return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': reference_grammage must be 0 or more",
-                         sheet);
-    int heat_operator = (int)material->heat_operator;
-    if (heat_operator != SINGE_HEAT_SURFACE && heat_operator != SINGE_HEAT_UMBRELLA)
+    if (!def_has_value("SingeHeatOperator", (int)material->heat_operator))
         return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': heat operator %d is unknown", sheet,
-                         heat_operator);
+                         (int)material->heat_operator);
     return SINGE_OK;
 }
 
@@ -124,7 +120,7 @@ static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, P
         return SINGE_OK;
     case SINGE_FIELD_ATTRIBUTE: return field_attribute(def, rule, field, error);
     case SINGE_FIELD_NOISE:
-        if (!material_inside(follows->noise.scale, POSITIVE_RANGE))
+        if (!range_has(&(const FieldRange)OVER(0), follows->noise.scale))
             return field_fail(field->source, rule, "is noise whose scale is not above 0", error);
         if (follows->noise.octaves < 1 || follows->noise.octaves > 8)
             return field_fail(field->source, rule, "is noise of other than 1 to 8 octaves", error);
@@ -160,11 +156,11 @@ static void rule_range(const ParamRule *rule, const Sheet *sheet, uint32_t *begi
 }
 
 static SingeResult check_value(const ParamRule *rule, const Sheet *sheet, uint32_t i, float value, SingeError *error) {
-    if (material_inside(value, rule->low, rule->high, rule->low_open, rule->high_open)) return SINGE_OK;
+    if (range_has(&rule->range, value)) return SINGE_OK;
     bool corner = i < sheet->vertex_count;
     uint32_t element = corner ? i : i - sheet->vertex_count;
     return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", element,
-                     "sheet '%s': %s must be %s, which it is not at %s %u", sheet->name, rule->name, rule->range,
+                     "sheet '%s': %s must be %s, which it is not at %s %u", sheet->name, rule->name, rule->range.words,
                      corner ? "vertex" : "cell", element);
 }
 

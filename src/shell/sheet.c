@@ -1,6 +1,7 @@
 // A sheet's Def: read in any version, checked, copied.
 #include "shell/sheet.h"
 
+#include "common/def_table.h"
 #include "shell/rest_lengths.h"
 
 #include <math.h>
@@ -69,11 +70,7 @@ static SingeResult check_def(const SingeSheetDef *def, const char *name, SingeEr
         if (!def->attributes[i].name || !def->attributes[i].values)
             return argument(name, "an attribute has no name or no values", error);
 
-    // numbers
-    for (int k = 0; k < 3; k++)
-        if (!isfinite(def->velocity[k])) return argument(name, "velocity is not finite", error);
-    if (!(isfinite(def->drop_pieces_below) && def->drop_pieces_below >= 0))
-        return argument(name, "drop_pieces_below must be 0 or more", error);
+    TRY(def_check(&sheet_table, def, error));
     return material_check_scalars(&def->material, name, error);
 }
 
@@ -185,7 +182,7 @@ SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, Shee
     sheet->source_count = def.source_vertex ? def.source_count : def.vertex_count;
     memcpy(sheet->velocity, def.velocity, sizeof sheet->velocity);
     source->user_data = def.user_data;
-#define SINGE_SCALAR(type, name, standard, text) sheet->material.name = def.material.name;
+#define SINGE_SCALAR(TYPE, name, dimension, standard, range, text) sheet->material.name = def.material.name;
 #include "singe/material.def"
     if (!source_alloc(memory, &def, source)) {
         SingeResult result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for sheet '%s'", sheet->name);
@@ -219,7 +216,7 @@ SingeResult sheet_source_check(const SheetSource *source, SingeError *error) {
                          .source_vertex = source->source_vertex,
                          .source_count = sheet->source_count,
                          .corner_source_vertex = (const int32_t *)source->corner_source};
-#define SINGE_SCALAR(type, name, standard, text) def.material.name = sheet->material.name;
+#define SINGE_SCALAR(TYPE, name, dimension, standard, range, text) def.material.name = sheet->material.name;
 #include "singe/material.def"
     memcpy(def.velocity, sheet->velocity, sizeof def.velocity);
     TRY(check_def(&def, sheet->name, error));

@@ -59,7 +59,7 @@ typedef struct Matter {
 
 /// The parameters that have one value for a sheet.
 typedef struct SheetMaterial {
-#define SINGE_SCALAR(type, name, standard, text) type name;
+#define SINGE_SCALAR(TYPE, name, dimension, standard, range, text) SINGE_TYPE_##TYPE name;
 #include "singe/material.def"
 } SheetMaterial;
 

@@ -1,6 +1,8 @@
 // Sources, colliders and wind: added, moved and removed at any time.
 #include "sim/objects.h"
 
+#include "common/def_table.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -103,7 +105,7 @@ SingeResult singe_sim_set_collider_vertices(SingeSim *sim, SingeColliderId id, c
 SingeResult singe_sim_set_wind(SingeSim *sim, const SingeWindDef *given) {
     SingeWindDef def;
     OBJECT_DEF(sim, "wind", def, given, singe_default_wind);
-    TRY(wind_check(&def, &sim->error));
+    TRY(def_check(&wind_table, &def, &sim->error));
     sim->def.wind = def;
     return SINGE_OK;
 }

@@ -1,6 +1,7 @@
 // Pins: added, moved and removed at any time. A pin added before the commit waits for it as it was given, as the
 // textures of sources do, and its particles are found there.
 #include "common/assertion.h"
+#include "common/def_table.h"
 #include "sim/objects.h"
 
 #include <math.h>
@@ -90,8 +91,7 @@ static SingeResult pin_check(SingeSim *sim, const SingePinDef *def) {
     if (def->sheet.generation != 1 || def->sheet.index >= sim->sheet_count)
         return object_stale(sim, "pin", def->sheet.index);
     const Sheet *sheet = &sim->sheets[def->sheet.index].sheet;
-    if (!(def->radius >= 0 && def->radius <= 1e6f))
-        return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "radius must be 0 or more");
+    TRY(def_check(&pin_table, def, &sim->error));
     if (def->point_count == 0 && def->vertex_count == 0)
         return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "neither points nor vertices are given");
     if (def->point_count && !def->points) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "points is NULL");

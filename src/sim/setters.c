@@ -5,6 +5,7 @@
 // the simulation is rebuilt from it as by a load, so that it equals a load of its snapshot at once.
 #include "sim/objects.h"
 
+#include "common/def_table.h"
 #include "common/real.h"
 #include "shell/sheet.h"
 
@@ -25,9 +26,7 @@ static int gravity_axis(const float gravity[3]) {
 }
 
 SingeResult singe_sim_set_gravity(SingeSim *sim, const float gravity[3]) {
-    for (int d = 0; d < 3; d++)
-        if (!float_within(gravity[d], -1e4f, 1e4f))
-            return setter_bad(sim, "gravity", "gravity must be between -10000 and 10000 m/s2");
+    TRY(def_check_field(&sim_table, "gravity", gravity, "gravity", &sim->error));
     if (sim->gas && gravity_axis(gravity) != gravity_axis(sim->def.gravity))
         return sim_fail(sim, SINGE_ERROR_STATE, "gravity", -1,
                         "the gas grid lies above the sheets: gravity must stay largest along the same axis");
@@ -38,7 +37,7 @@ SingeResult singe_sim_set_gravity(SingeSim *sim, const float gravity[3]) {
 }
 
 SingeResult singe_sim_set_pace(SingeSim *sim, float pace) {
-    if (!float_within(pace, 1e-6f, 1e6f)) return setter_bad(sim, "pace", "pace must be between 1e-6 and 1e6");
+    TRY(def_check_field(&sim_table, "pace", &pace, "pace", &sim->error));
     sim->def.pace = pace;
     if (sim->heat) heat_plan_set_pace(sim->heat, pace);
     if (sim->gas) gas_plan_set_pace(sim->gas, pace);
@@ -106,8 +105,7 @@ static SingeResult sim_rebuild(SingeSim *sim) {
 }
 
 SingeResult singe_sim_set_ambient_temperature(SingeSim *sim, float temperature) {
-    if (!float_within(temperature, 1, 1e4f))
-        return setter_bad(sim, "ambient", "ambient_temperature must be between 1 and 10000 K");
+    TRY(def_check_field(&sim_table, "ambient_temperature", &temperature, "ambient", &sim->error));
     const float before = sim->def.ambient_temperature;
     const double start = sim->heat_start, stored = sim->committed ? sim_enthalpy(sim) : 0;
     sim->def.ambient_temperature = temperature;

@@ -1,5 +1,6 @@
 // A simulation's life: create, add sheets, commit, destroy.
 #include "common/assertion.h"
+#include "common/def_table.h"
 #include "common/real.h"
 #include "shell/shell_validate.h"
 #include "sim/sim_internal.h"
@@ -13,53 +14,23 @@ SingeResult sim_fail(SingeSim *sim, SingeResult code, const char *stage, int64_t
 
 const SingeError *singe_sim_error(const SingeSim *sim) { return &sim->error; }
 
-static const char *sim_check_solver(const SingeSolverDef *solver) {
-    bool seen[SINGE_COLOUR_COUNT] = {false};
-    if ((int)solver->method < SINGE_SOLVER_STRAND || solver->method > SINGE_SOLVER_MASS_SPRING)
-        return "solver.method is not a known method";
-    if (solver->projections < 1 || solver->projections > 1000) return "solver.projections must be between 1 and 1000";
-    if (!float_within(solver->tolerance, 1e-12f, 1)) return "solver.tolerance must be between 1e-12 and 1";
-    if (!float_within(solver->stiffness, 1e-6f, 1e9f)) return "solver.stiffness must be between 1e-6 and 1e9 N/m";
-    if (solver->substeps < 0 || solver->substeps > 1000)
-        return "solver.substeps must be between 1 and 1000, or 0 for as many as the stiffness needs";
-
-    // colours
-    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
-        int colour = (int)solver->order[i];
-        if (colour < 0 || colour >= SINGE_COLOUR_COUNT || seen[colour])
-            return "solver.order must name each colour once";
-        seen[colour] = true;
-        if (!float_within(solver->regularisation[i], 1e-6f, 1e6f))
-            return "solver.regularisation must be between 1e-6 and 1e6";
-    }
-
-    // internal friction and heights
-    if (!float_within(solver->smoothing, 0, 1e6f)) return "solver.smoothing must be between 0 and 1e6 1/s";
-    if (!float_within(solver->smoothing_length, 0, 1e3f)) return "solver.smoothing_length must be between 0 and 1000 m";
-    if (!float_within(solver->height_min, 0, 1)) return "solver.height_min must be between 0 and 1";
-    if (!float_within(solver->height_gain, 0, 1)) return "solver.height_gain must be between 0 and 1";
-    return NULL;
-}
-
 SingeResult sim_check_def(const SingeSimDef *def, SingeError *error) {
-    const char *what = sim_check_solver(&def->solver);
-    if (!(def->thread_count >= 1 && def->thread_count <= 64)) what = "thread_count must be between 1 and 64";
-    if ((int)def->instructions < SINGE_INSTRUCTIONS_BEST || def->instructions > SINGE_INSTRUCTIONS_ARM_NEON)
-        what = "instructions is not a known set";
-    if (!float_within(def->time_step, 1e-9f, 10)) what = "time_step must be between 1e-9 and 10 s";
-    if (!float_within(def->pace, 1e-6f, 1e6f)) what = "pace must be between 1e-6 and 1e6";
-    for (int i = 0; i < 3; i++)
-        if (!float_within(def->gravity[i], -1e4f, 1e4f)) what = "gravity must be between -10000 and 10000 m/s2";
-    if (!float_within(def->ambient_temperature, 1, 1e4f)) what = "ambient_temperature must be between 1 and 10000 K";
-    if (!float_within(def->air_density, 0, 1e3f)) what = "air_density must be between 0 and 1000 kg/m3";
-    if (!float_within(def->heat_tolerance, 1e-9f, 1)) what = "heat_tolerance must be between 1e-9 and 1";
-    if (!float_within(def->surface_detail, 0, 1e3f)) what = "surface_detail must be between 0 and 1000 m";
-    if (!float_within(def->surface_raggedness, 0, 1e3f)) what = "surface_raggedness must be between 0 and 1000 m";
-    if (def->tasks.enqueue && !def->tasks.finish) what = "tasks.enqueue needs tasks.finish";
-    if (what) return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "%s", what);
-    TRY(gas_check(&def->gas, error));
-    TRY(collision_check(&def->contact, error));
-    return wind_check(&def->wind, error);
+    TRY(def_check(&sim_table, def, error));
+    TRY(def_check(&solver_table, &def->solver, error));
+    TRY(def_check(&gas_table, &def->gas, error));
+    TRY(def_check(&contact_table, &def->contact, error));
+    TRY(def_check(&wind_table, &def->wind, error));
+
+    // what concerns several fields
+    bool seen[SINGE_COLOUR_COUNT] = {false};
+    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
+        if (seen[def->solver.order[i]])
+            return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "solver.order must name each colour once");
+        seen[def->solver.order[i]] = true;
+    }
+    if (def->tasks.enqueue && !def->tasks.finish)
+        return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "tasks.enqueue needs tasks.finish");
+    return SINGE_OK;
 }
 
 bool sim_read_def(void *def, size_t size, const void *given, size_t given_size) {

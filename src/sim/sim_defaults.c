@@ -33,7 +33,7 @@ static SingeMaterialDef standard_material(void) {
 #define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) \
     .name = standard_param(standard, &standard_fields.name),
 #define SINGE_PARAM_BACK SINGE_PARAM
-#define SINGE_SCALAR(type, name, standard, text) .name = standard,
+#define SINGE_SCALAR(TYPE, name, dimension, standard, range, text) .name = standard,
 #include "singe/material.def"
     };
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
@@ -46,112 +46,86 @@ static SingeMaterialDef standard_material(void) {
     return def;
 }
 
-static SingeSheetDef standard_sheet(void) {
-    return (SingeSheetDef){.struct_size = sizeof(SingeSheetDef), .material = standard_material()};
-}
+// The defaults of the tables' rows (singe/*.def). Defs inside others are filled in by singe_init_...
+#define BRACED(...) \
+    { __VA_ARGS__ }
+#define AS_FIELD(type, name, length, dimension, standard, range, kinds, text) .name = standard,
+#define AS_APART(key, type, name, length, dimension, standard, range, kinds, text) .name = standard,
+#define AS_OTHER(declaration, name, standard, text) .name = standard,
 
-static SingeSourceDef standard_source(void) {
-    return (SingeSourceDef){
-        .struct_size = sizeof(SingeSourceDef),
-        .kind = SINGE_SOURCE_SPOT,
-        .start = 0,
-        .end = INFINITY,
-        .temperature = 1200,
-        .conductance = 150,
-        .radius = 0.005f,
-        .falloff = 0.01f,
-        .flux = 30e3f,
-    };
-}
+#define SINGE_FIELD AS_FIELD
+#define SINGE_APART AS_APART
+#define SINGE_HIDDEN AS_FIELD
+static const SingeSheetDef standard_sheet = {
+    .struct_size = sizeof(SingeSheetDef),
+#include "singe/sheet.def"
+};
 
-static SingeColliderDef standard_collider(void) {
-    return (SingeColliderDef){
-        .struct_size = sizeof(SingeColliderDef),
-        .kind = SINGE_COLLIDER_PLANE,
-        .radius = 0.05f,
-        .half_size = {0.05f, 0.05f, 0.05f},
-        .height = 0.1f,
-        .friction = 0.4f,
-        .offset = 0.0005f,
-        .temperature = 293.15f,
-        .contact_distance = 0.002f,
-        .size = {0.2f, 0.2f},
-        .rotation = {0, 0, 0, 1},
-    };
-}
+#define SINGE_FIELD AS_FIELD
+#define SINGE_APART AS_APART
+#define SINGE_HIDDEN AS_FIELD
+static const SingeSourceDef standard_source = {
+    .struct_size = sizeof(SingeSourceDef),
+#include "singe/source.def"
+};
 
-static SingePinDef standard_pin(void) { return (SingePinDef){.struct_size = sizeof(SingePinDef), .radius = 0.005f}; }
+#define SINGE_FIELD AS_FIELD
+#define SINGE_APART AS_APART
+#define SINGE_HIDDEN AS_FIELD
+#define SINGE_OTHER AS_OTHER
+static const SingeColliderDef standard_collider = {
+    .struct_size = sizeof(SingeColliderDef),
+#include "singe/collider.def"
+};
 
-static SingeWindDef standard_wind(void) {
-    return (SingeWindDef){.struct_size = sizeof(SingeWindDef), .gust_time = 0.5f, .gust_size = 0.3f, .seed = 1};
-}
+#define SINGE_FIELD AS_FIELD
+#define SINGE_APART AS_APART
+#define SINGE_HIDDEN AS_FIELD
+static const SingePinDef standard_pin = {
+    .struct_size = sizeof(SingePinDef),
+#include "singe/pin.def"
+};
 
-static SingeSolverDef standard_solver(void) {
-    return (SingeSolverDef){
-        .struct_size = sizeof(SingeSolverDef),
-        .method = SINGE_SOLVER_STRAND,
-        .substeps = 3,
-        .projections = 1,
-        .order = {SINGE_GREEN, SINGE_RED, SINGE_YELLOW, SINGE_BLUE},
-        .regularisation = {[SINGE_RED] = 2, [SINGE_GREEN] = 0.1f, [SINGE_BLUE] = 1e-3f, [SINGE_YELLOW] = 0.01f},
-        .attachments = true,
-        .early_exit = true,
-        .tolerance = 1e-7f,
-        .stiffness = 1000,
-        .smoothing = 170,
-        .smoothing_length = 0.02f,
-        .height_min = 0.3f,
-        .height_gain = 0.5f,
-    };
-}
+#define SINGE_FIELD AS_FIELD
+#define SINGE_APART AS_APART
+#define SINGE_HIDDEN AS_FIELD
+static const SingeWindDef standard_wind = {
+    .struct_size = sizeof(SingeWindDef),
+#include "singe/wind.def"
+};
 
-static SingeSolverDef method_solver(SingeSolverMethod method) {
-    SingeSolverDef def = standard_solver();
-    if (method == SINGE_SOLVER_STRAND) return def;
-    const SingeColour order[] = {SINGE_RED, SINGE_GREEN, SINGE_BLUE, SINGE_YELLOW};
-    def.method = method;
-    def.substeps = method == SINGE_SOLVER_MASS_SPRING ? 200 : 1;
-    def.projections = method == SINGE_SOLVER_MASS_SPRING ? 1 : 7;
-    def.smoothing = def.height_min = 0; // the paper has neither
-    def.attachments = false;
-    memcpy(def.order, order, sizeof order);
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) def.regularisation[colour] = 1e-4f;
-    return def;
-}
+#define SINGE_FIELD AS_FIELD
+#define SINGE_APART AS_APART
+#define SINGE_HIDDEN AS_FIELD
+static const SingeSolverDef standard_solver = {
+    .struct_size = sizeof(SingeSolverDef),
+#include "singe/solver.def"
+};
 
-static SingeGasDef standard_gas(void) {
-    return (SingeGasDef){
-        .struct_size = sizeof(SingeGasDef),
-        .height = 0.25f,
-        .conductance = 10,
-        .radiated = 0.3f,
-        .soot = 0.01f,
-    };
-}
+#define SINGE_FIELD AS_FIELD
+#define SINGE_APART AS_APART
+#define SINGE_HIDDEN AS_FIELD
+static const SingeGasDef standard_gas = {
+    .struct_size = sizeof(SingeGasDef),
+#include "singe/gas.def"
+};
 
-static SingeContactDef standard_contact(void) {
-    return (SingeContactDef){.struct_size = sizeof(SingeContactDef), .thickness = 0.5e-3f, .friction = 0.3f};
-}
+#define SINGE_FIELD AS_FIELD
+#define SINGE_APART AS_APART
+#define SINGE_HIDDEN AS_FIELD
+static const SingeContactDef standard_contact = {
+    .struct_size = sizeof(SingeContactDef),
+#include "singe/contact.def"
+};
 
-static SingeSimDef standard_sim(void) {
-    return (SingeSimDef){
-        .struct_size = sizeof(SingeSimDef),
-        .thread_count = 1,
-        .seed = 1,
-        .time_step = 1.0f / 480,
-        .pace = 1,
-        .gravity = {0, 0, -9.81f},
-        .ambient_temperature = 293.15f,
-        .air_density = 1.2f,
-        .heat_tolerance = 1e-5f,
-        .wind = standard_wind(),
-        .solver = standard_solver(),
-        .surface_detail = 0,
-        .surface_raggedness = 2e-3f,
-        .gas = standard_gas(),
-        .contact = standard_contact(),
-    };
-}
+#define SINGE_FIELD AS_FIELD
+#define SINGE_APART AS_APART
+#define SINGE_HIDDEN AS_FIELD
+#define SINGE_HOOK AS_FIELD
+static const SingeSimDef standard_sim = {
+    .struct_size = sizeof(SingeSimDef),
+#include "singe/sim.def"
+};
 
 /// Fills a caller's part of `size` bytes with our `known` bytes; zero where it is longer.
 static void defaults_fill(void *part, size_t size, const void *standard, size_t known) {
@@ -178,23 +152,19 @@ void singe_init_material(SingeMaterialDef *def, size_t struct_size) {
 }
 
 void singe_init_source(SingeSourceDef *def, size_t struct_size) {
-    const SingeSourceDef standard = standard_source();
-    fill_def(def, struct_size, &standard, sizeof standard);
+    fill_def(def, struct_size, &standard_source, sizeof standard_source);
 }
 
 void singe_init_collider(SingeColliderDef *def, size_t struct_size) {
-    const SingeColliderDef standard = standard_collider();
-    fill_def(def, struct_size, &standard, sizeof standard);
+    fill_def(def, struct_size, &standard_collider, sizeof standard_collider);
 }
 
 void singe_init_pin(SingePinDef *def, size_t struct_size) {
-    const SingePinDef standard = standard_pin();
-    fill_def(def, struct_size, &standard, sizeof standard);
+    fill_def(def, struct_size, &standard_pin, sizeof standard_pin);
 }
 
 void singe_init_wind(SingeWindDef *def, size_t struct_size) {
-    const SingeWindDef standard = standard_wind();
-    fill_def(def, struct_size, &standard, sizeof standard);
+    fill_def(def, struct_size, &standard_wind, sizeof standard_wind);
 }
 
 void singe_init_solver(SingeSolverDef *def, size_t struct_size) {
@@ -202,45 +172,55 @@ void singe_init_solver(SingeSolverDef *def, size_t struct_size) {
 }
 
 void singe_init_gas(SingeGasDef *def, size_t struct_size) {
-    const SingeGasDef standard = standard_gas();
-    fill_def(def, struct_size, &standard, sizeof standard);
+    fill_def(def, struct_size, &standard_gas, sizeof standard_gas);
 }
 
 void singe_init_contact(SingeContactDef *def, size_t struct_size) {
-    const SingeContactDef standard = standard_contact();
-    fill_def(def, struct_size, &standard, sizeof standard);
+    fill_def(def, struct_size, &standard_contact, sizeof standard_contact);
 }
 
 void singe_init_solver_method(SingeSolverDef *def, size_t struct_size, SingeSolverMethod method) {
-    const SingeSolverDef standard = method_solver(method);
-    fill_def(def, struct_size, &standard, sizeof standard);
+    if (method == SINGE_SOLVER_STRAND) {
+        fill_def(def, struct_size, &standard_solver, sizeof standard_solver);
+        return;
+    }
+    SingeSolverDef other = standard_solver;
+    static const SingeColour order[] = {SINGE_RED, SINGE_GREEN, SINGE_BLUE, SINGE_YELLOW};
+    other.method = method;
+    other.substeps = method == SINGE_SOLVER_MASS_SPRING ? 200 : 1;
+    other.projections = method == SINGE_SOLVER_MASS_SPRING ? 1 : 7;
+    other.smoothing = 0;  // the paper has neither this
+    other.height_min = 0; // nor this
+    other.attachments = false;
+    memcpy(other.order, order, sizeof order);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) other.regularisation[colour] = 1e-4f;
+    fill_def(def, struct_size, &other, sizeof other);
 }
 
 // The Defs inside these have grown separately: the field after one is found by the size that the caller's header gave
 // it.
 
 void singe_init_sheet(SingeSheetDef *def, size_t struct_size) {
-    const SingeSheetDef standard = standard_sheet();
+    const SingeMaterialDef material = standard_material();
     const size_t head = offsetof(SingeSheetDef, material), tail = offsetof(SingeSheetDef, velocity);
     char *bytes = (char *)def;
     if (struct_size <= head) {
-        fill_def(def, struct_size, &standard, head);
+        fill_def(def, struct_size, &standard_sheet, head);
         return;
     }
     size_t inner = inner_size(bytes + head, struct_size - head);
-    fill_def(def, head, &standard, head);
+    fill_def(def, head, &standard_sheet, head);
     memcpy(def, &struct_size, sizeof struct_size);
-    fill_def(bytes + head, inner, &standard.material, sizeof standard.material);
-    defaults_fill(bytes + head + inner, struct_size - head - inner, (const char *)&standard + tail,
-                  sizeof standard - tail);
+    fill_def(bytes + head, inner, &material, sizeof material);
+    defaults_fill(bytes + head + inner, struct_size - head - inner, (const char *)&standard_sheet + tail,
+                  sizeof standard_sheet - tail);
 }
 
 void singe_init_sim(SingeSimDef *def, size_t struct_size) {
-    const SingeSimDef standard = standard_sim();
     const size_t head = offsetof(SingeSimDef, wind);
     char *bytes = (char *)def;
     if (struct_size <= head) {
-        fill_def(def, struct_size, &standard, head);
+        fill_def(def, struct_size, &standard_sim, head);
         return;
     }
 
@@ -250,14 +230,14 @@ void singe_init_sim(SingeSimDef *def, size_t struct_size) {
     size_t gas = inner_size(bytes + head + wind + solver, left - solver);
 
     // fill each by its size
-    fill_def(def, head, &standard, head);
+    fill_def(def, head, &standard_sim, head);
     memcpy(def, &struct_size, sizeof struct_size);
-    fill_def(bytes + head, wind, &standard.wind, sizeof standard.wind);
-    fill_def(bytes + head + wind, solver, &standard.solver, sizeof standard.solver);
-    fill_def(bytes + head + wind + solver, gas, &standard.gas, sizeof standard.gas);
+    fill_def(bytes + head, wind, &standard_wind, sizeof standard_wind);
+    fill_def(bytes + head + wind, solver, &standard_solver, sizeof standard_solver);
+    fill_def(bytes + head + wind + solver, gas, &standard_gas, sizeof standard_gas);
     left -= solver + gas;
     bytes += head + wind + solver + gas;
     size_t contact = inner_size(bytes, left);
-    fill_def(bytes, contact, &standard.contact, sizeof standard.contact);
+    fill_def(bytes, contact, &standard_contact, sizeof standard_contact);
     memset(bytes + contact, 0, left - contact);
 }

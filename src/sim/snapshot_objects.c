@@ -2,6 +2,7 @@
 #include "sim/snapshot_objects.h"
 
 #include "sim/snapshot_check.h"
+#include "common/def_table.h"
 #include "sim/snapshot_def.h"
 
 #include <string.h>
@@ -182,7 +183,7 @@ static bool snapshot_collider(Stream *stream, SingeSim *sim, Collider *collider)
     if (stream->failed || !snapshot_path(stream, &sim->memory, &collider->path)) return false;
     SingeColliderDef def = collider->def;
     def.path_count = collider->path.count; // it may have been given another path
-    if (!snapshot_held(stream, def.path_count > 0 && collider_check(&def, NULL) == SINGE_OK)) return false;
+    if (!snapshot_held(stream, def.path_count > 0 && def_check(&collider_table, &def, NULL) == SINGE_OK)) return false;
     if (collider->def.kind == SINGE_COLLIDER_MESH) return snapshot_mesh(stream, &sim->memory, &collider->mesh);
     if (collider->def.kind == SINGE_COLLIDER_DEFORMING) return snapshot_deform(stream, &sim->memory, &collider->deform);
     if (collider->def.kind == SINGE_COLLIDER_HEIGHTFIELD)

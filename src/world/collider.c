@@ -1,27 +1,9 @@
 // Signed distances in the colliders' own frames: of the primitives here, of the others from their solids.
 #include "world/collider.h"
 
-#include "common/real.h"
+#include "common/def_table.h"
 
 #include <string.h>
-
-SingeResult collider_check(const SingeColliderDef *def, SingeError *error) {
-    const char *what = NULL;
-    if (def->kind < SINGE_COLLIDER_PLANE || def->kind > SINGE_COLLIDER_DEFORMING) what = "kind is unknown";
-    bool round = def->kind == SINGE_COLLIDER_SPHERE || def->kind == SINGE_COLLIDER_CAPSULE;
-    if (round && !float_within(def->radius, 1e-6f, 1e6f)) what = "radius must be above 0";
-    for (int i = 0; i < 3; i++)
-        if (def->kind == SINGE_COLLIDER_BOX && !float_within(def->half_size[i], 1e-6f, 1e6f))
-            what = "half_size must be above 0";
-    if (def->kind == SINGE_COLLIDER_CAPSULE && !float_within(def->height, 0, 1e6f)) what = "height must be 0 or more";
-    if (!float_within(def->friction, 0, 1e3f)) what = "friction must be between 0 and 1000";
-    if (!float_within(def->offset, 0, 1e3f)) what = "offset must be 0 or more";
-    if (!float_within(def->conductance, 0, 1e9f)) what = "conductance must be 0 or more";
-    if (!float_within(def->contact_distance, 0, 1e3f)) what = "contact_distance must be 0 or more";
-    if (def->conductance > 0 && !float_within(def->temperature, 1e-3f, 1e5f)) what = "temperature must be above 0 K";
-    if (def->sides < SINGE_SIDES_TOUCHING || def->sides > SINGE_SIDES_BOTH) what = "sides is unknown";
-    return what ? error_set(error, SINGE_ERROR_ARGUMENT, "collider", -1, "%s", what) : SINGE_OK;
-}
 
 static float collider_round(Float3 offset, float radius, Float3 *normal) {
     float length = float3_length(offset);
@@ -48,7 +30,7 @@ static float collider_box(const float half[3], Float3 p, Float3 *normal) {
 }
 
 SingeResult collider_create(Memory *memory, const SingeColliderDef *def, Collider *collider, SingeError *error) {
-    TRY(collider_check(def, error));
+    TRY(def_check(&collider_table, def, error));
     SingePoseKey still = {0};
     memcpy(still.position, def->position, sizeof still.position);
     memcpy(still.rotation, def->rotation, sizeof still.rotation);

@@ -21,9 +21,6 @@ typedef struct ColliderList {
     Collider *items;
 } ColliderList;
 
-/// Checks the numbers of a Def.
-SingeResult collider_check(const SingeColliderDef *def, SingeError *error);
-
 /// Checks a Def and copies what it points to, into a zeroed Collider whose generation stays 0. On failure it is empty.
 SingeResult collider_create(Memory *memory, const SingeColliderDef *def, Collider *collider, SingeError *error);
 void collider_free(Memory *memory, Collider *collider);

@@ -6,7 +6,6 @@
 #include "common/float3.h"
 #include "singe/types.h"
 
-SingeResult wind_check(const SingeWindDef *def, SingeError *error);
 Float3 wind_velocity(const SingeWindDef *def, Float3 position, double time);
 
 #endif

@@ -1,6 +1,7 @@
 // Signed distances: against hand values, and normals against numeric gradients at random points.
 #include "support/support.h"
 
+#include "common/def_table.h"
 #include "world/collider.h"
 
 #include <string.h>
@@ -134,11 +135,11 @@ static void bad_fields_are_named(void **state) {
     SingeError error;
     SingeColliderDef good = make(SINGE_COLLIDER_SPHERE);
     good.path_count = 1;
-    assert_int_equal(collider_check(&good, &error), SINGE_OK);
+    assert_int_equal(def_check(&collider_table, &good, &error), SINGE_OK);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         SingeColliderDef def = good;
         cases[i].spoil(&def);
-        assert_int_equal(collider_check(&def, &error), SINGE_ERROR_ARGUMENT);
+        assert_int_equal(def_check(&collider_table, &def, &error), SINGE_ERROR_ARGUMENT);
         assert_string_equal(error.stage, "collider");
         assert_non_null(strstr(error.message, cases[i].word));
     }

@@ -1,6 +1,7 @@
 // Wind: the mean, the gusts' bound, seed and smoothness.
 #include "support/support.h"
 
+#include "common/def_table.h"
 #include "world/wind.h"
 
 #include <string.h>
@@ -71,11 +72,11 @@ static void bad_fields(void **state) {
     (void)state;
     SingeError error;
     SingeWindDef good = singe_default_wind(), bad;
-    assert_int_equal(wind_check(&good, &error), SINGE_OK);
-#define BAD(field, value)                                             \
-    bad = good;                                                       \
-    bad.field = (value);                                              \
-    assert_int_equal(wind_check(&bad, &error), SINGE_ERROR_ARGUMENT); \
+    assert_int_equal(def_check(&wind_table, &good, &error), SINGE_OK);
+#define BAD(field, value)                                                         \
+    bad = good;                                                                   \
+    bad.field = (value);                                                          \
+    assert_int_equal(def_check(&wind_table, &bad, &error), SINGE_ERROR_ARGUMENT); \
     assert_string_equal(error.stage, "wind")
     BAD(velocity[1], NAN);
     BAD(velocity[0], 1e6f);

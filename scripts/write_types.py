@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+"""Writes what follows from the tables of Defs (include/singe/*.def) into include/singe/types.h: structs, enums, defaults.
+
+usage: write_types.py [--check]
+
+Everything else of types.h is written by hand. --check: changes nothing, and fails where the header differs.
+"""
+
+import pathlib
+import re
+import sys
+import textwrap
+
+FOLDER = pathlib.Path(__file__).resolve().parents[1] / "include/singe"
+DEFS = ("sheet", "source", "collider", "pin", "wind", "solver", "gas", "contact", "sim")
+TYPES = {"FLOAT": "float", "VECTOR": "float", "ORDER": "SingeColour", "INT": "int", "UINT32": "uint32_t", "UINT64": "uint64_t", "BOOL": "bool"}
+FIELDS = ("FIELD", "APART", "HIDDEN", "HOOK")
+WIDTH = 120
+
+
+def arguments(text):
+    """The arguments of a macro's call, with neighbouring strings joined."""
+    parts, depth, quoted, begin = [], 0, False, 0
+    for i, c in enumerate(text):
+        if c == '"' and text[i - 1] != "\\":
+            quoted = not quoted
+        if quoted:
+            continue
+        depth += (c in "([{") - (c in ")]}")
+        if c == "," and depth == 0:
+            parts.append(text[begin:i])
+            begin = i + 1
+    parts.append(text[begin:])
+    parts = [" ".join(part.split()) for part in parts]
+    return [re.sub(r'(?<!\\)" "', "", part)[1:-1].replace('\\"', '"') if part.startswith('"') else part for part in parts]
+
+
+def rows(text):
+    """(macro, arguments) of each row of a table."""
+    text = re.sub(r"//[^\n]*", "", text)
+    for match in re.finditer(r"^SINGE_(FIELD|APART|HIDDEN|HOOK|COUNT|OTHER|WORD|DIMENSION)\(", text, re.MULTILINE):
+        depth, i, quoted = 1, match.end(), False
+        while depth:
+            if text[i] == '"' and text[i - 1] != "\\":
+                quoted = not quoted
+            if not quoted:
+                depth += (text[i] == "(") - (text[i] == ")")
+            i += 1
+        row = arguments(text[match.end():i - 1])
+        if match.group(1) == "APART":
+            row = row[1:]  # without its key
+        yield match.group(1), row
+
+
+def in_words(found):
+    """A range as the header states it; "" if there is none."""
+    name, inside = re.match(r"(\w+)(?:\((.*)\))?$", found).groups()
+    bounds = arguments(inside) if inside else []
+    if name.startswith("IN_SCENES"):
+        return in_words(bounds[0])
+    return {"WITHIN": "{0} to {1}", "BELOW": "{0} to below {1}", "OVER_UP_TO": "above {0}, to {1}", "FROM": ">= {0}",
+            "OVER": "> {0}", "OVER_OR_INF": "> {0}", "FINITE": "finite", "NUMBER": "any, also infinite",
+            "ANY": ""}[name].format(*bounds)
+
+
+def plain(text):
+    """A text without Markdown's links."""
+    return re.sub(r"\s*\(\[[^\]]*\]\([^)]*\)\)", "", text).replace("`", "")
+
+
+def kinds_in_words(kinds):
+    return "" if kinds == "ALWAYS" else " and ".join(kind.split("_", 1)[1].lower() for kind in kinds.split(" | "))
+
+
+def comment(line, text):
+    """A declaration with its comment, which stands above it where it is too long."""
+    beside = f"    {line} ///< {text}"
+    if len(beside) <= WIDTH:
+        return [beside]
+    above = textwrap.wrap(text, WIDTH - 8, break_long_words=False, break_on_hyphens=False)
+    return [f"    /// {part}" for part in above] + [f"    {line}"]
+
+
+def struct(name, table, units):
+    lines = ["    size_t struct_size;"]
+    for macro, row in table:
+        if macro in FIELDS:
+            kind, field, length, dimension, _, found, kinds, text = row
+            kind = TYPES.get(kind) or re.match(r"(?:ENUM|KIND)\((\w+)\)", kind).group(1)
+            facts = [part for part in (units[dimension], kinds_in_words(kinds), in_words(found)) if part]
+            size = "" if length == "1" else f"[{length}]"
+            lines += comment(f"{kind} {field}{size};", "; ".join(([", ".join(facts)] if facts else []) + [plain(text)]))
+        if macro == "COUNT":
+            lines += comment(f"uint32_t {row[0]};", plain(row[1]))
+        if macro == "OTHER":
+            lines += comment(f"{row[0]};", plain(row[3]))
+    return "\n".join([f"typedef struct {name} {{", *lines, f"}} {name};"])
+
+
+def enum(name, words):
+    lines = []
+    for _, (of, value_name, value, _, text) in words:
+        if of == name:
+            lines += comment(f"{value_name} = {value},", plain(text))
+    return "\n".join([f"typedef enum {name} {{", *lines, f"}} {name};"])
+
+
+def defaults(table):
+    """The paragraph on the fields whose defaults are not zero."""
+    found = []
+    for macro, row in table:
+        if macro not in (*FIELDS, "OTHER"):
+            continue
+        field, value = (row[1], row[2]) if macro == "OTHER" else (row[1], row[4])
+        value = re.sub(r"(\d)f\b", r"\1", re.sub(r"BRACED\((.*)\)", r"{\1}", value))
+        if macro == "OTHER" and re.match(r"Singe\w+Def ", row[0]):
+            found.append(f"{field} singe_default_{row[0].split('Def ')[0][5:].lower()}()")
+        elif value not in ("0", "{0}", "NULL", "false"):
+            found.append(f"{field} {value}")
+    text = "Defaults: " + (", ".join(found) + "; all else 0 or NULL." if found else "0 or NULL.")
+    return "\n".join("/// " + line for line in textwrap.wrap(text, WIDTH - 4, break_long_words=False,
+                                                             break_on_hyphens=False))
+
+
+def blurred(text):
+    """A text without what the formatter decides: blanks, and where comments break."""
+    return re.sub(r"\s+", " ", re.sub(r"///<?", " ", text))
+
+
+def main():
+    header = FOLDER / "types.h"
+    before = text = header.read_text(encoding="utf-8")
+    units = {"DIM_" + row[0]: row[2] for _, row in rows((FOLDER / "dimensions.def").read_text(encoding="utf-8"))}
+    for part in DEFS:
+        table = list(rows((FOLDER / f"{part}.def").read_text(encoding="utf-8")))
+        name = f"Singe{part.capitalize()}Def"
+        new = defaults(table) + "\n" + struct(name, table, units)
+        text, count = re.subn(r"/// Defaults:[^\n]*\n(?:///[^\n]*\n)*typedef struct %s \{.*?\} %s;" % (name, name),
+                              lambda _: new, text, flags=re.DOTALL)
+        if count != 1:
+            sys.exit(f"write_types.py: types.h has no struct {name} below a line of its defaults")
+        words = [row for row in table if row[0] == "WORD"]
+        for of in dict.fromkeys(row[1][0] for row in words):
+            text = re.sub(r"typedef enum %s \{.*?\} %s;" % (of, of), lambda _: enum(of, words), text, flags=re.DOTALL)
+    if "--check" in sys.argv[1:]:
+        if blurred(text) != blurred(before):
+            sys.exit("include/singe/types.h does not follow from the tables: run scripts/write_types.py")
+    else:
+        header.write_text(text, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
