@@ -227,7 +227,7 @@ typedef enum SingeSolverMethod {
     SINGE_SOLVER_MASS_SPRING = 4,   ///< Hooke's law, the comparison of section 8
 } SingeSolverMethod;
 
-/// The solver of the shell's motion (docs/equations.md).
+/// The solver of the shell's motion (docs/equations/dynamics.md).
 ///
 /// Defaults: SINGE_SOLVER_STRAND, substeps 3, projections 1, order green, red, yellow, blue, regularisation 2 (red),
 /// 0.1 (green), 0.001 (blue), 0.01 (yellow), attachments, early_exit, tolerance 1e-7, stiffness 1000, smoothing 170,
@@ -273,7 +273,7 @@ typedef enum SingeInstructions {
     SINGE_INSTRUCTIONS_ARM_NEON = 5, ///< 64-bit Arm: NEON, 4 lanes
 } SingeInstructions;
 
-/// The gas around the sheets: hot air, flames and smoke on a grid. It rises, heats and lifts (docs/equations.md).
+/// The gas around the sheets: hot air, flames and smoke on a grid. It rises, heats and lifts (docs/equations/gas.md).
 ///
 /// Defaults: not enabled, cell_size 0, height 0.25, conductance 10, radiated 0.3, soot 0.01.
 typedef struct SingeGasDef {
@@ -294,7 +294,7 @@ static inline SingeGasDef singe_default_gas(void) {
     return def;
 }
 
-/// Contact of sheets with themselves and each other (docs/equations.md). Colliders have their own friction.
+/// Contact of sheets with themselves and each other (docs/equations/contact.md). Colliders have their own friction.
 ///
 /// Defaults: not enabled, thickness 0.0005, friction 0.3.
 typedef struct SingeContactDef {

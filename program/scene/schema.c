@@ -45,7 +45,7 @@ static const SchemaRow solver_rows[] = {
             "`strand`"},
     {"substeps", ROW_INT, DIM_NONE, AT(SingeSolverDef, substeps), WITHIN(0, 1000),
      .doc =
-         "substeps of a step; stiff, thick sheets of small cells need more ([equations.md](equations.md#stiffness)); "
+         "substeps of a step; stiff, thick sheets of small cells need more ([stiffness.md](equations/stiffness.md)); "
          "0: as many as the red compliance needs"},
     {"projections", ROW_INT, DIM_NONE, AT(SingeSolverDef, projections), WITHIN(1, 1000),
      .doc = "projections of all colours per substep"},
@@ -77,7 +77,7 @@ static const Schema schema_solver = {
     .choice = "method",
     .chosen = chosen_solver,
     .doc = "How springs are kept at their lengths. The name of a method is enough: `solver: paper`. Keys that are not "
-           "given take the method's defaults ([equations.md](equations.md#the-papers-solver))."};
+           "given take the method's defaults ([paper-solver.md](equations/paper-solver.md))."};
 
 static const SchemaRow gas_rows[] = {
     {"enabled", ROW_BOOL, DIM_NONE, AT(Scene, sim.gas.enabled), .doc = "no: sheets burn as in still air"},
