@@ -283,7 +283,7 @@ typedef struct SingeStats {
     double mass_removed;                                        ///< kg, of removed particles
     double burnt_fraction;                                      ///< mass_burnt + mass_removed over mass_initial
     float temperature_max;                                      ///< K
-    double heat_in, heat_lost, heat_of_combustion, heat_stored; ///< J, cumulative; see docs/equations.md
+    double heat_in, heat_lost, heat_of_combustion, heat_stored; ///< J, cumulative; see docs/equations/heat.md
     double ledger_error;      ///< |in + combustion - lost - stored| over the largest of them
     double mass_ledger_error; ///< |initial - left - burnt - removed| / initial
     /// |length/target - 1| of the mesh's edges (blue springs) that are at least partly drawn and not pinned at both

@@ -10,7 +10,7 @@ extern "C" {
 
 /// The drawn mesh: cells as four triangles around a virtual centre, cut by the level set m - m_loss
 /// (eq 7, Fig 6). With a `surface_detail`, cells near the front are refined, burnt edges are ragged by noise fixed to
-/// the sheet, and the mesh lies on a smooth surface (docs/equations.md). Vertices of the input keep their
+/// the sheet, and the mesh lies on a smooth surface (docs/equations/surface.md). Vertices of the input keep their
 /// `source_vertex`. The surface owns all arrays.
 typedef struct SingeSurface {
     uint32_t vertex_count, triangle_count;

@@ -238,7 +238,7 @@ typedef enum SingeSolverMethod {
     SINGE_SOLVER_MASS_SPRING = 4,   ///< Hooke's law, the comparison of section 8
 } SingeSolverMethod;
 
-/// The solver of the shell's motion (docs/equations.md).
+/// The solver of the shell's motion (docs/equations/dynamics.md).
 ///
 /// Defaults: method SINGE_SOLVER_STRAND, substeps 3, projections 1, order {SINGE_GREEN, SINGE_RED, SINGE_YELLOW,
 /// SINGE_BLUE}, regularisation {2, 0.1, 1e-3, 0.01}, attachments true, early_exit true, tolerance 1e-7, stiffness 1000,
@@ -293,7 +293,7 @@ typedef enum SingeInstructions {
     SINGE_INSTRUCTIONS_ARM_NEON = 5, ///< 64-bit Arm: NEON, 4 lanes
 } SingeInstructions;
 
-/// The gas around the sheets: hot air, flames and smoke on a grid. It rises, heats and lifts (docs/equations.md).
+/// The gas around the sheets: hot air, flames and smoke on a grid. It rises, heats and lifts (docs/equations/gas.md).
 ///
 /// Defaults: height 0.25, conductance 10, radiated 0.3, soot 0.01; all else 0 or NULL.
 typedef struct SingeGasDef {
@@ -316,7 +316,7 @@ static inline SingeGasDef singe_default_gas(void) {
     return def;
 }
 
-/// Contact of sheets with themselves and each other (docs/equations.md). Colliders have their own friction.
+/// Contact of sheets with themselves and each other (docs/equations/contact.md). Colliders have their own friction.
 ///
 /// Defaults: thickness 0.5e-3, friction 0.3; all else 0 or NULL.
 typedef struct SingeContactDef {

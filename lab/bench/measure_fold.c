@@ -4,7 +4,7 @@
 // to a radius of 4.8 mm at 180 degrees. The moving half arrives in 0.6 s, rests for 0.3 s and is released; then only
 // friction acts. The other half remains held. `left` is the angle between the halves 2 s later.
 //
-//   expected  crease_share (angle - arc/crease_radius), as for continuous bending (docs/equations.md, Creases)
+//   expected  crease_share (angle - arc/crease_radius), as for continuous bending (docs/equations/stiffness.md)
 //   elastic   left without creases: it should spring back
 //
 // Folds are towards the layer of centres and towards that of corners. The angles should agree at half the cell size and

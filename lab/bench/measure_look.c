@@ -17,7 +17,7 @@
 #include "bench/geometry.h"
 #include "bench/hung_sheet.h"
 
-/// Enough for the default stiffness at every setting (docs/equations.md, Stiffness).
+/// Enough for the default stiffness at every setting (docs/equations/stiffness.md).
 enum { SUBSTEPS = 16 };
 
 enum { POINTS = 41, LINES = 24, SAMPLES = 128 };

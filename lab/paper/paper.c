@@ -77,7 +77,7 @@ static const PageItem items[] = {
     {"adaptive", "Section 8.2: adaptivity",
      "\"It is not straightforward to apply our method to adaptive BCS, BCC or irregular meshes.\"", paper_adaptive},
     {"readings", "Ambiguities and misprints",
-     "Where the paper can be read in more than one way; docs/equations.md has them with all the differences that are "
+     "Where the paper can be read in more than one way; docs/equations has them with all the differences that are "
      "choices.",
      paper_readings},
     {"statements", "Sections 5 to 8, statement by statement",

@@ -144,7 +144,7 @@ static SingeResult spread_measure(Lab *lab, const MeshCase *mesh, SingeHeatOpera
     return result;
 }
 
-/// docs/equations.md: the umbrella's effective alpha along x on cells dx by dy without thickness.
+/// docs/equations/heat.md: the umbrella's effective alpha along x on cells dx by dy without thickness.
 static double umbrella_factor(double dx, double dy) {
     double q = hypot(dx, dy), r = q / 2;
     return (2 * dx + 2 * dx * dx / q + dx * dx / r) / (2 * dx + 2 * dy + 2 * q + 4 * r);

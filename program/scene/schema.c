@@ -48,7 +48,7 @@ static const Schema schema_solver = {
     .choice = "method",
     .chosen = chosen_solver,
     .doc = "How springs are kept at their lengths. The name of a method is enough: `solver: paper`. Keys that are not "
-           "given take the method's defaults ([equations.md](equations.md#the-papers-solver))."};
+           "given take the method's defaults ([paper-solver.md](equations/paper-solver.md))."};
 
 #define OF Scene
 #define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \

@@ -48,7 +48,7 @@ static const Schema schema_compliance = {
     .size = sizeof(SceneMaterial),
     ROWS(compliance_rows),
     .doc = "Elongation of a spring per force, by colour of spring; 0 is rigid. What it means for a sheet, and "
-           "the substeps that stiff sheets need: [equations.md](equations.md#stiffness)."};
+           "the substeps that stiff sheets need: [stiffness.md](equations/stiffness.md)."};
 
 static const SchemaRow measured_rows[] = {
     {"calibrated", ROW_BOOL, DIM_NONE, AT(SceneMeasured, calibrated),

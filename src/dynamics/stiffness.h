@@ -1,4 +1,4 @@
-// Compliances that give a sheet its material's stiffness for any cells and step (docs/equations.md, Stiffness).
+// Compliances that give a sheet its material's stiffness for any cells and step (docs/equations/stiffness.md).
 #ifndef DYNAMICS_STIFFNESS_H
 #define DYNAMICS_STIFFNESS_H
 

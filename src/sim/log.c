@@ -34,7 +34,7 @@ static void sim_log_sheet(const SingeSim *sim, uint32_t index) {
                 index, 1e3 * (double)h, 1e3 * (double)sheet->cell_size);
 }
 
-/// The stopping rules of the methods that iterate (docs/equations.md).
+/// The stopping rules of the methods that iterate (docs/equations/paper-solver.md).
 static void sim_log_solver(const SingeSim *sim) {
     const SingeSolverDef *solver = &sim->def.solver;
     double tolerance = (double)solver->tolerance;

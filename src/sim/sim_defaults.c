@@ -1,4 +1,4 @@
-// The default Defs. Where the numbers come from: docs/materials.md, Office paper, and docs/equations.md, Parameters.
+// The default Defs. Where the numbers come from: docs/materials.md, Office paper, and docs/equations/parameters.md.
 #include "singe/types.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 """singe bench isotropy: folds of what burns do not follow the mesh where its curvature is limited, and do where not.
 
-The short form: two seeds of squares. The whole, four seeds of squares and discs, is in docs/equations.md."""
+The short form: two seeds of squares. The whole, four seeds of squares and discs, is in docs/equations/stiffness.md."""
 
 import json
 import os

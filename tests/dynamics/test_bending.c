@@ -76,7 +76,7 @@ static void shear(void **unused) {
         }
 }
 
-/// The table of docs/equations.md, Stiffness.
+/// The table of docs/equations/stiffness.md.
 static int print_table(void) {
     const double stiffnesses[] = {1e-3, 2.5e-4};
     const int substeps[] = {3, 4, 5, 6, 12, 24};
