@@ -11,7 +11,6 @@
 // Beyond the border p = 0, half a cell away. A cell's velocity changes by the mean of its faces' changes, so that
 // averaging removes little of it (as FLIP does for particles), and takes a small part of the faces' own mean, for
 // motion too short for faces to see.
-#include "common/assertion.h"
 #include "gas/gas_plan.h"
 
 #include <string.h>
@@ -27,7 +26,6 @@ static inline float project_face(const float *u, size_t c, size_t beyond, bool f
 /// Faces' speeds before the pressure, and their weights.
 static void project_faces(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     const float *L = pass->to->field[GAS_LIGHTNESS];
@@ -54,7 +52,6 @@ static void project_faces(void *context, int begin, int end) {
 
 static void project_rhs(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     float *rhs = plan->level[0].rhs, scale = plan->cell / pass->dt;
@@ -74,7 +71,6 @@ static void project_rhs(void *context, int begin, int end) {
 /// Velocities of cells after the pressure.
 static void project_cells(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     const float *p = pass->to->field[GAS_PRESSURE];
@@ -101,7 +97,6 @@ static void project_cells(void *context, int begin, int end) {
 /// Speeds through faces after the pressure.
 static void project_through(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     const float *p = pass->to->field[GAS_PRESSURE];
