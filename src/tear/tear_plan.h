@@ -59,6 +59,8 @@ double tear_measure(TearPlan *plan, const Shell *shell, State *state, const floa
 void tear_smooth(TearPlan *plan, const Shell *shell, const State *state, Pool *pool);
 /// The load at a vertex, from the averaged line force.
 TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex);
+/// The normal of the sheet at a vertex at rest.
+Float3 tear_normal(const Shell *shell, const Fan *fan);
 
 /// Splits a vertex and gives the new one its state (split_state.c).
 void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *split, SplitResult *result);
