@@ -1,4 +1,3 @@
-#include "common/assertion.h"
 #include "shell/cross.h"
 
 bool cross_pierces(Float4 p, Float4 q, Float4 a, Float4 b, Float4 c) {
@@ -19,7 +18,6 @@ static void cross_nodes(const uint32_t corner[4], const float (*x)[4], Float4 or
 
 /// Number of a node, the same in all cells that have it.
 static uint32_t cross_id(const Shell *shell, uint32_t cell, int node) {
-    SINGE_ASSERT(cell < shell->cell_count);
     return node < 4 ? shell->cells[cell][node] : shell_centre(shell, cell);
 }
 

@@ -183,14 +183,6 @@ static SingeResult evaluate(const ParamField *field, const ParamRule *rule, floa
     return SINGE_OK;
 }
 
-/// Keeps a single value if all are the same to the bit.
-static void keep_values(Memory *memory, SheetSource *source, int param) {
-    size_t total = (size_t)source->sheet.vertex_count + source->sheet.cell_count;
-    float **values = &source->values[param];
-    source->value[param] = (*values)[0];
-    if (memcmp(*values, *values + 1, (total - 1) * sizeof **values) == 0) FREE(memory, *values, total);
-}
-
 /// A quantity computed from several parameters may exceed the range of float.
 static SingeResult check_matter(const SheetSource *source, SingeError *error) {
     static const struct {
@@ -234,8 +226,11 @@ SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSou
             return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for sheet '%s'", source->sheet.name);
         TRY(field_open(def, rule, &field, error));
         TRY(evaluate(&field, rule, *values, error));
-        // the rules of one parameter, one per layer, are consecutive
-        if (r + 1 == RULE_COUNT || param_rules[r + 1].param != rule->param) keep_values(memory, source, rule->param);
+        // the rules of one parameter, one per layer, are consecutive; a single value is kept if all are the same to the
+        // bit
+        if (r + 1 < RULE_COUNT && param_rules[r + 1].param == rule->param) continue;
+        source->value[rule->param] = (*values)[0];
+        if (memcmp(*values, *values + 1, (total - 1) * sizeof **values) == 0) FREE(memory, *values, total);
     }
     return check_matter(source, error);
 }

@@ -308,7 +308,6 @@ static inline uint32_t shell_centre(const Shell *shell, uint32_t cell) { return 
 
 /// Number of springs of a colour that are in strands. They come first, followed by the spares of tears.
 static inline uint32_t shell_strand_springs(const Shell *shell, int colour) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     return shell->springs[colour].count - (colour == SINGE_BLUE ? shell->edge_spare_count : 0);
 }
 
