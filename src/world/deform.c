@@ -9,36 +9,32 @@ static SingeResult deform_no_memory(SingeError *error) {
     return error_set(error, SINGE_ERROR_MEMORY, "collider", -1, "out of memory for the mesh");
 }
 
-/// Allocates the second solid's own arrays; it shares the others.
-static bool deform_second(Memory *memory, DeformPose *pose) {
-    MeshSolid *second = &pose->solid[1];
-    *second = pose->solid[0];
-    second->vertices = NULL;
-    second->leaves = NULL;
-    second->nodes = NULL;
-    if (!NEW(memory, second->vertices, second->vertex_count) || !NEW(memory, second->leaves, second->leaf_count) ||
-        !NEW(memory, second->nodes, second->node_count))
-        return false;
-    memcpy(second->vertices, pose->solid[0].vertices, second->vertex_count * sizeof *second->vertices);
-    memcpy(second->leaves, pose->solid[0].leaves, second->leaf_count * sizeof *second->leaves);
-    memcpy(second->nodes, pose->solid[0].nodes, second->node_count * sizeof *second->nodes);
-    return true;
-}
-
 SingeResult deform_create(Memory *memory, uint32_t vertex_count, const float *vertices, uint32_t triangle_count,
                           const uint32_t *triangles, Deform *deform, SingeError *error) {
     *deform = (Deform){0};
     if (!NEW(memory, deform->pose, 1)) return deform_no_memory(error);
-    SingeResult result = mesh_solid_create_moving(memory, vertex_count, vertices, triangle_count, triangles,
-                                                  &deform->pose->solid[0], error);
-    if (!result && (!motion_create(memory, vertex_count, vertices, &deform->motion) ||
-                    !NEW(memory, deform->rest, vertex_count) || !deform_second(memory, deform->pose)))
-        result = deform_no_memory(error);
+    MeshSolid *first = &deform->pose->solid[0], *second = &deform->pose->solid[1];
+    SingeResult result =
+        mesh_solid_create_moving(memory, vertex_count, vertices, triangle_count, triangles, first, error);
+    if (!result) {
+        // the second solid has its own vertices and boxes, and shares the rest
+        *second = *first;
+        second->vertices = NULL;
+        second->leaves = NULL;
+        second->nodes = NULL;
+        if (!motion_create(memory, vertex_count, vertices, &deform->motion) ||
+            !NEW(memory, deform->rest, vertex_count) || !NEW(memory, second->vertices, second->vertex_count) ||
+            !NEW(memory, second->leaves, second->leaf_count) || !NEW(memory, second->nodes, second->node_count))
+            result = deform_no_memory(error);
+    }
     if (result) {
         deform->motion.count = vertex_count; // length of those of its arrays that exist
         deform_free(memory, deform);
         return result;
     }
+    memcpy(second->vertices, first->vertices, first->vertex_count * sizeof *first->vertices);
+    memcpy(second->leaves, first->leaves, first->leaf_count * sizeof *first->leaves);
+    memcpy(second->nodes, first->nodes, first->node_count * sizeof *first->nodes);
     memcpy(deform->rest, vertices, vertex_count * sizeof *deform->rest);
     deform_forget(deform);
     return SINGE_OK;

@@ -40,7 +40,10 @@ static void table_free(Memory *memory, PairTable *table) {
 /// The location of a key's value; UINT32_MAX there if it has none yet.
 static uint32_t *table_find(const PairTable *table, const uint32_t key[3]) {
     uint64_t hash = 0xcbf29ce484222325u;
-    for (int i = 0; i < 3; i++) hash = (hash ^ key[i]) * 0x9e3779b97f4a7c15u, hash ^= hash >> 29;
+    for (int i = 0; i < 3; i++) {
+        hash = (hash ^ key[i]) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 29;
+    }
     size_t k = (size_t)hash & (table->capacity - 1);
     while (table->values[k] != UINT32_MAX && memcmp(table->keys[k], key, sizeof *table->keys) != 0)
         k = (k + 1) & (table->capacity - 1);
@@ -83,12 +86,6 @@ static SingeResult mesh_join(Memory *memory, const MeshSolid *solid, uint32_t *f
     return ok ? SINGE_OK : mesh_memory(error);
 }
 
-static Float3 mesh_cross(const MeshSolid *solid, const uint32_t t[3]) {
-    Float3 a = float3_load(solid->vertices[t[0]]);
-    return float3_cross(float3_sub(float3_load(solid->vertices[t[1]]), a),
-                        float3_sub(float3_load(solid->vertices[t[2]]), a));
-}
-
 /// Writes the triangles with the joined vertices, without those that have become degenerate; `source` gets their
 /// original numbers.
 static SingeResult mesh_gather(const uint32_t *triangles, const uint32_t *first, uint32_t *source, MeshSolid *solid,
@@ -96,10 +93,14 @@ static SingeResult mesh_gather(const uint32_t *triangles, const uint32_t *first,
     uint32_t count = 0;
     for (uint32_t t = 0; t < solid->triangle_count; t++) {
         uint32_t *corner = solid->triangles[count];
-        for (int i = 0; i < 3; i++) corner[i] = first[triangles[3 * (size_t)t + (size_t)i]];
+        Float3 v[3];
+        for (int i = 0; i < 3; i++) {
+            corner[i] = first[triangles[3 * (size_t)t + (size_t)i]];
+            v[i] = float3_load(solid->vertices[corner[i]]);
+        }
         if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
         source[count++] = t;
-        if (!(float3_length(mesh_cross(solid, corner)) > MESH_AREA_MIN))
+        if (!(float3_length(float3_cross(float3_sub(v[1], v[0]), float3_sub(v[2], v[0]))) > MESH_AREA_MIN))
             return error_set(error, SINGE_ERROR_MESH, "collider", t, "triangle %u of the mesh has no area", t);
     }
     memset(solid->triangles[count], 0, (solid->triangle_count - count) * sizeof *solid->triangles);
@@ -116,7 +117,9 @@ static void mesh_turn(MeshSolid *solid) {
         double p[3][3];
         for (int i = 0; i < 3; i++) {
             Float3 v = float3_sub(float3_load(solid->vertices[corner[i]]), o);
-            p[i][0] = (double)v.x, p[i][1] = (double)v.y, p[i][2] = (double)v.z;
+            p[i][0] = (double)v.x;
+            p[i][1] = (double)v.y;
+            p[i][2] = (double)v.z;
         }
         for (int i = 0; i < 3; i++) {
             int e = (i + 1) % 3, f = (i + 2) % 3;
