@@ -41,6 +41,7 @@ void burn_air(BurnJob *job, Pool *pool);
 
 /// The second reaction: the share of char that is left of `share` after dt s.
 float burn_glow(const BurnJob *job, uint32_t i, float fuel, float share, float air, float dt);
+
 /// K by which unit mass is heated per mass fraction of char that glows away.
 float burn_glow_heat(const BurnJob *job, uint32_t i);
 

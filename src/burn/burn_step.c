@@ -70,6 +70,7 @@ SingeResult burn_step(const StepContext *context, const float *thickening, doubl
         return error_set(context->error, SINGE_ERROR_DIVERGED, "burn", particle,
                          "the mass of particle %u is not finite", particle);
     }
+
     burn->mass_burnt += lost;
 
     // springs of particles that lost mass get shorter

@@ -42,6 +42,7 @@ static float fall(float x, float k, float p) {
         float root = sqrtf(x), half = 0.5f * k;
         return half > root ? x : half * (2 * root - half);
     }
+
     float r = (1 - p) * k * real_powf(x, p - 1);
     return r >= 1 ? x : -x * real_expm1f(real_log1pf(-r) / (1 - p));
 }
@@ -62,6 +63,7 @@ static void react(BurnJob *job, uint32_t i, float excess) {
         float exponent = field_at(matter->activation_energy, i) / (gas_constant * temperature);
         k = field_at(matter->pre_exponential, i) * real_expf(-exponent) * dt;
     }
+
     if (!(fuel <= 0 || k <= 0)) {
         if (k > STRENGTH_MAX) k = STRENGTH_MAX; // all burns; infinity times a vanishing f^p would be NaN
         left = fuel - fall(fuel, k, field_at(matter->ash_exponent, i));
@@ -113,6 +115,7 @@ static void lose_mass(void *context, int begin, int end) {
                 lost += ((double)before - (double)after) * (double)matter->mass[i];
             }
         }
+
         job->partial[block] = lost;
     }
 }

@@ -77,6 +77,7 @@ static void advect_field(GasPass *pass, int f, const GasBox *box, int parts) {
                            .rows = plan->rows};
             pool_for(pass->pool, box->high[sweep.across] - box->low[sweep.across], 1, advect_tasks, &sweep);
         }
+
         start = here;
     }
 }
@@ -88,6 +89,7 @@ static float advect_row(const GasPass *pass, size_t c, int count, int busy[GAS_B
     const float *L = pass->from->field[GAS_LIGHTNESS] + c, *fuel = pass->from->field[GAS_FUEL] + c;
     const float *smoke = pass->from->field[GAS_SMOKE] + c;
     float speed[SWEEP_RUN], max = 0;
+
     for (int i = 0; i < count; i++) speed[i] = 0;
 
     // max speed through the cells' faces
@@ -114,12 +116,14 @@ static float advect_row(const GasPass *pass, size_t c, int count, int busy[GAS_B
                 busy[b][1] = i;
             }
     }
+
     return max;
 }
 
 static void advect_look(void *context, int begin, int end) {
     const GasPass *pass = context;
     const GasGrid *grid = &pass->plan->grid;
+
     for (int k = begin; k < end; k++) {
         GasBox *box = pass->plan->plane_busy[k];
         float max = 0;
@@ -175,6 +179,7 @@ static void advect_mixing(void *context, int begin, int end) {
 static void advect_to_momentum(void *context, int begin, int end) {
     const GasPass *pass = context;
     const GasGrid *grid = &pass->plan->grid;
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < grid->n[1]; j++) {
             size_t c = gas_at(grid, 0, j, k);
@@ -188,6 +193,7 @@ static void advect_to_momentum(void *context, int begin, int end) {
 static void advect_to_velocity(void *context, int begin, int end) {
     const GasPass *pass = context;
     const GasGrid *grid = &pass->plan->grid;
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < grid->n[1]; j++) {
             size_t c = gas_at(grid, 0, j, k);

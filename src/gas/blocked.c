@@ -8,6 +8,7 @@ static void blocked_planes(void *context, int begin, int end) {
     const GasPass *pass = context;
     GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < grid->n[1]; j++) {
             size_t c = gas_at(grid, 0, j, k);
@@ -34,6 +35,7 @@ static void blocked_open(void *context, int begin, int end) {
     const GasPass *pass = context;
     GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
+
     for (int d = 0; d < 3; d++)
         for (int k = begin; k < end; k++)
             for (int j = 0; j <= grid->n[1]; j++) {
@@ -51,6 +53,7 @@ void gas_blocked(GasPass *pass) {
     GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     const Shell *shell = pass->shell;
+
     for (int d = 0; d < 3; d++) memset(plan->open[d], 0, grid->cells * sizeof(float));
     gas_planes(pass, grid, blocked_planes);
 
@@ -76,6 +79,7 @@ void gas_blocked(GasPass *pass) {
             open[grid->stride[e] + grid->stride[f]] += share * part[e] * part[f];
         }
     }
+
     gas_planes(pass, grid, blocked_open);
     blocked_open(pass, grid->n[2], grid->n[2] + 1); // the upper faces of the last plane
 }

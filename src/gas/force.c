@@ -19,6 +19,7 @@ static void force_planes(void *context, int begin, int end) {
     const GasGrid *grid = &plan->grid;
     Float3 g = float3_load(plan->settings.gravity), up = float3_unit(g);
     float step = plan->cell / FORCE_SIZE;
+
     // time runs along its own diagonal, as for the wind's gusts
     float t = (float)(pass->state->time / (double)FORCE_TIME);
 

@@ -25,6 +25,7 @@ void gas_planes(const GasPass *pass, const GasGrid *grid, SingeTaskFn *run) {
 static void gas_look(void *context, int begin, int end) {
     const GasPass *pass = context;
     const GasGrid *grid = &pass->plan->grid;
+
     for (int k = begin; k < end; k++) {
         const float *L = pass->to->field[GAS_LIGHTNESS], *fuel = pass->to->field[GAS_FUEL],
                     *smoke = pass->to->field[GAS_SMOKE];
@@ -42,7 +43,9 @@ static void gas_look(void *context, int begin, int end) {
 void gas_step(GasPlan *plan, const StepContext *context, GasState *gas) {
     const StateInput *state = &context->state;
     const GasGrid *grid = &plan->grid;
+
     if ((state->step + 1) % plan->every != 0) return;
+
     GasPass pass = {.plan = plan,
                     .shell = context->shell,
                     .state = state,
@@ -52,6 +55,9 @@ void gas_step(GasPlan *plan, const StepContext *context, GasState *gas) {
                     .to = &plan->turn[!gas->turn],
                     .dt = plan->dt};
     pass.fire = plan->dt * (float)plan->parts * plan->settings.pace;
+
+    // a step that was rolled back must have restored which set of fields is current
+    SINGE_ASSERT(gas->conductance == pass.from->conductance && gas->fuel == pass.from->fuel);
 
     // nothing burns and nothing moves: no step
     if (!gas_fed(&pass) && !gas->awake) return;
@@ -78,6 +84,7 @@ void gas_step(GasPlan *plan, const StepContext *context, GasState *gas) {
             gas->awake = false;
             for (int k = 0; k < grid->n[2]; k++) gas->awake |= plan->hot[k];
         }
+
         if (!gas->awake) {
             for (int f = 0; f < GAS_FIELDS; f++) memset(pass.to->field[f], 0, grid->cells * sizeof(float));
             memset(pass.to->conductance, 0, plan->particles * sizeof(float));
@@ -93,6 +100,7 @@ void gas_step(GasPlan *plan, const StepContext *context, GasState *gas) {
         pass.to = &plan->turn[!gas->turn];
         gas->steps++;
     }
+
     gas_show(&pass, pass.from);
 }
 
@@ -110,6 +118,7 @@ static void show_planes(void *context, int begin, int end) {
     float *const *field = show->turn->field, ambient = plan->settings.ambient_temperature;
     const float *wind = show->pass->wind;
     size_t at = (size_t)begin * (size_t)grid->n[0] * (size_t)grid->n[1];
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < grid->n[1]; j++) {
             size_t c = gas_at(grid, 0, j, k);

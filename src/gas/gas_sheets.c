@@ -34,6 +34,7 @@ static void sheets_cells(void *context, int begin, int end) {
     const GasPass *pass = context;
     const Shell *shell = pass->shell;
     const float(*x)[4] = (const float(*)[4])pass->state->dynamics->position;
+
     for (int c = begin; c < end; c++) {
         const uint32_t *corner = shell->cells[c];
         Float3 a = float3_sub(float3_load(x[corner[2]]), float3_load(x[corner[0]]));
@@ -45,6 +46,7 @@ static void sheets_cells(void *context, int begin, int end) {
 static void sheets_corners(void *context, int begin, int end) {
     const GasPass *pass = context;
     const Shell *shell = pass->shell;
+
     for (int v = begin; v < end; v++) {
         Float3 sum = {0, 0, 0};
         for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++)
@@ -68,6 +70,7 @@ static bool sheets_position(const GasPass *pass, uint32_t i, float side, Float3 
     const GasPlan *plan = pass->plan;
     Float3 at = float3_load(pass->state->dynamics->position[i]), normal = float3_load(plan->normal[i]);
     float position[3];
+
     for (int k = 0; k < 2; k++, side = -side) {
         *x = float3_mad(at, normal, side * plan->cell);
         if (!gas_position(plan, *x, position)) continue;
@@ -78,6 +81,7 @@ static bool sheets_position(const GasPass *pass, uint32_t i, float side, Float3 
         }
         if (!plan->solid[gas_at(&plan->grid, cell[0], cell[1], cell[2])]) return true;
     }
+
     return false;
 }
 
@@ -115,6 +119,7 @@ void gas_feed(GasPass *pass) {
             at[d] = (int)(position[d] + 1) - 1;
             part[d] = position[d] - (float)at[d];
         }
+
         for (int e = 0; e < 8; e++) {
             weight[e] = 1;
             bool inside = true;
@@ -127,6 +132,7 @@ void gas_feed(GasPass *pass) {
             if (!inside || plan->solid[cell[e]]) weight[e] = 0;
             sum += weight[e];
         }
+
         for (int e = 0; e < 8 && sum > 0; e++)
             if (weight[e] > 0) field[cell[e]] += amount * weight[e] / sum;
     }
@@ -167,6 +173,7 @@ static void sheets_meet(void *context, int begin, int end) {
             float normal = plan->normal[i][d];
             open += normal * normal * plan->open[d][gas_at(&plan->grid, at[0], at[1], at[2])];
         }
+
         for (int d = 0; d < 3; d++)
             air[d] = open * gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], position);
 

@@ -24,6 +24,7 @@ static void grid_invert(void *context, int begin, int end) {
     const GasLevel *level = ((const GasPass *)context)->level;
     size_t y = level->grid.stride[1], z = level->grid.stride[2];
     const float *wx = level->weight[0], *wy = level->weight[1], *wz = level->weight[2];
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < level->grid.n[1]; j++) {
             size_t c = gas_at(&level->grid, 0, j, k);
@@ -40,6 +41,7 @@ static void grid_sweep(void *context, int begin, int end) {
     float *p = level->p;
     size_t y = level->grid.stride[1], z = level->grid.stride[2];
     const float *wx = level->weight[0], *wy = level->weight[1], *wz = level->weight[2];
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < level->grid.n[1]; j++) {
             int first = (j + k + pass->colour) % 2;
@@ -75,6 +77,7 @@ static void grid_weigh(void *context, int begin, int end) {
 static void grid_restrict(void *context, int begin, int end) {
     const GasLevel *level = ((const GasPass *)context)->level, *fine = level - 1;
     size_t y = fine->grid.stride[1], z = fine->grid.stride[2];
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < level->grid.n[1]; j++) {
             size_t c = gas_at(&level->grid, 0, j, k), a = grid_fine(fine, 0, j, k);
@@ -91,6 +94,7 @@ static void grid_restrict(void *context, int begin, int end) {
 static void grid_prolong(void *context, int begin, int end) {
     const GasLevel *level = ((const GasPass *)context)->level, *fine = level - 1;
     size_t y = fine->grid.stride[1], z = fine->grid.stride[2];
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < level->grid.n[1]; j++) {
             size_t c = gas_at(&level->grid, 0, j, k), a = grid_fine(fine, 0, j, k);
@@ -113,10 +117,12 @@ static void grid_smooth(GasPass *pass, GasLevel *level, int sweeps, int first) {
 static void grid_cycle(GasPass *pass, int l) {
     GasPlan *plan = pass->plan;
     GasLevel *level = &plan->level[l];
+
     if (l + 1 == plan->levels) {
         grid_smooth(pass, level, SWEEPS_COARSEST, 0);
         return;
     }
+
     grid_smooth(pass, level, SWEEPS, 0);
     pass->level = level + 1;
     gas_planes(pass, &level[1].grid, grid_restrict);
@@ -136,5 +142,6 @@ void gas_solve(GasPass *pass, int cycles) {
         }
         gas_planes(pass, &pass->level->grid, grid_invert);
     }
+
     for (int cycle = 0; cycle < cycles; cycle++) grid_cycle(pass, 0);
 }

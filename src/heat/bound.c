@@ -61,6 +61,7 @@ static void bound_means(void *context, int begin, int end) {
                 below += (double)capacity[i] * ((double)plan->next[i] - (double)pass->min);
             }
         }
+
         plan->partial[block][0] = lacking;
         plan->partial[block][1] = above;
         plan->partial[block][2] = below;

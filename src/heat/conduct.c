@@ -44,10 +44,12 @@ static inline HeatLanes conduct_inflow(const HeatMatrix *matrix, const float *x,
     const float *end = matrix->value + matrix->first[i / HEAT_ROWS + 1];
     const uint32_t *column = matrix->column + matrix->first[i / HEAT_ROWS];
     HeatLanes sum = {0}, here = conduct_load(x + i);
+
     for (; value < end; value += HEAT_ROWS, column += HEAT_ROWS) {
         HeatLanes there = {x[column[0]], x[column[1]], x[column[2]], x[column[3]]};
         sum += conduct_load(value) * (there - here);
     }
+
     return sum;
 }
 
@@ -84,6 +86,7 @@ static void conduct_start(void *context, int begin, int end) {
                 }
             }
         }
+
         plan->partial[block][0] = residual;
         plan->partial[block][1] = whole;
         plan->partial[block][2] = (double)min;
@@ -99,6 +102,7 @@ static void conduct_direction(void *context, int begin, int end) {
     uint8_t *awake = plan->rest.awake[pass->turn];
     float *restrict search = plan->search, *restrict residual = plan->residual, *restrict correction = plan->correction;
     const float *restrict inverse = plan->matrix.inverse;
+
     for (uint32_t g = heat_group_first(begin); g < heat_group_end(plan, end - 1); g++) {
         awake[g] = heat_rest_reaches(&plan->rest, before, g);
         uint32_t first = g * HEAT_GROUP, last = heat_group_last(plan, g);
@@ -191,6 +195,7 @@ static void conduct_finish(void *context, int begin, int end) {
                     made += matter->capacity[i] * rise;
             }
         }
+
         plan->partial[block][0] = made;
         plan->partial[block][1] = !within;
     }
@@ -207,12 +212,14 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
         min = fmin(min, plan->partial[block][2]);
         max = fmax(max, plan->partial[block][3]);
     }
+
     if (!(min > 0 && max < INFINITY) || !isfinite(residual + whole)) {
         for (uint32_t i = 0; i < plan->particles; i++)
             if (plan->alive[i] && !(plan->star[i] > 0 && plan->star[i] < INFINITY))
                 return error_set(error, SINGE_ERROR_DIVERGED, "heat", i,
                                  "the temperature of particle %u is not a positive finite number", i);
     }
+
     pass->min = (float)min;
     pass->max = (float)max;
     pass->slack = tolerance * fmax(max - min, 0) + 1e-6 * max; // the tolerance, and rounding

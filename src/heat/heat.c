@@ -44,6 +44,7 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
     const float *fuel = pass->state->burn->fuel;
     float ambient = plan->settings.ambient_temperature, dt = pass->dt, h = pass->h;
     float slower = 1 / plan->thickening[sheet];
+
     for (; i < end; i++) {
         float T = temperature[i];
         bool calm = T == ambient && burn_rate[i] == 0 && plan->flux[i] == 0 && plan->source_conductance[i] == 0 &&
@@ -133,6 +134,7 @@ static void heat_take_over(void *context, int begin, int end) {
     const HeatPlan *plan = pass->plan;
     float *restrict temperature = pass->heat->temperature, *restrict peak = pass->heat->temperature_peak;
     const float *restrict next = plan->next;
+
     for (uint32_t g = heat_group_first(begin); g < heat_group_end(plan, end - 1); g++) {
         if (!plan->rest.awake[pass->turn][g]) continue;
         for (uint32_t i = g * HEAT_GROUP; i < heat_group_last(plan, g); i++) {

@@ -24,6 +24,7 @@ static SingeResult plan_thicken(HeatPlan *plan, const Shell *shell, SingeError *
             energy += field_at(matter->activation_energy, i);
             count++;
         }
+
         plan->thickening[s] = 1;
         if (count == 0) continue;
 
@@ -39,6 +40,7 @@ static SingeResult plan_thicken(HeatPlan *plan, const Shell *shell, SingeError *
                              "mass_rate, raise diffusivity or set thickening",
                              sheet->name);
     }
+
     return SINGE_OK;
 }
 
@@ -47,6 +49,7 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
     *out = NULL;
     HeatPlan *plan;
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
+
     plan->settings = *settings;
     plan->particles = shell->particle_count;
     plan->sheets = shell->sheet_count;
@@ -77,6 +80,7 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
         heat_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
+
     for (size_t k = 0; k < ARRAYS; k++) *arrays[k] = (float *)plan->scratch + k * stride;
 
     // thickening, conductances, which must stay finite in a step
@@ -96,6 +100,7 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
         if (shell->spare_count == 0) FREE(memory, plan->conductance, plan->springs);
         if (!result) result = heat_rest_create(memory, plan);
     }
+
     if (result) heat_plan_free(memory, plan);
     else *out = plan;
     return result;
@@ -106,7 +111,9 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
 static bool follow_splits(HeatPlan *plan, const Shell *shell, const StateInput *state, uint32_t first) {
     const ShellSplit *splits = state->tear->splits;
     uint32_t last = shell->split_count, ordinary = shell->springs[SINGE_BLUE].count - shell->edge_spare_count;
+
     if (plan->matrix.full || plan->matrix.twin_capacity > 0 || last - first > shell->cell_count / 64 + 1) return false;
+
     for (uint32_t s = 0; s < shell->sheet_count; s++)
         if (shell->sheets[s].material.heat_operator == SINGE_HEAT_UMBRELLA) return false;
 
@@ -122,6 +129,7 @@ static bool follow_splits(HeatPlan *plan, const Shell *shell, const StateInput *
                 if (shell->cell_springs[cell].blue[i] >= ordinary)
                     plan->spring_alive[plan->spring_first[SINGE_BLUE] + shell->cell_springs[cell].blue[i]] = 1;
         }
+
         if (k & 1) plan->alive[vertex] = plan->measure[vertex] > 0;
     }
 
@@ -144,6 +152,7 @@ static bool follow_splits(HeatPlan *plan, const Shell *shell, const StateInput *
             heat_rest_update(plan, shell_centre(shell, shell->fan[f]) / HEAT_GROUP, plan->scratch);
         }
     }
+
     return true;
 }
 
@@ -162,6 +171,7 @@ void heat_plan_follow(HeatPlan *plan, const Shell *shell, const StateInput *stat
 
 void heat_plan_free(Memory *memory, HeatPlan *plan) {
     if (!plan) return;
+
     size_t n = plan->particles, springs = plan->springs;
     heat_rest_free(memory, plan);
     heat_matrix_free(memory, plan);

@@ -33,6 +33,7 @@ static void matrix_reserve(const HeatPlan *plan, const Shell *shell, uint32_t *l
     enum { SPARE = 16 };
     const float *blue = plan->conductance + plan->spring_first[SINGE_BLUE];
     const float *yellow = plan->conductance + plan->spring_first[SINGE_YELLOW];
+
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const Sheet *sheet = &shell->sheets[s];
         if (sheet->spare_count == 0) continue;
@@ -75,6 +76,7 @@ static void matrix_invert(HeatPlan *plan, uint32_t row) {
 static uint32_t matrix_twins(const HeatPlan *plan, const Shell *shell, HeatTwin *twins) {
     const HeatMatrix *matrix = &plan->matrix;
     uint32_t count = 0;
+
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         for (uint32_t k = 0; k < shell->springs[c].count; k++) {
             const uint32_t *ends = shell->springs[c].ends[k];
@@ -88,6 +90,7 @@ static uint32_t matrix_twins(const HeatPlan *plan, const Shell *shell, HeatTwin 
             if (twins) twins[count] = (HeatTwin){spring, plan->conductance[spring]};
             count++;
         }
+
     return count;
 }
 
@@ -114,6 +117,7 @@ SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shel
                 widest = length[i] > widest ? length[i] : widest;
             matrix->first[slice + 1] = matrix->first[slice] + HEAT_ROWS * widest;
         }
+
         matrix->entries = matrix->first[matrix->slices];
         ok = NEW(memory, matrix->column, matrix->entries) && NEW(memory, matrix->value, matrix->entries);
     }
@@ -131,6 +135,7 @@ SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shel
     matrix_revive(plan, shell);
     matrix->twin_count = matrix->twin_capacity = matrix_twins(plan, shell, NULL);
     if (!NEW(memory, matrix->twins, matrix->twin_count)) return SINGE_ERROR_MEMORY;
+
     matrix_twins(plan, shell, matrix->twins);
     return SINGE_OK;
 }
@@ -172,6 +177,7 @@ static uint32_t matrix_springs(const HeatPlan *plan, const Shell *shell, uint32_
             if (springs->green[k] != SHELL_NONE)
                 count = matrix_insert(list, count, first[SINGE_GREEN] + springs->green[k]);
         }
+
         return count;
     }
 
@@ -185,12 +191,14 @@ static uint32_t matrix_springs(const HeatPlan *plan, const Shell *shell, uint32_
         count = matrix_insert(list, count, first[SINGE_BLUE] + springs->blue[i]);
         count = matrix_insert(list, count, first[SINGE_BLUE] + springs->blue[(i + 3) & 3]);
     }
+
     return count;
 }
 
 bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list) {
     HeatMatrix *matrix = &plan->matrix;
     uint32_t count = matrix_springs(plan, shell, row, list), width = heat_row_width(matrix, row), filled = 0;
+
     for (uint32_t k = 0; k < count; k++) {
         float conductance = plan->conductance[list[k]];
         if (conductance == 0) continue;
@@ -210,6 +218,7 @@ bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t 
         matrix->column[entry] = row;
         matrix->value[entry] = 0;
     }
+
     matrix_invert(plan, row);
     return true;
 }
@@ -235,6 +244,7 @@ static void matrix_lose_particle(HeatPlan *plan, uint32_t row) {
         }
         matrix_invert(plan, other);
     }
+
     matrix_invert(plan, row);
 }
 
@@ -251,6 +261,7 @@ static void matrix_lose_spring(HeatPlan *plan, const uint32_t ends[2], uint32_t 
         if (matrix->twins[mid].spring < spring) low = mid + 1;
         else high = mid;
     }
+
     bool is_twin = low < matrix->twin_count && matrix->twins[low].spring == spring;
 
     for (int end = 0; end < 2; end++) {
@@ -263,6 +274,7 @@ static void matrix_lose_spring(HeatPlan *plan, const uint32_t ends[2], uint32_t 
             break;
         }
     }
+
     for (int end = 0; end < 2; end++) matrix_invert(plan, ends[end]);
 }
 
@@ -276,6 +288,7 @@ static bool matrix_lost_any(const uint8_t *known, const uint8_t *flags, uint32_t
 void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate, float dt) {
     enum { LOOK = 1024 }; // compared at once, as a loss is rare
     uint32_t count = plan->particles, last;
+
     if (plan->matrix.dt != dt) { // the first step, or a step of another length
         plan->matrix.dt = dt;
         for (uint32_t i = 0; i < count; i++) matrix_invert(plan, i);

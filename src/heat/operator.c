@@ -45,8 +45,10 @@ static float operator_spring(const HeatPlan *plan, const Shell *shell, SingeColo
     uint32_t sheet = matter->sheet[ends[0]];
     bool surface = shell->sheets[sheet].material.heat_operator == SINGE_HEAT_SURFACE;
     float end[2];
+
     for (int k = 0; k < 2; k++)
         end[k] = field_at(matter->diffusivity, ends[k]) * (surface ? field_at(matter->capacity_ratio, ends[k]) : 1);
+
     return 0.5f * (end[0] + end[1]) * plan->thickening[sheet];
 }
 
@@ -95,7 +97,9 @@ static void operator_weights(const Shell *shell, uint32_t cell, double w[6]) {
     const CellSprings *springs = &shell->cell_springs[cell];
     double across[4] = {0}, there[6];
     Float3 x[4], y[4];
+
     if (operator_linear(shell, cell, x, w)) return;
+
     for (int k = 0; k < 4; k++) {
         uint32_t other = shell_neighbour(shell, cell, k);
         if (other == SHELL_NONE) continue;
@@ -103,6 +107,7 @@ static void operator_weights(const Shell *shell, uint32_t cell, double w[6]) {
         for (int j = 0; j < 4; j++)
             if (shell->cell_springs[other].blue[j] == springs->blue[k]) across[k] += there[j];
     }
+
     heat_cell_weights(x, across, w);
 }
 
@@ -172,6 +177,7 @@ static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell)
         double twice = float3_dot(cross, normal);
         triangle[k] = ldexp(twice / 2, 2 * scale);
     }
+
     for (int k = 0; k < 4; k++) even |= !(triangle[k] + triangle[(k + 3) % 4] > area / 16);
     for (int k = 0; k < 4; k++) {
         double share = even ? area / 4 : (triangle[k] + triangle[(k + 3) % 4]) / 2;
@@ -219,6 +225,7 @@ void heat_operator(HeatPlan *plan, const Shell *shell) {
             // times alpha F, all but exchange rates
             if (c != SINGE_RED || !surface)
                 *conductance = operator_conductance(plan, shell, (SingeColour)c, k, *conductance);
+            SINGE_ASSERT(!(*conductance < 0)); // the matrix is an M-matrix on any mesh
         }
     }
 }
@@ -242,6 +249,7 @@ void heat_operator_torn_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) 
             if (shell->cell_springs[other].blue[k] == spring) sum += operator_side(plan, shell, other, k, there[k]);
         plan->conductance[first[SINGE_BLUE] + spring] = operator_conductance(plan, shell, SINGE_BLUE, spring, sum);
     }
+
     for (int k = 0; k < 2; k++)
         plan->conductance[first[SINGE_YELLOW] + springs->yellow[k]] =
             operator_conductance(plan, shell, SINGE_YELLOW, springs->yellow[k], (float)w[4 + k]);

@@ -30,6 +30,7 @@ float heat_thickening_for(float thickening, const FrontMatter *front, float ambi
     // without burning or diffusion there is no front
     float rise = front->heating - (front->ignition_temperature - ambient_temperature);
     if (!(rise > 0) || !(front->diffusivity > 0)) return 1;
+
     rise = fminf(rise, front->rate_ceiling);
 
     // mu theta, 1/s
@@ -39,7 +40,9 @@ float heat_thickening_for(float thickening, const FrontMatter *front, float ambi
         float temperature = front->ignition_temperature + rise;
         rate = front->pre_exponential * real_expf(-front->activation_energy / (gas_constant * temperature));
     }
+
     if (!(rate > 0)) return 1;
+
     float needed = cell_size / (THICKEN_CELLS * sqrtf(front->diffusivity / rate));
     return needed > 1 ? needed : 1;
 }

@@ -71,6 +71,7 @@ bool heat_cell_linear(const Float3 x[4], double w[6]) {
         min[split] = fmin(one, two);
         total = fmax(total, one + two);
     }
+
     bool good[2] = {min[0] > 1e-3 * total, min[1] > 1e-3 * total};
     if (!good[0] && !good[1]) return false;
 
@@ -79,7 +80,9 @@ bool heat_cell_linear(const Float3 x[4], double w[6]) {
         if (good[split]) weights_linear(x, split, 1, each[split]);
         for (int k = 0; k < SIDES; k++) largest = fmax(largest, fabs(each[split][k]));
     }
+
     double one = each[0][SIDES], two = each[1][SIDES + 1];
+
     // the rounding error of a right angle needs no entry in the matrix
     bool square = good[0] && good[1] && fmax(fabs(one), fabs(two)) <= 6e-5 * largest;
     if (good[0] && good[1] && !square) good[one < two ? 0 : 1] = false;
@@ -106,10 +109,12 @@ static double weights_plane(const Float3 x[4], WeightSpring springs[SPRINGS]) {
         p[k][1] = (double)b.y - (double)a.y;
         p[k][2] = (double)b.z - (double)a.z;
     }
+
     const double *d = p[SIDES], *e = p[SIDES + 1];
     for (int k = 0; k < 3; k++) normal[k] = d[(k + 1) % 3] * e[(k + 2) % 3] - d[(k + 2) % 3] * e[(k + 1) % 3];
     double area = sqrt(weights_dot(normal, normal)), length = sqrt(weights_dot(d, d));
     if (!(area > 0)) return 0;
+
     for (int k = 0; k < 3; k++)
         across[k] = (normal[(k + 1) % 3] * d[(k + 2) % 3] - normal[(k + 2) % 3] * d[(k + 1) % 3]) / (area * length);
     for (int k = 0; k < SPRINGS; k++) {
@@ -120,6 +125,7 @@ static double weights_plane(const Float3 x[4], WeightSpring springs[SPRINGS]) {
             springs[k].z[1] = 2 * u * v / square;
         }
     }
+
     return area;
 }
 
@@ -132,6 +138,7 @@ static void weights_mean(const WeightSpring s[SPRINGS], const double lambda[2], 
         k[e] = s[e].square > 0 ? real_exp(lambda[0] * s[e].z[0] + lambda[1] * s[e].z[1]) : 0;
         total += k[e];
     }
+
     for (int e = 0; e < SPRINGS; e++) {
         k[e] /= total;
         mean[0] += k[e] * s[e].z[0];
@@ -140,6 +147,7 @@ static void weights_mean(const WeightSpring s[SPRINGS], const double lambda[2], 
         slope[1] += k[e] * s[e].z[0] * s[e].z[1];
         slope[2] += k[e] * s[e].z[1] * s[e].z[1];
     }
+
     slope[0] -= mean[0] * mean[0];
     slope[1] -= mean[0] * mean[1];
     slope[2] -= mean[1] * mean[1];
@@ -182,6 +190,7 @@ static double weights_entropy(const WeightSpring s[SPRINGS], double k[SPRINGS]) 
         moved = weights_length(lambda[0] - before[0], lambda[1] - before[1]);
         weights_mean(s, lambda, k, mean, slope);
     }
+
     return sqrt(fmax(1 - mean[0] * mean[0] - mean[1] * mean[1], DBL_EPSILON));
 }
 
@@ -200,6 +209,7 @@ void heat_cell_weights(const Float3 x[4], const double across[4], double w[6]) {
         double min = e < SIDES ? fmin(-across[e], 0) : 0;
         if (w[e] < min) mix = fmax(mix, (min - w[e]) / (positive[e] - w[e]));
     }
+
     mix = linear ? fmin(mix, 1) : 1;
     for (int e = 0; e < SPRINGS; e++) {
         w[e] += mix * (positive[e] - w[e]);

@@ -28,6 +28,7 @@ static SingeResult shell_alloc(Memory *memory, const SheetSource *sources, uint3
                                SingeError *error) {
     uint64_t vertices = 0, cells = 0, numbers = 0;
     bool seams = false;
+
     for (uint32_t i = 0; i < source_count; i++) {
         vertices += sources[i].sheet.vertex_count + sources[i].sheet.spare_count;
         cells += sources[i].sheet.cell_count;
@@ -50,6 +51,7 @@ static SingeResult shell_alloc(Memory *memory, const SheetSource *sources, uint3
         !NEW(memory, shell->cell_order, c) || !NEW(memory, shell->source_vertex, v) ||
         !NEW(memory, shell->fan_first, (size_t)v + 1) || !NEW(memory, shell->fan, (size_t)4 * c))
         return shell_no_memory(shell, error);
+
     return SINGE_OK;
 }
 
@@ -112,6 +114,7 @@ static void bcs_lay_sheets(Shell *shell, const SheetSource *sources) {
                 shell->corner_source[cell][i] = from < 0 ? shell->source_vertex[corner] : (int32_t)input + from;
             }
         }
+
         input += sheet->source_count;
     }
 
@@ -171,6 +174,7 @@ static void join_at_vertices(const HalfEdges *mesh, int colour, LooseSprings *lo
             last = half;
             half = half_edge_turn(mesh, half);
         }
+
         bool inside = half_edge_is_inside(mesh, v);
         if (colour == SINGE_BLUE && count && !inside) {
             // the other boundary edge precedes the corner in the last cell
@@ -192,6 +196,7 @@ static SingeResult spring_colour(Memory *memory, const HalfEdges *mesh, Shell *s
     LooseSprings loose = {.count = count};
     uint32_t *number = NULL, *ends = NULL;
     SingeResult result = SINGE_OK;
+
     if (!NEW(memory, loose.ends, count) || !NEW(memory, loose.mate, (size_t)2 * count) || !NEW(memory, number, count) ||
         !NEW(memory, ends, (size_t)mesh->fan_longest + 1))
         result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for %u springs", count);
@@ -212,6 +217,7 @@ static SingeResult spring_colour(Memory *memory, const HalfEdges *mesh, Shell *s
                                 2 * green[i + 2] + (c > half_edge_across(mesh, c, i + 2)));
             }
         }
+
         result = strand_build(memory, shell->particle_count, &loose, &shell->springs[colour], number, error);
     }
 
@@ -232,32 +238,16 @@ static SingeResult spring_colour(Memory *memory, const HalfEdges *mesh, Shell *s
     return result;
 }
 
-static SingeResult build_springs(Memory *memory, Shell *shell, SingeError *error) {
-    HalfEdges mesh;
-    TRY(half_edge_build(memory, shell, &mesh, error));
-    for (uint32_t c = 0; c < shell->cell_count; c++) {
-        for (uint32_t i = 0; i < 4; i++) shell->cell_springs[c].red[i] = 4 * c + i;
-        for (uint32_t i = 0; i < 2; i++) shell->cell_springs[c].yellow[i] = 2 * c + i;
-    }
-    uint32_t counts[SINGE_COLOUR_COUNT] = {[SINGE_RED] = 4 * shell->cell_count,
-                                           [SINGE_GREEN] = mesh.shared_count,
-                                           [SINGE_BLUE] = mesh.edge_count,
-                                           [SINGE_YELLOW] = 2 * shell->cell_count};
-    SingeResult result = SINGE_OK;
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT && result == SINGE_OK; colour++)
-        result = spring_colour(memory, &mesh, shell, colour, counts[colour], error);
-    half_edge_free(memory, &mesh);
-    return result;
-}
-
 /// Families of cells without a common corner.
 static bool colour_cells(Memory *memory, Shell *shell) {
     uint32_t count = shell->cell_count, *family = NULL, families = 0;
     ItemNodes items = {.node_count = shell->vertex_count, .item_count = count, .nodes = count ? shell->cells[0] : NULL};
+
     if (NEW(memory, items.first, (size_t)count + 1) && NEW(memory, family, count)) {
         for (uint32_t c = 0; c <= count; c++) items.first[c] = 4 * c;
         families = family_colour(memory, &items, family);
     }
+
     shell->cell_family_count = count ? families : 0;
     bool done = families && NEW(memory, shell->cell_family_first, (size_t)shell->cell_family_count + 1);
     if (done) family_sort(count, family, shell->cell_family_count, shell->cell_family_first, shell->cell_order);
@@ -278,8 +268,22 @@ SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t so
             result = shell_no_memory(shell, error);
     }
 
-    // springs and their measures
-    if (!result) result = build_springs(memory, shell, error);
+    // springs, colour after colour
+    HalfEdges mesh = {0};
+    if (!result) result = half_edge_build(memory, shell, &mesh, error);
+    uint32_t counts[SINGE_COLOUR_COUNT] = {[SINGE_RED] = 4 * shell->cell_count,
+                                           [SINGE_GREEN] = mesh.shared_count,
+                                           [SINGE_BLUE] = mesh.edge_count,
+                                           [SINGE_YELLOW] = 2 * shell->cell_count};
+    for (uint32_t c = 0; !result && c < shell->cell_count; c++) {
+        for (uint32_t i = 0; i < 4; i++) shell->cell_springs[c].red[i] = 4 * c + i;
+        for (uint32_t i = 0; i < 2; i++) shell->cell_springs[c].yellow[i] = 2 * c + i;
+    }
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT && !result; colour++)
+        result = spring_colour(memory, &mesh, shell, colour, counts[colour], error);
+    half_edge_free(memory, &mesh);
+
+    // their measures
     if (!result) {
         measure_particles(shell);
         matter_weigh(shell, sources);

@@ -9,6 +9,8 @@
 // the start and share one colour. Index order and longest-first do not.
 #include "shell/family.h"
 
+#include "common/assertion.h"
+
 /// Writes items in breadth-first order. False when out of memory.
 static bool order_by_breadth(Memory *memory, const ItemNodes *items, uint32_t *order) {
     uint32_t total = items->first[items->item_count], nodes = items->node_count, tail = 0;
@@ -41,6 +43,7 @@ static bool order_by_breadth(Memory *memory, const ItemNodes *items, uint32_t *o
                 }
             }
     }
+    SINGE_ASSERT(!done || tail == items->item_count);
     FREE(memory, opened, nodes);
     FREE(memory, seen, items->item_count);
     FREE(memory, at, total);
@@ -83,6 +86,7 @@ void family_sort(uint32_t item_count, const uint32_t *family, uint32_t family_co
     for (uint32_t f = 0; f <= family_count; f++) family_first[f] = 0;
     for (uint32_t i = 0; i < item_count; i++) family_first[family[i] + 1]++;
     for (uint32_t f = 0; f < family_count; f++) family_first[f + 1] += family_first[f];
+
     // filling moves each start to its end, the next one's start; they are moved back afterwards
     for (uint32_t i = 0; i < item_count; i++) sorted[family_first[family[i]]++] = i;
     for (uint32_t f = family_count; f > 0; f--) family_first[f] = family_first[f - 1];

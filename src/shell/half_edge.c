@@ -39,6 +39,7 @@ static SingeResult match_edges(Memory *memory, Shell *shell, HalfEdges *mesh, Si
     uint32_t count = 4 * shell->cell_count, slots = shell->vertex_count + 1, *by_high = NULL, *order = NULL;
     uint32_t *slot = NULL;
     SingeResult result = SINGE_OK;
+
     if (NEW(memory, by_high, count) && NEW(memory, order, count) && NEW(memory, slot, slots)) {
         sort_by(shell, half_high, NULL, by_high, slot);
         sort_by(shell, half_low, by_high, order, slot);
@@ -60,6 +61,7 @@ static SingeResult match_edges(Memory *memory, Shell *shell, HalfEdges *mesh, Si
             first->green[a & 3] = SHELL_NONE;
             continue;
         }
+
         uint32_t b = order[k + 1];
         CellSprings *second = &shell->cell_springs[b / 4];
         if (size > 2) result = edge_fail(shell, order[k + 2], "has more than two cells, the third of which is", error);
@@ -82,6 +84,7 @@ static SingeResult find_fans(const Shell *shell, HalfEdges *mesh, SingeError *er
         uint32_t v = half_from(shell, h);
         if (mesh->fan_size[v]++ == 0 || mesh->twin[h] == SHELL_NONE) mesh->fan_start[v] = h;
     }
+
     for (uint32_t v = 0; v < shell->vertex_count; v++) {
         uint32_t size = mesh->fan_size[v], reached = 0;
         if (size == 0) continue;
@@ -96,6 +99,7 @@ static SingeResult find_fans(const Shell *shell, HalfEdges *mesh, SingeError *er
             return error_set(error, SINGE_ERROR_MESH, "sheet", element,
                              "sheet '%s': the %u cells at vertex %u meet only in that point, not in one fan",
                              sheet->name, size, element);
+
         // blue, red and yellow springs must fit AblateState.degree
         if (size > UINT16_MAX / 3 - 1)
             return error_set(error, SINGE_ERROR_LIMIT, "sheet", element,
@@ -103,6 +107,7 @@ static SingeResult find_fans(const Shell *shell, HalfEdges *mesh, SingeError *er
                              UINT16_MAX / 3 - 1);
         if (size > mesh->fan_longest) mesh->fan_longest = size;
     }
+
     return SINGE_OK;
 }
 
@@ -114,6 +119,7 @@ SingeResult half_edge_build(Memory *memory, Shell *shell, HalfEdges *mesh, Singe
         return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the mesh of %u cells",
                          shell->cell_count);
     }
+
     SingeResult result = match_edges(memory, shell, mesh, error);
     if (result == SINGE_OK) result = find_fans(shell, mesh, error);
     if (result != SINGE_OK) half_edge_free(memory, mesh);

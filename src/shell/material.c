@@ -99,18 +99,6 @@ static SingeResult field_fail(const SheetSource *source, const ParamRule *rule, 
                      what);
 }
 
-static SingeResult field_attribute(const SingeSheetDef *def, const ParamRule *rule, ParamField *field,
-                                   SingeError *error) {
-    const char *name = field->follows->attribute;
-    if (!name) return field_fail(field->source, rule, "names no attribute", error);
-    for (uint32_t i = 0; i < def->attribute_count; i++)
-        if (strcmp(def->attributes[i].name, name) == 0) field->attribute = def->attributes[i].values;
-    if (!field->attribute)
-        return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s: the mesh has no attribute '%s'",
-                         field->source->sheet.name, rule->name, name);
-    return SINGE_OK;
-}
-
 static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, ParamField *field, SingeError *error) {
     const SingeField *follows = field->follows;
     if (!follows) return SINGE_OK;
@@ -122,7 +110,14 @@ static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, P
         if (follows->texture.width < 1 || follows->texture.height < 1 || !follows->texture.values)
             return field_fail(field->source, rule, "is an empty texture", error);
         return SINGE_OK;
-    case SINGE_FIELD_ATTRIBUTE: return field_attribute(def, rule, field, error);
+    case SINGE_FIELD_ATTRIBUTE:
+        if (!follows->attribute) return field_fail(field->source, rule, "names no attribute", error);
+        for (uint32_t i = 0; i < def->attribute_count; i++)
+            if (strcmp(def->attributes[i].name, follows->attribute) == 0) field->attribute = def->attributes[i].values;
+        if (!field->attribute)
+            return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s: the mesh has no attribute '%s'",
+                             field->source->sheet.name, rule->name, follows->attribute);
+        return SINGE_OK;
     case SINGE_FIELD_NOISE:
         if (!material_inside(follows->noise.scale, POSITIVE_RANGE))
             return field_fail(field->source, rule, "is noise whose scale is not above 0", error);

@@ -74,6 +74,7 @@ bool matter_create(Memory *memory, Shell *shell, const SheetSource *sources) {
     Matter *matter = &shell->matter;
     uint32_t particles = shell->particle_count, sheets = shell->sheet_count;
     bool weighs_evenly = true;
+
     for (int p = 0; p < PARAM_COUNT; p++) {
         Field *field = matter_field(matter, p);
         if (!field) {
@@ -112,6 +113,7 @@ void matter_free(Memory *memory, Shell *shell) {
         Field *field = matter_field(matter, p);
         if (field) field_free(memory, field, shell->particle_count);
     }
+
     field_free(memory, &matter->capacity_ratio, shell->particle_count);
     FREE(memory, matter->area, shell->particle_count);
     FREE(memory, matter->mass, shell->particle_count);
@@ -147,6 +149,7 @@ void matter_split(Shell *shell, uint32_t from, uint32_t to, float area) {
         Field *field = matter_field(matter, p);
         if (field && field->mask) field->values[to] = field->values[from];
     }
+
     if (matter->capacity_ratio.mask) matter->capacity_ratio.values[to] = matter->capacity_ratio.values[from];
     float share = area / matter->area[from];
     float *const shared[] = {matter->area, matter->mass, matter->capacity};

@@ -48,6 +48,7 @@ CellShape cell_shape(const float *const corners[4]) {
             shape.centre[k] += p[i][k] / 4;
         }
     }
+
     for (int i = 0; i < 4; i++) {
         subtract(p[(i + 1) & 3], p[i], side);
         double length = sqrt(rest_dot(side, side));
@@ -74,6 +75,7 @@ CellShape cell_shape(const float *const corners[4]) {
         shape.corner_area[i] += area / 2;
         shape.corner_area[(i + 1) & 3] += area / 2;
     }
+
     bool even = false;
     for (int i = 0; i < 4; i++) even |= !(shape.corner_area[i] >= share_min * shape.area);
     for (int i = 0; i < 4 && even; i++) shape.corner_area[i] = shape.area / 4;
@@ -101,6 +103,7 @@ static float median_edge(const Shell *shell, const Sheet *sheet) {
     const SpringSet *blue = &shell->springs[SINGE_BLUE];
     uint64_t k = 0;
     uint32_t prefix = 0;
+
     for (int shift = 24; shift >= 0; shift -= 8) {
         uint64_t bins[256] = {0}, edges = 0;
         for (uint32_t c = 0; c < 4 * sheet->cell_count; c++) {
@@ -111,12 +114,14 @@ static float median_edge(const Shell *shell, const Sheet *sheet) {
             memcpy(&bits, &blue->rest[springs->blue[c & 3]], sizeof bits);
             if (shift == 24 || bits >> (shift + 8) == prefix >> (shift + 8)) bins[bits >> shift & 255]++;
         }
+
         if (edges == 0) return 0;
         if (shift == 24) k = edges / 2;
         uint32_t digit = 0;
         while (digit < 255 && k >= bins[digit]) k -= bins[digit++];
         prefix |= digit << shift;
     }
+
     float length;
     memcpy(&length, &prefix, sizeof length);
     return length;
@@ -145,6 +150,7 @@ SingeResult measure_springs(Shell *shell, SingeError *error) {
     // median edge of each sheet
     for (uint32_t i = 0; i < shell->sheet_count; i++)
         shell->sheets[i].cell_size = median_edge(shell, &shell->sheets[i]);
+
     return SINGE_OK;
 }
 
@@ -157,11 +163,13 @@ typedef struct FibreFrame {
 static FibreFrame fibre_frame(const Shell *shell, uint32_t cell) {
     Float3 p[4];
     float da[2], db[2];
+
     for (int i = 0; i < 4; i++) p[i] = float3_load(shell->rest_position[shell->cells[cell][i]]);
     for (int k = 0; k < 2; k++) {
         da[k] = shell_corner_uv(shell, cell, 2)[k] - shell_corner_uv(shell, cell, 0)[k];
         db[k] = shell_corner_uv(shell, cell, 3)[k] - shell_corner_uv(shell, cell, 1)[k];
     }
+
     Float3 a = float3_sub(p[2], p[0]), b = float3_sub(p[3], p[1]), normal = float3_unit(float3_cross(a, b));
 
     // the direction in which u grows and v is constant; the first side if there is none
@@ -186,6 +194,7 @@ static void fibre_add(Shell *shell, const FibreFrame *frame, SingeColour colour,
 bool measure_fibres(Memory *memory, Shell *shell) {
     const Field ratio = shell->matter.fibre_shrink;
     if (ratio.mask == 0 && field_at(ratio, 0) == 1) return true;
+
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         if (!NEW(memory, shell->springs[colour].grain, shell->springs[colour].count)) return false;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
@@ -199,5 +208,6 @@ bool measure_fibres(Memory *memory, Shell *shell) {
         }
         for (int i = 0; i < 2; i++) fibre_add(shell, &frame, SINGE_YELLOW, springs->yellow[i], 1);
     }
+
     return true;
 }

@@ -259,6 +259,7 @@ static inline StateInput state_input(const State *state) {
     return (StateInput){state->time,    state->step,      &state->heat, &state->burn,
                         &state->ablate, &state->dynamics, &state->gas,  &state->tear};
 }
+
 /// The same as an argument of a call: const StateInput *.
 #define STATE_INPUT(state) ((const StateInput[]){state_input(state)})
 

@@ -50,6 +50,7 @@ static bool validate_sheets(const Shell *shell, ShellFault *fault) {
     if (shell->edge_spare_used > shell->edge_spare_count)
         return fault_is(fault, "tears use %u spare springs, but there are %u", shell->edge_spare_used,
                         shell->edge_spare_count);
+
     return true;
 }
 
@@ -75,12 +76,14 @@ static bool validate_cells(const Shell *shell, ShellFault *fault) {
                     return fault_is(fault, "cell %u names %s spring %u of %u", c, COLOURS[colour], spring, count);
             }
     }
+
     return true;
 }
 
 static bool validate_springs(const Shell *shell, int colour, ShellFault *fault) {
     const SpringSet *set = &shell->springs[colour];
     const char *name = COLOURS[colour];
+
     for (uint32_t s = 0; s < set->count; s++) {
         const uint32_t *ends = set->ends[s];
         for (int k = 0; k < 2; k++)
@@ -106,6 +109,7 @@ static bool validate_springs(const Shell *shell, int colour, ShellFault *fault) 
     if (set->family_count && set->family_first[set->family_count] != set->strand_count)
         return fault_is(fault, "the %s families hold %u strands of %u", name, set->family_first[set->family_count],
                         set->strand_count);
+
     return true;
 }
 
@@ -134,6 +138,7 @@ static bool validate_fans(const Shell *shell, ShellFault *fault) {
     for (uint32_t c = 0; c < shell->cell_count; c++)
         if (shell->cell_order[c] >= shell->cell_count)
             return fault_is(fault, "the families name cell %u of %u", shell->cell_order[c], shell->cell_count);
+
     return true;
 }
 
@@ -164,9 +169,11 @@ static bool validate_particle(const State *state, uint32_t i, ShellFault *fault)
     if (!(fuel >= 0 && fuel <= 1)) return fault_is(fault, "particle %u has fuel %g", i, fuel);
     if (!(state->burn.burn_rate[i] >= 0)) return fault_is(fault, "particle %u gains mass by burning", i);
     if (!(state->burn.release[i] >= 0)) return fault_is(fault, "particle %u is cooled by burning", i);
+
     for (int k = 0; k < 3; k++)
         if (!isfinite(state->dynamics.position[i][k]) || !isfinite(state->dynamics.velocity[i][k]))
             return fault_is(fault, "particle %u has a position or velocity that is not finite", i);
+
     return true;
 }
 
@@ -181,6 +188,7 @@ bool state_validate(const Shell *shell, const State *state, ShellFault *fault) {
                 return fault_is(fault, "%s spring %u is alive, but has no length at rest", COLOURS[colour], s);
             ends += flags ? 2 : 0;
         }
+
     for (uint32_t c = 0; c < shell->cell_count; c++)
         if (state->ablate.cell_flags[c] & ~SINGE_ALIVE)
             return fault_is(fault, "cell %u has flags 0x%x", c, state->ablate.cell_flags[c]);
@@ -194,6 +202,7 @@ bool state_validate(const Shell *shell, const State *state, ShellFault *fault) {
     if (shell->spare_count && state->tear.split_count != shell->split_count)
         return fault_is(fault, "the state lists %u splits, the shell has %u", state->tear.split_count,
                         shell->split_count);
+
     return true;
 }
 

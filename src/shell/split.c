@@ -20,6 +20,7 @@ void split_fan(const Shell *shell, uint32_t vertex, Fan *fan) {
         while (shell->cells[cell][corner] != vertex) corner++;
         fan->corner[k] = (uint8_t)corner;
     }
+
     for (int k = 0; k < fan->count; k++) {
         uint32_t after = shell_neighbour(shell, fan->cell[k], side_after(fan->corner[k]));
         uint32_t before = shell_neighbour(shell, fan->cell[k], side_before(fan->corner[k]));
@@ -34,7 +35,9 @@ void split_fan(const Shell *shell, uint32_t vertex, Fan *fan) {
 bool split_reserve(Memory *memory, Shell *shell) {
     SpringSet *blue = &shell->springs[SINGE_BLUE];
     uint32_t more = SPLIT_EDGES * shell->spare_count, count = blue->count + more;
+
     if (more == 0) return true;
+
     uint32_t(*ends)[2] = memory_new(memory, count, sizeof *ends);
     float *rest = memory_new(memory, count, sizeof *rest);
     if (!ends || !rest) {
@@ -42,6 +45,7 @@ bool split_reserve(Memory *memory, Shell *shell) {
         FREE(memory, rest, count);
         return false;
     }
+
     memcpy(ends, blue->ends, blue->count * sizeof *ends);
     memcpy(rest, blue->rest, blue->count * sizeof *rest);
     FREE(memory, blue->ends, blue->count);
@@ -59,6 +63,7 @@ bool split_is_possible(const Shell *shell, const Fan *fan, const ShellSplit *spl
     const Sheet *sheet = &shell->sheets[shell->matter.sheet[split->vertex]];
     uint32_t all = fan->count > 0 ? UINT32_MAX >> (32 - fan->count) : 0, max = SPLIT_MOVED * shell->spare_count;
     uint32_t moves = (uint32_t)__builtin_popcount(split->cells) + 3; // of any colour
+
     if (split->cells == 0 || (split->cells & ~all) || split->cells == all) return false;
 
     // edges between cells that go and cells that stay
@@ -68,8 +73,10 @@ bool split_is_possible(const Shell *shell, const Fan *fan, const ShellSplit *spl
             torn += (fan->after[k] >= 0 && !goes(split, fan->after[k])) +
                     (fan->before[k] >= 0 && !goes(split, fan->before[k]));
     if (sheet->spare_used == sheet->spare_count || torn > SPLIT_EDGES) return false;
+
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         if (shell->moved[colour] + moves > max) return false;
+
     return true;
 }
 
@@ -136,6 +143,7 @@ SplitResult split_vertex(Shell *shell, const Fan *fan, const ShellSplit *split) 
         all += area;
         if (goes(split, k)) gone += area;
     }
+
     matter_split(shell, v, to, (float)(gone / all) * shell->matter.area[v]);
 
     // cells that go take their edges and springs along
@@ -171,5 +179,6 @@ bool split_replay(Shell *shell, const ShellSplit *splits, uint32_t count) {
         if (!split_is_possible(shell, &fan, &splits[k])) return false;
         if (split_vertex(shell, &fan, &splits[k]).spare != splits[k].spare) return false;
     }
+
     return true;
 }

@@ -23,6 +23,7 @@ uint32_t shell_nowhere_count(const Shell *shell) {
             if (max < strands) max = strands;
         }
     }
+
     return max;
 }
 
@@ -61,6 +62,7 @@ static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basi
     *basic = used;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         TAKE(state->burn.spring_length[colour], shell->springs[colour].count);
+
     return used;
 }
 
@@ -88,6 +90,7 @@ SingeResult state_create(Memory *memory, const Shell *shell, State *state) {
         *state = (State){0};
         return SINGE_ERROR_MEMORY;
     }
+
     size_t lead = SLICE - (uintptr_t)block % SLICE; // 1 to 64
     block[lead - 1] = (char)lead;
     state_rebase(shell, state, block + lead);
@@ -111,12 +114,14 @@ SingeResult state_create(Memory *memory, const Shell *shell, State *state) {
             state->dynamics.position[p][k] = shell->rest_position[p][k];
             state->dynamics.velocity[p][k] = alive ? sheet->velocity[k] : 0;
         }
+
         state->heat.temperature[p] = state->heat.temperature_peak[p] = field_at(shell->matter.temperature, p);
         state->burn.mass[p] = state->burn.fuel[p] = 1;
         state->burn.time_ignited[p] = state->burn.time_burnt[p] = -1;
         state->ablate.particle_flags[p] = alive ? SINGE_ALIVE : 0;
         state->ablate.piece[p] = alive ? 0 : -1;
     }
+
     for (uint32_t c = 0; c < shell->cell_count; c++) state->ablate.cell_flags[c] = SINGE_ALIVE;
     return SINGE_OK;
 }

@@ -70,6 +70,7 @@ static uint32_t trace_stride(const Trace *trace, uint32_t s) {
 static bool order_by_length(Memory *memory, const Trace *trace, uint32_t *order) {
     uint32_t first = 0, *rank = NULL, *next = NULL;
     if (trace->strand_count == 0) return true;
+
     for (uint32_t s = 0; s < trace->strand_count; s++)
         if (trace_length(trace, s) > trace_length(trace, first)) first = s;
     uint32_t longest = trace_length(trace, first), stride = trace_stride(trace, first);
@@ -78,6 +79,7 @@ static bool order_by_length(Memory *memory, const Trace *trace, uint32_t *order)
         rank[s] = 2 * (longest - trace_length(trace, s)) + (trace_stride(trace, s) != stride);
         next[rank[s] + 1]++; // lengths are at least 1
     }
+
     if (done) {
         for (uint32_t i = 0; i <= 2 * longest; i++) next[i + 1] += next[i];
         for (uint32_t s = 0; s < trace->strand_count; s++) order[next[rank[s]]++] = s;
@@ -93,6 +95,7 @@ static bool order_by_length(Memory *memory, const Trace *trace, uint32_t *order)
 static uint32_t find_families(Memory *memory, const Trace *trace, uint32_t particle_count, uint32_t *family) {
     uint32_t strands = trace->strand_count, families = 0, total = 0, *order = NULL, *of_item = NULL;
     ItemNodes items = {.node_count = particle_count, .item_count = strands};
+
     if (NEW(memory, order, strands) && NEW(memory, of_item, strands) && NEW(memory, items.first, (size_t)strands + 1) &&
         NEW(memory, items.nodes, (size_t)trace->length + strands) && order_by_length(memory, trace, order)) {
         // the particles of every strand
@@ -105,6 +108,7 @@ static uint32_t find_families(Memory *memory, const Trace *trace, uint32_t parti
         items.first[strands] = total;
         families = family_colour(memory, &items, of_item);
     }
+
     for (uint32_t i = 0; i < strands && families; i++) family[order[i]] = of_item[i];
     FREE(memory, items.nodes, (size_t)trace->length + strands);
     FREE(memory, items.first, (size_t)strands + 1);
@@ -137,6 +141,7 @@ static bool arrange(Memory *memory, uint32_t particle_count, const Trace *trace,
             number[trace->steps[k] / 2] = next;
         }
     }
+
     if (done) set->strand_first[strands] = next;
     SINGE_ASSERT(!done || next == set->count); // every spring lies in one strand
     FREE(memory, family, strands);
@@ -168,6 +173,7 @@ SingeResult strand_build(Memory *memory, uint32_t particle_count, const LooseSpr
     FREE(memory, trace.done, count);
     FREE(memory, trace.visitor, particle_count);
     if (done) return SINGE_OK;
+
     strand_free(memory, set);
     return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the strands of %u springs", count);
 }

@@ -34,6 +34,7 @@ float tear_strength(const TearPlan *plan, const Shell *shell, const State *state
     float fresh = field_at(matter->strength, vertex), weakened = plan->weakened[matter->sheet[vertex]];
     float min = field_at(matter->mass_min, vertex), yield = field_at(matter->char_yield, vertex);
     float fuel = state->burn.fuel[vertex], ash = 1 - fuel - shell_char(state->burn.mass[vertex], fuel, min, yield);
+
     if (fuel >= 1 || isinf(fresh)) return fresh * weakened;
     float burnt = real_powf(field_at(matter->char_strength, vertex) / fresh, 1 - fuel);
     if (yield > min) burnt *= 1 + (LINE_ASH - 1) * ash;
@@ -71,6 +72,7 @@ static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
     const uint8_t *flags = job->state->ablate.cell_flags;
     float square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
     const float safe = TEAR_HINGE * job->plan->safe;
+
     if (square < safe * safe) return false;
 
     // a share of the strength is enough where a cell at the corner is gone
@@ -87,6 +89,7 @@ static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
         if (edge_stretch(shell, job->state, SINGE_BLUE, springs->blue[i]) > EDGE_STRETCH) return true;
     for (int i = 0; i < 2; i++)
         if (edge_stretch(shell, job->state, SINGE_YELLOW, springs->yellow[i]) > EDGE_STRETCH) return true;
+
     return false;
 }
 
@@ -116,6 +119,7 @@ static double measure_cells(void *task, int begin, int end) {
             if (other == SHELL_NONE) continue;
             tensor_add(now, float3_sub(centroid(shell, other), centre), 0.5f * pull[SINGE_GREEN][springs->green[i]]);
         }
+
         for (int i = 0; i < 2; i++) tensor_add(now, float3_sub(p[i + 2], p[i]), pull[SINGE_YELLOW][springs->yellow[i]]);
         float area = shell->matter.area[shell_centre(shell, c)];
         for (int k = 0; k < 6; k++) now[k] /= area;
@@ -126,6 +130,7 @@ static double measure_cells(void *task, int begin, int end) {
         for (int k = 0; k < 6; k++) held[k] = now[k] + keep * (held[k] - now[k]);
         near += measure_is_near(job, c, held);
     }
+
     return near;
 }
 
@@ -138,6 +143,7 @@ double tear_measure(TearPlan *plan, const Shell *shell, State *state, const floa
 static void smooth_cells(void *task, int begin, int end) {
     const Measure *job = task;
     const Tensor *from = (const Tensor *)job->plan->smooth[job->from];
+
     for (int c = begin; c < end; c++) {
         float *to = job->plan->smooth[!job->from][c], own = 1;
         Tensor sum = {0};
@@ -173,6 +179,7 @@ Float3 tear_normal(const Shell *shell, const Fan *fan) {
         for (int i = 0; i < 4; i++) p[i] = float3_load(shell->rest_position[corner[i]]);
         sum = float3_add(sum, float3_cross(float3_sub(p[2], p[0]), float3_sub(p[3], p[1])));
     }
+
     return float3_unit(sum);
 }
 
@@ -183,6 +190,7 @@ TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state,
     Fan fan;
     if (!(state->ablate.particle_flags[vertex] & SINGE_ALIVE) || state->dynamics.pinned[vertex]) return pull;
     if (state->ablate.piece[vertex] < 0) return pull;
+
     split_fan(shell, vertex, &fan);
     if (fan.count < 2) return pull;
 
@@ -198,6 +206,7 @@ TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state,
             weight += area;
         }
     if (!(weight > 0)) return pull;
+
     for (int i = 0; i < 6; i++) pull.force[i] /= weight;
 
     // its larger principal value in the plane of the sheet
@@ -219,6 +228,7 @@ TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state,
         stretch = fmaxf(stretch, edge_stretch(shell, state, SINGE_BLUE, springs->blue[(corner + 3) & 3]));
         stretch = fmaxf(stretch, edge_stretch(shell, state, SINGE_YELLOW, springs->yellow[corner & 1]));
     }
+
     if (stretch > EDGE_STRETCH) pull.ratio = fmaxf(pull.ratio, stretch / EDGE_STRETCH);
     return pull;
 }

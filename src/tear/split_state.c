@@ -30,6 +30,7 @@ static void count_degree(const Shell *shell, State *state, uint32_t vertex) {
         if (springs->green[after] == SHELL_NONE)
             degree = (uint16_t)(degree + split_alive(state, SINGE_BLUE, springs->blue[after]));
     }
+
     state->ablate.degree[vertex] = degree;
 }
 
@@ -46,11 +47,13 @@ static Float3 tear_edge_displacement(const Shell *shell, const State *state, uin
 static bool tear_edges_cross(const Shell *shell, const State *state, uint32_t one, uint32_t two) {
     const uint32_t *first = shell->fan_first, *fan = shell->fan;
     const uint8_t *flags = state->ablate.cell_flags;
+
     for (uint32_t k = first[one]; k < first[one + 1]; k++)
         for (uint32_t l = first[two]; l < first[two + 1]; l++)
             if ((flags[fan[k]] & flags[fan[l]] & SINGE_ALIVE) &&
                 cross_cells(shell, (const float(*)[4])state->dynamics.position, fan[k], fan[l]))
                 return true;
+
     return false;
 }
 

@@ -46,6 +46,7 @@ float tear_carried(const Shell *shell, uint32_t index, float h) {
         mass += 2 * (double)shell->matter.mass[shell_centre(shell, c)];
         area += (double)shell->matter.area[shell_centre(shell, c)];
     }
+
     return (float)(mass / area) * sheet->cell_size * sheet->cell_size / (h * h) * STEP_CARRIES;
 }
 
@@ -61,6 +62,7 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
     TearPlan *plan;
     *out = NULL;
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
+
     plan->cell_count = shell->cell_count;
     plan->vertex_count = shell->vertex_count;
     plan->particle_count = shell->particle_count;
@@ -82,6 +84,7 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
         plan->safe = fminf(plan->safe, strength * plan->min[s]);
         plan->weakened[s] = 1;
     }
+
     *out = plan;
     return SINGE_OK;
 }
@@ -113,6 +116,7 @@ static bool is_weakest(const TearPlan *plan, const Shell *shell, uint32_t vertex
                 (plan->ratio[other] == plan->ratio[vertex] && other < vertex))
                 return false;
         }
+
     return true;
 }
 
@@ -125,12 +129,14 @@ typedef struct Turn {
 static Turn turn_order(const Fan *fan) {
     Turn turn = {0};
     int start = 0;
+
     if (fan->count == 0) return turn;
     for (int k = 0; k < fan->count && fan->before[start] >= 0; k++) start = fan->before[start];
     turn.closed = fan->before[start] >= 0;
     if (turn.closed) start = 0;
     for (int k = start; k >= 0 && turn.count < fan->count && (turn.count == 0 || k != start); k = fan->after[k])
         turn.at[turn.count++] = k;
+
     return turn;
 }
 
@@ -152,18 +158,21 @@ static int pick_edge(const TearEdge *edges, int begin, int count, Float3 directi
     for (int j = begin; j < count; j++)
         if (edges[j].solid && float3_dot(edges[j].along, direction) > 0) min = fminf(min, edges[j].strength);
     if (isinf(min)) return -1;
+
     for (int j = begin; j < count; j++) {
         float weaker = min / edges[j].strength;
         weight[j] =
             edges[j].solid ? fmaxf(0, float3_dot(edges[j].along, direction)) * weaker * weaker * weaker * weaker : 0;
         sum += weight[j];
     }
+
     int last = -1;
     for (int j = begin; j < count; j++) {
         if (weight[j] <= 0) continue;
         last = j;
         if ((draw -= weight[j] / sum) < 0) break;
     }
+
     return last;
 }
 
@@ -191,6 +200,7 @@ static uint32_t hinge_part(const State *state, const Fan *fan, const Turn *turn)
         if (start[0] < 0) start[0] = j;
         else if (start[1] < 0) start[1] = j;
     }
+
     return start[1] < 0 ? 0 : smaller_part(fan, turn, start[0], start[1]);
 }
 
@@ -201,6 +211,7 @@ static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const Stat
 
     // cells that only the vertex connects
     if (turn.count < fan->count) return smaller_part(fan, &turn, 0, turn.count);
+
     const uint32_t hinge = hinge_part(state, fan, &turn);
     if (hinge) return hinge;
 
@@ -305,6 +316,7 @@ static void tear_vertex(TearPlan *plan, Shell *shell, State *state, uint32_t ver
         float *force = state->tear.line_force[fan.cell[k]], carried = tensor_across(force, pull.across);
         if (carried > 0) tensor_add(force, pull.across, -carried);
     }
+
     tear_split(shell, state, &fan, &split, &result);
     for (int k = 0; k < result.torn_count; k++) separate(shell, state, result.torn[k].far);
 }
@@ -335,6 +347,7 @@ uint32_t tear_step(TearPlan *plan, Shell *shell, State *state, const float *cons
     memset(plan->leader, 0xff, plan->particle_count * sizeof *plan->leader);
     for (uint32_t v = 0; v < plan->vertex_count; v++) {
         if (!(plan->ratio[v] > 1)) continue;
+        SINGE_ASSERT(state->ablate.piece[v] >= 0); // only what is left can tear
         uint32_t *leader = &plan->leader[state->ablate.piece[v]];
         if (plan->torn[v]) *leader = LEADER_RUNS;
         else if (*leader == SHELL_NONE || (*leader != LEADER_RUNS && plan->ratio[v] > plan->ratio[*leader]))
@@ -347,5 +360,6 @@ uint32_t tear_step(TearPlan *plan, Shell *shell, State *state, const float *cons
         bool may = leader == LEADER_RUNS ? plan->torn[v] : leader == v;
         if (may && is_weakest(plan, shell, v)) tear_vertex(plan, shell, state, v, short_of_spares);
     }
+
     return state->tear.split_count - before;
 }

@@ -13,6 +13,7 @@ SingeResult deform_create(Memory *memory, uint32_t vertex_count, const float *ve
                           const uint32_t *triangles, Deform *deform, SingeError *error) {
     *deform = (Deform){0};
     if (!NEW(memory, deform->pose, 1)) return deform_no_memory(error);
+
     MeshSolid *first = &deform->pose->solid[0], *second = &deform->pose->solid[1];
     SingeResult result =
         mesh_solid_create_moving(memory, vertex_count, vertices, triangle_count, triangles, first, error);
@@ -27,11 +28,13 @@ SingeResult deform_create(Memory *memory, uint32_t vertex_count, const float *ve
             !NEW(memory, second->leaves, second->leaf_count) || !NEW(memory, second->nodes, second->node_count))
             result = deform_no_memory(error);
     }
+
     if (result) {
         deform->motion.count = vertex_count; // length of those of its arrays that exist
         deform_free(memory, deform);
         return result;
     }
+
     memcpy(second->vertices, first->vertices, first->vertex_count * sizeof *first->vertices);
     memcpy(second->leaves, first->leaves, first->leaf_count * sizeof *first->leaves);
     memcpy(second->nodes, first->nodes, first->node_count * sizeof *first->nodes);
@@ -51,6 +54,7 @@ void deform_free(Memory *memory, Deform *deform) {
         motion_free(memory, &deform->motion);
         FREE(memory, deform->pose, 1);
     }
+
     *deform = (Deform){0};
 }
 
@@ -81,6 +85,7 @@ void deform_between(const Deform *deform, double before, double after) {
                                          float3_load(pose->solid[1 - pose->now].vertices[v]));
         farthest = fmaxf(farthest, float3_dot(displacement, displacement));
     }
+
     pose->farthest = sqrtf(farthest);
 }
 
@@ -88,7 +93,9 @@ Float3 deform_drift(const Deform *deform, Float3 p) {
     const MeshSolid *before = &deform->pose->solid[1 - deform->pose->now], *after = deform_solid(deform);
     float square = INFINITY;
     const uint32_t t = mesh_tree_nearest(before, p, &square);
+
     if (t == UINT32_MAX) return float3(0, 0, 0);
+
     const uint32_t *corner = before->triangles[t];
     Float3 v[3], drift = {0, 0, 0};
     for (int i = 0; i < 3; i++) v[i] = float3_load(before->vertices[corner[i]]);
@@ -96,6 +103,7 @@ Float3 deform_drift(const Deform *deform, Float3 p) {
     const float weights[3] = {(float)(1 - foot.s - foot.t), (float)foot.s, (float)foot.t};
     for (int i = 0; i < 3; i++)
         drift = float3_mad(drift, float3_sub(float3_load(after->vertices[corner[i]]), v[i]), weights[i]);
+
     return drift;
 }
 

@@ -37,6 +37,7 @@ SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows,
         solid->step[d] = size[d] / (float)(n[d] - 1);
         solid->blocks[d] = (n[d] - 1 + HEIGHT_BLOCK - 1) / HEIGHT_BLOCK;
     }
+
     size_t blocks = (size_t)solid->blocks[0] * solid->blocks[1];
     if (!NEW(memory, solid->heights, count) || !NEW(memory, solid->ranges, blocks)) {
         height_solid_free(memory, solid);
@@ -49,6 +50,7 @@ SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows,
         solid->low = fminf(solid->low, heights[k]);
         solid->high = fmaxf(solid->high, heights[k]);
     }
+
     for (uint32_t bj = 0; bj < solid->blocks[1]; bj++)
         for (uint32_t bi = 0; bi < solid->blocks[0]; bi++) {
             uint32_t i_last = height_solid_min((bi + 1) * HEIGHT_BLOCK, columns - 1);
@@ -63,6 +65,7 @@ SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows,
                     range[1] = fmaxf(range[1], h);
                 }
         }
+
     return SINGE_OK;
 }
 
@@ -100,6 +103,7 @@ static float height_at(const HeightSolid *solid, float x, float y, Float3 *norma
     Float3 corner[3];
     height_triangle(solid, i, j, t > s, corner);
     *normal = float3_unit(float3_cross(float3_sub(corner[1], corner[0]), float3_sub(corner[2], corner[0])));
+
     // the corners are a, b = a + (1, 0) or (1, 1) and c
     float b = t > s ? s : s - t, c = t > s ? t - s : t;
     return corner[0].z + b * (corner[1].z - corner[0].z) + c * (corner[2].z - corner[0].z);
@@ -110,6 +114,7 @@ static void height_surface(const HeightSolid *solid, Float3 p, TriangleClosest *
     const float x[2] = {p.x, p.y}, reach = (float)sqrt(best->square) * 1.0001f;
     uint32_t from[2], to[2];
     float part;
+
     for (int d = 0; d < 2; d++) {
         from[d] = height_cell(solid, d, x[d] - reach, &part);
         to[d] = height_cell(solid, d, x[d] + reach, &part);
@@ -157,6 +162,7 @@ float height_solid_distance(const HeightSolid *solid, Float3 p, float limit, Flo
     *normal = float3(0, 0, 1);
     if (bound > 0 && bound >= limit) return bound;
     if (!isfinite(p.x + p.y + p.z)) return INFINITY;
+
     float above = p.z - height_at(solid, p.x, p.y, normal);
     bool inside = over && above < 0;
     if (limit == 0) return inside ? -1 : 1;
@@ -179,11 +185,14 @@ float height_solid_distance(const HeightSolid *solid, Float3 p, float limit, Flo
         foot.square = triangle_dot(foot.away, foot.away);
         if (foot.square < best.square && p.z <= height_at(solid, at[0], at[1], &unused)) best = foot;
     }
+
     height_surface(solid, p, &best);
     if (!(best.square < unfound)) return inside ? above : (float)max;
+
     double distance = sqrt(best.square), sign = inside ? -1 : 1;
     if (distance > 1e-7 * (1 + (double)float3_length(p)))
         *normal = float3((float)(sign * best.away[0] / distance), (float)(sign * best.away[1] / distance),
                          (float)(sign * best.away[2] / distance));
+
     return (float)(sign * distance);
 }

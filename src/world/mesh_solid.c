@@ -83,6 +83,7 @@ static float solid_signed(const MeshSolid *solid, Float3 p, uint32_t t, Float3 *
         double scale = (double)sign / distance;
         *normal = float3((float)(foot.away[0] * scale), (float)(foot.away[1] * scale), (float)(foot.away[2] * scale));
     }
+
     return sign * (float)distance;
 }
 
@@ -90,6 +91,7 @@ static float solid_signed(const MeshSolid *solid, Float3 p, uint32_t t, Float3 *
 static bool solid_grid(Memory *memory, MeshSolid *solid) {
     Float3 size = float3_sub(solid->high, solid->low);
     double wanted = fmin(fmax(GRID_SHARE * solid->triangle_count, GRID_MIN), GRID_MAX);
+
     // a flat mesh counts as thicker: otherwise all cells would lie in its plane
     double min = (double)fmaxf(size.x, fmaxf(size.y, size.z)) / 256;
     double side[3] = {fmax((double)size.x, min), fmax((double)size.y, min), fmax((double)size.z, min)};
@@ -99,9 +101,11 @@ static bool solid_grid(Memory *memory, MeshSolid *solid) {
         solid->cells[d] = (int32_t)ceil(side[d] / (double)solid->cell) + 2;
         count *= (size_t)solid->cells[d];
     }
+
     Float3 half = float3((float)solid->cells[0], (float)solid->cells[1], (float)solid->cells[2]);
     solid->origin = float3_mad(float3_scale(float3_add(solid->low, solid->high), 0.5f), half, -0.5f * solid->cell);
     if (!NEW(memory, solid->coarse, count)) return false;
+
     float *coarse = solid->coarse;
     for (int k = 0; k < solid->cells[2]; k++)
         for (int j = 0; j < solid->cells[1]; j++) {
@@ -113,6 +117,7 @@ static bool solid_grid(Memory *memory, MeshSolid *solid) {
                 square = next * next;
             }
         }
+
     return true;
 }
 
@@ -134,7 +139,9 @@ SingeResult mesh_solid_create(Memory *memory, uint32_t vertex_count, const float
             float3_store(sum, float3_mad(float3_load(sum), normal, solid_angle(solid, t, i)));
         }
     }
+
     if (solid_grid(memory, solid)) return SINGE_OK;
+
     mesh_solid_free(memory, solid);
     return solid_no_memory(error);
 }
@@ -158,6 +165,7 @@ SingeResult mesh_solid_create_moving(Memory *memory, uint32_t vertex_count, cons
             solid->low = float3(fminf(low.x, v.x), fminf(low.y, v.y), fminf(low.z, v.z));
             solid->high = float3(fmaxf(high.x, v.x), fmaxf(high.y, v.y), fmaxf(high.z, v.z));
         }
+
     return SINGE_OK;
 }
 

@@ -1,6 +1,7 @@
 // The nearest of many triangles, by a tree of boxes, four side by side: a node's boxes, or a leaf's triangles, are
 // tested at once (Wald et al., Getting rid of packets, 2008, for rays). Triangles are halved along the longest axis of
 // the centroids; all leaves but the last are full, so that the number of nodes follows from that of triangles.
+#include "common/assertion.h"
 #include "world/mesh_solid.h"
 
 #include <string.h>
@@ -58,12 +59,14 @@ static void tree_split(TreeBuild *build, uint32_t first, uint32_t count, uint32_
     uint32_t *order = build->solid->order;
     int axis = 0;
     float widest = -1;
+
     for (int d = 0; d < 3; d++) {
         float min = INFINITY, max = -INFINITY;
         for (uint32_t k = first; k < first + count; k++) {
             min = fminf(min, build->centroid[order[k]][d]);
             max = fmaxf(max, build->centroid[order[k]][d]);
         }
+
         if (!(max - min > widest)) continue;
         widest = max - min;
         axis = d;
@@ -81,6 +84,7 @@ static void tree_split(TreeBuild *build, uint32_t first, uint32_t count, uint32_
             order[i++] = order[j];
             order[j--] = swap;
         }
+
         if (wanted <= j) high = j;
         else if (wanted >= i) low = i;
         else break;
@@ -90,6 +94,7 @@ static void tree_split(TreeBuild *build, uint32_t first, uint32_t count, uint32_
 static int32_t tree_leaf(TreeBuild *build, uint32_t first, uint32_t count) {
     uint32_t index = first / SOLID_WIDE;
     SolidLeaf *leaf = &build->solid->leaves[index];
+
     for (uint32_t lane = 0; lane < SOLID_WIDE; lane++) {
         uint32_t slot = first + (lane < count ? lane : count - 1);
         const uint32_t *corner = build->solid->triangles[build->solid->order[slot]];
@@ -100,11 +105,13 @@ static int32_t tree_leaf(TreeBuild *build, uint32_t first, uint32_t count) {
             leaf->ac[i][lane] = build->solid->vertices[corner[2]][i] - a;
         }
     }
+
     return ~(int32_t)index;
 }
 
 static int32_t tree_build(TreeBuild *build, uint32_t first, uint32_t count) {
     if (count <= SOLID_WIDE) return tree_leaf(build, first, count);
+
     const MeshSolid *solid = build->solid;
     uint32_t index = build->nodes++, half = tree_half(count), parts[4];
     tree_parts(count, parts);
@@ -123,6 +130,7 @@ static int32_t tree_build(TreeBuild *build, uint32_t first, uint32_t count) {
         }
         node->child[i] = child;
     }
+
     return (int32_t)index;
 }
 
@@ -153,8 +161,10 @@ bool mesh_tree_create(Memory *memory, MeshSolid *solid) {
             solid->nodes[0].low[i] = float4_all(-INFINITY);
             solid->nodes[0].high[i] = float4_all(INFINITY);
         }
+
         for (int i = 0; i < SOLID_WIDE; i++) solid->nodes[0].child[i] = ~0;
     }
+    SINGE_ASSERT(!ok || count <= SOLID_WIDE || build.nodes == nodes); // tree_count has counted them
     FREE(memory, build.centroid, count);
     return ok;
 }
@@ -162,6 +172,7 @@ bool mesh_tree_create(Memory *memory, MeshSolid *solid) {
 void mesh_tree_refit(MeshSolid *solid) {
     TreeBuild build = {.solid = solid};
     const uint32_t count = solid->triangle_count;
+
     for (uint32_t first = 0; first < count; first += SOLID_WIDE)
         tree_leaf(&build, first, count - first < SOLID_WIDE ? count - first : SOLID_WIDE);
 
@@ -189,6 +200,7 @@ void mesh_tree_refit(MeshSolid *solid) {
             }
         }
     }
+
     solid->low = float3_load(all[0]);
     solid->high = float3_load(all[1]);
 }
@@ -227,6 +239,7 @@ static inline Float4 tree_triangles(const SolidLeaf *leaf, const Float4 p[3]) {
         bc[i] = leaf->ac[i] - leaf->ab[i];
         back[i] = -leaf->ac[i];
     }
+
     tree_cross(leaf->ab, leaf->ac, normal);
     tree_cross(leaf->ab, pa, side);
     Float4Mask inside = tree_dot(side, normal) >= 0;
@@ -249,12 +262,14 @@ typedef struct TreeItem {
 static int tree_push(const SolidNode *node, const Float4 p[3], float best, TreeItem *stack, int depth) {
     Float4 square = tree_boxes(node, p);
     int first = depth;
+
     for (int i = 0; i < SOLID_WIDE; i++) {
         if (!(square[i] < best)) continue;
         int k = depth++;
         for (; k > first && stack[k - 1].square < square[i]; k--) stack[k] = stack[k - 1];
         stack[k] = (TreeItem){square[i], node->child[i]};
     }
+
     return depth;
 }
 
@@ -267,6 +282,7 @@ uint32_t mesh_tree_nearest(const MeshSolid *solid, Float3 at, float *square) {
 
     // depth first, through nodes that are near enough
     while (depth > 0) {
+        SINGE_ASSERT(depth <= TREE_STACK);
         TreeItem item = stack[--depth];
         if (!(item.square < best)) continue;
         if (item.child >= 0) {
@@ -282,7 +298,9 @@ uint32_t mesh_tree_nearest(const MeshSolid *solid, Float3 at, float *square) {
                 found = (uint32_t)~item.child * SOLID_WIDE + (uint32_t)i;
             }
     }
+
     if (found == UINT32_MAX) return found;
+
     *square = best;
     return solid->order[found < solid->triangle_count ? found : solid->triangle_count - 1];
 }
