@@ -36,14 +36,12 @@ static inline uint32_t burn_run_end(uint32_t first, uint32_t last) {
     return last - first < FIELD_RUN ? last : first + FIELD_RUN;
 }
 
-/// Stamps particles that reached their ignition temperature and pushes their events in order of particle.
-void burn_ignite(BurnJob *job, Pool *pool, EventList *events);
-
 /// The share of the air that reaches hot char, stored in burn->release until burn_lose_mass overwrites it (glow.c).
 void burn_air(BurnJob *job, Pool *pool);
 
 /// The second reaction: the share of char that is left of `share` after dt s.
 float burn_glow(const BurnJob *job, uint32_t i, float fuel, float share, float air, float dt);
+
 /// K by which unit mass is heated per mass fraction of char that glows away.
 float burn_glow_heat(const BurnJob *job, uint32_t i);
 

@@ -30,7 +30,6 @@
 // ratio of CO to CO2 (Arthur, Trans. Faraday Soc. 47, 1951, 164-178), and h = .28 the share of the heat that burning to
 // CO gives: 9.2 of 32.8 MJ/kg of carbon. So a hotter ember gives less heat, and more air makes it faster rather than
 // hotter.
-#include "common/assertion.h"
 #include "common/real.h"
 #include "burn/burn_job.h"
 
@@ -48,78 +47,55 @@ static float glow_ash(const BurnJob *job, uint32_t i) {
 }
 
 static bool glow_is_gone(const BurnJob *job, uint32_t cell) {
-    SINGE_ASSERT(cell == SHELL_NONE || cell < job->shell->cell_count);
     return cell == SHELL_NONE || !(job->state->ablate->cell_flags[cell] & SINGE_ALIVE);
 }
 
-/// w of a cell's centre; 1 next to a cell that is gone, and at the border.
-static float glow_centre(const BurnJob *job, uint32_t cell) {
-    SINGE_ASSERT(cell < job->shell->cell_count);
+/// s of a particle: (1 - f_n)^8 max(s_0, w), with w = 1 next to a cell that is gone, and at the border.
+static float glow_supply(const BurnJob *job, uint32_t i) {
     const Shell *shell = job->shell;
-    float ash = glow_ash(job, shell_centre(shell, cell));
-    for (int k = 0; k < 4; k++) {
-        if (glow_is_gone(job, shell_neighbour(shell, cell, k))) return 1;
-        ash = fmaxf(ash, glow_ash(job, shell->cells[cell][k]));
-    }
-    return ash;
-}
+    float ash = glow_ash(job, i), fuel = job->burn->fuel[i];
+    bool edge = false;
 
-/// w of a corner.
-static float glow_corner(const BurnJob *job, uint32_t vertex) {
-    SINGE_ASSERT(vertex < job->shell->vertex_count);
-    const Shell *shell = job->shell;
-    float ash = glow_ash(job, vertex);
-    for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
-        uint32_t cell = shell->fan[f];
-        int i = 0;
-        while (shell->cells[cell][i] != vertex) i++;
-        if (glow_is_gone(job, cell) || glow_is_gone(job, shell_neighbour(shell, cell, i)) ||
-            glow_is_gone(job, shell_neighbour(shell, cell, (i + 3) & 3)))
-            return 1;
-        ash = fmaxf(ash, glow_ash(job, shell_centre(shell, cell)));
+    if (shell_is_corner(shell, i)) {
+        for (uint32_t f = shell->fan_first[i]; f < shell->fan_first[i + 1]; f++) {
+            uint32_t cell = shell->fan[f], centre = shell_centre(shell, cell);
+            int k = 0;
+            while (shell->cells[cell][k] != i) k++;
+            edge = edge || glow_is_gone(job, cell) || glow_is_gone(job, shell_neighbour(shell, cell, k)) ||
+                   glow_is_gone(job, shell_neighbour(shell, cell, (k + 3) & 3));
+            if (!edge) ash = fmaxf(ash, glow_ash(job, centre));
+            if (!glow_is_gone(job, cell)) fuel = fmaxf(fuel, job->burn->fuel[centre]);
+        }
+    } else {
+        uint32_t cell = i - shell->vertex_count;
+        for (int k = 0; k < 4; k++) {
+            uint32_t corner = shell->cells[cell][k];
+            edge = edge || glow_is_gone(job, shell_neighbour(shell, cell, k));
+            if (!edge) ash = fmaxf(ash, glow_ash(job, corner));
+            fuel = fmaxf(fuel, job->burn->fuel[corner]);
+        }
     }
-    return ash;
-}
 
-static float glow_fuel_near(const BurnJob *job, uint32_t i) {
-    const Shell *shell = job->shell;
-    const float *fuel = job->burn->fuel;
-    float max = fuel[i];
-    if (!shell_is_corner(shell, i)) {
-        for (int k = 0; k < 4; k++) max = fmaxf(max, fuel[shell->cells[i - shell->vertex_count][k]]);
-        return max;
-    }
-    for (uint32_t f = shell->fan_first[i]; f < shell->fan_first[i + 1]; f++)
-        if (!glow_is_gone(job, shell->fan[f])) max = fmaxf(max, fuel[shell_centre(shell, shell->fan[f])]);
-    return max;
-}
-
-static float glow_power_8(float x) {
-    float squared = x * x;
+    float squared = (1 - fuel) * (1 - fuel);
     squared *= squared;
-    return squared * squared;
-}
-
-static void glow_air_run(BurnJob *job, uint32_t first, uint32_t last) {
-    const Shell *shell = job->shell;
-    for (uint32_t i = first; i < last; i++) {
-        bool chars = field_at(shell->matter.char_yield, i) > field_at(shell->matter.mass_min, i);
-        if (!chars || job->burn->fuel[i] >= 1 || !(job->state->ablate->particle_flags[i] & SINGE_ALIVE)) continue;
-        float ash = shell_is_corner(shell, i) ? glow_corner(job, i) : glow_centre(job, i - shell->vertex_count);
-        float air = fmaxf(ash, field_at(shell->matter.char_air, i));
-        job->burn->release[i] = air * glow_power_8(1 - glow_fuel_near(job, i));
-    }
+    return fmaxf(edge ? 1 : ash, field_at(shell->matter.char_air, i)) * (squared * squared);
 }
 
 static void glow_air_blocks(void *context, int begin, int end) {
     BurnJob *job = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
+    const Matter *matter = &job->shell->matter;
+
     for (int block = begin; block < end; block++) {
         uint32_t first, last, run;
         burn_block(job, block, &first, &last);
         for (; first < last; first = run) {
             run = burn_run_end(first, last);
-            if (burn_is_hot(job, first, run)) glow_air_run(job, first, run);
+            if (!burn_is_hot(job, first, run)) continue;
+            for (uint32_t i = first; i < run; i++) {
+                bool chars = field_at(matter->char_yield, i) > field_at(matter->mass_min, i);
+                if (!chars || job->burn->fuel[i] >= 1) continue;
+                if (job->state->ablate->particle_flags[i] & SINGE_ALIVE) job->burn->release[i] = glow_supply(job, i);
+            }
         }
     }
 }

@@ -25,7 +25,6 @@
 //   else      f (1 - (1 - r)^(1/(1 - p))),  r = (1 - p) k f^(p - 1), and all of f once r >= 1
 //
 // Pyrolysis heats the sheet by eta (1 - nu) df, eq 1.
-#include "common/assertion.h"
 #include "common/real.h"
 #include "burn/burn_job.h"
 
@@ -43,26 +42,9 @@ static float fall(float x, float k, float p) {
         float root = sqrtf(x), half = 0.5f * k;
         return half > root ? x : half * (2 * root - half);
     }
+
     float r = (1 - p) * k * real_powf(x, p - 1);
     return r >= 1 ? x : -x * real_expm1f(real_log1pf(-r) / (1 - p));
-}
-
-/// A exp(-E/(R T_e)), 1/s; NaN propagates.
-static float arrhenius_rate(const Matter *matter, uint32_t i, float excess) {
-    const float gas_constant = 8.314462618f; // J/(mol K)
-    float temperature = field_at(matter->ignition_temperature, i) + excess;
-    float exponent = field_at(matter->activation_energy, i) / (gas_constant * temperature);
-    return field_at(matter->pre_exponential, i) * real_expf(-exponent);
-}
-
-/// One particle's new fuel; NaN propagates.
-static float lower_fuel(const Matter *matter, uint32_t i, float fuel, float excess, float dt) {
-    float k = field_at(matter->mass_rate, i) * dt * excess / (1 - field_at(matter->char_yield, i));
-    if (field_at(matter->pre_exponential, i) > 0) k = arrhenius_rate(matter, i, excess) * dt;
-    if (fuel <= 0 || k <= 0) return fuel;
-    if (k > STRENGTH_MAX) k = STRENGTH_MAX; // all burns; infinity times a vanishing f^p would be NaN
-    float lowered = fuel - fall(fuel, k, field_at(matter->ash_exponent, i));
-    return lowered < 0 ? 0 : lowered;
 }
 
 /// Both reactions of one particle.
@@ -71,9 +53,28 @@ static void react(BurnJob *job, uint32_t i, float excess) {
     BurnState *burn = job->burn;
     float dt = job->dt / job->thickening[matter->sheet[i]], floor_mass = field_at(matter->loss_mass_floor, i);
     float min = field_at(matter->mass_min, i), yield = field_at(matter->char_yield, i), span = yield - min;
-    float before = burn->mass[i], fuel = burn->fuel[i], left = lower_fuel(matter, i, fuel, excess, dt);
+    float before = burn->mass[i], fuel = burn->fuel[i];
+
+    // pyrolysis: k, then what it leaves of the fuel; NaN propagates
+    float k = field_at(matter->mass_rate, i) * dt * excess / (1 - yield), left = fuel;
+    if (field_at(matter->pre_exponential, i) > 0) {
+        const float gas_constant = 8.314462618f; // J/(mol K)
+        float temperature = field_at(matter->ignition_temperature, i) + excess;
+        float exponent = field_at(matter->activation_energy, i) / (gas_constant * temperature);
+        k = field_at(matter->pre_exponential, i) * real_expf(-exponent) * dt;
+    }
+
+    if (!(fuel <= 0 || k <= 0)) {
+        if (k > STRENGTH_MAX) k = STRENGTH_MAX; // all burns; infinity times a vanishing f^p would be NaN
+        left = fuel - fall(fuel, k, field_at(matter->ash_exponent, i));
+        if (left < 0) left = 0;
+    }
+
+    // the char that it makes, and what is left of it after glowing
     float fresh = shell_char(before, fuel, min, yield) + (span > 0 ? fuel - left : 0);
     float share = span > 0 ? burn_glow(job, i, left, fresh, fuel < 1 ? burn->release[i] : 0, dt) : 0;
+
+    // mass, and the heat of both
     float after = min + (1 - min) * left + span * share;
     burn->fuel[i] = left;
     burn->mass[i] = after < before || isnan(after) ? after : before;
@@ -82,52 +83,47 @@ static void react(BurnJob *job, uint32_t i, float excess) {
     burn->release[i] = (field_at(matter->heating, i) * (1 - yield) * (fuel - left) + glow) / job->h;
 }
 
-/// Adds the mass that particles [first, last) lose to *lost, kg.
-static void lose_mass(BurnJob *job, uint32_t first, uint32_t last, double *lost) {
+/// Lets the particles of blocks react; the mass that they lose, kg, is the block's partial.
+static void lose_mass(void *context, int begin, int end) {
+    BurnJob *job = context;
     const Matter *matter = &job->shell->matter;
     const float *temperature = job->state->heat->temperature;
     const uint8_t *flags = job->state->ablate->particle_flags;
     BurnState *burn = job->burn;
-    for (uint32_t i = first; i < last; i++) {
-        float excess = temperature[i] - field_at(matter->ignition_temperature, i);
-        if (excess <= 0 || !(flags[i] & SINGE_ALIVE)) {
-            burn->burn_rate[i] = burn->release[i] = 0;
-            continue;
-        }
-        if (excess > field_at(matter->rate_ceiling, i)) excess = field_at(matter->rate_ceiling, i); // NaN stays NaN
-        float before = burn->mass[i];
-        react(job, i, excess);
-        float after = burn->mass[i];
-        if (after < field_at(matter->mass_loss, i) && burn->time_burnt[i] < 0) burn->time_burnt[i] = job->time;
-        *lost += ((double)before - (double)after) * (double)matter->mass[i];
-    }
-}
 
-static void be_calm(BurnState *burn, uint32_t first, uint32_t last) {
-    memset(burn->burn_rate + first, 0, (last - first) * sizeof *burn->burn_rate);
-    memset(burn->release + first, 0, (last - first) * sizeof *burn->release);
-}
-
-static void lose_blocks(void *context, int begin, int end) {
-    BurnJob *job = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int block = begin; block < end; block++) {
         uint32_t first, last, run;
         double lost = 0;
         burn_block(job, block, &first, &last);
         for (; first < last; first = run) {
             run = burn_run_end(first, last);
-            if (burn_is_hot(job, first, run)) lose_mass(job, first, run, &lost);
-            else be_calm(job->burn, first, run);
+            if (!burn_is_hot(job, first, run)) {
+                memset(burn->burn_rate + first, 0, (run - first) * sizeof *burn->burn_rate);
+                memset(burn->release + first, 0, (run - first) * sizeof *burn->release);
+                continue;
+            }
+            for (uint32_t i = first; i < run; i++) {
+                float excess = temperature[i] - field_at(matter->ignition_temperature, i);
+                float ceiling = field_at(matter->rate_ceiling, i), before = burn->mass[i];
+                if (excess <= 0 || !(flags[i] & SINGE_ALIVE)) {
+                    burn->burn_rate[i] = burn->release[i] = 0;
+                    continue;
+                }
+                react(job, i, excess > ceiling ? ceiling : excess); // NaN stays NaN
+                float after = burn->mass[i];
+                if (after < field_at(matter->mass_loss, i) && burn->time_burnt[i] < 0) burn->time_burnt[i] = job->time;
+                lost += ((double)before - (double)after) * (double)matter->mass[i];
+            }
         }
+
         job->partial[block] = lost;
     }
 }
 
 double burn_lose_mass(BurnJob *job, Pool *pool) {
     int blocks = pool_blocks((int)job->shell->particle_count);
-    pool_for(pool, blocks, 1, lose_blocks, job);
     double lost = 0;
+    pool_for(pool, blocks, 1, lose_mass, job);
     for (int block = 0; block < blocks; block++) lost += job->partial[block];
     return lost;
 }

@@ -14,10 +14,9 @@
 //   (l/l_init)^2 = (1 - e + b)^2 cos^2 phi + (1 - e - b)^2 sin^2 phi = (1 - e)^2 + b (b + 2 (1 - e) cos 2 phi)
 //
 // The component of a red spring normal to the sheet shrinks by 1 - e: with the share p of its square in the plane,
-// p b^2 replaces b^2. Its `grain` already contains p (shell/fibre.c).
+// p b^2 replaces b^2. Its `grain` already contains p (shell/rest_lengths.c).
 //
 // v depends only on the mass, so only springs with an end that lost mass need a new length.
-#include "common/assertion.h"
 #include "burn/burn_job.h"
 
 #include <math.h>
@@ -69,51 +68,47 @@ static inline float target_length(const SpringSet *springs, uint32_t s, SpringEn
 
 static inline void shrink_spring(const BurnJob *job, SingeColour colour, uint32_t s, SpringEnd a, SpringEnd b,
                                  float in_plane) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     if (job->state->ablate->spring_flags[colour][s] & SINGE_ALIVE)
         job->burn->spring_length[colour][s] = target_length(&job->shell->springs[colour], s, a, b, in_plane);
 }
 
-/// Shortens the springs of a cell that have a burning end. A spring of two cells is left to the first of them that sees
+/// Shortens the springs of cells that have a burning end. A spring of two cells is left to the first of them that sees
 /// an end of it burn: both see the ends of a blue spring, each sees only its own centre of a green one.
-static void shrink_burning_cell(const BurnJob *job, uint32_t cell, const bool burns[4], bool centre_burns) {
-    SINGE_ASSERT(cell < job->shell->cell_count);
-    const Shell *shell = job->shell;
-    const CellSprings *springs = &shell->cell_springs[cell];
-    const BurnState *burn = job->burn;
-    SpringEnd corner[4], centre = spring_end(&shell->matter, burn, shell_centre(shell, cell));
-    for (int i = 0; i < 4; i++) corner[i] = spring_end(&shell->matter, burn, shell->cells[cell][i]);
-
-    // red, blue and green springs; a shared one by one of its two cells
-    for (int i = 0; i < 4; i++) {
-        uint32_t other = shell_neighbour(shell, cell, i), beyond = shell_centre(shell, other);
-        int next = (i + 1) & 3;
-        if (centre_burns | burns[i]) {
-            uint32_t s = springs->red[i];
-            float in_plane = red_in_plane(&shell->matter, &shell->springs[SINGE_RED], s, shell_centre(shell, cell));
-            shrink_spring(job, SINGE_RED, s, centre, corner[i], in_plane);
-        }
-        if ((burns[i] | burns[next]) && (other == SHELL_NONE || cell < other))
-            shrink_spring(job, SINGE_BLUE, springs->blue[i], corner[i], corner[next], 1);
-        if (centre_burns && other != SHELL_NONE && (cell < other || !(burn->burn_rate[beyond] > 0)))
-            shrink_spring(job, SINGE_GREEN, springs->green[i], centre, spring_end(&shell->matter, burn, beyond), 1);
-    }
-
-    // the diagonals
-    for (int i = 0; i < 2; i++)
-        if (burns[i] | burns[i + 2]) shrink_spring(job, SINGE_YELLOW, springs->yellow[i], corner[i], corner[i + 2], 1);
-}
-
 static void shrink_cells(void *context, int begin, int end) {
     const BurnJob *job = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->shell->cell_count);
-    const float *burn_rate = job->burn->burn_rate;
-    for (int c = begin; c < end; c++) {
-        const uint32_t *corner = job->shell->cells[c];
-        bool centre = burn_rate[shell_centre(job->shell, (uint32_t)c)] > 0;
-        bool burns[4] = {burn_rate[corner[0]] > 0, burn_rate[corner[1]] > 0, burn_rate[corner[2]] > 0,
-                         burn_rate[corner[3]] > 0};
-        if (centre | burns[0] | burns[1] | burns[2] | burns[3]) shrink_burning_cell(job, (uint32_t)c, burns, centre);
+    const Shell *shell = job->shell;
+    const Matter *matter = &shell->matter;
+    const BurnState *burn = job->burn;
+    const float *burn_rate = burn->burn_rate;
+
+    for (uint32_t cell = (uint32_t)begin; cell < (uint32_t)end; cell++) {
+        const uint32_t *at = shell->cells[cell];
+        bool centre_burns = burn_rate[shell_centre(shell, cell)] > 0;
+        bool burns[4] = {burn_rate[at[0]] > 0, burn_rate[at[1]] > 0, burn_rate[at[2]] > 0, burn_rate[at[3]] > 0};
+        if (!(centre_burns | burns[0] | burns[1] | burns[2] | burns[3])) continue;
+        const CellSprings *springs = &shell->cell_springs[cell];
+        SpringEnd corner[4], centre = spring_end(matter, burn, shell_centre(shell, cell));
+        for (int i = 0; i < 4; i++) corner[i] = spring_end(matter, burn, at[i]);
+
+        // red, blue and green springs; a shared one by one of its two cells
+        for (int i = 0; i < 4; i++) {
+            uint32_t other = shell_neighbour(shell, cell, i), beyond = shell_centre(shell, other);
+            int next = (i + 1) & 3;
+            if (centre_burns | burns[i]) {
+                uint32_t s = springs->red[i];
+                float in_plane = red_in_plane(matter, &shell->springs[SINGE_RED], s, shell_centre(shell, cell));
+                shrink_spring(job, SINGE_RED, s, centre, corner[i], in_plane);
+            }
+            if ((burns[i] | burns[next]) && (other == SHELL_NONE || cell < other))
+                shrink_spring(job, SINGE_BLUE, springs->blue[i], corner[i], corner[next], 1);
+            if (centre_burns && other != SHELL_NONE && (cell < other || !(burn_rate[beyond] > 0)))
+                shrink_spring(job, SINGE_GREEN, springs->green[i], centre, spring_end(matter, burn, beyond), 1);
+        }
+
+        // the diagonals
+        for (int i = 0; i < 2; i++)
+            if (burns[i] | burns[i + 2])
+                shrink_spring(job, SINGE_YELLOW, springs->yellow[i], corner[i], corner[i + 2], 1);
     }
 }
 

@@ -17,7 +17,6 @@
 // (Smagorinsky 1963): D = D_0 + (C cell)^2 |grad u|.
 //
 // The displacement of a step is divided so that along no axis it passes more than a cell at once.
-#include "common/assertion.h"
 #include "gas/advect_axis.h"
 
 #include <limits.h>
@@ -32,7 +31,6 @@ static const float ADVECT_MIX_MAX = 0.1f;                    ///< twice this mus
 
 static void advect_tasks(void *context, int begin, int end) {
     const Sweep *sweep = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasBox *box = sweep->box;
     for (int task = box->low[sweep->across] + begin; task < box->low[sweep->across] + end; task++)
         for (int first = box->low[0]; first < box->high[0]; first += SWEEP_RUN) {
@@ -41,27 +39,27 @@ static void advect_tasks(void *context, int begin, int end) {
         }
 }
 
-/// Copies the box and the cells around it that are read.
-static void advect_frame(const GasGrid *grid, const GasBox *box, const float *from, float *to) {
-    int count = box->high[0] - box->low[0] + 2 * GAS_GHOSTS;
-    for (int k = box->low[2] - GAS_GHOSTS; k < box->high[2] + GAS_GHOSTS; k++)
-        for (int j = box->low[1] - GAS_GHOSTS; j < box->high[1] + GAS_GHOSTS; j++) {
-            size_t c = gas_at(grid, box->low[0] - GAS_GHOSTS, j, k);
-            memcpy(to + c, from + c, (size_t)count * sizeof(float));
-        }
-}
-
 /// Carries one field over the displacement of a step. Outside the box it does not change.
 static void advect_field(GasPass *pass, int f, const GasBox *box, int parts) {
     GasPlan *plan = pass->plan;
+    const GasGrid *grid = &plan->grid;
     const float *start = f < GAS_VELOCITY ? pass->from->field[f] : plan->spare[2];
     float *end[2], *between = plan->spare[1];
-    end[(parts - 1) % 2] = pass->to->field[f], end[parts % 2] = plan->spare[0];
-    memcpy(pass->to->field[f], start, plan->grid.cells * sizeof(float));
+    end[(parts - 1) % 2] = pass->to->field[f];
+    end[parts % 2] = plan->spare[0];
+    memcpy(pass->to->field[f], start, grid->cells * sizeof(float));
     if (box->high[0] <= box->low[0]) return;
 
+    // the sweeps read the box and the cells around it
+    size_t row = (size_t)(box->high[0] - box->low[0] + 2 * GAS_GHOSTS);
+    for (int s = 0; s < 2; s++)
+        for (int k = box->low[2] - GAS_GHOSTS; k < box->high[2] + GAS_GHOSTS; k++)
+            for (int j = box->low[1] - GAS_GHOSTS; j < box->high[1] + GAS_GHOSTS; j++) {
+                size_t c = gas_at(grid, box->low[0] - GAS_GHOSTS, j, k);
+                memcpy(plan->spare[s] + c, start + c, row * sizeof(float));
+            }
+
     // three sweeps a part, one per axis
-    for (int s = 0; s < 2; s++) advect_frame(&plan->grid, box, start, plan->spare[s]);
     for (int part = 0; part < parts; part++) {
         float *here = end[part % 2];
         const float *from[3] = {start, here, between};
@@ -79,6 +77,7 @@ static void advect_field(GasPass *pass, int f, const GasBox *box, int parts) {
                            .rows = plan->rows};
             pool_for(pass->pool, box->high[sweep.across] - box->low[sweep.across], 1, advect_tasks, &sweep);
         }
+
         start = here;
     }
 }
@@ -90,6 +89,7 @@ static float advect_row(const GasPass *pass, size_t c, int count, int busy[GAS_B
     const float *L = pass->from->field[GAS_LIGHTNESS] + c, *fuel = pass->from->field[GAS_FUEL] + c;
     const float *smoke = pass->from->field[GAS_SMOKE] + c;
     float speed[SWEEP_RUN], max = 0;
+
     for (int i = 0; i < count; i++) speed[i] = 0;
 
     // max speed through the cells' faces
@@ -111,15 +111,19 @@ static float advect_row(const GasPass *pass, size_t c, int count, int busy[GAS_B
                                            speed[i] > calm || L[i] > ADVECT_LIGHT};
         max = speed[i] > max ? speed[i] : max;
         for (int b = 0; b < GAS_BOXES; b++)
-            if (something[b]) busy[b][0] = i < busy[b][0] ? i : busy[b][0], busy[b][1] = i;
+            if (something[b]) {
+                busy[b][0] = i < busy[b][0] ? i : busy[b][0];
+                busy[b][1] = i;
+            }
     }
+
     return max;
 }
 
 static void advect_look(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasGrid *grid = &pass->plan->grid;
+
     for (int k = begin; k < end; k++) {
         GasBox *box = pass->plan->plane_busy[k];
         float max = 0;
@@ -141,26 +145,9 @@ static void advect_look(void *context, int begin, int end) {
     }
 }
 
-/// The boxes outside which nothing is carried: for heat and fuel, for smoke, and for momentum, of which still air has
-/// little. In a part of the displacement nothing moves farther than a cell.
-static void advect_boxes(GasPass *pass, int parts) {
-    GasPlan *plan = pass->plan;
-    for (int b = 0; b < GAS_BOXES; b++) {
-        GasBox *box = &pass->busy[b];
-        *box = GAS_NO_BOX;
-        for (int k = 0; k < plan->grid.n[2]; k++) gas_box_add(box, plan->plane_busy[k][b]);
-        if (box->high[0] <= box->low[0]) continue;
-        for (int d = 0; d < 3; d++) {
-            int low = box->low[d] - parts - 1, high = box->high[d] + parts + 1;
-            box->low[d] = low > 0 ? low : 0, box->high[d] = high < plan->grid.n[d] ? high : plan->grid.n[d];
-        }
-    }
-}
-
 /// Half the share of a difference that mixes through a face: D dt/cell^2/2.
 static void advect_mixing(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     const float *const *u = (const float *const *)&pass->from->field[GAS_VELOCITY];
@@ -191,8 +178,8 @@ static void advect_mixing(void *context, int begin, int end) {
 /// Converts a velocity field of the pass to the momentum (1 - L) u.
 static void advect_to_momentum(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasGrid *grid = &pass->plan->grid;
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < grid->n[1]; j++) {
             size_t c = gas_at(grid, 0, j, k);
@@ -205,8 +192,8 @@ static void advect_to_momentum(void *context, int begin, int end) {
 
 static void advect_to_velocity(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasGrid *grid = &pass->plan->grid;
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < grid->n[1]; j++) {
             size_t c = gas_at(grid, 0, j, k);
@@ -218,20 +205,36 @@ static void advect_to_velocity(void *context, int begin, int end) {
 
 void gas_advect(GasPass *pass) {
     GasPlan *plan = pass->plan;
+    const GasGrid *grid = &plan->grid;
     double fastest = 0;
-    gas_planes(pass, &plan->grid, advect_look);
-    for (int k = 0; k < plan->grid.n[2]; k++) fastest = plan->partial[k] > fastest ? plan->partial[k] : fastest;
+    gas_planes(pass, grid, advect_look);
+    for (int k = 0; k < grid->n[2]; k++) fastest = plan->partial[k] > fastest ? plan->partial[k] : fastest;
+
+    // parts of the displacement; a wind so strong that it blows everything away in a few steps is slowed
     float displacement = (float)fastest * pass->dt / (plan->cell * ADVECT_COURANT);
     int parts = displacement > 1 ? displacement < ADVECT_PARTS_MAX ? (int)ceilf(displacement) : ADVECT_PARTS_MAX : 1;
-    // slows a wind so strong that it blows everything away in a few steps
     float slower = displacement > ADVECT_PARTS_MAX ? ADVECT_PARTS_MAX / displacement : 1;
     pass->courant = slower * pass->dt / (plan->cell * (float)parts);
-    advect_boxes(pass, parts);
-    gas_planes(pass, &plan->grid, advect_mixing);
+
+    // boxes outside which nothing is carried: for heat and fuel, for smoke, and for momentum, of which still air has
+    // little; in a part nothing moves farther than a cell
+    for (int b = 0; b < GAS_BOXES; b++) {
+        GasBox *box = &pass->busy[b];
+        *box = GAS_NO_BOX;
+        for (int k = 0; k < grid->n[2]; k++) gas_box_add(box, plan->plane_busy[k][b]);
+        if (box->high[0] <= box->low[0]) continue;
+        for (int d = 0; d < 3; d++) {
+            int low = box->low[d] - parts - 1, high = box->high[d] + parts + 1;
+            box->low[d] = low > 0 ? low : 0;
+            box->high[d] = high < grid->n[d] ? high : grid->n[d];
+        }
+    }
+
+    gas_planes(pass, grid, advect_mixing);
     for (int f = 0; f < GAS_CARRIED; f++) {
         pass->field = f;
-        if (f >= GAS_VELOCITY) gas_planes(pass, &plan->grid, advect_to_momentum);
+        if (f >= GAS_VELOCITY) gas_planes(pass, grid, advect_to_momentum);
         advect_field(pass, f, &pass->busy[f < GAS_SMOKE ? 0 : f < GAS_VELOCITY ? 1 : 2], parts);
-        if (f >= GAS_VELOCITY) gas_planes(pass, &plan->grid, advect_to_velocity);
+        if (f >= GAS_VELOCITY) gas_planes(pass, grid, advect_to_velocity);
     }
 }

@@ -7,6 +7,7 @@
 enum { SWEEP_RUN = 128 }; ///< cells in a row at a time
 
 typedef struct Sweep Sweep;
+
 /// Columns [first, first + count) of the box in the rows of one task, from the first along the axis to the last.
 typedef void SweepFn(const Sweep *sweep, int task, int first, int count);
 

@@ -1,15 +1,14 @@
 // Obstacles of the gas: cells whose centre is inside a collider have no gas, and a sheet's cell of area A and normal n
 // covers A |n_d| of the nearest faces across axis d, shared among the four about it.
-#include "common/assertion.h"
 #include "gas/gas_plan.h"
 
 #include <string.h>
 
 static void blocked_planes(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < grid->n[1]; j++) {
             size_t c = gas_at(grid, 0, j, k);
@@ -31,41 +30,12 @@ static void blocked_planes(void *context, int begin, int end) {
         }
 }
 
-/// Adds to the covered share of faces across axis d.
-static void blocked_cover(GasPlan *plan, int d, const float position[3], float share) {
-    const GasGrid *grid = &plan->grid;
-    int e = (d + 1) % 3, f = (d + 2) % 3, at[3];
-    float part[3];
-    at[d] = (int)floorf(position[d] + 1); // the nearest face: the lower one of the cell, or that of the cell above
-    for (int q = 0; q < 3; q++)
-        if (q != d) at[q] = (int)(position[q] + 1) - 1, part[q] = position[q] - (float)at[q];
-    size_t c = gas_at(grid, at[0], at[1], at[2]);
-    float *open = plan->open[d];
-    open[c] += share * (1 - part[e]) * (1 - part[f]);
-    open[c + grid->stride[e]] += share * part[e] * (1 - part[f]);
-    open[c + grid->stride[f]] += share * (1 - part[e]) * part[f];
-    open[c + grid->stride[e] + grid->stride[f]] += share * part[e] * part[f];
-}
-
-static void blocked_by_sheets(const GasPass *pass) {
-    GasPlan *plan = pass->plan;
-    const Shell *shell = pass->shell;
-    float face = 1 / (plan->cell * plan->cell), position[3];
-    for (uint32_t c = 0; c < shell->cell_count; c++) {
-        if (!(pass->state->ablate->cell_flags[c] & SINGE_ALIVE)) continue;
-        uint32_t i = shell_centre(shell, c);
-        if (!gas_position(plan, float3_load(pass->state->dynamics->position[i]), position)) continue;
-        for (int d = 0; d < 3; d++)
-            blocked_cover(plan, d, position, shell->matter.area[i] * face * fabsf(plan->normal[i][d]));
-    }
-}
-
 /// Converts the covered share to the open one.
 static void blocked_open(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
+
     for (int d = 0; d < 3; d++)
         for (int k = begin; k < end; k++)
             for (int j = 0; j <= grid->n[1]; j++) {
@@ -81,9 +51,35 @@ static void blocked_open(void *context, int begin, int end) {
 
 void gas_blocked(GasPass *pass) {
     GasPlan *plan = pass->plan;
-    for (int d = 0; d < 3; d++) memset(plan->open[d], 0, plan->grid.cells * sizeof(float));
-    gas_planes(pass, &plan->grid, blocked_planes);
-    blocked_by_sheets(pass);
-    gas_planes(pass, &plan->grid, blocked_open);
-    blocked_open(pass, plan->grid.n[2], plan->grid.n[2] + 1); // the upper faces of the last plane
+    const GasGrid *grid = &plan->grid;
+    const Shell *shell = pass->shell;
+
+    for (int d = 0; d < 3; d++) memset(plan->open[d], 0, grid->cells * sizeof(float));
+    gas_planes(pass, grid, blocked_planes);
+
+    // share of the faces that each cell of a sheet covers
+    float face = 1 / (plan->cell * plan->cell), position[3], part[3];
+    for (uint32_t cell = 0; cell < shell->cell_count; cell++) {
+        if (!(pass->state->ablate->cell_flags[cell] & SINGE_ALIVE)) continue;
+        uint32_t i = shell_centre(shell, cell);
+        if (!gas_position(plan, float3_load(pass->state->dynamics->position[i]), position)) continue;
+        for (int d = 0; d < 3; d++) {
+            float share = shell->matter.area[i] * face * fabsf(plan->normal[i][d]);
+            int e = (d + 1) % 3, f = (d + 2) % 3, at[3];
+            at[d] = (int)floorf(position[d] + 1); // the nearest face: the cell's lower one, or that of the cell above
+            for (int q = 0; q < 3; q++) {
+                if (q == d) continue;
+                at[q] = (int)(position[q] + 1) - 1;
+                part[q] = position[q] - (float)at[q];
+            }
+            float *open = plan->open[d] + gas_at(grid, at[0], at[1], at[2]);
+            open[0] += share * (1 - part[e]) * (1 - part[f]);
+            open[grid->stride[e]] += share * part[e] * (1 - part[f]);
+            open[grid->stride[f]] += share * (1 - part[e]) * part[f];
+            open[grid->stride[e] + grid->stride[f]] += share * part[e] * part[f];
+        }
+    }
+
+    gas_planes(pass, grid, blocked_open);
+    blocked_open(pass, grid->n[2], grid->n[2] + 1); // the upper faces of the last plane
 }

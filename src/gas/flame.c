@@ -5,7 +5,6 @@
 // E fuel J/m3, tau the time in which air and fuel mix, L_f = 1 - Ta/T_f of the hottest flame. L never exceeds L_f. So
 // fuel that enters hot gas burns further up, where it has met cooler air: flames stand above their fuel. Smoke grows
 // with the burnt fuel, and thins in the time in which it spreads finer than the grid.
-#include "common/assertion.h"
 #include "gas/gas_plan.h"
 
 static const float FLAME_TIME = 0.01f, SMOKE_TIME = 4;
@@ -14,7 +13,6 @@ static const float FLAME_FUEL_MIN = 1, FLAME_LIGHTNESS_MIN = 1e-4f, FLAME_SMOKE_
 
 static void flame_planes(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     const SingeGasDef *def = &plan->settings.def;

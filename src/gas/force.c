@@ -6,7 +6,6 @@
 // buoyancy, that makes flames lick and plumes sway:
 //
 //   du/dt = FORCE_UNREST |g| L/(1 - L) (2 noise(x/size, t/time) - 1)
-#include "common/assertion.h"
 #include "gas/gas_plan.h"
 
 #include "common/random.h"
@@ -14,28 +13,16 @@
 static const float FORCE_UNREST = 0.6f, FORCE_SIZE = 0.02f, FORCE_TIME = 0.08f; ///< -, m, s
 static const float FORCE_LIGHT = 0.02f;                                         ///< L above which there is any
 
-/// Adds the unrest to a row along axis d.
-static void force_unrest(const GasPass *pass, int d, int j, int k, float strength) {
-    const GasPlan *plan = pass->plan;
-    size_t c = gas_at(&plan->grid, 0, j, k);
-    const float *L = pass->to->field[GAS_LIGHTNESS] + c;
-    float *u = pass->to->field[GAS_VELOCITY + d] + c, step = plan->cell / FORCE_SIZE;
-    // time runs along its own diagonal, as for the wind's gusts
-    float t = (float)(pass->state->time / (double)FORCE_TIME);
-    for (int i = 0; i < plan->grid.n[0]; i++)
-        if (L[i] > FORCE_LIGHT)
-            u[i] += strength * L[i] / (1 - L[i]) *
-                    (2 * random_noise((float)i * step + 0.3f * t, (float)j * step + 0.4f * t, (float)k * step + t,
-                                      (uint32_t)d) -
-                     1);
-}
-
 static void force_planes(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     Float3 g = float3_load(plan->settings.gravity), up = float3_unit(g);
+    float step = plan->cell / FORCE_SIZE;
+
+    // time runs along its own diagonal, as for the wind's gusts
+    float t = (float)(pass->state->time / (double)FORCE_TIME);
+
     for (int d = 0; d < 3; d++) {
         float lift = -plan->settings.gravity[d] * pass->dt, along = d == 0 ? up.x : d == 1 ? up.y : up.z;
         float unrest = FORCE_UNREST * float3_length(g) * (1 - fabsf(along)) * pass->dt;
@@ -45,7 +32,12 @@ static void force_planes(void *context, int begin, int end) {
                 const float *restrict L = pass->to->field[GAS_LIGHTNESS] + c;
                 float *restrict u = pass->to->field[GAS_VELOCITY + d] + c;
                 for (int i = 0; lift != 0 && i < grid->n[0]; i++) u[i] += lift * L[i] / (1 - L[i]);
-                if (unrest > 0) force_unrest(pass, d, j, k, unrest);
+                for (int i = 0; unrest > 0 && i < grid->n[0]; i++) {
+                    if (!(L[i] > FORCE_LIGHT)) continue;
+                    float noise = random_noise((float)i * step + 0.3f * t, (float)j * step + 0.4f * t,
+                                               (float)k * step + t, (uint32_t)d);
+                    u[i] += unrest * L[i] / (1 - L[i]) * (2 * noise - 1);
+                }
             }
     }
 }

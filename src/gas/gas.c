@@ -4,9 +4,8 @@
 //   feed     the gas that left the sheets since the last step enters as fuel (gas_sheets.c)
 //   burn     fuel burns as air mixes with it; it heats and makes smoke (flame.c)
 //   meet     sheets are heated, and cool the gas; their air is reported to the dynamics (gas_sheets.c)
-//   force    buoyancy, swirl (force.c)
+//   force    buoyancy, and the unrest of the air (force.c)
 //   project  a pressure makes the flow's divergence that of the expansion, past sheets and colliders (project.c)
-#include "common/assertion.h"
 #include "gas/gas_plan.h"
 
 #include <string.h>
@@ -25,8 +24,8 @@ void gas_planes(const GasPass *pass, const GasGrid *grid, SingeTaskFn *run) {
 /// Records for each plane whether any gas in it is not at rest.
 static void gas_look(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasGrid *grid = &pass->plan->grid;
+
     for (int k = begin; k < end; k++) {
         const float *L = pass->to->field[GAS_LIGHTNESS], *fuel = pass->to->field[GAS_FUEL],
                     *smoke = pass->to->field[GAS_SMOKE];
@@ -41,46 +40,12 @@ static void gas_look(void *context, int begin, int end) {
     }
 }
 
-static bool gas_is_over(GasPass *pass) {
-    int left = 0;
-    gas_planes(pass, &pass->plan->grid, gas_look);
-    for (int k = 0; k < pass->plan->grid.n[2]; k++) left |= pass->plan->hot[k];
-    return !left;
-}
-
-/// Sets a turn to rest; its fuel stays.
-static void gas_calm(const GasPlan *plan, GasTurn *turn) {
-    for (int f = 0; f < GAS_FIELDS; f++) memset(turn->field[f], 0, plan->grid.cells * sizeof(float));
-    memset(turn->conductance, 0, plan->particles * sizeof(float));
-    memset(turn->air, 0, plan->particles * sizeof *turn->air);
-}
-
-static void gas_turn_over(const GasPlan *plan, GasPass *pass, GasState *gas) {
-    gas->turn = !gas->turn;
-    const GasTurn *turn = &plan->turn[gas->turn];
-    gas->conductance = turn->conductance;
-    gas->temperature = turn->temperature;
-    gas->fuel = turn->fuel;
-    gas->air = (const float(*)[4])turn->air;
-    gas->warm = false;
-    for (uint32_t i = 0; i < plan->particles && !gas->warm; i++) gas->warm = turn->conductance[i] > 0;
-    pass->from = turn;
-    pass->to = (GasTurn *)(uintptr_t)&plan->turn[!gas->turn];
-    gas->steps++;
-}
-
-static void gas_part(GasPass *pass) {
-    gas_advect(pass);
-    gas_feed(pass);
-    gas_burn(pass);
-    gas_meet(pass);
-    gas_force(pass);
-    gas_project(pass);
-}
-
 void gas_step(GasPlan *plan, const StepContext *context, GasState *gas) {
     const StateInput *state = &context->state;
+    const GasGrid *grid = &plan->grid;
+
     if ((state->step + 1) % plan->every != 0) return;
+
     GasPass pass = {.plan = plan,
                     .shell = context->shell,
                     .state = state,
@@ -91,25 +56,93 @@ void gas_step(GasPlan *plan, const StepContext *context, GasState *gas) {
                     .dt = plan->dt};
     pass.fire = plan->dt * (float)plan->parts * plan->settings.pace;
 
+    // a step that was rolled back must have restored which set of fields is current
+    SINGE_ASSERT(gas->conductance == pass.from->conductance && gas->fuel == pass.from->fuel);
+
     // nothing burns and nothing moves: no step
     if (!gas_fed(&pass) && !gas->awake) return;
 
     // wind, normals of the sheets, faces that they block
     Float3 centre = float3_load(plan->origin);
-    for (int d = 0; d < 3; d++) (&centre.x)[d] += 0.5f * plan->cell * (float)plan->grid.n[d];
+    for (int d = 0; d < 3; d++) (&centre.x)[d] += 0.5f * plan->cell * (float)grid->n[d];
     float3_store(pass.wind, wind_velocity(context->wind, centre, state->time));
     gas_normals(&pass);
     gas_blocked(&pass);
 
-    // parts of the step
-    gas->awake = true;
     for (int part = 0; part < plan->parts; part++) {
-        gas_part(&pass);
-        if (part + 1 == plan->parts && gas_is_over(&pass)) {
-            gas_calm(plan, pass.to);
+        gas_advect(&pass);
+        gas_feed(&pass);
+        gas_burn(&pass);
+        gas_meet(&pass);
+        gas_force(&pass);
+        gas_project(&pass);
+
+        // at the end, gas without heat, fuel and smoke comes to rest; what the sheets still hold stays
+        gas->awake = true;
+        if (part + 1 == plan->parts) {
+            gas_planes(&pass, grid, gas_look);
             gas->awake = false;
+            for (int k = 0; k < grid->n[2]; k++) gas->awake |= plan->hot[k];
         }
-        gas_turn_over(plan, &pass, gas);
+
+        if (!gas->awake) {
+            for (int f = 0; f < GAS_FIELDS; f++) memset(pass.to->field[f], 0, grid->cells * sizeof(float));
+            memset(pass.to->conductance, 0, plan->particles * sizeof(float));
+            memset(pass.to->air, 0, plan->particles * sizeof *pass.to->air);
+        }
+
+        // the new set of fields becomes the current one
+        gas->turn = !gas->turn;
+        gas_plan_expose(plan, gas);
+        gas->warm = false;
+        for (uint32_t i = 0; i < plan->particles && !gas->warm; i++) gas->warm = gas->conductance[i] > 0;
+        pass.from = &plan->turn[gas->turn];
+        pass.to = &plan->turn[!gas->turn];
+        gas->steps++;
     }
+
     gas_show(&pass, pass.from);
+}
+
+// The view for readers: the cells without their ghosts, in the units of SingeGas.
+
+typedef struct Show {
+    const GasPass *pass;
+    const GasTurn *turn;
+} Show;
+
+static void show_planes(void *context, int begin, int end) {
+    const Show *show = context;
+    const GasPlan *plan = show->pass->plan;
+    const GasGrid *grid = &plan->grid;
+    float *const *field = show->turn->field, ambient = plan->settings.ambient_temperature;
+    const float *wind = show->pass->wind;
+    size_t at = (size_t)begin * (size_t)grid->n[0] * (size_t)grid->n[1];
+
+    for (int k = begin; k < end; k++)
+        for (int j = 0; j < grid->n[1]; j++) {
+            size_t c = gas_at(grid, 0, j, k);
+            for (int i = 0; i < grid->n[0]; i++, c++, at++) {
+                plan->view[0][at] = ambient / (1 - field[GAS_LIGHTNESS][c]);
+                plan->view[1][at] = field[GAS_SMOKE][c];
+                plan->view[2][at] = field[GAS_FLAME][c];
+                for (int d = 0; d < 3; d++) plan->view_velocity[at][d] = field[GAS_VELOCITY + d][c] + wind[d];
+            }
+        }
+}
+
+void gas_show(GasPass *pass, const GasTurn *turn) {
+    Show show = {pass, turn};
+    pool_for(pass->pool, pass->plan->grid.n[2], 4, show_planes, &show);
+}
+
+SingeGas gas_view(const GasPlan *plan) {
+    const int *n = plan->grid.n;
+    return (SingeGas){.size = {(uint32_t)n[0], (uint32_t)n[1], (uint32_t)n[2]},
+                      .origin = {plan->origin[0], plan->origin[1], plan->origin[2]},
+                      .cell = plan->cell,
+                      .temperature = plan->view[0],
+                      .smoke = plan->view[1],
+                      .flame = plan->view[2],
+                      .velocity = (const float(*)[3])plan->view_velocity};
 }

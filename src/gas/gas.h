@@ -26,6 +26,7 @@ typedef struct GasPlan GasPlan;
 SingeResult gas_plan_create(Memory *memory, const Shell *shell, const GasSettings *settings, GasPlan **plan,
                             GasState *gas);
 void gas_plan_free(Memory *memory, GasPlan *plan);
+
 /// Passes the fields through a stream, as they cannot be derived from other data.
 void gas_plan_stream(GasPlan *plan, GasState *gas, Stream *stream);
 

@@ -16,7 +16,10 @@ enum { PLAN_SIDE_MAX = 4096 }; ///< cells along an axis: as many as a frame's fi
 static GasGrid plan_grid(const int n[3]) {
     GasGrid grid = {.n = {n[0], n[1], n[2]}};
     size_t cells = 1;
-    for (int d = 0; d < 3; d++) grid.stride[d] = cells, cells *= (size_t)n[d] + 2 * GAS_GHOSTS;
+    for (int d = 0; d < 3; d++) {
+        grid.stride[d] = cells;
+        cells *= (size_t)n[d] + 2 * GAS_GHOSTS;
+    }
     grid.cells = cells;
     return grid;
 }
@@ -47,12 +50,7 @@ static double plan_fit(GasPlan *plan, const float low[3], const float high[3], f
     return cells;
 }
 
-static int plan_longest(const GasPlan *plan) {
-    const int *n = plan->grid.n;
-    int longest = n[0] > n[1] ? n[0] : n[1];
-    return longest > n[2] ? longest : n[2];
-}
-
+/// Fits the grid to the sheets at rest, then coarser and coarser grids, each of half as many cells along each axis.
 static void plan_lay(GasPlan *plan, const Shell *shell) {
     float low[3] = {0}, high[3] = {0}, diagonal = 0, wanted = plan->settings.def.cell_size;
     bool first = true;
@@ -75,24 +73,22 @@ static void plan_lay(GasPlan *plan, const Shell *shell) {
     else if (cell < PLAN_CELL_MIN) cell = PLAN_CELL_MIN;
     if (cell < 1e-4f) cell = 1e-4f;
     double max = wanted > 0 ? PLAN_CELLS_MAX : PLAN_CELLS_USUAL;
-    while (plan_fit(plan, low, high, cell) > max || plan_longest(plan) > PLAN_SIDE_MAX) cell *= 1.05f;
-    plan->grid = plan_grid(plan->grid.n);
-}
+    const int *n = plan->grid.n;
+    while (plan_fit(plan, low, high, cell) > max || n[0] > PLAN_SIDE_MAX || n[1] > PLAN_SIDE_MAX ||
+           n[2] > PLAN_SIDE_MAX)
+        cell *= 1.05f;
+    plan->grid = plan_grid(n);
 
-/// Coarser and coarser grids, each of half as many cells along each axis.
-static void plan_levels(GasPlan *plan) {
+    // levels of the pressure, while the grid can be halved
     GasGrid grid = plan->grid;
-    plan->levels = 0;
-    for (;;) {
+    for (bool even = true; even && plan->levels < GAS_LEVELS;) {
+        int half[3];
         plan->level[plan->levels++].grid = grid;
-        int n[3];
-        bool even = true;
         for (int d = 0; d < 3; d++) {
             even = even && grid.n[d] % 2 == 0 && grid.n[d] >= PLAN_COARSEST;
-            n[d] = grid.n[d] / 2;
+            half[d] = grid.n[d] / 2;
         }
-        if (!even || plan->levels == GAS_LEVELS) return;
-        grid = plan_grid(n);
+        grid = plan_grid(half);
     }
 }
 
@@ -132,21 +128,7 @@ static size_t plan_scratch(GasPlan *plan, float *base) {
     return used;
 }
 
-static bool plan_allocate(Memory *memory, GasPlan *plan) {
-    plan->block_size = plan_turn(plan, NULL, &plan->turn[0]);
-    plan->scratch_size = plan_scratch(plan, NULL);
-    for (int t = 0; t < 2; t++) {
-        if (!NEW(memory, plan->block[t], plan->block_size)) return false;
-        plan_turn(plan, plan->block[t], &plan->turn[t]);
-    }
-    if (!NEW(memory, plan->scratch, plan->scratch_size)) return false;
-    plan_scratch(plan, plan->scratch);
-    return NEW(memory, plan->normal, plan->particles) && NEW(memory, plan->partial, (size_t)plan->grid.n[2]) &&
-           NEW(memory, plan->hot, (size_t)plan->grid.n[2]) && NEW(memory, plan->plane_busy, (size_t)plan->grid.n[2]);
-}
-
-/// Points a state's arrays at the current turn.
-static void plan_expose(const GasPlan *plan, GasState *gas) {
+void gas_plan_expose(const GasPlan *plan, GasState *gas) {
     const GasTurn *turn = &plan->turn[gas->turn];
     gas->conductance = turn->conductance;
     gas->temperature = turn->temperature;
@@ -173,18 +155,25 @@ SingeResult gas_plan_create(Memory *memory, const Shell *shell, const GasSetting
 
     // the grid and its arrays
     plan_lay(plan, shell);
-    plan_levels(plan);
-    plan->view_cells = (size_t)plan->grid.n[0] * (size_t)plan->grid.n[1] * (size_t)plan->grid.n[2];
-    if (!plan_allocate(memory, plan)) {
+    size_t planes = (size_t)plan->grid.n[2];
+    plan->view_cells = (size_t)plan->grid.n[0] * (size_t)plan->grid.n[1] * planes;
+    plan->block_size = plan_turn(plan, NULL, &plan->turn[0]);
+    plan->scratch_size = plan_scratch(plan, NULL);
+    if (!NEW(memory, plan->block[0], plan->block_size) || !NEW(memory, plan->block[1], plan->block_size) ||
+        !NEW(memory, plan->scratch, plan->scratch_size) || !NEW(memory, plan->normal, plan->particles) ||
+        !NEW(memory, plan->partial, planes) || !NEW(memory, plan->hot, planes) ||
+        !NEW(memory, plan->plane_busy, planes)) {
         gas_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
+    for (int t = 0; t < 2; t++) plan_turn(plan, plan->block[t], &plan->turn[t]);
+    plan_scratch(plan, plan->scratch);
 
     // start: all fuel, no gas
     for (int t = 0; t < 2; t++)
         for (uint32_t i = 0; i < plan->particles; i++) plan->turn[t].fuel[i] = 1;
     *gas = (GasState){0};
-    plan_expose(plan, gas);
+    gas_plan_expose(plan, gas);
     GasPass pass = {.plan = plan};
     gas_show(&pass, &plan->turn[0]);
     *out = plan;
@@ -229,7 +218,7 @@ void gas_plan_stream(GasPlan *plan, GasState *gas, Stream *stream) {
     if (stream->failed) return;
     gas->awake = awake != 0;
     gas->warm = warm != 0;
-    plan_expose(plan, gas);
+    gas_plan_expose(plan, gas);
     GasPass pass = {.plan = plan};
     gas_show(&pass, &plan->turn[gas->turn]);
 }

@@ -83,7 +83,7 @@ struct Sweep;
 
 struct GasPlan {
     GasSettings settings;
-    void (*rows)(const struct Sweep *sweep, int task, int first, int count); ///< sweep.h
+    void (*rows)(const struct Sweep *sweep, int task, int first, int count); ///< advect_axis.h
     GasGrid grid;
     float cell;      ///< m
     float origin[3]; ///< m
@@ -137,30 +137,43 @@ typedef struct GasPass {
     int colour;
 } GasPass;
 
+/// Points a state's arrays at the current turn.
+void gas_plan_expose(const GasPlan *plan, GasState *gas);
+
 /// Calls run over the planes of the grid, or of a level's.
 void gas_planes(const GasPass *pass, const GasGrid *grid, SingeTaskFn *run);
 
 /// The share of each face that sheets and colliders leave open (blocked.c).
 void gas_blocked(GasPass *pass);
+
 /// Normals of all particles (gas_sheets.c).
 void gas_normals(GasPass *pass);
+
 /// Whether anything burnt since the gas's last step.
 bool gas_fed(const GasPass *pass);
+
 /// Adds the gas of the burnt material as fuel.
 void gas_feed(GasPass *pass);
+
 /// Effect of the gas on each particle until its next step, and the heat that the gas loses.
 void gas_meet(GasPass *pass);
+
 /// Advects all fields (advect.c).
 void gas_advect(GasPass *pass);
+
 /// Burns the fuel (flame.c).
 void gas_burn(GasPass *pass);
-/// Buoyancy and swirl (force.c).
+
+/// Buoyancy, and the unrest of the air (force.c).
 void gas_force(GasPass *pass);
+
 /// Projects the flow so that its divergence is that of the expansion (project.c).
 void gas_project(GasPass *pass);
+
 /// Solves for the pressure (multigrid.c).
 void gas_solve(GasPass *pass, int cycles);
-/// Fills in the view for readers (gas_view.c).
+
+/// Fills in the view for readers (gas.c).
 void gas_show(GasPass *pass, const GasTurn *turn);
 
 /// A position in cells, from the centre of cell (0, 0, 0). False if it is outside the grid or not finite.

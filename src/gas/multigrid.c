@@ -4,7 +4,6 @@
 // of, its rhs half the sum of its cells' residuals (a face is four times as large and twice as far). Its solution is
 // added to each of its cells. Smoothing is by Gauss and Seidel, alternating red and black cells: cells of a colour do
 // not see each other.
-#include "common/assertion.h"
 #include "gas/gas_plan.h"
 
 #include <string.h>
@@ -22,10 +21,10 @@ static inline float grid_residual(const GasLevel *level, size_t c) {
 }
 
 static void grid_invert(void *context, int begin, int end) {
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasLevel *level = ((const GasPass *)context)->level;
     size_t y = level->grid.stride[1], z = level->grid.stride[2];
     const float *wx = level->weight[0], *wy = level->weight[1], *wz = level->weight[2];
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < level->grid.n[1]; j++) {
             size_t c = gas_at(&level->grid, 0, j, k);
@@ -38,11 +37,11 @@ static void grid_invert(void *context, int begin, int end) {
 
 static void grid_sweep(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasLevel *level = pass->level;
     float *p = level->p;
     size_t y = level->grid.stride[1], z = level->grid.stride[2];
     const float *wx = level->weight[0], *wy = level->weight[1], *wz = level->weight[2];
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < level->grid.n[1]; j++) {
             int first = (j + k + pass->colour) % 2;
@@ -61,7 +60,6 @@ static inline size_t grid_fine(const GasLevel *fine, int i, int j, int k) {
 }
 
 static void grid_weigh(void *context, int begin, int end) {
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasLevel *level = ((const GasPass *)context)->level, *fine = level - 1;
     for (int d = 0; d < 3; d++) {
         size_t e = fine->grid.stride[(d + 1) % 3], f = fine->grid.stride[(d + 2) % 3];
@@ -77,9 +75,9 @@ static void grid_weigh(void *context, int begin, int end) {
 }
 
 static void grid_restrict(void *context, int begin, int end) {
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasLevel *level = ((const GasPass *)context)->level, *fine = level - 1;
     size_t y = fine->grid.stride[1], z = fine->grid.stride[2];
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < level->grid.n[1]; j++) {
             size_t c = gas_at(&level->grid, 0, j, k), a = grid_fine(fine, 0, j, k);
@@ -94,9 +92,9 @@ static void grid_restrict(void *context, int begin, int end) {
 }
 
 static void grid_prolong(void *context, int begin, int end) {
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasLevel *level = ((const GasPass *)context)->level, *fine = level - 1;
     size_t y = fine->grid.stride[1], z = fine->grid.stride[2];
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < level->grid.n[1]; j++) {
             size_t c = gas_at(&level->grid, 0, j, k), a = grid_fine(fine, 0, j, k);
@@ -119,10 +117,12 @@ static void grid_smooth(GasPass *pass, GasLevel *level, int sweeps, int first) {
 static void grid_cycle(GasPass *pass, int l) {
     GasPlan *plan = pass->plan;
     GasLevel *level = &plan->level[l];
+
     if (l + 1 == plan->levels) {
         grid_smooth(pass, level, SWEEPS_COARSEST, 0);
         return;
     }
+
     grid_smooth(pass, level, SWEEPS, 0);
     pass->level = level + 1;
     gas_planes(pass, &level[1].grid, grid_restrict);
@@ -142,5 +142,6 @@ void gas_solve(GasPass *pass, int cycles) {
         }
         gas_planes(pass, &pass->level->grid, grid_invert);
     }
+
     for (int cycle = 0; cycle < cycles; cycle++) grid_cycle(pass, 0);
 }

@@ -11,7 +11,6 @@
 // Beyond the border p = 0, half a cell away. A cell's velocity changes by the mean of its faces' changes, so that
 // averaging removes little of it (as FLIP does for particles), and takes a small part of the faces' own mean, for
 // motion too short for faces to see.
-#include "common/assertion.h"
 #include "gas/gas_plan.h"
 
 #include <string.h>
@@ -27,10 +26,10 @@ static inline float project_face(const float *u, size_t c, size_t beyond, bool f
 /// Faces' speeds before the pressure, and their weights.
 static void project_faces(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     const float *L = pass->to->field[GAS_LIGHTNESS];
+
     for (int d = 0; d < 3; d++) {
         const float *u = pass->to->field[GAS_VELOCITY + d], *open = plan->open[d];
         float *through = pass->to->field[GAS_THROUGH + d], *weight = plan->level[0].weight[d];
@@ -54,10 +53,10 @@ static void project_faces(void *context, int begin, int end) {
 
 static void project_rhs(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     float *rhs = plan->level[0].rhs, scale = plan->cell / pass->dt;
+
     for (int k = begin; k < end; k++)
         for (int j = 0; j < grid->n[1]; j++) {
             size_t c = gas_at(grid, 0, j, k);
@@ -74,10 +73,10 @@ static void project_rhs(void *context, int begin, int end) {
 /// Velocities of cells after the pressure.
 static void project_cells(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     const float *p = pass->to->field[GAS_PRESSURE];
+
     for (int d = 0; d < 3; d++) {
         const float *before = pass->to->field[GAS_THROUGH + d], *open = plan->open[d];
         const float *weight = plan->level[0].weight[d];
@@ -101,10 +100,10 @@ static void project_cells(void *context, int begin, int end) {
 /// Speeds through faces after the pressure.
 static void project_through(void *context, int begin, int end) {
     const GasPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     const float *p = pass->to->field[GAS_PRESSURE];
+
     for (int d = 0; d < 3; d++) {
         float *through = pass->to->field[GAS_THROUGH + d];
         const float *open = plan->open[d], *weight = plan->level[0].weight[d];
@@ -128,6 +127,7 @@ static void project_all_faces(GasPass *pass, SingeTaskFn *run) {
 
 void gas_project(GasPass *pass) {
     GasPlan *plan = pass->plan;
+
     // the last pressure is close to the solution
     memcpy(pass->to->field[GAS_PRESSURE], pass->from->field[GAS_PRESSURE], plan->grid.cells * sizeof(float));
     plan->level[0].p = pass->to->field[GAS_PRESSURE];

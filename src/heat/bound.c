@@ -12,7 +12,6 @@
 // range, and heat is conserved. For the umbrella, which does not conserve heat, it is counted as made.
 #include <math.h>
 
-#include "common/assertion.h"
 #include "common/random.h"
 #include "heat/heat_plan.h"
 
@@ -30,52 +29,52 @@ static double bound_star(const HeatPass *pass, uint32_t i) {
     return bound_within(pass, (double)pass->heat->temperature[i] + (double)pass->plan->delta[i]);
 }
 
-static double bound_mean(const HeatPass *pass, uint32_t i) {
-    const HeatPlan *plan = pass->plan;
-    const HeatMatrix *matrix = &plan->matrix;
-    double star = bound_star(pass, i), inflow = 0, sum = 0;
-    for (uint32_t k = 0; k < heat_row_width(matrix, i); k++) {
-        uint32_t entry = heat_entry(matrix, i, k);
-        double conductance = (double)matrix->value[entry];
-        inflow += conductance * (bound_within(pass, (double)plan->star[matrix->column[entry]]) - star);
-        sum += conductance;
-    }
-    double dt = (double)pass->dt, all = (double)plan->measure[i] + dt * sum;
-    return all > 0 ? bound_within(pass, star + dt * inflow / all) : star;
-}
-
+/// T of every conducting particle, and the heat that is then missing, by block.
 static void bound_means(void *context, int begin, int end) {
     const HeatPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = pass->plan;
+    const HeatMatrix *matrix = &plan->matrix;
     const float *capacity = pass->shell->matter.capacity;
+
     for (int block = begin; block < end; block++) {
         double lacking = 0, above = 0, below = 0;
         for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
             if (!plan->rest.awake[pass->turn][g]) continue;
             for (uint32_t i = g * HEAT_GROUP; i < heat_group_last(plan, g); i++) {
                 if (!plan->alive[i]) continue;
-                plan->next[i] = (float)bound_mean(pass, i);
+
+                // the mean with the neighbours
+                double star = bound_star(pass, i), inflow = 0, sum = 0, dt = (double)pass->dt;
+                for (uint32_t k = 0; k < heat_row_width(matrix, i); k++) {
+                    uint32_t entry = heat_entry(matrix, i, k);
+                    double conductance = (double)matrix->value[entry];
+                    inflow += conductance * (bound_within(pass, (double)plan->star[matrix->column[entry]]) - star);
+                    sum += conductance;
+                }
+                double all = (double)plan->measure[i] + dt * sum;
+                plan->next[i] = (float)(all > 0 ? bound_within(pass, star + dt * inflow / all) : star);
                 if (!bound_of_surface(pass, i)) continue;
 
                 // missing heat, and the room above and below
-                lacking += (double)capacity[i] * (bound_star(pass, i) - (double)plan->next[i]);
+                lacking += (double)capacity[i] * (star - (double)plan->next[i]);
                 above += (double)capacity[i] * ((double)pass->max - (double)plan->next[i]);
                 below += (double)capacity[i] * ((double)plan->next[i] - (double)pass->min);
             }
         }
+
         plan->partial[block][0] = lacking;
         plan->partial[block][1] = above;
         plan->partial[block][2] = below;
     }
 }
 
+/// Moves every particle by a share towards the bound, and rounds at random.
 static void bound_shares(void *context, int begin, int end) {
     const HeatPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = pass->plan;
     double towards = pass->share > 0 ? (double)pass->max : (double)pass->min, share = fabs(pass->share);
     uint32_t low = (uint32_t)pass->state->step, high = (uint32_t)(pass->state->step >> 32);
+
     for (int block = begin; block < end; block++) {
         double made = 0;
         for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
@@ -85,8 +84,6 @@ static void bound_shares(void *context, int begin, int end) {
                     plan->next[i] = pass->heat->temperature[i];
                     continue;
                 }
-
-                // move by a share towards the bound; round at random
                 double T = (double)plan->next[i];
                 if (bound_of_surface(pass, i)) T += share * (towards - T);
                 else made += (double)pass->shell->matter.capacity[i] * (T - bound_star(pass, i));

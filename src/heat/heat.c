@@ -20,7 +20,6 @@
 // capacity C, as in the stored enthalpy C (T - Ta).
 #include <math.h>
 
-#include "common/assertion.h"
 #include "heat/heat_plan.h"
 
 static const float STEFAN_BOLTZMANN = 5.670374e-8f; // W/(m2 K4)
@@ -45,6 +44,7 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
     const float *fuel = pass->state->burn->fuel;
     float ambient = plan->settings.ambient_temperature, dt = pass->dt, h = pass->h;
     float slower = 1 / plan->thickening[sheet];
+
     for (; i < end; i++) {
         float T = temperature[i];
         bool calm = T == ambient && burn_rate[i] == 0 && plan->flux[i] == 0 && plan->source_conductance[i] == 0 &&
@@ -91,64 +91,50 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
     }
 }
 
-/// Whether eq 1 changes nothing at particles [first, last): all at the ambient temperature, no source and no fire
-/// there.
-static bool heat_is_calm(const HeatPass *pass, uint32_t first, uint32_t last) {
-    const HeatPlan *plan = pass->plan;
+/// Combustion, sources and losses of all particles, and the ledger of each block.
+static void heat_exchange(void *context, int begin, int end) {
+    const HeatPass *pass = context;
+    HeatPlan *plan = pass->plan;
+    const uint16_t *sheet = pass->shell->matter.sheet;
     const float *temperature = pass->heat->temperature, *burn_rate = pass->state->burn->burn_rate;
     const float *flux = plan->flux, *conductance = plan->source_conductance, *tends = plan->source_temperature;
     float ambient = plan->settings.ambient_temperature;
-    int busy = 0;
-    for (uint32_t i = first; i < last; i++)
-        busy |= (temperature[i] != ambient) | (flux[i] != 0) | (conductance[i] != 0) | (tends[i] != 0) |
-                (burn_rate[i] != 0);
-    return !busy;
-}
 
-/// Whether a live particle of [first, last) is not at the ambient temperature, or does not stay there.
-static bool heat_is_warm(const HeatPlan *plan, uint32_t first, uint32_t last) {
-    float ambient = plan->settings.ambient_temperature;
-    int warm = 0;
-    for (uint32_t i = first; i < last; i++)
-        warm |= plan->alive[i] & ((plan->star[i] != ambient) | (plan->delta[i] != 0));
-    return warm;
-}
-
-static void heat_exchange_group(const HeatPass *pass, uint32_t group, double ledger[4]) {
-    HeatPlan *plan = pass->plan;
-    const uint16_t *sheet = pass->shell->matter.sheet;
-    uint32_t first = group * HEAT_GROUP, last = heat_group_last(plan, group);
-    plan->rest.warm[group] = 0;
-    if (heat_is_calm(pass, first, last)) {
-        for (uint32_t i = first; i < last; i++) plan->star[i] = plan->settings.ambient_temperature, plan->delta[i] = 0;
-        return;
-    }
-    for (uint32_t i = first, run; i < last; i = run) {
-        for (run = i + 1; run < last && sheet[run] == sheet[i];) run++;
-        heat_exchange_run(pass, i, run, ledger);
-    }
-    plan->rest.warm[group] = heat_is_warm(plan, first, last);
-}
-
-static void heat_exchange(void *context, int begin, int end) {
-    const HeatPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
-    HeatPlan *plan = pass->plan;
     for (int block = begin; block < end; block++) {
         double *ledger = plan->partial[block];
         ledger[0] = ledger[1] = ledger[2] = 0;
-        for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++)
-            heat_exchange_group(pass, g, ledger);
+        for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
+            uint32_t first = g * HEAT_GROUP, last = heat_group_last(plan, g);
+
+            // eq 1 changes nothing where all is at the ambient temperature, without a source and fire
+            int busy = 0, warm = 0;
+            for (uint32_t i = first; i < last; i++)
+                busy |= (temperature[i] != ambient) | (flux[i] != 0) | (conductance[i] != 0) | (tends[i] != 0) |
+                        (burn_rate[i] != 0);
+            for (uint32_t i = first; i < last && !busy; i++) {
+                plan->star[i] = ambient;
+                plan->delta[i] = 0;
+            }
+
+            // elsewhere, sheet by sheet; then whether a live particle is or gets warm
+            for (uint32_t i = first, run; i < last && busy; i = run) {
+                for (run = i + 1; run < last && sheet[run] == sheet[i];) run++;
+                heat_exchange_run(pass, i, run, ledger);
+            }
+            for (uint32_t i = first; busy && i < last; i++)
+                warm |= plan->alive[i] & ((plan->star[i] != ambient) | (plan->delta[i] != 0));
+            plan->rest.warm[g] = warm != 0;
+        }
     }
 }
 
 /// Copies the new temperatures where they may have changed.
 static void heat_take_over(void *context, int begin, int end) {
     const HeatPass *pass = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const HeatPlan *plan = pass->plan;
     float *restrict temperature = pass->heat->temperature, *restrict peak = pass->heat->temperature_peak;
     const float *restrict next = plan->next;
+
     for (uint32_t g = heat_group_first(begin); g < heat_group_end(plan, end - 1); g++) {
         if (!plan->rest.awake[pass->turn][g]) continue;
         for (uint32_t i = g * HEAT_GROUP; i < heat_group_last(plan, g); i++) {

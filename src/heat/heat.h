@@ -27,9 +27,11 @@ typedef struct SourceList {
 /// empty, a texture waits for source_settle.
 SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source,
                           SingeError *error);
+
 /// Evaluates a waiting texture once the shell exists; it stays waiting until source_settled.
 SingeResult source_settle(Memory *memory, const Shell *shell, Source *source, SingeError *error);
 void source_settled(Memory *memory, Source *source);
+
 /// Reverts source_settle.
 void source_unsettle(Memory *memory, const Shell *shell, Source *source);
 void source_free(Memory *memory, const Shell *shell, Source *source);
@@ -48,6 +50,7 @@ typedef struct HeatSettings {
 
 /// Operators and scratch of the stage, built once.
 typedef struct HeatPlan HeatPlan;
+
 /// Fails when out of memory (*error is not filled then), if a sheet needs a front thickening above 1e6, and if its
 /// conductances do not fit floats.
 SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSettings *settings, HeatPlan **plan,

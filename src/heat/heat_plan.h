@@ -10,6 +10,7 @@
 /// Consecutive particles that rest together (rest.c). Divides POOL_BLOCK.
 enum { HEAT_GROUP = 64 };
 _Static_assert(POOL_BLOCK % HEAT_GROUP == 0, "a block of a sum is whole groups");
+
 /// Max number of groups listed as near a group.
 enum { HEAT_NEAR = 48 };
 
@@ -112,35 +113,43 @@ void heat_plan_follow(HeatPlan *plan, const Shell *shell, const StateInput *stat
 /// F. Sides opposite to obtuse angles have negative ones. False, and zeros, if the cell cannot be cut into two
 /// triangles (weights.c).
 bool heat_cell_linear(const Float3 corners[4], double weights[6]);
+
 /// The same with no negative diagonal, and no negative side once the linear weight `across` of the cell on its other
 /// side (0 at a border) is added.
 void heat_cell_weights(const Float3 corners[4], const double across[4], double weights[6]);
 
 /// Fills plan->conductance and plan->measure (operator.c).
 void heat_operator(HeatPlan *plan, const Shell *shell);
+
 /// The same for one cell's sides and diagonals, and for a vertex, next to a new tear; not for the umbrella.
 void heat_operator_torn_cell(HeatPlan *plan, const Shell *shell, uint32_t cell);
 void heat_operator_torn_vertex(HeatPlan *plan, const Shell *shell, uint32_t vertex);
+
 /// Whether a tear may change the cell's weights of springs that are not torn.
 bool heat_operator_may_change(const Shell *shell, uint32_t cell);
 
 /// Builds the matrix's pattern, all springs alive (matrix.c).
 SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shell);
+
 /// Rebuilds it for a shell that has torn; `length`, [particles], is scratch.
 void heat_matrix_rebuild(HeatPlan *plan, const Shell *shell, uint32_t *length);
+
 /// Rewrites a row whose springs were changed by tears; `list` is scratch for its springs. False if the row has no room
 /// for all.
 bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list);
 void heat_matrix_free(Memory *memory, HeatPlan *plan);
+
 /// Updates the matrix for what ablation removed since the last call, and for the time step.
 void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate, float dt);
 
 /// Lists which groups conduct with which (rest.c).
 SingeResult heat_rest_create(Memory *memory, HeatPlan *plan);
+
 /// Updates the lists of all groups, or of one; `seen`, [groups], is scratch.
 void heat_rest_rebuild(HeatPlan *plan, uint32_t *seen);
 void heat_rest_update(HeatPlan *plan, uint32_t group, uint32_t *seen);
 void heat_rest_free(Memory *memory, HeatPlan *plan);
+
 /// Whether the group or one near it is in `set`.
 bool heat_rest_reaches(const HeatRest *rest, const uint8_t *set, uint32_t group);
 
@@ -156,6 +165,7 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
 double heat_bound(HeatPass *pass);
 
 enum { HEAT_SEED = 0x68656174 };
+
 /// Stochastic rounding of x to a float above or below, correct in the mean.
 static inline float heat_round(double x, uint32_t hash) {
     float near = (float)x;
@@ -171,17 +181,20 @@ static inline float heat_round(double x, uint32_t hash) {
 /// Calls run over [0, blocks) through the pool and adds up column c of plan->partial in order.
 void heat_blocks(HeatPass *pass, SingeTaskFn *run);
 double heat_sum(const HeatPlan *plan, int column);
+
 /// The particles of a block.
 static inline uint32_t heat_block_end(const HeatPlan *plan, int block) {
     uint32_t end = (uint32_t)(block + 1) * POOL_BLOCK;
     return end < plan->particles ? end : plan->particles;
 }
+
 /// The groups of a block are [heat_group_first, heat_group_end).
 static inline uint32_t heat_group_first(int block) { return (uint32_t)block * (POOL_BLOCK / HEAT_GROUP); }
 static inline uint32_t heat_group_end(const HeatPlan *plan, int block) {
     uint32_t end = heat_group_first(block + 1);
     return end < plan->rest.groups ? end : plan->rest.groups;
 }
+
 /// The particles of a group are [group * HEAT_GROUP, heat_group_last).
 static inline uint32_t heat_group_last(const HeatPlan *plan, uint32_t group) {
     uint32_t last = (group + 1) * HEAT_GROUP;

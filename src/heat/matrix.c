@@ -2,7 +2,6 @@
 // entries of a removed spring become 0, and the springs themselves need not be stored.
 #include <string.h>
 
-#include "common/assertion.h"
 #include "heat/heat_plan.h"
 
 /// Counts the entries of every row in `length`, or fills them in if `fill` is set. If tears have given a vertex more
@@ -28,44 +27,31 @@ static void matrix_scatter(HeatPlan *plan, const Shell *shell, uint32_t *length,
         }
 }
 
-/// Reserves room for the springs of a cell that conduct nothing until a tear changes their weights.
-static void matrix_reserve_cell(const HeatPlan *plan, const Shell *shell, uint32_t cell, uint32_t *length) {
-    SINGE_ASSERT(cell < shell->cell_count);
-    const CellSprings *springs = &shell->cell_springs[cell];
-    const float *blue = plan->conductance + plan->spring_first[SINGE_BLUE];
-    const float *yellow = plan->conductance + plan->spring_first[SINGE_YELLOW];
-    if (!heat_operator_may_change(shell, cell)) return;
-    for (int k = 0; k < 4; k++)
-        length[shell->cells[cell][k]] += (blue[springs->blue[k]] == 0) + (blue[springs->blue[(k + 3) & 3]] == 0) +
-                                         (yellow[springs->yellow[k & 1]] == 0);
-}
-
-/// Reserves room for tears: a second copy of an edge at every vertex, and all springs that a spare vertex may get.
+/// Reserves room for tears: a second copy of an edge at every vertex, all springs that a spare vertex may get, and the
+/// springs of a cell that conduct nothing until a tear changes their weights.
 static void matrix_reserve(const HeatPlan *plan, const Shell *shell, uint32_t *length) {
     enum { SPARE = 16 };
+    const float *blue = plan->conductance + plan->spring_first[SINGE_BLUE];
+    const float *yellow = plan->conductance + plan->spring_first[SINGE_YELLOW];
+
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const Sheet *sheet = &shell->sheets[s];
+        if (sheet->spare_count == 0) continue;
         uint32_t ordinary = sheet->vertex_count - sheet->spare_count;
-        for (uint32_t v = 0; v < sheet->vertex_count && sheet->spare_count; v++) {
+        for (uint32_t v = 0; v < sheet->vertex_count; v++) {
             uint32_t *room = &length[sheet->vertex_first + v];
             if (v < ordinary) ++*room;
             else *room = SPARE;
         }
-        bool surface = sheet->material.heat_operator == SINGE_HEAT_SURFACE;
-        for (uint32_t c = 0; c < sheet->cell_count && sheet->spare_count && surface; c++)
-            matrix_reserve_cell(plan, shell, sheet->cell_first + c, length);
+        if (sheet->material.heat_operator != SINGE_HEAT_SURFACE) continue;
+        for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
+            const CellSprings *springs = &shell->cell_springs[c];
+            if (!heat_operator_may_change(shell, c)) continue;
+            for (int k = 0; k < 4; k++)
+                length[shell->cells[c][k]] += (blue[springs->blue[k]] == 0) + (blue[springs->blue[(k + 3) & 3]] == 0) +
+                                              (yellow[springs->yellow[k & 1]] == 0);
+        }
     }
-}
-
-/// Lays out the slices, each as wide as its longest row.
-static void matrix_lay_out(HeatMatrix *matrix, uint32_t rows, const uint32_t *length) {
-    for (uint32_t slice = 0; slice < matrix->slices; slice++) {
-        uint32_t widest = 0;
-        for (uint32_t i = slice * HEAT_ROWS; i < rows && i < (slice + 1) * HEAT_ROWS; i++)
-            widest = length[i] > widest ? length[i] : widest;
-        matrix->first[slice + 1] = matrix->first[slice] + HEAT_ROWS * widest;
-    }
-    matrix->entries = matrix->first[matrix->slices];
 }
 
 /// Gives every entry its row as column; rows past the end get the last row.
@@ -86,26 +72,25 @@ static void matrix_invert(HeatPlan *plan, uint32_t row) {
     matrix->inverse[row] = diagonal > 0 && plan->alive[row] ? 1 / diagonal : 0;
 }
 
-/// The number of a row's entries in a column: more than one if several springs join the same two particles.
-static uint32_t matrix_count(const HeatMatrix *matrix, uint32_t row, uint32_t column) {
-    uint32_t count = 0;
-    for (uint32_t k = 0; k < heat_row_width(matrix, row); k++)
-        count += matrix->column[heat_entry(matrix, row, k)] == column;
-    return count;
-}
-
 /// Lists the springs that share both ends with another one, in order, or only counts them.
 static uint32_t matrix_twins(const HeatPlan *plan, const Shell *shell, HeatTwin *twins) {
+    const HeatMatrix *matrix = &plan->matrix;
     uint32_t count = 0;
+
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         for (uint32_t k = 0; k < shell->springs[c].count; k++) {
             const uint32_t *ends = shell->springs[c].ends[k];
             uint32_t spring = plan->spring_first[c] + k;
-            uint32_t own = plan->conductance[spring] != 0;
-            if (ends[0] == ends[1] || matrix_count(&plan->matrix, ends[0], ends[1]) == own) continue;
+
+            // a row has several entries in a column if several springs join the same two particles
+            uint32_t own = plan->conductance[spring] != 0, entries = 0;
+            for (uint32_t j = 0; j < heat_row_width(matrix, ends[0]); j++)
+                entries += matrix->column[heat_entry(matrix, ends[0], j)] == ends[1];
+            if (ends[0] == ends[1] || entries == own) continue;
             if (twins) twins[count] = (HeatTwin){spring, plan->conductance[spring]};
             count++;
         }
+
     return count;
 }
 
@@ -120,15 +105,24 @@ SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shel
     uint32_t n = plan->particles, *length = NULL;
     matrix->slices = n / HEAT_ROWS + (n % HEAT_ROWS > 0);
 
-    // count the entries of each row, then lay out the slices and fill them
+    // count the entries of each row; a slice is as wide as its longest row
     bool ok = NEW(memory, matrix->first, (size_t)matrix->slices + 1) && NEW(memory, matrix->inverse, n) &&
               NEW(memory, length, n);
     if (ok) {
         matrix_scatter(plan, shell, length, false);
         matrix_reserve(plan, shell, length);
-        matrix_lay_out(matrix, n, length);
+        for (uint32_t slice = 0; slice < matrix->slices; slice++) {
+            uint32_t widest = 0;
+            for (uint32_t i = slice * HEAT_ROWS; i < n && i < (slice + 1) * HEAT_ROWS; i++)
+                widest = length[i] > widest ? length[i] : widest;
+            matrix->first[slice + 1] = matrix->first[slice] + HEAT_ROWS * widest;
+        }
+
+        matrix->entries = matrix->first[matrix->slices];
         ok = NEW(memory, matrix->column, matrix->entries) && NEW(memory, matrix->value, matrix->entries);
     }
+
+    // fill in the entries
     if (ok) {
         memset(length, 0, n * sizeof *length);
         matrix_fill_up(matrix, n);
@@ -141,6 +135,7 @@ SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shel
     matrix_revive(plan, shell);
     matrix->twin_count = matrix->twin_capacity = matrix_twins(plan, shell, NULL);
     if (!NEW(memory, matrix->twins, matrix->twin_count)) return SINGE_ERROR_MEMORY;
+
     matrix_twins(plan, shell, matrix->twins);
     return SINGE_OK;
 }
@@ -182,6 +177,7 @@ static uint32_t matrix_springs(const HeatPlan *plan, const Shell *shell, uint32_
             if (springs->green[k] != SHELL_NONE)
                 count = matrix_insert(list, count, first[SINGE_GREEN] + springs->green[k]);
         }
+
         return count;
     }
 
@@ -195,33 +191,34 @@ static uint32_t matrix_springs(const HeatPlan *plan, const Shell *shell, uint32_
         count = matrix_insert(list, count, first[SINGE_BLUE] + springs->blue[i]);
         count = matrix_insert(list, count, first[SINGE_BLUE] + springs->blue[(i + 3) & 3]);
     }
-    return count;
-}
 
-static const uint32_t *matrix_ends(const HeatPlan *plan, const Shell *shell, uint32_t spring) {
-    int colour = 0;
-    while (spring >= plan->spring_first[colour + 1]) colour++;
-    return shell->springs[colour].ends[spring - plan->spring_first[colour]];
+    return count;
 }
 
 bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list) {
     HeatMatrix *matrix = &plan->matrix;
     uint32_t count = matrix_springs(plan, shell, row, list), width = heat_row_width(matrix, row), filled = 0;
+
     for (uint32_t k = 0; k < count; k++) {
         float conductance = plan->conductance[list[k]];
         if (conductance == 0) continue;
         if (filled == width) return false;
-        const uint32_t *ends = matrix_ends(plan, shell, list[k]);
+        int colour = 0;
+        while (list[k] >= plan->spring_first[colour + 1]) colour++;
+        const uint32_t *ends = shell->springs[colour].ends[list[k] - plan->spring_first[colour]];
         uint32_t other = ends[ends[0] == row], entry = heat_entry(matrix, row, filled++);
         bool conducts = plan->spring_alive[list[k]] && plan->alive[row] && plan->alive[other];
         matrix->column[entry] = other;
         matrix->value[entry] = conducts ? conductance : 0;
     }
+
+    // the rest of the row is padding
     for (; filled < width; filled++) {
         uint32_t entry = heat_entry(matrix, row, filled);
         matrix->column[entry] = row;
         matrix->value[entry] = 0;
     }
+
     matrix_invert(plan, row);
     return true;
 }
@@ -235,30 +232,8 @@ void heat_matrix_free(Memory *memory, HeatPlan *plan) {
     FREE(memory, matrix->twins, matrix->twin_capacity);
 }
 
-/// The spring among the twins, or NULL.
-static const HeatTwin *matrix_twin(const HeatMatrix *matrix, uint32_t spring) {
-    uint32_t low = 0, high = matrix->twin_count;
-    while (low < high) {
-        uint32_t mid = low + (high - low) / 2;
-        if (matrix->twins[mid].spring < spring) low = mid + 1;
-        else high = mid;
-    }
-    return low < matrix->twin_count && matrix->twins[low].spring == spring ? &matrix->twins[low] : NULL;
-}
-
-/// Clears an entry of a spring that is gone. Twins are distinguished by their values; equal ones need not be.
-static void matrix_cut(HeatMatrix *matrix, uint32_t row, uint32_t column, uint32_t spring) {
-    const HeatTwin *twin = matrix_twin(matrix, spring);
-    for (uint32_t k = 0; k < heat_row_width(matrix, row); k++) {
-        uint32_t entry = heat_entry(matrix, row, k);
-        if (matrix->column[entry] != column || (twin && matrix->value[entry] != twin->conductance)) continue;
-        matrix->value[entry] = 0;
-        return;
-    }
-}
-
 /// Clears all remaining entries of a dead particle.
-static void matrix_cut_dead(HeatPlan *plan, uint32_t row) {
+static void matrix_lose_particle(HeatPlan *plan, uint32_t row) {
     HeatMatrix *matrix = &plan->matrix;
     for (uint32_t k = 0; k < heat_row_width(matrix, row); k++) {
         uint32_t entry = heat_entry(matrix, row, k), other = matrix->column[entry];
@@ -269,13 +244,37 @@ static void matrix_cut_dead(HeatPlan *plan, uint32_t row) {
         }
         matrix_invert(plan, other);
     }
+
     matrix_invert(plan, row);
 }
 
+/// Clears the two entries of a spring that is gone. Twins are distinguished by their values; equal ones need not be.
 static void matrix_lose_spring(HeatPlan *plan, const uint32_t ends[2], uint32_t spring) {
+    HeatMatrix *matrix = &plan->matrix;
     plan->spring_alive[spring] = 0;
     if (ends[0] == ends[1]) return; // a spare one
-    for (int end = 0; end < 2; end++) matrix_cut(&plan->matrix, ends[end], ends[!end], spring);
+
+    // the spring among the twins, if it is one
+    uint32_t low = 0, high = matrix->twin_count;
+    while (low < high) {
+        uint32_t mid = low + (high - low) / 2;
+        if (matrix->twins[mid].spring < spring) low = mid + 1;
+        else high = mid;
+    }
+
+    bool is_twin = low < matrix->twin_count && matrix->twins[low].spring == spring;
+
+    for (int end = 0; end < 2; end++) {
+        uint32_t row = ends[end], width = heat_row_width(matrix, row);
+        for (uint32_t k = 0; k < width; k++) {
+            uint32_t entry = heat_entry(matrix, row, k);
+            if (matrix->column[entry] != ends[!end]) continue;
+            if (is_twin && matrix->value[entry] != matrix->twins[low].conductance) continue;
+            matrix->value[entry] = 0;
+            break;
+        }
+    }
+
     for (int end = 0; end < 2; end++) matrix_invert(plan, ends[end]);
 }
 
@@ -289,6 +288,7 @@ static bool matrix_lost_any(const uint8_t *known, const uint8_t *flags, uint32_t
 void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate, float dt) {
     enum { LOOK = 1024 }; // compared at once, as a loss is rare
     uint32_t count = plan->particles, last;
+
     if (plan->matrix.dt != dt) { // the first step, or a step of another length
         plan->matrix.dt = dt;
         for (uint32_t i = 0; i < count; i++) matrix_invert(plan, i);
@@ -301,7 +301,7 @@ void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *a
         for (uint32_t i = first; i < last; i++) {
             if (!plan->alive[i] || ablate->particle_flags[i] & SINGE_ALIVE) continue;
             plan->alive[i] = 0;
-            matrix_cut_dead(plan, i);
+            matrix_lose_particle(plan, i);
         }
     }
 

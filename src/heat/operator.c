@@ -38,21 +38,17 @@
 #include "common/assertion.h"
 #include "heat/heat_plan.h"
 
-static double operator_triangle(Float3 a, Float3 b, Float3 c, Float3 normal) {
-    return float3_dot(float3_cross(float3_sub(b, a), float3_sub(c, a)), normal);
-}
-
 /// Diffusivity of a spring with F and r, m2/s.
 static float operator_spring(const HeatPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    SINGE_ASSERT(spring < shell->springs[colour].count);
     const uint32_t *ends = shell->springs[colour].ends[spring];
     const Matter *matter = &shell->matter;
     uint32_t sheet = matter->sheet[ends[0]];
     bool surface = shell->sheets[sheet].material.heat_operator == SINGE_HEAT_SURFACE;
     float end[2];
+
     for (int k = 0; k < 2; k++)
         end[k] = field_at(matter->diffusivity, ends[k]) * (surface ? field_at(matter->capacity_ratio, ends[k]) : 1);
+
     return 0.5f * (end[0] + end[1]) * plan->thickening[sheet];
 }
 
@@ -72,7 +68,6 @@ static double operator_less(double weight, double leak, float diffusivity) {
 /// The exponent of a cell's width, m, as a power of two: division by this power changes no digits, and products of the
 /// quotients fit a float, however large or small the cell is.
 static int operator_scale(const Shell *shell, uint32_t cell) {
-    SINGE_ASSERT(cell < shell->cell_count);
     const float *first = shell->rest_position[shell->cells[cell][0]];
     float widest = 0;
     for (int k = 1; k < 4; k++)
@@ -91,7 +86,6 @@ static void operator_corners(const Shell *shell, uint32_t cell, int scale, Float
 
 /// Linear elements' weights of a cell; false if they do not suffice.
 static bool operator_linear(const Shell *shell, uint32_t cell, Float3 x[4], double w[6]) {
-    SINGE_ASSERT(cell < shell->cell_count);
     operator_corners(shell, cell, operator_scale(shell, cell), x);
     bool good = heat_cell_linear(x, w);
     for (int k = 0; k < 6; k++) good &= w[k] >= 0;
@@ -100,11 +94,12 @@ static bool operator_linear(const Shell *shell, uint32_t cell, Float3 x[4], doub
 
 /// Weights of a cell's sides and diagonals.
 static void operator_weights(const Shell *shell, uint32_t cell, double w[6]) {
-    SINGE_ASSERT(cell < shell->cell_count);
     const CellSprings *springs = &shell->cell_springs[cell];
     double across[4] = {0}, there[6];
     Float3 x[4], y[4];
+
     if (operator_linear(shell, cell, x, w)) return;
+
     for (int k = 0; k < 4; k++) {
         uint32_t other = shell_neighbour(shell, cell, k);
         if (other == SHELL_NONE) continue;
@@ -112,37 +107,20 @@ static void operator_weights(const Shell *shell, uint32_t cell, double w[6]) {
         for (int j = 0; j < 4; j++)
             if (shell->cell_springs[other].blue[j] == springs->blue[k]) across[k] += there[j];
     }
+
     heat_cell_weights(x, across, w);
 }
 
 /// A cell's contribution to the spring along a side, from the side's weight.
 static float operator_side(const HeatPlan *plan, const Shell *shell, uint32_t cell, int side, double weight) {
-    SINGE_ASSERT(cell < shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     uint32_t centre = shell_centre(shell, cell);
     double lean = (double)operator_rate(plan, shell, centre, centre) / 32, area = (double)shell->matter.area[centre];
     float diffusivity = operator_spring(plan, shell, SINGE_BLUE, shell->cell_springs[cell].blue[side]);
     return (float)operator_less(weight, lean * area, diffusivity);
 }
 
-/// Two-point flux through the side that two cells share: its weight, without diffusivity and F.
-static double operator_flux(const Shell *shell, uint32_t cell, int side, uint32_t other) {
-    SINGE_ASSERT(cell < shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
-    Float3 x[4], y[4];
-    int scale = operator_scale(shell, cell);
-    operator_corners(shell, cell, scale, x);
-    operator_corners(shell, other, scale, y);
-    Float3 centroid = float3_scale(float3_add(float3_add(x[0], x[1]), float3_add(x[2], x[3])), 0.25f);
-    Float3 d = float3_sub(float3_scale(float3_add(float3_add(y[0], y[1]), float3_add(y[2], y[3])), 0.25f), centroid);
-    float square = float3_dot(d, d);
-    float face = float3_length(float3_cross(float3_sub(x[(side + 1) % 4], x[side]), d));
-    return square > 0 ? (double)(face / square) : 0;
-}
-
 /// The geometry of one cell of the surface operator, without diffusivity and F.
 static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
-    SINGE_ASSERT(cell < shell->cell_count);
     const CellSprings *springs = &shell->cell_springs[cell];
     const uint32_t *first = plan->spring_first;
     float *conductance = plan->conductance;
@@ -156,23 +134,33 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
         conductance[first[SINGE_BLUE] + springs->blue[k]] += operator_side(plan, shell, cell, k, w[k]);
     for (int k = 0; k < 2; k++) conductance[first[SINGE_YELLOW] + springs->yellow[k]] = (float)w[4 + k];
 
-    // fluxes to the neighbours' centres
     for (int k = 0; k < 4; k++) {
         uint32_t other = shell_neighbour(shell, cell, k);
         if (other == SHELL_NONE || springs->green[k] == SHELL_NONE) continue;
+
+        // two-point flux through the side that two cells share
+        Float3 x[4], y[4];
+        int scale = operator_scale(shell, cell);
+        operator_corners(shell, cell, scale, x);
+        operator_corners(shell, other, scale, y);
+        Float3 centroid = float3_scale(float3_add(float3_add(x[0], x[1]), float3_add(x[2], x[3])), 0.25f);
+        Float3 d = float3_scale(float3_add(float3_add(y[0], y[1]), float3_add(y[2], y[3])), 0.25f);
+        d = float3_sub(d, centroid);
+        float square = float3_dot(d, d);
+        float face = float3_length(float3_cross(float3_sub(x[(k + 1) % 4], x[k]), d));
+        double flux = square > 0 ? (double)(face / square) : 0;
+
         uint32_t beyond = shell_centre(shell, other);
         double both = (double)operator_rate(plan, shell, centre, beyond) / 32;
         double leak = both * (area + (double)shell->matter.area[beyond]);
         float diffusivity = operator_spring(plan, shell, SINGE_GREEN, springs->green[k]);
-        conductance[first[SINGE_GREEN] + springs->green[k]] =
-            (float)operator_less(operator_flux(shell, cell, k, other), leak, diffusivity);
+        conductance[first[SINGE_GREEN] + springs->green[k]] = (float)operator_less(flux, leak, diffusivity);
     }
 }
 
 /// The red springs of a cell, which do not depend on the diffusivity. A corner's share is half of the two triangles at
 /// it that meet in the cell's centre, or a quarter of the cell if a corner is concave.
 static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell) {
-    SINGE_ASSERT(cell < shell->cell_count);
     uint32_t centre = shell_centre(shell, cell);
     float area = shell->matter.area[centre];
     Float3 x[4];
@@ -180,10 +168,16 @@ static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell)
     operator_corners(shell, cell, scale, x);
     Float3 normal = float3_unit(float3_cross(float3_sub(x[2], x[0]), float3_sub(x[3], x[1])));
     Float3 centroid = float3_scale(float3_add(float3_add(x[0], x[1]), float3_add(x[2], x[3])), 0.25f);
+
+    // twice the triangle at each side, negative if it faces away
     double triangle[4];
     bool even = false;
-    for (int k = 0; k < 4; k++)
-        triangle[k] = ldexp(operator_triangle(x[k], x[(k + 1) % 4], centroid, normal) / 2, 2 * scale);
+    for (int k = 0; k < 4; k++) {
+        Float3 cross = float3_cross(float3_sub(x[(k + 1) % 4], x[k]), float3_sub(centroid, x[k]));
+        double twice = float3_dot(cross, normal);
+        triangle[k] = ldexp(twice / 2, 2 * scale);
+    }
+
     for (int k = 0; k < 4; k++) even |= !(triangle[k] + triangle[(k + 3) % 4] > area / 16);
     for (int k = 0; k < 4; k++) {
         double share = even ? area / 4 : (triangle[k] + triangle[(k + 3) % 4]) / 2;
@@ -192,55 +186,48 @@ static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell)
     }
 }
 
-static void operator_umbrella(HeatPlan *plan, const Shell *shell, uint32_t sheet) {
-    SINGE_ASSERT(sheet < shell->sheet_count);
-    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
-        const SpringSet *set = &shell->springs[c];
-        for (uint32_t k = 0; k < set->count; k++) {
-            uint32_t a = set->ends[k][0], b = set->ends[k][1];
-            if (shell->matter.sheet[a] != sheet) continue;
-            plan->measure[a] += set->rest[k] / 2;
-            plan->measure[b] += set->rest[k] / 2;
-            plan->conductance[plan->spring_first[c] + k] = set->rest[k] > 0 ? 1 / set->rest[k] : 0;
-        }
-    }
-}
-
 /// A weight times alpha F. The sum of two cells' weights is 0 or more, unless mixing reduced one of them.
 static float operator_conductance(const HeatPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring,
                                   float weight) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     SINGE_ASSERT(spring < shell->springs[colour].count);
     return weight > 0 ? weight * operator_spring(plan, shell, colour, spring) : 0;
 }
 
-/// Multiplies by alpha F all weights but exchange rates.
-static void operator_diffusivity(HeatPlan *plan, const Shell *shell) {
-    for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
-        for (uint32_t k = 0; k < shell->springs[c].count; k++) {
-            uint32_t sheet = shell->matter.sheet[shell->springs[c].ends[k][0]];
-            if (c == SINGE_RED && shell->sheets[sheet].material.heat_operator == SINGE_HEAT_SURFACE) continue;
-            float *conductance = &plan->conductance[plan->spring_first[c] + k];
-            *conductance = operator_conductance(plan, shell, (SingeColour)c, k, *conductance);
-        }
-}
-
 void heat_operator(HeatPlan *plan, const Shell *shell) {
+    const Matter *matter = &shell->matter;
+
+    // surface: capacities, weights of the cells, exchange between the layers
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const Sheet *sheet = &shell->sheets[s];
-        if (sheet->material.heat_operator == SINGE_HEAT_UMBRELLA) {
-            operator_umbrella(plan, shell, s);
-            continue;
-        }
+        if (sheet->material.heat_operator == SINGE_HEAT_UMBRELLA) continue;
         for (uint32_t i = 0; i < shell->particle_count; i++)
-            if (shell->matter.sheet[i] == s)
-                plan->measure[i] = shell->matter.area[i] * field_at(shell->matter.capacity_ratio, i);
+            if (matter->sheet[i] == s) plan->measure[i] = matter->area[i] * field_at(matter->capacity_ratio, i);
         for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
             operator_cell(plan, shell, c);
             operator_exchange(plan, shell, c);
         }
     }
-    operator_diffusivity(plan, shell);
+
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
+        const SpringSet *set = &shell->springs[c];
+        for (uint32_t k = 0; k < set->count; k++) {
+            uint32_t a = set->ends[k][0], b = set->ends[k][1];
+            float *conductance = &plan->conductance[plan->spring_first[c] + k];
+
+            // umbrella: half the lengths of the springs at a particle, and their inverses
+            bool surface = shell->sheets[matter->sheet[a]].material.heat_operator == SINGE_HEAT_SURFACE;
+            if (!surface) {
+                plan->measure[a] += set->rest[k] / 2;
+                plan->measure[b] += set->rest[k] / 2;
+                *conductance = set->rest[k] > 0 ? 1 / set->rest[k] : 0;
+            }
+
+            // times alpha F, all but exchange rates
+            if (c != SINGE_RED || !surface)
+                *conductance = operator_conductance(plan, shell, (SingeColour)c, k, *conductance);
+            SINGE_ASSERT(!(*conductance < 0)); // the matrix is an M-matrix on any mesh
+        }
+    }
 }
 
 void heat_operator_torn_vertex(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
@@ -262,13 +249,13 @@ void heat_operator_torn_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) 
             if (shell->cell_springs[other].blue[k] == spring) sum += operator_side(plan, shell, other, k, there[k]);
         plan->conductance[first[SINGE_BLUE] + spring] = operator_conductance(plan, shell, SINGE_BLUE, spring, sum);
     }
+
     for (int k = 0; k < 2; k++)
         plan->conductance[first[SINGE_YELLOW] + springs->yellow[k]] =
             operator_conductance(plan, shell, SINGE_YELLOW, springs->yellow[k], (float)w[4 + k]);
 }
 
 bool heat_operator_may_change(const Shell *shell, uint32_t cell) {
-    SINGE_ASSERT(cell < shell->cell_count);
     double w[6];
     Float3 x[4];
     return !operator_linear(shell, cell, x, w);

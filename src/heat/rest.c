@@ -18,6 +18,7 @@ static void list_near(HeatPlan *plan, uint32_t group, uint32_t *seen) {
         if (count < HEAT_NEAR) plan->rest.near[group][count] = other;
         count++;
     }
+
     plan->rest.near_count[group] = (uint8_t)count;
 }
 
@@ -37,6 +38,7 @@ SingeResult heat_rest_create(Memory *memory, HeatPlan *plan) {
     bool ok = NEW(memory, rest->near, groups) && NEW(memory, rest->near_count, groups) &&
               NEW(memory, rest->warm, groups) && NEW(memory, rest->awake[0], groups) &&
               NEW(memory, rest->awake[1], groups) && NEW(memory, seen, groups);
+
     if (ok) heat_rest_rebuild(plan, seen);
     FREE(memory, seen, groups);
     return ok ? SINGE_OK : SINGE_ERROR_MEMORY;

@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "common/assertion.h"
 #include "common/def_table.h"
 #include "heat/heat_plan.h"
 
@@ -204,7 +203,6 @@ static inline float source_falloff(float distance, float radius, float falloff) 
 
 static void source_ball_task(void *context, int begin, int end) {
     const SourceJob *job = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = job->pass->plan;
     const SingeSourceDef *def = &job->source->def;
     float reach = def->radius + def->falloff, square = reach * reach;
@@ -223,23 +221,8 @@ static void source_ball(HeatPass *pass, const Source *source, const SingeView *v
     pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_ball_task, &job);
 }
 
-/// The key-framed strength at a time: linear, held beyond the ends, 1 without keys.
-static float source_strength(const Source *source, double time) {
-    uint32_t count = source->strength_count;
-    const SingeValueKey *keys = source->strength;
-    if (count == 0) return 1;
-    if (time <= keys[0].time) return keys[0].value;
-    for (uint32_t k = 1; k < count; k++)
-        if (time < keys[k].time) {
-            double part = (time - keys[k - 1].time) / ((double)keys[k].time - keys[k - 1].time);
-            return (float)(keys[k - 1].value + part * ((double)keys[k].value - keys[k - 1].value));
-        }
-    return keys[count - 1].value;
-}
-
 static void source_texture_task(void *context, int begin, int end) {
     const SourceJob *job = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = job->pass->plan;
     for (int i = begin; i < end; i++)
         if (plan->alive[i]) plan->flux[i] += job->strength * job->source->texture[i];
@@ -247,8 +230,19 @@ static void source_texture_task(void *context, int begin, int end) {
 
 static void source_texture(HeatPass *pass, const Source *source, const SingeView *view) {
     (void)view;
-    SourceJob job = {
-        .pass = pass, .source = source, .strength = source->def.flux * source_strength(source, pass->state->time)};
+    uint32_t count = source->strength_count, k = 0;
+    const SingeValueKey *keys = source->strength;
+    double time = pass->state->time;
+
+    // the strength at this time: linear between keys, held beyond the ends, 1 without keys
+    while (k < count && time >= keys[k].time) k++;
+    float strength = count == 0 ? 1 : keys[k < count ? k : count - 1].value;
+    if (k > 0 && k < count) {
+        double part = (time - keys[k - 1].time) / ((double)keys[k].time - keys[k - 1].time);
+        strength = (float)(keys[k - 1].value + part * ((double)keys[k].value - keys[k - 1].value));
+    }
+
+    SourceJob job = {.pass = pass, .source = source, .strength = source->def.flux * strength};
     if (source->texture && job.strength != 0)
         pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_texture_task, &job);
 }
@@ -260,45 +254,40 @@ static void source_callback(HeatPass *pass, const Source *source, const SingeVie
                              plan->source_temperature);
 }
 
-/// The sheet's normal at a particle, not normalised.
-static Float3 source_normal(const HeatPass *pass, uint32_t i) {
-    const Shell *shell = pass->shell;
-    const float(*x)[4] = (const float(*)[4])pass->state->dynamics->position;
-    Float3 sum = {0, 0, 0};
-    bool corner = shell_is_corner(shell, i);
-    uint32_t first = corner ? shell->fan_first[i] : 0, last = corner ? shell->fan_first[i + 1] : 1;
-    for (uint32_t k = first; k < last; k++) {
-        uint32_t cell = corner ? shell->fan[k] : i - shell->vertex_count;
-        if (!(pass->state->ablate->cell_flags[cell] & SINGE_ALIVE)) continue;
-        const uint32_t *at = shell->cells[cell];
-        Float3 a = float3_sub(float3_load(x[at[2]]), float3_load(x[at[0]])),
-               b = float3_sub(float3_load(x[at[3]]), float3_load(x[at[1]]));
-        sum = float3_add(sum, float3_cross(a, b));
-    }
-    return sum;
-}
 
 /// A particle is in contact within contact_distance if its side of the sheet faces the collider. The particle behind it
 /// is a thickness farther; it counts if both sides do. A sheet that stands on its edge is in contact with both sides.
 static void source_contact_task(void *context, int begin, int end) {
     const SourceJob *job = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = job->pass->plan;
+    const Shell *shell = job->pass->shell;
     const SingeColliderDef *def = &job->collider->def;
-    const Field thickness = job->pass->shell->matter.thickness;
+    const Field thickness = shell->matter.thickness;
+    const float(*x)[4] = (const float(*)[4])job->pass->state->dynamics->position;
+
     for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
         if (!plan->alive[i]) continue;
-        Float3 normal, local = pose_unapply(&job->pose, float3_load(job->pass->state->dynamics->position[i]));
+        Float3 normal, local = pose_unapply(&job->pose, float3_load(x[i]));
 
         // distance at which a layer is in contact
         float behind = def->contact_distance + (def->sides == SINGE_SIDES_BOTH ? field_at(thickness, i) : 0);
         float limit = nextafterf(behind, INFINITY), distance = collider_distance(job->collider, local, limit, &normal);
         if (!(distance <= behind)) continue;
 
-        // of two layers only the one that faces the collider
+        // of two layers only the one that faces the collider, by the sum of the normals of the cells at the particle
         if (def->sides != SINGE_SIDES_BOTH || distance > def->contact_distance) {
-            float outward = shell_is_corner(job->pass->shell, i) ? -1 : 1;
-            Float3 sheet = source_normal(job->pass, i), away = quat_rotate(job->pose.rotation, normal);
+            bool corner = shell_is_corner(shell, i);
+            uint32_t first = corner ? shell->fan_first[i] : 0, last = corner ? shell->fan_first[i + 1] : 1;
+            Float3 sheet = {0, 0, 0}, away = quat_rotate(job->pose.rotation, normal);
+            for (uint32_t k = first; k < last; k++) {
+                uint32_t cell = corner ? shell->fan[k] : i - shell->vertex_count;
+                if (!(job->pass->state->ablate->cell_flags[cell] & SINGE_ALIVE)) continue;
+                const uint32_t *at = shell->cells[cell];
+                Float3 a = float3_sub(float3_load(x[at[2]]), float3_load(x[at[0]]));
+                Float3 b = float3_sub(float3_load(x[at[3]]), float3_load(x[at[1]]));
+                sheet = float3_add(sheet, float3_cross(a, b));
+            }
+            float outward = corner ? -1 : 1;
             bool faces = outward * float3_dot(sheet, away) <= SOURCE_LEVEL * float3_length(sheet);
             if (def->sides != SINGE_SIDES_BOTH ? !faces : faces) continue;
         }
@@ -306,17 +295,11 @@ static void source_contact_task(void *context, int begin, int end) {
     }
 }
 
-static void source_contact(HeatPass *pass, const Collider *collider) {
-    SourceJob job = {.pass = pass, .collider = collider, .pose = path_pose(&collider->path, pass->state->time)};
-    pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_contact_task, &job);
-}
-
 /// Gas that is hotter than a particle heats it. The particle then loses nothing to still air, so the convective part of
 /// the losses is given back, but not beyond heating it to the gas's temperature. A particle hotter than the gas only
 /// has the losses to still air.
 static void source_gas_task(void *context, int begin, int end) {
     const SourceJob *job = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = job->pass->plan;
     const GasState *gas = job->pass->state->gas;
     const float *temperature = job->pass->heat->temperature, ambient = plan->settings.ambient_temperature;
@@ -337,25 +320,26 @@ static void source_gas_task(void *context, int begin, int end) {
         }
 }
 
-static void source_gas(HeatPass *pass) {
-    SourceJob job = {.pass = pass};
-    pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_gas_task, &job);
-}
-
 void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *colliders, const SingeView *view) {
     HeatPlan *plan = pass->plan;
     double time = pass->state->time;
     memset(plan->flux, 0, plan->particles * sizeof *plan->flux);
     memset(plan->source_conductance, 0, plan->particles * sizeof *plan->source_conductance);
     memset(plan->source_temperature, 0, plan->particles * sizeof *plan->source_temperature);
+
     for (uint32_t k = 0; sources && k < sources->count; k++) {
         const Source *source = &sources->items[k];
         if (source->generation && time >= source->def.start && time < source->def.end)
             source_kinds[source->def.kind].add(pass, source, view);
     }
+
+    // colliders that conduct, and the gas
     for (uint32_t k = 0; colliders && k < colliders->count; k++) {
         const Collider *collider = &colliders->items[k];
-        if (collider->generation && collider->def.conductance > 0) source_contact(pass, collider);
+        if (collider->generation == 0 || !(collider->def.conductance > 0)) continue;
+        SourceJob job = {.pass = pass, .collider = collider, .pose = path_pose(&collider->path, time)};
+        pool_for(pass->pool, (int)plan->particles, POOL_BLOCK, source_contact_task, &job);
     }
-    if (pass->state->gas->warm) source_gas(pass);
+    if (pass->state->gas->warm)
+        pool_for(pass->pool, (int)plan->particles, POOL_BLOCK, source_gas_task, &(SourceJob){.pass = pass});
 }

@@ -24,21 +24,25 @@
 
 static const float THICKEN_CELLS = 0.75f;
 
-/// Rate of burning at a rise above ignition, 1/s.
-static float front_rate(const FrontMatter *front, float rise) {
-    const float gas_constant = 8.314462618f; // J/(mol K)
-    if (!(front->pre_exponential > 0)) return front->mass_rate * rise;
-    float temperature = front->ignition_temperature + rise;
-    return front->pre_exponential * real_expf(-front->activation_energy / (gas_constant * temperature));
-}
-
 float heat_thickening_for(float thickening, const FrontMatter *front, float ambient_temperature, float cell_size) {
     if (thickening > 0) return thickening > 1 ? thickening : 1;
-    float rise = front->heating - (front->ignition_temperature - ambient_temperature);
+
     // without burning or diffusion there is no front
+    float rise = front->heating - (front->ignition_temperature - ambient_temperature);
     if (!(rise > 0) || !(front->diffusivity > 0)) return 1;
-    float rate = front_rate(front, fminf(rise, front->rate_ceiling));
+
+    rise = fminf(rise, front->rate_ceiling);
+
+    // mu theta, 1/s
+    float rate = front->mass_rate * rise;
+    if (front->pre_exponential > 0) {
+        const float gas_constant = 8.314462618f; // J/(mol K)
+        float temperature = front->ignition_temperature + rise;
+        rate = front->pre_exponential * real_expf(-front->activation_energy / (gas_constant * temperature));
+    }
+
     if (!(rate > 0)) return 1;
+
     float needed = cell_size / (THICKEN_CELLS * sqrtf(front->diffusivity / rate));
     return needed > 1 ? needed : 1;
 }

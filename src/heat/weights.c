@@ -57,8 +57,11 @@ static void weights_linear(const Float3 x[4], int split, double share, double w[
     w[SIDES + split] += half * (weights_cot(x[b], x[c], x[a]) + weights_cot(x[d], x[a], x[c]));
 }
 
-/// Whether both triangles of a split have an area, and none is inverted (arrow-shaped cells, three collinear corners).
-static void weights_good(const Float3 x[4], bool good[2]) {
+bool heat_cell_linear(const Float3 x[4], double w[6]) {
+    double each[2][SPRINGS] = {{0}, {0}}, largest = 0;
+    for (int k = 0; k < SPRINGS; k++) w[k] = 0;
+
+    // a split is good if both triangles have an area, and none is inverted (arrow-shaped cells, three collinear corners)
     Float3 normal = float3_unit(float3_cross(float3_sub(x[2], x[0]), float3_sub(x[3], x[1])));
     double min[2], total = 0;
     for (int split = 0; split < 2; split++) {
@@ -68,20 +71,18 @@ static void weights_good(const Float3 x[4], bool good[2]) {
         min[split] = fmin(one, two);
         total = fmax(total, one + two);
     }
-    for (int split = 0; split < 2; split++) good[split] = min[split] > 1e-3 * total;
-}
 
-bool heat_cell_linear(const Float3 x[4], double w[6]) {
-    bool good[2];
-    double each[2][SPRINGS] = {{0}, {0}}, largest = 0;
-    for (int k = 0; k < SPRINGS; k++) w[k] = 0;
-    weights_good(x, good);
+    bool good[2] = {min[0] > 1e-3 * total, min[1] > 1e-3 * total};
     if (!good[0] && !good[1]) return false;
+
+    // of two good splits the one whose diagonal has the larger weight
     for (int split = 0; split < 2; split++) {
         if (good[split]) weights_linear(x, split, 1, each[split]);
         for (int k = 0; k < SIDES; k++) largest = fmax(largest, fabs(each[split][k]));
     }
+
     double one = each[0][SIDES], two = each[1][SIDES + 1];
+
     // the rounding error of a right angle needs no entry in the matrix
     bool square = good[0] && good[1] && fmax(fabs(one), fabs(two)) <= 6e-5 * largest;
     if (good[0] && good[1] && !square) good[one < two ? 0 : 1] = false;
@@ -104,19 +105,27 @@ static double weights_plane(const Float3 x[4], WeightSpring springs[SPRINGS]) {
     double p[SPRINGS][3], normal[3], across[3];
     for (int k = 0; k < SPRINGS; k++) {
         Float3 a = x[k % 4], b = k < SIDES ? x[(k + 1) % 4] : x[k - SIDES + 2];
-        p[k][0] = (double)b.x - (double)a.x, p[k][1] = (double)b.y - (double)a.y, p[k][2] = (double)b.z - (double)a.z;
+        p[k][0] = (double)b.x - (double)a.x;
+        p[k][1] = (double)b.y - (double)a.y;
+        p[k][2] = (double)b.z - (double)a.z;
     }
+
     const double *d = p[SIDES], *e = p[SIDES + 1];
     for (int k = 0; k < 3; k++) normal[k] = d[(k + 1) % 3] * e[(k + 2) % 3] - d[(k + 2) % 3] * e[(k + 1) % 3];
     double area = sqrt(weights_dot(normal, normal)), length = sqrt(weights_dot(d, d));
     if (!(area > 0)) return 0;
+
     for (int k = 0; k < 3; k++)
         across[k] = (normal[(k + 1) % 3] * d[(k + 2) % 3] - normal[(k + 2) % 3] * d[(k + 1) % 3]) / (area * length);
     for (int k = 0; k < SPRINGS; k++) {
         double u = weights_dot(p[k], d) / length, v = weights_dot(p[k], across), square = u * u + v * v;
         springs[k] = (WeightSpring){square, {0, 0}};
-        if (square > 0) springs[k].z[0] = (u * u - v * v) / square, springs[k].z[1] = 2 * u * v / square;
+        if (square > 0) {
+            springs[k].z[0] = (u * u - v * v) / square;
+            springs[k].z[1] = 2 * u * v / square;
+        }
     }
+
     return area;
 }
 
@@ -129,24 +138,26 @@ static void weights_mean(const WeightSpring s[SPRINGS], const double lambda[2], 
         k[e] = s[e].square > 0 ? real_exp(lambda[0] * s[e].z[0] + lambda[1] * s[e].z[1]) : 0;
         total += k[e];
     }
+
     for (int e = 0; e < SPRINGS; e++) {
         k[e] /= total;
-        mean[0] += k[e] * s[e].z[0], mean[1] += k[e] * s[e].z[1];
-        slope[0] += k[e] * s[e].z[0] * s[e].z[0], slope[1] += k[e] * s[e].z[0] * s[e].z[1];
+        mean[0] += k[e] * s[e].z[0];
+        mean[1] += k[e] * s[e].z[1];
+        slope[0] += k[e] * s[e].z[0] * s[e].z[0];
+        slope[1] += k[e] * s[e].z[0] * s[e].z[1];
         slope[2] += k[e] * s[e].z[1] * s[e].z[1];
     }
-    slope[0] -= mean[0] * mean[0], slope[1] -= mean[0] * mean[1], slope[2] -= mean[1] * mean[1];
-}
 
-/// The upper of two halves of a, of 26 bits each, whose products are exact (Veltkamp).
-static double weights_high(double a) {
-    double b = a * 134217729; // 2^27 + 1
-    return b - (b - a);
+    slope[0] -= mean[0] * mean[0];
+    slope[1] -= mean[0] * mean[1];
+    slope[2] -= mean[1] * mean[1];
 }
 
 /// The rounding error of a a, with `square` its rounded value (Dekker).
 static double weights_rest(double a, double square) {
-    double high = weights_high(a), low = a - high;
+    // two halves of a, of 26 bits each, whose products are exact (Veltkamp)
+    double b = a * 134217729; // 2^27 + 1
+    double high = b - (b - a), low = a - high;
     return ((high * high - square) + 2 * high * low) + low * low;
 }
 
@@ -179,31 +190,29 @@ static double weights_entropy(const WeightSpring s[SPRINGS], double k[SPRINGS]) 
         moved = weights_length(lambda[0] - before[0], lambda[1] - before[1]);
         weights_mean(s, lambda, k, mean, slope);
     }
+
     return sqrt(fmax(1 - mean[0] * mean[0] - mean[1] * mean[1], DBL_EPSILON));
 }
 
-/// c2 of (1), or the closest to it.
-static void weights_positive(const Float3 x[4], double w[SPRINGS]) {
-    WeightSpring springs[SPRINGS] = {{0}};
-    double k[SPRINGS], twice = weights_plane(x, springs);
-    for (int e = 0; e < SPRINGS; e++) w[e] = 0;
-    if (!(twice > 0)) return;
-    double even = weights_entropy(springs, k);
-    for (int e = 0; e < SPRINGS; e++)
-        if (springs[e].square > 0) w[e] = twice * k[e] / (even * springs[e].square);
-}
-
 void heat_cell_weights(const Float3 x[4], const double across[4], double w[6]) {
-    double positive[SPRINGS], mix = 0;
+    double positive[SPRINGS] = {0}, k[SPRINGS], mix = 0;
     bool linear = heat_cell_linear(x, w);
-    weights_positive(x, positive);
-    for (int k = 0; k < SPRINGS && linear; k++) {
-        double min = k < SIDES ? fmin(-across[k], 0) : 0;
-        if (w[k] < min) mix = fmax(mix, (min - w[k]) / (positive[k] - w[k]));
+
+    // c2 of (1), or the closest to it
+    WeightSpring springs[SPRINGS] = {{0}};
+    double twice = weights_plane(x, springs), even = twice > 0 ? weights_entropy(springs, k) : 1;
+    for (int e = 0; e < SPRINGS; e++)
+        if (twice > 0 && springs[e].square > 0) positive[e] = twice * k[e] / (even * springs[e].square);
+
+    // the smallest s with which nothing is negative
+    for (int e = 0; e < SPRINGS && linear; e++) {
+        double min = e < SIDES ? fmin(-across[e], 0) : 0;
+        if (w[e] < min) mix = fmax(mix, (min - w[e]) / (positive[e] - w[e]));
     }
+
     mix = linear ? fmin(mix, 1) : 1;
-    for (int k = 0; k < SPRINGS; k++) {
-        w[k] += mix * (positive[k] - w[k]);
-        if (k >= SIDES) w[k] = fmax(w[k], 0);
+    for (int e = 0; e < SPRINGS; e++) {
+        w[e] += mix * (positive[e] - w[e]);
+        if (e >= SIDES) w[e] = fmax(w[e], 0);
     }
 }

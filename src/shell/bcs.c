@@ -8,9 +8,7 @@
 // Springs continue in others, their mates, which strand.c follows: a green spring in the one across the opposite side
 // of the cell, a red one at the centre in that of the opposite corner, and each one at a vertex in the opposite one in
 // the fan of cells, where there is one.
-#include "common/assertion.h"
 #include "shell/family.h"
-#include "shell/fibre.h"
 #include "shell/half_edge.h"
 #include "shell/matter.h"
 #include "shell/rest_lengths.h"
@@ -21,41 +19,40 @@
 
 enum { SHEET_LIMIT = UINT16_MAX };
 
-static SingeResult shell_count(const SheetSource *sources, uint32_t source_count, Shell *shell, SingeError *error) {
+static SingeResult shell_no_memory(const Shell *shell, SingeError *error) {
+    return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells", shell->cell_count);
+}
+
+/// Counts what the sheets have, and allocates.
+static SingeResult shell_alloc(Memory *memory, const SheetSource *sources, uint32_t source_count, Shell *shell,
+                               SingeError *error) {
     uint64_t vertices = 0, cells = 0, numbers = 0;
+    bool seams = false;
+
     for (uint32_t i = 0; i < source_count; i++) {
         vertices += sources[i].sheet.vertex_count + sources[i].sheet.spare_count;
         cells += sources[i].sheet.cell_count;
         numbers += sources[i].sheet.source_count;
+        seams |= sources[i].corner_uv != NULL;
     }
+
     // indices of particles and of the 4 N_c red springs are also counted in int; four times a particle's number, and
     // the springs' slots in lanes, in uint32_t
     if (source_count > SHEET_LIMIT || vertices + cells > INT32_MAX / 4 || numbers > INT32_MAX || cells > INT32_MAX / 16)
         return error_set(error, SINGE_ERROR_LIMIT, "sheet", -1,
                          "%u sheets with %llu vertices and %llu cells are too many", source_count,
                          (unsigned long long)vertices, (unsigned long long)cells);
-    *shell = (Shell){.vertex_count = (uint32_t)vertices, .cell_count = (uint32_t)cells, .sheet_count = source_count};
-    shell->particle_count = shell->vertex_count + shell->cell_count;
+    uint32_t v = (uint32_t)vertices, c = (uint32_t)cells, p = v + c;
+    *shell = (Shell){.vertex_count = v, .cell_count = c, .particle_count = p, .sheet_count = source_count};
+    if ((seams && (!NEW(memory, shell->corner_uv, c) || !NEW(memory, shell->corner_source, c))) ||
+        !NEW(memory, shell->cells, c) || !NEW(memory, shell->cell_springs, c) ||
+        !NEW(memory, shell->rest_position, p) || !NEW(memory, shell->uv, p) ||
+        !NEW(memory, shell->sheets, source_count) || !NEW(memory, shell->matter.sheet, p) ||
+        !NEW(memory, shell->cell_order, c) || !NEW(memory, shell->source_vertex, v) ||
+        !NEW(memory, shell->fan_first, (size_t)v + 1) || !NEW(memory, shell->fan, (size_t)4 * c))
+        return shell_no_memory(shell, error);
+
     return SINGE_OK;
-}
-
-static bool any_seams(const SheetSource *sources, uint32_t source_count) {
-    for (uint32_t i = 0; i < source_count; i++)
-        if (sources[i].corner_uv) return true;
-    return false;
-}
-
-static bool shell_alloc(Memory *memory, bool seams, Shell *shell) {
-    if (seams &&
-        (!NEW(memory, shell->corner_uv, shell->cell_count) || !NEW(memory, shell->corner_source, shell->cell_count)))
-        return false;
-    return NEW(memory, shell->cells, shell->cell_count) && NEW(memory, shell->cell_springs, shell->cell_count) &&
-           NEW(memory, shell->rest_position, shell->particle_count) && NEW(memory, shell->uv, shell->particle_count) &&
-           NEW(memory, shell->sheets, shell->sheet_count) && NEW(memory, shell->matter.sheet, shell->particle_count) &&
-           NEW(memory, shell->cell_order, shell->cell_count) &&
-           NEW(memory, shell->source_vertex, shell->vertex_count) &&
-           NEW(memory, shell->fan_first, (size_t)shell->vertex_count + 1) &&
-           NEW(memory, shell->fan, (size_t)4 * shell->cell_count);
 }
 
 void shell_free(Memory *memory, Shell *shell) {
@@ -78,59 +75,61 @@ void shell_free(Memory *memory, Shell *shell) {
     *shell = (Shell){0};
 }
 
-/// Copies one sheet to its ranges, which begin at sheet->vertex_first, cell_first and source_first. Spares have the
-/// position of its first vertex.
-static void bcs_lay_sheet(Shell *shell, uint32_t index, const SheetSource *source) {
-    const Sheet *sheet = &shell->sheets[index];
-    uint32_t centre = shell_centre(shell, sheet->cell_first), count = source->sheet.vertex_count;
-
-    // vertices, and spares
-    for (uint32_t i = 0; i < sheet->vertex_count; i++) {
-        uint32_t p = sheet->vertex_first + i, v = i < count ? i : 0;
-        for (int k = 0; k < 3; k++) shell->rest_position[p][k] = source->position[v][k];
-        for (int k = 0; k < 2; k++) shell->uv[p][k] = source->uv[v][k];
-        shell->matter.sheet[p] = (uint16_t)index;
-        int32_t from = i >= count ? -1 : source->source_vertex ? source->source_vertex[v] : (int32_t)v;
-        shell->source_vertex[p] = from < 0 ? -1 : (int32_t)sheet->source_first + from;
-    }
-
-    // cells: corners, their uv and sources
-    for (uint32_t c = 0; c < sheet->cell_count; c++) {
-        float *uv = shell->uv[centre + c];
-        for (int i = 0; i < 4; i++) {
-            uint32_t corner = sheet->vertex_first + source->cells[c][i];
-            shell->cells[sheet->cell_first + c][i] = corner;
-            const float *corner_uv = sheet_corner_uv(source, c, i);
-            for (int k = 0; k < 2; k++) uv[k] += corner_uv[k] / 4;
-            if (!shell->corner_uv) continue;
-            memcpy(shell->corner_uv[sheet->cell_first + c][i], corner_uv, 2 * sizeof *corner_uv);
-            int32_t from = source->corner_source ? source->corner_source[c][i] : -1;
-            shell->corner_source[sheet->cell_first + c][i] =
-                from < 0 ? shell->source_vertex[corner] : (int32_t)sheet->source_first + from;
-        }
-        shell->matter.sheet[centre + c] = (uint16_t)index;
-    }
-}
-
+/// Copies the sheets one after another, and lists the cells around every vertex. Spares have the position of their
+/// sheet's first vertex.
 static void bcs_lay_sheets(Shell *shell, const SheetSource *sources) {
-    uint32_t vertex = 0, cell = 0, source = 0;
-    for (uint32_t i = 0; i < shell->sheet_count; i++) {
-        memcpy(&shell->sheets[i], &sources[i].sheet, sizeof shell->sheets[i]);
-        shell->sheets[i].vertex_first = vertex;
-        shell->sheets[i].cell_first = cell;
-        shell->sheets[i].source_first = source;
-        shell->sheets[i].vertex_count += shell->sheets[i].spare_count;
-        shell->spare_count += shell->sheets[i].spare_count;
-        source += sources[i].sheet.source_count;
-        bcs_lay_sheet(shell, i, &sources[i]);
-        vertex += shell->sheets[i].vertex_count;
-        cell += sources[i].sheet.cell_count;
+    uint32_t vertex = 0, cell = 0, input = 0, *first = shell->fan_first;
+    for (uint32_t s = 0; s < shell->sheet_count; s++) {
+        const SheetSource *source = &sources[s];
+        Sheet *sheet = &shell->sheets[s];
+        uint32_t count = source->sheet.vertex_count, centre = shell_centre(shell, cell);
+        memcpy(sheet, &source->sheet, sizeof *sheet);
+        sheet->vertex_first = vertex;
+        sheet->cell_first = cell;
+        sheet->source_first = input;
+        sheet->vertex_count += sheet->spare_count;
+        shell->spare_count += sheet->spare_count;
+
+        // vertices, and spares
+        for (uint32_t i = 0; i < sheet->vertex_count; i++, vertex++) {
+            uint32_t v = i < count ? i : 0;
+            for (int k = 0; k < 3; k++) shell->rest_position[vertex][k] = source->position[v][k];
+            for (int k = 0; k < 2; k++) shell->uv[vertex][k] = source->uv[v][k];
+            shell->matter.sheet[vertex] = (uint16_t)s;
+            int32_t from = i >= count ? -1 : source->source_vertex ? source->source_vertex[v] : (int32_t)v;
+            shell->source_vertex[vertex] = from < 0 ? -1 : (int32_t)input + from;
+        }
+
+        // cells: corners, their uv and sources
+        for (uint32_t c = 0; c < sheet->cell_count; c++, cell++) {
+            float *uv = shell->uv[centre + c];
+            shell->matter.sheet[centre + c] = (uint16_t)s;
+            for (int i = 0; i < 4; i++) {
+                uint32_t corner = shell->cells[cell][i] = sheet->vertex_first + source->cells[c][i];
+                const float *corner_uv = sheet_corner_uv(source, c, i);
+                for (int k = 0; k < 2; k++) uv[k] += corner_uv[k] / 4;
+                if (!shell->corner_uv) continue;
+                memcpy(shell->corner_uv[cell][i], corner_uv, 2 * sizeof *corner_uv);
+                int32_t from = source->corner_source ? source->corner_source[c][i] : -1;
+                shell->corner_source[cell][i] = from < 0 ? shell->source_vertex[corner] : (int32_t)input + from;
+            }
+        }
+
+        input += sheet->source_count;
     }
+
+    // fans by counting; filling moves each start to the next one, so they are moved back
+    for (uint32_t c = 0; c < shell->cell_count; c++)
+        for (int i = 0; i < 4; i++) first[shell->cells[c][i] + 1]++;
+    for (uint32_t v = 0; v < shell->vertex_count; v++) first[v + 1] += first[v];
+    for (uint32_t c = 0; c < shell->cell_count; c++)
+        for (int i = 0; i < 4; i++) shell->fan[first[shell->cells[c][i]]++] = c;
+    memmove(first + 1, first, shell->vertex_count * sizeof *first);
+    first[0] = 0;
 }
 
 /// Ends of springs in the order of their numbers in cell_springs, before the strands are known.
 static void list_ends(const HalfEdges *mesh, int colour, LooseSprings *loose) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     const Shell *shell = mesh->shell;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         const uint32_t *corner = shell->cells[c], centre = shell_centre(shell, c);
@@ -147,7 +146,8 @@ static void list_ends(const HalfEdges *mesh, int colour, LooseSprings *loose) {
                 ends[1] = a < b ? b : a;
             } else if (colour == SINGE_GREEN && springs->green[i] != SHELL_NONE && c < half_edge_across(mesh, c, i)) {
                 ends = loose->ends[springs->green[i]];
-                ends[0] = centre, ends[1] = shell_centre(shell, half_edge_across(mesh, c, i));
+                ends[0] = centre;
+                ends[1] = shell_centre(shell, half_edge_across(mesh, c, i));
             } else if (colour == SINGE_YELLOW && i < 2) {
                 ends = loose->ends[springs->yellow[i]];
                 ends[0] = a;
@@ -157,36 +157,24 @@ static void list_ends(const HalfEdges *mesh, int colour, LooseSprings *loose) {
     }
 }
 
-/// The end, at the half-edge's vertex, of the spring of `colour` that belongs to the half-edge: the edge itself, the
-/// red spring to the corner or the diagonal from it.
-static uint32_t end_at_vertex(const Shell *shell, int colour, uint32_t half) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    const CellSprings *springs = &shell->cell_springs[half / 4];
-    uint32_t i = half & 3, corner = shell->cells[half / 4][i], next = shell->cells[half / 4][(i + 1) & 3];
-    if (colour == SINGE_RED) return 2 * springs->red[i] + 1;
-    if (colour == SINGE_YELLOW) return 2 * springs->yellow[i & 1] + (i >> 1);
-    return 2 * springs->blue[i] + (corner > next);
-}
-
-/// Mates the ends around a vertex, in turning order. At an inner vertex, if the number n of spokes is even, k pairs
-/// with k + n/2; if n is odd, none pair. At the boundary k pairs with k + 2, skipping the spoke between them.
-static void join_fan(LooseSprings *loose, const uint32_t *ends, uint32_t count, bool inside) {
-    if (inside && count % 2 == 0)
-        for (uint32_t k = 0; k < count / 2; k++) strand_join(loose, ends[k], ends[k + count / 2]);
-    for (uint32_t k = 0; !inside && k + 2 < count; k++)
-        if (loose->mate[ends[k]] == SHELL_NONE) strand_join(loose, ends[k], ends[k + 2]);
-}
-
+/// Mates the ends at each vertex, its spokes in turning order. At an inner vertex, if the number n of spokes is even, k
+/// pairs with k + n/2; if n is odd, none pair. At the boundary k pairs with k + 2, skipping the spoke between them.
 static void join_at_vertices(const HalfEdges *mesh, int colour, LooseSprings *loose, uint32_t *ends) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     const Shell *shell = mesh->shell;
     for (uint32_t v = 0; v < shell->vertex_count; v++) {
         uint32_t half = mesh->fan_start[v], last = half, count = 0;
+
+        // of each half-edge that leaves v, the edge itself, the red spring to the corner or the diagonal from it
         for (uint32_t k = 0; k < mesh->fan_size[v]; k++) {
-            ends[count++] = end_at_vertex(shell, colour, half);
+            const CellSprings *springs = &shell->cell_springs[half / 4];
+            uint32_t i = half & 3, next = shell->cells[half / 4][(i + 1) & 3];
+            ends[count++] = colour == SINGE_RED      ? 2 * springs->red[i] + 1
+                            : colour == SINGE_YELLOW ? 2 * springs->yellow[i & 1] + (i >> 1)
+                                                     : 2 * springs->blue[i] + (v > next);
             last = half;
             half = half_edge_turn(mesh, half);
         }
+
         bool inside = half_edge_is_inside(mesh, v);
         if (colour == SINGE_BLUE && count && !inside) {
             // the other boundary edge precedes the corner in the last cell
@@ -194,28 +182,47 @@ static void join_at_vertices(const HalfEdges *mesh, int colour, LooseSprings *lo
             uint32_t other = shell->cells[before / 4][before & 3];
             ends[count++] = 2 * shell->cell_springs[before / 4].blue[before & 3] + (v > other);
         }
-        join_fan(loose, ends, count, inside);
+
+        for (uint32_t k = 0; inside && count % 2 == 0 && k < count / 2; k++)
+            strand_join(loose, ends[k], ends[k + count / 2]);
+        for (uint32_t k = 0; !inside && k + 2 < count; k++)
+            if (loose->mate[ends[k]] == SHELL_NONE) strand_join(loose, ends[k], ends[k + 2]);
     }
 }
 
-static void join_in_cells(const HalfEdges *mesh, int colour, LooseSprings *loose) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    const Shell *shell = mesh->shell;
-    for (uint32_t c = 0; c < shell->cell_count; c++) {
-        const CellSprings *springs = &shell->cell_springs[c];
-        for (int i = 0; i < 2; i++) {
-            if (colour == SINGE_RED) strand_join(loose, 2 * springs->red[i], 2 * springs->red[i + 2]);
-            else if (springs->green[i] != SHELL_NONE && springs->green[i + 2] != SHELL_NONE)
-                strand_join(loose, 2 * springs->green[i] + (c > half_edge_across(mesh, c, i)),
-                            2 * springs->green[i + 2] + (c > half_edge_across(mesh, c, i + 2)));
+/// The springs of one colour: their ends, pairs that continue each other, strands.
+static SingeResult spring_colour(Memory *memory, const HalfEdges *mesh, Shell *shell, int colour, uint32_t count,
+                                 SingeError *error) {
+    LooseSprings loose = {.count = count};
+    uint32_t *number = NULL, *ends = NULL;
+    SingeResult result = SINGE_OK;
+
+    if (!NEW(memory, loose.ends, count) || !NEW(memory, loose.mate, (size_t)2 * count) || !NEW(memory, number, count) ||
+        !NEW(memory, ends, (size_t)mesh->fan_longest + 1))
+        result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for %u springs", count);
+
+    if (!result) {
+        for (uint32_t e = 0; e < 2 * count; e++) loose.mate[e] = SHELL_NONE;
+        list_ends(mesh, colour, &loose);
+        if (colour != SINGE_GREEN) join_at_vertices(mesh, colour, &loose, ends);
+
+        // across the centre of each cell
+        for (uint32_t c = 0; c < shell->cell_count; c++) {
+            const CellSprings *springs = &shell->cell_springs[c];
+            const uint32_t *red = springs->red, *green = springs->green;
+            for (int i = 0; i < 2; i++) {
+                if (colour == SINGE_RED) strand_join(&loose, 2 * red[i], 2 * red[i + 2]);
+                if (colour == SINGE_GREEN && green[i] != SHELL_NONE && green[i + 2] != SHELL_NONE)
+                    strand_join(&loose, 2 * green[i] + (c > half_edge_across(mesh, c, i)),
+                                2 * green[i + 2] + (c > half_edge_across(mesh, c, i + 2)));
+            }
         }
-    }
-}
 
-/// Replaces loose numbers by the numbers along strands.
-static void renumber_cells(Shell *shell, int colour, const uint32_t *number) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        result = strand_build(memory, shell->particle_count, &loose, &shell->springs[colour], number, error);
+    }
+
+    // numbers along strands replace the loose ones
+    for (uint32_t c = 0; !result && c < shell->cell_count; c++) {
         CellSprings *springs = &shell->cell_springs[c];
         uint32_t *slot = colour == SINGE_RED     ? springs->red
                          : colour == SINGE_GREEN ? springs->green
@@ -224,29 +231,6 @@ static void renumber_cells(Shell *shell, int colour, const uint32_t *number) {
         for (int i = 0; i < (colour == SINGE_YELLOW ? 2 : 4); i++)
             if (slot[i] != SHELL_NONE) slot[i] = number[slot[i]];
     }
-}
-
-static SingeResult spring_colour(Memory *memory, const HalfEdges *mesh, Shell *shell, int colour, uint32_t count,
-                                 SingeError *error) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    LooseSprings loose = {.count = count};
-    uint32_t *number = NULL, *ends = NULL;
-    SingeResult result;
-
-    // ends of the springs, pairs that continue each other, strands
-    if (NEW(memory, loose.ends, count) && NEW(memory, loose.mate, (size_t)2 * count) && NEW(memory, number, count) &&
-        NEW(memory, ends, (size_t)mesh->fan_longest + 1)) {
-        for (uint32_t e = 0; e < 2 * count; e++) loose.mate[e] = SHELL_NONE;
-        list_ends(mesh, colour, &loose);
-        if (colour != SINGE_GREEN) join_at_vertices(mesh, colour, &loose, ends);
-        if (colour == SINGE_GREEN || colour == SINGE_RED) join_in_cells(mesh, colour, &loose);
-        result = strand_build(memory, shell->particle_count, &loose, &shell->springs[colour], number, error);
-        if (result == SINGE_OK) renumber_cells(shell, colour, number);
-    } else {
-        result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for %u springs", count);
-    }
-
-    // scratch
     FREE(memory, loose.ends, count);
     FREE(memory, loose.mate, (size_t)2 * count);
     FREE(memory, number, count);
@@ -254,45 +238,16 @@ static SingeResult spring_colour(Memory *memory, const HalfEdges *mesh, Shell *s
     return result;
 }
 
-static SingeResult build_springs(Memory *memory, Shell *shell, SingeError *error) {
-    HalfEdges mesh;
-    TRY(half_edge_build(memory, shell, &mesh, error));
-    for (uint32_t c = 0; c < shell->cell_count; c++) {
-        for (uint32_t i = 0; i < 4; i++) shell->cell_springs[c].red[i] = 4 * c + i;
-        for (uint32_t i = 0; i < 2; i++) shell->cell_springs[c].yellow[i] = 2 * c + i;
-    }
-    uint32_t counts[SINGE_COLOUR_COUNT] = {[SINGE_RED] = 4 * shell->cell_count,
-                                           [SINGE_GREEN] = mesh.shared_count,
-                                           [SINGE_BLUE] = mesh.edge_count,
-                                           [SINGE_YELLOW] = 2 * shell->cell_count};
-    SingeResult result = SINGE_OK;
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT && result == SINGE_OK; colour++)
-        result = spring_colour(memory, &mesh, shell, colour, counts[colour], error);
-    half_edge_free(memory, &mesh);
-    return result;
-}
-
-/// The cells around every vertex, by counting.
-static void list_fans(Shell *shell) {
-    uint32_t *first = shell->fan_first;
-    for (uint32_t c = 0; c < shell->cell_count; c++)
-        for (int i = 0; i < 4; i++) first[shell->cells[c][i] + 1]++;
-    for (uint32_t v = 0; v < shell->vertex_count; v++) first[v + 1] += first[v];
-    for (uint32_t c = 0; c < shell->cell_count; c++)
-        for (int i = 0; i < 4; i++) shell->fan[first[shell->cells[c][i]]++] = c;
-    // filling has moved each start to the next one
-    memmove(first + 1, first, shell->vertex_count * sizeof *first);
-    first[0] = 0;
-}
-
 /// Families of cells without a common corner.
 static bool colour_cells(Memory *memory, Shell *shell) {
     uint32_t count = shell->cell_count, *family = NULL, families = 0;
     ItemNodes items = {.node_count = shell->vertex_count, .item_count = count, .nodes = count ? shell->cells[0] : NULL};
+
     if (NEW(memory, items.first, (size_t)count + 1) && NEW(memory, family, count)) {
         for (uint32_t c = 0; c <= count; c++) items.first[c] = 4 * c;
         families = family_colour(memory, &items, family);
     }
+
     shell->cell_family_count = count ? families : 0;
     bool done = families && NEW(memory, shell->cell_family_first, (size_t)shell->cell_family_count + 1);
     if (done) family_sort(count, family, shell->cell_family_count, shell->cell_family_first, shell->cell_order);
@@ -304,30 +259,40 @@ static bool colour_cells(Memory *memory, Shell *shell) {
 SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t source_count, Shell *shell,
                          SingeError *error) {
     *shell = (Shell){0};
-    TRY(shell_count(sources, source_count, shell, error));
-    SingeResult result = SINGE_OK;
 
     // cells, fans, families, matter
-    if (!shell_alloc(memory, any_seams(sources, source_count), shell) ||
-        (bcs_lay_sheets(shell, sources), list_fans(shell), !colour_cells(memory, shell)) ||
-        !matter_create(memory, shell, sources))
-        result =
-            error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells", shell->cell_count);
+    SingeResult result = shell_alloc(memory, sources, source_count, shell, error);
+    if (!result) {
+        bcs_lay_sheets(shell, sources);
+        if (!colour_cells(memory, shell) || !matter_create(memory, shell, sources))
+            result = shell_no_memory(shell, error);
+    }
 
-    // springs and their measures
-    if (result == SINGE_OK) result = build_springs(memory, shell, error);
-    if (result == SINGE_OK) {
+    // springs, colour after colour
+    HalfEdges mesh = {0};
+    if (!result) result = half_edge_build(memory, shell, &mesh, error);
+    uint32_t counts[SINGE_COLOUR_COUNT] = {[SINGE_RED] = 4 * shell->cell_count,
+                                           [SINGE_GREEN] = mesh.shared_count,
+                                           [SINGE_BLUE] = mesh.edge_count,
+                                           [SINGE_YELLOW] = 2 * shell->cell_count};
+    for (uint32_t c = 0; !result && c < shell->cell_count; c++) {
+        for (uint32_t i = 0; i < 4; i++) shell->cell_springs[c].red[i] = 4 * c + i;
+        for (uint32_t i = 0; i < 2; i++) shell->cell_springs[c].yellow[i] = 2 * c + i;
+    }
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT && !result; colour++)
+        result = spring_colour(memory, &mesh, shell, colour, counts[colour], error);
+    half_edge_free(memory, &mesh);
+
+    // their measures
+    if (!result) {
         measure_particles(shell);
         matter_weigh(shell, sources);
         result = measure_springs(shell, error);
     }
 
     // reserves of tears, directions of fibres
-    if (result == SINGE_OK && !split_reserve(memory, shell))
-        result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the edges of tears");
-    if (result == SINGE_OK && !fibre_measure(memory, shell))
-        result =
-            error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells", shell->cell_count);
-    if (result != SINGE_OK) shell_free(memory, shell);
+    if (!result && (!split_reserve(memory, shell) || !measure_fibres(memory, shell)))
+        result = shell_no_memory(shell, error);
+    if (result) shell_free(memory, shell);
     return result;
 }

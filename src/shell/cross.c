@@ -1,4 +1,3 @@
-#include "common/assertion.h"
 #include "shell/cross.h"
 
 bool cross_pierces(Float4 p, Float4 q, Float4 a, Float4 b, Float4 c) {
@@ -19,7 +18,6 @@ static void cross_nodes(const uint32_t corner[4], const float (*x)[4], Float4 or
 
 /// Number of a node, the same in all cells that have it.
 static uint32_t cross_id(const Shell *shell, uint32_t cell, int node) {
-    SINGE_ASSERT(cell < shell->cell_count);
     return node < 4 ? shell->cells[cell][node] : shell_centre(shell, cell);
 }
 
@@ -27,6 +25,7 @@ static uint32_t cross_id(const Shell *shell, uint32_t cell, int node) {
 static bool cross_edges(const Shell *shell, uint32_t a, uint32_t b, const Float4 p[5], const Float4 q[5]) {
     static const int edge[8][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}};
     static const int triangle[4][3] = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+
     for (int e = 0; e < 8; e++) {
         const int *k = edge[e];
         uint32_t first = cross_id(shell, a, k[0]), second = cross_id(shell, a, k[1]);
@@ -40,6 +39,7 @@ static bool cross_edges(const Shell *shell, uint32_t a, uint32_t b, const Float4
             if (!joined && cross_pierces(p[k[0]], p[k[1]], q[l[0]], q[l[1]], q[l[2]])) return true;
         }
     }
+
     return false;
 }
 

@@ -34,48 +34,43 @@ static SingeResult edge_fail(const Shell *shell, uint32_t half, const char *what
                      half_to(shell, half) - sheet->vertex_first, what, element);
 }
 
-/// Takes half-edges in order of their edge: one or two consecutive ones are an edge.
-static SingeResult match(const uint32_t *order, Shell *shell, HalfEdges *mesh, SingeError *error) {
-    uint32_t count = 4 * shell->cell_count;
-    for (uint32_t k = 0, size; k < count; k += size) {
-        uint32_t a = order[k], low = half_low(shell, a), high = half_high(shell, a);
-
-        // half edges between the same two vertices are consecutive
-        for (size = 1; k + size < count; size++)
-            if (half_low(shell, order[k + size]) != low || half_high(shell, order[k + size]) != high) break;
-        if (size > 2) return edge_fail(shell, order[k + 2], "has more than two cells, the third of which is", error);
-        shell->cell_springs[a / 4].blue[a & 3] = mesh->edge_count;
-
-        // shared by two cells, or a border
-        if (size == 2) {
-            uint32_t b = order[k + 1];
-            if (half_from(shell, a) == half_from(shell, b))
-                return edge_fail(shell, b, "runs in the same direction in two cells (one is flipped):", error);
-            mesh->twin[a] = b;
-            mesh->twin[b] = a;
-            CellSprings *first = &shell->cell_springs[a / 4], *second = &shell->cell_springs[b / 4];
-            second->blue[b & 3] = mesh->edge_count;
-            first->green[a & 3] = second->green[b & 3] = mesh->shared_count++;
-        } else {
-            mesh->twin[a] = SHELL_NONE;
-            shell->cell_springs[a / 4].green[a & 3] = SHELL_NONE;
-        }
-        mesh->edge_count++;
-    }
-    return SINGE_OK;
-}
-
+/// Sorts the half-edges by their two vertices, so that one or two consecutive ones are an edge, and matches these.
 static SingeResult match_edges(Memory *memory, Shell *shell, HalfEdges *mesh, SingeError *error) {
-    size_t count = (size_t)4 * shell->cell_count, slots = (size_t)shell->vertex_count + 1;
-    uint32_t *by_high = NULL, *order = NULL, *slot = NULL;
-    SingeResult result;
+    uint32_t count = 4 * shell->cell_count, slots = shell->vertex_count + 1, *by_high = NULL, *order = NULL;
+    uint32_t *slot = NULL;
+    SingeResult result = SINGE_OK;
+
     if (NEW(memory, by_high, count) && NEW(memory, order, count) && NEW(memory, slot, slots)) {
         sort_by(shell, half_high, NULL, by_high, slot);
         sort_by(shell, half_low, by_high, order, slot);
-        result = match(order, shell, mesh, error);
     } else {
         result =
             error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the edges of %u cells", shell->cell_count);
+    }
+
+    for (uint32_t k = 0, size; k < count && !result; k += size) {
+        uint32_t a = order[k], low = half_low(shell, a), high = half_high(shell, a);
+        CellSprings *first = &shell->cell_springs[a / 4];
+        for (size = 1; k + size < count; size++)
+            if (half_low(shell, order[k + size]) != low || half_high(shell, order[k + size]) != high) break;
+        first->blue[a & 3] = mesh->edge_count++;
+
+        // a border, or shared by two cells
+        if (size == 1) {
+            mesh->twin[a] = SHELL_NONE;
+            first->green[a & 3] = SHELL_NONE;
+            continue;
+        }
+
+        uint32_t b = order[k + 1];
+        CellSprings *second = &shell->cell_springs[b / 4];
+        if (size > 2) result = edge_fail(shell, order[k + 2], "has more than two cells, the third of which is", error);
+        else if (half_from(shell, a) == half_from(shell, b))
+            result = edge_fail(shell, b, "runs in the same direction in two cells (one is flipped):", error);
+        mesh->twin[a] = b;
+        mesh->twin[b] = a;
+        second->blue[b & 3] = first->blue[a & 3];
+        first->green[a & 3] = second->green[b & 3] = mesh->shared_count++;
     }
     FREE(memory, by_high, count);
     FREE(memory, order, count);
@@ -89,6 +84,7 @@ static SingeResult find_fans(const Shell *shell, HalfEdges *mesh, SingeError *er
         uint32_t v = half_from(shell, h);
         if (mesh->fan_size[v]++ == 0 || mesh->twin[h] == SHELL_NONE) mesh->fan_start[v] = h;
     }
+
     for (uint32_t v = 0; v < shell->vertex_count; v++) {
         uint32_t size = mesh->fan_size[v], reached = 0;
         if (size == 0) continue;
@@ -103,6 +99,7 @@ static SingeResult find_fans(const Shell *shell, HalfEdges *mesh, SingeError *er
             return error_set(error, SINGE_ERROR_MESH, "sheet", element,
                              "sheet '%s': the %u cells at vertex %u meet only in that point, not in one fan",
                              sheet->name, size, element);
+
         // blue, red and yellow springs must fit AblateState.degree
         if (size > UINT16_MAX / 3 - 1)
             return error_set(error, SINGE_ERROR_LIMIT, "sheet", element,
@@ -110,6 +107,7 @@ static SingeResult find_fans(const Shell *shell, HalfEdges *mesh, SingeError *er
                              UINT16_MAX / 3 - 1);
         if (size > mesh->fan_longest) mesh->fan_longest = size;
     }
+
     return SINGE_OK;
 }
 
@@ -121,6 +119,7 @@ SingeResult half_edge_build(Memory *memory, Shell *shell, HalfEdges *mesh, Singe
         return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the mesh of %u cells",
                          shell->cell_count);
     }
+
     SingeResult result = match_edges(memory, shell, mesh, error);
     if (result == SINGE_OK) result = find_fans(shell, mesh, error);
     if (result != SINGE_OK) half_edge_free(memory, mesh);

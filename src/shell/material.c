@@ -95,18 +95,6 @@ static SingeResult field_fail(const SheetSource *source, const ParamRule *rule, 
                      what);
 }
 
-static SingeResult field_attribute(const SingeSheetDef *def, const ParamRule *rule, ParamField *field,
-                                   SingeError *error) {
-    const char *name = field->follows->attribute;
-    if (!name) return field_fail(field->source, rule, "names no attribute", error);
-    for (uint32_t i = 0; i < def->attribute_count; i++)
-        if (strcmp(def->attributes[i].name, name) == 0) field->attribute = def->attributes[i].values;
-    if (!field->attribute)
-        return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s: the mesh has no attribute '%s'",
-                         field->source->sheet.name, rule->name, name);
-    return SINGE_OK;
-}
-
 static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, ParamField *field, SingeError *error) {
     const SingeField *follows = field->follows;
     if (!follows) return SINGE_OK;
@@ -118,7 +106,14 @@ static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, P
         if (follows->texture.width < 1 || follows->texture.height < 1 || !follows->texture.values)
             return field_fail(field->source, rule, "is an empty texture", error);
         return SINGE_OK;
-    case SINGE_FIELD_ATTRIBUTE: return field_attribute(def, rule, field, error);
+    case SINGE_FIELD_ATTRIBUTE:
+        if (!follows->attribute) return field_fail(field->source, rule, "names no attribute", error);
+        for (uint32_t i = 0; i < def->attribute_count; i++)
+            if (strcmp(def->attributes[i].name, follows->attribute) == 0) field->attribute = def->attributes[i].values;
+        if (!field->attribute)
+            return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s: the mesh has no attribute '%s'",
+                             field->source->sheet.name, rule->name, follows->attribute);
+        return SINGE_OK;
     case SINGE_FIELD_NOISE:
         if (!range_has(&(const FieldRange)OVER(0), follows->noise.scale))
             return field_fail(field->source, rule, "is noise whose scale is not above 0", error);
@@ -179,14 +174,6 @@ static SingeResult evaluate(const ParamField *field, const ParamRule *rule, floa
     return SINGE_OK;
 }
 
-/// Keeps a single value if all are the same to the bit.
-static void keep_values(Memory *memory, SheetSource *source, int param) {
-    size_t total = (size_t)source->sheet.vertex_count + source->sheet.cell_count;
-    float **values = &source->values[param];
-    source->value[param] = (*values)[0];
-    if (memcmp(*values, *values + 1, (total - 1) * sizeof **values) == 0) FREE(memory, *values, total);
-}
-
 /// A quantity computed from several parameters may exceed the range of float.
 static SingeResult check_matter(const SheetSource *source, SingeError *error) {
     static const struct {
@@ -230,8 +217,11 @@ SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSou
             return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for sheet '%s'", source->sheet.name);
         TRY(field_open(def, rule, &field, error));
         TRY(evaluate(&field, rule, *values, error));
-        // the rules of one parameter, one per layer, are consecutive
-        if (r + 1 == RULE_COUNT || param_rules[r + 1].param != rule->param) keep_values(memory, source, rule->param);
+        // the rules of one parameter, one per layer, are consecutive; a single value is kept if all are the same to the
+        // bit
+        if (r + 1 < RULE_COUNT && param_rules[r + 1].param == rule->param) continue;
+        source->value[rule->param] = (*values)[0];
+        if (memcmp(*values, *values + 1, (total - 1) * sizeof **values) == 0) FREE(memory, *values, total);
     }
     return check_matter(source, error);
 }

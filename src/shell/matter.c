@@ -70,38 +70,34 @@ float matter_value(const SheetSource *source, int param, uint32_t i) {
     }
 }
 
-static bool matter_is_uniform(const SheetSource *sources, uint32_t count, int param) {
-    float first = matter_value(&sources[0], param, 0);
-    for (uint32_t s = 0; s < count; s++)
-        if (matter_varies(&sources[s], param) || matter_value(&sources[s], param, 0) != first) return false;
-    return true;
-}
-
-/// Copies one sheet's values of a parameter to its particles.
-static void matter_fill(const Shell *shell, const Sheet *sheet, const SheetSource *source, int param, Field *field) {
-    uint32_t centre = shell_centre(shell, sheet->cell_first);
-    uint32_t vertices = source->sheet.vertex_count;
-    for (uint32_t v = 0; v < sheet->vertex_count; v++)
-        field->values[sheet->vertex_first + v] = matter_value(source, param, v < vertices ? v : 0);
-    for (uint32_t c = 0; c < sheet->cell_count; c++)
-        field->values[centre + c] = matter_value(source, param, vertices + c);
-}
-
 bool matter_create(Memory *memory, Shell *shell, const SheetSource *sources) {
     Matter *matter = &shell->matter;
     uint32_t particles = shell->particle_count, sheets = shell->sheet_count;
     bool weighs_evenly = true;
+
     for (int p = 0; p < PARAM_COUNT; p++) {
         Field *field = matter_field(matter, p);
-        bool uniform = matter_is_uniform(sources, sheets, p);
         if (!field) {
             for (uint32_t s = 0; s < sheets; s++) weighs_evenly &= sources[s].values[p] == NULL;
             continue;
         }
-        if (!field_create(memory, field, matter_value(&sources[0], p, 0))) return false;
+
+        // one value for all, unless it varies over a sheet or between sheets
+        float first = matter_value(&sources[0], p, 0);
+        bool uniform = true;
+        for (uint32_t s = 0; s < sheets; s++)
+            uniform = uniform && !matter_varies(&sources[s], p) && matter_value(&sources[s], p, 0) == first;
+        if (!field_create(memory, field, first)) return false;
         if (uniform) continue;
         if (!field_vary(memory, field, particles)) return false;
-        for (uint32_t s = 0; s < sheets; s++) matter_fill(shell, &shell->sheets[s], &sources[s], p, field);
+        for (uint32_t s = 0; s < sheets; s++) {
+            const Sheet *sheet = &shell->sheets[s];
+            uint32_t centre = shell_centre(shell, sheet->cell_first), vertices = sources[s].sheet.vertex_count;
+            for (uint32_t v = 0; v < sheet->vertex_count; v++)
+                field->values[sheet->vertex_first + v] = matter_value(&sources[s], p, v < vertices ? v : 0);
+            for (uint32_t c = 0; c < sheet->cell_count; c++)
+                field->values[centre + c] = matter_value(&sources[s], p, vertices + c);
+        }
     }
 
     // heat capacity: uniform unless mass or specific heat varies
@@ -117,6 +113,7 @@ void matter_free(Memory *memory, Shell *shell) {
         Field *field = matter_field(matter, p);
         if (field) field_free(memory, field, shell->particle_count);
     }
+
     field_free(memory, &matter->capacity_ratio, shell->particle_count);
     FREE(memory, matter->area, shell->particle_count);
     FREE(memory, matter->mass, shell->particle_count);
@@ -127,24 +124,23 @@ static double matter_per_area(const SheetSource *source, uint32_t i) {
     return (double)sheet_param(source, PARAM_GRAMMAGE, i) * (double)sheet_param(source, PARAM_SPECIFIC_HEAT, i);
 }
 
-static void matter_weigh_sheet(Shell *shell, const Sheet *sheet, const SheetSource *source) {
-    Matter *matter = &shell->matter;
-    uint32_t vertices = source->sheet.vertex_count, total = vertices + sheet->cell_count;
-    double sum = 0;
-    for (uint32_t i = 0; i < total; i++) sum += matter_per_area(source, i);
-    for (uint32_t i = 0; i < total; i++) {
-        bool corner = i < vertices;
-        uint32_t cell = sheet->cell_first + i - vertices;
-        uint32_t p = corner ? sheet->vertex_first + i : shell_centre(shell, cell);
-        if (matter->capacity_ratio.mask)
-            matter->capacity_ratio.values[p] = (float)(matter_per_area(source, i) / (sum / total));
-        matter->mass[p] = sheet_param(source, PARAM_GRAMMAGE, i) / 2 * matter->area[p];
-        matter->capacity[p] = matter->mass[p] * sheet_param(source, PARAM_SPECIFIC_HEAT, i);
-    }
-}
-
 void matter_weigh(Shell *shell, const SheetSource *sources) {
-    for (uint32_t s = 0; s < shell->sheet_count; s++) matter_weigh_sheet(shell, &shell->sheets[s], &sources[s]);
+    Matter *matter = &shell->matter;
+    for (uint32_t s = 0; s < shell->sheet_count; s++) {
+        const Sheet *sheet = &shell->sheets[s];
+        const SheetSource *source = &sources[s];
+        uint32_t vertices = source->sheet.vertex_count, total = vertices + sheet->cell_count;
+        double sum = 0;
+        for (uint32_t i = 0; i < total; i++) sum += matter_per_area(source, i);
+        for (uint32_t i = 0; i < total; i++) {
+            uint32_t cell = sheet->cell_first + i - vertices;
+            uint32_t p = i < vertices ? sheet->vertex_first + i : shell_centre(shell, cell);
+            if (matter->capacity_ratio.mask)
+                matter->capacity_ratio.values[p] = (float)(matter_per_area(source, i) / (sum / total));
+            matter->mass[p] = sheet_param(source, PARAM_GRAMMAGE, i) / 2 * matter->area[p];
+            matter->capacity[p] = matter->mass[p] * sheet_param(source, PARAM_SPECIFIC_HEAT, i);
+        }
+    }
 }
 
 void matter_split(Shell *shell, uint32_t from, uint32_t to, float area) {
@@ -153,6 +149,7 @@ void matter_split(Shell *shell, uint32_t from, uint32_t to, float area) {
         Field *field = matter_field(matter, p);
         if (field && field->mask) field->values[to] = field->values[from];
     }
+
     if (matter->capacity_ratio.mask) matter->capacity_ratio.values[to] = matter->capacity_ratio.values[from];
     float share = area / matter->area[from];
     float *const shared[] = {matter->area, matter->mass, matter->capacity};

@@ -1,4 +1,4 @@
-// Rest measures of one cell.
+// Rest measures of cells, particles and springs.
 #ifndef SHELL_REST_LENGTHS_H
 #define SHELL_REST_LENGTHS_H
 
@@ -21,5 +21,9 @@ void measure_particles(Shell *shell);
 /// Fills the rest lengths of all springs and each sheet's cell size. Fails with SINGE_ERROR_MESH if a spring has no
 /// length, as when neighbouring centres coincide.
 SingeResult measure_springs(Shell *shell, SingeError *error);
+
+/// Fills the springs' `grain` where a sheet shrinks more in one direction; rest positions and lengths are in place.
+/// False when out of memory.
+bool measure_fibres(Memory *memory, Shell *shell);
 
 #endif

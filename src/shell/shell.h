@@ -259,6 +259,7 @@ static inline StateInput state_input(const State *state) {
     return (StateInput){state->time,    state->step,      &state->heat, &state->burn,
                         &state->ablate, &state->dynamics, &state->gas,  &state->tear};
 }
+
 /// The same as an argument of a call: const StateInput *.
 #define STATE_INPUT(state) ((const StateInput[]){state_input(state)})
 
@@ -308,7 +309,6 @@ static inline uint32_t shell_centre(const Shell *shell, uint32_t cell) { return 
 
 /// Number of springs of a colour that are in strands. They come first, followed by the spares of tears.
 static inline uint32_t shell_strand_springs(const Shell *shell, int colour) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     return shell->springs[colour].count - (colour == SINGE_BLUE ? shell->edge_spare_count : 0);
 }
 

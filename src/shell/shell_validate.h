@@ -4,10 +4,18 @@
 
 #include "shell/shell.h"
 
-/// NULL, or the invariant of the Shell that is broken. The Shell may have torn.
-const char *shell_validate(const Shell *shell);
+/// What is wrong, in words: "cell 12 names corner 40 twice".
+typedef struct ShellFault {
+    char text[128];
+} ShellFault;
 
-/// NULL, or the invariant of a State between two steps that is broken, on a valid Shell.
-const char *state_validate(const Shell *shell, const State *state);
+/// Whether the Shell, which may have torn, holds together; if not, *fault is the first thing that is wrong.
+bool shell_validate(const Shell *shell, ShellFault *fault);
+
+/// The same for a State between two steps, on a valid Shell.
+bool state_validate(const Shell *shell, const State *state, ShellFault *fault);
+
+/// Asserts both; the assertion prints the fault.
+void shell_assert(const Shell *shell, const State *state);
 
 #endif

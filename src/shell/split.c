@@ -20,6 +20,7 @@ void split_fan(const Shell *shell, uint32_t vertex, Fan *fan) {
         while (shell->cells[cell][corner] != vertex) corner++;
         fan->corner[k] = (uint8_t)corner;
     }
+
     for (int k = 0; k < fan->count; k++) {
         uint32_t after = shell_neighbour(shell, fan->cell[k], side_after(fan->corner[k]));
         uint32_t before = shell_neighbour(shell, fan->cell[k], side_before(fan->corner[k]));
@@ -34,7 +35,9 @@ void split_fan(const Shell *shell, uint32_t vertex, Fan *fan) {
 bool split_reserve(Memory *memory, Shell *shell) {
     SpringSet *blue = &shell->springs[SINGE_BLUE];
     uint32_t more = SPLIT_EDGES * shell->spare_count, count = blue->count + more;
+
     if (more == 0) return true;
+
     uint32_t(*ends)[2] = memory_new(memory, count, sizeof *ends);
     float *rest = memory_new(memory, count, sizeof *rest);
     if (!ends || !rest) {
@@ -42,6 +45,7 @@ bool split_reserve(Memory *memory, Shell *shell) {
         FREE(memory, rest, count);
         return false;
     }
+
     memcpy(ends, blue->ends, blue->count * sizeof *ends);
     memcpy(rest, blue->rest, blue->count * sizeof *rest);
     FREE(memory, blue->ends, blue->count);
@@ -55,30 +59,28 @@ bool split_reserve(Memory *memory, Shell *shell) {
 
 static bool goes(const ShellSplit *split, int k) { return k >= 0 && split->cells >> k & 1; }
 
-/// Edges between cells that go and cells that stay.
-static int count_torn(const Fan *fan, const ShellSplit *split) {
+bool split_is_possible(const Shell *shell, const Fan *fan, const ShellSplit *split) {
+    const Sheet *sheet = &shell->sheets[shell->matter.sheet[split->vertex]];
+    uint32_t all = fan->count > 0 ? UINT32_MAX >> (32 - fan->count) : 0, max = SPLIT_MOVED * shell->spare_count;
+    uint32_t moves = (uint32_t)__builtin_popcount(split->cells) + 3; // of any colour
+
+    if (split->cells == 0 || (split->cells & ~all) || split->cells == all) return false;
+
+    // edges between cells that go and cells that stay
     int torn = 0;
     for (int k = 0; k < fan->count; k++)
         if (goes(split, k))
             torn += (fan->after[k] >= 0 && !goes(split, fan->after[k])) +
                     (fan->before[k] >= 0 && !goes(split, fan->before[k]));
-    return torn;
-}
+    if (sheet->spare_used == sheet->spare_count || torn > SPLIT_EDGES) return false;
 
-bool split_is_possible(const Shell *shell, const Fan *fan, const ShellSplit *split) {
-    const Sheet *sheet = &shell->sheets[shell->matter.sheet[split->vertex]];
-    uint32_t all = fan->count > 0 ? UINT32_MAX >> (32 - fan->count) : 0, max = SPLIT_MOVED * shell->spare_count;
-    uint32_t moves = (uint32_t)__builtin_popcount(split->cells) + 3; // of any colour
-    if (split->cells == 0 || (split->cells & ~all) || split->cells == all) return false;
-    if (sheet->spare_used == sheet->spare_count || count_torn(fan, split) > SPLIT_EDGES) return false;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         if (shell->moved[colour] + moves > max) return false;
+
     return true;
 }
 
 static void move_end(Shell *shell, SingeColour colour, uint32_t spring, uint32_t from, uint32_t to) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    SINGE_ASSERT(spring < shell->springs[colour].count);
     uint32_t *ends = shell->springs[colour].ends[spring];
     for (int k = 0; k < 2; k++)
         if (ends[k] == from) ends[k] = to;
@@ -86,10 +88,8 @@ static void move_end(Shell *shell, SingeColour colour, uint32_t spring, uint32_t
 
 /// Separates two neighbours: `cell` goes to the spare; the other one, across `side`, stays.
 static TornEdge tear_edge(Shell *shell, uint32_t cell, int side, uint32_t vertex) {
-    SINGE_ASSERT(cell < shell->cell_count);
-    SINGE_ASSERT(vertex < shell->vertex_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     uint32_t other = shell_neighbour(shell, cell, side);
+    SINGE_ASSERT(other != SHELL_NONE && shell->edge_spare_used < shell->edge_spare_count);
     CellSprings *goer = &shell->cell_springs[cell], *stayer = &shell->cell_springs[other];
     SpringSet *blue = &shell->springs[SINGE_BLUE];
     uint32_t edge = goer->blue[side], spare = blue->count - shell->edge_spare_count + shell->edge_spare_used;
@@ -122,8 +122,19 @@ static void move_fan(Shell *shell, const Fan *fan, const ShellSplit *split, uint
     memcpy(shell->fan + first[to], cells, gone * sizeof *cells);
 }
 
-/// The share of a vertex's area that lies in the cells that go.
-static float area_that_goes(const Shell *shell, const Fan *fan, const ShellSplit *split) {
+SplitResult split_vertex(Shell *shell, const Fan *fan, const ShellSplit *split) {
+    Sheet *sheet = &shell->sheets[shell->matter.sheet[split->vertex]];
+    uint32_t first_spare = sheet->vertex_first + sheet->vertex_count - sheet->spare_count;
+    SINGE_ASSERT(split_is_possible(shell, fan, split));
+    uint32_t v = split->vertex, to = first_spare + sheet->spare_used++;
+    SplitResult result = {.spare = to};
+
+    // the new vertex copies the old one
+    memcpy(shell->rest_position[to], shell->rest_position[v], sizeof shell->rest_position[to]);
+    memcpy(shell->uv[to], shell->uv[v], sizeof shell->uv[to]);
+    shell->source_vertex[to] = shell->source_vertex[v];
+
+    // and takes the share of its area that lies in the cells that go
     double gone = 0, all = 0;
     for (int k = 0; k < fan->count; k++) {
         const float *corners[4];
@@ -132,20 +143,8 @@ static float area_that_goes(const Shell *shell, const Fan *fan, const ShellSplit
         all += area;
         if (goes(split, k)) gone += area;
     }
-    return (float)(gone / all) * shell->matter.area[split->vertex];
-}
 
-SplitResult split_vertex(Shell *shell, const Fan *fan, const ShellSplit *split) {
-    Sheet *sheet = &shell->sheets[shell->matter.sheet[split->vertex]];
-    uint32_t first_spare = sheet->vertex_first + sheet->vertex_count - sheet->spare_count;
-    uint32_t v = split->vertex, to = first_spare + sheet->spare_used++;
-    SplitResult result = {.spare = to};
-
-    // the new vertex copies the old one
-    memcpy(shell->rest_position[to], shell->rest_position[v], sizeof shell->rest_position[to]);
-    memcpy(shell->uv[to], shell->uv[v], sizeof shell->uv[to]);
-    shell->source_vertex[to] = shell->source_vertex[v];
-    matter_split(shell, v, to, area_that_goes(shell, fan, split));
+    matter_split(shell, v, to, (float)(gone / all) * shell->matter.area[v]);
 
     // cells that go take their edges and springs along
     for (int k = 0; k < fan->count; k++) {
@@ -180,5 +179,6 @@ bool split_replay(Shell *shell, const ShellSplit *splits, uint32_t count) {
         if (!split_is_possible(shell, &fan, &splits[k])) return false;
         if (split_vertex(shell, &fan, &splits[k]).spare != splits[k].spare) return false;
     }
+
     return true;
 }

@@ -23,6 +23,7 @@ uint32_t shell_nowhere_count(const Shell *shell) {
             if (max < strands) max = strands;
         }
     }
+
     return max;
 }
 
@@ -61,6 +62,7 @@ static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basi
     *basic = used;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         TAKE(state->burn.spring_length[colour], shell->springs[colour].count);
+
     return used;
 }
 
@@ -77,35 +79,6 @@ void state_copy(const Shell *shell, State *to, const State *from) {
     state_rebase(shell, to, arena);
 }
 
-static void start_springs(const Shell *shell, State *state) {
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
-        const SpringSet *set = &shell->springs[colour];
-        for (uint32_t s = 0; s < set->count; s++) {
-            state->burn.spring_length[colour][s] = set->rest[s];
-            if (set->rest[s] == 0) continue; // a spare of tears
-            state->ablate.spring_flags[colour][s] = SINGE_ALIVE;
-            for (int k = 0; k < 2; k++) state->ablate.degree[set->ends[s][k]]++;
-        }
-    }
-}
-
-static void start_particles(const Shell *shell, State *state) {
-    for (uint32_t p = 0; p < shell->particle_count; p++) {
-        const Sheet *sheet = &shell->sheets[shell->matter.sheet[p]];
-        bool alive = state->ablate.degree[p] > 0;
-        for (int k = 0; k < 3; k++) {
-            state->dynamics.position[p][k] = shell->rest_position[p][k];
-            state->dynamics.velocity[p][k] = alive ? sheet->velocity[k] : 0;
-        }
-        state->heat.temperature[p] = state->heat.temperature_peak[p] = field_at(shell->matter.temperature, p);
-        state->burn.mass[p] = state->burn.fuel[p] = 1;
-        state->burn.time_ignited[p] = state->burn.time_burnt[p] = -1;
-        state->ablate.particle_flags[p] = alive ? SINGE_ALIVE : 0;
-        state->ablate.piece[p] = alive ? 0 : -1;
-    }
-    for (uint32_t c = 0; c < shell->cell_count; c++) state->ablate.cell_flags[c] = SINGE_ALIVE;
-}
-
 /// Bytes before an aligned block. The last one holds the block's offset in its allocation.
 enum { LEAD = SLICE };
 
@@ -117,11 +90,39 @@ SingeResult state_create(Memory *memory, const Shell *shell, State *state) {
         *state = (State){0};
         return SINGE_ERROR_MEMORY;
     }
+
     size_t lead = SLICE - (uintptr_t)block % SLICE; // 1 to 64
     block[lead - 1] = (char)lead;
     state_rebase(shell, state, block + lead);
-    start_springs(shell, state);
-    start_particles(shell, state);
+
+    // springs, except the spares of tears
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        const SpringSet *set = &shell->springs[colour];
+        for (uint32_t s = 0; s < set->count; s++) {
+            state->burn.spring_length[colour][s] = set->rest[s];
+            if (set->rest[s] == 0) continue;
+            state->ablate.spring_flags[colour][s] = SINGE_ALIVE;
+            for (int k = 0; k < 2; k++) state->ablate.degree[set->ends[s][k]]++;
+        }
+    }
+
+    // particles, alive if they have springs, and cells
+    for (uint32_t p = 0; p < shell->particle_count; p++) {
+        const Sheet *sheet = &shell->sheets[shell->matter.sheet[p]];
+        bool alive = state->ablate.degree[p] > 0;
+        for (int k = 0; k < 3; k++) {
+            state->dynamics.position[p][k] = shell->rest_position[p][k];
+            state->dynamics.velocity[p][k] = alive ? sheet->velocity[k] : 0;
+        }
+
+        state->heat.temperature[p] = state->heat.temperature_peak[p] = field_at(shell->matter.temperature, p);
+        state->burn.mass[p] = state->burn.fuel[p] = 1;
+        state->burn.time_ignited[p] = state->burn.time_burnt[p] = -1;
+        state->ablate.particle_flags[p] = alive ? SINGE_ALIVE : 0;
+        state->ablate.piece[p] = alive ? 0 : -1;
+    }
+
+    for (uint32_t c = 0; c < shell->cell_count; c++) state->ablate.cell_flags[c] = SINGE_ALIVE;
     return SINGE_OK;
 }
 

@@ -21,25 +21,6 @@ typedef struct Trace {
 static uint32_t step_from(const LooseSprings *springs, uint32_t step) { return springs->ends[step / 2][step & 1]; }
 static uint32_t step_to(const LooseSprings *springs, uint32_t step) { return springs->ends[step / 2][~step & 1]; }
 
-static bool trace_alloc(Memory *memory, uint32_t particle_count, Trace *trace) {
-    uint32_t count = trace->springs->count;
-    if (!NEW(memory, trace->steps, count) || !NEW(memory, trace->first, (size_t)count + 1) ||
-        !NEW(memory, trace->ring, count) || !NEW(memory, trace->done, count) ||
-        !NEW(memory, trace->visitor, particle_count))
-        return false;
-    for (uint32_t p = 0; p < particle_count; p++) trace->visitor[p] = SHELL_NONE;
-    return true;
-}
-
-static void trace_free(Memory *memory, uint32_t particle_count, Trace *trace) {
-    uint32_t count = trace->springs->count;
-    FREE(memory, trace->steps, count);
-    FREE(memory, trace->first, (size_t)count + 1);
-    FREE(memory, trace->ring, count);
-    FREE(memory, trace->done, count);
-    FREE(memory, trace->visitor, particle_count);
-}
-
 static void begin_strand(Trace *trace, uint32_t particle) {
     trace->first[trace->strand_count] = trace->length;
     trace->visitor[particle] = trace->strand_count;
@@ -75,14 +56,6 @@ static void trace_from(Trace *trace, uint32_t step) {
     }
 }
 
-static void trace_all(Trace *trace) {
-    const LooseSprings *springs = trace->springs;
-    for (uint32_t end = 0; end < 2 * springs->count; end++)
-        if (springs->mate[end] == SHELL_NONE && !trace->done[end / 2]) trace_from(trace, end);
-    for (uint32_t s = 0; s < springs->count; s++)
-        if (!trace->done[s]) trace_from(trace, 2 * s);
-}
-
 static uint32_t trace_length(const Trace *trace, uint32_t s) { return trace->first[s + 1] - trace->first[s]; }
 
 /// The difference of the numbers of a strand's first two particles.
@@ -97,6 +70,7 @@ static uint32_t trace_stride(const Trace *trace, uint32_t s) {
 static bool order_by_length(Memory *memory, const Trace *trace, uint32_t *order) {
     uint32_t first = 0, *rank = NULL, *next = NULL;
     if (trace->strand_count == 0) return true;
+
     for (uint32_t s = 0; s < trace->strand_count; s++)
         if (trace_length(trace, s) > trace_length(trace, first)) first = s;
     uint32_t longest = trace_length(trace, first), stride = trace_stride(trace, first);
@@ -105,6 +79,7 @@ static bool order_by_length(Memory *memory, const Trace *trace, uint32_t *order)
         rank[s] = 2 * (longest - trace_length(trace, s)) + (trace_stride(trace, s) != stride);
         next[rank[s] + 1]++; // lengths are at least 1
     }
+
     if (done) {
         for (uint32_t i = 0; i <= 2 * longest; i++) next[i + 1] += next[i];
         for (uint32_t s = 0; s < trace->strand_count; s++) order[next[rank[s]]++] = s;
@@ -114,33 +89,26 @@ static bool order_by_length(Memory *memory, const Trace *trace, uint32_t *order)
     return done;
 }
 
-/// The particles of every strand, in this order of strands.
-static bool list_nodes(Memory *memory, const Trace *trace, uint32_t particle_count, const uint32_t *order,
-                       ItemNodes *items) {
-    *items = (ItemNodes){.node_count = particle_count, .item_count = trace->strand_count};
-    if (!NEW(memory, items->first, (size_t)trace->strand_count + 1)) return false;
-    if (!NEW(memory, items->nodes, (size_t)trace->length + trace->strand_count)) return false;
-    uint32_t total = 0;
-    for (uint32_t i = 0; i < trace->strand_count; i++) {
-        uint32_t s = order[i];
-        items->first[i] = total;
-        for (uint32_t k = trace->first[s]; k < trace->first[s + 1]; k++)
-            items->nodes[total++] = step_from(trace->springs, trace->steps[k]);
-        if (!trace->ring[s]) items->nodes[total++] = step_to(trace->springs, trace->steps[trace->first[s + 1] - 1]);
-    }
-    items->first[trace->strand_count] = total;
-    return true;
-}
-
 /// Colours the strands, longest first. If strands form several networks without a common particle, as the diagonals of
 /// a grid's black and of its white vertices do, the longest of each get family 0: they run side by side, and lanes need
 /// neighbours in one family. Returns the number of families, 0 when out of memory.
 static uint32_t find_families(Memory *memory, const Trace *trace, uint32_t particle_count, uint32_t *family) {
-    uint32_t strands = trace->strand_count, families = 0, *order = NULL, *of_item = NULL;
-    ItemNodes items = {0};
-    if (NEW(memory, order, strands) && NEW(memory, of_item, strands) && order_by_length(memory, trace, order) &&
-        list_nodes(memory, trace, particle_count, order, &items))
+    uint32_t strands = trace->strand_count, families = 0, total = 0, *order = NULL, *of_item = NULL;
+    ItemNodes items = {.node_count = particle_count, .item_count = strands};
+
+    if (NEW(memory, order, strands) && NEW(memory, of_item, strands) && NEW(memory, items.first, (size_t)strands + 1) &&
+        NEW(memory, items.nodes, (size_t)trace->length + strands) && order_by_length(memory, trace, order)) {
+        // the particles of every strand
+        for (uint32_t i = 0; i < strands; i++) {
+            uint32_t s = order[i], begin = trace->first[s], end = trace->first[s + 1];
+            items.first[i] = total;
+            for (uint32_t k = begin; k < end; k++) items.nodes[total++] = step_from(trace->springs, trace->steps[k]);
+            if (!trace->ring[s]) items.nodes[total++] = step_to(trace->springs, trace->steps[end - 1]);
+        }
+        items.first[strands] = total;
         families = family_colour(memory, &items, of_item);
+    }
+
     for (uint32_t i = 0; i < strands && families; i++) family[order[i]] = of_item[i];
     FREE(memory, items.nodes, (size_t)trace->length + strands);
     FREE(memory, items.first, (size_t)strands + 1);
@@ -149,10 +117,20 @@ static uint32_t find_families(Memory *memory, const Trace *trace, uint32_t parti
     return families;
 }
 
-/// Numbers strands and springs family by family.
-static void renumber(const Trace *trace, const uint32_t *sorted, SpringSet *set, uint32_t *number) {
+/// Colours the traced strands, and numbers strands and springs family by family. False when out of memory.
+static bool arrange(Memory *memory, uint32_t particle_count, const Trace *trace, SpringSet *set, uint32_t *number) {
+    uint32_t strands = trace->strand_count, families = 0, *family = NULL, *sorted = NULL;
+    if (NEW(memory, family, strands) && NEW(memory, sorted, strands))
+        families = find_families(memory, trace, particle_count, family);
+    set->strand_count = strands;
+    set->family_count = strands ? families : 0;
+    bool done = families && NEW(memory, set->ends, set->count) && NEW(memory, set->rest, set->count) &&
+                NEW(memory, set->strand_first, (size_t)strands + 1) && NEW(memory, set->strand_ring, strands) &&
+                NEW(memory, set->family_first, (size_t)set->family_count + 1);
+    if (done) family_sort(strands, family, set->family_count, set->family_first, sorted);
+
     uint32_t next = 0;
-    for (uint32_t s = 0; s < set->strand_count; s++) {
+    for (uint32_t s = 0; s < strands && done; s++) {
         uint32_t begin = trace->first[sorted[s]], end = trace->first[sorted[s] + 1];
         set->strand_first[s] = next;
         set->strand_ring[s] = trace->ring[sorted[s]];
@@ -163,23 +141,9 @@ static void renumber(const Trace *trace, const uint32_t *sorted, SpringSet *set,
             number[trace->steps[k] / 2] = next;
         }
     }
-    set->strand_first[set->strand_count] = next;
-}
 
-/// Colours the traced strands and writes the set. False when out of memory.
-static bool arrange(Memory *memory, uint32_t particle_count, const Trace *trace, SpringSet *set, uint32_t *number) {
-    uint32_t strands = trace->strand_count, families = 0, *family = NULL, *sorted = NULL;
-    if (NEW(memory, family, strands) && NEW(memory, sorted, strands))
-        families = find_families(memory, trace, particle_count, family);
-    set->strand_count = strands;
-    set->family_count = strands ? families : 0;
-    bool done = families && NEW(memory, set->ends, set->count) && NEW(memory, set->rest, set->count) &&
-                NEW(memory, set->strand_first, (size_t)strands + 1) && NEW(memory, set->strand_ring, strands) &&
-                NEW(memory, set->family_first, (size_t)set->family_count + 1);
-    if (done) {
-        family_sort(strands, family, set->family_count, set->family_first, sorted);
-        renumber(trace, sorted, set, number);
-    }
+    if (done) set->strand_first[strands] = next;
+    SINGE_ASSERT(!done || next == set->count); // every spring lies in one strand
     FREE(memory, family, strands);
     FREE(memory, sorted, strands);
     return done;
@@ -188,16 +152,30 @@ static bool arrange(Memory *memory, uint32_t particle_count, const Trace *trace,
 SingeResult strand_build(Memory *memory, uint32_t particle_count, const LooseSprings *springs, SpringSet *set,
                          uint32_t *number, SingeError *error) {
     Trace trace = {.springs = springs};
-    *set = (SpringSet){.count = springs->count};
-    bool done = trace_alloc(memory, particle_count, &trace);
+    uint32_t count = springs->count;
+    *set = (SpringSet){.count = count};
+    bool done = NEW(memory, trace.steps, count) && NEW(memory, trace.first, (size_t)count + 1) &&
+                NEW(memory, trace.ring, count) && NEW(memory, trace.done, count) &&
+                NEW(memory, trace.visitor, particle_count);
     if (done) {
-        trace_all(&trace);
+        for (uint32_t p = 0; p < particle_count; p++) trace.visitor[p] = SHELL_NONE;
+
+        // chains from their ends, then rings
+        for (uint32_t end = 0; end < 2 * count; end++)
+            if (springs->mate[end] == SHELL_NONE && !trace.done[end / 2]) trace_from(&trace, end);
+        for (uint32_t s = 0; s < count; s++)
+            if (!trace.done[s]) trace_from(&trace, 2 * s);
         done = arrange(memory, particle_count, &trace, set, number);
     }
-    trace_free(memory, particle_count, &trace);
+    FREE(memory, trace.steps, count);
+    FREE(memory, trace.first, (size_t)count + 1);
+    FREE(memory, trace.ring, count);
+    FREE(memory, trace.done, count);
+    FREE(memory, trace.visitor, particle_count);
     if (done) return SINGE_OK;
+
     strand_free(memory, set);
-    return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the strands of %u springs", springs->count);
+    return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the strands of %u springs", count);
 }
 
 void strand_free(Memory *memory, SpringSet *set) {

@@ -254,8 +254,7 @@ SingeResult singe_sim_commit(SingeSim *sim) {
     }
     sim->heat_start = sim_enthalpy(sim);
     sim->committed = true;
-    SINGE_ASSERT(shell_validate(&sim->shell) == NULL);
-    SINGE_ASSERT(state_validate(&sim->shell, &sim->state) == NULL);
+    shell_assert(&sim->shell, &sim->state);
     sim_log_commit(sim);
     return SINGE_OK;
 }

@@ -132,8 +132,7 @@ static SingeResult step_stages(SingeSim *sim) {
 
 /// With assertions: checks everything that a step may have changed.
 static void step_validate(const SingeSim *sim) {
-    SINGE_ASSERT(shell_validate(&sim->shell) == NULL);
-    SINGE_ASSERT(state_validate(&sim->shell, &sim->state) == NULL);
+    shell_assert(&sim->shell, &sim->state);
     SINGE_ASSERT(dynamics_plan_validate(sim->dynamics) == NULL);
     (void)sim;
 }

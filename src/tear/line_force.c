@@ -17,7 +17,6 @@
 // with the mean over all substeps of a step for N_step, whatever h; where a sheet is released, N follows at once. N is
 // also averaged over a process zone of a fixed length: one pass, 1/8 of each neighbour and 1/2 of the cell itself,
 // spreads by s^2/4 (variance, an axis), and so does the mean over the cells at a vertex.
-#include "common/assertion.h"
 #include "common/real.h"
 #include "tear/tear_plan.h"
 
@@ -31,11 +30,11 @@ static const float EDGE_STRETCH = 1.4f;
 enum { LINE_PASSES = 12 };
 
 float tear_strength(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex) {
-    SINGE_ASSERT(vertex < shell->vertex_count);
     const Matter *matter = &shell->matter;
     float fresh = field_at(matter->strength, vertex), weakened = plan->weakened[matter->sheet[vertex]];
     float min = field_at(matter->mass_min, vertex), yield = field_at(matter->char_yield, vertex);
     float fuel = state->burn.fuel[vertex], ash = 1 - fuel - shell_char(state->burn.mass[vertex], fuel, min, yield);
+
     if (fuel >= 1 || isinf(fresh)) return fresh * weakened;
     float burnt = real_powf(field_at(matter->char_strength, vertex) / fresh, 1 - fuel);
     if (yield > min) burnt *= 1 + (LINE_ASH - 1) * ash;
@@ -53,103 +52,98 @@ typedef struct Measure {
 
 /// The centroid of a cell's corners at rest: its centre, projected along the normal.
 static Float3 centroid(const Shell *shell, uint32_t cell) {
-    SINGE_ASSERT(cell < shell->cell_count);
     const uint32_t *corner = shell->cells[cell];
     const float(*rest)[4] = (const float(*)[4])shell->rest_position;
     Float3 a = float3_add(float3_load(rest[corner[0]]), float3_load(rest[corner[1]]));
     return float3_scale(float3_add(a, float3_add(float3_load(rest[corner[2]]), float3_load(rest[corner[3]]))), 0.25f);
 }
 
-static void measure_now(const Measure *job, uint32_t cell, Tensor now) {
-    SINGE_ASSERT(cell < job->shell->cell_count);
-    const Shell *shell = job->shell;
-    const CellSprings *springs = &shell->cell_springs[cell];
-    const float *const *pull = job->pull;
-    Float3 p[4], centre = centroid(shell, cell);
-    for (int i = 0; i < 4; i++) p[i] = float3_load(shell->rest_position[shell->cells[cell][i]]);
-    memset(now, 0, sizeof(Tensor));
-    for (int i = 0; i < 4; i++) {
-        uint32_t other = shell_neighbour(shell, cell, i);
-        tensor_add(now, float3_sub(p[i], centre), pull[SINGE_RED][springs->red[i]]);
-        float share = other == SHELL_NONE ? 1 : 0.5f;
-        tensor_add(now, float3_sub(p[(i + 1) & 3], p[i]), share * pull[SINGE_BLUE][springs->blue[i]]);
-        if (other != SHELL_NONE)
-            tensor_add(now, float3_sub(centroid(shell, other), centre), 0.5f * pull[SINGE_GREEN][springs->green[i]]);
-    }
-    for (int i = 0; i < 2; i++) tensor_add(now, float3_sub(p[i + 2], p[i]), pull[SINGE_YELLOW][springs->yellow[i]]);
-    float area = shell->matter.area[shell_centre(shell, cell)];
-    for (int k = 0; k < 6; k++) now[k] /= area;
-}
-
 /// Length of an edge or a diagonal over its length at rest.
 static float edge_stretch(const Shell *shell, const State *state, SingeColour colour, uint32_t spring) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    SINGE_ASSERT(spring < shell->springs[colour].count);
     const uint32_t *ends = shell->springs[colour].ends[spring];
     const float(*position)[4] = (const float(*)[4])state->dynamics.position;
     float length = float3_length(float3_sub(float3_load(position[ends[0]]), float3_load(position[ends[1]])));
     return length / shell->springs[colour].rest[spring];
 }
 
-/// Whether a cell at a vertex is gone.
-static bool gone_at(const Shell *shell, const State *state, uint32_t vertex) {
-    SINGE_ASSERT(vertex < shell->vertex_count);
-    for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
-        if (!(state->ablate.cell_flags[shell->fan[k]] & SINGE_ALIVE)) return true;
-    return false;
-}
-
 /// Whether a tensor's norm, which no principal value exceeds, reaches the strength of a corner.
 static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
-    SINGE_ASSERT(cell < job->shell->cell_count);
+    const Shell *shell = job->shell;
+    const uint8_t *flags = job->state->ablate.cell_flags;
     float square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
     const float safe = TEAR_HINGE * job->plan->safe;
+
     if (square < safe * safe) return false;
+
+    // a share of the strength is enough where a cell at the corner is gone
     for (int i = 0; i < 4; i++) {
-        uint32_t corner = job->shell->cells[cell][i];
-        float strength = tear_strength(job->plan, job->shell, job->state, corner), hinge = TEAR_HINGE * strength;
+        uint32_t corner = shell->cells[cell][i];
+        float strength = tear_strength(job->plan, shell, job->state, corner), hinge = TEAR_HINGE * strength;
         if (square > strength * strength) return true;
-        if (square > hinge * hinge && gone_at(job->shell, job->state, corner)) return true;
+        for (uint32_t k = shell->fan_first[corner]; k < shell->fan_first[corner + 1]; k++)
+            if (square > hinge * hinge && !(flags[shell->fan[k]] & SINGE_ALIVE)) return true;
     }
-    const CellSprings *springs = &job->shell->cell_springs[cell];
+
+    const CellSprings *springs = &shell->cell_springs[cell];
     for (int i = 0; i < 4; i++)
-        if (edge_stretch(job->shell, job->state, SINGE_BLUE, springs->blue[i]) > EDGE_STRETCH) return true;
+        if (edge_stretch(shell, job->state, SINGE_BLUE, springs->blue[i]) > EDGE_STRETCH) return true;
     for (int i = 0; i < 2; i++)
-        if (edge_stretch(job->shell, job->state, SINGE_YELLOW, springs->yellow[i]) > EDGE_STRETCH) return true;
+        if (edge_stretch(shell, job->state, SINGE_YELLOW, springs->yellow[i]) > EDGE_STRETCH) return true;
+
     return false;
 }
 
 static double measure_cells(void *task, int begin, int end) {
     const Measure *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
+    const Shell *shell = job->shell;
+    const float *const *pull = job->pull;
     double near = 0;
-    for (int c = begin; c < end; c++) {
+
+    for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         float *held = job->state->tear.line_force[c];
-        Tensor now;
         if (!(job->state->ablate.cell_flags[c] & SINGE_ALIVE)) {
             memset(held, 0, sizeof(Tensor));
             continue;
         }
-        measure_now(job, (uint32_t)c, now);
+
+        // N of this step
+        const CellSprings *springs = &shell->cell_springs[c];
+        Tensor now = {0};
+        Float3 p[4], centre = centroid(shell, c);
+        for (int i = 0; i < 4; i++) p[i] = float3_load(shell->rest_position[shell->cells[c][i]]);
+        for (int i = 0; i < 4; i++) {
+            uint32_t other = shell_neighbour(shell, c, i);
+            tensor_add(now, float3_sub(p[i], centre), pull[SINGE_RED][springs->red[i]]);
+            float share = other == SHELL_NONE ? 1 : 0.5f;
+            tensor_add(now, float3_sub(p[(i + 1) & 3], p[i]), share * pull[SINGE_BLUE][springs->blue[i]]);
+            if (other == SHELL_NONE) continue;
+            tensor_add(now, float3_sub(centroid(shell, other), centre), 0.5f * pull[SINGE_GREEN][springs->green[i]]);
+        }
+
+        for (int i = 0; i < 2; i++) tensor_add(now, float3_sub(p[i + 2], p[i]), pull[SINGE_YELLOW][springs->yellow[i]]);
+        float area = shell->matter.area[shell_centre(shell, c)];
+        for (int k = 0; k < 6; k++) now[k] /= area;
+
+        // filtered
         float before = held[0] + held[1] + held[2], after = now[0] + now[1] + now[2];
         float keep = after < 0.5f * before ? 0 : job->keep;
         for (int k = 0; k < 6; k++) held[k] = now[k] + keep * (held[k] - now[k]);
-        near += measure_is_near(job, (uint32_t)c, held);
+        near += measure_is_near(job, c, held);
     }
+
     return near;
 }
 
 double tear_measure(TearPlan *plan, const Shell *shell, State *state, const float *const pull[SINGE_COLOUR_COUNT],
                     Pool *pool, float h) {
-    SINGE_ASSERT(h > 0);
     Measure job = {.plan = plan, .shell = shell, .state = state, .pull = pull, .keep = real_expf(-h / LINE_FILTER)};
     return pool_sum(pool, (int)shell->cell_count, measure_cells, &job, plan->partial);
 }
 
 static void smooth_cells(void *task, int begin, int end) {
     const Measure *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->shell->cell_count);
     const Tensor *from = (const Tensor *)job->plan->smooth[job->from];
+
     for (int c = begin; c < end; c++) {
         float *to = job->plan->smooth[!job->from][c], own = 1;
         Tensor sum = {0};
@@ -177,26 +171,7 @@ void tear_smooth(TearPlan *plan, const Shell *shell, const State *state, Pool *p
     }
 }
 
-/// Whether a cell has a torn edge, or an edge of the sheet, at the vertex.
-static bool borders(const Fan *fan, int k) { return fan->after[k] < 0 || fan->before[k] < 0; }
-
-/// The mean over the cells of a vertex; at the tip of a tear over the cells ahead of it, if there are any.
-static bool pull_force(const TearPlan *plan, const Shell *shell, const State *state, const Fan *fan, bool torn,
-                       Tensor force) {
-    float weight = 0;
-    for (int turn = torn ? 0 : 1; turn < 2 && weight == 0; turn++)
-        for (int k = 0; k < fan->count; k++) {
-            if (!(state->ablate.cell_flags[fan->cell[k]] & SINGE_ALIVE) || (turn == 0 && borders(fan, k))) continue;
-            float area = shell->matter.area[shell_centre(shell, fan->cell[k])];
-            for (int i = 0; i < 6; i++) force[i] += area * plan->smooth[0][fan->cell[k]][i];
-            weight += area;
-        }
-    for (int i = 0; i < 6 && weight > 0; i++) force[i] /= weight;
-    return weight > 0;
-}
-
-/// The normal of a vertex at rest.
-static Float3 pull_normal(const Shell *shell, const Fan *fan) {
+Float3 tear_normal(const Shell *shell, const Fan *fan) {
     Float3 sum = {0, 0, 0};
     for (int k = 0; k < fan->count; k++) {
         const uint32_t *corner = shell->cells[fan->cell[k]];
@@ -204,39 +179,56 @@ static Float3 pull_normal(const Shell *shell, const Fan *fan) {
         for (int i = 0; i < 4; i++) p[i] = float3_load(shell->rest_position[corner[i]]);
         sum = float3_add(sum, float3_cross(float3_sub(p[2], p[0]), float3_sub(p[3], p[1])));
     }
-    return float3_unit(sum);
-}
 
-/// The largest stretch of the edges and diagonals at a vertex.
-static float fan_stretch(const Shell *shell, const State *state, const Fan *fan) {
-    float max = 0;
-    for (int k = 0; k < fan->count; k++) {
-        const CellSprings *springs = &shell->cell_springs[fan->cell[k]];
-        const int corner = fan->corner[k];
-        if (!(state->ablate.cell_flags[fan->cell[k]] & SINGE_ALIVE)) continue;
-        max = fmaxf(max, edge_stretch(shell, state, SINGE_BLUE, springs->blue[corner]));
-        max = fmaxf(max, edge_stretch(shell, state, SINGE_BLUE, springs->blue[(corner + 3) & 3]));
-        max = fmaxf(max, edge_stretch(shell, state, SINGE_YELLOW, springs->yellow[corner & 1]));
-    }
-    return max;
+    return float3_unit(sum);
 }
 
 TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex) {
     SINGE_ASSERT(vertex < shell->vertex_count);
+    const uint8_t *flags = state->ablate.cell_flags;
     TearPull pull = {0};
     Fan fan;
     if (!(state->ablate.particle_flags[vertex] & SINGE_ALIVE) || state->dynamics.pinned[vertex]) return pull;
     if (state->ablate.piece[vertex] < 0) return pull;
+
     split_fan(shell, vertex, &fan);
-    if (fan.count < 2 || !pull_force(plan, shell, state, &fan, plan->torn[vertex], pull.force)) return pull;
-    Float3 normal = pull_normal(shell, &fan), side = fabsf(normal.x) < 0.7f ? float3(1, 0, 0) : float3(0, 1, 0);
+    if (fan.count < 2) return pull;
+
+    // the mean over the vertex's cells; at the tip of a tear over the cells ahead of it, if there are any: those without
+    // a torn edge, or an edge of the sheet, at the vertex
+    float weight = 0;
+    for (int turn = plan->torn[vertex] ? 0 : 1; turn < 2 && weight == 0; turn++)
+        for (int k = 0; k < fan.count; k++) {
+            bool behind = fan.after[k] < 0 || fan.before[k] < 0;
+            if (!(flags[fan.cell[k]] & SINGE_ALIVE) || (turn == 0 && behind)) continue;
+            float area = shell->matter.area[shell_centre(shell, fan.cell[k])];
+            for (int i = 0; i < 6; i++) pull.force[i] += area * plan->smooth[0][fan.cell[k]][i];
+            weight += area;
+        }
+    if (!(weight > 0)) return pull;
+
+    for (int i = 0; i < 6; i++) pull.force[i] /= weight;
+
+    // its larger principal value in the plane of the sheet
+    Float3 normal = tear_normal(shell, &fan), side = fabsf(normal.x) < 0.7f ? float3(1, 0, 0) : float3(0, 1, 0);
     Float3 e1 = float3_unit(float3_cross(normal, side)), e2 = float3_cross(normal, e1);
     float a = tensor_across(pull.force, e1), b = tensor_across(pull.force, e2);
     float c = (tensor_across(pull.force, float3_add(e1, e2)) - a - b) / 2;
     float mean = (a + b) / 2, radius = sqrtf((a - b) * (a - b) / 4 + c * c), angle = real_atan2f(c, (a - b) / 2) / 2;
     pull.across = float3_add(float3_scale(e1, real_cosf(angle)), float3_scale(e2, real_sinf(angle)));
     pull.ratio = fmaxf(0, (mean + radius) / tear_strength(plan, shell, state, vertex));
-    float stretch = mean + radius > plan->safe ? fan_stretch(shell, state, &fan) : 0;
+
+    // the largest stretch of the edges and diagonals at the vertex
+    float stretch = 0;
+    for (int k = 0; k < fan.count && mean + radius > plan->safe; k++) {
+        const CellSprings *springs = &shell->cell_springs[fan.cell[k]];
+        const int corner = fan.corner[k];
+        if (!(flags[fan.cell[k]] & SINGE_ALIVE)) continue;
+        stretch = fmaxf(stretch, edge_stretch(shell, state, SINGE_BLUE, springs->blue[corner]));
+        stretch = fmaxf(stretch, edge_stretch(shell, state, SINGE_BLUE, springs->blue[(corner + 3) & 3]));
+        stretch = fmaxf(stretch, edge_stretch(shell, state, SINGE_YELLOW, springs->yellow[corner & 1]));
+    }
+
     if (stretch > EDGE_STRETCH) pull.ratio = fmaxf(pull.ratio, stretch / EDGE_STRETCH);
     return pull;
 }

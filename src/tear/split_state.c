@@ -1,5 +1,4 @@
 // The effect of a split on the State: the new particle copies the old one, and the edges of a tear separate slightly.
-#include "common/assertion.h"
 #include "shell/cross.h"
 #include "tear/tear_plan.h"
 
@@ -12,29 +11,12 @@ static const float TEAR_EDGE_GAP = 0.002f;
 
 #define COPY(array, to, from) memcpy((array) + (to), (array) + (from), sizeof *(array))
 
-static void copy_particle(State *state, uint32_t to, uint32_t from) {
-    COPY(state->heat.temperature, to, from);
-    COPY(state->heat.temperature_peak, to, from);
-    COPY(state->burn.mass, to, from);
-    COPY(state->burn.fuel, to, from);
-    COPY(state->burn.burn_rate, to, from);
-    COPY(state->burn.release, to, from);
-    COPY(state->burn.time_ignited, to, from);
-    COPY(state->burn.time_burnt, to, from);
-    COPY(state->ablate.piece, to, from);
-    COPY(state->ablate.particle_flags, to, from);
-    COPY(state->dynamics.position, to, from);
-    COPY(state->dynamics.velocity, to, from);
-}
-
 static uint16_t split_alive(const State *state, SingeColour colour, uint32_t spring) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     return state->ablate.spring_flags[colour][spring] & SINGE_ALIVE;
 }
 
 /// Counts the live springs at a corner.
 static void count_degree(const Shell *shell, State *state, uint32_t vertex) {
-    SINGE_ASSERT(vertex < shell->vertex_count);
     uint16_t degree = 0;
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++) {
         uint32_t cell = shell->fan[k];
@@ -48,21 +30,12 @@ static void count_degree(const Shell *shell, State *state, uint32_t vertex) {
         if (springs->green[after] == SHELL_NONE)
             degree = (uint16_t)(degree + split_alive(state, SINGE_BLUE, springs->blue[after]));
     }
-    state->ablate.degree[vertex] = degree;
-}
 
-/// A torn edge gets a second spring, and the green spring across it is removed.
-static void tear_edge_state(const Shell *shell, State *state, const TornEdge *torn) {
-    COPY(state->ablate.spring_flags[SINGE_BLUE], torn->spare, torn->edge);
-    COPY(state->burn.spring_length[SINGE_BLUE], torn->spare, torn->edge);
-    if (!split_alive(state, SINGE_GREEN, torn->green)) return;
-    state->ablate.spring_flags[SINGE_GREEN][torn->green] &= (uint8_t)~SINGE_ALIVE;
-    for (int end = 0; end < 2; end++) state->ablate.degree[shell->springs[SINGE_GREEN].ends[torn->green][end]]--;
+    state->ablate.degree[vertex] = degree;
 }
 
 /// From a tear edge to the mean of its cells' corners.
 static Float3 tear_edge_displacement(const Shell *shell, const State *state, uint32_t vertex) {
-    SINGE_ASSERT(vertex < shell->vertex_count);
     Float3 sum = {0, 0, 0};
     uint32_t first = shell->fan_first[vertex], last = shell->fan_first[vertex + 1];
     for (uint32_t k = first; k < last; k++)
@@ -74,11 +47,13 @@ static Float3 tear_edge_displacement(const Shell *shell, const State *state, uin
 static bool tear_edges_cross(const Shell *shell, const State *state, uint32_t one, uint32_t two) {
     const uint32_t *first = shell->fan_first, *fan = shell->fan;
     const uint8_t *flags = state->ablate.cell_flags;
+
     for (uint32_t k = first[one]; k < first[one + 1]; k++)
         for (uint32_t l = first[two]; l < first[two + 1]; l++)
             if ((flags[fan[k]] & flags[fan[l]] & SINGE_ALIVE) &&
                 cross_cells(shell, (const float(*)[4])state->dynamics.position, fan[k], fan[l]))
                 return true;
+
     return false;
 }
 
@@ -101,11 +76,33 @@ static void open_tear_edges(const Shell *shell, State *state, uint32_t one, uint
 
 void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *split, SplitResult *result) {
     *result = split_vertex(shell, fan, split);
-    state->tear.splits[state->tear.split_count++] = (ShellSplit){split->vertex, split->cells, result->spare};
-    copy_particle(state, result->spare, split->vertex);
-    for (int k = 0; k < result->torn_count; k++) tear_edge_state(shell, state, &result->torn[k]);
+    uint32_t from = split->vertex, to = result->spare;
+    state->tear.splits[state->tear.split_count++] = (ShellSplit){from, split->cells, to};
+    COPY(state->heat.temperature, to, from);
+    COPY(state->heat.temperature_peak, to, from);
+    COPY(state->burn.mass, to, from);
+    COPY(state->burn.fuel, to, from);
+    COPY(state->burn.burn_rate, to, from);
+    COPY(state->burn.release, to, from);
+    COPY(state->burn.time_ignited, to, from);
+    COPY(state->burn.time_burnt, to, from);
+    COPY(state->ablate.piece, to, from);
+    COPY(state->ablate.particle_flags, to, from);
+    COPY(state->dynamics.position, to, from);
+    COPY(state->dynamics.velocity, to, from);
+
+    // a torn edge gets a second spring, and the green spring across it is removed
+    for (int k = 0; k < result->torn_count; k++) {
+        const TornEdge *torn = &result->torn[k];
+        COPY(state->ablate.spring_flags[SINGE_BLUE], torn->spare, torn->edge);
+        COPY(state->burn.spring_length[SINGE_BLUE], torn->spare, torn->edge);
+        if (!split_alive(state, SINGE_GREEN, torn->green)) continue;
+        state->ablate.spring_flags[SINGE_GREEN][torn->green] &= (uint8_t)~SINGE_ALIVE;
+        for (int end = 0; end < 2; end++) state->ablate.degree[shell->springs[SINGE_GREEN].ends[torn->green][end]]--;
+    }
+
     for (int k = 0; k < result->torn_count; k++) count_degree(shell, state, result->torn[k].far);
-    count_degree(shell, state, split->vertex);
-    count_degree(shell, state, result->spare);
-    open_tear_edges(shell, state, split->vertex, result->spare);
+    count_degree(shell, state, from);
+    count_degree(shell, state, to);
+    open_tear_edges(shell, state, from, to);
 }

@@ -11,6 +11,7 @@
 
 /// Scratch of the stage, built once.
 typedef struct TearPlan TearPlan;
+
 /// For substeps of h seconds.
 SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPlan **plan);
 void tear_plan_free(Memory *memory, TearPlan *plan);

@@ -55,10 +55,15 @@ float tear_strength(const TearPlan *plan, const Shell *shell, const State *state
 /// Computes the filtered line force of every cell (line_force.c). Returns the number of cells near their strength.
 double tear_measure(TearPlan *plan, const Shell *shell, State *state, const float *const pull[SINGE_COLOUR_COUNT],
                     Pool *pool, float h);
+
 /// Averages it over the process zone; the result is in plan->smooth[0].
 void tear_smooth(TearPlan *plan, const Shell *shell, const State *state, Pool *pool);
+
 /// The load at a vertex, from the averaged line force.
 TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex);
+
+/// The normal of the sheet at a vertex at rest.
+Float3 tear_normal(const Shell *shell, const Fan *fan);
 
 /// Splits a vertex and gives the new one its state (split_state.c).
 void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *split, SplitResult *result);

@@ -24,7 +24,6 @@
 // with its mass per area rho, and it stretches. Its own weight needs far less. But if it is held farther apart than its
 // geodesic length, by more than paper stretches before it breaks, it must tear though it is stronger: all its fresh
 // strengths are then lowered by one factor, so that the smallest is half of this.
-#include "common/assertion.h"
 #include "common/random.h"
 #include "tear/tear_plan.h"
 
@@ -41,13 +40,13 @@ static const float STRETCH_MAX = 1.03f; ///< paper breaks at 2 to 4 %
 static const float EDGE_MIN = 0.03f;
 
 float tear_carried(const Shell *shell, uint32_t index, float h) {
-    SINGE_ASSERT(h > 0);
     const Sheet *sheet = &shell->sheets[index];
     double mass = 0, area = 0;
     for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
         mass += 2 * (double)shell->matter.mass[shell_centre(shell, c)];
         area += (double)shell->matter.area[shell_centre(shell, c)];
     }
+
     return (float)(mass / area) * sheet->cell_size * sheet->cell_size / (h * h) * STEP_CARRIES;
 }
 
@@ -60,10 +59,10 @@ static float weakest(const Sheet *sheet, Field strength) {
 }
 
 SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPlan **out) {
-    SINGE_ASSERT(h > 0);
     TearPlan *plan;
     *out = NULL;
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
+
     plan->cell_count = shell->cell_count;
     plan->vertex_count = shell->vertex_count;
     plan->particle_count = shell->particle_count;
@@ -85,6 +84,7 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
         plan->safe = fminf(plan->safe, strength * plan->min[s]);
         plan->weakened[s] = 1;
     }
+
     *out = plan;
     return SINGE_OK;
 }
@@ -105,22 +105,9 @@ void tear_stretched(TearPlan *plan, uint32_t sheet, float stretch) {
     plan->weakened[sheet] = stretch > STRETCH_MAX ? plan->min[sheet] : 1;
 }
 
-/// Marks the ends of torn edges.
-static void mark_torn(TearPlan *plan, const Shell *shell) {
-    if (plan->split_count == shell->split_count) return;
-    plan->split_count = shell->split_count;
-    const SpringSet *blue = &shell->springs[SINGE_BLUE];
-    uint32_t first = blue->count - shell->edge_spare_count;
-    memset(plan->torn, 0, plan->vertex_count);
-    for (uint32_t k = 0; k < shell->edge_spare_used; k++)
-        for (int end = 0; end < 2; end++)
-            plan->torn[blue->ends[first + k][end]] = plan->torn[blue->ends[shell->edge_origin[k]][end]] = 1;
-}
-
 /// Whether no vertex that shares a cell with this one is closer to tearing. For a vertex at a tear only others at tears
 /// count.
 static bool is_weakest(const TearPlan *plan, const Shell *shell, uint32_t vertex) {
-    SINGE_ASSERT(vertex < shell->vertex_count);
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
         for (int i = 0; i < 4; i++) {
             uint32_t other = shell->cells[shell->fan[k]][i];
@@ -129,19 +116,8 @@ static bool is_weakest(const TearPlan *plan, const Shell *shell, uint32_t vertex
                 (plan->ratio[other] == plan->ratio[vertex] && other < vertex))
                 return false;
         }
-    return true;
-}
 
-/// Sets for every piece that a tear runs in it, or the vertex where one may begin.
-static void choose_leaders(TearPlan *plan, const State *state) {
-    memset(plan->leader, 0xff, plan->particle_count * sizeof *plan->leader);
-    for (uint32_t v = 0; v < plan->vertex_count; v++) {
-        if (!(plan->ratio[v] > 1)) continue;
-        uint32_t *leader = &plan->leader[state->ablate.piece[v]];
-        if (plan->torn[v]) *leader = LEADER_RUNS;
-        else if (*leader == SHELL_NONE || (*leader != LEADER_RUNS && plan->ratio[v] > plan->ratio[*leader]))
-            *leader = v;
-    }
+    return true;
 }
 
 /// The cells of a fan that are connected with the first, in turning order; empty for a fan without cells.
@@ -153,18 +129,15 @@ typedef struct Turn {
 static Turn turn_order(const Fan *fan) {
     Turn turn = {0};
     int start = 0;
+
     if (fan->count == 0) return turn;
     for (int k = 0; k < fan->count && fan->before[start] >= 0; k++) start = fan->before[start];
     turn.closed = fan->before[start] >= 0;
     if (turn.closed) start = 0;
     for (int k = start; k >= 0 && turn.count < fan->count && (turn.count == 0 || k != start); k = fan->after[k])
         turn.at[turn.count++] = k;
-    return turn;
-}
 
-/// The other end of the edge that a cell shares with the one before it.
-static uint32_t edge_end(const Shell *shell, const Fan *fan, int k) {
-    return shell->cells[fan->cell[k]][(fan->corner[k] + 1) & 3];
+    return turn;
 }
 
 /// An edge of a vertex along which it may tear.
@@ -178,18 +151,6 @@ static bool is_left(const State *state, const Fan *fan, int k) {
     return state->ablate.cell_flags[fan->cell[k]] & SINGE_ALIVE;
 }
 
-static TearEdge tear_edge(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull,
-                          uint32_t vertex, uint32_t end, Float3 normal) {
-    SINGE_ASSERT(vertex < shell->vertex_count);
-    TearEdge edge = {.strength = INFINITY};
-    edge.along =
-        float3_unit(float3_sub(float3_load(shell->rest_position[end]), float3_load(shell->rest_position[vertex])));
-    float across = tensor_across(pull->force, float3_unit(float3_cross(normal, edge.along)));
-    if (across > EDGE_MIN * tensor_across(pull->force, pull->across))
-        edge.strength = tear_strength(plan, shell, state, vertex) + tear_strength(plan, shell, state, end);
-    return edge;
-}
-
 /// Picks one of the edges [begin, count) along which a tear continues in `direction`; -1 if there is none. `draw` is 0
 /// to 1.
 static int pick_edge(const TearEdge *edges, int begin, int count, Float3 direction, float draw) {
@@ -197,18 +158,21 @@ static int pick_edge(const TearEdge *edges, int begin, int count, Float3 directi
     for (int j = begin; j < count; j++)
         if (edges[j].solid && float3_dot(edges[j].along, direction) > 0) min = fminf(min, edges[j].strength);
     if (isinf(min)) return -1;
+
     for (int j = begin; j < count; j++) {
         float weaker = min / edges[j].strength;
         weight[j] =
             edges[j].solid ? fmaxf(0, float3_dot(edges[j].along, direction)) * weaker * weaker * weaker * weaker : 0;
         sum += weight[j];
     }
+
     int last = -1;
     for (int j = begin; j < count; j++) {
         if (weight[j] <= 0) continue;
         last = j;
         if ((draw -= weight[j] / sum) < 0) break;
     }
+
     return last;
 }
 
@@ -226,27 +190,6 @@ static bool any_alive(const State *state, const Fan *fan, uint32_t cells, bool t
     return false;
 }
 
-static Float3 fan_normal(const Shell *shell, const Fan *fan) {
-    Float3 normal = {0, 0, 0};
-    for (int k = 0; k < fan->count; k++) {
-        const uint32_t *corner = shell->cells[fan->cell[k]];
-        Float3 p[4];
-        for (int i = 0; i < 4; i++) p[i] = float3_load(shell->rest_position[corner[i]]);
-        normal = float3_add(normal, float3_cross(float3_sub(p[2], p[0]), float3_sub(p[3], p[1])));
-    }
-    return float3_unit(normal);
-}
-
-/// The open edge at a vertex that is the straightest continuation of one along `direction`; -1 if none is open.
-static int open_edge(const TearEdge *edges, int count, Float3 direction) {
-    int open = -1;
-    for (int j = 0; j < count; j++)
-        if (!edges[j].solid &&
-            (open < 0 || float3_dot(edges[j].along, direction) < float3_dot(edges[open].along, direction)))
-            open = j;
-    return open;
-}
-
 /// Cells that are connected with others only by the vertex, as those between them have burnt; 0 if there are none.
 static uint32_t hinge_part(const State *state, const Fan *fan, const Turn *turn) {
     int start[2] = {-1, -1};
@@ -257,29 +200,37 @@ static uint32_t hinge_part(const State *state, const Fan *fan, const Turn *turn)
         if (start[0] < 0) start[0] = j;
         else if (start[1] < 0) start[1] = j;
     }
+
     return start[1] < 0 ? 0 : smaller_part(fan, turn, start[0], start[1]);
 }
 
 /// The cells of a vertex that separate from the others; 0 if no edge is loaded enough.
 static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull,
                             uint32_t vertex, const Fan *fan) {
-    SINGE_ASSERT(vertex < shell->vertex_count);
     Turn turn = turn_order(fan);
 
     // cells that only the vertex connects
-    if (turn.count < fan->count) return smaller_part(fan, &turn, 0, turn.count); // connected only by the vertex
+    if (turn.count < fan->count) return smaller_part(fan, &turn, 0, turn.count);
+
     const uint32_t hinge = hinge_part(state, fan, &turn);
     if (hinge) return hinge;
 
-    // edges along which it may tear
-    const Float3 normal = fan_normal(shell, fan);
+    // edges along which it may tear: each is the one that a cell shares with the cell before it
+    const Float3 normal = tear_normal(shell, fan), here = float3_load(shell->rest_position[vertex]);
     TearEdge edges[SPLIT_FAN];
     Float3 forward = {0, 0, 0};
     const int begin = turn.closed ? 0 : 1, count = turn.count;
     for (int j = begin; j < count; j++) {
-        edges[j] = tear_edge(plan, shell, state, pull, vertex, edge_end(shell, fan, turn.at[j]), normal);
-        edges[j].solid = is_left(state, fan, turn.at[j]) && is_left(state, fan, turn.at[j > 0 ? j - 1 : count - 1]);
-        if (edges[j].solid) forward = float3_add(forward, edges[j].along);
+        const int k = turn.at[j];
+        uint32_t end = shell->cells[fan->cell[k]][(fan->corner[k] + 1) & 3];
+        TearEdge *edge = &edges[j];
+        edge->along = float3_unit(float3_sub(float3_load(shell->rest_position[end]), here));
+        edge->strength = INFINITY;
+        edge->solid = is_left(state, fan, k) && is_left(state, fan, turn.at[j > 0 ? j - 1 : count - 1]);
+        float across = tensor_across(pull->force, float3_unit(float3_cross(normal, edge->along)));
+        if (across > EDGE_MIN * tensor_across(pull->force, pull->across))
+            edge->strength = tear_strength(plan, shell, state, vertex) + tear_strength(plan, shell, state, end);
+        if (edge->solid) forward = float3_add(forward, edge->along);
     }
 
     // the tear's direction: normal to the pull, forwards
@@ -287,11 +238,16 @@ static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const Stat
     if (float3_dot(direction, forward) < 0) direction = float3_scale(direction, -1);
     const float draw = random_unit(state->tear.split_count * 2654435769u); // multiples of the golden section
 
-    // one edge where the sheet is open, else two
-    int first = pick_edge(edges, begin, count, direction, draw);
+    // one edge where the sheet is open
+    int first = pick_edge(edges, begin, count, direction, draw), second = -1;
     if (first < 0) return 0;
     if (!turn.closed) return smaller_part(fan, &turn, first, count);
-    int second = open_edge(edges, count, edges[first].along);
+
+    // else two: the open edge that continues the first one the straightest, or one picked backwards
+    for (int j = 0; j < count; j++)
+        if (!edges[j].solid && (second < 0 || float3_dot(edges[j].along, edges[first].along) <
+                                                  float3_dot(edges[second].along, edges[first].along)))
+            second = j;
     if (second < 0) second = pick_edge(edges, 0, count, float3_scale(direction, -1), draw);
     if (second < 0 || second == first) return 0;
     return smaller_part(fan, &turn, first < second ? first : second, first < second ? second : first);
@@ -300,7 +256,6 @@ static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const Stat
 /// The same; 0 unless cells of both parts are left.
 static uint32_t choose_cells(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull,
                              uint32_t vertex, const Fan *fan) {
-    SINGE_ASSERT(vertex < shell->vertex_count);
     uint32_t cells = choose_part(plan, shell, state, pull, vertex, fan);
     return cells && any_alive(state, fan, cells, true) && any_alive(state, fan, cells, false) ? cells : 0;
 }
@@ -314,33 +269,21 @@ typedef struct Ratios {
 /// How close each vertex is to tearing; 0 if it would tear but can along none of its edges.
 static void fill_ratios(void *task, int begin, int end) {
     const Ratios *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->plan->vertex_count);
-    for (int v = begin; v < end; v++) {
-        TearPull pull = tear_pull(job->plan, job->shell, job->state, (uint32_t)v);
+    for (uint32_t v = (uint32_t)begin; v < (uint32_t)end; v++) {
+        TearPull pull = tear_pull(job->plan, job->shell, job->state, v);
         Fan fan;
         if (pull.ratio > TEAR_HINGE) {
-            split_fan(job->shell, (uint32_t)v, &fan);
+            split_fan(job->shell, v, &fan);
             Turn turn = turn_order(&fan);
             if (turn.count == fan.count && hinge_part(job->state, &fan, &turn)) pull.ratio /= TEAR_HINGE;
         }
-        if (pull.ratio > 1) {
-            if (!choose_cells(job->plan, job->shell, job->state, &pull, (uint32_t)v, &fan)) pull.ratio = 0;
-        }
+        if (pull.ratio > 1 && !choose_cells(job->plan, job->shell, job->state, &pull, v, &fan)) pull.ratio = 0;
         job->plan->ratio[v] = pull.ratio;
-    }
-}
-
-/// Removes the line force across a new tear, which no longer carries it.
-static void unload(State *state, const Fan *fan, Float3 across) {
-    for (int k = 0; k < fan->count; k++) {
-        float *force = state->tear.line_force[fan->cell[k]], carried = tensor_across(force, across);
-        if (carried > 0) tensor_add(force, across, -carried);
     }
 }
 
 /// Separates cells that are connected only by a vertex.
 static void separate(Shell *shell, State *state, uint32_t vertex) {
-    SINGE_ASSERT(vertex < shell->vertex_count);
     for (;;) {
         Fan fan;
         SplitResult result;
@@ -354,42 +297,69 @@ static void separate(Shell *shell, State *state, uint32_t vertex) {
     }
 }
 
-/// Splits a vertex; returns whether it did. Keeps two spare vertices for the ends of the edges that it tears.
-static bool tear_vertex(TearPlan *plan, Shell *shell, State *state, uint32_t vertex, bool *short_of_spares) {
-    SINGE_ASSERT(vertex < shell->vertex_count);
+/// Splits a vertex, if it can. Keeps two spare vertices for the ends of the edges that it tears.
+static void tear_vertex(TearPlan *plan, Shell *shell, State *state, uint32_t vertex, bool *short_of_spares) {
     TearPull pull = tear_pull(plan, shell, state, vertex);
     const Sheet *sheet = &shell->sheets[shell->matter.sheet[vertex]];
     Fan fan;
     SplitResult result;
     split_fan(shell, vertex, &fan);
     ShellSplit split = {vertex, choose_cells(plan, shell, state, &pull, vertex, &fan), SHELL_NONE};
-    if (split.cells == 0) return false;
+    if (split.cells == 0) return;
     if (sheet->spare_used + 1 + SPLIT_EDGES > sheet->spare_count || !split_is_possible(shell, &fan, &split)) {
         *short_of_spares = true;
-        return false;
+        return;
     }
-    unload(state, &fan, pull.across);
+
+    // the new tear no longer carries the line force across it
+    for (int k = 0; k < fan.count; k++) {
+        float *force = state->tear.line_force[fan.cell[k]], carried = tensor_across(force, pull.across);
+        if (carried > 0) tensor_add(force, pull.across, -carried);
+    }
+
     tear_split(shell, state, &fan, &split, &result);
     for (int k = 0; k < result.torn_count; k++) separate(shell, state, result.torn[k].far);
-    return true;
 }
 
 uint32_t tear_step(TearPlan *plan, Shell *shell, State *state, const float *const pull[SINGE_COLOUR_COUNT], Pool *pool,
                    float h, bool *short_of_spares) {
-    SINGE_ASSERT(h > 0);
     uint32_t before = state->tear.split_count;
     *short_of_spares = false;
     if (tear_measure(plan, shell, state, pull, pool, h) == 0) return 0;
+
+    // ends of torn edges
+    if (plan->split_count != shell->split_count) {
+        const SpringSet *blue = &shell->springs[SINGE_BLUE];
+        uint32_t first = blue->count - shell->edge_spare_count;
+        plan->split_count = shell->split_count;
+        memset(plan->torn, 0, plan->vertex_count);
+        for (uint32_t k = 0; k < shell->edge_spare_used; k++)
+            for (int end = 0; end < 2; end++)
+                plan->torn[blue->ends[first + k][end]] = plan->torn[blue->ends[shell->edge_origin[k]][end]] = 1;
+    }
+
+    // how close each vertex is to tearing
     Ratios job = {plan, shell, state};
-    mark_torn(plan, shell);
     tear_smooth(plan, shell, state, pool);
     pool_for(pool, (int)plan->vertex_count, POOL_BLOCK, fill_ratios, &job);
-    choose_leaders(plan, state);
+
+    // of every piece, that a tear runs in it, or the vertex where one may begin
+    memset(plan->leader, 0xff, plan->particle_count * sizeof *plan->leader);
+    for (uint32_t v = 0; v < plan->vertex_count; v++) {
+        if (!(plan->ratio[v] > 1)) continue;
+        SINGE_ASSERT(state->ablate.piece[v] >= 0); // only what is left can tear
+        uint32_t *leader = &plan->leader[state->ablate.piece[v]];
+        if (plan->torn[v]) *leader = LEADER_RUNS;
+        else if (*leader == SHELL_NONE || (*leader != LEADER_RUNS && plan->ratio[v] > plan->ratio[*leader]))
+            *leader = v;
+    }
+
     for (uint32_t v = 0; v < plan->vertex_count; v++) {
         if (!(plan->ratio[v] > 1)) continue;
         uint32_t leader = plan->leader[state->ablate.piece[v]];
         bool may = leader == LEADER_RUNS ? plan->torn[v] : leader == v;
         if (may && is_weakest(plan, shell, v)) tear_vertex(plan, shell, state, v, short_of_spares);
     }
+
     return state->tear.split_count - before;
 }

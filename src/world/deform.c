@@ -9,36 +9,35 @@ static SingeResult deform_no_memory(SingeError *error) {
     return error_set(error, SINGE_ERROR_MEMORY, "collider", -1, "out of memory for the mesh");
 }
 
-/// Allocates the second solid's own arrays; it shares the others.
-static bool deform_second(Memory *memory, DeformPose *pose) {
-    MeshSolid *second = &pose->solid[1];
-    *second = pose->solid[0];
-    second->vertices = NULL;
-    second->leaves = NULL;
-    second->nodes = NULL;
-    if (!NEW(memory, second->vertices, second->vertex_count) || !NEW(memory, second->leaves, second->leaf_count) ||
-        !NEW(memory, second->nodes, second->node_count))
-        return false;
-    memcpy(second->vertices, pose->solid[0].vertices, second->vertex_count * sizeof *second->vertices);
-    memcpy(second->leaves, pose->solid[0].leaves, second->leaf_count * sizeof *second->leaves);
-    memcpy(second->nodes, pose->solid[0].nodes, second->node_count * sizeof *second->nodes);
-    return true;
-}
-
 SingeResult deform_create(Memory *memory, uint32_t vertex_count, const float *vertices, uint32_t triangle_count,
                           const uint32_t *triangles, Deform *deform, SingeError *error) {
     *deform = (Deform){0};
     if (!NEW(memory, deform->pose, 1)) return deform_no_memory(error);
-    SingeResult result = mesh_solid_create_moving(memory, vertex_count, vertices, triangle_count, triangles,
-                                                  &deform->pose->solid[0], error);
-    if (!result && (!motion_create(memory, vertex_count, vertices, &deform->motion) ||
-                    !NEW(memory, deform->rest, vertex_count) || !deform_second(memory, deform->pose)))
-        result = deform_no_memory(error);
+
+    MeshSolid *first = &deform->pose->solid[0], *second = &deform->pose->solid[1];
+    SingeResult result =
+        mesh_solid_create_moving(memory, vertex_count, vertices, triangle_count, triangles, first, error);
+    if (!result) {
+        // the second solid has its own vertices and boxes, and shares the rest
+        *second = *first;
+        second->vertices = NULL;
+        second->leaves = NULL;
+        second->nodes = NULL;
+        if (!motion_create(memory, vertex_count, vertices, &deform->motion) ||
+            !NEW(memory, deform->rest, vertex_count) || !NEW(memory, second->vertices, second->vertex_count) ||
+            !NEW(memory, second->leaves, second->leaf_count) || !NEW(memory, second->nodes, second->node_count))
+            result = deform_no_memory(error);
+    }
+
     if (result) {
         deform->motion.count = vertex_count; // length of those of its arrays that exist
         deform_free(memory, deform);
         return result;
     }
+
+    memcpy(second->vertices, first->vertices, first->vertex_count * sizeof *first->vertices);
+    memcpy(second->leaves, first->leaves, first->leaf_count * sizeof *first->leaves);
+    memcpy(second->nodes, first->nodes, first->node_count * sizeof *first->nodes);
     memcpy(deform->rest, vertices, vertex_count * sizeof *deform->rest);
     deform_forget(deform);
     return SINGE_OK;
@@ -55,6 +54,7 @@ void deform_free(Memory *memory, Deform *deform) {
         motion_free(memory, &deform->motion);
         FREE(memory, deform->pose, 1);
     }
+
     *deform = (Deform){0};
 }
 
@@ -85,6 +85,7 @@ void deform_between(const Deform *deform, double before, double after) {
                                          float3_load(pose->solid[1 - pose->now].vertices[v]));
         farthest = fmaxf(farthest, float3_dot(displacement, displacement));
     }
+
     pose->farthest = sqrtf(farthest);
 }
 
@@ -92,7 +93,9 @@ Float3 deform_drift(const Deform *deform, Float3 p) {
     const MeshSolid *before = &deform->pose->solid[1 - deform->pose->now], *after = deform_solid(deform);
     float square = INFINITY;
     const uint32_t t = mesh_tree_nearest(before, p, &square);
+
     if (t == UINT32_MAX) return float3(0, 0, 0);
+
     const uint32_t *corner = before->triangles[t];
     Float3 v[3], drift = {0, 0, 0};
     for (int i = 0; i < 3; i++) v[i] = float3_load(before->vertices[corner[i]]);
@@ -100,6 +103,7 @@ Float3 deform_drift(const Deform *deform, Float3 p) {
     const float weights[3] = {(float)(1 - foot.s - foot.t), (float)foot.s, (float)foot.t};
     for (int i = 0; i < 3; i++)
         drift = float3_mad(drift, float3_sub(float3_load(after->vertices[corner[i]]), v[i]), weights[i]);
+
     return drift;
 }
 

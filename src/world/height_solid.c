@@ -11,21 +11,6 @@ enum { HEIGHT_BLOCK = 8 };
 
 static uint32_t height_solid_min(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
-static void height_ranges(HeightSolid *solid) {
-    for (uint32_t bj = 0; bj < solid->blocks[1]; bj++)
-        for (uint32_t bi = 0; bi < solid->blocks[0]; bi++) {
-            float *range = solid->ranges[bj * solid->blocks[0] + bi];
-            range[0] = INFINITY;
-            range[1] = -INFINITY;
-            for (uint32_t j = bj * HEIGHT_BLOCK; j <= height_solid_min((bj + 1) * HEIGHT_BLOCK, solid->rows - 1); j++)
-                for (uint32_t i = bi * HEIGHT_BLOCK; i <= height_solid_min((bi + 1) * HEIGHT_BLOCK, solid->columns - 1);
-                     i++) {
-                    float h = solid->heights[(size_t)j * solid->columns + i];
-                    range[0] = fminf(range[0], h), range[1] = fmaxf(range[1], h);
-                }
-        }
-}
-
 SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows, const float *heights,
                                 const float size[2], HeightSolid *solid, SingeError *error) {
     *solid = (HeightSolid){.columns = columns, .rows = rows, .low = INFINITY, .high = -INFINITY};
@@ -52,19 +37,35 @@ SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows,
         solid->step[d] = size[d] / (float)(n[d] - 1);
         solid->blocks[d] = (n[d] - 1 + HEIGHT_BLOCK - 1) / HEIGHT_BLOCK;
     }
+
     size_t blocks = (size_t)solid->blocks[0] * solid->blocks[1];
     if (!NEW(memory, solid->heights, count) || !NEW(memory, solid->ranges, blocks)) {
         height_solid_free(memory, solid);
         return error_set(error, SINGE_ERROR_MEMORY, "collider", -1, "out of memory for the heights");
     }
 
-    // copy, ranges
+    // copy, and the range of each block
     for (size_t k = 0; k < count; k++) {
         solid->heights[k] = heights[k];
         solid->low = fminf(solid->low, heights[k]);
         solid->high = fmaxf(solid->high, heights[k]);
     }
-    height_ranges(solid);
+
+    for (uint32_t bj = 0; bj < solid->blocks[1]; bj++)
+        for (uint32_t bi = 0; bi < solid->blocks[0]; bi++) {
+            uint32_t i_last = height_solid_min((bi + 1) * HEIGHT_BLOCK, columns - 1);
+            uint32_t j_last = height_solid_min((bj + 1) * HEIGHT_BLOCK, rows - 1);
+            float *range = solid->ranges[bj * solid->blocks[0] + bi];
+            range[0] = INFINITY;
+            range[1] = -INFINITY;
+            for (uint32_t j = bj * HEIGHT_BLOCK; j <= j_last; j++)
+                for (uint32_t i = bi * HEIGHT_BLOCK; i <= i_last; i++) {
+                    float h = heights[(size_t)j * columns + i];
+                    range[0] = fminf(range[0], h);
+                    range[1] = fmaxf(range[1], h);
+                }
+        }
+
     return SINGE_OK;
 }
 
@@ -102,77 +103,55 @@ static float height_at(const HeightSolid *solid, float x, float y, Float3 *norma
     Float3 corner[3];
     height_triangle(solid, i, j, t > s, corner);
     *normal = float3_unit(float3_cross(float3_sub(corner[1], corner[0]), float3_sub(corner[2], corner[0])));
+
     // the corners are a, b = a + (1, 0) or (1, 1) and c
     float b = t > s ? s : s - t, c = t > s ? t - s : t;
     return corner[0].z + b * (corner[1].z - corner[0].z) + c * (corner[2].z - corner[0].z);
 }
 
-typedef struct HeightFoot {
-    double square, away[3];
-} HeightFoot;
+/// Finds the foot on the surface, if it is nearer than *best.
+static void height_surface(const HeightSolid *solid, Float3 p, TriangleClosest *best) {
+    const float x[2] = {p.x, p.y}, reach = (float)sqrt(best->square) * 1.0001f;
+    uint32_t from[2], to[2];
+    float part;
 
-static void height_offer(HeightFoot *best, const TriangleClosest *foot) {
-    if (!(foot->square < best->square)) return;
-    *best = (HeightFoot){foot->square, {foot->away[0], foot->away[1], foot->away[2]}};
-}
-
-/// Square of the distance from p to the box of cells [i, i_end) by [j, j_end) between two heights.
-static double height_box(const HeightSolid *solid, Float3 p, const uint32_t first[2], const uint32_t end[2],
-                         const float range[2]) {
-    const float x[2] = {p.x, p.y};
-    double sum = 0;
     for (int d = 0; d < 2; d++) {
-        double low = (double)((float)first[d] * solid->step[d] - solid->half[d]) - (double)x[d];
-        double high = (double)x[d] - (double)((float)end[d] * solid->step[d] - solid->half[d]);
-        double out = fmax(fmax(low, high), 0);
-        sum += out * out;
+        from[d] = height_cell(solid, d, x[d] - reach, &part);
+        to[d] = height_cell(solid, d, x[d] + reach, &part);
     }
-    double out = fmax(fmax((double)range[0] - (double)p.z, (double)p.z - (double)range[1]), 0);
-    return sum + out * out;
-}
 
-static void height_block(const HeightSolid *solid, Float3 p, uint32_t bi, uint32_t bj, const uint32_t from[2],
-                         const uint32_t to[2], HeightFoot *best) {
-    uint32_t first[2] = {bi * HEIGHT_BLOCK, bj * HEIGHT_BLOCK};
-    uint32_t end[2] = {height_solid_min(first[0] + HEIGHT_BLOCK, solid->columns - 1),
-                       height_solid_min(first[1] + HEIGHT_BLOCK, solid->rows - 1)};
-    if (height_box(solid, p, first, end, solid->ranges[bj * solid->blocks[0] + bi]) >= best->square) return;
-    for (int d = 0; d < 2; d++) {
-        if (first[d] < from[d]) first[d] = from[d];
-        if (end[d] > to[d] + 1) end[d] = to[d] + 1;
-    }
-    for (uint32_t j = first[1]; j < end[1]; j++)
-        for (uint32_t i = first[0]; i < end[0]; i++)
-            for (int upper = 0; upper < 2; upper++) {
-                Float3 corner[3];
-                height_triangle(solid, i, j, upper, corner);
-                TriangleClosest foot = triangle_closest(p, corner[0], corner[1], corner[2]);
-                height_offer(best, &foot);
-            }
-}
-
-/// Finds the foot on the surface, if it is nearer than best->square.
-static void height_surface(const HeightSolid *solid, Float3 p, HeightFoot *best) {
-    float reach = (float)sqrt(best->square) * 1.0001f, part;
-    uint32_t from[2] = {height_cell(solid, 0, p.x - reach, &part), height_cell(solid, 1, p.y - reach, &part)};
-    uint32_t to[2] = {height_cell(solid, 0, p.x + reach, &part), height_cell(solid, 1, p.y + reach, &part)};
     for (uint32_t bj = from[1] / HEIGHT_BLOCK; bj <= to[1] / HEIGHT_BLOCK; bj++)
-        for (uint32_t bi = from[0] / HEIGHT_BLOCK; bi <= to[0] / HEIGHT_BLOCK; bi++)
-            height_block(solid, p, bi, bj, from, to, best);
-}
+        for (uint32_t bi = from[0] / HEIGHT_BLOCK; bi <= to[0] / HEIGHT_BLOCK; bi++) {
+            uint32_t first[2] = {bi * HEIGHT_BLOCK, bj * HEIGHT_BLOCK};
+            uint32_t end[2] = {height_solid_min(first[0] + HEIGHT_BLOCK, solid->columns - 1),
+                               height_solid_min(first[1] + HEIGHT_BLOCK, solid->rows - 1)};
 
-/// The same for the walls.
-static void height_walls(const HeightSolid *solid, Float3 p, HeightFoot *best) {
-    for (int wall = 0; wall < 4; wall++) {
-        float side = wall & 1 ? 1 : -1, at[2] = {p.x, p.y};
-        int axis = wall >> 1;
-        at[axis] = side * solid->half[axis];
-        at[1 - axis] = fminf(fmaxf(at[1 - axis], -solid->half[1 - axis]), solid->half[1 - axis]);
-        Float3 normal;
-        TriangleClosest foot = {.away = {(double)p.x - (double)at[0], (double)p.y - (double)at[1], 0}};
-        foot.square = triangle_dot(foot.away, foot.away);
-        if (foot.square < best->square && p.z <= height_at(solid, at[0], at[1], &normal)) height_offer(best, &foot);
-    }
+            // square of the distance to the block's box
+            const float *range = solid->ranges[bj * solid->blocks[0] + bi];
+            double sum = 0;
+            for (int d = 0; d < 2; d++) {
+                double low = (double)((float)first[d] * solid->step[d] - solid->half[d]) - (double)x[d];
+                double high = (double)x[d] - (double)((float)end[d] * solid->step[d] - solid->half[d]);
+                double out = fmax(fmax(low, high), 0);
+                sum += out * out;
+            }
+            double out = fmax(fmax((double)range[0] - (double)p.z, (double)p.z - (double)range[1]), 0);
+            if (sum + out * out >= best->square) continue;
+
+            // the triangles of its cells that are within reach
+            for (int d = 0; d < 2; d++) {
+                if (first[d] < from[d]) first[d] = from[d];
+                if (end[d] > to[d] + 1) end[d] = to[d] + 1;
+            }
+            for (uint32_t j = first[1]; j < end[1]; j++)
+                for (uint32_t i = first[0]; i < end[0]; i++)
+                    for (int upper = 0; upper < 2; upper++) {
+                        Float3 corner[3];
+                        height_triangle(solid, i, j, upper, corner);
+                        TriangleClosest foot = triangle_closest(p, corner[0], corner[1], corner[2]);
+                        if (foot.square < best->square) *best = foot;
+                    }
+        }
 }
 
 float height_solid_distance(const HeightSolid *solid, Float3 p, float limit, Float3 *normal) {
@@ -183,21 +162,37 @@ float height_solid_distance(const HeightSolid *solid, Float3 p, float limit, Flo
     *normal = float3(0, 0, 1);
     if (bound > 0 && bound >= limit) return bound;
     if (!isfinite(p.x + p.y + p.z)) return INFINITY;
+
     float above = p.z - height_at(solid, p.x, p.y, normal);
     bool inside = over && above < 0;
     if (limit == 0) return inside ? -1 : 1;
+
     // upper bound: the surface above or below the nearest position of the rectangle
     double slack = 1e-6 * (double)(solid->half[0] + solid->half[1] + float3_length(p)); // heights are rounded
     double max = (double)float3_length(float3(out.x, out.y, above)) + slack;
     if (!inside) max = fmin(max, (double)limit); // surface beyond the limit need not be found
-    HeightFoot best = {.square = max * max};
+    TriangleClosest best = {.square = max * max};
     double unfound = best.square;
-    height_walls(solid, p, &best);
+
+    // the foot on the walls, then on the surface
+    for (int wall = 0; wall < 4; wall++) {
+        float side = wall & 1 ? 1 : -1, at[2] = {p.x, p.y};
+        int axis = wall >> 1;
+        at[axis] = side * solid->half[axis];
+        at[1 - axis] = fminf(fmaxf(at[1 - axis], -solid->half[1 - axis]), solid->half[1 - axis]);
+        Float3 unused;
+        TriangleClosest foot = {.away = {(double)p.x - (double)at[0], (double)p.y - (double)at[1], 0}};
+        foot.square = triangle_dot(foot.away, foot.away);
+        if (foot.square < best.square && p.z <= height_at(solid, at[0], at[1], &unused)) best = foot;
+    }
+
     height_surface(solid, p, &best);
     if (!(best.square < unfound)) return inside ? above : (float)max;
+
     double distance = sqrt(best.square), sign = inside ? -1 : 1;
     if (distance > 1e-7 * (1 + (double)float3_length(p)))
         *normal = float3((float)(sign * best.away[0] / distance), (float)(sign * best.away[1] / distance),
                          (float)(sign * best.away[2] / distance));
+
     return (float)(sign * distance);
 }

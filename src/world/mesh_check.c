@@ -40,7 +40,11 @@ static void table_free(Memory *memory, PairTable *table) {
 /// The location of a key's value; UINT32_MAX there if it has none yet.
 static uint32_t *table_find(const PairTable *table, const uint32_t key[3]) {
     uint64_t hash = 0xcbf29ce484222325u;
-    for (int i = 0; i < 3; i++) hash = (hash ^ key[i]) * 0x9e3779b97f4a7c15u, hash ^= hash >> 29;
+    for (int i = 0; i < 3; i++) {
+        hash = (hash ^ key[i]) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 29;
+    }
+
     size_t k = (size_t)hash & (table->capacity - 1);
     while (table->values[k] != UINT32_MAX && memcmp(table->keys[k], key, sizeof *table->keys) != 0)
         k = (k + 1) & (table->capacity - 1);
@@ -60,11 +64,13 @@ static SingeResult mesh_check_numbers(uint32_t vertex_count, const float *vertic
         if (!(fabsf(vertices[k]) <= MESH_POSITION_MAX))
             return error_set(error, SINGE_ERROR_MESH, "collider", (int64_t)(k / 3),
                              "vertex %zu of the mesh is not finite or beyond 10 km", k / 3);
+
     for (size_t k = 0; k < 3 * (size_t)triangle_count; k++)
         if (triangles[k] >= vertex_count)
             return error_set(error, SINGE_ERROR_MESH, "collider", (int64_t)(k / 3),
                              "triangle %zu of the mesh names vertex %u, but there are %u", k / 3, triangles[k],
                              vertex_count);
+
     return SINGE_OK;
 }
 
@@ -72,6 +78,7 @@ static SingeResult mesh_check_numbers(uint32_t vertex_count, const float *vertic
 static SingeResult mesh_join(Memory *memory, const MeshSolid *solid, uint32_t *first, SingeError *error) {
     PairTable table = {0};
     bool ok = table_create(memory, &table, solid->vertex_count);
+
     for (uint32_t v = 0; ok && v < solid->vertex_count; v++) {
         uint32_t key[3];
         memcpy(key, solid->vertices[v], sizeof key);
@@ -79,14 +86,9 @@ static SingeResult mesh_join(Memory *memory, const MeshSolid *solid, uint32_t *f
         if (*position == UINT32_MAX) *position = v;
         first[v] = *position;
     }
+
     table_free(memory, &table);
     return ok ? SINGE_OK : mesh_memory(error);
-}
-
-static Float3 mesh_cross(const MeshSolid *solid, const uint32_t t[3]) {
-    Float3 a = float3_load(solid->vertices[t[0]]);
-    return float3_cross(float3_sub(float3_load(solid->vertices[t[1]]), a),
-                        float3_sub(float3_load(solid->vertices[t[2]]), a));
 }
 
 /// Writes the triangles with the joined vertices, without those that have become degenerate; `source` gets their
@@ -96,12 +98,17 @@ static SingeResult mesh_gather(const uint32_t *triangles, const uint32_t *first,
     uint32_t count = 0;
     for (uint32_t t = 0; t < solid->triangle_count; t++) {
         uint32_t *corner = solid->triangles[count];
-        for (int i = 0; i < 3; i++) corner[i] = first[triangles[3 * (size_t)t + (size_t)i]];
+        Float3 v[3];
+        for (int i = 0; i < 3; i++) {
+            corner[i] = first[triangles[3 * (size_t)t + (size_t)i]];
+            v[i] = float3_load(solid->vertices[corner[i]]);
+        }
         if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
         source[count++] = t;
-        if (!(float3_length(mesh_cross(solid, corner)) > MESH_AREA_MIN))
+        if (!(float3_length(float3_cross(float3_sub(v[1], v[0]), float3_sub(v[2], v[0]))) > MESH_AREA_MIN))
             return error_set(error, SINGE_ERROR_MESH, "collider", t, "triangle %u of the mesh has no area", t);
     }
+
     memset(solid->triangles[count], 0, (solid->triangle_count - count) * sizeof *solid->triangles);
     solid->triangle_count = count;
     return count ? SINGE_OK : mesh_bad(error, -1, "all triangles of the mesh are degenerate");
@@ -111,13 +118,17 @@ static SingeResult mesh_gather(const uint32_t *triangles, const uint32_t *first,
 static void mesh_turn(MeshSolid *solid) {
     double volume = 0;
     Float3 o = float3_load(solid->vertices[solid->triangles[0][0]]);
+
     for (uint32_t t = 0; t < solid->triangle_count; t++) {
         const uint32_t *corner = solid->triangles[t];
         double p[3][3];
         for (int i = 0; i < 3; i++) {
             Float3 v = float3_sub(float3_load(solid->vertices[corner[i]]), o);
-            p[i][0] = (double)v.x, p[i][1] = (double)v.y, p[i][2] = (double)v.z;
+            p[i][0] = (double)v.x;
+            p[i][1] = (double)v.y;
+            p[i][2] = (double)v.z;
         }
+
         for (int i = 0; i < 3; i++) {
             int e = (i + 1) % 3, f = (i + 2) % 3;
             volume += p[0][i] * (p[1][e] * p[2][f] - p[1][f] * p[2][e]);
@@ -146,6 +157,7 @@ static SingeResult mesh_link(const PairTable *edges, const uint32_t *source, Mes
                                  source[*position], source[t], key[0], key[1]);
             *position = t;
         }
+
     for (uint32_t t = 0; t < solid->triangle_count; t++)
         for (uint32_t i = 0; i < 3; i++) {
             uint32_t key[3] = {solid->triangles[t][(i + 1) % 3], solid->triangles[t][i], 0};
@@ -156,6 +168,7 @@ static SingeResult mesh_link(const PairTable *edges, const uint32_t *source, Mes
                                  key[1], key[0]);
             solid->neighbours[t][i] = other;
         }
+
     return SINGE_OK;
 }
 

@@ -32,31 +32,15 @@ static Float3 solid_face_normal(const MeshSolid *solid, uint32_t t) {
         float3_cross(float3_sub(solid_corner(solid, t, 1), a), float3_sub(solid_corner(solid, t, 2), a)));
 }
 
-static bool solid_normals(Memory *memory, MeshSolid *solid) {
-    if (!NEW(memory, solid->vertex_normals, solid->vertex_count)) return false;
-    for (uint32_t t = 0; t < solid->triangle_count; t++) {
-        Float3 normal = solid_face_normal(solid, t);
-        for (uint32_t i = 0; i < 3; i++) {
-            Float3 at = solid_corner(solid, t, i), a = float3_sub(solid_corner(solid, t, (i + 1) % 3), at);
-            Float3 b = float3_sub(solid_corner(solid, t, (i + 2) % 3), at);
-            float angle = real_atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b));
-            float *sum = solid->vertex_normals[solid->triangles[t][i]];
-            float3_store(sum, float3_mad(float3_load(sum), normal, angle));
-        }
-    }
-    return true;
+/// A triangle's angle at a corner.
+static float solid_angle(const MeshSolid *solid, uint32_t t, uint32_t corner) {
+    Float3 at = solid_corner(solid, t, corner), a = float3_sub(solid_corner(solid, t, (corner + 1) % 3), at);
+    Float3 b = float3_sub(solid_corner(solid, t, (corner + 2) % 3), at);
+    return real_atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b));
 }
 
-static void solid_bounds(MeshSolid *solid) {
-    Float3 low = solid_corner(solid, 0, 0), high = low;
-    for (uint32_t t = 0; t < solid->triangle_count; t++)
-        for (uint32_t i = 0; i < 3; i++) {
-            Float3 v = solid_corner(solid, t, i);
-            low = float3(fminf(low.x, v.x), fminf(low.y, v.y), fminf(low.z, v.z));
-            high = float3(fmaxf(high.x, v.x), fmaxf(high.y, v.y), fmaxf(high.z, v.z));
-        }
-    solid->low = low;
-    solid->high = high;
+static SingeResult solid_no_memory(SingeError *error) {
+    return error_set(error, SINGE_ERROR_MEMORY, "collider", -1, "out of memory for the mesh");
 }
 
 static Float3 solid_cell_centre(const MeshSolid *solid, int i, int j, int k) {
@@ -64,48 +48,42 @@ static Float3 solid_cell_centre(const MeshSolid *solid, int i, int j, int k) {
                   solid->origin.z + ((float)k + 0.5f) * solid->cell);
 }
 
-/// A vertex's normal, weighted by angles, from the triangles around it.
+/// A vertex's normal, weighted by angles: stored, or from the triangles around it.
 static Float3 solid_vertex_normal(const MeshSolid *solid, uint32_t t, uint32_t corner) {
-    if (solid->vertex_normals) return float3_load(solid->vertex_normals[solid->triangles[t][corner]]);
     const uint32_t vertex = solid->triangles[t][corner], first = t;
-    Float3 sum = {0, 0, 0}, at = float3_load(solid->vertices[vertex]);
+    if (solid->vertex_normals) return float3_load(solid->vertex_normals[vertex]);
+    Float3 sum = {0, 0, 0};
     uint32_t turns = 0;
     do {
         uint32_t i = 0;
         while (i < 2 && solid->triangles[t][i] != vertex) i++;
-        Float3 a = float3_sub(solid_corner(solid, t, (i + 1) % 3), at);
-        Float3 b = float3_sub(solid_corner(solid, t, (i + 2) % 3), at);
-        sum = float3_mad(sum, solid_face_normal(solid, t),
-                         real_atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b)));
+        sum = float3_mad(sum, solid_face_normal(solid, t), solid_angle(solid, t, i));
         t = solid->neighbours[t][i];
     } while (t != first && ++turns < solid->triangle_count);
     return sum;
-}
-
-/// The pseudonormal at a foot.
-static Float3 solid_pseudonormal(const MeshSolid *solid, uint32_t t, int feature) {
-    if (feature >= TRIANGLE_FACE) return solid_face_normal(solid, t);
-    if (feature < TRIANGLE_EDGE)
-        return float3_unit(solid_vertex_normal(solid, t, (uint32_t)(feature - TRIANGLE_CORNER)));
-    Float3 sum = float3_add(solid_face_normal(solid, t),
-                            solid_face_normal(solid, solid->neighbours[t][feature - TRIANGLE_EDGE]));
-    return float3_unit(sum);
 }
 
 /// The signed distance from triangle t, the nearest one.
 static float solid_signed(const MeshSolid *solid, Float3 p, uint32_t t, Float3 *normal) {
     Float3 a = solid_corner(solid, t, 0), b = solid_corner(solid, t, 1), c = solid_corner(solid, t, 2);
     TriangleClosest foot = triangle_closest(p, a, b, c);
-    Float3 pseudo = solid_pseudonormal(solid, t, foot.feature);
-    const double n[3] = {(double)pseudo.x, (double)pseudo.y, (double)pseudo.z};
+
+    // the pseudonormal of the feature
+    const int edge = foot.feature - TRIANGLE_EDGE, corner = foot.feature - TRIANGLE_CORNER;
+    if (edge < 0) *normal = float3_unit(solid_vertex_normal(solid, t, (uint32_t)corner));
+    else *normal = solid_face_normal(solid, t);
+    if (edge >= 0 && foot.feature < TRIANGLE_FACE)
+        *normal = float3_unit(float3_add(*normal, solid_face_normal(solid, solid->neighbours[t][edge])));
+    const double n[3] = {(double)normal->x, (double)normal->y, (double)normal->z};
     double along = triangle_dot(foot.away, n), distance = sqrt(foot.square);
     float sign = along < 0 ? -1 : 1;
-    *normal = pseudo;
+
     // at an edge or a vertex the normal points from the foot to p or back, unless that is lost in rounding
     if (foot.feature < TRIANGLE_FACE && distance > 1e-7 * (1 + (double)float3_length(p))) {
         double scale = (double)sign / distance;
         *normal = float3((float)(foot.away[0] * scale), (float)(foot.away[1] * scale), (float)(foot.away[2] * scale));
     }
+
     return sign * (float)distance;
 }
 
@@ -113,6 +91,7 @@ static float solid_signed(const MeshSolid *solid, Float3 p, uint32_t t, Float3 *
 static bool solid_grid(Memory *memory, MeshSolid *solid) {
     Float3 size = float3_sub(solid->high, solid->low);
     double wanted = fmin(fmax(GRID_SHARE * solid->triangle_count, GRID_MIN), GRID_MAX);
+
     // a flat mesh counts as thicker: otherwise all cells would lie in its plane
     double min = (double)fmaxf(size.x, fmaxf(size.y, size.z)) / 256;
     double side[3] = {fmax((double)size.x, min), fmax((double)size.y, min), fmax((double)size.z, min)};
@@ -122,9 +101,11 @@ static bool solid_grid(Memory *memory, MeshSolid *solid) {
         solid->cells[d] = (int32_t)ceil(side[d] / (double)solid->cell) + 2;
         count *= (size_t)solid->cells[d];
     }
+
     Float3 half = float3((float)solid->cells[0], (float)solid->cells[1], (float)solid->cells[2]);
     solid->origin = float3_mad(float3_scale(float3_add(solid->low, solid->high), 0.5f), half, -0.5f * solid->cell);
     if (!NEW(memory, solid->coarse, count)) return false;
+
     float *coarse = solid->coarse;
     for (int k = 0; k < solid->cells[2]; k++)
         for (int j = 0; j < solid->cells[1]; j++) {
@@ -136,20 +117,33 @@ static bool solid_grid(Memory *memory, MeshSolid *solid) {
                 square = next * next;
             }
         }
+
     return true;
 }
 
 SingeResult mesh_solid_create(Memory *memory, uint32_t vertex_count, const float *vertices, uint32_t triangle_count,
                               const uint32_t *triangles, MeshSolid *solid, SingeError *error) {
-    *solid = (MeshSolid){0};
-    SingeResult result = mesh_solid_take(memory, vertex_count, vertices, triangle_count, triangles, solid, error);
-    if (!result) {
-        solid_bounds(solid);
-        if (!solid_normals(memory, solid) || !mesh_tree_create(memory, solid) || !solid_grid(memory, solid))
-            result = error_set(error, SINGE_ERROR_MEMORY, "collider", -1, "out of memory for the mesh");
+    SingeResult result =
+        mesh_solid_create_moving(memory, vertex_count, vertices, triangle_count, triangles, solid, error);
+    if (result) return result;
+    if (!NEW(memory, solid->vertex_normals, solid->vertex_count)) {
+        mesh_solid_free(memory, solid);
+        return solid_no_memory(error);
     }
-    if (result) mesh_solid_free(memory, solid);
-    return result;
+
+    // vertices' normals, weighted by angles
+    for (uint32_t t = 0; t < solid->triangle_count; t++) {
+        Float3 normal = solid_face_normal(solid, t);
+        for (uint32_t i = 0; i < 3; i++) {
+            float *sum = solid->vertex_normals[solid->triangles[t][i]];
+            float3_store(sum, float3_mad(float3_load(sum), normal, solid_angle(solid, t, i)));
+        }
+    }
+
+    if (solid_grid(memory, solid)) return SINGE_OK;
+
+    mesh_solid_free(memory, solid);
+    return solid_no_memory(error);
 }
 
 SingeResult mesh_solid_create_moving(Memory *memory, uint32_t vertex_count, const float *vertices,
@@ -157,13 +151,22 @@ SingeResult mesh_solid_create_moving(Memory *memory, uint32_t vertex_count, cons
                                      SingeError *error) {
     *solid = (MeshSolid){.cell = 1};
     SingeResult result = mesh_solid_take(memory, vertex_count, vertices, triangle_count, triangles, solid, error);
-    if (!result) {
-        solid_bounds(solid);
-        if (!mesh_tree_create(memory, solid))
-            result = error_set(error, SINGE_ERROR_MEMORY, "collider", -1, "out of memory for the mesh");
+    if (!result && !mesh_tree_create(memory, solid)) result = solid_no_memory(error);
+    if (result) {
+        mesh_solid_free(memory, solid);
+        return result;
     }
-    if (result) mesh_solid_free(memory, solid);
-    return result;
+
+    // bounds
+    solid->low = solid->high = solid_corner(solid, 0, 0);
+    for (uint32_t t = 0; t < solid->triangle_count; t++)
+        for (uint32_t i = 0; i < 3; i++) {
+            Float3 v = solid_corner(solid, t, i), low = solid->low, high = solid->high;
+            solid->low = float3(fminf(low.x, v.x), fminf(low.y, v.y), fminf(low.z, v.z));
+            solid->high = float3(fmaxf(high.x, v.x), fmaxf(high.y, v.y), fmaxf(high.z, v.z));
+        }
+
+    return SINGE_OK;
 }
 
 void mesh_solid_free(Memory *memory, MeshSolid *solid) {
@@ -176,16 +179,6 @@ void mesh_solid_free(Memory *memory, MeshSolid *solid) {
     FREE(memory, solid->nodes, solid->node_count);
     FREE(memory, solid->coarse, (size_t)solid->cells[0] * (size_t)solid->cells[1] * (size_t)solid->cells[2]);
     *solid = (MeshSolid){0};
-}
-
-/// Bounds of the distance's magnitude by the grid. Returns a number with the distance's sign, if the min is above 0.
-static float solid_look(const MeshSolid *solid, const int at[3], Float3 p, float *min, float *max) {
-    size_t index = ((size_t)at[2] * (size_t)solid->cells[1] + (size_t)at[1]) * (size_t)solid->cells[0] + (size_t)at[0];
-    float coarse = solid->coarse[index];
-    float distance = 1.0001f * float3_length(float3_sub(p, solid_cell_centre(solid, at[0], at[1], at[2])));
-    *min = fabsf(coarse) - distance;
-    *max = fabsf(coarse) + distance;
-    return coarse;
 }
 
 float mesh_solid_distance(const MeshSolid *solid, Float3 p, float limit, Float3 *normal) {
@@ -205,7 +198,11 @@ float mesh_solid_distance(const MeshSolid *solid, Float3 p, float limit, Float3 
     // bounds by the grid, or by the box outside of it
     float min = 0, max = INFINITY;
     if (within) {
-        float coarse = solid_look(solid, at, p, &min, &max);
+        int row = at[2] * solid->cells[1] + at[1];
+        float coarse = solid->coarse[(size_t)row * (size_t)solid->cells[0] + (size_t)at[0]];
+        float distance = 1.0001f * float3_length(float3_sub(p, solid_cell_centre(solid, at[0], at[1], at[2])));
+        min = fabsf(coarse) - distance;
+        max = fabsf(coarse) + distance;
         if (min > 0 && min >= limit && (coarse > 0 || limit == 0)) return coarse > 0 ? min : -min;
     } else {
         Float3 low = float3_sub(solid->low, p), high = float3_sub(p, solid->high);

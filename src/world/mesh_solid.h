@@ -46,6 +46,7 @@ typedef struct MeshSolid {
 /// vertex.
 SingeResult mesh_solid_create(Memory *memory, uint32_t vertex_count, const float *vertices, uint32_t triangle_count,
                               const uint32_t *triangles, MeshSolid *solid, SingeError *error);
+
 /// The same for a mesh whose vertices will move: without a grid of distances and vertex normals, which would have to be
 /// rebuilt.
 SingeResult mesh_solid_create_moving(Memory *memory, uint32_t vertex_count, const float *vertices,
@@ -64,8 +65,10 @@ SingeResult mesh_solid_take(Memory *memory, uint32_t vertex_count, const float *
 // mesh_tree.c
 /// Fills in order, leaves and nodes; false when out of memory.
 bool mesh_tree_create(Memory *memory, MeshSolid *solid);
+
 /// Updates the leaves, the boxes, `low` and `high` after vertices have moved.
 void mesh_tree_refit(MeshSolid *solid);
+
 /// The triangle nearest to p among those nearer than sqrt(*square), which becomes its squared distance; UINT32_MAX:
 /// none.
 uint32_t mesh_tree_nearest(const MeshSolid *solid, Float3 p, float *square);

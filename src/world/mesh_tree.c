@@ -1,6 +1,7 @@
 // The nearest of many triangles, by a tree of boxes, four side by side: a node's boxes, or a leaf's triangles, are
 // tested at once (Wald et al., Getting rid of packets, 2008, for rays). Triangles are halved along the longest axis of
 // the centroids; all leaves but the last are full, so that the number of nodes follows from that of triangles.
+#include "common/assertion.h"
 #include "world/mesh_solid.h"
 
 #include <string.h>
@@ -19,42 +20,31 @@ static uint32_t tree_half(uint32_t count) {
     return count <= SOLID_WIDE ? count : (count / 2 + SOLID_WIDE - 1) / SOLID_WIDE * SOLID_WIDE;
 }
 
+/// The numbers of triangles of a node's children.
+static void tree_parts(uint32_t count, uint32_t parts[4]) {
+    uint32_t half = tree_half(count);
+    parts[0] = tree_half(half);
+    parts[1] = half - parts[0];
+    parts[2] = tree_half(count - half);
+    parts[3] = count - half - parts[2];
+}
+
 static void tree_count(uint32_t count, uint32_t *nodes) {
-    uint32_t half = tree_half(count), parts[4] = {tree_half(half), 0, tree_half(count - half), 0};
-    parts[1] = half - parts[0], parts[3] = count - half - parts[2];
+    uint32_t parts[4];
+    tree_parts(count, parts);
     ++*nodes;
     for (int i = 0; i < 4; i++)
         if (parts[i] > SOLID_WIDE) tree_count(parts[i], nodes);
 }
 
-static void tree_box(const TreeBuild *build, uint32_t first, uint32_t count, Float3 *low, Float3 *high) {
-    *low = float3(INFINITY, INFINITY, INFINITY);
-    *high = float3(-INFINITY, -INFINITY, -INFINITY);
-    for (uint32_t k = first; k < first + count; k++)
-        for (int i = 0; i < 3; i++) {
-            const float *v = build->solid->vertices[build->solid->triangles[build->solid->order[k]][i]];
-            *low = float3(fminf(low->x, v[0]), fminf(low->y, v[1]), fminf(low->z, v[2]));
-            *high = float3(fmaxf(high->x, v[0]), fmaxf(high->y, v[1]), fmaxf(high->z, v[2]));
+/// Extends a box, low and high, to a triangle.
+static void tree_box_add(float box[2][3], const MeshSolid *solid, uint32_t triangle) {
+    for (int i = 0; i < 3; i++)
+        for (int d = 0; d < 3; d++) {
+            float x = solid->vertices[solid->triangles[triangle][i]][d];
+            box[0][d] = fminf(box[0][d], x);
+            box[1][d] = fmaxf(box[1][d], x);
         }
-}
-
-/// The axis along which the centroids have the max extent.
-static int tree_axis(const TreeBuild *build, uint32_t first, uint32_t count) {
-    int best = 0;
-    float max = -1;
-    for (int axis = 0; axis < 3; axis++) {
-        float low = INFINITY, high = -INFINITY;
-        for (uint32_t k = first; k < first + count; k++) {
-            float x = build->centroid[build->solid->order[k]][axis];
-            low = fminf(low, x);
-            high = fmaxf(high, x);
-        }
-        if (high - low > max) {
-            max = high - low;
-            best = axis;
-        }
-    }
-    return best;
 }
 
 /// Whether triangle a comes before b along the axis; equal ones are ordered by number, so that the order is unique.
@@ -63,10 +53,25 @@ static bool tree_before(const TreeBuild *build, int axis, uint32_t a, uint32_t b
     return x < y || (!(y < x) && a < b);
 }
 
-/// Moves the first `half` triangles along the axis to the front (Hoare's selection).
+/// Moves the first `half` triangles along the axis in which the centroids extend the most to the front (Hoare's
+/// selection).
 static void tree_split(TreeBuild *build, uint32_t first, uint32_t count, uint32_t half) {
     uint32_t *order = build->solid->order;
-    int axis = tree_axis(build, first, count);
+    int axis = 0;
+    float widest = -1;
+
+    for (int d = 0; d < 3; d++) {
+        float min = INFINITY, max = -INFINITY;
+        for (uint32_t k = first; k < first + count; k++) {
+            min = fminf(min, build->centroid[order[k]][d]);
+            max = fmaxf(max, build->centroid[order[k]][d]);
+        }
+
+        if (!(max - min > widest)) continue;
+        widest = max - min;
+        axis = d;
+    }
+
     int64_t low = first, high = (int64_t)first + count - 1, wanted = (int64_t)first + half;
     while (half < count && low < high) {
         uint32_t pivot = order[low + (high - low) / 2];
@@ -76,8 +81,10 @@ static void tree_split(TreeBuild *build, uint32_t first, uint32_t count, uint32_
             while (tree_before(build, axis, pivot, order[j])) j--;
             if (i > j) break;
             uint32_t swap = order[i];
-            order[i++] = order[j], order[j--] = swap;
+            order[i++] = order[j];
+            order[j--] = swap;
         }
+
         if (wanted <= j) high = j;
         else if (wanted >= i) low = i;
         else break;
@@ -87,6 +94,7 @@ static void tree_split(TreeBuild *build, uint32_t first, uint32_t count, uint32_
 static int32_t tree_leaf(TreeBuild *build, uint32_t first, uint32_t count) {
     uint32_t index = first / SOLID_WIDE;
     SolidLeaf *leaf = &build->solid->leaves[index];
+
     for (uint32_t lane = 0; lane < SOLID_WIDE; lane++) {
         uint32_t slot = first + (lane < count ? lane : count - 1);
         const uint32_t *corner = build->solid->triangles[build->solid->order[slot]];
@@ -97,30 +105,32 @@ static int32_t tree_leaf(TreeBuild *build, uint32_t first, uint32_t count) {
             leaf->ac[i][lane] = build->solid->vertices[corner[2]][i] - a;
         }
     }
+
     return ~(int32_t)index;
 }
 
 static int32_t tree_build(TreeBuild *build, uint32_t first, uint32_t count) {
     if (count <= SOLID_WIDE) return tree_leaf(build, first, count);
-    uint32_t index = build->nodes++, half = tree_half(count);
-    uint32_t parts[4] = {tree_half(half), 0, tree_half(count - half), 0};
-    parts[1] = half - parts[0], parts[3] = count - half - parts[2];
+
+    const MeshSolid *solid = build->solid;
+    uint32_t index = build->nodes++, half = tree_half(count), parts[4];
+    tree_parts(count, parts);
     tree_split(build, first, count, half);
     if (half > SOLID_WIDE) tree_split(build, first, half, parts[0]);
     if (count - half > SOLID_WIDE) tree_split(build, first + half, count - half, parts[2]);
+
     for (int i = 0; i < SOLID_WIDE; first += parts[i++]) {
-        Float3 low, high;
-        tree_box(build, first, parts[i], &low, &high);
+        float box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+        for (uint32_t k = first; k < first + parts[i]; k++) tree_box_add(box, solid, solid->order[k]);
         int32_t child = parts[i] ? tree_build(build, first, parts[i]) : 0;
-        SolidNode *node = &build->solid->nodes[index];
-        node->low[0][i] = low.x;
-        node->low[1][i] = low.y;
-        node->low[2][i] = low.z;
-        node->high[0][i] = high.x;
-        node->high[1][i] = high.y;
-        node->high[2][i] = high.z;
+        SolidNode *node = &solid->nodes[index];
+        for (int d = 0; d < 3; d++) {
+            node->low[d][i] = box[0][d];
+            node->high[d][i] = box[1][d];
+        }
         node->child[i] = child;
     }
+
     return (int32_t)index;
 }
 
@@ -147,62 +157,52 @@ bool mesh_tree_create(Memory *memory, MeshSolid *solid) {
     if (ok && count > SOLID_WIDE) tree_build(&build, 0, count);
     if (ok && count <= SOLID_WIDE) { // a single leaf gets a node, too
         tree_leaf(&build, 0, count);
-        for (int i = 0; i < 3; i++)
-            solid->nodes[0].low[i] = float4_all(-INFINITY), solid->nodes[0].high[i] = float4_all(INFINITY);
+        for (int i = 0; i < 3; i++) {
+            solid->nodes[0].low[i] = float4_all(-INFINITY);
+            solid->nodes[0].high[i] = float4_all(INFINITY);
+        }
+
         for (int i = 0; i < SOLID_WIDE; i++) solid->nodes[0].child[i] = ~0;
     }
+    SINGE_ASSERT(!ok || count <= SOLID_WIDE || build.nodes == nodes); // tree_count has counted them
     FREE(memory, build.centroid, count);
     return ok;
-}
-
-/// The box of a leaf's triangles, or of a node's children.
-static void tree_child_box(const MeshSolid *solid, int32_t child, Float3 *low, Float3 *high) {
-    float bounds[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (int i = 0; i < 3; i++)
-        for (int lane = 0; lane < SOLID_WIDE; lane++) {
-            if (child >= 0) {
-                bounds[0][i] = fminf(bounds[0][i], solid->nodes[child].low[i][lane]);
-                bounds[1][i] = fmaxf(bounds[1][i], solid->nodes[child].high[i][lane]);
-                continue;
-            }
-            uint32_t slot = (uint32_t)~child * SOLID_WIDE + (uint32_t)lane;
-            slot = slot < solid->triangle_count ? slot : solid->triangle_count - 1;
-            for (int k = 0; k < 3; k++) {
-                float x = solid->vertices[solid->triangles[solid->order[slot]][k]][i];
-                bounds[0][i] = fminf(bounds[0][i], x), bounds[1][i] = fmaxf(bounds[1][i], x);
-            }
-        }
-    *low = float3_load(bounds[0]);
-    *high = float3_load(bounds[1]);
 }
 
 void mesh_tree_refit(MeshSolid *solid) {
     TreeBuild build = {.solid = solid};
     const uint32_t count = solid->triangle_count;
+
     for (uint32_t first = 0; first < count; first += SOLID_WIDE)
         tree_leaf(&build, first, count - first < SOLID_WIDE ? count - first : SOLID_WIDE);
 
-    // boxes from the leaves up
-    solid->low = float3(INFINITY, INFINITY, INFINITY);
-    solid->high = float3(-INFINITY, -INFINITY, -INFINITY);
-    for (uint32_t n = solid->node_count; n-- > 0;) { // a node's children have higher numbers
+    // boxes from the leaves up: a node's children have higher numbers
+    float all[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (uint32_t n = solid->node_count; n-- > 0;) {
         SolidNode *node = &solid->nodes[n];
         for (int i = 0; i < SOLID_WIDE; i++) {
-            Float3 low, high;
-            if (node->child[i] == 0) continue; // empty: the root is nobody's child
-            tree_child_box(solid, node->child[i], &low, &high);
-            node->low[0][i] = low.x;
-            node->low[1][i] = low.y;
-            node->low[2][i] = low.z;
-            node->high[0][i] = high.x;
-            node->high[1][i] = high.y;
-            node->high[2][i] = high.z;
-            if (n > 0) continue;
-            solid->low = float3(fminf(solid->low.x, low.x), fminf(solid->low.y, low.y), fminf(solid->low.z, low.z));
-            solid->high =
-                float3(fmaxf(solid->high.x, high.x), fmaxf(solid->high.y, high.y), fmaxf(solid->high.z, high.z));
+            float box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+            const int32_t child = node->child[i];
+            if (child == 0) continue; // empty: the root is nobody's child
+            for (int lane = 0; lane < SOLID_WIDE; lane++) {
+                uint32_t slot = (uint32_t)~child * SOLID_WIDE + (uint32_t)lane;
+                if (child < 0) tree_box_add(box, solid, solid->order[slot < count ? slot : count - 1]);
+                for (int d = 0; d < 3 && child > 0; d++) {
+                    box[0][d] = fminf(box[0][d], solid->nodes[child].low[d][lane]);
+                    box[1][d] = fmaxf(box[1][d], solid->nodes[child].high[d][lane]);
+                }
+            }
+            for (int d = 0; d < 3; d++) {
+                node->low[d][i] = box[0][d];
+                node->high[d][i] = box[1][d];
+                all[0][d] = n > 0 ? all[0][d] : fminf(all[0][d], box[0][d]);
+                all[1][d] = n > 0 ? all[1][d] : fmaxf(all[1][d], box[1][d]);
+            }
         }
     }
+
+    solid->low = float3_load(all[0]);
+    solid->high = float3_load(all[1]);
 }
 
 static inline Float4 tree_dot(const Float4 a[3], const Float4 b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -239,6 +239,7 @@ static inline Float4 tree_triangles(const SolidLeaf *leaf, const Float4 p[3]) {
         bc[i] = leaf->ac[i] - leaf->ab[i];
         back[i] = -leaf->ac[i];
     }
+
     tree_cross(leaf->ab, leaf->ac, normal);
     tree_cross(leaf->ab, pa, side);
     Float4Mask inside = tree_dot(side, normal) >= 0;
@@ -261,12 +262,14 @@ typedef struct TreeItem {
 static int tree_push(const SolidNode *node, const Float4 p[3], float best, TreeItem *stack, int depth) {
     Float4 square = tree_boxes(node, p);
     int first = depth;
+
     for (int i = 0; i < SOLID_WIDE; i++) {
         if (!(square[i] < best)) continue;
         int k = depth++;
         for (; k > first && stack[k - 1].square < square[i]; k--) stack[k] = stack[k - 1];
         stack[k] = (TreeItem){square[i], node->child[i]};
     }
+
     return depth;
 }
 
@@ -279,6 +282,7 @@ uint32_t mesh_tree_nearest(const MeshSolid *solid, Float3 at, float *square) {
 
     // depth first, through nodes that are near enough
     while (depth > 0) {
+        SINGE_ASSERT(depth <= TREE_STACK);
         TreeItem item = stack[--depth];
         if (!(item.square < best)) continue;
         if (item.child >= 0) {
@@ -289,9 +293,14 @@ uint32_t mesh_tree_nearest(const MeshSolid *solid, Float3 at, float *square) {
         // a leaf
         Float4 near = tree_triangles(&solid->leaves[~item.child], p);
         for (int i = 0; i < SOLID_WIDE; i++)
-            if (near[i] < best) best = near[i], found = (uint32_t)~item.child * SOLID_WIDE + (uint32_t)i;
+            if (near[i] < best) {
+                best = near[i];
+                found = (uint32_t)~item.child * SOLID_WIDE + (uint32_t)i;
+            }
     }
+
     if (found == UINT32_MAX) return found;
+
     *square = best;
     return solid->order[found < solid->triangle_count ? found : solid->triangle_count - 1];
 }

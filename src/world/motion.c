@@ -9,6 +9,7 @@ bool motion_create(Memory *memory, uint32_t count, const float *points, Motion *
         motion_free(memory, motion);
         return false;
     }
+
     if (count) memcpy(motion->from, points, count * sizeof *motion->from);
     if (count) memcpy(motion->to, points, count * sizeof *motion->to);
     return true;

@@ -24,7 +24,9 @@ static inline double triangle_dot(const double a[3], const double b[3]) {
 }
 
 static inline void triangle_less(Float3 b, Float3 a, double out[3]) {
-    out[0] = (double)b.x - (double)a.x, out[1] = (double)b.y - (double)a.y, out[2] = (double)b.z - (double)a.z;
+    out[0] = (double)b.x - (double)a.x;
+    out[1] = (double)b.y - (double)a.y;
+    out[2] = (double)b.z - (double)a.z;
 }
 
 /// The foot a + s ab + t ac.
@@ -38,7 +40,9 @@ static inline TriangleClosest triangle_closest_at(const double pa[3], const doub
 
 static inline TriangleClosest triangle_closest(Float3 p, Float3 a, Float3 b, Float3 c) {
     double ab[3], ac[3], pa[3];
-    triangle_less(b, a, ab), triangle_less(c, a, ac), triangle_less(p, a, pa);
+    triangle_less(b, a, ab);
+    triangle_less(c, a, ac);
+    triangle_less(p, a, pa);
     const double bb = triangle_dot(ab, ab), cc = triangle_dot(ac, ac), bc = triangle_dot(ab, ac);
     const double d1 = triangle_dot(ab, pa), d2 = triangle_dot(ac, pa);
     if (d1 <= 0 && d2 <= 0) return triangle_closest_at(pa, ab, ac, 0, 0, TRIANGLE_CORNER + 0);
