@@ -20,7 +20,6 @@ static void read_noise(Reader *reader, const SchemaRow *row, const Node *node, S
 static int read_field(Reader *reader, const SchemaRow *row, const Node *map, SingeField *field, SceneFile *file) {
     const Node *texture = node_find(map, "texture"), *attribute = node_find(map, "attribute"),
                *noise = node_find(map, "noise");
-    if (!texture) texture = node_find(map, "picture"); // its old name
     if (texture) {
         SchemaRow part = {.key = "texture", .type = ROW_FILE};
         field->kind = SINGE_FIELD_TEXTURE;
@@ -54,7 +53,7 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
     }
     unsigned given = 0;
     for (const Node *child = node->first; child; child = child->next) {
-        const char *name = renamed(reader, RENAMED_PARAM, child->key, child->key_location);
+        const char *name = child->key;
         Nearest nearest = {.word = name};
         int i = 0;
         for (; i < 5 && strcmp(name, keys[i]) != 0; i++) nearest_offer(&nearest, keys[i]);
@@ -254,7 +253,7 @@ static void unknown_key(Reader *reader, const Schema *schema, unsigned kind, con
 static void read_child(Reader *reader, const Schema *schema, unsigned kind, const Node *child, void *object,
                        uint64_t *given) {
     const SchemaRow *other = NULL;
-    const char *key = renamed(reader, schema->title, child->key, child->key_location);
+    const char *key = child->key;
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
         if (strcmp(row->key, key) != 0) continue;

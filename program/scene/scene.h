@@ -207,16 +207,7 @@ typedef struct SceneOutput {
     int texture_size; ///< pixels
 } SceneOutput;
 
-/// A key or a word that the scene still calls by its old name.
-typedef struct SceneRenamed {
-    SceneLocation location;
-    const char *before, *now;
-    const struct SceneText *text; ///< that the location is in
-    struct SceneRenamed *next;
-} SceneRenamed;
-
 typedef struct Scene {
-    SceneRenamed *renamed; ///< the last one first
     char *name;            ///< of the outputs; the scene file's name without its ending by default
     int frames;            ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
     float fps;             ///< frames a second

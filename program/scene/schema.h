@@ -112,11 +112,6 @@ static inline SingeParam *scene_param_at(SingeMaterialDef *def, const SceneParam
     return (SingeParam *)((char *)def + param->offset);
 }
 
-/// The current name of a word: the word itself, or the name that this release has given it; then the scene records it
-/// (renamed.c). `in`: a schema's title, RENAMED_PARAM for a parameter's map, or the key that has the word.
-#define RENAMED_PARAM "a parameter"
-const char *renamed(Reader *reader, const char *in, const char *word, SceneLocation location);
-
 /// Reads a map into an object whose defaults are set.
 void schema_read(Reader *reader, const Schema *schema, const Node *map, void *object);
 

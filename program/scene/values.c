@@ -153,7 +153,7 @@ bool value_word(Reader *reader, const SchemaRow *row, const Node *node, const ch
         value_wrong(reader, node, row);
         return false;
     }
-    const char *word = renamed(reader, row->key, node->text, node->location);
+    const char *word = node->text;
     Nearest nearest = {.word = word};
     for (int i = 0; names[i]; i++) {
         if (strcmp(word, names[i]) == 0) {

@@ -92,10 +92,6 @@ static void warn_of_source(const Scene *scene, const SceneSource *source, const 
 }
 
 void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
-    for (const SceneRenamed *entry = scene->renamed; entry && log->write; entry = entry->next)
-        message_warn(log, entry->text, entry->location,
-                     "'%s' is now called '%s'; the old name is accepted in this release only", entry->before,
-                     entry->now);
     for (uint32_t i = 0; i < scene->source_count && log->write; i++) warn_of_source(scene, &scene->sources[i], log);
     for (uint32_t i = 0; i < scene->pin_count && log->write; i++) warn_of_pin(scene, assets, &scene->pins[i], log);
     for (uint32_t i = 0; i < scene->collider_count && log->write; i++)
