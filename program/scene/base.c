@@ -37,17 +37,6 @@ static bool ends_in(const char *text, const char *ending) {
     return length > tail && strcmp(text + length - tail, ending) == 0;
 }
 
-/// Names of files have an ending or a slash; names of built-in materials have neither.
-static bool names_file(const char *text) {
-    return strchr(text, '/') || ends_in(text, ".yaml") || ends_in(text, ".yml") || ends_in(text, ".json");
-}
-
-/// "dir/mine.yaml" → "mine"
-static char *base_stem(SceneArena *arena, const char *path) {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
-    return arena_text(arena, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
-}
-
 /// The text of that name, already read or new; NULL when out of memory.
 static SceneText *base_text(Reader *reader, const char *name, const char *bytes, size_t size) {
     SceneText *text = arena_new(reader->arena, 1, sizeof *text);
@@ -116,40 +105,47 @@ static bool chain_open(Reader *reader, const Node *node, const SceneFile *file, 
     return false;
 }
 
-/// "materials/" of "materials/mine.yaml"
-static const char *base_folder(SceneArena *arena, const SceneFile *file) {
-    const char *slash = file->name ? strrchr(file->name, '/') : NULL;
-    return slash ? arena_text(arena, file->name, (size_t)(slash + 1 - file->name)) : "";
-}
-
 void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMaterial *material) {
-    SceneFile file = {0};
     if (!value_is_text(node)) {
         value_wrong(reader, node, row);
         return;
     }
-    bool from_file = names_file(node->text);
+
+    // names of files have an ending or a slash; names of built-in materials have neither
+    const char *word = node->text;
+    bool from_file = strchr(word, '/') || ends_in(word, ".yaml") || ends_in(word, ".yml") || ends_in(word, ".json");
     if (from_file && !reader->base_dir) // files are not read
         return;
+    SceneFile file = {0};
     SceneText *text = from_file ? base_file(reader, row, node, &file) : base_builtin(reader, node);
     BaseChain link = {.outer = reader->chain, .text = text, .depth = reader->chain ? reader->chain->depth + 1 : 1};
     if (!text || !chain_open(reader, node, &file, &link)) return;
-    Reader inner = *reader;
-    inner.chain = &link;
-    inner.prefix = base_folder(reader->arena, &file);
+
     if (!text->was_read)
         text->root = tree_read(reader->arena, reader->text, text->bytes, text->size,
                                (SceneLocation){.file = text->number}, reader->messages);
     text->was_read = true;
     Node *root = text->root;
-    if (!root || !inner.prefix) return;
+    if (!root) return;
     char seen[NODE_WORDS];
     if (root->kind != NODE_MAP) {
         message_add(reader->messages, reader->text, root->location, "a material must be a map (key: value), not %s",
                     node_describe(root, seen, sizeof seen));
         return;
     }
+
+    // files that this one names are relative to its folder, "materials/" of "materials/mine.yaml"
+    Reader inner = *reader;
+    const char *slash = file.name ? strrchr(file.name, '/') : NULL;
+    inner.chain = &link;
+    inner.prefix = slash ? arena_text(reader->arena, file.name, (size_t)(slash + 1 - file.name)) : "";
+    if (!inner.prefix) return;
     schema_spell_out(reader->arena, &schema_material, root);
     schema_read(&inner, &schema_material, root, material);
-    if (!node_find(root, "name")) material->name = base_stem(reader->arena, text->name);
+
+    // "dir/mine.yaml" is called mine
+    if (!node_find(root, "name")) {
+        const char *last = strrchr(text->name, '/'), *name = last ? last + 1 : text->name, *dot = strrchr(name, '.');
+        material->name = arena_text(reader->arena, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
+    }
 }

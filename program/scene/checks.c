@@ -2,6 +2,7 @@
 #include "common/printable.h"
 #include "scene/schema.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static void complain(Reader *reader, SceneLocation location, const char *what) {
@@ -124,36 +125,29 @@ void finish_preview(Reader *reader, const Node *map, void *object) {
         complain(reader, direction->location, "the light's direction must be longer than 1e-9");
 }
 
-// Numbers sheets without a name, and refuses equal names.
-static void check_names(Reader *reader, const Node *list, Scene *scene) {
+/// Numbers the entries of a list that have no name (`what` is "sheet" or "probe"), and refuses equal names. The name is
+/// at `offset` of an entry's struct.
+static void check_names(Reader *reader, const Node *list, const char *what, void *items, size_t size, size_t offset,
+                        uint32_t count) {
     const Node *node = list->first;
-    for (uint32_t i = 0; i < scene->sheet_count && node; i++, node = node->next) {
-        if (!scene->sheets[i].name) {
-            char name[24];
-            int length = snprintf(name, sizeof name, "sheet%u", (unsigned)i + 1);
-            scene->sheets[i].name = arena_text(reader->arena, name, (size_t)length);
+    for (uint32_t i = 0; node && i < count; i++, node = node->next) {
+        char **name = (char **)(void *)((char *)items + i * size + offset);
+        char number[24];
+        int length = snprintf(number, sizeof number, "%s%u", what, (unsigned)i + 1);
+        if (!*name) *name = arena_text(reader->arena, number, (size_t)length);
+
+        for (uint32_t j = 0; j < i && *name; j++) {
+            const char *other = *(char **)(void *)((char *)items + j * size + offset);
+            if (!other || strcmp(other, *name) != 0) continue;
+            const Node *given = node_find(node, "name");
+            message_add(reader->messages, reader->text, given ? given->location : node->location,
+                        "two %ss are called '%s'; give each its own name", what, shown(*name).text);
+            break;
         }
-        for (uint32_t j = 0; j < i && scene->sheets[i].name && scene->sheets[j].name; j++)
-            if (strcmp(scene->sheets[i].name, scene->sheets[j].name) == 0) {
-                const Node *name = node_find(node, "name");
-                message_add(reader->messages, reader->text, name ? name->location : node->location,
-                            "two sheets are called '%s'; give each its own name", shown(scene->sheets[i].name).text);
-                break;
-            }
     }
 }
 
-static bool sheet_number(const char *text, uint32_t *number) {
-    uint32_t value = 0;
-    for (const char *c = text; *c; c++) {
-        if (*c < '0' || *c > '9' || c - text > 8) return false;
-        value = value * 10 + (uint32_t)(*c - '0');
-    }
-    *number = value;
-    return *text != 0;
-}
-
-/// Finds the sheet that a pin or a probe names.
+/// Finds the sheet that a pin or a probe names, or gives the number of.
 static void resolve_sheet(Reader *reader, const Node *node, const Scene *scene, const char *word, uint32_t *index) {
     Nearest nearest = {.word = word};
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
@@ -164,63 +158,63 @@ static void resolve_sheet(Reader *reader, const Node *node, const Scene *scene, 
         }
         if (name) nearest_offer(&nearest, name);
     }
-    if (sheet_number(word, index) && *index < scene->sheet_count) return;
+
+    const size_t digits = strspn(word, "0123456789");
+    if (digits > 0 && digits < 10 && !word[digits]) {
+        *index = (uint32_t)strtoul(word, NULL, 10);
+        if (*index < scene->sheet_count) return;
+    }
+
     const Node *sheet = node_find(node, "sheet");
     char hint[80];
     message_add(reader->messages, reader->text, sheet ? sheet->location : node->location, "there is no sheet '%s'%s",
                 shown(word).text, nearest_hint(&nearest, hint, sizeof hint));
 }
 
-/// Numbers probes without a name, and refuses equal names.
-static void check_probes(Reader *reader, const Node *list, Scene *scene) {
-    if (list->count > 1000) {
-        complain(reader, list->location, "a scene has at most 1000 probes");
-        return;
-    }
-    const Node *node = list->first;
-    for (uint32_t i = 0; node && i < scene->probe_count; i++, node = node->next) {
-        SceneProbe *probe = &scene->probes[i];
-        char name[24];
-        const int length = snprintf(name, sizeof name, "probe%u", (unsigned)i + 1);
-        if (!probe->name) probe->name = arena_text(reader->arena, name, (size_t)length);
-        if (probe->sheet && scene->sheet_count) resolve_sheet(reader, node, scene, probe->sheet, &probe->sheet_index);
-        for (uint32_t j = 0; j < i && probe->name; j++)
-            if (scene->probes[j].name && strcmp(scene->probes[j].name, probe->name) == 0) {
-                const Node *given = node_find(node, "name");
-                message_add(reader->messages, reader->text, given ? given->location : node->location,
-                            "two probes are called '%s'; give each its own name", shown(probe->name).text);
-                break;
-            }
-    }
-}
-
-// The step of the simulation is 1/(fps * steps) seconds; the library takes 1e-9 to 10.
-static void check_step(Reader *reader, const Node *map, const Scene *scene) {
-    double rate = (double)scene->fps * scene->steps;
-    const Node *fps = node_find(map, "fps"), *steps = node_find(map, "steps"), *node = fps ? fps : steps;
-    if (rate >= 0.1 * (1 - 1e-6) && rate <= 1e9 * (1 + 1e-6)) return;
-    message_add(reader->messages, reader->text, node ? node->location : map->location,
-                "%.6g frames a second of %d steps each are %.6g steps a second, which must be 0.1 to 1e9",
-                (double)scene->fps, scene->steps, rate);
-}
-
 void finish_scene(Reader *reader, const Node *map, void *object) {
     Scene *scene = object;
-    check_step(reader, map, scene);
+    const Node *fps = node_find(map, "fps"), *steps = node_find(map, "steps"), *sheets = node_find(map, "sheets"),
+               *pins = node_find(map, "pins"), *probes = node_find(map, "probes"),
+               *only = node_find(map, "only_sheets");
+
+    // the step of the simulation is 1/(fps * steps) seconds; the library takes 1e-9 to 10
+    double rate = (double)scene->fps * scene->steps;
+    if (!(rate >= 0.1 * (1 - 1e-6) && rate <= 1e9 * (1 + 1e-6)))
+        message_add(reader->messages, reader->text,
+                    (fps     ? fps
+                     : steps ? steps
+                             : map)
+                        ->location,
+                    "%.6g frames a second of %d steps each are %.6g steps a second, which must be 0.1 to 1e9",
+                    (double)scene->fps, scene->steps, rate);
     scene->sim.solver.tearing = scene->tearing && scene->sim.solver.method == SINGE_SOLVER_STRAND;
-    const Node *sheets = node_find(map, "sheets"), *pins = node_find(map, "pins");
+
+    bool many_sheets = sheets && sheets->count > 1000; // comparing their names would take long
     if (sheets && sheets->kind == NODE_LIST) {
         if (!sheets->count) complain(reader, sheets->location, "a scene needs at least one sheet");
-        else if (sheets->count > 1000) complain(reader, sheets->location, "a scene has at most 1000 sheets");
-        else check_names(reader, sheets, scene);
+        else if (many_sheets) complain(reader, sheets->location, "a scene has at most 1000 sheets");
+        else
+            check_names(reader, sheets, "sheet", scene->sheets, sizeof *scene->sheets, offsetof(SceneSheet, name),
+                        scene->sheet_count);
     }
+    if (many_sheets) return;
+
     const Node *node = pins && pins->kind == NODE_LIST ? pins->first : NULL;
     for (uint32_t i = 0; node && i < scene->pin_count; i++, node = node->next)
-        if (scene->pins[i].sheet && scene->sheet_count && sheets && sheets->count <= 1000)
+        if (scene->pins[i].sheet && scene->sheet_count)
             resolve_sheet(reader, node, scene, scene->pins[i].sheet, &scene->pins[i].sheet_index);
-    const Node *probes = node_find(map, "probes");
-    if (probes && probes->kind == NODE_LIST && (!sheets || sheets->count <= 1000)) check_probes(reader, probes, scene);
-    const Node *only = node_find(map, "only_sheets");
+
+    if (probes && probes->kind == NODE_LIST && probes->count > 1000) {
+        complain(reader, probes->location, "a scene has at most 1000 probes");
+    } else if (probes && probes->kind == NODE_LIST) {
+        check_names(reader, probes, "probe", scene->probes, sizeof *scene->probes, offsetof(SceneProbe, name),
+                    scene->probe_count);
+        node = probes->first;
+        for (uint32_t i = 0; node && i < scene->probe_count; i++, node = node->next)
+            if (scene->probes[i].sheet && scene->sheet_count)
+                resolve_sheet(reader, node, scene, scene->probes[i].sheet, &scene->probes[i].sheet_index);
+    }
+
     if (only && scene->only_sheet_count && !message_total(reader->messages))
         scene_keep_only_sheets(reader, only, scene);
 }

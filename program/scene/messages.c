@@ -15,8 +15,12 @@ static char *text_printable(const char *text, size_t length) {
     size_t used = 0;
     if (!copy) return NULL;
     while (text < end)
-        if (*text == '\t') copy[used++] = ' ', text++;
-        else used += printable_character(&text, end, copy + used);
+        if (*text == '\t') {
+            copy[used++] = ' ';
+            text++;
+        } else {
+            used += printable_character(&text, end, copy + used);
+        }
     copy[used] = 0;
     char *fit = realloc(copy, used + 1);
     return fit ? fit : copy;
@@ -37,7 +41,13 @@ static char *text_format(const char *format, va_list arguments) {
 
 static bool starts_character(char byte) { return ((unsigned char)byte & 0xc0) != 0x80; }
 
-// The line, or the part of a long line around the column; *caret counts characters of that part.
+static const char *next_character(const char *c, const char *end) {
+    do c++;
+    while (c < end && !starts_character(*c));
+    return c;
+}
+
+/// The line, or the part of a long line around the column; *caret counts characters of that part.
 static char *source_line(const SceneText *text, int line, int column, int *caret) {
     const char *start = text->bytes, *stop = text->bytes + text->size;
     for (int i = 1; i < line; i++) {
@@ -48,18 +58,16 @@ static char *source_line(const SceneText *text, int line, int column, int *caret
     const char *end = start < stop ? memchr(start, '\n', (size_t)(stop - start)) : NULL;
     if (!end) end = stop;
     if (end > start && end[-1] == '\r') end--;
-    for (; column > LINE_WIDTH - 20 && start < end; column--) do
-            start++;
-        while (start < end && !starts_character(*start));
+
+    for (; column > LINE_WIDTH - 20 && start < end; column--) start = next_character(start, end);
     if (end - start > LINE_WIDTH) {
         end = start + LINE_WIDTH;
         while (end > start && !starts_character(*end)) end--;
     }
+
     // the caret counts characters as they are shown
     const char *at = start;
-    for (int i = 1; i < column && at < end; i++) do
-            at++;
-        while (at < end && !starts_character(*at));
+    for (int i = 1; i < column && at < end; i++) at = next_character(at, end);
     char *before = text_printable(start, (size_t)(at - start));
     *caret = before ? (int)printable_count(before) + 1 : 0;
     free(before);
@@ -85,43 +93,34 @@ static char *text_origin(const SceneText *text, SceneLocation location) {
     return text_printable(origin, strlen(origin));
 }
 
-static bool already_reported(const SceneMessages *messages, const SceneMessage *message) {
-    for (uint32_t i = 0; i < messages->count; i++)
-        if (!strcmp(messages->items[i].origin, message->origin) && !strcmp(messages->items[i].text, message->text))
-            return true;
-    return false;
-}
-
 void message_add(SceneMessages *messages, const SceneText *text, SceneLocation location, const char *format, ...) {
-    if (messages->count >= MESSAGES_MAX) {
-        messages->left_out++;
-        return;
-    }
-    SceneMessage *items = realloc(messages->items, (messages->count + 1) * sizeof *items);
+    SceneMessage *items =
+        messages->count < MESSAGES_MAX ? realloc(messages->items, (messages->count + 1) * sizeof *items) : NULL;
     if (!items) {
         messages->left_out++;
         return;
     }
     messages->items = items;
-    SceneMessage message = {.location = location};
+
+    SceneMessage message = {.location = location, .origin = text_origin(text, location)};
     va_list arguments;
     va_start(arguments, format);
     message.text = text_format(format, arguments);
     va_end(arguments);
-    message.origin = text_origin(text, location);
-    if (!message.text || !message.origin) {
+
+    // an error in a material file that several sheets use is reported once
+    bool complete = message.text && message.origin, known = false;
+    for (uint32_t i = 0; i < messages->count && complete && location.file && !known; i++)
+        known = !strcmp(items[i].origin, message.origin) && !strcmp(items[i].text, message.text);
+    if (!complete || known) {
         free(message.text);
         free(message.origin);
-        messages->left_out++;
+        messages->left_out += !complete;
         return;
     }
-    if (location.file && already_reported(messages, &message)) {
-        free(message.text);
-        free(message.origin);
-        return;
-    }
-    const SceneText *file = text_of(text, location);
+
     // only lines of the scene are shown: whoever sees the message may not be allowed to read other files
+    const SceneText *file = text_of(text, location);
     if (file && location.line > 0 && location.set == 0 && location.file == 0)
         message.source = source_line(file, location.line, location.column, &message.caret);
     items[messages->count++] = message;

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-// The scene keeps the text, so that later messages can show its lines.
+/// The scene keeps the text, so that later messages can show its lines.
 static SceneText *keep_text(SceneArena *arena, const SceneText *text) {
     SceneText *kept = arena_new(arena, 1, sizeof *kept);
     char *name = arena_text(arena, text->name, strlen(text->name));
@@ -19,43 +19,28 @@ static SceneText *keep_text(SceneArena *arena, const SceneText *text) {
     return kept;
 }
 
-// "dir/letter.yaml" → "letter". Bytes that are not UTF-8 become '_', as the name goes into run.json.
-static char *stem(SceneArena *arena, const char *path) {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
-    size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
-    char *copy = length ? arena_text(arena, name, length) : arena_text(arena, "scene", 5);
-    for (char *c = copy; c && *c;) {
+/// The default name of a scene: "letter" of "dir/letter.yaml". A file name is not always a valid name of outputs.
+static void take_name(Reader *reader, const Node *root) {
+    const char *path = reader->text->name, *slash = strrchr(path, '/'), *file = slash ? slash + 1 : path;
+    const char *dot = strrchr(file, '.');
+    const size_t length = dot && dot > file ? (size_t)(dot - file) : strlen(file);
+    char *name = length ? arena_text(reader->arena, file, length) : arena_text(reader->arena, "scene", 5);
+
+    // bytes that are not UTF-8 become '_', as the name goes into run.json
+    for (char *c = name; c && *c;) {
         int width = utf8_length(c);
         if (!width) *c = '_';
         c += width ? width : 1;
     }
-    return copy;
-}
 
-// The default name of a scene. A file name is not always a valid name of outputs.
-static void take_name(Reader *reader, const Node *root) {
     SchemaRow row = {.key = "name", .type = ROW_NAME};
     char expected[240];
     row_expected(&row, expected, sizeof expected);
-    reader->scene->name = stem(reader->arena, reader->text->name);
-    if (reader->scene->name && !node_find(root, "name") && !value_names_files(reader->scene->name))
+    reader->scene->name = name;
+    if (name && !node_find(root, "name") && !value_names_files(name))
         message_add(reader->messages, reader->text, (SceneLocation){.line = 1, .column = 1},
-                    "the outputs cannot be called '%s' as the file is; give the scene a name: %s",
-                    shown(reader->scene->name).text, expected);
-}
-
-static void scene_fill(Reader *reader, const Node *root) {
-    Scene *scene = reader->scene;
-    if (root->kind != NODE_MAP) {
-        char seen[NODE_WORDS];
-        message_add(reader->messages, reader->text, root->location, "a scene must be a map (key: value), not %s",
-                    node_describe(root, seen, sizeof seen));
-        return;
-    }
-    default_scene(reader->arena, scene);
-    schema_read(reader, &schema_scene, root, scene);
-    if (!scene->name) take_name(reader, root);
-    scene->sim.time_step = (float)(1 / ((double)scene->fps * scene->steps));
+                    "the outputs cannot be called '%s' as the file is; give the scene a name: %s", shown(name).text,
+                    expected);
 }
 
 static SingeResult parse_into(SceneArena *arena, const SceneText *given, const char *base_dir, Scene **result,
@@ -64,17 +49,29 @@ static SingeResult parse_into(SceneArena *arena, const SceneText *given, const c
     Scene *scene = arena_new(arena, 1, sizeof *scene);
     char *folder = base_dir ? arena_text(arena, base_dir, strlen(base_dir)) : NULL;
     if (!text || !scene || (base_dir && !folder)) return SINGE_ERROR_MEMORY;
+
     uint32_t before = message_total(messages), first = messages->count;
     Node *root = tree_read(arena, text, text->bytes, text->size, (SceneLocation){0}, messages);
     if (root) schema_spell_out(arena, &schema_scene, root);
     if (root && !tree_set(arena, text, root, messages)) return SINGE_ERROR_MEMORY;
+
     Reader reader = {
         .arena = arena, .text = text, .messages = messages, .base_dir = folder, .prefix = "", .scene = scene};
-    if (root) scene_fill(&reader, root);
+    if (root && root->kind == NODE_MAP) {
+        default_scene(arena, scene);
+        schema_read(&reader, &schema_scene, root, scene);
+        if (!scene->name) take_name(&reader, root);
+        scene->sim.time_step = (float)(1 / ((double)scene->fps * scene->steps));
+    } else if (root) {
+        char seen[NODE_WORDS];
+        message_add(messages, text, root->location, "a scene must be a map (key: value), not %s",
+                    node_describe(root, seen, sizeof seen));
+    }
     if (arena_failed(arena)) return SINGE_ERROR_MEMORY;
     messages_sort(messages, first);
     if (message_total(messages) != before) return SINGE_ERROR_FORMAT;
     if (!root) return SINGE_ERROR_MEMORY;
+
     scene->text = text;
     scene->arena = arena;
     *result = scene;

@@ -7,16 +7,7 @@ static void *read_at(void *object, size_t offset) { return (char *)object + offs
 
 // ---- parameters that may vary
 
-static void read_noise(Reader *reader, const SchemaRow *row, const Node *node, SingeNoise *noise) {
-    if (node->kind != NODE_MAP) {
-        message_add(reader->messages, reader->text, node->location,
-                    "%s.noise must be a map {scale: , octaves: , seed: }", row->key);
-        return;
-    }
-    if (default_noise(reader->arena, noise)) schema_read(reader, &schema_noise, node, noise);
-}
-
-// Finds the field that the parameter follows; returns the number of such keys.
+/// Finds the field that the parameter follows; returns the number of such keys.
 static int read_field(Reader *reader, const SchemaRow *row, const Node *map, SingeField *field, SceneFile *file) {
     const Node *texture = node_find(map, "texture"), *attribute = node_find(map, "attribute"),
                *noise = node_find(map, "noise");
@@ -35,7 +26,10 @@ static int read_field(Reader *reader, const SchemaRow *row, const Node *map, Sin
     if (noise) {
         field->kind = SINGE_FIELD_NOISE;
         file->location = noise->location;
-        read_noise(reader, row, noise, &field->noise);
+        if (noise->kind != NODE_MAP)
+            message_add(reader->messages, reader->text, noise->location,
+                        "%s.noise must be a map {scale: , octaves: , seed: }", row->key);
+        else if (default_noise(reader->arena, &field->noise)) schema_read(reader, &schema_noise, noise, &field->noise);
     }
     return !!texture + !!attribute + !!noise;
 }
@@ -51,12 +45,12 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
         }
         return;
     }
+
     unsigned given = 0;
     for (const Node *child = node->first; child; child = child->next) {
-        const char *name = child->key;
-        Nearest nearest = {.word = name};
+        Nearest nearest = {.word = child->key};
         int i = 0;
-        for (; i < 5 && strcmp(name, keys[i]) != 0; i++) nearest_offer(&nearest, keys[i]);
+        for (; i < 5 && strcmp(child->key, keys[i]) != 0; i++) nearest_offer(&nearest, keys[i]);
         char hint[80], key[NODE_WORDS];
         if (i == 5)
             message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
@@ -66,12 +60,14 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
                         row->key);
         else given |= 1u << i;
     }
+
     const Node *from = node_find(node, "from"), *to = node_find(node, "to");
     SchemaRow end = *row; // no line leads to infinity
     end.flags &= ~(unsigned)ROW_INF;
     bool good = from && to;
     good = (!from || value_float(reader, &end, from, &result.value)) && good;
     good = (!to || value_float(reader, &end, to, &result.to)) && good;
+
     SingeField *field = arena_new(reader->arena, 1, sizeof *field);
     if (!field) return;
     int fields = read_field(reader, row, node, field, file);
@@ -146,15 +142,11 @@ static void read_indices(Reader *reader, const SchemaRow *row, const Node *node,
         value_integer(reader, &element, child, indices++);
 }
 
-static SceneKey *only_key(Reader *reader, const SchemaRow *row, void *object) {
-    SceneKey *keys;
-    memcpy(&keys, read_at(object, row->offset), sizeof keys);
-    return keys && *(uint32_t *)read_at(object, row->extra) == 1 ? keys
-                                                                 : list_new(reader, object, row, 1, sizeof *keys);
-}
-
+/// The position or the rotation of the only key of a path.
 static void read_key_part(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
-    SceneKey *key = only_key(reader, row, object);
+    SceneKey *key;
+    memcpy(&key, read_at(object, row->offset), sizeof key);
+    if (!key || *(uint32_t *)read_at(object, row->extra) != 1) key = list_new(reader, object, row, 1, sizeof *key);
     if (key) value_vector(reader, row, node, row->type == ROW_POSITION ? key->position : key->rotation);
 }
 
@@ -168,7 +160,7 @@ static const SchemaRow *choice_row(const Schema *schema) {
     return row;
 }
 
-// The choice that determines an object's other defaults.
+/// The choice that determines an object's other defaults.
 static void read_choice(Reader *reader, const Schema *schema, const Node *node, void *object) {
     uint32_t before = message_total(reader->messages);
     read_row(reader, choice_row(schema), node, object);
@@ -228,35 +220,14 @@ static void read_row(Reader *reader, const SchemaRow *row, const Node *node, voi
     }
 }
 
-// Reports a key that no row of this kind has: says which kind has it, or which key was meant.
-static void unknown_key(Reader *reader, const Schema *schema, unsigned kind, const SchemaRow *other,
-                        const Node *child) {
-    if (reader->messages->left_out) { // the message will not be shown
-        message_add(reader->messages, reader->text, child->key_location, "unknown key");
-        return;
-    }
-    if (other) {
-        const char *const *names = schema->rows[0].names; // the row "kind" is the first
-        int mine = 0;
-        while (kind > 1u << mine) mine++;
-        message_add(reader->messages, reader->text, child->key_location, "a %s has no '%s'", names[mine], other->key);
-        return;
-    }
-    char hint[80], key[NODE_WORDS];
-    Nearest nearest = {.word = child->key};
-    for (int i = 0; i < schema->row_count; i++)
-        if (row_allowed(&schema->rows[i], kind)) nearest_offer(&nearest, schema->rows[i].key);
-    message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
-                node_key(child, key, sizeof key), schema->title, nearest_hint(&nearest, hint, sizeof hint));
-}
-
+/// Reads a key of a map by its row. A key that no row of this kind has is an error, which says which kind has it, or
+/// which key was meant.
 static void read_child(Reader *reader, const Schema *schema, unsigned kind, const Node *child, void *object,
                        uint64_t *given) {
     const SchemaRow *other = NULL;
-    const char *key = child->key;
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
-        if (strcmp(row->key, key) != 0) continue;
+        if (strcmp(row->key, child->key) != 0) continue;
         if (!row_allowed(row, kind)) {
             other = row;
             continue;
@@ -268,7 +239,22 @@ static void read_child(Reader *reader, const Schema *schema, unsigned kind, cons
         *given |= 1ull << i;
         return;
     }
-    unknown_key(reader, schema, kind, other, child);
+
+    if (reader->messages->left_out) { // the message will not be shown
+        message_add(reader->messages, reader->text, child->key_location, "unknown key");
+    } else if (other) {
+        const char *const *names = schema->rows[0].names; // the row "kind" is the first
+        int mine = 0;
+        while (kind > 1u << mine) mine++;
+        message_add(reader->messages, reader->text, child->key_location, "a %s has no '%s'", names[mine], other->key);
+    } else {
+        char hint[80], key[NODE_WORDS];
+        Nearest nearest = {.word = child->key};
+        for (int i = 0; i < schema->row_count; i++)
+            if (row_allowed(&schema->rows[i], kind)) nearest_offer(&nearest, schema->rows[i].key);
+        message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
+                    node_key(child, key, sizeof key), schema->title, nearest_hint(&nearest, hint, sizeof hint));
+    }
 }
 
 void schema_read(Reader *reader, const Schema *schema, const Node *map, void *object) {
@@ -298,30 +284,29 @@ void schema_read(Reader *reader, const Schema *schema, const Node *map, void *ob
     if (schema->finish) schema->finish(reader, map, object);
 }
 
-static void spell_out_word(SceneArena *arena, const Schema *schema, Node *node) {
-    Node *word = arena_new(arena, 1, sizeof *word);
-    char *key = arena_text(arena, schema->choice, strlen(schema->choice));
-    if (!word || !key) return;
-    *word = *node;
-    word->next = NULL;
-    word->key = key;
-    word->key_location = node->location;
-    node->kind = NODE_MAP;
-    node->text = NULL;
-    node->first = node->last = word;
-    node->count = 1;
-}
-
 void schema_spell_out(SceneArena *arena, const Schema *schema, Node *map) {
-    for (Node *child = map->kind == NODE_MAP ? map->first : NULL; child; child = child->next)
-        for (int i = 0; i < schema->row_count; i++) {
-            const SchemaRow *row = &schema->rows[i];
-            if (!row->sub || strcmp(row->key, child->key) != 0) continue;
-            if (row->type == ROW_MAP && row->sub->choice && value_is_text(child))
-                spell_out_word(arena, row->sub, child);
-            else if (child->kind == NODE_MAP) schema_spell_out(arena, row->sub, child);
-            for (Node *entry = child->kind == NODE_LIST ? child->first : NULL; entry; entry = entry->next)
-                schema_spell_out(arena, row->sub, entry);
-            break;
+    for (Node *child = map->kind == NODE_MAP ? map->first : NULL; child; child = child->next) {
+        const SchemaRow *row = schema->rows, *end = row + schema->row_count;
+        while (row < end && !(row->sub && strcmp(row->key, child->key) == 0)) row++;
+        if (row == end) continue;
+
+        if (row->type == ROW_MAP && row->sub->choice && value_is_text(child)) {
+            // a word becomes a map that has it as its choice
+            Node *word = arena_new(arena, 1, sizeof *word);
+            char *key = arena_text(arena, row->sub->choice, strlen(row->sub->choice));
+            if (!word || !key) return;
+            *word = *child;
+            word->next = NULL;
+            word->key = key;
+            word->key_location = child->location;
+            child->kind = NODE_MAP;
+            child->text = NULL;
+            child->first = child->last = word;
+            child->count = 1;
+        } else if (child->kind == NODE_MAP) {
+            schema_spell_out(arena, row->sub, child);
         }
+        for (Node *entry = child->kind == NODE_LIST ? child->first : NULL; entry; entry = entry->next)
+            schema_spell_out(arena, row->sub, entry);
+    }
 }

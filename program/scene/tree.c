@@ -72,6 +72,7 @@ static void builder_open(Builder *builder, NodeKind kind, SceneLocation location
         builder_fail(builder, location, "lists and maps are nested more than 64 deep");
         return;
     }
+
     Node *node = arena_new(builder->arena, 1, sizeof *node);
     if (!node) {
         builder->bad = true;
@@ -114,30 +115,30 @@ static void builder_value(Builder *builder, const YamlEvent *event, SceneLocatio
     builder_attach(builder, node);
 }
 
-// The events come from a process that may have failed: an impossible order is refused.
-static void builder_close(Builder *builder, SceneLocation location) {
-    int top = builder->depth - 1;
-    if (top < 0 || (builder->stack[top]->kind == NODE_MAP && builder->keys[top]))
-        builder_fail(builder, location, not_read);
-    else builder->depth--;
-}
-
 static void builder_take(Builder *builder, const YamlEvent *event) {
     SceneLocation location = location_at(builder, (int)event->line, (int)event->column);
     bool node = event->kind == YAML_VALUE || event->kind == YAML_MAP || event->kind == YAML_LIST;
-    if ((event->flags & YAML_ANCHORED) || event->kind == YAML_ALIAS)
+    if ((event->flags & YAML_ANCHORED) || event->kind == YAML_ALIAS) {
         builder_fail(builder, location, "anchors and aliases (&name, *name) are not supported; write the value out");
-    else if (event->flags & YAML_TAGGED)
+    } else if (event->flags & YAML_TAGGED) {
         builder_fail(builder, location, "tags (!name) are not supported; each key knows the type of its value");
-    else if (node && builder->root && !builder->depth) builder_fail(builder, location, not_read);
-    else if (event->kind == YAML_VALUE) builder_value(builder, event, location);
-    else if (node) builder_open(builder, event->kind == YAML_MAP ? NODE_MAP : NODE_LIST, location);
-    else if (event->kind == YAML_CLOSE) builder_close(builder, location);
-    else if (event->kind == YAML_DOCUMENT && builder->documents++)
+    } else if (node && builder->root && !builder->depth) {
+        builder_fail(builder, location, not_read);
+    } else if (event->kind == YAML_VALUE) {
+        builder_value(builder, event, location);
+    } else if (node) {
+        builder_open(builder, event->kind == YAML_MAP ? NODE_MAP : NODE_LIST, location);
+    } else if (event->kind == YAML_CLOSE) {
+        // the events come from a process that may have failed: an impossible order is refused
+        int top = builder->depth - 1;
+        if (top < 0 || (builder->stack[top]->kind == NODE_MAP && builder->keys[top]))
+            builder_fail(builder, location, not_read);
+        else builder->depth--;
+    } else if (event->kind == YAML_DOCUMENT && builder->documents++) {
         builder_fail(builder, location, "a second document (---) begins here; a scene is one document");
-    else if (event->kind == YAML_FAULT && (location.file || !event->length))
+    } else if (event->kind == YAML_FAULT && (location.file || !event->length)) {
         builder_fail(builder, location, "not valid YAML");
-    else if (event->kind == YAML_FAULT) {
+    } else if (event->kind == YAML_FAULT) {
         message_add(builder->messages, builder->text, location, "not valid YAML: %s", shown(event->text).text);
         builder->bad = true;
     }
@@ -164,24 +165,13 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
         bool mark = c == (const unsigned char *)bytes && length == 3 && memcmp(c, "\xef\xbb\xbf", 3) == 0;
         begins = *c == '\n' || *c == '\r' || mark;
         column++;
-        if (*c == '\n') line++, column = 1;
+        if (*c == '\n') {
+            line++;
+            column = 1;
+        }
         c += length;
     }
     return true;
-}
-
-// An error ends the tree, but all syntax errors are reported.
-static void builder_run(Builder *builder, YamlEvents *events) {
-    YamlEvent event = {0};
-    while (event.kind != YAML_END && (!builder->bad || event.kind == YAML_FAULT)) {
-        if (!yaml_next(events, &event)) {
-            builder_fail(builder, location_at(builder, 1, 1), not_read);
-            return;
-        }
-        if (!builder->bad || event.kind == YAML_FAULT) builder_take(builder, &event);
-    }
-    if (!builder->bad && builder->depth)
-        builder_fail(builder, location_at(builder, (int)event.line, (int)event.column), not_read);
 }
 
 // A --set value that is a word or a number, perhaps with a unit, and so needs no YAML.
@@ -204,8 +194,6 @@ static Node *plain_node(SceneArena *arena, const char *bytes, size_t size, Scene
 Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, SceneLocation origin,
                 SceneMessages *messages) {
     Builder builder = {.arena = arena, .text = text, .messages = messages, .origin = origin};
-    YamlEvents events;
-    SingeError error = {0};
     if (!bytes_are_text(&builder, bytes, size)) return NULL;
     if (origin.set && (!size || is_plain(bytes, size))) // PATH= alone is a value, too
         return plain_node(arena, bytes, size, origin);
@@ -213,6 +201,9 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
         bytes = "\n";
         size = 1;
     }
+
+    YamlEvents events;
+    SingeError error = {0};
     SingeResult result = yaml_read(text->name, bytes, size, &events, &error);
     if (result == SINGE_ERROR_MEMORY) {
         arena_fail(arena);
@@ -223,9 +214,21 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
                     error.message);
         return NULL;
     }
-    builder_run(&builder, &events);
+
+    // an error ends the tree, but all syntax errors are reported
+    YamlEvent event = {0};
+    while (event.kind != YAML_END && (!builder.bad || event.kind == YAML_FAULT)) {
+        if (!yaml_next(&events, &event)) {
+            builder_fail(&builder, location_at(&builder, 1, 1), not_read);
+            break;
+        }
+        if (!builder.bad || event.kind == YAML_FAULT) builder_take(&builder, &event);
+    }
+    if (!builder.bad && builder.depth)
+        builder_fail(&builder, location_at(&builder, (int)event.line, (int)event.column), not_read);
     yaml_free(&events);
     if (builder.bad) return NULL;
+
     if (!builder.root && origin.set && !arena_failed(arena)) // only a comment
         return plain_node(arena, "", 0, origin);
     if (!builder.root && !arena_failed(arena))
