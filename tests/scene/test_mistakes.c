@@ -435,10 +435,10 @@ static void test_print(void **state) {
 
 static void test_files(void **state) {
     (void)state;
-    static const char text[] = "sheets:\n  - {mesh: missing.obj, picture: scene}\n";
+    static const char text[] = "sheets:\n  - {mesh: missing.obj, picture: docs}\n";
     SceneMessages messages = failing(text, strlen(text), ".", NULL, 0, SINGE_ERROR_FORMAT);
     expect_message(&messages, 0, "bad.yaml:2:12", "mesh: there is no such file (./missing.obj)");
-    expect_message(&messages, 1, "bad.yaml:2:34", "picture: this is a folder (./scene)");
+    expect_message(&messages, 1, "bad.yaml:2:34", "picture: this is a folder (./docs)");
     scene_messages_free(&messages);
     Scene *scene;
     assert_int_equal(scene_read("tests/scene/none.yaml", NULL, 0, &scene, &messages), SINGE_ERROR_FILE);

@@ -114,7 +114,7 @@ static void test_values(void **state) {
 /// texture in a slot of its own, and reads back from a dump.
 static void test_all_vary(void **state) {
     (void)state;
-    static const char *const fields[] = {"picture: p.png", "attribute: burn", "noise: {scale: 2 mm, seed: 9}"};
+    static const char *const fields[] = {"texture: p.png", "attribute: burn", "noise: {scale: 2 mm, seed: 9}"};
     SingeMaterialDef standard = singe_default_material();
     SceneParam row;
     int count = 0;
