@@ -20,7 +20,7 @@ typedef struct Passage {
 
 /// Share of a ray that a sheet transmits straight: most of the light through it is scattered.
 static float let_through(const Preview *preview, const uint32_t t[3], float burn) {
-    const Scene *scene = &preview->scene;
+    const PreviewScene *scene = &preview->scene;
     return 0.5f * paper_transmittance(preview, scene->vertices[t[0]].sheet) * (1 - stepf(0.08f, PAPER_WHOLE, burn));
 }
 
@@ -36,7 +36,7 @@ void tracer_close(Preview *preview) {
 /// Lets shadow rays pass through the holes drawn in a burnt sheet, and partly through the sheet.
 static void pass_sheets(const struct RTCFilterFunctionNArguments *arguments) {
     const Preview *preview = arguments->geometryUserPtr;
-    const Scene *scene = &preview->scene;
+    const PreviewScene *scene = &preview->scene;
     Passage *passage = (Passage *)(void *)arguments->context;
     float footprint = preview->camera.pixel * preview->camera.reach;
     // fields of N each: the ray's twelve, of which the 11th is its id, and the hit's normal's three, u, v, triangle;
@@ -65,7 +65,7 @@ static void pass_sheets(const struct RTCFilterFunctionNArguments *arguments) {
 }
 
 SingeResult tracer_build(Preview *preview, SingeError *error) {
-    Scene *scene = &preview->scene;
+    PreviewScene *scene = &preview->scene;
     tracer_release(preview);
     if (!scene->triangle_count) return SINGE_OK;
     (void)rtcGetDeviceError(preview->device);
@@ -106,7 +106,7 @@ void tracer_release(Preview *preview) {
 /// 1 / x, large but finite at 0 so that no 0 times infinity follows.
 static float inverse(float x) { return fabsf(x) > 1e-12f ? 1 / x : 1e12f; }
 
-bool tracer_near(const Scene *scene, Float3 o, Float3 d, float far, float margin) {
+bool tracer_near(const PreviewScene *scene, Float3 o, Float3 d, float far, float margin) {
     float ix = inverse(d.x), iy = inverse(d.y), iz = inverse(d.z);
     float x0 = (scene->low.x - margin - o.x) * ix, x1 = (scene->high.x + margin - o.x) * ix;
     float y0 = (scene->low.y - margin - o.y) * iy, y1 = (scene->high.y + margin - o.y) * iy;
@@ -117,7 +117,7 @@ bool tracer_near(const Scene *scene, Float3 o, Float3 d, float far, float margin
 }
 
 void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit16 *rays) {
-    const Scene *scene = &preview->scene;
+    const PreviewScene *scene = &preview->scene;
     struct RTCRay16 *ray = &rays->ray;
     _Alignas(64) int wanted[LANES];
     int count = 0;
@@ -143,7 +143,7 @@ static bool shape_blocks(const Preview *preview, float time, Float3 o, Float3 d,
 }
 
 void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *ray, float clear[LANES]) {
-    const Scene *scene = &preview->scene;
+    const PreviewScene *scene = &preview->scene;
     Passage passage;
     int count = 0;
     for (int i = 0; i < LANES; i++) {

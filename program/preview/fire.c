@@ -42,7 +42,7 @@ static void fill_cells(Fire *fire, const SingeGas *gas) {
 
 /// Where paper burns: the mean height in each cell, weighted by the rate.
 static void find_roots(Preview *preview) {
-    const Scene *scene = &preview->scene;
+    const PreviewScene *scene = &preview->scene;
     Fire *fire = &preview->fire;
     memset(fire->roots, 0, fire->cell_capacity * sizeof *fire->roots);
     for (uint32_t i = 0; i < scene->vertex_count; i++) {

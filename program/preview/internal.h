@@ -93,7 +93,7 @@ typedef struct Camera {
     float reach;                    ///< m, eye to target
 } Camera;
 
-typedef struct Scene {
+typedef struct PreviewScene {
     RTCScene embree; ///< NULL when there is no triangle
     PaperVertex *vertices;
     float (*positions)[4]; ///< in the centre of the exposure
@@ -105,7 +105,7 @@ typedef struct Scene {
     float epsilon;    ///< m, distance by which secondary rays leave a surface
     EmberLights lights;
     int light_count;
-} Scene;
+} PreviewScene;
 
 /// The data of a PreviewSolid for rays.
 typedef struct Facets {
@@ -141,7 +141,7 @@ struct Preview {
     bool table_known;
     uint8_t *mask;   ///< [mask_size] for each block, whether a sheet or a shape may touch it
     Float3 *glow[2]; ///< [quarter height * quarter width] for the bloom
-    Scene scene;
+    PreviewScene scene;
     Fire fire;
     PreviewLayers layers; ///< being drawn
     double time;
@@ -201,7 +201,7 @@ void tracer_close(Preview *preview);
 SingeResult tracer_build(Preview *preview, SingeError *error);
 void tracer_release(Preview *preview);
 /// Whether the ray comes nearer than `margin` to the surface's bounds before `far`.
-bool tracer_near(const Scene *scene, Float3 origin, Float3 direction, float far, float margin);
+bool tracer_near(const PreviewScene *scene, Float3 origin, Float3 direction, float far, float margin);
 /// Nearest hits of the lanes with valid = -1; `geomID` is RTC_INVALID_GEOMETRY_ID where there is none.
 void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit16 *rays);
 /// clear[i] is the transmittance along the ray of a lane with valid = -1, shapes included; for other lanes it is 1.
@@ -259,7 +259,7 @@ typedef struct PaperState {
     int32_t sheet, piece;
 } PaperState;
 /// The sheet's fields at a point in a triangle.
-void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperState *state);
+void paper_state(const PreviewScene *scene, uint32_t triangle, float u, float v, PaperState *state);
 /// Whether the burnt sheet has a hole there at the picture's scale. Only where burn > PAPER_WHOLE.
 bool paper_is_hole(const PaperState *state, float footprint);
 /// Share of the light on one side of a fresh sheet that is transmitted to the other.

@@ -39,7 +39,7 @@ static void add_to_cluster(Cluster *clusters, Float3 low, Float3 high, Float3 po
 }
 
 static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster *clusters) {
-    const Scene *scene = &preview->scene;
+    const PreviewScene *scene = &preview->scene;
     const PaperVertex *a = &scene->vertices[t[0]], *b = &scene->vertices[t[1]], *c = &scene->vertices[t[2]];
     float hottest = maxf(a->temperature, maxf(b->temperature, c->temperature));
     float share = hottest > BLACKBODY_MIN ? coverage(a, b, c) : 0;
@@ -58,7 +58,7 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
     add_to_cluster(clusters, scene->low, scene->high, position, strength, weight);
 }
 
-static void add_light(Scene *scene, Float3 position, Float3 strength, float softness, float extent) {
+static void add_light(PreviewScene *scene, Float3 position, Float3 strength, float softness, float extent) {
     EmberLights *lights = &scene->lights;
     int k = scene->light_count++;
     lights->x[k] = position.x;
@@ -72,7 +72,7 @@ static void add_light(Scene *scene, Float3 position, Float3 strength, float soft
 }
 
 static void add_shapes(Preview *preview) {
-    Scene *scene = &preview->scene;
+    PreviewScene *scene = &preview->scene;
     for (uint32_t k = 0; k < preview->shape_count && scene->light_count < LIGHT_LIMIT / 2; k++) {
         const PreviewShape *shape = &preview->shapes[k];
         if (!(shape->temperature > BLACKBODY_MIN) || shape->kind == SINGE_COLLIDER_PLANE) continue;
@@ -102,7 +102,7 @@ static void gather_flames(const Preview *preview, Cluster *clusters) {
 }
 
 /// Turns the strongest clusters into lights until there are `limit`, and scales them to the total of all clusters.
-static void choose_lights(Scene *scene, Cluster *clusters, int limit, float softness) {
+static void choose_lights(PreviewScene *scene, Cluster *clusters, int limit, float softness) {
     float total = 0, kept = 0;
     int first = scene->light_count;
     for (int i = 0; i < CELLS; i++) total += clusters[i].weight;
@@ -124,7 +124,7 @@ static void choose_lights(Scene *scene, Cluster *clusters, int limit, float soft
 }
 
 void light_gather(Preview *preview) {
-    Scene *scene = &preview->scene;
+    PreviewScene *scene = &preview->scene;
     scene->light_count = 0;
     scene->lights = (EmberLights){.x = {0}};
     for (int k = 0; k < LIGHT_LIMIT; k++) scene->lights.softness[k] = 1;

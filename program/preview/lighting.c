@@ -83,13 +83,13 @@ void light_add_sun(const Preview *preview, Block *block, const int *active, int 
 }
 
 /// Whether the point is nearer than `reach` to the surface's bounds.
-static bool within(const Scene *scene, Float3 p, float reach) {
+static bool within(const PreviewScene *scene, Float3 p, float reach) {
     return p.x > scene->low.x - reach && p.x < scene->high.x + reach && p.y > scene->low.y - reach &&
            p.y < scene->high.y + reach && p.z > scene->low.z - reach && p.z < scene->high.z + reach;
 }
 
 /// Length of ambient-occlusion rays.
-static float sky_reach(const Scene *scene) {
+static float sky_reach(const PreviewScene *scene) {
     return 0.28f * float3_length(float3_sub(scene->high, scene->low)) + 0.01f;
 }
 
@@ -105,7 +105,7 @@ static bool sky_may_be_hidden(const Preview *preview, Float3 p, float reach) {
 
 /// The sun is a disc: its rays spread by sun_spread times their length. The margin is a little more than that.
 static bool sun_may_be_hidden(const Preview *preview, Float3 p, float margin) {
-    const Scene *scene = &preview->scene;
+    const PreviewScene *scene = &preview->scene;
     Float3 sun = preview->sun;
     float spread = 1.5f * preview->sun_spread, rise = maxf(scene->high.z - p.z, 0) / maxf(sun.z, 0.02f);
     if (scene->triangle_count && tracer_near(scene, p, sun, INFINITY, spread * rise + margin)) return true;
@@ -121,7 +121,7 @@ static bool sun_may_be_hidden(const Preview *preview, Float3 p, float margin) {
 
 /// A low sheet far away occludes too little of the table's sky to be seen: under 2 % where its height is less than 0.28
 /// of the distance.
-static float table_reach(const Scene *scene, Float3 p) {
+static float table_reach(const PreviewScene *scene, Float3 p) {
     return minf(sky_reach(scene), 3.5f * maxf(scene->high.z - p.z, 0));
 }
 

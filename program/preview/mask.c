@@ -47,7 +47,7 @@ static void mark(Preview *preview, const Rectangle *r) {
 }
 
 void mask_fill(Preview *preview) {
-    const Scene *scene = &preview->scene;
+    const PreviewScene *scene = &preview->scene;
     bool moves = preview->def.shutter > 0;
     memset(preview->mask, 0, mask_size(preview));
     for (uint32_t t = 0; t < scene->triangle_count; t++) {

@@ -21,7 +21,7 @@ static bool mesh_in_grow(Preview *preview, void *array_pointer, uint32_t *capaci
 }
 
 static bool mesh_in_reserve(Preview *preview, uint32_t vertices, uint32_t triangles) {
-    Scene *scene = &preview->scene;
+    PreviewScene *scene = &preview->scene;
     size_t position = sizeof *scene->positions;
     bool done = mesh_in_grow(preview, &scene->vertices, &scene->vertex_capacity, vertices, sizeof *scene->vertices) &&
                 mesh_in_grow(preview, &scene->positions, &scene->position_capacity, vertices, position);
@@ -111,7 +111,7 @@ static void add3(float sum[3], Float3 v, float weight) {
 
 /// Adds the triangle's share of the gradients to its corners: times area into `slope` and `warming`, the area into
 /// `gradient`.
-static void add_gradient(Scene *scene, const uint32_t t[3]) {
+static void add_gradient(PreviewScene *scene, const uint32_t t[3]) {
     PaperVertex *v[3] = {&scene->vertices[t[0]], &scene->vertices[t[1]], &scene->vertices[t[2]]};
     Float3 origin = float3_load(v[0]->rest), e1 = float3_sub(float3_load(v[1]->rest), origin),
            e2 = float3_sub(float3_load(v[2]->rest), origin);
@@ -129,7 +129,7 @@ static void add_gradient(Scene *scene, const uint32_t t[3]) {
 }
 
 /// Adds the triangle's angles to its corners' `rim`.
-static void add_angles(Scene *scene, const uint32_t t[3]) {
+static void add_angles(PreviewScene *scene, const uint32_t t[3]) {
     for (int k = 0; k < 3; k++) {
         PaperVertex *v = &scene->vertices[t[k]];
         Float3 a = float3_sub(float3_load(scene->vertices[t[(k + 1) % 3]].rest), float3_load(v->rest));
@@ -152,7 +152,7 @@ static void bound_vertex(const float *p, Float3 *low, Float3 *high) {
     *high = float3(maxf(high->x, p[0]), maxf(high->y, p[1]), maxf(high->z, p[2]));
 }
 
-static void bound(Scene *scene, bool moves) {
+static void bound(PreviewScene *scene, bool moves) {
     Float3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t t = 0; t < scene->triangle_count; t++)
         for (int k = 0; k < 3; k++) {
@@ -169,7 +169,7 @@ static void bound(Scene *scene, bool moves) {
 }
 
 static void measure_textures(Preview *preview) {
-    const Scene *scene = &preview->scene;
+    const PreviewScene *scene = &preview->scene;
     for (uint32_t s = 0; s < preview->def.sheet_count; s++) {
         Texture *texture = &preview->textures[s];
         double texels = 0, area = 0;
@@ -205,7 +205,7 @@ static SingeResult check(const SingeSurface *surface, SingeError *error) {
 }
 
 SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeError *error) {
-    Scene *scene = &preview->scene;
+    PreviewScene *scene = &preview->scene;
     tracer_release(preview);
     scene->vertex_count = scene->triangle_count = 0;
     SingeResult result = check(surface, error);
@@ -246,7 +246,7 @@ SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeErro
 }
 
 void tracer_free(Preview *preview) {
-    Scene *scene = &preview->scene;
+    PreviewScene *scene = &preview->scene;
     tracer_release(preview);
     allocator_resize(preview->allocator, scene->vertices, scene->vertex_capacity * sizeof *scene->vertices, 0);
     allocator_resize(preview->allocator, scene->positions, scene->position_capacity * sizeof *scene->positions, 0);
@@ -254,5 +254,5 @@ void tracer_free(Preview *preview) {
         allocator_resize(preview->allocator, scene->moved[end], scene->moved_capacity[end] * sizeof *scene->moved[end],
                          0);
     allocator_resize(preview->allocator, scene->triangles, scene->triangle_capacity * sizeof *scene->triangles, 0);
-    *scene = (Scene){0};
+    *scene = (PreviewScene){0};
 }

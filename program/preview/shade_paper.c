@@ -31,7 +31,7 @@ static Float3 askew(Float3 r) {
                   -0.1905f * r.x + 0.3481f * r.y + 0.9179f * r.z);
 }
 
-void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperState *state) {
+void paper_state(const PreviewScene *scene, uint32_t triangle, float u, float v, PaperState *state) {
     const uint32_t *t = scene->triangles[triangle];
     const PaperVertex *a = &scene->vertices[t[0]], *b = &scene->vertices[t[1]], *c = &scene->vertices[t[2]];
     float w = 1 - u - v, min = minf(a->rim, minf(b->rim, c->rim));
