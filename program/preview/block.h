@@ -64,15 +64,6 @@ static inline void rest_ray(struct RTCRay16 *ray, int lane) {
 /// In place of a sample's number: the centre of the sun and an open sky, if nothing can occlude them.
 enum { SAMPLE_CENTRE = -1 };
 
-// layers.c
-void layers_begin(LayerSum *sum);
-/// `fire` is the light of flame and smoke in front of the point, `clear` their transmittance.
-void layers_add(const Preview *preview, const Point *point, Float3 fire, float clear, Float3 direction, LayerSum *sum);
-void layers_write(const Preview *preview, size_t pixel, const LayerSum *sum);
-
-/// Writes `beauty` from the finished picture.
-void layers_finish(const Preview *preview);
-
 // lighting.c
 /// Reflected share of the light along l, per unit of irradiance: diffuse and a Blinn-Phong lobe.
 Float3 light_reflect(const Point *point, Float3 l);

@@ -5,24 +5,11 @@
 
 #include "preview/internal.h"
 
-static SingeResult embree_check(const Preview *preview, SingeError *error) {
-    enum RTCError code = rtcGetDeviceError(preview->device);
-    if (code == RTC_ERROR_NONE) return SINGE_OK;
-    if (code == RTC_ERROR_OUT_OF_MEMORY) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree is out of memory");
-    return preview_fail(error, SINGE_ERROR_STATE, -1, "Embree refused the surface (error %d)", (int)code);
-}
-
 /// The transmittance along a packet of shadow rays.
 typedef struct Passage {
     TraceContext context; ///< first: Embree hands it back
     float clear[LANES];
 } Passage;
-
-/// Share of a ray that a sheet transmits straight: most of the light through it is scattered.
-static float let_through(const Preview *preview, const uint32_t t[3], float burn) {
-    const PreviewScene *scene = &preview->scene;
-    return 0.5f * paper_transmittance(preview, scene->vertices[t[0]].sheet) * (1 - stepf(0.08f, PAPER_WHOLE, burn));
-}
 
 SingeResult tracer_open(Preview *preview, SingeError *error) {
     preview->device = rtcNewDevice("threads=1,set_affinity=0");
@@ -58,8 +45,11 @@ static void pass_sheets(const struct RTCFilterFunctionNArguments *arguments) {
                 continue;
             }
         }
+
+        // what a sheet transmits straight: most of the light through it is scattered
+        float straight = 0.5f * paper_transmittance(preview, vertices[t[0]].sheet);
         float *clear = &passage->clear[lane[i]];
-        *clear *= let_through(preview, t, burn);
+        *clear *= straight * (1 - stepf(0.08f, PAPER_WHOLE, burn));
         if (*clear > 0.01f) arguments->valid[i] = 0;
     }
 }
@@ -68,6 +58,7 @@ SingeResult tracer_build(Preview *preview, SingeError *error) {
     PreviewScene *scene = &preview->scene;
     tracer_release(preview);
     if (!scene->triangle_count) return SINGE_OK;
+
     (void)rtcGetDeviceError(preview->device);
     RTCScene built = rtcNewScene(preview->device);
     RTCGeometry geometry = rtcNewGeometry(preview->device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -88,14 +79,17 @@ SingeResult tracer_build(Preview *preview, SingeError *error) {
         rtcCommitScene(built);
     }
     if (geometry) rtcReleaseGeometry(geometry);
-    SingeResult result = embree_check(preview, error);
-    if (!result && !built) result = preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree cannot create a scene");
-    if (result) {
-        if (built) rtcReleaseScene(built);
-        return result;
-    }
-    scene->embree = built;
-    return SINGE_OK;
+
+    enum RTCError code = rtcGetDeviceError(preview->device);
+    SingeResult result = SINGE_OK;
+    if (code == RTC_ERROR_OUT_OF_MEMORY)
+        result = preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree is out of memory");
+    else if (code != RTC_ERROR_NONE)
+        result = preview_fail(error, SINGE_ERROR_STATE, -1, "Embree refused the surface (error %d)", (int)code);
+    else if (!built) result = preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree cannot create a scene");
+    if (!result) scene->embree = built;
+    else if (built) rtcReleaseScene(built);
+    return result;
 }
 
 void tracer_release(Preview *preview) {
@@ -134,14 +128,6 @@ void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit
     trace_nearest16(scene->embree, wanted, rays);
 }
 
-static bool shape_blocks(const Preview *preview, float time, Float3 o, Float3 d, float far) {
-    Float3 normal;
-    float moment = shutter_moment(preview, time);
-    for (uint32_t k = 0; k < preview->shape_count; k++)
-        if (shape_intersect(&preview->shapes[k], moment, o, d, preview->scene.epsilon, far, &normal) > 0) return true;
-    return false;
-}
-
 void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *ray, float clear[LANES]) {
     const PreviewScene *scene = &preview->scene;
     Passage passage;
@@ -150,12 +136,16 @@ void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *ray, fl
         passage.clear[i] = clear[i] = 1;
         if (!valid[i]) continue;
         Float3 o = float3(ray->org_x[i], ray->org_y[i], ray->org_z[i]),
-               d = float3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]);
-        if (shape_blocks(preview, ray->time[i], o, d, ray->tfar[i])) clear[i] = 0;
+               d = float3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]), normal;
+        float moment = shutter_moment(preview, ray->time[i]);
+        for (uint32_t k = 0; k < preview->shape_count && clear[i] > 0; k++)
+            if (shape_intersect(&preview->shapes[k], moment, o, d, scene->epsilon, ray->tfar[i], &normal) > 0)
+                clear[i] = 0;
         if (clear[i] <= 0 || !scene->embree || !tracer_near(scene, o, d, ray->tfar[i], 0)) valid[i] = 0;
         count += valid[i] != 0;
     }
     if (!count) return;
+
     trace_init(&passage.context);
     trace_occluded16(scene->embree, valid, &passage.context, ray);
     for (int i = 0; i < LANES; i++)

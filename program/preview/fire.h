@@ -96,8 +96,6 @@ void fire_fill_colours(Preview *preview);
 /// Light of a full flame, radiance per metre, for its lamps, and the share of it that a cell emits.
 Float3 fire_emission(const Preview *preview);
 float fire_share(const FireCell *cell);
-/// The same for other programs: light of the flame as a share of the brightest flame, and extinction of smoke, 1/m.
-void fire_look(const Preview *preview, Float3 p, float *flame, float *smoke);
 Matter fire_matter(const Preview *preview, Float3 p, int what);
 
 // fire_march.c

@@ -9,7 +9,7 @@
 // Thin lens of radius R, sharp at distance f: rays from its points c meet at f. A point at depth z is spread over
 // R |1/f - 1/z| at distance 1.
 
-#include "preview/internal.h"
+#include "preview/lens.h"
 
 Camera camera_make(const PreviewDef *def) {
     Float3 eye = float3_load(def->camera.eye), forward = float3_sub(float3_load(def->camera.target), eye);
@@ -81,7 +81,8 @@ static float sine(float x) {
 
 void sample_disc(const float square[2], float out[2]) {
     float r = sqrtf(square[0]), x = 2 * square[1] - 1, quarter = x + 0.5f;
-    out[0] = r * sine(quarter > 1 ? quarter - 2 : quarter), out[1] = r * sine(x);
+    out[0] = r * sine(quarter > 1 ? quarter - 2 : quarter);
+    out[1] = r * sine(x);
 }
 
 Float3 sample_cosine(Float3 normal, const float square[2]) {

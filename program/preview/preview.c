@@ -63,32 +63,27 @@ static SingeResult check_camera(const PreviewCamera *camera, SingeError *error) 
     return SINGE_OK;
 }
 
-static SingeResult check_shape(const PreviewShape *shape, int64_t index, SingeError *error) {
-    bool good = all_between(shape->position, 3, -1e4f, 1e4f) && all_between(shape->velocity, 3, -1e4f, 1e4f) &&
-                all_between(shape->colour, 3, 0, 1e4f) && shape->temperature >= 0 && shape->temperature < 1e5f;
-    const float *q = shape->rotation;
-    float length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    switch (shape->kind) {
-    case SINGE_COLLIDER_PLANE: break;
-    case SINGE_COLLIDER_SPHERE: good = good && shape->radius > 0 && shape->radius <= 1e4f; break;
-    case SINGE_COLLIDER_BOX: good = good && all_between(shape->half_size, 3, 1e-7f, 1e4f); break;
-    case SINGE_COLLIDER_CAPSULE:
-        good = good && shape->radius > 0 && shape->radius <= 1e4f && shape->height >= 0 && shape->height <= 1e4f;
-        break;
-    case SINGE_COLLIDER_HEIGHTFIELD:
-    case SINGE_COLLIDER_MESH: good = good && shape->solid; break;
-    default: good = false;
-    }
-    if (shape->kind != SINGE_COLLIDER_SPHERE) good = good && fabsf(length - 1) < 0.01f;
-    return good ? SINGE_OK
-                : preview_refuse(error, index, "shape: kind, size, position, rotation or temperature is out of range");
-}
-
 static SingeResult check_shapes(const PreviewShape *shapes, uint32_t count, SingeError *error) {
-    if (count && !shapes) return preview_refuse(error, -1, "shapes: a count and no array");
+    if (count && !shapes) return preview_refuse(error, -1, "shapes: there is a count and no array");
     for (uint32_t i = 0; i < count; i++) {
-        SingeResult result = check_shape(&shapes[i], i, error);
-        if (result) return result;
+        const PreviewShape *shape = &shapes[i];
+        const float *q = shape->rotation, length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+        bool good = all_between(shape->position, 3, -1e4f, 1e4f) && all_between(shape->velocity, 3, -1e4f, 1e4f) &&
+                    all_between(shape->colour, 3, 0, 1e4f) && shape->temperature >= 0 && shape->temperature < 1e5f;
+        switch (shape->kind) {
+        case SINGE_COLLIDER_PLANE: break;
+        case SINGE_COLLIDER_SPHERE: good = good && shape->radius > 0 && shape->radius <= 1e4f; break;
+        case SINGE_COLLIDER_BOX: good = good && all_between(shape->half_size, 3, 1e-7f, 1e4f); break;
+        case SINGE_COLLIDER_CAPSULE:
+            good = good && shape->radius > 0 && shape->radius <= 1e4f && shape->height >= 0 && shape->height <= 1e4f;
+            break;
+        case SINGE_COLLIDER_HEIGHTFIELD:
+        case SINGE_COLLIDER_MESH: good = good && shape->solid; break;
+        default: good = false;
+        }
+        if (shape->kind != SINGE_COLLIDER_SPHERE) good = good && fabsf(length - 1) < 0.01f;
+        if (!good)
+            return preview_refuse(error, i, "shape: kind, size, position, rotation or temperature is out of range");
     }
     return SINGE_OK;
 }
@@ -100,7 +95,7 @@ static bool image_is_good(const Image *image) {
 
 static SingeResult check_light(const PreviewDef *def, SingeError *error) {
     Float3 sun = float3_load(def->sun_direction);
-    if (!float3_finite(sun) || !(float3_dot(sun, sun) > 1e-20f) || !(float3_dot(sun, sun) < 1e20f))
+    if (!(float3_dot(sun, sun) > 1e-20f && float3_dot(sun, sun) < 1e20f)) // false for NaN
         return preview_refuse(error, -1, "sun_direction must be finite and not zero");
     if (!(def->sun_angle >= 0 && def->sun_angle < 1.5f))
         return preview_refuse(error, -1, "sun_angle must lie between 0 and 1.5 rad");
@@ -175,25 +170,25 @@ static SingeResult preview_allocate(Preview *preview, SingeError *error) {
     return SINGE_OK;
 }
 
-static void preview_aim(Preview *preview) {
-    preview->camera = camera_make(&preview->def);
-    preview->sun = float3_unit_or(float3_load(preview->def.sun_direction), float3(0, 0, 1));
-    float3_frame(preview->sun, &preview->sun_right, &preview->sun_up);
-    preview->sun_light = float3_scale(float3_load(preview->def.sun_colour), FILM_SPEED);
-    preview->sun_spread = tanf(preview->def.sun_angle);
-    tonemap_fill_linear(preview->linear);
-    blackbody_fill(preview->blackbody);
-    sky_fill(preview);
-}
-
 SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Preview **out, SingeError *error) {
     *out = NULL;
     SingeResult result = check_def(def, error);
     if (result) return result;
     Preview *preview = allocator_resize(allocator, NULL, 0, sizeof *preview);
     if (!preview) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory");
-    *preview = (Preview){.def = *def, .allocator = allocator};
-    preview_aim(preview);
+    *preview = (Preview){.def = *def, .allocator = allocator, .camera = camera_make(def)};
+
+    preview->sun = float3_unit_or(float3_load(def->sun_direction), float3(0, 0, 1));
+    float3_frame(preview->sun, &preview->sun_right, &preview->sun_up);
+    preview->sun_light = float3_scale(float3_load(def->sun_colour), FILM_SPEED);
+    preview->sun_spread = tanf(def->sun_angle);
+    for (int i = 0; i < 256; i++) {
+        float s = (float)i / 255;
+        preview->linear[i] = s <= 0.04045f ? s / 12.92f : powf((s + 0.055f) / 1.055f, 2.4f);
+    }
+    blackbody_fill(preview->blackbody);
+    sky_fill(preview);
+
     result = preview_allocate(preview, error);
     if (!result) result = tracer_open(preview, error);
     if (!result) result = preview_set_shapes(preview, def->shapes, def->shape_count, error);
