@@ -67,12 +67,15 @@ enum { SAMPLE_CENTRE = -1 };
 // lighting.c
 /// Reflected share of the light along l, per unit of irradiance: diffuse and a Blinn-Phong lobe.
 Float3 light_reflect(const Point *point, Float3 l);
+
 /// Whether the point that the lane sees is lit.
 bool light_reaches(const Block *block, const int *active, int lane);
+
 /// Adds the light of the sun and the sky that reaches the eye from block->point: the sun by `rays` rays each, the sky
 /// by one, or by earlier results if no rays are to be traced.
 void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, int rays);
 void light_add_sky(const Preview *preview, Block *block, const int *active, int sample, bool ask);
+
 /// Whether anything could occlude sun or sky at any of the points.
 bool light_may_be_hidden(const Preview *preview, const Block *block, const int *active);
 
@@ -80,6 +83,7 @@ bool light_may_be_hidden(const Preview *preview, const Block *block, const int *
 /// Adds the light of flames and embers that reaches block->point, times `through`, and tests its visibility.
 void lamps_add(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES]);
 void lamps_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples);
+
 /// Called per block once all blocks are written: first smooths along rows; then, for all blocks, along columns, and
 /// adds the result to the picture.
 void lamps_smooth(Preview *preview, Block *block);

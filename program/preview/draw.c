@@ -25,11 +25,13 @@ static void layers_write(const Preview *preview, size_t pixel, const LayerSum *s
     const PreviewLayers *layers = &preview->layers;
     float sample = 1 / maxf((float)sum->samples, 1), hit = 1 / maxf((float)sum->hits, 1);
     store(layers->glow, pixel, float3_scale(sum->glow, sample));
+
     if (layers->fire) {
         float *fire = layers->fire[pixel];
         float3_store(fire, float3_scale(sum->fire, sample));
         fire[3] = sum->fire_hides * sample;
     }
+
     store(layers->normal, pixel, float3_unit_or(sum->normal, float3(0, 0, 0)));
     if (layers->coverage) layers->coverage[pixel] = (float)sum->hits * sample;
     if (layers->temperature) layers->temperature[pixel] = sum->temperature * hit;
@@ -64,6 +66,7 @@ static void aim_block(const Preview *preview, Block *block, int sample, const fl
             sample_lens((uint32_t)sample, block->key[i], square);
             sample_disc(square, disc);
         }
+
         camera_ray(&preview->camera, x, y, disc, &block->origin[i], &block->direction[i]);
         block->time[i] = shutter ? sample_time((uint32_t)sample, block->key[i]) : 0.5f;
     }
@@ -99,6 +102,7 @@ static void see_ground(const Preview *preview, Block *block, int lane) {
         miss_point(point, preview, d);
         return;
     }
+
     start_point(point, preview, block->origin[lane], d, distance);
     ground_shade(preview, distance, &preview->table[pixel_index(preview, block, lane)], point);
 }
@@ -112,6 +116,7 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
     float distance = paper ? block->rays.ray.tfar[lane] : INFINITY;
     const PreviewShape *shape = NULL;
     float moment = shutter_moment(preview, block->time[lane]);
+
     for (uint32_t k = 0; k < preview->shape_count; k++) {
         float t = shape_intersect(&preview->shapes[k], moment, o, d, 0, distance, &normal);
         if (t > 0) {
@@ -125,10 +130,12 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
         see_ground(preview, block, lane);
         return true;
     }
+
     if (!shape && !paper) {
         miss_point(point, preview, d);
         return true;
     }
+
     start_point(point, preview, o, d, distance);
     if (shape) {
         point->hit = true;
@@ -153,6 +160,7 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
     point->piece = state.piece;
     point->temperature = state.temperature;
     point->burn = state.burn;
+
     return paper_shade(preview, &state, point) || last;
 }
 
@@ -163,6 +171,7 @@ static void find_points(const Preview *preview, Block *block, const int *active)
         block->valid[i] = active[i];
         left += active[i] != 0;
     }
+
     for (int pass = 0; pass < HOLE_LIMIT && left; pass++) {
         tracer_intersect(preview, block->valid, &block->rays);
         left = 0;
@@ -185,6 +194,7 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
     for (int i = 0; i < LANES; i++) block->light[i] = float3(0, 0, 0);
     light_add_sun(preview, block, active, sample, rays);
     light_add_sky(preview, block, active, sample, rays > 0);
+
     for (int i = 0; i < LANES; i++) {
         if (!active[i]) continue;
         const Point *point = &block->point[i];
@@ -207,6 +217,7 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
             clear = block->fire_clear[i];
             colour = float3_mad(fire, colour, clear);
         }
+
         through[i] = clear * (1 - point->fade);
         colour = float3(minf(colour.x, 40), minf(colour.y, 40), minf(colour.z, 40));
         block->sum[i] = float3_add(block->sum[i], colour);
@@ -217,6 +228,7 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
             sum->sheet = point->sheet;
             sum->piece = point->piece;
         }
+
         sum->fire = float3_add(sum->fire, fire);
         sum->fire_hides += 1 - clear;
         if (!point->hit) continue;
@@ -226,6 +238,7 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
         sum->temperature += point->temperature;
         sum->burn += point->burn;
     }
+
     lamps_add(preview, block, active, sample, through);
 }
 
@@ -239,6 +252,7 @@ static void add_sample(const Preview *preview, Block *block, const int *active, 
         for (int i = 0; bare && i < LANES; i++)
             if (active[i]) see_ground(preview, block, i);
     }
+
     add_light(preview, block, active, sample, rays);
 }
 
@@ -258,6 +272,7 @@ static int find_restless(const Preview *preview, const Block *block, const int *
     // where a lens or a shutter blurs strongly, all first samples of some pixels miss what their neighbours' hit ...
     // and at the rim of a shadow on the table, nearly all of a pixel's first rays to the sun may agree
     bool mixed = (is_blurred(preview) && hits > 0 && hits < samples) || (bare && block->sunlit && block->shaded);
+
     for (int i = 0; i < LANES; i++) {
         const LayerSum *sum = &block->layer[i];
         bool edge = sum->hits > 0 && sum->hits < sum->samples; // also if only fire lights it, which is not in `high`
@@ -279,12 +294,14 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
         add_sample(preview, block, active, bare, s, 1);
         if (bare && !block->shaded && !block->clouded && !is_blurred(preview)) first = s + 1;
     }
+
     if (first == 1 && bare) samples = 1;
 
     bool on = first < samples && find_restless(preview, block, active, bare, more);
     // at the rim of a shadow more rays are traced; elsewhere the first are enough
     int rays = block->sunlit && block->shaded ? (bare ? RIM_RAYS : 1) : 0;
     for (int i = 0; i < LANES; i++) taken[i] = on && more[i] ? samples : first;
+
     for (int s = first; s < samples && on; s++) {
         // after half of the samples: only lanes whose samples still differ so much that more would be visible
         if (s == samples / 2 && !rays && !is_blurred(preview)) {
@@ -309,6 +326,7 @@ static void draw_block(Preview *preview, Block *block) {
     block->sunlit = block->shaded = block->clouded = false;
     block->sun_seen = 0;
     block->sun_asked = 0;
+
     for (int i = 0; i < LANES; i++) {
         active[i] = block->x[i] < def->width && block->y[i] < def->height ? -1 : 0;
         sample_pixel(block->x[i], block->y[i], def->seed, block->turn[i]);
@@ -328,6 +346,7 @@ static void draw_block(Preview *preview, Block *block) {
         for (int i = 0; i < LANES; i++)
             if (active[i]) see_ground(preview, block, i);
     }
+
     if (bare && !light_may_be_hidden(preview, block, active)) {
         add_light(preview, block, active, SAMPLE_CENTRE, 1);
         for (int i = 0; i < LANES; i++) taken[i] = 1;
@@ -350,6 +369,7 @@ static void fill_table(Preview *preview, Block *block) {
     Table sum[LANES] = {{{0, 0, 0}, {0, 0}, 0}};
     int count[LANES] = {0}, samples = preview->camera.lens > 0 ? 24 : 4;
     for (int i = 0; i < LANES; i++) block->key[i] = sample_key(block->x[i], block->y[i], preview->def.seed);
+
     for (int s = 0; s < samples; s++) {
         float at[2];
         sample_offset(s, at);
@@ -367,6 +387,7 @@ static void fill_table(Preview *preview, Block *block) {
             count[i]++;
         }
     }
+
     for (int i = 0; i < LANES; i++) {
         if (block->x[i] >= preview->def.width || block->y[i] >= preview->def.height) continue;
         float share = 1 / maxf((float)count[i], 1);
@@ -382,6 +403,7 @@ static void *draw_tiles(void *context) {
     Block block = {.tile = NULL};
     const PreviewDef *def = &job->preview->def;
     FireTile *fire = job->fire ? &job->preview->fire.tiles[atomic_fetch_add(&job->threads, 1)] : NULL;
+
     for (int tile; (tile = atomic_fetch_add(&job->next, 1)) < job->count;) {
         int x0 = tile % job->across * TILE, y0 = tile / job->across * TILE;
         if (fire) fire_see(job->preview, x0, y0, fire);
@@ -406,6 +428,7 @@ static void draw_all(Preview *preview, void (*draw)(Preview *, Block *)) {
     atomic_init(&job.threads, 0);
     pthread_t threads[THREAD_LIMIT];
     int started = 0;
+
     // a thread that cannot be created only makes it slower
     while (started < preview->def.thread_count - 1 && !pthread_create(&threads[started], NULL, draw_tiles, &job))
         started++;
@@ -425,6 +448,7 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     preview->time = time;
     SingeResult result = tracer_load(preview, surface, error);
     if (result) return result;
+
     preview->layers = *layers;
     fire_raise(preview);
     light_gather(preview);
@@ -444,5 +468,6 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
         bloom_apply(preview);
         tonemap_write(preview, rgb);
     }
+
     return SINGE_OK;
 }

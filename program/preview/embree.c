@@ -26,12 +26,14 @@ static void pass_sheets(const struct RTCFilterFunctionNArguments *arguments) {
     const PreviewScene *scene = &preview->scene;
     Passage *passage = (Passage *)(void *)arguments->context;
     float footprint = preview->camera.pixel * preview->camera.reach;
+
     // fields of N each: the ray's twelve, of which the 11th is its id, and the hit's normal's three, u, v, triangle;
     // the accessors of the header are C++ only
     unsigned count = arguments->N;
     const float *u = (const float *)arguments->hit + 3 * count, *v = u + count;
     const unsigned *triangle = (const unsigned *)arguments->hit + 5 * count;
     const unsigned *lane = (const unsigned *)arguments->ray + 10 * count;
+
     for (unsigned i = 0; i < count; i++) {
         if (!arguments->valid[i]) continue;
         const uint32_t *t = scene->triangles[triangle[i]];
@@ -62,6 +64,7 @@ SingeResult tracer_build(Preview *preview, SingeError *error) {
     (void)rtcGetDeviceError(preview->device);
     RTCScene built = rtcNewScene(preview->device);
     RTCGeometry geometry = rtcNewGeometry(preview->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+
     if (built && geometry) {
         rtcSetSceneFlags(built, RTC_SCENE_FLAG_ROBUST);
         bool moves = preview->def.shutter > 0;
@@ -78,6 +81,7 @@ SingeResult tracer_build(Preview *preview, SingeError *error) {
         rtcAttachGeometry(built, geometry);
         rtcCommitScene(built);
     }
+
     if (geometry) rtcReleaseGeometry(geometry);
 
     enum RTCError code = rtcGetDeviceError(preview->device);
@@ -89,6 +93,7 @@ SingeResult tracer_build(Preview *preview, SingeError *error) {
     else if (!built) result = preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree cannot create a scene");
     if (!result) scene->embree = built;
     else if (built) rtcReleaseScene(built);
+
     return result;
 }
 
@@ -115,6 +120,7 @@ void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit
     struct RTCRay16 *ray = &rays->ray;
     _Alignas(64) int wanted[LANES];
     int count = 0;
+
     for (int i = 0; i < LANES; i++) {
         rays->hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         rays->hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
@@ -124,6 +130,7 @@ void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit
                                      float3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]), ray->tfar[i], 0);
         count += wanted[i] != 0;
     }
+
     if (!scene->embree || !count) return;
     trace_nearest16(scene->embree, wanted, rays);
 }
@@ -132,6 +139,7 @@ void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *ray, fl
     const PreviewScene *scene = &preview->scene;
     Passage passage;
     int count = 0;
+
     for (int i = 0; i < LANES; i++) {
         passage.clear[i] = clear[i] = 1;
         if (!valid[i]) continue;
@@ -144,6 +152,7 @@ void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *ray, fl
         if (clear[i] <= 0 || !scene->embree || !tracer_near(scene, o, d, ray->tfar[i], 0)) valid[i] = 0;
         count += valid[i] != 0;
     }
+
     if (!count) return;
 
     trace_init(&passage.context);

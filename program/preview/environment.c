@@ -34,6 +34,7 @@ static Float3 sky_light(const Preview *preview, int row, int column) {
     Float3 d = sky_direction(row, column), sun = preview->sun;
     float turn = -preview->def.sky_turn, c = cosf(turn), s = sinf(turn);
     d = float3(c * d.x - s * d.y, s * d.x + c * d.y, d.z);
+
     switch (preview->def.sky) {
     case PREVIEW_SKY_STUDIO: {
         // a dim room: a tall cool window across from the sun, a warm lamp behind it, a ceiling that takes a little of
@@ -80,6 +81,7 @@ static void fill_radiance(Preview *preview) {
     const PreviewDef *def = &preview->def;
     bool pictured_below = def->sky == PREVIEW_SKY_PICTURE && !isfinite(def->ground_height);
     float total = 0;
+
     for (int row = 0; row < SKY_DOWN; row++)
         for (int column = 0; column < SKY_ACROSS; column++) {
             sky->radiance[row][column] = sky_light(preview, row, column);

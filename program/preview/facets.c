@@ -31,6 +31,7 @@ static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *
     uint32_t *fan = allocator_resize(allocator, NULL, 0, corners * sizeof *fan);
     facets->normals = allocator_resize(allocator, NULL, 0, corners * sizeof *facets->normals);
     bool ok = first && fan && facets->normals;
+
     if (ok) {
         // triangles by their vertices: those of vertex v are fan[first[v]] up to fan[first[v + 1]]
         memset(first, 0, vertices * sizeof *first);
@@ -52,6 +53,7 @@ static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *
         low = float3(minf(low.x, v.x), minf(low.y, v.y), minf(low.z, v.z));
         high = float3(maxf(high.x, v.x), maxf(high.y, v.y), maxf(high.z, v.z));
     }
+
     facets->centre = float3_scale(float3_add(low, high), 0.5f);
     facets->extent = 0.5f * float3_length(float3_sub(high, low));
     allocator_resize(allocator, first, first ? vertices * sizeof *first : 0, 0);
@@ -63,6 +65,7 @@ static SingeResult facets_build(Preview *preview, Facets *facets, SingeError *er
     const PreviewSolid *solid = facets->solid;
     SingeResult result = facets_normals(preview, facets, error);
     if (result) return result;
+
     facets->embree = rtcNewScene(preview->device);
     RTCGeometry geometry = rtcNewGeometry(preview->device, RTC_GEOMETRY_TYPE_TRIANGLE);
 
@@ -76,6 +79,7 @@ static SingeResult facets_build(Preview *preview, Facets *facets, SingeError *er
         triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
                                             solid->triangle_count);
     bool ok = facets->embree && vertices && triangles;
+
     if (ok) {
         memcpy(vertices, solid->vertices, 3 * (size_t)solid->vertex_count * sizeof *vertices);
         memcpy(triangles, solid->triangles, 3 * (size_t)solid->triangle_count * sizeof *triangles);
@@ -84,6 +88,7 @@ static SingeResult facets_build(Preview *preview, Facets *facets, SingeError *er
         rtcAttachGeometry(facets->embree, geometry);
         rtcCommitScene(facets->embree);
     }
+
     if (geometry) rtcReleaseGeometry(geometry);
     ok = ok && rtcGetDeviceError(preview->device) == RTC_ERROR_NONE;
     return ok ? SINGE_OK : preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree refused a mesh");
@@ -109,6 +114,7 @@ SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets
     SingeResult result = facets_build(preview, facets, error);
     if (result) facets->solid = NULL; // stays in the list until it is freed, but is not found
     else *found = facets;
+
     return result;
 }
 
@@ -164,6 +170,7 @@ float facets_intersect(const Facets *facets, Float3 o, Float3 d, float near, flo
     float u = hit.hit.u, v = hit.hit.v;
     Float3 smooth = float3_mad(float3_mad(float3_scale(corner[0], 1 - u - v), corner[1], u), corner[2], v);
     Float3 flat = float3_unit_or(facets_cross(facets->solid, hit.hit.primID), UP);
+
     // a smooth normal that faces away from the eye although the face does not would be flipped
     *normal = float3_dot(smooth, d) * float3_dot(flat, d) > 0 ? float3_unit_or(smooth, flat) : flat;
     return hit.ray.tfar;

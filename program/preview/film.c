@@ -31,11 +31,13 @@ static void bloom_blur(Float3 *image, Float3 *scratch, int w, int h, float sigma
         weight[k] = expf(-0.5f * (float)(k * k) / (sigma * sigma));
         sum += k ? 2 * weight[k] : weight[k];
     }
+
     for (int k = 0; k <= radius; k++) weight[k] /= sum;
     for (int y = 0; y < h; y++) {
         size_t row = (size_t)y * (size_t)w;
         blur_line(image + row, scratch + row, w, 1, weight, radius);
     }
+
     for (int x = 0; x < w; x++) blur_line(scratch + x, image + x, h, (size_t)w, weight, radius);
 }
 
@@ -62,6 +64,7 @@ void bloom_apply(Preview *preview) {
     int w = (width + SHRINK - 1) / SHRINK, h = (height + SHRINK - 1) / SHRINK;
     Float3 *glow = preview->glow[0], *scratch = preview->glow[1];
     bool any = false;
+
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
             Float3 sum = {0, 0, 0};

@@ -84,6 +84,7 @@ static void mark_bricks(Fire *fire, int x, int y, int z, float reach, uint8_t wh
         int last = (int)(((float)position[c] + 0.5f + reach) / FIRE_BRICK);
         high[c] = last < fire->bricks[c] ? last : fire->bricks[c] - 1;
     }
+
     for (int k = low[2]; k <= high[2]; k++)
         for (int j = low[1]; j <= high[1]; j++)
             for (int i = low[0]; i <= high[0]; i++) fire->seen[brick_at(fire, i, j, k)] |= what;
@@ -95,6 +96,7 @@ static void mark_all(Fire *fire) {
     memset(fire->burns, 0, fire->cell_capacity);
     float wide = (FIRE_WARP_WIDE + FIRE_WARP_FINE) / fire->cell;
     int fine = 1 + (int)minf(FIRE_WARP_FINE / fire->cell, 1000);
+
     for (int z = 1; z < fire->size[2] - 1; z++)
         for (int y = 1; y < fire->size[1] - 1; y++)
             for (int x = 1; x < fire->size[0] - 1; x++) {
@@ -132,6 +134,7 @@ void fire_raise(Preview *preview) {
     fire->moment = (float)fmod(preview->time, 1e3);
     fire->visible = false;
     if (!fire->size[0]) return;
+
     raise_cells(preview);
 
     // above their max height flames are too thin to be seen
@@ -142,6 +145,7 @@ void fire_raise(Preview *preview) {
         cell->flame *= left;
         cell->rise *= left;
     }
+
     mark_all(fire);
 
     // bounds of the bricks that are not empty
@@ -180,6 +184,7 @@ static bool make_room(const Preview *preview, Fire *fire) {
         cells *= (size_t)fire->size[c];
         bricks *= (size_t)fire->bricks[c];
     }
+
     if (cells != fire->cell_capacity || bricks != fire->brick_capacity) {
         Fire old = *fire;
         fire->cells = allocator_resize(preview->allocator, NULL, 0, cells * sizeof *fire->cells);
@@ -217,11 +222,13 @@ static bool make_tables(Preview *preview) {
     size_t count = (size_t)FIRE_NOISE * FIRE_NOISE * FIRE_NOISE;
     if (!fire->noise) fire->noise = allocator_resize(preview->allocator, NULL, 0, count * sizeof *fire->noise);
     if (!fire->noise) return false;
+
     fire->tiles = allocator_resize(preview->allocator, NULL, 0, (size_t)preview->def.thread_count * sizeof(FireTile));
     if (!fire->tiles) return false;
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t c = 0; c < 4; c++) fire->noise[i][c] = 2 * hash_unit(4 * i + c + 1) - 1;
     fire_fill_colours(preview);
+
     return true;
 }
 
@@ -229,9 +236,11 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
     Fire *fire = &preview->fire;
     memset(fire->size, 0, sizeof fire->size);
     if (!gas || !gas->size[0]) return SINGE_OK;
+
     SingeResult result = check_gas(gas, error);
     if (result) return result;
     for (int c = 0; c < 3; c++) fire->size[c] = (int)gas->size[c] + 2 * FIRE_BORDER;
+
     if (!make_tables(preview) || !make_room(preview, fire)) {
         fire_free(preview);
         return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a gas of %u x %u x %u cells",
@@ -244,6 +253,7 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
     memset(fire->cells, 0, fire->cell_capacity * sizeof *fire->cells);
     memset(fire->source, 0, fire->cell_capacity * sizeof *fire->source);
     size_t from = 0;
+
     for (uint32_t z = 0; z < gas->size[2]; z++)
         for (uint32_t y = 0; y < gas->size[1]; y++)
             for (uint32_t x = 0; x < gas->size[0]; x++, from++) {
@@ -253,6 +263,7 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
                 fire->cells[to].smoke = smoke > 0 ? GAS_EXTINCTION * smoke : 0;
                 for (int c = 0; c < 2; c++) fire->source[to][c] = clampf(gas->velocity[from][c] / up, -1, 1);
             }
+
     return SINGE_OK;
 }
 
@@ -260,6 +271,7 @@ void fire_light_smoke(Preview *preview) {
     Fire *fire = &preview->fire;
     const EmberLights *lights = &preview->scene.lights;
     if (!fire->visible) return;
+
     // the sun lights one side, the sky all
     Float3 sky = float3_add(sky_ambient(&preview->sky, float3(0, 0, 1)), sky_ambient(&preview->sky, float3(0, 0, -1)));
     fire->daylight = float3_mad(float3_scale(sky, 0.5f), preview->sun_light, 0.28f);

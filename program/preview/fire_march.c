@@ -19,14 +19,17 @@ static void see_ray(const Preview *preview, Float3 d, FireView *view) {
         t = maxf(t, minf(a, b));
         far = minf(far, maxf(a, b));
     }
+
     view->count = 0;
     if (!(t < far)) return;
 
     Float3 light = {0, 0, 0};
     float clear = 1;
+
     // far away a step must still change a float
     float fine = minf(0.35f * fire->cell, 0.0028f), min = maxf((far - t) / (4 * FIRE_STEPS), 1e-5f * far);
     bool dark = true; // long steps until there is flame
+
     while (t < far && clear > 0.02f) {
         // what is in the brick here, and the length of the ray in it from here
         float side = FIRE_BRICK * fire->cell, run = INFINITY;
@@ -39,6 +42,7 @@ static void see_ray(const Preview *preview, Float3 d, FireView *view) {
             brick[c] = (size_t)(i < 0 ? 0 : i < fire->bricks[c] ? i : fire->bricks[c] - 1);
             if (fabsf(ray[c]) > 1e-9f) run = minf(run, ((ray[c] > 0 ? 1 : 0) - f) * side / ray[c]);
         }
+
         int what = fire->seen[brick[0] + (size_t)fire->bricks[0] * (brick[1] + (size_t)fire->bricks[1] * brick[2])];
         if (!what) {
             t += maxf(minf(run, far - t), 0) + 2e-5f + 1e-6f * t;
@@ -91,14 +95,17 @@ static void add_view(const FireView *view, float distance, float weight, Float3 
         if (view->distance[mid] <= distance) low = mid + 1;
         else high = mid;
     }
+
     // `low` steps are wholly in front, the next one partly
     Float3 sum = low ? view->light[low - 1] : float3(0, 0, 0);
     float left = low ? view->clear[low - 1] : 1;
+
     if (low < view->count && view->from[low] < distance) {
         float part = (distance - view->from[low]) / (view->distance[low] - view->from[low]);
         sum = float3_mix(sum, view->light[low], part);
         left = mixf(left, view->clear[low], part);
     }
+
     *light = float3_mad(*light, sum, weight);
     *clear += weight * left;
 }

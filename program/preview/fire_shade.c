@@ -50,6 +50,7 @@ static inline Noise noise_at(const Fire *fire, Float3 q) {
     fy = fy * fy * (3 - 2 * fy);
     fz = fz * fz * (3 - 2 * fz);
     Four layer[2];
+
     for (int k = 0; k < 2; k++) {
         Four a = four_load(fire->noise[fire_noise_at(x, y, z + k)]);
         Four b = four_load(fire->noise[fire_noise_at(x, y + 1, z + k)]);
@@ -57,6 +58,7 @@ static inline Noise noise_at(const Fire *fire, Float3 q) {
         b += (four_load(fire->noise[fire_noise_at(x + 1, y + 1, z + k)]) - b) * fx;
         layer[k] = a + (b - a) * fy;
     }
+
     Four n = layer[0] + (layer[1] - layer[0]) * fz;
     return (Noise){n[0], n[1], n[2], n[3]};
 }
@@ -104,12 +106,14 @@ static Float3 shade_flame(const Fire *fire, const FireCell *cell, Noise wide, No
     edge -= EDGE + 0.09f * tall * tall;
     float body = stepf(0, 0.08f, edge);
     if (body <= 0) return float3(0, 0, 0);
+
     float fold = 0.8f * wide.d + 0.35f * fine.c, sheet = maxf(1 - 20 * fold * fold, 0);
     float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.003f * fine.d), cooling = stepf(0.4f, 1.5f, tall);
     float thin = mixf(0.25f, 0.11f + sheet * sheet, torn) * body;
     float hot = 0.50f + 0.3f * stepf(0.05f, 0.3f, edge) + 0.2f * sheet - 0.45f * cooling + 0.12f * fine.d;
     *opaque = SOOT_OPAQUE * thin * soot;
     Float3 glow = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * thin * soot);
+
     return float3_mad(glow, float3(0.22f, 0.50f, 1.25f), BLUE_DENSE * body * stand * (1 - soot));
 }
 
@@ -119,6 +123,7 @@ static FireCell cell_at(const Fire *fire, Float3 p) {
     float f[3], w[3][3];
     int base[3];
     const float at[3] = {g.x, g.y, g.z};
+
     for (int c = 0; c < 3; c++) {
         float bounded = clampf(at[c], 1, (float)(fire->size[c] - 2));
         base[c] = (int)(bounded + 0.5f) - 1;
@@ -139,6 +144,7 @@ static FireCell cell_at(const Fire *fire, Float3 p) {
                           four_load(&cells[2].flame) * w[0][2];
             sum += across * (w[2][z] * w[1][y]);
         }
+
     return (FireCell){sum[0], sum[1], sum[2], sum[3]};
 }
 
@@ -153,6 +159,7 @@ static FireCell fire_sample(const Fire *fire, Float3 p, int what, Float3 *light,
     size_t y = (size_t)clampf(g.y + 0.5f, 0, (float)(fire->size[1] - 1));
     size_t z = (size_t)clampf(g.z + 0.5f, 0, (float)(fire->size[2] - 1));
     FireCell cell = {0, 0, 0, 0};
+
     if (fire->burns[x + (size_t)fire->size[0] * (y + (size_t)fire->size[1] * z)]) {
         Noise fine = eddies(fire, shifted, fire->moment, 0.0075f, 4.0f);
         cell = cell_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), 0.7f * FIRE_WARP_FINE));
@@ -160,6 +167,7 @@ static FireCell fire_sample(const Fire *fire, Float3 p, int what, Float3 *light,
     } else if (what & FIRE_SMOKE) {
         cell = cell_at(fire, shifted);
     }
+
     cell.smoke *= maxf(1 + 0.9f * wide.d, 0);
     return cell;
 }
@@ -192,15 +200,18 @@ SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, doub
         return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the time is not finite, or the detail is not 1 to %d",
                             PREVIEW_BAKE_MAX);
     if (!fire->size[0]) return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "there is no gas");
+
     preview->time = time;
     SingeResult result = tracer_load(preview, surface, error);
     if (result) return result;
+
     fire_raise(preview);
 
     const float side = fire->cell / (float)detail, first = (FIRE_BORDER - 0.5f) * fire->cell + 0.5f * side;
     const float brightest = SOOT_DENSE * float3_luminance(fire->colours[FIRE_COLOURS - 1]);
     const Float3 origin = float3_add(fire->origin, float3(first, first, first));
     int size[3];
+
     for (int c = 0; c < 3; c++) size[c] = (fire->size[c] - 2 * FIRE_BORDER) * detail;
     size_t i = 0;
     for (int z = 0; z < size[2]; z++)
@@ -213,5 +224,6 @@ SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, doub
                 flame[i] = float3_luminance(light) / brightest;
                 smoke[i] = maxf(cell.smoke, 0);
             }
+
     return SINGE_OK;
 }

@@ -61,10 +61,12 @@ SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layer
         float value = luminance(&picture, i);
         if (value > 1e-3f) values[lit++] = value;
     }
+
     if (!lit) {
         free(values);
         return SINGE_OK;
     }
+
     qsort(values, lit, sizeof *values, glow_ascending);
     picture.min = 0.1f * values[lit - 1 - lit / 100];
 
@@ -84,6 +86,7 @@ SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layer
         }
         values[lit++] = min;
     }
+
     qsort(values, lit, sizeof *values, glow_ascending);
     *width = (double)values[lit / 2];
     free(values);

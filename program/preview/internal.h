@@ -112,6 +112,7 @@ SingeResult preview_fail(SingeError *error, SingeResult code, int64_t element, c
 // texture.c
 SingeResult texture_create(Preview *preview, Texture *texture, const Image *image, SingeError *error);
 void texture_free(const Preview *preview, Texture *texture);
+
 /// Linear colour; `texels` is a sample's width in texels of level 0.
 Float3 texture_sample(const Preview *preview, const Texture *texture, float u, float v, float texels);
 
@@ -124,10 +125,13 @@ SingeResult tracer_open(Preview *preview, SingeError *error);
 void tracer_close(Preview *preview);
 SingeResult tracer_build(Preview *preview, SingeError *error);
 void tracer_release(Preview *preview);
+
 /// Whether the ray comes nearer than `margin` to the surface's bounds before `far`.
 bool tracer_near(const PreviewScene *scene, Float3 origin, Float3 direction, float far, float margin);
+
 /// Nearest hits of the lanes with valid = -1; `geomID` is RTC_INVALID_GEOMETRY_ID where there is none.
 void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit16 *rays);
+
 /// clear[i] is the transmittance along the ray of a lane with valid = -1, shapes included; for other lanes it is 1.
 /// Changes `valid`. A ray's id is its lane.
 void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *rays, float clear[LANES]);
@@ -136,20 +140,25 @@ void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *rays, f
 
 /// Finds or creates those of a solid.
 SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets **facets, SingeError *error);
+
 /// Frees the data of passing solids that no shape uses.
 void facets_drop(Preview *preview);
 void facets_free(Preview *preview);
+
 /// Distance along a ray in the solid's frame, in (near, far), or -1; *normal points outward.
 float facets_intersect(const Facets *facets, Float3 origin, Float3 direction, float near, float far, Float3 *normal);
 
 // shape.c
 /// Seconds from the centre of the exposure, for a ray's time in [0, 1].
 static inline float shutter_moment(const Preview *preview, float time) { return (time - 0.5f) * preview->def.shutter; }
+
 /// Distance to the shape in (near, far), or -1; *normal points outward.
 float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Float3 direction, float near, float far,
                       Float3 *normal);
+
 /// Centre of a sphere around the shape at the middle of the exposure.
 Float3 shape_centre(const PreviewShape *shape);
+
 /// Radius of a sphere around that centre that contains the shape while the shutter is open.
 float shape_extent(const PreviewShape *shape, float shutter);
 void shape_shade(const Preview *preview, const PreviewShape *shape, float moment, Point *point);
@@ -157,6 +166,7 @@ void shape_shade(const Preview *preview, const PreviewShape *shape, float moment
 // mask.c
 size_t mask_size(const Preview *preview);
 void mask_fill(Preview *preview);
+
 /// Whether a sheet or a shape may be seen in the block of this pixel.
 bool mask_covers(const Preview *preview, int x, int y);
 

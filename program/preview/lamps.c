@@ -64,6 +64,7 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
     Float3 strength = float3_scale(radiance, ember_air(preview, position) * area * share / (2 * PI_F));
     float weight = float3_luminance(strength);
     if (!(weight > 0)) return;
+
     add_to_cluster(clusters, scene->low, scene->high, position, strength, weight);
 }
 
@@ -86,6 +87,7 @@ static void choose_lights(PreviewScene *scene, Cluster *clusters, int limit, flo
     float total = 0, kept = 0;
     int first = scene->light_count;
     for (int i = 0; i < CELLS; i++) total += clusters[i].weight;
+
     while (scene->light_count < limit) {
         int best = 0;
         for (int i = 1; i < CELLS; i++)
@@ -97,6 +99,7 @@ static void choose_lights(PreviewScene *scene, Cluster *clusters, int limit, flo
         kept += cluster->weight;
         cluster->weight = 0;
     }
+
     for (int i = first; i < scene->light_count && kept > 0; i++) {
         for (int c = 0; c < 3; c++) scene->lights.strength[c][i] *= total / kept;
         scene->lights.power[i] *= total / kept;
@@ -182,6 +185,7 @@ static void ask(const Preview *preview, Block *block, const float wanted[LANES],
     const EmberLights *l = &preview->scene.lights;
     const float golden = 0.61803399f;
     const int count = preview->scene.light_count;
+
     for (int i = 0; i < LANES; i++) {
         block->valid[i] = 0;
         rest_ray(&block->shadow, i);
@@ -225,6 +229,7 @@ void lamps_add(const Preview *preview, Block *block, const int *active, int samp
     if (!scene->light_count) return;
     float weight[LANES][LIGHT_LIMIT], wanted[LANES];
     bool any = false, ask_now = sample < LAMP_SAMPLES;
+
     for (int i = 0; i < LANES; i++) {
         wanted[i] = 0;
         if (!light_reaches(block, active, i)) continue;
@@ -250,6 +255,7 @@ void lamps_add(const Preview *preview, Block *block, const int *active, int samp
             any = true;
         }
     }
+
     if (!any || !ask_now) return;
     int rays = sample == SAMPLE_CENTRE ? LAMP_SAMPLES : 1;
     for (int k = 0; k < rays; k++) ask(preview, block, wanted, weight, sample == SAMPLE_CENTRE ? k : sample);

@@ -17,6 +17,7 @@ Camera camera_make(const PreviewDef *def) {
     camera.forward = float3_unit_or(forward, float3(0, 1, 0));
     Float3 up = float3_unit_or(float3_load(def->camera.up), float3(0, 0, 1));
     Float3 right = float3_cross(camera.forward, up);
+
     // looking along `up`: any other direction works
     if (float3_dot(right, right) < 1e-8f)
         right = float3_cross(camera.forward, fabsf(camera.forward.y) < 0.9f ? float3(0, 1, 0) : float3(1, 0, 0));
@@ -29,6 +30,7 @@ Camera camera_make(const PreviewDef *def) {
     camera.focus = def->camera.focus > 0 ? def->camera.focus : camera.reach;
     camera.lens_right = float3_scale(right, camera.lens);
     camera.lens_up = float3_scale(float3_cross(right, camera.forward), camera.lens);
+
     return camera;
 }
 

@@ -14,6 +14,7 @@ enum {
 };
 #define BLACKBODY_MIN 780.0f
 #define BLACKBODY_STEP 10.0f
+
 /// Exposed for white paper: a sun of 2.2 and a sky of 0.4 bring it to about 0.8.
 #define FILM_SPEED 0.45f
 
@@ -28,6 +29,7 @@ typedef struct EmberLights {
 
 /// The light of the sky and its reflection by the ground, seen from a point in the open.
 enum { SKY_ACROSS = 48, SKY_DOWN = 24 };
+
 typedef struct Sky {
     Float3 radiance[SKY_DOWN][SKY_ACROSS]; ///< latitudes from the top
     Float3 blurred[SKY_DOWN][SKY_ACROSS];  ///< as reflected by a dull surface
@@ -45,6 +47,7 @@ typedef struct Lamp {
 
 // environment.c
 void sky_fill(Preview *preview);
+
 /// The reflection by white paper with that normal of all light except the sun's.
 Float3 sky_ambient(const Sky *sky, Float3 normal);
 Float3 sky_mirrored(const Sky *sky, Float3 direction);

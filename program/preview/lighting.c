@@ -16,6 +16,7 @@ Float3 light_reflect(const Point *point, Float3 l) {
     const Float3 warm = {1.35f, 1.12f, 0.80f};
     if (side <= 0) return float3_scale(float3_mul(point->albedo, warm), point->transmission * maxf(-cosine, 0));
     if (cosine <= 0) return float3(0, 0, 0);
+
     Float3 out = float3_scale(point->albedo, cosine);
     if (point->gloss > 0) {
         Float3 half = float3_unit_or(float3_add(l, point->view), point->normal);
@@ -55,6 +56,7 @@ static void add_sun_ray(const Preview *preview, Block *block, const int *active,
         aim_ray(&block->shadow, i, float3_mad(point->position, point->geometric, side), l, 0, INFINITY, block->time[i]);
         block->valid[i] = asked[i] = -1;
     }
+
     tracer_occlude(preview, block->valid, &block->shadow, block->clear);
     for (int i = 0; i < LANES; i++) {
         if (!asked[i]) continue;
@@ -106,6 +108,7 @@ static bool sun_may_be_hidden(const Preview *preview, Float3 p, float margin) {
     Float3 sun = preview->sun;
     float spread = 1.5f * preview->sun_spread, rise = maxf(scene->high.z - p.z, 0) / maxf(sun.z, 0.02f);
     if (scene->triangle_count && tracer_near(scene, p, sun, INFINITY, spread * rise + margin)) return true;
+
     for (uint32_t k = 0; k < preview->shape_count; k++) {
         Float3 to = float3_sub(shape_centre(&preview->shapes[k]), p);
         float along = float3_dot(to, sun), extent = shape_extent(&preview->shapes[k], preview->def.shutter);
@@ -120,6 +123,7 @@ bool light_may_be_hidden(const Preview *preview, const Block *block, const int *
     int first = 0;
     while (first < LANES && !light_reaches(block, active, first)) first++;
     if (first == LANES) return false;
+
     Float3 p = block->point[first].position;
     float spread = 0;
     for (int i = first + 1; i < LANES; i++)
@@ -149,6 +153,7 @@ static void ask_sky(const Preview *preview, Block *block, const int *active, int
                 block->time[i]);
         block->valid[i] = -1;
     }
+
     tracer_occlude(preview, block->valid, &block->shadow, block->clear);
     for (int i = 0; i < LANES; i++) {
         block->open[i] = mixf(occluded_sky, 1, block->clear[i]);
@@ -177,6 +182,7 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
             float share = point->mirror * (0.06f + 0.54f * rest2 * rest2 * rest);
             light = float3_add(light, float3_scale(sky_mirrored(&preview->sky, out), share));
         }
+
         float open = ask ? block->open[i] : block->sky_seen[i] / (float)block->sky_asked[i];
         block->light[i] = float3_mad(block->light[i], light, open);
     }

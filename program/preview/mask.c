@@ -28,6 +28,7 @@ static void include(const Preview *preview, Float3 p, Rectangle *r) {
         *r = everywhere;
         return;
     }
+
     float x = float3_dot(d, camera->right) / (float3_dot(camera->right, camera->right) * depth);
     float y = float3_dot(d, camera->up) / (float3_dot(camera->up, camera->up) * depth);
     float at[2] = {(0.5f + 0.5f * x) * (float)preview->def.width, (0.5f - 0.5f * y) * (float)preview->def.height};
@@ -53,6 +54,7 @@ void mask_fill(Preview *preview) {
     const PreviewScene *scene = &preview->scene;
     bool moves = preview->def.shutter > 0;
     memset(preview->mask, 0, mask_size(preview));
+
     for (uint32_t t = 0; t < scene->triangle_count; t++) {
         Rectangle r = nowhere;
         for (int k = 0; k < 3; k++) {
@@ -62,6 +64,7 @@ void mask_fill(Preview *preview) {
         }
         mark(preview, &r);
     }
+
     for (uint32_t k = 0; k < preview->shape_count; k++) {
         Float3 centre = shape_centre(&preview->shapes[k]);
         float extent = shape_extent(&preview->shapes[k], preview->def.shutter);

@@ -21,6 +21,7 @@ static bool mesh_in_grow(Preview *preview, void *array_pointer, uint32_t *capaci
     if (count <= *capacity) return true;
     uint32_t wanted = count + count / 4 < count ? count : count + count / 4;
     if ((size_t)wanted > SIZE_MAX / size / 2) return false;
+
     void *grown = allocator_resize(preview->allocator, *array, *capacity * size, wanted * size);
     if (!grown) return false;
     *array = grown;
@@ -72,6 +73,7 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
     for (int c = 0; c < 3; c++) position[c] = surface->position[i][c];
     position[3] = 0;
     const float *velocity = surface->velocity ? surface->velocity[i] : zero;
+
     for (int end = 0; preview->def.shutter > 0 && near_enough(position) && end < 2; end++) {
         float *moved = preview->scene.moved[end][i], half = (end ? 0.5f : -0.5f) * preview->def.shutter;
         for (int c = 0; c < 3; c++) moved[c] = position[c] + half * velocity[c];
@@ -112,9 +114,11 @@ static void add_triangle(PreviewScene *scene, const uint32_t t[3]) {
     Float3 n = float3_cross(e1, e2);
     float n2 = float3_dot(n, n);
     if (!(n2 > 1e-24f)) return;
+
     Float3 burn = gradient(e1, e2, n, v[0]->burn, v[1]->burn, v[2]->burn);
     Float3 heat = gradient(e1, e2, n, v[0]->peak, v[1]->peak, v[2]->peak);
     float area = 0.5f * sqrtf(n2);
+
     for (int k = 0; k < 3; k++) {
         add3(v[k]->slope, burn, area / n2);
         add3(v[k]->warming, heat, area / n2);
@@ -155,6 +159,7 @@ static void measure(Preview *preview) {
             area += (double)float3_length(
                 float3_cross(float3_sub(float3_load(b->rest), o), float3_sub(float3_load(c->rest), o)));
         }
+
         texels *= (double)texture->width[0] * (double)texture->height[0];
         texture->texels_per_metre = area > 0 && texels < 1e12 ? (float)sqrt(texels / area) : 0;
     }
@@ -172,6 +177,7 @@ static SingeResult check_surface(const SingeSurface *surface, SingeError *error)
             if (surface->triangles[t][k] >= surface->vertex_count)
                 return preview_fail(error, SINGE_ERROR_ARGUMENT, t, "triangle %u uses vertex %u of %u", t,
                                     surface->triangles[t][k], surface->vertex_count);
+
     return SINGE_OK;
 }
 
@@ -219,6 +225,7 @@ SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeErro
         p[0] = p[1] = p[2] = 0;
         for (int end = 0; moves && end < 2; end++) memset(scene->moved[end][i], 0, sizeof *scene->moved[end]);
     }
+
     measure(preview);
     return tracer_build(preview, error);
 }

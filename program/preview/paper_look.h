@@ -40,26 +40,34 @@ typedef struct PaperState {
     float age;     ///< s of the fire's real time since ignition; 0: not yet
     int32_t sheet, piece;
 } PaperState;
+
 /// The sheet's fields at a point in a triangle.
 void paper_state(const PreviewScene *scene, uint32_t triangle, float u, float v, PaperState *state);
+
 /// Whether the burnt sheet has a hole there at the picture's scale. Only where burn > PAPER_WHOLE.
 bool paper_is_hole(const PaperState *state, float footprint);
+
 /// Share of the light on one side of a fresh sheet that is transmitted to the other.
 float paper_transmittance(const Preview *preview, int32_t sheet);
 #define PAPER_WHOLE 0.35f
+
 /// False at a hole.
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
 
 /// Width of the glowing line, m, and the burn value at its centre.
 #define EMBER_WIDTH 0.00042f
 #define EMBER_BURN 0.74f
+
 /// The burn value of a leaf of char until it glows away: below that of the embers.
 #define CHAR_LEAF 0.64f
 #define EMBER_GAIN 3.4f
+
 /// The glowing skin is hotter than the simulation's mean over the sheet's thickness.
 static inline float ember_temperature(float mean) { return mean + 110; }
+
 /// Strength of a point's glow, 0 to 1, from its burn rate (1/s).
 static inline float ember_activity(float burn_rate) { return burn_rate > 0 ? burn_rate / (burn_rate + 0.12f) : 0; }
+
 /// The varying air supply of a point, about 1.
 float ember_air(const Preview *preview, Float3 position);
 

@@ -60,6 +60,7 @@ static SingeResult check_camera(const PreviewCamera *camera, SingeError *error) 
         return preview_refuse(error, -1, "camera: aperture must lie between 0 and 10 m");
     if (!(camera->focus >= 0 && camera->focus <= 1e4f))
         return preview_refuse(error, -1, "camera: focus must lie between 0 and 10 km");
+
     return SINGE_OK;
 }
 
@@ -81,6 +82,7 @@ static SingeResult check_shapes(const PreviewShape *shapes, uint32_t count, Sing
         case SINGE_COLLIDER_MESH: good = good && shape->solid; break;
         default: good = false;
         }
+
         if (shape->kind != SINGE_COLLIDER_SPHERE) good = good && fabsf(length - 1) < 0.01f;
         if (!good)
             return preview_refuse(error, i, "shape: kind, size, position, rotation or temperature is out of range");
@@ -115,6 +117,7 @@ static SingeResult check_light(const PreviewDef *def, SingeError *error) {
     float ground = def->ground_height;
     if (!(ground <= 1e4f) || (ground < -1e4f && isfinite(ground)))
         return preview_refuse(error, -1, "ground_height must lie within 10 km, or be -infinity for none");
+
     return SINGE_OK;
 }
 
@@ -132,12 +135,14 @@ static SingeResult check_def(const PreviewDef *def, SingeError *error) {
         if (def->pictures[s] && !image_is_good(def->pictures[s]))
             result = preview_refuse(error, s, "a sheet's picture is empty or too large");
     }
+
     for (uint32_t s = 0; !result && def->colours && s < def->sheet_count; s++)
         if (!all_between(def->colours[s], 3, 0, 1e4f))
             result = preview_refuse(error, s, "a sheet's colour is out of range");
     for (uint32_t s = 0; !result && def->transmittances && s < def->sheet_count; s++)
         if (!all_between(&def->transmittances[s], 1, 0, 1))
             result = preview_refuse(error, s, "a sheet's transmittance must lie between 0 and 1");
+
     return result;
 }
 
@@ -155,6 +160,7 @@ static SingeResult preview_allocate(Preview *preview, SingeError *error) {
     preview->lamps = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(Lamp));
     preview->seen = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(float));
     preview->mask = allocator_resize(*allocator, NULL, 0, mask_size(preview));
+
     for (int i = 0; i < 2; i++)
         preview->glow[i] = allocator_resize(*allocator, NULL, 0, glow_count(def) * sizeof(Float3));
     preview->textures = allocator_resize(*allocator, NULL, 0, def->sheet_count * sizeof(Texture));
@@ -174,6 +180,7 @@ SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Prev
     *out = NULL;
     SingeResult result = check_def(def, error);
     if (result) return result;
+
     Preview *preview = allocator_resize(allocator, NULL, 0, sizeof *preview);
     if (!preview) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory");
     *preview = (Preview){.def = *def, .allocator = allocator, .camera = camera_make(def)};
@@ -186,6 +193,7 @@ SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Prev
         float s = (float)i / 255;
         preview->linear[i] = s <= 0.04045f ? s / 12.92f : powf((s + 0.055f) / 1.055f, 2.4f);
     }
+
     blackbody_fill(preview->blackbody);
     sky_fill(preview);
 
@@ -194,6 +202,7 @@ SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Prev
     if (!result) result = preview_set_shapes(preview, def->shapes, def->shape_count, error);
     if (result) preview_destroy(preview);
     else *out = preview;
+
     return result;
 }
 
@@ -204,6 +213,7 @@ SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uin
     for (uint32_t i = 0; i < count; i++) drawn += shapes[i].kind != SINGE_COLLIDER_PLANE;
     PreviewShape *copy = allocator_resize(preview->allocator, NULL, 0, drawn * sizeof *copy);
     if (drawn && !copy) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for %u shapes", count);
+
     for (uint32_t i = 0, next = 0; i < count && !result; i++) {
         if (shapes[i].kind == SINGE_COLLIDER_PLANE) continue;
         PreviewShape *shape = &copy[next++];
@@ -211,10 +221,12 @@ SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uin
         shape->facets = NULL;
         if (shape->solid) result = facets_get(preview, shape->solid, &shape->facets, error);
     }
+
     if (result) {
         allocator_resize(preview->allocator, copy, drawn * sizeof *copy, 0);
         return result;
     }
+
     allocator_resize(preview->allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
     preview->shapes = copy;
     preview->shape_count = drawn;
@@ -230,6 +242,7 @@ void preview_destroy(Preview *preview) {
     fire_free(preview);
     facets_free(preview);
     tracer_close(preview);
+
     for (uint32_t s = 0; preview->textures && s < def->sheet_count; s++) texture_free(preview, &preview->textures[s]);
     allocator_resize(allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);
     allocator_resize(allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
@@ -238,6 +251,7 @@ void preview_destroy(Preview *preview) {
     allocator_resize(allocator, preview->seen, preview->seen ? pixel_count(def) * sizeof(float) : 0, 0);
     allocator_resize(allocator, preview->table, pixel_count(def) * sizeof(Table), 0);
     allocator_resize(allocator, preview->mask, mask_size(preview), 0);
+
     for (int i = 0; i < 2; i++) allocator_resize(allocator, preview->glow[i], glow_count(def) * sizeof(Float3), 0);
     allocator_resize(allocator, preview, sizeof *preview, 0);
 }

@@ -10,16 +10,19 @@
 
 static inline Float3 float3_mul(Float3 a, Float3 b) { return (Float3){a.x * b.x, a.y * b.y, a.z * b.z}; }
 static inline Float3 float3_mix(Float3 a, Float3 b, float s) { return float3_mad(a, float3_sub(b, a), s); }
+
 /// (1 - u - v) a + u b + v c
 static inline Float3 float3_blend(const float *a, const float *b, const float *c, float u, float v) {
     float w = 1 - u - v;
     return float3(w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1], w * a[2] + u * b[2] + v * c[2]);
 }
+
 /// The unit vector along a, or `otherwise` if a has no direction.
 static inline Float3 float3_unit_or(Float3 a, Float3 otherwise) {
     float l2 = float3_dot(a, a);
     return l2 > 1e-30f && l2 < 1e30f ? float3_scale(a, 1 / sqrtf(l2)) : otherwise;
 }
+
 /// Linear Rec. 709 luminance.
 static inline float float3_luminance(Float3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
@@ -36,6 +39,7 @@ static inline float minf(float a, float b) { return a < b ? a : b; }
 static inline float maxf(float a, float b) { return a > b ? a : b; }
 static inline float clampf(float x, float low, float high) { return x < low ? low : x > high ? high : x; }
 static inline float mixf(float a, float b, float s) { return a + (b - a) * s; }
+
 /// 0 below a, 1 above b, the cubic 3x^2 - 2x^3 between.
 static inline float stepf(float a, float b, float x) {
     float s = clampf((x - a) / (b - a), 0, 1);

@@ -85,6 +85,7 @@ static Bent shade_paper_bend(const PaperState *state, float footprint) {
     bent.burn = state->burn + slope * delta + inside * (0.03f * bent.coarse + 0.05f * bent.medium + 0.03f * bent.fine);
     float jitter = (0.17f * bent.coarse + 0.08f * bent.medium + 0.025f * bent.fine) * (1 - 0.6f * inside);
     float peak = maxf(state->peak, state->temperature);
+
     // 0 where there was hardly any heat
     bent.temperature = state->temperature + (state->temperature - 293) * jitter * stepf(320, 420, state->temperature);
     float steep = minf(state->heat_gradient, 1.2e5f);
@@ -113,6 +114,7 @@ static void tilt(Float3 position, float millimetres, float height, bool folded, 
         float edge = clampf(n * 14, -1, 1), steep = float3_length(slope);
         slope = float3_scale(slope, edge / (0.5f + 0.5f * steep));
     }
+
     slope = float3_mad(slope, point->normal, -float3_dot(slope, point->normal));
     Float3 tilted = float3_unit_or(float3_mad(point->normal, slope, -height), point->normal);
     if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
@@ -206,6 +208,7 @@ static Float3 ember_line(const Preview *preview, const PaperState *state, const 
     float temperature = ember_temperature(state->temperature) + 210 * (life - 0.6f) + 60 * bent->fine;
     if (distance > 0) temperature -= 45 * minf(x, 3);
     float strength = activity * profile * (0.05f + 0.95f * life * life) * (0.85f + 0.4f * bent->fine) * air;
+
     // red-hot cracks in the char next to it
     float near = 0.10f * activity * life * expf(-0.05f * x * x);
     if (near > 0.003f) strength += near * paper_cracks(bent, 1.6f, 0.12f, footprint);
@@ -273,6 +276,7 @@ static void fresh(const Preview *preview, const PaperState *state, Point *point)
                                     0.45f * point->footprint * texture->texels_per_metre);
         if (preview->def.colours) colour = float3_mul(colour, float3_load(preview->def.colours[state->sheet]));
     }
+
     // uneven density of the fibres
     float cloud = 1 + 0.018f * paper_noise(askew(state->rest), 2.4f, point->footprint, 5);
     point->albedo = float3_scale(float3_mul(white, colour), cloud);
@@ -320,5 +324,6 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
     char_shade(&bent, burnt, print, point);
     ash_shade(state, &bent, print, point);
     ember_shade(preview, state, &bent, point);
+
     return true;
 }

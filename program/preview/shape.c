@@ -19,28 +19,33 @@ static float box(const PreviewShape *shape, Float3 o, Float3 d, float near, floa
     const float origin[3] = {o.x, o.y, o.z}, direction[3] = {d.x, d.y, d.z};
     float enter = -INFINITY, leave = INFINITY;
     int enter_axis = 0, leave_axis = 0;
+
     for (int axis = 0; axis < 3; axis++) {
         float h = shape->half_size[axis];
         if (fabsf(direction[axis]) < 1e-12f) {
             if (fabsf(origin[axis]) > h) return -1;
             continue;
         }
+
         float s = direction[axis] > 0 ? h : -h;
         float t0 = (-s - origin[axis]) / direction[axis], t1 = (s - origin[axis]) / direction[axis];
         if (t0 > enter) {
             enter = t0;
             enter_axis = axis;
         }
+
         if (t1 < leave) {
             leave = t1;
             leave_axis = axis;
         }
     }
+
     if (enter > leave) return -1;
     bool outside = enter > near;
     float t = outside ? enter : leave;
     int axis = outside ? enter_axis : leave_axis;
     if (!(t > near && t < far)) return -1;
+
     float n[3] = {0, 0, 0};
     n[axis] = (direction[axis] > 0) == outside ? -1.0f : 1.0f;
     *normal = float3_load(n);
@@ -60,6 +65,7 @@ static float capsule(const PreviewShape *shape, Float3 o, Float3 d, float near, 
             }
         }
     }
+
     for (int side = -1; side <= 1; side += 2) {
         Float3 centre = float3(0, 0, (float)side * half), offset = float3_sub(o, centre);
         float t = sphere(offset, d, r, near, best > 0 ? best : far);
@@ -79,12 +85,14 @@ float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Fl
         if (t > 0) *normal = float3_scale(float3_mad(offset, direction, t), 1 / shape->radius);
         return t;
     }
+
     Float3 o = quat_unrotate(shape->rotation, offset), d = quat_unrotate(shape->rotation, direction), n = {0, 0, 1};
     float t = -1;
     if (shape->kind == SINGE_COLLIDER_BOX) t = box(shape, o, d, near, far, &n);
     if (shape->kind == SINGE_COLLIDER_CAPSULE) t = capsule(shape, o, d, near, far, &n);
     if (shape->facets) t = facets_intersect(shape->facets, o, d, near, far, &n);
     if (t > 0) *normal = quat_rotate(shape->rotation, n);
+
     return t;
 }
 
@@ -113,6 +121,7 @@ void shape_shade(const Preview *preview, const PreviewShape *shape, float moment
     point->shininess = 40;
     point->mirror = 0.5f;
     if (!(shape->temperature > BLACKBODY_MIN)) return;
+
     float size = shape->kind == SINGE_COLLIDER_BOX ? shape->half_size[0] : shape->radius;
     if (shape->facets) size = 0.5f * shape->facets->extent;
     Float3 centre = float3_mad(float3_load(shape->position), float3_load(shape->velocity), moment);

@@ -32,6 +32,7 @@ SingeResult texture_create(Preview *preview, Texture *texture, const Image *imag
     texture->width[0] = image->width;
     texture->height[0] = image->height;
     texture->count = 1;
+
     while (texture->count < MIP_LIMIT) {
         int level = texture->count, w = texture->width[level - 1], h = texture->height[level - 1];
         if (w == 1 && h == 1) break;
@@ -65,8 +66,10 @@ Float3 texture_sample(const Preview *preview, const Texture *texture, float u, f
     const uint8_t *a = row0 + x0 * 3, *b = row0 + x1 * 3, *c = row1 + x0 * 3, *d = row1 + x1 * 3;
     const float *linear = preview->linear;
     float out[3];
+
     for (int i = 0; i < 3; i++)
         out[i] = mixf(mixf(linear[a[i]], linear[b[i]], x - (float)x0), mixf(linear[c[i]], linear[d[i]], x - (float)x0),
                       y - (float)y0);
+
     return float3(out[0], out[1], out[2]);
 }

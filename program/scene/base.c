@@ -42,11 +42,13 @@ static SceneText *base_text(Reader *reader, const char *name, const char *bytes,
     SceneText *text = arena_new(reader->arena, 1, sizeof *text);
     char *copy = arena_text(reader->arena, bytes, size);
     if (!text || !copy) return NULL;
+
     text->name = name;
     text->bytes = copy;
     text->size = size;
     text->next = reader->text->files;
     text->number = text->next ? text->next->number + 1 : 1;
+
     return reader->text->files = text;
 }
 
@@ -64,12 +66,14 @@ static SceneText *base_builtin(Reader *reader, const Node *node) {
         SceneText *known = base_known(reader, builtin->name);
         return known ? known : base_text(reader, builtin->name, builtin->bytes, builtin->size);
     }
+
     char seen[NODE_WORDS], hint[80], names[160];
     message_add(reader->messages, reader->text, node->location,
                 "there is no material %s; the built-in ones are %s; a file of your own needs its extension "
                 "(mine.yaml)%s",
                 node_describe(node, seen, sizeof seen), base_names(names, sizeof names),
                 nearest_hint(&nearest, hint, sizeof hint));
+
     return NULL;
 }
 
@@ -86,6 +90,7 @@ static SceneText *base_file(Reader *reader, const SchemaRow *row, const Node *no
         message_add(reader->messages, reader->text, node->location, "a material cannot be read: %s", error.message);
     else text = base_text(reader, file->path, (const char *)bytes.data, bytes.size);
     bytes_free(&bytes);
+
     return text;
 }
 
@@ -100,6 +105,7 @@ static bool chain_open(Reader *reader, const Node *node, const SceneFile *file, 
             return false;
         }
     if (link->depth <= BASES_MAX) return true;
+
     message_add(reader->messages, reader->text, node->location, "materials are based on each other more than %d deep",
                 BASES_MAX);
     return false;
@@ -127,6 +133,7 @@ void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMate
     text->was_read = true;
     Node *root = text->root;
     if (!root) return;
+
     char seen[NODE_WORDS];
     if (root->kind != NODE_MAP) {
         message_add(reader->messages, reader->text, root->location, "a material must be a map (key: value), not %s",
@@ -140,6 +147,7 @@ void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMate
     inner.chain = &link;
     inner.prefix = slash ? arena_text(reader->arena, file.name, (size_t)(slash + 1 - file.name)) : "";
     if (!inner.prefix) return;
+
     schema_spell_out(reader->arena, &schema_material, root);
     schema_read(&inner, &schema_material, root, material);
 

@@ -70,6 +70,7 @@ static SingeResult add_source(const SceneBuilder *builder, uint32_t index) {
     SingeSourceDef def = source->def;
     SingePoseKey *path = poses(source->keys, source->key_count);
     if (!path) return no_memory(builder);
+
     def.path_count = source->key_count;
     def.path = path;
     def.texture = builder->assets->source_textures[index];
@@ -88,6 +89,7 @@ static SingeResult add_collider(const SceneBuilder *builder, uint32_t index) {
     SingeColliderDef def = collider->def;
     SingePoseKey *path = poses(collider->keys, collider->key_count);
     if (!path) return no_memory(builder);
+
     def.path_count = collider->key_count;
     def.path = path;
 
@@ -116,6 +118,7 @@ static SingeResult vertices_of_file(const SceneBuilder *builder, const ScenePin 
     uint8_t *held = calloc((size_t)mesh->source_count + 1, 1);
     uint32_t *list = malloc(((size_t)mesh->vertex_count + 1) * sizeof *list);
     SingeResult result = held && list ? SINGE_OK : no_memory(builder);
+
     for (uint32_t i = 0; i < pin->vertex_count && !result; i++) {
         uint32_t v = pin->vertices[i], now = v < mesh->source_count ? mesh->became[v] : UINT32_MAX;
         if (now != UINT32_MAX) held[mesh->source[now]] = 1;
@@ -129,6 +132,7 @@ static SingeResult vertices_of_file(const SceneBuilder *builder, const ScenePin 
         if (mesh->source[v] >= 0 && held[mesh->source[v]]) list[(*count)++] = v;
     free(held);
     *vertices = list;
+
     return result;
 }
 
@@ -137,6 +141,7 @@ static SingeResult add_pin(const SceneBuilder *builder, uint32_t index) {
     SingePinDef def = singe_default_pin();
     SingePoseKey *path = poses(pin->keys, pin->key_count);
     if (!path) return no_memory(builder);
+
     def.sheet = builder->sheets[pin->sheet_index];
     def.point_count = pin->point_count;
     def.points = pin->points ? pin->points->position : NULL; // points are contiguous
@@ -174,6 +179,7 @@ static SingeResult construct(SceneBuilder *builder, SceneFault *fault) {
         fault->index = i;
         result = take_error(builder, singe_sim_add_sheet(builder->sim, &def, &builder->sheets[i]));
     }
+
     if (result) return result;
 
     fault->object = FAULT_COMMIT;
@@ -189,6 +195,7 @@ static SingeResult construct(SceneBuilder *builder, SceneFault *fault) {
         {FAULT_COLLIDER, scene->collider_count, add_collider},
         {FAULT_PIN, scene->pin_count, add_pin},
     };
+
     for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) {
         fault->object = lists[k].object;
         for (uint32_t i = 0; i < lists[k].count; i++) {
@@ -197,6 +204,7 @@ static SingeResult construct(SceneBuilder *builder, SceneFault *fault) {
             if (result) return result;
         }
     }
+
     return SINGE_OK;
 }
 
@@ -216,6 +224,7 @@ SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const Sin
     SingeResult result = builder.sheets ? singe_sim_create(&def, &builder.sim, &fault.error) : no_memory(&builder);
     if (!result) result = construct(&builder, &fault);
     free(builder.sheets);
+
     if (result) {
         fault.error.code = result;
         fault_report(scene, assets, &fault, messages);

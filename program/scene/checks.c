@@ -32,6 +32,7 @@ static bool check_path(Reader *reader, const Node *map, const SceneKey *keys, ui
     if (path && path->kind == NODE_LIST && path->count == 0)
         complain(reader, path->location, "a path needs at least one entry");
     check_times(reader, path, keys, sizeof *keys, count);
+
     return path || position;
 }
 
@@ -43,6 +44,7 @@ void finish_material(Reader *reader, const Node *map, void *object) {
         if (strcmp(child->key, "base") != 0 && strcmp(child->key, "name") != 0) material->measured = (SceneMeasured){0};
     const float *ranges[] = {material->measured.speed, material->measured.temperature, material->measured.residue};
     static const char *const keys[] = {"speed", "temperature", "residue"};
+
     for (int i = 0; i < 3; i++)
         if (measured && node_find(measured, keys[i]) && ranges[i][0] > ranges[i][1])
             message_add(reader->messages, reader->text, node_find(measured, keys[i])->location,
@@ -102,11 +104,13 @@ void finish_camera(Reader *reader, const Node *map, void *object) {
         view[i] = (double)camera->target[i] - (double)camera->eye[i];
         length += view[i] * view[i];
     }
+
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
         cross[i] = view[j] * (double)camera->up[k] - view[k] * (double)camera->up[j];
         across += cross[i] * cross[i];
     }
+
     const float *up = camera->up;
     const double min = 1.1e-12; // the preview's limit: it squares floats
     if ((double)up[0] * (double)up[0] + (double)up[1] * (double)up[1] + (double)up[2] * (double)up[2] < min)
@@ -197,6 +201,7 @@ void finish_scene(Reader *reader, const Node *map, void *object) {
             check_names(reader, sheets, "sheet", scene->sheets, sizeof *scene->sheets, offsetof(SceneSheet, name),
                         scene->sheet_count);
     }
+
     if (many_sheets) return;
 
     const Node *node = pins && pins->kind == NODE_LIST ? pins->first : NULL;

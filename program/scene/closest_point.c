@@ -21,9 +21,11 @@ double closest_on_triangle(const double p[3], const double corner[3][3], double 
         v[k] = corner[2][k] - corner[0][k];
         w[k] = p[k] - corner[0][k];
     }
+
     const double uu = closest_dot(u, u), uv = closest_dot(u, v), vv = closest_dot(v, v), wu = closest_dot(w, u),
                  wv = closest_dot(w, v);
     const double area = uu * vv - uv * uv;
+
     if (area > 1e-12 * uu * vv) {
         weight[1] = (vv * wu - uv * wv) / area;
         weight[2] = (uu * wv - uv * wu) / area;
@@ -40,6 +42,7 @@ double closest_on_triangle(const double p[3], const double corner[3][3], double 
             side[k] = corner[j][k] - corner[i][k];
             to[k] = p[k] - corner[i][k];
         }
+
         const double length = closest_dot(side, side);
         const double t = length > 0 ? fmin(fmax(closest_dot(to, side) / length, 0), 1) : 0;
         share[i] = 1 - t;
@@ -50,5 +53,6 @@ double closest_on_triangle(const double p[3], const double corner[3][3], double 
             memcpy(weight, share, sizeof share);
         }
     }
+
     return best;
 }

@@ -51,6 +51,7 @@ static double gas_cells(const Scene *scene, const SceneAssets *assets) {
             low[c] = (double)sheet->translate[c] - half;
             high[c] = (double)sheet->translate[c] + half;
         }
+
         if (sheet->grid.given) box_add(&box, low, high);
         for (uint32_t v = 0; mesh && v < mesh->vertex_count; v++) {
             const float *p = mesh->positions + 3 * (size_t)v;
@@ -64,6 +65,7 @@ static double gas_cells(const Scene *scene, const SceneAssets *assets) {
         const double room = i == 2 ? gas_margin + (double)scene->sim.gas.height : 2 * gas_margin;
         cells *= (fmax(box.high[i] - box.low[i], 0) + room) / cell + 8; // at most a multiple of 8
     }
+
     return fmin(cells, gas_cells_max);
 }
 
@@ -83,6 +85,7 @@ SceneSize scene_size(const Scene *scene, const SceneAssets *assets) {
         size.cells += sheet_cells(scene, assets, i);
         size.unread += !assets && scene->sheets[i].mesh.name;
     }
+
     size.memory += (double)size.cells * (cell_bytes + (scene->sim.contact.enabled ? contact_bytes : 0));
 
     // all pictures that are read
@@ -92,6 +95,7 @@ SceneSize scene_size(const Scene *scene, const SceneAssets *assets) {
         for (size_t k = 0; k < SCENE_PARAM_SLOTS; k++)
             pictures += texture_bytes * pixels_of(&scene->sheets[i].material.textures[k]);
     }
+
     for (uint32_t i = 0; i < scene->source_count; i++)
         pictures += texture_bytes * pixels_of(&scene->sources[i].texture);
     for (uint32_t i = 0; i < scene->collider_count; i++) pictures += height_bytes * height_pixels(&scene->colliders[i]);
@@ -114,6 +118,7 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
     // a heightfield that needs more than half of the memory, or else the largest sheet
     const SceneCollider *heights = NULL;
     double pixels = 0;
+
     for (uint32_t i = 0; i < scene->collider_count; i++) {
         const double count = height_pixels(&scene->colliders[i]);
         if (count > pixels) {
@@ -121,6 +126,7 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
             pixels = count;
         }
     }
+
     if (pixels * (height_bytes + (heights && heights->visible ? drawn_height_bytes : 0)) > 0.5 * wanted) {
         message_add(messages, scene->text, heights->picture.location,
                     "the scene needs about %.1f GB of memory, and there are %.1f GB: give its heightfield fewer pixels",
@@ -134,5 +140,6 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
     message_add(messages, scene->text, scene->sheets[largest].location, // there is at least one sheet
                 "the scene needs about %.1f GB of memory, and there are %.1f GB: give its sheets fewer cells",
                 1e-9 * wanted, 1e-9 * room);
+
     return false;
 }

@@ -9,6 +9,7 @@ static void bound_print(const SchemaRow *row, double bound, char *buffer, size_t
         snprintf(buffer, size, "%.0f", bound);
         return;
     }
+
     quantity_print((float)bound, row->dimension, buffer, size);
     char *power = strchr(buffer, 'e');
     if (power) {
@@ -41,6 +42,7 @@ void row_range(const SchemaRow *row, char *buffer, size_t size) {
     case ROW_INDICES: break;
     default: return;
     }
+
     bound_print(row, row->min, low, sizeof low);
     bound_print(row, row->max, high, sizeof high);
     snprintf(buffer, size, "%s%s to %s%s", row->flags & ROW_OPEN_MIN ? "> " : "", low,
@@ -71,11 +73,13 @@ static void add_quantity(char *buffer, size_t size, const SchemaRow *row) {
     char units[80];
     quantity_units(row->dimension, units, sizeof units);
     expected_add(buffer, size, quantity_name(row->dimension));
+
     if (units[0]) {
         expected_add(buffer, size, " (");
         expected_add(buffer, size, units);
         expected_add(buffer, size, ")");
     }
+
     if (row->flags & ROW_INF) expected_add(buffer, size, " or inf");
     if (row->flags & ROW_NONE) expected_add(buffer, size, " or none");
 }
@@ -84,6 +88,7 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
     char count[40];
     snprintf(count, sizeof count, "a list of %d ", row->length);
     buffer[0] = 0;
+
     switch (row->type) {
     case ROW_BOOL: expected_add(buffer, size, "true or false"); break;
     case ROW_INT:
@@ -124,6 +129,7 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
             if (i) expected_add(buffer, size, i + 1 < OUTPUT_COUNT ? ", " : " and ");
             expected_add(buffer, size, output_formats[i].name);
         }
+
         expected_add(buffer, size, ", each at most once");
         break;
     case ROW_MAP:

@@ -73,6 +73,7 @@ bool sheet_faults(const Scene *scene, const SceneAssets *assets, FaultScope scop
                         what[0] ? what : singe_result_name(result));
         any = true;
     }
+
     return any;
 }
 
@@ -93,6 +94,7 @@ void fault_report(const Scene *scene, const SceneAssets *assets, const SceneFaul
     case FAULT_COLLIDER: location = scene->colliders[fault->index].location; break;
     case FAULT_PIN: location = scene->pins[fault->index].location; break;
     }
+
     message_add(messages, scene->text, location, "%s: %s", error->stage[0] ? error->stage : "simulation",
                 error->message[0] ? error->message : singe_result_name(error->code));
 }

@@ -62,6 +62,7 @@ static bool transform(const SceneSheet *sheet, float *positions, uint32_t count)
     rotation_matrix(sheet->rotate, r);
     bool near = true;
     bool turned = sheet->rotate[0] != 0 || sheet->rotate[1] != 0 || sheet->rotate[2] != 0;
+
     for (uint32_t v = 0; v < count; v++) {
         float *p = positions + 3 * (size_t)v;
         double x = (double)p[0] * scale, y = (double)p[1] * scale, z = (double)p[2] * scale;
@@ -70,6 +71,7 @@ static bool transform(const SceneSheet *sheet, float *positions, uint32_t count)
             y = -z;
             z = up;
         }
+
         double q[3] = {x, y, z};
         for (int i = 0; i < 3 && turned; i++) q[i] = r[3 * i] * x + r[3 * i + 1] * y + r[3 * i + 2] * z;
         for (int i = 0; i < 3; i++)
@@ -91,6 +93,7 @@ static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh, MeshR
             loader_fail(loader, &at, result, error.message);
             return;
         }
+
         mesh_grid_wear(mesh, columns, rows, &sheet->grid.wear);
         if (!transform(sheet, mesh->positions, mesh->vertex_count))
             message_add(loader->messages, loader->scene->text, at.location, "%s", too_far);
@@ -110,6 +113,7 @@ static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh, MeshR
         snprintf(error.message, sizeof error.message, "%s", too_far);
         result = SINGE_ERROR_MESH;
     }
+
     if (!result) result = mesh_make(path, &polygons, &options, (SingeAllocator){0}, mesh, report, &error);
     polygons_free(&polygons);
     if (result) loader_fail(loader, &sheet->mesh, result, error.message);
@@ -129,6 +133,7 @@ static void load_sheet(Loader *loader, uint32_t index) {
     // what the material's parameters follow
     SingeMaterialDef material = sheet->material.def;
     SceneParam row;
+
     for (int i = 0; scene_param(i, &row); i++) {
         const SingeField *field = scene_param_at(&material, &row)->field;
         const SceneFile *file = &sheet->material.textures[row.slot];
@@ -186,6 +191,7 @@ static void load_solid(Loader *loader, uint32_t index) {
         if (picture.values) result = solid_make_heights(&picture, collider->def.size, collider->heights, solid, &error);
         free((void *)picture.values);
     }
+
     if (result) loader_fail(loader, file, result, error.message);
 }
 
@@ -215,6 +221,7 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     assets->collider_motions = many(&loader, scene->collider_count, sizeof *assets->collider_motions);
     assets->pin_motions = many(&loader, scene->pin_count, sizeof *assets->pin_motions);
     if (loader.no_memory) message_add(messages, scene->text, (SceneLocation){0}, "out of memory");
+
     for (uint32_t i = 0; i < scene->sheet_count && !loader.no_memory; i++) load_sheet(&loader, i);
     for (uint32_t i = 0; i < scene->source_count && !loader.no_memory; i++)
         if (scene->sources[i].texture.name)
@@ -229,6 +236,7 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     if (!loader.no_memory) sheet_faults(scene, assets, FAULTS_OF_MESHES, messages);
     messages_sort(messages, first);
     scene_assets_free(assets);
+
     return loader.no_memory ? SINGE_ERROR_MEMORY : SINGE_ERROR_FORMAT;
 }
 
@@ -243,6 +251,7 @@ void scene_assets_free(SceneAssets *assets) {
         if (assets->images) image_free(&assets->images[i]);
         for (int p = 0; p < SCENE_PARAM_SLOTS && assets->fields; p++) picture_free(&assets->fields[i][p].texture);
     }
+
     for (uint32_t i = 0; i < assets->source_count && assets->source_textures; i++)
         picture_free(&assets->source_textures[i]);
     for (uint32_t i = 0; i < assets->collider_count && assets->solids; i++) solid_free(&assets->solids[i]);

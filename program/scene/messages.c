@@ -14,6 +14,7 @@ static char *text_printable(const char *text, size_t length) {
     char *copy = malloc(PRINTABLE_PIECE * length + 1);
     size_t used = 0;
     if (!copy) return NULL;
+
     while (text < end)
         if (*text == '\t') {
             copy[used++] = ' ';
@@ -23,6 +24,7 @@ static char *text_printable(const char *text, size_t length) {
         }
     copy[used] = 0;
     char *fit = realloc(copy, used + 1);
+
     return fit ? fit : copy;
 }
 
@@ -33,6 +35,7 @@ static char *text_format(const char *format, va_list arguments) {
     va_end(again);
     char *text = length < 0 ? NULL : malloc((size_t)length + 1);
     if (!text) return NULL;
+
     vsnprintf(text, (size_t)length + 1, format, arguments);
     char *printable = text_printable(text, strlen(text));
     free(text);
@@ -55,6 +58,7 @@ static char *source_line(const SceneText *text, int line, int column, int *caret
         if (!end) return NULL;
         start = end + 1;
     }
+
     const char *end = start < stop ? memchr(start, '\n', (size_t)(stop - start)) : NULL;
     if (!end) end = stop;
     if (end > start && end[-1] == '\r') end--;
@@ -71,6 +75,7 @@ static char *source_line(const SceneText *text, int line, int column, int *caret
     char *before = text_printable(start, (size_t)(at - start));
     *caret = before ? (int)printable_count(before) + 1 : 0;
     free(before);
+
     return *caret ? text_printable(start, (size_t)(end - start)) : NULL;
 }
 
@@ -90,6 +95,7 @@ static char *text_origin(const SceneText *text, SceneLocation location) {
     else if (location.line > 0)
         snprintf(origin, sizeof origin, "%s:%d:%d", shown_path(name).text, location.line, location.column);
     else snprintf(origin, sizeof origin, "%s", shown_path(name).text);
+
     return text_printable(origin, strlen(origin));
 }
 
@@ -100,6 +106,7 @@ void message_add(SceneMessages *messages, const SceneText *text, SceneLocation l
         messages->left_out++;
         return;
     }
+
     messages->items = items;
 
     SceneMessage message = {.location = location, .origin = text_origin(text, location)};

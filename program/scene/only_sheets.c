@@ -6,6 +6,7 @@ void scene_keep_only_sheets(Reader *reader, const Node *node, Scene *scene) {
     enum { LEFT_OUT = -1 };
     int32_t *now = arena_new(reader->arena, scene->sheet_count, sizeof *now); // new numbers of the sheets
     if (!now) return;
+
     for (uint32_t i = 0; i < scene->sheet_count; i++) now[i] = LEFT_OUT;
 
     const uint32_t before = message_total(reader->messages);
@@ -19,6 +20,7 @@ void scene_keep_only_sheets(Reader *reader, const Node *node, Scene *scene) {
             message_add(reader->messages, reader->text, number->location, "sheet %u is given twice", sheet);
         else now[sheet] = 0;
     }
+
     if (message_total(reader->messages) != before) return;
 
     uint32_t sheets = 0, pins = 0, probes = 0;
@@ -27,6 +29,7 @@ void scene_keep_only_sheets(Reader *reader, const Node *node, Scene *scene) {
         scene->sheets[sheets] = scene->sheets[i];
         now[i] = (int32_t)sheets++;
     }
+
     scene->sheet_count = sheets;
 
     // pins and probes name their sheets from now on, as the numbers have changed
@@ -37,6 +40,7 @@ void scene_keep_only_sheets(Reader *reader, const Node *node, Scene *scene) {
         pin.sheet = scene->sheets[pin.sheet_index].name;
         scene->pins[pins++] = pin;
     }
+
     scene->pin_count = pins;
 
     for (uint32_t i = 0; i < scene->probe_count; i++) {
@@ -46,5 +50,6 @@ void scene_keep_only_sheets(Reader *reader, const Node *node, Scene *scene) {
         probe.sheet = scene->sheets[probe.sheet_index].name;
         scene->probes[probes++] = probe;
     }
+
     scene->probe_count = probes;
 }

@@ -13,6 +13,7 @@ static SceneText *keep_text(SceneArena *arena, const SceneText *text) {
     char *bytes = arena_text(arena, text->bytes, text->size);
     const char **sets = arena_new(arena, (size_t)text->set_count + 1, sizeof *sets);
     if (!kept || !name || !bytes || !sets) return NULL;
+
     for (int i = 0; i < text->set_count; i++)
         if (!(sets[i] = arena_text(arena, text->sets[i], strlen(text->sets[i])))) return NULL;
     *kept = (SceneText){.name = name, .bytes = bytes, .size = text->size, .sets = sets, .set_count = text->set_count};
@@ -67,6 +68,7 @@ static SingeResult parse_into(SceneArena *arena, const SceneText *given, const c
         message_add(messages, text, root->location, "a scene must be a map (key: value), not %s",
                     node_describe(root, seen, sizeof seen));
     }
+
     if (arena_failed(arena)) return SINGE_ERROR_MEMORY;
     messages_sort(messages, first);
     if (message_total(messages) != before) return SINGE_ERROR_FORMAT;
@@ -86,11 +88,13 @@ SingeResult scene_parse(const char *name, const char *bytes, size_t size, const 
                       .sets = sets,
                       .set_count = set_count > 0 ? set_count : 0};
     *scene = NULL;
+
     if (size > SCENE_BYTES_MAX) {
         message_add(messages, &text, (SceneLocation){.line = 1, .column = 1},
                     "a scene has at most 1 MiB, this one has %zu bytes", size);
         return SINGE_ERROR_LIMIT;
     }
+
     SceneArena *arena = arena_create();
     SingeResult result = arena ? parse_into(arena, &text, base_dir, scene, messages) : SINGE_ERROR_MEMORY;
     if (result == SINGE_ERROR_MEMORY) message_add(messages, &text, (SceneLocation){0}, "out of memory");
@@ -109,6 +113,7 @@ SingeResult scene_read(const char *path, const char *const *sets, int set_count,
         message_add(messages, &text, (SceneLocation){0}, "%s", error.message);
         return result;
     }
+
     const char *slash = strrchr(path, '/');
     char folder[4096] = ".";
     size_t length = slash ? (size_t)(slash - path) : 1;
@@ -120,6 +125,7 @@ SingeResult scene_read(const char *path, const char *const *sets, int set_count,
         result = scene_parse(path, (const char *)bytes.data, bytes.size, slash == path ? "/." : folder, sets, set_count,
                              scene, messages);
     }
+
     bytes_free(&bytes);
     return result;
 }

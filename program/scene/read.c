@@ -16,6 +16,7 @@ static int read_field(Reader *reader, const SchemaRow *row, const Node *map, Sin
         field->kind = SINGE_FIELD_TEXTURE;
         value_file(reader, &part, texture, file);
     }
+
     if (attribute) {
         SchemaRow part = {.key = "attribute", .type = ROW_TEXT};
         field->kind = SINGE_FIELD_ATTRIBUTE;
@@ -23,6 +24,7 @@ static int read_field(Reader *reader, const SchemaRow *row, const Node *map, Sin
         if (value_is_text(attribute)) field->attribute = attribute->text;
         else value_wrong(reader, attribute, &part);
     }
+
     if (noise) {
         field->kind = SINGE_FIELD_NOISE;
         file->location = noise->location;
@@ -31,6 +33,7 @@ static int read_field(Reader *reader, const SchemaRow *row, const Node *map, Sin
                         "%s.noise must be a map {scale: , octaves: , seed: }", row->key);
         else if (default_noise(reader->arena, &field->noise)) schema_read(reader, &schema_noise, noise, &field->noise);
     }
+
     return !!texture + !!attribute + !!noise;
 }
 
@@ -38,6 +41,7 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
     static const char *const keys[] = {"from", "to", "texture", "attribute", "noise"};
     SingeParam result = singe_param(param->value);
     *file = (SceneFile){0}; // drop that of the base material
+
     if (node->kind != NODE_MAP) {
         if (value_float(reader, row, node, &result.value)) {
             result.to = result.value;
@@ -93,6 +97,7 @@ static void read_list(Reader *reader, const SchemaRow *row, const Node *node, vo
         value_wrong(reader, node, row);
         return;
     }
+
     char *items = list_new(reader, object, row, node->count, schema->size);
     for (const Node *child = node->first; items && child; child = child->next, items += schema->size) {
         if (schema->defaults && !schema->defaults(reader->arena, items)) return;
@@ -123,6 +128,7 @@ static void read_points(Reader *reader, const SchemaRow *row, const Node *node, 
         value_wrong(reader, node, row);
         return;
     }
+
     ScenePoint *points = list_new(reader, object, row, node->count, sizeof *points);
     SchemaRow element = *row;
     element.type = ROW_VECTOR;
@@ -135,6 +141,7 @@ static void read_indices(Reader *reader, const SchemaRow *row, const Node *node,
         value_wrong(reader, node, row);
         return;
     }
+
     uint32_t *indices = list_new(reader, object, row, node->count, sizeof *indices);
     SchemaRow element = *row;
     element.type = ROW_UINT32;
@@ -232,6 +239,7 @@ static void read_child(Reader *reader, const Schema *schema, unsigned kind, cons
             other = row;
             continue;
         }
+
         if (*given & 1ull << i)
             message_add(reader->messages, reader->text, child->key_location, "'%s' is given twice in %s", row->key,
                         schema->title);
@@ -261,6 +269,7 @@ void schema_read(Reader *reader, const Schema *schema, const Node *map, void *ob
     uint64_t given = 0;
     unsigned kind = ~0u;
     const Node *first = schema->kind_offset ? node_find(map, "kind") : NULL;
+
     if (first) {
         uint32_t before = message_total(reader->messages);
         read_row(reader, &schema->rows[0], first, object);
@@ -268,10 +277,12 @@ void schema_read(Reader *reader, const Schema *schema, const Node *map, void *ob
         // if the kind is unknown, only keys that no kind has are errors
         kind = message_total(reader->messages) == before ? schema_kind(schema, object) : ~0u;
     }
+
     if (schema->choice && (first = node_find(map, schema->choice))) {
         read_choice(reader, schema, first, object);
         given |= 1ull << (choice_row(schema) - schema->rows);
     }
+
     for (const Node *child = map->first; child; child = child->next)
         if (child != first && !arena_failed(reader->arena)) read_child(reader, schema, kind, child, object, &given);
     for (int i = 0; i < schema->row_count; i++) {
@@ -281,6 +292,7 @@ void schema_read(Reader *reader, const Schema *schema, const Node *map, void *ob
             message_add(reader->messages, reader->text, map->location, "%s needs '%s': %s", schema->title, row->key,
                         row->doc);
     }
+
     if (schema->finish) schema->finish(reader, map, object);
 }
 
@@ -306,6 +318,7 @@ void schema_spell_out(SceneArena *arena, const Schema *schema, Node *map) {
         } else if (child->kind == NODE_MAP) {
             schema_spell_out(arena, row->sub, child);
         }
+
         for (Node *entry = child->kind == NODE_LIST ? child->first : NULL; entry; entry = entry->next)
             schema_spell_out(arena, row->sub, entry);
     }

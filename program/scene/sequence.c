@@ -73,16 +73,19 @@ static SingeResult sequence_read_frame(const SceneMotion *motion, const char *pa
             p[1] = -p[2];
             p[2] = y;
         }
+
         if (!(fabsf(p[0]) <= 1e4f && fabsf(p[1]) <= 1e4f && fabsf(p[2]) <= 1e4f))
             result = refuse(error, SINGE_ERROR_MESH, "scene", -1,
                             "%s: vertex %u (from 0) is not finite or beyond 10 km", short_name(path), v);
     }
+
     if (!result) {
         sequence->frames[frame] = (PreviewSolid){surface->vertex_count, surface->triangle_count, surface->vertices,
                                                  sequence->triangles, true};
         sequence->frame_count = (uint32_t)frame + 1;
         surface->vertices = NULL;
     }
+
     solid_free(&solid);
     return result;
 }
@@ -97,6 +100,7 @@ static SingeResult sequence_length(const SceneMotion *motion, int frames, int *l
         there = access(path, F_OK) == 0;
         free(path);
     }
+
     if (there || *length == frames) return SINGE_OK;
     char *missing = sequence_path(motion, *length), *after = sequence_path(motion, *length + 1);
     SingeResult result = missing && after ? SINGE_OK : sequence_no_memory(error);
@@ -106,6 +110,7 @@ static SingeResult sequence_length(const SceneMotion *motion, int frames, int *l
                         short_name(missing));
     free(missing);
     free(after);
+
     return result;
 }
 
@@ -113,12 +118,14 @@ SingeResult sequence_read(const SceneMotion *motion, int frames, SceneSequence *
     *sequence = (SceneSequence){0};
     int length;
     SingeResult result = sequence_length(motion, frames, &length, error);
+
     for (int frame = 0; !result && frame < length; frame++) {
         char *path = sequence_path(motion, frame);
         result = path ? sequence_read_frame(motion, path, frame, length, sequence, error) : sequence_no_memory(error);
 
         free(path);
     }
+
     if (!result && (sequence->vertex_count == 0 || sequence->triangle_count == 0))
         result = refuse(error, SINGE_ERROR_MESH, "scene", -1, "%s: the motion's mesh has no faces",
                         short_name(motion->mesh.path));
@@ -149,6 +156,7 @@ static void axes_of(const double v[3][3], double e[3][3]) {
         e[0][k] = side[k] = v[1][k] - v[0][k];
         other[k] = v[2][k] - v[0][k];
     }
+
     for (int k = 0; k < 3; k++)
         e[2][k] = side[(k + 1) % 3] * other[(k + 2) % 3] - side[(k + 2) % 3] * other[(k + 1) % 3];
 
@@ -156,6 +164,7 @@ static void axes_of(const double v[3][3], double e[3][3]) {
         const double length = sqrt(closest_dot(e[i], e[i]));
         for (int k = 0; k < 3; k++) e[i][k] = length > 0 ? e[i][k] / length : 0; // an axis without extent remains 0
     }
+
     for (int k = 0; k < 3; k++) e[1][k] = e[2][(k + 1) % 3] * e[0][(k + 2) % 3] - e[2][(k + 2) % 3] * e[0][(k + 1) % 3];
 }
 
@@ -167,6 +176,7 @@ static bool bind_pin(const SingeSim *sim, SingePinId pin, SceneSequence *sequenc
     const uint32_t *particles = singe_sim_pin_particles(sim, pin, &count);
     sequence->bonds = calloc((size_t)count + 1, sizeof *sequence->bonds);
     if (!sequence->bonds) return false;
+
     sequence->bond_count = count;
 
     for (uint32_t b = 0; b < count; b++) {
@@ -189,6 +199,7 @@ static bool bind_pin(const SingeSim *sim, SingePinId pin, SceneSequence *sequenc
             away[k] = p[k] - made->weights[0] * v[0][k] - made->weights[1] * v[1][k] - made->weights[2] * v[2][k];
         for (int i = 0; i < 3; i++) made->away[i] = closest_dot(away, e[i]);
     }
+
     return true;
 }
 
@@ -221,22 +232,26 @@ static SingeResult follow_pin(SingeSim *sim, SingePinId pin, SceneSequence *sequ
 SingeResult scene_follow(const Scene *scene, SceneAssets *assets, SingeSim *sim, int frame, SingeError *error) {
     const double time = frame / (double)scene->fps;
     SingeResult result = SINGE_OK;
+
     // scene_build has added them in order, and a load keeps handles
     SingeColliderId *colliders = calloc((size_t)scene->collider_count + 1, sizeof *colliders);
     SingePinId *pins = calloc((size_t)scene->pin_count + 1, sizeof *pins);
     if (!colliders || !pins) result = sequence_no_memory(error);
     if (!result) singe_sim_colliders(sim, colliders, scene->collider_count);
     if (!result) singe_sim_pins(sim, pins, scene->pin_count);
+
     for (uint32_t i = 0; i < scene->collider_count && !result; i++) {
         const SceneSequence *sequence = &assets->collider_motions[i];
         if ((uint32_t)frame >= sequence->frame_count) continue;
         result = singe_sim_set_collider_vertices(sim, colliders[i], sequence->frames[frame].vertices, time);
         if (result) *error = *singe_sim_error(sim);
     }
+
     for (uint32_t i = 0; i < scene->pin_count && !result; i++)
         if ((uint32_t)frame < assets->pin_motions[i].frame_count)
             result = follow_pin(sim, pins[i], &assets->pin_motions[i], (uint32_t)frame, time, error);
     free(colliders);
     free(pins);
+
     return result;
 }

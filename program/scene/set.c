@@ -23,12 +23,14 @@ static bool setter_step(Setter *setter, char step[STEP_MAX], bool *bad) {
     bool bracket = *c == '[';
     if (bracket || (*c == '.' && c > setter->path)) c++;
     size_t length = 0;
+
     while (c < setter->stop && *c != '.' && *c != '[' && *c != ']' && length < STEP_MAX - 1) step[length++] = *c++;
     step[length] = 0;
     if (bracket) {
         if (c == setter->stop || *c != ']') *bad = true;
         else c++;
     }
+
     if (!length || (c < setter->stop && *c != '.' && *c != '[')) *bad = true;
     setter->rest = c;
     return !*bad;
@@ -40,6 +42,7 @@ static Node *setter_walk(Setter *setter, Node *root) {
     bool bad = false;
     Node *node = root;
     setter->rest = setter->path;
+
     while (setter_step(setter, step, &bad)) {
         Node *child = NULL;
         if (node->kind == NODE_LIST) {
@@ -73,6 +76,7 @@ static Node *setter_walk(Setter *setter, Node *root) {
         }
         node = child;
     }
+
     return node;
 }
 

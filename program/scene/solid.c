@@ -35,6 +35,7 @@ static double solid_turn(const float *vertices, uint32_t a, uint32_t b, uint32_t
         u[k] = (double)q[k] - (double)p[k];
         v[k] = (double)r[k] - (double)p[k];
     }
+
     for (int k = 0; k < 3; k++) {
         int e = (k + 1) % 3, f = (k + 2) % 3;
         sum += normal[k] * (u[e] * v[f] - u[f] * v[e]);
@@ -53,6 +54,7 @@ static double ear(const float *vertices, const uint32_t *left, uint32_t count, u
             solid_turn(vertices, c, a, p, normal) >= 0)
             return INFINITY;
     }
+
     double square = 0;
     for (size_t k = 0; k < 3; k++) {
         double d = (double)vertices[3 * (size_t)a + k] - (double)vertices[3 * (size_t)c + k];
@@ -82,6 +84,7 @@ static void face_cut(const float *vertices, uint32_t *left, uint32_t count, uint
                 best = i;
             }
         }
+
         triangles[0] = left[(best + count - 1) % count];
         triangles[1] = left[best];
         triangles[2] = left[(best + 1) % count];
@@ -100,6 +103,7 @@ SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size,
         uint32_t corners = polygons.first[f + 1] - polygons.first[f];
         max = corners > max ? corners : max;
     }
+
     PreviewSolid *surface = &solid->surface;
     size_t count = (size_t)polygons.corner_count - 2 * (size_t)polygons.face_count;
     surface->vertices = malloc(3 * (size_t)polygons.vertex_count * sizeof *surface->vertices);
@@ -111,6 +115,7 @@ SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size,
 
     for (size_t k = 0; !result && k < 3 * (size_t)polygons.vertex_count; k++)
         surface->vertices[k] = (float)((double)polygons.positions[k] * scale);
+
     // a corner named twice in a row gives triangles without area, which the library leaves out
     for (uint32_t f = 0; !result && f < polygons.face_count; f++) {
         uint32_t first = polygons.first[f], corners = polygons.first[f + 1] - first;
@@ -118,6 +123,7 @@ SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size,
         face_cut(surface->vertices, left, corners, surface->triangles + 3 * (size_t)surface->triangle_count);
         surface->triangle_count += corners - 2;
     }
+
     free(left);
     polygons_free(&polygons);
     return result;
@@ -171,6 +177,7 @@ static void draw_heights(SceneSolid *solid, const float size[2]) {
         const float *top = surface->vertices + 3 * border_node(solid, k);
         put_vertex(surface, top[0], top[1], low);
     }
+
     for (size_t k = 0; k < border; k++) {
         size_t a = border_node(solid, k), b = border_node(solid, (k + 1) % border), below = columns * rows;
         put_triangle(surface, a, below + k, below + (k + 1) % border);
@@ -192,10 +199,12 @@ SingeResult solid_make_heights(const SingeTexture *picture, const float size[2],
     solid->surface.vertices = malloc(3 * (nodes + border) * sizeof *solid->surface.vertices);
     solid->surface.triangles = malloc(3 * (2 * (columns - 1) * (rows - 1) + 2 * border) * sizeof(uint32_t));
     if (!solid->heights || !solid->surface.vertices || !solid->surface.triangles) return solid_no_memory(error);
+
     for (size_t j = 0; j < rows; j++) // the picture's rows run from the top
         for (size_t i = 0; i < columns; i++)
             solid->heights[j * columns + i] =
                 heights[0] + (heights[1] - heights[0]) * picture->values[(rows - 1 - j) * columns + i];
     draw_heights(solid, size);
+
     return SINGE_OK;
 }

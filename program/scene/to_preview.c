@@ -67,14 +67,17 @@ static void camera_look(const Box *box, const float up[3], double back[3], doubl
         front[1] = 0;
         front[2] = 1;
     }
+
     for (int i = 0; i < 3; i++) {
         height += fabs(vertical[i]) * (box->high[i] - box->low[i]);
         max = fmax(max, box->high[i] - box->low[i]);
     }
+
     double lift = 0.15 + 0.85 * (1 - fmin(height / max, 1));
     cross3(vertical, front, right); // to the right in the picture, seen from the front
     unit3(right);
     cross3(right, vertical, front);
+
     for (int i = 0; i < 3; i++) back[i] = front[i] + 0.25 * right[i] + lift * vertical[i];
     unit3(back);
     cross3(vertical, back, right);
@@ -94,6 +97,7 @@ void scene_frame(Scene *scene, const SceneAssets *assets) {
             box.high[v % 3] = fmax(box.high[v % 3], x);
         }
     double size = 0;
+
     for (int i = 0; i < 3; i++) size += box.high[i] - box.low[i];
     if (!isfinite(size) || !(size > 0)) return;
 
@@ -101,6 +105,7 @@ void scene_frame(Scene *scene, const SceneAssets *assets) {
     double back[3], right[3], top[3], distance = 0;
     camera_look(&box, camera->up, back, right, top);
     double half = tan(0.5 * (double)camera->fov), aspect = (double)scene->preview.size[0] / scene->preview.size[1];
+
     for (int corner = 0; corner < 8; corner++) {
         double d[3]; // from the centre to the corner
         for (int i = 0; i < 3; i++) d[i] = 0.5 * (box.high[i] - box.low[i]) * (corner >> i & 1 ? 1 : -1);
@@ -114,6 +119,7 @@ void scene_frame(Scene *scene, const SceneAssets *assets) {
         eye[i] = target[i] + distance * back[i];
         if (fabs(eye[i]) > farthest) return;
     }
+
     for (int i = 0; i < 3; i++) {
         camera->target[i] = (float)target[i];
         camera->eye[i] = (float)eye[i];
@@ -132,11 +138,13 @@ static void shape_pose(const SceneKey *keys, uint32_t count, double time, Previe
     rotation_quaternion(a->rotation, qa);
     rotation_quaternion(b->rotation, qb);
     double dot = 0, norm = 0, q[4];
+
     for (int i = 0; i < 4; i++) dot += (double)qa[i] * (double)qb[i];
     for (int i = 0; i < 4; i++) {
         q[i] = (1 - s) * (double)qa[i] + s * (dot < 0 ? -(double)qb[i] : (double)qb[i]);
         norm += q[i] * q[i];
     }
+
     for (int i = 0; i < 4; i++) shape->rotation[i] = (float)(q[i] / sqrt(norm));
     for (int i = 0; i < 3; i++)
         shape->position[i] = (float)((1 - s) * (double)a->position[i] + s * (double)b->position[i]);
@@ -170,6 +178,7 @@ bool scene_shape(const Scene *scene, const SceneAssets *assets, uint32_t slot, d
     const SceneCollider *collider = &scene->colliders[slot];
     const SingeColliderDef *def = &collider->def;
     if (def->kind == SINGE_COLLIDER_PLANE || !collider->visible || !collider->key_count) return false;
+
     *shape = (PreviewShape){.kind = def->kind,
                             .radius = def->radius,
                             .height = def->height,
@@ -182,6 +191,7 @@ bool scene_shape(const Scene *scene, const SceneAssets *assets, uint32_t slot, d
         const double frame = floor(time * (double)scene->fps + 0.5), last = (double)sequence->frame_count - 1;
         shape->solid = &sequence->frames[(uint32_t)fmax(0, fmin(frame, last))];
     }
+
     memcpy(shape->half_size, def->half_size, sizeof shape->half_size);
     memcpy(shape->colour, collider->colour, sizeof shape->colour);
     shape_move(collider->keys, collider->key_count, time, shape);

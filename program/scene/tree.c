@@ -44,6 +44,7 @@ static void builder_attach(Builder *builder, Node *node) {
         builder->root = node;
         return;
     }
+
     int top = builder->depth - 1;
     Node *parent = builder->stack[top];
     if (parent->kind == NODE_MAP) {
@@ -51,6 +52,7 @@ static void builder_attach(Builder *builder, Node *node) {
         node->key_location = builder->key_locations[top];
         builder->keys[top] = NULL;
     }
+
     if (parent->last) parent->last->next = node;
     else parent->first = node;
     parent->last = node;
@@ -68,6 +70,7 @@ static void builder_open(Builder *builder, NodeKind kind, SceneLocation location
         builder_fail(builder, location, "a key must be a single word");
         return;
     }
+
     if (builder->depth == DEPTH_MAX) {
         builder_fail(builder, location, "lists and maps are nested more than 64 deep");
         return;
@@ -78,6 +81,7 @@ static void builder_open(Builder *builder, NodeKind kind, SceneLocation location
         builder->bad = true;
         return;
     }
+
     node->kind = kind;
     node->location = location;
     builder_attach(builder, node);
@@ -91,20 +95,24 @@ static void builder_value(Builder *builder, const YamlEvent *event, SceneLocatio
         builder->bad = true;
         return;
     }
+
     if (strlen(text) != event->length) {
         builder_fail(builder, location, "a text must not contain a zero character");
         return;
     }
+
     if (builder_wants_key(builder)) {
         builder->keys[builder->depth - 1] = text;
         builder->key_locations[builder->depth - 1] = location;
         return;
     }
+
     Node *node = arena_new(builder->arena, 1, sizeof *node);
     if (!node) {
         builder->bad = true;
         return;
     }
+
     int top = builder->depth - 1;
     if ((event->flags & YAML_ABSENT) && top >= 0) // reported at its key
         location = builder->stack[top]->kind == NODE_MAP ? builder->key_locations[top] : builder->stack[top]->location;
@@ -149,6 +157,7 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
     int line = 1, column = 1;
     bool begins = true; // of a line as libfyaml counts them: also after a lone \r and after a byte order mark
     const unsigned char *c = (const unsigned char *)bytes, *end = c + size;
+
     while (c < end) {
         const int length = utf8_length((const char *)c); // a zero follows all texts
         const bool good = length && end - c >= length && (*c >= 0x20 || *c == '\n' || *c == '\r' || *c == '\t');
@@ -157,11 +166,13 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
                          "this byte is not text; a scene is UTF-8 without control characters");
             return false;
         }
+
         if (begins && *c == '%') { // libfyaml 0.7 may not return from a cut-off directive
             builder_fail(builder, location_at(builder, line, column),
                          "a line must not begin with %; directives of YAML are not supported");
             return false;
         }
+
         bool mark = c == (const unsigned char *)bytes && length == 3 && memcmp(c, "\xef\xbb\xbf", 3) == 0;
         begins = *c == '\n' || *c == '\r' || mark;
         column++;
@@ -171,6 +182,7 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
         }
         c += length;
     }
+
     return true;
 }
 
@@ -209,6 +221,7 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
         arena_fail(arena);
         return NULL;
     }
+
     if (result) {
         message_add(messages, text, location_at(&builder, 1, 1), "not valid YAML, or it cannot be read: %s",
                     error.message);
@@ -224,6 +237,7 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
         }
         if (!builder.bad || event.kind == YAML_FAULT) builder_take(&builder, &event);
     }
+
     if (!builder.bad && builder.depth)
         builder_fail(&builder, location_at(&builder, (int)event.line, (int)event.column), not_read);
     yaml_free(&events);
@@ -234,6 +248,7 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
     if (!builder.root && !arena_failed(arena))
         message_add(messages, text, location_at(&builder, 1, 1),
                     origin.file ? "the file is empty" : "the scene is empty; at least 'sheets' is needed");
+
     return builder.root;
 }
 
@@ -250,6 +265,7 @@ const char *node_describe(const Node *node, char *buffer, size_t size) {
         snprintf(buffer, size, "a list of %u", (unsigned)node->count);
         return buffer;
     }
+
     if (!node->quoted && (!node->text[0] || !strcmp(node->text, "~") || !strcmp(node->text, "null"))) return "nothing";
     if (node->location.file) // the contents of files other than the scene are not shown
         return "this value";

@@ -54,11 +54,13 @@ static size_t number_length(const char *text) {
     const char *digits = c;
     while (is_digit(*c)) c++;
     size_t count = (size_t)(c - digits);
+
     if (*c == '.') {
         const char *point = ++c;
         while (is_digit(*c)) c++;
         count += (size_t)(c - point);
     }
+
     if (!count) return 0;
     if (*c == 'e' || *c == 'E') {
         const char *power = c + 1 + (c[1] == '+' || c[1] == '-');
@@ -109,8 +111,10 @@ NumberFault quantity_read(const char *text, Dimension dimension, double *value) 
     const char *spelt = text + length + strspn(text + length, " ");
     const Unit *units = dimensions[dimension].units;
     int i = 0;
+
     while (*spelt && i < UNIT_MAX && units[i].name && !unit_spelt(spelt, units[i].name)) i++;
     if (i == UNIT_MAX || !units[i].name) return NUMBER_BAD_UNIT;
+
     *value = units[i].factor * (bare + units[i].offset);
     return NUMBER_GOOD;
 }

@@ -13,6 +13,7 @@ int main(int argc, char **argv) {
         fputs("out of memory\n", stderr);
         return 1;
     }
+
     if (argc < 2) return fwrite(text, 1, size, stdout) == size && fflush(stdout) == 0 ? 0 : 1;
 
     Bytes bytes = {0};
@@ -21,11 +22,13 @@ int main(int argc, char **argv) {
         fprintf(stderr, "%s\n", error.message);
         return 1;
     }
+
     size_t line = 1, i = 0;
     for (; i < size && i < bytes.size && text[i] == (char)bytes.data[i]; i++) line += text[i] == '\n';
     bool same = i == size && i == bytes.size;
     if (!same) fprintf(stderr, "%s:%zu: differs from the schema; run scene_document > %s\n", argv[1], line, argv[1]);
     bytes_free(&bytes);
     free(text);
+
     return same ? 0 : 1;
 }

@@ -29,10 +29,12 @@ static void write_float(FILE *out, float value) {
         fprintf(out, "%d", (int)value);
         return;
     }
+
     for (int digits = 1; digits <= 9; digits++) {
         snprintf(text, sizeof text, "%.*g", digits, (double)value);
         if (strtof(text, NULL) == value) break;
     }
+
     fprintf(out, strpbrk(text, ".e") ? "%sf" : "%s", text);
 }
 
@@ -49,11 +51,13 @@ static void write_param(FILE *out, const PresetRow *row, int colour, const Singe
     if (row->colours) snprintf(name, sizeof name, "%s[%d]", row->name, colour);
     else snprintf(name, sizeof name, "%s", row->name);
     snprintf(noise, sizeof noise, "%s_%d", row->name, colour);
+
     if (param->field) {
         fprintf(out, "    static const SingeField %s = {.kind = SINGE_FIELD_NOISE, .noise = {", noise);
         write_float(out, param->field->noise.scale);
         fprintf(out, ", %d, %u}};\n", param->field->noise.octaves, (unsigned)param->field->noise.seed);
     }
+
     fprintf(out, "    def->%s = singe_param%s(", name, param->field ? "_field" : "");
     write_float(out, param->value);
     if (param->field) {
@@ -61,6 +65,7 @@ static void write_param(FILE *out, const PresetRow *row, int colour, const Singe
         write_float(out, param->to);
         fprintf(out, ", &%s", noise);
     }
+
     fprintf(out, ");\n");
 }
 
@@ -69,6 +74,7 @@ static void write_material(FILE *out, const char *name, const SingeMaterialDef *
     fprintf(out, "static void ");
     for (const char *c = name; *c; c++) fputc(*c == '-' ? '_' : *c, out);
     fprintf(out, "(SingeMaterialDef *def) {\n    (void)def; // holds the defaults\n");
+
     for (size_t i = 0; i < sizeof params / sizeof *params; i++)
         for (int colour = 0; colour < (params[i].colours ? params[i].colours : 1); colour++) {
             const SingeParam *param = (const SingeParam *)((const char *)def + params[i].offset) + colour;
@@ -80,11 +86,13 @@ static void write_material(FILE *out, const char *name, const SingeMaterialDef *
         write_float(out, def->reference_grammage);
         fprintf(out, ";\n");
     }
+
     if (def->thickening != standard.thickening) {
         fprintf(out, "    def->thickening = ");
         write_float(out, def->thickening);
         fprintf(out, ";\n");
     }
+
     if (def->heat_operator != standard.heat_operator)
         fprintf(out, "    def->heat_operator = (SingeHeatOperator)%d;\n", (int)def->heat_operator);
     if (def->ablate != standard.ablate) fprintf(out, "    def->ablate = %s;\n", def->ablate ? "true" : "false");
@@ -116,6 +124,7 @@ static bool write_presets(FILE *out) {
         for (const char *c = name; *c; c++) fputc(*c == '-' ? '_' : *c, out);
         fprintf(out, "},\n");
     }
+
     fprintf(out, "    {0},\n};\n");
     return true;
 }
@@ -134,6 +143,7 @@ int main(int argc, char **argv) {
         fprintf(stderr, "%s\n", error.message);
         return 1;
     }
+
     bool equal = bytes.size == size && memcmp(bytes.data, text, size) == 0;
     if (!equal) fprintf(stderr, "%s: differs from the material files; run scene_presets > %s\n", argv[1], argv[1]);
     bytes_free(&bytes);

@@ -46,6 +46,7 @@ static size_t scalar_unquote(const char *c, const char *end, char *out) {
             c += width;
             while (c < end && is_blank(*c)) c++;
         }
+
         if (breaks == 1) out[length++] = ' ';
         else {
             memset(out + length, '\n', (size_t)breaks - 1);
@@ -95,6 +96,7 @@ static char *scalar_text(SceneArena *arena, struct fy_token *token, const char *
         text = arena_new(arena, *length + 1, 1);
         if (text) copy_chunks(copy, text);
     }
+
     fy_token_iter_destroy(count);
     fy_token_iter_destroy(copy);
     return text;
@@ -131,9 +133,11 @@ static void sink_put(Sink *sink, const void *bytes, size_t size) {
             sink->no_memory = true;
             return;
         }
+
         sink->out = out;
         sink->capacity = capacity;
     }
+
     memcpy(sink->out + sink->used, bytes, size);
     sink->used += size;
 }
@@ -178,6 +182,7 @@ static bool sink_take(Sink *sink, const struct fy_event *event) {
     YamlKind kind = YAML_CLOSE;
     size_t length = 0;
     char *text = NULL;
+
     switch (event->type) {
     case FYET_SCALAR:
         kind = YAML_VALUE;
@@ -203,14 +208,17 @@ static bool sink_take(Sink *sink, const struct fy_event *event) {
     case FYET_ALIAS: kind = YAML_ALIAS; break;
     default: return true;
     }
+
     sink_location(sink, event, tag, anchor);
     unsigned flags = (tag ? YAML_TAGGED : 0) | (anchor ? YAML_ANCHORED : 0);
     if (value && fy_token_scalar_style(value) != FYSS_PLAIN) flags |= YAML_QUOTED;
+
     // no mark shows it: libfyaml 0.8 has one for absent values, 0.7 has none
     if (kind == YAML_VALUE && !(flags & YAML_QUOTED) && length == 0) flags |= YAML_ABSENT;
     sink_event(sink, kind, flags, text, length);
     sink->depth += (kind == YAML_MAP || kind == YAML_LIST) - (kind == YAML_CLOSE);
     sink_mark(sink, fy_event_end_mark((struct fy_event *)event));
+
     return !tag && !anchor && kind != YAML_ALIAS && sink->depth <= YAML_DEPTH;
 }
 
@@ -219,6 +227,7 @@ static SingeResult sink_work(void *context, IsolateAnswer *answer, SingeError *e
     sink->answer = answer;
     sink->arena = arena_create();
     sink->line = sink->column = sink->line_count = 1;
+
     for (size_t i = 0; i < sink->size; i++)
         if (sink->bytes[i] == '\n') {
             sink->line_count++;
@@ -261,6 +270,7 @@ static SingeResult sink_work(void *context, IsolateAnswer *answer, SingeError *e
         }
         if (!any) sink_event(sink, YAML_FAULT, 0, NULL, 0);
     }
+
     if (parser) sink_event(sink, YAML_END, 0, NULL, 0);
 
     fy_parser_destroy(parser);
@@ -268,6 +278,7 @@ static SingeResult sink_work(void *context, IsolateAnswer *answer, SingeError *e
     arena_destroy(sink->arena);
     if (answer) sink_flush(sink);
     *error = (SingeError){.code = sink->no_memory ? SINGE_ERROR_MEMORY : SINGE_OK, .element = -1};
+
     return error->code;
 }
 
@@ -293,6 +304,7 @@ SingeResult yaml_read(const char *name, const char *bytes, size_t size, YamlEven
         if (result == SINGE_ERROR_LIMIT) // no text needs as much memory: so an allocation failed
             result = error->element < 0 ? SINGE_ERROR_FORMAT : SINGE_ERROR_MEMORY;
     }
+
     if (result) yaml_free(events);
     return result;
 }
@@ -301,11 +313,13 @@ bool yaml_next(YamlEvents *events, YamlEvent *event) {
     Record record;
     size_t left = events->bytes.size - events->at;
     if (left < sizeof record) return false;
+
     memcpy(&record, events->bytes.data + events->at, sizeof record);
     left -= sizeof record;
     bool good = record.kind < YAML_KINDS && record.flags <= YAML_FLAGS && record.length < left;
     good = good && record.line > 0 && record.line < INT32_MAX && record.column > 0 && record.column < INT32_MAX;
     if (!good) return false;
+
     const char *text = (const char *)events->bytes.data + events->at + sizeof record;
     *event = (YamlEvent){record.kind, record.flags, record.line, record.column, record.length, text};
     events->at += sizeof record + record.length + 1;
