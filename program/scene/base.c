@@ -58,7 +58,7 @@ static SceneText *base_known(const Reader *reader, const char *name) {
     return text;
 }
 
-static SceneText *base_builtin(Reader *reader, const Node *node) {
+static SceneText *base_builtin(Reader *reader, const YamlNode *node) {
     Nearest nearest = {.word = node->text};
     const SceneBuiltin *builtin = scene_builtins;
     for (; builtin->name && strcmp(builtin->name, node->text) != 0; builtin++) nearest_offer(&nearest, builtin->name);
@@ -78,7 +78,7 @@ static SceneText *base_builtin(Reader *reader, const Node *node) {
 }
 
 /// The text of a file; *file says where it is.
-static SceneText *base_file(Reader *reader, const SchemaRow *row, const Node *node, SceneFile *file) {
+static SceneText *base_file(Reader *reader, const SchemaRow *row, const YamlNode *node, SceneFile *file) {
     uint32_t before = message_total(reader->messages);
     Bytes bytes = {0};
     SingeError error;
@@ -95,7 +95,7 @@ static SceneText *base_file(Reader *reader, const SchemaRow *row, const Node *no
 }
 
 /// Whether the file may be read: not if it is being read already.
-static bool chain_open(Reader *reader, const Node *node, const SceneFile *file, BaseChain *link) {
+static bool chain_open(Reader *reader, const YamlNode *node, const SceneFile *file, BaseChain *link) {
     if (file->path && stat(file->path, &link->status)) link->status = (struct stat){0};
     for (const BaseChain *outer = link->outer; outer; outer = outer->outer)
         if (outer->text == link->text || (file->path && outer->status.st_ino == link->status.st_ino &&
@@ -111,7 +111,7 @@ static bool chain_open(Reader *reader, const Node *node, const SceneFile *file, 
     return false;
 }
 
-void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMaterial *material) {
+void read_base(Reader *reader, const SchemaRow *row, const YamlNode *node, SceneMaterial *material) {
     if (!value_is_text(node)) {
         value_wrong(reader, node, row);
         return;
@@ -131,7 +131,7 @@ void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMate
         text->root = tree_read(reader->arena, reader->text, text->bytes, text->size,
                                (SceneLocation){.file = text->number}, reader->messages);
     text->was_read = true;
-    Node *root = text->root;
+    YamlNode *root = text->root;
     if (!root) return;
 
     char seen[NODE_WORDS];

@@ -10,8 +10,8 @@ static void complain(Reader *reader, SceneLocation location, const char *what) {
 }
 
 // Refuses lists whose times do not increase.
-static void check_times(Reader *reader, const Node *list, const void *items, size_t size, uint32_t count) {
-    const Node *node = list && list->kind == NODE_LIST ? list->first : NULL;
+static void check_times(Reader *reader, const YamlNode *list, const void *items, size_t size, uint32_t count) {
+    const YamlNode *node = list && list->kind == NODE_LIST ? list->first : NULL;
     float before = -1;
     for (uint32_t i = 0; node && i < count; i++, node = node->next) {
         float time; // the first member of every kind of entry
@@ -23,9 +23,9 @@ static void check_times(Reader *reader, const Node *list, const void *items, siz
 }
 
 // Refuses `path` together with its short forms. Returns whether one of them is given.
-static bool check_path(Reader *reader, const Node *map, const SceneKey *keys, uint32_t count) {
-    const Node *path = node_find(map, "path"), *position = node_find(map, "position");
-    const Node *rotation = node_find(map, "rotation"), *other = position ? position : rotation;
+static bool check_path(Reader *reader, const YamlNode *map, const SceneKey *keys, uint32_t count) {
+    const YamlNode *path = node_find(map, "path"), *position = node_find(map, "position");
+    const YamlNode *rotation = node_find(map, "rotation"), *other = position ? position : rotation;
     if (path && other)
         message_add(reader->messages, reader->text, other->key_location,
                     "'%s' is short for a path of one entry; give it or 'path'", other->key);
@@ -37,10 +37,10 @@ static bool check_path(Reader *reader, const Node *map, const SceneKey *keys, ui
 }
 
 /// Measured values of the base do not hold for a changed material.
-void finish_material(Reader *reader, const Node *map, void *object) {
+void finish_material(Reader *reader, const YamlNode *map, void *object) {
     SceneMaterial *material = object;
-    const Node *measured = node_find(map, "measured");
-    for (const Node *child = map->first; child && !measured && node_find(map, "base"); child = child->next)
+    const YamlNode *measured = node_find(map, "measured");
+    for (const YamlNode *child = map->first; child && !measured && node_find(map, "base"); child = child->next)
         if (strcmp(child->key, "base") != 0 && strcmp(child->key, "name") != 0) material->measured = (SceneMeasured){0};
     const float *ranges[] = {material->measured.speed, material->measured.temperature, material->measured.residue};
     static const char *const keys[] = {"speed", "temperature", "residue"};
@@ -49,55 +49,55 @@ void finish_material(Reader *reader, const Node *map, void *object) {
         if (measured && node_find(measured, keys[i]) && ranges[i][0] > ranges[i][1])
             message_add(reader->messages, reader->text, node_find(measured, keys[i])->location,
                         "%s must not begin above its end", keys[i]);
-    const Node *thickening = node_find(map, "thickening");
+    const YamlNode *thickening = node_find(map, "thickening");
     float value = material->def.thickening;
     if (thickening && value > 0 && value < 1)
         complain(reader, thickening->location, "thickening must be 0 (as little as the cells need), or at least 1");
 }
 
-void finish_sheet(Reader *reader, const Node *map, void *object) {
+void finish_sheet(Reader *reader, const YamlNode *map, void *object) {
     SceneSheet *sheet = object;
-    const Node *mesh = node_find(map, "mesh"), *grid = node_find(map, "grid");
+    const YamlNode *mesh = node_find(map, "mesh"), *grid = node_find(map, "grid");
     if (mesh && grid) complain(reader, grid->key_location, "'grid' and 'mesh' exclude each other; give one");
     if (!mesh && !grid) complain(reader, map->location, "a sheet needs 'mesh' (a file) or 'grid' (size and cells)");
     if (grid && (double)sheet->grid.cells[0] * sheet->grid.cells[1] > 100e6)
         complain(reader, grid->location, "a grid has at most 100 million cells");
 }
 
-void finish_source(Reader *reader, const Node *map, void *object) {
+void finish_source(Reader *reader, const YamlNode *map, void *object) {
     SceneSource *source = object;
     if (!node_find(map, "kind")) return;
     if (source->def.kind == SINGE_SOURCE_BALL && !check_path(reader, map, source->keys, source->key_count))
         complain(reader, map->location, "a ball needs 'path' or 'position'");
-    const Node *end = node_find(map, "end");
+    const YamlNode *end = node_find(map, "end");
     if (source->def.end < source->def.start)
         complain(reader, end ? end->location : map->location, "a source must not end before its start");
     check_times(reader, node_find(map, "strength"), source->strength, sizeof *source->strength, source->strength_count);
 }
 
-void finish_collider(Reader *reader, const Node *map, void *object) {
+void finish_collider(Reader *reader, const YamlNode *map, void *object) {
     SceneCollider *collider = object;
     check_path(reader, map, collider->keys, collider->key_count);
-    const Node *mesh = node_find(map, "mesh"), *motion = node_find(map, "motion");
+    const YamlNode *mesh = node_find(map, "mesh"), *motion = node_find(map, "motion");
     if (!node_find(map, "kind") || collider->def.kind != SINGE_COLLIDER_MESH) return;
     if (mesh && motion) complain(reader, motion->key_location, "'mesh' and 'motion' exclude each other; give one");
     if (!mesh && !motion)
         complain(reader, map->location, "a mesh needs 'mesh' (a file) or 'motion' (a file for each frame)");
 }
 
-void finish_pin(Reader *reader, const Node *map, void *object) {
+void finish_pin(Reader *reader, const YamlNode *map, void *object) {
     ScenePin *pin = object;
     if (!node_find(map, "points") && !node_find(map, "vertices"))
         complain(reader, map->location, "a pin needs 'points' or 'vertices'");
-    const Node *path = node_find(map, "path"), *motion = node_find(map, "motion");
+    const YamlNode *path = node_find(map, "path"), *motion = node_find(map, "motion");
     check_times(reader, path, pin->keys, sizeof *pin->keys, pin->key_count);
     if (path && motion) complain(reader, motion->key_location, "'path' and 'motion' exclude each other; give one");
 }
 
 /// Whether the scene places the camera; otherwise scene_frame does.
-static bool camera_given(const Node *map) { return node_find(map, "eye") || node_find(map, "target"); }
+static bool camera_given(const YamlNode *map) { return node_find(map, "eye") || node_find(map, "target"); }
 
-void finish_camera(Reader *reader, const Node *map, void *object) {
+void finish_camera(Reader *reader, const YamlNode *map, void *object) {
     const PreviewCamera *camera = object;
     double view[3], cross[3], length = 0, across = 0;
     for (int i = 0; i < 3; i++) {
@@ -120,10 +120,10 @@ void finish_camera(Reader *reader, const Node *map, void *object) {
     else if (!(across > 0)) complain(reader, map->location, "the camera's up must point away from the line of sight");
 }
 
-void finish_preview(Reader *reader, const Node *map, void *object) {
+void finish_preview(Reader *reader, const YamlNode *map, void *object) {
     ScenePreview *preview = object;
     preview->camera_given = camera_given(node_find(map, "camera"));
-    const Node *light = node_find(map, "light"), *direction = node_find(light, "direction");
+    const YamlNode *light = node_find(map, "light"), *direction = node_find(light, "direction");
     const float *d = preview->light_direction;
     if (direction && (double)d[0] * (double)d[0] + (double)d[1] * (double)d[1] + (double)d[2] * (double)d[2] < 1e-18)
         complain(reader, direction->location, "the light's direction must be longer than 1e-9");
@@ -131,9 +131,9 @@ void finish_preview(Reader *reader, const Node *map, void *object) {
 
 /// Numbers the entries of a list that have no name (`what` is "sheet" or "probe"), and refuses equal names. The name is
 /// at `offset` of an entry's struct.
-static void check_names(Reader *reader, const Node *list, const char *what, void *items, size_t size, size_t offset,
+static void check_names(Reader *reader, const YamlNode *list, const char *what, void *items, size_t size, size_t offset,
                         uint32_t count) {
-    const Node *node = list->first;
+    const YamlNode *node = list->first;
     for (uint32_t i = 0; node && i < count; i++, node = node->next) {
         char **name = (char **)(void *)((char *)items + i * size + offset);
         char number[24];
@@ -143,7 +143,7 @@ static void check_names(Reader *reader, const Node *list, const char *what, void
         for (uint32_t j = 0; j < i && *name; j++) {
             const char *other = *(char **)(void *)((char *)items + j * size + offset);
             if (!other || strcmp(other, *name) != 0) continue;
-            const Node *given = node_find(node, "name");
+            const YamlNode *given = node_find(node, "name");
             message_add(reader->messages, reader->text, given ? given->location : node->location,
                         "two %ss are called '%s'; give each its own name", what, shown(*name).text);
             break;
@@ -152,7 +152,7 @@ static void check_names(Reader *reader, const Node *list, const char *what, void
 }
 
 /// Finds the sheet that a pin or a probe names, or gives the number of.
-static void resolve_sheet(Reader *reader, const Node *node, const Scene *scene, const char *word, uint32_t *index) {
+static void resolve_sheet(Reader *reader, const YamlNode *node, const Scene *scene, const char *word, uint32_t *index) {
     Nearest nearest = {.word = word};
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         const char *name = scene->sheets[i].name;
@@ -169,17 +169,17 @@ static void resolve_sheet(Reader *reader, const Node *node, const Scene *scene, 
         if (*index < scene->sheet_count) return;
     }
 
-    const Node *sheet = node_find(node, "sheet");
+    const YamlNode *sheet = node_find(node, "sheet");
     char hint[80];
     message_add(reader->messages, reader->text, sheet ? sheet->location : node->location, "there is no sheet '%s'%s",
                 shown(word).text, nearest_hint(&nearest, hint, sizeof hint));
 }
 
-void finish_scene(Reader *reader, const Node *map, void *object) {
+void finish_scene(Reader *reader, const YamlNode *map, void *object) {
     Scene *scene = object;
-    const Node *fps = node_find(map, "fps"), *steps = node_find(map, "steps"), *sheets = node_find(map, "sheets"),
-               *pins = node_find(map, "pins"), *probes = node_find(map, "probes"),
-               *only = node_find(map, "only_sheets");
+    const YamlNode *fps = node_find(map, "fps"), *steps = node_find(map, "steps"), *sheets = node_find(map, "sheets"),
+                   *pins = node_find(map, "pins"), *probes = node_find(map, "probes"),
+                   *only = node_find(map, "only_sheets");
 
     // the step of the simulation is 1/(fps * steps) seconds; the library takes 1e-9 to 10
     double rate = (double)scene->fps * scene->steps;
@@ -204,7 +204,7 @@ void finish_scene(Reader *reader, const Node *map, void *object) {
 
     if (many_sheets) return;
 
-    const Node *node = pins && pins->kind == NODE_LIST ? pins->first : NULL;
+    const YamlNode *node = pins && pins->kind == NODE_LIST ? pins->first : NULL;
     for (uint32_t i = 0; node && i < scene->pin_count; i++, node = node->next)
         if (scene->pins[i].sheet && scene->sheet_count)
             resolve_sheet(reader, node, scene, scene->pins[i].sheet, &scene->pins[i].sheet_index);

@@ -2,7 +2,7 @@
 // act on all sheets remain: sources, colliders, wind.
 #include "scene/schema.h"
 
-void scene_keep_only_sheets(Reader *reader, const Node *node, Scene *scene) {
+void scene_keep_only_sheets(Reader *reader, const YamlNode *node, Scene *scene) {
     enum { LEFT_OUT = -1 };
     int32_t *now = arena_new(reader->arena, scene->sheet_count, sizeof *now); // new numbers of the sheets
     if (!now) return;
@@ -10,7 +10,7 @@ void scene_keep_only_sheets(Reader *reader, const Node *node, Scene *scene) {
     for (uint32_t i = 0; i < scene->sheet_count; i++) now[i] = LEFT_OUT;
 
     const uint32_t before = message_total(reader->messages);
-    const Node *number = node->first;
+    const YamlNode *number = node->first;
     for (uint32_t i = 0; number && i < scene->only_sheet_count; i++, number = number->next) {
         const uint32_t sheet = scene->only_sheets[i];
         if (sheet >= scene->sheet_count)

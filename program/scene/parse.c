@@ -21,7 +21,7 @@ static SceneText *keep_text(SceneArena *arena, const SceneText *text) {
 }
 
 /// The default name of a scene: "letter" of "dir/letter.yaml". A file name is not always a valid name of outputs.
-static void take_name(Reader *reader, const Node *root) {
+static void take_name(Reader *reader, const YamlNode *root) {
     const char *path = reader->text->name, *slash = strrchr(path, '/'), *file = slash ? slash + 1 : path;
     const char *dot = strrchr(file, '.');
     const size_t length = dot && dot > file ? (size_t)(dot - file) : strlen(file);
@@ -52,7 +52,7 @@ static SingeResult parse_into(SceneArena *arena, const SceneText *given, const c
     if (!text || !scene || (base_dir && !folder)) return SINGE_ERROR_MEMORY;
 
     uint32_t before = message_total(messages), first = messages->count;
-    Node *root = tree_read(arena, text, text->bytes, text->size, (SceneLocation){0}, messages);
+    YamlNode *root = tree_read(arena, text, text->bytes, text->size, (SceneLocation){0}, messages);
     if (root) schema_spell_out(arena, &schema_scene, root);
     if (root && !tree_set(arena, text, root, messages)) return SINGE_ERROR_MEMORY;
 

@@ -8,9 +8,9 @@ static void *read_at(void *object, size_t offset) { return (char *)object + offs
 // ---- parameters that may vary
 
 /// Finds the field that the parameter follows; returns the number of such keys.
-static int read_field(Reader *reader, const SchemaRow *row, const Node *map, SingeField *field, SceneFile *file) {
-    const Node *texture = node_find(map, "texture"), *attribute = node_find(map, "attribute"),
-               *noise = node_find(map, "noise");
+static int read_field(Reader *reader, const SchemaRow *row, const YamlNode *map, SingeField *field, SceneFile *file) {
+    const YamlNode *texture = node_find(map, "texture"), *attribute = node_find(map, "attribute"),
+                   *noise = node_find(map, "noise");
     if (texture) {
         SchemaRow part = {.key = "texture", .type = ROW_FILE};
         field->kind = SINGE_FIELD_TEXTURE;
@@ -37,7 +37,7 @@ static int read_field(Reader *reader, const SchemaRow *row, const Node *map, Sin
     return !!texture + !!attribute + !!noise;
 }
 
-static void read_param(Reader *reader, const SchemaRow *row, const Node *node, SingeParam *param, SceneFile *file) {
+static void read_param(Reader *reader, const SchemaRow *row, const YamlNode *node, SingeParam *param, SceneFile *file) {
     static const char *const keys[] = {"from", "to", "texture", "attribute", "noise"};
     SingeParam result = singe_param(param->value);
     *file = (SceneFile){0}; // drop that of the base material
@@ -51,7 +51,7 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
     }
 
     unsigned given = 0;
-    for (const Node *child = node->first; child; child = child->next) {
+    for (const YamlNode *child = node->first; child; child = child->next) {
         Nearest nearest = {.word = child->key};
         int i = 0;
         for (; i < 5 && strcmp(child->key, keys[i]) != 0; i++) nearest_offer(&nearest, keys[i]);
@@ -65,7 +65,7 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
         else given |= 1u << i;
     }
 
-    const Node *from = node_find(node, "from"), *to = node_find(node, "to");
+    const YamlNode *from = node_find(node, "from"), *to = node_find(node, "to");
     SchemaRow end = *row; // no line leads to infinity
     end.flags &= ~(unsigned)ROW_INF;
     bool good = from && to;
@@ -91,7 +91,7 @@ static void *list_new(Reader *reader, void *object, const SchemaRow *row, uint32
     return items;
 }
 
-static void read_list(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+static void read_list(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     const Schema *schema = row->sub;
     if (node->kind != NODE_LIST) {
         value_wrong(reader, node, row);
@@ -99,7 +99,7 @@ static void read_list(Reader *reader, const SchemaRow *row, const Node *node, vo
     }
 
     char *items = list_new(reader, object, row, node->count, schema->size);
-    for (const Node *child = node->first; items && child; child = child->next, items += schema->size) {
+    for (const YamlNode *child = node->first; items && child; child = child->next, items += schema->size) {
         if (schema->defaults && !schema->defaults(reader->arena, items)) return;
         if (schema->location) *schema->location(items) = child->location;
         if (child->kind == NODE_MAP) {
@@ -112,7 +112,7 @@ static void read_list(Reader *reader, const SchemaRow *row, const Node *node, vo
     }
 }
 
-static void read_strength(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+static void read_strength(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     if (node->kind == NODE_LIST) {
         read_list(reader, row, node, object);
         return;
@@ -123,7 +123,7 @@ static void read_strength(Reader *reader, const SchemaRow *row, const Node *node
     if (items) items[0] = (SingeValueKey){0, value};
 }
 
-static void read_points(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+static void read_points(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     if (node->kind != NODE_LIST || !node->count) {
         value_wrong(reader, node, row);
         return;
@@ -132,11 +132,11 @@ static void read_points(Reader *reader, const SchemaRow *row, const Node *node, 
     ScenePoint *points = list_new(reader, object, row, node->count, sizeof *points);
     SchemaRow element = *row;
     element.type = ROW_VECTOR;
-    for (const Node *child = node->first; points && child; child = child->next)
+    for (const YamlNode *child = node->first; points && child; child = child->next)
         value_vector(reader, &element, child, (points++)->position);
 }
 
-static void read_indices(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+static void read_indices(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     if (node->kind != NODE_LIST || !node->count) {
         value_wrong(reader, node, row);
         return;
@@ -145,12 +145,12 @@ static void read_indices(Reader *reader, const SchemaRow *row, const Node *node,
     uint32_t *indices = list_new(reader, object, row, node->count, sizeof *indices);
     SchemaRow element = *row;
     element.type = ROW_UINT32;
-    for (const Node *child = node->first; indices && child; child = child->next)
+    for (const YamlNode *child = node->first; indices && child; child = child->next)
         value_integer(reader, &element, child, indices++);
 }
 
 /// The position or the rotation of the only key of a path.
-static void read_key_part(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+static void read_key_part(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     SceneKey *key;
     memcpy(&key, read_at(object, row->offset), sizeof key);
     if (!key || *(uint32_t *)read_at(object, row->extra) != 1) key = list_new(reader, object, row, 1, sizeof *key);
@@ -159,7 +159,7 @@ static void read_key_part(Reader *reader, const SchemaRow *row, const Node *node
 
 // ---- maps
 
-static void read_row(Reader *reader, const SchemaRow *row, const Node *node, void *object);
+static void read_row(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object);
 
 static const SchemaRow *choice_row(const Schema *schema) {
     const SchemaRow *row = schema->rows;
@@ -168,7 +168,7 @@ static const SchemaRow *choice_row(const Schema *schema) {
 }
 
 /// The choice that determines an object's other defaults.
-static void read_choice(Reader *reader, const Schema *schema, const Node *node, void *object) {
+static void read_choice(Reader *reader, const Schema *schema, const YamlNode *node, void *object) {
     uint32_t before = message_total(reader->messages);
     read_row(reader, choice_row(schema), node, object);
     if (message_total(reader->messages) == before && schema->chosen) schema->chosen(object);
@@ -179,7 +179,7 @@ void *row_begin(SceneArena *arena, const SchemaRow *row, void *object) {
     return begun && (!row->sub->defaults || row->sub->defaults(arena, begun)) ? begun : NULL;
 }
 
-static void read_submap(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+static void read_submap(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     void *inner = row_begin(reader->arena, row, object); // a map with defaults of its own starts from these
     if (!inner) return;
     if (row->extra) *(bool *)read_at(object, row->extra) = true;
@@ -188,7 +188,7 @@ static void read_submap(Reader *reader, const SchemaRow *row, const Node *node, 
     else value_wrong(reader, node, row);
 }
 
-static void read_row(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+static void read_row(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     void *field = read_at(object, row->offset);
     switch (row->type) {
     case ROW_BOOL: value_bool(reader, row, node, field); break;
@@ -229,7 +229,7 @@ static void read_row(Reader *reader, const SchemaRow *row, const Node *node, voi
 
 /// Reads a key of a map by its row. A key that no row of this kind has is an error, which says which kind has it, or
 /// which key was meant.
-static void read_child(Reader *reader, const Schema *schema, unsigned kind, const Node *child, void *object,
+static void read_child(Reader *reader, const Schema *schema, unsigned kind, const YamlNode *child, void *object,
                        uint64_t *given) {
     const SchemaRow *other = NULL;
     for (int i = 0; i < schema->row_count; i++) {
@@ -265,10 +265,10 @@ static void read_child(Reader *reader, const Schema *schema, unsigned kind, cons
     }
 }
 
-void schema_read(Reader *reader, const Schema *schema, const Node *map, void *object) {
+void schema_read(Reader *reader, const Schema *schema, const YamlNode *map, void *object) {
     uint64_t given = 0;
     unsigned kind = ~0u;
-    const Node *first = schema->kind_offset ? node_find(map, "kind") : NULL;
+    const YamlNode *first = schema->kind_offset ? node_find(map, "kind") : NULL;
 
     if (first) {
         uint32_t before = message_total(reader->messages);
@@ -283,7 +283,7 @@ void schema_read(Reader *reader, const Schema *schema, const Node *map, void *ob
         given |= 1ull << (choice_row(schema) - schema->rows);
     }
 
-    for (const Node *child = map->first; child; child = child->next)
+    for (const YamlNode *child = map->first; child; child = child->next)
         if (child != first && !arena_failed(reader->arena)) read_child(reader, schema, kind, child, object, &given);
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
@@ -296,15 +296,15 @@ void schema_read(Reader *reader, const Schema *schema, const Node *map, void *ob
     if (schema->finish) schema->finish(reader, map, object);
 }
 
-void schema_spell_out(SceneArena *arena, const Schema *schema, Node *map) {
-    for (Node *child = map->kind == NODE_MAP ? map->first : NULL; child; child = child->next) {
+void schema_spell_out(SceneArena *arena, const Schema *schema, YamlNode *map) {
+    for (YamlNode *child = map->kind == NODE_MAP ? map->first : NULL; child; child = child->next) {
         const SchemaRow *row = schema->rows, *end = row + schema->row_count;
         while (row < end && !(row->sub && strcmp(row->key, child->key) == 0)) row++;
         if (row == end) continue;
 
         if (row->type == ROW_MAP && row->sub->choice && value_is_text(child)) {
             // a word becomes a map that has it as its choice
-            Node *word = arena_new(arena, 1, sizeof *word);
+            YamlNode *word = arena_new(arena, 1, sizeof *word);
             char *key = arena_text(arena, row->sub->choice, strlen(row->sub->choice));
             if (!word || !key) return;
             *word = *child;
@@ -319,7 +319,7 @@ void schema_spell_out(SceneArena *arena, const Schema *schema, Node *map) {
             schema_spell_out(arena, row->sub, child);
         }
 
-        for (Node *entry = child->kind == NODE_LIST ? child->first : NULL; entry; entry = entry->next)
+        for (YamlNode *entry = child->kind == NODE_LIST ? child->first : NULL; entry; entry = entry->next)
             schema_spell_out(arena, row->sub, entry);
     }
 }

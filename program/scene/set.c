@@ -37,14 +37,14 @@ static bool setter_step(Setter *setter, char step[STEP_MAX], bool *bad) {
 }
 
 /// The node at the path, created if it is missing. NULL with a message, or when out of memory.
-static Node *setter_walk(Setter *setter, Node *root) {
+static YamlNode *setter_walk(Setter *setter, YamlNode *root) {
     char step[STEP_MAX], seen[NODE_WORDS];
     bool bad = false;
-    Node *node = root;
+    YamlNode *node = root;
     setter->rest = setter->path;
 
     while (setter_step(setter, step, &bad)) {
-        Node *child = NULL;
+        YamlNode *child = NULL;
         if (node->kind == NODE_LIST) {
             const size_t digits = strspn(step, "0123456789");
             unsigned long index = digits < 10 && !step[digits] ? strtoul(step, NULL, 10) : ULONG_MAX;
@@ -67,8 +67,8 @@ static Node *setter_walk(Setter *setter, Node *root) {
             child = arena_new(setter->arena, 1, sizeof *child);
             char *key = arena_text(setter->arena, step, strlen(step));
             if (!child || !key) return NULL;
-            *child =
-                (Node){.kind = NODE_MAP, .location = setter->location, .key = key, .key_location = setter->location};
+            *child = (YamlNode){
+                .kind = NODE_MAP, .location = setter->location, .key = key, .key_location = setter->location};
             if (node->last) node->last->next = child;
             else node->first = child;
             node->last = child;
@@ -80,7 +80,7 @@ static Node *setter_walk(Setter *setter, Node *root) {
     return node;
 }
 
-bool tree_set(SceneArena *arena, const SceneText *text, Node *root, SceneMessages *messages) {
+bool tree_set(SceneArena *arena, const SceneText *text, YamlNode *root, SceneMessages *messages) {
     for (int i = 0; i < text->set_count && !arena_failed(arena); i++) {
         const char *set = text->sets[i], *equals = strchr(set, '=');
         Setter setter = {arena, text, messages, {.set = i + 1}, set, set, equals ? equals : set};
@@ -94,8 +94,8 @@ bool tree_set(SceneArena *arena, const SceneText *text, Node *root, SceneMessage
         }
 
         // the value first: a bad one must not leave partly created maps
-        Node *value = tree_read(arena, text, equals + 1, strlen(equals + 1), setter.location, messages);
-        Node *target = value ? setter_walk(&setter, root) : NULL;
+        YamlNode *value = tree_read(arena, text, equals + 1, strlen(equals + 1), setter.location, messages);
+        YamlNode *target = value ? setter_walk(&setter, root) : NULL;
         if (!target) continue;
 
         // the value replaces the target among its siblings; its name is now the --set's

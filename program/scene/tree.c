@@ -12,12 +12,12 @@ typedef struct Builder {
     SceneArena *arena;
     const SceneText *text;
     SceneMessages *messages;
-    SceneLocation origin;   // --set or file, without line and column
-    Node *stack[DEPTH_MAX]; // open lists and maps
-    char *keys[DEPTH_MAX];  // pending key of each open map
+    SceneLocation origin;       // --set or file, without line and column
+    YamlNode *stack[DEPTH_MAX]; // open lists and maps
+    char *keys[DEPTH_MAX];      // pending key of each open map
     SceneLocation key_locations[DEPTH_MAX];
     int depth;
-    Node *root;
+    YamlNode *root;
     int documents;
     bool bad;
 } Builder;
@@ -39,14 +39,14 @@ static SceneLocation location_at(const Builder *builder, int line, int column) {
 
 static const char not_read[] = "not valid YAML, or it could not be read";
 
-static void builder_attach(Builder *builder, Node *node) {
+static void builder_attach(Builder *builder, YamlNode *node) {
     if (!builder->depth) {
         builder->root = node;
         return;
     }
 
     int top = builder->depth - 1;
-    Node *parent = builder->stack[top];
+    YamlNode *parent = builder->stack[top];
     if (parent->kind == NODE_MAP) {
         node->key = builder->keys[top];
         node->key_location = builder->key_locations[top];
@@ -76,7 +76,7 @@ static void builder_open(Builder *builder, NodeKind kind, SceneLocation location
         return;
     }
 
-    Node *node = arena_new(builder->arena, 1, sizeof *node);
+    YamlNode *node = arena_new(builder->arena, 1, sizeof *node);
     if (!node) {
         builder->bad = true;
         return;
@@ -107,7 +107,7 @@ static void builder_value(Builder *builder, const YamlEvent *event, SceneLocatio
         return;
     }
 
-    Node *node = arena_new(builder->arena, 1, sizeof *node);
+    YamlNode *node = arena_new(builder->arena, 1, sizeof *node);
     if (!node) {
         builder->bad = true;
         return;
@@ -194,8 +194,8 @@ static bool is_plain(const char *bytes, size_t size) {
     return strspn(first, inside) > 0 && !strchr("-%() +_/", *first) && strncmp(first, "..", 2) != 0;
 }
 
-static Node *plain_node(SceneArena *arena, const char *bytes, size_t size, SceneLocation location) {
-    Node *node = arena_new(arena, 1, sizeof *node);
+static YamlNode *plain_node(SceneArena *arena, const char *bytes, size_t size, SceneLocation location) {
+    YamlNode *node = arena_new(arena, 1, sizeof *node);
     char *text = arena_text(arena, bytes, size);
     if (!node || !text) return NULL;
     node->location = location;
@@ -203,8 +203,8 @@ static Node *plain_node(SceneArena *arena, const char *bytes, size_t size, Scene
     return node;
 }
 
-Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, SceneLocation origin,
-                SceneMessages *messages) {
+YamlNode *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, SceneLocation origin,
+                    SceneMessages *messages) {
     Builder builder = {.arena = arena, .text = text, .messages = messages, .origin = origin};
     if (!bytes_are_text(&builder, bytes, size)) return NULL;
     if (origin.set && (!size || is_plain(bytes, size))) // PATH= alone is a value, too
@@ -252,14 +252,14 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
     return builder.root;
 }
 
-Node *node_find(const Node *map, const char *key) {
-    Node *found = NULL;
-    for (Node *child = map && map->kind == NODE_MAP ? map->first : NULL; child; child = child->next)
+YamlNode *node_find(const YamlNode *map, const char *key) {
+    YamlNode *found = NULL;
+    for (YamlNode *child = map && map->kind == NODE_MAP ? map->first : NULL; child; child = child->next)
         if (strcmp(child->key, key) == 0) found = child;
     return found;
 }
 
-const char *node_describe(const Node *node, char *buffer, size_t size) {
+const char *node_describe(const YamlNode *node, char *buffer, size_t size) {
     if (node->kind == NODE_MAP) return "a map";
     if (node->kind == NODE_LIST) {
         snprintf(buffer, size, "a list of %u", (unsigned)node->count);
@@ -273,7 +273,7 @@ const char *node_describe(const Node *node, char *buffer, size_t size) {
     return buffer;
 }
 
-const char *node_key(const Node *node, char *buffer, size_t size) {
+const char *node_key(const YamlNode *node, char *buffer, size_t size) {
     snprintf(buffer, size, node->key_location.file ? "" : " '%s'", shown(node->key).text);
     return buffer;
 }
