@@ -269,8 +269,8 @@ static int find_restless(const Preview *preview, const Block *block, const int *
         high = maxf(high, block->high[i]);
     }
 
-    // where a lens or a shutter blurs strongly, all first samples of some pixels miss what their neighbours' hit ...
-    // and at the rim of a shadow on the table, nearly all of a pixel's first rays to the sun may agree
+    // where a lens or a shutter blurs strongly, all first samples of some pixels miss what their neighbours' hit; at the
+    // rim of a shadow on the table, nearly all of a pixel's first rays to the sun may agree
     bool mixed = (is_blurred(preview) && hits > 0 && hits < samples) || (bare && block->sunlit && block->shaded);
 
     for (int i = 0; i < LANES; i++) {

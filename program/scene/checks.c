@@ -9,7 +9,7 @@ static void complain(Reader *reader, SceneLocation location, const char *what) {
     message_add(reader->messages, reader->text, location, "%s", what);
 }
 
-// Refuses lists whose times do not increase.
+/// Refuses lists whose times do not increase.
 static void check_times(Reader *reader, const YamlNode *list, const void *items, size_t size, uint32_t count) {
     const YamlNode *node = list && list->kind == NODE_LIST ? list->first : NULL;
     float before = -1;
@@ -22,7 +22,7 @@ static void check_times(Reader *reader, const YamlNode *list, const void *items,
     }
 }
 
-// Refuses `path` together with its short forms. Returns whether one of them is given.
+/// Refuses `path` together with its short forms. Returns whether one of them is given.
 static bool check_path(Reader *reader, const YamlNode *map, const SceneKey *keys, uint32_t count) {
     const YamlNode *path = node_find(map, "path"), *position = node_find(map, "position");
     const YamlNode *rotation = node_find(map, "rotation"), *other = position ? position : rotation;

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-// A bound in the unit of bare numbers, in its shortest form: 1e-06 is written 1e-6.
+/// A bound in the unit of bare numbers, in its shortest form: 1e-06 is written 1e-6.
 static void bound_print(const SchemaRow *row, double bound, char *buffer, size_t size) {
     if (row->type == ROW_INT || row->type == ROW_INTS || row->type == ROW_INDICES || row->type == ROW_UINT32) {
         snprintf(buffer, size, "%.0f", bound);

@@ -8,7 +8,7 @@
 
 enum { MESSAGES_MAX = 200, LINE_WIDTH = 110 };
 
-// A printable copy (formats/printable.h); tabs become blanks.
+/// A printable copy (formats/printable.h); tabs become blanks.
 static char *text_printable(const char *text, size_t length) {
     const char *end = text + length;
     char *copy = malloc(PRINTABLE_PIECE * length + 1);
@@ -79,7 +79,7 @@ static char *source_line(const SceneText *text, int line, int column, int *caret
     return *caret ? text_printable(start, (size_t)(end - start)) : NULL;
 }
 
-// The file that a location is in.
+/// The file that a location is in.
 static const SceneText *text_of(const SceneText *text, SceneLocation location) {
     const SceneText *file = text && location.file ? text->files : text;
     while (file && file->number != location.file) file = file->next;
@@ -148,18 +148,18 @@ void message_warn(const SingeLog *log, const SceneText *text, SceneLocation loca
     free(origin);
 }
 
-static bool location_before(SceneLocation a, SceneLocation b) {
-    if (a.set != b.set) return a.set < b.set;
-    if (a.file != b.file) return a.file < b.file;
-    return a.line != b.line ? a.line < b.line : a.column < b.column;
-}
-
 void messages_sort(SceneMessages *messages, uint32_t first) {
     for (uint32_t i = first + 1; i < messages->count; i++) {
-        SceneMessage moved = messages->items[i];
+        const SceneMessage moved = messages->items[i];
+        const SceneLocation a = moved.location;
         uint32_t j = i;
-        for (; j > first && location_before(moved.location, messages->items[j - 1].location); j--)
+        for (; j > first; j--) {
+            const SceneLocation b = messages->items[j - 1].location;
+            const int by_text = a.set != b.set ? a.set - b.set : a.file - b.file;
+            const int by_place = a.line != b.line ? a.line - b.line : a.column - b.column;
+            if ((by_text ? by_text : by_place) >= 0) break;
             messages->items[j] = messages->items[j - 1];
+        }
         messages->items[j] = moved;
     }
 }

@@ -6,20 +6,6 @@
 
 #include <string.h>
 
-/// The scene keeps the text, so that later messages can show its lines.
-static SceneText *keep_text(SceneArena *arena, const SceneText *text) {
-    SceneText *kept = arena_new(arena, 1, sizeof *kept);
-    char *name = arena_text(arena, text->name, strlen(text->name));
-    char *bytes = arena_text(arena, text->bytes, text->size);
-    const char **sets = arena_new(arena, (size_t)text->set_count + 1, sizeof *sets);
-    if (!kept || !name || !bytes || !sets) return NULL;
-
-    for (int i = 0; i < text->set_count; i++)
-        if (!(sets[i] = arena_text(arena, text->sets[i], strlen(text->sets[i])))) return NULL;
-    *kept = (SceneText){.name = name, .bytes = bytes, .size = text->size, .sets = sets, .set_count = text->set_count};
-    return kept;
-}
-
 /// The default name of a scene: "letter" of "dir/letter.yaml". A file name is not always a valid name of outputs.
 static void take_name(Reader *reader, const YamlNode *root) {
     const char *path = reader->text->name, *slash = strrchr(path, '/'), *file = slash ? slash + 1 : path;
@@ -46,10 +32,17 @@ static void take_name(Reader *reader, const YamlNode *root) {
 
 static SingeResult parse_into(SceneArena *arena, const SceneText *given, const char *base_dir, Scene **result,
                               SceneMessages *messages) {
-    SceneText *text = keep_text(arena, given);
+    // the scene keeps the text, so that later messages can show its lines
+    SceneText *text = arena_new(arena, 1, sizeof *text);
     Scene *scene = arena_new(arena, 1, sizeof *scene);
+    char *name = arena_text(arena, given->name, strlen(given->name));
+    char *bytes = arena_text(arena, given->bytes, given->size);
     char *folder = base_dir ? arena_text(arena, base_dir, strlen(base_dir)) : NULL;
-    if (!text || !scene || (base_dir && !folder)) return SINGE_ERROR_MEMORY;
+    const char **sets = arena_new(arena, (size_t)given->set_count + 1, sizeof *sets);
+    for (int i = 0; sets && i < given->set_count; i++)
+        sets[i] = arena_text(arena, given->sets[i], strlen(given->sets[i]));
+    if (arena_failed(arena)) return SINGE_ERROR_MEMORY;
+    *text = (SceneText){.name = name, .bytes = bytes, .size = given->size, .sets = sets, .set_count = given->set_count};
 
     uint32_t before = message_total(messages), first = messages->count;
     YamlNode *root = tree_read(arena, text, text->bytes, text->size, (SceneLocation){0}, messages);

@@ -123,30 +123,22 @@ static void read_strength(Reader *reader, const SchemaRow *row, const YamlNode *
     if (items) items[0] = (SingeValueKey){0, value};
 }
 
-static void read_points(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
+/// A list of points, or of indices, at least one.
+static void read_elements(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     if (node->kind != NODE_LIST || !node->count) {
         value_wrong(reader, node, row);
         return;
     }
 
-    ScenePoint *points = list_new(reader, object, row, node->count, sizeof *points);
+    const bool points = row->type == ROW_POINTS;
+    const size_t size = points ? sizeof(ScenePoint) : sizeof(uint32_t);
+    char *items = list_new(reader, object, row, node->count, size);
     SchemaRow element = *row;
-    element.type = ROW_VECTOR;
-    for (const YamlNode *child = node->first; points && child; child = child->next)
-        value_vector(reader, &element, child, (points++)->position);
-}
-
-static void read_indices(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
-    if (node->kind != NODE_LIST || !node->count) {
-        value_wrong(reader, node, row);
-        return;
+    element.type = points ? ROW_VECTOR : ROW_UINT32;
+    for (const YamlNode *child = node->first; items && child; child = child->next, items += size) {
+        if (points) value_vector(reader, &element, child, ((ScenePoint *)(void *)items)->position);
+        else value_integer(reader, &element, child, items);
     }
-
-    uint32_t *indices = list_new(reader, object, row, node->count, sizeof *indices);
-    SchemaRow element = *row;
-    element.type = ROW_UINT32;
-    for (const YamlNode *child = node->first; indices && child; child = child->next)
-        value_integer(reader, &element, child, indices++);
 }
 
 /// The position or the rotation of the only key of a path.
@@ -219,8 +211,8 @@ static void read_row(Reader *reader, const SchemaRow *row, const YamlNode *node,
     case ROW_PARAM: read_param(reader, row, node, field, read_at(object, row->extra)); break;
     case ROW_MAP: read_submap(reader, row, node, object); break;
     case ROW_LIST: read_list(reader, row, node, object); break;
-    case ROW_POINTS: read_points(reader, row, node, object); break;
-    case ROW_INDICES: read_indices(reader, row, node, object); break;
+    case ROW_POINTS:
+    case ROW_INDICES: read_elements(reader, row, node, object); break;
     case ROW_STRENGTH: read_strength(reader, row, node, object); break;
     case ROW_POSITION:
     case ROW_ROTATION: read_key_part(reader, row, node, object); break;

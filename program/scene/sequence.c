@@ -90,42 +90,35 @@ static SingeResult sequence_read_frame(const SceneMotion *motion, const char *pa
     return result;
 }
 
-/// The number of frames with files, at least one: the motion stops after the last. SINGE_ERROR_FILE if one is missing
-/// in between.
-static SingeResult sequence_length(const SceneMotion *motion, int frames, int *length, SingeError *error) {
-    bool there = true, next;
-    for (*length = 0; *length < frames && there; ++*length) {
-        char *path = sequence_path(motion, *length + 1);
-        if (!path) return sequence_no_memory(error);
-        there = access(path, F_OK) == 0;
+SingeResult sequence_read(const SceneMotion *motion, int frames, SceneSequence *sequence, SingeError *error) {
+    SingeResult result = SINGE_OK;
+    *sequence = (SceneSequence){0};
+
+    // the frames with files, at least one: the motion stops after the last
+    int length = 0;
+    for (bool there = true; length < frames && there && !result; length++) {
+        char *path = sequence_path(motion, length + 1);
+        there = path && access(path, F_OK) == 0;
+        if (!path) result = sequence_no_memory(error);
         free(path);
     }
 
-    if (there || *length == frames) return SINGE_OK;
-    char *missing = sequence_path(motion, *length), *after = sequence_path(motion, *length + 1);
-    SingeResult result = missing && after ? SINGE_OK : sequence_no_memory(error);
-    next = !result && access(after, F_OK) == 0;
-    if (next)
-        result = refuse(error, SINGE_ERROR_FILE, "scene", -1, "%s: there is no such file, but the next one is there",
-                        short_name(missing));
-    free(missing);
-    free(after);
-
-    return result;
-}
-
-SingeResult sequence_read(const SceneMotion *motion, int frames, SceneSequence *sequence, SingeError *error) {
-    *sequence = (SceneSequence){0};
-    int length;
-    SingeResult result = sequence_length(motion, frames, &length, error);
+    // none may be missing in between
+    if (!result && length < frames) {
+        char *missing = sequence_path(motion, length), *after = sequence_path(motion, length + 1);
+        if (!missing || !after) result = sequence_no_memory(error);
+        else if (access(after, F_OK) == 0)
+            result = refuse(error, SINGE_ERROR_FILE, "scene", -1, "%s: there is no such file, but the next one exists",
+                            short_name(missing));
+        free(missing);
+        free(after);
+    }
 
     for (int frame = 0; !result && frame < length; frame++) {
         char *path = sequence_path(motion, frame);
         result = path ? sequence_read_frame(motion, path, frame, length, sequence, error) : sequence_no_memory(error);
-
         free(path);
     }
-
     if (!result && (sequence->vertex_count == 0 || sequence->triangle_count == 0))
         result = refuse(error, SINGE_ERROR_MESH, "scene", -1, "%s: the motion's mesh has no faces",
                         short_name(motion->mesh.path));

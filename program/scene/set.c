@@ -16,7 +16,7 @@ typedef struct Setter {
     const char *path, *rest, *stop; // the path, its unread rest, its end
 } Setter;
 
-// The next part of the path; false at its end or if the path is malformed (then *bad).
+/// The next part of the path; false at its end or if the path is malformed (then *bad).
 static bool setter_step(Setter *setter, char step[STEP_MAX], bool *bad) {
     const char *c = setter->rest;
     if (c == setter->stop) return false;

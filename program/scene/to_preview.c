@@ -128,7 +128,7 @@ void scene_frame(Scene *scene, const SceneAssets *assets) {
 
 // ---- shapes
 
-// Interpolates like the library: positions linearly, quaternions linearly and normalised, constant beyond the ends.
+/// Interpolates like the library: positions linearly, quaternions linearly and normalised, constant beyond the ends.
 static void shape_pose(const SceneKey *keys, uint32_t count, double time, PreviewShape *shape) {
     uint32_t next = 0;
     while (next < count && (double)keys[next].time <= time) next++;

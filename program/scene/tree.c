@@ -27,7 +27,7 @@ static void builder_fail(Builder *builder, SceneLocation location, const char *w
     builder->bad = true;
 }
 
-// A line and column of a file; a --set has neither.
+/// A line and column of a file; a --set has neither.
 static SceneLocation location_at(const Builder *builder, int line, int column) {
     SceneLocation location = builder->origin;
     if (!location.set) {
@@ -59,7 +59,7 @@ static void builder_attach(Builder *builder, YamlNode *node) {
     parent->count++;
 }
 
-// True when the next node is a key of the innermost map.
+/// True when the next node is a key of the innermost map.
 static bool builder_wants_key(const Builder *builder) {
     int top = builder->depth - 1;
     return top >= 0 && builder->stack[top]->kind == NODE_MAP && !builder->keys[top];
@@ -152,7 +152,7 @@ static void builder_take(Builder *builder, const YamlEvent *event) {
     }
 }
 
-// libfyaml takes any bytes; a scene is UTF-8 without control characters, so that messages can show it.
+/// libfyaml takes any bytes; a scene is UTF-8 without control characters, so that messages can show it.
 static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
     int line = 1, column = 1;
     bool begins = true; // of a line as libfyaml counts them: also after a lone \r and after a byte order mark
@@ -186,7 +186,7 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
     return true;
 }
 
-// A --set value that is a word or a number, perhaps with a unit, and so needs no YAML.
+/// A --set value that is a word or a number, perhaps with a unit, and so needs no YAML.
 static bool is_plain(const char *bytes, size_t size) {
     static const char inside[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789./%+-_() ";
     if (!size || strspn(bytes, inside) != size || bytes[size - 1] == ' ') return false;

@@ -48,7 +48,7 @@ static const DimensionRow dimensions[DIM_COUNT] = {
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// The length of a decimal number at the start of a text; 0 if there is none.
+/// The length of a decimal number at the start of a text; 0 if there is none.
 static size_t number_length(const char *text) {
     const char *c = text + (*text == '+' || *text == '-');
     const char *digits = c;
@@ -72,7 +72,7 @@ static size_t number_length(const char *text) {
     return (size_t)(c - text);
 }
 
-// Other spellings of parts of unit names. Longer spellings come first.
+/// Other spellings of parts of unit names. Longer spellings come first.
 static const struct Spelling {
     const char *piece, *text;
 } spellings[] = {

@@ -164,18 +164,6 @@ static void sink_mark(Sink *sink, const struct fy_mark *mark) {
     if (mark) sink_move(sink, mark->line, mark->column);
 }
 
-/// An event without a location gets the end of the last one.
-static void sink_location(Sink *sink, const struct fy_event *event, struct fy_token *tag, struct fy_token *anchor) {
-    struct fy_token *value = event->type == FYET_SCALAR ? event->scalar.value : NULL;
-    const struct fy_mark *mark = fy_event_start_mark((struct fy_event *)event);
-    if (!mark && (tag || anchor)) mark = fy_token_start_mark(tag ? tag : anchor);
-    sink_mark(sink, mark);
-    // libfyaml's mark of a quoted text is after the quote, that of an alias after the star
-    enum fy_scalar_style style = value ? fy_token_scalar_style(value) : FYSS_PLAIN;
-    bool behind = style == FYSS_SINGLE_QUOTED || style == FYSS_DOUBLE_QUOTED || event->type == FYET_ALIAS;
-    if (mark && behind && sink->column > 1) sink->column--;
-}
-
 /// Returns whether there are more events: one that no scene may have is the last.
 static bool sink_take(Sink *sink, const struct fy_event *event) {
     struct fy_token *tag = NULL, *anchor = NULL, *value = NULL;
@@ -209,9 +197,17 @@ static bool sink_take(Sink *sink, const struct fy_event *event) {
     default: return true;
     }
 
-    sink_location(sink, event, tag, anchor);
+    // an event without a location gets the end of the last one; libfyaml's mark of a quoted text is after the quote,
+    // that of an alias after the star
+    const struct fy_mark *mark = fy_event_start_mark((struct fy_event *)event);
+    if (!mark && (tag || anchor)) mark = fy_token_start_mark(tag ? tag : anchor);
+    sink_mark(sink, mark);
+    enum fy_scalar_style style = value ? fy_token_scalar_style(value) : FYSS_PLAIN;
+    bool behind = style == FYSS_SINGLE_QUOTED || style == FYSS_DOUBLE_QUOTED || event->type == FYET_ALIAS;
+    if (mark && behind && sink->column > 1) sink->column--;
+
     unsigned flags = (tag ? YAML_TAGGED : 0) | (anchor ? YAML_ANCHORED : 0);
-    if (value && fy_token_scalar_style(value) != FYSS_PLAIN) flags |= YAML_QUOTED;
+    if (style != FYSS_PLAIN) flags |= YAML_QUOTED;
 
     // no mark shows it: libfyaml 0.8 has one for absent values, 0.7 has none
     if (kind == YAML_VALUE && !(flags & YAML_QUOTED) && length == 0) flags |= YAML_ABSENT;
