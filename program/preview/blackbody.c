@@ -5,27 +5,22 @@
 // lies outside the gamut: negative values are clipped. The luminance of an ember increases 50-fold from 1020 to 1220 K;
 // eye and film compress that, so the table holds chromaticity * (Y(T)/Y(1200 K))^0.55.
 
-#include "preview/internal.h"
+#include "preview/light.h"
 
 static double lobe(double x, double centre, double left, double right) {
     double t = (x - centre) * (x < centre ? left : right);
     return exp(-0.5 * t * t);
 }
 
-static void blackbody_observe(double nm, double xyz[3]) {
-    xyz[0] = 0.362 * lobe(nm, 442.0, 0.0624, 0.0374) + 1.056 * lobe(nm, 599.8, 0.0264, 0.0323) -
-             0.065 * lobe(nm, 501.1, 0.0490, 0.0382);
-    xyz[1] = 0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322);
-    xyz[2] = 1.217 * lobe(nm, 437.0, 0.0845, 0.0278) + 0.681 * lobe(nm, 459.0, 0.0385, 0.0725);
-}
-
 static void planck_xyz(double temperature, double xyz[3]) {
     xyz[0] = xyz[1] = xyz[2] = 0;
     for (int nm = 380; nm <= 780; nm += 5) {
-        double lambda = nm * 1e-9, seen[3];
+        double lambda = nm * 1e-9;
         double radiance = pow(lambda * 1e6, -5) / (exp(1.438777e-2 / (lambda * temperature)) - 1);
-        blackbody_observe(nm, seen);
-        for (int c = 0; c < 3; c++) xyz[c] += radiance * seen[c];
+        xyz[0] += radiance * (0.362 * lobe(nm, 442.0, 0.0624, 0.0374) + 1.056 * lobe(nm, 599.8, 0.0264, 0.0323) -
+                              0.065 * lobe(nm, 501.1, 0.0490, 0.0382));
+        xyz[1] += radiance * (0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322));
+        xyz[2] += radiance * (1.217 * lobe(nm, 437.0, 0.0845, 0.0278) + 0.681 * lobe(nm, 459.0, 0.0385, 0.0725));
     }
 }
 

@@ -64,24 +64,18 @@ static inline void rest_ray(struct RTCRay16 *ray, int lane) {
 /// In place of a sample's number: the centre of the sun and an open sky, if nothing can occlude them.
 enum { SAMPLE_CENTRE = -1 };
 
-// layers.c
-void layers_begin(LayerSum *sum);
-/// `fire` is the light of flame and smoke in front of the point, `clear` their transmittance.
-void layers_add(const Preview *preview, const Point *point, Float3 fire, float clear, Float3 direction, LayerSum *sum);
-void layers_write(const Preview *preview, size_t pixel, const LayerSum *sum);
-
-/// Writes `beauty` from the finished picture.
-void layers_finish(const Preview *preview);
-
 // lighting.c
 /// Reflected share of the light along l, per unit of irradiance: diffuse and a Blinn-Phong lobe.
 Float3 light_reflect(const Point *point, Float3 l);
+
 /// Whether the point that the lane sees is lit.
 bool light_reaches(const Block *block, const int *active, int lane);
+
 /// Adds the light of the sun and the sky that reaches the eye from block->point: the sun by `rays` rays each, the sky
 /// by one, or by earlier results if no rays are to be traced.
 void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, int rays);
 void light_add_sky(const Preview *preview, Block *block, const int *active, int sample, bool ask);
+
 /// Whether anything could occlude sun or sky at any of the points.
 bool light_may_be_hidden(const Preview *preview, const Block *block, const int *active);
 
@@ -89,6 +83,7 @@ bool light_may_be_hidden(const Preview *preview, const Block *block, const int *
 /// Adds the light of flames and embers that reaches block->point, times `through`, and tests its visibility.
 void lamps_add(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES]);
 void lamps_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples);
+
 /// Called per block once all blocks are written: first smooths along rows; then, for all blocks, along columns, and
 /// adds the result to the picture.
 void lamps_smooth(Preview *preview, Block *block);

@@ -16,6 +16,31 @@ enum {
     RIM_RAYS = 4, ///< rays to the sun per sample at the rim of a shadow
 };
 
+static void store(float (*layer)[3], size_t pixel, Float3 value) {
+    if (layer) float3_store(layer[pixel], value);
+}
+
+/// Writes the layers of a pixel whose samples are done.
+static void layers_write(const Preview *preview, size_t pixel, const LayerSum *sum) {
+    const PreviewLayers *layers = &preview->layers;
+    float sample = 1 / maxf((float)sum->samples, 1), hit = 1 / maxf((float)sum->hits, 1);
+    store(layers->glow, pixel, float3_scale(sum->glow, sample));
+
+    if (layers->fire) {
+        float *fire = layers->fire[pixel];
+        float3_store(fire, float3_scale(sum->fire, sample));
+        fire[3] = sum->fire_hides * sample;
+    }
+
+    store(layers->normal, pixel, float3_unit_or(sum->normal, float3(0, 0, 0)));
+    if (layers->coverage) layers->coverage[pixel] = (float)sum->hits * sample;
+    if (layers->temperature) layers->temperature[pixel] = sum->temperature * hit;
+    if (layers->burn) layers->burn[pixel] = sum->burn * hit;
+    if (layers->depth) layers->depth[pixel] = sum->depth;
+    if (layers->sheet) layers->sheet[pixel] = sum->sheet;
+    if (layers->piece) layers->piece[pixel] = sum->piece;
+}
+
 typedef struct Job {
     Preview *preview;
     void (*draw)(Preview *preview, Block *block); ///< one block
@@ -41,6 +66,7 @@ static void aim_block(const Preview *preview, Block *block, int sample, const fl
             sample_lens((uint32_t)sample, block->key[i], square);
             sample_disc(square, disc);
         }
+
         camera_ray(&preview->camera, x, y, disc, &block->origin[i], &block->direction[i]);
         block->time[i] = shutter ? sample_time((uint32_t)sample, block->key[i]) : 0.5f;
     }
@@ -54,28 +80,6 @@ static void start_point(Point *point, const Preview *preview, Float3 origin, Flo
 
 static void miss_point(Point *point, const Preview *preview, Float3 direction) {
     *point = (Point){.glow = background_colour(preview, direction), .distance = INFINITY, .sheet = -1, .piece = -1};
-}
-
-/// The appearance of the sheet at a hit; false at a hole.
-static bool hit_paper(const Preview *preview, const Block *block, int lane, float distance, Point *point) {
-    const struct RTCHit16 *hit = &block->rays.hit;
-    const uint32_t *t = preview->scene.triangles[hit->primID[lane]];
-    const PaperVertex *vertices = preview->scene.vertices;
-    const PaperVertex *a = &vertices[t[0]], *b = &vertices[t[1]], *c = &vertices[t[2]];
-    float u = hit->u[lane], v = hit->v[lane];
-    start_point(point, preview, block->origin[lane], block->direction[lane], distance);
-    Float3 geometric = float3_unit_or(float3(hit->Ng_x[lane], hit->Ng_y[lane], hit->Ng_z[lane]), point->view);
-    Float3 normal = float3_unit_or(float3_blend(a->normal, b->normal, c->normal, u, v), geometric);
-    point->geometric = float3_dot(geometric, point->view) >= 0 ? geometric : float3_scale(geometric, -1);
-    point->normal = float3_dot(normal, point->geometric) >= 0 ? normal : float3_scale(normal, -1);
-    PaperState state;
-    paper_state(&preview->scene, hit->primID[lane], u, v, &state);
-    point->hit = true;
-    point->sheet = state.sheet;
-    point->piece = state.piece;
-    point->temperature = state.temperature;
-    point->burn = state.burn;
-    return paper_shade(preview, &state, point);
 }
 
 static float hit_ground(const Preview *preview, Float3 origin, Float3 direction) {
@@ -98,6 +102,7 @@ static void see_ground(const Preview *preview, Block *block, int lane) {
         miss_point(point, preview, d);
         return;
     }
+
     start_point(point, preview, block->origin[lane], d, distance);
     ground_shade(preview, distance, &preview->table[pixel_index(preview, block, lane)], point);
 }
@@ -106,10 +111,12 @@ static void see_ground(const Preview *preview, Block *block, int lane) {
 static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
     Float3 o = block->origin[lane], d = block->direction[lane], normal = {0, 0, 1}, found = {0, 0, 1};
     Point *point = &block->point[lane];
-    bool paper = block->rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
+    const struct RTCHit16 *hit = &block->rays.hit;
+    bool paper = hit->geomID[lane] != RTC_INVALID_GEOMETRY_ID;
     float distance = paper ? block->rays.ray.tfar[lane] : INFINITY;
     const PreviewShape *shape = NULL;
     float moment = shutter_moment(preview, block->time[lane]);
+
     for (uint32_t k = 0; k < preview->shape_count; k++) {
         float t = shape_intersect(&preview->shapes[k], moment, o, d, 0, distance, &normal);
         if (t > 0) {
@@ -118,28 +125,53 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
             found = normal;
         }
     }
+
     if (hit_ground(preview, o, d) < distance) {
         see_ground(preview, block, lane);
-    } else if (shape) {
-        start_point(point, preview, o, d, distance);
+        return true;
+    }
+
+    if (!shape && !paper) {
+        miss_point(point, preview, d);
+        return true;
+    }
+
+    start_point(point, preview, o, d, distance);
+    if (shape) {
         point->hit = true;
         point->temperature = shape->temperature;
         point->normal = point->geometric = float3_dot(found, point->view) >= 0 ? found : float3_scale(found, -1);
         shape_shade(preview, shape, moment, point);
-    } else if (paper) {
-        return hit_paper(preview, block, lane, distance, point) || last;
-    } else {
-        miss_point(point, preview, d);
+        return true;
     }
-    return true;
+
+    const uint32_t *t = preview->scene.triangles[hit->primID[lane]];
+    const PaperVertex *vertices = preview->scene.vertices;
+    const PaperVertex *a = &vertices[t[0]], *b = &vertices[t[1]], *c = &vertices[t[2]];
+    float u = hit->u[lane], v = hit->v[lane];
+    Float3 geometric = float3_unit_or(float3(hit->Ng_x[lane], hit->Ng_y[lane], hit->Ng_z[lane]), point->view);
+    Float3 smooth = float3_unit_or(float3_blend(a->normal, b->normal, c->normal, u, v), geometric);
+    point->geometric = float3_dot(geometric, point->view) >= 0 ? geometric : float3_scale(geometric, -1);
+    point->normal = float3_dot(smooth, point->geometric) >= 0 ? smooth : float3_scale(smooth, -1);
+    PaperState state;
+    paper_state(&preview->scene, hit->primID[lane], u, v, &state);
+    point->hit = true;
+    point->sheet = state.sheet;
+    point->piece = state.piece;
+    point->temperature = state.temperature;
+    point->burn = state.burn;
+
+    return paper_shade(preview, &state, point) || last;
 }
 
 static void find_points(const Preview *preview, Block *block, const int *active) {
     int left = 0;
     for (int i = 0; i < LANES; i++) {
         aim_ray(&block->rays.ray, i, block->origin[i], block->direction[i], 0, INFINITY, block->time[i]);
-        block->valid[i] = active[i], left += active[i] != 0;
+        block->valid[i] = active[i];
+        left += active[i] != 0;
     }
+
     for (int pass = 0; pass < HOLE_LIMIT && left; pass++) {
         tracer_intersect(preview, block->valid, &block->rays);
         left = 0;
@@ -156,41 +188,57 @@ static void find_points(const Preview *preview, Block *block, const int *active)
     }
 }
 
-/// The light of the fire in front of a point, and its transmittance. A pixel's points mostly have nearly the same
-/// distance.
-static void look_through(Block *block, int lane, float distance) {
-    if (distance >= block->fire_from[lane] && distance <= block->fire_to[lane]) return;
-    const float same = 1e-3f; // m, less than flames are thick
-    block->fire_from[lane] = distance - same;
-    block->fire_to[lane] = distance + same;
-    int x = block->x[lane] % TILE, y = block->y[lane] % TILE;
-    fire_until(block->tile, x, y, distance, &block->fire_light[lane], &block->fire_clear[lane]);
-}
-
-/// Adds the colour of block->point in the light of one sample, the sun's by `rays` rays.
+/// Adds the colour of block->point in the light of one sample, the sun's by `rays` rays, and its layers.
 static void add_light(const Preview *preview, Block *block, const int *active, int sample, int rays) {
     float through[LANES];
     for (int i = 0; i < LANES; i++) block->light[i] = float3(0, 0, 0);
     light_add_sun(preview, block, active, sample, rays);
     light_add_sky(preview, block, active, sample, rays > 0);
+
     for (int i = 0; i < LANES; i++) {
         if (!active[i]) continue;
         const Point *point = &block->point[i];
         Float3 colour = float3_add(block->light[i], point->glow), fire = {0, 0, 0};
         float l = float3_luminance(colour), shown = l / (1 + l), clear = 1;
-        block->low[i] = minf(block->low[i], shown), block->high[i] = maxf(block->high[i], shown);
+        block->low[i] = minf(block->low[i], shown);
+        block->high[i] = maxf(block->high[i], shown);
         if (point->fade > 0) colour = float3_mix(colour, background_colour(preview, block->direction[i]), point->fade);
+
+        // the fire in front of the point; a pixel's points mostly have nearly the same distance
         if (block->tile) {
-            look_through(block, i, point->distance);
+            const float same = 1e-3f; // m, less than flames are thick
+            if (point->distance < block->fire_from[i] || point->distance > block->fire_to[i]) {
+                block->fire_from[i] = point->distance - same;
+                block->fire_to[i] = point->distance + same;
+                fire_until(block->tile, block->x[i] % TILE, block->y[i] % TILE, point->distance, &block->fire_light[i],
+                           &block->fire_clear[i]);
+            }
             fire = block->fire_light[i];
             clear = block->fire_clear[i];
             colour = float3_mad(fire, colour, clear);
         }
+
         through[i] = clear * (1 - point->fade);
         colour = float3(minf(colour.x, 40), minf(colour.y, 40), minf(colour.z, 40));
         block->sum[i] = float3_add(block->sum[i], colour);
-        layers_add(preview, point, fire, clear, block->direction[i], &block->layer[i]);
+
+        LayerSum *sum = &block->layer[i];
+        if (!sum->samples++) {
+            sum->depth = point->distance * float3_dot(block->direction[i], preview->camera.forward);
+            sum->sheet = point->sheet;
+            sum->piece = point->piece;
+        }
+
+        sum->fire = float3_add(sum->fire, fire);
+        sum->fire_hides += 1 - clear;
+        if (!point->hit) continue;
+        sum->hits++;
+        sum->glow = float3_mad(sum->glow, point->glow, clear);
+        sum->normal = float3_add(sum->normal, point->normal);
+        sum->temperature += point->temperature;
+        sum->burn += point->burn;
     }
+
     lamps_add(preview, block, active, sample, through);
 }
 
@@ -204,82 +252,35 @@ static void add_sample(const Preview *preview, Block *block, const int *active, 
         for (int i = 0; bare && i < LANES; i++)
             if (active[i]) see_ground(preview, block, i);
     }
+
     add_light(preview, block, active, sample, rays);
 }
 
 static bool is_blurred(const Preview *preview) { return preview->camera.lens > 0 || preview->def.shutter > 0; }
 
-/// Whether some of the block's samples met a sheet or a shape and some did not.
-static bool is_mixed(const Block *block, const int *active) {
-    int hits = 0, samples = 0;
-    for (int i = 0; i < LANES; i++)
-        if (active[i]) hits += block->layer[i].hits, samples += block->layer[i].samples;
-    return hits > 0 && hits < samples;
-}
-
 /// The lanes whose first samples differ, from each other or from their neighbours'. Returns how many.
 static int find_restless(const Preview *preview, const Block *block, const int *active, bool bare, int *more) {
-    // where a lens or a shutter blurs strongly, all first samples of some pixels miss what their neighbours' hit ...
-    // and at the rim of a shadow on the table, nearly all of a pixel's first rays to the sun may agree
-    bool mixed = (is_blurred(preview) && is_mixed(block, active)) || (bare && block->sunlit && block->shaded);
+    int hits = 0, samples = 0, count = 0;
     float low = INFINITY, high = -INFINITY;
-    for (int i = 0; i < LANES; i++) low = minf(low, block->low[i]), high = maxf(high, block->high[i]);
-    int count = 0;
+    for (int i = 0; i < LANES; i++) {
+        hits += active[i] ? block->layer[i].hits : 0;
+        samples += active[i] ? block->layer[i].samples : 0;
+        low = minf(low, block->low[i]);
+        high = maxf(high, block->high[i]);
+    }
+
+    // where a lens or a shutter blurs strongly, all first samples of some pixels miss what their neighbours' hit; at the
+    // rim of a shadow on the table, nearly all of a pixel's first rays to the sun may agree
+    bool mixed = (is_blurred(preview) && hits > 0 && hits < samples) || (bare && block->sunlit && block->shaded);
+
     for (int i = 0; i < LANES; i++) {
         const LayerSum *sum = &block->layer[i];
         bool edge = sum->hits > 0 && sum->hits < sum->samples; // also if only fire lights it, which is not in `high`
         bool calm = !edge && block->high[i] - block->low[i] < 0.026f && high - low < 0.15f && !mixed;
-        more[i] = active[i] && !calm ? -1 : 0, count += more[i] != 0;
+        more[i] = active[i] && !calm ? -1 : 0;
+        count += more[i] != 0;
     }
     return count;
-}
-
-/// After half of the samples: keeps lanes whose samples still differ so much that more would be visible.
-static bool keep_restless(const Block *block, int *more, int sample, int *taken) {
-    bool any = false;
-    for (int i = 0; i < LANES; i++) {
-        const LayerSum *sum = &block->layer[i];
-        bool edge = sum->hits > 0 && sum->hits < sum->samples;
-        if (more[i] && !edge && block->high[i] - block->low[i] < 0.22f) {
-            more[i] = 0;
-            taken[i] = sample;
-        }
-        any = any || more[i];
-    }
-    return any;
-}
-
-static void start_block(const Preview *preview, Block *block, int *active) {
-    const PreviewDef *def = &preview->def;
-    block->sunlit = block->shaded = block->clouded = false;
-    block->sun_seen = 0;
-    block->sun_asked = 0;
-    for (int i = 0; i < LANES; i++) {
-        active[i] = block->x[i] < def->width && block->y[i] < def->height ? -1 : 0;
-        sample_pixel(block->x[i], block->y[i], def->seed, block->turn[i]);
-        block->key[i] = sample_key(block->x[i], block->y[i], def->seed);
-        block->sum[i] = float3(0, 0, 0);
-        block->low[i] = INFINITY;
-        block->high[i] = -INFINITY;
-        block->time[i] = 0.5f;
-        block->sky_seen[i] = 0;
-        block->sky_asked[i] = 0;
-        block->lamp[i] = float3(0, 0, 0), block->lamp_seen[i] = block->lamp_asked[i] = 0;
-        block->fire_from[i] = INFINITY;
-        block->fire_to[i] = -INFINITY;
-        layers_begin(&block->layer[i]);
-    }
-}
-
-/// The picture gets the mean of the sums.
-static void write_block(Preview *preview, const Block *block, const int *active, const int *taken) {
-    for (int i = 0; i < LANES; i++) {
-        if (!active[i]) continue;
-        size_t pixel = pixel_index(preview, block, i);
-        preview->picture[pixel] = float3_scale(block->sum[i], 1 / (float)taken[i]);
-        layers_write(preview, pixel, &block->layer[i]);
-        lamps_write(preview, pixel, block, i, taken[i]);
-    }
 }
 
 /// Takes a quarter of the samples, but at least 4, of every pixel (half if a lens or a shutter blurs a sheet or a
@@ -293,33 +294,74 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
         add_sample(preview, block, active, bare, s, 1);
         if (bare && !block->shaded && !block->clouded && !is_blurred(preview)) first = s + 1;
     }
+
     if (first == 1 && bare) samples = 1;
+
     bool on = first < samples && find_restless(preview, block, active, bare, more);
     // at the rim of a shadow more rays are traced; elsewhere the first are enough
     int rays = block->sunlit && block->shaded ? (bare ? RIM_RAYS : 1) : 0;
     for (int i = 0; i < LANES; i++) taken[i] = on && more[i] ? samples : first;
+
     for (int s = first; s < samples && on; s++) {
-        if (s == samples / 2 && !rays && !is_blurred(preview)) on = keep_restless(block, more, s, taken);
+        // after half of the samples: only lanes whose samples still differ so much that more would be visible
+        if (s == samples / 2 && !rays && !is_blurred(preview)) {
+            on = false;
+            for (int i = 0; i < LANES; i++) {
+                const LayerSum *sum = &block->layer[i];
+                bool edge = sum->hits > 0 && sum->hits < sum->samples;
+                if (more[i] && !edge && block->high[i] - block->low[i] < 0.22f) {
+                    more[i] = 0;
+                    taken[i] = s;
+                }
+                on = on || more[i];
+            }
+        }
         if (on) add_sample(preview, block, more, bare, s, rays);
     }
 }
 
 static void draw_block(Preview *preview, Block *block) {
+    const PreviewDef *def = &preview->def;
     int active[LANES], taken[LANES];
-    start_block(preview, block, active);
+    block->sunlit = block->shaded = block->clouded = false;
+    block->sun_seen = 0;
+    block->sun_asked = 0;
+
+    for (int i = 0; i < LANES; i++) {
+        active[i] = block->x[i] < def->width && block->y[i] < def->height ? -1 : 0;
+        sample_pixel(block->x[i], block->y[i], def->seed, block->turn[i]);
+        block->key[i] = sample_key(block->x[i], block->y[i], def->seed);
+        block->sum[i] = block->lamp[i] = float3(0, 0, 0);
+        block->low[i] = block->fire_from[i] = INFINITY;
+        block->high[i] = block->fire_to[i] = -INFINITY;
+        block->time[i] = 0.5f;
+        block->sky_seen[i] = block->lamp_seen[i] = block->lamp_asked[i] = 0;
+        block->sky_asked[i] = 0;
+        block->layer[i] = (LayerSum){.depth = INFINITY, .sheet = -1, .piece = -1};
+    }
+
     bool bare = !mask_covers(preview, block->x[0], block->y[0]);
     if (bare) {
         aim_block(preview, block, SAMPLE_CENTRE, (const float[2]){0, 0});
         for (int i = 0; i < LANES; i++)
             if (active[i]) see_ground(preview, block, i);
     }
+
     if (bare && !light_may_be_hidden(preview, block, active)) {
         add_light(preview, block, active, SAMPLE_CENTRE, 1);
         for (int i = 0; i < LANES; i++) taken[i] = 1;
     } else {
         add_samples(preview, block, active, bare, taken);
     }
-    write_block(preview, block, active, taken);
+
+    // the picture gets the mean of the sums
+    for (int i = 0; i < LANES; i++) {
+        if (!active[i]) continue;
+        size_t pixel = pixel_index(preview, block, i);
+        preview->picture[pixel] = float3_scale(block->sum[i], 1 / (float)taken[i]);
+        layers_write(preview, pixel, &block->layer[i]);
+        lamps_write(preview, pixel, block, i, taken[i]);
+    }
 }
 
 /// The table's own colour in every pixel. The camera does not move, so it is computed once.
@@ -327,6 +369,7 @@ static void fill_table(Preview *preview, Block *block) {
     Table sum[LANES] = {{{0, 0, 0}, {0, 0}, 0}};
     int count[LANES] = {0}, samples = preview->camera.lens > 0 ? 24 : 4;
     for (int i = 0; i < LANES; i++) block->key[i] = sample_key(block->x[i], block->y[i], preview->def.seed);
+
     for (int s = 0; s < samples; s++) {
         float at[2];
         sample_offset(s, at);
@@ -337,11 +380,14 @@ static void fill_table(Preview *preview, Block *block) {
             Table look;
             Float3 position = float3_mad(block->origin[i], block->direction[i], distance);
             ground_look(preview, position, block->direction[i].z, distance, &look);
-            sum[i].albedo = float3_add(sum[i].albedo, look.albedo), sum[i].polish += look.polish;
-            sum[i].tilt[0] += look.tilt[0], sum[i].tilt[1] += look.tilt[1];
+            sum[i].albedo = float3_add(sum[i].albedo, look.albedo);
+            sum[i].polish += look.polish;
+            sum[i].tilt[0] += look.tilt[0];
+            sum[i].tilt[1] += look.tilt[1];
             count[i]++;
         }
     }
+
     for (int i = 0; i < LANES; i++) {
         if (block->x[i] >= preview->def.width || block->y[i] >= preview->def.height) continue;
         float share = 1 / maxf((float)count[i], 1);
@@ -357,13 +403,17 @@ static void *draw_tiles(void *context) {
     Block block = {.tile = NULL};
     const PreviewDef *def = &job->preview->def;
     FireTile *fire = job->fire ? &job->preview->fire.tiles[atomic_fetch_add(&job->threads, 1)] : NULL;
+
     for (int tile; (tile = atomic_fetch_add(&job->next, 1)) < job->count;) {
         int x0 = tile % job->across * TILE, y0 = tile / job->across * TILE;
         if (fire) fire_see(job->preview, x0, y0, fire);
         block.tile = fire && !fire->empty ? fire : NULL;
         for (int y = y0; y < y0 + TILE && y < def->height; y += BLOCK)
             for (int x = x0; x < x0 + TILE && x < def->width; x += BLOCK) {
-                for (int i = 0; i < LANES; i++) block.x[i] = x + i % BLOCK, block.y[i] = y + i / BLOCK;
+                for (int i = 0; i < LANES; i++) {
+                    block.x[i] = x + i % BLOCK;
+                    block.y[i] = y + i / BLOCK;
+                }
                 job->draw(job->preview, &block);
             }
     }
@@ -374,9 +424,11 @@ static void draw_all(Preview *preview, void (*draw)(Preview *, Block *)) {
     int across = (preview->def.width + TILE - 1) / TILE, down = (preview->def.height + TILE - 1) / TILE;
     Job job = {.preview = preview, .draw = draw, .across = across, .count = across * down};
     job.fire = draw == draw_block && preview->fire.visible;
-    atomic_init(&job.next, 0), atomic_init(&job.threads, 0);
+    atomic_init(&job.next, 0);
+    atomic_init(&job.threads, 0);
     pthread_t threads[THREAD_LIMIT];
     int started = 0;
+
     // a thread that cannot be created only makes it slower
     while (started < preview->def.thread_count - 1 && !pthread_create(&threads[started], NULL, draw_tiles, &job))
         started++;
@@ -396,6 +448,7 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     preview->time = time;
     SingeResult result = tracer_load(preview, surface, error);
     if (result) return result;
+
     preview->layers = *layers;
     fire_raise(preview);
     light_gather(preview);
@@ -408,10 +461,13 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
         draw_all(preview, lamps_smooth);
         draw_all(preview, lamps_finish);
     }
-    layers_finish(preview);
+
+    const size_t pixels = (size_t)preview->def.width * (size_t)preview->def.height;
+    for (size_t i = 0; layers->beauty && i < pixels; i++) store(layers->beauty, i, preview->picture[i]);
     if (rgb) {
         bloom_apply(preview);
         tonemap_write(preview, rgb);
     }
+
     return SINGE_OK;
 }

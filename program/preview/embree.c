@@ -5,24 +5,11 @@
 
 #include "preview/internal.h"
 
-static SingeResult embree_check(const Preview *preview, SingeError *error) {
-    enum RTCError code = rtcGetDeviceError(preview->device);
-    if (code == RTC_ERROR_NONE) return SINGE_OK;
-    if (code == RTC_ERROR_OUT_OF_MEMORY) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree is out of memory");
-    return preview_fail(error, SINGE_ERROR_STATE, -1, "Embree refused the surface (error %d)", (int)code);
-}
-
 /// The transmittance along a packet of shadow rays.
 typedef struct Passage {
     TraceContext context; ///< first: Embree hands it back
     float clear[LANES];
 } Passage;
-
-/// Share of a ray that a sheet transmits straight: most of the light through it is scattered.
-static float let_through(const Preview *preview, const uint32_t t[3], float burn) {
-    const Scene *scene = &preview->scene;
-    return 0.5f * paper_transmittance(preview, scene->vertices[t[0]].sheet) * (1 - stepf(0.08f, PAPER_WHOLE, burn));
-}
 
 SingeResult tracer_open(Preview *preview, SingeError *error) {
     preview->device = rtcNewDevice("threads=1,set_affinity=0");
@@ -36,15 +23,17 @@ void tracer_close(Preview *preview) {
 /// Lets shadow rays pass through the holes drawn in a burnt sheet, and partly through the sheet.
 static void pass_sheets(const struct RTCFilterFunctionNArguments *arguments) {
     const Preview *preview = arguments->geometryUserPtr;
-    const Scene *scene = &preview->scene;
+    const PreviewScene *scene = &preview->scene;
     Passage *passage = (Passage *)(void *)arguments->context;
     float footprint = preview->camera.pixel * preview->camera.reach;
+
     // fields of N each: the ray's twelve, of which the 11th is its id, and the hit's normal's three, u, v, triangle;
     // the accessors of the header are C++ only
     unsigned count = arguments->N;
     const float *u = (const float *)arguments->hit + 3 * count, *v = u + count;
     const unsigned *triangle = (const unsigned *)arguments->hit + 5 * count;
     const unsigned *lane = (const unsigned *)arguments->ray + 10 * count;
+
     for (unsigned i = 0; i < count; i++) {
         if (!arguments->valid[i]) continue;
         const uint32_t *t = scene->triangles[triangle[i]];
@@ -58,19 +47,24 @@ static void pass_sheets(const struct RTCFilterFunctionNArguments *arguments) {
                 continue;
             }
         }
+
+        // what a sheet transmits straight: most of the light through it is scattered
+        float straight = 0.5f * paper_transmittance(preview, vertices[t[0]].sheet);
         float *clear = &passage->clear[lane[i]];
-        *clear *= let_through(preview, t, burn);
+        *clear *= straight * (1 - stepf(0.08f, PAPER_WHOLE, burn));
         if (*clear > 0.01f) arguments->valid[i] = 0;
     }
 }
 
 SingeResult tracer_build(Preview *preview, SingeError *error) {
-    Scene *scene = &preview->scene;
+    PreviewScene *scene = &preview->scene;
     tracer_release(preview);
     if (!scene->triangle_count) return SINGE_OK;
+
     (void)rtcGetDeviceError(preview->device);
     RTCScene built = rtcNewScene(preview->device);
     RTCGeometry geometry = rtcNewGeometry(preview->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+
     if (built && geometry) {
         rtcSetSceneFlags(built, RTC_SCENE_FLAG_ROBUST);
         bool moves = preview->def.shutter > 0;
@@ -87,15 +81,20 @@ SingeResult tracer_build(Preview *preview, SingeError *error) {
         rtcAttachGeometry(built, geometry);
         rtcCommitScene(built);
     }
+
     if (geometry) rtcReleaseGeometry(geometry);
-    SingeResult result = embree_check(preview, error);
-    if (!result && !built) result = preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree cannot create a scene");
-    if (result) {
-        if (built) rtcReleaseScene(built);
-        return result;
-    }
-    scene->embree = built;
-    return SINGE_OK;
+
+    enum RTCError code = rtcGetDeviceError(preview->device);
+    SingeResult result = SINGE_OK;
+    if (code == RTC_ERROR_OUT_OF_MEMORY)
+        result = preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree is out of memory");
+    else if (code != RTC_ERROR_NONE)
+        result = preview_fail(error, SINGE_ERROR_STATE, -1, "Embree refused the surface (error %d)", (int)code);
+    else if (!built) result = preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree cannot create a scene");
+    if (!result) scene->embree = built;
+    else if (built) rtcReleaseScene(built);
+
+    return result;
 }
 
 void tracer_release(Preview *preview) {
@@ -106,7 +105,7 @@ void tracer_release(Preview *preview) {
 /// 1 / x, large but finite at 0 so that no 0 times infinity follows.
 static float inverse(float x) { return fabsf(x) > 1e-12f ? 1 / x : 1e12f; }
 
-bool tracer_near(const Scene *scene, Float3 o, Float3 d, float far, float margin) {
+bool tracer_near(const PreviewScene *scene, Float3 o, Float3 d, float far, float margin) {
     float ix = inverse(d.x), iy = inverse(d.y), iz = inverse(d.z);
     float x0 = (scene->low.x - margin - o.x) * ix, x1 = (scene->high.x + margin - o.x) * ix;
     float y0 = (scene->low.y - margin - o.y) * iy, y1 = (scene->high.y + margin - o.y) * iy;
@@ -117,10 +116,11 @@ bool tracer_near(const Scene *scene, Float3 o, Float3 d, float far, float margin
 }
 
 void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit16 *rays) {
-    const Scene *scene = &preview->scene;
+    const PreviewScene *scene = &preview->scene;
     struct RTCRay16 *ray = &rays->ray;
     _Alignas(64) int wanted[LANES];
     int count = 0;
+
     for (int i = 0; i < LANES; i++) {
         rays->hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         rays->hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
@@ -130,32 +130,31 @@ void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit
                                      float3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]), ray->tfar[i], 0);
         count += wanted[i] != 0;
     }
+
     if (!scene->embree || !count) return;
     trace_nearest16(scene->embree, wanted, rays);
 }
 
-static bool shape_blocks(const Preview *preview, float time, Float3 o, Float3 d, float far) {
-    Float3 normal;
-    float moment = shutter_moment(preview, time);
-    for (uint32_t k = 0; k < preview->shape_count; k++)
-        if (shape_intersect(&preview->shapes[k], moment, o, d, preview->scene.epsilon, far, &normal) > 0) return true;
-    return false;
-}
-
 void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *ray, float clear[LANES]) {
-    const Scene *scene = &preview->scene;
+    const PreviewScene *scene = &preview->scene;
     Passage passage;
     int count = 0;
+
     for (int i = 0; i < LANES; i++) {
         passage.clear[i] = clear[i] = 1;
         if (!valid[i]) continue;
         Float3 o = float3(ray->org_x[i], ray->org_y[i], ray->org_z[i]),
-               d = float3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]);
-        if (shape_blocks(preview, ray->time[i], o, d, ray->tfar[i])) clear[i] = 0;
+               d = float3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]), normal;
+        float moment = shutter_moment(preview, ray->time[i]);
+        for (uint32_t k = 0; k < preview->shape_count && clear[i] > 0; k++)
+            if (shape_intersect(&preview->shapes[k], moment, o, d, scene->epsilon, ray->tfar[i], &normal) > 0)
+                clear[i] = 0;
         if (clear[i] <= 0 || !scene->embree || !tracer_near(scene, o, d, ray->tfar[i], 0)) valid[i] = 0;
         count += valid[i] != 0;
     }
+
     if (!count) return;
+
     trace_init(&passage.context);
     trace_occluded16(scene->embree, valid, &passage.context, ray);
     for (int i = 0; i < LANES; i++)

@@ -29,51 +29,47 @@ static float lamp(Float3 d, float azimuth, float height, float half_width, float
            (1 - stepf(half_height - soft, half_height + soft, fabsf(h)));
 }
 
-/// A dim room: a tall cool window across from the sun, a warm lamp behind it, a ceiling that takes a little of both.
-static Float3 studio(Float3 d, float sun_azimuth) {
-    float window = lamp(d, sun_azimuth + 2.1f, 0.62f, 0.42f, 0.45f, 0.16f);
-    float warm = lamp(d, sun_azimuth - 0.9f, 0.45f, 0.30f, 0.22f, 0.14f), ceiling = stepf(0.55f, 1.0f, d.z);
-    Float3 light = float3_scale(float3(0.36f, 0.37f, 0.40f), 0.75f + 0.5f * ceiling);
-    light = float3_mad(light, float3(3.4f, 3.9f, 4.7f), window);
-    return float3_mad(light, float3(4.2f, 2.9f, 1.7f), warm);
-}
-
-/// Outdoors: bluer overhead, pale at the horizon and around the sun.
-static Float3 open_sky(Float3 d, Float3 sun) {
-    float haze = expf(-4.5f * maxf(d.z, 0)), near = maxf(float3_dot(d, sun), 0), near2 = near * near,
-          near8 = near2 * near2;
-    near8 *= near8;
-    Float3 light = float3_mix(float3(0.62f, 0.86f, 1.30f), float3(1.45f, 1.35f, 1.22f), haze);
-    return float3_mad(light, float3(1.5f, 1.25f, 0.9f), 0.35f * near2 + 1.3f * near8);
-}
-
-/// Mean of a cell of the picture.
-static Float3 pictured(const Preview *preview, int row, int column) {
-    const Image *image = preview->def.sky_picture;
-    int x0 = column * image->width / SKY_ACROSS, x1 = (column + 1) * image->width / SKY_ACROSS;
-    int y0 = row * image->height / SKY_DOWN, y1 = (row + 1) * image->height / SKY_DOWN;
-    x1 = x1 > x0 ? x1 : x0 + 1;
-    y1 = y1 > y0 ? y1 : y0 + 1;
-    Float3 sum = {0, 0, 0};
-    for (int y = y0; y < y1; y++)
-        for (int x = x0; x < x1; x++) {
-            const uint8_t *p = image->rgb + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
-            sum = float3_add(sum, float3(preview->linear[p[0]], preview->linear[p[1]], preview->linear[p[2]]));
-        }
-    return float3_scale(sum, 1 / (float)((x1 - x0) * (y1 - y0)));
-}
-
 /// The unscaled sky, above the horizon or, for a picture, all around.
 static Float3 sky_light(const Preview *preview, int row, int column) {
     Float3 d = sky_direction(row, column), sun = preview->sun;
     float turn = -preview->def.sky_turn, c = cosf(turn), s = sinf(turn);
-    Float3 turned = float3(c * d.x - s * d.y, s * d.x + c * d.y, d.z);
+    d = float3(c * d.x - s * d.y, s * d.x + c * d.y, d.z);
+
     switch (preview->def.sky) {
-    case PREVIEW_SKY_STUDIO: return studio(turned, atan2f(sun.x, sun.y));
-    case PREVIEW_SKY_OPEN: return open_sky(turned, sun);
+    case PREVIEW_SKY_STUDIO: {
+        // a dim room: a tall cool window across from the sun, a warm lamp behind it, a ceiling that takes a little of
+        // both
+        float azimuth = atan2f(sun.x, sun.y);
+        float window = lamp(d, azimuth + 2.1f, 0.62f, 0.42f, 0.45f, 0.16f);
+        float warm = lamp(d, azimuth - 0.9f, 0.45f, 0.30f, 0.22f, 0.14f), ceiling = stepf(0.55f, 1.0f, d.z);
+        Float3 light = float3_scale(float3(0.36f, 0.37f, 0.40f), 0.75f + 0.5f * ceiling);
+        light = float3_mad(light, float3(3.4f, 3.9f, 4.7f), window);
+        return float3_mad(light, float3(4.2f, 2.9f, 1.7f), warm);
+    }
+    case PREVIEW_SKY_OPEN: {
+        // outdoors: bluer overhead, pale at the horizon and around the sun
+        float haze = expf(-4.5f * maxf(d.z, 0)), near = maxf(float3_dot(d, sun), 0), near2 = near * near,
+              near8 = near2 * near2;
+        near8 *= near8;
+        Float3 light = float3_mix(float3(0.62f, 0.86f, 1.30f), float3(1.45f, 1.35f, 1.22f), haze);
+        return float3_mad(light, float3(1.5f, 1.25f, 0.9f), 0.35f * near2 + 1.3f * near8);
+    }
     case PREVIEW_SKY_PICTURE: {
-        float across = (atan2f(turned.x, turned.y) / (2 * PI_F) + 0.5f) * SKY_ACROSS;
-        return pictured(preview, row, (int)clampf(across, 0, SKY_ACROSS - 1));
+        // mean of a cell of the picture
+        const Image *image = preview->def.sky_picture;
+        float across = (atan2f(d.x, d.y) / (2 * PI_F) + 0.5f) * SKY_ACROSS;
+        int seen = (int)clampf(across, 0, SKY_ACROSS - 1);
+        int x0 = seen * image->width / SKY_ACROSS, x1 = (seen + 1) * image->width / SKY_ACROSS;
+        int y0 = row * image->height / SKY_DOWN, y1 = (row + 1) * image->height / SKY_DOWN;
+        x1 = x1 > x0 ? x1 : x0 + 1;
+        y1 = y1 > y0 ? y1 : y0 + 1;
+        Float3 sum = {0, 0, 0};
+        for (int y = y0; y < y1; y++)
+            for (int x = x0; x < x1; x++) {
+                const uint8_t *p = image->rgb + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
+                sum = float3_add(sum, float3(preview->linear[p[0]], preview->linear[p[1]], preview->linear[p[2]]));
+            }
+        return float3_scale(sum, 1 / (float)((x1 - x0) * (y1 - y0)));
     }
     default: return float3(1, 1, 1);
     }
@@ -85,6 +81,7 @@ static void fill_radiance(Preview *preview) {
     const PreviewDef *def = &preview->def;
     bool pictured_below = def->sky == PREVIEW_SKY_PICTURE && !isfinite(def->ground_height);
     float total = 0;
+
     for (int row = 0; row < SKY_DOWN; row++)
         for (int column = 0; column < SKY_ACROSS; column++) {
             sky->radiance[row][column] = sky_light(preview, row, column);
@@ -104,34 +101,33 @@ static void fill_radiance(Preview *preview) {
         }
 }
 
-static void harmonics(Float3 d, float y[9]) {
-    y[0] = 0.282095f;
-    y[1] = 0.488603f * d.y;
-    y[2] = 0.488603f * d.z;
-    y[3] = 0.488603f * d.x;
-    y[4] = 1.092548f * d.x * d.y;
-    y[5] = 1.092548f * d.y * d.z;
-    y[6] = 0.315392f * (3 * d.z * d.z - 1);
-    y[7] = 1.092548f * d.x * d.z, y[8] = 0.546274f * (d.x * d.x - d.y * d.y);
-}
-
-static void fill_ambient(Sky *sky) {
+void sky_fill(Preview *preview) {
     static const float share[9] = {1, 2.0f / 3, 2.0f / 3, 2.0f / 3, 0.25f, 0.25f, 0.25f, 0.25f, 0.25f};
+    Sky *sky = &preview->sky;
+    fill_radiance(preview);
+
+    Float3 direction[SKY_DOWN][SKY_ACROSS];
     for (int k = 0; k < 9; k++) sky->ambient[k] = float3(0, 0, 0);
     for (int row = 0; row < SKY_DOWN; row++)
         for (int column = 0; column < SKY_ACROSS; column++) {
-            float y[9], angle = solid_angle(row);
-            harmonics(sky_direction(row, column), y);
+            const float angle = solid_angle(row);
+            const Float3 d = direction[row][column] = sky_direction(row, column);
+            const float y[9] = {
+                0.282095f,
+                0.488603f * d.y,
+                0.488603f * d.z,
+                0.488603f * d.x,
+                1.092548f * d.x * d.y,
+                1.092548f * d.y * d.z,
+                0.315392f * (3 * d.z * d.z - 1),
+                1.092548f * d.x * d.z,
+                0.546274f * (d.x * d.x - d.y * d.y),
+            };
             for (int k = 0; k < 9; k++)
                 sky->ambient[k] = float3_mad(sky->ambient[k], sky->radiance[row][column], angle * y[k] * share[k]);
         }
-}
 
-/// Each cell: the mean of its surroundings, weighted by cos^16 of the angle.
-static void fill_blurred(Sky *sky) {
-    Float3 direction[SKY_DOWN][SKY_ACROSS];
-    for (int row = 0; row < SKY_DOWN; row++)
-        for (int column = 0; column < SKY_ACROSS; column++) direction[row][column] = sky_direction(row, column);
+    // each cell of the blurred copy: the mean of its surroundings, weighted by cos^16 of the angle
     for (int cell = 0; cell < SKY_DOWN * SKY_ACROSS; cell++) {
         Float3 d = direction[cell / SKY_ACROSS][cell % SKY_ACROSS], sum = {0, 0, 0};
         float total = 0;
@@ -153,12 +149,6 @@ static void fill_blurred(Sky *sky) {
     }
 }
 
-void sky_fill(Preview *preview) {
-    fill_radiance(preview);
-    fill_ambient(&preview->sky);
-    fill_blurred(&preview->sky);
-}
-
 Float3 sky_ambient(const Sky *sky, Float3 n) {
     const Float3 *a = sky->ambient;
     Float3 sum = float3_scale(a[0], 0.282095f);
@@ -169,17 +159,15 @@ Float3 sky_ambient(const Sky *sky, Float3 n) {
     return float3(maxf(sum.x, 0), maxf(sum.y, 0), maxf(sum.z, 0));
 }
 
-/// atan2(x, y) / 2 pi by atan(r) = r (pi/4 + 0.273 (1 - r)), to 1e-3: enough for a cell of the sky.
-static float turns(float x, float y) {
-    float ax = fabsf(x), ay = fabsf(y), small = minf(ax, ay), large = maxf(maxf(ax, ay), 1e-20f), r = small / large;
-    float a = r * (0.125f + 0.04345f * (1 - r));
-    a = ax > ay ? 0.25f - a : a;
-    a = y < 0 ? 0.5f - a : a;
-    return x < 0 ? -a : a;
-}
-
 Float3 sky_mirrored(const Sky *sky, Float3 d) {
-    float across = (turns(d.x, d.y) + 0.5f) * SKY_ACROSS - 0.5f;
+    // atan2(x, y) / 2 pi by atan(r) = r (pi/4 + 0.273 (1 - r)), to 1e-3: enough for a cell of the sky
+    float ax = fabsf(d.x), ay = fabsf(d.y), small = minf(ax, ay), large = maxf(maxf(ax, ay), 1e-20f);
+    float r = small / large, turn = r * (0.125f + 0.04345f * (1 - r));
+    turn = ax > ay ? 0.25f - turn : turn;
+    turn = d.y < 0 ? 0.5f - turn : turn;
+    turn = d.x < 0 ? -turn : turn;
+    float across = (turn + 0.5f) * SKY_ACROSS - 0.5f;
+
     // acos by a square root times a line (Abramowitz & Stegun 4.4.45, its first terms)
     float z = fabsf(d.z), polar = sqrtf(maxf(1 - z, 0)) * (1.5707f - 0.2121f * z + 0.0742f * z * z);
     float down = (d.z < 0 ? PI_F - polar : polar) / PI_F * SKY_DOWN - 0.5f, fx, fy;

@@ -21,114 +21,101 @@ static Float3 facets_cross(const PreviewSolid *solid, uint32_t t) {
     return float3_cross(float3_sub(facets_corner(solid, t, 1), a), float3_sub(facets_corner(solid, t, 2), a));
 }
 
-/// Triangles by their vertices: those of vertex v are fan[first[v]] up to fan[first[v + 1]].
-static void facets_fans(const PreviewSolid *solid, uint32_t *first, uint32_t *fan) {
-    size_t corners = 3 * (size_t)solid->triangle_count;
-    memset(first, 0, ((size_t)solid->vertex_count + 2) * sizeof *first);
-    for (size_t k = 0; k < corners; k++) first[solid->triangles[k] + 2]++;
-    for (size_t v = 2; v <= solid->vertex_count; v++) first[v + 1] += first[v];
-    for (size_t k = 0; k < corners; k++) fan[first[solid->triangles[k] + 1]++] = (uint32_t)(k / 3);
-}
-
-static void facets_smooth(Facets *facets, const uint32_t *first, const uint32_t *fan) {
+/// Normals of the corners, and bounds.
+static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *error) {
     const PreviewSolid *solid = facets->solid;
-    for (size_t k = 0; k < 3 * (size_t)solid->triangle_count; k++) {
+    const uint32_t *triangles = solid->triangles;
+    SingeAllocator allocator = preview->allocator;
+    size_t corners = 3 * (size_t)solid->triangle_count, vertices = (size_t)solid->vertex_count + 2;
+    uint32_t *first = allocator_resize(allocator, NULL, 0, vertices * sizeof *first);
+    uint32_t *fan = allocator_resize(allocator, NULL, 0, corners * sizeof *fan);
+    facets->normals = allocator_resize(allocator, NULL, 0, corners * sizeof *facets->normals);
+    bool ok = first && fan && facets->normals;
+
+    if (ok) {
+        // triangles by their vertices: those of vertex v are fan[first[v]] up to fan[first[v + 1]]
+        memset(first, 0, vertices * sizeof *first);
+        for (size_t k = 0; k < corners; k++) first[triangles[k] + 2]++;
+        for (size_t v = 2; v <= solid->vertex_count; v++) first[v + 1] += first[v];
+        for (size_t k = 0; k < corners; k++) fan[first[triangles[k] + 1]++] = (uint32_t)(k / 3);
+    }
+
+    Float3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t k = 0; ok && k < corners; k++) {
         Float3 own = float3_unit_or(facets_cross(solid, (uint32_t)(k / 3)), UP), sum = {0, 0, 0};
-        for (uint32_t i = first[solid->triangles[k]]; i < first[solid->triangles[k] + 1]; i++) {
+        for (uint32_t i = first[triangles[k]]; i < first[triangles[k] + 1]; i++) {
             Float3 other = facets_cross(solid, fan[i]);
             if (float3_dot(other, own) >= FACETS_CREASE * float3_length(other)) sum = float3_add(sum, other);
         }
         facets->normals[k] = float3_dot(sum, own) > 0 ? float3_unit_or(sum, own) : own;
-    }
-}
 
-static void facets_bounds(Facets *facets) {
-    const PreviewSolid *solid = facets->solid;
-    Float3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
-    for (size_t k = 0; k < 3 * (size_t)solid->triangle_count; k++) {
-        Float3 v = float3_load(solid->vertices + 3 * (size_t)solid->triangles[k]);
+        Float3 v = float3_load(solid->vertices + 3 * (size_t)triangles[k]);
         low = float3(minf(low.x, v.x), minf(low.y, v.y), minf(low.z, v.z));
         high = float3(maxf(high.x, v.x), maxf(high.y, v.y), maxf(high.z, v.z));
     }
+
     facets->centre = float3_scale(float3_add(low, high), 0.5f);
     facets->extent = 0.5f * float3_length(float3_sub(high, low));
-}
-
-static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *error) {
-    const PreviewSolid *solid = facets->solid;
-    SingeAllocator *allocator = &preview->allocator;
-    size_t corners = 3 * (size_t)solid->triangle_count, vertices = (size_t)solid->vertex_count + 2;
-    uint32_t *first = allocator_resize(*allocator, NULL, 0, vertices * sizeof *first);
-    uint32_t *fan = allocator_resize(*allocator, NULL, 0, corners * sizeof *fan);
-    facets->normals = allocator_resize(*allocator, NULL, 0, corners * sizeof *facets->normals);
-    bool ok = first && fan && facets->normals;
-    if (ok) {
-        facets_fans(solid, first, fan);
-        facets_smooth(facets, first, fan);
-        facets_bounds(facets);
-    }
-    allocator_resize(*allocator, first, first ? vertices * sizeof *first : 0, 0);
-    allocator_resize(*allocator, fan, fan ? corners * sizeof *fan : 0, 0);
+    allocator_resize(allocator, first, first ? vertices * sizeof *first : 0, 0);
+    allocator_resize(allocator, fan, fan ? corners * sizeof *fan : 0, 0);
     return ok ? SINGE_OK : preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a mesh");
 }
 
-/// Copies of the arrays: Embree reads 16 bytes from the last vertex on.
-static bool facets_fill(RTCGeometry geometry, const PreviewSolid *solid) {
-    float *vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                              solid->vertex_count);
-    uint32_t *triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                  3 * sizeof(uint32_t), solid->triangle_count);
-    if (!vertices || !triangles) return false;
-    memcpy(vertices, solid->vertices, 3 * (size_t)solid->vertex_count * sizeof *vertices);
-    memcpy(triangles, solid->triangles, 3 * (size_t)solid->triangle_count * sizeof *triangles);
-    return true;
-}
-
 static SingeResult facets_build(Preview *preview, Facets *facets, SingeError *error) {
+    const PreviewSolid *solid = facets->solid;
     SingeResult result = facets_normals(preview, facets, error);
     if (result) return result;
+
     facets->embree = rtcNewScene(preview->device);
     RTCGeometry geometry = rtcNewGeometry(preview->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    bool ok = facets->embree && geometry && facets_fill(geometry, facets->solid);
+
+    // copies of the arrays: Embree reads 16 bytes from the last vertex on
+    float *vertices = NULL;
+    uint32_t *triangles = NULL;
+    if (geometry)
+        vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                           solid->vertex_count);
+    if (geometry)
+        triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
+                                            solid->triangle_count);
+    bool ok = facets->embree && vertices && triangles;
+
     if (ok) {
+        memcpy(vertices, solid->vertices, 3 * (size_t)solid->vertex_count * sizeof *vertices);
+        memcpy(triangles, solid->triangles, 3 * (size_t)solid->triangle_count * sizeof *triangles);
         rtcSetSceneFlags(facets->embree, RTC_SCENE_FLAG_ROBUST);
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(facets->embree, geometry);
         rtcCommitScene(facets->embree);
     }
+
     if (geometry) rtcReleaseGeometry(geometry);
     ok = ok && rtcGetDeviceError(preview->device) == RTC_ERROR_NONE;
     return ok ? SINGE_OK : preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree refused a mesh");
 }
 
-static SingeResult facets_check(const PreviewSolid *solid, SingeError *error) {
+SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets **found, SingeError *error) {
+    Facets *facets = preview->facets;
+    while (facets && facets->solid != solid) facets = facets->next;
+    *found = facets;
+    if (facets) return SINGE_OK;
+
     bool good = solid->vertices && solid->triangles && solid->triangle_count > 0;
     for (size_t k = 0; good && k < 3 * (size_t)solid->vertex_count; k++) good = fabsf(solid->vertices[k]) <= 1e4f;
     for (size_t k = 0; good && k < 3 * (size_t)solid->triangle_count; k++)
         good = solid->triangles[k] < solid->vertex_count;
-    return good ? SINGE_OK
-                : preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "solid: a vertex or an index is out of range");
-}
+    if (!good) return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "solid: a vertex or an index is out of range");
 
-SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets **found, SingeError *error) {
-    Facets *facets = preview->facets;
-    while (facets && facets->solid != solid) facets = facets->next;
-    if (!facets) {
-        SingeResult result = facets_check(solid, error);
-        if (result) return result;
-        facets = allocator_resize(preview->allocator, NULL, 0, sizeof *facets);
-        if (!facets) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a mesh");
-        *facets = (Facets){.solid = solid,
-                           .triangle_count = solid->triangle_count,
-                           .passing = solid->passing,
-                           .next = preview->facets};
-        preview->facets = facets;
-        result = facets_build(preview, facets, error);
-        if (result) facets->solid = NULL; // stays in the list until it is freed, but is not found
-        if (result) return result;
-    }
-    *found = facets;
-    return SINGE_OK;
+    facets = allocator_resize(preview->allocator, NULL, 0, sizeof *facets);
+    if (!facets) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a mesh");
+    *facets = (Facets){
+        .solid = solid, .triangle_count = solid->triangle_count, .passing = solid->passing, .next = preview->facets};
+    preview->facets = facets;
+    SingeResult result = facets_build(preview, facets, error);
+    if (result) facets->solid = NULL; // stays in the list until it is freed, but is not found
+    else *found = facets;
+
+    return result;
 }
 
 static void facets_free_one(Preview *preview, Facets *facets) {
@@ -138,21 +125,17 @@ static void facets_free_one(Preview *preview, Facets *facets) {
     allocator_resize(preview->allocator, facets, sizeof *facets, 0);
 }
 
-static bool facets_in_use(const Preview *preview, const Facets *facets) {
-    for (uint32_t i = 0; i < preview->shape_count; i++)
-        if (preview->shapes[i].facets == facets) return true;
-    return false;
-}
-
 void facets_drop(Preview *preview) {
     Facets **link = &preview->facets;
     while (*link) {
         Facets *facets = *link;
-        if (facets->passing && !facets_in_use(preview, facets)) {
+        bool in_use = !facets->passing;
+        for (uint32_t i = 0; i < preview->shape_count; i++) in_use = in_use || preview->shapes[i].facets == facets;
+        if (in_use) {
+            link = &facets->next;
+        } else {
             *link = facets->next;
             facets_free_one(preview, facets);
-        } else {
-            link = &facets->next;
         }
     }
 }
@@ -165,15 +148,11 @@ void facets_free(Preview *preview) {
     }
 }
 
-/// Whether a ray of unit direction comes near enough.
-static bool facets_near(const Facets *facets, Float3 origin, Float3 direction) {
-    Float3 to = float3_sub(facets->centre, origin);
-    Float3 aside = float3_mad(to, direction, -float3_dot(to, direction));
-    return float3_dot(aside, aside) <= 1.0001f * facets->extent * facets->extent;
-}
-
 float facets_intersect(const Facets *facets, Float3 o, Float3 d, float near, float far, Float3 *normal) {
-    if (!facets_near(facets, o, d)) return -1;
+    // whether the ray, of unit direction, comes near enough
+    Float3 to = float3_sub(facets->centre, o), aside = float3_mad(to, d, -float3_dot(to, d));
+    if (!(float3_dot(aside, aside) <= 1.0001f * facets->extent * facets->extent)) return -1;
+
     struct RTCRayHit hit = {.ray = {.org_x = o.x,
                                     .org_y = o.y,
                                     .org_z = o.z,
@@ -186,10 +165,12 @@ float facets_intersect(const Facets *facets, Float3 o, Float3 d, float near, flo
     hit.hit.geomID = hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     trace_nearest(facets->embree, &hit);
     if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID || !(hit.ray.tfar > near)) return -1;
+
     const Float3 *corner = facets->normals + 3 * (size_t)hit.hit.primID;
     float u = hit.hit.u, v = hit.hit.v;
     Float3 smooth = float3_mad(float3_mad(float3_scale(corner[0], 1 - u - v), corner[1], u), corner[2], v);
     Float3 flat = float3_unit_or(facets_cross(facets->solid, hit.hit.primID), UP);
+
     // a smooth normal that faces away from the eye although the face does not would be flipped
     *normal = float3_dot(smooth, d) * float3_dot(flat, d) > 0 ? float3_unit_or(smooth, flat) : flat;
     return hit.ray.tfar;

@@ -17,76 +17,56 @@ static size_t fire_at(const Fire *fire, int x, int y, int z) {
     return (size_t)x + (size_t)fire->size[0] * ((size_t)y + (size_t)fire->size[1] * (size_t)z);
 }
 
-// ---- the cells
-
-static void fill_cell(const SingeGas *gas, size_t from, FireCell *cell, float source[3]) {
-    float flame = gas->flame[from], smoke = gas->smoke[from], up = maxf(gas->velocity[from][2], 0.1f);
-    source[2] = flame > 0 ? flame / (flame + BURNING) : 0;
-    cell->smoke = smoke > 0 ? GAS_EXTINCTION * smoke : 0;
-    for (int c = 0; c < 2; c++) source[c] = clampf(gas->velocity[from][c] / up, -1, 1);
-}
-
-static void fill_cells(Fire *fire, const SingeGas *gas) {
-    memset(fire->cells, 0, fire->cell_capacity * sizeof *fire->cells);
-    memset(fire->source, 0, fire->cell_capacity * sizeof *fire->source);
-    size_t from = 0;
-    for (uint32_t z = 0; z < gas->size[2]; z++)
-        for (uint32_t y = 0; y < gas->size[1]; y++)
-            for (uint32_t x = 0; x < gas->size[0]; x++, from++) {
-                size_t to = fire_at(fire, (int)x + FIRE_BORDER, (int)y + FIRE_BORDER, (int)z + FIRE_BORDER);
-                fill_cell(gas, from, &fire->cells[to], fire->source[to]);
-            }
-}
-
 // ---- height above the paper
 
-/// Where paper burns: the mean height in each cell, weighted by the rate.
-static void find_roots(Preview *preview) {
-    const Scene *scene = &preview->scene;
+/// The height of the gas above the paper where paper burns, and upwards from there, layer by layer.
+static void raise_cells(Preview *preview) {
+    const PreviewScene *scene = &preview->scene;
     Fire *fire = &preview->fire;
+
+    // where paper burns: the rate, and the mean height weighted by it
     memset(fire->roots, 0, fire->cell_capacity * sizeof *fire->roots);
     for (uint32_t i = 0; i < scene->vertex_count; i++) {
         float rate = scene->vertices[i].flaming, rest;
         if (rate < 0.02f) continue;
         Float3 g = float3_scale(float3_sub(float3_load(scene->positions[i]), fire->origin), 1 / fire->cell);
-        int position[3] = {noise_floor(g.x + 0.5f, &rest), noise_floor(g.y + 0.5f, &rest),
-                           noise_floor(g.z + 0.5f, &rest)};
+        int at[3] = {noise_floor(g.x + 0.5f, &rest), noise_floor(g.y + 0.5f, &rest), noise_floor(g.z + 0.5f, &rest)};
         bool in = true;
-        for (int c = 0; c < 3; c++) in = in && position[c] > 0 && position[c] < fire->size[c] - 1;
+        for (int c = 0; c < 3; c++) in = in && at[c] > 0 && at[c] < fire->size[c] - 1;
         if (!in) continue;
-        float *root = fire->roots[fire_at(fire, position[0], position[1], position[2])];
-        root[0] += rate, root[1] += rate * scene->positions[i][2];
+        float *root = fire->roots[fire_at(fire, at[0], at[1], at[2])];
+        root[0] += rate;
+        root[1] += rate * scene->positions[i][2];
     }
-}
 
-/// The layer below, where the gas came from: flame and rise at (x - vx/vz, y - vy/vz).
-static FireCell upstream(const Fire *fire, int x, int y, int z) {
-    const float *drift = fire->source[fire_at(fire, x, y, z)];
-    float fx, fy;
-    int ix = noise_floor((float)x - drift[0], &fx), iy = noise_floor((float)y - drift[1], &fy);
-    const FireCell *a = &fire->cells[fire_at(fire, ix, iy, z - 1)], *b = a + fire->size[0];
-    FireCell out = {.flame = mixf(mixf(a[0].flame, a[1].flame, fx), mixf(b[0].flame, b[1].flame, fx), fy)};
-    out.rise = mixf(mixf(a[0].rise, a[1].rise, fx), mixf(b[0].rise, b[1].rise, fx), fy);
-    return out;
-}
+    for (int z = 1; z < fire->size[2] - 1; z++)
+        for (int y = 1; y < fire->size[1] - 1; y++)
+            for (int x = 1; x < fire->size[0] - 1; x++) {
+                size_t here = fire_at(fire, x, y, z), above = fire_at(fire, x, y, z + 1);
+                FireCell *cell = &fire->cells[here];
+                const float *drift = fire->source[here];
+                cell->rise = 0;
+                cell->flame = drift[2];
+                if (cell->flame <= 0) continue;
 
-static void raise_cell(Fire *fire, int x, int y, int z) {
-    size_t here = fire_at(fire, x, y, z), above = fire_at(fire, x, y, z + 1);
-    FireCell *cell = &fire->cells[here];
-    cell->rise = 0;
-    cell->flame = fire->source[here][2];
-    if (cell->flame <= 0) return;
-    // the paper in the cell, or just above it, where the flame has not arrived yet
-    const float *root = fire->roots[fire->roots[here][0] > 0 ? here : above];
-    if (root[0] > 0) {
-        float height = fire->origin.z + (float)z * fire->cell - root[1] / root[0];
-        cell->rise = cell->flame * maxf(height, -fire->cell);
-        return;
-    }
-    FireCell below = upstream(fire, x, y, z);
-    if (below.flame <= 0) return;
-    float share = minf(2 * below.flame / cell->flame, 1);
-    cell->rise = cell->flame * share * (below.rise / below.flame + fire->cell);
+                // the paper in the cell, or just above it, where the flame has not arrived yet
+                const float *root = fire->roots[fire->roots[here][0] > 0 ? here : above];
+                if (root[0] > 0) {
+                    float height = fire->origin.z + (float)z * fire->cell - root[1] / root[0];
+                    cell->rise = cell->flame * maxf(height, -fire->cell);
+                    continue;
+                }
+
+                // the layer below, where the gas came from: at (x - vx/vz, y - vy/vz)
+                float fx, fy;
+                int ix = noise_floor((float)x - drift[0], &fx), iy = noise_floor((float)y - drift[1], &fy);
+                const FireCell *a = &fire->cells[fire_at(fire, ix, iy, z - 1)], *b = a + fire->size[0];
+                float flame = mixf(mixf(a[0].flame, a[1].flame, fx), mixf(b[0].flame, b[1].flame, fx), fy);
+                float rise = mixf(mixf(a[0].rise, a[1].rise, fx), mixf(b[0].rise, b[1].rise, fx), fy);
+                if (flame <= 0) continue;
+                float share = minf(2 * flame / cell->flame, 1);
+                cell->rise = cell->flame * share * (rise / flame + fire->cell);
+            }
 }
 
 // ---- the bricks
@@ -104,81 +84,49 @@ static void mark_bricks(Fire *fire, int x, int y, int z, float reach, uint8_t wh
         int last = (int)(((float)position[c] + 0.5f + reach) / FIRE_BRICK);
         high[c] = last < fire->bricks[c] ? last : fire->bricks[c] - 1;
     }
+
     for (int k = low[2]; k <= high[2]; k++)
         for (int j = low[1]; j <= high[1]; j++)
             for (int i = low[0]; i <= high[0]; i++) fire->seen[brick_at(fire, i, j, k)] |= what;
 }
 
-/// Marks the cells around (x, y, z), itself included.
-static void mark_cells(Fire *fire, int x, int y, int z) {
-    int reach = 1 + (int)minf(FIRE_WARP_FINE / fire->cell, 1000), low[3], high[3];
-    const int position[3] = {x, y, z};
-    for (int c = 0; c < 3; c++) {
-        low[c] = position[c] > reach ? position[c] - reach : 0;
-        high[c] = position[c] + reach < fire->size[c] ? position[c] + reach : fire->size[c] - 1;
-    }
-    for (int k = low[2]; k <= high[2]; k++)
-        for (int j = low[1]; j <= high[1]; j++)
-            memset(&fire->burns[fire_at(fire, low[0], j, k)], 1, (size_t)(high[0] - low[0] + 1));
-}
-
-/// The max of the spline in a cell's box: the largest of its Bezier points, which are the means of the cells that meet
-/// in its faces, edges and corners.
-static float max_flame(const Fire *fire, int x, int y, int z) {
-    float max = 0;
-    for (int k = 0; k < 27; k++) {
-        int d[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
-        float sum = 0;
-        for (int m = 0; m < 8; m++)
-            sum += fire->cells[fire_at(fire, x + (m & 1 ? d[0] : 0), y + (m & 2 ? d[1] : 0), z + (m & 4 ? d[2] : 0))]
-                       .flame;
-        max = maxf(max, 0.125f * sum);
-    }
-    return max;
-}
-
+/// Marks the bricks that flame and smoke may reach, and the cells that the small eddies may.
 static void mark_all(Fire *fire) {
     memset(fire->seen, 0, fire->brick_capacity);
     memset(fire->burns, 0, fire->cell_capacity);
-    float reach = (FIRE_WARP_WIDE + FIRE_WARP_FINE) / fire->cell;
+    float wide = (FIRE_WARP_WIDE + FIRE_WARP_FINE) / fire->cell;
+    int fine = 1 + (int)minf(FIRE_WARP_FINE / fire->cell, 1000);
+
     for (int z = 1; z < fire->size[2] - 1; z++)
         for (int y = 1; y < fire->size[1] - 1; y++)
             for (int x = 1; x < fire->size[0] - 1; x++) {
-                if (max_flame(fire, x, y, z) > FLAME_SEEN) {
-                    mark_bricks(fire, x, y, z, reach, FIRE_FLAME);
-                    mark_cells(fire, x, y, z);
-                }
                 if (fire->cells[fire_at(fire, x, y, z)].smoke > SMOKE_SEEN) mark_bricks(fire, x, y, z, 1, FIRE_SMOKE);
-            }
-}
 
-/// Bounds of the bricks that are not empty. False if all are.
-static bool find_bounds(Fire *fire) {
-    Float3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
-    float side = FIRE_BRICK * fire->cell;
-    for (int z = 0; z < fire->bricks[2]; z++)
-        for (int y = 0; y < fire->bricks[1]; y++)
-            for (int x = 0; x < fire->bricks[0]; x++) {
-                if (!fire->seen[brick_at(fire, x, y, z)]) continue;
-                Float3 corner = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), side);
-                low = float3(minf(low.x, corner.x), minf(low.y, corner.y), minf(low.z, corner.z));
-                high =
-                    float3(maxf(high.x, corner.x + side), maxf(high.y, corner.y + side), maxf(high.z, corner.z + side));
-            }
-    fire->low = low;
-    fire->high = high;
-    return low.x < high.x;
-}
+                // the max of the spline in the cell's box: the largest of its Bezier points, which are the means of
+                // the cells that meet in its faces, edges and corners
+                float max = 0;
+                for (int k = 0; k < 27; k++) {
+                    int dx = k % 3 - 1, dy = k / 3 % 3 - 1, dz = k / 9 - 1;
+                    float sum = 0;
+                    for (int m = 0; m < 8; m++)
+                        sum +=
+                            fire->cells[fire_at(fire, x + (m & 1 ? dx : 0), y + (m & 2 ? dy : 0), z + (m & 4 ? dz : 0))]
+                                .flame;
+                    max = maxf(max, 0.125f * sum);
+                }
+                if (!(max > FLAME_SEEN)) continue;
 
-/// Flames have a max height: above it they are too thin to be seen.
-static void end_flames(Fire *fire) {
-    for (size_t i = 0; i < fire->cell_capacity; i++) {
-        FireCell *cell = &fire->cells[i];
-        if (cell->flame <= 0) continue;
-        float left = 1 - stepf(0.6f * FLAME_END, FLAME_END, cell->rise / cell->flame);
-        cell->flame *= left;
-        cell->rise *= left;
-    }
+                mark_bricks(fire, x, y, z, wide, FIRE_FLAME);
+                const int position[3] = {x, y, z};
+                int low[3], high[3];
+                for (int c = 0; c < 3; c++) {
+                    low[c] = position[c] > fine ? position[c] - fine : 0;
+                    high[c] = position[c] + fine < fire->size[c] ? position[c] + fine : fire->size[c] - 1;
+                }
+                for (int k = low[2]; k <= high[2]; k++)
+                    for (int j = low[1]; j <= high[1]; j++)
+                        memset(&fire->burns[fire_at(fire, low[0], j, k)], 1, (size_t)(high[0] - low[0] + 1));
+            }
 }
 
 void fire_raise(Preview *preview) {
@@ -186,13 +134,35 @@ void fire_raise(Preview *preview) {
     fire->moment = (float)fmod(preview->time, 1e3);
     fire->visible = false;
     if (!fire->size[0]) return;
-    find_roots(preview);
-    for (int z = 1; z < fire->size[2] - 1; z++)
-        for (int y = 1; y < fire->size[1] - 1; y++)
-            for (int x = 1; x < fire->size[0] - 1; x++) raise_cell(fire, x, y, z);
-    end_flames(fire);
+
+    raise_cells(preview);
+
+    // above their max height flames are too thin to be seen
+    for (size_t i = 0; i < fire->cell_capacity; i++) {
+        FireCell *cell = &fire->cells[i];
+        if (cell->flame <= 0) continue;
+        float left = 1 - stepf(0.6f * FLAME_END, FLAME_END, cell->rise / cell->flame);
+        cell->flame *= left;
+        cell->rise *= left;
+    }
+
     mark_all(fire);
-    fire->visible = find_bounds(fire);
+
+    // bounds of the bricks that are not empty
+    Float3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    float side = FIRE_BRICK * fire->cell;
+    for (int z = 0; z < fire->bricks[2]; z++)
+        for (int y = 0; y < fire->bricks[1]; y++)
+            for (int x = 0; x < fire->bricks[0]; x++) {
+                if (!fire->seen[brick_at(fire, x, y, z)]) continue;
+                Float3 near = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), side);
+                Float3 far = float3(near.x + side, near.y + side, near.z + side);
+                low = float3(minf(low.x, near.x), minf(low.y, near.y), minf(low.z, near.z));
+                high = float3(maxf(high.x, far.x), maxf(high.y, far.y), maxf(high.z, far.z));
+            }
+    fire->low = low;
+    fire->high = high;
+    fire->visible = low.x < high.x;
 }
 
 // ---- the whole
@@ -214,6 +184,7 @@ static bool make_room(const Preview *preview, Fire *fire) {
         cells *= (size_t)fire->size[c];
         bricks *= (size_t)fire->bricks[c];
     }
+
     if (cells != fire->cell_capacity || bricks != fire->brick_capacity) {
         Fire old = *fire;
         fire->cells = allocator_resize(preview->allocator, NULL, 0, cells * sizeof *fire->cells);
@@ -228,23 +199,20 @@ static bool make_room(const Preview *preview, Fire *fire) {
     return fire->cells && fire->seen && fire->burns && fire->source && fire->roots;
 }
 
-static bool is_finite(const SingeGas *gas) {
-    size_t count = (size_t)gas->size[0] * gas->size[1] * gas->size[2];
-    float sum = 0; // of zeros, unless something is not finite
-    for (size_t i = 0; i < count; i++)
-        sum += 0 * gas->smoke[i] + 0 * gas->flame[i] + 0 * gas->velocity[i][0] + 0 * gas->velocity[i][1] +
-               0 * gas->velocity[i][2];
-    return sum == 0;
-}
-
 static SingeResult check_gas(const SingeGas *gas, SingeError *error) {
     const uint32_t *n = gas->size;
     bool good = n[0] <= 4096 && n[1] <= 4096 && n[2] <= 4096 && n[1] && n[2] &&
                 (uint64_t)n[0] * n[1] * n[2] <= GAS_CELL_LIMIT && gas->cell > 1e-6f && gas->cell < 1e3f;
     for (int c = 0; c < 3; c++) good = good && fabsf(gas->origin[c]) < 1e4f;
-    if (good && gas->flame && gas->smoke && gas->velocity && is_finite(gas)) return SINGE_OK;
+    good = good && gas->flame && gas->smoke && gas->velocity;
+
+    float sum = 0; // of zeros, unless something is not finite
+    for (size_t i = 0; good && i < (size_t)n[0] * n[1] * n[2]; i++)
+        sum += 0 * gas->smoke[i] + 0 * gas->flame[i] + 0 * gas->velocity[i][0] + 0 * gas->velocity[i][1] +
+               0 * gas->velocity[i][2];
+    if (good && sum == 0) return SINGE_OK;
     return preview_fail(error, SINGE_ERROR_ARGUMENT, -1,
-                        "gas: size, cell, origin or a value is out of range, or no array");
+                        "gas: size, cell, origin or a value is out of range, or an array is missing");
 }
 
 /// Initialises data that does not change with the gas.
@@ -254,11 +222,13 @@ static bool make_tables(Preview *preview) {
     size_t count = (size_t)FIRE_NOISE * FIRE_NOISE * FIRE_NOISE;
     if (!fire->noise) fire->noise = allocator_resize(preview->allocator, NULL, 0, count * sizeof *fire->noise);
     if (!fire->noise) return false;
+
     fire->tiles = allocator_resize(preview->allocator, NULL, 0, (size_t)preview->def.thread_count * sizeof(FireTile));
     if (!fire->tiles) return false;
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t c = 0; c < 4; c++) fire->noise[i][c] = 2 * hash_unit(4 * i + c + 1) - 1;
     fire_fill_colours(preview);
+
     return true;
 }
 
@@ -266,18 +236,34 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
     Fire *fire = &preview->fire;
     memset(fire->size, 0, sizeof fire->size);
     if (!gas || !gas->size[0]) return SINGE_OK;
+
     SingeResult result = check_gas(gas, error);
     if (result) return result;
     for (int c = 0; c < 3; c++) fire->size[c] = (int)gas->size[c] + 2 * FIRE_BORDER;
+
     if (!make_tables(preview) || !make_room(preview, fire)) {
         fire_free(preview);
         return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a gas of %u x %u x %u cells",
                             gas->size[0], gas->size[1], gas->size[2]);
     }
+
     float shift = (0.5f - FIRE_BORDER) * gas->cell;
     fire->cell = gas->cell;
     fire->origin = float3_add(float3_load(gas->origin), float3(shift, shift, shift));
-    fill_cells(fire, gas);
+    memset(fire->cells, 0, fire->cell_capacity * sizeof *fire->cells);
+    memset(fire->source, 0, fire->cell_capacity * sizeof *fire->source);
+    size_t from = 0;
+
+    for (uint32_t z = 0; z < gas->size[2]; z++)
+        for (uint32_t y = 0; y < gas->size[1]; y++)
+            for (uint32_t x = 0; x < gas->size[0]; x++, from++) {
+                size_t to = fire_at(fire, (int)x + FIRE_BORDER, (int)y + FIRE_BORDER, (int)z + FIRE_BORDER);
+                float flame = gas->flame[from], smoke = gas->smoke[from], up = maxf(gas->velocity[from][2], 0.1f);
+                fire->source[to][2] = flame > 0 ? flame / (flame + BURNING) : 0;
+                fire->cells[to].smoke = smoke > 0 ? GAS_EXTINCTION * smoke : 0;
+                for (int c = 0; c < 2; c++) fire->source[to][c] = clampf(gas->velocity[from][c] / up, -1, 1);
+            }
+
     return SINGE_OK;
 }
 
@@ -285,6 +271,7 @@ void fire_light_smoke(Preview *preview) {
     Fire *fire = &preview->fire;
     const EmberLights *lights = &preview->scene.lights;
     if (!fire->visible) return;
+
     // the sun lights one side, the sky all
     Float3 sky = float3_add(sky_ambient(&preview->sky, float3(0, 0, 1)), sky_ambient(&preview->sky, float3(0, 0, -1)));
     fire->daylight = float3_mad(float3_scale(sky, 0.5f), preview->sun_light, 0.28f);

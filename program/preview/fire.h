@@ -34,6 +34,7 @@ typedef struct FireView {
 /// Flames have no edges as sharp as a sheet's: one ray for each second pixel across and down, through the corners that
 /// four of them share, and pixels take the mean of the four surrounding rays, weighted by nearness.
 enum { FIRE_TILE = 32, FIRE_ACROSS = FIRE_TILE / 2 + 1 };
+
 typedef struct FireTile {
     FireView views[FIRE_ACROSS * FIRE_ACROSS];
     bool empty; ///< no ray meets anything
@@ -79,8 +80,10 @@ static inline size_t fire_noise_at(int x, int y, int z) {
 
 // fire.c
 void fire_free(Preview *preview);
+
 /// Computes the height of each flame above the paper, and the visible regions. The surface has been loaded.
 void fire_raise(Preview *preview);
+
 /// Computes the light on smoke, from daylight and flames. The lights have been gathered.
 void fire_light_smoke(Preview *preview);
 
@@ -93,16 +96,16 @@ typedef struct Matter {
 
 // fire_shade.c
 void fire_fill_colours(Preview *preview);
+
 /// Light of a full flame, radiance per metre, for its lamps, and the share of it that a cell emits.
 Float3 fire_emission(const Preview *preview);
 float fire_share(const FireCell *cell);
-/// The same for other programs: light of the flame as a share of the brightest flame, and extinction of smoke, 1/m.
-void fire_look(const Preview *preview, Float3 p, float *flame, float *smoke);
 Matter fire_matter(const Preview *preview, Float3 p, int what);
 
 // fire_march.c
 /// Fills a tile whose upper left pixel is (x, y).
 void fire_see(const Preview *preview, int x, int y, FireTile *tile);
+
 /// The light of the fire up to `distance` for a pixel of the tile, counted from its upper left, and the transmittance.
 void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear);
 

@@ -15,8 +15,6 @@
 
 #include "preview/internal.h"
 
-#include <string.h>
-
 #define RISE 0.75f ///< m/s, speed at which eddies rise
 
 #define FLAME_COOL 1350.0f ///< K
@@ -32,41 +30,6 @@
 #define SOOT_FULL 0.030f
 
 // ---- looking up
-
-/// Four numbers that are interpolated together.
-typedef float Four __attribute__((vector_size(16)));
-
-static inline Four four_load(const float *p) {
-    Four four;
-    memcpy(&four, p, sizeof four);
-    return four;
-}
-
-/// Quadratic B-spline over 3 x 3 x 3 cells at g, in cells from the centre of cell (0, 0, 0).
-static FireCell look_up(const Fire *fire, Float3 g) {
-    float f[3], w[3][3];
-    int base[3];
-    const float at[3] = {g.x, g.y, g.z};
-    for (int c = 0; c < 3; c++) {
-        float bounded = clampf(at[c], 1, (float)(fire->size[c] - 2));
-        base[c] = (int)(bounded + 0.5f) - 1;
-        base[c] = base[c] > fire->size[c] - 3 ? fire->size[c] - 3 : base[c];
-        f[c] = bounded - (float)(base[c] + 1);
-        w[c][0] = 0.5f * (0.5f - f[c]) * (0.5f - f[c]), w[c][1] = 0.75f - f[c] * f[c];
-        w[c][2] = 0.5f * (0.5f + f[c]) * (0.5f + f[c]);
-    }
-    Four sum = {0, 0, 0, 0};
-    for (int z = 0; z < 3; z++)
-        for (int y = 0; y < 3; y++) {
-            size_t row = (size_t)base[0] + (size_t)fire->size[0] *
-                                               ((size_t)(base[1] + y) + (size_t)fire->size[1] * (size_t)(base[2] + z));
-            const FireCell *cells = &fire->cells[row];
-            Four across = four_load(&cells[0].flame) * w[0][0] + four_load(&cells[1].flame) * w[0][1] +
-                          four_load(&cells[2].flame) * w[0][2];
-            sum += across * (w[2][z] * w[1][y]);
-        }
-    return (FireCell){sum[0], sum[1], sum[2], sum[3]};
-}
 
 typedef struct Noise {
     float a, b, c, d;
@@ -87,6 +50,7 @@ static inline Noise noise_at(const Fire *fire, Float3 q) {
     fy = fy * fy * (3 - 2 * fy);
     fz = fz * fz * (3 - 2 * fz);
     Four layer[2];
+
     for (int k = 0; k < 2; k++) {
         Four a = four_load(fire->noise[fire_noise_at(x, y, z + k)]);
         Four b = four_load(fire->noise[fire_noise_at(x, y + 1, z + k)]);
@@ -94,6 +58,7 @@ static inline Noise noise_at(const Fire *fire, Float3 q) {
         b += (four_load(fire->noise[fire_noise_at(x + 1, y + 1, z + k)]) - b) * fx;
         layer[k] = a + (b - a) * fy;
     }
+
     Four n = layer[0] + (layer[1] - layer[0]) * fz;
     return (Noise){n[0], n[1], n[2], n[3]};
 }
@@ -141,49 +106,68 @@ static Float3 shade_flame(const Fire *fire, const FireCell *cell, Noise wide, No
     edge -= EDGE + 0.09f * tall * tall;
     float body = stepf(0, 0.08f, edge);
     if (body <= 0) return float3(0, 0, 0);
+
     float fold = 0.8f * wide.d + 0.35f * fine.c, sheet = maxf(1 - 20 * fold * fold, 0);
     float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.003f * fine.d), cooling = stepf(0.4f, 1.5f, tall);
     float thin = mixf(0.25f, 0.11f + sheet * sheet, torn) * body;
     float hot = 0.50f + 0.3f * stepf(0.05f, 0.3f, edge) + 0.2f * sheet - 0.45f * cooling + 0.12f * fine.d;
     *opaque = SOOT_OPAQUE * thin * soot;
     Float3 glow = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * thin * soot);
+
     return float3_mad(glow, float3(0.22f, 0.50f, 1.25f), BLUE_DENSE * body * stand * (1 - soot));
 }
 
-static Float3 smoke_colour(const Preview *preview, float glow) {
-    // soot and tar scatter about a third, in all directions
-    return float3_mad(float3_scale(preview->fire.daylight, 0.35f), float3(1, 0.5f, 0.16f), 0.35f * glow);
-}
-
+/// Quadratic B-spline over 3 x 3 x 3 cells at p.
 static FireCell cell_at(const Fire *fire, Float3 p) {
-    return look_up(fire, float3_scale(float3_sub(p, fire->origin), 1 / fire->cell));
-}
+    const Float3 g = float3_scale(float3_sub(p, fire->origin), 1 / fire->cell); // cells from the centre of the first
+    float f[3], w[3][3];
+    int base[3];
+    const float at[3] = {g.x, g.y, g.z};
 
-/// Whether the small eddies can bring flame to p.
-static bool may_burn(const Fire *fire, Float3 p) {
-    Float3 g = float3_scale(float3_sub(p, fire->origin), 1 / fire->cell);
-    int x = (int)clampf(g.x + 0.5f, 0, (float)(fire->size[0] - 1));
-    int y = (int)clampf(g.y + 0.5f, 0, (float)(fire->size[1] - 1));
-    int z = (int)clampf(g.z + 0.5f, 0, (float)(fire->size[2] - 1));
-    return fire->burns[(size_t)x + (size_t)fire->size[0] * ((size_t)y + (size_t)fire->size[1] * (size_t)z)];
+    for (int c = 0; c < 3; c++) {
+        float bounded = clampf(at[c], 1, (float)(fire->size[c] - 2));
+        base[c] = (int)(bounded + 0.5f) - 1;
+        base[c] = base[c] > fire->size[c] - 3 ? fire->size[c] - 3 : base[c];
+        f[c] = bounded - (float)(base[c] + 1);
+        w[c][0] = 0.5f * (0.5f - f[c]) * (0.5f - f[c]);
+        w[c][1] = 0.75f - f[c] * f[c];
+        w[c][2] = 0.5f * (0.5f + f[c]) * (0.5f + f[c]);
+    }
+
+    Four sum = {0, 0, 0, 0};
+    for (int z = 0; z < 3; z++)
+        for (int y = 0; y < 3; y++) {
+            size_t row = (size_t)base[0] + (size_t)fire->size[0] *
+                                               ((size_t)(base[1] + y) + (size_t)fire->size[1] * (size_t)(base[2] + z));
+            const FireCell *cells = &fire->cells[row];
+            Four across = four_load(&cells[0].flame) * w[0][0] + four_load(&cells[1].flame) * w[0][1] +
+                          four_load(&cells[2].flame) * w[0][2];
+            sum += across * (w[2][z] * w[1][y]);
+        }
+
+    return (FireCell){sum[0], sum[1], sum[2], sum[3]};
 }
 
 /// Flame and smoke at p, as the eddies have shifted them.
 static FireCell fire_sample(const Fire *fire, Float3 p, int what, Float3 *light, float *opaque) {
     Noise wide = eddies(fire, p, fire->moment, 0.019f, 3.0f);
     Float3 shifted = float3_mad(p, float3(wide.a, wide.b, 0), 0.7f * FIRE_WARP_WIDE);
-    if (!may_burn(fire, shifted)) {
-        FireCell cell = {0, 0, 0, 0};
-        if (what & FIRE_SMOKE) {
-            cell = cell_at(fire, shifted);
-            cell.smoke *= maxf(1 + 0.9f * wide.d, 0);
-        }
-        return cell;
+
+    // whether the small eddies can bring flame there
+    Float3 g = float3_scale(float3_sub(shifted, fire->origin), 1 / fire->cell);
+    size_t x = (size_t)clampf(g.x + 0.5f, 0, (float)(fire->size[0] - 1));
+    size_t y = (size_t)clampf(g.y + 0.5f, 0, (float)(fire->size[1] - 1));
+    size_t z = (size_t)clampf(g.z + 0.5f, 0, (float)(fire->size[2] - 1));
+    FireCell cell = {0, 0, 0, 0};
+
+    if (fire->burns[x + (size_t)fire->size[0] * (y + (size_t)fire->size[1] * z)]) {
+        Noise fine = eddies(fire, shifted, fire->moment, 0.0075f, 4.0f);
+        cell = cell_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), 0.7f * FIRE_WARP_FINE));
+        if (cell.flame > 0.05f) *light = shade_flame(fire, &cell, wide, fine, opaque);
+    } else if (what & FIRE_SMOKE) {
+        cell = cell_at(fire, shifted);
     }
-    Noise fine = eddies(fire, shifted, fire->moment, 0.0075f, 4.0f);
-    shifted = float3_mad(shifted, float3(fine.a, fine.b, 0), 0.7f * FIRE_WARP_FINE);
-    FireCell cell = cell_at(fire, shifted);
-    if (cell.flame > 0.05f) *light = shade_flame(fire, &cell, wide, fine, opaque);
+
     cell.smoke *= maxf(1 + 0.9f * wide.d, 0);
     return cell;
 }
@@ -199,17 +183,47 @@ Matter fire_matter(const Preview *preview, Float3 p, int what) {
         cell = cell_at(fire, p);
         cell.smoke *= maxf(1 + 0.9f * eddies(fire, p, fire->moment, 0.02f, 1.6f).d, 0);
     }
-    if (cell.smoke > 0) m.light = float3_mad(m.light, smoke_colour(preview, cell.glow), cell.smoke);
+
+    // soot and tar scatter about a third, in all directions
+    Float3 lit = float3_mad(float3_scale(fire->daylight, 0.35f), float3(1, 0.5f, 0.16f), 0.35f * cell.glow);
+    if (cell.smoke > 0) m.light = float3_mad(m.light, lit, cell.smoke);
     m.dense += cell.smoke;
     return m;
 }
 
-void fire_look(const Preview *preview, Float3 p, float *flame, float *smoke) {
+// ---- for programs that draw the cells themselves
+
+SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, double time, int detail, float *smoke,
+                             float *flame, SingeError *error) {
     const Fire *fire = &preview->fire;
-    Float3 light = {0, 0, 0};
-    float opaque = 0;
+    if (!isfinite(time) || detail < 1 || detail > PREVIEW_BAKE_MAX)
+        return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the time is not finite, or the detail is not 1 to %d",
+                            PREVIEW_BAKE_MAX);
+    if (!fire->size[0]) return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "there is no gas");
+
+    preview->time = time;
+    SingeResult result = tracer_load(preview, surface, error);
+    if (result) return result;
+
+    fire_raise(preview);
+
+    const float side = fire->cell / (float)detail, first = (FIRE_BORDER - 0.5f) * fire->cell + 0.5f * side;
     const float brightest = SOOT_DENSE * float3_luminance(fire->colours[FIRE_COLOURS - 1]);
-    const FireCell cell = fire_sample(fire, p, FIRE_FLAME | FIRE_SMOKE, &light, &opaque);
-    *flame = float3_luminance(light) / brightest;
-    *smoke = maxf(cell.smoke, 0);
+    const Float3 origin = float3_add(fire->origin, float3(first, first, first));
+    int size[3];
+
+    for (int c = 0; c < 3; c++) size[c] = (fire->size[c] - 2 * FIRE_BORDER) * detail;
+    size_t i = 0;
+    for (int z = 0; z < size[2]; z++)
+        for (int y = 0; y < size[1]; y++)
+            for (int x = 0; x < size[0]; x++, i++) {
+                const Float3 p = float3_mad(origin, float3((float)x, (float)y, (float)z), side);
+                Float3 light = {0, 0, 0};
+                float opaque = 0;
+                const FireCell cell = fire_sample(fire, p, FIRE_FLAME | FIRE_SMOKE, &light, &opaque);
+                flame[i] = float3_luminance(light) / brightest;
+                smoke[i] = maxf(cell.smoke, 0);
+            }
+
+    return SINGE_OK;
 }

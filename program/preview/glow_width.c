@@ -41,23 +41,9 @@ static void glow_walk(const GlowPicture *picture, int x, int y, float dx, float 
     for (int step = 1; step <= WALK_LIMIT; step++) {
         int to[2] = {x + (int)lroundf((float)step * dx), y + (int)lroundf((float)step * dy)};
         if (!glows(picture, to[0], to[1])) return;
-        end[0] = to[0], end[1] = to[1];
+        end[0] = to[0];
+        end[1] = to[1];
     }
-}
-
-/// m
-static float width_at(const GlowPicture *picture, int x, int y) {
-    float min = INFINITY;
-    for (int k = 0; k < DIRECTIONS; k++) {
-        float angle = PI_F * (float)k / DIRECTIONS, dx = cosf(angle), dy = sinf(angle);
-        int a[2], b[2];
-        glow_walk(picture, x, y, dx, dy, a), glow_walk(picture, x, y, -dx, -dy, b);
-        float depth = picture->layers->depth[(size_t)y * (size_t)picture->width + (size_t)x];
-        // between the centres of the end pixels, plus half of each
-        float width = float3_length(float3_sub(glow_position(picture, a[0], a[1]), glow_position(picture, b[0], b[1])));
-        min = minf(min, width + depth * picture->camera.pixel);
-    }
-    return min;
 }
 
 static int glow_ascending(const void *a, const void *b) {
@@ -75,16 +61,34 @@ SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layer
         float value = luminance(&picture, i);
         if (value > 1e-3f) values[lit++] = value;
     }
-    if (lit) {
-        qsort(values, lit, sizeof *values, glow_ascending);
-        picture.min = 0.1f * values[lit - 1 - lit / 100];
-        lit = 0;
-        for (int y = 0; y < def->height; y++)
-            for (int x = 0; x < def->width; x++)
-                if (glows(&picture, x, y)) values[lit++] = width_at(&picture, x, y);
-        qsort(values, lit, sizeof *values, glow_ascending);
-        *width = (double)values[lit / 2];
+
+    if (!lit) {
+        free(values);
+        return SINGE_OK;
     }
+
+    qsort(values, lit, sizeof *values, glow_ascending);
+    picture.min = 0.1f * values[lit - 1 - lit / 100];
+
+    lit = 0;
+    for (size_t pixel = 0; pixel < count; pixel++) {
+        int x = (int)(pixel % (size_t)def->width), y = (int)(pixel / (size_t)def->width);
+        if (!glows(&picture, x, y)) continue;
+        float min = INFINITY;
+        for (int k = 0; k < DIRECTIONS; k++) {
+            float angle = PI_F * (float)k / DIRECTIONS, dx = cosf(angle), dy = sinf(angle);
+            int a[2], b[2];
+            glow_walk(&picture, x, y, dx, dy, a);
+            glow_walk(&picture, x, y, -dx, -dy, b);
+            // between the centres of the end pixels, plus half of each
+            Float3 across = float3_sub(glow_position(&picture, a[0], a[1]), glow_position(&picture, b[0], b[1]));
+            min = minf(min, float3_length(across) + layers->depth[pixel] * picture.camera.pixel);
+        }
+        values[lit++] = min;
+    }
+
+    qsort(values, lit, sizeof *values, glow_ascending);
+    *width = (double)values[lit / 2];
     free(values);
     return SINGE_OK;
 }

@@ -9,17 +9,148 @@
 
 #include <string.h>
 
+// ---- the lamps
+
+// Light cast by embers and hot shapes, as a few point sources.
+//
+// A patch of area A and radiance L that glows on both sides lights a point at distance r by about L A / (2 pi r^2) per
+// unit of its albedo. Triangles are summed in the cells of a grid over the surface; the strongest cells become lights,
+// scaled to preserve the total. A sphere of radius R gives L R^2 / r^2. A flame of volume V that emits j (radiance a
+// metre) gives j V / (pi r^2); its clusters are created and chosen in the same way.
+
+enum { GRID = 10, CELLS = GRID * GRID * GRID, FLAME_LIGHTS = 6 };
+
+typedef struct Cluster {
+    Float3 position, strength;
+    float weight;
+} Cluster;
+
+/// Embers are drawn on the film's scale, which compresses bright parts (blackbody.c). The light they cast is not
+/// compressed, and an eye in the dark sees it better than a camera set for daylight.
+static const float EMBER_CAST = 5;
+
+static void add_to_cluster(Cluster *clusters, Float3 low, Float3 high, Float3 position, Float3 strength, float weight) {
+    Float3 size = float3_sub(high, low);
+    int cell[3];
+    float at[3] = {(position.x - low.x) / maxf(size.x, 1e-6f), (position.y - low.y) / maxf(size.y, 1e-6f),
+                   (position.z - low.z) / maxf(size.z, 1e-6f)};
+    for (int i = 0; i < 3; i++) cell[i] = (int)clampf(at[i] * GRID, 0, GRID - 1);
+    Cluster *cluster = &clusters[(cell[2] * GRID + cell[1]) * GRID + cell[0]];
+    cluster->position = float3_mad(cluster->position, position, weight);
+    cluster->strength = float3_add(cluster->strength, strength);
+    cluster->weight += weight;
+}
+
+static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster *clusters) {
+    const PreviewScene *scene = &preview->scene;
+    const PaperVertex *a = &scene->vertices[t[0]], *b = &scene->vertices[t[1]], *c = &scene->vertices[t[2]];
+    if (!(maxf(a->temperature, maxf(b->temperature, c->temperature)) > BLACKBODY_MIN)) return;
+
+    // the share that the ember's line covers: the overlap of the two ranges of burn
+    float low = minf(a->burn, minf(b->burn, c->burn)), high = maxf(a->burn, maxf(b->burn, c->burn));
+    float gradient = (a->gradient + b->gradient + c->gradient) / 3, half = EMBER_WIDTH * maxf(gradient, 20.0f);
+    float overlap = minf(high, EMBER_BURN + 1.3f * half) - maxf(low, EMBER_BURN - half);
+    float share = overlap > 0 ? overlap / maxf(high - low, 2 * half) : 0;
+    if (share <= 0) return;
+
+    Float3 pa = float3_load(scene->positions[t[0]]), pb = float3_load(scene->positions[t[1]]),
+           pc = float3_load(scene->positions[t[2]]);
+    float area = 0.5f * float3_length(float3_cross(float3_sub(pb, pa), float3_sub(pc, pa)));
+    float rate = (a->burn_rate + b->burn_rate + c->burn_rate) / 3;
+    float temperature = (a->temperature + b->temperature + c->temperature) / 3;
+    Float3 glow = blackbody_glow(preview->blackbody, ember_temperature(temperature));
+    Float3 radiance = float3_scale(glow, EMBER_CAST * EMBER_GAIN * ember_activity(rate));
+    Float3 position = float3_scale(float3_add(pa, float3_add(pb, pc)), 1.0f / 3);
+    Float3 strength = float3_scale(radiance, ember_air(preview, position) * area * share / (2 * PI_F));
+    float weight = float3_luminance(strength);
+    if (!(weight > 0)) return;
+
+    add_to_cluster(clusters, scene->low, scene->high, position, strength, weight);
+}
+
+static void add_light(PreviewScene *scene, Float3 position, Float3 strength, float softness, float extent) {
+    EmberLights *lights = &scene->lights;
+    int k = scene->light_count++;
+    lights->x[k] = position.x;
+    lights->y[k] = position.y;
+    lights->z[k] = position.z;
+    lights->strength[0][k] = strength.x;
+    lights->strength[1][k] = strength.y;
+    lights->strength[2][k] = strength.z;
+    lights->softness[k] = softness;
+    lights->extent[k] = extent;
+    lights->power[k] = float3_luminance(strength);
+}
+
+/// Turns the strongest clusters into lights until there are `limit`, and scales them to the total of all clusters.
+static void choose_lights(PreviewScene *scene, Cluster *clusters, int limit, float softness) {
+    float total = 0, kept = 0;
+    int first = scene->light_count;
+    for (int i = 0; i < CELLS; i++) total += clusters[i].weight;
+
+    while (scene->light_count < limit) {
+        int best = 0;
+        for (int i = 1; i < CELLS; i++)
+            if (clusters[i].weight > clusters[best].weight) best = i;
+        Cluster *cluster = &clusters[best];
+        if (!(cluster->weight > 0)) break;
+        Float3 position = float3_scale(cluster->position, 1 / cluster->weight);
+        add_light(scene, position, cluster->strength, softness, 1.5f * sqrtf(softness));
+        kept += cluster->weight;
+        cluster->weight = 0;
+    }
+
+    for (int i = first; i < scene->light_count && kept > 0; i++) {
+        for (int c = 0; c < 3; c++) scene->lights.strength[c][i] *= total / kept;
+        scene->lights.power[i] *= total / kept;
+    }
+}
+
+void light_gather(Preview *preview) {
+    PreviewScene *scene = &preview->scene;
+    scene->light_count = 0;
+    scene->lights = (EmberLights){.x = {0}};
+    for (int k = 0; k < LIGHT_LIMIT; k++) scene->lights.softness[k] = 1;
+
+    for (uint32_t k = 0; k < preview->shape_count && scene->light_count < LIGHT_LIMIT / 2; k++) {
+        const PreviewShape *shape = &preview->shapes[k];
+        if (!(shape->temperature > BLACKBODY_MIN) || shape->kind == SINGE_COLLIDER_PLANE) continue;
+        float r = shape->facets ? 0.5f * shape->facets->extent : shape->radius;
+        if (shape->kind == SINGE_COLLIDER_BOX) r = float3_length(float3_load(shape->half_size)) * 0.6f;
+        Float3 glow = blackbody_glow(preview->blackbody, shape->temperature);
+        add_light(scene, shape_centre(shape), float3_scale(glow, 1.6f * r * r), 0.3f * r * r,
+                  1.02f * shape_extent(shape, preview->def.shutter));
+    }
+
+    const Fire *fire = &preview->fire;
+    if (fire->visible) {
+        Cluster flames[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
+        float volume = fire->cell * fire->cell * fire->cell;
+        Float3 strength = float3_scale(fire_emission(preview), 0.14f * volume / PI_F);
+        const FireCell *cell = fire->cells;
+        for (int z = 0; z < fire->size[2]; z++)
+            for (int y = 0; y < fire->size[1]; y++)
+                for (int x = 0; x < fire->size[0]; x++, cell++) {
+                    float share = fire_share(cell);
+                    if (share <= 0) continue;
+                    Float3 position = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), fire->cell);
+                    Float3 light = float3_scale(strength, share);
+                    add_to_cluster(flames, fire->low, fire->high, position, light, float3_luminance(light));
+                }
+        float side = float3_length(float3_sub(fire->high, fire->low)) / GRID;
+        choose_lights(scene, flames, scene->light_count + FLAME_LIGHTS, 0.1f * side * side + 1e-4f);
+    }
+
+    Cluster embers[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
+    for (uint32_t t = 0; t < scene->triangle_count; t++) gather_triangle(preview, scene->triangles[t], embers);
+    float cell = float3_length(float3_sub(scene->high, scene->low)) / GRID;
+    choose_lights(scene, embers, LIGHT_LIMIT, 0.02f * cell * cell + 4e-6f);
+}
+
+// ---- their light
+
 enum { LAMP_SAMPLES = 4 }; ///< samples of a pixel that trace rays; the rest only add light
 static const float too_faint = 4e-3f;
-
-/// Four lamps at a time.
-typedef float Four __attribute__((vector_size(16)));
-
-static inline Four four(const float *p) {
-    Four f;
-    memcpy(&f, p, sizeof f);
-    return f;
-}
 
 static inline Four four_max(Four a, Four b) {
     for (int k = 0; k < 4; k++) a[k] = maxf(a[k], b[k]);
@@ -34,85 +165,88 @@ static Float3 lamps_gather(const EmberLights *l, const Point *point, int count, 
     Float3 p = point->position, n = point->normal;
     Four r = {0, 0, 0, 0}, g = r, b = r, zero = r;
     for (int k = 0; k < count; k += 4) {
-        Four x = four(l->x + k) - p.x, y = four(l->y + k) - p.y, z = four(l->z + k) - p.z;
-        Four d2 = x * x + y * y + z * z + four(l->softness + k), cosine = n.x * x + n.y * y + n.z * z;
+        Four x = four_load(l->x + k) - p.x, y = four_load(l->y + k) - p.y, z = four_load(l->z + k) - p.z;
+        Four d2 = x * x + y * y + z * z + four_load(l->softness + k), cosine = n.x * x + n.y * y + n.z * z;
         for (int i = 0; i < 4; i++) cosine[i] /= sqrtf(d2[i]);
         // wrapped: clusters have an extent that points do not, and their own sheet must be lit, too
         Four seen = four_max(four_max((cosine + 0.2f) * (1 / 1.2f), -point->transmission * cosine), zero) / d2;
-        r += seen * four(l->strength[0] + k);
-        g += seen * four(l->strength[1] + k);
-        b += seen * four(l->strength[2] + k);
-        seen *= four(l->power + k);
+        r += seen * four_load(l->strength[0] + k);
+        g += seen * four_load(l->strength[1] + k);
+        b += seen * four_load(l->strength[2] + k);
+        seen *= four_load(l->power + k);
         memcpy(weight + k, &seen, sizeof seen);
     }
     return float3(four_sum(r), four_sum(g), four_sum(b));
 }
 
-/// The lamp in which a random number in [0, 1) falls.
-static int choose(const float weight[LIGHT_LIMIT], int count, float random) {
-    float total = 0, sum = 0;
-    for (int k = 0; k < count; k++) total += weight[k];
-    for (int k = 0; k < count - 1; k++)
-        if ((sum += weight[k]) > random * total) return k;
-    return count - 1;
-}
-
-/// Aims at a random point of a lamp; objects within it do not occlude it.
-static void lamps_aim(const Preview *preview, Block *block, int lane, int sample, int lamp) {
-    const EmberLights *l = &preview->scene.lights;
-    const Point *point = &block->point[lane];
-    float square[2], extent = l->extent[lamp];
-    sample_square((uint32_t)sample, block->turn[lane][1], block->turn[lane][0], square);
-    float z = 1.6f * square[0] - 0.8f, disc[2];
-    sample_disc((const float[2]){0.6f, square[1]}, disc);
-    Float3 to = float3_add(float3(l->x[lamp], l->y[lamp], l->z[lamp]),
-                           float3_scale(float3(disc[0], disc[1], z), 0.8f * extent));
-    Float3 centre = float3_sub(float3(l->x[lamp], l->y[lamp], l->z[lamp]), point->position),
-           to_light = float3_sub(to, point->position);
-    float distance = float3_length(to_light), free = float3_length(centre) - extent;
-    if (free < 0.1f * extent || distance < 1e-6f) return; // at it, or in it
-    float side = float3_dot(point->geometric, to_light) > 0 ? preview->scene.epsilon : -preview->scene.epsilon;
-    aim_ray(&block->shadow, lane, float3_mad(point->position, point->geometric, side),
-            float3_scale(to_light, 1 / distance), 0, minf(free, distance), block->time[lane]);
-    block->valid[lane] = -1;
-}
-
+/// Tests the lamps' visibility by one ray per lane, to a random point of a lamp.
 static void ask(const Preview *preview, Block *block, const float wanted[LANES], float (*weight)[LIGHT_LIMIT],
                 int sample) {
+    const EmberLights *l = &preview->scene.lights;
     const float golden = 0.61803399f;
+    const int count = preview->scene.light_count;
+
     for (int i = 0; i < LANES; i++) {
         block->valid[i] = 0;
         rest_ray(&block->shadow, i);
         if (wanted[i] <= 0) continue;
-        float random = hash_unit(block->key[i] ^ 0x5bd1e995u) + golden * (float)sample;
-        lamps_aim(preview, block, i, sample, choose(weight[i], preview->scene.light_count, random - floorf(random)));
-    }
-    tracer_occlude(preview, block->valid, &block->shadow, block->clear);
-    for (int i = 0; i < LANES; i++)
-        if (wanted[i] > 0) block->lamp_asked[i] += wanted[i], block->lamp_seen[i] += wanted[i] * block->clear[i];
-}
 
-/// The reflection by white paper at the lane's point. The last result is reused if its point was nearby with the same
-/// normal, or if it hardly matters, on char.
-static Float3 white_light(const Preview *preview, Block *block, int lane, bool ask, float weight[LIGHT_LIMIT]) {
-    const Point *point = &block->point[lane];
-    Float3 moved = float3_sub(point->position, block->lamp_position[lane]);
-    if (!ask && float3_dot(moved, moved) < 4 * point->footprint * point->footprint &&
-        (float3_dot(point->normal, block->lamp_normal[lane]) > 0.99f || float3_luminance(point->albedo) < 0.08f))
-        return block->lamp_white[lane];
-    block->lamp_position[lane] = point->position;
-    block->lamp_normal[lane] = point->normal;
-    return block->lamp_white[lane] = lamps_gather(&preview->scene.lights, point, preview->scene.light_count, weight);
+        // the lamp in which a random number falls
+        float random = hash_unit(block->key[i] ^ 0x5bd1e995u) + golden * (float)sample, total = 0, sum = 0;
+        random -= floorf(random);
+        for (int k = 0; k < count; k++) total += weight[i][k];
+        int lamp = 0;
+        for (; lamp < count - 1; lamp++)
+            if ((sum += weight[i][lamp]) > random * total) break;
+
+        // objects within it do not occlude it
+        const Point *point = &block->point[i];
+        float square[2], disc[2], extent = l->extent[lamp];
+        sample_square((uint32_t)sample, block->turn[i][1], block->turn[i][0], square);
+        float z = 1.6f * square[0] - 0.8f;
+        sample_disc((const float[2]){0.6f, square[1]}, disc);
+        Float3 lamp_centre = float3(l->x[lamp], l->y[lamp], l->z[lamp]);
+        Float3 to = float3_add(lamp_centre, float3_scale(float3(disc[0], disc[1], z), 0.8f * extent));
+        Float3 centre = float3_sub(lamp_centre, point->position), to_light = float3_sub(to, point->position);
+        float distance = float3_length(to_light), free = float3_length(centre) - extent;
+        if (free < 0.1f * extent || distance < 1e-6f) continue; // at it, or in it
+        float side = float3_dot(point->geometric, to_light) > 0 ? preview->scene.epsilon : -preview->scene.epsilon;
+        aim_ray(&block->shadow, i, float3_mad(point->position, point->geometric, side),
+                float3_scale(to_light, 1 / distance), 0, minf(free, distance), block->time[i]);
+        block->valid[i] = -1;
+    }
+
+    tracer_occlude(preview, block->valid, &block->shadow, block->clear);
+    for (int i = 0; i < LANES; i++) {
+        if (wanted[i] <= 0) continue;
+        block->lamp_asked[i] += wanted[i];
+        block->lamp_seen[i] += wanted[i] * block->clear[i];
+    }
 }
 
 void lamps_add(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES]) {
-    if (!preview->scene.light_count) return;
+    const PreviewScene *scene = &preview->scene;
+    if (!scene->light_count) return;
     float weight[LANES][LIGHT_LIMIT], wanted[LANES];
     bool any = false, ask_now = sample < LAMP_SAMPLES;
+
     for (int i = 0; i < LANES; i++) {
         wanted[i] = 0;
         if (!light_reaches(block, active, i)) continue;
-        Float3 light = float3_mul(white_light(preview, block, i, ask_now, weight[i]), block->point[i].albedo);
+
+        // the last result is reused if its point was nearby with the same normal, or if it hardly matters, on char
+        const Point *point = &block->point[i];
+        Float3 moved = float3_sub(point->position, block->lamp_position[i]);
+        bool known =
+            !ask_now && float3_dot(moved, moved) < 4 * point->footprint * point->footprint &&
+            (float3_dot(point->normal, block->lamp_normal[i]) > 0.99f || float3_luminance(point->albedo) < 0.08f);
+        if (!known) {
+            block->lamp_position[i] = point->position;
+            block->lamp_normal[i] = point->normal;
+            block->lamp_white[i] = lamps_gather(&scene->lights, point, scene->light_count, weight[i]);
+        }
+
+        Float3 light = float3_mul(block->lamp_white[i], point->albedo);
         light = float3_scale(float3(minf(light.x, 40), minf(light.y, 40), minf(light.z, 40)), through[i]);
         block->lamp[i] = float3_add(block->lamp[i], light);
         float luminance = float3_luminance(light);
@@ -121,6 +255,7 @@ void lamps_add(const Preview *preview, Block *block, const int *active, int samp
             any = true;
         }
     }
+
     if (!any || !ask_now) return;
     int rays = sample == SAMPLE_CENTRE ? LAMP_SAMPLES : 1;
     for (int k = 0; k < rays; k++) ask(preview, block, wanted, weight, sample == SAMPLE_CENTRE ? k : sample);
@@ -138,18 +273,16 @@ void lamps_write(const Preview *preview, size_t pixel, const Block *block, int l
 
 // ---- smoothed
 
-/// Whether two pixels show one face.
-static bool is_same(const Lamp *a, const Lamp *b) {
-    return a->sheet == b->sheet && fabsf(a->distance - b->distance) < 0.02f * a->distance &&
-           float3_dot(a->normal, b->normal) > 0.8f;
-}
-
-/// Mean of `values` along a line of pixels `stride` apart, from `before` to `after`, weighted by nearness.
+/// Mean of `values` along a line of pixels `stride` apart that show the lamp's face, from `before` to `after`, weighted
+/// by nearness.
 static float lamps_smooth_line(const Lamp *lamp, const float *values, size_t values_stride, ptrdiff_t stride,
                                int before, int after, int reach) {
     float sum = 0, total = 0;
     for (int k = -before; k <= after; k++) {
-        if (!is_same(lamp, lamp + k * stride)) continue;
+        const Lamp *other = lamp + k * stride;
+        if (lamp->sheet != other->sheet || !(fabsf(lamp->distance - other->distance) < 0.02f * lamp->distance) ||
+            !(float3_dot(lamp->normal, other->normal) > 0.8f))
+            continue;
         float weight = (float)(reach + 1 - (k < 0 ? -k : k));
         sum += weight * *(const float *)(const void *)((const char *)values + k * stride * (ptrdiff_t)values_stride);
         total += weight;

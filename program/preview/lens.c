@@ -9,7 +9,7 @@
 // Thin lens of radius R, sharp at distance f: rays from its points c meet at f. A point at depth z is spread over
 // R |1/f - 1/z| at distance 1.
 
-#include "preview/internal.h"
+#include "preview/lens.h"
 
 Camera camera_make(const PreviewDef *def) {
     Float3 eye = float3_load(def->camera.eye), forward = float3_sub(float3_load(def->camera.target), eye);
@@ -17,6 +17,7 @@ Camera camera_make(const PreviewDef *def) {
     camera.forward = float3_unit_or(forward, float3(0, 1, 0));
     Float3 up = float3_unit_or(float3_load(def->camera.up), float3(0, 0, 1));
     Float3 right = float3_cross(camera.forward, up);
+
     // looking along `up`: any other direction works
     if (float3_dot(right, right) < 1e-8f)
         right = float3_cross(camera.forward, fabsf(camera.forward.y) < 0.9f ? float3(0, 1, 0) : float3(1, 0, 0));
@@ -29,6 +30,7 @@ Camera camera_make(const PreviewDef *def) {
     camera.focus = def->camera.focus > 0 ? def->camera.focus : camera.reach;
     camera.lens_right = float3_scale(right, camera.lens);
     camera.lens_up = float3_scale(float3_cross(right, camera.forward), camera.lens);
+
     return camera;
 }
 
@@ -81,7 +83,8 @@ static float sine(float x) {
 
 void sample_disc(const float square[2], float out[2]) {
     float r = sqrtf(square[0]), x = 2 * square[1] - 1, quarter = x + 0.5f;
-    out[0] = r * sine(quarter > 1 ? quarter - 2 : quarter), out[1] = r * sine(x);
+    out[0] = r * sine(quarter > 1 ? quarter - 2 : quarter);
+    out[1] = r * sine(x);
 }
 
 Float3 sample_cosine(Float3 normal, const float square[2]) {

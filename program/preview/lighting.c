@@ -16,6 +16,7 @@ Float3 light_reflect(const Point *point, Float3 l) {
     const Float3 warm = {1.35f, 1.12f, 0.80f};
     if (side <= 0) return float3_scale(float3_mul(point->albedo, warm), point->transmission * maxf(-cosine, 0));
     if (cosine <= 0) return float3(0, 0, 0);
+
     Float3 out = float3_scale(point->albedo, cosine);
     if (point->gloss > 0) {
         Float3 half = float3_unit_or(float3_add(l, point->view), point->normal);
@@ -55,6 +56,7 @@ static void add_sun_ray(const Preview *preview, Block *block, const int *active,
         aim_ray(&block->shadow, i, float3_mad(point->position, point->geometric, side), l, 0, INFINITY, block->time[i]);
         block->valid[i] = asked[i] = -1;
     }
+
     tracer_occlude(preview, block->valid, &block->shadow, block->clear);
     for (int i = 0; i < LANES; i++) {
         if (!asked[i]) continue;
@@ -62,12 +64,18 @@ static void add_sun_ray(const Preview *preview, Block *block, const int *active,
             float3_mad(block->light[i], float3_mul(reflected[i], preview->sun_light), share * block->clear[i]);
         block->sunlit = block->sunlit || block->clear[i] > 0.99f;
         block->shaded = block->shaded || block->clear[i] < 0.99f;
-        block->sun_seen += block->clear[i], block->sun_asked++;
+        block->sun_seen += block->clear[i];
+        block->sun_asked++;
     }
 }
 
-/// Light from the sun's centre, times the visibility found by the block's earlier rays.
-static void add_known_sun(const Preview *preview, Block *block, const int *active) {
+void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, int rays) {
+    for (int k = 0; k < rays; k++)
+        add_sun_ray(preview, block, active, sample == SAMPLE_CENTRE ? SAMPLE_CENTRE : sample * rays + k,
+                    1 / (float)rays);
+    if (rays) return;
+
+    // the light from the sun's centre, times the visibility found by the block's earlier rays
     float seen = block->sun_asked ? block->sun_seen / (float)block->sun_asked : 1;
     for (int i = 0; i < LANES; i++)
         if (light_reaches(block, active, i))
@@ -75,26 +83,17 @@ static void add_known_sun(const Preview *preview, Block *block, const int *activ
                 block->light[i], float3_mul(light_reflect(&block->point[i], preview->sun), preview->sun_light), seen);
 }
 
-void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, int rays) {
-    if (!rays) add_known_sun(preview, block, active);
-    for (int k = 0; k < rays; k++)
-        add_sun_ray(preview, block, active, sample == SAMPLE_CENTRE ? SAMPLE_CENTRE : sample * rays + k,
-                    1 / (float)rays);
-}
-
-/// Whether the point is nearer than `reach` to the surface's bounds.
-static bool within(const Scene *scene, Float3 p, float reach) {
-    return p.x > scene->low.x - reach && p.x < scene->high.x + reach && p.y > scene->low.y - reach &&
-           p.y < scene->high.y + reach && p.z > scene->low.z - reach && p.z < scene->high.z + reach;
-}
-
 /// Length of ambient-occlusion rays.
-static float sky_reach(const Scene *scene) {
+static float sky_reach(const PreviewScene *scene) {
     return 0.28f * float3_length(float3_sub(scene->high, scene->low)) + 0.01f;
 }
 
+/// Whether the surface's bounds or a shape are nearer to the point than `reach`.
 static bool sky_may_be_hidden(const Preview *preview, Float3 p, float reach) {
-    if (within(&preview->scene, p, reach)) return true;
+    const Float3 low = preview->scene.low, high = preview->scene.high;
+    if (p.x > low.x - reach && p.x < high.x + reach && p.y > low.y - reach && p.y < high.y + reach &&
+        p.z > low.z - reach && p.z < high.z + reach)
+        return true;
     for (uint32_t k = 0; k < preview->shape_count; k++) {
         float near = shape_extent(&preview->shapes[k], preview->def.shutter) + reach;
         Float3 to = float3_sub(shape_centre(&preview->shapes[k]), p);
@@ -105,10 +104,11 @@ static bool sky_may_be_hidden(const Preview *preview, Float3 p, float reach) {
 
 /// The sun is a disc: its rays spread by sun_spread times their length. The margin is a little more than that.
 static bool sun_may_be_hidden(const Preview *preview, Float3 p, float margin) {
-    const Scene *scene = &preview->scene;
+    const PreviewScene *scene = &preview->scene;
     Float3 sun = preview->sun;
     float spread = 1.5f * preview->sun_spread, rise = maxf(scene->high.z - p.z, 0) / maxf(sun.z, 0.02f);
     if (scene->triangle_count && tracer_near(scene, p, sun, INFINITY, spread * rise + margin)) return true;
+
     for (uint32_t k = 0; k < preview->shape_count; k++) {
         Float3 to = float3_sub(shape_centre(&preview->shapes[k]), p);
         float along = float3_dot(to, sun), extent = shape_extent(&preview->shapes[k], preview->def.shutter);
@@ -119,30 +119,21 @@ static bool sun_may_be_hidden(const Preview *preview, Float3 p, float margin) {
     return false;
 }
 
-/// A low sheet far away occludes too little of the table's sky to be seen: under 2 % where its height is less than 0.28
-/// of the distance.
-static float table_reach(const Scene *scene, Float3 p) {
-    return minf(sky_reach(scene), 3.5f * maxf(scene->high.z - p.z, 0));
-}
-
 bool light_may_be_hidden(const Preview *preview, const Block *block, const int *active) {
     int first = 0;
     while (first < LANES && !light_reaches(block, active, first)) first++;
     if (first == LANES) return false;
+
     Float3 p = block->point[first].position;
     float spread = 0;
     for (int i = first + 1; i < LANES; i++)
         if (light_reaches(block, active, i))
             spread = maxf(spread, float3_length(float3_sub(block->point[i].position, p)));
-    return sky_may_be_hidden(preview, p, table_reach(&preview->scene, p) + spread) ||
-           sun_may_be_hidden(preview, p, spread);
-}
 
-/// The reflection of the sky by a dull surface, more at grazing angles (Schlick 1994), but less than by a smooth one.
-static Float3 mirror_sky(const Sky *sky, const Point *point) {
-    float cosine = maxf(float3_dot(point->normal, point->view), 0), rest = 1 - cosine, rest2 = rest * rest;
-    Float3 out = float3_mad(float3_scale(point->view, -1), point->normal, 2 * cosine);
-    return float3_scale(sky_mirrored(sky, out), point->mirror * (0.06f + 0.54f * rest2 * rest2 * rest));
+    // a low sheet far away occludes too little of the table's sky to be seen: under 2 % where its height is less than
+    // 0.28 of the distance
+    float reach = minf(sky_reach(&preview->scene), 3.5f * maxf(preview->scene.high.z - p.z, 0));
+    return sky_may_be_hidden(preview, p, reach + spread) || sun_may_be_hidden(preview, p, spread);
 }
 
 /// Finds the open share of each point's sky by one ray.
@@ -162,10 +153,12 @@ static void ask_sky(const Preview *preview, Block *block, const int *active, int
                 block->time[i]);
         block->valid[i] = -1;
     }
+
     tracer_occlude(preview, block->valid, &block->shadow, block->clear);
     for (int i = 0; i < LANES; i++) {
         block->open[i] = mixf(occluded_sky, 1, block->clear[i]);
-        block->sky_seen[i] += block->open[i], block->sky_asked[i]++;
+        block->sky_seen[i] += block->open[i];
+        block->sky_asked[i]++;
         block->clouded = block->clouded || block->clear[i] < 1;
     }
 }
@@ -181,7 +174,15 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
             ambient =
                 float3_mad(ambient, sky_ambient(&preview->sky, float3_scale(point->normal, -1)), point->transmission);
         Float3 light = float3_mul(point->albedo, ambient);
-        if (point->mirror > 0) light = float3_add(light, mirror_sky(&preview->sky, point));
+
+        // dull surfaces reflect more at grazing angles (Schlick 1994), but less than smooth ones
+        if (point->mirror > 0) {
+            float cosine = maxf(float3_dot(point->normal, point->view), 0), rest = 1 - cosine, rest2 = rest * rest;
+            Float3 out = float3_mad(float3_scale(point->view, -1), point->normal, 2 * cosine);
+            float share = point->mirror * (0.06f + 0.54f * rest2 * rest2 * rest);
+            light = float3_add(light, float3_scale(sky_mirrored(&preview->sky, out), share));
+        }
+
         float open = ask ? block->open[i] : block->sky_seen[i] / (float)block->sky_asked[i];
         block->light[i] = float3_mad(block->light[i], light, open);
     }

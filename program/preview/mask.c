@@ -28,11 +28,15 @@ static void include(const Preview *preview, Float3 p, Rectangle *r) {
         *r = everywhere;
         return;
     }
+
     float x = float3_dot(d, camera->right) / (float3_dot(camera->right, camera->right) * depth);
     float y = float3_dot(d, camera->up) / (float3_dot(camera->up, camera->up) * depth);
     float at[2] = {(0.5f + 0.5f * x) * (float)preview->def.width, (0.5f - 0.5f * y) * (float)preview->def.height};
     float blur = camera_blur(camera, depth);
-    for (int c = 0; c < 2; c++) r->low[c] = minf(r->low[c], at[c] - blur), r->high[c] = maxf(r->high[c], at[c] + blur);
+    for (int c = 0; c < 2; c++) {
+        r->low[c] = minf(r->low[c], at[c] - blur);
+        r->high[c] = maxf(r->high[c], at[c] + blur);
+    }
 }
 
 static void mark(Preview *preview, const Rectangle *r) {
@@ -47,20 +51,20 @@ static void mark(Preview *preview, const Rectangle *r) {
 }
 
 void mask_fill(Preview *preview) {
-    const Scene *scene = &preview->scene;
+    const PreviewScene *scene = &preview->scene;
     bool moves = preview->def.shutter > 0;
     memset(preview->mask, 0, mask_size(preview));
+
     for (uint32_t t = 0; t < scene->triangle_count; t++) {
         Rectangle r = nowhere;
         for (int k = 0; k < 3; k++) {
             uint32_t v = scene->triangles[t][k];
-            if (moves)
-                include(preview, float3_load(scene->moved[0][v]), &r),
-                    include(preview, float3_load(scene->moved[1][v]), &r);
-            else include(preview, float3_load(scene->positions[v]), &r);
+            for (int end = 0; moves && end < 2; end++) include(preview, float3_load(scene->moved[end][v]), &r);
+            if (!moves) include(preview, float3_load(scene->positions[v]), &r);
         }
         mark(preview, &r);
     }
+
     for (uint32_t k = 0; k < preview->shape_count; k++) {
         Float3 centre = shape_centre(&preview->shapes[k]);
         float extent = shape_extent(&preview->shapes[k], preview->def.shutter);

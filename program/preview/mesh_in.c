@@ -3,6 +3,14 @@
 // The gradient of burn in rest space is constant on a triangle: with edges e1, e2, N = e1 x e2, grad b = [(b1 - b0) e2
 // x N + (b2 - b0) N x e1] / |N|^2; a vertex takes the mean of its triangles, weighted by area. Where the angles of a
 // vertex's triangles in rest space fall short of 2 pi, it lies on the border of a piece.
+//
+// The appearance of a point runs from fresh (0) through black char (CHAR_LEAF) to ash (1). If pyrolysis leaves char that
+// glows away later, it does not follow from the mass alone: with the fractions c of char, a of ash and f of fuel, and
+// about half of the char staying as ash, q = c / (c + 2 a) is the share of what has burnt that is still char, and
+//
+//     look = q CHAR_LEAF (1 - f) + (1 - q) burn
+//
+// which is `burn` if there is one reaction, without char.
 
 #include "preview/internal.h"
 
@@ -13,22 +21,12 @@ static bool mesh_in_grow(Preview *preview, void *array_pointer, uint32_t *capaci
     if (count <= *capacity) return true;
     uint32_t wanted = count + count / 4 < count ? count : count + count / 4;
     if ((size_t)wanted > SIZE_MAX / size / 2) return false;
+
     void *grown = allocator_resize(preview->allocator, *array, *capacity * size, wanted * size);
     if (!grown) return false;
     *array = grown;
     *capacity = wanted;
     return true;
-}
-
-static bool mesh_in_reserve(Preview *preview, uint32_t vertices, uint32_t triangles) {
-    Scene *scene = &preview->scene;
-    size_t position = sizeof *scene->positions;
-    bool done = mesh_in_grow(preview, &scene->vertices, &scene->vertex_capacity, vertices, sizeof *scene->vertices) &&
-                mesh_in_grow(preview, &scene->positions, &scene->position_capacity, vertices, position);
-    for (int i = 0; done && preview->def.shutter > 0 && i < 2; i++)
-        done = mesh_in_grow(preview, &scene->moved[i], &scene->moved_capacity[i], vertices, position);
-    return done &&
-           mesh_in_grow(preview, &scene->triangles, &scene->triangle_capacity, triangles, sizeof *scene->triangles);
 }
 
 static float finite_or(float x, float otherwise) { return isfinite(x) ? x : otherwise; }
@@ -37,34 +35,13 @@ static bool near_enough(const float p[3]) {
     return fabsf(p[0]) < 1e4f && fabsf(p[1]) < 1e4f && fabsf(p[2]) < 1e4f; // false for NaN
 }
 
-/// The appearance of a point, from fresh (0) through black char (CHAR_LEAF) to ash (1). If pyrolysis leaves char that
-/// glows away later, it does not follow from the mass alone: with the fractions c of char, a of ash and f of fuel, and
-/// about half of the char staying as ash, q = c / (c + 2 a) is the share of what has burnt that is still char, and
-///
-///     look = q CHAR_LEAF (1 - f) + (1 - q) burn
-///
-/// which is `burn` if there is one reaction, without char.
-static float look_of(const SingeSurface *surface, uint32_t i, float burn) {
-    if (!surface->char_fraction || !surface->ash_fraction || !surface->mass) return burn;
-    float charred = clampf(finite_or(surface->char_fraction[i], 0), 0, 1);
-    float ash = clampf(finite_or(surface->ash_fraction[i], 0), 0, 1);
-    if (charred <= 0) return burn;
-    float fuel = clampf(finite_or(surface->mass[i], 1) - charred - ash, 0, 1);
-    return mixf(burn, CHAR_LEAF * (1 - fuel), charred / (charred + 2 * ash));
-}
-
-/// The part of the rate that feeds a flame: char without fuel glows without one.
-static float flaming_rate(const SingeSurface *surface, uint32_t i, float rate) {
-    if (!surface->char_fraction || !surface->ash_fraction || !surface->mass) return rate;
-    float fuel = surface->mass[i] - surface->char_fraction[i] - surface->ash_fraction[i];
-    return fuel > 0.01f ? rate : 0; // not for NaN
-}
-
-static void pack_vertex(const Preview *preview, const SingeSurface *surface, uint32_t i, PaperVertex *out,
-                        float position[4]) {
+/// Packs a vertex's fields and its position; if a shutter moves it, also its positions at both ends of the exposure.
+static void pack_vertex(const Preview *preview, const SingeSurface *surface, uint32_t i) {
     const float zero[3] = {0, 0, 0};
     const float *rest = near_enough(surface->rest_position[i]) ? surface->rest_position[i] : zero;
+    const float rate = clampf(finite_or(surface->burn_rate[i], 0), 0, 1e6f);
     Float3 normal = float3_unit_or(float3_load(surface->normal[i]), float3(0, 0, 0));
+    PaperVertex *out = &preview->scene.vertices[i];
     *out = (PaperVertex){
         .normal = {normal.x, normal.y, normal.z},
         .rest = {rest[0], rest[1], rest[2]},
@@ -72,25 +49,32 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
         .temperature = clampf(finite_or(surface->temperature[i], 293), 0, 5000),
         .peak = clampf(finite_or(surface->temperature_peak[i], 293), 0, 5000),
         .burn = clampf(finite_or(surface->burn[i], 0), 0, 1),
-        .burn_rate = clampf(finite_or(surface->burn_rate[i], 0), 0, 1e6f),
-        .flaming = flaming_rate(surface, i, clampf(finite_or(surface->burn_rate[i], 0), 0, 1e6f)),
+        .burn_rate = rate,
+        .flaming = rate,
         .sheet = surface->sheet[i],
         .piece = surface->piece ? surface->piece[i] : -1,
     };
+
     // an unknown time of ignition counts as long ago
     if (surface->time_ignited && surface->time_ignited[i] >= 0)
         out->age = clampf((float)(preview->time - (double)surface->time_ignited[i]) * preview->def.pace, 0, 1e6f);
     else if (out->burn > 0) out->age = 60;
-    out->burn = look_of(surface, i, out->burn);
+
+    if (surface->char_fraction && surface->ash_fraction && surface->mass) {
+        float charred = clampf(finite_or(surface->char_fraction[i], 0), 0, 1);
+        float ash = clampf(finite_or(surface->ash_fraction[i], 0), 0, 1);
+        float fuel = clampf(finite_or(surface->mass[i], 1) - charred - ash, 0, 1);
+        if (charred > 0) out->burn = mixf(out->burn, CHAR_LEAF * (1 - fuel), charred / (charred + 2 * ash));
+        // char without fuel glows without a flame; false for NaN
+        if (!(surface->mass[i] - surface->char_fraction[i] - surface->ash_fraction[i] > 0.01f)) out->flaming = 0;
+    }
+
+    float *position = preview->scene.positions[i];
     for (int c = 0; c < 3; c++) position[c] = surface->position[i][c];
     position[3] = 0;
-}
-
-/// The vertex's positions at the beginning and the end of the exposure.
-static void move_vertex(Preview *preview, const SingeSurface *surface, uint32_t i) {
-    const float zero[3] = {0, 0, 0}, *position = preview->scene.positions[i];
     const float *velocity = surface->velocity ? surface->velocity[i] : zero;
-    for (int end = 0; end < 2; end++) {
+
+    for (int end = 0; preview->def.shutter > 0 && near_enough(position) && end < 2; end++) {
         float *moved = preview->scene.moved[end][i], half = (end ? 0.5f : -0.5f) * preview->def.shutter;
         for (int c = 0; c < 3; c++) moved[c] = position[c] + half * velocity[c];
         if (!near_enough(moved)) memcpy(moved, position, 3 * sizeof *moved);
@@ -109,56 +93,50 @@ static void add3(float sum[3], Float3 v, float weight) {
     sum[2] += weight * v.z;
 }
 
-/// Adds the triangle's share of the gradients to its corners: times area into `slope` and `warming`, the area into
-/// `gradient`.
-static void add_gradient(Scene *scene, const uint32_t t[3]) {
-    PaperVertex *v[3] = {&scene->vertices[t[0]], &scene->vertices[t[1]], &scene->vertices[t[2]]};
-    Float3 origin = float3_load(v[0]->rest), e1 = float3_sub(float3_load(v[1]->rest), origin),
-           e2 = float3_sub(float3_load(v[2]->rest), origin);
-    Float3 n = float3_cross(e1, e2);
-    float n2 = float3_dot(n, n);
-    if (!(n2 > 1e-24f)) return;
-    Float3 burn = gradient(e1, e2, n, v[0]->burn, v[1]->burn, v[2]->burn);
-    Float3 heat = gradient(e1, e2, n, v[0]->peak, v[1]->peak, v[2]->peak);
-    float area = 0.5f * sqrtf(n2);
-    for (int k = 0; k < 3; k++) {
-        add3(v[k]->slope, burn, area / n2), add3(v[k]->warming, heat, area / n2);
-        v[k]->gradient += area;
-        v[k]->spacing += 1;
-    }
-}
-
-/// Adds the triangle's angles to its corners' `rim`.
-static void add_angles(Scene *scene, const uint32_t t[3]) {
-    for (int k = 0; k < 3; k++) {
-        PaperVertex *v = &scene->vertices[t[k]];
-        Float3 a = float3_sub(float3_load(scene->vertices[t[(k + 1) % 3]].rest), float3_load(v->rest));
-        Float3 b = float3_sub(float3_load(scene->vertices[t[(k + 2) % 3]].rest), float3_load(v->rest));
-        v->rim += atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b));
-    }
-}
-
-static bool keep_triangle(const SingeSurface *surface, const uint32_t t[3]) {
-    for (int k = 0; k < 3; k++)
-        if (!near_enough(surface->position[t[k]])) return false;
-    Float3 a = float3_load(surface->position[t[0]]), b = float3_load(surface->position[t[1]]),
-           c = float3_load(surface->position[t[2]]);
-    Float3 n = float3_cross(float3_sub(b, a), float3_sub(c, a));
-    return float3_dot(n, n) > 1e-30f;
-}
-
 static void bound_vertex(const float *p, Float3 *low, Float3 *high) {
     *low = float3(minf(low->x, p[0]), minf(low->y, p[1]), minf(low->z, p[2]));
     *high = float3(maxf(high->x, p[0]), maxf(high->y, p[1]), maxf(high->z, p[2]));
 }
 
-static void bound(Scene *scene, bool moves) {
+/// Adds the triangle's share of the gradients to its corners (times area into `slope` and `warming`, the area into
+/// `gradient`), and its angles to their `rim`.
+static void add_triangle(PreviewScene *scene, const uint32_t t[3]) {
+    PaperVertex *v[3] = {&scene->vertices[t[0]], &scene->vertices[t[1]], &scene->vertices[t[2]]};
+    for (int k = 0; k < 3; k++) {
+        Float3 corner = float3_load(v[k]->rest);
+        Float3 a = float3_sub(float3_load(v[(k + 1) % 3]->rest), corner);
+        Float3 b = float3_sub(float3_load(v[(k + 2) % 3]->rest), corner);
+        v[k]->rim += atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b));
+    }
+
+    Float3 origin = float3_load(v[0]->rest), e1 = float3_sub(float3_load(v[1]->rest), origin),
+           e2 = float3_sub(float3_load(v[2]->rest), origin);
+    Float3 n = float3_cross(e1, e2);
+    float n2 = float3_dot(n, n);
+    if (!(n2 > 1e-24f)) return;
+
+    Float3 burn = gradient(e1, e2, n, v[0]->burn, v[1]->burn, v[2]->burn);
+    Float3 heat = gradient(e1, e2, n, v[0]->peak, v[1]->peak, v[2]->peak);
+    float area = 0.5f * sqrtf(n2);
+
+    for (int k = 0; k < 3; k++) {
+        add3(v[k]->slope, burn, area / n2);
+        add3(v[k]->warming, heat, area / n2);
+        v[k]->gradient += area;
+        v[k]->spacing += 1;
+    }
+}
+
+/// The bounds of the triangles, and the pictures' texels per metre on them.
+static void measure(Preview *preview) {
+    PreviewScene *scene = &preview->scene;
     Float3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t t = 0; t < scene->triangle_count; t++)
         for (int k = 0; k < 3; k++) {
             uint32_t v = scene->triangles[t][k];
             bound_vertex(scene->positions[v], &low, &high);
-            for (int end = 0; moves && end < 2; end++) bound_vertex(scene->moved[end][v], &low, &high);
+            for (int end = 0; preview->def.shutter > 0 && end < 2; end++)
+                bound_vertex(scene->moved[end][v], &low, &high);
         }
     if (!scene->triangle_count) low = high = float3(0, 0, 0);
     scene->epsilon = maxf(2e-4f * float3_length(float3_sub(high, low)), 1e-6f);
@@ -166,10 +144,7 @@ static void bound(Scene *scene, bool moves) {
     scene->low = float3_sub(low, margin);
     scene->high = float3_add(high, margin);
     if (!scene->triangle_count) scene->epsilon = 1e-4f;
-}
 
-static void measure_textures(Preview *preview) {
-    const Scene *scene = &preview->scene;
     for (uint32_t s = 0; s < preview->def.sheet_count; s++) {
         Texture *texture = &preview->textures[s];
         double texels = 0, area = 0;
@@ -184,12 +159,13 @@ static void measure_textures(Preview *preview) {
             area += (double)float3_length(
                 float3_cross(float3_sub(float3_load(b->rest), o), float3_sub(float3_load(c->rest), o)));
         }
+
         texels *= (double)texture->width[0] * (double)texture->height[0];
         texture->texels_per_metre = area > 0 && texels < 1e12 ? (float)sqrt(texels / area) : 0;
     }
 }
 
-static SingeResult check(const SingeSurface *surface, SingeError *error) {
+static SingeResult check_surface(const SingeSurface *surface, SingeError *error) {
     if (surface->vertex_count &&
         !(surface->position && surface->normal && surface->uv && surface->rest_position && surface->temperature &&
           surface->temperature_peak && surface->burn && surface->burn_rate && surface->sheet))
@@ -201,33 +177,42 @@ static SingeResult check(const SingeSurface *surface, SingeError *error) {
             if (surface->triangles[t][k] >= surface->vertex_count)
                 return preview_fail(error, SINGE_ERROR_ARGUMENT, t, "triangle %u uses vertex %u of %u", t,
                                     surface->triangles[t][k], surface->vertex_count);
+
     return SINGE_OK;
 }
 
 SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeError *error) {
-    Scene *scene = &preview->scene;
+    PreviewScene *scene = &preview->scene;
     tracer_release(preview);
     scene->vertex_count = scene->triangle_count = 0;
-    SingeResult result = check(surface, error);
+    SingeResult result = check_surface(surface, error);
     if (result) return result;
-    if (!mesh_in_reserve(preview, surface->vertex_count, surface->triangle_count))
-        return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a surface of %u vertices",
-                            surface->vertex_count);
 
+    const uint32_t vertices = surface->vertex_count;
+    const size_t position = sizeof *scene->positions;
     bool moves = preview->def.shutter > 0;
-    for (uint32_t i = 0; i < surface->vertex_count; i++) {
-        pack_vertex(preview, surface, i, &scene->vertices[i], scene->positions[i]);
-        if (moves && near_enough(scene->positions[i])) move_vertex(preview, surface, i);
-    }
+    bool room = mesh_in_grow(preview, &scene->vertices, &scene->vertex_capacity, vertices, sizeof *scene->vertices) &&
+                mesh_in_grow(preview, &scene->positions, &scene->position_capacity, vertices, position) &&
+                mesh_in_grow(preview, &scene->triangles, &scene->triangle_capacity, surface->triangle_count,
+                             sizeof *scene->triangles);
+    for (int i = 0; room && moves && i < 2; i++)
+        room = mesh_in_grow(preview, &scene->moved[i], &scene->moved_capacity[i], vertices, position);
+    if (!room)
+        return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a surface of %u vertices", vertices);
+
+    for (uint32_t i = 0; i < vertices; i++) pack_vertex(preview, surface, i);
     for (uint32_t t = 0; t < surface->triangle_count; t++) {
-        if (!keep_triangle(surface, surface->triangles[t])) continue;
+        const uint32_t *from = surface->triangles[t];
+        const float *p = surface->position[from[0]], *q = surface->position[from[1]], *r = surface->position[from[2]];
+        Float3 a = float3_load(p), n = float3_cross(float3_sub(float3_load(q), a), float3_sub(float3_load(r), a));
+        if (!near_enough(p) || !near_enough(q) || !near_enough(r) || !(float3_dot(n, n) > 1e-30f)) continue;
         uint32_t *kept = scene->triangles[scene->triangle_count++];
-        for (int k = 0; k < 3; k++) kept[k] = surface->triangles[t][k];
-        add_gradient(scene, kept);
-        add_angles(scene, kept);
+        memcpy(kept, from, sizeof *scene->triangles);
+        add_triangle(scene, kept);
     }
-    scene->vertex_count = surface->vertex_count;
-    for (uint32_t i = 0; i < scene->vertex_count; i++) {
+
+    scene->vertex_count = vertices;
+    for (uint32_t i = 0; i < vertices; i++) {
         PaperVertex *v = &scene->vertices[i];
         // a triangle of area A has edges of about sqrt(2 A)
         v->spacing = v->spacing > 0 ? sqrtf(2 * v->gradient / v->spacing) : 0;
@@ -240,13 +225,13 @@ SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeErro
         p[0] = p[1] = p[2] = 0;
         for (int end = 0; moves && end < 2; end++) memset(scene->moved[end][i], 0, sizeof *scene->moved[end]);
     }
-    bound(scene, moves);
-    measure_textures(preview);
+
+    measure(preview);
     return tracer_build(preview, error);
 }
 
 void tracer_free(Preview *preview) {
-    Scene *scene = &preview->scene;
+    PreviewScene *scene = &preview->scene;
     tracer_release(preview);
     allocator_resize(preview->allocator, scene->vertices, scene->vertex_capacity * sizeof *scene->vertices, 0);
     allocator_resize(preview->allocator, scene->positions, scene->position_capacity * sizeof *scene->positions, 0);
@@ -254,5 +239,5 @@ void tracer_free(Preview *preview) {
         allocator_resize(preview->allocator, scene->moved[end], scene->moved_capacity[end] * sizeof *scene->moved[end],
                          0);
     allocator_resize(preview->allocator, scene->triangles, scene->triangle_capacity * sizeof *scene->triangles, 0);
-    *scene = (Scene){0};
+    *scene = (PreviewScene){0};
 }

@@ -60,35 +60,32 @@ static SingeResult check_camera(const PreviewCamera *camera, SingeError *error) 
         return preview_refuse(error, -1, "camera: aperture must lie between 0 and 10 m");
     if (!(camera->focus >= 0 && camera->focus <= 1e4f))
         return preview_refuse(error, -1, "camera: focus must lie between 0 and 10 km");
+
     return SINGE_OK;
 }
 
-static SingeResult check_shape(const PreviewShape *shape, int64_t index, SingeError *error) {
-    bool good = all_between(shape->position, 3, -1e4f, 1e4f) && all_between(shape->velocity, 3, -1e4f, 1e4f) &&
-                all_between(shape->colour, 3, 0, 1e4f) && shape->temperature >= 0 && shape->temperature < 1e5f;
-    const float *q = shape->rotation;
-    float length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    switch (shape->kind) {
-    case SINGE_COLLIDER_PLANE: break;
-    case SINGE_COLLIDER_SPHERE: good = good && shape->radius > 0 && shape->radius <= 1e4f; break;
-    case SINGE_COLLIDER_BOX: good = good && all_between(shape->half_size, 3, 1e-7f, 1e4f); break;
-    case SINGE_COLLIDER_CAPSULE:
-        good = good && shape->radius > 0 && shape->radius <= 1e4f && shape->height >= 0 && shape->height <= 1e4f;
-        break;
-    case SINGE_COLLIDER_HEIGHTFIELD:
-    case SINGE_COLLIDER_MESH: good = good && shape->solid; break;
-    default: good = false;
-    }
-    if (shape->kind != SINGE_COLLIDER_SPHERE) good = good && fabsf(length - 1) < 0.01f;
-    return good ? SINGE_OK
-                : preview_refuse(error, index, "shape: kind, size, position, rotation or temperature is out of range");
-}
-
 static SingeResult check_shapes(const PreviewShape *shapes, uint32_t count, SingeError *error) {
-    if (count && !shapes) return preview_refuse(error, -1, "shapes: a count and no array");
+    if (count && !shapes) return preview_refuse(error, -1, "shapes: there is a count and no array");
     for (uint32_t i = 0; i < count; i++) {
-        SingeResult result = check_shape(&shapes[i], i, error);
-        if (result) return result;
+        const PreviewShape *shape = &shapes[i];
+        const float *q = shape->rotation, length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+        bool good = all_between(shape->position, 3, -1e4f, 1e4f) && all_between(shape->velocity, 3, -1e4f, 1e4f) &&
+                    all_between(shape->colour, 3, 0, 1e4f) && shape->temperature >= 0 && shape->temperature < 1e5f;
+        switch (shape->kind) {
+        case SINGE_COLLIDER_PLANE: break;
+        case SINGE_COLLIDER_SPHERE: good = good && shape->radius > 0 && shape->radius <= 1e4f; break;
+        case SINGE_COLLIDER_BOX: good = good && all_between(shape->half_size, 3, 1e-7f, 1e4f); break;
+        case SINGE_COLLIDER_CAPSULE:
+            good = good && shape->radius > 0 && shape->radius <= 1e4f && shape->height >= 0 && shape->height <= 1e4f;
+            break;
+        case SINGE_COLLIDER_HEIGHTFIELD:
+        case SINGE_COLLIDER_MESH: good = good && shape->solid; break;
+        default: good = false;
+        }
+
+        if (shape->kind != SINGE_COLLIDER_SPHERE) good = good && fabsf(length - 1) < 0.01f;
+        if (!good)
+            return preview_refuse(error, i, "shape: kind, size, position, rotation or temperature is out of range");
     }
     return SINGE_OK;
 }
@@ -100,7 +97,7 @@ static bool image_is_good(const Image *image) {
 
 static SingeResult check_light(const PreviewDef *def, SingeError *error) {
     Float3 sun = float3_load(def->sun_direction);
-    if (!float3_finite(sun) || !(float3_dot(sun, sun) > 1e-20f) || !(float3_dot(sun, sun) < 1e20f))
+    if (!(float3_dot(sun, sun) > 1e-20f && float3_dot(sun, sun) < 1e20f)) // false for NaN
         return preview_refuse(error, -1, "sun_direction must be finite and not zero");
     if (!(def->sun_angle >= 0 && def->sun_angle < 1.5f))
         return preview_refuse(error, -1, "sun_angle must lie between 0 and 1.5 rad");
@@ -120,6 +117,7 @@ static SingeResult check_light(const PreviewDef *def, SingeError *error) {
     float ground = def->ground_height;
     if (!(ground <= 1e4f) || (ground < -1e4f && isfinite(ground)))
         return preview_refuse(error, -1, "ground_height must lie within 10 km, or be -infinity for none");
+
     return SINGE_OK;
 }
 
@@ -137,12 +135,14 @@ static SingeResult check_def(const PreviewDef *def, SingeError *error) {
         if (def->pictures[s] && !image_is_good(def->pictures[s]))
             result = preview_refuse(error, s, "a sheet's picture is empty or too large");
     }
+
     for (uint32_t s = 0; !result && def->colours && s < def->sheet_count; s++)
         if (!all_between(def->colours[s], 3, 0, 1e4f))
             result = preview_refuse(error, s, "a sheet's colour is out of range");
     for (uint32_t s = 0; !result && def->transmittances && s < def->sheet_count; s++)
         if (!all_between(&def->transmittances[s], 1, 0, 1))
             result = preview_refuse(error, s, "a sheet's transmittance must lie between 0 and 1");
+
     return result;
 }
 
@@ -160,6 +160,7 @@ static SingeResult preview_allocate(Preview *preview, SingeError *error) {
     preview->lamps = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(Lamp));
     preview->seen = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(float));
     preview->mask = allocator_resize(*allocator, NULL, 0, mask_size(preview));
+
     for (int i = 0; i < 2; i++)
         preview->glow[i] = allocator_resize(*allocator, NULL, 0, glow_count(def) * sizeof(Float3));
     preview->textures = allocator_resize(*allocator, NULL, 0, def->sheet_count * sizeof(Texture));
@@ -175,30 +176,33 @@ static SingeResult preview_allocate(Preview *preview, SingeError *error) {
     return SINGE_OK;
 }
 
-static void preview_aim(Preview *preview) {
-    preview->camera = camera_make(&preview->def);
-    preview->sun = float3_unit_or(float3_load(preview->def.sun_direction), float3(0, 0, 1));
-    float3_frame(preview->sun, &preview->sun_right, &preview->sun_up);
-    preview->sun_light = float3_scale(float3_load(preview->def.sun_colour), FILM_SPEED);
-    preview->sun_spread = tanf(preview->def.sun_angle);
-    tonemap_fill_linear(preview->linear);
-    blackbody_fill(preview->blackbody);
-    sky_fill(preview);
-}
-
 SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Preview **out, SingeError *error) {
     *out = NULL;
     SingeResult result = check_def(def, error);
     if (result) return result;
+
     Preview *preview = allocator_resize(allocator, NULL, 0, sizeof *preview);
     if (!preview) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory");
-    *preview = (Preview){.def = *def, .allocator = allocator};
-    preview_aim(preview);
+    *preview = (Preview){.def = *def, .allocator = allocator, .camera = camera_make(def)};
+
+    preview->sun = float3_unit_or(float3_load(def->sun_direction), float3(0, 0, 1));
+    float3_frame(preview->sun, &preview->sun_right, &preview->sun_up);
+    preview->sun_light = float3_scale(float3_load(def->sun_colour), FILM_SPEED);
+    preview->sun_spread = tanf(def->sun_angle);
+    for (int i = 0; i < 256; i++) {
+        float s = (float)i / 255;
+        preview->linear[i] = s <= 0.04045f ? s / 12.92f : powf((s + 0.055f) / 1.055f, 2.4f);
+    }
+
+    blackbody_fill(preview->blackbody);
+    sky_fill(preview);
+
     result = preview_allocate(preview, error);
     if (!result) result = tracer_open(preview, error);
     if (!result) result = preview_set_shapes(preview, def->shapes, def->shape_count, error);
     if (result) preview_destroy(preview);
     else *out = preview;
+
     return result;
 }
 
@@ -209,6 +213,7 @@ SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uin
     for (uint32_t i = 0; i < count; i++) drawn += shapes[i].kind != SINGE_COLLIDER_PLANE;
     PreviewShape *copy = allocator_resize(preview->allocator, NULL, 0, drawn * sizeof *copy);
     if (drawn && !copy) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for %u shapes", count);
+
     for (uint32_t i = 0, next = 0; i < count && !result; i++) {
         if (shapes[i].kind == SINGE_COLLIDER_PLANE) continue;
         PreviewShape *shape = &copy[next++];
@@ -216,10 +221,12 @@ SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uin
         shape->facets = NULL;
         if (shape->solid) result = facets_get(preview, shape->solid, &shape->facets, error);
     }
+
     if (result) {
         allocator_resize(preview->allocator, copy, drawn * sizeof *copy, 0);
         return result;
     }
+
     allocator_resize(preview->allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
     preview->shapes = copy;
     preview->shape_count = drawn;
@@ -235,6 +242,7 @@ void preview_destroy(Preview *preview) {
     fire_free(preview);
     facets_free(preview);
     tracer_close(preview);
+
     for (uint32_t s = 0; preview->textures && s < def->sheet_count; s++) texture_free(preview, &preview->textures[s]);
     allocator_resize(allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);
     allocator_resize(allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
@@ -243,6 +251,7 @@ void preview_destroy(Preview *preview) {
     allocator_resize(allocator, preview->seen, preview->seen ? pixel_count(def) * sizeof(float) : 0, 0);
     allocator_resize(allocator, preview->table, pixel_count(def) * sizeof(Table), 0);
     allocator_resize(allocator, preview->mask, mask_size(preview), 0);
+
     for (int i = 0; i < 2; i++) allocator_resize(allocator, preview->glow[i], glow_count(def) * sizeof(Float3), 0);
     allocator_resize(allocator, preview, sizeof *preview, 0);
 }

@@ -79,23 +79,30 @@ typedef struct PreviewDef {
 PreviewDef preview_default(void);
 
 typedef struct Preview Preview;
+
 /// False in a build without Embree, which bakes gas but draws nothing.
 bool preview_draws(void);
+
 /// Sets up the device; `def`'s pointers must outlive the Preview.
 SINGE_NODISCARD SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Preview **preview,
                                            SingeError *error);
+
 /// Replaces the shapes (they move from frame to frame); the array is copied.
 SINGE_NODISCARD SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uint32_t count,
                                                SingeError *error);
+
 /// Replaces the gas (it changes from frame to frame); flame, smoke and velocity are used, and copied as needed. NULL or
 /// size 0: none.
 SINGE_NODISCARD SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *error);
+
 enum { PREVIEW_BAKE_MAX = 4 };
+
 /// The current gas on cells `detail` times as fine along each side, with the tongues and streaks that pictures add by
 /// noise. `surface` is that of its frame. smoke and flame are [detail^3 * the gas's cells], x fastest: extinction in
 /// 1/m, and the flame's light as a share of the brightest flame's (118 times that of white paper per metre).
 SINGE_NODISCARD SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, double time, int detail,
                                              float *smoke, float *flame, SingeError *error);
+
 /// Draws one frame into rgb[height * width * 3], 8-bit sRGB, rows from the top. `time` drives flicker. The picture
 /// depends neither on the number of threads nor on earlier frames. Triangles of a piece must share their vertices,
 /// which shows its borders.

@@ -1,24 +1,28 @@
-// Functions of vectors and numbers for the renderer, in addition to common/float3.h.
+// Vectors, colours and numbers in the renderer, on common/float3.h.
 #ifndef PREVIEW_RENDER_MATH_H
 #define PREVIEW_RENDER_MATH_H
 
 #include "common/float3.h"
 
-#include <stdbool.h>
+#include <string.h>
+
+#define PI_F 3.14159265f
 
 static inline Float3 float3_mul(Float3 a, Float3 b) { return (Float3){a.x * b.x, a.y * b.y, a.z * b.z}; }
 static inline Float3 float3_mix(Float3 a, Float3 b, float s) { return float3_mad(a, float3_sub(b, a), s); }
+
 /// (1 - u - v) a + u b + v c
 static inline Float3 float3_blend(const float *a, const float *b, const float *c, float u, float v) {
     float w = 1 - u - v;
     return float3(w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1], w * a[2] + u * b[2] + v * c[2]);
 }
+
 /// The unit vector along a, or `otherwise` if a has no direction.
 static inline Float3 float3_unit_or(Float3 a, Float3 otherwise) {
     float l2 = float3_dot(a, a);
     return l2 > 1e-30f && l2 < 1e30f ? float3_scale(a, 1 / sqrtf(l2)) : otherwise;
 }
-static inline bool float3_finite(Float3 a) { return isfinite(a.x) && isfinite(a.y) && isfinite(a.z); }
+
 /// Linear Rec. 709 luminance.
 static inline float float3_luminance(Float3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
@@ -30,21 +34,30 @@ static inline void float3_frame(Float3 n, Float3 *a, Float3 *b) {
     *b = float3(q, sign + n.y * n.y * p, -n.y);
 }
 
-/// Rotates by the unit quaternion q = (x, y, z, w), or back for sign = -1.
-static inline Float3 float3_rotate(const float q[4], Float3 v, float sign) {
-    Float3 u = float3_scale(float3_load(q), sign), t = float3_scale(float3_cross(u, v), 2);
-    return float3_add(float3_mad(v, t, q[3]), float3_cross(u, t));
-}
-
 // one instruction each, where fminf and fmaxf are calls; b if either is NaN
 static inline float minf(float a, float b) { return a < b ? a : b; }
 static inline float maxf(float a, float b) { return a > b ? a : b; }
 static inline float clampf(float x, float low, float high) { return x < low ? low : x > high ? high : x; }
 static inline float mixf(float a, float b, float s) { return a + (b - a) * s; }
+
 /// 0 below a, 1 above b, the cubic 3x^2 - 2x^3 between.
 static inline float stepf(float a, float b, float x) {
     float s = clampf((x - a) / (b - a), 0, 1);
     return s * s * (3 - 2 * s);
+}
+
+/// A linear value, 0 to 1, as sRGB encodes it (IEC 61966-2-1).
+static inline float srgb_encode(float linear) {
+    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
+}
+
+/// Four numbers that are computed together.
+typedef float Four __attribute__((vector_size(16)));
+
+static inline Four four_load(const float *p) {
+    Four four;
+    memcpy(&four, p, sizeof four);
+    return four;
 }
 
 #endif

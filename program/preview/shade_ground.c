@@ -37,6 +37,7 @@ static Plank find_plank(uint32_t seed, float x, float y) {
 static float year_rings(const Plank *p, uint32_t seed, float footprint) {
     float u = p->along + p->shift, bend = 0.011f * noise2(u * 2.3f, p->across * 9, seed);
     bend += 0.0022f * noise2(u * 9, p->across * 40, seed + 1);
+
     // the trunk's axis is below the plank and rises along it
     float aside = p->across + 0.09f * (p->hue - 0.5f) + bend;
     float depth = 0.012f + 0.09f * p->tone + 0.05f * (p->along - 0.6f);
@@ -47,6 +48,7 @@ static float year_rings(const Plank *p, uint32_t seed, float footprint) {
     float strength = 0.45f + 0.55f * hash_unit((uint32_t)ring * 0x27d4eb2fu + seed + (uint32_t)(1024 * p->tone));
     float slope = maxf(fabsf(aside) / maxf(radius, 1e-4f), 0.12f); // slope of the cut through the rings
     float late = stepf(0.25f, 0.9f, within) * (1 - stepf(0.9f, 1.0f, within));
+
     return mixf(0.33f, late, visible(0.0035f / slope, footprint)) * strength;
 }
 
@@ -63,9 +65,11 @@ static void wood(const Preview *preview, Float3 position, float footprint, Table
     float value = 1.10f + 0.34f * (p.tone - 0.5f) - 0.50f * late + 0.055f * fibre + 0.10f * blotch + 0.05f * wear;
     value += 0.05f * hair;
     value *= 1 - 0.38f * stepf(0.25f, 0.7f, pores);
+
     // a joint: dark and slightly soft, with a bevel next to it
     float soft = maxf(0.0009f, 0.7f * footprint), joint = 1 - stepf(0.0002f, soft + 0.0002f, p.edge);
     value *= 1 - 0.8f * joint * minf(1, 0.0016f / footprint);
+
     // late wood is redder, early wood more golden; planks differ
     float red = clampf(0.35f * late + 0.5f * (p.hue - 0.5f), -0.3f, 0.5f);
     table->albedo = float3_scale(float3(1 + 0.22f * red, 1 - 0.10f * red, 1 - 0.42f * red), maxf(value, 0.04f));
@@ -94,6 +98,7 @@ static void stone(const Preview *preview, Float3 position, float footprint, Tabl
     float speck = noise2(x * 900, y * 900, seed + 6) * visible(0.0011f, footprint);
     float value = 0.95f + 0.30f * cloud + 0.22f * patch + 0.13f * rough + 0.10f * grain;
     value += 0.35f * stepf(0.55f, 0.9f, speck) - 0.2f * stepf(0.5f, 0.9f, -speck);
+
     // pale veins of varying thickness that break off
     float line = fabsf(noise2((x + warp + fold) * 7.5f + 3, (y + fold + warp) * 2.6f, seed + 7));
     float width = 0.008f + 0.022f * (0.5f + 0.5f * noise2(x * 21, y * 21, seed + 8));

@@ -9,9 +9,28 @@
 // isolines move by delta for any width of the front, so they become ragged and hide the grid; k is 1 for triangles of 2
 // mm and more and decreases for finer ones, which are ragged themselves. The colours follow b' and P', because browned
 // paper stays brown: white - yellow - tan - brown by ln(P' - 293 K), which is linear in the distance to the front; char
-// by b' > 0.1, ash by b' > 0.8 once it has cooled (shade_ash.c), ember at b' = 0.74 (shade_ember.c).
+// by b' > 0.1, ash by b' > 0.8 once it has cooled, ember at b' = 0.74.
 
-#include "preview/shade_paper.h"
+#include "preview/internal.h"
+
+/// The paper at a hit, at the picture's scale.
+typedef struct Bent {
+    Float3 position;               ///< for noise
+    float burn, temperature, peak; ///< b', T' and P'
+    float coarse, medium, fine;    ///< the noise that perturbed them, [-1, 1]
+} Bent;
+
+/// Noise whose features are `millimetres` wide, 0 where a pixel no longer resolves it.
+static inline float paper_noise(Float3 position, float millimetres, float footprint, uint32_t seed) {
+    float visible = 1.6f - footprint * 1000 / millimetres * 0.8f;
+    if (visible <= 0) return 0;
+    return minf(visible, 1) * noise3(float3_scale(position, 1000 / millimetres), seed);
+}
+
+/// Thin lines where noise changes sign. 1 on the line.
+static inline float ridge(float n, float width) { return 1 - stepf(0, width, fabsf(n)); }
+
+// ---- fields
 
 /// Linear colours that multiply the paper's, by its scorching in [0, 1].
 static Float3 scorch_colour(float s) {
@@ -31,7 +50,7 @@ static Float3 askew(Float3 r) {
                   -0.1905f * r.x + 0.3481f * r.y + 0.9179f * r.z);
 }
 
-void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperState *state) {
+void paper_state(const PreviewScene *scene, uint32_t triangle, float u, float v, PaperState *state) {
     const uint32_t *t = scene->triangles[triangle];
     const PaperVertex *a = &scene->vertices[t[0]], *b = &scene->vertices[t[1]], *c = &scene->vertices[t[2]];
     float w = 1 - u - v, min = minf(a->rim, minf(b->rim, c->rim));
@@ -66,6 +85,7 @@ static Bent shade_paper_bend(const PaperState *state, float footprint) {
     bent.burn = state->burn + slope * delta + inside * (0.03f * bent.coarse + 0.05f * bent.medium + 0.03f * bent.fine);
     float jitter = (0.17f * bent.coarse + 0.08f * bent.medium + 0.025f * bent.fine) * (1 - 0.6f * inside);
     float peak = maxf(state->peak, state->temperature);
+
     // 0 where there was hardly any heat
     bent.temperature = state->temperature + (state->temperature - 293) * jitter * stepf(320, 420, state->temperature);
     float steep = minf(state->heat_gradient, 1.2e5f);
@@ -73,7 +93,8 @@ static Bent shade_paper_bend(const PaperState *state, float footprint) {
     return bent;
 }
 
-float paper_cracks(const Bent *bent, float millimetres, float width, float footprint) {
+/// Lines between scattered scales, of varying width. 1 on a line.
+static float paper_cracks(const Bent *bent, float millimetres, float width, float footprint) {
     Float3 p = float3_mad(bent->position, float3(bent->medium, bent->fine, bent->coarse), 0.5e-3f);
     float min = 0.5f * footprint * 1000 / millimetres; // at least a pixel wide, but paler
     float open = width * maxf(0, 0.75f + 0.9f * bent->coarse + 0.5f * bent->medium);
@@ -81,7 +102,7 @@ float paper_cracks(const Bent *bent, float millimetres, float width, float footp
     return minf(1, open / min) * (1 - stepf(0.4f, 1, wall / maxf(open, min)));
 }
 
-/// `folded`: the height is the noise's absolute value, with an edge where it changes sign, and steep slopes are
+/// Tilts the normal by the gradient of noise of that size, as crumpling does. `folded`: the height is the noise's absolute value, with an edge where it changes sign, and steep slopes are
 /// flattened.
 static void tilt(Float3 position, float millimetres, float height, bool folded, uint32_t seed, Point *point) {
     height *= clampf(1.6f - point->footprint * 1000 / millimetres, 0, 1);
@@ -93,18 +114,139 @@ static void tilt(Float3 position, float millimetres, float height, bool folded, 
         float edge = clampf(n * 14, -1, 1), steep = float3_length(slope);
         slope = float3_scale(slope, edge / (0.5f + 0.5f * steep));
     }
+
     slope = float3_mad(slope, point->normal, -float3_dot(slope, point->normal));
     Float3 tilted = float3_unit_or(float3_mad(point->normal, slope, -height), point->normal);
     if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
 }
 
-void paper_crumple(Float3 position, float millimetres, float height, uint32_t seed, Point *point) {
-    tilt(position, millimetres, height, false, seed, point);
+// ---- ash
+
+// Ash: the remaining leaf of mineral fibres, thin enough to transmit light. It is sooty at first and pales within about
+// ten seconds, in patches; veins and the rims of holes are palest. Print remains on it as a change of tone.
+
+/// The share of ash, 0 to 1.
+static float ash_amount(const Bent *bent) {
+    return stepf(0.78f, 0.94f, bent->burn + 0.06f * bent->coarse) * (1 - 0.75f * stepf(760, 1000, bent->temperature));
 }
 
-void paper_fold(Float3 position, float millimetres, float height, uint32_t seed, Point *point) {
-    tilt(position, millimetres, height, true, seed, point);
+/// Noise that wears ash to lace: holes above 0.7.
+static float ash_lace(const Bent *bent, float footprint) {
+    return paper_noise(bent->position, 2.6f, footprint, 15) + 0.25f * bent->fine - 0.45f * bent->coarse;
 }
+
+static void ash_shade(const PaperState *state, const Bent *bent, float ink, Point *point) {
+    float amount = ash_amount(bent), size = point->footprint;
+    if (amount <= 0.01f) return;
+
+    // veins: creases of the shrinking leaf, long, fine and forking
+    Float3 bowed = float3_mad(bent->position, float3(bent->medium, bent->coarse, bent->fine), 1.1e-3f);
+    float large = ridge(paper_noise(bowed, 8.5f, size, 14), 0.10f);
+    float small = ridge(paper_noise(float3_mad(bowed, float3(1, -1, 1), 2e-3f * bent->coarse), 3.4f, size, 18), 0.13f);
+    float vein = maxf(large, 0.55f * small);
+
+    // fibres lie along a direction that wanders over the sheet
+    Float3 p = bent->position;
+    float wander = 2.4f * noise3(float3_scale(p, 110), 11), c = cosf(wander), s = sinf(wander);
+    Float3 along = float3(0.16f * (c * p.x + s * p.y), c * p.y - s * p.x, p.z);
+    float fibre = clampf(1.6f - size * 1400, 0, 1) * ridge(noise3(float3_scale(along, 2100), 12), 0.5f);
+
+    float cloud = paper_noise(p, 14, size, 19) + 0.5f * bent->coarse + 0.2f * bent->medium;
+    float pale = stepf(1, 16, state->age + 5 * cloud), rim = stepf(0.25f, 0.6f, ash_lace(bent, size));
+    float value = mixf(0.034f, 0.20f, pale) + (0.010f + 0.06f * pale) * cloud + (0.02f + 0.06f * pale) * vein;
+    value += (0.006f + 0.022f * pale) * fibre + 0.006f * bent->fine;
+    value += (0.03f + 0.07f * pale) * maxf(rim, stepf(0.35f, 0.95f, state->rim + 0.25f * bent->fine));
+
+    Float3 tone = float3_mix(float3(0.98f, 0.99f, 1.03f), float3(1.03f, 1.0f, 0.95f), pale);
+    Float3 grey = float3_scale(tone, clampf(value * (1 - 0.4f * ink), 0.02f, 0.5f));
+    point->albedo = float3_mix(point->albedo, grey, amount);
+    point->gloss *= 1 - 0.8f * amount;
+    point->mirror = mixf(point->mirror, 0.55f - 0.25f * pale, amount);
+    point->transmission = mixf(point->transmission, 0.28f, amount);
+    Float3 folded = float3_mad(p, float3(bent->coarse, bent->medium, -bent->coarse), 0.8e-3f);
+    tilt(folded, 8.5f, 0.55f * amount, true, 16, point);
+    tilt(folded, 3.4f, 0.26f * amount, true, 17, point);
+}
+
+// ---- embers
+
+// Glow: the line where char turns to ash, a Gaussian of the distance to the isoline b' = EMBER_BURN,
+//
+//     d = (b' - EMBER_BURN) / |grad b|,   glow = blackbody(T') exp(-(d / w)^2),   w about EMBER_WIDTH,
+//
+// steep towards the char, slower to fade towards the ash. It is thinned, thickened and broken by noise that crawls
+// along the paper, brighter where the air supply varies, and flickers. Sparks creep behind it: a spot of the ash glows
+// again for a moment when the time since its ignition passes a delay given by noise, so that lines of equal delay
+// wander over the ash.
+
+static float seconds(const Preview *preview) { return (float)fmod(preview->time, 4096.0); }
+
+float ember_air(const Preview *preview, Float3 p) {
+    float t = seconds(preview);
+    float slow = noise3(float3(21 * p.x + 0.8f * t, 21 * p.y - 0.5f * t, 21 * p.z - 1.7f * t), 51);
+    float quick = noise3(float3(55 * p.x, 55 * p.y, 55 * p.z - 7.0f * t), 52);
+    return clampf(1 + 0.42f * slow + 0.22f * quick, 0.3f, 1.7f);
+}
+
+/// Activity of the line at a point, 0 (dead) to 1.
+static float line_life(const Preview *preview, const Bent *bent) {
+    float t = seconds(preview);
+    Float3 drift = float3_add(float3_scale(bent->position, 190), float3(0.5f * t, -0.35f * t, 0.8f * t));
+    Float3 patch = float3_add(float3_scale(bent->position, 62), float3(-0.12f * t, 0.2f * t, 0.15f * t));
+    return stepf(-0.22f, 0.62f,
+                 0.75f * noise3(drift, 21) + 0.5f * noise3(patch, 22) + 0.35f * bent->medium + 0.2f * bent->fine);
+}
+
+static Float3 ember_line(const Preview *preview, const PaperState *state, const Bent *bent, float air,
+                         float footprint) {
+    float activity = ember_activity(state->burn_rate);
+    if (activity < 0.02f || state->temperature < BLACKBODY_MIN) return float3(0, 0, 0);
+    float life = line_life(preview, bent) * minf(air, 1.2f);
+    float distance = (bent->burn - EMBER_BURN) / maxf(state->gradient, 20.0f);
+    float width = EMBER_WIDTH * (0.42f + 0.66f * life), x = fabsf(distance) / width;
+    float profile = distance > 0 ? 0.72f * expf(-0.5f * x * x) + 0.28f * expf(-0.8f * x) : expf(-x * x);
+    float temperature = ember_temperature(state->temperature) + 210 * (life - 0.6f) + 60 * bent->fine;
+    if (distance > 0) temperature -= 45 * minf(x, 3);
+    float strength = activity * profile * (0.05f + 0.95f * life * life) * (0.85f + 0.4f * bent->fine) * air;
+
+    // red-hot cracks in the char next to it
+    float near = 0.10f * activity * life * expf(-0.05f * x * x);
+    if (near > 0.003f) strength += near * paper_cracks(bent, 1.6f, 0.12f, footprint);
+    return float3_scale(blackbody_glow(preview->blackbody, temperature), EMBER_GAIN * maxf(strength, 0));
+}
+
+/// A leaf of char that glows away, at its own temperature where it burns. Its heat spreads over a cell or two, but real
+/// ember lines are thinner: they follow threads of noise, and break.
+static Float3 leaf(const Preview *preview, const PaperState *state, const Bent *bent, float air) {
+    float activity = ember_activity(state->glowing);
+    if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return float3(0, 0, 0);
+    float life = line_life(preview, bent) * minf(air, 1.2f);
+    float temperature =
+        ember_temperature(state->temperature) + 130 * (life - 0.5f) + 70 * bent->fine + 40 * bent->medium;
+    float strength = activity * (0.15f + 0.85f * life) * air;
+    return float3_scale(blackbody_glow(preview->blackbody, temperature), EMBER_GAIN * strength);
+}
+
+static Float3 sparks(const Preview *preview, const PaperState *state, const Bent *bent, float air, float footprint) {
+    float warm = stepf(420, 640, state->temperature) * stepf(0.76f, 0.86f, bent->burn);
+    if (warm <= 0 || state->age <= 0) return float3(0, 0, 0);
+    float patch = stepf(0.10f, 0.55f, noise3(float3_scale(bent->position, 85), 24) + 0.3f * bent->medium);
+    if (patch <= 0) return float3(0, 0, 0);
+    float delay = noise3(float3_scale(bent->position, 240), 23) + 0.5f * bent->medium + 0.25f * bent->fine;
+    float late = (state->age - 3.2f) * 0.28f - delay;
+    float glow = warm * patch * air * expf(-70 * late * late) * clampf(1.6f - footprint * 900, 0.3f, 1);
+    return float3_scale(blackbody_glow(preview->blackbody, 1035 + 50 * bent->fine), 1.5f * glow);
+}
+
+static void ember_shade(const Preview *preview, const PaperState *state, const Bent *bent, Point *point) {
+    if (state->burn < 0.2f || state->temperature < 420) return;
+    float air = ember_air(preview, point->position);
+    point->glow = float3_add(ember_line(preview, state, bent, air, point->footprint),
+                             sparks(preview, state, bent, air, point->footprint));
+    point->glow = float3_add(point->glow, leaf(preview, state, bent, air));
+}
+
+// ---- the sheet
 
 /// Burnt borders crumble, so that straight cuts become ragged within a triangle, and ash wears.
 static bool is_hole(const PaperState *state, const Bent *bent, float footprint) {
@@ -134,41 +276,33 @@ static void fresh(const Preview *preview, const PaperState *state, Point *point)
                                     0.45f * point->footprint * texture->texels_per_metre);
         if (preview->def.colours) colour = float3_mul(colour, float3_load(preview->def.colours[state->sheet]));
     }
+
     // uneven density of the fibres
     float cloud = 1 + 0.018f * paper_noise(askew(state->rest), 2.4f, point->footprint, 5);
     point->albedo = float3_scale(float3_mul(white, colour), cloud);
     point->transmission = paper_transmittance(preview, state->sheet);
 }
 
-/// Browning by heat, 0 to 0.76.
-static float heat_scorch(float peak) {
-    const float first = 55, last = 360; // K above a room's
-    float above = peak - 293;
-    return above > first ? 0.76f * minf(logf(above / first) / logf(last / first), 1) : 0;
-}
-
 /// Char: browner where it is thin, bluer where complete; print (1) remains readable on it, as a dull grey.
-static Float3 char_colour(const Bent *bent, float ink, float footprint) {
-    float value = 1 + 0.35f * bent->medium + 0.3f * bent->fine + 0.35f * bent->coarse;
-    Float3 soot =
-        float3_mix(float3(0.034f, 0.020f, 0.012f), float3(0.0125f, 0.0125f, 0.0132f), stepf(0.22f, 0.62f, bent->burn));
-    float craze = paper_cracks(bent, 2.1f, 0.05f, footprint);
-    Float3 colour = float3_scale(soot, value * (1 - 0.6f * craze));
-    return float3_mad(colour, float3(0.024f, 0.024f, 0.026f), ink);
-}
-
 static void char_shade(const Bent *bent, Float3 burnt, float ink, Point *point) {
     float black = stepf(0.12f, 0.46f, bent->burn);
     point->albedo = burnt;
     if (black <= 0) return;
-    point->albedo = float3_mix(burnt, char_colour(bent, ink, point->footprint), black);
+
+    float value = 1 + 0.35f * bent->medium + 0.3f * bent->fine + 0.35f * bent->coarse;
+    Float3 soot =
+        float3_mix(float3(0.034f, 0.020f, 0.012f), float3(0.0125f, 0.0125f, 0.0132f), stepf(0.22f, 0.62f, bent->burn));
+    float craze = paper_cracks(bent, 2.1f, 0.05f, point->footprint);
+    Float3 colour = float3_scale(soot, value * (1 - 0.6f * craze));
+    point->albedo = float3_mix(burnt, float3_mad(colour, float3(0.024f, 0.024f, 0.026f), ink), black);
+
     // tar makes it shine
     float tar = clampf(0.75f + 0.5f * bent->coarse - 0.5f * ink, 0.2f, 1.2f);
     point->gloss = 0.055f * black * tar;
     point->shininess = 14;
     point->mirror = 0.45f * black * tar;
-    paper_fold(bent->position, 3.6f, 0.34f * black, 32, point);
-    paper_crumple(bent->position, 0.9f, 0.11f * black, 31, point);
+    tilt(bent->position, 3.6f, 0.34f * black, true, 32, point);
+    tilt(bent->position, 0.9f, 0.11f * black, false, 31, point);
 }
 
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point) {
@@ -178,8 +312,11 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
 
     Bent bent = shade_paper_bend(state, point->footprint);
     if (is_hole(state, &bent, point->footprint)) return false;
-    float by_heat = heat_scorch(bent.peak), by_burn = 1 - expf(-7.5f * maxf(bent.burn, 0));
-    float scorch = 1 - (1 - by_heat) * (1 - by_burn);
+
+    // browned by heat, up to 0.76, and by what has burnt
+    const float first = 55, last = 360, above = bent.peak - 293; // K above a room's
+    float by_heat = above > first ? 0.76f * minf(logf(above / first) / logf(last / first), 1) : 0;
+    float by_burn = 1 - expf(-7.5f * maxf(bent.burn, 0)), scorch = 1 - (1 - by_heat) * (1 - by_burn);
     float ink = 1 - clampf(float3_luminance(point->albedo), 0, 1), print = stepf(0.45f, 0.8f, ink);
     Float3 burnt = float3_mul(scorch_colour(scorch),
                               float3_mix(point->albedo, float3(0.80f, 0.80f, 0.80f), stepf(0.6f, 1.0f, scorch)));
@@ -187,5 +324,6 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
     char_shade(&bent, burnt, print, point);
     ash_shade(state, &bent, print, point);
     ember_shade(preview, state, &bent, point);
+
     return true;
 }

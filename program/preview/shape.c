@@ -1,4 +1,4 @@
-// Rays against spheres, boxes and capsules, in closed form.
+// Balls, boxes, capsules and solids: rays against them, and their appearance.
 //
 // Sphere: |o + t d - c|^2 = r^2. Capsule: the segment's cylinder, then its two end spheres. Box: slabs in the
 // box's frame (Kay & Kajiya 1986).
@@ -19,28 +19,33 @@ static float box(const PreviewShape *shape, Float3 o, Float3 d, float near, floa
     const float origin[3] = {o.x, o.y, o.z}, direction[3] = {d.x, d.y, d.z};
     float enter = -INFINITY, leave = INFINITY;
     int enter_axis = 0, leave_axis = 0;
+
     for (int axis = 0; axis < 3; axis++) {
         float h = shape->half_size[axis];
         if (fabsf(direction[axis]) < 1e-12f) {
             if (fabsf(origin[axis]) > h) return -1;
             continue;
         }
+
         float s = direction[axis] > 0 ? h : -h;
         float t0 = (-s - origin[axis]) / direction[axis], t1 = (s - origin[axis]) / direction[axis];
         if (t0 > enter) {
             enter = t0;
             enter_axis = axis;
         }
+
         if (t1 < leave) {
             leave = t1;
             leave_axis = axis;
         }
     }
+
     if (enter > leave) return -1;
     bool outside = enter > near;
     float t = outside ? enter : leave;
     int axis = outside ? enter_axis : leave_axis;
     if (!(t > near && t < far)) return -1;
+
     float n[3] = {0, 0, 0};
     n[axis] = (direction[axis] > 0) == outside ? -1.0f : 1.0f;
     *normal = float3_load(n);
@@ -60,6 +65,7 @@ static float capsule(const PreviewShape *shape, Float3 o, Float3 d, float near, 
             }
         }
     }
+
     for (int side = -1; side <= 1; side += 2) {
         Float3 centre = float3(0, 0, (float)side * half), offset = float3_sub(o, centre);
         float t = sphere(offset, d, r, near, best > 0 ? best : far);
@@ -79,19 +85,20 @@ float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Fl
         if (t > 0) *normal = float3_scale(float3_mad(offset, direction, t), 1 / shape->radius);
         return t;
     }
-    Float3 o = float3_rotate(shape->rotation, offset, -1), d = float3_rotate(shape->rotation, direction, -1),
-           n = {0, 0, 1};
+
+    Float3 o = quat_unrotate(shape->rotation, offset), d = quat_unrotate(shape->rotation, direction), n = {0, 0, 1};
     float t = -1;
     if (shape->kind == SINGE_COLLIDER_BOX) t = box(shape, o, d, near, far, &n);
     if (shape->kind == SINGE_COLLIDER_CAPSULE) t = capsule(shape, o, d, near, far, &n);
     if (shape->facets) t = facets_intersect(shape->facets, o, d, near, far, &n);
-    if (t > 0) *normal = float3_rotate(shape->rotation, n, 1);
+    if (t > 0) *normal = quat_rotate(shape->rotation, n);
+
     return t;
 }
 
 Float3 shape_centre(const PreviewShape *shape) {
     Float3 position = float3_load(shape->position);
-    return shape->facets ? float3_add(position, float3_rotate(shape->rotation, shape->facets->centre, 1)) : position;
+    return shape->facets ? float3_add(position, quat_rotate(shape->rotation, shape->facets->centre)) : position;
 }
 
 float shape_extent(const PreviewShape *shape, float shutter) {
@@ -99,4 +106,33 @@ float shape_extent(const PreviewShape *shape, float shutter) {
     if (shape->facets) return travel + shape->facets->extent;
     if (shape->kind == SINGE_COLLIDER_BOX) return travel + float3_length(float3_load(shape->half_size));
     return travel + shape->radius + (shape->kind == SINGE_COLLIDER_CAPSULE ? 0.5f * shape->height : 0);
+}
+
+// ---- appearance
+
+// Balls, boxes, capsules and solids: matt when cold; hot, they glow like metal, with cooler and darker scale, and a
+// slightly dimmer limb because rough oxide emits less at grazing angles.
+
+#define SHAPE_GAIN 1.35f
+
+void shape_shade(const Preview *preview, const PreviewShape *shape, float moment, Point *point) {
+    point->albedo = float3_load(shape->colour);
+    point->gloss = 0.12f;
+    point->shininess = 40;
+    point->mirror = 0.5f;
+    if (!(shape->temperature > BLACKBODY_MIN)) return;
+
+    float size = shape->kind == SINGE_COLLIDER_BOX ? shape->half_size[0] : shape->radius;
+    if (shape->facets) size = 0.5f * shape->facets->extent;
+    Float3 centre = float3_mad(float3_load(shape->position), float3_load(shape->velocity), moment);
+    Float3 local = quat_unrotate(shape->rotation, float3_sub(point->position, centre));
+    Float3 p = float3_scale(local, 3.5f / maxf(size, 1e-6f));
+    float scale =
+        0.6f * noise3(p, 41) + 0.3f * noise3(float3_scale(p, 2.7f), 42) + 0.2f * noise3(float3_scale(p, 7.1f), 43);
+    float facing = clampf(float3_dot(point->normal, point->view), 0, 1), limb = 0.52f + 0.48f * sqrtf(facing);
+    float temperature = shape->temperature * (1 + 0.04f * scale) - 90 * (1 - facing) * (1 - facing);
+    Float3 glow = blackbody_glow(preview->blackbody, temperature);
+    point->glow = float3_scale(glow, SHAPE_GAIN * limb * (1 + 0.25f * scale));
+    point->albedo = float3_scale(point->albedo, 0.45f);
+    point->mirror = 0.15f;
 }

@@ -3,11 +3,6 @@
 
 #include "preview/internal.h"
 
-static uint8_t texture_encode(float linear) {
-    float s = linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
-    return (uint8_t)(clampf(s, 0, 1) * 255 + 0.5f);
-}
-
 static void texture_halve(const Preview *preview, const Texture *texture, int level, uint8_t *out) {
     const uint8_t *in = texture->levels[level - 1];
     int w = texture->width[level - 1], h = texture->height[level - 1];
@@ -20,7 +15,7 @@ static void texture_halve(const Preview *preview, const Texture *texture, int le
                 float sum = preview->linear[row0[3 * x0 + c]] + preview->linear[row0[3 * x1 + c]] +
                             preview->linear[row1[3 * x0 + c]] + preview->linear[row1[3 * x1 + c]];
                 out[((size_t)y * (size_t)texture->width[level] + (size_t)x) * 3 + (size_t)c] =
-                    texture_encode(0.25f * sum);
+                    (uint8_t)(clampf(srgb_encode(0.25f * sum), 0, 1) * 255 + 0.5f);
             }
         }
     }
@@ -37,10 +32,12 @@ SingeResult texture_create(Preview *preview, Texture *texture, const Image *imag
     texture->width[0] = image->width;
     texture->height[0] = image->height;
     texture->count = 1;
+
     while (texture->count < MIP_LIMIT) {
         int level = texture->count, w = texture->width[level - 1], h = texture->height[level - 1];
         if (w == 1 && h == 1) break;
-        texture->width[level] = (w + 1) / 2, texture->height[level] = (h + 1) / 2;
+        texture->width[level] = (w + 1) / 2;
+        texture->height[level] = (h + 1) / 2;
         uint8_t *out = allocator_resize(preview->allocator, NULL, 0, level_size(texture, level));
         if (!out) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a picture's smaller copies");
         texture->levels[level] = out;
@@ -58,7 +55,7 @@ void texture_free(const Preview *preview, Texture *texture) {
 
 Float3 texture_sample(const Preview *preview, const Texture *texture, float u, float v, float texels) {
     int level = 0;
-    while (level + 1 < texture->count && texels > 1.0f) texels *= 0.5f, level++;
+    for (; level + 1 < texture->count && texels > 1.0f; level++) texels *= 0.5f;
     int w = texture->width[level], h = texture->height[level];
     float x = clampf(u, 0, 1) * (float)w - 0.5f, y = (1 - clampf(v, 0, 1)) * (float)h - 0.5f;
     x = clampf(x, 0, (float)(w - 1));
@@ -69,8 +66,10 @@ Float3 texture_sample(const Preview *preview, const Texture *texture, float u, f
     const uint8_t *a = row0 + x0 * 3, *b = row0 + x1 * 3, *c = row1 + x0 * 3, *d = row1 + x1 * 3;
     const float *linear = preview->linear;
     float out[3];
+
     for (int i = 0; i < 3; i++)
         out[i] = mixf(mixf(linear[a[i]], linear[b[i]], x - (float)x0), mixf(linear[c[i]], linear[d[i]], x - (float)x0),
                       y - (float)y0);
+
     return float3(out[0], out[1], out[2]);
 }

@@ -1,4 +1,4 @@
-// A build without the preview: it draws nothing, but bakes the gas (fire_bake.c).
+// A build without the preview: it draws nothing, but bakes the gas (fire_shade.c).
 #include "preview/internal.h"
 
 bool preview_draws(void) { return false; }

@@ -35,6 +35,7 @@ void *arena_new(SceneArena *arena, size_t count, size_t element_size) {
         arena->failed = 1;
         return NULL;
     }
+
     size_t size = (count * element_size + align - 1) / align * align;
     Block *block = arena->blocks;
     if (!block || block->size - block->used < size) {
@@ -44,10 +45,12 @@ void *arena_new(SceneArena *arena, size_t count, size_t element_size) {
             arena->failed = 1;
             return NULL;
         }
+
         block->size = room;
         block->next = arena->blocks;
         arena->blocks = block;
     }
+
     void *result = (char *)block->bytes + block->used;
     block->used += size;
     return result;

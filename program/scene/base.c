@@ -37,27 +37,18 @@ static bool ends_in(const char *text, const char *ending) {
     return length > tail && strcmp(text + length - tail, ending) == 0;
 }
 
-/// Names of files have an ending or a slash; names of built-in materials have neither.
-static bool names_file(const char *text) {
-    return strchr(text, '/') || ends_in(text, ".yaml") || ends_in(text, ".yml") || ends_in(text, ".json");
-}
-
-/// "dir/mine.yaml" → "mine"
-static char *base_stem(SceneArena *arena, const char *path) {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
-    return arena_text(arena, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
-}
-
 /// The text of that name, already read or new; NULL when out of memory.
 static SceneText *base_text(Reader *reader, const char *name, const char *bytes, size_t size) {
     SceneText *text = arena_new(reader->arena, 1, sizeof *text);
     char *copy = arena_text(reader->arena, bytes, size);
     if (!text || !copy) return NULL;
+
     text->name = name;
     text->bytes = copy;
     text->size = size;
     text->next = reader->text->files;
     text->number = text->next ? text->next->number + 1 : 1;
+
     return reader->text->files = text;
 }
 
@@ -67,7 +58,7 @@ static SceneText *base_known(const Reader *reader, const char *name) {
     return text;
 }
 
-static SceneText *base_builtin(Reader *reader, const Node *node) {
+static SceneText *base_builtin(Reader *reader, const YamlNode *node) {
     Nearest nearest = {.word = node->text};
     const SceneBuiltin *builtin = scene_builtins;
     for (; builtin->name && strcmp(builtin->name, node->text) != 0; builtin++) nearest_offer(&nearest, builtin->name);
@@ -75,17 +66,19 @@ static SceneText *base_builtin(Reader *reader, const Node *node) {
         SceneText *known = base_known(reader, builtin->name);
         return known ? known : base_text(reader, builtin->name, builtin->bytes, builtin->size);
     }
+
     char seen[NODE_WORDS], hint[80], names[160];
     message_add(reader->messages, reader->text, node->location,
                 "there is no material %s; the built-in ones are %s; a file of your own needs its extension "
                 "(mine.yaml)%s",
                 node_describe(node, seen, sizeof seen), base_names(names, sizeof names),
                 nearest_hint(&nearest, hint, sizeof hint));
+
     return NULL;
 }
 
 /// The text of a file; *file says where it is.
-static SceneText *base_file(Reader *reader, const SchemaRow *row, const Node *node, SceneFile *file) {
+static SceneText *base_file(Reader *reader, const SchemaRow *row, const YamlNode *node, SceneFile *file) {
     uint32_t before = message_total(reader->messages);
     Bytes bytes = {0};
     SingeError error;
@@ -97,11 +90,12 @@ static SceneText *base_file(Reader *reader, const SchemaRow *row, const Node *no
         message_add(reader->messages, reader->text, node->location, "a material cannot be read: %s", error.message);
     else text = base_text(reader, file->path, (const char *)bytes.data, bytes.size);
     bytes_free(&bytes);
+
     return text;
 }
 
 /// Whether the file may be read: not if it is being read already.
-static bool chain_open(Reader *reader, const Node *node, const SceneFile *file, BaseChain *link) {
+static bool chain_open(Reader *reader, const YamlNode *node, const SceneFile *file, BaseChain *link) {
     if (file->path && stat(file->path, &link->status)) link->status = (struct stat){0};
     for (const BaseChain *outer = link->outer; outer; outer = outer->outer)
         if (outer->text == link->text || (file->path && outer->status.st_ino == link->status.st_ino &&
@@ -111,45 +105,55 @@ static bool chain_open(Reader *reader, const Node *node, const SceneFile *file, 
             return false;
         }
     if (link->depth <= BASES_MAX) return true;
+
     message_add(reader->messages, reader->text, node->location, "materials are based on each other more than %d deep",
                 BASES_MAX);
     return false;
 }
 
-/// "materials/" of "materials/mine.yaml"
-static const char *base_folder(SceneArena *arena, const SceneFile *file) {
-    const char *slash = file->name ? strrchr(file->name, '/') : NULL;
-    return slash ? arena_text(arena, file->name, (size_t)(slash + 1 - file->name)) : "";
-}
-
-void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMaterial *material) {
-    SceneFile file = {0};
+void read_base(Reader *reader, const SchemaRow *row, const YamlNode *node, SceneMaterial *material) {
     if (!value_is_text(node)) {
         value_wrong(reader, node, row);
         return;
     }
-    bool from_file = names_file(node->text);
+
+    // names of files have an ending or a slash; names of built-in materials have neither
+    const char *word = node->text;
+    bool from_file = strchr(word, '/') || ends_in(word, ".yaml") || ends_in(word, ".yml") || ends_in(word, ".json");
     if (from_file && !reader->base_dir) // files are not read
         return;
+    SceneFile file = {0};
     SceneText *text = from_file ? base_file(reader, row, node, &file) : base_builtin(reader, node);
     BaseChain link = {.outer = reader->chain, .text = text, .depth = reader->chain ? reader->chain->depth + 1 : 1};
     if (!text || !chain_open(reader, node, &file, &link)) return;
-    Reader inner = *reader;
-    inner.chain = &link;
-    inner.prefix = base_folder(reader->arena, &file);
+
     if (!text->was_read)
         text->root = tree_read(reader->arena, reader->text, text->bytes, text->size,
                                (SceneLocation){.file = text->number}, reader->messages);
     text->was_read = true;
-    Node *root = text->root;
-    if (!root || !inner.prefix) return;
+    YamlNode *root = text->root;
+    if (!root) return;
+
     char seen[NODE_WORDS];
     if (root->kind != NODE_MAP) {
         message_add(reader->messages, reader->text, root->location, "a material must be a map (key: value), not %s",
                     node_describe(root, seen, sizeof seen));
         return;
     }
+
+    // files that this one names are relative to its folder, "materials/" of "materials/mine.yaml"
+    Reader inner = *reader;
+    const char *slash = file.name ? strrchr(file.name, '/') : NULL;
+    inner.chain = &link;
+    inner.prefix = slash ? arena_text(reader->arena, file.name, (size_t)(slash + 1 - file.name)) : "";
+    if (!inner.prefix) return;
+
     schema_spell_out(reader->arena, &schema_material, root);
     schema_read(&inner, &schema_material, root, material);
-    if (!node_find(root, "name")) material->name = base_stem(reader->arena, text->name);
+
+    // "dir/mine.yaml" is called mine
+    if (!node_find(root, "name")) {
+        const char *last = strrchr(text->name, '/'), *name = last ? last + 1 : text->name, *dot = strrchr(name, '.');
+        material->name = arena_text(reader->arena, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
+    }
 }

@@ -2,15 +2,16 @@
 #include "common/printable.h"
 #include "scene/schema.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static void complain(Reader *reader, SceneLocation location, const char *what) {
     message_add(reader->messages, reader->text, location, "%s", what);
 }
 
-// Refuses lists whose times do not increase.
-static void check_times(Reader *reader, const Node *list, const void *items, size_t size, uint32_t count) {
-    const Node *node = list && list->kind == NODE_LIST ? list->first : NULL;
+/// Refuses lists whose times do not increase.
+static void check_times(Reader *reader, const YamlNode *list, const void *items, size_t size, uint32_t count) {
+    const YamlNode *node = list && list->kind == NODE_LIST ? list->first : NULL;
     float before = -1;
     for (uint32_t i = 0; node && i < count; i++, node = node->next) {
         float time; // the first member of every kind of entry
@@ -21,91 +22,95 @@ static void check_times(Reader *reader, const Node *list, const void *items, siz
     }
 }
 
-// Refuses `path` together with its short forms. Returns whether one of them is given.
-static bool check_path(Reader *reader, const Node *map, const SceneKey *keys, uint32_t count) {
-    const Node *path = node_find(map, "path"), *position = node_find(map, "position");
-    const Node *rotation = node_find(map, "rotation"), *other = position ? position : rotation;
+/// Refuses `path` together with its short forms. Returns whether one of them is given.
+static bool check_path(Reader *reader, const YamlNode *map, const SceneKey *keys, uint32_t count) {
+    const YamlNode *path = node_find(map, "path"), *position = node_find(map, "position");
+    const YamlNode *rotation = node_find(map, "rotation"), *other = position ? position : rotation;
     if (path && other)
         message_add(reader->messages, reader->text, other->key_location,
                     "'%s' is short for a path of one entry; give it or 'path'", other->key);
     if (path && path->kind == NODE_LIST && path->count == 0)
         complain(reader, path->location, "a path needs at least one entry");
     check_times(reader, path, keys, sizeof *keys, count);
+
     return path || position;
 }
 
 /// Measured values of the base do not hold for a changed material.
-void finish_material(Reader *reader, const Node *map, void *object) {
+void finish_material(Reader *reader, const YamlNode *map, void *object) {
     SceneMaterial *material = object;
-    const Node *measured = node_find(map, "measured");
-    for (const Node *child = map->first; child && !measured && node_find(map, "base"); child = child->next)
+    const YamlNode *measured = node_find(map, "measured");
+    for (const YamlNode *child = map->first; child && !measured && node_find(map, "base"); child = child->next)
         if (strcmp(child->key, "base") != 0 && strcmp(child->key, "name") != 0) material->measured = (SceneMeasured){0};
     const float *ranges[] = {material->measured.speed, material->measured.temperature, material->measured.residue};
     static const char *const keys[] = {"speed", "temperature", "residue"};
+
     for (int i = 0; i < 3; i++)
         if (measured && node_find(measured, keys[i]) && ranges[i][0] > ranges[i][1])
             message_add(reader->messages, reader->text, node_find(measured, keys[i])->location,
                         "%s must not begin above its end", keys[i]);
-    const Node *thickening = node_find(map, "thickening");
+    const YamlNode *thickening = node_find(map, "thickening");
     float value = material->def.thickening;
     if (thickening && value > 0 && value < 1)
         complain(reader, thickening->location, "thickening must be 0 (as little as the cells need), or at least 1");
 }
 
-void finish_sheet(Reader *reader, const Node *map, void *object) {
+void finish_sheet(Reader *reader, const YamlNode *map, void *object) {
     SceneSheet *sheet = object;
-    const Node *mesh = node_find(map, "mesh"), *grid = node_find(map, "grid");
+    const YamlNode *mesh = node_find(map, "mesh"), *grid = node_find(map, "grid");
     if (mesh && grid) complain(reader, grid->key_location, "'grid' and 'mesh' exclude each other; give one");
     if (!mesh && !grid) complain(reader, map->location, "a sheet needs 'mesh' (a file) or 'grid' (size and cells)");
     if (grid && (double)sheet->grid.cells[0] * sheet->grid.cells[1] > 100e6)
         complain(reader, grid->location, "a grid has at most 100 million cells");
 }
 
-void finish_source(Reader *reader, const Node *map, void *object) {
+void finish_source(Reader *reader, const YamlNode *map, void *object) {
     SceneSource *source = object;
     if (!node_find(map, "kind")) return;
     if (source->def.kind == SINGE_SOURCE_BALL && !check_path(reader, map, source->keys, source->key_count))
         complain(reader, map->location, "a ball needs 'path' or 'position'");
-    const Node *end = node_find(map, "end");
+    const YamlNode *end = node_find(map, "end");
     if (source->def.end < source->def.start)
         complain(reader, end ? end->location : map->location, "a source must not end before its start");
     check_times(reader, node_find(map, "strength"), source->strength, sizeof *source->strength, source->strength_count);
 }
 
-void finish_collider(Reader *reader, const Node *map, void *object) {
+void finish_collider(Reader *reader, const YamlNode *map, void *object) {
     SceneCollider *collider = object;
     check_path(reader, map, collider->keys, collider->key_count);
-    const Node *mesh = node_find(map, "mesh"), *motion = node_find(map, "motion");
+    const YamlNode *mesh = node_find(map, "mesh"), *motion = node_find(map, "motion");
     if (!node_find(map, "kind") || collider->def.kind != SINGE_COLLIDER_MESH) return;
     if (mesh && motion) complain(reader, motion->key_location, "'mesh' and 'motion' exclude each other; give one");
     if (!mesh && !motion)
         complain(reader, map->location, "a mesh needs 'mesh' (a file) or 'motion' (a file for each frame)");
 }
 
-void finish_pin(Reader *reader, const Node *map, void *object) {
+void finish_pin(Reader *reader, const YamlNode *map, void *object) {
     ScenePin *pin = object;
     if (!node_find(map, "points") && !node_find(map, "vertices"))
         complain(reader, map->location, "a pin needs 'points' or 'vertices'");
-    const Node *path = node_find(map, "path"), *motion = node_find(map, "motion");
+    const YamlNode *path = node_find(map, "path"), *motion = node_find(map, "motion");
     check_times(reader, path, pin->keys, sizeof *pin->keys, pin->key_count);
     if (path && motion) complain(reader, motion->key_location, "'path' and 'motion' exclude each other; give one");
 }
 
 /// Whether the scene places the camera; otherwise scene_frame does.
-static bool camera_given(const Node *map) { return node_find(map, "eye") || node_find(map, "target"); }
+static bool camera_given(const YamlNode *map) { return node_find(map, "eye") || node_find(map, "target"); }
 
-void finish_camera(Reader *reader, const Node *map, void *object) {
+void finish_camera(Reader *reader, const YamlNode *map, void *object) {
     const PreviewCamera *camera = object;
     double view[3], cross[3], length = 0, across = 0;
     for (int i = 0; i < 3; i++) {
         view[i] = (double)camera->target[i] - (double)camera->eye[i];
         length += view[i] * view[i];
     }
+
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
         cross[i] = view[j] * (double)camera->up[k] - view[k] * (double)camera->up[j];
         across += cross[i] * cross[i];
     }
+
     const float *up = camera->up;
     const double min = 1.1e-12; // the preview's limit: it squares floats
     if ((double)up[0] * (double)up[0] + (double)up[1] * (double)up[1] + (double)up[2] * (double)up[2] < min)
@@ -115,46 +120,39 @@ void finish_camera(Reader *reader, const Node *map, void *object) {
     else if (!(across > 0)) complain(reader, map->location, "the camera's up must point away from the line of sight");
 }
 
-void finish_preview(Reader *reader, const Node *map, void *object) {
+void finish_preview(Reader *reader, const YamlNode *map, void *object) {
     ScenePreview *preview = object;
     preview->camera_given = camera_given(node_find(map, "camera"));
-    const Node *light = node_find(map, "light"), *direction = node_find(light, "direction");
+    const YamlNode *light = node_find(map, "light"), *direction = node_find(light, "direction");
     const float *d = preview->light_direction;
     if (direction && (double)d[0] * (double)d[0] + (double)d[1] * (double)d[1] + (double)d[2] * (double)d[2] < 1e-18)
         complain(reader, direction->location, "the light's direction must be longer than 1e-9");
 }
 
-// Numbers sheets without a name, and refuses equal names.
-static void check_names(Reader *reader, const Node *list, Scene *scene) {
-    const Node *node = list->first;
-    for (uint32_t i = 0; i < scene->sheet_count && node; i++, node = node->next) {
-        if (!scene->sheets[i].name) {
-            char name[24];
-            int length = snprintf(name, sizeof name, "sheet%u", (unsigned)i + 1);
-            scene->sheets[i].name = arena_text(reader->arena, name, (size_t)length);
+/// Numbers the entries of a list that have no name (`what` is "sheet" or "probe"), and refuses equal names. The name is
+/// at `offset` of an entry's struct.
+static void check_names(Reader *reader, const YamlNode *list, const char *what, void *items, size_t size, size_t offset,
+                        uint32_t count) {
+    const YamlNode *node = list->first;
+    for (uint32_t i = 0; node && i < count; i++, node = node->next) {
+        char **name = (char **)(void *)((char *)items + i * size + offset);
+        char number[24];
+        int length = snprintf(number, sizeof number, "%s%u", what, (unsigned)i + 1);
+        if (!*name) *name = arena_text(reader->arena, number, (size_t)length);
+
+        for (uint32_t j = 0; j < i && *name; j++) {
+            const char *other = *(char **)(void *)((char *)items + j * size + offset);
+            if (!other || strcmp(other, *name) != 0) continue;
+            const YamlNode *given = node_find(node, "name");
+            message_add(reader->messages, reader->text, given ? given->location : node->location,
+                        "two %ss are called '%s'; give each its own name", what, shown(*name).text);
+            break;
         }
-        for (uint32_t j = 0; j < i && scene->sheets[i].name && scene->sheets[j].name; j++)
-            if (strcmp(scene->sheets[i].name, scene->sheets[j].name) == 0) {
-                const Node *name = node_find(node, "name");
-                message_add(reader->messages, reader->text, name ? name->location : node->location,
-                            "two sheets are called '%s'; give each its own name", shown(scene->sheets[i].name).text);
-                break;
-            }
     }
 }
 
-static bool sheet_number(const char *text, uint32_t *number) {
-    uint32_t value = 0;
-    for (const char *c = text; *c; c++) {
-        if (*c < '0' || *c > '9' || c - text > 8) return false;
-        value = value * 10 + (uint32_t)(*c - '0');
-    }
-    *number = value;
-    return *text != 0;
-}
-
-/// Finds the sheet that a pin or a probe names.
-static void resolve_sheet(Reader *reader, const Node *node, const Scene *scene, const char *word, uint32_t *index) {
+/// Finds the sheet that a pin or a probe names, or gives the number of.
+static void resolve_sheet(Reader *reader, const YamlNode *node, const Scene *scene, const char *word, uint32_t *index) {
     Nearest nearest = {.word = word};
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         const char *name = scene->sheets[i].name;
@@ -164,63 +162,64 @@ static void resolve_sheet(Reader *reader, const Node *node, const Scene *scene, 
         }
         if (name) nearest_offer(&nearest, name);
     }
-    if (sheet_number(word, index) && *index < scene->sheet_count) return;
-    const Node *sheet = node_find(node, "sheet");
+
+    const size_t digits = strspn(word, "0123456789");
+    if (digits > 0 && digits < 10 && !word[digits]) {
+        *index = (uint32_t)strtoul(word, NULL, 10);
+        if (*index < scene->sheet_count) return;
+    }
+
+    const YamlNode *sheet = node_find(node, "sheet");
     char hint[80];
     message_add(reader->messages, reader->text, sheet ? sheet->location : node->location, "there is no sheet '%s'%s",
                 shown(word).text, nearest_hint(&nearest, hint, sizeof hint));
 }
 
-/// Numbers probes without a name, and refuses equal names.
-static void check_probes(Reader *reader, const Node *list, Scene *scene) {
-    if (list->count > 1000) {
-        complain(reader, list->location, "a scene has at most 1000 probes");
-        return;
-    }
-    const Node *node = list->first;
-    for (uint32_t i = 0; node && i < scene->probe_count; i++, node = node->next) {
-        SceneProbe *probe = &scene->probes[i];
-        char name[24];
-        const int length = snprintf(name, sizeof name, "probe%u", (unsigned)i + 1);
-        if (!probe->name) probe->name = arena_text(reader->arena, name, (size_t)length);
-        if (probe->sheet && scene->sheet_count) resolve_sheet(reader, node, scene, probe->sheet, &probe->sheet_index);
-        for (uint32_t j = 0; j < i && probe->name; j++)
-            if (scene->probes[j].name && strcmp(scene->probes[j].name, probe->name) == 0) {
-                const Node *given = node_find(node, "name");
-                message_add(reader->messages, reader->text, given ? given->location : node->location,
-                            "two probes are called '%s'; give each its own name", shown(probe->name).text);
-                break;
-            }
-    }
-}
-
-// The step of the simulation is 1/(fps * steps) seconds; the library takes 1e-9 to 10.
-static void check_step(Reader *reader, const Node *map, const Scene *scene) {
-    double rate = (double)scene->fps * scene->steps;
-    const Node *fps = node_find(map, "fps"), *steps = node_find(map, "steps"), *node = fps ? fps : steps;
-    if (rate >= 0.1 * (1 - 1e-6) && rate <= 1e9 * (1 + 1e-6)) return;
-    message_add(reader->messages, reader->text, node ? node->location : map->location,
-                "%.6g frames a second of %d steps each are %.6g steps a second, which must be 0.1 to 1e9",
-                (double)scene->fps, scene->steps, rate);
-}
-
-void finish_scene(Reader *reader, const Node *map, void *object) {
+void finish_scene(Reader *reader, const YamlNode *map, void *object) {
     Scene *scene = object;
-    check_step(reader, map, scene);
+    const YamlNode *fps = node_find(map, "fps"), *steps = node_find(map, "steps"), *sheets = node_find(map, "sheets"),
+                   *pins = node_find(map, "pins"), *probes = node_find(map, "probes"),
+                   *only = node_find(map, "only_sheets");
+
+    // the step of the simulation is 1/(fps * steps) seconds; the library takes 1e-9 to 10
+    double rate = (double)scene->fps * scene->steps;
+    if (!(rate >= 0.1 * (1 - 1e-6) && rate <= 1e9 * (1 + 1e-6)))
+        message_add(reader->messages, reader->text,
+                    (fps     ? fps
+                     : steps ? steps
+                             : map)
+                        ->location,
+                    "%.6g frames a second of %d steps each are %.6g steps a second, which must be 0.1 to 1e9",
+                    (double)scene->fps, scene->steps, rate);
     scene->sim.solver.tearing = scene->tearing && scene->sim.solver.method == SINGE_SOLVER_STRAND;
-    const Node *sheets = node_find(map, "sheets"), *pins = node_find(map, "pins");
+
+    bool many_sheets = sheets && sheets->count > 1000; // comparing their names would take long
     if (sheets && sheets->kind == NODE_LIST) {
         if (!sheets->count) complain(reader, sheets->location, "a scene needs at least one sheet");
-        else if (sheets->count > 1000) complain(reader, sheets->location, "a scene has at most 1000 sheets");
-        else check_names(reader, sheets, scene);
+        else if (many_sheets) complain(reader, sheets->location, "a scene has at most 1000 sheets");
+        else
+            check_names(reader, sheets, "sheet", scene->sheets, sizeof *scene->sheets, offsetof(SceneSheet, name),
+                        scene->sheet_count);
     }
-    const Node *node = pins && pins->kind == NODE_LIST ? pins->first : NULL;
+
+    if (many_sheets) return;
+
+    const YamlNode *node = pins && pins->kind == NODE_LIST ? pins->first : NULL;
     for (uint32_t i = 0; node && i < scene->pin_count; i++, node = node->next)
-        if (scene->pins[i].sheet && scene->sheet_count && sheets && sheets->count <= 1000)
+        if (scene->pins[i].sheet && scene->sheet_count)
             resolve_sheet(reader, node, scene, scene->pins[i].sheet, &scene->pins[i].sheet_index);
-    const Node *probes = node_find(map, "probes");
-    if (probes && probes->kind == NODE_LIST && (!sheets || sheets->count <= 1000)) check_probes(reader, probes, scene);
-    const Node *only = node_find(map, "only_sheets");
+
+    if (probes && probes->kind == NODE_LIST && probes->count > 1000) {
+        complain(reader, probes->location, "a scene has at most 1000 probes");
+    } else if (probes && probes->kind == NODE_LIST) {
+        check_names(reader, probes, "probe", scene->probes, sizeof *scene->probes, offsetof(SceneProbe, name),
+                    scene->probe_count);
+        node = probes->first;
+        for (uint32_t i = 0; node && i < scene->probe_count; i++, node = node->next)
+            if (scene->probes[i].sheet && scene->sheet_count)
+                resolve_sheet(reader, node, scene, scene->probes[i].sheet, &scene->probes[i].sheet_index);
+    }
+
     if (only && scene->only_sheet_count && !message_total(reader->messages))
         scene_keep_only_sheets(reader, only, scene);
 }

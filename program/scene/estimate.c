@@ -34,35 +34,38 @@ static void box_add(Box *box, const double low[3], const double high[3]) {
     }
 }
 
-static void box_add_sheet(Box *box, const SceneSheet *sheet, const Mesh *mesh) {
-    double turned[9], low[3], high[3];
-    rotation_matrix(sheet->rotate, turned);
-    for (int i = 0; i < 3 && sheet->grid.given; i++) {
-        const float *size = sheet->grid.size;
-        double half = fabs(turned[3 * i]) * (double)size[0] + fabs(turned[3 * i + 1]) * (double)size[1];
-        half *= 0.5 * (double)sheet->scale;
-        low[i] = (double)sheet->translate[i] - half;
-        high[i] = (double)sheet->translate[i] + half;
-    }
-    if (sheet->grid.given) box_add(box, low, high);
-    for (uint32_t v = 0; mesh && !sheet->grid.given && v < mesh->vertex_count; v++) {
-        const float *p = mesh->positions + 3 * (size_t)v;
-        const double point[3] = {(double)p[0], (double)p[1], (double)p[2]};
-        box_add(box, point, point);
-    }
-}
-
 static double gas_cells(const Scene *scene, const SceneAssets *assets) {
     const double cell = (double)scene->sim.gas.cell_size;
     if (!(cell > 0)) return gas_cells_usual;
+
     Box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (uint32_t i = 0; i < scene->sheet_count; i++)
-        box_add_sheet(&box, &scene->sheets[i], assets ? &assets->meshes[i] : NULL);
+    for (uint32_t i = 0; i < scene->sheet_count; i++) {
+        const SceneSheet *sheet = &scene->sheets[i];
+        const Mesh *mesh = assets && !sheet->grid.given ? &assets->meshes[i] : NULL;
+        double turned[9], low[3], high[3];
+        rotation_matrix(sheet->rotate, turned);
+        for (int c = 0; c < 3 && sheet->grid.given; c++) {
+            const float *size = sheet->grid.size;
+            double half = fabs(turned[3 * c]) * (double)size[0] + fabs(turned[3 * c + 1]) * (double)size[1];
+            half *= 0.5 * (double)sheet->scale;
+            low[c] = (double)sheet->translate[c] - half;
+            high[c] = (double)sheet->translate[c] + half;
+        }
+
+        if (sheet->grid.given) box_add(&box, low, high);
+        for (uint32_t v = 0; mesh && v < mesh->vertex_count; v++) {
+            const float *p = mesh->positions + 3 * (size_t)v;
+            const double point[3] = {(double)p[0], (double)p[1], (double)p[2]};
+            box_add(&box, point, point);
+        }
+    }
+
     double cells = 1;
     for (int i = 0; i < 3; i++) {
         const double room = i == 2 ? gas_margin + (double)scene->sim.gas.height : 2 * gas_margin;
         cells *= (fmax(box.high[i] - box.low[i], 0) + room) / cell + 8; // at most a multiple of 8
     }
+
     return fmin(cells, gas_cells_max);
 }
 
@@ -76,27 +79,28 @@ static double height_pixels(const SceneCollider *collider) {
     return collider->def.kind == SINGE_COLLIDER_HEIGHTFIELD ? pixels_of(&collider->picture) : 0;
 }
 
-/// Bytes of all pictures that are read.
-static double pictures_memory(const Scene *scene) {
-    double memory = picture_bytes * pixels_of(&scene->preview.environment_picture);
-    for (uint32_t i = 0; i < scene->sheet_count; i++) {
-        memory += picture_bytes * pixels_of(&scene->sheets[i].picture);
-        for (size_t k = 0; k < SCENE_PARAM_SLOTS; k++)
-            memory += texture_bytes * pixels_of(&scene->sheets[i].material.textures[k]);
-    }
-    for (uint32_t i = 0; i < scene->source_count; i++) memory += texture_bytes * pixels_of(&scene->sources[i].texture);
-    for (uint32_t i = 0; i < scene->collider_count; i++) memory += height_bytes * height_pixels(&scene->colliders[i]);
-    return memory;
-}
-
 SceneSize scene_size(const Scene *scene, const SceneAssets *assets) {
     SceneSize size = {.memory = program_bytes};
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         size.cells += sheet_cells(scene, assets, i);
         size.unread += !assets && scene->sheets[i].mesh.name;
     }
+
     size.memory += (double)size.cells * (cell_bytes + (scene->sim.contact.enabled ? contact_bytes : 0));
-    size.memory += pictures_memory(scene);
+
+    // all pictures that are read
+    double pictures = picture_bytes * pixels_of(&scene->preview.environment_picture);
+    for (uint32_t i = 0; i < scene->sheet_count; i++) {
+        pictures += picture_bytes * pixels_of(&scene->sheets[i].picture);
+        for (size_t k = 0; k < SCENE_PARAM_SLOTS; k++)
+            pictures += texture_bytes * pixels_of(&scene->sheets[i].material.textures[k]);
+    }
+
+    for (uint32_t i = 0; i < scene->source_count; i++)
+        pictures += texture_bytes * pixels_of(&scene->sources[i].texture);
+    for (uint32_t i = 0; i < scene->collider_count; i++) pictures += height_bytes * height_pixels(&scene->colliders[i]);
+    size.memory += pictures;
+
     if (scene->sim.gas.enabled) size.memory += gas_bytes * gas_cells(scene, assets);
     return size;
 }
@@ -108,35 +112,34 @@ double scene_picture_memory(const Scene *scene) {
     return memory;
 }
 
-/// The heightfield with the most pixels if it needs more than half of the memory; NULL otherwise.
-static const SceneCollider *largest_heights(const Scene *scene, double wanted) {
-    const SceneCollider *largest = NULL;
+bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, double room, SceneMessages *messages) {
+    if (!(room > 0) || wanted <= room) return true;
+
+    // a heightfield that needs more than half of the memory, or else the largest sheet
+    const SceneCollider *heights = NULL;
     double pixels = 0;
+
     for (uint32_t i = 0; i < scene->collider_count; i++) {
         const double count = height_pixels(&scene->colliders[i]);
         if (count > pixels) {
-            largest = &scene->colliders[i];
+            heights = &scene->colliders[i];
             pixels = count;
         }
     }
-    return pixels * (height_bytes + (largest && largest->visible ? drawn_height_bytes : 0)) > 0.5 * wanted ? largest
-                                                                                                           : NULL;
-}
 
-bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, double room, SceneMessages *messages) {
-    if (!(room > 0) || wanted <= room) return true;
-    const SceneCollider *heights = largest_heights(scene, wanted);
-    if (heights) {
+    if (pixels * (height_bytes + (heights && heights->visible ? drawn_height_bytes : 0)) > 0.5 * wanted) {
         message_add(messages, scene->text, heights->picture.location,
                     "the scene needs about %.1f GB of memory, and there are %.1f GB: give its heightfield fewer pixels",
                     1e-9 * wanted, 1e-9 * room);
         return false;
     }
+
     uint32_t largest = 0;
     for (uint32_t i = 1; i < scene->sheet_count; i++)
         if (sheet_cells(scene, assets, i) > sheet_cells(scene, assets, largest)) largest = i;
     message_add(messages, scene->text, scene->sheets[largest].location, // there is at least one sheet
                 "the scene needs about %.1f GB of memory, and there are %.1f GB: give its sheets fewer cells",
                 1e-9 * wanted, 1e-9 * room);
+
     return false;
 }

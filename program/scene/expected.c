@@ -3,12 +3,13 @@
 
 #include <string.h>
 
-// A bound in the unit of bare numbers, in its shortest form: 1e-06 is written 1e-6.
+/// A bound in the unit of bare numbers, in its shortest form: 1e-06 is written 1e-6.
 static void bound_print(const SchemaRow *row, double bound, char *buffer, size_t size) {
     if (row->type == ROW_INT || row->type == ROW_INTS || row->type == ROW_INDICES || row->type == ROW_UINT32) {
         snprintf(buffer, size, "%.0f", bound);
         return;
     }
+
     quantity_print((float)bound, row->dimension, buffer, size);
     char *power = strchr(buffer, 'e');
     if (power) {
@@ -41,6 +42,7 @@ void row_range(const SchemaRow *row, char *buffer, size_t size) {
     case ROW_INDICES: break;
     default: return;
     }
+
     bound_print(row, row->min, low, sizeof low);
     bound_print(row, row->max, high, sizeof high);
     snprintf(buffer, size, "%s%s to %s%s", row->flags & ROW_OPEN_MIN ? "> " : "", low,
@@ -73,11 +75,13 @@ static void add_quantity(char *buffer, size_t size, const SchemaRow *row) {
     char units[80];
     quantity_units(row->dimension, units, sizeof units);
     expected_add(buffer, size, quantity_name(row->dimension));
+
     if (units[0]) {
         expected_add(buffer, size, " (");
         expected_add(buffer, size, units);
         expected_add(buffer, size, ")");
     }
+
     if (row->flags & ROW_INF) expected_add(buffer, size, " or inf");
     if (row->flags & ROW_NONE) expected_add(buffer, size, " or none");
 }
@@ -86,6 +90,7 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
     char count[40];
     snprintf(count, sizeof count, "a list of %d ", row->length);
     buffer[0] = 0;
+
     switch (row->type) {
     case ROW_BOOL: expected_add(buffer, size, "true or false"); break;
     case ROW_INT:
@@ -126,6 +131,7 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
             if (i) expected_add(buffer, size, i + 1 < OUTPUT_COUNT ? ", " : " and ");
             expected_add(buffer, size, output_formats[i].name);
         }
+
         expected_add(buffer, size, ", each at most once");
         break;
     case ROW_MAP:

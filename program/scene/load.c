@@ -62,6 +62,7 @@ static bool transform(const SceneSheet *sheet, float *positions, uint32_t count)
     rotation_matrix(sheet->rotate, r);
     bool near = true;
     bool turned = sheet->rotate[0] != 0 || sheet->rotate[1] != 0 || sheet->rotate[2] != 0;
+
     for (uint32_t v = 0; v < count; v++) {
         float *p = positions + 3 * (size_t)v;
         double x = (double)p[0] * scale, y = (double)p[1] * scale, z = (double)p[2] * scale;
@@ -70,6 +71,7 @@ static bool transform(const SceneSheet *sheet, float *positions, uint32_t count)
             y = -z;
             z = up;
         }
+
         double q[3] = {x, y, z};
         for (int i = 0; i < 3 && turned; i++) q[i] = r[3 * i] * x + r[3 * i + 1] * y + r[3 * i + 2] * z;
         for (int i = 0; i < 3; i++)
@@ -78,64 +80,48 @@ static bool transform(const SceneSheet *sheet, float *positions, uint32_t count)
     return near;
 }
 
-static const char too_far[] = "the sheet reaches beyond 10 km from the origin";
+/// Reads a file's polygons and converts them to quads, or makes the grid.
+static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh, MeshReport *report) {
+    static const char too_far[] = "the sheet reaches beyond 10 km from the origin";
+    SingeError error = {0};
+    if (!sheet->mesh.name) {
+        const uint32_t columns = (uint32_t)sheet->grid.cells[0], rows = (uint32_t)sheet->grid.cells[1];
+        const float *size = sheet->grid.size;
+        const SceneFile at = {.location = sheet->location};
+        SingeResult result = mesh_grid(size[0], size[1], columns, rows, (SingeAllocator){0}, mesh, &error);
+        if (result) {
+            loader_fail(loader, &at, result, error.message);
+            return;
+        }
 
-/// Reads polygons and converts them to quads.
-static SingeResult load_file(const SceneSheet *sheet, Mesh *mesh, MeshReport *report, SingeError *error) {
+        mesh_grid_wear(mesh, columns, rows, &sheet->grid.wear);
+        if (!transform(sheet, mesh->positions, mesh->vertex_count))
+            message_add(loader->messages, loader->scene->text, at.location, "%s", too_far);
+        return;
+    }
+
     Bytes bytes = {0};
     Polygons polygons = {0};
     MeshOptions options = mesh_default_options();
     options.weld = sheet->weld;
     options.quads = (MeshQuads)sheet->quads;
-    SingeResult result = file_read(sheet->mesh.path, (SingeAllocator){0}, &bytes, error);
-    if (!result)
-        result = polygons_read(sheet->mesh.path, bytes.data, bytes.size, (SingeAllocator){0}, &polygons, error);
+    const char *path = sheet->mesh.path;
+    SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, &error);
+    if (!result) result = polygons_read(path, bytes.data, bytes.size, (SingeAllocator){0}, &polygons, &error);
     bytes_free(&bytes);
     if (!result && !transform(sheet, polygons.positions, polygons.vertex_count)) {
-        snprintf(error->message, sizeof error->message, "%s", too_far);
+        snprintf(error.message, sizeof error.message, "%s", too_far);
         result = SINGE_ERROR_MESH;
     }
-    if (!result) result = mesh_make(sheet->mesh.path, &polygons, &options, (SingeAllocator){0}, mesh, report, error);
+
+    if (!result) result = mesh_make(path, &polygons, &options, (SingeAllocator){0}, mesh, report, &error);
     polygons_free(&polygons);
-    return result;
-}
-
-static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh, MeshReport *report) {
-    SingeError error = {0};
-    SceneFile file = sheet->mesh;
-    SingeResult result;
-    bool near = true;
-    if (file.name) {
-        result = load_file(sheet, mesh, report, &error);
-    } else {
-        file.location = sheet->location;
-        result = mesh_grid(sheet->grid.size[0], sheet->grid.size[1], (uint32_t)sheet->grid.cells[0],
-                           (uint32_t)sheet->grid.cells[1], (SingeAllocator){0}, mesh, &error);
-        if (!result)
-            mesh_grid_wear(mesh, (uint32_t)sheet->grid.cells[0], (uint32_t)sheet->grid.cells[1], &sheet->grid.wear);
-        near = result || transform(sheet, mesh->positions, mesh->vertex_count);
-    }
-    if (result) loader_fail(loader, &file, result, error.message);
-    else if (!near) message_add(loader->messages, loader->scene->text, file.location, "%s", too_far);
-}
-
-static void check_attribute(Loader *loader, const char *key, const char *attribute, const SceneFile *file,
-                            const Mesh *mesh) {
-    Nearest nearest = {.word = attribute};
-    for (uint32_t i = 0; i < mesh->attribute_count; i++) {
-        if (strcmp(mesh->attributes[i].name, attribute) == 0) return;
-        nearest_offer(&nearest, mesh->attributes[i].name);
-    }
-    char hint[80];
-    if (file->location.file) // the contents of files other than the scene are not shown
-        message_add(loader->messages, loader->scene->text, file->location, "%s: the mesh has no such attribute", key);
-    else
-        message_add(loader->messages, loader->scene->text, file->location, "%s: the mesh has no attribute '%s'%s", key,
-                    shown(attribute).text, nearest_hint(&nearest, hint, sizeof hint));
+    if (result) loader_fail(loader, &sheet->mesh, result, error.message);
 }
 
 static void load_sheet(Loader *loader, uint32_t index) {
-    const SceneSheet *sheet = &loader->scene->sheets[index];
+    const Scene *scene = loader->scene;
+    const SceneSheet *sheet = &scene->sheets[index];
     SceneAssets *assets = loader->assets;
     Mesh *mesh = &assets->meshes[index];
     load_mesh(loader, sheet, mesh, &assets->reports[index]);
@@ -143,20 +129,35 @@ static void load_sheet(Loader *loader, uint32_t index) {
     assets->transmittances[index] = sheet->transmittance;
     if (sheet->picture.name && !load_image(loader, &sheet->picture, &assets->images[index]))
         assets->pictures[index] = &assets->images[index];
+
+    // what the material's parameters follow
     SingeMaterialDef material = sheet->material.def;
     SceneParam row;
+
     for (int i = 0; scene_param(i, &row); i++) {
         const SingeField *field = scene_param_at(&material, &row)->field;
         const SceneFile *file = &sheet->material.textures[row.slot];
-        if (field) assets->fields[index][row.slot] = *field;
-        if (field && field->kind == SINGE_FIELD_TEXTURE) {
+        if (!field) continue;
+        assets->fields[index][row.slot] = *field;
+        if (field->kind == SINGE_FIELD_TEXTURE) {
             load_luminance(loader, file, &assets->fields[index][row.slot].texture);
             if (mesh->positions && !mesh->uv)
-                message_add(loader->messages, loader->scene->text, file->location,
+                message_add(loader->messages, scene->text, file->location,
                             "%s follows a texture, but the mesh has no uv", row.key);
-        } else if (field && field->kind == SINGE_FIELD_ATTRIBUTE && mesh->positions) {
-            check_attribute(loader, row.key, field->attribute, file, mesh);
         }
+        if (field->kind != SINGE_FIELD_ATTRIBUTE || !mesh->positions) continue;
+
+        Nearest nearest = {.word = field->attribute};
+        uint32_t a = 0;
+        for (; a < mesh->attribute_count && strcmp(mesh->attributes[a].name, field->attribute) != 0; a++)
+            nearest_offer(&nearest, mesh->attributes[a].name);
+        char hint[80];
+        if (a < mesh->attribute_count) continue;
+        if (file->location.file) // the contents of files other than the scene are not shown
+            message_add(loader->messages, scene->text, file->location, "%s: the mesh has no such attribute", row.key);
+        else
+            message_add(loader->messages, scene->text, file->location, "%s: the mesh has no attribute '%s'%s", row.key,
+                        shown(field->attribute).text, nearest_hint(&nearest, hint, sizeof hint));
     }
 }
 
@@ -190,6 +191,7 @@ static void load_solid(Loader *loader, uint32_t index) {
         if (picture.values) result = solid_make_heights(&picture, collider->def.size, collider->heights, solid, &error);
         free((void *)picture.values);
     }
+
     if (result) loader_fail(loader, file, result, error.message);
 }
 
@@ -219,6 +221,7 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     assets->collider_motions = many(&loader, scene->collider_count, sizeof *assets->collider_motions);
     assets->pin_motions = many(&loader, scene->pin_count, sizeof *assets->pin_motions);
     if (loader.no_memory) message_add(messages, scene->text, (SceneLocation){0}, "out of memory");
+
     for (uint32_t i = 0; i < scene->sheet_count && !loader.no_memory; i++) load_sheet(&loader, i);
     for (uint32_t i = 0; i < scene->source_count && !loader.no_memory; i++)
         if (scene->sources[i].texture.name)
@@ -233,6 +236,7 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     if (!loader.no_memory) sheet_faults(scene, assets, FAULTS_OF_MESHES, messages);
     messages_sort(messages, first);
     scene_assets_free(assets);
+
     return loader.no_memory ? SINGE_ERROR_MEMORY : SINGE_ERROR_FORMAT;
 }
 
@@ -247,6 +251,7 @@ void scene_assets_free(SceneAssets *assets) {
         if (assets->images) image_free(&assets->images[i]);
         for (int p = 0; p < SCENE_PARAM_SLOTS && assets->fields; p++) picture_free(&assets->fields[i][p].texture);
     }
+
     for (uint32_t i = 0; i < assets->source_count && assets->source_textures; i++)
         picture_free(&assets->source_textures[i]);
     for (uint32_t i = 0; i < assets->collider_count && assets->solids; i++) solid_free(&assets->solids[i]);

@@ -20,6 +20,7 @@ static int word_distance(const char *a, const char *b) {
             if (i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]))
                 d[i][j] = smaller(d[i][j], d[i - 2][j - 2] + 1);
         }
+
     return d[m][n];
 }
 

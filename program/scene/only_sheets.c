@@ -2,15 +2,15 @@
 // act on all sheets remain: sources, colliders, wind.
 #include "scene/schema.h"
 
-#include <string.h>
+void scene_keep_only_sheets(Reader *reader, const YamlNode *node, Scene *scene) {
+    enum { LEFT_OUT = -1 };
+    int32_t *now = arena_new(reader->arena, scene->sheet_count, sizeof *now); // new numbers of the sheets
+    if (!now) return;
 
-enum { LEFT_OUT = -1 };
-
-/// Marks the sheets that are kept. False if a number is out of range or given twice.
-static bool mark_kept(Reader *reader, const Node *node, const Scene *scene, int32_t *now) {
-    const uint32_t before = message_total(reader->messages);
     for (uint32_t i = 0; i < scene->sheet_count; i++) now[i] = LEFT_OUT;
-    const Node *number = node->first;
+
+    const uint32_t before = message_total(reader->messages);
+    const YamlNode *number = node->first;
     for (uint32_t i = 0; number && i < scene->only_sheet_count; i++, number = number->next) {
         const uint32_t sheet = scene->only_sheets[i];
         if (sheet >= scene->sheet_count)
@@ -20,48 +20,36 @@ static bool mark_kept(Reader *reader, const Node *node, const Scene *scene, int3
             message_add(reader->messages, reader->text, number->location, "sheet %u is given twice", sheet);
         else now[sheet] = 0;
     }
-    return message_total(reader->messages) == before;
-}
 
-static void keep_sheets(Scene *scene, int32_t *now) {
-    uint32_t kept = 0;
+    if (message_total(reader->messages) != before) return;
+
+    uint32_t sheets = 0, pins = 0, probes = 0;
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         if (now[i] == LEFT_OUT) continue;
-        scene->sheets[kept] = scene->sheets[i];
-        now[i] = (int32_t)kept++;
+        scene->sheets[sheets] = scene->sheets[i];
+        now[i] = (int32_t)sheets++;
     }
-    scene->sheet_count = kept;
-}
 
-/// Refers to sheets by name from now on, as their numbers have changed.
-static void keep_pins(Scene *scene, const int32_t *now) {
-    uint32_t kept = 0;
+    scene->sheet_count = sheets;
+
+    // pins and probes name their sheets from now on, as the numbers have changed
     for (uint32_t i = 0; i < scene->pin_count; i++) {
         ScenePin pin = scene->pins[i];
         if (now[pin.sheet_index] == LEFT_OUT) continue;
         pin.sheet_index = (uint32_t)now[pin.sheet_index];
         pin.sheet = scene->sheets[pin.sheet_index].name;
-        scene->pins[kept++] = pin;
+        scene->pins[pins++] = pin;
     }
-    scene->pin_count = kept;
-}
 
-static void keep_probes(Scene *scene, const int32_t *now) {
-    uint32_t kept = 0;
+    scene->pin_count = pins;
+
     for (uint32_t i = 0; i < scene->probe_count; i++) {
         SceneProbe probe = scene->probes[i];
         if (now[probe.sheet_index] == LEFT_OUT) continue;
         probe.sheet_index = (uint32_t)now[probe.sheet_index];
         probe.sheet = scene->sheets[probe.sheet_index].name;
-        scene->probes[kept++] = probe;
+        scene->probes[probes++] = probe;
     }
-    scene->probe_count = kept;
-}
 
-void scene_keep_only_sheets(Reader *reader, const Node *node, Scene *scene) {
-    int32_t *now = arena_new(reader->arena, scene->sheet_count, sizeof *now); // new numbers of the sheets
-    if (!now || !mark_kept(reader, node, scene, now)) return;
-    keep_sheets(scene, now);
-    keep_pins(scene, now);
-    keep_probes(scene, now);
+    scene->probe_count = probes;
 }

@@ -7,25 +7,16 @@ static void *read_at(void *object, size_t offset) { return (char *)object + offs
 
 // ---- parameters that may vary
 
-static void read_noise(Reader *reader, const SchemaRow *row, const Node *node, SingeNoise *noise) {
-    if (node->kind != NODE_MAP) {
-        message_add(reader->messages, reader->text, node->location,
-                    "%s.noise must be a map {scale: , octaves: , seed: }", row->key);
-        return;
-    }
-    if (default_noise(reader->arena, noise)) schema_read(reader, &schema_noise, node, noise);
-}
-
-// Finds the field that the parameter follows; returns the number of such keys.
-static int read_field(Reader *reader, const SchemaRow *row, const Node *map, SingeField *field, SceneFile *file) {
-    const Node *texture = node_find(map, "texture"), *attribute = node_find(map, "attribute"),
-               *noise = node_find(map, "noise");
-    if (!texture) texture = node_find(map, "picture"); // its old name
+/// Finds the field that the parameter follows; returns the number of such keys.
+static int read_field(Reader *reader, const SchemaRow *row, const YamlNode *map, SingeField *field, SceneFile *file) {
+    const YamlNode *texture = node_find(map, "texture"), *attribute = node_find(map, "attribute"),
+                   *noise = node_find(map, "noise");
     if (texture) {
         SchemaRow part = {.key = "texture", .type = ROW_FILE};
         field->kind = SINGE_FIELD_TEXTURE;
         value_file(reader, &part, texture, file);
     }
+
     if (attribute) {
         SchemaRow part = {.key = "attribute", .type = ROW_TEXT};
         field->kind = SINGE_FIELD_ATTRIBUTE;
@@ -33,18 +24,24 @@ static int read_field(Reader *reader, const SchemaRow *row, const Node *map, Sin
         if (value_is_text(attribute)) field->attribute = attribute->text;
         else value_wrong(reader, attribute, &part);
     }
+
     if (noise) {
         field->kind = SINGE_FIELD_NOISE;
         file->location = noise->location;
-        read_noise(reader, row, noise, &field->noise);
+        if (noise->kind != NODE_MAP)
+            message_add(reader->messages, reader->text, noise->location,
+                        "%s.noise must be a map {scale: , octaves: , seed: }", row->key);
+        else if (default_noise(reader->arena, &field->noise)) schema_read(reader, &schema_noise, noise, &field->noise);
     }
+
     return !!texture + !!attribute + !!noise;
 }
 
-static void read_param(Reader *reader, const SchemaRow *row, const Node *node, SingeParam *param, SceneFile *file) {
+static void read_param(Reader *reader, const SchemaRow *row, const YamlNode *node, SingeParam *param, SceneFile *file) {
     static const char *const keys[] = {"from", "to", "texture", "attribute", "noise"};
     SingeParam result = singe_param(param->value);
     *file = (SceneFile){0}; // drop that of the base material
+
     if (node->kind != NODE_MAP) {
         if (value_float(reader, row, node, &result.value)) {
             result.to = result.value;
@@ -52,12 +49,12 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
         }
         return;
     }
+
     unsigned given = 0;
-    for (const Node *child = node->first; child; child = child->next) {
-        const char *name = renamed(reader, RENAMED_PARAM, child->key, child->key_location);
-        Nearest nearest = {.word = name};
+    for (const YamlNode *child = node->first; child; child = child->next) {
+        Nearest nearest = {.word = child->key};
         int i = 0;
-        for (; i < 5 && strcmp(name, keys[i]) != 0; i++) nearest_offer(&nearest, keys[i]);
+        for (; i < 5 && strcmp(child->key, keys[i]) != 0; i++) nearest_offer(&nearest, keys[i]);
         char hint[80], key[NODE_WORDS];
         if (i == 5)
             message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
@@ -67,12 +64,14 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
                         row->key);
         else given |= 1u << i;
     }
-    const Node *from = node_find(node, "from"), *to = node_find(node, "to");
+
+    const YamlNode *from = node_find(node, "from"), *to = node_find(node, "to");
     SchemaRow end = *row; // no line leads to infinity
     end.flags &= ~(unsigned)ROW_INF;
     bool good = from && to;
     good = (!from || value_float(reader, &end, from, &result.value)) && good;
     good = (!to || value_float(reader, &end, to, &result.to)) && good;
+
     SingeField *field = arena_new(reader->arena, 1, sizeof *field);
     if (!field) return;
     int fields = read_field(reader, row, node, field, file);
@@ -92,14 +91,15 @@ static void *list_new(Reader *reader, void *object, const SchemaRow *row, uint32
     return items;
 }
 
-static void read_list(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+static void read_list(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     const Schema *schema = row->sub;
     if (node->kind != NODE_LIST) {
         value_wrong(reader, node, row);
         return;
     }
+
     char *items = list_new(reader, object, row, node->count, schema->size);
-    for (const Node *child = node->first; items && child; child = child->next, items += schema->size) {
+    for (const YamlNode *child = node->first; items && child; child = child->next, items += schema->size) {
         if (schema->defaults && !schema->defaults(reader->arena, items)) return;
         if (schema->location) *schema->location(items) = child->location;
         if (child->kind == NODE_MAP) {
@@ -112,7 +112,7 @@ static void read_list(Reader *reader, const SchemaRow *row, const Node *node, vo
     }
 }
 
-static void read_strength(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+static void read_strength(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     if (node->kind == NODE_LIST) {
         read_list(reader, row, node, object);
         return;
@@ -123,45 +123,35 @@ static void read_strength(Reader *reader, const SchemaRow *row, const Node *node
     if (items) items[0] = (SingeValueKey){0, value};
 }
 
-static void read_points(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+/// A list of points, or of indices, at least one.
+static void read_elements(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     if (node->kind != NODE_LIST || !node->count) {
         value_wrong(reader, node, row);
         return;
     }
-    ScenePoint *points = list_new(reader, object, row, node->count, sizeof *points);
-    SchemaRow element = *row;
-    element.type = ROW_VECTOR;
-    for (const Node *child = node->first; points && child; child = child->next)
-        value_vector(reader, &element, child, (points++)->position);
-}
 
-static void read_indices(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
-    if (node->kind != NODE_LIST || !node->count) {
-        value_wrong(reader, node, row);
-        return;
+    const bool points = row->type == ROW_POINTS;
+    const size_t size = points ? sizeof(ScenePoint) : sizeof(uint32_t);
+    char *items = list_new(reader, object, row, node->count, size);
+    SchemaRow element = *row;
+    element.type = points ? ROW_VECTOR : ROW_UINT32;
+    for (const YamlNode *child = node->first; items && child; child = child->next, items += size) {
+        if (points) value_vector(reader, &element, child, ((ScenePoint *)(void *)items)->position);
+        else value_integer(reader, &element, child, items);
     }
-    uint32_t *indices = list_new(reader, object, row, node->count, sizeof *indices);
-    SchemaRow element = *row;
-    element.type = ROW_UINT32;
-    for (const Node *child = node->first; indices && child; child = child->next)
-        value_integer(reader, &element, child, indices++);
 }
 
-static SceneKey *only_key(Reader *reader, const SchemaRow *row, void *object) {
-    SceneKey *keys;
-    memcpy(&keys, read_at(object, row->offset), sizeof keys);
-    return keys && *(uint32_t *)read_at(object, row->extra) == 1 ? keys
-                                                                 : list_new(reader, object, row, 1, sizeof *keys);
-}
-
-static void read_key_part(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
-    SceneKey *key = only_key(reader, row, object);
+/// The position or the rotation of the only key of a path.
+static void read_key_part(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
+    SceneKey *key;
+    memcpy(&key, read_at(object, row->offset), sizeof key);
+    if (!key || *(uint32_t *)read_at(object, row->extra) != 1) key = list_new(reader, object, row, 1, sizeof *key);
     if (key) value_vector(reader, row, node, row->type == ROW_POSITION ? key->position : key->rotation);
 }
 
 // ---- maps
 
-static void read_row(Reader *reader, const SchemaRow *row, const Node *node, void *object);
+static void read_row(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object);
 
 static const SchemaRow *choice_row(const Schema *schema) {
     const SchemaRow *row = schema->rows;
@@ -169,8 +159,8 @@ static const SchemaRow *choice_row(const Schema *schema) {
     return row;
 }
 
-// The choice that determines an object's other defaults.
-static void read_choice(Reader *reader, const Schema *schema, const Node *node, void *object) {
+/// The choice that determines an object's other defaults.
+static void read_choice(Reader *reader, const Schema *schema, const YamlNode *node, void *object) {
     uint32_t before = message_total(reader->messages);
     read_row(reader, choice_row(schema), node, object);
     if (message_total(reader->messages) == before && schema->chosen) schema->chosen(object);
@@ -181,7 +171,7 @@ void *row_begin(SceneArena *arena, const SchemaRow *row, void *object) {
     return begun && (!row->sub->defaults || row->sub->defaults(arena, begun)) ? begun : NULL;
 }
 
-static void read_submap(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+static void read_submap(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     void *inner = row_begin(reader->arena, row, object); // a map with defaults of its own starts from these
     if (!inner) return;
     if (row->extra) *(bool *)read_at(object, row->extra) = true;
@@ -190,7 +180,7 @@ static void read_submap(Reader *reader, const SchemaRow *row, const Node *node, 
     else value_wrong(reader, node, row);
 }
 
-static void read_row(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+static void read_row(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     void *field = read_at(object, row->offset);
     switch (row->type) {
     case ROW_BOOL: value_bool(reader, row, node, field); break;
@@ -221,47 +211,27 @@ static void read_row(Reader *reader, const SchemaRow *row, const Node *node, voi
     case ROW_PARAM: read_param(reader, row, node, field, read_at(object, row->extra)); break;
     case ROW_MAP: read_submap(reader, row, node, object); break;
     case ROW_LIST: read_list(reader, row, node, object); break;
-    case ROW_POINTS: read_points(reader, row, node, object); break;
-    case ROW_INDICES: read_indices(reader, row, node, object); break;
+    case ROW_POINTS:
+    case ROW_INDICES: read_elements(reader, row, node, object); break;
     case ROW_STRENGTH: read_strength(reader, row, node, object); break;
     case ROW_POSITION:
     case ROW_ROTATION: read_key_part(reader, row, node, object); break;
     }
 }
 
-// Reports a key that no row of this kind has: says which kind has it, or which key was meant.
-static void unknown_key(Reader *reader, const Schema *schema, unsigned kind, const SchemaRow *other,
-                        const Node *child) {
-    if (reader->messages->left_out) { // the message will not be shown
-        message_add(reader->messages, reader->text, child->key_location, "unknown key");
-        return;
-    }
-    if (other) {
-        const char *const *names = schema->rows[0].names; // the row "kind" is the first
-        int mine = 0;
-        while (kind > 1u << mine) mine++;
-        message_add(reader->messages, reader->text, child->key_location, "a %s has no '%s'", names[mine], other->key);
-        return;
-    }
-    char hint[80], key[NODE_WORDS];
-    Nearest nearest = {.word = child->key};
-    for (int i = 0; i < schema->row_count; i++)
-        if (row_allowed(&schema->rows[i], kind)) nearest_offer(&nearest, schema->rows[i].key);
-    message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
-                node_key(child, key, sizeof key), schema->title, nearest_hint(&nearest, hint, sizeof hint));
-}
-
-static void read_child(Reader *reader, const Schema *schema, unsigned kind, const Node *child, void *object,
+/// Reads a key of a map by its row. A key that no row of this kind has is an error, which says which kind has it, or
+/// which key was meant.
+static void read_child(Reader *reader, const Schema *schema, unsigned kind, const YamlNode *child, void *object,
                        uint64_t *given) {
     const SchemaRow *other = NULL;
-    const char *key = renamed(reader, schema->title, child->key, child->key_location);
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
-        if (strcmp(row->key, key) != 0) continue;
+        if (strcmp(row->key, child->key) != 0) continue;
         if (!row_allowed(row, kind)) {
             other = row;
             continue;
         }
+
         if (*given & 1ull << i)
             message_add(reader->messages, reader->text, child->key_location, "'%s' is given twice in %s", row->key,
                         schema->title);
@@ -269,13 +239,29 @@ static void read_child(Reader *reader, const Schema *schema, unsigned kind, cons
         *given |= 1ull << i;
         return;
     }
-    unknown_key(reader, schema, kind, other, child);
+
+    if (reader->messages->left_out) { // the message will not be shown
+        message_add(reader->messages, reader->text, child->key_location, "unknown key");
+    } else if (other) {
+        const char *const *names = schema->rows[0].names; // the row "kind" is the first
+        int mine = 0;
+        while (kind > 1u << mine) mine++;
+        message_add(reader->messages, reader->text, child->key_location, "a %s has no '%s'", names[mine], other->key);
+    } else {
+        char hint[80], key[NODE_WORDS];
+        Nearest nearest = {.word = child->key};
+        for (int i = 0; i < schema->row_count; i++)
+            if (row_allowed(&schema->rows[i], kind)) nearest_offer(&nearest, schema->rows[i].key);
+        message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
+                    node_key(child, key, sizeof key), schema->title, nearest_hint(&nearest, hint, sizeof hint));
+    }
 }
 
-void schema_read(Reader *reader, const Schema *schema, const Node *map, void *object) {
+void schema_read(Reader *reader, const Schema *schema, const YamlNode *map, void *object) {
     uint64_t given = 0;
     unsigned kind = ~0u;
-    const Node *first = schema->kind_offset ? node_find(map, "kind") : NULL;
+    const YamlNode *first = schema->kind_offset ? node_find(map, "kind") : NULL;
+
     if (first) {
         uint32_t before = message_total(reader->messages);
         read_row(reader, &schema->rows[0], first, object);
@@ -283,11 +269,13 @@ void schema_read(Reader *reader, const Schema *schema, const Node *map, void *ob
         // if the kind is unknown, only keys that no kind has are errors
         kind = message_total(reader->messages) == before ? schema_kind(schema, object) : ~0u;
     }
+
     if (schema->choice && (first = node_find(map, schema->choice))) {
         read_choice(reader, schema, first, object);
         given |= 1ull << (choice_row(schema) - schema->rows);
     }
-    for (const Node *child = map->first; child; child = child->next)
+
+    for (const YamlNode *child = map->first; child; child = child->next)
         if (child != first && !arena_failed(reader->arena)) read_child(reader, schema, kind, child, object, &given);
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
@@ -296,33 +284,34 @@ void schema_read(Reader *reader, const Schema *schema, const Node *map, void *ob
             message_add(reader->messages, reader->text, map->location, "%s needs '%s': %s", schema->title, row->key,
                         row->doc);
     }
+
     if (schema->finish) schema->finish(reader, map, object);
 }
 
-static void spell_out_word(SceneArena *arena, const Schema *schema, Node *node) {
-    Node *word = arena_new(arena, 1, sizeof *word);
-    char *key = arena_text(arena, schema->choice, strlen(schema->choice));
-    if (!word || !key) return;
-    *word = *node;
-    word->next = NULL;
-    word->key = key;
-    word->key_location = node->location;
-    node->kind = NODE_MAP;
-    node->text = NULL;
-    node->first = node->last = word;
-    node->count = 1;
-}
+void schema_spell_out(SceneArena *arena, const Schema *schema, YamlNode *map) {
+    for (YamlNode *child = map->kind == NODE_MAP ? map->first : NULL; child; child = child->next) {
+        const SchemaRow *row = schema->rows, *end = row + schema->row_count;
+        while (row < end && !(row->sub && strcmp(row->key, child->key) == 0)) row++;
+        if (row == end) continue;
 
-void schema_spell_out(SceneArena *arena, const Schema *schema, Node *map) {
-    for (Node *child = map->kind == NODE_MAP ? map->first : NULL; child; child = child->next)
-        for (int i = 0; i < schema->row_count; i++) {
-            const SchemaRow *row = &schema->rows[i];
-            if (!row->sub || strcmp(row->key, child->key) != 0) continue;
-            if (row->type == ROW_MAP && row->sub->choice && value_is_text(child))
-                spell_out_word(arena, row->sub, child);
-            else if (child->kind == NODE_MAP) schema_spell_out(arena, row->sub, child);
-            for (Node *entry = child->kind == NODE_LIST ? child->first : NULL; entry; entry = entry->next)
-                schema_spell_out(arena, row->sub, entry);
-            break;
+        if (row->type == ROW_MAP && row->sub->choice && value_is_text(child)) {
+            // a word becomes a map that has it as its choice
+            YamlNode *word = arena_new(arena, 1, sizeof *word);
+            char *key = arena_text(arena, row->sub->choice, strlen(row->sub->choice));
+            if (!word || !key) return;
+            *word = *child;
+            word->next = NULL;
+            word->key = key;
+            word->key_location = child->location;
+            child->kind = NODE_MAP;
+            child->text = NULL;
+            child->first = child->last = word;
+            child->count = 1;
+        } else if (child->kind == NODE_MAP) {
+            schema_spell_out(arena, row->sub, child);
         }
+
+        for (YamlNode *entry = child->kind == NODE_LIST ? child->first : NULL; entry; entry = entry->next)
+            schema_spell_out(arena, row->sub, entry);
+    }
 }

@@ -11,6 +11,7 @@ void rotation_quaternion(const float angles[3], float quaternion[4]) {
         s[i] = sin((double)angles[i] / 2);
         c[i] = cos((double)angles[i] / 2);
     }
+
     quaternion[0] = (float)(s[0] * c[1] * c[2] - c[0] * s[1] * s[2]);
     quaternion[1] = (float)(c[0] * s[1] * c[2] + s[0] * c[1] * s[2]);
     quaternion[2] = (float)(c[0] * c[1] * s[2] - s[0] * s[1] * c[2]);
@@ -23,6 +24,7 @@ void rotation_matrix(const float angles[3], double matrix[9]) {
         s[i] = sin((double)angles[i]);
         c[i] = cos((double)angles[i]);
     }
+
     matrix[0] = c[2] * c[1];
     matrix[1] = c[2] * s[1] * s[0] - s[2] * c[0];
     matrix[2] = c[2] * s[1] * c[0] + s[2] * s[0];

@@ -72,6 +72,7 @@ typedef struct SceneGrid {
 /// Slots for the textures of a material's SingeParams. A parameter's slot is its offset in the Def in units of
 /// SingeParam, so no list of parameters is needed.
 #define SCENE_PARAM_SLOT(member) (offsetof(SingeMaterialDef, member) / sizeof(SingeParam))
+
 enum { SCENE_PARAM_SLOTS = sizeof(SingeMaterialDef) / sizeof(SingeParam) };
 
 /// A material's fire according to its sources, each a range; 0 and 0 if unknown.
@@ -92,6 +93,7 @@ typedef struct SceneMaterial {
 
 /// The unit of a mesh file, and its axis that points up.
 typedef enum SceneUnits { SCENE_UNITS_M, SCENE_UNITS_CM, SCENE_UNITS_MM, SCENE_UNITS_IN, SCENE_UNITS_FT } SceneUnits;
+
 typedef enum SceneUp { SCENE_UP_Z, SCENE_UP_Y } SceneUp;
 
 typedef struct SceneSheet {
@@ -207,23 +209,14 @@ typedef struct SceneOutput {
     int texture_size; ///< pixels
 } SceneOutput;
 
-/// A key or a word that the scene still calls by its old name.
-typedef struct SceneRenamed {
-    SceneLocation location;
-    const char *before, *now;
-    const struct SceneText *text; ///< that the location is in
-    struct SceneRenamed *next;
-} SceneRenamed;
-
 typedef struct Scene {
-    SceneRenamed *renamed; ///< the last one first
-    char *name;            ///< of the outputs; the scene file's name without its ending by default
-    int frames;            ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
-    float fps;             ///< frames a second
-    int steps;             ///< steps a frame
-    int gas_detail;        ///< factor by which the cells of gas_detail/ are smaller; 1: a run has no such files
-    bool tearing;          ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
-    SingeSimDef sim;       ///< time_step is 1/(fps * steps); hooks and thread_count are not the scene's
+    char *name;      ///< of the outputs; the scene file's name without its ending by default
+    int frames;      ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
+    float fps;       ///< frames a second
+    int steps;       ///< steps a frame
+    int gas_detail;  ///< factor by which the cells of gas_detail/ are smaller; 1: a run has no such files
+    bool tearing;    ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
+    SingeSimDef sim; ///< time_step is 1/(fps * steps); hooks and thread_count are not the scene's
     uint32_t sheet_count, source_count, collider_count, pin_count, probe_count;
     uint32_t only_sheet_count; ///< of only_sheets; 0: all
     uint32_t *only_sheets;     ///< as in the file; `sheets`, `pins` and `probes` contain only these

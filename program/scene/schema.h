@@ -82,7 +82,7 @@ typedef struct Schema {
     /// Fills in the defaults; false when out of memory. NULL: zeros, or the values set by the enclosing map.
     bool (*defaults)(SceneArena *arena, void *object);
     /// Checks that involve several rows.
-    void (*finish)(Reader *reader, const Node *map, void *object);
+    void (*finish)(Reader *reader, const YamlNode *map, void *object);
     /// Where the object stores its location; NULL if it does not.
     SceneLocation *(*location)(void *object);
 } Schema;
@@ -112,38 +112,33 @@ static inline SingeParam *scene_param_at(SingeMaterialDef *def, const SceneParam
     return (SingeParam *)((char *)def + param->offset);
 }
 
-/// The current name of a word: the word itself, or the name that this release has given it; then the scene records it
-/// (renamed.c). `in`: a schema's title, RENAMED_PARAM for a parameter's map, or the key that has the word.
-#define RENAMED_PARAM "a parameter"
-const char *renamed(Reader *reader, const char *in, const char *word, SceneLocation location);
-
 /// Reads a map into an object whose defaults are set.
-void schema_read(Reader *reader, const Schema *schema, const Node *map, void *object);
+void schema_read(Reader *reader, const Schema *schema, const YamlNode *map, void *object);
 
 /// The object of a row with a `sub` before its keys are read: the map in the object, or a new list entry, with its
 /// defaults. Used by the reader and docs/scene.md. NULL when out of memory.
 void *row_begin(SceneArena *arena, const SchemaRow *row, void *object);
 
 /// Replaces bare words in place of maps by maps, so that --set can set their keys.
-void schema_spell_out(SceneArena *arena, const Schema *schema, Node *map);
+void schema_spell_out(SceneArena *arena, const Schema *schema, YamlNode *map);
 
 /// Reads the base of a material: a built-in material or a file (base.c).
-void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMaterial *material);
+void read_base(Reader *reader, const SchemaRow *row, const YamlNode *node, SceneMaterial *material);
 extern const Schema schema_material;
 /// "cotton, newsprint, ..."
 const char *base_names(char *buffer, size_t size);
 
 // checks (checks.c)
-void finish_scene(Reader *reader, const Node *map, void *object);
+void finish_scene(Reader *reader, const YamlNode *map, void *object);
 /// Keeps the sheets that `only_sheets` (`node`) names, with their pins and probes (only_sheets.c).
-void scene_keep_only_sheets(Reader *reader, const Node *node, Scene *scene);
-void finish_material(Reader *reader, const Node *map, void *object);
-void finish_sheet(Reader *reader, const Node *map, void *object);
-void finish_source(Reader *reader, const Node *map, void *object);
-void finish_collider(Reader *reader, const Node *map, void *object);
-void finish_pin(Reader *reader, const Node *map, void *object);
-void finish_camera(Reader *reader, const Node *map, void *object);
-void finish_preview(Reader *reader, const Node *map, void *object);
+void scene_keep_only_sheets(Reader *reader, const YamlNode *node, Scene *scene);
+void finish_material(Reader *reader, const YamlNode *map, void *object);
+void finish_sheet(Reader *reader, const YamlNode *map, void *object);
+void finish_source(Reader *reader, const YamlNode *map, void *object);
+void finish_collider(Reader *reader, const YamlNode *map, void *object);
+void finish_pin(Reader *reader, const YamlNode *map, void *object);
+void finish_camera(Reader *reader, const YamlNode *map, void *object);
+void finish_preview(Reader *reader, const YamlNode *map, void *object);
 
 // defaults (defaults.c)
 bool default_scene(SceneArena *arena, void *object);

@@ -40,86 +40,83 @@ static char *sequence_path(const SceneMotion *motion, int frame) {
     return made;
 }
 
-/// Rotates a frame from y up to z up.
-static void sequence_transform(const SceneMotion *motion, float *positions, uint32_t count) {
-    for (uint32_t v = 0; motion->up == SCENE_UP_Y && v < count; v++) {
-        float *p = positions + 3 * (size_t)v, y = p[1];
-        p[1] = -p[2], p[2] = y;
-    }
-}
-
 /// Reads a frame; the first one allocates all.
 static SingeResult sequence_read_frame(const SceneMotion *motion, const char *path, int frame, int frames,
                                        SceneSequence *sequence, SingeError *error) {
     Bytes bytes = {0};
     SceneSolid solid = {0};
+    PreviewSolid *surface = &solid.surface;
     SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
     if (!result)
         result =
             solid_read_mesh(path, bytes.data, bytes.size, metres_per_unit(motion->units, motion->scale), &solid, error);
     bytes_free(&bytes);
-    const uint32_t vertices = solid.surface.vertex_count, triangles = solid.surface.triangle_count;
+
     if (!result && frame == 0) {
-        sequence->vertex_count = vertices;
-        sequence->triangle_count = triangles;
-        sequence->triangles = solid.surface.triangles;
-        solid.surface.triangles = NULL;
+        sequence->vertex_count = surface->vertex_count;
+        sequence->triangle_count = surface->triangle_count;
+        sequence->triangles = surface->triangles;
+        surface->triangles = NULL;
         sequence->frames = calloc((size_t)frames, sizeof *sequence->frames);
         if (!sequence->frames) result = sequence_no_memory(error);
-    } else if (!result && (vertices != sequence->vertex_count || triangles != sequence->triangle_count)) {
-        result = refuse(error, SINGE_ERROR_MESH, "scene", -1,
-                        "%s: has %u vertices and %u triangles, the first of the motion %u and %u", short_name(path),
-                        vertices, triangles, sequence->vertex_count, sequence->triangle_count);
+    } else if (!result && (surface->vertex_count != sequence->vertex_count ||
+                           surface->triangle_count != sequence->triangle_count)) {
+        result =
+            refuse(error, SINGE_ERROR_MESH, "scene", -1,
+                   "%s: has %u vertices and %u triangles, the first of the motion %u and %u", short_name(path),
+                   surface->vertex_count, surface->triangle_count, sequence->vertex_count, sequence->triangle_count);
     }
+
+    for (uint32_t v = 0; !result && v < surface->vertex_count; v++) {
+        float *p = surface->vertices + 3 * (size_t)v, y = p[1];
+        if (motion->up == SCENE_UP_Y) { // from y up to z up
+            p[1] = -p[2];
+            p[2] = y;
+        }
+
+        if (!(fabsf(p[0]) <= 1e4f && fabsf(p[1]) <= 1e4f && fabsf(p[2]) <= 1e4f))
+            result = refuse(error, SINGE_ERROR_MESH, "scene", -1,
+                            "%s: vertex %u (from 0) is not finite or beyond 10 km", short_name(path), v);
+    }
+
     if (!result) {
-        sequence_transform(motion, solid.surface.vertices, vertices);
-        sequence->frames[frame] =
-            (PreviewSolid){vertices, triangles, solid.surface.vertices, sequence->triangles, true};
+        sequence->frames[frame] = (PreviewSolid){surface->vertex_count, surface->triangle_count, surface->vertices,
+                                                 sequence->triangles, true};
         sequence->frame_count = (uint32_t)frame + 1;
-        solid.surface.vertices = NULL;
+        surface->vertices = NULL;
     }
+
     solid_free(&solid);
     return result;
 }
 
-static SingeResult sequence_check_frame(const PreviewSolid *frame, const char *path, SingeError *error) {
-    for (size_t k = 0; k < 3 * (size_t)frame->vertex_count; k++)
-        if (!(fabsf(frame->vertices[k]) <= 1e4f))
-            return refuse(error, SINGE_ERROR_MESH, "scene", -1, "%s: vertex %zu (from 0) is not finite or beyond 10 km",
-                          short_name(path), k / 3);
-    return SINGE_OK;
-}
+SingeResult sequence_read(const SceneMotion *motion, int frames, SceneSequence *sequence, SingeError *error) {
+    SingeResult result = SINGE_OK;
+    *sequence = (SceneSequence){0};
 
-/// The number of frames with files, at least one: the motion stops after the last. SINGE_ERROR_FILE if one is missing
-/// in between.
-static SingeResult sequence_length(const SceneMotion *motion, int frames, int *length, SingeError *error) {
-    bool there = true, next;
-    for (*length = 0; *length < frames && there; ++*length) {
-        char *path = sequence_path(motion, *length + 1);
-        if (!path) return sequence_no_memory(error);
-        there = access(path, F_OK) == 0;
+    // the frames with files, at least one: the motion stops after the last
+    int length = 0;
+    for (bool there = true; length < frames && there && !result; length++) {
+        char *path = sequence_path(motion, length + 1);
+        there = path && access(path, F_OK) == 0;
+        if (!path) result = sequence_no_memory(error);
         free(path);
     }
-    if (there || *length == frames) return SINGE_OK;
-    char *missing = sequence_path(motion, *length), *after = sequence_path(motion, *length + 1);
-    SingeResult result = missing && after ? SINGE_OK : sequence_no_memory(error);
-    next = !result && access(after, F_OK) == 0;
-    if (next)
-        result = refuse(error, SINGE_ERROR_FILE, "scene", -1, "%s: there is no such file, but the next one is there",
-                        short_name(missing));
-    free(missing);
-    free(after);
-    return result;
-}
 
-SingeResult sequence_read(const SceneMotion *motion, int frames, SceneSequence *sequence, SingeError *error) {
-    *sequence = (SceneSequence){0};
-    int length;
-    SingeResult result = sequence_length(motion, frames, &length, error);
+    // none may be missing in between
+    if (!result && length < frames) {
+        char *missing = sequence_path(motion, length), *after = sequence_path(motion, length + 1);
+        if (!missing || !after) result = sequence_no_memory(error);
+        else if (access(after, F_OK) == 0)
+            result = refuse(error, SINGE_ERROR_FILE, "scene", -1, "%s: there is no such file, but the next one exists",
+                            short_name(missing));
+        free(missing);
+        free(after);
+    }
+
     for (int frame = 0; !result && frame < length; frame++) {
         char *path = sequence_path(motion, frame);
         result = path ? sequence_read_frame(motion, path, frame, length, sequence, error) : sequence_no_memory(error);
-        if (!result) result = sequence_check_frame(&sequence->frames[frame], path, error);
         free(path);
     }
     if (!result && (sequence->vertex_count == 0 || sequence->triangle_count == 0))
@@ -148,48 +145,66 @@ static void corners_of(const PreviewSolid *frame, uint32_t triangle, double v[3]
 
 static void axes_of(const double v[3][3], double e[3][3]) {
     double side[3], other[3];
-    for (int k = 0; k < 3; k++) e[0][k] = side[k] = v[1][k] - v[0][k], other[k] = v[2][k] - v[0][k];
+    for (int k = 0; k < 3; k++) {
+        e[0][k] = side[k] = v[1][k] - v[0][k];
+        other[k] = v[2][k] - v[0][k];
+    }
+
     for (int k = 0; k < 3; k++)
         e[2][k] = side[(k + 1) % 3] * other[(k + 2) % 3] - side[(k + 2) % 3] * other[(k + 1) % 3];
+
     for (int i = 0; i < 3; i += 2) {
         const double length = sqrt(closest_dot(e[i], e[i]));
         for (int k = 0; k < 3; k++) e[i][k] = length > 0 ? e[i][k] / length : 0; // an axis without extent remains 0
     }
+
     for (int k = 0; k < 3; k++) e[1][k] = e[2][(k + 1) % 3] * e[0][(k + 2) % 3] - e[2][(k + 2) % 3] * e[0][(k + 1) % 3];
 }
 
-static void bond(const PreviewSolid *frame, const float position[4], SceneBond *made) {
-    const double p[3] = {(double)position[0], (double)position[1], (double)position[2]};
-    double v[3][3], e[3][3], weights[3], best = INFINITY, away[3];
-    for (uint32_t t = 0; t < frame->triangle_count; t++) {
-        corners_of(frame, t, v);
-        const double square = closest_on_triangle(p, (const double(*)[3])v, weights);
-        if (!(square < best)) continue;
-        best = square;
-        made->triangle = t;
-        memcpy(made->weights, weights, sizeof weights);
-    }
-    corners_of(frame, made->triangle, v);
-    axes_of((const double(*)[3])v, e);
-    for (int k = 0; k < 3; k++)
-        away[k] = p[k] - made->weights[0] * v[0][k] - made->weights[1] * v[1][k] - made->weights[2] * v[2][k];
-    for (int i = 0; i < 3; i++) made->away[i] = closest_dot(away, e[i]);
-}
-
-/// Binds a pin's particles, at their rest positions, to the first frame.
-static bool bond_all(const SingeSim *sim, SingePinId pin, SceneSequence *sequence) {
+/// Binds a pin's particles, at their rest positions, to the first frame. False when out of memory.
+static bool bind_pin(const SingeSim *sim, SingePinId pin, SceneSequence *sequence) {
+    const PreviewSolid *frame = &sequence->frames[0];
     const SingeView view = singe_sim_view(sim);
     uint32_t count;
     const uint32_t *particles = singe_sim_pin_particles(sim, pin, &count);
     sequence->bonds = calloc((size_t)count + 1, sizeof *sequence->bonds);
-    sequence->bond_count = sequence->bonds ? count : 0;
-    for (uint32_t k = 0; k < sequence->bond_count; k++)
-        bond(&sequence->frames[0], view.rest_position[particles[k]], &sequence->bonds[k]);
-    return sequence->bonds != NULL;
+    if (!sequence->bonds) return false;
+
+    sequence->bond_count = count;
+
+    for (uint32_t b = 0; b < count; b++) {
+        SceneBond *made = &sequence->bonds[b];
+        const float *at = view.rest_position[particles[b]];
+        const double p[3] = {(double)at[0], (double)at[1], (double)at[2]};
+        double v[3][3], e[3][3], weights[3], best = INFINITY, away[3];
+        for (uint32_t t = 0; t < frame->triangle_count; t++) {
+            corners_of(frame, t, v);
+            const double square = closest_on_triangle(p, (const double(*)[3])v, weights);
+            if (!(square < best)) continue;
+            best = square;
+            made->triangle = t;
+            memcpy(made->weights, weights, sizeof weights);
+        }
+
+        corners_of(frame, made->triangle, v);
+        axes_of((const double(*)[3])v, e);
+        for (int k = 0; k < 3; k++)
+            away[k] = p[k] - made->weights[0] * v[0][k] - made->weights[1] * v[1][k] - made->weights[2] * v[2][k];
+        for (int i = 0; i < 3; i++) made->away[i] = closest_dot(away, e[i]);
+    }
+
+    return true;
 }
 
-static void bonds_at(const SceneSequence *sequence, uint32_t frame, float *positions) {
-    for (uint32_t b = 0; b < sequence->bond_count; b++, positions += 3) {
+// ---- the simulation
+
+static SingeResult follow_pin(SingeSim *sim, SingePinId pin, SceneSequence *sequence, uint32_t frame, double time,
+                              SingeError *error) {
+    if (!sequence->bonds && !bind_pin(sim, pin, sequence)) return sequence_no_memory(error);
+    float *positions = malloc(3 * ((size_t)sequence->bond_count + 1) * sizeof *positions);
+    if (!positions) return sequence_no_memory(error);
+
+    for (uint32_t b = 0; b < sequence->bond_count; b++) {
         const SceneBond *made = &sequence->bonds[b];
         double v[3][3], e[3][3];
         corners_of(&sequence->frames[frame], made->triangle, v);
@@ -197,19 +212,10 @@ static void bonds_at(const SceneSequence *sequence, uint32_t frame, float *posit
         for (int k = 0; k < 3; k++) {
             double x = 0;
             for (int i = 0; i < 3; i++) x += made->weights[i] * v[i][k] + made->away[i] * e[i][k];
-            positions[k] = (float)x;
+            positions[3 * (size_t)b + (size_t)k] = (float)x;
         }
     }
-}
 
-// ---- the simulation
-
-static SingeResult follow_pin(SingeSim *sim, SingePinId pin, SceneSequence *sequence, uint32_t frame, double time,
-                              SingeError *error) {
-    if (!sequence->bonds && !bond_all(sim, pin, sequence)) return sequence_no_memory(error);
-    float *positions = malloc(3 * ((size_t)sequence->bond_count + 1) * sizeof *positions);
-    if (!positions) return sequence_no_memory(error);
-    bonds_at(sequence, frame, positions);
     SingeResult result = singe_sim_set_pin_positions(sim, pin, positions, time);
     free(positions);
     if (result) *error = *singe_sim_error(sim);
@@ -219,22 +225,26 @@ static SingeResult follow_pin(SingeSim *sim, SingePinId pin, SceneSequence *sequ
 SingeResult scene_follow(const Scene *scene, SceneAssets *assets, SingeSim *sim, int frame, SingeError *error) {
     const double time = frame / (double)scene->fps;
     SingeResult result = SINGE_OK;
+
     // scene_build has added them in order, and a load keeps handles
     SingeColliderId *colliders = calloc((size_t)scene->collider_count + 1, sizeof *colliders);
     SingePinId *pins = calloc((size_t)scene->pin_count + 1, sizeof *pins);
     if (!colliders || !pins) result = sequence_no_memory(error);
     if (!result) singe_sim_colliders(sim, colliders, scene->collider_count);
     if (!result) singe_sim_pins(sim, pins, scene->pin_count);
+
     for (uint32_t i = 0; i < scene->collider_count && !result; i++) {
         const SceneSequence *sequence = &assets->collider_motions[i];
         if ((uint32_t)frame >= sequence->frame_count) continue;
         result = singe_sim_set_collider_vertices(sim, colliders[i], sequence->frames[frame].vertices, time);
         if (result) *error = *singe_sim_error(sim);
     }
+
     for (uint32_t i = 0; i < scene->pin_count && !result; i++)
         if ((uint32_t)frame < assets->pin_motions[i].frame_count)
             result = follow_pin(sim, pins[i], &assets->pin_motions[i], (uint32_t)frame, time, error);
     free(colliders);
     free(pins);
+
     return result;
 }

@@ -27,23 +27,15 @@ void solid_free(SceneSolid *solid) {
 
 // ---- faces
 
-/// Twice the area of a face by components.
-static void face_normal(const float *vertices, const uint32_t *corners, uint32_t count, double normal[3]) {
-    normal[0] = normal[1] = normal[2] = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        const float *a = vertices + 3 * (size_t)corners[i], *b = vertices + 3 * (size_t)corners[(i + 1) % count];
-        for (int k = 0; k < 3; k++) {
-            int e = (k + 1) % 3, f = (k + 2) % 3;
-            normal[k] += ((double)a[e] - (double)b[e]) * ((double)a[f] + (double)b[f]);
-        }
-    }
-}
-
 /// Twice the area of the triangle as seen along the normal; negative if it turns the other way.
 static double solid_turn(const float *vertices, uint32_t a, uint32_t b, uint32_t c, const double normal[3]) {
     const float *p = vertices + 3 * (size_t)a, *q = vertices + 3 * (size_t)b, *r = vertices + 3 * (size_t)c;
     double u[3], v[3], sum = 0;
-    for (int k = 0; k < 3; k++) u[k] = (double)q[k] - (double)p[k], v[k] = (double)r[k] - (double)p[k];
+    for (int k = 0; k < 3; k++) {
+        u[k] = (double)q[k] - (double)p[k];
+        v[k] = (double)r[k] - (double)p[k];
+    }
+
     for (int k = 0; k < 3; k++) {
         int e = (k + 1) % 3, f = (k + 2) % 3;
         sum += normal[k] * (u[e] * v[f] - u[f] * v[e]);
@@ -62,6 +54,7 @@ static double ear(const float *vertices, const uint32_t *left, uint32_t count, u
             solid_turn(vertices, c, a, p, normal) >= 0)
             return INFINITY;
     }
+
     double square = 0;
     for (size_t k = 0; k < 3; k++) {
         double d = (double)vertices[3 * (size_t)a + k] - (double)vertices[3 * (size_t)c + k];
@@ -72,8 +65,15 @@ static double ear(const float *vertices, const uint32_t *left, uint32_t count, u
 
 /// Cuts a face into count - 2 triangles; `left` has its corners and is consumed.
 static void face_cut(const float *vertices, uint32_t *left, uint32_t count, uint32_t *triangles) {
-    double normal[3];
-    face_normal(vertices, left, count, normal);
+    double normal[3] = {0, 0, 0}; // twice the area by components
+    for (uint32_t i = 0; i < count; i++) {
+        const float *a = vertices + 3 * (size_t)left[i], *b = vertices + 3 * (size_t)left[(i + 1) % count];
+        for (int k = 0; k < 3; k++) {
+            int e = (k + 1) % 3, f = (k + 2) % 3;
+            normal[k] += ((double)a[e] - (double)b[e]) * ((double)a[f] + (double)b[f]);
+        }
+    }
+
     for (; count >= 3; count--, triangles += 3) {
         uint32_t best = 1; // if the face crosses itself: any
         double min = INFINITY;
@@ -84,29 +84,12 @@ static void face_cut(const float *vertices, uint32_t *left, uint32_t count, uint
                 best = i;
             }
         }
-        triangles[0] = left[(best + count - 1) % count], triangles[1] = left[best];
+
+        triangles[0] = left[(best + count - 1) % count];
+        triangles[1] = left[best];
         triangles[2] = left[(best + 1) % count];
         memmove(left + best, left + best + 1, (count - best - 1) * sizeof *left);
     }
-}
-
-/// Cuts all faces; false when out of memory. A corner named twice in a row gives triangles without area, which the
-/// library leaves out.
-static bool cut_faces(const Polygons *polygons, PreviewSolid *surface) {
-    uint32_t max = 0;
-    for (uint32_t f = 0; f < polygons->face_count; f++) {
-        uint32_t count = polygons->first[f + 1] - polygons->first[f];
-        max = count > max ? count : max;
-    }
-    uint32_t *left = malloc((max + 1) * sizeof *left);
-    for (uint32_t f = 0; left && f < polygons->face_count; f++) {
-        uint32_t first = polygons->first[f], count = polygons->first[f + 1] - first;
-        memcpy(left, polygons->corners + first, count * sizeof *left);
-        face_cut(surface->vertices, left, count, surface->triangles + 3 * (size_t)surface->triangle_count);
-        surface->triangle_count += count - 2;
-    }
-    free(left);
-    return left != NULL;
 }
 
 SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size, double scale, SceneSolid *solid,
@@ -114,16 +97,34 @@ SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size,
     Polygons polygons;
     SingeResult result = polygons_read(name, bytes, size, (SingeAllocator){0}, &polygons, error);
     if (result) return result;
+
+    uint32_t max = 0;
+    for (uint32_t f = 0; f < polygons.face_count; f++) {
+        uint32_t corners = polygons.first[f + 1] - polygons.first[f];
+        max = corners > max ? corners : max;
+    }
+
     PreviewSolid *surface = &solid->surface;
     size_t count = (size_t)polygons.corner_count - 2 * (size_t)polygons.face_count;
     surface->vertices = malloc(3 * (size_t)polygons.vertex_count * sizeof *surface->vertices);
     surface->triangles = malloc(3 * count * sizeof *surface->triangles);
     surface->vertex_count = polygons.vertex_count;
+    uint32_t *left = malloc((max + 1) * sizeof *left); // corners of a face
     if (count > INT32_MAX / 4) result = solid_fail(error, SINGE_ERROR_LIMIT, -1, "the collider's mesh is too large");
-    else if (!surface->vertices || !surface->triangles) result = solid_no_memory(error);
+    else if (!surface->vertices || !surface->triangles || !left) result = solid_no_memory(error);
+
     for (size_t k = 0; !result && k < 3 * (size_t)polygons.vertex_count; k++)
         surface->vertices[k] = (float)((double)polygons.positions[k] * scale);
-    if (!result && !cut_faces(&polygons, surface)) result = solid_no_memory(error);
+
+    // a corner named twice in a row gives triangles without area, which the library leaves out
+    for (uint32_t f = 0; !result && f < polygons.face_count; f++) {
+        uint32_t first = polygons.first[f], corners = polygons.first[f + 1] - first;
+        memcpy(left, polygons.corners + first, corners * sizeof *left);
+        face_cut(surface->vertices, left, corners, surface->triangles + 3 * (size_t)surface->triangle_count);
+        surface->triangle_count += corners - 2;
+    }
+
+    free(left);
     polygons_free(&polygons);
     return result;
 }
@@ -132,7 +133,9 @@ SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size,
 
 static void put_triangle(PreviewSolid *surface, size_t a, size_t b, size_t c) {
     uint32_t *triangle = surface->triangles + 3 * (size_t)surface->triangle_count++;
-    triangle[0] = (uint32_t)a, triangle[1] = (uint32_t)b, triangle[2] = (uint32_t)c;
+    triangle[0] = (uint32_t)a;
+    triangle[1] = (uint32_t)b;
+    triangle[2] = (uint32_t)c;
 }
 
 static void put_vertex(PreviewSolid *surface, float x, float y, float z) {
@@ -174,6 +177,7 @@ static void draw_heights(SceneSolid *solid, const float size[2]) {
         const float *top = surface->vertices + 3 * border_node(solid, k);
         put_vertex(surface, top[0], top[1], low);
     }
+
     for (size_t k = 0; k < border; k++) {
         size_t a = border_node(solid, k), b = border_node(solid, (k + 1) % border), below = columns * rows;
         put_triangle(surface, a, below + k, below + (k + 1) % border);
@@ -195,10 +199,12 @@ SingeResult solid_make_heights(const SingeTexture *picture, const float size[2],
     solid->surface.vertices = malloc(3 * (nodes + border) * sizeof *solid->surface.vertices);
     solid->surface.triangles = malloc(3 * (2 * (columns - 1) * (rows - 1) + 2 * border) * sizeof(uint32_t));
     if (!solid->heights || !solid->surface.vertices || !solid->surface.triangles) return solid_no_memory(error);
+
     for (size_t j = 0; j < rows; j++) // the picture's rows run from the top
         for (size_t i = 0; i < columns; i++)
             solid->heights[j * columns + i] =
                 heights[0] + (heights[1] - heights[0]) * picture->values[(rows - 1 - j) * columns + i];
     draw_heights(solid, size);
+
     return SINGE_OK;
 }

@@ -48,17 +48,19 @@ static const DimensionRow dimensions[DIM_COUNT] = {
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// The length of a decimal number at the start of a text; 0 if there is none.
+/// The length of a decimal number at the start of a text; 0 if there is none.
 static size_t number_length(const char *text) {
     const char *c = text + (*text == '+' || *text == '-');
     const char *digits = c;
     while (is_digit(*c)) c++;
     size_t count = (size_t)(c - digits);
+
     if (*c == '.') {
         const char *point = ++c;
         while (is_digit(*c)) c++;
         count += (size_t)(c - point);
     }
+
     if (!count) return 0;
     if (*c == 'e' || *c == 'E') {
         const char *power = c + 1 + (c[1] == '+' || c[1] == '-');
@@ -70,7 +72,7 @@ static size_t number_length(const char *text) {
     return (size_t)(c - text);
 }
 
-// Other spellings of parts of unit names. Longer spellings come first.
+/// Other spellings of parts of unit names. Longer spellings come first.
 static const struct Spelling {
     const char *piece, *text;
 } spellings[] = {
@@ -81,13 +83,15 @@ static const struct Spelling {
 
 static bool begins(const char *text, const char *with) { return strncmp(text, with, strlen(with)) == 0; }
 
-// Whether all of `text` spells the unit. Blanks count: "m m" is no "mm".
+/// Whether all of `text` spells the unit. Blanks count: "m m" is no "mm".
 static bool unit_spelt(const char *text, const char *name) {
     while (*name) {
         if (*text == *name) {
-            text++, name++;
+            text++;
+            name++;
             continue;
         }
+
         size_t i = 0, count = sizeof spellings / sizeof *spellings;
         while (i < count && !(begins(name, spellings[i].piece) && begins(text, spellings[i].text))) i++;
         if (i == count) return false;
@@ -97,22 +101,21 @@ static bool unit_spelt(const char *text, const char *name) {
     return !*text;
 }
 
-// The unit of a spelling; the first if the spelling is empty; NULL if the dimension has no such unit.
-static const Unit *unit_find(const DimensionRow *row, const char *text) {
-    for (int i = 0; i < UNIT_MAX && row->units[i].name && *text; i++)
-        if (unit_spelt(text, row->units[i].name)) return &row->units[i];
-    return *text ? NULL : &row->units[0];
-}
-
 NumberFault quantity_read(const char *text, Dimension dimension, double *value) {
-    const DimensionRow *row = &dimensions[dimension];
-    size_t length = number_length(text);
+    const size_t length = number_length(text);
     const uint8_t *at = (const uint8_t *)text, *end = at + length;
     double bare = 0;
     if (!length || number_double(&at, end, &bare) != NUMBER_OK || at != end) return NUMBER_NOT_ONE;
-    const Unit *unit = unit_find(row, text + length + strspn(text + length, " "));
-    if (!unit) return NUMBER_BAD_UNIT;
-    *value = unit->factor * (bare + unit->offset);
+
+    // without a unit it is in the dimension's first
+    const char *spelt = text + length + strspn(text + length, " ");
+    const Unit *units = dimensions[dimension].units;
+    int i = 0;
+
+    while (*spelt && i < UNIT_MAX && units[i].name && !unit_spelt(spelt, units[i].name)) i++;
+    if (i == UNIT_MAX || !units[i].name) return NUMBER_BAD_UNIT;
+
+    *value = units[i].factor * (bare + units[i].offset);
     return NUMBER_GOOD;
 }
 
@@ -129,30 +132,26 @@ void quantity_units(Dimension dimension, char *buffer, size_t size) {
                                      dimensions[dimension].units[i].name);
 }
 
-// Replaces the locale's decimal sign, which may be several bytes, by a point.
-static void point_mend(char *number) {
-    char *to = number;
-    for (const char *c = number; *c; c++) {
-        if (strchr("0123456789eE+-", *c)) *to++ = *c;
-        else if (to == number || to[-1] != '.') *to++ = '.';
-    }
-    *to = 0;
-}
-
-// %g turns 1200 into 1.2e+03; plain notation is preferred if it is as short.
-static void number_print_plain(double bare, int digits, char *buffer, size_t size) {
-    double magnitude = fabs(bare);
+void quantity_print(float value, Dimension dimension, char *buffer, size_t size) {
+    const double bare = (double)value / dimensions[dimension].units[0].factor, magnitude = fabs(bare);
     int whole = 1;
     for (double limit = 10; limit <= magnitude; limit *= 10) whole++;
-    if (magnitude >= 1 && magnitude < 1e9) snprintf(buffer, size, "%.*f", digits > whole ? digits - whole : 0, bare);
-    else snprintf(buffer, size, "%.*g", digits, bare);
-    point_mend(buffer);
-}
 
-void quantity_print(float value, Dimension dimension, char *buffer, size_t size) {
-    double bare = (double)value / dimensions[dimension].units[0].factor, again = 0;
     for (int digits = 1; digits <= 17; digits++) {
-        number_print_plain(bare, digits, buffer, size);
+        // %g turns 1200 into 1.2e+03; plain notation is preferred if it is as short
+        if (magnitude >= 1 && magnitude < 1e9)
+            snprintf(buffer, size, "%.*f", digits > whole ? digits - whole : 0, bare);
+        else snprintf(buffer, size, "%.*g", digits, bare);
+
+        // a point in place of the locale's decimal sign, which may be several bytes
+        char *to = buffer;
+        for (const char *c = buffer; *c; c++) {
+            if (strchr("0123456789eE+-", *c)) *to++ = *c;
+            else if (to == buffer || to[-1] != '.') *to++ = '.';
+        }
+        *to = 0;
+
+        double again = 0;
         if (quantity_read(buffer, dimension, &again) == NUMBER_GOOD && (float)again == value) return;
     }
 }

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-void value_wrong(Reader *reader, const Node *node, const SchemaRow *row) {
+void value_wrong(Reader *reader, const YamlNode *node, const SchemaRow *row) {
     char expected[240], seen[NODE_WORDS];
     row_expected(row, expected, sizeof expected);
     message_add(reader->messages, reader->text, node->location, "%s must be %s, not %s", row->key, expected,
@@ -31,7 +31,7 @@ static bool float_in_range(const SchemaRow *row, float value) {
     return between(row, (double)value, (double)(float)row->min, (double)(float)row->max);
 }
 
-static void out_of_range(Reader *reader, const SchemaRow *row, const Node *node) {
+static void out_of_range(Reader *reader, const SchemaRow *row, const YamlNode *node) {
     char range[80], seen[NODE_WORDS];
     const char *unit = quantity_unit(row->dimension);
     row_range(row, range, sizeof range);
@@ -39,7 +39,7 @@ static void out_of_range(Reader *reader, const SchemaRow *row, const Node *node)
                 node_describe(node, seen, sizeof seen), row->key, range, unit[0] ? " " : "", unit);
 }
 
-bool value_float(Reader *reader, const SchemaRow *row, const Node *node, float *result) {
+bool value_float(Reader *reader, const SchemaRow *row, const YamlNode *node, float *result) {
     double value = 0;
     if (node->kind != NODE_VALUE) {
         value_wrong(reader, node, row);
@@ -75,7 +75,7 @@ bool value_float(Reader *reader, const SchemaRow *row, const Node *node, float *
     return true;
 }
 
-static bool read_whole(Reader *reader, const SchemaRow *row, const Node *node, uint64_t highest, bool negative,
+static bool read_whole(Reader *reader, const SchemaRow *row, const YamlNode *node, uint64_t highest, bool negative,
                        int64_t *result) {
     const char *c = node->kind == NODE_VALUE ? node->text : "";
     bool minus = negative && *c == '-';
@@ -101,7 +101,7 @@ static bool read_whole(Reader *reader, const SchemaRow *row, const Node *node, u
     return true;
 }
 
-bool value_vector(Reader *reader, const SchemaRow *row, const Node *node, float *result) {
+bool value_vector(Reader *reader, const SchemaRow *row, const YamlNode *node, float *result) {
     if (node->kind != NODE_LIST || (int)node->count != row->length) {
         value_wrong(reader, node, row);
         return false;
@@ -110,12 +110,12 @@ bool value_vector(Reader *reader, const SchemaRow *row, const Node *node, float 
     element.type = ROW_FLOAT;
     bool good = true;
     int i = 0;
-    for (const Node *child = node->first; child; child = child->next, i++)
+    for (const YamlNode *child = node->first; child; child = child->next, i++)
         good = value_float(reader, &element, child, &result[i]) && good;
     return good;
 }
 
-void value_integer(Reader *reader, const SchemaRow *row, const Node *node, void *field) {
+void value_integer(Reader *reader, const SchemaRow *row, const YamlNode *node, void *field) {
     int64_t value;
     if (row->type == ROW_UINT64) {
         if (read_whole(reader, row, node, UINT64_MAX, false, &value)) *(uint64_t *)field = (uint64_t)value;
@@ -126,19 +126,20 @@ void value_integer(Reader *reader, const SchemaRow *row, const Node *node, void 
     }
 }
 
-void value_ints(Reader *reader, const SchemaRow *row, const Node *node, int *field) {
+void value_ints(Reader *reader, const SchemaRow *row, const YamlNode *node, int *field) {
     if (node->kind != NODE_LIST || (int)node->count != row->length) {
         value_wrong(reader, node, row);
         return;
     }
     SchemaRow element = *row;
     element.type = ROW_INT;
-    for (const Node *child = node->first; child; child = child->next) value_integer(reader, &element, child, field++);
+    for (const YamlNode *child = node->first; child; child = child->next)
+        value_integer(reader, &element, child, field++);
 }
 
 // ---- words
 
-void value_bool(Reader *reader, const SchemaRow *row, const Node *node, bool *field) {
+void value_bool(Reader *reader, const SchemaRow *row, const YamlNode *node, bool *field) {
     static const char *const words[] = {"false", "true", "no", "yes", "off", "on"};
     if (node->kind == NODE_VALUE)
         for (int i = 0; i < 6; i++)
@@ -149,12 +150,12 @@ void value_bool(Reader *reader, const SchemaRow *row, const Node *node, bool *fi
     value_wrong(reader, node, row);
 }
 
-bool value_word(Reader *reader, const SchemaRow *row, const Node *node, const char *const *names, int *result) {
+bool value_word(Reader *reader, const SchemaRow *row, const YamlNode *node, const char *const *names, int *result) {
     if (node->kind != NODE_VALUE) {
         value_wrong(reader, node, row);
         return false;
     }
-    const char *word = renamed(reader, row->key, node->text, node->location);
+    const char *word = node->text;
     Nearest nearest = {.word = word};
     for (int i = 0; names[i]; i++) {
         if (!names[i][0]) continue; // scenes have no word for it
@@ -174,13 +175,13 @@ bool value_word(Reader *reader, const SchemaRow *row, const Node *node, const ch
     return false;
 }
 
-void value_order(Reader *reader, const SchemaRow *row, const Node *node, SingeColour *field) {
+void value_order(Reader *reader, const SchemaRow *row, const YamlNode *node, SingeColour *field) {
     if (node->kind != NODE_LIST || node->count != SINGE_COLOUR_COUNT) {
         value_wrong(reader, node, row);
         return;
     }
     int seen = 0;
-    for (const Node *child = node->first; child; child = child->next) {
+    for (const YamlNode *child = node->first; child; child = child->next) {
         int colour = 0;
         if (!value_word(reader, row, child, words_SingeColour, &colour)) return;
         if (seen & 1 << colour) {
@@ -193,7 +194,7 @@ void value_order(Reader *reader, const SchemaRow *row, const Node *node, SingeCo
     }
 }
 
-void value_formats(Reader *reader, const SchemaRow *row, const Node *node, OutputSet *field) {
+void value_formats(Reader *reader, const SchemaRow *row, const YamlNode *node, OutputSet *field) {
     if (node->kind != NODE_LIST) {
         value_wrong(reader, node, row);
         return;
@@ -201,7 +202,7 @@ void value_formats(Reader *reader, const SchemaRow *row, const Node *node, Outpu
     const char *names[OUTPUT_COUNT + 1] = {NULL};
     for (int i = 0; i < OUTPUT_COUNT; i++) names[i] = output_formats[i].name;
     OutputSet set = 0;
-    for (const Node *child = node->first; child; child = child->next) {
+    for (const YamlNode *child = node->first; child; child = child->next) {
         int format = 0;
         if (!value_word(reader, row, child, names, &format)) return;
         if (output_has(set, format)) {
@@ -213,7 +214,7 @@ void value_formats(Reader *reader, const SchemaRow *row, const Node *node, Outpu
     *field = set | 1u << OUTPUT_ply;
 }
 
-bool value_is_text(const Node *node) {
+bool value_is_text(const YamlNode *node) {
     char seen[NODE_WORDS];
     return node->kind == NODE_VALUE && strcmp(node_describe(node, seen, sizeof seen), "nothing") != 0 && node->text[0];
 }
@@ -224,7 +225,7 @@ bool value_names_files(const char *text) {
     return good && !strpbrk(text, "/\\:*?\"<>|%");
 }
 
-void value_name(Reader *reader, const SchemaRow *row, const Node *node, char **field) {
+void value_name(Reader *reader, const SchemaRow *row, const YamlNode *node, char **field) {
     if (value_is_text(node) && value_names_files(node->text)) *field = node->text;
     else value_wrong(reader, node, row);
 }
@@ -238,7 +239,7 @@ static char *value_join(SceneArena *arena, const char *folder, const char *slash
     return joined;
 }
 
-void value_file(Reader *reader, const SchemaRow *row, const Node *node, SceneFile *field) {
+void value_file(Reader *reader, const SchemaRow *row, const YamlNode *node, SceneFile *field) {
     if (!value_is_text(node) || strlen(node->text) > 4000) {
         value_wrong(reader, node, row);
         return;

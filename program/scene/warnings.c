@@ -4,20 +4,6 @@
 
 #include <math.h>
 
-/// Distance from a point to the mesh's nearest vertex, m.
-static double nearest_vertex(const Mesh *mesh, const float point[3]) {
-    double min = INFINITY;
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        double sum = 0;
-        for (size_t i = 0; i < 3; i++) {
-            double offset = (double)mesh->positions[3 * (size_t)v + i] - (double)point[i];
-            sum += offset * offset;
-        }
-        min = fmin(min, sum);
-    }
-    return sqrt(min);
-}
-
 static double diagonal(const Mesh *mesh) {
     double sum = 0;
     for (size_t i = 0; i < 3; i++) {
@@ -38,7 +24,17 @@ static void warn_of_pin(const Scene *scene, const SceneAssets *assets, const Sce
     const double reach = (double)pin->radius + 0.1 * diagonal(mesh);
     for (uint32_t k = 0; k < pin->point_count; k++) {
         const float *p = pin->points[k].position;
-        const double gap = nearest_vertex(mesh, p);
+        double min = INFINITY;
+        for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+            double sum = 0;
+            for (size_t i = 0; i < 3; i++) {
+                double offset = (double)mesh->positions[3 * (size_t)v + i] - (double)p[i];
+                sum += offset * offset;
+            }
+            min = fmin(min, sum);
+        }
+
+        const double gap = sqrt(min);
         if (!(gap > reach)) continue;
         message_warn(
             log, scene->text, pin->location,
@@ -71,18 +67,15 @@ static void warn_of_motion(const Scene *scene, const SceneMotion *motion, const 
                      scene->frames);
 }
 
-static bool is_weak(const SceneSource *source) {
-    bool weak = source->strength_count > 0;
-    for (uint32_t i = 0; i < source->strength_count; i++) weak = weak && source->strength[i].value == 0;
-    return weak;
-}
-
 /// A source that cannot heat anything, whatever moves.
 static void warn_of_source(const Scene *scene, const SceneSource *source, const SingeLog *log) {
     const SingeSourceDef *def = &source->def;
     const double end = (scene->frames - 1) / (double)scene->fps;
+    bool weak = source->strength_count > 0;
+    for (uint32_t i = 0; i < source->strength_count; i++) weak = weak && source->strength[i].value == 0;
+
     const char *why = NULL;
-    if (def->kind == SINGE_SOURCE_TEXTURE && (def->flux == 0 || is_weak(source))) why = "its flux is 0";
+    if (def->kind == SINGE_SOURCE_TEXTURE && (def->flux == 0 || weak)) why = "its flux is 0";
     else if (def->kind != SINGE_SOURCE_TEXTURE && def->conductance == 0) why = "its conductance is 0";
     else if (def->kind != SINGE_SOURCE_TEXTURE && def->radius + def->falloff == 0)
         why = "its radius and its falloff are 0";
@@ -92,15 +85,12 @@ static void warn_of_source(const Scene *scene, const SceneSource *source, const 
 }
 
 void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
-    for (const SceneRenamed *entry = scene->renamed; entry && log->write; entry = entry->next)
-        message_warn(log, entry->text, entry->location,
-                     "'%s' is now called '%s'; the old name is accepted in this release only", entry->before,
-                     entry->now);
-    for (uint32_t i = 0; i < scene->source_count && log->write; i++) warn_of_source(scene, &scene->sources[i], log);
-    for (uint32_t i = 0; i < scene->pin_count && log->write; i++) warn_of_pin(scene, assets, &scene->pins[i], log);
-    for (uint32_t i = 0; i < scene->collider_count && log->write; i++)
+    if (!log->write) return;
+    for (uint32_t i = 0; i < scene->source_count; i++) warn_of_source(scene, &scene->sources[i], log);
+    for (uint32_t i = 0; i < scene->pin_count; i++) warn_of_pin(scene, assets, &scene->pins[i], log);
+    for (uint32_t i = 0; i < scene->collider_count; i++)
         warn_of_motion(scene, &scene->colliders[i].motion, &assets->collider_motions[i], log);
-    for (uint32_t i = 0; i < scene->pin_count && log->write; i++)
+    for (uint32_t i = 0; i < scene->pin_count; i++)
         warn_of_motion(scene, &scene->pins[i].motion, &assets->pin_motions[i], log);
-    for (uint32_t i = 0; i < scene->probe_count && log->write; i++) warn_of_probe(scene, assets, i, log);
+    for (uint32_t i = 0; i < scene->probe_count; i++) warn_of_probe(scene, assets, i, log);
 }

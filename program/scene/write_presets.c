@@ -29,10 +29,12 @@ static void write_float(FILE *out, float value) {
         fprintf(out, "%d", (int)value);
         return;
     }
+
     for (int digits = 1; digits <= 9; digits++) {
         snprintf(text, sizeof text, "%.*g", digits, (double)value);
         if (strtof(text, NULL) == value) break;
     }
+
     fprintf(out, strpbrk(text, ".e") ? "%sf" : "%s", text);
 }
 
@@ -49,11 +51,13 @@ static void write_param(FILE *out, const PresetRow *row, int colour, const Singe
     if (row->colours) snprintf(name, sizeof name, "%s[%d]", row->name, colour);
     else snprintf(name, sizeof name, "%s", row->name);
     snprintf(noise, sizeof noise, "%s_%d", row->name, colour);
+
     if (param->field) {
         fprintf(out, "    static const SingeField %s = {.kind = SINGE_FIELD_NOISE, .noise = {", noise);
         write_float(out, param->field->noise.scale);
         fprintf(out, ", %d, %u}};\n", param->field->noise.octaves, (unsigned)param->field->noise.seed);
     }
+
     fprintf(out, "    def->%s = singe_param%s(", name, param->field ? "_field" : "");
     write_float(out, param->value);
     if (param->field) {
@@ -61,6 +65,7 @@ static void write_param(FILE *out, const PresetRow *row, int colour, const Singe
         write_float(out, param->to);
         fprintf(out, ", &%s", noise);
     }
+
     fprintf(out, ");\n");
 }
 
@@ -69,6 +74,7 @@ static void write_material(FILE *out, const char *name, const SingeMaterialDef *
     fprintf(out, "static void ");
     for (const char *c = name; *c; c++) fputc(*c == '-' ? '_' : *c, out);
     fprintf(out, "(SingeMaterialDef *def) {\n    (void)def; // holds the defaults\n");
+
     for (size_t i = 0; i < sizeof params / sizeof *params; i++)
         for (int colour = 0; colour < (params[i].colours ? params[i].colours : 1); colour++) {
             const SingeParam *param = (const SingeParam *)((const char *)def + params[i].offset) + colour;
@@ -80,26 +86,17 @@ static void write_material(FILE *out, const char *name, const SingeMaterialDef *
         write_float(out, def->reference_grammage);
         fprintf(out, ";\n");
     }
+
     if (def->thickening != standard.thickening) {
         fprintf(out, "    def->thickening = ");
         write_float(out, def->thickening);
         fprintf(out, ";\n");
     }
+
     if (def->heat_operator != standard.heat_operator)
         fprintf(out, "    def->heat_operator = (SingeHeatOperator)%d;\n", (int)def->heat_operator);
     if (def->ablate != standard.ablate) fprintf(out, "    def->ablate = %s;\n", def->ablate ? "true" : "false");
     fprintf(out, "}\n\n");
-}
-
-/// Reads a material as a scene does.
-static bool read_material(const char *name, Scene **scene) {
-    char text[200];
-    SceneMessages messages = {0};
-    snprintf(text, sizeof text, "sheets: [{grid: {size: [10 cm, 10 cm], cells: [2, 2]}, material: %s}]\n", name);
-    SingeResult result = scene_parse("presets", text, strlen(text), NULL, NULL, 0, scene, &messages);
-    scene_messages_print(&messages, stderr);
-    scene_messages_free(&messages);
-    return result == SINGE_OK;
 }
 
 static bool write_presets(FILE *out) {
@@ -108,43 +105,48 @@ static bool write_presets(FILE *out) {
             "// Made by scene_presets from the files of this folder. Do not edit: change those and run\n"
             "// `build/program/scene/scene_presets > src/materials/presets.c`.\n#include \"materials/preset.h\"\n\n");
     for (int i = 0; (name = scene_material_name(i)); i++) {
+        // read as a scene does
         Scene *scene;
-        if (!read_material(name, &scene)) return false;
+        char text[200];
+        SceneMessages messages = {0};
+        snprintf(text, sizeof text, "sheets: [{grid: {size: [10 cm, 10 cm], cells: [2, 2]}, material: %s}]\n", name);
+        SingeResult result = scene_parse("presets", text, strlen(text), NULL, NULL, 0, &scene, &messages);
+        scene_messages_print(&messages, stderr);
+        scene_messages_free(&messages);
+        if (result) return false;
         write_material(out, name, &scene->sheets[0].material.def);
         scene_free(scene);
     }
+
     fprintf(out, "const MaterialPreset material_presets[] = {\n");
     for (int i = 0; (name = scene_material_name(i)); i++) {
         fprintf(out, "    {\"%s\", ", name);
         for (const char *c = name; *c; c++) fputc(*c == '-' ? '_' : *c, out);
         fprintf(out, "},\n");
     }
+
     fprintf(out, "    {0},\n};\n");
     return true;
-}
-
-static int compare(const char *path, const char *text, size_t size) {
-    Bytes bytes = {0};
-    SingeError error;
-    if (file_read(path, (SingeAllocator){0}, &bytes, &error)) {
-        fprintf(stderr, "%s\n", error.message);
-        return 1;
-    }
-    bool equal = bytes.size == size && memcmp(bytes.data, text, size) == 0;
-    if (!equal) fprintf(stderr, "%s: differs from the material files; run scene_presets > %s\n", path, path);
-    bytes_free(&bytes);
-    return equal ? 0 : 1;
 }
 
 int main(int argc, char **argv) {
     char *text = NULL;
     size_t size = 0;
     FILE *memory = open_memstream(&text, &size);
-    bool ok = memory && write_presets(memory);
-    if (memory && fclose(memory)) ok = false;
-    int status = 1;
-    if (ok && argc > 1) status = compare(argv[1], text, size);
-    else if (ok) status = fwrite(text, 1, size, stdout) == size && fflush(stdout) == 0 ? 0 : 1;
+    bool written = memory && write_presets(memory);
+    if (!memory || fclose(memory) || !written) return 1;
+    if (argc < 2) return fwrite(text, 1, size, stdout) == size && fflush(stdout) == 0 ? 0 : 1;
+
+    Bytes bytes = {0};
+    SingeError error;
+    if (file_read(argv[1], (SingeAllocator){0}, &bytes, &error)) {
+        fprintf(stderr, "%s\n", error.message);
+        return 1;
+    }
+
+    bool equal = bytes.size == size && memcmp(bytes.data, text, size) == 0;
+    if (!equal) fprintf(stderr, "%s: differs from the material files; run scene_presets > %s\n", argv[1], argv[1]);
+    bytes_free(&bytes);
     free(text);
-    return status;
+    return equal ? 0 : 1;
 }

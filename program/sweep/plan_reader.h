@@ -13,12 +13,12 @@ typedef struct PlanReader {
 } PlanReader;
 
 /// Reports an error: what was expected at a node, and what it is.
-void plan_complain(PlanReader *reader, const Node *node, const char *key, const char *expected);
+void plan_complain(PlanReader *reader, const YamlNode *node, const char *key, const char *expected);
 
 /// A path from the plan's folder; NULL after an error.
-char *plan_read_path(PlanReader *reader, const Node *node, const char *key);
+char *plan_read_path(PlanReader *reader, const YamlNode *node, const char *key);
 
 /// The target of a fit (plan_target.c).
-void plan_read_target(PlanReader *reader, const Node *node);
+void plan_read_target(PlanReader *reader, const YamlNode *node);
 
 #endif

@@ -6,13 +6,13 @@
 #include "scene/units.h"
 #include "sweep/plan_reader.h"
 
-static void read_curve(PlanReader *reader, const Node *map) {
+static void read_curve(PlanReader *reader, const YamlNode *map) {
     PlanTarget *target = &reader->plan->target;
     if (map->kind != NODE_MAP) {
         plan_complain(reader, map, "temperature", "{file: CURVE.csv, probe: NAME}");
         return;
     }
-    for (const Node *node = map->first; node; node = node->next)
+    for (const YamlNode *node = map->first; node; node = node->next)
         if (strcmp(node->key, "file") == 0) target->curve = plan_read_path(reader, node, "file");
         else if (strcmp(node->key, "probe") == 0 && node->kind == NODE_VALUE) target->probe = node->text;
         else
@@ -22,7 +22,7 @@ static void read_curve(PlanReader *reader, const Node *map) {
         message_add(&reader->messages, &reader->text, map->location, "a curve needs 'file' and 'probe'");
 }
 
-static void read_masks(PlanReader *reader, const Node *node) {
+static void read_masks(PlanReader *reader, const YamlNode *node) {
     char *path = plan_read_path(reader, node, "masks");
     const char *name = path ? strrchr(path, '/') : NULL, *run = path ? strchr(name ? name : path, '#') : NULL;
     reader->plan->target.masks = path;
@@ -30,14 +30,14 @@ static void read_masks(PlanReader *reader, const Node *node) {
         plan_complain(reader, node, "masks", "a file name with one run of # for the frame's number");
 }
 
-void plan_read_target(PlanReader *reader, const Node *map) {
+void plan_read_target(PlanReader *reader, const YamlNode *map) {
     PlanTarget *target = &reader->plan->target;
     if (map->kind != NODE_MAP || !map->count) {
         plan_complain(reader, map, "target", "a map of front_speed, temperature or masks");
         return;
     }
     target->given = true;
-    for (const Node *node = map->first; node; node = node->next) {
+    for (const YamlNode *node = map->first; node; node = node->next) {
         const char *key = node->key;
         if (strcmp(key, "front_speed") == 0) {
             if (node->kind != NODE_VALUE || quantity_read(node->text, DIM_SPEED, &target->front_speed) ||

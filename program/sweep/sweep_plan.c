@@ -18,7 +18,7 @@ static const char *const methods[PLAN_METHODS] = {"grid", "list", "random", "lat
 
 static const char *const searches[PLAN_SEARCHES] = {"local", "global"};
 
-void plan_complain(PlanReader *reader, const Node *node, const char *key, const char *expected) {
+void plan_complain(PlanReader *reader, const YamlNode *node, const char *key, const char *expected) {
     char seen[NODE_WORDS];
     message_add(&reader->messages, &reader->text, node->location, "%s: expected %s, got %s", key, expected,
                 node_describe(node, seen, sizeof seen));
@@ -27,7 +27,7 @@ void plan_complain(PlanReader *reader, const Node *node, const char *key, const 
 // ---- values
 
 /// A value in flow style, as --set reads it; strings keep their quotes.
-static void write_flow(const Node *node, FILE *file) {
+static void write_flow(const YamlNode *node, FILE *file) {
     const char *between = "";
     if (node->kind == NODE_VALUE && !node->quoted) {
         fputs(node->text, file);
@@ -42,7 +42,7 @@ static void write_flow(const Node *node, FILE *file) {
         return;
     }
     fputc(node->kind == NODE_LIST ? '[' : '{', file);
-    for (const Node *child = node->first; child; child = child->next) {
+    for (const YamlNode *child = node->first; child; child = child->next) {
         fputs(between, file);
         if (node->kind == NODE_MAP) fprintf(file, "%s: ", child->key);
         write_flow(child, file);
@@ -51,7 +51,7 @@ static void write_flow(const Node *node, FILE *file) {
     fputc(node->kind == NODE_LIST ? ']' : '}', file);
 }
 
-static char *flow_text(Plan *plan, const Node *node, const char *prefix) {
+static char *flow_text(Plan *plan, const YamlNode *node, const char *prefix) {
     char *text = NULL, *kept = NULL;
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
@@ -65,7 +65,7 @@ static char *flow_text(Plan *plan, const Node *node, const char *prefix) {
     return kept;
 }
 
-static void read_count(PlanReader *reader, const Node *node, const char *key, uint32_t low, uint32_t high,
+static void read_count(PlanReader *reader, const YamlNode *node, const char *key, uint32_t low, uint32_t high,
                        uint32_t *count) {
     char expected[64];
     int64_t number = -1;
@@ -78,7 +78,7 @@ static void read_count(PlanReader *reader, const Node *node, const char *key, ui
     else plan_complain(reader, node, key, expected);
 }
 
-static bool read_switch(PlanReader *reader, const Node *node, const char *key) {
+static bool read_switch(PlanReader *reader, const YamlNode *node, const char *key) {
     const char *text = node->kind == NODE_VALUE ? node->text : "";
     const bool yes = strcmp(text, "yes") == 0 || strcmp(text, "true") == 0;
     if (!yes && strcmp(text, "no") != 0 && strcmp(text, "false") != 0) plan_complain(reader, node, key, "yes or no");
@@ -86,7 +86,8 @@ static bool read_switch(PlanReader *reader, const Node *node, const char *key) {
 }
 
 /// "850 C": the number, and the unit as written.
-static void read_quantity(PlanReader *reader, const Node *node, const char *key, double *number, const char **unit) {
+static void read_quantity(PlanReader *reader, const YamlNode *node, const char *key, double *number,
+                          const char **unit) {
     *unit = "";
     if (node->kind == NODE_VALUE && !node->quoted) {
         const uint8_t *at = (const uint8_t *)node->text, *end = at + strlen(node->text);
@@ -101,10 +102,10 @@ static void read_quantity(PlanReader *reader, const Node *node, const char *key,
 
 // ---- parameters
 
-static void read_range(PlanReader *reader, const Node *map, PlanParameter *parameter) {
+static void read_range(PlanReader *reader, const YamlNode *map, PlanParameter *parameter) {
     const char *units[2] = {"", ""};
     bool ends[2] = {false, false};
-    for (const Node *node = map->first; node; node = node->next) {
+    for (const YamlNode *node = map->first; node; node = node->next) {
         const char *key = node->key;
         if (strcmp(key, "from") == 0) read_quantity(reader, node, key, &parameter->from, &units[0]), ends[0] = true;
         else if (strcmp(key, "to") == 0) read_quantity(reader, node, key, &parameter->to, &units[1]), ends[1] = true;
@@ -126,7 +127,7 @@ static void read_range(PlanReader *reader, const Node *map, PlanParameter *param
         message_add(&reader->messages, &reader->text, map->location, "a logarithmic range must be above 0");
 }
 
-static void read_parameter(PlanReader *reader, const Node *node) {
+static void read_parameter(PlanReader *reader, const YamlNode *node) {
     Plan *plan = reader->plan;
     PlanParameter *parameter = &plan->parameters[plan->parameter_count++];
     parameter->key = node->key;
@@ -137,31 +138,32 @@ static void read_parameter(PlanReader *reader, const Node *node) {
         read_range(reader, node, parameter);
     } else if (node->kind == NODE_LIST && node->count) {
         parameter->values = arena_new(plan->arena, node->count, sizeof *parameter->values);
-        for (const Node *value = node->first; value && parameter->values; value = value->next)
+        for (const YamlNode *value = node->first; value && parameter->values; value = value->next)
             parameter->values[parameter->count++] = flow_text(plan, value, "");
     } else {
         plan_complain(reader, node, node->key, "a list of values, or a range {from: A, to: B, steps: N}");
     }
 }
 
-static void read_parameters(PlanReader *reader, const Node *node) {
+static void read_parameters(PlanReader *reader, const YamlNode *node) {
     Plan *plan = reader->plan;
     if (node->kind != NODE_MAP || !node->count || node->count > PLAN_PARAMETERS_MAX) {
         plan_complain(reader, node, "parameters", "a map of 1 to 64 keys of the scene");
         return;
     }
     plan->parameters = arena_new(plan->arena, node->count, sizeof *plan->parameters);
-    for (const Node *child = node->first; child && plan->parameters; child = child->next) read_parameter(reader, child);
+    for (const YamlNode *child = node->first; child && plan->parameters; child = child->next)
+        read_parameter(reader, child);
 }
 
-static void read_sets(PlanReader *reader, const Node *node) {
+static void read_sets(PlanReader *reader, const YamlNode *node) {
     Plan *plan = reader->plan;
     if (node->kind != NODE_MAP) {
         plan_complain(reader, node, "set", "a map of keys of the scene");
         return;
     }
     plan->sets = arena_new(plan->arena, (size_t)node->count + 1, sizeof *plan->sets);
-    for (const Node *child = node->first; child && plan->sets; child = child->next) {
+    for (const YamlNode *child = node->first; child && plan->sets; child = child->next) {
         char *prefix = arena_new(plan->arena, strlen(child->key) + 2, 1);
         if (!prefix) return;
         sprintf(prefix, "%s=", child->key);
@@ -171,7 +173,7 @@ static void read_sets(PlanReader *reader, const Node *node) {
 
 // ---- the plan
 
-char *plan_read_path(PlanReader *reader, const Node *node, const char *key) {
+char *plan_read_path(PlanReader *reader, const YamlNode *node, const char *key) {
     if (node->kind != NODE_VALUE || !node->text[0]) {
         plan_complain(reader, node, key, "the path of a file");
         return NULL;
@@ -183,7 +185,7 @@ char *plan_read_path(PlanReader *reader, const Node *node, const char *key) {
 }
 
 /// The index of a word in a list.
-static int read_word(PlanReader *reader, const Node *node, const char *key, const char *const *words, int count,
+static int read_word(PlanReader *reader, const YamlNode *node, const char *key, const char *const *words, int count,
                      const char *expected) {
     for (int i = 0; i < count && node->kind == NODE_VALUE; i++)
         if (strcmp(node->text, words[i]) == 0) return i;
@@ -191,14 +193,14 @@ static int read_word(PlanReader *reader, const Node *node, const char *key, cons
     return 0;
 }
 
-static void read_margin(PlanReader *reader, const Node *node) {
+static void read_margin(PlanReader *reader, const YamlNode *node) {
     double margin = -1;
     if (node->kind == NODE_VALUE && !node->quoted && !quantity_read(node->text, DIM_LENGTH, &margin) && margin >= 0)
         reader->plan->margin = margin;
     else plan_complain(reader, node, "margin", "a length, 0 or more");
 }
 
-static void read_key(PlanReader *reader, const Node *node) {
+static void read_key(PlanReader *reader, const YamlNode *node) {
     Plan *plan = reader->plan;
     const char *key = node->key;
     if (strcmp(key, "scene") == 0) plan->scene = plan_read_path(reader, node, key);
@@ -223,7 +225,7 @@ static void read_key(PlanReader *reader, const Node *node) {
 }
 
 /// Rows of sheets are determined when the scene is read (plan_split_sheets).
-static void check_sheets(PlanReader *reader, const Node *root, bool fit) {
+static void check_sheets(PlanReader *reader, const YamlNode *root, bool fit) {
     const Plan *plan = reader->plan;
     if (fit) message_add(&reader->messages, &reader->text, root->location, "a fit has no method 'sheets'");
     if (plan->parameter_count)
@@ -231,7 +233,7 @@ static void check_sheets(PlanReader *reader, const Node *root, bool fit) {
                     "method sheets has no 'parameters': its rows follow from the scene; use 'set'");
 }
 
-static void check_plan(PlanReader *reader, const Node *root, bool fit) {
+static void check_plan(PlanReader *reader, const YamlNode *root, bool fit) {
     Plan *plan = reader->plan;
     const bool drawn = plan->method == PLAN_RANDOM || plan->method == PLAN_LATIN_HYPERCUBE;
     const bool sheets = plan->method == PLAN_SHEETS;
@@ -258,13 +260,13 @@ static void check_plan(PlanReader *reader, const Node *root, bool fit) {
 static void read_plan(PlanReader *reader, bool fit) {
     Plan *plan = reader->plan;
     const SceneText *text = &reader->text;
-    Node *root = tree_read(plan->arena, text, text->bytes, text->size, (SceneLocation){0}, &reader->messages);
+    YamlNode *root = tree_read(plan->arena, text, text->bytes, text->size, (SceneLocation){0}, &reader->messages);
     if (!root) return;
     if (root->kind != NODE_MAP) {
         plan_complain(reader, root, "a plan", "a map (key: value)");
         return;
     }
-    for (const Node *node = root->first; node; node = node->next) read_key(reader, node);
+    for (const YamlNode *node = root->first; node; node = node->next) read_key(reader, node);
     check_plan(reader, root, fit);
 }
 

@@ -159,7 +159,7 @@ class Motion(Case):
         self.wrong("one run of #", follows="cape.obj")
         self.wrong("one run of #", follows="ca#pe.###.obj")
         os.rename(self.path("cape.004.obj"), self.path("away.obj"))
-        self.wrong("cape.004.obj: there is no such file, but the next one is there")
+        self.wrong("cape.004.obj: there is no such file, but the next one exists")
         os.rename(self.path("away.obj"), self.path("cape.004.obj"))
         self.wrong("cape.999.obj", replace=("cape.###.obj, up: y", "cape.###.obj, first: 999, up: y"))
         self.wrong("'path' and 'motion' exclude each other",

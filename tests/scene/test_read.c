@@ -2,7 +2,6 @@
 #include "parsing.h"
 
 #include "scene/schema.h"
-#include "scene/warnings.h"
 #include "shell/sheet.h"
 
 #include <math.h>
@@ -115,7 +114,7 @@ static void test_values(void **state) {
 /// texture in a slot of its own, and reads back from a dump.
 static void test_all_vary(void **state) {
     (void)state;
-    static const char *const fields[] = {"picture: p.png", "attribute: burn", "noise: {scale: 2 mm, seed: 9}"};
+    static const char *const fields[] = {"texture: p.png", "attribute: burn", "noise: {scale: 2 mm, seed: 9}"};
     SingeMaterialDef standard = singe_default_material();
     SceneParam row;
     int count = 0;
@@ -344,45 +343,12 @@ static void test_solver_method(void **state) {
     }
 }
 
-static void keep_line(void *context, SingeLogLevel level, const char *line) {
-    char *lines = context;
-    if (level == SINGE_LOG_WARNING) strcat(strcat(lines, line), "\n");
-}
-
-/// Names of the release before are read as their new ones, and each is reported with its line.
-static void test_renamed(void **state) {
-    (void)state;
-    static const char before[] = "sheets:\n"
-                                 "  - grid: {size: [0.2, 0.3], cells: [20, 30], relief: 1 mm}\n"
-                                 "    material: {thickness: {from: 1 mm, to: 2 mm, picture: a.png}}\n"
-                                 "sources: [{kind: picture, picture: b.png, flux: 1}]\n";
-    static const char now[] = "sheets:\n"
-                              "  - grid: {size: [0.2, 0.3], cells: [20, 30], displacement: 1 mm}\n"
-                              "    material: {thickness: {from: 1 mm, to: 2 mm, texture: a.png}}\n"
-                              "sources: [{kind: texture, texture: b.png, flux: 1}]\n";
-    Scene *old_scene = good_scene(before, NULL, 0), *new_scene = good_scene(now, NULL, 0);
-    char *old_dump = dump_text(old_scene, SCENE_YAML), *new_dump = dump_text(new_scene, SCENE_YAML), lines[2000] = "";
-    assert_string_equal(old_dump, new_dump);
-    const SingeLog log = {keep_line, lines};
-    scene_warn(new_scene, NULL, &log);
-    assert_string_equal(lines, "");
-    scene_warn(old_scene, NULL, &log);
-    assert_non_null(strstr(lines, "test.yaml:2:47: 'relief' is now called 'displacement'"));
-    assert_non_null(strstr(lines, "test.yaml:3:50: 'picture' is now called 'texture'"));
-    assert_non_null(strstr(lines, "test.yaml:4:18: 'picture' is now called 'texture'"));
-    assert_non_null(strstr(lines, "test.yaml:4:27: 'picture' is now called 'texture'"));
-    free(old_dump);
-    free(new_dump);
-    scene_free(old_scene);
-    scene_free(new_scene);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_renamed),   cmocka_unit_test(test_gas),      cmocka_unit_test(test_solver_method),
-        cmocka_unit_test(test_values),    cmocka_unit_test(test_defaults), cmocka_unit_test(test_dump_yaml),
-        cmocka_unit_test(test_dump_json), cmocka_unit_test(test_json),     cmocka_unit_test(test_texts),
-        cmocka_unit_test(test_set),       cmocka_unit_test(test_all_vary),
+        cmocka_unit_test(test_gas),      cmocka_unit_test(test_solver_method), cmocka_unit_test(test_values),
+        cmocka_unit_test(test_defaults), cmocka_unit_test(test_dump_yaml),     cmocka_unit_test(test_dump_json),
+        cmocka_unit_test(test_json),     cmocka_unit_test(test_texts),         cmocka_unit_test(test_set),
+        cmocka_unit_test(test_all_vary),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,128 @@
+// From radiance to bytes: the halo of a lens, and a film's curve.
+
+#include "preview/internal.h"
+
+// ---- the halo
+
+// The halo around overexposed parts: light scattered in a lens.
+//
+// out = picture + k1 G(s1) * over + k2 G(s2) * over, with over = max(picture - 1, 0) at a quarter of the resolution and
+// G a Gaussian with a width relative to the picture's height.
+
+enum { SHRINK = 4, RADIUS_LIMIT = 64 };
+
+/// One direction of a separable Gaussian; `step` is the distance between neighbours, `length` their number.
+static void blur_line(const Float3 *in, Float3 *out, int length, size_t step, const float *weight, int radius) {
+    for (int i = 0; i < length; i++) {
+        Float3 sum = float3_scale(in[(size_t)i * step], weight[0]);
+        for (int k = 1; k <= radius; k++) {
+            if (i - k >= 0) sum = float3_mad(sum, in[(size_t)(i - k) * step], weight[k]);
+            if (i + k < length) sum = float3_mad(sum, in[(size_t)(i + k) * step], weight[k]);
+        }
+        out[(size_t)i * step] = sum;
+    }
+}
+
+static void bloom_blur(Float3 *image, Float3 *scratch, int w, int h, float sigma) {
+    float weight[RADIUS_LIMIT + 1], sum = 0;
+    int radius = (int)ceilf(3 * sigma);
+    radius = radius < 1 ? 1 : radius > RADIUS_LIMIT ? RADIUS_LIMIT : radius;
+    for (int k = 0; k <= radius; k++) {
+        weight[k] = expf(-0.5f * (float)(k * k) / (sigma * sigma));
+        sum += k ? 2 * weight[k] : weight[k];
+    }
+
+    for (int k = 0; k <= radius; k++) weight[k] /= sum;
+    for (int y = 0; y < h; y++) {
+        size_t row = (size_t)y * (size_t)w;
+        blur_line(image + row, scratch + row, w, 1, weight, radius);
+    }
+
+    for (int x = 0; x < w; x++) blur_line(scratch + x, image + x, h, (size_t)w, weight, radius);
+}
+
+static void bloom_add(Preview *preview, const Float3 *glow, int w, int h, float amount) {
+    amount /= preview->def.exposure;
+    for (int y = 0; y < preview->def.height; y++) {
+        float gy = clampf(((float)y + 0.5f) / SHRINK - 0.5f, 0, (float)(h - 1));
+        int y0 = (int)gy, y1 = y0 + 1 < h ? y0 + 1 : y0;
+        for (int x = 0; x < preview->def.width; x++) {
+            float gx = clampf(((float)x + 0.5f) / SHRINK - 0.5f, 0, (float)(w - 1));
+            int x0 = (int)gx, x1 = x0 + 1 < w ? x0 + 1 : x0;
+            const Float3 *top = glow + (size_t)y0 * (size_t)w, *bottom = glow + (size_t)y1 * (size_t)w;
+            Float3 c = float3_mix(float3_mix(top[x0], top[x1], gx - (float)x0),
+                                  float3_mix(bottom[x0], bottom[x1], gx - (float)x0), gy - (float)y0);
+            Float3 *out = preview->picture + (size_t)y * (size_t)preview->def.width + (size_t)x;
+            *out = float3_mad(*out, c, amount);
+        }
+    }
+}
+
+void bloom_apply(Preview *preview) {
+    const int width = preview->def.width, height = preview->def.height;
+    const float exposure = preview->def.exposure;
+    int w = (width + SHRINK - 1) / SHRINK, h = (height + SHRINK - 1) / SHRINK;
+    Float3 *glow = preview->glow[0], *scratch = preview->glow[1];
+    bool any = false;
+
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            Float3 sum = {0, 0, 0};
+            for (int j = y * SHRINK; j < (y + 1) * SHRINK && j < height; j++)
+                for (int i = x * SHRINK; i < (x + 1) * SHRINK && i < width; i++) {
+                    Float3 c = float3_scale(preview->picture[(size_t)j * (size_t)width + (size_t)i], exposure);
+                    // only glow, not a white sheet in the sun
+                    float peak = maxf(c.x, maxf(c.y, c.z)), over = maxf(peak - 1.1f, 0) / maxf(peak, 1e-6f);
+                    sum = float3_mad(sum, c, over);
+                }
+            glow[(size_t)y * (size_t)w + (size_t)x] = float3_scale(sum, 1.0f / (SHRINK * SHRINK));
+            any = any || sum.x + sum.y + sum.z > 0;
+        }
+    if (!any) return;
+
+    float near = 0.005f * (float)height / SHRINK, far = 0.022f * (float)height / SHRINK;
+    bloom_blur(glow, scratch, w, h, maxf(near, 0.4f));
+    bloom_add(preview, glow, w, h, 0.14f);
+    bloom_blur(glow, scratch, w, h, maxf(far, 0.8f));
+    bloom_add(preview, glow, w, h, 0.10f);
+}
+
+// ---- the film
+
+// Radiance to bytes.
+//
+// Film curve: linear but for a short toe, f = x (1 - 0.4 exp(-x / 0.06)), and a shoulder above s = 0.6, s + (1 - s) (1
+// - exp(-(f - s) / (1 - s))). White paper in the sun, 0.8, becomes 0.76 (0.89 in sRGB), and the slope there is still
+// 0.6, so that its wrinkles are visible. Before it, each channel leaks a little into the others, as in film: very
+// bright colours become pale. Then IEC 61966-2-1 and one level of triangular dither.
+
+enum { CURVE_COUNT = 4096 };
+#define LEAK 0.03f
+
+/// The curve and the encoding as one table over sqrt(x / CURVE_MAX): the curve is slow and smooth.
+#define CURVE_MAX 16.0f
+
+void tonemap_write(const Preview *preview, uint8_t *rgb) {
+    const float shoulder = 0.6f, rest = 1 - shoulder;
+    float curve[CURVE_COUNT];
+    for (int i = 0; i < CURVE_COUNT; i++) {
+        float s = (float)i / (CURVE_COUNT - 1), x = s * s * CURVE_MAX;
+        float f = x * (1 - 0.4f * expf(-x / 0.06f));
+        curve[i] = srgb_encode(f < shoulder ? f : shoulder + rest * (1 - expf((shoulder - f) / rest)));
+    }
+
+    size_t count = (size_t)preview->def.width * (size_t)preview->def.height;
+    for (size_t i = 0; i < count; i++) {
+        Float3 c = float3_scale(preview->picture[i], preview->def.exposure);
+        const float leak = LEAK * (c.x + c.y + c.z) / 3, channel[3] = {c.x, c.y, c.z};
+        uint32_t key = (uint32_t)i * 3u + preview->def.seed * 0x9e3779b1u;
+        for (uint32_t k = 0; k < 3; k++) {
+            float x = (1 - LEAK) * channel[k] + leak;
+            float at = sqrtf(clampf(x, 0, CURVE_MAX) / CURVE_MAX) * (CURVE_COUNT - 1);
+            int j = (int)at < CURVE_COUNT - 2 ? (int)at : CURVE_COUNT - 2;
+            float s = mixf(curve[j], curve[j + 1], at - (float)j);
+            float dither = hash_unit(key + k) + hash_unit((key + k) ^ 0x68bc21ebu) - 1;
+            rgb[3 * i + k] = (uint8_t)clampf(s * 255 + 0.5f + 0.7f * dither, 0, 255);
+        }
+    }
+}

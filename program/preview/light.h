@@ -1,0 +1,63 @@
+// Light: the sky, the lamps that embers, flames and hot shapes are, and the colour of what glows.
+#ifndef PREVIEW_LIGHT_H
+#define PREVIEW_LIGHT_H
+
+#include "preview/render_math.h"
+
+#include <stdint.h>
+
+typedef struct Preview Preview;
+
+enum {
+    LIGHT_LIMIT = 16,      ///< lamps
+    BLACKBODY_COUNT = 160, ///< table from BLACKBODY_MIN in steps of BLACKBODY_STEP
+};
+#define BLACKBODY_MIN 780.0f
+#define BLACKBODY_STEP 10.0f
+
+/// Exposed for white paper: a sun of 2.2 and a sky of 0.4 bring it to about 0.8.
+#define FILM_SPEED 0.45f
+
+/// Point sources. Those beyond the count have softness 1 and are black.
+typedef struct EmberLights {
+    float x[LIGHT_LIMIT], y[LIGHT_LIMIT], z[LIGHT_LIMIT];
+    float softness[LIGHT_LIMIT];    ///< m2, added to the distance squared
+    float extent[LIGHT_LIMIT];      ///< m, extent of the light
+    float power[LIGHT_LIMIT];       ///< luminance of the strength
+    float strength[3][LIGHT_LIMIT]; ///< linear colour; radiance times area over 2 pi: divide by distance squared
+} EmberLights;
+
+/// The light of the sky and its reflection by the ground, seen from a point in the open.
+enum { SKY_ACROSS = 48, SKY_DOWN = 24 };
+
+typedef struct Sky {
+    Float3 radiance[SKY_DOWN][SKY_ACROSS]; ///< latitudes from the top
+    Float3 blurred[SKY_DOWN][SKY_ACROSS];  ///< as reflected by a dull surface
+    Float3 ambient[9];                     ///< spherical harmonics of the light reflected by white paper
+} Sky;
+
+/// The light of embers and flames in a pixel, before occlusion.
+typedef struct Lamp {
+    Float3 light;   ///< as it reaches the eye
+    Float3 normal;  ///< of the last sample
+    float distance; ///< m, the same
+    float seen;     ///< visible share, by few rays
+    int32_t sheet;
+} Lamp;
+
+// environment.c
+void sky_fill(Preview *preview);
+
+/// The reflection by white paper with that normal of all light except the sun's.
+Float3 sky_ambient(const Sky *sky, Float3 normal);
+Float3 sky_mirrored(const Sky *sky, Float3 direction);
+
+// lamps.c
+/// Gathers the lamps of the frame.
+void light_gather(Preview *preview);
+
+// blackbody.c
+void blackbody_fill(Float3 table[BLACKBODY_COUNT]);
+Float3 blackbody_glow(const Float3 table[BLACKBODY_COUNT], float temperature);
+
+#endif

@@ -1,0 +1,74 @@
+// The appearance of burning paper (shade_paper.c): the fields of the sheet, and its holes, char, ash and embers.
+#ifndef PREVIEW_PAPER_LOOK_H
+#define PREVIEW_PAPER_LOOK_H
+
+#include "preview/render_math.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct Point Point;
+typedef struct Preview Preview;
+typedef struct PreviewScene PreviewScene;
+
+/// The data of a vertex for shading.
+typedef struct PaperVertex {
+    float normal[3];
+    float rest[3]; ///< m
+    float uv[2];
+    float temperature;   ///< K
+    float peak;          ///< K, peak so far
+    float burn;          ///< apparent burnt share, 0 to 1
+    float burn_rate;     ///< 1/s
+    float flaming;       ///< 1/s, the part of it that feeds a flame: 0 where char glows
+    float gradient;      ///< 1/m, of burn in rest space
+    int32_t sheet;       ///< -1: none
+    float rim;           ///< 1 on the border of a piece, 0 inside
+    float slope[3];      ///< 1/m, gradient of burn in rest space, of which `gradient` is the length
+    float warming[3];    ///< K/m, the same for the peak temperature
+    float heat_gradient; ///< K/m
+    float spacing;       ///< m, size of the surrounding triangles at rest
+    float age;           ///< s of the fire's real time since ignition; 0: not yet
+    int32_t piece;
+} PaperVertex;
+
+/// The interpolated fields that determine the appearance of a hit.
+typedef struct PaperState {
+    Float3 rest;
+    float uv[2], temperature, peak, burn, burn_rate, gradient, heat_gradient, rim, spacing;
+    float glowing; ///< 1/s, the part of burn_rate due to char without fuel
+    float age;     ///< s of the fire's real time since ignition; 0: not yet
+    int32_t sheet, piece;
+} PaperState;
+
+/// The sheet's fields at a point in a triangle.
+void paper_state(const PreviewScene *scene, uint32_t triangle, float u, float v, PaperState *state);
+
+/// Whether the burnt sheet has a hole there at the picture's scale. Only where burn > PAPER_WHOLE.
+bool paper_is_hole(const PaperState *state, float footprint);
+
+/// Share of the light on one side of a fresh sheet that is transmitted to the other.
+float paper_transmittance(const Preview *preview, int32_t sheet);
+#define PAPER_WHOLE 0.35f
+
+/// False at a hole.
+bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
+
+/// Width of the glowing line, m, and the burn value at its centre.
+#define EMBER_WIDTH 0.00042f
+#define EMBER_BURN 0.74f
+
+/// The burn value of a leaf of char until it glows away: below that of the embers.
+#define CHAR_LEAF 0.64f
+#define EMBER_GAIN 3.4f
+
+/// The glowing skin is hotter than the simulation's mean over the sheet's thickness.
+static inline float ember_temperature(float mean) { return mean + 110; }
+
+/// Strength of a point's glow, 0 to 1, from its burn rate (1/s).
+static inline float ember_activity(float burn_rate) { return burn_rate > 0 ? burn_rate / (burn_rate + 0.12f) : 0; }
+
+/// The varying air supply of a point, about 1.
+float ember_air(const Preview *preview, Float3 position);
+
+#endif

@@ -1,0 +1,210 @@
+// From a scene to its preview: the Def, the default camera, and the shapes of a time.
+#include "scene/rotation.h"
+#include "scene/scene.h"
+
+#include <math.h>
+#include <string.h>
+
+void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *def) {
+    const ScenePreview *preview = &scene->preview;
+    *def = (PreviewDef){
+        .width = preview->size[0],
+        .height = preview->size[1],
+        .samples = preview->samples,
+        .thread_count = 1,
+        .camera = preview->camera,
+        .sun_angle = preview->light_angle,
+        .ground_height = preview->ground_height,
+        .exposure = preview->exposure,
+        .shutter = preview->shutter / scene->fps,
+        .pace = (float)scene->sim.pace,
+        .sky = assets->sky.rgb ? PREVIEW_SKY_PICTURE : preview->environment,
+        .sky_picture = assets->sky.rgb ? &assets->sky : NULL,
+        .sky_turn = preview->environment_turn,
+        .ground = preview->ground,
+        .seed = (uint32_t)scene->sim.seed,
+        .pictures = assets->pictures,
+        .colours = (const float(*)[3])assets->colours,
+        .transmittances = assets->transmittances,
+        .sheet_count = assets->sheet_count,
+    };
+    memcpy(def->sun_direction, preview->light_direction, sizeof def->sun_direction);
+    memcpy(def->sun_colour, preview->light_colour, sizeof def->sun_colour);
+    memcpy(def->sky_colour, preview->sky, sizeof def->sky_colour);
+    memcpy(def->ground_colour, preview->ground_colour, sizeof def->ground_colour);
+    memcpy(def->background, preview->background, sizeof def->background);
+}
+
+// ---- the default camera: the sheets fill the picture
+
+/// Max distance of a camera from the origin, m.
+static const double farthest = 1e4;
+
+typedef struct Box {
+    double low[3], high[3];
+} Box;
+
+static double dot3(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static void cross3(const double a[3], const double b[3], double out[3]) {
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = a[j] * b[k] - a[k] * b[j];
+    }
+}
+
+static void unit3(double v[3]) {
+    double length = sqrt(dot3(v, v));
+    for (int i = 0; i < 3; i++) v[i] /= length;
+}
+
+/// Unit vectors from the box to the camera, and to the right and up in the picture. Flat sheets are seen from above,
+/// upright ones from the front (-y), a little from the side.
+static void camera_look(const Box *box, const float up[3], double back[3], double right[3], double top[3]) {
+    double vertical[3] = {(double)up[0], (double)up[1], (double)up[2]}, front[3] = {0, -1, 0}, height = 0, max = 0;
+    unit3(vertical);
+    if (fabs(vertical[1]) > 0.9) {
+        front[1] = 0;
+        front[2] = 1;
+    }
+
+    for (int i = 0; i < 3; i++) {
+        height += fabs(vertical[i]) * (box->high[i] - box->low[i]);
+        max = fmax(max, box->high[i] - box->low[i]);
+    }
+
+    double lift = 0.15 + 0.85 * (1 - fmin(height / max, 1));
+    cross3(vertical, front, right); // to the right in the picture, seen from the front
+    unit3(right);
+    cross3(right, vertical, front);
+
+    for (int i = 0; i < 3; i++) back[i] = front[i] + 0.25 * right[i] + lift * vertical[i];
+    unit3(back);
+    cross3(vertical, back, right);
+    unit3(right);
+    cross3(back, right, top);
+}
+
+void scene_frame(Scene *scene, const SceneAssets *assets) {
+    PreviewCamera *camera = &scene->preview.camera;
+    if (scene->preview.camera_given) return;
+
+    Box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (uint32_t s = 0; s < assets->sheet_count; s++)
+        for (size_t v = 0; v < 3 * (size_t)assets->meshes[s].vertex_count; v++) {
+            double x = (double)assets->meshes[s].positions[v];
+            box.low[v % 3] = fmin(box.low[v % 3], x);
+            box.high[v % 3] = fmax(box.high[v % 3], x);
+        }
+    double size = 0;
+
+    for (int i = 0; i < 3; i++) size += box.high[i] - box.low[i];
+    if (!isfinite(size) || !(size > 0)) return;
+
+    // as far back as the corners of the box need, with a margin of 15 %
+    double back[3], right[3], top[3], distance = 0;
+    camera_look(&box, camera->up, back, right, top);
+    double half = tan(0.5 * (double)camera->fov), aspect = (double)scene->preview.size[0] / scene->preview.size[1];
+
+    for (int corner = 0; corner < 8; corner++) {
+        double d[3]; // from the centre to the corner
+        for (int i = 0; i < 3; i++) d[i] = 0.5 * (box.high[i] - box.low[i]) * (corner >> i & 1 ? 1 : -1);
+        double across = fmax(fabs(dot3(d, right)) / aspect, fabs(dot3(d, top)));
+        distance = fmax(distance, dot3(d, back) + 1.15 * across / half);
+    }
+
+    double target[3], eye[3];
+    for (int i = 0; i < 3; i++) {
+        target[i] = 0.5 * (box.low[i] + box.high[i]);
+        eye[i] = target[i] + distance * back[i];
+        if (fabs(eye[i]) > farthest) return;
+    }
+
+    for (int i = 0; i < 3; i++) {
+        camera->target[i] = (float)target[i];
+        camera->eye[i] = (float)eye[i];
+    }
+}
+
+// ---- shapes
+
+/// Interpolates like the library: positions linearly, quaternions linearly and normalised, constant beyond the ends.
+static void shape_pose(const SceneKey *keys, uint32_t count, double time, PreviewShape *shape) {
+    uint32_t next = 0;
+    while (next < count && (double)keys[next].time <= time) next++;
+    const SceneKey *a = &keys[next ? next - 1 : 0], *b = &keys[next < count ? next : count - 1];
+    double span = (double)b->time - (double)a->time, s = span > 0 ? (time - (double)a->time) / span : 0;
+    float qa[4], qb[4];
+    rotation_quaternion(a->rotation, qa);
+    rotation_quaternion(b->rotation, qb);
+    double dot = 0, norm = 0, q[4];
+
+    for (int i = 0; i < 4; i++) dot += (double)qa[i] * (double)qb[i];
+    for (int i = 0; i < 4; i++) {
+        q[i] = (1 - s) * (double)qa[i] + s * (dot < 0 ? -(double)qb[i] : (double)qb[i]);
+        norm += q[i] * q[i];
+    }
+
+    for (int i = 0; i < 4; i++) shape->rotation[i] = (float)(q[i] / sqrt(norm));
+    for (int i = 0; i < 3; i++)
+        shape->position[i] = (float)((1 - s) * (double)a->position[i] + s * (double)b->position[i]);
+}
+
+/// The velocity of the shape, from its displacement over a thousandth of a second. Rotation causes no blur.
+static void shape_move(const SceneKey *keys, uint32_t count, double time, PreviewShape *shape) {
+    PreviewShape later = *shape;
+    const float span = 1e-3f;
+    shape_pose(keys, count, time, shape);
+    shape_pose(keys, count, time + (double)span, &later);
+    for (int i = 0; i < 3; i++)
+        shape->velocity[i] = fmaxf(-1e4f, fminf((later.position[i] - shape->position[i]) / span, 1e4f));
+}
+
+bool scene_shape(const Scene *scene, const SceneAssets *assets, uint32_t slot, double time, PreviewShape *shape) {
+    if (slot >= scene->collider_count) {
+        const SceneSource *source = &scene->sources[slot - scene->collider_count];
+        const SingeSourceDef *def = &source->def;
+        bool drawn = def->kind == SINGE_SOURCE_BALL && source->visible && source->key_count && def->radius > 0 &&
+                     time >= (double)def->start && time <= (double)def->end;
+        if (!drawn) return false;
+        *shape = (PreviewShape){.kind = SINGE_COLLIDER_SPHERE,
+                                .radius = def->radius,
+                                .colour = {0.05f, 0.05f, 0.05f},
+                                .temperature = def->temperature};
+        shape_move(source->keys, source->key_count, time, shape);
+        return true;
+    }
+
+    const SceneCollider *collider = &scene->colliders[slot];
+    const SingeColliderDef *def = &collider->def;
+    if (def->kind == SINGE_COLLIDER_PLANE || !collider->visible || !collider->key_count) return false;
+
+    *shape = (PreviewShape){.kind = def->kind,
+                            .radius = def->radius,
+                            .height = def->height,
+                            .temperature = def->conductance > 0 ? def->temperature : scene->sim.ambient_temperature};
+    if (def->kind == SINGE_COLLIDER_MESH || def->kind == SINGE_COLLIDER_HEIGHTFIELD)
+        shape->solid = &assets->solids[slot].surface;
+
+    const SceneSequence *sequence = &assets->collider_motions[slot];
+    if (sequence->frame_count) {
+        const double frame = floor(time * (double)scene->fps + 0.5), last = (double)sequence->frame_count - 1;
+        shape->solid = &sequence->frames[(uint32_t)fmax(0, fmin(frame, last))];
+    }
+
+    memcpy(shape->half_size, def->half_size, sizeof shape->half_size);
+    memcpy(shape->colour, collider->colour, sizeof shape->colour);
+    shape_move(collider->keys, collider->key_count, time, shape);
+    return true;
+}
+
+uint32_t scene_shapes(const Scene *scene, const SceneAssets *assets, double time, PreviewShape *shapes, uint32_t max) {
+    uint32_t count = 0;
+    PreviewShape shape;
+    for (uint32_t i = 0; i < scene->collider_count + scene->source_count; i++) {
+        if (!scene_shape(scene, assets, i, time, &shape)) continue;
+        if (count < max) shapes[count] = shape;
+        count++;
+    }
+    return count;
+}
