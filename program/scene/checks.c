@@ -220,7 +220,4 @@ void finish_scene(Reader *reader, const Node *map, void *object) {
             resolve_sheet(reader, node, scene, scene->pins[i].sheet, &scene->pins[i].sheet_index);
     const Node *probes = node_find(map, "probes");
     if (probes && probes->kind == NODE_LIST && (!sheets || sheets->count <= 1000)) check_probes(reader, probes, scene);
-    const Node *only = node_find(map, "only_sheets");
-    if (only && scene->only_sheet_count && !message_total(reader->messages))
-        scene_keep_only_sheets(reader, only, scene);
 }

@@ -179,7 +179,6 @@ static ExitCode run_or_report(Sweep *sweep) {
 static ExitCode sweep_all(Sweep *sweep) {
     const SweepOptions *o = sweep->options;
     ExitCode code = plan_read(o->plan, false, sweep->console, &sweep->plan);
-    if (!code && sweep->plan.method == PLAN_SHEETS) code = plan_split_sheets(&sweep->plan, sweep->console);
     if (code) return code;
     if (o->row > 0 && (uint32_t)o->row > sweep->plan.row_count) {
         console_error(sweep->console, "--row %d: %s has %u rows", o->row, o->plan, sweep->plan.row_count);

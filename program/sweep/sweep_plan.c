@@ -14,7 +14,7 @@
 
 enum { PLAN_BYTES_MAX = 1 << 20 };
 
-static const char *const methods[PLAN_METHODS] = {"grid", "list", "random", "latin-hypercube", "sheets"};
+static const char *const methods[PLAN_METHODS] = {"grid", "list", "random", "latin-hypercube"};
 
 static const char *const searches[PLAN_SEARCHES] = {"local", "global"};
 
@@ -191,23 +191,15 @@ static int read_word(PlanReader *reader, const Node *node, const char *key, cons
     return 0;
 }
 
-static void read_margin(PlanReader *reader, const Node *node) {
-    double margin = -1;
-    if (node->kind == NODE_VALUE && !node->quoted && !quantity_read(node->text, DIM_LENGTH, &margin) && margin >= 0)
-        reader->plan->margin = margin;
-    else plan_complain(reader, node, "margin", "a length, 0 or more");
-}
-
 static void read_key(PlanReader *reader, const Node *node) {
     Plan *plan = reader->plan;
     const char *key = node->key;
     if (strcmp(key, "scene") == 0) plan->scene = plan_read_path(reader, node, key);
     else if (strcmp(key, "method") == 0)
-        plan->method = (PlanMethod)read_word(reader, node, key, methods, PLAN_METHODS,
-                                             "grid, list, random, latin-hypercube or sheets");
+        plan->method =
+            (PlanMethod)read_word(reader, node, key, methods, PLAN_METHODS, "grid, list, random or latin-hypercube");
     else if (strcmp(key, "samples") == 0) read_count(reader, node, key, 1, PLAN_ROWS_MAX, &plan->samples);
     else if (strcmp(key, "seed") == 0) read_count(reader, node, key, 0, UINT32_MAX, &plan->seed);
-    else if (strcmp(key, "margin") == 0) read_margin(reader, node);
     else if (strcmp(key, "set") == 0) read_sets(reader, node);
     else if (strcmp(key, "parameters") == 0) read_parameters(reader, node);
     else if (strcmp(key, "target") == 0) plan_read_target(reader, node);
@@ -215,31 +207,17 @@ static void read_key(PlanReader *reader, const Node *node) {
         plan->search = (PlanSearch)read_word(reader, node, key, searches, PLAN_SEARCHES, "local or global");
     else if (strcmp(key, "evaluations") == 0) read_count(reader, node, key, 1, PLAN_ROWS_MAX, &plan->evaluations);
     else
-        message_add(
-            &reader->messages, &reader->text, node->key_location,
-            "unknown key '%s' of a plan: expected scene, method, samples, seed, margin, set, parameters, and for a fit "
-            "target, search, evaluations",
-            shown(key).text);
-}
-
-/// Rows of sheets are determined when the scene is read (plan_split_sheets).
-static void check_sheets(PlanReader *reader, const Node *root, bool fit) {
-    const Plan *plan = reader->plan;
-    if (fit) message_add(&reader->messages, &reader->text, root->location, "a fit has no method 'sheets'");
-    if (plan->parameter_count)
-        message_add(&reader->messages, &reader->text, plan->parameters[0].location,
-                    "method sheets has no 'parameters': its rows follow from the scene; use 'set'");
+        message_add(&reader->messages, &reader->text, node->key_location,
+                    "unknown key '%s' of a plan: expected scene, method, samples, seed, set, parameters, and for a fit "
+                    "target, search, evaluations",
+                    shown(key).text);
 }
 
 static void check_plan(PlanReader *reader, const Node *root, bool fit) {
     Plan *plan = reader->plan;
     const bool drawn = plan->method == PLAN_RANDOM || plan->method == PLAN_LATIN_HYPERCUBE;
-    const bool sheets = plan->method == PLAN_SHEETS;
     if (!plan->scene) message_add(&reader->messages, &reader->text, root->location, "a plan needs 'scene'");
-    if (!sheets && plan->margin >= 0)
-        message_add(&reader->messages, &reader->text, root->location, "'margin' belongs to method sheets");
-    if (sheets) check_sheets(reader, root, fit);
-    else if (!plan->parameter_count)
+    if (!plan->parameter_count)
         message_add(&reader->messages, &reader->text, root->location, "a plan needs 'parameters'");
     if (drawn && !plan->samples)
         message_add(&reader->messages, &reader->text, root->location, "method %s needs 'samples'",
@@ -248,7 +226,7 @@ static void check_plan(PlanReader *reader, const Node *root, bool fit) {
         message_add(&reader->messages, &reader->text, root->location, "a fit needs 'target'");
     if (!fit && plan->target.given)
         message_add(&reader->messages, &reader->text, root->location, "a plan with 'target' belongs to singe fit");
-    if (reader->messages.count || arena_failed(plan->arena) || sheets) return;
+    if (reader->messages.count || arena_failed(plan->arena)) return;
     uint32_t parameter = 0;
     char message[200];
     if (!plan_make_rows(plan, &parameter, message, sizeof message) && !arena_failed(plan->arena))
@@ -279,7 +257,7 @@ static void take_path(PlanReader *reader, const char *path) {
 ExitCode plan_read(const char *path, bool fit, Console *console, Plan *plan) {
     Bytes bytes = {0};
     SingeError error = {0};
-    *plan = (Plan){.arena = arena_create(), .evaluations = 40, .margin = -1};
+    *plan = (Plan){.arena = arena_create(), .evaluations = 40};
     SingeResult result =
         plan->arena ? file_read_max(path, PLAN_BYTES_MAX, (SingeAllocator){0}, &bytes, &error) : SINGE_ERROR_MEMORY;
     if (result) {

@@ -298,14 +298,6 @@ static double read_fps(const Sweep *sweep, const bool *complete) {
     return fps;
 }
 
-/// For a sweep of sheets: the check and the shot of all rows.
-static bool report_sheets(const Report *report) {
-    for (uint32_t row = 0; row < report->sweep->plan.row_count; row++)
-        if (!report->complete[row]) return true;
-    const bool written = sweep_write_shot(report->sweep, report->fps);
-    return sweep_sheet_clearance(report->sweep) && written;
-}
-
 ExitCode sweep_report(Sweep *sweep) {
     const size_t rows = sweep->plan.row_count;
     Report report = {.sweep = sweep,
@@ -321,7 +313,6 @@ ExitCode sweep_report(Sweep *sweep) {
         good = write_file(&report, "report.csv", write_table) && good;
         good = write_file(&report, "sheet.svg", write_sheet) && good;
         good = write_file(&report, "index.html", write_page) && good;
-        if (sweep->plan.method == PLAN_SHEETS) good = report_sheets(&report) && good;
     }
     free(report.numbers), free(report.complete);
     return good ? EXIT_GOOD : EXIT_FAILED;
