@@ -7,7 +7,7 @@
 
 #include "cli/args.h"
 #include "cli/cli.h"
-#include "cli/streams.h"
+#include "cli/console.h"
 #include "common/printable.h"
 #include "singe/singe.h"
 
@@ -56,7 +56,7 @@ int main(int argc, char **argv) {
     mallopt(M_MMAP_THRESHOLD, 32 << 20);
     mallopt(M_TRIM_THRESHOLD, 256 << 20);
 #endif
-    if (streams_open()) return EXIT_FAILED;
+    if (console_open()) return EXIT_FAILED;
     if (argc < 2) {
         fputs("singe: error: needs a command: ", stderr);
         for (int i = 0; i < COMMAND_COUNT && commands[i].group; i++) {
@@ -69,14 +69,15 @@ int main(int argc, char **argv) {
 
     const char *word = argv[1];
     for (int i = 0; i < COMMAND_COUNT; i++)
-        if (strcmp(word, commands[i].name) == 0) return streams_finish(commands[i].run(argc - 2, argv + 2));
+        if (strcmp(word, commands[i].name) == 0) return console_finish(commands[i].run(argc - 2, argv + 2));
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0) {
         main_help();
-        return streams_finish(EXIT_GOOD);
+        return console_finish(EXIT_GOOD);
     }
+
     if (strcmp(word, "--version") == 0) {
         printf("singe %s\n", singe_version());
-        return streams_finish(EXIT_GOOD);
+        return console_finish(EXIT_GOOD);
     }
 
     const char *near = args_nearest(word, commands, COMMAND_COUNT, sizeof commands[0]);

@@ -75,8 +75,4 @@ static inline const char *plan_value(const Plan *plan, uint32_t row, uint32_t pa
 /// A parameter's short name: the part after the last dot, longer if others have the same end.
 const char *plan_label(const Plan *plan, uint32_t parameter);
 
-/// Creates the rows of a plan whose parameters have been read (plan_rows.c). False: `message` says why, about
-/// `parameter`. A fit has as many rows as evaluations, without values yet.
-bool plan_make_rows(Plan *plan, uint32_t *parameter, char *message, size_t size);
-
 #endif
