@@ -2,12 +2,11 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "analysis/strip.h"
 #include "cli/args.h"
-#include "cli/pictures.h"
 #include "cli/job.h"
+#include "cli/pictures.h"
 #include "common/printable.h"
 
 enum { OPT_FRAMES, OPT_THREADS, OPT_SET, OPT_COUNT };
@@ -24,7 +23,7 @@ static const ArgCommand check_command = {
     "Reads a scene with its meshes and images, builds it, and prints its size and cost.",
     check_options,
     OPT_COUNT,
-    "Exit codes: 0 the scene is valid; 1 a step fails, memory runs out, or standard output cannot be written;\n"
+    "Exit codes: 0 the scene is valid, 1 a step failed, memory ran out or standard output could not be written,\n"
     "2 bad input."};
 
 /// Steps are timed until this many are done or this much time has passed.

@@ -4,19 +4,19 @@
 #include <string.h>
 
 #include "cli/args.h"
-#include "cli/outputs.h"
 #include "cli/interrupt.h"
 #include "cli/lock.h"
+#include "cli/outputs.h"
 #include "common/printable.h"
 
 enum { OPT_TO, OPT_SINGLE, OPT_SET, OPT_QUIET, OPT_COUNT };
 
 static const ArgOption convert_options[OPT_COUNT] = {
     [OPT_TO] = {"to", 0, "FORMAT", "format to write (see docs/formats.md); may be repeated"},
-    [OPT_SINGLE] = {"single", 0, NULL, "one file of all frames: `usd`, `glb`"},
+    [OPT_SINGLE] = {"single", 0, NULL, "writes all frames into one file: `usd` or `glb`"},
     [OPT_SET] = {"set", 0, "PATH=VALUE",
                  "sets a value of the scene (output.texture_size, gas.detail); may be repeated"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints errors only"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
 };
 
 static const ArgCommand convert_command = {

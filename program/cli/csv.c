@@ -93,7 +93,7 @@ double *csv_numbers(const Csv *csv, int column, CsvLines lines, uint32_t *count)
 // ---- stats.csv
 
 enum { FRAME, TIME, TRIANGLES, INVERTED, COLUMNS };
-static const char *const names[COLUMNS] = {"frame", "time", "triangles", "inverted_cells"};
+static const char *const stats_names[COLUMNS] = {"frame", "time", "triangles", "inverted_cells"};
 
 /// Reads the header, which must name each of our columns once, and then all lines.
 static bool read_rows(StatsTable *table, Text *text) {
@@ -104,7 +104,7 @@ static bool read_rows(StatsTable *table, Text *text) {
         const uint8_t *begin, *end;
         next_cell(text, &begin, &end);
         for (int c = 0; c < COLUMNS; c++) {
-            if (!text_word_is(begin, end, names[c])) continue;
+            if (!text_word_is(begin, end, stats_names[c])) continue;
             once = once && column[c] < 0;
             column[c] = i;
         }

@@ -11,24 +11,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/folds.h"
 #include "analysis/numbers.h"
+#include "analysis/rim.h"
+#include "analysis/wrinkles.h"
 #include "cli/args.h"
 #include "cli/cli.h"
 #include "cli/console.h"
 #include "cli/folder.h"
-#include "analysis/folds.h"
 #include "cli/job.h"
 #include "cli/pictures.h"
-#include "analysis/rim.h"
-#include "cli/text.h"
-#include "analysis/wrinkles.h"
 #include "formats/formats.h"
 
 enum { OPT_FRAMES, OPT_CSV, OPT_NO_PREVIEW, OPT_COUNT };
 enum { EMBER_FRAMES = 4, EMBER_SCALE = 3 };
 
 static const ArgOption measure_options[OPT_COUNT] = {
-    [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone) [all]"},
+    [OPT_FRAMES] = {"frames", 0, "A-B", "reads only these frames (or A alone) [all]"},
     [OPT_CSV] = {"csv", 0, "FILE", "also writes the numbers of every frame to FILE"},
     [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no frames, so embers are not measured"},
 };
@@ -53,7 +52,7 @@ static const struct {
     [CURL_STRONG] = {"curl_p90_deg", "curl of the rim over 10 mm, p90", "%.1f", false},
     [CURL_MAX] = {"curl_max_deg", "curl of the rim over 10 mm, max", "%.1f", false},
     [JITTER] = {"jitter_mm_per_s", "jitter of the unburnt, mm/s rms", "%.3f", true},
-    [EMBER] = {"ember_width_mm", "width of the ember line, mm, of some frames", "%.2f", true},
+    [EMBER] = {"ember_width_mm", "width of the ember line in some frames, mm", "%.2f", true},
 };
 
 /// Vertices of the input mesh that have not burnt, in one frame.
@@ -150,7 +149,7 @@ static void fill_row(const Wrinkles *frame, const Folds *folds, const Rim *rim, 
 
 static SingeResult out_of_memory(SingeError *error) {
     *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
-    snprintf(error->message, sizeof error->message, "no memory to measure a frame");
+    snprintf(error->message, sizeof error->message, "out of memory while a frame was measured");
     return SINGE_ERROR_MEMORY;
 }
 

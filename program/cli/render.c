@@ -1,18 +1,15 @@
 // singe render: draws the pictures, video and contact sheet of a cache again, from its PLYs and the scene in its
 // run.json.
-#include <errno.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/args.h"
-#include "cli/pictures.h"
 #include "cli/folder.h"
 #include "cli/interrupt.h"
 #include "cli/job.h"
 #include "cli/lock.h"
-#include "cli/text.h"
+#include "cli/pictures.h"
 #include "cli/video.h"
 #include "common/printable.h"
 
@@ -20,13 +17,13 @@ enum { OPT_SET, OPT_FRAMES, OPT_SHEET, OPT_ONLY_SHEET, OPT_EXR, OPT_GIF, OPT_THR
 
 static const ArgOption render_options[OPT_COUNT] = {
     [OPT_SET] = {"set", 0, "preview.PATH=VALUE", "sets a value of the scene; may be repeated"},
-    [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone), without the video"},
-    [OPT_SHEET] = {"sheet", 0, "CxR", "also DIR/sheet.png, C by R frames spread over the run"},
+    [OPT_FRAMES] = {"frames", 0, "A-B", "draws only these frames (or A alone), and no video"},
+    [OPT_SHEET] = {"sheet", 0, "CxR", "also writes DIR/sheet.png: C by R frames, spread over the run"},
     [OPT_ONLY_SHEET] = {"only-sheet", 0, NULL, "draws the frames of the sheet and writes nothing else"},
-    [OPT_EXR] = {"exr", 0, NULL, "also DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
-    [OPT_GIF] = {"gif", 0, NULL, "also DIR/preview.gif, of the frames that are drawn"},
+    [OPT_EXR] = {"exr", 0, NULL, "also writes DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
+    [OPT_GIF] = {"gif", 0, NULL, "also writes DIR/preview.gif, of the frames that are drawn"},
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints errors only"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
 };
 
 static const ArgCommand render_command = {

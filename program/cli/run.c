@@ -18,8 +18,8 @@ static const ArgOption run_options[OPT_COUNT] = {
     [OPT_SET] = {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated"},
     [OPT_RESUME] = {"resume", 0, NULL, "continues from DIR/checkpoint.singe"},
     [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no pictures and makes no video"},
-    [OPT_EXR] = {"exr", 0, NULL, "also DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints errors only"},
+    [OPT_EXR] = {"exr", 0, NULL, "also writes DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
 };
 
 static const ArgCommand run_command = {

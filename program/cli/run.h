@@ -1,5 +1,5 @@
 // Internals of singe run: a run in progress, and its parts. run.c is the command, run_begin.c begins or resumes a run,
-// run_frame.c steps to a frame and writes it.
+// run_frame.c steps to a frame and writes it, record.c writes DIR/run.json.
 #ifndef CLI_RUN_H
 #define CLI_RUN_H
 
@@ -7,12 +7,13 @@
 
 #include "cli/checkpoint.h"
 #include "cli/folder.h"
-#include "cli/pictures.h"
-#include "cli/outputs.h"
 #include "cli/job.h"
 #include "cli/lock.h"
+#include "cli/outputs.h"
+#include "cli/pictures.h"
 #include "cli/tables.h"
 
+/// DIR/run.json: the scene, the program, the time taken and the outcome of a run.
 typedef struct Record {
     const char *scene_path;
     char started[32];   ///< ISO 8601, UTC

@@ -189,7 +189,8 @@ SingeResult run_begin_frame(Run *run, int frame, bool last, SingeError *error) {
     // contact cannot separate triangles that cross in the first frame
     float at[3];
     if (!result && frame == 1 && !initial_count(&run->frame.surface, &run->totals->crossed, at)) {
-        *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1, .message = "no memory to look for crossings"};
+        *error = (SingeError){
+            .code = SINGE_ERROR_MEMORY, .element = -1, .message = "out of memory while looking for crossings"};
         result = SINGE_ERROR_MEMORY;
     }
 

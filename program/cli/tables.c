@@ -92,8 +92,7 @@ static SingeResult lines_cut(LineFile *file, const char *header, uint64_t count,
     if (!good) {
         *error = (SingeError){.code = SINGE_ERROR_FORMAT, .stage = "resume", .element = -1};
         snprintf(error->message, sizeof error->message,
-                 "%.200s lacks %s, up to which the checkpoint reaches; run without --resume to start over", file->path,
-                 what);
+                 "%.200s lacks %s, which the checkpoint needs; run without --resume to start over", file->path, what);
         return SINGE_ERROR_FORMAT;
     }
     file->size = (int64_t)at;

@@ -9,7 +9,7 @@
 #include "cli/cli.h"
 #include "common/utf8.h"
 
-/// A block that is there, or the end.
+/// The block; without memory the program ends.
 static char *need(char *block) {
     if (block) return block;
     fputs("singe: error: out of memory\n", stderr);

@@ -5,21 +5,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/findings.h"
 #include "cli/args.h"
 #include "cli/cli.h"
-#include "analysis/findings.h"
+#include "cli/console.h"
+#include "cli/csv.h"
 #include "cli/folder.h"
 #include "cli/interrupt.h"
 #include "cli/job.h"
-#include "cli/csv.h"
-#include "cli/console.h"
 #include "cli/text.h"
 #include "common/printable.h"
 
 enum { OPT_FRAMES, OPT_STRETCH, OPT_CSV, OPT_COUNT };
 
 static const ArgOption verify_options[OPT_COUNT] = {
-    [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone) [all]"},
+    [OPT_FRAMES] = {"frames", 0, "A-B", "reads only these frames (or A alone) [all]"},
     [OPT_STRETCH] = {"stretch", 0, "X", "edges longer than X times their length at rest are stretched [2]"},
     [OPT_CSV] = {"csv", 0, "FILE", "also writes the counts of every frame to FILE"},
 };
@@ -37,15 +37,15 @@ static const struct {
 } faults[FAULT_COUNT] = {
     [FAULT_CROSSING] = {"crossings", "pairs of triangles that cross"},
     [FAULT_INVERTED] = {"inverted_cells", "inverted cells (stats.csv)"},
-    [FAULT_STRETCHED] = {"stretched_edges", "edges stretched"},
+    [FAULT_STRETCHED] = {"stretched_edges", "stretched edges"},
     [FAULT_NON_MANIFOLD] = {"non_manifold_edges", "edges of more than two triangles"},
     [FAULT_WINDING] = {"winding", "edges whose triangles are wound against each other"},
     [FAULT_DEGENERATE] = {"degenerate_triangles", "triangles without area"},
-    [FAULT_DUPLICATE] = {"duplicate_triangles", "triangles twice"},
+    [FAULT_DUPLICATE] = {"duplicate_triangles", "triangles that occur twice"},
     [FAULT_NOT_FINITE] = {"not_finite", "values that are not finite"},
     [FAULT_MISSING] = {"missing", "missing properties"},
     [FAULT_INDEX] = {"index", "triangles with an index out of range"},
-    [FAULT_STATS] = {"stats", "contradictions to stats.csv"},
+    [FAULT_STATS] = {"stats", "contradictions of stats.csv"},
 };
 
 typedef struct Row {
@@ -176,9 +176,9 @@ static uint64_t print_table(const Verify *verify) {
                    verify->first + worst[f]);
     }
 
-    printf("%-52s%12" PRIu64 "\n", "(of the crossings: side by side at rest)", near);
+    printf("%-52s%12" PRIu64 "\n", "(of the crossings: of neighbours at rest)", near);
     printf("%-52s%12" PRIu64 "\n", "(no fault: edges folded onto each other)", folded);
-    printf("%-52s%12" PRIu64 "\n", "(no fault: crossings of what crosses in frame 1)", from_start);
+    printf("%-52s%12" PRIu64 "\n", "(no fault: crossings that began in frame 1)", from_start);
     printf("\n%d frames, %" PRIu64 " triangles: ", verify->done, triangles);
     if (all) printf("%" PRIu64 " faults in %d frames\n", all, bad);
     else printf("no faults\n");

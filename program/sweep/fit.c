@@ -29,7 +29,7 @@ enum { OPT_OUTPUT, OPT_THREADS, OPT_QUIET, OPT_COUNT };
 static const ArgOption fit_options[OPT_COUNT] = {
     [OPT_OUTPUT] = {"output", 'o', "DIR", "folder of the fit [out/NAME]"},
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]; the result does not depend on them"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints errors and the result only"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors and the result"},
 };
 
 static const ArgCommand fit_command = {
@@ -305,7 +305,8 @@ static ExitCode row_error(Fit *fit, uint32_t row, double *value) {
     if (at && *at && strncmp(at, line, strlen(line)) == 0) {
         *value = atof(at + strlen(line));
     } else if (at && *at) {
-        console_error(fit->sweep->console, "fit.csv in %s is of another fit: line %u differs; use another folder (-o)",
+        console_error(fit->sweep->console,
+                      "fit.csv in %s belongs to another fit: line %u differs; use another folder (-o)",
                       fit->sweep->folder, row + 2);
         code = EXIT_INPUT;
     } else {
@@ -456,7 +457,7 @@ static ExitCode search(Fit *fit) {
     }
 
     if (!fit->code) print_result(fit);
-    else if (interrupt_asked()) console_note(console, "the same command continues");
+    else if (interrupt_asked()) console_note(console, "the same command continues the fit");
     return fit->code;
 }
 

@@ -1,5 +1,4 @@
 // A sweep on disk: the plan of its rows, and the state of each row.
-#include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +9,6 @@
 #include "cli/folder.h"
 #include "cli/text.h"
 #include "formats/formats.h"
-#include "common/printable.h"
 #include "sweep/sweep.h"
 
 char *sweep_row_folder(const Sweep *sweep, uint32_t row, bool complete) {
@@ -140,11 +138,11 @@ static ExitCode note_or_compare(Sweep *sweep, const char *name, const char *text
         int line = 1;
         for (const char *a = there, *b = text; *a && *a == *b; a++, b++) line += *a == '\n';
         if (table)
-            console_error(sweep->console, "%s is of another plan: line %d differs; use another folder (-o)", path,
+            console_error(sweep->console, "%s belongs to another plan: line %d differs; use another folder (-o)", path,
                           line);
         else
             console_error(sweep->console,
-                          "%s: the scene, its `set` or a file that it names has changed since; use another folder (-o)",
+                          "%s: the scene, its `set` or a file that it names has changed; use another folder (-o)",
                           path);
         code = EXIT_INPUT;
     }
@@ -230,6 +228,7 @@ char *sweep_row_line(const Sweep *sweep, const char *number) {
     char *folder = text_shell_quote(sweep->folder);
     char *line = text_format("%s sweep %s -o %s --row %s --threads %d%s", program, plan, folder, number,
                              sweep->options->threads, sweep->options->no_preview ? " --no-preview" : "");
+
     free(program);
     free(plan);
     free(folder);

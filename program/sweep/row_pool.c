@@ -260,7 +260,7 @@ ExitCode sweep_run_rows(Sweep *sweep) {
     frame_totals(&pool, &pool.frames_before, &all);
     run_queue(&pool);
     console_note(sweep->console, "%u of %u rows are complete, %u failed%s", pool.complete, pool.due, pool.failed,
-                 pool.stopping ? "; the same command continues"
+                 pool.stopping ? "; the same command continues the sweep"
                  : pool.failed ? "; --retry runs those again"
                                : "");
     free(pool.slots);

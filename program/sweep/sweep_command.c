@@ -1,7 +1,6 @@
 // singe sweep: the command.
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "cli/args.h"
@@ -29,18 +28,18 @@ enum {
 
 static const ArgOption sweep_options[OPT_COUNT] = {
     [OPT_OUTPUT] = {"output", 'o', "DIR", "folder of the sweep [out/NAME]"},
-    [OPT_JOBS] = {"jobs", 'j', "N", "rows at a time [the machine's cores over --threads]"},
+    [OPT_JOBS] = {"jobs", 'j', "N", "rows at a time [cores of the machine / threads of a row]"},
     [OPT_THREADS] = {"threads", 0, "N", "threads of each row [1]"},
     [OPT_RETRY] = {"retry", 0, NULL, "runs rows that failed again"},
     [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no pictures and makes no videos"},
     [OPT_PRINT] = {"print", 0, NULL, "prints a command for each row that is due, and runs nothing"},
-    [OPT_ROW] = {"row", 0, "N", "runs this row alone, for a farm's job"},
+    [OPT_ROW] = {"row", 0, "N", "runs only this row, as a job of a farm does"},
     [OPT_REPORT] = {"report", 0, NULL, "writes the report of the rows that are complete, and runs nothing"},
-    [OPT_SLURM] = {"slurm", 0, NULL, "submits the rows to Slurm: a job array, its rendering, the report"},
+    [OPT_SLURM] = {"slurm", 0, NULL, "submits the rows, their pictures and the report to Slurm"},
     [OPT_MAX_RUNNING] = {"max-running", 0, "N", "with --slurm: rows at a time [no limit]"},
     [OPT_SLURM_OPTION] = {"slurm-option", 0, "TEXT", "with --slurm: an option of sbatch; may be repeated"},
     [OPT_RENDER_FRAMES] = {"render-frames", 0, "N", "with --slurm: frames that one job draws [24]"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints errors only"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
 };
 
 static const ArgCommand sweep_command = {
@@ -131,40 +130,6 @@ ExitCode sweep_prepare(Sweep *sweep) {
     return EXIT_FAILED;
 }
 
-static ExitCode sweep_all(Sweep *sweep) {
-    const SweepOptions *o = sweep->options;
-    ExitCode code = plan_read(o->plan, false, sweep->console, &sweep->plan);
-    if (code) return code;
-
-    const Plan *plan = &sweep->plan;
-    if (o->row > 0 && (uint32_t)o->row > plan->row_count) {
-        console_error(sweep->console, "--row %d: %s has %u rows", o->row, o->plan, plan->row_count);
-        return EXIT_INPUT;
-    }
-
-    if ((code = sweep_make_room(sweep)) || (code = sweep_check_rows(sweep)) || (code = sweep_prepare(sweep)))
-        return code;
-
-    // the commands of the rows that are due
-    for (uint32_t row = 0; o->print && row < plan->row_count; row++) {
-        const RowState state = sweep_row_state(sweep, row);
-        if (state == ROW_COMPLETE || state == ROW_ELSEWHERE || (state == ROW_FAILED && !o->retry)) continue;
-        char *number = text_format("%u", row + 1), *line = sweep_row_line(sweep, number);
-        puts(line);
-        free(line);
-        free(number);
-    }
-
-    if (o->print) return EXIT_GOOD;
-    if (o->submit) return sweep_submit(sweep);
-    if (o->row) return sweep_run_rows(sweep);
-
-    code = o->report ? EXIT_GOOD : sweep_run_rows(sweep);
-    ExitCode report = sweep_report(sweep);
-    if (!report && !o->quiet) printf("%s/index.html\n", sweep->folder);
-    return code ? code : report;
-}
-
 Sweep sweep_make(Console *console, const SweepOptions *options) {
     // the path of this program, valid on other nodes that see the same files
     char path[4096];
@@ -187,6 +152,40 @@ void sweep_close(Sweep *sweep) {
     free(sweep->plan_path);
 }
 
+/// Runs, submits, lists or reports the rows of a plan that has been read.
+static ExitCode sweep_rows(Sweep *sweep) {
+    const SweepOptions *o = sweep->options;
+    const Plan *plan = &sweep->plan;
+    if (o->row > 0 && (uint32_t)o->row > plan->row_count) {
+        console_error(sweep->console, "--row %d: %s has %u rows", o->row, o->plan, plan->row_count);
+        return EXIT_INPUT;
+    }
+
+    ExitCode code = sweep_make_room(sweep);
+    if (!code) code = sweep_check_rows(sweep);
+    if (!code) code = sweep_prepare(sweep);
+    if (code) return code;
+
+    // the commands of the rows that are due
+    for (uint32_t row = 0; o->print && row < plan->row_count; row++) {
+        const RowState state = sweep_row_state(sweep, row);
+        if (state == ROW_COMPLETE || state == ROW_ELSEWHERE || (state == ROW_FAILED && !o->retry)) continue;
+        char *number = text_format("%u", row + 1), *line = sweep_row_line(sweep, number);
+        puts(line);
+        free(line);
+        free(number);
+    }
+
+    if (o->print) return EXIT_GOOD;
+    if (o->submit) return sweep_submit(sweep);
+    if (o->row) return sweep_run_rows(sweep);
+
+    code = o->report ? EXIT_GOOD : sweep_run_rows(sweep);
+    ExitCode report = sweep_report(sweep);
+    if (!report && !o->quiet) printf("%s/index.html\n", sweep->folder);
+    return code ? code : report;
+}
+
 int command_sweep(int argc, char **argv) {
     SweepOptions options;
     bool done;
@@ -195,10 +194,10 @@ int command_sweep(int argc, char **argv) {
         interrupt_shield();
         Console console = console_make(options.quiet);
         Sweep sweep = sweep_make(&console, &options);
-        code = sweep_all(&sweep);
+        code = plan_read(options.plan, false, &console, &sweep.plan);
+        if (!code) code = sweep_rows(&sweep);
         sweep_close(&sweep);
     }
-
     set_free(&options.slurm);
     return code;
 }

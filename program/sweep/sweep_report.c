@@ -3,7 +3,6 @@
 //
 // A row's numbers come from its tables: from stats.csv those of the last frame, from measure.csv the median over the
 // frames that have the number.
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,12 +10,12 @@
 #include <unistd.h>
 
 #include "analysis/numbers.h"
+#include "cli/csv.h"
 #include "cli/folder.h"
 #include "cli/text.h"
 #include "cli/video.h"
 #include "formats/formats.h"
 #include "scene/builtin.h"
-#include "cli/csv.h"
 #include "sweep/sweep.h"
 
 extern const SceneBuiltin sweep_pages[];
@@ -81,6 +80,7 @@ static char *row_file(const Report *report, uint32_t row, const char *name) {
     char *inside = text_format("rows/%04u/%s", row + 1, name);
     char *path = text_format("%s/%s", report->sweep->folder, inside);
     const bool has = folder_has(path);
+
     free(path);
     if (has) return inside;
 
