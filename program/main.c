@@ -1,3 +1,4 @@
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #ifdef __GLIBC__
@@ -6,69 +7,79 @@
 
 #include "cli/args.h"
 #include "cli/cli.h"
-#include "cli/streams.h"
+#include "cli/console.h"
 #include "common/printable.h"
 #include "singe/singe.h"
 
+/// The commands, group by group: of the help and of every message that lists them.
 static const struct {
     const char *name;
     int (*run)(int argc, char **argv);
-    const char *summary; ///< NULL: not in the help
+    const char *group; ///< heading in the help; NULL: not in the help
+    const char *summary;
 } commands[] = {
-    {"run", command_run, "burns a scene: cache, pictures, video, numbers"},
-    {"check", command_check, "checks a scene, and prints its size and cost"},
-    {"render", command_render, "draws a cache's pictures and video again"},
-    {"convert", command_convert, "writes a cache in another format, such as USD"},
-    {"measure", command_measure, "measures the shape of a cache: creases, wrinkles, jitter"},
-    {"verify", command_verify, "looks for faults in a cache: crossings, inverted cells, bad edges and values"},
-    {"sweep", command_sweep, "burns a scene many times with other parameters, here or on a farm"},
-    {"fit", command_fit, "fits a scene's parameters to measurements"},
-    {"bench", command_bench, "measures speed, strain and stability of the solver on this machine"},
-    {"paper", command_paper, "runs the paper's experiments and writes a page about them"},
-    {"validate", command_validate, "compares the physics with outside sources, on a page"},
-    {"scene-doc", command_scene_doc, NULL},
+    {"run", command_run, "burn", "burns a scene: cache, pictures, video, numbers"},
+    {"check", command_check, "burn", "checks a scene, and prints its size and cost"},
+    {"render", command_render, "look", "draws a cache's pictures and video again"},
+    {"convert", command_convert, "look", "writes a cache in another format, such as USD"},
+    {"measure", command_measure, "look", "measures the shape of a cache: creases, wrinkles, jitter"},
+    {"verify", command_verify, "look", "finds faults in a cache: crossings, inverted cells, bad edges and values"},
+    {"sweep", command_sweep, "many", "burns a scene many times with other parameters, here or on a farm"},
+    {"fit", command_fit, "many", "fits a scene's parameters to measurements"},
+    {"bench", command_bench, "research", "measures speed, strain and stability of the solver on this machine"},
+    {"paper", command_paper, "research", "runs the paper's experiments and writes a page about them"},
+    {"validate", command_validate, "research", "compares the physics with outside sources, on a page"},
+    {"scene-doc", command_scene_doc, NULL, NULL},
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 static void main_help(void) {
-    printf("singe %s burns cloth and paper.\n\nusage: singe COMMAND [options]\n\ncommands:\n", singe_version());
-    for (int i = 0; i < COMMAND_COUNT; i++)
-        if (commands[i].summary) printf("  %-10s %s\n", commands[i].name, commands[i].summary);
-    printf("\n  singe COMMAND --help   the command's options\n  singe --version        the version\n\n"
-           "Exit codes: 0 good, 1 the run failed or was interrupted, 2 bad input.\n");
-}
+    printf("singe %s burns cloth and paper.\n\nusage: singe COMMAND [options]\n", singe_version());
 
-/// Keeps the memory of a frame's files for the next frame. By default glibc returns it to the system, and each of its
-/// pages faults again: 2 to 3 ms for 25,000 vertices (singe bench output).
-static void keep_memory(void) {
-#ifdef __GLIBC__
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);
-    mallopt(M_TRIM_THRESHOLD, 256 << 20);
-#endif
+    const char *group = "";
+    for (int i = 0; i < COMMAND_COUNT && commands[i].group; i++) {
+        if (strcmp(group, commands[i].group) != 0) printf("\n%s:\n", commands[i].group);
+        group = commands[i].group;
+        printf("  %-10s %s\n", commands[i].name, commands[i].summary);
+    }
+
+    printf("\n  singe COMMAND --help   the command's options\n"
+           "  singe --version        the version\n\n"
+           "Exit codes: 0 success, 1 the run failed or was interrupted, 2 bad input.\n");
 }
 
 int main(int argc, char **argv) {
-    keep_memory();
-    if (streams_open()) return EXIT_FAILED;
+#ifdef __GLIBC__
+    // keep the memory of a frame's files for the next frame: by default glibc returns it to the system, and each of its
+    // pages faults again, which costs 2 to 3 ms for 25,000 vertices (singe bench output)
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    mallopt(M_TRIM_THRESHOLD, 256 << 20);
+#endif
+    if (console_open()) return EXIT_FAILED;
     if (argc < 2) {
-        fputs(
-            "singe: error: needs a command: run, check, render, convert, measure, verify, sweep, fit, bench, paper or validate\n"
-            "see: singe --help\n",
-            stderr);
+        fputs("singe: error: needs a command: ", stderr);
+        for (int i = 0; i < COMMAND_COUNT && commands[i].group; i++) {
+            const bool last = i + 1 == COMMAND_COUNT || !commands[i + 1].group;
+            fprintf(stderr, "%s%s", i == 0 ? "" : last ? " or " : ", ", commands[i].name);
+        }
+        fputs("\nsee: singe --help\n", stderr);
         return EXIT_INPUT;
     }
+
     const char *word = argv[1];
     for (int i = 0; i < COMMAND_COUNT; i++)
-        if (strcmp(word, commands[i].name) == 0) return streams_finish(commands[i].run(argc - 2, argv + 2));
+        if (strcmp(word, commands[i].name) == 0) return console_finish(commands[i].run(argc - 2, argv + 2));
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0) {
         main_help();
-        return streams_finish(EXIT_GOOD);
+        return console_finish(EXIT_GOOD);
     }
+
     if (strcmp(word, "--version") == 0) {
         printf("singe %s\n", singe_version());
-        return streams_finish(EXIT_GOOD);
+        return console_finish(EXIT_GOOD);
     }
+
     const char *near = args_nearest(word, commands, COMMAND_COUNT, sizeof commands[0]);
     fprintf(stderr, "singe: error: unknown %s '%s'", word[0] == '-' ? "option" : "command", shown(word).text);
     if (near) fprintf(stderr, "; did you mean '%s'?", near);

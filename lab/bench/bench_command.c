@@ -12,7 +12,6 @@
 #include "bench/bench_preview.h"
 #include "cli/cli.h"
 #include "cli/console.h"
-#include "cli/streams.h"
 #include "common/printable.h"
 
 #define OUTPUT (BENCH_BIT(JSON) | BENCH_BIT(CSV))
@@ -114,7 +113,7 @@ static ExitCode bench_measure(int m, const BenchRequest *request) {
         code = exit_code(result);
     }
     if (!result && request->json) table_write_json(&table, stdout);
-    if (!result && request->csv) code = streams_write(&console, request->csv, print_csv, &table);
+    if (!result && request->csv) code = console_write_table(&console, request->csv, print_csv, &table);
     table_free(&table);
     return code;
 }

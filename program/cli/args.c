@@ -33,7 +33,9 @@ static int edit_distance(const char *a, const char *b) {
     int row[WORD_MAX + 1];
     size_t la = strlen(a), lb = strlen(b);
     if (la > WORD_MAX || lb > WORD_MAX) return WORD_MAX;
+
     for (size_t j = 0; j <= lb; j++) row[j] = (int)j;
+
     for (size_t i = 1; i <= la; i++) {
         int diagonal = row[0];
         row[0] = (int)i;
@@ -50,6 +52,7 @@ static int edit_distance(const char *a, const char *b) {
 const char *args_nearest(const char *word, const void *first, int count, unsigned long stride) {
     const char *best = NULL;
     int best_distance = 4;
+
     for (int i = 0; i < count; i++) {
         const char *name;
         memcpy(&name, (const char *)first + (unsigned long)i * stride, sizeof name);
@@ -79,6 +82,7 @@ static int take_long(ArgReader *reader, const char *argument, const char **value
         args_help(command);
         return ARG_HELP;
     }
+
     for (int i = 0; i < command->option_count; i++) {
         const ArgOption *option = &command->options[i];
         if (strlen(option->name) != length || strncmp(option->name, name, length) != 0) continue;
@@ -88,6 +92,7 @@ static int take_long(ArgReader *reader, const char *argument, const char **value
         *value = !option->value ? NULL : equals ? equals + 1 : reader->argv[reader->index++];
         return i;
     }
+
     char shown[WORD_MAX + 1];
     snprintf(shown, sizeof shown, "%.*s", (int)(length < WORD_MAX ? length : WORD_MAX), name);
     return unknown_option(reader, argument, shown);
@@ -95,51 +100,58 @@ static int take_long(ArgReader *reader, const char *argument, const char **value
 
 static int take_letter(ArgReader *reader, const char **value) {
     const ArgCommand *command = reader->command;
-    const char *argument = reader->argv[reader->index];
-    char letter = argument[reader->letters];
-    bool last = argument[reader->letters + 1] == 0;
+    const char *argument = reader->argv[reader->index], *rest = argument + reader->letters + 1;
+    const char letter = argument[reader->letters];
     if (letter == 'h') {
         args_help(command);
         return ARG_HELP;
     }
-    for (int i = 0; i < command->option_count; i++) {
-        const ArgOption *option = &command->options[i];
-        if (option->letter != letter) continue;
-        if (!option->value) {
-            if (last) reader->index++, reader->letters = 0;
-            else reader->letters++;
-            *value = NULL;
-            return i;
-        }
-        const char *rest = argument + reader->letters + 1;
-        reader->index++, reader->letters = 0;
-        if (last && reader->index >= reader->argc) return args_complain(reader, "-%c needs %s", letter, option->value);
-        *value = last ? reader->argv[reader->index++] : rest;
+
+    int i = 0;
+    while (i < command->option_count && command->options[i].letter != letter) i++;
+    if (i == command->option_count) return unknown_option(reader, argument, argument + 1);
+
+    // a switch may be followed by others; a value is the rest of the word or the next one
+    const ArgOption *option = &command->options[i];
+    *value = NULL;
+    if (!option->value && *rest) {
+        reader->letters++;
         return i;
     }
-    return unknown_option(reader, argument, argument + 1);
+
+    reader->index++;
+    reader->letters = 0;
+    if (!option->value) return i;
+    if (!*rest && reader->index >= reader->argc) return args_complain(reader, "-%c needs %s", letter, option->value);
+
+    *value = *rest ? rest : reader->argv[reader->index++];
+    return i;
 }
 
 int args_next(ArgReader *reader, const char **value) {
     const ArgCommand *command = reader->command;
     if (reader->letters) return take_letter(reader, value);
+    if (reader->index < reader->argc && !reader->operands_only && strcmp(reader->argv[reader->index], "--") == 0) {
+        reader->operands_only = true;
+        reader->index++;
+    }
+
     if (reader->index >= reader->argc) {
         if (command->operand && reader->operand_count == 0) return args_complain(reader, "needs %s", command->operand);
         return ARG_END;
     }
+
     const char *argument = reader->argv[reader->index];
-    if (!reader->operands_only && strcmp(argument, "--") == 0) {
-        reader->operands_only = true, reader->index++;
-        return args_next(reader, value);
-    }
     if (!reader->operands_only && strncmp(argument, "--", 2) == 0) {
         reader->index++;
         return take_long(reader, argument, value);
     }
+
     if (!reader->operands_only && argument[0] == '-' && argument[1]) {
         reader->letters = 1;
         return take_letter(reader, value);
     }
+
     if (!command->operand || (++reader->operand_count > 1 && !strstr(command->operand, "...")))
         return args_complain(reader, "one argument too many: '%s'", shown(argument).text);
     reader->index++;
@@ -151,6 +163,7 @@ void args_help(const ArgCommand *command) {
     printf("usage: singe %s%s%s%s\n\n%s\n", command->name, command->operand ? " " : "",
            command->operand ? command->operand : "", command->option_count ? " [options]" : "", command->summary);
     if (command->option_count) printf("\noptions:\n");
+
     for (int i = 0; i < command->option_count; i++) {
         const ArgOption *option = &command->options[i];
         char left[64], letter[8] = "    ";
@@ -159,6 +172,7 @@ void args_help(const ArgCommand *command) {
                  option->value ? option->value : "");
         printf("  %-26s %s\n", left, option->help);
     }
+
     printf("  %-26s %s\n", "-h, --help", "this text");
     if (command->footer) printf("\n%s\n", command->footer);
 }
@@ -171,6 +185,7 @@ bool args_int(const ArgReader *reader, int option, const char *text, int low, in
         *number = (int)value;
         return true;
     }
+
     args_complain(reader, "--%s: expected a whole number from %d to %d, got '%s'",
                   reader->command->options[option].name, low, high, shown(text).text);
     return false;
@@ -186,11 +201,13 @@ bool args_span(const ArgReader *reader, int option, const char *text, int *first
         b = strtol(second, &end, 10);
         good = errno == 0 && end != second;
     }
+
     if (good && *end == 0 && a >= 1 && a <= b && b <= INT_MAX) {
         *first = (int)a;
         *last = (int)b;
         return true;
     }
+
     args_complain(reader, "--%s: expected A-B with 1 <= A <= B, got '%s'", reader->command->options[option].name,
                   shown(text).text);
     return false;

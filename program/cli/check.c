@@ -2,12 +2,11 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "analysis/strip.h"
 #include "cli/args.h"
-#include "cli/frame_files.h"
 #include "cli/job.h"
+#include "cli/pictures.h"
 #include "common/printable.h"
 #include "scene/words.h"
 
@@ -25,7 +24,7 @@ static const ArgCommand check_command = {
     "Reads a scene with its meshes and images, builds it, and prints its size and cost.",
     check_options,
     OPT_COUNT,
-    "Exit codes: 0 the scene is valid; 1 a step fails, memory runs out, or standard output cannot be written;\n"
+    "Exit codes: 0 the scene is valid, 1 a step failed, memory ran out or standard output could not be written,\n"
     "2 bad input."};
 
 /// Steps are timed until this many are done or this much time has passed.
@@ -41,39 +40,35 @@ static const double check_rays = 16e6;
 
 static double pixels_of(const ScenePreview *preview) { return (double)preview->size[0] * (double)preview->size[1]; }
 
-static SingeResult try_picture(const Job *job, const Frame *frame, double *seconds, SingeError *error) {
-    Pictures *pictures = NULL;
-    const uint8_t *rgb;
-    int *samples = &job->scene->preview.samples;
-    const int wanted = *samples;
-    while (*samples > 1 && pixels_of(&job->scene->preview) * *samples > check_rays) *samples /= 2;
-    SingeResult result = pictures_open(job, &pictures, error);
-    if (!result) {
-        double begun = console_clock();
-        result = frame_draw(frame, pictures, &rgb, error);
-        *seconds = (console_clock() - begun) * wanted / *samples;
-    }
-    *samples = wanted;
-    pictures_close(pictures);
-    return result;
-}
-
-/// Computes what run computes for its first frame, except the files and, if the picture takes long, some of its
-/// samples.
-static SingeResult try_frame(const Job *job, SingeSim *sim, CheckTimes *times, SingeError *error) {
+/// Times what run computes for its first frame, except the files, and then some steps. A picture that takes long is
+/// drawn with fewer samples.
+static SingeResult time_frame(const Job *job, SingeSim *sim, CheckTimes *times, SingeError *error) {
     Frame frame = {0};
     double begun = console_clock();
     SingeResult result = frame_take_surface(sim, &frame, error);
+
     times->surface = console_clock() - begun;
     if (!result) result = frame_take_gas(sim, &frame, error);
-    if (!result && pictures_available()) result = try_picture(job, &frame, &times->picture, error);
-    frame_free(&frame);
-    return result;
-}
+    if (!result && pictures_available()) {
+        Pictures *pictures = NULL;
+        const uint8_t *rgb;
+        int *samples = &job->scene->preview.samples;
+        const int wanted = *samples;
+        while (*samples > 1 && pixels_of(&job->scene->preview) * *samples > check_rays) *samples /= 2;
+        result = pictures_open(job, &pictures, error);
+        begun = console_clock();
+        if (!result) result = frame_draw(&frame, pictures, &rgb, error);
+        times->picture = (console_clock() - begun) * wanted / *samples;
+        *samples = wanted;
+        pictures_close(pictures);
+    }
 
-static SingeResult time_steps(SingeSim *sim, CheckTimes *times, SingeError *error) {
+    frame_free(&frame);
+    if (result) return result;
+
     int count = 0;
-    double begun = console_clock();
+    begun = console_clock();
+
     while (count < CHECK_STEPS && (count == 0 || console_clock() - begun < check_seconds)) {
         if (singe_sim_step(sim)) {
             *error = *singe_sim_error(sim);
@@ -81,12 +76,13 @@ static SingeResult time_steps(SingeSim *sim, CheckTimes *times, SingeError *erro
         }
         count++;
     }
+
     times->step = (console_clock() - begun) / count;
     return SINGE_OK;
 }
 
-/// Prints what was read and how it was repaired, sheet by sheet.
-static void report_meshes(const Job *job) {
+/// Prints what was read and how it was repaired, sheet by sheet, and what was built of it.
+static void report_shell(const Job *job, const SingeCounts *c) {
     for (uint32_t i = 0; i < job->assets.sheet_count; i++) {
         char text[200];
         for (int line = 0; mesh_report_line(&job->assets.reports[i], line, text, sizeof text); line++) {
@@ -94,15 +90,17 @@ static void report_meshes(const Job *job) {
             else printf("mesh          %s: %s\n", shown_path(job->scene->sheets[i].mesh.name).text, text);
         }
     }
-}
 
-static void report_shell(const SingeCounts *c) {
     static const struct {
         const char *name;
         SingeColour colour;
     } rows[] = {{"red", SINGE_RED}, {"green", SINGE_GREEN}, {"blue", SINGE_BLUE}, {"yellow", SINGE_YELLOW}};
     uint64_t springs = 0, strands = 0;
-    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) springs += c->springs[i], strands += c->strands[i];
+    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
+        springs += c->springs[i];
+        strands += c->strands[i];
+    }
+
     printf("particles     %" PRIu32 "\n", c->particles);
     printf("cells         %" PRIu32 " of %.3g mm\n", c->cells, 1e3 * (double)c->cell_size);
     printf("springs       %" PRIu64 " in %" PRIu64 " strands of %.1f on average\n", springs, strands,
@@ -133,57 +131,43 @@ static SingeResult front_of(const SceneMaterial *material, float step, StripResu
     return result == SINGE_ERROR_MEMORY ? result : SINGE_OK;
 }
 
-/// Prints how fast the material burns, and whether the scene's steps are too long for it. Lighter paper burns faster,
-/// and a front thickened by F burns as it would with steps 1/F as long.
-static SingeResult report_front(const Scene *scene, const SceneMaterial *material, float thickening,
-                                SingeError *error) {
-    StripResult front, rough;
-    const float pace = scene->sim.pace, weight = material->def.grammage.value / 0.080f;
-    const float fine = singe_default_sim().time_step * fmaxf(weight, 0.1f);
-    SingeResult result = front_of(material, fine, &front, error);
-    if (result) return result;
-    if (!(front.speed > 0)) {
-        if (front.end == STRIP_OUT) printf(": a level strip of it goes out");
-        if (front.end == STRIP_CUT) printf(": measuring its burning speed would take too long");
-        return SINGE_OK;
-    }
-    printf(": a level front of %.3g mm/s and %.0f C", 1e3 * front.speed, front.hottest - 273.15);
-    if (pace != 1) printf(", at this pace %.3g mm/s", 1e3 * front.speed * (double)pace);
-    float step = scene->sim.time_step * pace * (float)front.thickening / thickening;
-    if (step <= fine || (result = front_of(material, step, &rough, error))) return result;
-    double slower = 1 - rough.speed / front.speed;
-    if (slower > 0.1) printf("\n              in steps this long %.0f %% slower: raise `steps`", 100 * slower);
-    return SINGE_OK;
-}
-
-/// The sheets' materials, each name and grammage once, and the predicted speed of their fronts.
+/// Prints the sheets' materials, each name and grammage once; how fast each burns, and whether the scene's steps are too
+/// long for it. Lighter paper burns faster, and a front thickened by F burns as it would with steps 1/F as long.
 static SingeResult report_materials(const Scene *scene, float thickening, SingeError *error) {
+    const float pace = scene->sim.pace;
     SingeResult result = SINGE_OK;
+
     for (uint32_t i = 0, reported = 0; !result && i < scene->sheet_count && reported < CHECK_MATERIALS; i++) {
         const SceneMaterial *material = &scene->sheets[i].material;
         const float grammage = material->def.grammage.value;
         uint32_t j = 0;
         while (!scene_material_same(&scene->sheets[j].material, material)) j++;
         if (j < i) continue;
+        reported++;
         printf("material      %s, %.4g g/m2", material->name ? shown(material->name).text : "its own",
                1e3 * (double)grammage);
-        result = report_front(scene, material, thickening, error);
+
+        StripResult front, rough;
+        const float weight = grammage / 0.080f;
+        const float fine = singe_default_sim().time_step * fmaxf(weight, 0.1f);
+        result = front_of(material, fine, &front, error);
+        if (!result && front.speed > 0) {
+            printf(": a level front of %.3g mm/s and %.0f C", 1e3 * front.speed, front.hottest - 273.15);
+            if (pace != 1) printf(", at this pace %.3g mm/s", 1e3 * front.speed * (double)pace);
+            const float step = scene->sim.time_step * pace * (float)front.thickening / thickening;
+            if (step > fine && !(result = front_of(material, step, &rough, error))) {
+                const double slower = 1 - rough.speed / front.speed;
+                if (slower > 0.1)
+                    printf("\n              %.0f %% slower in steps this long: raise `steps`", 100 * slower);
+            }
+        } else if (!result && front.end == STRIP_OUT) {
+            printf(": a level strip of it goes out");
+        } else if (!result && front.end == STRIP_CUT) {
+            printf(": measuring its burning speed would take too long");
+        }
         printf("\n");
-        reported++;
     }
     return result;
-}
-
-static void report_times(const Job *job, const CheckTimes *times, float thickening) {
-    const Scene *scene = job->scene;
-    char text[32];
-    double frame = scene->steps * times->step + times->surface + times->picture;
-    console_duration(frame * scene->frames, text);
-    printf("thickening    %.3g (of the front, by F)\n", (double)thickening);
-    printf("frames        %d at %.4g a second, %d steps of %.3g ms each\n", scene->frames, (double)scene->fps,
-           scene->steps, 1e3 * (double)scene->sim.time_step);
-    printf("time          about %s: a step %.2f ms, a surface %.2f ms, a picture %.0f ms, with %d threads\n", text,
-           1e3 * times->step, 1e3 * times->surface, 1e3 * times->picture, job->hooks.thread_count);
 }
 
 static void report_size(const Job *job, const SceneAssets *assets, double pictures) {
@@ -196,8 +180,8 @@ static void report_size(const Job *job, const SceneAssets *assets, double pictur
 
 /// The needs are printed before anything is built, and again when meshes have been read.
 static ExitCode load_and_build(Job *job, Console *console, SingeSim **sim) {
-    double pictures = pictures_available() ? scene_picture_memory(job->scene) : 0;
-    bool unread = scene_size(job->scene, NULL).unread > 0;
+    const double pictures = pictures_available() ? scene_picture_memory(job->scene) : 0;
+    const bool unread = scene_size(job->scene, NULL).unread > 0;
     report_size(job, NULL, pictures);
     ExitCode code = job_load(job, console, pictures);
     if (code) return code;
@@ -210,29 +194,39 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
     SingeSim *sim = NULL;
     ExitCode code = job_read(&job, console, path, sets, threads);
     if (!code) code = load_and_build(&job, console, &sim);
-    if (!code) {
-        SingeCounts counts = singe_sim_counts(sim);
-        float thickening = singe_sim_stats(sim).thickening;
-        CheckTimes times = {0};
-        SingeError error = {0};
-        report_meshes(&job);
-        report_shell(&counts);
-        job_note_long(&job, console, "burning a strip of each material");
-        SingeResult result = report_materials(job.scene, thickening, &error);
-        if (!result) job_note_long(&job, console, "timing steps");
-        if (!result && pictures_available() && pixels_of(&job.scene->preview) > check_rays)
-            console_note(console, "drawing");
-        if (!result) result = try_frame(&job, sim, &times, &error);
-        if (!result) result = time_steps(sim, &times, &error);
-        if (result) {
-            fflush(stdout);
-            console_result(console, &error);
-            code = EXIT_FAILED;
-        } else {
-            report_times(&job, &times, thickening);
-            printf("%s: good\n", shown_path(path).text); // only now, after its first steps
-        }
+    if (code) {
+        job_close(&job);
+        return code;
     }
+
+    const SingeCounts counts = singe_sim_counts(sim);
+    const float thickening = singe_sim_stats(sim).thickening;
+    CheckTimes times = {0};
+    SingeError error = {0};
+    report_shell(&job, &counts);
+    job_note_long(&job, console, "burning a strip of each material");
+    SingeResult result = report_materials(job.scene, thickening, &error);
+    if (!result) job_note_long(&job, console, "timing steps");
+    if (!result && pictures_available() && pixels_of(&job.scene->preview) > check_rays)
+        console_note(console, "drawing");
+    if (!result) result = time_frame(&job, sim, &times, &error);
+    if (result) {
+        fflush(stdout);
+        console_result(console, &error);
+        code = EXIT_FAILED;
+    } else {
+        const Scene *scene = job.scene;
+        const double frame = scene->steps * times.step + times.surface + times.picture;
+        char text[32];
+        console_duration(frame * scene->frames, text);
+        printf("thickening    %.3g (of the front, by F)\n", (double)thickening);
+        printf("frames        %d at %.4g a second, %d steps of %.3g ms each\n", scene->frames, (double)scene->fps,
+               scene->steps, 1e3 * (double)scene->sim.time_step);
+        printf("time          about %s: a step %.2f ms, a surface %.2f ms, a picture %.0f ms, with %d threads\n", text,
+               1e3 * times.step, 1e3 * times.surface, 1e3 * times.picture, job.hooks.thread_count);
+        printf("%s: good\n", shown_path(path).text); // only now, after its first steps
+    }
+
     singe_sim_destroy(sim);
     job_close(&job);
     return code;
@@ -254,6 +248,7 @@ int command_check(int argc, char **argv) {
         default: good = false;
         }
     }
+
     if (frames) set_frames(&sets, frames);
     Console console = console_make(false);
     ExitCode code = good ? check_scene(&console, scene, &sets, threads) : EXIT_INPUT;

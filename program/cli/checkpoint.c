@@ -30,6 +30,7 @@ static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size) {
         hash = (hash ^ word) * prime;
         hash ^= hash >> 29;
     }
+
     for (; size; p++, size--) hash = (hash ^ *p) * prime;
     return hash ^ hash >> 32;
 }
@@ -43,29 +44,9 @@ static uint64_t hash_array(uint64_t hash, const void *data, size_t count, size_t
     return length ? hash_bytes(hash, data, count * size) : hash;
 }
 
-static uint64_t hash_mesh(uint64_t hash, const Mesh *mesh) {
-    hash = hash_array(hash, mesh->positions, 3 * (size_t)mesh->vertex_count, sizeof(float));
-    hash = hash_array(hash, mesh->corner_uv, 8 * (size_t)mesh->cell_count, sizeof(float));
-    hash = hash_array(hash, mesh->uv, 2 * (size_t)mesh->vertex_count, sizeof(float));
-    hash = hash_array(hash, mesh->cells, 4 * (size_t)mesh->cell_count, sizeof(uint32_t));
-    hash = hash_array(hash, mesh->became, mesh->source_count, sizeof(uint32_t)); // which vertices pins name
-    for (uint32_t i = 0; i < mesh->attribute_count; i++) {
-        hash = hash_array(hash, mesh->attributes[i].name, strlen(mesh->attributes[i].name), 1);
-        hash = hash_array(hash, mesh->attributes[i].values, mesh->vertex_count, sizeof(float));
-    }
-    return hash;
-}
-
 static uint64_t hash_picture(uint64_t hash, const SingeTexture *picture) {
     hash = hash_bytes(hash, &picture->width, sizeof picture->width);
     return hash_array(hash, picture->values, (size_t)picture->width * (size_t)picture->height, sizeof(float));
-}
-
-static uint64_t hash_solid(uint64_t hash, const SceneSolid *solid) {
-    const PreviewSolid *surface = &solid->surface;
-    hash = hash_array(hash, surface->vertices, 3 * (size_t)surface->vertex_count, sizeof(float));
-    hash = hash_array(hash, surface->triangles, 3 * (size_t)surface->triangle_count, sizeof(uint32_t));
-    return hash_array(hash, solid->heights, (size_t)solid->columns * solid->rows, sizeof(float));
 }
 
 static uint64_t hash_sequence(uint64_t hash, const SceneSequence *sequence, uint32_t frames) {
@@ -80,14 +61,32 @@ static uint64_t hash_image(uint64_t hash, const Image *image) {
     return hash_array(hash, image->rgb, 3 * (size_t)image->width * (size_t)image->height, sizeof *image->rgb);
 }
 
+/// The contents of the files that the scene names.
 static uint64_t hash_files(uint64_t hash, const SceneAssets *assets) {
     for (uint32_t i = 0; i < assets->sheet_count; i++) {
-        hash = hash_mesh(hash, &assets->meshes[i]);
+        const Mesh *mesh = &assets->meshes[i];
+        hash = hash_array(hash, mesh->positions, 3 * (size_t)mesh->vertex_count, sizeof(float));
+        hash = hash_array(hash, mesh->corner_uv, 8 * (size_t)mesh->cell_count, sizeof(float));
+        hash = hash_array(hash, mesh->uv, 2 * (size_t)mesh->vertex_count, sizeof(float));
+        hash = hash_array(hash, mesh->cells, 4 * (size_t)mesh->cell_count, sizeof(uint32_t));
+        hash = hash_array(hash, mesh->became, mesh->source_count, sizeof(uint32_t)); // which vertices pins name
+        for (uint32_t k = 0; k < mesh->attribute_count; k++) {
+            hash = hash_array(hash, mesh->attributes[k].name, strlen(mesh->attributes[k].name), 1);
+            hash = hash_array(hash, mesh->attributes[k].values, mesh->vertex_count, sizeof(float));
+        }
         hash = hash_image(hash, &assets->images[i]);
         for (int k = 0; k < SCENE_PARAM_SLOTS; k++) hash = hash_picture(hash, &assets->fields[i][k].texture);
     }
+
     for (uint32_t i = 0; i < assets->source_count; i++) hash = hash_picture(hash, &assets->source_textures[i]);
-    for (uint32_t i = 0; i < assets->collider_count; i++) hash = hash_solid(hash, &assets->solids[i]);
+
+    for (uint32_t i = 0; i < assets->collider_count; i++) {
+        const PreviewSolid *surface = &assets->solids[i].surface;
+        hash = hash_array(hash, surface->vertices, 3 * (size_t)surface->vertex_count, sizeof(float));
+        hash = hash_array(hash, surface->triangles, 3 * (size_t)surface->triangle_count, sizeof(uint32_t));
+        hash = hash_array(hash, assets->solids[i].heights, (size_t)assets->solids[i].columns * assets->solids[i].rows,
+                          sizeof(float));
+    }
     return hash;
 }
 
@@ -114,6 +113,7 @@ SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets,
         hash->result = hash_files(hash->result, assets);
         return SINGE_OK;
     }
+
     *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "checkpoint", .element = -1};
     return SINGE_ERROR_MEMORY;
 }

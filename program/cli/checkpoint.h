@@ -6,7 +6,7 @@
 
 #include "cli/console.h"
 #include "cli/folder.h"
-#include "cli/totals.h"
+#include "cli/tables.h"
 #include "scene/scene.h"
 
 /// Identifies the scene of a checkpoint.

@@ -1,14 +1,20 @@
 #include "cli/console.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/text.h"
 #include "common/printable.h"
+#include "formats/formats.h"
 
 Console console_make(bool quiet) {
     const char *kind = getenv("TERM"), *plain = getenv("NO_COLOR");
@@ -73,12 +79,12 @@ void console_result(Console *console, const SingeError *error) {
     else console_error(console, "%s", text);
 }
 
+/// `check` and run.json have the information that is left out here.
 static void log_line(void *context, SingeLogLevel level, const char *line) {
     Console *console = context;
     if (level == SINGE_LOG_ERROR) console_error(console, "%s", line);
     else if (level == SINGE_LOG_WARNING) console_warn(console, "%s", line);
     else if (strncmp(line, "solver: ", 8) == 0) console_note(console, "%s", line);
-    // `check` and run.json have the other information
 }
 
 SingeLog console_log(Console *console) { return (SingeLog){log_line, console}; }
@@ -100,6 +106,7 @@ static void show(Console *console, int frame, int frames, const char *line) {
         fprintf(stderr, "%s\n", line);
         return;
     }
+
     char bar[BAR + 1];
     int full = frames > 0 ? (int)((long)frame * BAR / frames) : BAR;
     for (int i = 0; i < BAR; i++) bar[i] = i < full ? '#' : '.';
@@ -134,4 +141,63 @@ void console_sweep(Console *console, const ConsoleSweep *p) {
              "  %s left",
              p->complete, p->rows, p->running, p->failed, p->frames, p->frames_all, left);
     show(console, (int)(p->frames_all ? 1000 * p->frames / p->frames_all : 1000), 1000, line);
+}
+
+// ---- standard streams
+
+int console_open(void) {
+    // open takes the lowest free descriptor. Standard output is opened for reading only, so that writing to it fails
+    static const int modes[] = {[STDIN_FILENO] = O_RDONLY, [STDOUT_FILENO] = O_RDONLY, [STDERR_FILENO] = O_WRONLY};
+    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
+        if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", modes[fd]) != fd) return -1;
+    return 0;
+}
+
+/// Writes to a pipe, a device or through a link. Returns 0 or the system's reason.
+static int write_through(const char *path, const char *text, size_t size) {
+    int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0666);
+    if (fd < 0) return errno;
+    const int flags = fcntl(fd, F_GETFL);
+    int reason = flags < 0 || fcntl(fd, F_SETFL, flags & ~O_NONBLOCK) ? errno : 0;
+    while (size && !reason) {
+        const ssize_t count = write(fd, text, size);
+        if (count > 0) {
+            text += count;
+            size -= (size_t)count;
+        } else if (count == 0 || errno != EINTR) reason = count ? errno : EIO;
+    }
+
+    if (close(fd) && !reason) reason = errno;
+    return reason;
+}
+
+ExitCode console_write_table(Console *console, const char *path, void (*print)(FILE *file, const void *context),
+                             const void *context) {
+    char *text = NULL;
+    size_t size = 0;
+    int reason = ENOMEM;
+    SingeResult result = SINGE_OK;
+    SingeError error = {0};
+    FILE *file = open_memstream(&text, &size);
+    if (file) print(file, context);
+    if (text_stream_end(file, &text)) {
+        struct stat about;
+        const bool ours = lstat(path, &about) ? errno == ENOENT : S_ISREG(about.st_mode);
+        reason = ours ? 0 : write_through(path, text, size);
+        if (ours) result = file_write(path, text, size, &error);
+    }
+    free(text);
+    if (reason) console_error(console, "cannot write %s: %s", path, strerror(reason));
+    if (result) console_result(console, &error);
+    return reason || result ? EXIT_FAILED : EXIT_GOOD;
+}
+
+int console_finish(int code) {
+    errno = 0;
+    bool failed = fflush(stdout) != 0;
+    if (!failed && !ferror(stdout)) return code;
+
+    fprintf(stderr, "singe: error: cannot write to standard output%s%s\n", errno ? ": " : "",
+            errno ? strerror(errno) : "");
+    return code == EXIT_GOOD ? EXIT_FAILED : code;
 }

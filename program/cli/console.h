@@ -1,9 +1,12 @@
-// The program's output on standard error: errors, warnings, notes and the progress line.
+// The program's output: errors, warnings, notes and the progress line on standard error, results on standard output,
+// and the tables of `--csv`.
 #ifndef CLI_CONSOLE_H
 #define CLI_CONSOLE_H
 
 #include <stdbool.h>
+#include <stdio.h>
 
+#include "cli/cli.h"
 #include "singe/base.h"
 
 typedef struct Console {
@@ -57,5 +60,19 @@ void console_duration(double seconds, char text[32]);
 
 /// A clock for durations, in seconds.
 double console_clock(void);
+
+/// Call this before anything else is opened. It fills closed descriptors 0 to 2, so that none of our files becomes one
+/// of them and receives messages. Printing to a closed standard output fails; messages to a closed standard error are
+/// lost. Returns 0, or -1 on failure.
+int console_open(void);
+
+/// Checks that printed output has arrived: a full disk, a closed pipe or a closed output is a failure. Returns the
+/// command's exit code, or EXIT_FAILED in place of EXIT_GOOD.
+int console_finish(int code);
+
+/// Writes the output of `print`, the table of `--csv`. A file is replaced whole or not at all; a pipe or a device
+/// receives it directly. A pipe without a reader is a failure: opening it would wait forever. Prints the error.
+ExitCode console_write_table(Console *console, const char *path, void (*print)(FILE *file, const void *context),
+                             const void *context);
 
 #endif

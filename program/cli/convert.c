@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "cli/args.h"
-#include "cli/gas_detail.h"
 #include "cli/interrupt.h"
 #include "cli/lock.h"
 #include "cli/outputs.h"
@@ -14,10 +13,10 @@ enum { OPT_TO, OPT_SINGLE, OPT_SET, OPT_QUIET, OPT_COUNT };
 
 static const ArgOption convert_options[OPT_COUNT] = {
     [OPT_TO] = {"to", 0, "FORMAT", "format to write (see docs/formats.md); may be repeated"},
-    [OPT_SINGLE] = {"single", 0, NULL, "one file of all frames: `usd`, `glb`"},
+    [OPT_SINGLE] = {"single", 0, NULL, "writes all frames into one file: `usd` or `glb`"},
     [OPT_SET] = {"set", 0, "PATH=VALUE",
                  "sets a value of the scene (output.texture_size, gas.detail); may be repeated"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints errors only"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
 };
 
 static const ArgCommand convert_command = {
@@ -26,7 +25,7 @@ static const ArgCommand convert_command = {
     "Writes the frames of a cache in other formats, beside it.",
     convert_options,
     OPT_COUNT,
-    "Frames that are there are written again. Exit codes: 0 good, 1 failed or interrupted, 2 bad input."};
+    "Existing frames are written again. Exit codes: 0 success, 1 failed or interrupted, 2 bad input."};
 
 typedef struct ConvertOptions {
     const char *folder;
@@ -44,23 +43,6 @@ static int single_named(const char *name, bool by_option) {
     return -1;
 }
 
-static int format_named(const char *name) {
-    for (int i = 0; i < OUTPUT_COUNT; i++)
-        if (i != OUTPUT_ply && strcmp(output_formats[i].name, name) == 0) return i;
-    return -1;
-}
-
-/// The names of the formats of frames, or of the formats that can be single files or always are.
-static void list_names(bool single, char *known, size_t size) {
-    *known = 0;
-    for (int i = 0; i < OUTPUT_COUNT + OUTPUT_SINGLE_COUNT; i++) {
-        const OutputSingle *other = i < OUTPUT_COUNT ? NULL : &output_singles[i - OUTPUT_COUNT];
-        if (other ? other->by_option && !single : i == OUTPUT_ply || single) continue;
-        const size_t used = strlen(known);
-        snprintf(known + used, size - used, "%s%s", used ? ", " : "", other ? other->name : output_formats[i].name);
-    }
-}
-
 static bool add_format(const ArgReader *reader, const char *name, ConvertOptions *o) {
     int which = single_named(name, false);
     if (which < 0 && o->single) which = single_named(name, true);
@@ -68,25 +50,37 @@ static bool add_format(const ArgReader *reader, const char *name, ConvertOptions
         o->singles |= 1u << which;
         return true;
     }
+
     if (!o->single && strcmp(name, "gas") == 0) return o->gas = true;
-    which = o->single ? -1 : format_named(name);
-    if (which >= 0) {
-        o->formats |= 1u << which;
+
+    for (int i = 0; i < OUTPUT_COUNT && !o->single; i++) {
+        if (i == OUTPUT_ply || strcmp(output_formats[i].name, name) != 0) continue;
+        o->formats |= 1u << i;
         return true;
     }
-    char known[120];
-    list_names(o->single, known, sizeof known);
-    if (!o->single) strcat(known, ", gas");
-    args_complain(reader, "--to%s: expected one of %s, got '%s'", o->single ? " with --single" : "", known,
-                  shown(name).text);
+
+    // the formats of frames, or those that can be single files or always are
+    char known[160] = "";
+    for (int i = 0; i < OUTPUT_COUNT + OUTPUT_SINGLE_COUNT; i++) {
+        const OutputSingle *other = i < OUTPUT_COUNT ? NULL : &output_singles[i - OUTPUT_COUNT];
+        if (other ? other->by_option && !o->single : i == OUTPUT_ply || o->single) continue;
+        const size_t used = strlen(known);
+        snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "",
+                 other ? other->name : output_formats[i].name);
+    }
+
+    args_complain(reader, "--to%s: expected one of %s%s, got '%s'", o->single ? " with --single" : "", known,
+                  o->single ? "" : ", gas", shown(name).text);
     return false;
 }
 
 static ExitCode convert_parse(int argc, char **argv, ConvertOptions *o, bool *done) {
     ArgReader reader = args_begin(&convert_command, argc, argv);
     const char *value;
+
     *o = (ConvertOptions){0};
     *done = false;
+
     for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
         bool good = true;
         switch (option) {
@@ -103,109 +97,94 @@ static ExitCode convert_parse(int argc, char **argv, ConvertOptions *o, bool *do
         }
         if (!good) return EXIT_INPUT;
     }
+
     for (int i = 0; i < o->name_count; i++)
         if (!add_format(&reader, o->names[i], o)) return EXIT_INPUT;
     if (o->name_count) return EXIT_GOOD;
+
     args_complain(&reader, "needs --to FORMAT");
     return EXIT_INPUT;
 }
 
-static SingeResult convert_frames(const Outputs *outputs, Console *console, int last, bool *interrupted,
-                                  SingeError *error) {
-    const double begun = console_clock();
-    SingeResult result = SINGE_OK;
-    for (int frame = 1; frame <= last && !result && !*interrupted; frame++) {
-        result = outputs_convert(outputs, frame, outputs->formats, error);
-        console_picture(console, frame, last, (console_clock() - begun) / frame);
-        *interrupted = interrupt_asked() && frame < last;
-    }
-    return result || *interrupted ? result : outputs_write_roots(outputs, last, error);
-}
-
-/// Progress of a single file.
-typedef struct SingleProgress {
+/// What the progress line needs.
+typedef struct ConvertProgress {
     Console *console;
     double begun;
     int last;
-} SingleProgress;
+} ConvertProgress;
 
-static bool show_single(void *context, int frame) {
-    const SingleProgress *progress = context;
+static bool show_progress(void *context, int frame) {
+    const ConvertProgress *progress = context;
     console_picture(progress->console, frame, progress->last, (console_clock() - progress->begun) / frame);
     return !interrupt_asked();
 }
 
-static SingeResult convert_gas(const Outputs *outputs, Console *console, int last, bool *interrupted,
+/// Writes what was asked for. If Ctrl-C ends it, the result is an error.
+static SingeResult convert_all(const Outputs *outputs, const ConvertOptions *o, Console *console, int last,
                                SingeError *error) {
-    SingleProgress progress = {console, console_clock(), last};
-    SingeResult result = gas_detail_write(outputs->job, outputs->folder, last, show_single, &progress, error);
-    *interrupted = result && interrupt_asked();
-    return *interrupted ? SINGE_OK : result;
-}
-
-static SingeResult convert_singles(const Outputs *outputs, const ConvertOptions *o, Console *console, int last,
-                                   bool *interrupted, SingeError *error) {
+    ConvertProgress progress = {console, console_clock(), last};
     SingeResult result = SINGE_OK;
+    if (o->gas) result = gas_detail_write(outputs->job, outputs->folder, last, show_progress, &progress, error);
+
+    progress.begun = console_clock();
+    for (int frame = 1; frame <= last && !result && o->formats; frame++) {
+        result = outputs_convert(outputs, frame, o->formats, error);
+        if (!show_progress(&progress, frame) && frame < last && !result) result = SINGE_ERROR_STATE;
+    }
+    if (!result && o->formats) result = outputs_write_roots(outputs, last, error);
+
     for (int i = 0; i < OUTPUT_SINGLE_COUNT && !result; i++) {
         if (!(o->singles >> i & 1)) continue;
-        SingleProgress progress = {console, console_clock(), last};
-        result = outputs_write_single(outputs, i, last, show_single, &progress, error);
+        progress.begun = console_clock();
+        result = outputs_write_single(outputs, i, last, show_progress, &progress, error);
     }
-    *interrupted = result && interrupt_asked();
-    return *interrupted ? SINGE_OK : result;
+    return result;
 }
 
-static void print_results(const Outputs *outputs, const ConvertOptions *o) {
-    const unsigned singles = o->singles;
-    if (o->gas) {
-        char *path = folder_gas_detail(outputs->folder, 1);
-        printf("%s\n", path);
-        free(path);
-    }
-    for (int i = 0; i < OUTPUT_SINGLE_COUNT; i++) {
-        if (!(singles >> i & 1)) continue;
-        char *path = folder_single(outputs->folder, i);
-        printf("%s%s\n", path, output_singles[i].ending ? "" : ".json");
-        free(path);
-    }
-    for (int i = 0; i < OUTPUT_COUNT; i++) {
-        if (!output_has(outputs->formats, i)) continue;
-        char *path =
-            output_formats[i].write_root ? folder_root(outputs->folder, i) : folder_output(outputs->folder, i, 1);
-        printf("%s\n", path);
-        free(path);
-    }
+/// Prints a path and frees it.
+static void print_path(char *path, const char *ending) {
+    printf("%s%s\n", path, ending);
+    free(path);
 }
 
 /// The cache is locked against runs meanwhile.
 static ExitCode convert(const ConvertOptions *o, Console *console, const Job *job, const Folder *folder, Lock *lock) {
     SingeError error = {0};
     Outputs outputs = {0};
-    bool kept, interrupted = false;
     int first = 0, last = 0;
     ExitCode code = folder_span(folder, console, &first, &last);
     if (code) return code;
     if (first != 1) {
-        console_error(console, "%s has frames from %d on; the first frame is needed", folder->path, first);
+        console_error(console, "the frames in %s begin at %d, but the first frame is needed", folder->path, first);
         return EXIT_INPUT;
     }
-    SingeResult result = lock_take(lock, folder->cache_lock, "frames", false, &kept, &error);
-    if (!kept) console_warn(console, "%s: the file system has no locks; nothing else may write there", folder->path);
+
+    SingeResult result = lock_take(lock, folder->cache_lock, "frames", false, console, &error);
     char *vdb = folder_vdb(folder, 1), *fine = folder_gas_detail(folder, 1);
     if (!result) result = outputs_open(&outputs, job, folder, o->formats, folder_has(vdb), &error);
     outputs.scene.gas_detail = job->scene->gas_detail > 1 && (o->gas || folder_has(fine));
-    free(vdb), free(fine);
+    free(vdb);
+    free(fine);
     if (!result) result = folder_create(folder, (FolderParts){.outputs = o->formats, .gas_detail = o->gas}, &error);
     interrupt_watch();
-    if (!result && o->gas) result = convert_gas(&outputs, console, last, &interrupted, &error);
-    if (!result && !interrupted && o->formats) result = convert_frames(&outputs, console, last, &interrupted, &error);
-    if (!result && !interrupted) result = convert_singles(&outputs, o, console, last, &interrupted, &error);
+    if (!result) result = convert_all(&outputs, o, console, last, &error);
+    const bool interrupted = result && interrupt_asked();
     console_clear(console);
-    if (result) console_result(console, &error);
-    else if (!interrupted && !o->quiet) print_results(&outputs, o);
+    if (result && !interrupted) console_result(console, &error);
+
+    // the files to open
+    if (!result && !o->quiet) {
+        if (o->gas) print_path(folder_gas_detail(folder, 1), "");
+        for (int i = 0; i < OUTPUT_SINGLE_COUNT; i++)
+            if (o->singles >> i & 1) print_path(folder_single(folder, i), output_singles[i].ending ? "" : ".json");
+        for (int i = 0; i < OUTPUT_COUNT; i++)
+            if (output_has(o->formats, i))
+                print_path(output_formats[i].write_root ? folder_root(folder, i) : folder_output(folder, i, 1), "");
+    }
+
     outputs_close(&outputs);
-    if (result) return result == SINGE_ERROR_FORMAT || result == SINGE_ERROR_MESH ? EXIT_INPUT : EXIT_FAILED;
-    return interrupted ? EXIT_FAILED : EXIT_GOOD;
+    if (!result) return EXIT_GOOD;
+    return !interrupted && (result == SINGE_ERROR_FORMAT || result == SINGE_ERROR_MESH) ? EXIT_INPUT : EXIT_FAILED;
 }
 
 int command_convert(int argc, char **argv) {
@@ -216,6 +195,7 @@ int command_convert(int argc, char **argv) {
         set_free(&options.sets);
         return code;
     }
+
     interrupt_shield();
     Console console = console_make(options.quiet);
     Job job = {0};
@@ -226,6 +206,7 @@ int command_convert(int argc, char **argv) {
         folder = folder_name(options.folder, job.scene->name);
         code = convert(&options, &console, &job, &folder, &lock);
     }
+
     lock_release(&lock);
     folder_free(&folder);
     job_close(&job);

@@ -49,6 +49,7 @@ void folder_free(Folder *folder) {
 
 SingeResult folder_fail(const char *path, const char *what, int reason, SingeError *error) {
     *error = (SingeError){.code = SINGE_ERROR_FILE, .stage = "output", .element = -1};
+
     // no link is followed, so "too many levels of symbolic links" would mislead
     const char *why = reason == ELOOP ? "it is a link" : reason ? strerror(reason) : "not a regular file";
     snprintf(error->message, sizeof error->message, "%.200s: cannot %s: %s", path, what, why);
@@ -69,12 +70,14 @@ static SingeResult make_one(const char *path, SingeError *error) {
 SingeResult folder_make(const char *path, SingeError *error) {
     char *copy = text_format("%s", path);
     SingeResult result = SINGE_OK;
+
     for (char *p = copy + 1; *p && !result; p++) {
         if (*p != '/') continue;
         *p = 0;
         result = make_one(copy, error);
         *p = '/';
     }
+
     if (!result) result = make_one(copy, error);
     free(copy);
     return result;
@@ -143,6 +146,7 @@ static int frame_of(const Folder *folder, const char *file, const char *ending, 
     size_t count = strspn(digits, "0123456789");
     if (count < 4 || count > 9 || (count > 4 && digits[0] == '0')) return 0;
     if (strncmp(digits + count, ending, strlen(ending)) != 0) return 0;
+
     *rest = digits + count + strlen(ending);
     return (int)strtol(digits, NULL, 10);
 }
@@ -161,16 +165,6 @@ static bool is_temporary(const char *rest) {
         if (!*rest) return true;
     }
     return false;
-}
-
-/// Opens a folder, but no link to one. NULL with *result set, which is good if it cannot hold any of our files.
-static DIR *open_own(const char *path, SingeResult *result, SingeError *error) {
-    int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    DIR *dir = fd < 0 ? NULL : fdopendir(fd);
-    bool not_ours = !dir && (errno == ENOENT || errno == ELOOP || errno == ENOTDIR);
-    *result = dir || not_ours ? SINGE_OK : folder_fail(path, "list", errno, error);
-    if (!dir && fd >= 0) close(fd);
-    return dir;
 }
 
 static SingeResult remove_at(DIR *dir, const char *path, const char *name, int *removed, SingeError *error) {
@@ -193,33 +187,25 @@ static struct dirent *next_entry(DIR *dir, const char *path, SingeResult *result
     return entry;
 }
 
-/// Removes frames if `frames` is set, otherwise the half-written files of a killed run.
+/// Removes frames if `frames` is set, otherwise the half-written files of a killed run. Follows no link to a folder.
 static SingeResult clean_frames(const Folder *folder, int which, bool frames, int *removed, SingeError *error) {
     char *path = text_format("%s/%s", folder->path, inner(which).name);
-    SingeResult result;
-    DIR *dir = open_own(path, &result, error);
+    const int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    DIR *dir = fd < 0 ? NULL : fdopendir(fd);
+    SingeResult result = SINGE_OK;
+    if (!dir && errno != ENOENT && errno != ELOOP && errno != ENOTDIR) result = folder_fail(path, "list", errno, error);
+    if (!dir && fd >= 0) close(fd);
+
     for (struct dirent *entry; dir && !result && (entry = next_entry(dir, path, &result, error));) {
         const char *rest;
-        int frame = frame_of(folder, entry->d_name, inner(which).ending, &rest);
+        const int frame = frame_of(folder, entry->d_name, inner(which).ending, &rest);
         if (!frame || !(frames ? *rest == 0 : is_temporary(rest))) continue;
         result = remove_at(dir, path, entry->d_name, removed, error);
     }
+
     if (dir) closedir(dir);
     free(path);
     return result;
-}
-
-/// Whether a file name is that of a half-written root.
-static bool is_half_root(const Folder *folder, const char *file) {
-    size_t length = strlen(folder->name);
-    if (strncmp(file, folder->name, length) != 0) return false;
-    for (int i = 0; i < OUTPUT_COUNT; i++) {
-        const char *ending = output_formats[i].root_ending;
-        if (ending && strncmp(file + length, ending, strlen(ending)) == 0 &&
-            is_temporary(file + length + strlen(ending)))
-            return true;
-    }
-    return false;
 }
 
 /// Removes half-written files other than frames.
@@ -229,13 +215,21 @@ static SingeResult clean_top(const Folder *folder, int *removed, SingeError *err
     DIR *dir = opendir(folder->path);
     SingeResult result = dir ? SINGE_OK : folder_fail(folder->path, "list", errno, error);
     for (struct dirent *entry; !result && (entry = next_entry(dir, folder->path, &result, error));) {
-        bool ours = is_half_root(folder, entry->d_name);
+        const char *file = entry->d_name;
+        bool ours = false;
         for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-            size_t length = strlen(names[i]);
-            ours = ours || (strncmp(entry->d_name, names[i], length) == 0 && is_temporary(entry->d_name + length));
+            const size_t length = strlen(names[i]);
+            ours = ours || (strncmp(file, names[i], length) == 0 && is_temporary(file + length));
         }
-        if (ours) result = remove_at(dir, folder->path, entry->d_name, removed, error);
+        const size_t length = strlen(folder->name);
+        for (int i = 0; i < OUTPUT_COUNT && strncmp(file, folder->name, length) == 0; i++) {
+            const char *ending = output_formats[i].root_ending, *rest = file + length;
+            if (ending && strncmp(rest, ending, strlen(ending)) == 0)
+                ours = ours || is_temporary(rest + strlen(ending));
+        }
+        if (ours) result = remove_at(dir, folder->path, file, removed, error);
     }
+
     if (dir) closedir(dir);
     return result;
 }
@@ -264,12 +258,14 @@ SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, 
     if (!result) result = remove_file(folder->gif, removed, error);
     if (!result && !parts.events) result = remove_file(folder->events, removed, error);
     if (!result && !parts.probes) result = remove_file(folder->probes, removed, error);
+
     for (int i = 0; i < OUTPUT_COUNT && !result; i++) {
         if (!output_formats[i].root_ending) continue;
         char *root = folder_root(folder, i);
         result = remove_file(root, removed, error);
         free(root);
     }
+
     for (int i = 0; i < INNER_COUNT && !result; i++) {
         result = clean_frames(folder, i, true, removed, error);
         if (result || is_asked(parts, i)) continue;
@@ -285,41 +281,40 @@ bool folder_has(const char *path) {
     return stat(path, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0;
 }
 
-/// The first and last frame with a PLY; *last is 0 if there is none.
-static SingeResult find_frames(const Folder *folder, int *first, int *last, SingeError *error) {
+ExitCode folder_span(const Folder *folder, Console *console, int *first, int *last) {
+    // the range of the frames with a PLY
+    int lowest = INT_MAX, highest = 0;
+    SingeError error = {0};
     char *path = text_format("%s/ply", folder->path);
     DIR *dir = opendir(path);
-    SingeResult result = dir || errno == ENOENT ? SINGE_OK : folder_fail(path, "list", errno, error);
-    *first = INT_MAX;
-    *last = 0;
-    for (struct dirent *entry; dir && !result && (entry = next_entry(dir, path, &result, error));) {
+    SingeResult result = dir || errno == ENOENT ? SINGE_OK : folder_fail(path, "list", errno, &error);
+    for (struct dirent *entry; dir && !result && (entry = next_entry(dir, path, &result, &error));) {
         const char *rest;
-        int frame = frame_of(folder, entry->d_name, ".ply", &rest);
+        const int frame = frame_of(folder, entry->d_name, ".ply", &rest);
         if (!frame || *rest) continue;
-        if (frame < *first) *first = frame;
-        if (frame > *last) *last = frame;
+        if (frame < lowest) lowest = frame;
+        if (frame > highest) highest = frame;
     }
+
     if (dir) closedir(dir);
     free(path);
-    return result;
-}
-
-ExitCode folder_span(const Folder *folder, Console *console, int *first, int *last) {
-    int lowest, highest;
-    SingeError error = {0};
-    if (find_frames(folder, &lowest, &highest, &error)) {
+    if (result) {
         console_result(console, &error);
         return EXIT_FAILED;
     }
+
     if (highest == 0) {
         console_error(console, "no frames %s/ply/%s.*.ply", folder->path, folder->name);
         return EXIT_INPUT;
     }
+
     if (*first == 0) {
         *first = lowest;
         *last = highest;
     }
+
     if (*first >= lowest && *last <= highest) return EXIT_GOOD;
+
     console_error(console, "frames %d-%d are requested, but %s has %d-%d", *first, *last, folder->path, lowest,
                   highest);
     return EXIT_INPUT;

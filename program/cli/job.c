@@ -1,11 +1,62 @@
+#if defined(__APPLE__)
+#define _DARWIN_C_SOURCE
+#elif defined(__linux__)
+#define _DEFAULT_SOURCE
+#endif
+
 #include "cli/job.h"
 
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
-#include "cli/machine_memory.h"
 #include "cli/text.h"
 #include "common/allocator.h"
+
+#if defined(__APPLE__)
+#include <sys/sysctl.h>
+#endif
+
+// ---- the machine
+
+/// A number in a file of Linux' control groups; 0 where there is none, or "max".
+static double group_limit(const char *path) {
+    FILE *file = fopen(path, "r");
+    double bytes = 0;
+    if (file && fscanf(file, "%lf", &bytes) != 1) bytes = 0;
+    if (file) fclose(file);
+    return bytes;
+}
+
+static double machine_lesser(double room, double limit) {
+    return limit > 0 && (room <= 0 || limit < room) ? limit : room;
+}
+
+/// Bytes of memory that this process may use: the machine's, or its limit (ulimit, a container) if that is less; 0 if
+/// unknown.
+static double machine_memory(void) {
+    double room = 0;
+#if defined(_SC_PHYS_PAGES)
+    const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+    if (pages > 0 && page > 0) room = (double)pages * (double)page;
+#elif defined(__APPLE__)
+    uint64_t bytes = 0;
+    size_t size = sizeof bytes;
+    if (sysctlbyname("hw.memsize", &bytes, &size, NULL, 0) == 0) room = (double)bytes;
+#endif
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+        room = machine_lesser(room, (double)limit.rlim_cur);
+    if (getrlimit(RLIMIT_DATA, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+        room = machine_lesser(room, (double)limit.rlim_cur);
+    room = machine_lesser(room, group_limit("/sys/fs/cgroup/memory.max"));
+    return machine_lesser(room, group_limit("/sys/fs/cgroup/memory/memory.limit_in_bytes"));
+}
+
+// ---- jobs
 
 void set_add(SetList *sets, const char *text) {
     if (sets->count == sets->capacity) {
@@ -17,6 +68,7 @@ void set_add(SetList *sets, const char *text) {
         }
         sets->items = items;
     }
+
     sets->items[sets->count++] = text;
 }
 
@@ -50,6 +102,7 @@ static ExitCode job_tell(Job *job, Console *console, SingeResult result, SceneMe
         if (messages->count == 0) console_error(console, "%s", singe_result_name(result));
         job_close(job);
     }
+
     scene_messages_free(messages);
     return job_exit(result);
 }
@@ -72,6 +125,7 @@ ExitCode job_read(Job *job, Console *console, const char *scene_path, const SetL
 ExitCode job_load(Job *job, Console *console, double pictures) {
     SceneMessages messages = {0};
     SingeResult result = SINGE_OK;
+
     // twice, as the cells of mesh files are known only when they have been read
     for (int loaded = 0; loaded < 2 && !result; loaded++) {
         const SceneAssets *assets = loaded ? &job->assets : NULL;
@@ -79,6 +133,7 @@ ExitCode job_load(Job *job, Console *console, double pictures) {
         if (!scene_fits(job->scene, assets, wanted, machine_memory(), &messages)) result = SINGE_ERROR_LIMIT;
         else if (!loaded) result = scene_load(job->scene, &job->assets, &messages);
     }
+
     if (!result) scene_frame(job->scene, &job->assets);
     return job_tell(job, console, result, &messages);
 }
@@ -109,6 +164,7 @@ ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetLis
         free(record);
         return job_exit(result);
     }
+
     const char *scene, *scene_folder, *json = (const char *)bytes.data;
     size_t scene_size, folder_size;
     ExitCode code = EXIT_INPUT;
@@ -152,6 +208,7 @@ ExitCode job_build(Job *job, Console *console, SingeSim **sim) {
         scene_messages_print(&messages, stderr);
         if (messages.count == 0) console_error(console, "%s", singe_result_name(result));
     }
+
     scene_messages_free(&messages);
     return job_exit(result);
 }

@@ -19,76 +19,62 @@ static struct flock whole_file(bool shared) {
     return (struct flock){.l_type = shared ? F_RDLCK : F_WRLCK, .l_whence = SEEK_SET};
 }
 
-/// Another machine's processes are not known to this one's kernel; the file says "PID HOST".
-static void name_holder(int fd, bool shared, char text[HOLDER_SIZE]) {
-    char noted[HOLDER_SIZE - 20] = "", host[256] = "";
+/// The error of a lock that another process holds. Processes of other machines are not known to this one's kernel, but
+/// the file says "PID HOST".
+static SingeResult refuse_held(int fd, const char *path, const char *what, bool shared, SingeError *error) {
+    char noted[HOLDER_SIZE - 20] = "", host[256] = "", holder[HOLDER_SIZE] = "a process on another machine";
     struct flock found = whole_file(shared);
-    ssize_t size = pread(fd, noted, sizeof noted - 1, 0);
+    const ssize_t size = pread(fd, noted, sizeof noted - 1, 0);
     noted[size > 0 ? strcspn(noted, "\n") : 0] = 0;
-    bool known = fcntl(fd, F_GETLK, &found) == 0 && found.l_type != F_UNLCK && found.l_pid > 0;
+    const bool known = fcntl(fd, F_GETLK, &found) == 0 && found.l_type != F_UNLCK && found.l_pid > 0;
     const char *noted_host = strchr(noted, ' ');
     if (known && (!noted_host || atol(noted) != (long)found.l_pid)) {
         gethostname(host, sizeof host - 1);
-        snprintf(text, HOLDER_SIZE, "process %ld on %s", (long)found.l_pid, host);
+        snprintf(holder, sizeof holder, "process %ld on %s", (long)found.l_pid, host);
     } else if (noted_host) {
-        snprintf(text, HOLDER_SIZE, "process %ld on %s", atol(noted), noted_host + 1);
-    } else {
-        snprintf(text, HOLDER_SIZE, "a process of another machine");
+        snprintf(holder, sizeof holder, "process %ld on %s", atol(noted), noted_host + 1);
     }
-}
 
-static void note_holder(int fd) {
-    char host[256] = "", text[HOLDER_SIZE];
-    gethostname(host, sizeof host - 1);
-    int length = snprintf(text, sizeof text, "%ld %s\n", (long)getpid(), host);
-    // only needed for a message
-    if (ftruncate(fd, 0) != 0 || pwrite(fd, text, (size_t)length, 0) < 0) return;
-}
-
-static bool still_named(int fd, const char *path) {
-    struct stat locked, named;
-    return fstat(fd, &locked) == 0 && lstat(path, &named) == 0 && locked.st_dev == named.st_dev &&
-           locked.st_ino == named.st_ino;
-}
-
-static int open_file(const char *path, int *reason) {
-    struct stat about;
-    int fd = open(path, O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
-    *reason = errno;
-    if (fd < 0) return -1;
-    if (fstat(fd, &about) == 0 && S_ISREG(about.st_mode)) return fd;
-    *reason = EINVAL;
-    close(fd);
-    return -1;
-}
-
-static SingeResult refuse_held(int fd, const char *path, const char *what, bool shared, SingeError *error) {
-    char holder[HOLDER_SIZE];
     const char *slash = strrchr(path, '/');
-    name_holder(fd, shared, holder);
     *error = (SingeError){.code = SINGE_ERROR_STATE, .stage = "output", .element = -1};
     snprintf(error->message, sizeof error->message, "%.*s: its %s are being written by %.100s; wait for it to end",
              slash ? (int)(slash - path < 120 ? slash - path : 120) : 0, path, what, holder);
     return SINGE_ERROR_STATE;
 }
 
-SingeResult lock_take(Lock *lock, const char *path, const char *what, bool shared, bool *kept, SingeError *error) {
+SingeResult lock_take(Lock *lock, const char *path, const char *what, bool shared, Console *console,
+                      SingeError *error) {
     *lock = LOCK_NONE;
-    *kept = true;
     for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
-        int reason, fd = open_file(path, &reason);
-        if (fd < 0) return folder_fail(path, "write", reason, error);
+        // a link, a pipe or a device in the file's place is refused
+        struct stat locked, named;
+        const int fd = open(path, O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
+        if (fd < 0) return folder_fail(path, "write", errno, error);
+        if (fstat(fd, &locked) != 0 || !S_ISREG(locked.st_mode)) {
+            close(fd);
+            return folder_fail(path, "write", EINVAL, error);
+        }
+
         struct flock wanted = whole_file(shared);
         if (fcntl(fd, F_SETLK, &wanted) != 0) {
-            bool held = errno == EACCES || errno == EAGAIN;
+            const bool held = errno == EACCES || errno == EAGAIN;
             SingeResult result = held ? refuse_held(fd, path, what, shared, error) : SINGE_OK;
-            if (!held) unlink(path);
+            if (!held) {
+                unlink(path);
+                console_warn(console, "%.*s: the file system has no locks: let nothing else write there meanwhile",
+                             (int)(strrchr(path, '/') - path), path);
+            }
             close(fd);
-            *kept = held;
             return result;
         }
-        if (still_named(fd, path)) {
-            note_holder(fd);
+
+        // ours, if the file still has its name; who holds it is noted for messages only
+        if (lstat(path, &named) == 0 && locked.st_dev == named.st_dev && locked.st_ino == named.st_ino) {
+            char host[256] = "", text[HOLDER_SIZE];
+            gethostname(host, sizeof host - 1);
+            const int length = snprintf(text, sizeof text, "%ld %s\n", (long)getpid(), host);
+            const bool noted = ftruncate(fd, 0) == 0 && pwrite(fd, text, (size_t)length, 0) == length;
+            (void)noted;
             *lock = (Lock){.fd = fd, .shared = shared, .path = text_format("%s", path)};
             return SINGE_OK;
         }

@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 
+#include "cli/console.h"
 #include "singe/base.h"
 
 typedef struct Lock {
@@ -17,8 +18,8 @@ typedef struct Lock {
 
 /// Takes a lock, exclusive or shared, by creating the file `path`. `what` names the locked part of the folder in
 /// messages. Errors: SINGE_ERROR_STATE if another process holds it, which the message names; SINGE_ERROR_FILE if the
-/// file cannot be created. On a file system without locks *kept is false, and nothing is held.
-SINGE_NODISCARD SingeResult lock_take(Lock *lock, const char *path, const char *what, bool shared, bool *kept,
+/// file cannot be created. On a file system without locks nothing is held, and a warning says so.
+SINGE_NODISCARD SingeResult lock_take(Lock *lock, const char *path, const char *what, bool shared, Console *console,
                                       SingeError *error);
 
 /// Releases the lock. The last holder removes the file.

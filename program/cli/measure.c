@@ -11,32 +11,30 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/folds.h"
 #include "analysis/numbers.h"
+#include "analysis/rim.h"
+#include "analysis/wrinkles.h"
 #include "cli/args.h"
 #include "cli/cli.h"
 #include "cli/console.h"
 #include "cli/folder.h"
-#include "analysis/folds.h"
 #include "cli/job.h"
 #include "cli/pictures.h"
-#include "analysis/rim.h"
-#include "cli/streams.h"
-#include "cli/text.h"
-#include "analysis/wrinkles.h"
 #include "formats/formats.h"
 
 enum { OPT_FRAMES, OPT_CSV, OPT_NO_PREVIEW, OPT_COUNT };
 enum { EMBER_FRAMES = 4, EMBER_SCALE = 3 };
 
 static const ArgOption measure_options[OPT_COUNT] = {
-    [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone) [all]"},
-    [OPT_CSV] = {"csv", 0, "FILE", "writes the numbers of every frame to FILE, too"},
-    [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no frames, and so does not measure embers"},
+    [OPT_FRAMES] = {"frames", 0, "A-B", "reads only these frames (or A alone) [all]"},
+    [OPT_CSV] = {"csv", 0, "FILE", "also writes the numbers of every frame to FILE"},
+    [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no frames, so embers are not measured"},
 };
 
 static const ArgCommand measure_command = {
     "measure",       "DIR",     "Measures what a cache looks like: creases, wrinkles, jitter, embers.",
-    measure_options, OPT_COUNT, "docs/cli.md describes the numbers. Exit codes: 0 good, 1 failed, 2 bad input."};
+    measure_options, OPT_COUNT, "docs/cli.md describes the numbers. Exit codes: 0 success, 1 failed, 2 bad input."};
 
 /// A number of every frame, and how it is summarized.
 typedef enum Number { BIAS, BEND, BURNT, UNBURNT, FOLD, CURL, CURL_STRONG, CURL_MAX, JITTER, EMBER, NUMBERS } Number;
@@ -54,7 +52,7 @@ static const struct {
     [CURL_STRONG] = {"curl_p90_deg", "curl of the rim over 10 mm, p90", "%.1f", false},
     [CURL_MAX] = {"curl_max_deg", "curl of the rim over 10 mm, max", "%.1f", false},
     [JITTER] = {"jitter_mm_per_s", "jitter of the unburnt, mm/s rms", "%.3f", true},
-    [EMBER] = {"ember_width_mm", "width of the ember line, mm, of some frames", "%.2f", true},
+    [EMBER] = {"ember_width_mm", "width of the ember line in some frames, mm", "%.2f", true},
 };
 
 /// Vertices of the input mesh that have not burnt, in one frame.
@@ -83,17 +81,6 @@ typedef struct Measure {
 
 // ---- one frame
 
-static SingeResult read_frame(const Measure *measure, int frame, SingeSurface *surface, double *time,
-                              SingeError *error) {
-    Bytes bytes = {0};
-    char *path = folder_ply(&measure->folder, frame);
-    SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
-    if (!result) result = ply_read_surface(path, bytes.data, bytes.size, (SingeAllocator){0}, surface, time, error);
-    bytes_free(&bytes);
-    free(path);
-    return result;
-}
-
 static void moment_free(Moment *moment) {
     free(moment->position);
     free(moment->velocity);
@@ -101,6 +88,7 @@ static void moment_free(Moment *moment) {
     *moment = (Moment){0};
 }
 
+/// Keeps the vertices of the input mesh that have not ignited. False when out of memory.
 static bool moment_take(const SingeSurface *surface, double time, Moment *moment) {
     uint32_t count = 0;
     for (uint32_t v = 0; v < surface->vertex_count; v++)
@@ -113,9 +101,10 @@ static bool moment_take(const SingeSurface *surface, double time, Moment *moment
     moment->count = count;
     moment->time = time;
     if (!moment->position || !moment->velocity || !moment->there) return false;
+
     for (uint32_t v = 0; v < surface->vertex_count; v++) {
         if (surface->source_vertex[v] < 0 || surface->time_ignited[v] >= 0) continue;
-        uint32_t i = (uint32_t)surface->source_vertex[v];
+        const uint32_t i = (uint32_t)surface->source_vertex[v];
         memcpy(moment->position[i], surface->position[v], sizeof moment->position[i]);
         memcpy(moment->velocity[i], surface->velocity[v], sizeof moment->velocity[i]);
         moment->there[i] = true;
@@ -129,6 +118,7 @@ static double jitter(const Moment *before, const Moment *now, const Moment *afte
     uint32_t count = now->count, counted = 0;
     if (count > before->count) count = before->count;
     if (count > after->count) count = after->count;
+
     for (uint32_t i = 0; i < count; i++) {
         if (!before->there[i] || !now->there[i] || !after->there[i]) continue;
         for (int k = 0; k < 3; k++) {
@@ -138,16 +128,6 @@ static double jitter(const Moment *before, const Moment *now, const Moment *afte
         counted++;
     }
     return counted && after->time > before->time ? sqrt(sum / counted) : (double)NAN;
-}
-
-static void sum_up(const Wrinkles *frame, Wrinkles *all) {
-    for (int b = 0; b < WRINKLE_BINS; b++) all->crease[b] += frame->crease[b];
-    all->axis += frame->axis;
-    all->diagonal += frame->diagonal;
-    all->burnt_power += frame->burnt_power;
-    all->burnt_area += frame->burnt_area;
-    all->unburnt_power += frame->unburnt_power;
-    all->unburnt_area += frame->unburnt_area;
 }
 
 static double degrees(double power) { return sqrt(power) * 180 / acos(-1); }
@@ -167,60 +147,68 @@ static void fill_row(const Wrinkles *frame, const Folds *folds, const Rim *rim, 
     row[JITTER] = row[EMBER] = (double)NAN;
 }
 
-static double rest_area(const SingeSurface *surface) {
-    double area = 0;
-    for (uint32_t f = 0; f < surface->triangle_count; f++) {
-        const uint32_t *t = surface->triangles[f];
-        double a[3], b[3], c[3];
-        for (int k = 0; k < 3; k++) {
-            a[k] = (double)surface->rest_position[t[1]][k] - (double)surface->rest_position[t[0]][k];
-            b[k] = (double)surface->rest_position[t[2]][k] - (double)surface->rest_position[t[0]][k];
-        }
-        for (int k = 0; k < 3; k++) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-        area += 0.5 * sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
-    }
-    return area;
-}
-
 static SingeResult out_of_memory(SingeError *error) {
     *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
-    snprintf(error->message, sizeof error->message, "no memory to measure a frame");
+    snprintf(error->message, sizeof error->message, "out of memory while a frame was measured");
     return SINGE_ERROR_MEMORY;
 }
 
-/// Embers are measured in EMBER_FRAMES of the frames, evenly spread, as each is drawn large.
-static bool is_drawn(const Measure *measure, int frame) {
-    const int count = measure->last - measure->first + 1, index = frame - measure->first;
-    return count <= EMBER_FRAMES || (index + 1) * EMBER_FRAMES / count > index * EMBER_FRAMES / count;
-}
-
 static SingeResult measure_frame(Measure *measure, int frame, SingeError *error) {
-    SingeSurface surface = {0};
+    const int index = frame - measure->first;
+    double *row = measure->rows[index];
+    Frame read;
+    SingeResult result = frame_read_surface(&measure->folder, frame, &read, error);
+    const SingeSurface *surface = &read.surface;
+    measure->times[index] = read.time;
     Wrinkles wrinkles = {0};
     Folds folds = {0};
-    const int index = frame - measure->first;
-    SingeResult result = read_frame(measure, frame, &surface, &measure->times[index], error);
-    if (result) return result;
     Rim *rim = &measure->rims[index];
-    if (!wrinkles_add(&surface, &wrinkles) || !folds_add(&surface, &folds) || !rim_add(&surface, rim) ||
-        !moment_take(&surface, measure->times[index], &measure->moments[index % 3]))
+    if (!result && (!wrinkles_add(surface, &wrinkles) || !folds_add(surface, &folds) || !rim_add(surface, rim) ||
+                    !moment_take(surface, read.time, &measure->moments[index % 3])))
         result = out_of_memory(error);
+
     if (!result) {
-        fill_row(&wrinkles, &folds, rim, rest_area(&surface), measure->rows[index]);
-        sum_up(&wrinkles, &measure->all);
-        measure->all_folds.power += folds.power;
-        measure->all_folds.count += folds.count;
-        rim_sum(rim, &measure->all_rim);
+        // the area at rest, on which creases were looked for
+        double area = 0;
+        for (uint32_t f = 0; f < surface->triangle_count; f++) {
+            const uint32_t *t = surface->triangles[f];
+            double a[3], b[3], c[3];
+            for (int k = 0; k < 3; k++) {
+                a[k] = (double)surface->rest_position[t[1]][k] - (double)surface->rest_position[t[0]][k];
+                b[k] = (double)surface->rest_position[t[2]][k] - (double)surface->rest_position[t[0]][k];
+            }
+            for (int k = 0; k < 3; k++) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+            area += 0.5 * sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
+        }
+        fill_row(&wrinkles, &folds, rim, area, row);
+
         const Moment *m = measure->moments;
         if (index >= 2)
             measure->rows[index - 1][JITTER] = 1e3 * jitter(&m[(index + 1) % 3], &m[(index + 2) % 3], &m[index % 3]);
+
+        // what all frames have in common
+        for (int b = 0; b < WRINKLE_BINS; b++) measure->all.crease[b] += wrinkles.crease[b];
+        measure->all.axis += wrinkles.axis;
+        measure->all.diagonal += wrinkles.diagonal;
+        measure->all.burnt_power += wrinkles.burnt_power;
+        measure->all.burnt_area += wrinkles.burnt_area;
+        measure->all.unburnt_power += wrinkles.unburnt_power;
+        measure->all.unburnt_area += wrinkles.unburnt_area;
+        measure->all_folds.power += folds.power;
+        measure->all_folds.count += folds.count;
+        rim_sum(rim, &measure->all_rim);
     }
-    if (!result && measure->pictures && is_drawn(measure, frame)) {
+
+    // embers are measured in EMBER_FRAMES of the frames, evenly spread, as each is drawn large
+    const int count = measure->last - measure->first + 1;
+    const bool drawn = count <= EMBER_FRAMES || (index + 1) * EMBER_FRAMES / count > index * EMBER_FRAMES / count;
+    if (!result && measure->pictures && drawn) {
         double width;
-        result = pictures_ember_width(measure->pictures, &surface, measure->times[index], &width, error);
-        if (!result) measure->rows[index][EMBER] = 1e3 * width;
+        result = pictures_ember_width(measure->pictures, surface, read.time, &width, error);
+        if (!result) row[EMBER] = 1e3 * width;
     }
-    singe_surface_free(&surface);
+
+    frame_free(&read);
     return result;
 }
 
@@ -231,6 +219,7 @@ static bool summary(const Measure *measure, Number number, double *median, doubl
     const int frames = measure->last - measure->first + 1;
     double *values = malloc((size_t)frames * sizeof *values);
     int count = 0;
+
     for (int i = 0; values && i < frames; i++) {
         double value = measure->rows[i][number];
         if (isnan(value)) continue;
@@ -240,22 +229,16 @@ static bool summary(const Measure *measure, Number number, double *median, doubl
         }
         values[count++] = value;
     }
+
     if (count) *median = numbers_median(values, count);
     free(values);
     return count > 0;
 }
 
 static void print_number(const char *format, double number) {
-    char text[32];
-    snprintf(text, sizeof text, format, number);
+    char text[32] = "-";
+    if (!isnan(number)) snprintf(text, sizeof text, format, number);
     printf("%10s", text);
-}
-
-/// Mean over all frames, weighted by area, or NaN if that is meaningless.
-static double of_all(const Measure *measure, Number number) {
-    double row[NUMBERS];
-    fill_row(&measure->all, &measure->all_folds, &measure->all_rim, 0, row);
-    return row[number];
 }
 
 /// A value of a band of the rim.
@@ -279,28 +262,16 @@ static void fill_band(const RimBand *band, double *values) {
     values[RIM_HEIGHT] = 1e3 * band->height / area;
 }
 
-static void print_rim(const Rim *rim) {
-    printf("\nrim of the largest piece, by distance from its burnt edge at rest\n%-14s", "mm");
-    for (int n = 0; n < RIM_NUMBERS; n++) printf("%10s", rim_numbers[n].title);
-    for (int b = 0; b < RIM_BANDS; b++) {
-        double values[RIM_NUMBERS];
-        fill_band(&rim->band[b], values);
-        printf("\n%4.0f - %-7.0f", 1e3 * rim_band_limits[b], 1e3 * rim_band_limits[b + 1]);
-        for (int n = 0; n < RIM_NUMBERS; n++)
-            if (isnan(values[n])) printf("%10s", "-");
-            else print_number(rim_numbers[n].format, values[n]);
-    }
-    printf("\n");
-}
-
 static void print_summary(const Measure *measure) {
+    double all[NUMBERS]; // over all frames, weighted by area; NaN where that is meaningless
+    fill_row(&measure->all, &measure->all_folds, &measure->all_rim, 0, all);
     printf("%-44s%10s%10s%10s%7s\n", "measure", "all", "median", "worst", "frame");
+
     for (int n = 0; n < NUMBERS; n++) {
-        double median = 0, worst = 0, all = of_all(measure, (Number)n);
+        double median = 0, worst = 0;
         int frame = 0;
         printf("%-44s", numbers[n].title);
-        if (isnan(all)) printf("%10s", "-");
-        else print_number(numbers[n].format, all);
+        print_number(numbers[n].format, all[n]);
         if (!summary(measure, (Number)n, &median, &worst, &frame)) {
             printf("%10s%10s%7s\n", "-", "-", "-");
             continue;
@@ -309,8 +280,18 @@ static void print_summary(const Measure *measure) {
         print_number(numbers[n].format, worst);
         printf("%7d\n", frame);
     }
-    print_rim(&measure->all_rim);
-    printf("\ncreases by direction, degrees from that of growing u: share of all bend\n");
+
+    printf("\nrim of the largest piece, by distance from its burnt edge at rest\n%-14s", "mm");
+    for (int n = 0; n < RIM_NUMBERS; n++) printf("%10s", rim_numbers[n].title);
+
+    for (int b = 0; b < RIM_BANDS; b++) {
+        double values[RIM_NUMBERS];
+        fill_band(&measure->all_rim.band[b], values);
+        printf("\n%4.0f - %-7.0f", 1e3 * rim_band_limits[b], 1e3 * rim_band_limits[b + 1]);
+        for (int n = 0; n < RIM_NUMBERS; n++) print_number(rim_numbers[n].format, values[n]);
+    }
+
+    printf("\n\ncreases by direction, degrees from that of growing u: share of all bend\n");
     double total = 0;
     for (int b = 0; b < WRINKLE_BINS; b++) total += measure->all.crease[b];
     for (int b = 0; b < WRINKLE_BINS; b++)
@@ -324,36 +305,32 @@ static void write_values(FILE *file, const double *values, int count) {
         else fputc(',', file);
 }
 
-static void write_header(FILE *file) {
+static void print_csv(FILE *file, const void *context) {
+    const Measure *measure = context;
     fputs("frame,time", file);
     for (int n = 0; n < NUMBERS; n++) fprintf(file, ",%s", numbers[n].key);
     for (int b = 0; b < RIM_BANDS; b++)
         for (int n = 0; n < RIM_NUMBERS; n++)
             fprintf(file, ",rim_%.0f_%.0f_%s", 1e3 * rim_band_limits[b], 1e3 * rim_band_limits[b + 1],
                     rim_numbers[n].key);
-    fputc('\n', file);
-}
 
-static void write_row(FILE *file, const Measure *measure, int index) {
-    fprintf(file, "%d,%.9g", measure->first + index, measure->times[index]);
-    write_values(file, measure->rows[index], NUMBERS);
-    for (int b = 0; b < RIM_BANDS; b++) {
-        double values[RIM_NUMBERS];
-        fill_band(&measure->rims[index].band[b], values);
-        write_values(file, values, RIM_NUMBERS);
+    for (int i = 0; i <= measure->last - measure->first; i++) {
+        fprintf(file, "\n%d,%.9g", measure->first + i, measure->times[i]);
+        write_values(file, measure->rows[i], NUMBERS);
+        for (int b = 0; b < RIM_BANDS; b++) {
+            double values[RIM_NUMBERS];
+            fill_band(&measure->rims[i].band[b], values);
+            write_values(file, values, RIM_NUMBERS);
+        }
     }
-    fputc('\n', file);
-}
 
-static void print_csv(FILE *file, const void *context) {
-    const Measure *measure = context;
-    write_header(file);
-    for (int i = 0; i <= measure->last - measure->first; i++) write_row(file, measure, i);
+    fputc('\n', file);
 }
 
 static ExitCode measure_all(Measure *measure) {
     const size_t frames = (size_t)(measure->last - measure->first) + 1;
     SingeError error = {0};
+
     measure->rows = calloc(frames, sizeof *measure->rows);
     measure->times = calloc(frames, sizeof *measure->times);
     measure->rims = calloc(frames, sizeof *measure->rims);
@@ -366,8 +343,9 @@ static ExitCode measure_all(Measure *measure) {
         code = result == SINGE_ERROR_MEMORY ? EXIT_FAILED : EXIT_INPUT;
     } else {
         print_summary(measure);
-        if (measure->csv) code = streams_write(&measure->console, measure->csv, print_csv, measure);
+        if (measure->csv) code = console_write_table(&measure->console, measure->csv, print_csv, measure);
     }
+
     for (int k = 0; k < 3; k++) moment_free(&measure->moments[k]);
     free(measure->rows);
     free(measure->times);
@@ -380,6 +358,7 @@ int command_measure(int argc, char **argv) {
     bool draws = pictures_available();
     ArgReader reader = args_begin(&measure_command, argc, argv);
     const char *value, *path = NULL;
+
     for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
         if (option == ARG_HELP) return EXIT_GOOD;
         if (option == ARG_OPERAND) path = value;
@@ -388,9 +367,11 @@ int command_measure(int argc, char **argv) {
         else if (option != OPT_FRAMES || !args_span(&reader, option, value, &measure.first, &measure.last))
             return EXIT_INPUT;
     }
+
     SetList sets = {0};
     ExitCode code = job_reopen(&measure.job, &measure.console, path, &sets, job_threads());
     if (code) return code;
+
     measure.folder = folder_name(path, measure.job.scene->name);
     code = folder_span(&measure.folder, &measure.console, &measure.first, &measure.last);
     SingeError error = {0};
@@ -398,6 +379,7 @@ int command_measure(int argc, char **argv) {
         console_result(&measure.console, &error);
         code = EXIT_FAILED;
     }
+
     if (!code) code = measure_all(&measure);
     pictures_close(measure.pictures);
     folder_free(&measure.folder);

@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/pictures.h"
 #include "cli/text.h"
+#include "formats/gas_grid.h"
 
 static SingeResult no_memory(SingeError *error) {
     *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "output", .element = -1};
@@ -33,42 +35,39 @@ static char *path_from(const char *folder, const char *file) {
         free(relative);
         relative = whole;
     }
-    free(from), free(to);
+    free(from);
+    free(to);
     return relative ? relative : text_format("%s", file);
-}
-
-static OutputMesh uncut(const Mesh *mesh) {
-    return (OutputMesh){.vertex_count = mesh->vertex_count,
-                        .cell_count = mesh->cell_count,
-                        .positions = mesh->positions,
-                        .uv = mesh->uv,
-                        .corner_uv = mesh->corner_uv,
-                        .cells = mesh->cells,
-                        .source = mesh->source,
-                        .became = mesh->became,
-                        .source_count = mesh->source_count};
-}
-
-static void fill_sheet(const Outputs *outputs, uint32_t index) {
-    const Job *job = outputs->job;
-    const SceneSheet *sheet = &job->scene->sheets[index];
-    if (sheet->picture.path) outputs->pictures[index] = path_from(outputs->folder->path, sheet->picture.path);
-    outputs->sheets[index] = (OutputSheet){.name = sheet->name,
-                                           .picture = outputs->pictures[index],
-                                           .image = job->assets.pictures[index],
-                                           .mesh = uncut(&job->assets.meshes[index])};
-    memcpy(outputs->sheets[index].colour, sheet->colour, sizeof sheet->colour);
 }
 
 SingeResult outputs_open(Outputs *outputs, const Job *job, const Folder *folder, OutputSet formats, bool gas,
                          SingeError *error) {
     const Scene *scene = job->scene;
-    const ScenePreview *preview = &scene->preview;
     *outputs = (Outputs){.job = job, .folder = folder, .formats = formats};
     outputs->sheets = calloc(scene->sheet_count + 1, sizeof *outputs->sheets);
     outputs->pictures = calloc(scene->sheet_count + 1, sizeof *outputs->pictures);
     if (!outputs->sheets || !outputs->pictures) return no_memory(error);
-    for (uint32_t i = 0; i < scene->sheet_count; i++) fill_sheet(outputs, i);
+
+    for (uint32_t i = 0; i < scene->sheet_count; i++) {
+        const SceneSheet *sheet = &scene->sheets[i];
+        const Mesh *mesh = &job->assets.meshes[i];
+        if (sheet->picture.path) outputs->pictures[i] = path_from(folder->path, sheet->picture.path);
+        outputs->sheets[i] = (OutputSheet){.name = sheet->name,
+                                           .picture = outputs->pictures[i],
+                                           .image = job->assets.pictures[i],
+                                           .mesh = {.vertex_count = mesh->vertex_count,
+                                                    .cell_count = mesh->cell_count,
+                                                    .positions = mesh->positions,
+                                                    .uv = mesh->uv,
+                                                    .corner_uv = mesh->corner_uv,
+                                                    .cells = mesh->cells,
+                                                    .source = mesh->source,
+                                                    .became = mesh->became,
+                                                    .source_count = mesh->source_count}};
+        memcpy(outputs->sheets[i].colour, sheet->colour, sizeof sheet->colour);
+    }
+
+    const ScenePreview *preview = &scene->preview;
     OutputScene *s = &outputs->scene;
     *s = (OutputScene){.name = scene->name,
                        .fps = scene->fps,
@@ -127,39 +126,12 @@ SingeResult outputs_convert(const Outputs *outputs, int number, OutputSet format
         result = outputs_write(outputs, i, path, &frame, number, error);
         free(path);
     }
+
     frame_free(&frame);
     return result;
 }
 
 // ---- roots
-
-/// The shape drawn at a slot of the scene, and its trajectory over the frames. False if nothing is ever drawn there.
-static bool follow_shape(const Outputs *outputs, uint32_t slot, int frames, OutputPose *poses, OutputShape *shape) {
-    const Job *job = outputs->job;
-    bool ever = false;
-    for (int frame = frames - 1; frame >= 0; frame--) {
-        PreviewShape now;
-        poses[frame] = (OutputPose){.rotation = {0, 0, 0, 1}};
-        if (!scene_shape(job->scene, &job->assets, slot, frame * scene_frame_time(job->scene), &now)) continue;
-        ever = poses[frame].visible = true;
-        memcpy(poses[frame].position, now.position, sizeof now.position);
-        memcpy(poses[frame].rotation, now.rotation, sizeof now.rotation);
-        *shape = (OutputShape){.kind = now.kind,
-                               .radius = now.radius,
-                               .height = now.height,
-                               .temperature = now.temperature,
-                               .poses = poses};
-        memcpy(shape->half_size, now.half_size, sizeof now.half_size);
-        memcpy(shape->colour, now.colour, sizeof now.colour);
-        if (!now.solid) continue;
-        shape->vertex_count = now.solid->vertex_count;
-        shape->triangle_count = now.solid->triangle_count;
-        shape->vertices = now.solid->vertices;
-        shape->triangles = now.solid->triangles;
-        poses[frame].vertices = now.solid->vertices;
-    }
-    return ever;
-}
 
 /// The scene's objects other than sheets, and their trajectories over the frames.
 typedef struct WholeScene {
@@ -171,19 +143,50 @@ typedef struct WholeScene {
 static SingeResult whole_open(WholeScene *whole, const Outputs *outputs, int frames, SingeError *error) {
     const Scene *scene = outputs->job->scene;
     const uint32_t slots = scene->collider_count + scene->source_count;
+
     whole->scene = outputs->scene;
     whole->poses = calloc((size_t)slots * (size_t)frames + 1, sizeof *whole->poses);
     whole->shapes = calloc(slots + 1, sizeof *whole->shapes);
     if (!whole->poses || !whole->shapes) return no_memory(error);
+
     whole->scene.frames = frames;
     whole->scene.shapes = whole->shapes;
-    for (uint32_t i = 0; i < slots; i++)
-        whole->scene.shape_count += follow_shape(outputs, i, frames, whole->poses + (size_t)i * (size_t)frames,
-                                                 &whole->shapes[whole->scene.shape_count]);
+
+    // the shape drawn at each slot, with its trajectory over the frames; slots where none ever is are left out
+    for (uint32_t slot = 0; slot < slots; slot++) {
+        OutputPose *poses = whole->poses + (size_t)slot * (size_t)frames;
+        OutputShape *shape = &whole->shapes[whole->scene.shape_count];
+        bool ever = false;
+        for (int frame = frames - 1; frame >= 0; frame--) {
+            PreviewShape now;
+            poses[frame] = (OutputPose){.rotation = {0, 0, 0, 1}};
+            if (!scene_shape(scene, &outputs->job->assets, slot, frame * scene_frame_time(scene), &now)) continue;
+            ever = poses[frame].visible = true;
+            memcpy(poses[frame].position, now.position, sizeof now.position);
+            memcpy(poses[frame].rotation, now.rotation, sizeof now.rotation);
+            *shape = (OutputShape){.kind = now.kind,
+                                   .radius = now.radius,
+                                   .height = now.height,
+                                   .temperature = now.temperature,
+                                   .poses = poses};
+            memcpy(shape->half_size, now.half_size, sizeof now.half_size);
+            memcpy(shape->colour, now.colour, sizeof now.colour);
+            if (!now.solid) continue;
+            shape->vertex_count = now.solid->vertex_count;
+            shape->triangle_count = now.solid->triangle_count;
+            shape->vertices = now.solid->vertices;
+            shape->triangles = now.solid->triangles;
+            poses[frame].vertices = now.solid->vertices;
+        }
+        whole->scene.shape_count += ever;
+    }
     return SINGE_OK;
 }
 
-static void whole_close(WholeScene *whole) { free(whole->poses), free(whole->shapes); }
+static void whole_close(WholeScene *whole) {
+    free(whole->poses);
+    free(whole->shapes);
+}
 
 SingeResult outputs_write_roots(const Outputs *outputs, int frames, SingeError *error) {
     WholeScene whole;
@@ -194,6 +197,7 @@ SingeResult outputs_write_roots(const Outputs *outputs, int frames, SingeError *
         result = output_formats[i].write_root(path, &whole.scene, error);
         free(path);
     }
+
     whole_close(&whole);
     return result;
 }
@@ -214,6 +218,7 @@ static SingeResult read_next(void *context, int number, OutputFrame *view, Singe
         *error = (SingeError){.code = SINGE_ERROR_STATE, .stage = "output", .element = -1, .message = "interrupted"};
         return SINGE_ERROR_STATE;
     }
+
     SingeResult result = frame_read_surface(reader->outputs->folder, number, &reader->frame, error);
     *view = (OutputFrame){.surface = &reader->frame.surface, .time = reader->frame.time, .number = number};
     return result;
@@ -236,5 +241,112 @@ SingeResult outputs_write_single(const Outputs *outputs, int single, int frames,
     free(path);
     frame_free(&reader.frame);
     whole_close(&whole);
+    return result;
+}
+
+// ---- gas on finer cells
+
+// Smoke and flame are the preview's, at the centres of the fine cells. The velocity is interpolated between the centres
+// of the coarse cells. The temperature is that of a black body as bright as the flame: renderers whose blackbody
+// emission goes with its fourth power show the same tongues, in a flame's colours.
+
+#define BRIGHTEST 2500.0f ///< K, where `flame` is 1: gives other renderers' pictures the colours of ours
+
+/// The coarse cells on either side of a fine cell's centre along an axis, and the weight between them.
+static void neighbours(uint32_t fine, int detail, uint32_t size, uint32_t pair[2], float *share) {
+    const float at = ((float)fine + 0.5f) / (float)detail - 0.5f, low = at > 0 ? at : 0;
+    pair[0] = (uint32_t)low < size - 1 ? (uint32_t)low : size - 1;
+    pair[1] = pair[0] + 1 < size ? pair[0] + 1 : pair[0];
+    *share = low - (float)pair[0];
+}
+
+/// Fills the fine gas's velocity, between the coarse cells' centres, and its temperature.
+static void refine(const SingeGas *coarse, int detail, Gas *fine) {
+    const uint32_t *n = fine->view.size;
+    uint32_t x[2], y[2], z[2];
+    float s[3];
+    size_t i = 0;
+
+    for (uint32_t c = 0; c < n[2]; c++)
+        for (uint32_t b = 0; b < n[1]; b++)
+            for (uint32_t a = 0; a < n[0]; a++, i++) {
+                neighbours(a, detail, coarse->size[0], x, &s[0]);
+                neighbours(b, detail, coarse->size[1], y, &s[1]);
+                neighbours(c, detail, coarse->size[2], z, &s[2]);
+                float moved[3] = {0, 0, 0};
+                for (int k = 0; k < 8; k++) {
+                    const size_t from = gas_index(coarse, x[k & 1], y[k >> 1 & 1], z[k >> 2]);
+                    const float weight =
+                        (k & 1 ? s[0] : 1 - s[0]) * (k >> 1 & 1 ? s[1] : 1 - s[1]) * (k >> 2 ? s[2] : 1 - s[2]);
+                    for (int d = 0; d < 3; d++) moved[d] += weight * coarse->velocity[from][d];
+                }
+                for (int d = 0; d < 3; d++) fine->velocity[i][d] = moved[d];
+            }
+
+    const size_t count = gas_cells(&fine->view);
+    for (i = 0; i < count; i++) {
+        fine->temperature[i] = fine->flame_share[i] > 0 ? BRIGHTEST * sqrtf(sqrtf(fine->flame_share[i])) : 0;
+
+        // practically clear air: half a metre of it hides a quarter of a percent. Most warm blocks become empty
+        if (fine->extinction[i] >= 0.005f || fine->flame_share[i] >= 1e-4f) continue;
+        fine->extinction[i] = fine->flame_share[i] = fine->temperature[i] = 0;
+    }
+}
+
+SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Pictures *pictures, int number, int detail,
+                                   SingeError *error) {
+    Gas fine = {0};
+    const SingeGas *coarse = &frame->gas.view;
+    if (!coarse->size[0]) {
+        *error = (SingeError){.code = SINGE_ERROR_FILE, .stage = "output", .element = -1};
+        snprintf(error->message, sizeof error->message, "%.200s: the frame has no gas", path);
+        return SINGE_ERROR_FILE;
+    }
+    fine.view = *coarse;
+    fine.view.cell = coarse->cell / (float)detail;
+    for (int c = 0; c < 3; c++) fine.view.size[c] *= (uint32_t)detail;
+    if (!gas_shape_is_good(&fine.view)) {
+        *error = (SingeError){.code = SINGE_ERROR_LIMIT, .stage = "gas", .element = number};
+        snprintf(error->message, sizeof error->message, "a gas of %u x %u x %u cells is too fine: at most %d cells",
+                 fine.view.size[0], fine.view.size[1], fine.view.size[2], GAS_CELL_LIMIT);
+        return SINGE_ERROR_LIMIT;
+    }
+
+    SingeResult result = gas_make(&fine, path, 0, error);
+    if (!result)
+        result = pictures_bake(pictures, &frame->surface, coarse, frame->time, detail, fine.extinction,
+                               fine.flame_share, error);
+    if (!result) {
+        refine(coarse, detail, &fine);
+        gas_decode(&fine);
+        result = vdb_write_fine(path, &fine, frame->time, error);
+    }
+    gas_free(&fine);
+    return result;
+}
+
+SingeResult gas_detail_convert(const Folder *folder, Pictures *pictures, int number, int detail, SingeError *error) {
+    Frame frame = {0};
+    char *path = folder_gas_detail(folder, number);
+    SingeResult result = frame_read(folder, number, &frame, error);
+    if (!result) result = gas_detail_write_frame(path, &frame, pictures, number, detail, error);
+    frame_free(&frame);
+    free(path);
+    return result;
+}
+
+SingeResult gas_detail_write(const Job *job, const Folder *folder, int last, OutputsProgress *progress, void *context,
+                             SingeError *error) {
+    Pictures *pictures = NULL;
+    SingeResult result = pictures_open_baker(job, &pictures, error);
+    for (int frame = 1; frame <= last && !result; frame++) {
+        if (progress(context, frame)) {
+            result = gas_detail_convert(folder, pictures, frame, job->scene->gas_detail, error);
+            continue;
+        }
+        *error = (SingeError){.code = SINGE_ERROR_STATE, .stage = "gas", .element = -1, .message = "interrupted"};
+        result = SINGE_ERROR_STATE;
+    }
+    pictures_close(pictures);
     return result;
 }

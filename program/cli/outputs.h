@@ -1,10 +1,11 @@
-// The formats that a run or a conversion writes besides pictures and gas: frames, and the roots that refer to them.
+// The formats that a run or a conversion writes besides pictures and gas: frames, and the roots that refer to them; and
+// the gas on finer cells, with the tongues of the flames.
 #ifndef CLI_OUTPUTS_H
 #define CLI_OUTPUTS_H
 
 #include "cli/folder.h"
-#include "cli/frame_files.h"
 #include "cli/job.h"
+#include "cli/pictures.h"
 
 typedef struct Outputs {
     const Job *job;
@@ -38,5 +39,18 @@ typedef bool OutputsProgress(void *context, int frame);
 /// Writes one of output_singles from the frames of the cache, from 1.
 SINGE_NODISCARD SingeResult outputs_write_single(const Outputs *outputs, int single, int frames,
                                                  OutputsProgress *progress, void *context, SingeError *error);
+
+/// Writes a frame that has gas, on cells `detail` times as fine.
+SINGE_NODISCARD SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Pictures *pictures, int number,
+                                                   int detail, SingeError *error);
+
+/// The same from the cache.
+SINGE_NODISCARD SingeResult gas_detail_convert(const Folder *folder, Pictures *pictures, int number, int detail,
+                                               SingeError *error);
+
+/// The same for frames 1 to `last`, in the existing folder. SINGE_ERROR_STATE in a program built without the preview,
+/// and if the progress callback returns false.
+SINGE_NODISCARD SingeResult gas_detail_write(const Job *job, const Folder *folder, int last, OutputsProgress *progress,
+                                             void *context, SingeError *error);
 
 #endif

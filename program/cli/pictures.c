@@ -1,7 +1,9 @@
 #include "cli/pictures.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include "cli/interrupt.h"
 
@@ -27,6 +29,7 @@ static SingeResult open_def(const Job *job, const PreviewDef *def, Pictures **ma
     *made = NULL;
     Pictures *pictures = calloc(1, sizeof *pictures);
     if (!pictures) return no_memory(error);
+
     pictures->scene = job->scene;
     pictures->assets = &job->assets;
     pictures->def = *def;
@@ -71,7 +74,10 @@ SingeResult pictures_open_sharp(const Job *job, int scale, Pictures **pictures, 
     def.shutter = 0;
     SingeResult result = open_def(job, &def, pictures, error);
     if (!result) result = pictures_keep_layers(*pictures, error);
-    if (result) pictures_close(*pictures), *pictures = NULL;
+    if (result) {
+        pictures_close(*pictures);
+        *pictures = NULL;
+    }
     return result;
 }
 
@@ -110,6 +116,7 @@ SingeResult pictures_bake(Pictures *pictures, const SingeSurface *surface, const
 SingeResult pictures_keep_layers(Pictures *pictures, SingeError *error) {
     size_t count = (size_t)pictures->def.width * (size_t)pictures->def.height;
     PreviewLayers *l = &pictures->layers;
+
     l->beauty = calloc(count, sizeof *l->beauty);
     l->glow = calloc(count, sizeof *l->glow);
     l->normal = calloc(count, sizeof *l->normal);
@@ -131,11 +138,6 @@ SingeResult pictures_ember_width(Pictures *pictures, const SingeSurface *surface
     return preview_glow_width(&pictures->def, &pictures->layers, width, error);
 }
 
-static void free_layers(PreviewLayers *l) {
-    free(l->beauty), free(l->glow), free(l->normal), free(l->coverage), free(l->temperature), free(l->burn);
-    free(l->fire), free(l->depth), free(l->sheet), free(l->piece);
-}
-
 /// Ids as they are written: counted from 1, so that 0 is none.
 static uint32_t *count_ids(const int32_t *ids, size_t count) {
     uint32_t *counted = malloc(count * sizeof *counted);
@@ -149,6 +151,7 @@ SingeResult pictures_write_layers(const Pictures *pictures, const char *path, Si
     uint32_t *sheet = count_ids(l->sheet, (size_t)width * (size_t)height);
     uint32_t *piece = count_ids(l->piece, (size_t)width * (size_t)height);
     const ExrChannel channels[] = {
+
         {"R", EXR_KIND_HALF, &l->beauty[0][0], 3},
         {"G", EXR_KIND_HALF, &l->beauty[0][1], 3},
         {"B", EXR_KIND_HALF, &l->beauty[0][2], 3},
@@ -171,7 +174,8 @@ SingeResult pictures_write_layers(const Pictures *pictures, const char *path, Si
     };
     SingeResult result = sheet && piece ? SINGE_OK : no_memory(error);
     if (!result) result = exr_write(path, width, height, channels, (int)(sizeof channels / sizeof *channels), error);
-    free(sheet), free(piece);
+    free(sheet);
+    free(piece);
     return result;
 }
 
@@ -185,8 +189,127 @@ void pictures_close(Pictures *pictures) {
     interrupt_guard_begin();
     preview_destroy(pictures->preview);
     interrupt_guard_end();
+
+    const PreviewLayers *l = &pictures->layers;
+    void *const layers[] = {l->beauty,      l->glow, l->normal, l->coverage, l->fire,
+                            l->temperature, l->burn, l->depth,  l->sheet,    l->piece};
+    for (size_t i = 0; i < sizeof layers / sizeof *layers; i++) free(layers[i]);
     free(pictures->shapes);
     free(pictures->rgb);
-    free_layers(&pictures->layers);
     free(pictures);
+}
+
+// ---- frames
+
+void frame_free(Frame *frame) {
+    singe_surface_free(&frame->surface);
+    gas_free(&frame->gas);
+    *frame = (Frame){0};
+}
+
+SingeResult frame_take_surface(SingeSim *sim, Frame *frame, SingeError *error) {
+    SingeResult result = singe_sim_surface(sim, &frame->surface);
+    if (result) *error = *singe_sim_error(sim);
+    frame->time = singe_sim_stats(sim).time;
+    return result;
+}
+
+SingeResult frame_take_gas(SingeSim *sim, Frame *frame, SingeError *error) {
+    SingeGas gas = singe_sim_gas(sim);
+    gas_free(&frame->gas);
+    return gas.size[0] > 0 ? gas_copy(&gas, (SingeAllocator){0}, &frame->gas, error) : SINGE_OK;
+}
+
+SingeResult frame_read_surface(const Folder *folder, int number, Frame *frame, SingeError *error) {
+    Bytes bytes = {0};
+    *frame = (Frame){0};
+    char *path = folder_ply(folder, number);
+    SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
+    if (!result)
+        result =
+            ply_read_surface(path, bytes.data, bytes.size, (SingeAllocator){0}, &frame->surface, &frame->time, error);
+    bytes_free(&bytes);
+    free(path);
+    return result;
+}
+
+SingeResult frame_read(const Folder *folder, int number, Frame *frame, SingeError *error) {
+    SingeResult result = frame_read_surface(folder, number, frame, error);
+    if (result) return result;
+
+    // the gas is empty if the cache has no file of it
+    Bytes bytes = {0};
+    char *path = folder_vdb(folder, number);
+    if (access(path, F_OK) == 0 || errno != ENOENT) {
+        result = file_read(path, (SingeAllocator){0}, &bytes, error);
+        if (!result) result = vdb_read_gas(path, bytes.data, bytes.size, (SingeAllocator){0}, &frame->gas, NULL, error);
+        bytes_free(&bytes);
+    }
+    free(path);
+    return result;
+}
+
+SingeResult frame_draw(const Frame *frame, Pictures *pictures, const uint8_t **rgb, SingeError *error) {
+    *rgb = pictures_draw(pictures, &frame->surface, &frame->gas.view, frame->time, error);
+    if (*rgb) return SINGE_OK;
+    return error->code ? error->code : SINGE_ERROR_STATE;
+}
+
+SingeResult frame_write_picture(Pictures *pictures, const uint8_t *rgb, const char *png, const char *exr,
+                                SingeError *error) {
+    int width, height;
+    pictures_size(pictures, &width, &height);
+    SingeResult result = png_write(png, width, height, rgb, error);
+    return result || !exr ? result : pictures_write_layers(pictures, exr, error);
+}
+
+// ---- contact sheets
+
+enum { SHEET_WIDTH = 1920 };
+
+SingeResult contact_sheet_make(ContactSheet *sheet, int columns, int rows, int frame_width, int frame_height,
+                               SingeError *error) {
+    int shrink = (columns * frame_width + SHEET_WIDTH - 1) / SHEET_WIDTH;
+    int shortest = frame_width < frame_height ? frame_width : frame_height;
+    if (shrink > shortest) shrink = shortest;
+    if (shrink < 1) shrink = 1;
+    *sheet = (ContactSheet){.columns = columns,
+                            .rows = rows,
+                            .frame_width = frame_width,
+                            .frame_height = frame_height,
+                            .shrink = shrink,
+                            .width = columns * (frame_width / shrink),
+                            .height = rows * (frame_height / shrink)};
+    sheet->rgb = calloc((size_t)sheet->width * 3, (size_t)sheet->height);
+    if (sheet->rgb) return SINGE_OK;
+    *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "sheet.png", .element = -1};
+    return SINGE_ERROR_MEMORY;
+}
+
+void contact_sheet_put(ContactSheet *sheet, int tile, const uint8_t *rgb) {
+    const int shrink = sheet->shrink, w = sheet->frame_width / shrink, h = sheet->frame_height / shrink;
+    const int left = tile % sheet->columns * w, top = tile / sheet->columns * h;
+    const unsigned count = (unsigned)(shrink * shrink);
+
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++)
+            for (int k = 0; k < 3; k++) {
+                unsigned sum = 0;
+                for (int i = 0; i < shrink; i++)
+                    for (int j = 0; j < shrink; j++)
+                        sum +=
+                            rgb[3 * ((size_t)(y * shrink + i) * (size_t)sheet->frame_width + (size_t)(x * shrink + j)) +
+                                (size_t)k];
+                sheet->rgb[3 * ((size_t)(top + y) * (size_t)sheet->width + (size_t)(left + x)) + (size_t)k] =
+                    (uint8_t)((sum + count / 2) / count);
+            }
+}
+
+void contact_sheet_free(ContactSheet *sheet) {
+    free(sheet->rgb);
+    *sheet = (ContactSheet){0};
+}
+
+int contact_sheet_frame(int tile, int tiles, int first, int last) {
+    return tiles < 2 ? first : first + (int)(((long)(last - first) * tile + (tiles - 1) / 2) / (tiles - 1));
 }

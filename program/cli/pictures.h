@@ -1,8 +1,13 @@
-// The preview of a scene as the commands use it. A program built without the preview bakes gas but draws nothing.
+// The pictures of a scene as the commands use them, and the frames that they show. A program built without the preview
+// bakes gas but draws nothing.
 #ifndef CLI_PICTURES_H
 #define CLI_PICTURES_H
 
+#include "cli/folder.h"
 #include "cli/job.h"
+#include "formats/formats.h"
+#include "singe/base.h"
+#include "singe/singe.h"
 
 typedef struct Pictures Pictures;
 
@@ -38,5 +43,48 @@ SINGE_NODISCARD SingeResult pictures_ember_width(Pictures *pictures, const Singe
 
 void pictures_size(const Pictures *pictures, int *width, int *height);
 void pictures_close(Pictures *pictures);
+
+typedef struct Frame {
+    SingeSurface surface;
+    Gas gas; ///< as in its file; empty if there is none
+    double time;
+} Frame;
+
+void frame_free(Frame *frame);
+
+/// The simulation's surface as it is now.
+SINGE_NODISCARD SingeResult frame_take_surface(SingeSim *sim, Frame *frame, SingeError *error);
+/// Its gas. If a simulation has gas, every frame has gas, even in still air.
+SINGE_NODISCARD SingeResult frame_take_gas(SingeSim *sim, Frame *frame, SingeError *error);
+
+/// Reads the surface of a frame, without its gas. Free it, after failure too.
+SINGE_NODISCARD SingeResult frame_read_surface(const Folder *folder, int number, Frame *frame, SingeError *error);
+
+/// Reads the files of a frame. Free it, after failure too.
+SINGE_NODISCARD SingeResult frame_read(const Folder *folder, int number, Frame *frame, SingeError *error);
+
+/// Draws the frame. The pixels are valid until the next call.
+SINGE_NODISCARD SingeResult frame_draw(const Frame *frame, Pictures *pictures, const uint8_t **rgb, SingeError *error);
+
+/// Writes the last picture as a PNG and, if `exr` is not NULL, its layers.
+SINGE_NODISCARD SingeResult frame_write_picture(Pictures *pictures, const uint8_t *rgb, const char *png,
+                                                const char *exr, SingeError *error);
+
+typedef struct ContactSheet {
+    int columns, rows;
+    int frame_width, frame_height; ///< of the source frames
+    int shrink;                    ///< frames are averaged over shrink × shrink pixels
+    int width, height;
+    uint8_t *rgb;
+} ContactSheet;
+
+/// At most about 1920 pixels wide.
+SINGE_NODISCARD SingeResult contact_sheet_make(ContactSheet *sheet, int columns, int rows, int frame_width,
+                                               int frame_height, SingeError *error);
+void contact_sheet_put(ContactSheet *sheet, int tile, const uint8_t *rgb);
+void contact_sheet_free(ContactSheet *sheet);
+
+/// The frame of [first, last] that a tile shows: spread evenly, both ends included.
+int contact_sheet_frame(int tile, int tiles, int first, int last);
 
 #endif

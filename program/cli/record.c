@@ -1,10 +1,9 @@
-#include "cli/record.h"
+#include "cli/run.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "cli/text.h"
 
@@ -22,50 +21,28 @@ static void member(FILE *file, const char *name, const char *text) {
     fputs(",\n", file);
 }
 
-/// The scene's folder as an absolute path, so that `singe render` finds its files from anywhere.
-static void write_scene_folder(FILE *file, const char *scene_path) {
-    const char *slash = strrchr(scene_path, '/');
-    int length = slash ? (int)(slash - scene_path) + (slash == scene_path) : 0;
-    char *folder = slash ? text_format("%.*s", length, scene_path) : text_format(".");
-    char *whole = realpath(folder, NULL);
-    member(file, "scene_file", scene_path);
-    member(file, "scene_folder", whole ? whole : folder);
-    free(whole);
-    free(folder);
-}
-
-static void write_seconds(FILE *file, const Totals *totals) {
+/// Seconds, totals, triangles and counts.
+static void write_numbers(FILE *file, const Record *record) {
     static const char *const names[] = {"heat",    "burn", "ablate",  "dynamics",  "gas",
                                         "surface", "ply",  "preview", "checkpoint"};
+    const Totals *t = &record->totals;
     fputs("  \"seconds\": {\"wall\": ", file);
-    text_json_number(file, totals->wall_seconds);
+    text_json_number(file, t->wall_seconds);
+
     for (int i = 0; i < SINGE_STAGE_COUNT + TOTAL_OUTPUT_COUNT; i++) {
         fprintf(file, ", \"%s\": ", names[i]);
-        text_json_number(file, i < SINGE_STAGE_COUNT ? totals->stage_seconds[i]
-                                                     : totals->output_seconds[i - SINGE_STAGE_COUNT]);
+        text_json_number(file, i < SINGE_STAGE_COUNT ? t->stage_seconds[i] : t->output_seconds[i - SINGE_STAGE_COUNT]);
     }
-    fputs("},\n", file);
-}
 
-static void write_totals(FILE *file, const Totals *t) {
-    const struct {
-        const char *name;
-        uint64_t value;
-    } rows[] = {{"steps", t->steps},
-                {"heat_iterations", t->heat_iterations},
-                {"strands_projected", t->strands_projected},
-                {"contacts", t->contacts},
-                {"ignited", t->ignited},
-                {"holes_opened", t->holes_opened},
-                {"pieces_freed", t->pieces_freed},
-                {"crossed_at_start", t->crossed}};
-    fputs("  \"totals\": {", file);
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        fprintf(file, "%s\"%s\": %" PRIu64, i ? ", " : "", rows[i].name, rows[i].value);
-    fputs("},\n", file);
-}
+    fprintf(file,
+            "},\n  \"totals\": {\"steps\": %" PRIu64 ", \"heat_iterations\": %" PRIu64
+            ", \"strands_projected\": %" PRIu64 ", \"contacts\": %" PRIu64 ", \"ignited\": %" PRIu64
+            ", \"holes_opened\": %" PRIu64 ", \"pieces_freed\": %" PRIu64 ", \"crossed_at_start\": %" PRIu64 "},\n",
+            t->steps, t->heat_iterations, t->strands_projected, t->contacts, t->ignited, t->holes_opened,
+            t->pieces_freed, t->crossed);
+    fprintf(file, "  \"drawn\": {\"triangles\": %" PRIu32 ", \"triangles_fine\": %" PRIu32 "},\n", record->triangles,
+            record->fine_triangles);
 
-static void write_counts(FILE *file, const Record *record) {
     static const char *const colours[] = {"red", "green", "blue", "yellow"};
     const SingeCounts *c = &record->counts;
     fprintf(file, "  \"counts\": {\"particles\": %" PRIu32 ", \"cells\": %" PRIu32 ", \"springs\": {", c->particles,
@@ -93,8 +70,19 @@ static void write_all(FILE *file, const Record *record, const Job *job) {
     } else {
         fputs("  \"error\": null,\n", file);
     }
+
     member(file, "started", record->started);
-    write_scene_folder(file, record->scene_path);
+
+    // the folder is absolute, so that `singe render` finds the scene's files from anywhere
+    const char *slash = strrchr(record->scene_path, '/');
+    const int length = slash ? (int)(slash - record->scene_path) + (slash == record->scene_path) : 0;
+    char *folder = slash ? text_format("%.*s", length, record->scene_path) : text_format(".");
+    char *whole = realpath(folder, NULL);
+    member(file, "scene_file", record->scene_path);
+    member(file, "scene_folder", whole ? whole : folder);
+    free(whole);
+    free(folder);
+
     member(file, "name", scene->name);
     fprintf(file, "  \"frames\": %d,\n  \"frames_done\": %d,\n  \"resumed_from\": %d,\n  \"fps\": ", scene->frames,
             record->frames_done, record->resumed_from);
@@ -103,11 +91,7 @@ static void write_all(FILE *file, const Record *record, const Job *job) {
             scene->sim.seed, job->hooks.thread_count);
     fprintf(file, "  \"preview\": %s,\n  \"video\": %s,\n", record->preview ? "true" : "false",
             record->video ? "true" : "false");
-    write_seconds(file, &record->totals);
-    write_totals(file, &record->totals);
-    fprintf(file, "  \"drawn\": {\"triangles\": %" PRIu32 ", \"triangles_fine\": %" PRIu32 "},\n", record->triangles,
-            record->fine_triangles);
-    write_counts(file, record);
+    write_numbers(file, record);
     fputs("  \"scene\": ", file);
     scene_dump(scene, SCENE_JSON, 2, file);
     fputs("\n}\n", file);

@@ -1,20 +1,15 @@
 // singe render: draws the pictures, video and contact sheet of a cache again, from its PLYs and the scene in its
 // run.json.
-#include <errno.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/args.h"
-#include "cli/contact_sheet.h"
 #include "cli/folder.h"
-#include "cli/frame_files.h"
 #include "cli/interrupt.h"
 #include "cli/job.h"
 #include "cli/lock.h"
 #include "cli/pictures.h"
-#include "cli/text.h"
 #include "cli/video.h"
 #include "common/printable.h"
 
@@ -22,18 +17,18 @@ enum { OPT_SET, OPT_FRAMES, OPT_SHEET, OPT_ONLY_SHEET, OPT_EXR, OPT_GIF, OPT_THR
 
 static const ArgOption render_options[OPT_COUNT] = {
     [OPT_SET] = {"set", 0, "preview.PATH=VALUE", "sets a value of the scene; may be repeated"},
-    [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone), without the video"},
-    [OPT_SHEET] = {"sheet", 0, "CxR", "also DIR/sheet.png, C by R frames spread over the run"},
+    [OPT_FRAMES] = {"frames", 0, "A-B", "draws only these frames (or A alone), and no video"},
+    [OPT_SHEET] = {"sheet", 0, "CxR", "also writes DIR/sheet.png: C by R frames, spread over the run"},
     [OPT_ONLY_SHEET] = {"only-sheet", 0, NULL, "draws the frames of the sheet and writes nothing else"},
-    [OPT_EXR] = {"exr", 0, NULL, "also DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
-    [OPT_GIF] = {"gif", 0, NULL, "also DIR/preview.gif, of the frames that are drawn"},
+    [OPT_EXR] = {"exr", 0, NULL, "also writes DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
+    [OPT_GIF] = {"gif", 0, NULL, "also writes DIR/preview.gif, of the frames that are drawn"},
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints errors only"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
 };
 
 static const ArgCommand render_command = {
     "render",       "DIR",     "Draws the pictures and the video of a cache again.",
-    render_options, OPT_COUNT, "Exit codes: 0 good, 1 failed or interrupted, 2 bad input."};
+    render_options, OPT_COUNT, "Exit codes: 0 success, 1 failed or interrupted, 2 bad input."};
 
 typedef struct RenderOptions {
     const char *folder;
@@ -55,28 +50,14 @@ typedef struct Render {
     Lock lock;       ///< of the pictures
 } Render;
 
-/// Two whole numbers separated by `between`. If `single` is allowed, one number stands for both.
-static bool pair(const char *text, char between, bool single, int *a, int *b) {
-    char *end;
-    long first = strtol(text, &end, 10), second = first;
-    if (end == text || first < 1 || first > INT_MAX) return false;
-    if (*end == between) {
-        const char *from = end + 1;
-        second = strtol(from, &end, 10);
-        if (end == from || second < 1 || second > INT_MAX) return false;
-    } else if (!single) {
-        return false;
-    }
-    *a = (int)first;
-    *b = (int)second;
-    return *end == 0;
-}
-
 static ExitCode render_parse(int argc, char **argv, RenderOptions *o, bool *done) {
     ArgReader reader = args_begin(&render_command, argc, argv);
     const char *value;
+    int end;
+
     *o = (RenderOptions){.threads = job_threads()};
     *done = false;
+
     for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
         bool good = true;
         switch (option) {
@@ -85,14 +66,13 @@ static ExitCode render_parse(int argc, char **argv, RenderOptions *o, bool *done
             if (good) set_add(&o->sets, value);
             else args_complain(&reader, "--set: only preview.* can be set here, got '%s'", shown(value).text);
             break;
-        case OPT_FRAMES:
-            good = pair(value, '-', true, &o->first, &o->last) && o->first <= o->last;
-            if (!good) args_complain(&reader, "--frames: expected A-B with 1 <= A <= B, got '%s'", shown(value).text);
-            break;
+        case OPT_FRAMES: good = args_span(&reader, option, value, &o->first, &o->last); break;
         case OPT_SHEET:
-            good = pair(value, 'x', false, &o->columns, &o->rows) && o->columns <= 64 && o->rows <= 64;
+            end = 0;
+            good = sscanf(value, "%2dx%2d%n", &o->columns, &o->rows, &end) == 2 && !value[end] && o->columns >= 1 &&
+                   o->columns <= 64 && o->rows >= 1 && o->rows <= 64;
             if (!good)
-                args_complain(&reader, "--sheet: expected COLUMNSxROWS such as 4x2, at most 64, got '%s'",
+                args_complain(&reader, "--sheet: expected COLUMNSxROWS such as 4x2, at most 64x64, got '%s'",
                               shown(value).text);
             break;
         case OPT_ONLY_SHEET: o->only_sheet = true; break;
@@ -106,14 +86,17 @@ static ExitCode render_parse(int argc, char **argv, RenderOptions *o, bool *done
         }
         if (!good) return EXIT_INPUT;
     }
+
     if (o->only_sheet && (o->exr || o->gif)) {
         args_complain(&reader, "--only-sheet writes nothing else: not with --%s", o->exr ? "exr" : "gif");
         return EXIT_INPUT;
     }
+
     if (o->exr && !exr_available()) {
         args_complain(&reader, "--exr: this singe was built without EXR");
         return EXIT_INPUT;
     }
+
     if (o->only_sheet && !o->columns) {
         o->columns = 4;
         o->rows = 2;
@@ -122,22 +105,6 @@ static ExitCode render_parse(int argc, char **argv, RenderOptions *o, bool *done
 }
 
 // ---- drawing
-
-static SingeResult draw_frame(Render *render, int number, const uint8_t **rgb, SingeError *error) {
-    Frame frame;
-    SingeResult result = frame_read(&render->folder, number, &frame, error);
-    if (!result) result = frame_draw(&frame, render->pictures, rgb, error);
-    frame_free(&frame);
-    return result;
-}
-
-static SingeResult write_frame(Render *render, int frame, const uint8_t *rgb, SingeError *error) {
-    char *png = folder_png(&render->folder, frame);
-    char *exr = render->options->exr ? folder_exr(&render->folder, frame) : NULL;
-    SingeResult result = frame_write_picture(render->pictures, rgb, png, exr, error);
-    free(png), free(exr);
-    return result;
-}
 
 /// Copies the frame to every tile of the sheet that shows it. Returns whether there is one.
 static bool put_tiles(Render *render, int frame, const uint8_t *rgb) {
@@ -152,48 +119,56 @@ static bool put_tiles(Render *render, int frame, const uint8_t *rgb) {
 }
 
 static SingeResult draw_all(Render *render, bool *interrupted, SingeError *error) {
-    int last = render->last;
-    double begun = console_clock();
-    for (int frame = render->first, drawn = 0; frame <= last && !*interrupted; frame++) {
+    const RenderOptions *o = render->options;
+    const double begun = console_clock();
+
+    for (int number = render->first, drawn = 0; number <= render->last && !*interrupted; number++) {
+        if (o->only_sheet && !put_tiles(render, number, NULL)) continue;
+
+        Frame frame;
         const uint8_t *rgb = NULL;
-        if (render->options->only_sheet && !put_tiles(render, frame, NULL)) continue;
-        SingeResult result = draw_frame(render, frame, &rgb, error);
-        if (!result && !render->options->only_sheet) result = write_frame(render, frame, rgb, error);
+        SingeResult result = frame_read(&render->folder, number, &frame, error);
+        if (!result) result = frame_draw(&frame, render->pictures, &rgb, error);
+        frame_free(&frame);
+        if (!result && !o->only_sheet) {
+            char *png = folder_png(&render->folder, number);
+            char *exr = o->exr ? folder_exr(&render->folder, number) : NULL;
+            result = frame_write_picture(render->pictures, rgb, png, exr, error);
+            free(png);
+            free(exr);
+        }
         if (result) return result;
-        put_tiles(render, frame, rgb);
+
+        put_tiles(render, number, rgb);
         drawn++;
-        console_picture(render->console, frame, last, (console_clock() - begun) / drawn);
-        *interrupted = interrupt_asked() && frame < last;
+        console_picture(render->console, number, render->last, (console_clock() - begun) / drawn);
+        *interrupted = interrupt_asked() && number < render->last;
     }
+
     if (!render->sheet.rgb) return SINGE_OK;
     return png_write(render->folder.sheet, render->sheet.width, render->sheet.height, render->sheet.rgb, error);
-}
-
-/// Several processes may draw parts of a run at the same time. A process that draws all of it makes the video, and must
-/// be the only one.
-static SingeResult hold_pictures(Render *render, SingeError *error) {
-    bool kept, part = render->options->first > 0;
-    SingeResult result = lock_take(&render->lock, render->folder.pictures_lock, "pictures", part, &kept, error);
-    if (!kept)
-        console_warn(render->console, "%s: the file system has no locks; nothing else may write there",
-                     render->folder.path);
-    return result;
 }
 
 static ExitCode render_frames(Render *render) {
     const RenderOptions *o = render->options;
     SingeError error = {0};
-    int width, height;
     bool interrupted = false;
     SingeResult result = pictures_open(&render->job, &render->pictures, &error);
-    FolderParts parts = {.pictures = !o->only_sheet, .exr = o->exr};
-    if (!result && !o->only_sheet) result = hold_pictures(render, &error);
+
+    // several processes may draw parts of a run at the same time; one that draws all of it makes the video, and must be
+    // alone
+    if (!result && !o->only_sheet)
+        result =
+            lock_take(&render->lock, render->folder.pictures_lock, "pictures", o->first > 0, render->console, &error);
+    const FolderParts parts = {.pictures = !o->only_sheet, .exr = o->exr};
     if (!result) result = folder_create(&render->folder, parts, &error);
     if (!result && o->exr) result = pictures_keep_layers(render->pictures, &error);
     if (!result && o->columns) {
+        int width, height;
         pictures_size(render->pictures, &width, &height);
         result = contact_sheet_make(&render->sheet, o->columns, o->rows, width, height, &error);
     }
+
     interrupt_watch();
     if (!result) result = draw_all(render, &interrupted, &error);
     console_clear(render->console);
@@ -201,9 +176,12 @@ static ExitCode render_frames(Render *render) {
         console_result(render->console, &error);
         return result == SINGE_ERROR_FORMAT ? EXIT_INPUT : EXIT_FAILED;
     }
+
     if (interrupted) return EXIT_FAILED;
     if (!o->quiet && o->columns) printf("%s\n", render->folder.sheet);
-    double fps = (double)render->job.scene->fps;
+
+    // the films
+    const double fps = (double)render->job.scene->fps;
     VideoResult gif = VIDEO_NO_PROGRAM, video = VIDEO_NO_PROGRAM;
     if (o->gif) gif = gif_make(render->console, &render->folder, fps, render->first, render->last);
     if (gif == VIDEO_MADE && !o->quiet) printf("%s\n", render->folder.gif);
@@ -235,6 +213,7 @@ int command_render(int argc, char **argv) {
         folder_free(&render.folder);
         job_close(&render.job);
     }
+
     set_free(&options.sets);
     return code;
 }

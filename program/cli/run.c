@@ -18,8 +18,8 @@ static const ArgOption run_options[OPT_COUNT] = {
     [OPT_SET] = {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated"},
     [OPT_RESUME] = {"resume", 0, NULL, "continues from DIR/checkpoint.singe"},
     [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no pictures and makes no video"},
-    [OPT_EXR] = {"exr", 0, NULL, "also DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints errors only"},
+    [OPT_EXR] = {"exr", 0, NULL, "also writes DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
 };
 
 static const ArgCommand run_command = {
@@ -28,15 +28,17 @@ static const ArgCommand run_command = {
     "Simulates a scene file and writes a cache, pictures, a video and statistics to DIR.",
     run_options,
     OPT_COUNT,
-    "Ctrl-C ends the run after its step; a second Ctrl-C ends it at once. Exit codes: 0 good, 1 failed or\n"
-    "interrupted, or its video did, 2 bad input."};
+    "Ctrl-C ends the run after the current step; a second Ctrl-C ends it at once. Exit codes: 0 success,\n"
+    "1 the run failed or was interrupted, or ffmpeg failed, 2 bad input."};
 
 static ExitCode run_parse(int argc, char **argv, RunOptions *options, bool *done) {
     ArgReader reader = args_begin(&run_command, argc, argv);
     const char *value;
     int frames = 0;
+
     *options = (RunOptions){.threads = job_threads()};
     *done = false;
+
     for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
         bool good = true;
         switch (option) {
@@ -54,94 +56,111 @@ static ExitCode run_parse(int argc, char **argv, RunOptions *options, bool *done
         }
         if (!good) return EXIT_INPUT;
     }
+
     if (options->exr && (options->no_preview || !pictures_available() || !exr_available())) {
         if (options->no_preview) args_complain(&reader, "--exr: not with --no-preview");
         else args_complain(&reader, "--exr: this singe was built without %s", exr_available() ? "the preview" : "EXR");
         return EXIT_INPUT;
     }
+
     if (frames) set_frames(&options->sets, frames);
     return EXIT_GOOD;
 }
 
 static SingeResult stop(Run *run, Progress progress, SingeError *error) {
     run->record.result = "interrupted";
+
     // before the first frame is whole there is nothing to resume from
     if (progress.frame <= 0) return SINGE_OK;
+
     SingeResult result = tables_write_steps(&run->tables, progress.frame + 1, error);
     return result ? result : run_write_checkpoint(run, progress, error);
-}
-
-static void show_progress(Run *run, int frame, const SingeStats *stats, double seconds) {
-    run->frame_seconds = run->frame_seconds > 0 ? 0.8 * run->frame_seconds + 0.2 * seconds : seconds;
-    console_progress(run->console, &(ConsoleProgress){frame, run->job.scene->frames, stats->burnt_fraction,
-                                                      (double)stats->temperature_max, run->frame_seconds});
 }
 
 /// From this 99th percentile of strain on, sheets no longer look like sheets.
 static const double strain_max = 0.5;
 
-static void note_strain(Run *run, int frame, const SingeStats *stats) {
-    if (stats->strain_p99 > fmax(strain_max, run->strain)) {
-        run->strain = stats->strain_p99;
-        run->strained = frame;
-    }
-}
-
 /// Waits for the frame being written, if any, and reports it.
 static SingeResult end_frame(Run *run, SingeError *error) {
-    int frame = run->writing.frame;
+    const int frame = run->writing.frame;
     SingeStats stats;
     SingeResult result = run_end_frame(run, &stats, error);
     if (result || !frame) return result;
-    note_strain(run, frame, &stats);
-    double now = console_clock();
-    show_progress(run, frame, &stats, now - run->frame_ended);
+
+    if (stats.strain_p99 > fmax(strain_max, run->strain)) {
+        run->strain = stats.strain_p99;
+        run->strained = frame;
+    }
+
+    const double now = console_clock(), seconds = now - run->frame_ended;
     run->frame_ended = now;
+    run->frame_seconds = run->frame_seconds > 0 ? 0.8 * run->frame_seconds + 0.2 * seconds : seconds;
+    console_progress(run->console, &(ConsoleProgress){frame, run->job.scene->frames, stats.burnt_fraction,
+                                                      (double)stats.temperature_max, run->frame_seconds});
     return SINGE_OK;
 }
 
-/// Steps to a frame. Meanwhile the previous frame is written; it is whole when this returns.
-static SingeResult reach_frame(Run *run, int frame, SingeError *error) {
-    SingeError step_error;
-    SingeResult stepped = frame > 1 ? run_advance(run, frame, &step_error) : SINGE_OK;
-    SingeResult result = end_frame(run, error);
-    if (result || !stepped) return result;
-    *error = step_error;
-    return stepped;
-}
-
-/// Ctrl-C ends it between two steps.
+/// Steps from frame to frame. A frame is written while the simulation steps on to the next. Ctrl-C ends it between two
+/// steps.
 static SingeResult run_frames(Run *run, SingeError *error) {
-    int frames = run->job.scene->frames;
+    const int frames = run->job.scene->frames;
     run->frame_ended = console_clock();
+
     for (int frame = run->first; frame <= frames; frame++) {
-        SingeResult result = reach_frame(run, frame, error);
+        // step to the frame; the one before it is whole afterwards, also if a step has failed
+        SingeError step_error;
+        const SingeResult stepped = frame > 1 ? run_advance(run, frame, &step_error) : SINGE_OK;
+        SingeResult result = end_frame(run, error);
+        if (!result && stepped) {
+            *error = step_error;
+            result = stepped;
+        }
         if (!result && frame > 1 && run->step < run->job.scene->steps)
             return stop(run, (Progress){frame - 1, run->step}, error);
-        bool last = frame == frames;
+
+        // begin to write it
+        const bool last = frame == frames;
         if (!result) result = run_begin_frame(run, frame, last, error);
-        bool asked = interrupt_asked();
+        const bool asked = interrupt_asked();
         if (!result && (asked || last)) result = end_frame(run, error);
         if (!result && asked && !last) return stop(run, (Progress){frame, 0}, error);
         if (result) return result;
     }
+
     run->record.result = "complete";
     return SINGE_OK;
 }
 
-static SingeResult run_all(Run *run, SingeError *error) {
-    bool whole;
-    SingeResult result = SINGE_OK;
-    if (run->begun) result = record_write(&run->record, run->folder.record, &run->job, error);
-    if (!result) result = run_convert_missing(run, &whole, error);
-    if (!result && whole) result = run_draw_missing(run, &whole, error);
-    if (!run->pictures) lock_release(&run->pictures_lock);
-    if (result || whole) return result ? result : run_frames(run, error);
-    run->record.result = "interrupted";
-    return SINGE_OK;
-}
-
 // ---- before and after
+
+/// Prints how far the run came, and warns of what makes its results doubtful.
+static void print_summary(Run *run) {
+    const Record *record = &run->record;
+    const SingeStats stats = singe_sim_stats(run->sim);
+    char took[32];
+
+    console_duration(run->totals->wall_seconds, took);
+    console_note(run->console, "%s: %d of %d frames in %s", record->result, record->frames_done, run->job.scene->frames,
+                 took);
+    console_note(run->console, "front %.1f mm/s, hottest %.0f C, %.0f %% burnt, %u pieces, %u particles left",
+                 1e3 * stats.front_speed, run->totals->hottest - 273.15, 100 * stats.burnt_fraction, stats.pieces,
+                 stats.particles);
+    if (!stats.ledgers_close)
+        console_warn(run->console,
+                     "the ledgers do not close: heat is off by %.2g of its largest entry, mass by %.2g (the limit is "
+                     "%g); the steps may be so short that temperatures hardly change in one",
+                     stats.ledger_error, stats.mass_ledger_error, SINGE_LEDGER_BOUND);
+    if (run->strained)
+        console_warn(run->console,
+                     "in frame %d one edge in a hundred is strained by %.0f %% or more (strain_p99): the sheets move "
+                     "too fast, are pulled too hard or are too soft; `singe verify` counts edges of twice their length",
+                     run->strained, 100 * run->strain);
+
+    const double frames = record->frames_done > 0 ? record->frames_done : 1;
+    console_note(run->console, "last frame: %u triangles, %.0f %% of them near the front; %.1f ms a surface",
+                 record->triangles, 100.0 * record->fine_triangles / (record->triangles ? record->triangles : 1),
+                 1e3 * run->totals->output_seconds[TOTAL_SURFACE] / frames);
+}
 
 /// Ends every run that has begun: writes the record and the video, and prints the paths.
 static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
@@ -153,50 +172,31 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
         record->error.code = result;
         console_result(run->console, error);
     }
-    lines_close(&run->stats);
+
     tables_close(&run->tables);
     console_clear(run->console);
+
     VideoResult video = VIDEO_NO_PROGRAM;
     if (run->pictures && record->frames_done > 0)
         video = video_make(run->console, &run->folder, (double)run->job.scene->fps, 1, record->frames_done);
     record->video = video == VIDEO_MADE;
     run->totals->wall_seconds = run->wall_before + console_clock() - run->started;
-    if (run->begun && record->frames_done > 0 &&
-        outputs_write_roots(&run->outputs, record->frames_done, &write_error)) {
-        console_result(run->console, &write_error);
-        return EXIT_FAILED;
-    }
+
     // an earlier run keeps its record as long as nothing of it has been replaced
-    bool ours = run->begun || access(run->folder.record, F_OK) != 0;
-    if (ours && record_write(record, run->folder.record, &run->job, &write_error)) {
+    const bool ours = run->begun || access(run->folder.record, F_OK) != 0;
+    SingeResult written = SINGE_OK;
+    if (run->begun && record->frames_done > 0)
+        written = outputs_write_roots(&run->outputs, record->frames_done, &write_error);
+    if (!written && ours) written = record_write(record, run->folder.record, &run->job, &write_error);
+    if (written) {
         console_result(run->console, &write_error);
         return EXIT_FAILED;
     }
+
     if (!run->begun && !ours)
         console_note(run->console, "the output of an earlier run in %s is unchanged", run->folder.path);
-    char took[32];
-    console_duration(run->totals->wall_seconds, took);
-    console_note(run->console, "%s: %d of %d frames in %s", record->result, record->frames_done, run->job.scene->frames,
-                 took);
-    SingeStats stats = singe_sim_stats(run->sim);
-    console_note(run->console, "front %.1f mm/s, hottest %.0f C, %.0f %% burnt, %u pieces, %u particles left",
-                 1e3 * stats.front_speed, run->totals->hottest - 273.15, 100 * stats.burnt_fraction, stats.pieces,
-                 stats.particles);
-    if (!stats.ledgers_close)
-        console_warn(run->console,
-                     "the ledgers do not close: heat is off by %.2g of the largest entry, mass by %.2g (more than "
-                     "%g); steps of fire may be so short that temperatures hardly change",
-                     stats.ledger_error, stats.mass_ledger_error, SINGE_LEDGER_BOUND);
-    if (run->strained)
-        console_warn(
-            run->console,
-            "in frame %d the strain of one edge in a hundred is %.0f %% or more (strain_p99): sheets "
-            "move too fast, are pulled too hard or are too soft; `singe verify` counts edges twice their length",
-            run->strained, 100 * run->strain);
-    double frames = record->frames_done > 0 ? record->frames_done : 1;
-    console_note(run->console, "last frame: %u triangles, %.0f %% of them near the front; %.1f ms a surface",
-                 record->triangles, 100.0 * record->fine_triangles / (record->triangles ? record->triangles : 1),
-                 1e3 * run->totals->output_seconds[TOTAL_SURFACE] / frames);
+
+    print_summary(run);
     if (!run->console->quiet) printf("%s\n", record->video ? run->folder.video : run->folder.path);
     if (strcmp(record->result, "interrupted") == 0) console_note(run->console, "--resume continues from here");
     return strcmp(record->result, "complete") == 0 && video != VIDEO_FAILED ? EXIT_GOOD : EXIT_FAILED;
@@ -205,6 +205,7 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
 static ExitCode run_scene(Run *run, const RunOptions *options) {
     ExitCode code = run_prepare(run, options);
     if (code) return code;
+
     SingeError error = {0};
     run->record.preview = run->pictures != NULL;
     run->record.counts = singe_sim_counts(run->sim);
@@ -215,7 +216,16 @@ static ExitCode run_scene(Run *run, const RunOptions *options) {
                  1e3 * (double)counts->cell_size, counts->mean_strand_length);
     run->timers = singe_sim_timers(run->sim);
     interrupt_watch();
-    SingeResult result = run_all(run, &error);
+
+    // what is missing of the frames before a resumption, then the frames
+    bool whole = false;
+    SingeResult result = SINGE_OK;
+    if (run->begun) result = record_write(&run->record, run->folder.record, &run->job, &error);
+    if (!result) result = run_convert_missing(run, &whole, &error);
+    if (!result && whole) result = run_draw_missing(run, &whole, &error);
+    if (!run->pictures) lock_release(&run->pictures_lock);
+    if (!result && whole) result = run_frames(run, &error);
+    else if (!result) run->record.result = "interrupted";
     return finish(run, result, &error);
 }
 
@@ -227,7 +237,6 @@ int command_run(int argc, char **argv) {
         interrupt_shield();
         Console console = console_make(options.quiet);
         Run run = {.console = &console,
-                   .stats = LINE_FILE_CLOSED,
                    .tables = TABLES_CLOSED,
                    .cache_lock = LOCK_NONE,
                    .pictures_lock = LOCK_NONE,
@@ -239,7 +248,6 @@ int command_run(int argc, char **argv) {
         const bool drawn = !options.no_preview && pictures_available();
         if (!code) code = job_load(&run.job, &console, drawn ? scene_picture_memory(run.job.scene) : 0);
         if (!code) code = run_scene(&run, &options);
-        lines_close(&run.stats);
         tables_close(&run.tables);
         frame_free(&run.frame);
         outputs_close(&run.outputs);
@@ -251,6 +259,7 @@ int command_run(int argc, char **argv) {
         folder_free(&run.folder);
         job_close(&run.job);
     }
+
     set_free(&options.sets);
     return code;
 }

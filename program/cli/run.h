@@ -1,5 +1,5 @@
 // Internals of singe run: a run in progress, and its parts. run.c is the command, run_begin.c begins or resumes a run,
-// run_frame.c steps to a frame and writes it.
+// run_frame.c steps to a frame and writes it, record.c writes DIR/run.json.
 #ifndef CLI_RUN_H
 #define CLI_RUN_H
 
@@ -7,15 +7,31 @@
 
 #include "cli/checkpoint.h"
 #include "cli/folder.h"
-#include "cli/frame_files.h"
-#include "cli/gas_detail.h"
 #include "cli/job.h"
 #include "cli/lock.h"
 #include "cli/outputs.h"
 #include "cli/pictures.h"
-#include "cli/record.h"
-#include "cli/stats_file.h"
 #include "cli/tables.h"
+
+/// DIR/run.json: the scene, the program, the time taken and the outcome of a run.
+typedef struct Record {
+    const char *scene_path;
+    char started[32];   ///< ISO 8601, UTC
+    const char *result; ///< "running", "complete", "interrupted" or "failed"
+    SingeError error;   ///< when failed
+    int frames_done;
+    int resumed_from; ///< frame of the checkpoint from which the last start resumed, 0 for none
+    bool preview, video;
+    SingeCounts counts;
+    float thickening;
+    uint32_t triangles, fine_triangles; ///< of the last surface
+    Totals totals;
+} Record;
+
+Record record_make(const char *scene_path);
+
+/// Writes the file whole, or leaves the existing one. `path` is the folder's record, or a draft of it.
+SINGE_NODISCARD SingeResult record_write(const Record *record, const char *path, const Job *job, SingeError *error);
 
 typedef struct RunOptions {
     const char *scene, *output;
@@ -62,7 +78,6 @@ typedef struct Run {
     FrameFile files[FRAME_FILES_MAX];
     int file_count;
     FrameWriting writing;
-    LineFile stats;
     Tables tables;
     Record record;
     Totals *totals;     ///< the record's

@@ -20,16 +20,6 @@ static const double checkpoint_every = 5; ///< s, however expensive it is
 
 // ---- steps
 
-static void count_events(Run *run) {
-    size_t count;
-    const SingeEvent *events = singe_sim_events(run->sim, &count);
-    for (size_t i = 0; i < count; i++) {
-        if (events[i].kind == SINGE_EVENT_IGNITED) run->totals->ignited++;
-        else if (events[i].kind == SINGE_EVENT_HOLE_OPENED) run->totals->holes_opened++;
-        else if (events[i].kind == SINGE_EVENT_PIECE_FREED) run->totals->pieces_freed++;
-    }
-}
-
 /// Adds the stages' work since the last reading to the totals, and returns the frame's share.
 static void read_timers(Run *run, FrameCost *cost) {
     SingeTimers now = singe_sim_timers(run->sim), *before = &run->timers;
@@ -38,6 +28,7 @@ static void read_timers(Run *run, FrameCost *cost) {
         cost->stage[i] = 1e3 * seconds;
         run->totals->stage_seconds[i] += seconds;
     }
+
     run->totals->steps += now.steps - before->steps;
     run->totals->heat_iterations += now.heat_iterations - before->heat_iterations;
     run->totals->strands_projected += now.strands_projected - before->strands_projected;
@@ -50,13 +41,21 @@ SingeResult run_advance(Run *run, int frame, SingeError *error) {
         SingeResult result = scene_follow(run->job.scene, &run->job.assets, run->sim, frame - 1, error);
         if (result) return result;
     }
+
     while (run->step < run->job.scene->steps) {
         SingeResult result = singe_sim_step(run->sim);
         if (result) {
             *error = *singe_sim_error(run->sim);
             return result;
         }
-        count_events(run);
+
+        size_t count;
+        const SingeEvent *events = singe_sim_events(run->sim, &count);
+        for (size_t i = 0; i < count; i++) {
+            run->totals->ignited += events[i].kind == SINGE_EVENT_IGNITED;
+            run->totals->holes_opened += events[i].kind == SINGE_EVENT_HOLE_OPENED;
+            run->totals->pieces_freed += events[i].kind == SINGE_EVENT_PIECE_FREED;
+        }
         if ((result = tables_take_step(&run->tables, run->sim, error))) return result;
         run->step++;
         if (interrupt_asked()) break;
@@ -79,105 +78,57 @@ static SingeResult file_begin(Run *run, char *path, const char **name, SingeErro
     *file = (FrameFile){.path = path};
     *name = path;
     if (run->begun) return SINGE_OK;
+
     SingeResult result = file_draft(path, &file->draft, error);
     if (result) return result;
+
     interrupt_own(file->draft);
     *name = file->draft;
     return SINGE_OK;
 }
 
-/// Removes drafts that have not been published.
-static void files_end(Run *run) {
-    for (int i = 0; i < run->file_count; i++) {
-        interrupt_disown(run->files[i].draft);
-        file_discard(run->files[i].draft);
-        free(run->files[i].path);
-    }
-    run->file_count = 0;
-}
-
-/// Writes the frame in all formats, the cache first.
-static SingeResult write_surface(Run *run, int frame, SingeError *error) {
+/// Writes the frame's files, the cache first. Runs concurrently with the simulation, and uses neither it nor the totals.
+static void *write_files(void *argument) {
+    Run *run = argument;
+    FrameWriting *writing = &run->writing;
+    SingeError *error = &writing->error;
+    const int frame = writing->frame;
+    double begun = console_clock(), clock = begun, *seconds = writing->output_seconds;
     SingeResult result = SINGE_OK;
+    const char *name, *exr = NULL;
+
     for (int i = 0; i < OUTPUT_COUNT && !result; i++) {
-        const char *name;
         if (!output_has(run->outputs.formats, i)) continue;
         result = file_begin(run, folder_output(&run->folder, i, frame), &name, error);
         if (!result) result = outputs_write(&run->outputs, i, name, &run->frame, frame, error);
     }
-    return result;
-}
 
-static SingeResult write_gas(Run *run, int frame, SingeError *error) {
-    const char *name;
-    if (run->frame.gas.view.size[0] <= 0) return SINGE_OK;
-    SingeResult result = file_begin(run, folder_vdb(&run->folder, frame), &name, error);
-    if (!result) result = vdb_write_gas(name, &run->frame.gas, run->frame.time, error);
-    if (result || !run->baker) return result;
-    result = file_begin(run, folder_gas_detail(&run->folder, frame), &name, error);
-    const int detail = run->job.scene->gas_detail;
-    return result ? result : gas_detail_write_frame(name, &run->frame, run->baker, frame, detail, error);
-}
+    const bool gas = run->frame.gas.view.size[0] > 0;
+    if (!result && gas) result = file_begin(run, folder_vdb(&run->folder, frame), &name, error);
+    if (!result && gas) result = vdb_write_gas(name, &run->frame.gas, run->frame.time, error);
+    if (!result && gas && run->baker) {
+        result = file_begin(run, folder_gas_detail(&run->folder, frame), &name, error);
+        const int detail = run->job.scene->gas_detail;
+        if (!result) result = gas_detail_write_frame(name, &run->frame, run->baker, frame, detail, error);
+    }
 
-static SingeResult write_picture(Run *run, int frame, SingeError *error) {
-    const uint8_t *rgb;
-    const char *png, *exr = NULL;
-    if (!run->pictures) return SINGE_OK;
-    SingeResult result = frame_draw(&run->frame, run->pictures, &rgb, error);
-    if (!result) result = file_begin(run, folder_png(&run->folder, frame), &png, error);
-    if (!result && run->layers) result = file_begin(run, folder_exr(&run->folder, frame), &exr, error);
-    return result ? result : frame_write_picture(run->pictures, rgb, png, exr, error);
-}
-
-/// Runs concurrently with the simulation, and uses neither it nor the totals.
-static void *write_files(void *argument) {
-    Run *run = argument;
-    FrameWriting *writing = &run->writing;
-    double begun = console_clock(), clock = begun, *seconds = writing->output_seconds;
-    SingeResult result = write_surface(run, writing->frame, &writing->error);
-    if (!result) result = write_gas(run, writing->frame, &writing->error);
     seconds[TOTAL_PLY] += seconds_since(&clock);
-    if (!result) result = write_picture(run, writing->frame, &writing->error);
+
+    if (!result && run->pictures) {
+        const uint8_t *rgb;
+        result = frame_draw(&run->frame, run->pictures, &rgb, error);
+        if (!result) result = file_begin(run, folder_png(&run->folder, frame), &name, error);
+        if (!result && run->layers) result = file_begin(run, folder_exr(&run->folder, frame), &exr, error);
+        if (!result) result = frame_write_picture(run->pictures, rgb, name, exr, error);
+    }
+
     seconds[TOTAL_PREVIEW] += seconds_since(&clock);
     writing->cost.output += 1e3 * (clock - begun);
     writing->result = result;
     return NULL;
 }
 
-/// Copies the data of the files.
-static SingeResult take_frame(Run *run, SingeError *error) {
-    FrameCost *cost = &run->writing.cost;
-    double clock = console_clock();
-    SingeResult result = frame_take_surface(run->sim, &run->frame, error);
-    double seconds = seconds_since(&clock);
-    cost->surface = cost->output = 1e3 * seconds;
-    run->totals->output_seconds[TOTAL_SURFACE] += seconds;
-    cost->triangles = run->record.triangles = run->frame.surface.triangle_count;
-    cost->fine_triangles = run->record.fine_triangles = run->frame.surface.fine_triangle_count;
-    return result ? result : frame_take_gas(run->sim, &run->frame, error);
-}
-
-/// Reports triangles that cross in the first frame: contact cannot separate them.
-static SingeResult tell_of_crossings(Run *run, SingeError *error) {
-    float at[3];
-    if (!initial_count(&run->frame.surface, &run->totals->crossed, at)) {
-        *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1, .message = "no memory to look for crossings"};
-        return SINGE_ERROR_MEMORY;
-    }
-    if (run->totals->crossed)
-        console_warn(run->console,
-                     "%" PRIu64 " pairs of triangles cross initially, the first near (%.4g, %.4g, %.4g) m; `singe "
-                     "verify` counts them separately",
-                     run->totals->crossed, (double)at[0], (double)at[1], (double)at[2]);
-    return SINGE_OK;
-}
-
 // ---- checkpoints
-
-static bool checkpoint_due(const Run *run) {
-    double since = console_clock() - run->checkpoint_time;
-    return since >= run->checkpoint_cost * (1 / checkpoint_share - 1) || since >= checkpoint_every;
-}
 
 /// The time that this takes determines when the next one is due.
 static SingeResult take_checkpoint(Run *run, CheckpointBytes *taken, SingeError *error) {
@@ -192,8 +143,7 @@ static SingeResult write_checkpoint(Run *run, CheckpointBytes *taken, Progress p
     double clock = console_clock();
     totals->wall_seconds = run->wall_before + clock - run->started;
     memcpy(totals->output_seconds, run->totals->output_seconds, sizeof totals->output_seconds);
-    SingeResult result = lines_sync(&run->stats, error);
-    if (!result) result = tables_sync(&run->tables, error);
+    SingeResult result = tables_sync(&run->tables, error);
     if (!result) result = outputs_write_roots(&run->outputs, progress.frame, error);
     if (!result)
         result = checkpoint_write(&run->folder, run->sim, run->job.hooks.allocator, taken, progress, run->hash,
@@ -216,50 +166,78 @@ SingeResult run_write_checkpoint(Run *run, Progress progress, SingeError *error)
 
 // ---- a frame
 
-static void start_writing(Run *run) {
-    FrameWriting *writing = &run->writing;
-    bool beside = run->begun && run->job.hooks.thread_count != 1;
-    writing->threaded = beside && pthread_create(&writing->thread, NULL, write_files, run) == 0;
-    if (!writing->threaded) write_files(run); // also if a thread cannot be created
-}
-
 SingeResult run_begin_frame(Run *run, int frame, bool last, SingeError *error) {
     FrameWriting *writing = &run->writing;
     *writing = (FrameWriting){.frame = frame};
+    FrameCost *cost = &writing->cost;
     run->step = 0;
-    read_timers(run, &writing->cost);
-    SingeResult result = take_frame(run, error);
+    read_timers(run, cost);
+
+    // copy what the files need
+    double clock = console_clock();
+    SingeResult result = frame_take_surface(run->sim, &run->frame, error);
+    const double seconds = seconds_since(&clock);
+    cost->surface = cost->output = 1e3 * seconds;
+    run->totals->output_seconds[TOTAL_SURFACE] += seconds;
+    cost->triangles = run->record.triangles = run->frame.surface.triangle_count;
+    cost->fine_triangles = run->record.fine_triangles = run->frame.surface.fine_triangle_count;
+    if (!result) result = frame_take_gas(run->sim, &run->frame, error);
     writing->stats = singe_sim_stats(run->sim);
     run->totals->hottest = fmax(run->totals->hottest, (double)writing->stats.temperature_max);
     if (!result) result = tables_take_frame(&run->tables, run->sim, frame, error);
-    if (!result && frame == 1) result = tell_of_crossings(run, error);
-    if (!result && (last || checkpoint_due(run))) result = take_checkpoint(run, &writing->checkpoint, error);
+
+    // contact cannot separate triangles that cross in the first frame
+    float at[3];
+    if (!result && frame == 1 && !initial_count(&run->frame.surface, &run->totals->crossed, at)) {
+        *error = (SingeError){
+            .code = SINGE_ERROR_MEMORY, .element = -1, .message = "out of memory while looking for crossings"};
+        result = SINGE_ERROR_MEMORY;
+    }
+
+    if (!result && frame == 1 && run->totals->crossed)
+        console_warn(run->console,
+                     "%" PRIu64 " pairs of triangles cross initially, the first near (%.4g, %.4g, %.4g) m; `singe "
+                     "verify` counts them separately",
+                     run->totals->crossed, (double)at[0], (double)at[1], (double)at[2]);
+
+    const double since = console_clock() - run->checkpoint_time;
+    const bool due = since >= run->checkpoint_cost * (1 / checkpoint_share - 1) || since >= checkpoint_every;
+    if (!result && (last || due)) result = take_checkpoint(run, &writing->checkpoint, error);
     writing->totals = *run->totals;
-    if (result) writing->frame = 0;
-    else start_writing(run);
-    return result;
+    if (result) {
+        writing->frame = 0;
+        return result;
+    }
+
+    // also here if a thread cannot be created
+    const bool beside = run->begun && run->job.hooks.thread_count != 1;
+    writing->threaded = beside && pthread_create(&writing->thread, NULL, write_files, run) == 0;
+    if (!writing->threaded) write_files(run);
+    return SINGE_OK;
 }
 
-static SingeResult join_files(Run *run, SingeError *error) {
+SingeResult run_end_frame(Run *run, SingeStats *stats, SingeError *error) {
     FrameWriting *writing = &run->writing;
+    const int frame = writing->frame;
+    if (!frame) return SINGE_OK;
     if (writing->threaded) pthread_join(writing->thread, NULL);
     for (int i = 0; i < TOTAL_OUTPUT_COUNT; i++) run->totals->output_seconds[i] += writing->output_seconds[i];
     SingeResult result = writing->result;
     if (result) *error = writing->error;
     if (!result && !run->begun) result = run_take_over(run, error);
-    files_end(run);
-    return result;
-}
 
-SingeResult run_end_frame(Run *run, SingeStats *stats, SingeError *error) {
-    FrameWriting *writing = &run->writing;
-    int frame = writing->frame;
-    if (!frame) return SINGE_OK;
-    SingeResult result = join_files(run, error);
+    // remove drafts that have not been published
+    for (int i = 0; i < run->file_count; i++) {
+        interrupt_disown(run->files[i].draft);
+        file_discard(run->files[i].draft);
+        free(run->files[i].path);
+    }
+
+    run->file_count = 0;
+
     writing->frame = 0;
     *stats = writing->stats;
-    if (!result) result = tables_write_frame(&run->tables, frame, error);
-    if (!result) result = stats_write(&run->stats, frame, stats, &writing->totals, &writing->cost, error);
+    if (!result) result = tables_write_frame(&run->tables, frame, stats, &writing->totals, &writing->cost, error);
     if (!result) run->record.frames_done = frame;
     if (!result && writing->checkpoint.bytes)
         result = write_checkpoint(run, &writing->checkpoint, (Progress){frame, 0}, &writing->totals, error);

@@ -14,6 +14,7 @@ int command_scene_doc(int argc, char **argv) {
     int option = args_next(&reader, &value);
     if (option == ARG_HELP) return EXIT_GOOD;
     if (option != ARG_END) return EXIT_INPUT;
+
     setvbuf(stdout, NULL, _IOFBF, 1 << 18); // written in one piece, so that main gets the reason of a failure
     scene_document(stdout);
     return EXIT_GOOD; // main checks whether it was written

@@ -1,12 +1,23 @@
+// Numbers are printed by printf: the program never calls setlocale, so the decimal point is a point.
 #include "cli/tables.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "cli/text.h"
 #include "common/store.h"
+#include "formats/formats.h"
 
+static const char stats_header[] =
+    "frame,time,particles,springs,triangles,pieces,mass,burnt_fraction,temperature_max,heat_in,heat_lost,"
+    "heat_of_combustion,heat_stored,ledger_error,strain_mean,strain_p99,strain_max,inverted_cells,ms_heat,ms_burn,"
+    "ms_ablate,ms_dynamics,ms_gas,ms_output,speed_rms_unburnt,mass_ledger_error,ignited,holes_opened,pieces_freed,"
+    "front_speed,triangles_fine,ms_surface,tears\n";
 static const char events_header[] = "frame,time,event,element,x,y,z,u,v\n";
 static const char probes_header[] =
     "frame,time,probe,sheet,there,x,y,z,temperature,temperature_peak,mass,burn_rate,time_ignited,piece\n";
@@ -16,42 +27,136 @@ static SingeResult tables_no_memory(SingeError *error) {
     return SINGE_ERROR_MEMORY;
 }
 
+// ---- files of lines
+
+static void lines_close(LineFile *file) {
+    if (file->fd >= 0) close(file->fd);
+    file->fd = -1;
+}
+
+static SingeResult lines_open(LineFile *file, const char *path, SingeError *error) {
+    // without O_NONBLOCK a named pipe would wait here for its reader
+    const int flags = O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+    struct stat info;
+    *file = (LineFile){.path = path, .fd = open(path, flags, 0666)};
+    if (file->fd < 0) return folder_fail(file->path, "write", errno == ENXIO ? 0 : errno, error);
+    if (fstat(file->fd, &info) == 0 && S_ISREG(info.st_mode)) return SINGE_OK;
+
+    lines_close(file);
+    return folder_fail(file->path, "write", 0, error);
+}
+
+/// Appends whole lines; if they do not fit on the disk, none is left.
+static SingeResult lines_append(LineFile *file, const char *text, size_t size, SingeError *error) {
+    for (size_t done = 0; done < size;) {
+        ssize_t n = write(file->fd, text + done, size - done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) {
+            int reason = n < 0 ? errno : ENOSPC;
+            if (ftruncate(file->fd, (off_t)file->size) != 0) return folder_fail(file->path, "cut", errno, error);
+            return folder_fail(file->path, "write", reason, error);
+        }
+        done += (size_t)n;
+    }
+
+    file->size += (int64_t)size;
+    return SINGE_OK;
+}
+
+static SingeResult lines_begin(LineFile *file, const char *header, SingeError *error) {
+    if (ftruncate(file->fd, 0) != 0) return folder_fail(file->path, "write", errno, error);
+    file->size = 0;
+    return lines_append(file, header, strlen(header), error);
+}
+
+/// Truncates the file to its header and `count` lines, which must exist. If `per_frame` is not 0, each begins with its
+/// frame, and a frame has that many. `what` is for the message: "frames 1 to 12".
+static SingeResult lines_cut(LineFile *file, const char *header, uint64_t count, uint32_t per_frame, const char *what,
+                             SingeError *error) {
+    Bytes bytes = {0};
+    SingeResult result = file_read(file->path, (SingeAllocator){0}, &bytes, error);
+    if (result) return result;
+
+    // the size of what is kept
+    size_t at = strlen(header);
+    bool good = bytes.size >= at && memcmp(bytes.data, header, at) == 0;
+    for (uint64_t i = 0; good && i < count; i++) {
+        const char *line = (const char *)bytes.data + at, *end = memchr(line, '\n', bytes.size - at);
+        char number[24] = "";
+        if (per_frame) snprintf(number, sizeof number, "%" PRIu64 ",", i / per_frame + 1);
+        good = end && (size_t)(end - line) >= strlen(number) && memcmp(line, number, strlen(number)) == 0;
+        if (good) at += (size_t)(end - line) + 1;
+    }
+    bytes_free(&bytes);
+
+    if (!good) {
+        *error = (SingeError){.code = SINGE_ERROR_FORMAT, .stage = "resume", .element = -1};
+        snprintf(error->message, sizeof error->message,
+                 "%.200s lacks %s, which the checkpoint needs; run without --resume to start over", file->path, what);
+        return SINGE_ERROR_FORMAT;
+    }
+    file->size = (int64_t)at;
+    if (ftruncate(file->fd, (off_t)file->size) != 0) return folder_fail(file->path, "cut", errno, error);
+    return SINGE_OK;
+}
+
+static SingeResult lines_sync(LineFile *file, SingeError *error) {
+    // EINVAL: the file system cannot flush
+    if (fsync(file->fd) == 0 || errno == EINVAL || errno == ENOTSUP) return SINGE_OK;
+    return folder_fail(file->path, "write", errno, error);
+}
+
+// ---- the three tables
+
 SingeResult tables_open(Tables *tables, const Folder *folder, const Scene *scene, const SceneAssets *assets,
                         SingeError *error) {
     *tables = (Tables)TABLES_CLOSED;
     tables->scene = scene;
     tables->assets = assets;
-    SingeResult result = scene->output.events ? lines_open(&tables->events, folder->events, error) : SINGE_OK;
+    SingeResult result = lines_open(&tables->stats, folder->stats, error);
+    if (!result && scene->output.events) result = lines_open(&tables->events, folder->events, error);
     if (!result && scene->probe_count) result = lines_open(&tables->probes, folder->probes, error);
     return result;
 }
 
 SingeResult tables_begin(Tables *tables, SingeError *error) {
-    SingeResult result = tables->events.fd >= 0 ? lines_begin(&tables->events, events_header, error) : SINGE_OK;
+    SingeResult result = lines_begin(&tables->stats, stats_header, error);
+    if (!result && tables->events.fd >= 0) result = lines_begin(&tables->events, events_header, error);
     if (!result && tables->probes.fd >= 0) result = lines_begin(&tables->probes, probes_header, error);
     return result;
 }
 
-/// The lines of a frame are consecutive, one per probe.
-static bool is_of_frame(uint64_t line, const char *text, size_t size, void *context) {
-    const Tables *tables = context;
-    char number[24];
-    const size_t length =
-        (size_t)snprintf(number, sizeof number, "%" PRIu64 ",", line / tables->scene->probe_count + 1);
-    return size >= length && memcmp(text, number, length) == 0;
-}
-
 SingeResult tables_cut(Tables *tables, int frames, const Totals *totals, SingeError *error) {
     char what[80];
-    SingeResult result = SINGE_OK;
-    const uint64_t events = totals->ignited + totals->holes_opened + totals->pieces_freed;
-    snprintf(what, sizeof what, "the %" PRIu64 " events up to frame %d", events, frames);
-    if (tables->events.fd >= 0) result = lines_cut(&tables->events, events_header, events, NULL, NULL, what, error);
     snprintf(what, sizeof what, "frames 1 to %d", frames);
-    if (!result && tables->probes.fd >= 0)
-        result = lines_cut(&tables->probes, probes_header, (uint64_t)frames * tables->scene->probe_count, is_of_frame,
-                           tables, what, error);
+    SingeResult result = lines_cut(&tables->stats, stats_header, (uint64_t)frames, 1, what, error);
+    if (!result && tables->probes.fd >= 0) {
+        const uint32_t per_frame = tables->scene->probe_count;
+        result = lines_cut(&tables->probes, probes_header, (uint64_t)frames * per_frame, per_frame, what, error);
+    }
+
+    if (!result && tables->events.fd >= 0) {
+        const uint64_t events = totals->ignited + totals->holes_opened + totals->pieces_freed;
+        snprintf(what, sizeof what, "the %" PRIu64 " events up to frame %d", events, frames);
+        result = lines_cut(&tables->events, events_header, events, 0, what, error);
+    }
     return result;
+}
+
+SingeResult tables_sync(Tables *tables, SingeError *error) {
+    SingeResult result = lines_sync(&tables->stats, error);
+    if (!result && tables->events.fd >= 0) result = lines_sync(&tables->events, error);
+    if (!result && tables->probes.fd >= 0) result = lines_sync(&tables->probes, error);
+    return result;
+}
+
+void tables_close(Tables *tables) {
+    lines_close(&tables->stats);
+    lines_close(&tables->events);
+    lines_close(&tables->probes);
+    store_free((SingeAllocator){0}, tables->held, tables->held_capacity, sizeof *tables->held);
+    free(tables->lines);
+    *tables = (Tables)TABLES_CLOSED;
 }
 
 // ---- events
@@ -63,6 +168,7 @@ SingeResult tables_take_step(Tables *tables, const SingeSim *sim, SingeError *er
     if (!store_grow((SingeAllocator){0}, &tables->held, &tables->held_capacity, tables->held_count + count,
                     sizeof *tables->held))
         return tables_no_memory(error);
+
     const SingeView view = singe_sim_view(sim);
     for (size_t i = 0; i < count; i++) {
         HeldEvent *held = &tables->held[tables->held_count++];
@@ -72,46 +178,47 @@ SingeResult tables_take_step(Tables *tables, const SingeSim *sim, SingeError *er
     return SINGE_OK;
 }
 
-static void put_event(FILE *file, const HeldEvent *held, int frame) {
-    static const char *const names[] = {
-        [SINGE_EVENT_IGNITED] = "ignited", [SINGE_EVENT_HOLE_OPENED] = "hole", [SINGE_EVENT_PIECE_FREED] = "piece"};
-    const SingeEvent *e = &held->event;
-    fprintf(file, "%d,%.9g,%s,%" PRId32 ",%.9g,%.9g,%.9g,", frame, e->time, names[e->kind], e->element,
-            (double)e->position[0], (double)e->position[1], (double)e->position[2]);
-    if (e->kind == SINGE_EVENT_PIECE_FREED) fputs(",\n", file);
-    else fprintf(file, "%.9g,%.9g\n", (double)held->uv[0], (double)held->uv[1]);
-}
-
 /// Writes the first of the held events, and drops them.
 static SingeResult write_events(Tables *tables, size_t count, int frame, SingeError *error) {
+    static const char *const names[] = {
+        [SINGE_EVENT_IGNITED] = "ignited", [SINGE_EVENT_HOLE_OPENED] = "hole", [SINGE_EVENT_PIECE_FREED] = "piece"};
     char *text = NULL;
     size_t size = 0;
     if (!count) return SINGE_OK;
+
     FILE *file = open_memstream(&text, &size);
-    for (size_t i = 0; file && i < count; i++) put_event(file, &tables->held[i], frame);
+    for (size_t i = 0; file && i < count; i++) {
+        const SingeEvent *e = &tables->held[i].event;
+        const float *uv = tables->held[i].uv;
+        fprintf(file, "%d,%.9g,%s,%" PRId32 ",%.9g,%.9g,%.9g,", frame, e->time, names[e->kind], e->element,
+                (double)e->position[0], (double)e->position[1], (double)e->position[2]);
+        if (e->kind == SINGE_EVENT_PIECE_FREED) fputs(",\n", file);
+        else fprintf(file, "%.9g,%.9g\n", (double)uv[0], (double)uv[1]);
+    }
+
     SingeResult result =
         text_stream_end(file, &text) ? lines_append(&tables->events, text, size, error) : tables_no_memory(error);
     free(text);
+
     tables->held_count -= count;
     memmove(tables->held, tables->held + count, tables->held_count * sizeof *tables->held);
     return result;
 }
 
-// ---- probes
+SingeResult tables_write_steps(Tables *tables, int frame, SingeError *error) {
+    return write_events(tables, tables->held_count, frame, error);
+}
 
+// ---- frames
+
+/// A value at a probe, from the corners of its cell.
 static double weighted(const SceneProbePoint *point, const uint32_t corner[4], const float *values, size_t stride) {
     double sum = 0;
     for (int i = 0; i < 4; i++) sum += point->weight[i] * (double)values[stride * corner[i]];
     return sum;
 }
 
-/// Time at which the fire arrived, interpolated between corners that it has reached; -1 before.
-static double ignited_at(const SceneProbePoint *point, const uint32_t corner[4], const float *times) {
-    for (int i = 0; i < 4; i++)
-        if (point->weight[i] > 0 && times[corner[i]] < 0) return -1;
-    return weighted(point, corner, times, 1);
-}
-
+/// The line of a probe at the current time.
 static void put_probe(FILE *file, const SingeView *view, const SceneProbe *probe, const SceneProbePoint *point,
                       int frame) {
     const bool there = view->cell_flags[point->cell] & SINGE_ALIVE;
@@ -122,12 +229,17 @@ static void put_probe(FILE *file, const SingeView *view, const SceneProbe *probe
         fputs(",,,,,,,,\n", file);
         return;
     }
+
+    // when the fire arrived, between corners that it has reached; -1 before
     const uint32_t *corner = view->cells[point->cell];
+    double ignited = weighted(point, corner, view->time_ignited, 1);
+    for (int i = 0; i < 4; i++)
+        if (point->weight[i] > 0 && view->time_ignited[corner[i]] < 0) ignited = -1;
+
     for (int c = 0; c < 3; c++) fprintf(file, "%.9g,", weighted(point, corner, &view->position[0][c], 4));
     fprintf(file, "%.9g,%.9g,%.9g,%.9g,%.9g,%" PRId32 "\n", weighted(point, corner, view->temperature, 1),
             weighted(point, corner, view->temperature_peak, 1), weighted(point, corner, view->mass, 1),
-            weighted(point, corner, view->burn_rate, 1), ignited_at(point, corner, view->time_ignited),
-            view->piece[view->vertex_count + point->cell]);
+            weighted(point, corner, view->burn_rate, 1), ignited, view->piece[view->vertex_count + point->cell]);
 }
 
 SingeResult tables_take_frame(Tables *tables, const SingeSim *sim, int frame, SingeError *error) {
@@ -135,6 +247,7 @@ SingeResult tables_take_frame(Tables *tables, const SingeSim *sim, int frame, Si
     free(tables->lines);
     tables->lines = NULL;
     if (tables->probes.fd < 0) return SINGE_OK;
+
     const SingeView view = singe_sim_view(sim);
     size_t size = 0;
     FILE *file = open_memstream(&tables->lines, &size);
@@ -143,31 +256,27 @@ SingeResult tables_take_frame(Tables *tables, const SingeSim *sim, int frame, Si
     return text_stream_end(file, &tables->lines) ? SINGE_OK : tables_no_memory(error);
 }
 
-// ---- both
-
-SingeResult tables_write_frame(Tables *tables, int frame, SingeError *error) {
+SingeResult tables_write_frame(Tables *tables, int frame, const SingeStats *s, const Totals *totals,
+                               const FrameCost *cost, SingeError *error) {
     SingeResult result = write_events(tables, tables->due, frame, error);
     tables->due = 0;
     if (!result && tables->lines) result = lines_append(&tables->probes, tables->lines, strlen(tables->lines), error);
     free(tables->lines);
     tables->lines = NULL;
-    return result;
-}
+    if (result) return result;
 
-SingeResult tables_write_steps(Tables *tables, int frame, SingeError *error) {
-    return write_events(tables, tables->held_count, frame, error);
-}
-
-SingeResult tables_sync(Tables *tables, SingeError *error) {
-    SingeResult result = tables->events.fd >= 0 ? lines_sync(&tables->events, error) : SINGE_OK;
-    if (!result && tables->probes.fd >= 0) result = lines_sync(&tables->probes, error);
-    return result;
-}
-
-void tables_close(Tables *tables) {
-    lines_close(&tables->events);
-    lines_close(&tables->probes);
-    store_free((SingeAllocator){0}, tables->held, tables->held_capacity, sizeof *tables->held);
-    free(tables->lines);
-    *tables = (Tables)TABLES_CLOSED;
+    char line[1024];
+    int length = snprintf(
+        line, sizeof line,
+        "%d,%.9g,%" PRIu32 ",%" PRIu32 ",%" PRIu64 ",%" PRIu32
+        ",%.9g,%.9g,%.7g,%.9g,%.9g,%.9g,%.9g,%.4g,%.6g,%.6g,%.6g,%" PRIu32
+        ",%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.6g,%.4g,%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%.6g,%" PRIu64 ",%.3f,%" PRIu32
+        "\n",
+        frame, s->time, s->particles, s->springs, cost->triangles, s->pieces, s->mass, s->burnt_fraction,
+        (double)s->temperature_max, s->heat_in, s->heat_lost, s->heat_of_combustion, s->heat_stored, s->ledger_error,
+        s->strain_mean, s->strain_p99, s->strain_max, s->inverted_cells, cost->stage[SINGE_STAGE_HEAT],
+        cost->stage[SINGE_STAGE_BURN], cost->stage[SINGE_STAGE_ABLATE], cost->stage[SINGE_STAGE_DYNAMICS],
+        cost->stage[SINGE_STAGE_GAS], cost->output, s->speed_rms_unburnt, s->mass_ledger_error, totals->ignited,
+        totals->holes_opened, totals->pieces_freed, s->front_speed, cost->fine_triangles, cost->surface, s->tears);
+    return lines_append(&tables->stats, line, (size_t)length, error);
 }

@@ -1,13 +1,44 @@
-// Tables of events and probes: DIR/events.csv with a line per event, in order of time, and DIR/probes.csv with a line
-// per probe and frame. They grow with the frames; a resumed run truncates them to its checkpoint.
+// The tables of a run, which grow by whole lines with its frames: DIR/stats.csv with a line per frame, DIR/events.csv
+// with a line per event, in order of time, and DIR/probes.csv with a line per probe and frame. A resumed run truncates
+// them to its checkpoint.
 #ifndef CLI_TABLES_H
 #define CLI_TABLES_H
 
-#include "cli/checkpoint.h"
+#include <stddef.h>
+#include <stdint.h>
+
 #include "cli/folder.h"
-#include "cli/line_file.h"
-#include "cli/totals.h"
 #include "scene/scene.h"
+#include "singe/base.h"
+#include "singe/sim.h"
+
+enum { TOTAL_SURFACE, TOTAL_PLY, TOTAL_PREVIEW, TOTAL_CHECKPOINT, TOTAL_OUTPUT_COUNT };
+
+/// Fixed layout without padding: it is part of the checkpoint.
+typedef struct Totals {
+    double stage_seconds[SINGE_STAGE_COUNT];
+    double output_seconds[TOTAL_OUTPUT_COUNT];
+    double wall_seconds;
+    uint64_t steps, heat_iterations, strands_projected, contacts;
+    uint64_t ignited, holes_opened, pieces_freed;
+    uint64_t crossed; ///< pairs of triangles of the first frame
+    double hottest;   ///< K, of all frames
+} Totals;
+
+/// A file that grows by whole lines.
+typedef struct LineFile {
+    int fd; ///< -1 when closed
+    const char *path;
+    int64_t size; ///< bytes of whole lines
+} LineFile;
+#define LINE_FILE_CLOSED \
+    { .fd = -1 }
+
+/// The times of a frame (ms) and its triangles.
+typedef struct FrameCost {
+    double stage[SINGE_STAGE_COUNT], surface, output; ///< output includes the surface
+    uint64_t triangles, fine_triangles;
+} FrameCost;
 
 typedef struct HeldEvent {
     SingeEvent event;
@@ -17,32 +48,35 @@ typedef struct HeldEvent {
 typedef struct Tables {
     const Scene *scene;
     const SceneAssets *assets;
-    LineFile events, probes; ///< closed if the scene asks for none
-    HeldEvent *held;         ///< not written yet
+    LineFile stats, events, probes; ///< events and probes are closed if the scene asks for none
+    HeldEvent *held;                ///< not written yet
     size_t held_count, held_capacity;
     size_t due;  ///< number of them that belong to the frame being written
     char *lines; ///< of that frame's probes, from malloc; NULL: none
 } Tables;
 #define TABLES_CLOSED \
-    { .events = LINE_FILE_CLOSED, .probes = LINE_FILE_CLOSED }
+    { .stats = LINE_FILE_CLOSED, .events = LINE_FILE_CLOSED, .probes = LINE_FILE_CLOSED }
 
-/// Opens the tables that the scene asks for, and changes nothing in them. Scene, assets and folder must outlive it.
+/// Opens the tables that the scene asks for, and changes nothing in them. A link, a pipe or a device in the place of one
+/// is refused. Scene, assets and folder must outlive it.
 SINGE_NODISCARD SingeResult tables_open(Tables *tables, const Folder *folder, const Scene *scene,
                                         const SceneAssets *assets, SingeError *error);
 /// Empties the files and writes their headers.
 SINGE_NODISCARD SingeResult tables_begin(Tables *tables, SingeError *error);
-/// Truncates the files to the state of a checkpoint with so many whole frames and these totals.
+/// Truncates the files to the state of a checkpoint with so many whole frames and these totals. All lines up to there
+/// must exist.
 SINGE_NODISCARD SingeResult tables_cut(Tables *tables, int frames, const Totals *totals, SingeError *error);
 
 /// Holds the events of the simulation's last step.
 SINGE_NODISCARD SingeResult tables_take_step(Tables *tables, const SingeSim *sim, SingeError *error);
 /// Holds the probes' values at a frame; the events so far belong to that frame.
 SINGE_NODISCARD SingeResult tables_take_frame(Tables *tables, const SingeSim *sim, int frame, SingeError *error);
-/// Writes the lines held for a frame.
-SINGE_NODISCARD SingeResult tables_write_frame(Tables *tables, int frame, SingeError *error);
+/// Writes the lines held for a frame, and its line of statistics. A line that does not fit on the disk leaves nothing.
+SINGE_NODISCARD SingeResult tables_write_frame(Tables *tables, int frame, const SingeStats *stats, const Totals *totals,
+                                               const FrameCost *cost, SingeError *error);
 /// Writes the events of the steps since the last frame, before `frame`.
 SINGE_NODISCARD SingeResult tables_write_steps(Tables *tables, int frame, SingeError *error);
-/// Asks the system to put the lines on the disk.
+/// Asks the system to put the lines on the disk, as a checkpoint relies on them.
 SINGE_NODISCARD SingeResult tables_sync(Tables *tables, SingeError *error);
 void tables_close(Tables *tables);
 

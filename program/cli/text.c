@@ -9,7 +9,7 @@
 #include "cli/cli.h"
 #include "common/utf8.h"
 
-/// A block that is there, or the end.
+/// The block; without memory the program ends.
 static char *need(char *block) {
     if (block) return block;
     fputs("singe: error: out of memory\n", stderr);
@@ -45,6 +45,7 @@ void text_json_string(FILE *file, const char *text) {
         else fwrite(c, 1, (size_t)length, file);
         c += length ? length : 1;
     }
+
     fputc('"', file);
 }
 
@@ -92,7 +93,9 @@ bool text_json_member(const char *json, size_t size, const char *name, const cha
     const char *end = json + size, *p = skip_space(json, end);
     size_t length = strlen(name);
     if (p >= end || *p != '{') return false;
+
     p = skip_space(p + 1, end);
+
     while (p < end && *p == '"') {
         const char *key = p + 1, *after = skip_string(p, end);
         if (!after) return false;
@@ -125,21 +128,8 @@ static int32_t read_hex(const char *text, const char *end) {
     return value;
 }
 
-/// Appends a character; \udc80 to \udcff stand for single bytes.
-static char *put_code(char *out, uint32_t code) {
-    if (code >= 0xdc80 && code <= 0xdcff) {
-        *out++ = (char)(code - 0xdc00);
-        return out;
-    }
-    int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
-    static const unsigned char heads[] = {0, 0xc0, 0xe0, 0xf0};
-    *out++ = (char)(heads[more] | code >> 6 * more);
-    while (more--) *out++ = (char)(0x80 | (code >> 6 * more & 0x3f));
-    return out;
-}
-
-/// Reads the escape after a backslash and appends its character. Returns the position after it, or NULL if it is no
-/// escape.
+/// Reads the escape after a backslash and appends its character; \udc80 to \udcff stand for single bytes. Returns the
+/// position after it, or NULL if it is no escape.
 static const char *put_escape(const char *p, const char *end, char **out) {
     static const char kinds[] = "\"\\/bfnrt", meanings[] = "\"\\/\b\f\n\r\t";
     const char *kind = p < end && *p ? strchr(kinds, *p) : NULL;
@@ -151,13 +141,21 @@ static const char *put_escape(const char *p, const char *end, char **out) {
     int32_t code = read_hex(p + 1, end), low = -1;
     if (code <= 0) return NULL; // a text ends at 0
     p += 5;
-    bool high = code >= 0xd800 && code < 0xdc00;
+    const bool high = code >= 0xd800 && code < 0xdc00;
     if (high && end - p >= 6 && p[0] == '\\' && p[1] == 'u') low = read_hex(p + 2, end);
     if (low >= 0xdc00 && low < 0xe000) {
         code = 0x10000 + ((code - 0xd800) << 10) + (low - 0xdc00);
         p += 6;
     }
-    *out = put_code(*out, (uint32_t)code);
+
+    if (code >= 0xdc80 && code <= 0xdcff) {
+        *(*out)++ = (char)(code - 0xdc00);
+        return p;
+    }
+    static const unsigned char heads[] = {0, 0xc0, 0xe0, 0xf0};
+    int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
+    *(*out)++ = (char)(heads[more] | (unsigned)code >> 6 * more);
+    while (more--) *(*out)++ = (char)(0x80 | ((unsigned)code >> 6 * more & 0x3f));
     return p;
 }
 
@@ -170,10 +168,12 @@ char *text_json_unquote(const char *value, size_t size) {
         if (*p == '\\') p = put_escape(p + 1, end, &out);
         else *out++ = *p++;
     }
+
     if (!p) {
         free(text);
         return NULL;
     }
+
     *out = 0;
     return text;
 }
@@ -196,6 +196,7 @@ void text_csv_cell(FILE *file, const char *text) {
         fputs(text, file);
         return;
     }
+
     fputc('"', file);
     for (; *text; text++) fprintf(file, *text == '"' ? "\"\"" : "%c", *text);
     fputc('"', file);

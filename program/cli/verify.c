@@ -5,23 +5,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/findings.h"
 #include "cli/args.h"
 #include "cli/cli.h"
-#include "analysis/findings.h"
+#include "cli/console.h"
+#include "cli/csv.h"
 #include "cli/folder.h"
 #include "cli/interrupt.h"
 #include "cli/job.h"
-#include "cli/stats_table.h"
-#include "cli/streams.h"
 #include "cli/text.h"
 #include "common/printable.h"
 
 enum { OPT_FRAMES, OPT_STRETCH, OPT_CSV, OPT_COUNT };
 
 static const ArgOption verify_options[OPT_COUNT] = {
-    [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone) [all]"},
-    [OPT_STRETCH] = {"stretch", 0, "X", "edges X times as long as at rest are stretched [2]"},
-    [OPT_CSV] = {"csv", 0, "FILE", "writes the counts of every frame to FILE, too"},
+    [OPT_FRAMES] = {"frames", 0, "A-B", "reads only these frames (or A alone) [all]"},
+    [OPT_STRETCH] = {"stretch", 0, "X", "edges longer than X times their length at rest are stretched [2]"},
+    [OPT_CSV] = {"csv", 0, "FILE", "also writes the counts of every frame to FILE"},
 };
 
 static const ArgCommand verify_command = {
@@ -30,22 +30,22 @@ static const ArgCommand verify_command = {
     "Reads a cache and counts crossings, inverted cells and other faults.",
     verify_options,
     OPT_COUNT,
-    "docs/cli.md defines the faults. Exit codes: 0 no faults, 1 faults or interrupted, 2 cannot be read."};
+    "docs/cli.md defines the faults. Exit codes: 0 no faults, 1 faults or interrupted, 2 a frame cannot be read."};
 
 static const struct {
     const char *key, *title;
 } faults[FAULT_COUNT] = {
     [FAULT_CROSSING] = {"crossings", "pairs of triangles that cross"},
     [FAULT_INVERTED] = {"inverted_cells", "inverted cells (stats.csv)"},
-    [FAULT_STRETCHED] = {"stretched_edges", "edges stretched"},
+    [FAULT_STRETCHED] = {"stretched_edges", "stretched edges"},
     [FAULT_NON_MANIFOLD] = {"non_manifold_edges", "edges of more than two triangles"},
     [FAULT_WINDING] = {"winding", "edges whose triangles are wound against each other"},
     [FAULT_DEGENERATE] = {"degenerate_triangles", "triangles without area"},
-    [FAULT_DUPLICATE] = {"duplicate_triangles", "triangles twice"},
+    [FAULT_DUPLICATE] = {"duplicate_triangles", "triangles that occur twice"},
     [FAULT_NOT_FINITE] = {"not_finite", "values that are not finite"},
     [FAULT_MISSING] = {"missing", "missing properties"},
     [FAULT_INDEX] = {"index", "triangles with an index out of range"},
-    [FAULT_STATS] = {"stats", "contradictions to stats.csv"},
+    [FAULT_STATS] = {"stats", "contradictions of stats.csv"},
 };
 
 typedef struct Row {
@@ -67,24 +67,6 @@ typedef struct Verify {
 
 // ---- one frame
 
-/// What the run wrote about the frame besides its surface.
-static void check_stats(const StatsTable *stats, int frame, const CacheFrame *cache, Findings *findings) {
-    const StatsRow *row = stats_table_row(stats, frame);
-    if (!stats->rows) return;
-    if (!row) {
-        findings_add(findings, FAULT_STATS, "stats.csv has no line of frame %d", frame);
-        return;
-    }
-    if (row->triangles != cache->triangle_count)
-        findings_add(findings, FAULT_STATS, "stats.csv has %.0f triangles, the frame %u", row->triangles,
-                     cache->triangle_count);
-    if (!isnan(cache->time) && !(fabs(row->time - cache->time) <= 1e-6 * fmax(1, fabs(cache->time))))
-        findings_add(findings, FAULT_STATS, "stats.csv has the time %.9g s, the frame %.9g s", row->time, cache->time);
-    if (row->inverted_cells == 0) return;
-    findings_add(findings, FAULT_INVERTED, "%.0f inverted cells, by stats.csv", row->inverted_cells);
-    findings->count[FAULT_INVERTED] += (uint64_t)row->inverted_cells - 1;
-}
-
 static void verify_report(void *context, bool fault, const char *message) {
     if (fault) console_error(context, "%s", message);
     else console_warn(context, "%s", message);
@@ -94,6 +76,7 @@ static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError 
     CacheFrame cache;
     Findings *findings = &verify->findings;
     char *path = folder_ply(&verify->folder, frame);
+
     memset(findings->count, 0, sizeof findings->count);
     findings->near = findings->folded = findings->from_start = 0;
     findings->file = path;
@@ -101,10 +84,25 @@ static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError 
     SingeResult result = cache_read(path, &cache, error);
     if (!result) {
         check_values(&cache, findings);
-        check_stats(&verify->stats, frame, &cache, findings);
+
+        // what the run wrote about the frame besides its surface
+        const StatsRow *stats = stats_table_row(&verify->stats, frame);
+        if (verify->stats.rows && !stats)
+            findings_add(findings, FAULT_STATS, "stats.csv has no line of frame %d", frame);
+        if (stats && stats->triangles != cache.triangle_count)
+            findings_add(findings, FAULT_STATS, "stats.csv has %.0f triangles, the frame %u", stats->triangles,
+                         cache.triangle_count);
+        if (stats && !isnan(cache.time) && !(fabs(stats->time - cache.time) <= 1e-6 * fmax(1, fabs(cache.time))))
+            findings_add(findings, FAULT_STATS, "stats.csv has the time %.9g s, the frame %.9g s", stats->time,
+                         cache.time);
+        if (stats && stats->inverted_cells != 0) {
+            findings_add(findings, FAULT_INVERTED, "%.0f inverted cells, by stats.csv", stats->inverted_cells);
+            findings->count[FAULT_INVERTED] += (uint64_t)stats->inverted_cells - 1;
+        }
+
         if (!check_surface(&cache, findings)) {
             *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
-            snprintf(error->message, sizeof error->message, "no memory to verify frame %d", frame);
+            snprintf(error->message, sizeof error->message, "out of memory while frame %d was verified", frame);
             result = SINGE_ERROR_MEMORY;
         }
         *row = (Row){.vertices = cache.vertex_count,
@@ -114,22 +112,10 @@ static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError 
                      .from_start = findings->from_start};
         memcpy(row->count, findings->count, sizeof row->count);
     }
+
     cache_free(&cache);
     free(path);
     return result;
-}
-
-/// Finds what crosses from the start, if the first frame is not among those asked for.
-static bool look_at_start(Verify *verify) {
-    CacheFrame cache;
-    SingeError error;
-    bool good = true;
-    if (verify->first == 1 || !verify->crossed) return true;
-    char *path = folder_ply(&verify->folder, 1);
-    if (!cache_read(path, &cache, &error)) good = check_start(&cache, &verify->findings);
-    cache_free(&cache);
-    free(path);
-    return good;
 }
 
 // ---- the whole
@@ -140,31 +126,16 @@ static uint64_t faults_of(const Row *row) {
     return sum;
 }
 
-/// Prints the frames with faults, with a column for each kind that occurs.
-static void print_frames(const Verify *verify, const uint64_t *total) {
-    printf("%7s%11s", "frame", "triangles");
-    for (int f = 0; f < FAULT_COUNT; f++)
-        if (total[f]) printf("  %s", faults[f].key);
-    putchar('\n');
-    for (int i = 0; i < verify->done; i++) {
-        const Row *row = &verify->rows[i];
-        if (faults_of(row) == 0) continue;
-        printf("%7d%11" PRIu32, verify->first + i, row->triangles);
-        for (int f = 0; f < FAULT_COUNT; f++)
-            if (total[f]) printf("  %*" PRIu64, (int)strlen(faults[f].key), row->count[f]);
-        putchar('\n');
-    }
-    putchar('\n');
-}
-
-/// Returns the number of all faults.
+/// Prints the frames with faults and the totals. Returns the number of all faults.
 static uint64_t print_table(const Verify *verify) {
     uint64_t total[FAULT_COUNT] = {0}, all = 0, near = 0, folded = 0, from_start = 0, triangles = 0;
     int frames[FAULT_COUNT] = {0}, worst[FAULT_COUNT] = {0}, bad = 0;
+
     for (int i = 0; i < verify->done; i++) {
         const Row *row = &verify->rows[i];
         for (int f = 0; f < FAULT_COUNT; f++) {
-            total[f] += row->count[f], frames[f] += row->count[f] > 0;
+            total[f] += row->count[f];
+            frames[f] += row->count[f] > 0;
             if (row->count[f] > verify->rows[worst[f]].count[f]) worst[f] = i;
         }
         bad += faults_of(row) > 0;
@@ -174,8 +145,27 @@ static uint64_t print_table(const Verify *verify) {
         folded += row->folded;
         from_start += row->from_start;
     }
-    if (all) print_frames(verify, total);
+
+    // the frames with faults, with a column for each kind that occurs
+    if (all) printf("%7s%11s", "frame", "triangles");
+    for (int f = 0; f < FAULT_COUNT; f++)
+        if (total[f]) printf("  %s", faults[f].key);
+    if (all) putchar('\n');
+
+    for (int i = 0; i < verify->done; i++) {
+        const Row *row = &verify->rows[i];
+        if (faults_of(row) == 0) continue;
+        printf("%7d%11" PRIu32, verify->first + i, row->triangles);
+        for (int f = 0; f < FAULT_COUNT; f++)
+            if (total[f]) printf("  %*" PRIu64, (int)strlen(faults[f].key), row->count[f]);
+        putchar('\n');
+    }
+
+    if (all) putchar('\n');
+
+    // the kinds of faults
     printf("%-52s%12s%8s%10s%7s\n", "fault", "all frames", "frames", "worst", "frame");
+
     for (int f = 0; f < FAULT_COUNT; f++) {
         const bool known = verify->stats.rows || (f != FAULT_INVERTED && f != FAULT_STATS);
         printf("%-52s", faults[f].title);
@@ -185,9 +175,10 @@ static uint64_t print_table(const Verify *verify) {
             printf("%12" PRIu64 "%8d%10" PRIu64 "%7d\n", total[f], frames[f], verify->rows[worst[f]].count[f],
                    verify->first + worst[f]);
     }
-    printf("%-52s%12" PRIu64 "\n", "(of the crossings: side by side at rest)", near);
+
+    printf("%-52s%12" PRIu64 "\n", "(of the crossings: of neighbours at rest)", near);
     printf("%-52s%12" PRIu64 "\n", "(no fault: edges folded onto each other)", folded);
-    printf("%-52s%12" PRIu64 "\n", "(no fault: crossings of what crosses in frame 1)", from_start);
+    printf("%-52s%12" PRIu64 "\n", "(no fault: crossings that began in frame 1)", from_start);
     printf("\n%d frames, %" PRIu64 " triangles: ", verify->done, triangles);
     if (all) printf("%" PRIu64 " faults in %d frames\n", all, bad);
     else printf("no faults\n");
@@ -207,36 +198,47 @@ static void print_csv(FILE *file, const void *context) {
     }
 }
 
-/// Progress is shown after a second.
-static void show_progress(Verify *verify, double begun) {
-    const double seconds = console_clock() - begun;
-    if (seconds > 1)
-        console_picture(&verify->console, verify->first + verify->done - 1, verify->last, seconds / verify->done);
-}
-
 static ExitCode verify_all(Verify *verify) {
     const int frames = verify->last - verify->first + 1;
     const double begun = console_clock();
     SingeError error = {0};
-    SingeResult result = SINGE_OK;
+
     verify->rows = calloc((size_t)frames, sizeof *verify->rows);
-    if (!verify->rows || !look_at_start(verify)) {
-        console_error(&verify->console, "no memory for the counts of %d frames", frames);
+    bool memory = verify->rows;
+
+    // what crosses from the start is in the first frame, whether or not it is among those asked for
+    if (memory && verify->first != 1 && verify->crossed) {
+        CacheFrame cache;
+        char *path = folder_ply(&verify->folder, 1);
+        if (!cache_read(path, &cache, &error)) memory = check_start(&cache, &verify->findings);
+        cache_free(&cache);
+        free(path);
+    }
+
+    if (!memory) {
+        console_error(&verify->console, "out of memory for the counts of %d frames", frames);
         return EXIT_FAILED;
     }
+
+    SingeResult result = SINGE_OK;
     while (verify->done < frames && !result && !interrupt_asked()) {
         result = verify_frame(verify, verify->first + verify->done, &verify->rows[verify->done], &error);
         verify->done += !result;
-        show_progress(verify, begun);
+        const double seconds = console_clock() - begun;
+        if (seconds > 1)
+            console_picture(&verify->console, verify->first + verify->done - 1, verify->last, seconds / verify->done);
     }
+
     console_clear(&verify->console);
     if (result) {
         console_result(&verify->console, &error);
         return result == SINGE_ERROR_MEMORY ? EXIT_FAILED : EXIT_INPUT;
     }
+
     ExitCode code = print_table(verify) ? EXIT_FAILED : EXIT_GOOD;
-    if (verify->csv && streams_write(&verify->console, verify->csv, print_csv, verify)) code = EXIT_FAILED;
+    if (verify->csv && console_write_table(&verify->console, verify->csv, print_csv, verify)) code = EXIT_FAILED;
     if (verify->done == frames) return code;
+
     console_error(&verify->console, "interrupted: frames %d-%d are not verified", verify->first + verify->done,
                   verify->last);
     return EXIT_FAILED;
@@ -244,20 +246,10 @@ static ExitCode verify_all(Verify *verify) {
 
 // ---- the cache
 
-/// Whether the run has reported that it began with crossings.
-static bool began_crossed(const Bytes *record) {
-    const char *totals, *value;
-    size_t size;
-    return text_json_member((const char *)record->data, record->size, "totals", &totals, &size) &&
-           text_json_member(totals, size, "crossed_at_start", &value, &size) && size && *value >= '1' && *value <= '9';
-}
-
-/// The name of the run's files, from its record.
+/// The name of the run's files, from its record; and whether the run has reported that it began with crossings.
 static ExitCode find_folder(Verify *verify, const char *path) {
     SingeError error = {0};
     Bytes bytes = {0};
-    const char *value;
-    size_t size;
     char *record = text_format("%s/run.json", path), *name = NULL;
     const SingeResult result = file_read(record, (SingeAllocator){0}, &bytes, &error);
     if (result) {
@@ -265,38 +257,44 @@ static ExitCode find_folder(Verify *verify, const char *path) {
         free(record);
         return job_exit(result);
     }
-    if (text_json_member((const char *)bytes.data, bytes.size, "name", &value, &size))
-        name = text_json_unquote(value, size);
+
+    const char *json = (const char *)bytes.data, *value, *totals;
+    size_t size;
+    if (text_json_member(json, bytes.size, "name", &value, &size)) name = text_json_unquote(value, size);
     if (name) verify->folder = folder_name(path, name);
     else console_error(&verify->console, "%s is not the record of a run: it has no \"name\"", record);
-    verify->crossed = began_crossed(&bytes);
+    verify->crossed = text_json_member(json, bytes.size, "totals", &totals, &size) &&
+                      text_json_member(totals, size, "crossed_at_start", &value, &size) && size && *value >= '1' &&
+                      *value <= '9';
     bytes_free(&bytes);
     free(record);
     free(name);
     return verify->folder.path ? EXIT_GOOD : EXIT_INPUT;
 }
 
-static bool read_stretch(const ArgReader *reader, const char *text, double *stretch) {
-    char *end;
-    *stretch = strtod(text, &end);
-    if (end != text && *end == 0 && *stretch >= 1 && isfinite(*stretch)) return true;
-    args_complain(reader, "--stretch: expected a number of 1 or more, got '%s'", shown(text).text);
-    return false;
-}
-
 int command_verify(int argc, char **argv) {
     Verify verify = {.console = console_make(false), .stretch = 2};
     ArgReader reader = args_begin(&verify_command, argc, argv);
     const char *value, *path = NULL;
+
     for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
         bool good = true;
-        if (option == ARG_HELP) return EXIT_GOOD;
-        if (option == ARG_OPERAND) path = value;
-        else if (option == OPT_CSV) verify.csv = value;
-        else if (option == OPT_STRETCH) good = read_stretch(&reader, value, &verify.stretch);
-        else good = option == OPT_FRAMES && args_span(&reader, option, value, &verify.first, &verify.last);
+        char *end;
+        switch (option) {
+        case OPT_FRAMES: good = args_span(&reader, option, value, &verify.first, &verify.last); break;
+        case OPT_STRETCH:
+            verify.stretch = strtod(value, &end);
+            good = end != value && *end == 0 && verify.stretch >= 1 && isfinite(verify.stretch);
+            if (!good) args_complain(&reader, "--stretch: expected a number of 1 or more, got '%s'", shown(value).text);
+            break;
+        case OPT_CSV: verify.csv = value; break;
+        case ARG_OPERAND: path = value; break;
+        case ARG_HELP: return EXIT_GOOD;
+        default: good = false;
+        }
         if (!good) return EXIT_INPUT;
     }
+
     interrupt_watch();
     verify.findings = (Findings){.report = verify_report, .context = &verify.console, .stretch = verify.stretch};
     ExitCode code = find_folder(&verify, path);

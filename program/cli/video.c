@@ -25,23 +25,9 @@ static char *pattern_escape(const char *text) {
         *out++ = *c;
         if (*c == '%') *out++ = '%';
     }
+
     *out = 0;
     return copy;
-}
-
-static void tell_command(Console *console, const char *what, VideoResult result, const char *why,
-                         char *const *arguments) {
-    char *line = text_format("ffmpeg");
-    for (char *const *a = arguments + 1; *a; a++) {
-        char *quoted = text_shell_quote(*a), *longer = text_format("%s %s", line, quoted);
-        free(quoted);
-        free(line);
-        line = longer;
-    }
-    if (result == VIDEO_NO_PROGRAM) console_warn(console, "no %s: %s; to make it later:", what, why);
-    else console_error(console, "no %s: %s; to make it later:", what, why);
-    if (result != VIDEO_NO_PROGRAM || !console->quiet) console_more(line);
-    free(line);
 }
 
 /// Runs the program and waits. If it failed, `why` is the reason.
@@ -50,6 +36,7 @@ static VideoResult spawn(char *const *arguments, char why[WHY_SIZE]) {
     posix_spawnattr_t attributes;
     sigset_t shielded; // the child must not ignore what this program ignores
     pid_t child;
+
     sigemptyset(&shielded);
     sigaddset(&shielded, SIGPIPE);
     sigaddset(&shielded, SIGXFSZ);
@@ -65,6 +52,7 @@ static VideoResult spawn(char *const *arguments, char why[WHY_SIZE]) {
         snprintf(why, WHY_SIZE, "cannot run ffmpeg (%s)", strerror(reason));
         return reason == ENOENT ? VIDEO_NO_PROGRAM : VIDEO_FAILED;
     }
+
     int status = 0; // stays 0 if the system has reaped the child itself; then the file decides
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
@@ -91,21 +79,24 @@ static VideoResult write_movie(const Movie *movie, char *const *arguments, char 
         snprintf(why, WHY_SIZE, "%s", error.message);
         return VIDEO_FAILED;
     }
+
     interrupt_own(draft);
-    char *part = text_format("file:%s", draft);
-    *output = part;
+    *output = text_format("file:%s", draft);
     VideoResult result = spawn(arguments, why);
-    free(part);
+    free(*output);
     interrupt_disown(draft);
     if (result == VIDEO_MADE && !folder_has(draft)) {
         snprintf(why, WHY_SIZE, "ffmpeg wrote nothing into preview.%s", movie->format);
         result = VIDEO_FAILED;
     }
+
     if (result != VIDEO_MADE) {
         file_discard(draft);
         return result;
     }
+
     if (!file_publish(draft, movie->path, &error)) return VIDEO_MADE;
+
     snprintf(why, WHY_SIZE, "%s", error.message);
     return VIDEO_FAILED;
 }
@@ -123,11 +114,28 @@ static VideoResult movie_make(Console *console, const Folder *folder, const Movi
                                          start,    "-i",     input,        "-frames:v", count};
     int n = 15;
     for (int i = 0; movie->options[i] && i < OPTIONS_MAX; i++) arguments[n++] = (char *)movie->options[i];
-    arguments[n++] = "-f", arguments[n++] = (char *)movie->format, arguments[n] = final;
+    arguments[n++] = "-f";
+    arguments[n++] = (char *)movie->format;
     VideoResult result = write_movie(movie, arguments, &arguments[n], why);
     arguments[n] = final;
-    if (result != VIDEO_MADE) tell_command(console, movie->what, result, why, arguments);
-    free(path), free(name), free(input), free(final), free(rate), free(start), free(count);
+
+    // the command that makes it later
+    const bool missing = result == VIDEO_NO_PROGRAM;
+    if (missing) console_warn(console, "no %s: %s; to make it later:", movie->what, why);
+    else if (result != VIDEO_MADE) console_error(console, "no %s: %s; to make it later:", movie->what, why);
+    if (result != VIDEO_MADE && !(missing && console->quiet)) {
+        char *line = text_format("ffmpeg");
+        for (char *const *a = arguments + 1; *a; a++) {
+            char *quoted = text_shell_quote(*a), *longer = text_format("%s %s", line, quoted);
+            free(quoted);
+            free(line);
+            line = longer;
+        }
+        console_more(line);
+        free(line);
+    }
+    char *const texts[] = {path, name, input, final, rate, start, count};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) free(texts[i]);
     return result;
 }
 

@@ -178,8 +178,7 @@ static void resolve_sheet(Reader *reader, const YamlNode *node, const Scene *sce
 void finish_scene(Reader *reader, const YamlNode *map, void *object) {
     Scene *scene = object;
     const YamlNode *fps = node_find(map, "fps"), *steps = node_find(map, "steps"), *sheets = node_find(map, "sheets"),
-                   *pins = node_find(map, "pins"), *probes = node_find(map, "probes"),
-                   *only = node_find(map, "only_sheets");
+                   *pins = node_find(map, "pins"), *probes = node_find(map, "probes");
 
     // the step of the simulation is 1/(fps * steps) seconds; the library takes 1e-9 to 10
     double rate = (double)scene->fps * scene->steps;
@@ -219,7 +218,4 @@ void finish_scene(Reader *reader, const YamlNode *map, void *object) {
             if (scene->probes[i].sheet && scene->sheet_count)
                 resolve_sheet(reader, node, scene, scene->probes[i].sheet, &scene->probes[i].sheet_index);
     }
-
-    if (only && scene->only_sheet_count && !message_total(reader->messages))
-        scene_keep_only_sheets(reader, only, scene);
 }

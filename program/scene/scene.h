@@ -218,8 +218,6 @@ typedef struct Scene {
     bool tearing;    ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
     SingeSimDef sim; ///< time_step is 1/(fps * steps); hooks and thread_count are not the scene's
     uint32_t sheet_count, source_count, collider_count, pin_count, probe_count;
-    uint32_t only_sheet_count; ///< of only_sheets; 0: all
-    uint32_t *only_sheets;     ///< as in the file; `sheets`, `pins` and `probes` contain only these
     SceneSheet *sheets;
     SceneSource *sources;
     SceneCollider *colliders;

@@ -115,10 +115,6 @@ static const SchemaRow scene_rows[] = {
 #include "singe/sim.def"
     {"sheets", ROW_LIST, DIM_NONE, AT(Scene, sheets), EXTRA(Scene, sheet_count), .sub = &schema_sheet,
      .flags = ROW_REQUIRED, .doc = "sheets that burn, at least one"},
-    {"only_sheets", ROW_INDICES, DIM_NONE, AT(Scene, only_sheets), EXTRA(Scene, only_sheet_count), WITHIN(0, 999),
-     .flags = ROW_SHORT,
-     .doc = "numbers of the sheets, from 0, that are computed; the others are left out with their pins and probes. By "
-            "default all are computed"},
     {"sources", ROW_LIST, DIM_NONE, AT(Scene, sources), EXTRA(Scene, source_count), .sub = &schema_source,
      .doc = "heat sources"},
     {"colliders", ROW_LIST, DIM_NONE, AT(Scene, colliders), EXTRA(Scene, collider_count), .sub = &schema_collider,

@@ -130,8 +130,6 @@ const char *base_names(char *buffer, size_t size);
 
 // checks (checks.c)
 void finish_scene(Reader *reader, const YamlNode *map, void *object);
-/// Keeps the sheets that `only_sheets` (`node`) names, with their pins and probes (only_sheets.c).
-void scene_keep_only_sheets(Reader *reader, const YamlNode *node, Scene *scene);
 void finish_material(Reader *reader, const YamlNode *map, void *object);
 void finish_sheet(Reader *reader, const YamlNode *map, void *object);
 void finish_source(Reader *reader, const YamlNode *map, void *object);

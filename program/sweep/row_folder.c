@@ -1,5 +1,4 @@
 // A sweep on disk: the plan of its rows, and the state of each row.
-#include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +9,6 @@
 #include "cli/folder.h"
 #include "cli/text.h"
 #include "formats/formats.h"
-#include "common/printable.h"
 #include "sweep/sweep.h"
 
 char *sweep_row_folder(const Sweep *sweep, uint32_t row, bool complete) {
@@ -21,45 +19,43 @@ static bool row_has(const Sweep *sweep, uint32_t row, bool complete, const char 
     char *folder = sweep_row_folder(sweep, row, complete);
     char *path = text_format("%s/%s", folder, name);
     const bool has = access(path, F_OK) == 0;
-    free(path), free(folder);
+    free(path);
+    free(folder);
     return has;
 }
 
-/// Whether another process has locked the row's folder.
-static bool row_is_locked(const Sweep *sweep, uint32_t row) {
+RowState sweep_row_state(const Sweep *sweep, uint32_t row) {
+    if (row_has(sweep, row, true, "run.json")) return ROW_COMPLETE;
+
+    // has another process locked the row's folder?
     char *folder = sweep_row_folder(sweep, row, false);
     char *path = text_format("%s/cache.lock", folder);
     const int fd = open(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     struct flock wanted = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     const bool locked = fd >= 0 && fcntl(fd, F_GETLK, &wanted) == 0 && wanted.l_type != F_UNLCK;
     if (fd >= 0) close(fd);
-    free(path), free(folder);
-    return locked;
-}
-
-RowState sweep_row_state(const Sweep *sweep, uint32_t row) {
-    if (row_has(sweep, row, true, "run.json")) return ROW_COMPLETE;
-    if (row_is_locked(sweep, row)) return ROW_ELSEWHERE;
+    free(path);
+    free(folder);
+    if (locked) return ROW_ELSEWHERE;
     return row_has(sweep, row, false, "failed.txt") ? ROW_FAILED : ROW_ABSENT;
 }
 
 // ---- scenes
 
-/// --set texts of a row, without those of the program: `owned` are freed by the caller.
-static void row_sets(const Sweep *sweep, uint32_t row, SetList *sets, char **owned) {
-    for (uint32_t i = 0; i < sweep->plan.set_count; i++) set_add(sets, sweep->plan.sets[i]);
-    for (uint32_t p = 0; p < sweep->plan.parameter_count; p++) {
-        owned[p] = text_format("%s=%s", sweep->plan.parameters[p].key, plan_value(&sweep->plan, row, p));
-        set_add(sets, owned[p]);
-    }
-}
-
 ExitCode sweep_check_row(Sweep *sweep, uint32_t row) {
+    const Plan *plan = &sweep->plan;
     char *owned[PLAN_PARAMETERS_MAX];
     SetList sets = {0};
+
+    for (uint32_t i = 0; i < plan->set_count; i++) set_add(&sets, plan->sets[i]);
+
+    for (uint32_t p = 0; p < plan->parameter_count; p++) {
+        owned[p] = text_format("%s=%s", plan->parameters[p].key, plan_value(plan, row, p));
+        set_add(&sets, owned[p]);
+    }
+
     Job job;
-    row_sets(sweep, row, &sets, owned);
-    ExitCode code = job_read(&job, sweep->console, sweep->plan.scene, &sets, 1);
+    ExitCode code = job_read(&job, sweep->console, plan->scene, &sets, 1);
     if (code) {
         console_error(sweep->console, "row %u of %s is not a valid scene", row + 1, sweep->options->plan);
     } else {
@@ -67,7 +63,8 @@ ExitCode sweep_check_row(Sweep *sweep, uint32_t row) {
         if (!sweep->name) sweep->name = text_format("%s", job.scene->name);
         job_close(&job);
     }
-    for (uint32_t p = 0; p < sweep->plan.parameter_count; p++) free(owned[p]);
+
+    for (uint32_t p = 0; p < plan->parameter_count; p++) free(owned[p]);
     set_free(&sets);
     return code;
 }
@@ -82,70 +79,46 @@ ExitCode sweep_check_rows(Sweep *sweep) {
 
 // ---- the plan
 
-/// For a fit the parameters and the target: the values follow from them.
-static void write_target(FILE *file, const Plan *plan) {
+static void put_cell(FILE *file, const char *text) {
+    fputc(',', file);
+    text_csv_cell(file, text);
+}
+
+/// plan.csv: the values of each row; for a fit its ranges and its target, as the values follow from them.
+static char *plan_table(const Sweep *sweep) {
+    const Plan *plan = &sweep->plan;
     const PlanTarget *target = &plan->target;
-    for (uint32_t p = 0; p < plan->parameter_count; p++) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    if (!file) return NULL;
+
+    fputs("row", file);
+    for (uint32_t p = 0; p < plan->parameter_count; p++) put_cell(file, plan->parameters[p].key);
+
+    for (uint32_t p = 0; p < plan->parameter_count && target->given; p++) {
         const PlanParameter *parameter = &plan->parameters[p];
         fprintf(file, "\nrange,%.9g,%.9g,%s,%d,%d", parameter->from, parameter->to, parameter->unit,
                 parameter->logarithmic, parameter->whole);
     }
-    fprintf(file, "\ntarget,%d,%.9g,", (int)plan->search, target->front_speed);
-    text_csv_cell(file, target->curve ? target->curve : "");
-    fputc(',', file);
-    text_csv_cell(file, target->probe ? target->probe : "");
-    fputc(',', file);
-    text_csv_cell(file, target->masks ? target->masks : "");
-}
 
-static char *plan_table(const Sweep *sweep) {
-    const Plan *plan = &sweep->plan;
-    char *text = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
-    if (file) {
-        fputs("row", file);
-        for (uint32_t p = 0; p < plan->parameter_count; p++)
-            fputc(',', file), text_csv_cell(file, plan->parameters[p].key);
-        if (plan->target.given) write_target(file, plan);
-        for (uint32_t row = 0; row < plan->row_count && !plan->target.given; row++) {
-            fprintf(file, "\n%u", row + 1);
-            for (uint32_t p = 0; p < plan->parameter_count; p++)
-                fputc(',', file), text_csv_cell(file, plan_value(plan, row, p));
-        }
-        fputc('\n', file);
+    if (target->given) {
+        fprintf(file, "\ntarget,%d,%.9g", (int)plan->search, target->front_speed);
+        put_cell(file, target->curve ? target->curve : "");
+        put_cell(file, target->probe ? target->probe : "");
+        put_cell(file, target->masks ? target->masks : "");
     }
+
+    for (uint32_t row = 0; row < plan->row_count && !target->given; row++) {
+        fprintf(file, "\n%u", row + 1);
+        for (uint32_t p = 0; p < plan->parameter_count; p++) put_cell(file, plan_value(plan, row, p));
+    }
+
+    fputc('\n', file);
     if (text_stream_end(file, &text)) return text;
+
     free(text);
     return NULL;
-}
-
-/// The scene without the rows' parameters, with the contents of its files.
-static ExitCode scene_note(Sweep *sweep, char **note) {
-    SetList sets = {0};
-    Job job;
-    SceneHash hash = {0};
-    SingeError error = {0};
-    for (uint32_t i = 0; i < sweep->plan.set_count; i++) set_add(&sets, sweep->plan.sets[i]);
-    ExitCode code = job_open(&job, sweep->console, sweep->plan.scene, &sets, 1);
-    set_free(&sets);
-    if (code) return code;
-    const int frames = job.scene->frames;
-    SingeResult result = checkpoint_scene_hash(job.scene, &job.assets, &hash, &error);
-    job_close(&job);
-    if (result) {
-        console_result(sweep->console, &error);
-        return EXIT_FAILED;
-    }
-    *note = text_format("{\"frames\": %d, \"scene\": \"%016llx\", \"preview\": \"%016llx\"}\n", frames,
-                        (unsigned long long)hash.result, (unsigned long long)hash.looks);
-    return EXIT_GOOD;
-}
-
-static int line_of_difference(const char *a, const char *b) {
-    int line = 1;
-    for (; *a && *a == *b; a++, b++) line += *a == '\n';
-    return line;
 }
 
 /// Compares a text with that of a file; if there is no file yet, writes it.
@@ -157,16 +130,19 @@ static ExitCode note_or_compare(Sweep *sweep, const char *name, const char *text
     ExitCode code = EXIT_GOOD;
     if (access(path, F_OK) != 0) result = file_write(path, text, strlen(text), &error);
     else result = file_read(path, (SingeAllocator){0}, &bytes, &error);
+    const char *there = (const char *)bytes.data;
     if (result) {
         console_result(sweep->console, &error);
         code = EXIT_FAILED;
-    } else if (bytes.data && strcmp((const char *)bytes.data, text) != 0) {
+    } else if (there && strcmp(there, text) != 0) {
+        int line = 1;
+        for (const char *a = there, *b = text; *a && *a == *b; a++, b++) line += *a == '\n';
         if (table)
-            console_error(sweep->console, "%s is of another plan: line %d differs; use another folder (-o)", path,
-                          line_of_difference((const char *)bytes.data, text));
+            console_error(sweep->console, "%s belongs to another plan: line %d differs; use another folder (-o)", path,
+                          line);
         else
             console_error(sweep->console,
-                          "%s: the scene, its `set` or a file that it names has changed since; use another folder (-o)",
+                          "%s: the scene, its `set` or a file that it names has changed; use another folder (-o)",
                           path);
         code = EXIT_INPUT;
     }
@@ -176,22 +152,45 @@ static ExitCode note_or_compare(Sweep *sweep, const char *name, const char *text
 }
 
 ExitCode sweep_note_plan(Sweep *sweep) {
+    // the scene without the rows' parameters, with the contents of its files
+    SetList sets = {0};
+    Job job;
+    for (uint32_t i = 0; i < sweep->plan.set_count; i++) set_add(&sets, sweep->plan.sets[i]);
+    ExitCode code = job_open(&job, sweep->console, sweep->plan.scene, &sets, 1);
+    set_free(&sets);
+    if (code) return code;
+
+    SceneHash hash = {0};
     SingeError error = {0};
-    char *note = NULL, *table = NULL;
-    ExitCode code = scene_note(sweep, &note);
-    if (!code && !(table = plan_table(sweep))) {
-        console_error(sweep->console, "out of memory");
-        code = EXIT_FAILED;
-    }
+    const int frames = job.scene->frames;
+    SingeResult result = checkpoint_scene_hash(job.scene, &job.assets, &hash, &error);
+    job_close(&job);
+
     static const char *const parts[] = {"rows", "unfinished"};
-    for (int i = 0; i < 2 && !code; i++) {
+
+    for (int i = 0; i < 2 && !result; i++) {
         char *path = text_format("%s/%s", sweep->folder, parts[i]);
-        if (folder_make(path, &error)) console_result(sweep->console, &error), code = EXIT_FAILED;
+        result = folder_make(path, &error);
         free(path);
     }
+
+    char *table = plan_table(sweep);
+    if (!result && !table) {
+        result = SINGE_ERROR_MEMORY;
+        error = (SingeError){.code = result};
+    }
+
+    if (result) {
+        console_result(sweep->console, &error);
+        code = EXIT_FAILED;
+    }
+
+    char *note = text_format("{\"frames\": %d, \"scene\": \"%016llx\", \"preview\": \"%016llx\"}\n", frames,
+                             (unsigned long long)hash.result, (unsigned long long)hash.looks);
     if (!code) code = note_or_compare(sweep, "plan.csv", table, true);
     if (!code) code = note_or_compare(sweep, "sweep.json", note, false);
-    free(note), free(table);
+    free(note);
+    free(table);
     return code;
 }
 
@@ -204,6 +203,7 @@ char **sweep_run_command(const Sweep *sweep, uint32_t row) {
     char **command = calloc(COMMAND_MAX + 2 * (size_t)plan->set_count, sizeof *command);
     int n = 0;
     if (!command) return NULL;
+
     command[n++] = text_format("%s", sweep->program);
     command[n++] = text_format("run");
     command[n++] = text_format("--output=%s/unfinished/%04u", sweep->folder, row + 1);
@@ -228,6 +228,9 @@ char *sweep_row_line(const Sweep *sweep, const char *number) {
     char *folder = text_shell_quote(sweep->folder);
     char *line = text_format("%s sweep %s -o %s --row %s --threads %d%s", program, plan, folder, number,
                              sweep->options->threads, sweep->options->no_preview ? " --no-preview" : "");
-    free(program), free(plan), free(folder);
+
+    free(program);
+    free(plan);
+    free(folder);
     return line;
 }

@@ -42,30 +42,6 @@ typedef struct Pool {
 
 // ---- processes
 
-/// Starts a command whose messages are appended to a file. Returns 0 or the system's reason.
-static int start(char *const *command, const char *log, pid_t *process) {
-    posix_spawn_file_actions_t actions;
-    posix_spawnattr_t attributes;
-    sigset_t shielded; // the child must not ignore what this program ignores
-    sigemptyset(&shielded);
-    sigaddset(&shielded, SIGPIPE);
-    sigaddset(&shielded, SIGXFSZ);
-    posix_spawnattr_init(&attributes);
-    posix_spawnattr_setsigdefault(&attributes, &shielded);
-    // a process group of its own: otherwise Ctrl-C in a terminal would reach it twice, and the second ends a run at
-    // once
-    posix_spawnattr_setpgroup(&attributes, 0);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log, O_WRONLY | O_CREAT | O_APPEND, 0666);
-    posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-    const int reason = posix_spawnp(process, command[0], &actions, &attributes, command, environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&actions);
-    return reason;
-}
-
 static void fail_row(Pool *pool, Slot *slot, const char *why) {
     SingeError error = {0};
     char *folder = sweep_row_folder(pool->sweep, slot->row, false);
@@ -74,213 +50,220 @@ static void fail_row(Pool *pool, Slot *slot, const char *why) {
     console_error(pool->sweep->console, "row %u: %s; its messages are in %s/log.txt", slot->row + 1, why, folder);
     pool->failed++;
     slot->stage = STAGE_IDLE;
-    free(path), free(text), free(folder);
+    free(path);
+    free(text);
+    free(folder);
 }
 
+/// Starts a row's run or its measurement. Its messages are appended to the row's log.
 static void start_stage(Pool *pool, Slot *slot, Stage stage) {
-    char *folder = sweep_row_folder(pool->sweep, slot->row, false), *log = text_format("%s/log.txt", folder);
-    char *csv = text_format("--csv=%s/measure.csv", folder);
-    char *measure[] = {pool->sweep->program, "measure", csv, "--", folder, NULL};
-    char *measure_undrawn[] = {pool->sweep->program, "measure", csv, "--no-preview", "--", folder, NULL};
+    char *program = pool->sweep->program, *folder = sweep_row_folder(pool->sweep, slot->row, false);
+    char *log = text_format("%s/log.txt", folder), *csv = text_format("--csv=%s/measure.csv", folder);
+    char *measure[] = {program, "measure", csv, "--", folder, NULL};
+    char *measure_undrawn[] = {program, "measure", csv, "--no-preview", "--", folder, NULL};
     char **run = stage == STAGE_RUN ? sweep_run_command(pool->sweep, slot->row) : NULL;
     char **command = run ? run : pool->sweep->options->no_preview ? measure_undrawn : measure;
-    int reason = stage == STAGE_RUN && !run ? ENOMEM : start(command, log, &slot->process);
+    int reason = ENOMEM;
+    if (stage != STAGE_RUN || run) {
+        posix_spawn_file_actions_t actions;
+        posix_spawnattr_t attributes;
+        sigset_t shielded; // the child must not ignore what this program ignores
+        sigemptyset(&shielded);
+        sigaddset(&shielded, SIGPIPE);
+        sigaddset(&shielded, SIGXFSZ);
+        posix_spawnattr_init(&attributes);
+        posix_spawnattr_setsigdefault(&attributes, &shielded);
+        // a process group of its own: otherwise Ctrl-C in a terminal would reach it twice, and the second ends a run
+        // at once
+        posix_spawnattr_setpgroup(&attributes, 0);
+        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+        posix_spawn_file_actions_init(&actions);
+        posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+        posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log, O_WRONLY | O_CREAT | O_APPEND, 0666);
+        posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+        reason = posix_spawnp(&slot->process, command[0], &actions, &attributes, command, environ);
+        posix_spawnattr_destroy(&attributes);
+        posix_spawn_file_actions_destroy(&actions);
+    }
+
     slot->stage = stage;
     if (reason) {
-        char *why = text_format("cannot run %s: %s", pool->sweep->program, strerror(reason));
+        char *why = text_format("cannot run %s: %s", program, strerror(reason));
         fail_row(pool, slot, why);
         free(why);
     }
+
     sweep_free_command(run);
-    free(csv), free(log), free(folder);
-}
-
-/// Creates the folder before the log, and clears an earlier failure.
-static void begin_row(Pool *pool, Slot *slot, uint32_t row) {
-    SingeError error = {0};
-    char *folder = sweep_row_folder(pool->sweep, row, false), *failed = text_format("%s/failed.txt", folder);
-    *slot = (Slot){.row = row};
-    unlink(failed);
-    if (folder_make(folder, &error)) fail_row(pool, slot, error.message);
-    else start_stage(pool, slot, STAGE_RUN);
-    free(failed), free(folder);
-}
-
-static void complete_row(Pool *pool, Slot *slot) {
-    char *from = sweep_row_folder(pool->sweep, slot->row, false), *to = sweep_row_folder(pool->sweep, slot->row, true);
-    if (rename(from, to) == 0) {
-        pool->complete++;
-        slot->stage = STAGE_IDLE;
-    } else {
-        fail_row(pool, slot, strerror(errno));
-    }
-    free(from), free(to);
+    free(csv);
+    free(log);
+    free(folder);
 }
 
 /// The next stage of a row whose process has ended.
 static void next_stage(Pool *pool, Slot *slot, int status) {
     const bool stopped = WIFSIGNALED(status) && (WTERMSIG(status) == SIGTERM || WTERMSIG(status) == SIGINT);
     const bool good = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    const char *doing = slot->stage == STAGE_RUN ? "run" : "measure";
-    char *why;
-    // a fit measures by itself
-    if (good && (slot->stage == STAGE_MEASURE || pool->sweep->plan.target.given)) {
-        complete_row(pool, slot);
-        return;
-    }
-    if (pool->stopping || stopped || interrupt_asked()) {
+    if (good && (slot->stage == STAGE_MEASURE || pool->sweep->plan.target.given)) { // a fit measures by itself
+        char *from = sweep_row_folder(pool->sweep, slot->row, false),
+             *to = sweep_row_folder(pool->sweep, slot->row, true);
+        if (rename(from, to) != 0) {
+            fail_row(pool, slot, strerror(errno));
+        } else {
+            pool->complete++;
+            slot->stage = STAGE_IDLE;
+        }
+        free(from);
+        free(to);
+    } else if (pool->stopping || stopped || interrupt_asked()) {
         slot->stage = STAGE_IDLE; // it resumes another time
-        return;
-    }
-    if (good) {
+    } else if (good) {
         start_stage(pool, slot, STAGE_MEASURE);
-        return;
-    }
-    if (WIFEXITED(status)) why = text_format("singe %s ended with exit code %d", doing, WEXITSTATUS(status));
-    else why = text_format("singe %s was stopped by signal %d", doing, WTERMSIG(status));
-    fail_row(pool, slot, why);
-    free(why);
-}
-
-static void reap(Pool *pool) {
-    for (int i = 0; i < pool->slot_count; i++) {
-        Slot *slot = &pool->slots[i];
-        int status = 0;
-        if (slot->stage == STAGE_IDLE) continue;
-        const pid_t ended = waitpid(slot->process, &status, WNOHANG);
-        if (ended == slot->process) next_stage(pool, slot, status);
+    } else {
+        const char *doing = slot->stage == STAGE_RUN ? "run" : "measure";
+        char *why = WIFEXITED(status) ? text_format("singe %s ended with exit code %d", doing, WEXITSTATUS(status))
+                                      : text_format("singe %s was stopped by signal %d", doing, WTERMSIG(status));
+        fail_row(pool, slot, why);
+        free(why);
     }
 }
 
-// ---- progress
-
-/// Lines of a file except the first: the complete frames of stats.csv.
-static uint64_t frames_of(const Sweep *sweep, uint32_t row, bool complete) {
-    char *folder = sweep_row_folder(sweep, row, complete), *path = text_format("%s/stats.csv", folder), block[4096];
-    FILE *file = fopen(path, "rb");
-    uint64_t lines = 0;
-    for (size_t size; file && (size = fread(block, 1, sizeof block, file)) > 0;)
-        for (size_t i = 0; i < size; i++) lines += block[i] == '\n';
-    if (file) fclose(file);
-    free(path), free(folder);
-    return lines ? lines - 1 : 0;
-}
-
+/// Frames that are done and frames in all, of the rows that this sweep runs.
 static void frame_totals(const Pool *pool, uint64_t *done, uint64_t *all) {
     const Sweep *sweep = pool->sweep;
     *done = *all = 0;
+
     for (uint32_t row = 0; row < sweep->plan.row_count; row++) {
         if (sweep->options->row && row + 1 != (uint32_t)sweep->options->row) continue;
         *all += sweep->frames[row];
-        *done += sweep_row_state(sweep, row) == ROW_COMPLETE ? sweep->frames[row] : frames_of(sweep, row, false);
-    }
-}
+        if (sweep_row_state(sweep, row) == ROW_COMPLETE) {
+            *done += sweep->frames[row];
+            continue;
+        }
 
-static void show_progress(Pool *pool) {
-    uint64_t done, all;
-    int running = 0;
-    for (int i = 0; i < pool->slot_count; i++) running += pool->slots[i].stage != STAGE_IDLE;
-    frame_totals(pool, &done, &all);
-    const double now = console_clock() - pool->started;
-    const double each = done > pool->frames_before ? now / (double)(done - pool->frames_before) : 0;
-    console_sweep(pool->sweep->console, &(ConsoleSweep){.complete = pool->complete,
-                                                        .running = (uint32_t)running,
-                                                        .failed = pool->failed,
-                                                        .rows = pool->due,
-                                                        .frames = done,
-                                                        .frames_all = all,
-                                                        .seconds_left = each * (double)(all - done)});
+        // a line of stats.csv for each complete frame, after the header
+        char *folder = sweep_row_folder(sweep, row, false), *path = text_format("%s/stats.csv", folder), block[4096];
+        FILE *file = fopen(path, "rb");
+        uint64_t lines = 0;
+        for (size_t size; file && (size = fread(block, 1, sizeof block, file)) > 0;)
+            for (size_t i = 0; i < size; i++) lines += block[i] == '\n';
+        if (file) fclose(file);
+        free(path);
+        free(folder);
+        *done += lines ? lines - 1 : 0;
+    }
 }
 
 // ---- all rows
 
-static int running_count(const Pool *pool) {
-    int running = 0;
-    for (int i = 0; i < pool->slot_count; i++) running += pool->slots[i].stage != STAGE_IDLE;
-    return running;
-}
-
-/// Takes the next row that no other process is running; such rows go to the end of the queue. False if there is none.
-static bool take_row(Pool *pool, uint32_t *row, RowState *state) {
-    for (uint32_t left = pool->queued - pool->next; left > 0; left--) {
-        uint32_t *first = &pool->queue[pool->next];
-        *row = *first;
-        *state = sweep_row_state(pool->sweep, *row);
-        if (*state != ROW_ELSEWHERE) {
-            pool->next++;
-            return true;
-        }
-        memmove(first, first + 1, (pool->queued - pool->next - 1) * sizeof *first);
-        pool->queue[pool->queued - 1] = *row;
-    }
-    return false;
-}
-
+/// Gives each idle slot the next row. Rows that another process is running go to the end of the queue.
 static void fill_slots(Pool *pool) {
     for (int i = 0; i < pool->slot_count && !pool->stopping; i++) {
-        uint32_t row;
-        RowState state;
-        if (pool->slots[i].stage != STAGE_IDLE || !take_row(pool, &row, &state)) continue;
-        if (state == ROW_COMPLETE) pool->complete++; // by another process
-        else begin_row(pool, &pool->slots[i], row);
-    }
-}
+        Slot *slot = &pool->slots[i];
+        if (slot->stage != STAGE_IDLE) continue;
 
-static void pass_on_signal(Pool *pool) {
-    pool->stopping = true;
-    for (int i = 0; i < pool->slot_count; i++)
-        if (pool->slots[i].stage != STAGE_IDLE) kill(pool->slots[i].process, SIGTERM);
+        RowState state = ROW_ELSEWHERE;
+        uint32_t row = 0;
+        for (uint32_t left = pool->queued - pool->next; left > 0 && state == ROW_ELSEWHERE; left--) {
+            uint32_t *first = &pool->queue[pool->next];
+            row = *first;
+            state = sweep_row_state(pool->sweep, row);
+            if (state != ROW_ELSEWHERE) {
+                pool->next++;
+            } else {
+                memmove(first, first + 1, (pool->queued - pool->next - 1) * sizeof *first);
+                pool->queue[pool->queued - 1] = row;
+            }
+        }
+        if (state == ROW_ELSEWHERE) continue;
+        if (state == ROW_COMPLETE) { // by another process
+            pool->complete++;
+            continue;
+        }
+
+        // create the folder before the log, and clear an earlier failure
+        SingeError error = {0};
+        char *folder = sweep_row_folder(pool->sweep, row, false), *failed = text_format("%s/failed.txt", folder);
+        *slot = (Slot){.row = row};
+        unlink(failed);
+        if (folder_make(folder, &error)) fail_row(pool, slot, error.message);
+        else start_stage(pool, slot, STAGE_RUN);
+        free(failed);
+        free(folder);
+    }
 }
 
 static void run_queue(Pool *pool) {
     const struct timespec pause = {.tv_nsec = 50000000};
     interrupt_watch();
+
     for (int turn = 0;; turn++) {
-        if (interrupt_asked() && !pool->stopping) pass_on_signal(pool);
-        reap(pool);
+        const bool stop = interrupt_asked() && !pool->stopping;
+        pool->stopping = pool->stopping || stop;
+        for (int i = 0; i < pool->slot_count; i++) {
+            Slot *slot = &pool->slots[i];
+            int status = 0;
+            if (slot->stage == STAGE_IDLE) continue;
+            if (stop) kill(slot->process, SIGTERM);
+            if (waitpid(slot->process, &status, WNOHANG) == slot->process) next_stage(pool, slot, status);
+        }
         fill_slots(pool);
-        const bool over = running_count(pool) == 0 && (pool->stopping || pool->next == pool->queued);
-        if (over || turn % 10 == 0) show_progress(pool);
+
+        uint32_t running = 0;
+        for (int i = 0; i < pool->slot_count; i++) running += pool->slots[i].stage != STAGE_IDLE;
+        const bool over = running == 0 && (pool->stopping || pool->next == pool->queued);
+        if (over || turn % 10 == 0) {
+            uint64_t done, all;
+            frame_totals(pool, &done, &all);
+            const double now = console_clock() - pool->started;
+            const double each = done > pool->frames_before ? now / (double)(done - pool->frames_before) : 0;
+            console_sweep(pool->sweep->console, &(ConsoleSweep){.complete = pool->complete,
+                                                                .running = running,
+                                                                .failed = pool->failed,
+                                                                .rows = pool->due,
+                                                                .frames = done,
+                                                                .frames_all = all,
+                                                                .seconds_left = each * (double)(all - done)});
+        }
         if (over) break;
         nanosleep(&pause, NULL);
     }
+
     console_clear(pool->sweep->console);
 }
 
-/// Queues the rows to run: with --retry also failed ones; only the named row if there is one.
-static void make_queue(Pool *pool) {
-    const SweepOptions *options = pool->sweep->options;
-    for (uint32_t row = 0; row < pool->sweep->plan.row_count; row++) {
-        if (options->row && row + 1 != (uint32_t)options->row) continue;
-        const RowState state = sweep_row_state(pool->sweep, row);
-        pool->due++;
-        if (state == ROW_COMPLETE) pool->complete++;
-        else if (state == ROW_FAILED && !options->retry && !options->row) pool->failed++;
-        else pool->queue[pool->queued++] = row;
-    }
-}
-
 ExitCode sweep_run_rows(Sweep *sweep) {
-    const int jobs = sweep->options->row ? 1 : sweep->options->jobs;
+    const SweepOptions *options = sweep->options;
+    const int jobs = options->row ? 1 : options->jobs;
     Pool pool = {.sweep = sweep,
                  .slots = calloc((size_t)jobs, sizeof *pool.slots),
                  .slot_count = jobs,
                  .queue = calloc(sweep->plan.row_count, sizeof *pool.queue),
                  .started = console_clock()};
-    uint64_t all;
-    ExitCode code = EXIT_FAILED;
-    if (pool.slots && pool.queue) {
-        make_queue(&pool);
-        frame_totals(&pool, &pool.frames_before, &all);
-        run_queue(&pool);
-        console_note(sweep->console, "%u of %u rows are complete, %u failed%s", pool.complete, pool.due, pool.failed,
-                     pool.stopping ? "; the same command continues"
-                     : pool.failed ? "; --retry runs those again"
-                                   : "");
-        if (pool.complete == pool.due) code = EXIT_GOOD;
-    } else {
+    if (!pool.slots || !pool.queue) {
         console_error(sweep->console, "out of memory");
+        free(pool.slots);
+        free(pool.queue);
+        return EXIT_FAILED;
     }
-    free(pool.slots), free(pool.queue);
-    return code;
+
+    // queue the rows to run: with --retry also failed ones; only the named row if there is one
+    for (uint32_t row = 0; row < sweep->plan.row_count; row++) {
+        if (options->row && row + 1 != (uint32_t)options->row) continue;
+        const RowState state = sweep_row_state(sweep, row);
+        pool.due++;
+        if (state == ROW_COMPLETE) pool.complete++;
+        else if (state == ROW_FAILED && !options->retry && !options->row) pool.failed++;
+        else pool.queue[pool.queued++] = row;
+    }
+
+    uint64_t all;
+    frame_totals(&pool, &pool.frames_before, &all);
+    run_queue(&pool);
+    console_note(sweep->console, "%u of %u rows are complete, %u failed%s", pool.complete, pool.due, pool.failed,
+                 pool.stopping ? "; the same command continues the sweep"
+                 : pool.failed ? "; --retry runs those again"
+                               : "");
+    free(pool.slots);
+    free(pool.queue);
+    return pool.complete == pool.due ? EXIT_GOOD : EXIT_FAILED;
 }

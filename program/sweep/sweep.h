@@ -5,7 +5,6 @@
 //   rows/0001/              a complete row: the output of `singe run`, measure.csv and log.txt
 //   unfinished/0001/        a row that is running, was stopped, or failed (then with failed.txt)
 //   report.csv, index.html, sheet.svg   of complete rows (sweep_report.c)
-//   apart.csv, NAME.usda    of a sweep of sheets (sheet_clearance.c, shot_usd.c)
 //   slurm/                  scripts and logs of jobs (slurm_jobs.c)
 //
 // A row's folder moves from unfinished/ to rows/ as the last step: it is complete there, or absent.
@@ -79,12 +78,5 @@ ExitCode sweep_submit(Sweep *sweep);
 
 /// Writes report.csv, index.html and sheet.svg of the complete rows (sweep_report.c).
 ExitCode sweep_report(Sweep *sweep);
-
-/// For a sweep of sheets whose rows are complete: writes apart.csv, the min distances between the rows' sheets and hot
-/// gas (sheet_clearance.c). False if some met; messages have been printed.
-bool sweep_sheet_clearance(Sweep *sweep);
-
-/// Writes NAME.usda, which refers to the USD roots of all rows; nothing if a row has none. False after an error.
-bool sweep_write_shot(const Sweep *sweep, double fps);
 
 #endif

@@ -1,7 +1,6 @@
 // singe sweep: the command.
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "cli/args.h"
@@ -29,18 +28,18 @@ enum {
 
 static const ArgOption sweep_options[OPT_COUNT] = {
     [OPT_OUTPUT] = {"output", 'o', "DIR", "folder of the sweep [out/NAME]"},
-    [OPT_JOBS] = {"jobs", 'j', "N", "rows at a time [the machine's cores over --threads]"},
+    [OPT_JOBS] = {"jobs", 'j', "N", "rows at a time [cores of the machine / threads of a row]"},
     [OPT_THREADS] = {"threads", 0, "N", "threads of each row [1]"},
     [OPT_RETRY] = {"retry", 0, NULL, "runs rows that failed again"},
     [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no pictures and makes no videos"},
     [OPT_PRINT] = {"print", 0, NULL, "prints a command for each row that is due, and runs nothing"},
-    [OPT_ROW] = {"row", 0, "N", "runs this row alone, for a farm's job"},
+    [OPT_ROW] = {"row", 0, "N", "runs only this row, as a job of a farm does"},
     [OPT_REPORT] = {"report", 0, NULL, "writes the report of the rows that are complete, and runs nothing"},
-    [OPT_SLURM] = {"slurm", 0, NULL, "submits the rows to Slurm: a job array, its rendering, the report"},
+    [OPT_SLURM] = {"slurm", 0, NULL, "submits the rows, their pictures and the report to Slurm"},
     [OPT_MAX_RUNNING] = {"max-running", 0, "N", "with --slurm: rows at a time [no limit]"},
     [OPT_SLURM_OPTION] = {"slurm-option", 0, "TEXT", "with --slurm: an option of sbatch; may be repeated"},
     [OPT_RENDER_FRAMES] = {"render-frames", 0, "N", "with --slurm: frames that one job draws [24]"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints errors only"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
 };
 
 static const ArgCommand sweep_command = {
@@ -52,57 +51,43 @@ static const ArgCommand sweep_command = {
     "docs/sweep.md describes plans. The same command continues a sweep that was stopped.\n"
     "Exit codes: 0 all rows are complete, 1 a row failed or the sweep was interrupted, 2 bad input."};
 
-/// Parses an option with a number. False if it is none.
-static bool number_option(const ArgReader *reader, int option, const char *value, SweepOptions *o, bool *good) {
-    switch (option) {
-    case OPT_JOBS: *good = args_int(reader, option, value, 1, 1024, &o->jobs); return true;
-    case OPT_THREADS: *good = args_int(reader, option, value, 1, JOB_THREADS_MAX, &o->threads); return true;
-    case OPT_ROW: *good = args_int(reader, option, value, 1, PLAN_ROWS_MAX, &o->row); return true;
-    case OPT_MAX_RUNNING: *good = args_int(reader, option, value, 1, PLAN_ROWS_MAX, &o->max_running); return true;
-    case OPT_RENDER_FRAMES: *good = args_int(reader, option, value, 1, 1000000, &o->frames); return true;
-    default: return false;
-    }
-}
-
 static ExitCode sweep_parse(int argc, char **argv, SweepOptions *o, bool *done) {
     ArgReader reader = args_begin(&sweep_command, argc, argv);
     const char *value;
+
     *o = (SweepOptions){.threads = 1, .frames = 24};
     *done = false;
+
     for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
         bool good = true;
-        if (number_option(&reader, option, value, o, &good)) {
-            if (!good) return EXIT_INPUT;
-            continue;
-        }
         switch (option) {
         case OPT_OUTPUT: o->output = value; break;
+        case OPT_JOBS: good = args_int(&reader, option, value, 1, 1024, &o->jobs); break;
+        case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &o->threads); break;
         case OPT_RETRY: o->retry = true; break;
         case OPT_NO_PREVIEW: o->no_preview = true; break;
         case OPT_PRINT: o->print = true; break;
+        case OPT_ROW: good = args_int(&reader, option, value, 1, PLAN_ROWS_MAX, &o->row); break;
         case OPT_REPORT: o->report = true; break;
         case OPT_SLURM: o->submit = true; break;
+        case OPT_MAX_RUNNING: good = args_int(&reader, option, value, 1, PLAN_ROWS_MAX, &o->max_running); break;
         case OPT_SLURM_OPTION: set_add(&o->slurm, value); break;
+        case OPT_RENDER_FRAMES: good = args_int(&reader, option, value, 1, 1000000, &o->frames); break;
         case OPT_QUIET: o->quiet = true; break;
         case ARG_OPERAND: o->plan = value; break;
         case ARG_HELP: *done = true; return EXIT_GOOD;
-        default: return EXIT_INPUT;
+        default: good = false;
         }
+        if (!good) return EXIT_INPUT;
     }
+
     if (o->print + o->report + o->submit + (o->row > 0) > 1) {
         args_complain(&reader, "--print, --report, --row and --slurm exclude each other");
         return EXIT_INPUT;
     }
+
     if (!o->jobs) o->jobs = job_threads() / o->threads > 1 ? job_threads() / o->threads : 1;
     return EXIT_GOOD;
-}
-
-/// The path of this program, valid on other nodes that see the same files.
-static char *own_path(void) {
-    char path[4096];
-    const ssize_t size = readlink("/proc/self/exe", path, sizeof path - 1);
-    if (size > 0) path[size] = 0;
-    return text_format("%s", size > 0 ? path : "singe");
 }
 
 /// Absolute, so that jobs may start in any folder.
@@ -113,18 +98,6 @@ static char *absolute(const char *path) {
     return text;
 }
 
-static ExitCode open_folder(Sweep *sweep) {
-    const char *output = sweep->options->output;
-    char *named = output ? text_format("%s", output) : text_format("out/%s", sweep->plan.name);
-    SingeError error = {0};
-    if (!named[0]) named[0] = '.';
-    SingeResult result = folder_make(named, &error);
-    if (result) console_result(sweep->console, &error);
-    else sweep->folder = absolute(named);
-    free(named);
-    return result ? EXIT_FAILED : EXIT_GOOD;
-}
-
 static ExitCode sweep_make_room(Sweep *sweep) {
     if (!sweep->frames) sweep->frames = calloc(sweep->plan.row_count, sizeof *sweep->frames);
     if (sweep->frames) return EXIT_GOOD;
@@ -132,68 +105,39 @@ static ExitCode sweep_make_room(Sweep *sweep) {
     return EXIT_FAILED;
 }
 
-/// A sweep that runs or submits rows locks its folder; a row's job and a report do not.
-static ExitCode hold_folder(Sweep *sweep) {
-    const SweepOptions *o = sweep->options;
-    if (o->row || o->report || o->print) return EXIT_GOOD;
-    SingeError error = {0};
-    bool kept;
-    char *path = text_format("%s/sweep.lock", sweep->folder);
-    SingeResult result = lock_take(&sweep->lock, path, "rows", false, &kept, &error);
-    if (result) console_result(sweep->console, &error);
-    else if (!kept)
-        console_warn(sweep->console, "%s: the file system has no locks; nothing else may write there", sweep->folder);
-    free(path);
-    return result ? EXIT_FAILED : EXIT_GOOD;
-}
-
 ExitCode sweep_prepare(Sweep *sweep) {
     ExitCode code = sweep_make_room(sweep);
-    if (!code) code = open_folder(sweep);
-    if (!code) code = hold_folder(sweep);
-    return code ? code : sweep_note_plan(sweep);
-}
-
-static void print_rows(const Sweep *sweep) {
-    for (uint32_t row = 0; row < sweep->plan.row_count; row++) {
-        const RowState state = sweep_row_state(sweep, row);
-        if (state == ROW_COMPLETE || state == ROW_ELSEWHERE || (state == ROW_FAILED && !sweep->options->retry))
-            continue;
-        char *number = text_format("%u", row + 1), *line = sweep_row_line(sweep, number);
-        puts(line);
-        free(line), free(number);
-    }
-}
-
-static ExitCode run_or_report(Sweep *sweep) {
-    const SweepOptions *o = sweep->options;
-    if (o->print) return print_rows(sweep), EXIT_GOOD;
-    if (o->submit) return sweep_submit(sweep);
-    if (o->row) return sweep_run_rows(sweep);
-    ExitCode code = o->report ? EXIT_GOOD : sweep_run_rows(sweep);
-    ExitCode report = sweep_report(sweep);
-    if (!report && !o->quiet) printf("%s/index.html\n", sweep->folder);
-    return code ? code : report;
-}
-
-static ExitCode sweep_all(Sweep *sweep) {
-    const SweepOptions *o = sweep->options;
-    ExitCode code = plan_read(o->plan, false, sweep->console, &sweep->plan);
-    if (!code && sweep->plan.method == PLAN_SHEETS) code = plan_split_sheets(&sweep->plan, sweep->console);
     if (code) return code;
-    if (o->row > 0 && (uint32_t)o->row > sweep->plan.row_count) {
-        console_error(sweep->console, "--row %d: %s has %u rows", o->row, o->plan, sweep->plan.row_count);
-        return EXIT_INPUT;
+
+    const SweepOptions *o = sweep->options;
+    char *named = o->output ? text_format("%s", o->output) : text_format("out/%s", sweep->plan.name);
+    SingeError error = {0};
+    if (!named[0]) named[0] = '.';
+    SingeResult result = folder_make(named, &error);
+    if (!result) sweep->folder = absolute(named);
+    free(named);
+
+    // a sweep that runs or submits rows locks its folder; a row's job and a report do not
+    if (!result && !o->row && !o->report && !o->print) {
+        char *path = text_format("%s/sweep.lock", sweep->folder);
+        result = lock_take(&sweep->lock, path, "rows", false, sweep->console, &error);
+        free(path);
     }
-    if ((code = sweep_make_room(sweep)) || (code = sweep_check_rows(sweep)) || (code = sweep_prepare(sweep)))
-        return code;
-    return run_or_report(sweep);
+
+    if (!result) return sweep_note_plan(sweep);
+
+    console_result(sweep->console, &error);
+    return EXIT_FAILED;
 }
 
 Sweep sweep_make(Console *console, const SweepOptions *options) {
+    // the path of this program, valid on other nodes that see the same files
+    char path[4096];
+    const ssize_t size = readlink("/proc/self/exe", path, sizeof path - 1);
+    if (size > 0) path[size] = 0;
     return (Sweep){.console = console,
                    .options = options,
-                   .program = own_path(),
+                   .program = text_format("%s", size > 0 ? path : "singe"),
                    .plan_path = absolute(options->plan),
                    .lock = LOCK_NONE};
 }
@@ -201,7 +145,45 @@ Sweep sweep_make(Console *console, const SweepOptions *options) {
 void sweep_close(Sweep *sweep) {
     lock_release(&sweep->lock);
     plan_free(&sweep->plan);
-    free(sweep->folder), free(sweep->frames), free(sweep->name), free(sweep->program), free(sweep->plan_path);
+    free(sweep->folder);
+    free(sweep->frames);
+    free(sweep->name);
+    free(sweep->program);
+    free(sweep->plan_path);
+}
+
+/// Runs, submits, lists or reports the rows of a plan that has been read.
+static ExitCode sweep_rows(Sweep *sweep) {
+    const SweepOptions *o = sweep->options;
+    const Plan *plan = &sweep->plan;
+    if (o->row > 0 && (uint32_t)o->row > plan->row_count) {
+        console_error(sweep->console, "--row %d: %s has %u rows", o->row, o->plan, plan->row_count);
+        return EXIT_INPUT;
+    }
+
+    ExitCode code = sweep_make_room(sweep);
+    if (!code) code = sweep_check_rows(sweep);
+    if (!code) code = sweep_prepare(sweep);
+    if (code) return code;
+
+    // the commands of the rows that are due
+    for (uint32_t row = 0; o->print && row < plan->row_count; row++) {
+        const RowState state = sweep_row_state(sweep, row);
+        if (state == ROW_COMPLETE || state == ROW_ELSEWHERE || (state == ROW_FAILED && !o->retry)) continue;
+        char *number = text_format("%u", row + 1), *line = sweep_row_line(sweep, number);
+        puts(line);
+        free(line);
+        free(number);
+    }
+
+    if (o->print) return EXIT_GOOD;
+    if (o->submit) return sweep_submit(sweep);
+    if (o->row) return sweep_run_rows(sweep);
+
+    code = o->report ? EXIT_GOOD : sweep_run_rows(sweep);
+    ExitCode report = sweep_report(sweep);
+    if (!report && !o->quiet) printf("%s/index.html\n", sweep->folder);
+    return code ? code : report;
 }
 
 int command_sweep(int argc, char **argv) {
@@ -212,7 +194,8 @@ int command_sweep(int argc, char **argv) {
         interrupt_shield();
         Console console = console_make(options.quiet);
         Sweep sweep = sweep_make(&console, &options);
-        code = sweep_all(&sweep);
+        code = plan_read(options.plan, false, &console, &sweep.plan);
+        if (!code) code = sweep_rows(&sweep);
         sweep_close(&sweep);
     }
     set_free(&options.slurm);

@@ -1,24 +1,37 @@
-// Reads a plan: YAML by the tree of scene files, so that errors have their lines.
-#include "sweep/plan_reader.h"
+// Reads a plan: YAML by the tree of scene files, so that errors have their lines. Its rows are every combination of the
+// values, a list, or random.
+//
+// A Latin hypercube of n rows cuts each parameter's range into n parts of equal size, draws a number in each part and
+// assigns the parts to the rows in random order: McKay, Beckman and Conover, Technometrics 21 (1979) 239.
+#include "sweep/sweep_plan.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/job.h"
+#include "common/printable.h"
 #include "formats/formats.h"
 #include "formats/number.h"
-#include "common/printable.h"
 #include "scene/messages.h"
 #include "scene/units.h"
 
+typedef struct PlanReader {
+    Plan *plan;
+    SceneText text;
+    SceneMessages messages;
+    const char *folder; ///< of the plan, "" or ending in a slash
+} PlanReader;
+
 enum { PLAN_BYTES_MAX = 1 << 20 };
 
-static const char *const methods[PLAN_METHODS] = {"grid", "list", "random", "latin-hypercube", "sheets"};
+static const char *const methods[PLAN_METHODS] = {"grid", "list", "random", "latin-hypercube"};
 
 static const char *const searches[PLAN_SEARCHES] = {"local", "global"};
 
-void plan_complain(PlanReader *reader, const YamlNode *node, const char *key, const char *expected) {
+/// Reports an error: what was expected at a node, and what it is.
+static void plan_complain(PlanReader *reader, const YamlNode *node, const char *key, const char *expected) {
     char seen[NODE_WORDS];
     message_add(&reader->messages, &reader->text, node->location, "%s: expected %s, got %s", key, expected,
                 node_describe(node, seen, sizeof seen));
@@ -33,6 +46,7 @@ static void write_flow(const YamlNode *node, FILE *file) {
         fputs(node->text, file);
         return;
     }
+
     if (node->kind == NODE_VALUE) {
         fputc('"', file);
         for (const char *c = node->text; *c; c++)
@@ -41,13 +55,16 @@ static void write_flow(const YamlNode *node, FILE *file) {
         fputc('"', file);
         return;
     }
+
     fputc(node->kind == NODE_LIST ? '[' : '{', file);
+
     for (const YamlNode *child = node->first; child; child = child->next) {
         fputs(between, file);
         if (node->kind == NODE_MAP) fprintf(file, "%s: ", child->key);
         write_flow(child, file);
         between = ", ";
     }
+
     fputc(node->kind == NODE_LIST ? ']' : '}', file);
 }
 
@@ -59,6 +76,7 @@ static char *flow_text(Plan *plan, const YamlNode *node, const char *prefix) {
         fputs(prefix, file);
         write_flow(node, file);
     }
+
     if (file && fclose(file) == 0 && text) kept = arena_text(plan->arena, text, size);
     else arena_fail(plan->arena);
     free(text);
@@ -85,99 +103,13 @@ static bool read_switch(PlanReader *reader, const YamlNode *node, const char *ke
     return yes;
 }
 
-/// "850 C": the number, and the unit as written.
-static void read_quantity(PlanReader *reader, const YamlNode *node, const char *key, double *number,
-                          const char **unit) {
-    *unit = "";
-    if (node->kind == NODE_VALUE && !node->quoted) {
-        const uint8_t *at = (const uint8_t *)node->text, *end = at + strlen(node->text);
-        if (number_double(&at, end, number) == NUMBER_OK) {
-            while (*at == ' ') at++;
-            *unit = (const char *)at;
-            return;
-        }
-    }
-    plan_complain(reader, node, key, "a number, with a unit or without");
-}
-
-// ---- parameters
-
-static void read_range(PlanReader *reader, const YamlNode *map, PlanParameter *parameter) {
-    const char *units[2] = {"", ""};
-    bool ends[2] = {false, false};
-    for (const YamlNode *node = map->first; node; node = node->next) {
-        const char *key = node->key;
-        if (strcmp(key, "from") == 0) read_quantity(reader, node, key, &parameter->from, &units[0]), ends[0] = true;
-        else if (strcmp(key, "to") == 0) read_quantity(reader, node, key, &parameter->to, &units[1]), ends[1] = true;
-        else if (strcmp(key, "steps") == 0) read_count(reader, node, key, 2, PLAN_ROWS_MAX, &parameter->steps);
-        else if (strcmp(key, "whole") == 0) parameter->whole = read_switch(reader, node, key);
-        else if (strcmp(key, "logarithmic") == 0) parameter->logarithmic = read_switch(reader, node, key);
-        else
-            message_add(&reader->messages, &reader->text, node->key_location,
-                        "unknown key '%s' of a range: expected from, to, steps, logarithmic or whole", shown(key).text);
-    }
-    parameter->unit = arena_text(reader->plan->arena, units[0], strlen(units[0]));
-    if (!ends[0] || !ends[1])
-        message_add(&reader->messages, &reader->text, map->location, "a range needs both 'from' and 'to'");
-    else if (strcmp(units[0], units[1]) != 0)
-        message_add(&reader->messages, &reader->text, map->location,
-                    "a range needs one unit: 'from' has %s and 'to' has %s", *units[0] ? shown(units[0]).text : "none",
-                    *units[1] ? shown(units[1]).text : "none");
-    else if (parameter->logarithmic && !(parameter->from > 0 && parameter->to > 0))
-        message_add(&reader->messages, &reader->text, map->location, "a logarithmic range must be above 0");
-}
-
-static void read_parameter(PlanReader *reader, const YamlNode *node) {
-    Plan *plan = reader->plan;
-    PlanParameter *parameter = &plan->parameters[plan->parameter_count++];
-    parameter->key = node->key;
-    parameter->location = node->location;
-    if (strcmp(node->key, "name") == 0)
-        message_add(&reader->messages, &reader->text, node->key_location, "all rows have the scene's name");
-    if (node->kind == NODE_MAP) {
-        read_range(reader, node, parameter);
-    } else if (node->kind == NODE_LIST && node->count) {
-        parameter->values = arena_new(plan->arena, node->count, sizeof *parameter->values);
-        for (const YamlNode *value = node->first; value && parameter->values; value = value->next)
-            parameter->values[parameter->count++] = flow_text(plan, value, "");
-    } else {
-        plan_complain(reader, node, node->key, "a list of values, or a range {from: A, to: B, steps: N}");
-    }
-}
-
-static void read_parameters(PlanReader *reader, const YamlNode *node) {
-    Plan *plan = reader->plan;
-    if (node->kind != NODE_MAP || !node->count || node->count > PLAN_PARAMETERS_MAX) {
-        plan_complain(reader, node, "parameters", "a map of 1 to 64 keys of the scene");
-        return;
-    }
-    plan->parameters = arena_new(plan->arena, node->count, sizeof *plan->parameters);
-    for (const YamlNode *child = node->first; child && plan->parameters; child = child->next)
-        read_parameter(reader, child);
-}
-
-static void read_sets(PlanReader *reader, const YamlNode *node) {
-    Plan *plan = reader->plan;
-    if (node->kind != NODE_MAP) {
-        plan_complain(reader, node, "set", "a map of keys of the scene");
-        return;
-    }
-    plan->sets = arena_new(plan->arena, (size_t)node->count + 1, sizeof *plan->sets);
-    for (const YamlNode *child = node->first; child && plan->sets; child = child->next) {
-        char *prefix = arena_new(plan->arena, strlen(child->key) + 2, 1);
-        if (!prefix) return;
-        sprintf(prefix, "%s=", child->key);
-        plan->sets[plan->set_count++] = flow_text(plan, child, prefix);
-    }
-}
-
-// ---- the plan
-
-char *plan_read_path(PlanReader *reader, const YamlNode *node, const char *key) {
+/// A path from the plan's folder; NULL after an error.
+static char *read_path(PlanReader *reader, const YamlNode *node, const char *key) {
     if (node->kind != NODE_VALUE || !node->text[0]) {
         plan_complain(reader, node, key, "the path of a file");
         return NULL;
     }
+
     const char *folder = node->text[0] == '/' ? "" : reader->folder;
     char *path = arena_new(reader->plan->arena, strlen(folder) + strlen(node->text) + 1, 1);
     if (path) sprintf(path, "%s%s", folder, node->text);
@@ -193,95 +125,325 @@ static int read_word(PlanReader *reader, const YamlNode *node, const char *key, 
     return 0;
 }
 
-static void read_margin(PlanReader *reader, const YamlNode *node) {
-    double margin = -1;
-    if (node->kind == NODE_VALUE && !node->quoted && !quantity_read(node->text, DIM_LENGTH, &margin) && margin >= 0)
-        reader->plan->margin = margin;
-    else plan_complain(reader, node, "margin", "a length, 0 or more");
+// ---- parameters
+
+static void read_range(PlanReader *reader, const YamlNode *map, PlanParameter *parameter) {
+    const char *units[2] = {"", ""};
+    bool ends[2] = {false, false};
+
+    for (const YamlNode *node = map->first; node; node = node->next) {
+        const char *key = node->key;
+        const int end = strcmp(key, "from") == 0 ? 0 : strcmp(key, "to") == 0 ? 1 : -1;
+        if (end >= 0) {
+            // "850 C": the number, and the unit as written
+            const bool plain = node->kind == NODE_VALUE && !node->quoted;
+            const uint8_t *at = (const uint8_t *)(plain ? node->text : ""), *last = at + strlen((const char *)at);
+            ends[end] = true;
+            if (number_double(&at, last, end ? &parameter->to : &parameter->from) != NUMBER_OK) {
+                plan_complain(reader, node, key, "a number, with a unit or without");
+                continue;
+            }
+            while (*at == ' ') at++;
+            units[end] = (const char *)at;
+        } else if (strcmp(key, "steps") == 0) {
+            read_count(reader, node, key, 2, PLAN_ROWS_MAX, &parameter->steps);
+        } else if (strcmp(key, "whole") == 0) {
+            parameter->whole = read_switch(reader, node, key);
+        } else if (strcmp(key, "logarithmic") == 0) {
+            parameter->logarithmic = read_switch(reader, node, key);
+        } else {
+            message_add(&reader->messages, &reader->text, node->key_location,
+                        "unknown key '%s' of a range: expected from, to, steps, logarithmic or whole", shown(key).text);
+        }
+    }
+
+    parameter->unit = arena_text(reader->plan->arena, units[0], strlen(units[0]));
+    if (!ends[0] || !ends[1])
+        message_add(&reader->messages, &reader->text, map->location, "a range needs both 'from' and 'to'");
+    else if (strcmp(units[0], units[1]) != 0)
+        message_add(&reader->messages, &reader->text, map->location,
+                    "a range needs one unit: 'from' has %s and 'to' has %s", *units[0] ? shown(units[0]).text : "none",
+                    *units[1] ? shown(units[1]).text : "none");
+    else if (parameter->logarithmic && !(parameter->from > 0 && parameter->to > 0))
+        message_add(&reader->messages, &reader->text, map->location, "a logarithmic range must be above 0");
 }
+
+static void read_parameters(PlanReader *reader, const YamlNode *map) {
+    Plan *plan = reader->plan;
+    if (map->kind != NODE_MAP || !map->count || map->count > PLAN_PARAMETERS_MAX) {
+        plan_complain(reader, map, "parameters", "a map of 1 to 64 keys of the scene");
+        return;
+    }
+
+    plan->parameters = arena_new(plan->arena, map->count, sizeof *plan->parameters);
+
+    for (const YamlNode *node = map->first; node && plan->parameters; node = node->next) {
+        PlanParameter *parameter = &plan->parameters[plan->parameter_count++];
+        parameter->key = node->key;
+        parameter->location = node->location;
+        if (strcmp(node->key, "name") == 0)
+            message_add(&reader->messages, &reader->text, node->key_location,
+                        "a row cannot change 'name': all rows have the scene's");
+        if (node->kind == NODE_MAP) {
+            read_range(reader, node, parameter);
+        } else if (node->kind == NODE_LIST && node->count) {
+            parameter->values = arena_new(plan->arena, node->count, sizeof *parameter->values);
+            for (const YamlNode *value = node->first; value && parameter->values; value = value->next)
+                parameter->values[parameter->count++] = flow_text(plan, value, "");
+        } else {
+            plan_complain(reader, node, node->key, "a list of values, or a range {from: A, to: B, steps: N}");
+        }
+    }
+}
+
+/// The target of a fit.
+static void read_target(PlanReader *reader, const YamlNode *map) {
+    PlanTarget *target = &reader->plan->target;
+    if (map->kind != NODE_MAP || !map->count) {
+        plan_complain(reader, map, "target", "a map of front_speed, temperature or masks");
+        return;
+    }
+
+    target->given = true;
+
+    for (const YamlNode *node = map->first; node; node = node->next) {
+        const char *key = node->key;
+        if (strcmp(key, "front_speed") == 0) {
+            if (node->kind != NODE_VALUE || quantity_read(node->text, DIM_SPEED, &target->front_speed) ||
+                !(target->front_speed > 0 && target->front_speed < 1e3))
+                plan_complain(reader, node, key, "a speed above 0 such as 2.5 mm/s");
+        } else if (strcmp(key, "temperature") == 0 && node->kind != NODE_MAP) {
+            plan_complain(reader, node, key, "{file: CURVE.csv, probe: NAME}");
+        } else if (strcmp(key, "temperature") == 0) {
+            for (const YamlNode *part = node->first; part; part = part->next)
+                if (strcmp(part->key, "file") == 0) target->curve = read_path(reader, part, "file");
+                else if (strcmp(part->key, "probe") == 0 && part->kind == NODE_VALUE) target->probe = part->text;
+                else
+                    message_add(&reader->messages, &reader->text, part->key_location,
+                                "unknown key '%s' of a curve: expected file or probe", shown(part->key).text);
+            if (!node_find(node, "file") || !node_find(node, "probe"))
+                message_add(&reader->messages, &reader->text, node->location, "a curve needs 'file' and 'probe'");
+        } else if (strcmp(key, "masks") == 0) {
+            char *path = target->masks = read_path(reader, node, key);
+            const char *name = path ? strrchr(path, '/') : NULL, *run = path ? strchr(name ? name : path, '#') : NULL;
+            const bool elsewhere = name && memchr(path, '#', (size_t)(name - path));
+            if (path && (!run || strchr(run + strspn(run, "#"), '#') || elsewhere))
+                plan_complain(reader, node, key, "a file name with one run of # for the frame's number");
+        } else {
+            message_add(&reader->messages, &reader->text, node->key_location,
+                        "unknown key '%s' of a target: expected front_speed, temperature or masks", shown(key).text);
+        }
+    }
+}
+
+// ---- rows
+
+/// A number in [0, 1) of a 64-bit generator (SplitMix64: Steele, Lea and Flood 2014). The rows are the same on every
+/// machine.
+static double draw_unit(uint64_t *state) {
+    uint64_t z = *state += 0x9e3779b97f4a7c15u;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
+}
+
+/// The text of the number at `unit` in [0, 1] of a range.
+static char *range_text(Plan *plan, const PlanParameter *parameter, double unit) {
+    const double from = parameter->from, to = parameter->to;
+    double number = parameter->logarithmic ? exp(log(from) + (log(to) - log(from)) * unit) : from + (to - from) * unit;
+    char text[80];
+    if (unit == 0) number = from;
+    if (unit == 1) number = to;
+    if (parameter->whole) number = round(number);
+
+    // 9 digits: more than a float has, and 0.1 remains 0.1
+    int length = snprintf(text, sizeof text, "%.9g", number);
+    char *value = arena_new(plan->arena, (size_t)length + strlen(parameter->unit) + 2, 1);
+    if (value) sprintf(value, "%s%s%s", text, parameter->unit[0] ? " " : "", parameter->unit);
+    return value;
+}
+
+/// The number of the parameter's values in a grid or a list; 0: not given.
+static uint32_t choices(const PlanParameter *parameter) {
+    return parameter->count ? parameter->count : parameter->steps;
+}
+
+static bool make_values(Plan *plan, uint64_t rows) {
+    plan->row_count = (uint32_t)rows;
+    plan->values = arena_new(plan->arena, (size_t)rows * plan->parameter_count, sizeof *plan->values);
+    return plan->values;
+}
+
+/// Every combination, or the n-th values of all parameters. `message` says why there are none, about `parameter`.
+static void make_chosen(Plan *plan, uint32_t *parameter, char *message, size_t size) {
+    const bool list = plan->method == PLAN_LIST;
+    uint64_t rows = list ? choices(&plan->parameters[0]) : 1;
+
+    for (uint32_t p = 0; p < plan->parameter_count; p++) {
+        const uint32_t count = choices(&plan->parameters[p]);
+        *parameter = p;
+        if (list && count != rows) {
+            snprintf(message, size,
+                     "a list needs the same number of values for each parameter: %u here, %u for the first", count,
+                     (uint32_t)rows);
+            return;
+        }
+        if (!list) rows *= count;
+        if (rows > PLAN_ROWS_MAX) {
+            snprintf(message, size, "the %s has more than %d rows", list ? "list" : "grid", PLAN_ROWS_MAX);
+            return;
+        }
+    }
+
+    if (!make_values(plan, rows)) return;
+
+    for (uint32_t row = 0; row < plan->row_count; row++)
+        for (uint32_t p = plan->parameter_count, rest = row; p-- > 0;) {
+            const uint32_t count = choices(&plan->parameters[p]);
+            char **value = &plan->values[(size_t)row * plan->parameter_count + p];
+            const uint32_t index = list ? row : rest % count;
+            *value = plan->parameters[p].count
+                         ? plan->parameters[p].values[index]
+                         : range_text(plan, &plan->parameters[p], (double)index / (plan->parameters[p].steps - 1));
+            rest /= count;
+        }
+}
+
+/// Random values; without memory the arena has failed.
+static void make_drawn(Plan *plan) {
+    uint32_t *order = arena_new(plan->arena, plan->samples, sizeof *order);
+    if (!order || !make_values(plan, plan->samples)) return;
+
+    for (uint32_t p = 0; p < plan->parameter_count; p++) {
+        const PlanParameter *parameter = &plan->parameters[p];
+        uint64_t state = ((uint64_t)plan->seed << 32) + p; // a parameter's values do not depend on the others
+
+        // a random order of the parts (Fisher and Yates)
+        for (uint32_t i = 0; i < plan->samples; i++) order[i] = i;
+        for (uint32_t i = plan->samples; i > 1; i--) {
+            const uint32_t j = (uint32_t)(draw_unit(&state) * i), kept = order[i - 1];
+            order[i - 1] = order[j];
+            order[j] = kept;
+        }
+
+        for (uint32_t row = 0; row < plan->samples; row++) {
+            const double unit = draw_unit(&state);
+            const double at = plan->method == PLAN_RANDOM ? unit : (order[row] + unit) / plan->samples;
+            char **value = &plan->values[(size_t)row * plan->parameter_count + p];
+            if (parameter->count) {
+                *value = parameter->values[(uint32_t)(at * parameter->count)];
+            } else if (!parameter->whole) {
+                *value = range_text(plan, parameter, at);
+            } else {
+                // all integers are equally likely
+                PlanParameter wide = *parameter;
+                wide.from = ceil(fmin(parameter->from, parameter->to));
+                wide.to = floor(fmax(parameter->from, parameter->to));
+                const double number = wide.from + floor(at * (wide.to - wide.from + 1));
+                *value =
+                    range_text(plan, &wide, wide.to > wide.from ? (number - wide.from) / (wide.to - wide.from) : 0);
+            }
+        }
+    }
+}
+
+bool plan_set_row(Plan *plan, uint32_t row, const double *coordinates) {
+    bool good = true;
+    for (uint32_t p = 0; p < plan->parameter_count; p++) {
+        char *value = range_text(plan, &plan->parameters[p], fmin(fmax(coordinates[p], 0), 1));
+        plan->values[(size_t)row * plan->parameter_count + p] = value;
+        good = good && value;
+    }
+    return good;
+}
+
+// ---- the plan
 
 static void read_key(PlanReader *reader, const YamlNode *node) {
     Plan *plan = reader->plan;
     const char *key = node->key;
-    if (strcmp(key, "scene") == 0) plan->scene = plan_read_path(reader, node, key);
-    else if (strcmp(key, "method") == 0)
-        plan->method = (PlanMethod)read_word(reader, node, key, methods, PLAN_METHODS,
-                                             "grid, list, random, latin-hypercube or sheets");
-    else if (strcmp(key, "samples") == 0) read_count(reader, node, key, 1, PLAN_ROWS_MAX, &plan->samples);
-    else if (strcmp(key, "seed") == 0) read_count(reader, node, key, 0, UINT32_MAX, &plan->seed);
-    else if (strcmp(key, "margin") == 0) read_margin(reader, node);
-    else if (strcmp(key, "set") == 0) read_sets(reader, node);
-    else if (strcmp(key, "parameters") == 0) read_parameters(reader, node);
-    else if (strcmp(key, "target") == 0) plan_read_target(reader, node);
-    else if (strcmp(key, "search") == 0)
+    if (strcmp(key, "scene") == 0) {
+        plan->scene = read_path(reader, node, key);
+    } else if (strcmp(key, "method") == 0) {
+        plan->method =
+            (PlanMethod)read_word(reader, node, key, methods, PLAN_METHODS, "grid, list, random or latin-hypercube");
+    } else if (strcmp(key, "samples") == 0) {
+        read_count(reader, node, key, 1, PLAN_ROWS_MAX, &plan->samples);
+    } else if (strcmp(key, "seed") == 0) {
+        read_count(reader, node, key, 0, UINT32_MAX, &plan->seed);
+    } else if (strcmp(key, "set") == 0 && node->kind != NODE_MAP) {
+        plan_complain(reader, node, "set", "a map of keys of the scene");
+    } else if (strcmp(key, "set") == 0) {
+        plan->sets = arena_new(plan->arena, (size_t)node->count + 1, sizeof *plan->sets);
+        for (const YamlNode *child = node->first; child && plan->sets; child = child->next) {
+            char *prefix = arena_new(plan->arena, strlen(child->key) + 2, 1);
+            if (!prefix) return;
+            sprintf(prefix, "%s=", child->key);
+            plan->sets[plan->set_count++] = flow_text(plan, child, prefix);
+        }
+    } else if (strcmp(key, "parameters") == 0) {
+        read_parameters(reader, node);
+    } else if (strcmp(key, "target") == 0) {
+        read_target(reader, node);
+    } else if (strcmp(key, "search") == 0) {
         plan->search = (PlanSearch)read_word(reader, node, key, searches, PLAN_SEARCHES, "local or global");
-    else if (strcmp(key, "evaluations") == 0) read_count(reader, node, key, 1, PLAN_ROWS_MAX, &plan->evaluations);
-    else
-        message_add(
-            &reader->messages, &reader->text, node->key_location,
-            "unknown key '%s' of a plan: expected scene, method, samples, seed, margin, set, parameters, and for a fit "
-            "target, search, evaluations",
-            shown(key).text);
-}
-
-/// Rows of sheets are determined when the scene is read (plan_split_sheets).
-static void check_sheets(PlanReader *reader, const YamlNode *root, bool fit) {
-    const Plan *plan = reader->plan;
-    if (fit) message_add(&reader->messages, &reader->text, root->location, "a fit has no method 'sheets'");
-    if (plan->parameter_count)
-        message_add(&reader->messages, &reader->text, plan->parameters[0].location,
-                    "method sheets has no 'parameters': its rows follow from the scene; use 'set'");
-}
-
-static void check_plan(PlanReader *reader, const YamlNode *root, bool fit) {
-    Plan *plan = reader->plan;
-    const bool drawn = plan->method == PLAN_RANDOM || plan->method == PLAN_LATIN_HYPERCUBE;
-    const bool sheets = plan->method == PLAN_SHEETS;
-    if (!plan->scene) message_add(&reader->messages, &reader->text, root->location, "a plan needs 'scene'");
-    if (!sheets && plan->margin >= 0)
-        message_add(&reader->messages, &reader->text, root->location, "'margin' belongs to method sheets");
-    if (sheets) check_sheets(reader, root, fit);
-    else if (!plan->parameter_count)
-        message_add(&reader->messages, &reader->text, root->location, "a plan needs 'parameters'");
-    if (drawn && !plan->samples)
-        message_add(&reader->messages, &reader->text, root->location, "method %s needs 'samples'",
-                    methods[plan->method]);
-    if (fit && !plan->target.given && !reader->messages.count)
-        message_add(&reader->messages, &reader->text, root->location, "a fit needs 'target'");
-    if (!fit && plan->target.given)
-        message_add(&reader->messages, &reader->text, root->location, "a plan with 'target' belongs to singe fit");
-    if (reader->messages.count || arena_failed(plan->arena) || sheets) return;
-    uint32_t parameter = 0;
-    char message[200];
-    if (!plan_make_rows(plan, &parameter, message, sizeof message) && !arena_failed(plan->arena))
-        message_add(&reader->messages, &reader->text, plan->parameters[parameter].location, "%s", message);
+    } else if (strcmp(key, "evaluations") == 0) {
+        read_count(reader, node, key, 1, PLAN_ROWS_MAX, &plan->evaluations);
+    } else {
+        message_add(&reader->messages, &reader->text, node->key_location,
+                    "unknown key '%s' of a plan: expected scene, method, samples, seed, set, parameters, and for a fit "
+                    "target, search, evaluations",
+                    shown(key).text);
+    }
 }
 
 static void read_plan(PlanReader *reader, bool fit) {
     Plan *plan = reader->plan;
     const SceneText *text = &reader->text;
-    YamlNode *root = tree_read(plan->arena, text, text->bytes, text->size, (SceneLocation){0}, &reader->messages);
+    SceneMessages *messages = &reader->messages;
+    YamlNode *root = tree_read(plan->arena, text, text->bytes, text->size, (SceneLocation){0}, messages);
     if (!root) return;
     if (root->kind != NODE_MAP) {
         plan_complain(reader, root, "a plan", "a map (key: value)");
         return;
     }
-    for (const YamlNode *node = root->first; node; node = node->next) read_key(reader, node);
-    check_plan(reader, root, fit);
-}
 
-/// "plans/wind.yaml": the folder "plans/" and the name "wind".
-static void take_path(PlanReader *reader, const char *path) {
-    Plan *plan = reader->plan;
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
-    reader->folder = arena_text(plan->arena, path, (size_t)(name - path));
-    plan->name = arena_text(plan->arena, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
+    for (const YamlNode *node = root->first; node; node = node->next) read_key(reader, node);
+
+    const bool drawn = plan->method == PLAN_RANDOM || plan->method == PLAN_LATIN_HYPERCUBE;
+    if (!plan->scene) message_add(messages, text, root->location, "a plan needs 'scene'");
+    if (!plan->parameter_count) message_add(messages, text, root->location, "a plan needs 'parameters'");
+    if (drawn && !plan->samples)
+        message_add(messages, text, root->location, "method %s needs 'samples'", methods[plan->method]);
+    if (fit && !plan->target.given && !messages->count)
+        message_add(messages, text, root->location, "a fit needs 'target'");
+    if (!fit && plan->target.given)
+        message_add(messages, text, root->location, "a plan with 'target' belongs to singe fit");
+    if (messages->count || arena_failed(plan->arena)) return;
+
+    // the rows; a fit has as many as evaluations, without values yet
+    const bool chosen = !fit && !drawn;
+    uint32_t at = 0;
+    char why[200] = "";
+    for (uint32_t p = 0; p < plan->parameter_count && !*why; p++) {
+        at = p;
+        if (fit && (plan->parameters[p].count || plan->parameters[p].steps))
+            snprintf(why, sizeof why, "a fit needs a range {from: A, to: B} without steps");
+        if (chosen && !choices(&plan->parameters[p]))
+            snprintf(why, sizeof why, "a range needs 'steps' for a grid or a list");
+    }
+
+    if (!*why && fit) make_values(plan, plan->evaluations);
+    else if (!*why && drawn) make_drawn(plan);
+    else if (!*why) make_chosen(plan, &at, why, sizeof why);
+    if (*why) message_add(messages, text, plan->parameters[at].location, "%s", why);
 }
 
 ExitCode plan_read(const char *path, bool fit, Console *console, Plan *plan) {
     Bytes bytes = {0};
     SingeError error = {0};
-    *plan = (Plan){.arena = arena_create(), .evaluations = 40, .margin = -1};
+
+    *plan = (Plan){.arena = arena_create(), .evaluations = 40};
     SingeResult result =
         plan->arena ? file_read_max(path, PLAN_BYTES_MAX, (SingeAllocator){0}, &bytes, &error) : SINGE_ERROR_MEMORY;
     if (result) {
@@ -290,9 +452,15 @@ ExitCode plan_read(const char *path, bool fit, Console *console, Plan *plan) {
         plan_free(plan);
         return job_exit(result);
     }
-    PlanReader reader = {.plan = plan, .text = {.name = path, .bytes = (const char *)bytes.data, .size = bytes.size}};
-    take_path(&reader, path);
+
+    // "plans/wind.yaml": the folder "plans/" and the name "wind"
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+    PlanReader reader = {.plan = plan,
+                         .text = {.name = path, .bytes = (const char *)bytes.data, .size = bytes.size},
+                         .folder = arena_text(plan->arena, path, (size_t)(name - path))};
+    plan->name = arena_text(plan->arena, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
     read_plan(&reader, fit);
+
     const bool failed = arena_failed(plan->arena);
     const bool bad = reader.messages.count || reader.messages.left_out;
     scene_messages_print(&reader.messages, stderr);
@@ -308,21 +476,19 @@ void plan_free(Plan *plan) {
     *plan = (Plan){0};
 }
 
-static bool ends_alike(const Plan *plan, uint32_t parameter, const char *label) {
-    const size_t length = strlen(label);
-    for (uint32_t i = 0; i < plan->parameter_count; i++) {
-        const char *key = plan->parameters[i].key;
-        const size_t key_length = strlen(key);
-        if (i != parameter && key_length > length && strcmp(key + key_length - length, label) == 0) return true;
-    }
-    return false;
-}
-
 const char *plan_label(const Plan *plan, uint32_t parameter) {
     const char *key = plan->parameters[parameter].key, *label = key + strlen(key);
-    do {
+    for (bool alike = true; alike;) {
         label -= label > key;
         while (label > key && label[-1] != '.') label--;
-    } while (label > key && ends_alike(plan, parameter, label));
+
+        const size_t length = strlen(label);
+        alike = false;
+        for (uint32_t i = 0; i < plan->parameter_count && label > key; i++) {
+            const char *other = plan->parameters[i].key;
+            const size_t size = strlen(other);
+            alike = alike || (i != parameter && size > length && strcmp(other + size - length, label) == 0);
+        }
+    }
     return label;
 }

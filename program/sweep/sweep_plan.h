@@ -12,7 +12,6 @@ typedef enum PlanMethod {
     PLAN_LIST,            ///< the first values of all parameters, then the second, ...
     PLAN_RANDOM,          ///< each value independently
     PLAN_LATIN_HYPERCUBE, ///< each range is cut into as many parts as there are rows; each is used once
-    PLAN_SHEETS,          ///< sheets that cannot meet, in separate rows
     PLAN_METHODS
 } PlanMethod;
 
@@ -51,7 +50,6 @@ typedef struct Plan {
     char *scene;       ///< path of the scene
     PlanMethod method;
     uint32_t samples, seed;
-    double margin; ///< m, of PLAN_SHEETS: sheets at most this far apart can meet; negative: not given
     PlanTarget target;
     PlanSearch search;
     uint32_t evaluations; ///< max rows of a fit
@@ -66,10 +64,6 @@ typedef struct Plan {
 ExitCode plan_read(const char *path, bool fit, Console *console, Plan *plan);
 void plan_free(Plan *plan);
 
-/// Creates the rows of PLAN_SHEETS from the scene's meshes (sheet_groups.c). Messages have been printed unless the
-/// result is EXIT_GOOD.
-ExitCode plan_split_sheets(Plan *plan, Console *console);
-
 /// Sets a row's values from coordinates in [0, 1] of the ranges. False when out of memory.
 bool plan_set_row(Plan *plan, uint32_t row, const double *coordinates);
 
@@ -80,9 +74,5 @@ static inline const char *plan_value(const Plan *plan, uint32_t row, uint32_t pa
 
 /// A parameter's short name: the part after the last dot, longer if others have the same end.
 const char *plan_label(const Plan *plan, uint32_t parameter);
-
-/// Creates the rows of a plan whose parameters have been read (plan_rows.c). False: `message` says why, about
-/// `parameter`. A fit has as many rows as evaluations, without values yet.
-bool plan_make_rows(Plan *plan, uint32_t *parameter, char *message, size_t size);
 
 #endif

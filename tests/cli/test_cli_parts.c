@@ -15,7 +15,7 @@
 #include "cli/args.h"
 #include "cli/cli.h"
 #include "cli/console.h"
-#include "cli/contact_sheet.h"
+#include "cli/pictures.h"
 #include "cli/interrupt.h"
 #include "cli/text.h"
 #include "common/utf8.h"

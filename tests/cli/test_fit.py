@@ -183,7 +183,7 @@ class Fit(Case):
                           expect=1)
         self.assertIn("has no temperatures of probe 'q'", err)
         _, err = self.fit("scene: tiny.yaml\ntarget: {masks: mask##.png}\nevaluations: 1\n" + RANGE, out="g", expect=1)
-        self.assertIn("there is no such file for any frame", err)
+        self.assertIn("no frame has such a file", err)
 
 
 if __name__ == "__main__":

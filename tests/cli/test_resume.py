@@ -285,7 +285,7 @@ class Resume(Case):
         self.run_scene("whole", "--frames", "8", "--quiet", preview=True)
         self.run_scene("o", "--frames", "5", "--quiet")
         _, err = self.run_scene("o", "--resume", "--frames", "8", preview=True)
-        self.assertIn("drawing 5 pictures that are missing", err)
+        self.assertIn("drawing 5 missing pictures", err)
         self.assertEqual(pictures("o"), pictures("whole"))
         os.remove(self.path("o", "frames", "tiny.0002.png"))
         open(self.path("o", "frames", "tiny.0008.png"), "w").close()

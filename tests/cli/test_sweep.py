@@ -94,7 +94,7 @@ class Sweep(Case):
 
     def test_bad_plans(self):
         for text, line, expected in (
-            ("method: grd\nparameters: {pace: [1]}\n", 2, "expected grid, list, random, latin-hypercube or sheets, got 'grd'"),
+            ("method: grd\nparameters: {pace: [1]}\n", 2, "expected grid, list, random or latin-hypercube, got 'grd'"),
             ("parameters:\n  pace: {from: 1, to: 2 C, steps: 2}\n", 3, "'from' has none and 'to' has C"),
             ("parameters:\n  pace: {from: 1, to: 2}\n", 3, "needs 'steps'"),
             ("parameters:\n  pace: {from: 1, stop: 2}\n", 3, "unknown key 'stop'"),
@@ -393,7 +393,7 @@ class Sweep(Case):
 
     def test_slurm_refuses(self):
         self.write_plan("parameters:\n  pace: [1, 2]\n")
-        self.assertIn("sbatch did not take the job", self.sweep("--slurm", expect=1, env=self.fake_sbatch(1))[1])
+        self.assertIn("sbatch refused the job", self.sweep("--slurm", expect=1, env=self.fake_sbatch(1))[1])
 
     def test_a_row_stopped_by_its_scheduler(self):
         """The script passes the signal on, the row leaves a checkpoint, and the next start resumes from it."""

@@ -199,7 +199,7 @@ class Usage(Case):
         self.assertNotIn("good", out)
         self.assertIn("error", err)
         help = " ".join(self.singe("check", "--help")[0].split())
-        self.assertIn("1 a step fails", help)
+        self.assertIn("1 a step failed", help)
 
     def test_standard_output_that_is_full(self):
         self.singe("run", self.scene, "-o", self.path("o"), "--no-preview", "--quiet")

@@ -3,7 +3,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/stats_table.h"
+#include "cli/csv.h"
 #include "cli/text.h"
 #include "scene/scene.h"
 #include "input.h"

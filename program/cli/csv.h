@@ -1,6 +1,6 @@
 // Reads CSV tables: a header, and lines with as many cells.
-#ifndef SWEEP_CSV_H
-#define SWEEP_CSV_H
+#ifndef CLI_CSV_H
+#define CLI_CSV_H
 
 #include "cli/cli.h"
 #include "cli/console.h"
@@ -29,5 +29,21 @@ typedef struct CsvLines {
 /// The numbers of a column in those lines, from malloc; other cells are skipped. NULL with *count 0 if there is none,
 /// or no such column.
 double *csv_numbers(const Csv *csv, int column, CsvLines lines, uint32_t *count);
+
+typedef struct StatsRow {
+    double frame, time, triangles, inverted_cells; ///< columns of docs/formats.md
+} StatsRow;
+
+typedef struct StatsTable {
+    StatsRow *rows; ///< NULL where there is no file
+    int count;
+} StatsTable;
+
+/// Reads the file. If it is missing, a warning is printed; any other table is bad input.
+ExitCode stats_table_read(StatsTable *table, const char *path, Console *console);
+void stats_table_free(StatsTable *table);
+
+/// The line of a frame, or NULL.
+const StatsRow *stats_table_row(const StatsTable *table, int frame);
 
 #endif
