@@ -36,12 +36,14 @@ static uint32_t renumber_walk(Order *order, uint32_t lower) {
         at = step(order, at, false);
         if (at != MESH_NONE && at / 4 == lower / 4) break; // a ring
     }
+
     for (uint32_t at = start; at != MESH_NONE; at = step(order, at, true)) {
         order->face[at / 4] = order->faces++;
         order->row[count++] = at;
         renumber_number(order, faces->corner[at]);
     }
     renumber_number(order, faces->corner[next4(order->row[count - 1])]);
+
     for (uint32_t i = 0; i < count; i++) {
         uint32_t twin = order->work->twin[across4(order->row[i])];
         if (twin != MESH_NONE && order->face[twin / 4] == MESH_NONE && above == MESH_NONE) above = twin;
@@ -66,17 +68,7 @@ static uint32_t first_side(const Work *work, const uint32_t *face, uint32_t from
     return open != MESH_NONE ? open : 4 * from;
 }
 
-/// Share of the sides whose ends have consecutive numbers: one half if rows are numbered one after the other.
-static double in_order(const Work *work) {
-    uint32_t beside = 0;
-    const Faces *faces = &work->faces;
-    for (uint32_t h = 0; h < faces->corner_count; h++) {
-        uint32_t a = faces->corner[h], b = faces->corner[next4(h)];
-        beside += a + 1 == b || b + 1 == a;
-    }
-    return (double)beside / faces->corner_count;
-}
-
+/// Gives vertices and quads their new numbers.
 static void apply(Order *order) {
     Work *work = order->work;
     const Faces *old = &work->faces;
@@ -86,6 +78,7 @@ static void apply(Order *order) {
     float *values = work_new(work, work->vertex_count * attributes, sizeof *values);
     Faces out = work_faces(work, old->count, old->corner_count);
     if (work->no_memory) return;
+
     for (uint32_t v = 0; v < work->vertex_count; v++) {
         uint32_t to = order->vertex[v];
         memcpy(position[to], work->position[v], sizeof *position);
@@ -93,6 +86,7 @@ static void apply(Order *order) {
         if (!attributes) continue;
         memcpy(values + to * attributes, work->attributes + v * attributes, attributes * sizeof *values);
     }
+
     for (uint32_t f = 0; f < old->count; f++) {
         uint32_t to = order->face[f];
         out.origin[to] = old->origin[f];
@@ -116,7 +110,17 @@ static void apply(Order *order) {
 void mesh_order(Work *work) {
     const uint32_t count = work->faces.count;
     work_edges(work);
-    if (work->no_memory || count < MESH_ORDER_MIN || in_order(work) >= MESH_IN_ORDER) return;
+    if (work->no_memory || count < MESH_ORDER_MIN) return;
+
+    // the share of the sides whose ends have consecutive numbers: one half if rows are numbered one after the other
+    const Faces *faces = &work->faces;
+    uint32_t beside = 0;
+    for (uint32_t h = 0; h < faces->corner_count; h++) {
+        uint32_t a = faces->corner[h], b = faces->corner[next4(h)];
+        beside += a + 1 == b || b + 1 == a;
+    }
+    if ((double)beside / faces->corner_count >= MESH_IN_ORDER) return;
+
     Order order = {.work = work,
                    .vertex = work_new(work, work->vertex_count, sizeof *order.vertex),
                    .face = work_new(work, count, sizeof *order.face),
@@ -124,6 +128,7 @@ void mesh_order(Work *work) {
     if (work->no_memory) return;
     memset(order.vertex, 0xff, work->vertex_count * sizeof *order.vertex);
     memset(order.face, 0xff, count * sizeof *order.face);
+
     int searches = 64; // for good starts; later rows start anywhere, so that meshes of short rows take no longer
     for (uint32_t f = 0; f < count; f++) {
         if (order.face[f] != MESH_NONE) continue;
