@@ -13,35 +13,6 @@ static void push_loop(Work *work, const Loops *loops, uint32_t loop, uint32_t or
     push_ring(work, loops->corner + loops->end[loop], loops->end[loop + 1] - loops->end[loop], origin, out);
 }
 
-/// Copies a whole face; splits others into loops and triangles.
-static SingeResult clean_face(Work *work, uint32_t face, Loops *loops, Faces *out) {
-    const uint32_t origin = work->faces.origin[face], name = work_face_name(work, origin);
-    const FaceKind kind = loops_find(loops, face);
-    if (kind == FACE_CROSSED) return work_refuse(work, origin, "crosses or overlaps itself: no quads cover it once");
-    if (kind == FACE_WHOLE) push_loop(work, loops, 0, origin, out);
-
-    // loops that are visible from their centroid stay as they are, others become triangles
-    for (uint32_t k = 0; kind == FACE_CUT && k < loops->count; k++) {
-        const uint32_t first = loops->triangles[k], end = loops->triangles[k + 1];
-        if (first == end) continue;
-        if (loops_is_star(loops, k)) {
-            push_loop(work, loops, k, origin, out);
-            continue;
-        }
-        for (uint32_t t = first; t < end; t++) {
-            const uint32_t *triangle = loops->cut.triangle[t];
-            if (!loops_is_flat(loops, triangle, 3)) push_ring(work, triangle, 3, origin, out);
-        }
-    }
-
-    if (work->shrunk) return SINGE_OK;
-    if (kind == FACE_IDLE) work_did(work, MESH_DEGENERATE, 1, name);
-    else if (loops->repeats) work_did(work, MESH_REPEATED, 1, name);
-    else if (loops->spikes) work_did(work, MESH_SPIKE, 1, name);
-    if (kind == FACE_CUT) work_did(work, MESH_CONCAVE, 1, name);
-    return SINGE_OK;
-}
-
 static bool same_corners(const Faces *faces, uint32_t a, uint32_t b) {
     if (faces->first[a + 1] - faces->first[a] != faces->first[b + 1] - faces->first[b]) return false;
     for (uint32_t h = faces->first[a]; h < faces->first[a + 1]; h++) {
@@ -94,11 +65,33 @@ SingeResult mesh_clean(Work *work) {
     Faces out = work_faces(work, old->count, old->corner_count);
     Loops loops = {0};
     if (work->no_memory || !loops_begin(&loops, work, old)) return SINGE_OK;
+
     for (uint32_t f = 0; f < old->count && !work->no_memory; f++) {
-        SingeResult result = clean_face(work, f, &loops, &out);
-        if (result) return result;
+        const uint32_t origin = old->origin[f], name = work_face_name(work, origin);
+        const FaceKind kind = loops_find(&loops, f);
+        if (kind == FACE_CROSSED)
+            return work_refuse(work, origin, "crosses or overlaps itself: no quads cover it once");
+        if (kind == FACE_WHOLE) push_loop(work, &loops, 0, origin, &out);
+
+        // loops that are visible from their centroid stay as they are, others become triangles
+        for (uint32_t k = 0; kind == FACE_CUT && k < loops.count; k++) {
+            const uint32_t first = loops.triangles[k], end = loops.triangles[k + 1];
+            const bool whole = first < end && loops_is_star(&loops, k);
+            if (whole) push_loop(work, &loops, k, origin, &out);
+            for (uint32_t t = first; t < end && !whole; t++) {
+                const uint32_t *triangle = loops.cut.triangle[t];
+                if (!loops_is_flat(&loops, triangle, 3)) push_ring(work, triangle, 3, origin, &out);
+            }
+        }
+
+        if (work->shrunk) continue;
+        if (kind == FACE_IDLE) work_did(work, MESH_DEGENERATE, 1, name);
+        else if (loops.repeats) work_did(work, MESH_REPEATED, 1, name);
+        else if (loops.spikes) work_did(work, MESH_SPIKE, 1, name);
+        if (kind == FACE_CUT) work_did(work, MESH_CONCAVE, 1, name);
     }
     if (work->no_memory) return SINGE_OK;
+
     work->faces = out;
     mesh_leave_out_copies(work);
     return SINGE_OK;

@@ -147,22 +147,6 @@ static uint32_t put_all(Junctions *j, const uint8_t *left, Faces *out) {
     return added;
 }
 
-/// Marks faces that cross themselves because of their new corners; faces narrower than `weld` may.
-static bool any_crossed(Work *work, const Faces *before, uint8_t *left) {
-    const Faces *faces = &work->faces;
-    Loops loops = {0};
-    bool any = false;
-    if (!loops_begin(&loops, work, faces)) return false;
-    for (uint32_t f = 0; f < faces->count; f++) {
-        const bool same = faces->first[f + 1] - faces->first[f] == before->first[f + 1] - before->first[f];
-        if (!same && loops_find(&loops, f) == FACE_CROSSED) {
-            left[f] = 1;
-            any = true;
-        }
-    }
-    return any;
-}
-
 SingeResult mesh_junctions(Work *work) {
     work_edges(work);
     Junctions *j = work_new(work, 1, sizeof *j);
@@ -179,8 +163,16 @@ SingeResult mesh_junctions(Work *work) {
     (void)put_all(j, left, &after);
     work->faces = after;
 
-    // once more, without the faces that cross themselves now
-    if (any_crossed(work, &before, left)) {
+    // once more, without the faces that cross themselves because of their new corners: faces narrower than `weld` may
+    Loops loops = {0};
+    bool crossed = false;
+    if (loops_begin(&loops, work, &work->faces))
+        for (uint32_t f = 0; f < before.count; f++) {
+            const bool same = after.first[f + 1] - after.first[f] == before.first[f + 1] - before.first[f];
+            left[f] = !same && loops_find(&loops, f) == FACE_CROSSED;
+            crossed = crossed || left[f];
+        }
+    if (crossed) {
         work->faces = before;
         work_edges(work);
         after = work_faces(work, before.count, corners);

@@ -29,28 +29,6 @@ static void away_from(const Work *work, uint32_t half, double out[3]) {
     for (int k = 0; k < 3; k++) out[k] /= length > 0 ? length : 1;
 }
 
-/// Joins the flattest two faces that have no mate at an edge, if they are flat enough.
-static void join_flattest(Work *work, const uint32_t *halves, uint32_t size) {
-    double flattest = -0.5; // cosine: within 60 degrees of flat
-    uint32_t a = MESH_NONE, b = MESH_NONE;
-    for (uint32_t i = 0; i < size; i++)
-        for (uint32_t k = 0; k < i; k++) {
-            double p[3], q[3];
-            if (work->twin[halves[i]] != MESH_NONE || work->twin[halves[k]] != MESH_NONE) continue;
-            away_from(work, halves[i], p);
-            away_from(work, halves[k], q);
-            if (dot3(p, q) < flattest) {
-                flattest = dot3(p, q);
-                a = halves[k];
-                b = halves[i];
-            }
-        }
-    if (a != MESH_NONE) {
-        work->twin[a] = b;
-        work->twin[b] = a;
-    }
-}
-
 // ---- faces of one sheet that meet at a side
 
 typedef struct Around {
@@ -118,6 +96,7 @@ static void join_around(Work *work, const uint32_t *halves, uint32_t size) {
 /// Splits an edge of more than two faces: two that are connected elsewhere stay joined, and of the others those that
 /// continue each other.
 static void cut_edge(Work *work, const uint32_t *halves, uint32_t size, uint32_t *set) {
+    uint32_t *twin = work->twin;
     bool same_sheet = false;
     for (uint32_t i = 0; i < size; i++) {
         uint32_t mate = MESH_NONE, mates = 0, own = sets_find(set, work->face[halves[i]]);
@@ -127,31 +106,33 @@ static void cut_edge(Work *work, const uint32_t *halves, uint32_t size, uint32_t
                 mates++;
             }
         same_sheet = same_sheet || mates > 1;
-        work->twin[halves[i]] = mate;
+        twin[halves[i]] = mate;
     }
-    for (uint32_t i = 0; i < size && same_sheet; i++) work->twin[halves[i]] = MESH_NONE;
-    if (same_sheet) join_around(work, halves, size);
-    else join_flattest(work, halves, size);
     work_did(work, MESH_CUT, 1, work_face_name(work, work->faces.origin[work->face[halves[0]]]));
-}
+    if (same_sheet) {
+        for (uint32_t i = 0; i < size; i++) twin[halves[i]] = MESH_NONE;
+        join_around(work, halves, size);
+        return;
+    }
 
-/// Fills work->face and twin, with at most two faces at a side.
-static void join_sides(Work *work) {
-    const uint32_t count = work->faces.corner_count;
-    uint32_t *order = work_sorted_edges(work);
-    uint32_t *set = work_sets(work, work->faces.count); // faces joined by edges that only they have
-    work->twin = work_new(work, count, sizeof *work->twin);
-    if (work->no_memory) return;
-    for (uint32_t k = 0, size; k < count; k += size) {
-        size = work_edge_size(work, order, k);
-        if (size == 2) sets_join(set, work->face[order[k]], work->face[order[k + 1]]);
-    }
-    for (uint32_t k = 0, size; k < count; k += size) {
-        size = work_edge_size(work, order, k);
-        work->twin[order[k]] = size == 2 ? order[k + 1] : MESH_NONE;
-        if (size == 2) work->twin[order[k + 1]] = order[k];
-        if (size > 2) cut_edge(work, order + k, size, set);
-    }
+    // the flattest two faces without a mate, if they are flat enough
+    double flattest = -0.5; // cosine: within 60 degrees of flat
+    uint32_t a = MESH_NONE, b = MESH_NONE;
+    for (uint32_t i = 0; i < size; i++)
+        for (uint32_t k = 0; k < i; k++) {
+            double p[3], q[3];
+            if (twin[halves[i]] != MESH_NONE || twin[halves[k]] != MESH_NONE) continue;
+            away_from(work, halves[i], p);
+            away_from(work, halves[k], q);
+            if (dot3(p, q) < flattest) {
+                flattest = dot3(p, q);
+                a = halves[k];
+                b = halves[i];
+            }
+        }
+    if (a == MESH_NONE) return;
+    twin[a] = b;
+    twin[b] = a;
 }
 
 // ---- consistent winding
@@ -160,29 +141,6 @@ typedef struct Turn {
     uint8_t *flip, *seen; ///< [faces]
     uint32_t *queue;      ///< [faces] the faces of a component are contiguous
 } Turn;
-
-/// Gives the faces of a component the winding of its first one; they are `begin` to `end` in the queue. Where the
-/// surface returns to itself with the opposite winding, as on a Moebius strip, it is cut.
-static void spread(Work *work, Turn *turn, uint32_t begin, uint32_t *end) {
-    const Faces *faces = &work->faces;
-    for (uint32_t i = begin; i < *end; i++) {
-        uint32_t f = turn->queue[i];
-        for (uint32_t h = faces->first[f]; h < faces->first[f + 1]; h++) {
-            uint32_t t = work->twin[h];
-            if (t == MESH_NONE) continue;
-            uint32_t g = work->face[t];
-            uint8_t flip = turn->flip[f] ^ (faces->corner[h] == faces->corner[t]);
-            if (!turn->seen[g]) {
-                turn->seen[g] = 1;
-                turn->flip[g] = flip;
-                turn->queue[(*end)++] = g;
-            } else if (turn->flip[g] != flip) {
-                work->twin[h] = work->twin[t] = MESH_NONE;
-                work_did(work, MESH_ONE_SIDED, 1, work_face_name(work, faces->origin[g]));
-            }
-        }
-    }
-}
 
 /// Keeps the winding of most of the area; a closed surface gets its front outside.
 static void decide(Work *work, Turn *turn, uint32_t begin, uint32_t end) {
@@ -222,6 +180,8 @@ static uint32_t turned_position(const Faces *faces, uint32_t face, uint32_t h) {
     return first + (2 * n - 2 - (h - first)) % n;
 }
 
+/// Gives neighbours the same winding. Where the surface returns to itself with the opposite one, as on a Moebius strip, it
+/// is cut.
 static void turn_faces(Work *work) {
     Faces *faces = &work->faces;
     const uint32_t count = faces->count, corners = faces->corner_count;
@@ -235,7 +195,23 @@ static void turn_faces(Work *work) {
         uint32_t begin = end;
         turn.seen[f] = 1;
         turn.queue[end++] = f;
-        spread(work, &turn, begin, &end);
+        for (uint32_t i = begin; i < end; i++) { // to the faces of the component
+            const uint32_t from = turn.queue[i];
+            for (uint32_t h = faces->first[from]; h < faces->first[from + 1]; h++) {
+                const uint32_t t = work->twin[h];
+                if (t == MESH_NONE) continue;
+                const uint32_t to = work->face[t];
+                const uint8_t flip = turn.flip[from] ^ (faces->corner[h] == faces->corner[t]);
+                if (!turn.seen[to]) {
+                    turn.seen[to] = 1;
+                    turn.flip[to] = flip;
+                    turn.queue[end++] = to;
+                } else if (turn.flip[to] != flip) {
+                    work->twin[h] = work->twin[t] = MESH_NONE;
+                    work_did(work, MESH_ONE_SIDED, 1, work_face_name(work, faces->origin[to]));
+                }
+            }
+        }
         decide(work, &turn, begin, end);
         work->report->components++;
     }
@@ -343,8 +319,23 @@ static void part_sides(Work *work) {
 }
 
 void mesh_manifold(Work *work) {
-    join_sides(work);
-    if (!work->no_memory) turn_faces(work);
+    const uint32_t count = work->faces.corner_count;
+    uint32_t *order = work_sorted_edges(work);
+    uint32_t *set = work_sets(work, work->faces.count); // faces joined by edges that only they have
+    work->twin = work_new(work, count, sizeof *work->twin);
+    if (work->no_memory) return;
+    for (uint32_t k = 0, size; k < count; k += size) {
+        size = work_edge_size(work, order, k);
+        if (size == 2) sets_join(set, work->face[order[k]], work->face[order[k + 1]]);
+    }
+    for (uint32_t k = 0, size; k < count; k += size) {
+        size = work_edge_size(work, order, k);
+        work->twin[order[k]] = size == 2 ? order[k + 1] : MESH_NONE;
+        if (size == 2) work->twin[order[k + 1]] = order[k];
+        if (size > 2) cut_edge(work, order + k, size, set);
+    }
+
+    turn_faces(work);
     if (!work->no_memory) part_fans(work);
     if (!work->no_memory) part_sides(work);
 }

@@ -81,6 +81,9 @@ static PairItem heap_pop(PairHeap *heap) {
 
 // ---- faces cut into triangles
 
+static uint32_t pair_next3(uint32_t half) { return half - half % 3 + (half + 1) % 3; }
+static uint32_t pair_last3(uint32_t half) { return half - half % 3 + (half + 2) % 3; }
+
 /// Degrees between 0 and 180 at vertex b of the corner a b c.
 static double pair_angle(const Work *work, uint32_t a, uint32_t b, uint32_t c) {
     double p[3], q[3];
@@ -115,25 +118,6 @@ static void push_triangle(Pairs *pairs, Faces *out, uint32_t a, uint32_t b, uint
     faces_end(out, origin);
 }
 
-/// Cuts a quad along the diagonal that gives the better triangles, and pairs them.
-static void cut_quad(Pairs *pairs, uint32_t face, Faces *out) {
-    const Faces *old = &pairs->work->faces;
-    const uint32_t h = old->first[face], ring[4] = {h, h + 1, h + 2, h + 3};
-    double normal[3], value[2];
-    face_area(pairs->work, face, normal);
-    for (uint32_t k = 0; k < 2; k++) {
-        const uint32_t last = ring[(k + 3) % 4], ear[3] = {last, ring[k], ring[k + 1]};
-        const uint32_t other[3] = {ring[k + 1], ring[k + 2], last};
-        value[k] = fmin(worth_of(pairs, ear, normal), worth_of(pairs, other, normal));
-    }
-    uint32_t s = value[1] >= value[0] ? 0 : 1, t = out->count; // the ears are at s + 1 and s + 3
-    push_triangle(pairs, out, h + s, h + s + 1, h + s + 2, old->origin[face]);
-    push_triangle(pairs, out, h + s, h + s + 2, h + (s + 3) % 4, old->origin[face]);
-    pairs->mate[t] = t + 1;
-    pairs->mate[t + 1] = t;
-    pairs->whole[t] = pairs->whole[t + 1] = h;
-}
-
 /// Cuts all faces into triangles: fills `before`, `from`, `mate` and `whole`, and the faces of `work`. False if a
 /// face cannot be cut. work->no_memory is set when out of memory.
 static bool cut_faces(Pairs *pairs) {
@@ -156,10 +140,24 @@ static bool cut_faces(Pairs *pairs) {
 
     for (uint32_t f = 0; f < old->count; f++) {
         const uint32_t first = old->first[f], n = old->first[f + 1] - first;
-        if (n == 4) {
-            cut_quad(pairs, f, &out);
+        if (n == 4) { // along the diagonal that gives the better triangles, which are a pair
+            const uint32_t whole[4] = {first, first + 1, first + 2, first + 3};
+            double normal[3], value[2];
+            face_area(work, f, normal);
+            for (uint32_t k = 0; k < 2; k++) {
+                const uint32_t last = whole[(k + 3) % 4], ear[3] = {last, whole[k], whole[k + 1]};
+                const uint32_t other[3] = {whole[k + 1], whole[k + 2], last};
+                value[k] = fmin(worth_of(pairs, ear, normal), worth_of(pairs, other, normal));
+            }
+            const uint32_t s = value[1] >= value[0] ? 0 : 1, t = out.count; // the ears are at s + 1 and s + 3
+            push_triangle(pairs, &out, first + s, first + s + 1, first + s + 2, old->origin[f]);
+            push_triangle(pairs, &out, first + s, first + s + 2, first + (s + 3) % 4, old->origin[f]);
+            pairs->mate[t] = t + 1;
+            pairs->mate[t + 1] = t;
+            pairs->whole[t] = pairs->whole[t + 1] = first;
             continue;
         }
+
         for (uint32_t i = 0; i < n; i++) ring[i] = first + i;
         cut.count = 0;
         if (n == 3) push_triangle(pairs, &out, ring[0], ring[1], ring[2], old->origin[f]);
@@ -173,17 +171,6 @@ static bool cut_faces(Pairs *pairs) {
     return true;
 }
 
-/// The half-edge of the same diagonal in the other triangle of its face.
-static uint32_t other_side(const Pairs *pairs, uint32_t half) {
-    const uint32_t *from = pairs->from, face = pairs->before_face[from[half]], count = pairs->work->faces.corner_count;
-    uint32_t a = from[half], b = from[half - half % 3 + (half + 1) % 3], low = half - half % 3, high = low + 3;
-    while (low > 0 && pairs->before_face[from[low - 1]] == face) low -= 3;
-    while (high < count && pairs->before_face[from[high]] == face) high += 3;
-    for (uint32_t h = low; h < high; h++)
-        if (from[h] == b && from[h - h % 3 + (h + 1) % 3] == a) return h;
-    return MESH_NONE;
-}
-
 /// Finds the twins of the triangles' sides: those of the faces in `before`, and for a diagonal its other side. By
 /// half-edges and not by vertices, since a diagonal may have the same ends as another side.
 static void find_twins(Pairs *pairs) {
@@ -193,23 +180,30 @@ static void find_twins(Pairs *pairs) {
     work->face = work_new(work, count, sizeof *work->face);
     work->twin = work_new(work, count, sizeof *work->twin);
     if (work->no_memory) return;
+    for (uint32_t h = 0; h < count; h++) {
+        work->face[h] = h / 3;
+        if (faces_next(&pairs->before, pairs->before_face, from[h]) == from[pair_next3(h)]) side[from[h]] = h;
+    }
 
-    for (int fill = 0; fill < 2; fill++)
-        for (uint32_t h = 0; h < count; h++) {
-            uint32_t a = from[h], b = from[h - h % 3 + (h + 1) % 3];
-            bool outer = faces_next(&pairs->before, pairs->before_face, a) == b;
-            work->face[h] = h / 3;
-            if (!fill && outer) side[a] = h;
-            else if (fill && outer && pairs->before_twin[a] == MESH_NONE) work->twin[h] = MESH_NONE;
-            else if (fill && outer) work->twin[h] = side[pairs->before_twin[a]];
-            else if (fill) work->twin[h] = other_side(pairs, h);
+    for (uint32_t h = 0; h < count; h++) {
+        const uint32_t a = from[h], b = from[pair_next3(h)], face = pairs->before_face[a];
+        work->twin[h] = MESH_NONE;
+        if (faces_next(&pairs->before, pairs->before_face, a) == b) {
+            if (pairs->before_twin[a] != MESH_NONE) work->twin[h] = side[pairs->before_twin[a]];
+            continue;
         }
+
+        // the same diagonal in the other triangle of its face
+        uint32_t low = h - h % 3, high = low + 3;
+        while (low > 0 && pairs->before_face[from[low - 1]] == face) low -= 3;
+        while (high < count && pairs->before_face[from[high]] == face) high += 3;
+        for (uint32_t g = low; g < high && work->twin[h] == MESH_NONE; g++)
+            if (from[g] == b && from[pair_next3(g)] == a) work->twin[h] = g;
+    }
 }
 
 // ---- what a pair costs
 
-static uint32_t pair_next3(uint32_t half) { return half - half % 3 + (half + 1) % 3; }
-static uint32_t pair_last3(uint32_t half) { return half - half % 3 + (half + 2) % 3; }
 static uint32_t pair_name(const Pairs *pairs, uint32_t half) {
     uint32_t twin = pairs->work->twin[half];
     return twin < half ? twin : half;

@@ -158,17 +158,8 @@ static bool in_wedge(const double *a, const double *b, const double *c, const do
     return turn2(a, b, p) > 0 && turn2(a, p, c) > 0;
 }
 
-/// Whether corner i of the ring lies in an ear, or the ring enters the ear from there if it is at one of its corners.
-static bool enters(const PolygonCut *cut, uint32_t n, uint32_t i, const double *const ear[3]) {
-    const double *at = cut->at[i], *before = cut->at[(i + n - 1) % n], *after = cut->at[(i + 1) % n];
-    for (int k = 0; k < 3; k++)
-        if (at[0] == ear[k][0] && at[1] == ear[k][1])
-            return in_wedge(ear[k], ear[(k + 1) % 3], ear[(k + 2) % 3], before) ||
-                   in_wedge(ear[k], ear[(k + 1) % 3], ear[(k + 2) % 3], after);
-    return turn2(ear[0], ear[1], at) >= 0 && turn2(ear[1], ear[2], at) >= 0 && turn2(ear[2], ear[0], at) >= 0;
-}
-
-/// How well corner k of the ring can be cut off; negative if it cannot.
+/// How well corner k of the ring can be cut off; negative if it cannot, because another corner lies in that ear, or the
+/// ring enters the ear from a corner at the same position as one of the ear's.
 static double ear_worth(PolygonCut *cut, uint32_t n, uint32_t k) {
     const uint32_t a = (k + n - 1) % n, c = (k + 1) % n;
     const double *const ear[3] = {cut->at[a], cut->at[k], cut->at[c]};
@@ -177,10 +168,17 @@ static double ear_worth(PolygonCut *cut, uint32_t n, uint32_t k) {
         low[axis] = fmin(ear[0][axis], fmin(ear[1][axis], ear[2][axis]));
         high[axis] = fmax(ear[0][axis], fmax(ear[1][axis], ear[2][axis]));
     }
+
     for (uint32_t i = 0; i < n && worth >= 0; i++) {
-        const double *p = cut->at[i];
+        const double *p = cut->at[i], *before = cut->at[(i + n - 1) % n], *after = cut->at[(i + 1) % n];
         if (p[0] < low[0] || p[0] > high[0] || p[1] < low[1] || p[1] > high[1]) continue;
-        if (i != a && i != k && i != c && enters(cut, n, i, ear)) worth = -1;
+        if (i == a || i == k || i == c) continue;
+        int same = 0;
+        while (same < 3 && !(p[0] == ear[same][0] && p[1] == ear[same][1])) same++;
+        const double *o = ear[same % 3], *q = ear[(same + 1) % 3], *r = ear[(same + 2) % 3];
+        const bool enters = same < 3 ? in_wedge(o, q, r, before) || in_wedge(o, q, r, after)
+                                     : turn2(o, q, p) >= 0 && turn2(q, r, p) >= 0 && turn2(r, o, p) >= 0;
+        if (enters) worth = -1;
     }
     return worth >= 0 ? worth * worth_by_diagonal(cut, a, c) : worth;
 }

@@ -57,17 +57,6 @@ static uint32_t renumber_walk(Order *order, uint32_t lower) {
     return above;
 }
 
-/// The side to begin at: at a corner of the mesh if it has one, else an open side.
-static uint32_t first_side(const Work *work, const uint32_t *face, uint32_t from) {
-    uint32_t open = MESH_NONE;
-    for (uint32_t h = 4 * from; h < work->faces.corner_count; h++) {
-        if (face[h / 4] != MESH_NONE || work->twin[h] != MESH_NONE) continue;
-        if (work->twin[next4(across4(h))] == MESH_NONE) return h; // open below and to the left
-        if (open == MESH_NONE) open = h;
-    }
-    return open != MESH_NONE ? open : 4 * from;
-}
-
 /// Gives vertices and quads their new numbers.
 static void apply(Order *order) {
     Work *work = order->work;
@@ -132,7 +121,17 @@ void mesh_order(Work *work) {
     int searches = 64; // for good starts; later rows start anywhere, so that meshes of short rows take no longer
     for (uint32_t f = 0; f < count; f++) {
         if (order.face[f] != MESH_NONE) continue;
-        uint32_t side = searches-- > 0 ? first_side(work, order.face, f) : 4 * f;
+
+        // begins at a corner of the mesh if it has one, else at an open side
+        uint32_t side = 4 * f, open = MESH_NONE, corner = MESH_NONE;
+        for (uint32_t h = 4 * f; searches > 0 && corner == MESH_NONE && h < faces->corner_count; h++) {
+            if (order.face[h / 4] != MESH_NONE || work->twin[h] != MESH_NONE) continue;
+            if (work->twin[next4(across4(h))] == MESH_NONE) corner = h; // open below and to the left
+            else if (open == MESH_NONE) open = h;
+        }
+        searches--;
+        if (corner != MESH_NONE) side = corner;
+        else if (open != MESH_NONE) side = open;
         while (side != MESH_NONE) side = renumber_walk(&order, side);
         if (order.face[f] == MESH_NONE) f--; // not reached yet
     }

@@ -123,24 +123,6 @@ static bool hand_over_attributes(const Work *work, const uint32_t *number, Mesh 
     return true;
 }
 
-static bool hand_over_arrays(Work *work, Mesh *mesh) {
-    SingeAllocator a = mesh->allocator;
-    const size_t vertices = mesh->vertex_count, cells = mesh->cell_count;
-    mesh->positions = store_new(a, vertices, 3 * sizeof *mesh->positions);
-    mesh->source = store_new(a, vertices, sizeof *mesh->source);
-    mesh->became = store_new(a, mesh->source_count, sizeof *mesh->became);
-    mesh->cells = store_new(a, cells, 4 * sizeof *mesh->cells);
-    mesh->cell_faces = store_new(a, cells, sizeof *mesh->cell_faces);
-    bool good = mesh->positions && mesh->source && mesh->became && mesh->cells && mesh->cell_faces;
-    if (work->file->lines) good = (mesh->cell_lines = store_new(a, cells, sizeof *mesh->cell_lines)) && good;
-    if (!work->file->uv) return good;
-
-    mesh->uv = store_new(a, vertices, 2 * sizeof *mesh->uv);
-    mesh->corner_uv = store_new(a, cells, 8 * sizeof *mesh->corner_uv);
-    mesh->corner_source = store_new(a, cells, 4 * sizeof *mesh->corner_source);
-    return good && mesh->uv && mesh->corner_uv && mesh->corner_source;
-}
-
 static bool hand_over(Work *work, Mesh *mesh) {
     const Faces *faces = &work->faces;
     uint32_t *number = work_new(work, work->vertex_count, sizeof *number);
@@ -152,7 +134,22 @@ static bool hand_over(Work *work, Mesh *mesh) {
     for (uint32_t v = 0; v < work->vertex_count; v++) number[v] = number[v] ? mesh->vertex_count++ : MESH_NONE;
     mesh->cell_count = faces->count;
     mesh->source_count = work->file->vertex_count;
-    if (!hand_over_arrays(work, mesh) || !hand_over_attributes(work, number, mesh)) return false;
+    const SingeAllocator a = mesh->allocator;
+    const size_t vertices = mesh->vertex_count, cells = mesh->cell_count;
+    mesh->positions = store_new(a, vertices, 3 * sizeof *mesh->positions);
+    mesh->source = store_new(a, vertices, sizeof *mesh->source);
+    mesh->became = store_new(a, mesh->source_count, sizeof *mesh->became);
+    mesh->cells = store_new(a, cells, 4 * sizeof *mesh->cells);
+    mesh->cell_faces = store_new(a, cells, sizeof *mesh->cell_faces);
+    if (!mesh->positions || !mesh->source || !mesh->became || !mesh->cells || !mesh->cell_faces) return false;
+    if (work->file->lines && !(mesh->cell_lines = store_new(a, cells, sizeof *mesh->cell_lines))) return false;
+    if (work->file->uv) {
+        mesh->uv = store_new(a, vertices, 2 * sizeof *mesh->uv);
+        mesh->corner_uv = store_new(a, cells, 8 * sizeof *mesh->corner_uv);
+        mesh->corner_source = store_new(a, cells, 4 * sizeof *mesh->corner_source);
+        if (!mesh->uv || !mesh->corner_uv || !mesh->corner_source) return false;
+    }
+    if (!hand_over_attributes(work, number, mesh)) return false;
 
     for (uint32_t v = 0; v < work->vertex_count; v++) {
         if (number[v] == MESH_NONE) continue;
