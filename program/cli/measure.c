@@ -16,7 +16,6 @@
 #include "cli/cli.h"
 #include "cli/console.h"
 #include "cli/folder.h"
-#include "analysis/folds.h"
 #include "cli/job.h"
 #include "cli/pictures.h"
 #include "analysis/rim.h"

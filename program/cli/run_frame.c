@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/initial.h"
+#include "analysis/crossings.h"
 #include "cli/interrupt.h"
 #include "cli/run.h"
 
@@ -160,7 +160,7 @@ static SingeResult take_frame(Run *run, SingeError *error) {
 /// Reports triangles that cross in the first frame: contact cannot separate them.
 static SingeResult tell_of_crossings(Run *run, SingeError *error) {
     float at[3];
-    if (!initial_count(&run->frame.surface, &run->totals->crossed, at)) {
+    if (!crossings_count(&run->frame.surface, &run->totals->crossed, at)) {
         *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1, .message = "no memory to look for crossings"};
         return SINGE_ERROR_MEMORY;
     }
