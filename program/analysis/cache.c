@@ -54,6 +54,7 @@ static SingeResult read_header(const Ply *ply, CacheFrame *frame) {
         }
         frame->row += ply_type_size(property->type);
     }
+
     for (int c = CACHE_X; c < CACHE_X + 3; c++)
         if (!frame->there[c])
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "vertices have no property \"float %s\"", names[c]);

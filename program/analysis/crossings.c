@@ -70,6 +70,7 @@ bool triangles_cross(const Corners a, const Corners b, bool *touch) {
         const int y = x-- % 3, other = exact_orient2(b[0], b[1], b[2], x, y);
         return turn && !edge_parts(a, turn, b, x, y) && !edge_parts(b, other, a, x, y);
     }
+
     if (!on_both_sides(of_b)) return false;
     sides(b, a, of_a);
     *touch |= is_edge_in_plane(of_a);
@@ -148,6 +149,7 @@ static bool join_all(Hinges *hinges) {
     const size_t count = 3 * (size_t)hinges->count;
     Side *sides = malloc(count * sizeof *sides);
     if (!sides) return false;
+
     for (size_t i = 0; i < count; i++) {
         const uint32_t *t = hinges->triangles[i / 3], from = t[i % 3], to = t[(i + 1) % 3];
         const float *p = hinges->position[from], *q = hinges->position[to];
@@ -156,6 +158,7 @@ static bool join_all(Hinges *hinges) {
             (Side){{up ? p : q, up ? q : p}, {up ? from : to, up ? to : from}, (uint32_t)(i / 3), (uint8_t)(i % 3)};
         hinges->across[i / 3][i % 3] = NONE;
     }
+
     qsort(sides, count, sizeof *sides, side_by_position);
 
     // of the edges at one position: two with the same vertices, then two without such a partner, as at a seam
@@ -171,6 +174,7 @@ static bool join_all(Hinges *hinges) {
         }
         if (loose == 2) hinges_join(hinges, alone[0], alone[1]);
     }
+
     free(sides);
     return true;
 }
@@ -362,11 +366,13 @@ static bool tree_make(BoxTree *tree) {
         Box box = triangle_box(tree, t);
         box_add(&all, box.low, box.high);
     }
+
     double side = 0;
     for (int k = 0; k < 3; k++) {
         double length = (double)all.high[k] - (double)all.low[k];
         if (length > side) side = length;
     }
+
     const double scale = side > 0 ? ((1 << MORTON_BITS) - 1) / side : 0;
     for (uint32_t t = 0; t < tree->count; t++) {
         Box box = triangle_box(tree, t);
@@ -377,6 +383,7 @@ static bool tree_make(BoxTree *tree) {
         }
         tree->order[t] = (Placed){position, t};
     }
+
     qsort(tree->order, tree->count, sizeof *tree->order, box_by_position);
 
     // the boxes from the leaves to the root
@@ -388,10 +395,12 @@ static bool tree_make(BoxTree *tree) {
         for (uint32_t i = leaf_begin(tree, leaf); i < leaf_begin(tree, leaf + 1); i++)
             box_add(node, tree->boxes[i].low, tree->boxes[i].high);
     }
+
     for (uint32_t n = first_leaf; n-- > 0;) {
         tree->nodes[n] = tree->nodes[2 * n + 1];
         box_add(&tree->nodes[n], tree->nodes[2 * n + 2].low, tree->nodes[2 * n + 2].high);
     }
+
     return true;
 }
 
@@ -485,10 +494,12 @@ bool crossings_count(const SingeSurface *surface, uint64_t *pairs, float at[3]) 
     uint32_t(*sound)[3] = malloc(((size_t)surface->triangle_count + 1) * sizeof *sound), count = 0;
     CrossingList list = {0};
     if (!sound) return false;
+
     for (uint32_t t = 0; t < surface->triangle_count; t++) {
         const uint32_t *v = surface->triangles[t];
         if (!exact_collinear(p[v[0]], p[v[1]], p[v[2]])) memcpy(sound[count++], v, sizeof *sound);
     }
+
     const bool good = crossings_find(p, (const uint32_t(*)[3])sound, count, &list);
     *pairs = list.count;
     if (good && list.count) memcpy(at, p[sound[list.pairs[0][0]][0]], 3 * sizeof *at);

@@ -53,6 +53,7 @@ void check_values(const CacheFrame *frame, Findings *findings) {
             if (!isfinite(cache_value(frame, c, v)))
                 findings_add(findings, FAULT_NOT_FINITE, "%s of vertex %u is not finite", cache_column_name(c), v);
     }
+
     if (isnan(frame->time)) findings_add(findings, FAULT_MISSING, "the header has no \"comment singe ... time ...\"");
     for (uint32_t t = 0; t < frame->triangle_count; t++)
         for (int k = 0; k < 3; k++) {
@@ -120,6 +121,7 @@ static bool is_near(const Initial *initial, const CacheFrame *frame, uint32_t tr
         if (initial->triangles[middle].at[0] < entry.at[0] - initial->reach) from = middle + 1;
         else to = middle;
     }
+
     for (; from < initial->count && initial->triangles[from].at[0] <= entry.at[0] + initial->reach; from++) {
         const InitialTriangle *other = &initial->triangles[from];
         if (other->sheet == entry.sheet && initial_distance(other->at, entry.at) <= other->reach) return true;
@@ -145,6 +147,7 @@ static void add_crossing(const CacheFrame *frame, uint32_t a, uint32_t b, Findin
         side = fmax(side, findings_distance(frame->rest[s[i]], frame->rest[s[(i + 1) % 3]]));
         side = fmax(side, findings_distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
     }
+
     const int32_t one = sheet_of(frame, a), other = sheet_of(frame, b);
     char where[64];
     if (one != other) snprintf(where, sizeof where, "of sheets %d and %d", (int)one, (int)other);
@@ -158,6 +161,7 @@ static bool check_crossings(const CacheFrame *frame, const uint32_t *sound, uint
     uint32_t(*triangles)[3] = malloc(((size_t)count + 1) * sizeof *triangles);
     CrossingList list = {0};
     if (!triangles) return false;
+
     for (uint32_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) triangles[i][k] = frame->triangles[sound[i]][k];
     const float(*position)[3] = (const float(*)[3])frame->position;
@@ -200,6 +204,7 @@ static int by_vertices(const void *a, const void *b) {
 static bool check_duplicates(const CacheFrame *frame, const uint32_t *sound, uint32_t count, Findings *findings) {
     Triple *triples = malloc(((size_t)count + 1) * sizeof *triples);
     if (!triples) return false;
+
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t *v = frame->triangles[sound[i]];
         Triple *t = &triples[i];
@@ -212,6 +217,7 @@ static bool check_duplicates(const CacheFrame *frame, const uint32_t *sound, uin
             t->vertex[high] = kept;
         }
     }
+
     qsort(triples, count, sizeof *triples, by_vertices);
     for (uint32_t i = 1; i < count; i++) {
         const Triple *one = &triples[i - 1], *other = &triples[i];
@@ -220,6 +226,7 @@ static bool check_duplicates(const CacheFrame *frame, const uint32_t *sound, uin
             findings_add(findings, FAULT_DUPLICATE, "triangles %u and %u have the same vertices %u, %u, %u",
                          one->triangle, other->triangle, one->vertex[0], one->vertex[1], one->vertex[2]);
     }
+
     free(triples);
     return true;
 }
@@ -297,18 +304,21 @@ static bool check_edges(const CacheFrame *frame, const uint32_t *sound, uint32_t
     const size_t side_count = 3 * (size_t)count;
     Side *sides = malloc((side_count + 1) * sizeof *sides);
     if (!sides) return false;
+
     for (size_t i = 0; i < side_count; i++) {
         const uint32_t triangle = sound[i / 3], *v = frame->triangles[triangle];
         const uint32_t from = v[i % 3], to = v[(i + 1) % 3], opposite = v[(i + 2) % 3];
         const bool forward = from < to;
         sides[i] = (Side){forward ? from : to, forward ? to : from, triangle, opposite, forward};
     }
+
     qsort(sides, side_count, sizeof *sides, by_edge);
     for (size_t i = 0, end; i < side_count; i = end) {
         for (end = i + 1; end < side_count && sides[end].low == sides[i].low && sides[end].high == sides[i].high;)
             end++;
         check_edge(frame, &sides[i], (uint32_t)(end - i), findings);
     }
+
     free(sides);
     return true;
 }

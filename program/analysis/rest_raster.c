@@ -41,6 +41,7 @@ static bool find_plane(const SingeSurface *surface, int32_t sheet, Plane *plane)
         if (turn == 0 || !unit3(d)) continue;
         for (int k = 0; k < 3; k++) along[k] += d[k] * sqrt(dot3(own, own));
     }
+
     if (!unit3(normal)) return false;
 
     double lift = dot3(along, normal);
@@ -50,11 +51,13 @@ static bool find_plane(const SingeSurface *surface, int32_t sheet, Plane *plane)
         for (int k = 0; k < 3; k++) along[k] = (k == axis) - normal[axis] * normal[k];
         unit3(along);
     }
+
     cross3(normal, along, across);
     for (int k = 0; k < 3; k++) {
         plane->e1[k] = cos(turned) * along[k] + sin(turned) * across[k];
         plane->e2[k] = cos(turned) * across[k] - sin(turned) * along[k];
     }
+
     return true;
 }
 
@@ -73,6 +76,7 @@ static void fill_triangle(const SingeSurface *surface, const Plane *plane, const
         x[i] /= raster->spacing;
         y[i] /= raster->spacing;
     }
+
     double area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
     if (area == 0) return;
 
@@ -116,6 +120,7 @@ bool rest_raster_draw(const SingeSurface *surface, int32_t sheet, double spacing
             high[k] = fmax(high[k], at[k]);
         }
     }
+
     raster->spacing = fmax(spacing, fmax(high[0] - low[0], high[1] - low[1]) / (SIDE_MAX - 2));
     raster->width = (int)((high[0] - low[0]) / raster->spacing) + 2;
     raster->height = (int)((high[1] - low[1]) / raster->spacing) + 2;
@@ -124,6 +129,7 @@ bool rest_raster_draw(const SingeSurface *surface, int32_t sheet, double spacing
     size_t pixels = (size_t)raster->width * (size_t)raster->height;
     raster->cover = calloc(6 * pixels, sizeof *raster->cover); // all fields in one block
     if (!raster->cover) return false;
+
     for (int k = 0; k < 3; k++) raster->normal[k] = raster->cover + (size_t)(k + 1) * pixels;
     raster->burn = raster->cover + 4 * pixels;
     raster->unlit = raster->cover + 5 * pixels;

@@ -105,11 +105,13 @@ static Edge *find_edges(const SingeSurface *surface, int32_t piece, size_t *coun
         memcpy(corners[v].position, surface->rest_position[v], sizeof corners[v].position);
         corners[v].vertex = v;
     }
+
     qsort(corners, surface->vertex_count, sizeof *corners, corner_by_position);
     for (uint32_t i = 0; i < surface->vertex_count; i++) {
         bool same = i && corner_by_position(&corners[i], &corners[i - 1]) == 0;
         number[corners[i].vertex] = same ? number[corners[i - 1].vertex] : corners[i].vertex;
     }
+
     free(corners);
 
     size_t all = 0;
@@ -121,6 +123,7 @@ static Edge *find_edges(const SingeSurface *surface, int32_t piece, size_t *coun
             edges[all++] = (Edge){a < b ? a : b, a < b ? b : a, from, to};
         }
     }
+
     free(number);
     qsort(edges, all, sizeof *edges, by_ends);
 
@@ -131,6 +134,7 @@ static Edge *find_edges(const SingeSurface *surface, int32_t piece, size_t *coun
         if (end == i + 1 && burn[edges[i].from] > burnt_min && burn[edges[i].to] > burnt_min)
             edges[(*count)++] = edges[i];
     }
+
     return edges;
 }
 
@@ -179,6 +183,7 @@ static bool sort_points(RimPoints *points) {
         }
         side = fmax(side, high[k] - points->low[k]);
     }
+
     points->cell = fmax(grid_cell, side / (GRID_SIDE_MAX - 1));
     size_t cells = 1;
     for (int k = 0; k < 3; k++) {
@@ -189,6 +194,7 @@ static bool sort_points(RimPoints *points) {
     points->first = calloc(cells + 2, sizeof *points->first);
     points->order = malloc(points->count * sizeof *points->order);
     if (!points->first || !points->order) return false;
+
     for (size_t p = 0; p < points->count; p++) points->first[cell_of(points, points->position[p]) + 2]++;
     for (size_t c = 2; c < cells + 2; c++) points->first[c] += points->first[c - 1];
     for (size_t p = 0; p < points->count; p++)
@@ -202,12 +208,14 @@ static bool points_make(const SingeSurface *surface, int32_t piece, RimPoints *p
     size_t edge_count = 0, count = 0;
     Edge *edges = find_edges(surface, piece, &edge_count);
     if (!edges) return false;
+
     for (size_t e = 0; e < edge_count; e++) count += (size_t)steps_along(surface, &edges[e]);
     if (count) {
         points->position = malloc(count * sizeof *points->position);
         points->near = calloc(count, sizeof *points->near);
         points->normal = calloc(count, sizeof *points->normal);
     }
+
     const bool room = points->position && points->near && points->normal;
     for (size_t e = 0; e < edge_count && room; e++) {
         const int steps = steps_along(surface, &edges[e]);
@@ -218,6 +226,7 @@ static bool points_make(const SingeSurface *surface, int32_t piece, RimPoints *p
                 points->position[points->count][k] = from + (i + 0.5) / steps * (to - from);
             }
     }
+
     free(edges);
     return !count || (room && sort_points(points));
 }
@@ -344,10 +353,12 @@ static int by_id(const void *a, const void *b) {
 static bool find_largest(const SingeSurface *surface, int32_t *id) {
     PieceArea *areas = malloc(((size_t)surface->triangle_count + 1) * sizeof *areas);
     if (!areas) return false;
+
     for (uint32_t f = 0; f < surface->triangle_count; f++) {
         const uint32_t *t = surface->triangles[f];
         areas[f] = (PieceArea){surface->piece[t[0]], area_of(surface->rest_position, t)};
     }
+
     qsort(areas, surface->triangle_count, sizeof *areas, by_id);
 
     double largest = -1, area = 0;
@@ -358,6 +369,7 @@ static bool find_largest(const SingeSurface *surface, int32_t *id) {
             *id = areas[f].id;
         }
     }
+
     free(areas);
     return true;
 }
@@ -436,6 +448,7 @@ static bool take_sample(Work *work, const Sample *sample) {
         work->inland = larger;
         work->inland_room = room;
     }
+
     Inland *inland = &work->inland[work->inland_count++];
     inland->nearest = work->nearest;
     inland->area = sample->rest_area;
@@ -454,6 +467,7 @@ static bool take_triangle(Work *work, const uint32_t *t) {
                 pow((double)surface->rest_position[t[i]][k] - (double)surface->rest_position[t[(i + 1) % 3]][k], 2);
         longest = fmax(longest, sqrt(square));
     }
+
     const int n = (int)fmax(1, fmin(SAMPLES_A_SIDE_MAX, ceil(longest / sample_spacing)));
     const double rest_area = area_of(surface->rest_position, t) / n / n, area = area_of(surface->position, t) / n / n;
 
@@ -496,6 +510,7 @@ bool rim_add(const SingeSurface *surface, Rim *rim) {
         rim->curl[angle_bin(angle)] += inland->area;
         rim->curl_max = fmax(rim->curl_max, angle);
     }
+
     free(work.inland);
     points_free(&work.points);
     return good;

@@ -28,6 +28,7 @@ int singular_values(const double *matrix, size_t rows, size_t columns, double *v
     size_t count = upright ? columns : rows, length = upright ? rows : columns;
     double *vectors = malloc((count * length + 1) * sizeof *vectors), norm = 0;
     if (!vectors) return -1;
+
     for (size_t i = 0; i < count; i++)
         for (size_t k = 0; k < length; k++)
             vectors[i * length + k] = upright ? matrix[k * columns + i] : matrix[i * columns + k];
@@ -51,6 +52,7 @@ int singular_values(const double *matrix, size_t rows, size_t columns, double *v
                 turned = true;
             }
     }
+
     for (size_t i = 0; i < count; i++)
         values[i] = sqrt(singular_dot(vectors + i * length, vectors + i * length, length));
     qsort(values, count, sizeof *values, descending);

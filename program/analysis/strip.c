@@ -49,6 +49,7 @@ static bool strip_mesh(Strip *strip, const StripSetup *setup) {
         if (setup->shape) setup->shape(x, v % row, v / row, cell);
         strip->lit[v] = (double)x[0] < strip_lit;
     }
+
     for (uint32_t c = 0; c < count; c++) {
         uint32_t v = c / n * row + c % n, *corner = strip->cells + (size_t)4 * c;
         corner[0] = v;
@@ -56,6 +57,7 @@ static bool strip_mesh(Strip *strip, const StripSetup *setup) {
         corner[2] = v + row + 1;
         corner[3] = v + row;
     }
+
     return true;
 }
 
@@ -105,6 +107,7 @@ static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
         material.weight[c] = singe_param(1);
         material.compliance[c] = singe_param(0);
     }
+
     static const SingeField lit = {.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "lit"};
     const SingeParam cold = material.temperature;
     material.temperature = singe_param_field(cold.field ? 0.5f * (cold.value + cold.to) : cold.value, 1100, &lit);
@@ -156,6 +159,7 @@ static void strip_read(const Strip *strip, double pace, StripResult *result) {
         xt += x * t;
         tt += t * t;
     }
+
     const double speed = (n * xt - x1 * t1) / (n * tt - t1 * t1);
     result->speed = strip_front(strip, &view) > strip->last ? speed / pace : 0;
 
@@ -169,6 +173,7 @@ static void strip_read(const Strip *strip, double pace, StripResult *result) {
         area += (double)view.area[i];
         mass += (double)view.area[i] * (double)view.mass[i];
     }
+
     result->residue = mass / area;
 }
 
@@ -190,6 +195,7 @@ static SingeResult strip_run(Strip *strip, const StripSetup *setup, StripResult 
             since = 0;
         }
     }
+
     strip_read(strip, (double)setup->pace, result);
     result->work = strip_work(strip);
     result->end = reached > strip->last ? STRIP_THROUGH : result->work < setup->work_max ? STRIP_OUT : STRIP_CUT;
@@ -215,6 +221,7 @@ SingeResult strip_burn(const StripSetup *setup, StripResult *result, SingeError 
         if (!code) code = strip_run(&strip, setup, result);
         if (code) *error = *singe_sim_error(strip.sim);
     }
+
     singe_sim_destroy(strip.sim);
     free(strip.positions);
     free(strip.lit);

@@ -35,6 +35,7 @@ SingeResult turned_grid(const TurnedGrid *cut, Mesh *mesh, SingeError *error) {
         *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
         return SINGE_ERROR_MEMORY;
     }
+
     for (uint32_t q = 0; q < mesh->cell_count; q++) {
         const uint32_t *corner = mesh->cells + 4 * (size_t)q;
         double centroid[2] = {0, 0};
@@ -44,11 +45,13 @@ SingeResult turned_grid(const TurnedGrid *cut, Mesh *mesh, SingeError *error) {
         for (int i = 0; i < 4; i++) number[corner[i]] = 1;
         memmove(mesh->cells + 4 * (size_t)cells++, corner, 4 * sizeof *corner);
     }
+
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         if (!number[v]) continue;
         memmove(mesh->positions + 3 * (size_t)vertices, mesh->positions + 3 * (size_t)v, 3 * sizeof(float));
         number[v] = vertices++;
     }
+
     for (size_t i = 0; i < 4 * (size_t)cells; i++) mesh->cells[i] = number[mesh->cells[i]];
     mesh->cell_count = cells;
     mesh->vertex_count = vertices;
@@ -66,5 +69,6 @@ SingeResult turned_grid(const TurnedGrid *cut, Mesh *mesh, SingeError *error) {
             uv[k] = (float)(p[k] / cut->size + 0.5);
         }
     }
+
     return SINGE_OK;
 }

@@ -48,15 +48,18 @@ void mesh_leave_out_copies(Work *work) {
         next[f] = head[min];
         head[min] = f;
     }
+
     if (!found) return;
 
     Faces out = work_faces(work, old->count, old->corner_count);
     if (work->no_memory) return;
+
     for (uint32_t f = 0; f < old->count; f++) {
         if (gone[f]) continue;
         for (uint32_t h = old->first[f]; h < old->first[f + 1]; h++) faces_push(&out, old->corner[h], old, h);
         faces_end(&out, old->origin[f]);
     }
+
     work->faces = out;
 }
 
@@ -90,6 +93,7 @@ SingeResult mesh_clean(Work *work) {
         else if (loops.spikes) work_did(work, MESH_SPIKE, 1, name);
         if (kind == FACE_CUT) work_did(work, MESH_CONCAVE, 1, name);
     }
+
     if (work->no_memory) return SINGE_OK;
 
     work->faces = out;

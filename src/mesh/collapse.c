@@ -52,6 +52,7 @@ static bool join_ends(Shrink *shrink, uint32_t half) {
         high[k] = fmax(shrink->high[a][k], shrink->high[b][k]);
         size[k] = high[k] - low[k];
     }
+
     if (sqrt(dot3(size, size)) > shrink->min) return false;
 
     bool first = shrink->open[a] != shrink->open[b] ? shrink->open[a] : shrink->stays[a] < shrink->stays[b];
@@ -73,6 +74,7 @@ static void join_uv(Shrink *shrink, const uint8_t *several) {
     uint32_t *head = work_new(work, work->vertex_count, sizeof *head);
     uint32_t *next = work_new(work, faces->corner_count, sizeof *next);
     if (work->no_memory) return;
+
     memset(head, 0xff, work->vertex_count * sizeof *head);
 
     for (uint32_t h = 0; h < faces->corner_count; h++) {
@@ -97,6 +99,7 @@ static void join_uv(Shrink *shrink, const uint8_t *several) {
 SingeResult mesh_shrink(Work *work) {
     work_edges(work);
     if (work->no_memory || !(work->smallest > 0) || !work->faces.corner_count) return SINGE_OK;
+
     const Faces *faces = &work->faces;
     const uint32_t vertices = work->vertex_count;
 
@@ -104,6 +107,7 @@ SingeResult mesh_shrink(Work *work) {
     double *lengths = work_new(work, faces->corner_count, sizeof *lengths);
     Short *list = work_new(work, faces->corner_count, sizeof *list);
     if (work->no_memory) return SINGE_OK;
+
     for (uint32_t h = 0; h < faces->corner_count; h++) lengths[h] = side_length(work, h);
     qsort(lengths, faces->corner_count, sizeof *lengths, by_size);
     const double min = work->smallest * lengths[faces->corner_count / 2];
@@ -112,7 +116,9 @@ SingeResult mesh_shrink(Work *work) {
         double length = side_length(work, h);
         if (length < min) list[count++] = (Short){length, h};
     }
+
     if (!count) return SINGE_OK;
+
     qsort(list, count, sizeof *list, by_length);
 
     // their ends are merged, the shortest first
@@ -126,6 +132,7 @@ SingeResult mesh_shrink(Work *work) {
     uint8_t *several = work_new(work, vertices, 1);
     uint32_t *to = work_new(work, vertices, sizeof *to);
     if (work->no_memory) return SINGE_OK;
+
     work_mark_open(work, shrink.open);
     memcpy(shrink.low, work->position, vertices * sizeof *shrink.low);
     memcpy(shrink.high, work->position, vertices * sizeof *shrink.high);
@@ -134,13 +141,16 @@ SingeResult mesh_shrink(Work *work) {
         uint32_t face = work->face[list[i].half];
         if (!joined++) work_did(work, MESH_SHRUNK, 1, work_face_name(work, faces->origin[face]));
     }
+
     if (!joined) return SINGE_OK;
+
     work_did(work, MESH_SHRUNK, joined - 1, 0);
 
     for (uint32_t v = 0; v < vertices; v++) {
         to[v] = shrink.stays[sets_find(shrink.set, v)];
         if (to[v] != v) several[to[v]] = 1;
     }
+
     work_rename(work, to);
     for (uint32_t h = 0; h < faces->corner_count; h++)
         if (several[faces->corner[h]]) faces->id[h] = work->source[faces->corner[h]];

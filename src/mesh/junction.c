@@ -65,6 +65,7 @@ static void look_along(Junctions *j, uint32_t a, uint32_t b) {
             }
         }
     }
+
     qsort(j->found, (size_t)j->count, sizeof *j->found, junction_by_position);
 }
 
@@ -101,11 +102,13 @@ static bool list_open(Junctions *j) {
         }
         for (uint32_t v = 0; !fill && v < work->vertex_count; v++) j->open_first[v + 2] += j->open_first[v + 1];
     }
+
     if (!count) return false;
 
     work_mark_open(work, open);
     j->positions = positions_make(work, fmax(total / count, 1e-12));
     if (work->no_memory) return false;
+
     for (uint32_t v = 0; v < work->vertex_count; v++)
         if (open[v]) positions_add(work, &j->positions, v);
     return true;
@@ -144,6 +147,7 @@ static uint32_t put_all(Junctions *j, const uint8_t *left, Faces *out) {
         }
         if (out) faces_end(out, old->origin[f]);
     }
+
     return added;
 }
 

@@ -52,6 +52,7 @@ static uint32_t leave_out_spikes(const Loops *loops, uint32_t *ring, uint32_t n)
         at = (at + n - 1) % (n ? n : 1); // the corner before may be a spike now
         good = good > 2 ? good - 2 : 0;
     }
+
     return n >= 3 ? n : 0;
 }
 
@@ -122,6 +123,7 @@ static void fall_apart(Loops *loops, uint32_t n, bool all) {
         }
         loops->stack[depth++] = loops->ring[i];
     }
+
     end_loop(loops, loops->stack, depth);
 }
 
@@ -165,6 +167,7 @@ static bool cut_loops(Loops *loops) {
         if (!polygon_cut(&loops->cut, ring, n)) return false;
         if (dot3(normal, normal) > dot3(largest, largest)) memcpy(largest, normal, sizeof largest);
     }
+
     loops->triangles[loops->count] = loops->cut.count;
     return loops->cut.count <= 2 || !polygon_overlaps(&loops->cut, largest);
 }
@@ -202,5 +205,6 @@ FaceKind loops_find(Loops *loops, uint32_t face) {
         fall_apart(loops, n, all);
         if (cut_loops(loops)) return loops->cut.count ? FACE_CUT : FACE_IDLE;
     }
+
     return FACE_CROSSED;
 }

@@ -68,6 +68,7 @@ static void join_around(Work *work, const uint32_t *halves, uint32_t size) {
         double angle = length > 0 ? atan2(dot3(away, across) / length, dot3(away, first)) : 0;
         around[i] = (Around){angle, halves[i], faces->corner[halves[i]] == faces->corner[halves[0]]};
     }
+
     qsort(around, size, sizeof *around, by_angle);
 
     while (size >= 2) {
@@ -108,6 +109,7 @@ static void cut_edge(Work *work, const uint32_t *halves, uint32_t size, uint32_t
         same_sheet = same_sheet || mates > 1;
         twin[halves[i]] = mate;
     }
+
     work_did(work, MESH_CUT, 1, work_face_name(work, work->faces.origin[work->face[halves[0]]]));
     if (same_sheet) {
         for (uint32_t i = 0; i < size; i++) twin[halves[i]] = MESH_NONE;
@@ -171,6 +173,7 @@ static void decide(Work *work, Turn *turn, uint32_t begin, uint32_t end) {
         if (turn->flip[f] != keep) work_did(work, MESH_TURNED, 1, work_face_name(work, faces->origin[f]));
         turn->flip[f] ^= keep ^ inside_out;
     }
+
     if (inside_out) work_did(work, MESH_INSIDE_OUT, 1, work_face_name(work, faces->origin[turn->queue[begin]]));
 }
 
@@ -190,6 +193,7 @@ static void turn_faces(Work *work) {
     int32_t *id = work_new(work, corners, sizeof *id);
     float(*uv)[2] = faces->uv ? work_new(work, corners, sizeof *uv) : NULL;
     if (work->no_memory) return;
+
     for (uint32_t f = 0; f < count; f++) {
         if (turn.seen[f]) continue;
         uint32_t begin = end;
@@ -261,12 +265,14 @@ static void part_fans(Work *work) {
             work_did(work, MESH_BOW_TIE, 1, work_face_name(work, faces->origin[work->face[h]]));
         owner[v] = h;
     }
+
     for (uint32_t h = 0; h < faces->corner_count && !work->no_memory; h++) faces->corner[h] = vertex[sets_find(set, h)];
 
     // copies move back into their own faces: parts in contact from the start could not be told from crossed ones
     const uint32_t copies = work->vertex_count - vertices;
     double(*sum)[4] = work_new(work, copies ? copies : 1, sizeof *sum);
     if (work->no_memory) return;
+
     for (uint32_t h = 0; h < faces->corner_count; h++) {
         if (faces->corner[h] < vertices) continue;
         double *to = sum[faces->corner[h] - vertices];
@@ -275,6 +281,7 @@ static void part_fans(Work *work) {
             for (int k = 0; k < 3; k++) to[k] += work->position[faces->corner[i]][k] / (end - begin);
         to[3]++;
     }
+
     for (uint32_t v = 0; v < copies; v++)
         for (int k = 0; sum[v][3] > 0 && k < 3; k++)
             work->position[vertices + v][k] += PART_GAP * (sum[v][k] / sum[v][3] - work->position[vertices + v][k]);
@@ -289,6 +296,7 @@ static void part_sides(Work *work) {
     uint32_t *order = work_sorted_edges(work), added = 0;
     uint32_t *midpoint = work_new(work, old->corner_count, sizeof *midpoint);
     if (work->no_memory) return;
+
     for (uint32_t h = 0; h < old->corner_count; h++) midpoint[h] = MESH_NONE;
     for (uint32_t k = 0, size; k < old->corner_count && !work->no_memory; k += size) {
         size = work_edge_size(work, order, k);
@@ -305,6 +313,7 @@ static void part_sides(Work *work) {
             added++;
         }
     }
+
     if (!added || work->no_memory) return;
 
     Faces out = work_faces(work, old->count, old->corner_count + 2 * added);
@@ -315,6 +324,7 @@ static void part_sides(Work *work) {
         }
         faces_end(&out, old->origin[f]);
     }
+
     work->faces = out;
 }
 
@@ -324,10 +334,12 @@ void mesh_manifold(Work *work) {
     uint32_t *set = work_sets(work, work->faces.count); // faces joined by edges that only they have
     work->twin = work_new(work, count, sizeof *work->twin);
     if (work->no_memory) return;
+
     for (uint32_t k = 0, size; k < count; k += size) {
         size = work_edge_size(work, order, k);
         if (size == 2) sets_join(set, work->face[order[k]], work->face[order[k + 1]]);
     }
+
     for (uint32_t k = 0, size; k < count; k += size) {
         size = work_edge_size(work, order, k);
         work->twin[order[k]] = size == 2 ? order[k + 1] : MESH_NONE;

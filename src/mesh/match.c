@@ -49,6 +49,7 @@ static void shrink_cycle(Match *m, uint32_t v, uint32_t u) {
         if (m->mate[a] == MESH_NONE) break;
         a = m->parent[m->mate[a]];
     }
+
     uint32_t base = m->base[u];
     while (m->on_path[base] != m->stamp) base = m->base[m->parent[m->mate[base]]];
 
@@ -110,6 +111,7 @@ static bool search(Match *m, uint32_t root) {
             }
         }
     }
+
     return false;
 }
 

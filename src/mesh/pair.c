@@ -167,6 +167,7 @@ static bool cut_faces(Pairs *pairs) {
             push_triangle(pairs, &out, half[0], half[1], half[2], old->origin[f]);
         }
     }
+
     work->faces = out;
     return true;
 }
@@ -180,6 +181,7 @@ static void find_twins(Pairs *pairs) {
     work->face = work_new(work, count, sizeof *work->face);
     work->twin = work_new(work, count, sizeof *work->twin);
     if (work->no_memory) return;
+
     for (uint32_t h = 0; h < count; h++) {
         work->face[h] = h / 3;
         if (faces_next(&pairs->before, pairs->before_face, from[h]) == from[pair_next3(h)]) side[from[h]] = h;
@@ -316,12 +318,14 @@ static void pair_grow(Pairs *pairs, bool all, const uint8_t *open) {
     bool alone = false;
     for (uint32_t t = 0; t < count; t++) alone = alone || pairs->mate[t] == MESH_NONE;
     if (work->no_memory || !alone) return;
+
     for (uint32_t t = 0, total = 0; t < count; t++) {
         for (uint32_t h = 3 * t; h < 3 * t + 3; h++)
             if (work->twin[h] != MESH_NONE && (all || pairs->good[pair_name(pairs, h)]))
                 to[total++] = work->twin[h] / 3;
         first[t + 1] = total;
     }
+
     match_grow(work, count, first, to, open, pairs->mate);
 }
 
@@ -331,6 +335,7 @@ static bool find_mates(Pairs *pairs) {
     const uint32_t count = work->faces.count;
     uint8_t *open = work_new(work, count, 1);
     if (work->no_memory) return true;
+
     for (uint32_t h = 0; h < work->faces.corner_count; h++) open[h / 3] |= work->twin[h] == MESH_NONE;
 
     // the cheapest first
@@ -413,6 +418,7 @@ static void emit(Pairs *pairs) {
             pair_halve(pairs, half, &out);
         }
     }
+
     work->faces = out;
 }
 
@@ -430,6 +436,7 @@ bool mesh_pair(Work *work) {
     pairs->degree = work_new(work, work->vertex_count, sizeof *pairs->degree);
     pairs->rim = work_new(work, work->vertex_count, 1);
     if (work->no_memory) return true;
+
     work_mark_open(work, pairs->rim);
     for (uint32_t h = 0; h < faces->corner_count; h++) pairs->degree[faces->corner[h]]++;
     for (uint32_t h = 0; h < faces->corner_count; h++)

@@ -244,6 +244,7 @@ static bool cut_best(PolygonCut *cut, uint32_t n) {
         stack[depth][0] = (uint8_t)k;
         stack[depth++][1] = (uint8_t)j;
     }
+
     return true;
 }
 
@@ -264,6 +265,7 @@ static bool cut_bent_quad(PolygonCut *cut) {
             start = s;
         }
     }
+
     if (start > 1) return false;
     add_triangle(cut, start, start + 1, start + 2);
     add_triangle(cut, start, start + 2, (start + 3) % 4);
@@ -307,6 +309,7 @@ bool polygon_overlaps(PolygonCut *cut, const double normal[3]) {
     double low = INFINITY, high = -INFINITY;
     cut->work->no_memory = cut->work->no_memory || !seen;
     if (!seen) return false;
+
     for (uint32_t t = 0; t < cut->count; t++) {
         Seen *own = &seen[t];
         project(cut, cut->triangle[t], 3, normal);

@@ -55,6 +55,7 @@ static SingeResult check_def(const SingeMeshDef *def, const char *name, uint32_t
     if (!def->positions || !def->corners) return bad(error, "positions or corners are NULL");
     if (def->face_count == 0) return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: has no faces", short_name(name));
     if (def->attribute_count && !def->attributes) return bad(error, "attributes are NULL");
+
     for (uint32_t i = 0; i < def->attribute_count; i++)
         if (!def->attributes[i].name || !def->attributes[i].values)
             return bad(error, "an attribute has no name or no values");
@@ -70,6 +71,7 @@ static SingeResult check_def(const SingeMeshDef *def, const char *name, uint32_t
                           f, size);
         total += size;
     }
+
     if (total > INT32_MAX || def->vertex_count > INT32_MAX || def->face_count > INT32_MAX)
         return refuse(error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: more vertices or corners than 2147483647",
                       short_name(name));
@@ -160,6 +162,7 @@ SingeResult singe_mesh_create_grid(const SingeGridDef *given, SingeMesh **mesh, 
         store_free(def.allocator, made, 1, sizeof *made);
         return result;
     }
+
     mesh_grid_wear(&made->mesh, def.cells[0], def.cells[1], &(GridWear){def.jitter, def.displacement, def.seed});
     *mesh = made;
     return SINGE_OK;

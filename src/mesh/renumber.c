@@ -42,12 +42,14 @@ static uint32_t renumber_walk(Order *order, uint32_t lower) {
         order->row[count++] = at;
         renumber_number(order, faces->corner[at]);
     }
+
     renumber_number(order, faces->corner[next4(order->row[count - 1])]);
 
     for (uint32_t i = 0; i < count; i++) {
         uint32_t twin = order->work->twin[across4(order->row[i])];
         if (twin != MESH_NONE && order->face[twin / 4] == MESH_NONE && above == MESH_NONE) above = twin;
     }
+
     if (above == MESH_NONE) // the top: no row above numbers it
         for (uint32_t i = 0; i < count; i++) {
             uint32_t top = across4(order->row[i]);
@@ -86,6 +88,7 @@ static void apply(Order *order) {
         }
         out.first[to + 1] = 4 * (to + 1);
     }
+
     out.count = old->count;
     out.corner_count = old->corner_count;
     for (uint32_t v = 0; v < work->file->vertex_count; v++) work->became[v] = order->vertex[work->became[v]];
@@ -108,6 +111,7 @@ void mesh_order(Work *work) {
         uint32_t a = faces->corner[h], b = faces->corner[next4(h)];
         beside += a + 1 == b || b + 1 == a;
     }
+
     if ((double)beside / faces->corner_count >= MESH_IN_ORDER) return;
 
     Order order = {.work = work,
@@ -115,6 +119,7 @@ void mesh_order(Work *work) {
                    .face = work_new(work, count, sizeof *order.face),
                    .row = work_new(work, count, sizeof *order.row)};
     if (work->no_memory) return;
+
     memset(order.vertex, 0xff, work->vertex_count * sizeof *order.vertex);
     memset(order.face, 0xff, count * sizeof *order.face);
 
@@ -135,6 +140,7 @@ void mesh_order(Work *work) {
         while (side != MESH_NONE) side = renumber_walk(&order, side);
         if (order.face[f] == MESH_NONE) f--; // not reached yet
     }
+
     for (uint32_t v = 0; v < work->vertex_count; v++) renumber_number(&order, v); // of no face
     apply(&order);
 }

@@ -71,6 +71,7 @@ static void take(Work *work) {
     Faces faces = work_faces(work, file->face_count, file->corner_count);
     uint8_t *used = work_new(work, count, 1);
     if (work->no_memory) return;
+
     for (uint32_t v = 0; v < count; v++) {
         for (size_t k = 0; k < 3; k++) work->position[v][k] = (double)file->positions[3 * (size_t)v + k];
         for (size_t k = 0; k < attributes; k++) work->attributes[v * attributes + k] = file->attributes[k].values[v];
@@ -90,6 +91,7 @@ static void take(Work *work) {
         work->report->quads += corners == 4;
         work->report->polygons += corners > 4;
     }
+
     work->faces = faces;
 
     for (uint32_t h = 0; h < file->corner_count; h++) used[file->corners[h]] = 1;
@@ -104,6 +106,7 @@ static bool hand_over_attributes(const Work *work, const uint32_t *number, Mesh 
     if (!work->attribute_count) return true;
     mesh->attributes = store_new(mesh->allocator, work->attribute_count, sizeof *mesh->attributes);
     if (!mesh->attributes) return false;
+
     memset(mesh->attributes, 0, work->attribute_count * sizeof *mesh->attributes);
     mesh->attribute_count = work->attribute_count;
 
@@ -149,6 +152,7 @@ static bool hand_over(Work *work, Mesh *mesh) {
         mesh->corner_source = store_new(a, cells, 4 * sizeof *mesh->corner_source);
         if (!mesh->uv || !mesh->corner_uv || !mesh->corner_source) return false;
     }
+
     if (!hand_over_attributes(work, number, mesh)) return false;
 
     for (uint32_t v = 0; v < work->vertex_count; v++) {
@@ -156,6 +160,7 @@ static bool hand_over(Work *work, Mesh *mesh) {
         for (size_t k = 0; k < 3; k++) mesh->positions[3 * (size_t)number[v] + k] = (float)work->position[v][k];
         mesh->source[number[v]] = work->source[v];
     }
+
     for (uint32_t v = 0; v < mesh->source_count; v++) mesh->became[v] = number[work->became[v]];
     for (uint32_t h = 0; h < faces->corner_count; h++) mesh->cells[h] = number[faces->corner[h]];
     memcpy(mesh->cell_faces, faces->origin, faces->count * sizeof *mesh->cell_faces);
@@ -175,6 +180,7 @@ static bool hand_over(Work *work, Mesh *mesh) {
             work->report->seam_vertices++;
         }
     }
+
     memcpy(mesh->corner_uv, faces->uv, faces->corner_count * sizeof *faces->uv);
     memcpy(mesh->corner_source, faces->id, faces->corner_count * sizeof *faces->id);
     return true;
@@ -283,6 +289,7 @@ static void split_faces(Work *work) {
             faces_end(&out, old->origin[f]);
         }
     }
+
     work_did(work, MESH_SPLIT, old->count, work_face_name(work, 0));
     work->faces = out;
 }

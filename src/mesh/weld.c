@@ -38,6 +38,7 @@ void mesh_weld(Work *work) {
     uint8_t *open = work_new(work, work->vertex_count, 1);
     uint32_t *to = work_sets(work, work->vertex_count);
     if (work->no_memory) return;
+
     work_mark_open(work, open);
 
     for (uint32_t v = 0; v < work->vertex_count; v++) {
@@ -61,5 +62,6 @@ void mesh_weld(Work *work) {
         to[v] = found;
         work_did(work, MESH_WELDED, 1, v);
     }
+
     work_rename(work, to);
 }

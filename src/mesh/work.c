@@ -102,6 +102,7 @@ uint32_t work_vertex(Work *work, const uint32_t *of, uint32_t count) {
         for (size_t k = 0; k < attributes; k++)
             work->attributes[v * attributes + k] += work->attributes[of[i] * attributes + k] / (float)count;
     }
+
     work->source[v] = -1;
     return v;
 }
@@ -135,6 +136,7 @@ static void edges_sort(const Work *work, bool high, const uint32_t *from, uint32
         edge_ends(work, h, &end[0], &end[1]);
         slot[end[high] + 1]++;
     }
+
     for (uint32_t v = 0; v < work->vertex_count; v++) slot[v + 1] += slot[v];
     for (uint32_t k = 0; k < count; k++) {
         uint32_t half = from ? from[k] : k;
