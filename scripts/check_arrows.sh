@@ -29,7 +29,7 @@ src/materials    common
 program/formats  $files
 program/preview  $files common/float3.h
 program/scene    $files mesh/to_quads.h preview/preview.h
-program/analysis $files mesh/to_quads.h
+program/analysis $files common/double3.h common/float3.h mesh/to_quads.h
 program/cli      $program
 program/sweep    $program cli
 program/main.c   cli common/printable.h

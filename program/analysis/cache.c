@@ -28,43 +28,8 @@ float cache_value(const CacheFrame *frame, int column, uint32_t vertex) {
     return value;
 }
 
-/// `burnt` was `char` up to version 0.2.
-static bool is_named(const PlyProperty *property, const char *name) {
-    return text_word_is(property->name, property->name_end, name) ||
-           (strcmp(name, "burnt") == 0 && text_word_is(property->name, property->name_end, "char"));
-}
-
-/// Finds the offsets of the promised properties in a vertex.
-static SingeResult find_columns(const Ply *ply, const PlyElement *vertices, CacheFrame *frame) {
-    for (size_t i = 0; i < vertices->property_count; i++) {
-        const PlyProperty *property = &ply->header.properties[vertices->first_property + i];
-        if (property->is_list) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a vertex of a cache has no lists");
-        for (int c = 0; c < CACHE_COLUMNS; c++) {
-            const PlyType type = cache_column_is_integer(c) ? PLY_INT32 : PLY_FLOAT32;
-            if (property->type != type || !is_named(property, names[c])) continue;
-            frame->there[c] = true;
-            frame->offset[c] = frame->row;
-        }
-        frame->row += ply_type_size(property->type);
-    }
-    for (int c = CACHE_X; c < CACHE_X + 3; c++)
-        if (!frame->there[c])
-            return ply_refuse(ply, SINGE_ERROR_FORMAT, "vertices have no property \"float %s\"", names[c]);
-    return SINGE_OK;
-}
-
-static void read_time(const Ply *ply, CacheFrame *frame) {
-    frame->time = (double)NAN;
-    const uint8_t *p = ply->header.note, *end = ply->header.note_end;
-    for (double time; p && end - p > 6; p++) {
-        const uint8_t *number = p + 6;
-        if (memcmp(p, " time ", 6) != 0) continue;
-        if (number_double(&number, end, &time) == NUMBER_OK && number == end) frame->time = time;
-        return;
-    }
-}
-
-static SingeResult check_header(const Ply *ply, CacheFrame *frame) {
+/// Checks the header and finds the offsets of the promised properties in a vertex.
+static SingeResult read_header(const Ply *ply, CacheFrame *frame) {
     const PlyElement *vertices = ply_element(ply, "vertex"), *faces = ply_element(ply, "face");
     if (ply->header.format != PLY_LITTLE || ply->header.element_count != 2 || !vertices || !faces || vertices > faces)
         return ply_refuse(ply, SINGE_ERROR_FORMAT, "not a cache: a binary_little_endian PLY of vertices and faces");
@@ -74,8 +39,36 @@ static SingeResult check_header(const Ply *ply, CacheFrame *frame) {
         return ply_refuse(ply, SINGE_ERROR_FORMAT, "not a cache: its faces are no \"list uchar int vertex_indices\"");
     frame->vertex_count = vertices->count;
     frame->triangle_count = faces->count;
-    TRY(find_columns(ply, vertices, frame));
-    read_time(ply, frame);
+
+    for (size_t i = 0; i < vertices->property_count; i++) {
+        const PlyProperty *property = &ply->header.properties[vertices->first_property + i];
+        if (property->is_list) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a vertex of a cache has no lists");
+        for (int c = 0; c < CACHE_COLUMNS; c++) {
+            const PlyType type = cache_column_is_integer(c) ? PLY_INT32 : PLY_FLOAT32;
+            const bool named = text_word_is(property->name, property->name_end, names[c]) ||
+                               (strcmp(names[c], "burnt") == 0 && // it was `char` up to version 0.2
+                                text_word_is(property->name, property->name_end, "char"));
+            if (property->type != type || !named) continue;
+            frame->there[c] = true;
+            frame->offset[c] = frame->row;
+        }
+        frame->row += ply_type_size(property->type);
+    }
+
+    for (int c = CACHE_X; c < CACHE_X + 3; c++)
+        if (!frame->there[c])
+            return ply_refuse(ply, SINGE_ERROR_FORMAT, "vertices have no property \"float %s\"", names[c]);
+
+    frame->time = (double)NAN;
+    const uint8_t *end = ply->header.note_end;
+    for (const uint8_t *p = ply->header.note; p && end - p > 6; p++) {
+        const uint8_t *number = p + 6;
+        double time;
+        if (memcmp(p, " time ", 6) != 0) continue;
+        if (number_double(&number, end, &time) == NUMBER_OK && number == end) frame->time = time;
+        break;
+    }
+
     const uint64_t needed = (uint64_t)frame->row * vertices->count + (uint64_t)FACE_SIZE * faces->count;
     const uint64_t actual = (uint64_t)(ply->text.end - ply->text.at);
     if (actual == needed) return SINGE_OK;
@@ -88,12 +81,14 @@ static SingeResult unpack(Ply *ply, CacheFrame *frame) {
     frame->rest = malloc(((size_t)frame->vertex_count + 1) * sizeof *frame->rest);
     frame->triangles = malloc(((size_t)frame->triangle_count + 1) * sizeof *frame->triangles);
     if (!frame->position || !frame->rest || !frame->triangles) return refuse_memory(ply->error, "ply", ply->name);
+
     frame->rows = ply->text.at;
     for (uint32_t v = 0; v < frame->vertex_count; v++)
         for (int k = 0; k < 3; k++) {
             frame->position[v][k] = cache_value(frame, CACHE_X + k, v);
             frame->rest[v][k] = cache_value(frame, CACHE_REST + k, v);
         }
+
     ply->text.at += frame->row * frame->vertex_count;
     for (uint32_t f = 0; f < frame->triangle_count; f++) {
         if (*ply->text.at != 3)
@@ -110,7 +105,7 @@ SingeResult cache_read(const char *path, CacheFrame *frame, SingeError *error) {
     const Bytes *bytes = &frame->bytes;
     Ply ply = {.name = path, .begin = bytes->data, .text = {bytes->data, bytes->data + bytes->size, 1}, .error = error};
     SingeResult result = ply_read_header(&ply);
-    if (!result) result = check_header(&ply, frame);
+    if (!result) result = read_header(&ply, frame);
     if (!result) result = unpack(&ply, frame);
     ply_header_free(&ply);
     return result;

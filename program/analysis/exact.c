@@ -81,6 +81,7 @@ static int orient3_slowly(const float *const points[4], const double p[3], const
         add_determinant(&sum, 1, p, q, r);
         return expansion_sign(&sum);
     }
+
     double at[4][3];
     for (int i = 0; i < 12; i++) at[i / 3][i % 3] = (double)points[i / 3][i % 3];
     add_determinant(&sum, 1, at[0], at[1], at[2]);
@@ -97,6 +98,7 @@ int exact_orient3(const float a[3], const float b[3], const float c[3], const fl
         q[k] = (double)b[k] - (double)d[k];
         r[k] = (double)c[k] - (double)d[k];
     }
+
     for (int k = 0; k < 3; k++) {
         const double one = q[(k + 1) % 3] * r[(k + 2) % 3], other = q[(k + 2) % 3] * r[(k + 1) % 3];
         value += p[k] * (one - other);

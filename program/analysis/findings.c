@@ -9,8 +9,13 @@
 
 #include "analysis/crossings.h"
 #include "analysis/exact.h"
+#include "common/double3.h"
+#include "common/float3.h"
 
 enum { REPORTED = 3 };
+/// Reach of an initial crossing around its triangle, in longest sides of the triangle at rest: parts that cross slide,
+/// and are ignored until they have separated.
+static const float reach_of_side = 2;
 static const double fold_cosine = -0.984807753; // triangles that enclose less than 10 degrees
 
 static void findings_say(const Findings *findings, bool fault, const char *format, ...) SINGE_PRINTF(3, 4);
@@ -48,6 +53,7 @@ void check_values(const CacheFrame *frame, Findings *findings) {
             if (!isfinite(cache_value(frame, c, v)))
                 findings_add(findings, FAULT_NOT_FINITE, "%s of vertex %u is not finite", cache_column_name(c), v);
     }
+
     if (isnan(frame->time)) findings_add(findings, FAULT_MISSING, "the header has no \"comment singe ... time ...\"");
     for (uint32_t t = 0; t < frame->triangle_count; t++)
         for (int k = 0; k < 3; k++) {
@@ -59,34 +65,7 @@ void check_values(const CacheFrame *frame, Findings *findings) {
         }
 }
 
-// ---- triangles
-
 static bool is_finite_point(const float p[3]) { return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]); }
-
-/// Whether the corners are vertices at finite positions.
-static bool has_corners(const CacheFrame *frame, uint32_t triangle) {
-    for (int k = 0; k < 3; k++) {
-        const uint32_t vertex = frame->triangles[triangle][k];
-        if (vertex >= frame->vertex_count || !is_finite_point(frame->position[vertex])) return false;
-    }
-    return true;
-}
-
-/// Writes the numbers of the triangles with an area to `sound`, and counts those without as faults.
-static uint32_t keep_sound(const CacheFrame *frame, uint32_t *sound, Findings *findings) {
-    uint32_t count = 0;
-    for (uint32_t t = 0; t < frame->triangle_count; t++) {
-        const uint32_t *v = frame->triangles[t];
-        if (!has_corners(frame, t)) continue;
-        const float *a = frame->position[v[0]];
-        if (exact_collinear(a, frame->position[v[1]], frame->position[v[2]]))
-            findings_add(findings, FAULT_DEGENERATE,
-                         "triangle %u (vertices %u, %u, %u) at (%.4g, %.4g, %.4g) m has no area", t, v[0], v[1], v[2],
-                         (double)a[0], (double)a[1], (double)a[2]);
-        else sound[count++] = t;
-    }
-    return count;
-}
 
 static double findings_distance(const float a[3], const float b[3]) {
     double sum = 0;
@@ -94,17 +73,10 @@ static double findings_distance(const float a[3], const float b[3]) {
     return sqrt(sum);
 }
 
-/// Distance between the nearest corners of two triangles at rest, m. *side gets the longest of their edges.
-static double rest_gap(const CacheFrame *frame, uint32_t a, uint32_t b, double *side) {
-    const uint32_t *s = frame->triangles[a], *t = frame->triangles[b];
-    double gap = (double)INFINITY;
-    *side = 0;
-    for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) gap = fmin(gap, findings_distance(frame->rest[s[i]], frame->rest[t[k]]));
-        *side = fmax(*side, findings_distance(frame->rest[s[i]], frame->rest[s[(i + 1) % 3]]));
-        *side = fmax(*side, findings_distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
-    }
-    return gap;
+// ---- crossings
+
+static bool is_rest_known(const CacheFrame *frame) {
+    return frame->there[CACHE_REST] && frame->there[CACHE_REST + 1] && frame->there[CACHE_REST + 2];
 }
 
 static int32_t sheet_of(const CacheFrame *frame, uint32_t triangle) {
@@ -114,18 +86,69 @@ static int32_t sheet_of(const CacheFrame *frame, uint32_t triangle) {
     return sheet;
 }
 
-/// Counts a pair that crosses from the start, and reports it when it is one of the first.
-static void add_from_start(const CacheFrame *frame, uint32_t a, uint32_t b, Findings *findings) {
-    const float *p = frame->position[frame->triangles[a][0]];
-    if (findings->from_start++ < REPORTED && findings->begins)
-        findings_say(findings, false, "%s: triangles %u and %u cross from the start near (%.4g, %.4g, %.4g) m",
-                     findings->file, a, b, (double)p[0], (double)p[1], (double)p[2]);
+static float initial_distance(const float *a, const float *b) {
+    return float3_length(float3_sub(float3_load(a), float3_load(b)));
 }
 
+static InitialTriangle entry_of(const CacheFrame *frame, uint32_t triangle) {
+    const uint32_t *t = frame->triangles[triangle];
+    InitialTriangle entry = {{0}, 0, sheet_of(frame, triangle)};
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) entry.at[k] += frame->rest[t[i]][k] / 3;
+        entry.reach =
+            fmaxf(entry.reach, reach_of_side * initial_distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
+    }
+    return entry;
+}
+
+static int by_x(const void *a, const void *b) {
+    const InitialTriangle *p = a, *q = b;
+    return (p->at[0] > q->at[0]) - (p->at[0] < q->at[0]);
+}
+
+void initial_free(Initial *initial) {
+    free(initial->triangles);
+    *initial = (Initial){0};
+}
+
+/// Whether a triangle is near an initial crossing.
+static bool is_near(const Initial *initial, const CacheFrame *frame, uint32_t triangle) {
+    if (!initial->count || !is_rest_known(frame)) return false;
+    const InitialTriangle entry = entry_of(frame, triangle);
+    size_t from = 0, to = initial->count;
+    while (from < to) {
+        size_t middle = from + (to - from) / 2;
+        if (initial->triangles[middle].at[0] < entry.at[0] - initial->reach) from = middle + 1;
+        else to = middle;
+    }
+
+    for (; from < initial->count && initial->triangles[from].at[0] <= entry.at[0] + initial->reach; from++) {
+        const InitialTriangle *other = &initial->triangles[from];
+        if (other->sheet == entry.sheet && initial_distance(other->at, entry.at) <= other->reach) return true;
+    }
+    return false;
+}
+
+/// Counts a pair that crosses, from the start or as a fault.
 static void add_crossing(const CacheFrame *frame, uint32_t a, uint32_t b, Findings *findings) {
-    const float *p = frame->position[frame->triangles[a][0]];
+    const uint32_t *s = frame->triangles[a], *t = frame->triangles[b];
+    const float *p = frame->position[s[0]];
+    if (is_near(&findings->initial, frame, a) && is_near(&findings->initial, frame, b)) {
+        if (findings->from_start++ < REPORTED && findings->begins)
+            findings_say(findings, false, "%s: triangles %u and %u cross from the start near (%.4g, %.4g, %.4g) m",
+                         findings->file, a, b, (double)p[0], (double)p[1], (double)p[2]);
+        return;
+    }
+
+    // the distance between their nearest corners at rest, and the longest of their sides
+    double gap = (double)INFINITY, side = 0;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) gap = fmin(gap, findings_distance(frame->rest[s[i]], frame->rest[t[k]]));
+        side = fmax(side, findings_distance(frame->rest[s[i]], frame->rest[s[(i + 1) % 3]]));
+        side = fmax(side, findings_distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
+    }
+
     const int32_t one = sheet_of(frame, a), other = sheet_of(frame, b);
-    double side, gap = rest_gap(frame, a, b, &side);
     char where[64];
     if (one != other) snprintf(where, sizeof where, "of sheets %d and %d", (int)one, (int)other);
     else snprintf(where, sizeof where, "%.3g mm apart at rest", 1e3 * gap);
@@ -138,23 +161,34 @@ static bool check_crossings(const CacheFrame *frame, const uint32_t *sound, uint
     uint32_t(*triangles)[3] = malloc(((size_t)count + 1) * sizeof *triangles);
     CrossingList list = {0};
     if (!triangles) return false;
+
     for (uint32_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) triangles[i][k] = frame->triangles[sound[i]][k];
     const float(*position)[3] = (const float(*)[3])frame->position;
     bool good = crossings_find(position, (const uint32_t(*)[3])triangles, count, &list);
+    free(triangles);
     for (size_t i = 0; i < list.count; i++)
         for (int k = 0; k < 2; k++) list.pairs[i][k] = sound[list.pairs[i][k]];
-    if (good && findings->begins)
-        good = initial_take(&findings->initial, frame, (const uint32_t(*)[2])list.pairs, list.count);
-    for (size_t i = 0; i < list.count; i++) {
-        const uint32_t a = list.pairs[i][0], b = list.pairs[i][1];
-        if (initial_has(&findings->initial, frame, a, b)) add_from_start(frame, a, b, findings);
-        else add_crossing(frame, a, b, findings);
+
+    // those of the first frame are remembered
+    Initial *initial = &findings->initial;
+    if (good && findings->begins && is_rest_known(frame)) {
+        initial->triangles = malloc((2 * list.count + 1) * sizeof *initial->triangles);
+        good = initial->triangles != NULL;
+        initial->count = good ? 2 * list.count : 0;
+        for (size_t i = 0; i < initial->count; i++) {
+            initial->triangles[i] = entry_of(frame, list.pairs[i / 2][i % 2]);
+            initial->reach = fmaxf(initial->reach, initial->triangles[i].reach);
+        }
+        if (good) qsort(initial->triangles, initial->count, sizeof *initial->triangles, by_x);
     }
+
+    for (size_t i = 0; i < list.count; i++) add_crossing(frame, list.pairs[i][0], list.pairs[i][1], findings);
     crossings_free(&list);
-    free(triangles);
     return good;
 }
+
+// ---- duplicates
 
 typedef struct Triple {
     uint32_t vertex[3], triangle; ///< vertices ascending
@@ -167,21 +201,23 @@ static int by_vertices(const void *a, const void *b) {
     return (x->triangle > y->triangle) - (x->triangle < y->triangle);
 }
 
-static Triple triple_of(const uint32_t v[3], uint32_t triangle) {
-    Triple t = {{v[0], v[1], v[2]}, triangle};
-    for (int k = 0; k < 3; k++) { // three exchanges sort three
-        const int i = k == 1, j = i + 1;
-        if (t.vertex[i] <= t.vertex[j]) continue;
-        const uint32_t kept = t.vertex[i];
-        t.vertex[i] = t.vertex[j], t.vertex[j] = kept;
-    }
-    return t;
-}
-
 static bool check_duplicates(const CacheFrame *frame, const uint32_t *sound, uint32_t count, Findings *findings) {
     Triple *triples = malloc(((size_t)count + 1) * sizeof *triples);
     if (!triples) return false;
-    for (uint32_t i = 0; i < count; i++) triples[i] = triple_of(frame->triangles[sound[i]], sound[i]);
+
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t *v = frame->triangles[sound[i]];
+        Triple *t = &triples[i];
+        *t = (Triple){{v[0], v[1], v[2]}, sound[i]};
+        for (int k = 0; k < 3; k++) { // three exchanges sort three
+            const int low = k == 1, high = low + 1;
+            const uint32_t kept = t->vertex[low];
+            if (kept <= t->vertex[high]) continue;
+            t->vertex[low] = t->vertex[high];
+            t->vertex[high] = kept;
+        }
+    }
+
     qsort(triples, count, sizeof *triples, by_vertices);
     for (uint32_t i = 1; i < count; i++) {
         const Triple *one = &triples[i - 1], *other = &triples[i];
@@ -190,6 +226,7 @@ static bool check_duplicates(const CacheFrame *frame, const uint32_t *sound, uin
             findings_add(findings, FAULT_DUPLICATE, "triangles %u and %u have the same vertices %u, %u, %u",
                          one->triangle, other->triangle, one->vertex[0], one->vertex[1], one->vertex[2]);
     }
+
     free(triples);
     return true;
 }
@@ -208,25 +245,25 @@ static int by_edge(const void *a, const void *b) {
     return (x->triangle > y->triangle) - (x->triangle < y->triangle);
 }
 
-static void normal_of(const float a[3], const float b[3], const float c[3], double normal[3]) {
-    double u[3], v[3];
-    for (int k = 0; k < 3; k++) u[k] = (double)b[k] - (double)a[k], v[k] = (double)c[k] - (double)a[k];
-    for (int k = 0; k < 3; k++) normal[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
-}
-
 /// Cosine between the normals of the triangles of an edge, both with the winding of the first.
 static double findings_bend(float (*const at)[3], const Side *one, const Side *other) {
-    double m[3], n[3], mn = 0, mm = 0, nn = 0;
-    normal_of(at[one->low], at[one->high], at[one->opposite], m);
-    normal_of(at[other->high], at[other->low], at[other->opposite], n);
-    for (int k = 0; k < 3; k++) mn += m[k] * n[k], mm += m[k] * m[k], nn += n[k] * n[k];
-    return mm > 0 && nn > 0 ? mn / sqrt(mm * nn) : 1;
+    const float *low = at[one->low], *high = at[one->high];
+    double along[3], back[3], u[3], v[3], m[3], n[3];
+    for (int k = 0; k < 3; k++) {
+        along[k] = (double)high[k] - (double)low[k];
+        back[k] = (double)low[k] - (double)high[k];
+        u[k] = (double)at[one->opposite][k] - (double)low[k];
+        v[k] = (double)at[other->opposite][k] - (double)high[k];
+    }
+    cross3(along, u, m);
+    cross3(back, v, n);
+    const double mm = dot3(m, m), nn = dot3(n, n);
+    return mm > 0 && nn > 0 ? dot3(m, n) / sqrt(mm * nn) : 1;
 }
 
 static bool has_rest(const CacheFrame *frame, const Side *side) {
-    return frame->there[CACHE_REST] && frame->there[CACHE_REST + 1] && frame->there[CACHE_REST + 2] &&
-           is_finite_point(frame->rest[side->low]) && is_finite_point(frame->rest[side->high]) &&
-           is_finite_point(frame->rest[side->opposite]);
+    return is_rest_known(frame) && is_finite_point(frame->rest[side->low]) &&
+           is_finite_point(frame->rest[side->high]) && is_finite_point(frame->rest[side->opposite]);
 }
 
 /// Max error of the length of an edge because its ends are stored as floats, half a last bit each.
@@ -249,6 +286,7 @@ static void check_edge(const CacheFrame *frame, const Side *sides, uint32_t coun
         findings_add(findings, FAULT_WINDING, "triangles %u and %u run the same way along edge %u-%u",
                      sides[0].triangle, sides[1].triangle, low, high);
     if (!has_rest(frame, sides)) return;
+
     const double length = findings_distance(frame->position[low], frame->position[high]);
     const double rest = findings_distance(frame->rest[low], frame->rest[high]);
     const double shortest = length - rounding(frame->position[low], frame->position[high]);
@@ -266,20 +304,48 @@ static bool check_edges(const CacheFrame *frame, const uint32_t *sound, uint32_t
     const size_t side_count = 3 * (size_t)count;
     Side *sides = malloc((side_count + 1) * sizeof *sides);
     if (!sides) return false;
+
     for (size_t i = 0; i < side_count; i++) {
         const uint32_t triangle = sound[i / 3], *v = frame->triangles[triangle];
         const uint32_t from = v[i % 3], to = v[(i + 1) % 3], opposite = v[(i + 2) % 3];
         const bool forward = from < to;
         sides[i] = (Side){forward ? from : to, forward ? to : from, triangle, opposite, forward};
     }
+
     qsort(sides, side_count, sizeof *sides, by_edge);
     for (size_t i = 0, end; i < side_count; i = end) {
         for (end = i + 1; end < side_count && sides[end].low == sides[i].low && sides[end].high == sides[i].high;)
             end++;
         check_edge(frame, &sides[i], (uint32_t)(end - i), findings);
     }
+
     free(sides);
     return true;
+}
+
+bool check_surface(const CacheFrame *frame, Findings *findings) {
+    uint32_t *sound = malloc(((size_t)frame->triangle_count + 1) * sizeof *sound), count = 0;
+    if (!sound) return false;
+
+    // triangles of finite vertices, and with an area
+    for (uint32_t t = 0; t < frame->triangle_count; t++) {
+        const uint32_t *v = frame->triangles[t];
+        bool whole = true;
+        for (int k = 0; k < 3 && whole; k++)
+            whole = v[k] < frame->vertex_count && is_finite_point(frame->position[v[k]]);
+        if (!whole) continue;
+        const float *a = frame->position[v[0]];
+        if (exact_collinear(a, frame->position[v[1]], frame->position[v[2]]))
+            findings_add(findings, FAULT_DEGENERATE,
+                         "triangle %u (vertices %u, %u, %u) at (%.4g, %.4g, %.4g) m has no area", t, v[0], v[1], v[2],
+                         (double)a[0], (double)a[1], (double)a[2]);
+        else sound[count++] = t;
+    }
+
+    const bool good = check_crossings(frame, sound, count, findings) &&
+                      check_duplicates(frame, sound, count, findings) && check_edges(frame, sound, count, findings);
+    free(sound);
+    return good;
 }
 
 bool check_start(const CacheFrame *frame, Findings *findings) {
@@ -289,15 +355,5 @@ bool check_start(const CacheFrame *frame, Findings *findings) {
     quiet.from_start = REPORTED;
     const bool good = check_surface(frame, &quiet);
     findings->initial = quiet.initial;
-    return good;
-}
-
-bool check_surface(const CacheFrame *frame, Findings *findings) {
-    uint32_t *sound = malloc(((size_t)frame->triangle_count + 1) * sizeof *sound);
-    if (!sound) return false;
-    const uint32_t count = keep_sound(frame, sound, findings);
-    const bool good = check_crossings(frame, sound, count, findings) &&
-                      check_duplicates(frame, sound, count, findings) && check_edges(frame, sound, count, findings);
-    free(sound);
     return good;
 }

@@ -3,7 +3,6 @@
 #define ANALYSIS_FINDINGS_H
 
 #include "analysis/cache.h"
-#include "analysis/initial.h"
 
 typedef enum Fault {
     FAULT_CROSSING,     ///< pairs of triangles
@@ -19,6 +18,19 @@ typedef enum Fault {
     FAULT_STATS,        ///< values of stats.csv that the frame contradicts
     FAULT_COUNT
 } Fault;
+
+/// A triangle that crosses another in the first frame: it has no side to be kept on.
+typedef struct InitialTriangle {
+    float at[3]; ///< m, the triangle's centre at rest
+    float reach; ///< m
+    int32_t sheet;
+} InitialTriangle;
+
+typedef struct Initial {
+    InitialTriangle *triangles; ///< in ascending order of x
+    size_t count;
+    float reach; ///< m, the largest
+} Initial;
 
 typedef struct Findings {
     void (*report)(void *context, bool fault, const char *message); ///< reports a fault, or other information
@@ -36,6 +48,8 @@ typedef struct Findings {
 
 /// Counts a fault, and reports it when it is one of the first of its kind.
 void findings_add(Findings *findings, Fault fault, const char *format, ...) SINGE_PRINTF(3, 4);
+
+void initial_free(Initial *initial);
 
 /// Checks for values that are not finite, missing properties, and indices out of range.
 void check_values(const CacheFrame *frame, Findings *findings);

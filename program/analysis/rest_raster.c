@@ -1,5 +1,7 @@
 #include "analysis/rest_raster.h"
 
+#include "common/double3.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,121 +17,69 @@ typedef struct Plane {
     double origin[3], e1[3], e2[3];
 } Plane;
 
-static double rest_raster_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-static void rest_raster_cross(const double *a, const double *b, double *c) {
-    for (int k = 0; k < 3; k++) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
-static bool rest_raster_unit(double *a) {
-    double length = sqrt(rest_raster_dot(a, a));
-    if (!(length > 0)) return false;
-    for (int k = 0; k < 3; k++) a[k] /= length;
-    return true;
-}
-
-/// A triangle at rest: two sides and twice its vector area.
-typedef struct RestTriangle {
-    double a[3], b[3], normal[3];
-} RestTriangle;
-
-static RestTriangle rest_triangle(const SingeSurface *surface, const uint32_t *t) {
-    RestTriangle triangle;
-    for (int k = 0; k < 3; k++) {
-        double origin = (double)surface->rest_position[t[0]][k];
-        triangle.a[k] = (double)surface->rest_position[t[1]][k] - origin;
-        triangle.b[k] = (double)surface->rest_position[t[2]][k] - origin;
-    }
-    rest_raster_cross(triangle.a, triangle.b, triangle.normal);
-    return triangle;
-}
-
-/// Adds the direction in which u grows over the triangle, times its area.
-static void add_along_u(const SingeSurface *surface, const uint32_t *t, const RestTriangle *triangle, double *along) {
-    double u[2], v[2];
-    for (int i = 0; i < 2; i++) {
-        u[i] = (double)surface->uv[t[i + 1]][0] - (double)surface->uv[t[0]][0];
-        v[i] = (double)surface->uv[t[i + 1]][1] - (double)surface->uv[t[0]][1];
-    }
-    double turn = u[0] * v[1] - u[1] * v[0], d[3];
-    for (int k = 0; k < 3; k++) d[k] = (v[1] * triangle->a[k] - v[0] * triangle->b[k]) * (turn < 0 ? -1 : 1);
-    if (turn == 0 || !rest_raster_unit(d)) return;
-    for (int k = 0; k < 3; k++) along[k] += d[k] * sqrt(rest_raster_dot(triangle->normal, triangle->normal));
-}
-
 /// Finds the rotated axes of the sheet's plane; the origin is some point of the sheet.
 static bool find_plane(const SingeSurface *surface, int32_t sheet, Plane *plane) {
-    double normal[3] = {0}, along[3] = {0}, across[3];
+    double normal[3] = {0}, along[3] = {0}, across[3]; // sums of twice the areas; `along` in the direction of growing u
     for (uint32_t f = 0; f < surface->triangle_count; f++) {
         const uint32_t *t = surface->triangles[f];
+        double a[3], b[3], own[3], d[3], u[2], v[2];
         if (surface->sheet[t[0]] != sheet) continue;
-        RestTriangle triangle = rest_triangle(surface, t);
-        for (int k = 0; k < 3; k++) normal[k] += triangle.normal[k];
-        add_along_u(surface, t, &triangle, along);
-        for (int k = 0; k < 3; k++) plane->origin[k] = (double)surface->rest_position[t[0]][k];
+        for (int k = 0; k < 3; k++) {
+            plane->origin[k] = (double)surface->rest_position[t[0]][k];
+            a[k] = (double)surface->rest_position[t[1]][k] - plane->origin[k];
+            b[k] = (double)surface->rest_position[t[2]][k] - plane->origin[k];
+        }
+        cross3(a, b, own);
+        for (int k = 0; k < 3; k++) normal[k] += own[k];
+
+        for (int i = 0; i < 2; i++) {
+            u[i] = (double)surface->uv[t[i + 1]][0] - (double)surface->uv[t[0]][0];
+            v[i] = (double)surface->uv[t[i + 1]][1] - (double)surface->uv[t[0]][1];
+        }
+        const double turn = u[0] * v[1] - u[1] * v[0];
+        for (int k = 0; k < 3; k++) d[k] = (v[1] * a[k] - v[0] * b[k]) * (turn < 0 ? -1 : 1);
+        if (turn == 0 || !unit3(d)) continue;
+        for (int k = 0; k < 3; k++) along[k] += d[k] * sqrt(dot3(own, own));
     }
-    if (!rest_raster_unit(normal)) return false;
-    double lift = rest_raster_dot(along, normal);
+
+    if (!unit3(normal)) return false;
+
+    double lift = dot3(along, normal);
     for (int k = 0; k < 3; k++) along[k] -= lift * normal[k];
-    if (!rest_raster_unit(along)) { // no uv: x, or y if x is too close to the normal
+    if (!unit3(along)) { // no uv: x, or y if x is too close to the normal
         int axis = fabs(normal[0]) < 0.9 ? 0 : 1;
         for (int k = 0; k < 3; k++) along[k] = (k == axis) - normal[axis] * normal[k];
-        rest_raster_unit(along);
+        unit3(along);
     }
-    rest_raster_cross(normal, along, across);
+
+    cross3(normal, along, across);
     for (int k = 0; k < 3; k++) {
         plane->e1[k] = cos(turned) * along[k] + sin(turned) * across[k];
         plane->e2[k] = cos(turned) * across[k] - sin(turned) * along[k];
     }
+
     return true;
 }
 
-static void rest_raster_position(const SingeSurface *surface, const Plane *plane, uint32_t v, double *x, double *y) {
+static void project(const SingeSurface *surface, const Plane *plane, uint32_t v, double *x, double *y) {
     double d[3];
     for (int k = 0; k < 3; k++) d[k] = (double)surface->rest_position[v][k] - plane->origin[k];
-    *x = rest_raster_dot(d, plane->e1);
-    *y = rest_raster_dot(d, plane->e2);
+    *x = dot3(d, plane->e1);
+    *y = dot3(d, plane->e2);
 }
 
-/// Moves the origin to the lower corner of the area that the sheet covers, and sets the size.
-static void fit(const SingeSurface *surface, int32_t sheet, double spacing, Plane *plane, RestRaster *raster) {
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, at[2];
-    for (uint32_t v = 0; v < surface->vertex_count; v++) {
-        if (surface->sheet[v] != sheet) continue;
-        rest_raster_position(surface, plane, v, &at[0], &at[1]);
-        for (int k = 0; k < 2; k++) low[k] = fmin(low[k], at[k]), high[k] = fmax(high[k], at[k]);
-    }
-    double side = fmax(high[0] - low[0], high[1] - low[1]);
-    raster->spacing = fmax(spacing, side / (SIDE_MAX - 2));
-    raster->width = (int)((high[0] - low[0]) / raster->spacing) + 2;
-    raster->height = (int)((high[1] - low[1]) / raster->spacing) + 2;
-    for (int k = 0; k < 3; k++) plane->origin[k] += low[0] * plane->e1[k] + low[1] * plane->e2[k];
-}
-
-/// Sets the pixel from three vertices with these weights.
-static void set_pixel(const SingeSurface *surface, const uint32_t *t, const double *weight, int p, RestRaster *raster) {
-    double normal[3] = {0}, burn = 0, unlit = 0;
-    for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) normal[k] += weight[i] * (double)surface->normal[t[i]][k];
-        burn += weight[i] * (double)surface->burn[t[i]];
-        unlit += weight[i] * (surface->time_ignited[t[i]] < 0);
-    }
-    if (!rest_raster_unit(normal)) return;
-    for (int k = 0; k < 3; k++) raster->normal[k][p] = (float)normal[k];
-    raster->cover[p] = 1;
-    raster->burn[p] = (float)burn;
-    raster->unlit[p] = unlit > 0.99;
-}
-
+/// Sets the pixels whose centres a triangle covers.
 static void fill_triangle(const SingeSurface *surface, const Plane *plane, const uint32_t *t, RestRaster *raster) {
     double x[3], y[3];
     for (int i = 0; i < 3; i++) {
-        rest_raster_position(surface, plane, t[i], &x[i], &y[i]);
+        project(surface, plane, t[i], &x[i], &y[i]);
         x[i] /= raster->spacing;
         y[i] /= raster->spacing;
     }
+
     double area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
     if (area == 0) return;
+
     int left = (int)ceil(fmin(fmin(x[0], x[1]), x[2])), right = (int)floor(fmax(fmax(x[0], x[1]), x[2]));
     int low = (int)ceil(fmin(fmin(y[0], y[1]), y[2])), high = (int)floor(fmax(fmax(y[0], y[1]), y[2]));
     for (int j = low < 0 ? 0 : low; j <= high && j < raster->height; j++)
@@ -139,7 +89,19 @@ static void fill_triangle(const SingeSurface *surface, const Plane *plane, const
             weight[2] = ((x[1] - x[0]) * (j - y[0]) - (i - x[0]) * (y[1] - y[0])) / area;
             weight[0] = 1 - weight[1] - weight[2];
             if (weight[0] < -1e-9 || weight[1] < -1e-9 || weight[2] < -1e-9) continue;
-            set_pixel(surface, t, weight, j * raster->width + i, raster);
+
+            double normal[3] = {0}, burn = 0, unlit = 0;
+            for (int c = 0; c < 3; c++) {
+                for (int k = 0; k < 3; k++) normal[k] += weight[c] * (double)surface->normal[t[c]][k];
+                burn += weight[c] * (double)surface->burn[t[c]];
+                unlit += weight[c] * (surface->time_ignited[t[c]] < 0);
+            }
+            if (!unit3(normal)) continue;
+            const int p = j * raster->width + i;
+            for (int k = 0; k < 3; k++) raster->normal[k][p] = (float)normal[k];
+            raster->cover[p] = 1;
+            raster->burn[p] = (float)burn;
+            raster->unlit[p] = unlit > 0.99;
         }
 }
 
@@ -147,13 +109,31 @@ bool rest_raster_draw(const SingeSurface *surface, int32_t sheet, double spacing
     Plane plane;
     *raster = (RestRaster){.spacing = spacing, .turn = turned};
     if (!find_plane(surface, sheet, &plane)) return true;
-    fit(surface, sheet, spacing, &plane, raster);
+
+    // the origin moves to the lower corner of the area that the sheet covers
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, at[2];
+    for (uint32_t v = 0; v < surface->vertex_count; v++) {
+        if (surface->sheet[v] != sheet) continue;
+        project(surface, &plane, v, &at[0], &at[1]);
+        for (int k = 0; k < 2; k++) {
+            low[k] = fmin(low[k], at[k]);
+            high[k] = fmax(high[k], at[k]);
+        }
+    }
+
+    raster->spacing = fmax(spacing, fmax(high[0] - low[0], high[1] - low[1]) / (SIDE_MAX - 2));
+    raster->width = (int)((high[0] - low[0]) / raster->spacing) + 2;
+    raster->height = (int)((high[1] - low[1]) / raster->spacing) + 2;
+    for (int k = 0; k < 3; k++) plane.origin[k] += low[0] * plane.e1[k] + low[1] * plane.e2[k];
+
     size_t pixels = (size_t)raster->width * (size_t)raster->height;
     raster->cover = calloc(6 * pixels, sizeof *raster->cover); // all fields in one block
     if (!raster->cover) return false;
+
     for (int k = 0; k < 3; k++) raster->normal[k] = raster->cover + (size_t)(k + 1) * pixels;
     raster->burn = raster->cover + 4 * pixels;
     raster->unlit = raster->cover + 5 * pixels;
+
     for (uint32_t f = 0; f < surface->triangle_count; f++)
         if (surface->sheet[surface->triangles[f][0]] == sheet)
             fill_triangle(surface, &plane, surface->triangles[f], raster);
@@ -210,6 +190,7 @@ void rest_raster_smooth(const RestRaster *raster, const float *field, double dev
     double total = 1;
     for (int k = 1; k <= reach; k++) total += 2 * exp(-0.5 * k * k / (pixel * pixel));
     for (int k = 0; k <= reach; k++) kernel[k] = (float)(exp(-0.5 * k * k / (pixel * pixel)) / total);
+
     for (size_t p = 0; p < pixels; p++) covered[p] = field[p] * raster->cover[p];
     blur_rows(covered, scratch, width, height, kernel, reach);
     blur_columns(scratch, smooth, width, height, kernel, reach);
@@ -229,6 +210,7 @@ void rest_raster_distance(const RestRaster *raster, float min, float *distance) 
     const size_t w = (size_t)width;
     for (size_t p = 0; p < w * (size_t)height; p++)
         distance[p] = raster->cover[p] > 0 && raster->burn[p] > min ? 0 : INFINITY;
+
     for (int j = 0; j < height; j++)
         for (int i = 0; i < width; i++) {
             size_t p = (size_t)j * w + (size_t)i;

@@ -18,20 +18,6 @@ static double singular_dot(const double *a, const double *b, size_t n) {
     return sum;
 }
 
-/// Makes two vectors orthogonal. True if they were not.
-static bool singular_turn(double *a, double *b, size_t n, double floor) {
-    double p = singular_dot(a, a, n), q = singular_dot(b, b, n), r = singular_dot(a, b, n);
-    if (fabs(r) <= 1e-15 * sqrt(p * q) || (p <= floor && q <= floor)) return false;
-    double z = (q - p) / (2 * r), t = copysign(1, z) / (fabs(z) + sqrt(1 + z * z));
-    double c = 1 / sqrt(1 + t * t), s = c * t;
-    for (size_t i = 0; i < n; i++) {
-        double x = a[i], y = b[i];
-        a[i] = c * x - s * y;
-        b[i] = s * x + c * y;
-    }
-    return true;
-}
-
 static int descending(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;
     return (x < y) - (x > y);
@@ -42,17 +28,31 @@ int singular_values(const double *matrix, size_t rows, size_t columns, double *v
     size_t count = upright ? columns : rows, length = upright ? rows : columns;
     double *vectors = malloc((count * length + 1) * sizeof *vectors), norm = 0;
     if (!vectors) return -1;
+
     for (size_t i = 0; i < count; i++)
         for (size_t k = 0; k < length; k++)
             vectors[i * length + k] = upright ? matrix[k * columns + i] : matrix[i * columns + k];
+
     for (size_t i = 0; i < count * length; i++) norm += vectors[i] * vectors[i];
     double floor = 1e-30 * norm; // below it vectors are rounding errors, and rotating them would not end
     for (int sweep = 0; sweep < SWEEPS && turned; sweep++) {
         turned = false;
         for (size_t i = 0; i + 1 < count; i++)
-            for (size_t j = i + 1; j < count; j++)
-                if (singular_turn(vectors + i * length, vectors + j * length, length, floor)) turned = true;
+            for (size_t j = i + 1; j < count; j++) {
+                double *a = vectors + i * length, *b = vectors + j * length;
+                double p = singular_dot(a, a, length), q = singular_dot(b, b, length), r = singular_dot(a, b, length);
+                if (fabs(r) <= 1e-15 * sqrt(p * q) || (p <= floor && q <= floor)) continue;
+                double z = (q - p) / (2 * r), t = copysign(1, z) / (fabs(z) + sqrt(1 + z * z));
+                double c = 1 / sqrt(1 + t * t), s = c * t;
+                for (size_t k = 0; k < length; k++) {
+                    double x = a[k], y = b[k];
+                    a[k] = c * x - s * y;
+                    b[k] = s * x + c * y;
+                }
+                turned = true;
+            }
     }
+
     for (size_t i = 0; i < count; i++)
         values[i] = sqrt(singular_dot(vectors + i * length, vectors + i * length, length));
     qsort(values, count, sizeof *values, descending);

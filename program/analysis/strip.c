@@ -40,12 +40,16 @@ static bool strip_mesh(Strip *strip, const StripSetup *setup) {
     strip->lit = malloc(vertices * sizeof *strip->lit);
     strip->cells = malloc((size_t)4 * count * sizeof *strip->cells);
     if (!strip->positions || !strip->lit || !strip->cells) return false;
+
     for (uint32_t v = 0; v < vertices; v++) {
         float *x = strip->positions + (size_t)3 * v;
-        x[0] = (float)(v % row) * cell, x[1] = (float)(v / row) * cell, x[2] = 0;
+        x[0] = (float)(v % row) * cell;
+        x[1] = (float)(v / row) * cell;
+        x[2] = 0;
         if (setup->shape) setup->shape(x, v % row, v / row, cell);
         strip->lit[v] = (double)x[0] < strip_lit;
     }
+
     for (uint32_t c = 0; c < count; c++) {
         uint32_t v = c / n * row + c % n, *corner = strip->cells + (size_t)4 * c;
         corner[0] = v;
@@ -53,6 +57,7 @@ static bool strip_mesh(Strip *strip, const StripSetup *setup) {
         corner[2] = v + row + 1;
         corner[3] = v + row;
     }
+
     return true;
 }
 
@@ -90,14 +95,19 @@ static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
                             &material.curvature_max};
     for (size_t i = 0; i < sizeof params / sizeof *params; i++)
         if (params[i]->field) *params[i] = singe_param(0.5f * (params[i]->value + params[i]->to));
+
     // char glows in patches; the hottest counts
     SingeParam *chars[] = {&material.char_yield, &material.char_density, &material.char_heat, &material.char_rate,
                            &material.char_air};
     for (size_t i = 0; i < sizeof chars / sizeof *chars; i++)
         if (chars[i]->field && chars[i]->field->kind != SINGE_FIELD_NOISE)
             *chars[i] = singe_param(0.5f * (chars[i]->value + chars[i]->to));
-    for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
-        material.weight[c] = singe_param(1), material.compliance[c] = singe_param(0);
+
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
+        material.weight[c] = singe_param(1);
+        material.compliance[c] = singe_param(0);
+    }
+
     static const SingeField lit = {.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "lit"};
     const SingeParam cold = material.temperature;
     material.temperature = singe_param_field(cold.field ? 0.5f * (cold.value + cold.to) : cold.value, 1100, &lit);
@@ -117,6 +127,7 @@ static SingeResult strip_fill(Strip *strip, const StripSetup *setup) {
     sheet.attribute_count = 1;
     sheet.attributes = &lit;
     sheet.material = strip_material(&setup->material);
+
     SingeResult result = singe_sim_add_sheet(strip->sim, &sheet, &pin.sheet);
     if (!result) result = singe_sim_commit(strip->sim);
     pin.point_count = 1;
@@ -133,11 +144,14 @@ static double strip_front(const Strip *strip, const SingeView *view) {
     return (double)view->rest_position[i][0];
 }
 
-/// The least-squares line through positions and times of ignition between the gates.
-static double strip_speed(const Strip *strip, const SingeView *view) {
+static void strip_read(const Strip *strip, double pace, StripResult *result) {
+    SingeView view = singe_sim_view(strip->sim);
+    result->thickening = (double)singe_sim_stats(strip->sim).thickening;
+
+    // the least-squares line through positions and times of ignition between the gates
     double n = 0, x1 = 0, t1 = 0, xt = 0, tt = 0;
-    for (uint32_t v = 0; v < view->vertex_count; v++) {
-        double x = (double)view->rest_position[v][0], t = (double)view->time_ignited[v];
+    for (uint32_t v = 0; v < view.vertex_count; v++) {
+        double x = (double)view.rest_position[v][0], t = (double)view.time_ignited[v];
         if (x < strip->first || x > strip->last || t < 0) continue;
         n++;
         x1 += x;
@@ -145,14 +159,11 @@ static double strip_speed(const Strip *strip, const SingeView *view) {
         xt += x * t;
         tt += t * t;
     }
-    return (n * xt - x1 * t1) / (n * tt - t1 * t1);
-}
 
-static void strip_read(const Strip *strip, double pace, StripResult *result) {
-    SingeView view = singe_sim_view(strip->sim);
+    const double speed = (n * xt - x1 * t1) / (n * tt - t1 * t1);
+    result->speed = strip_front(strip, &view) > strip->last ? speed / pace : 0;
+
     double area = 0, mass = 0;
-    result->thickening = (double)singe_sim_stats(strip->sim).thickening;
-    result->speed = strip_front(strip, &view) > strip->last ? strip_speed(strip, &view) / pace : 0;
     result->hottest = 0;
     for (uint32_t i = 0; i < view.particle_count; i++) {
         double x = (double)view.rest_position[i][0];
@@ -162,6 +173,7 @@ static void strip_read(const Strip *strip, double pace, StripResult *result) {
         area += (double)view.area[i];
         mass += (double)view.area[i] * (double)view.mass[i];
     }
+
     result->residue = mass / area;
 }
 
@@ -183,6 +195,7 @@ static SingeResult strip_run(Strip *strip, const StripSetup *setup, StripResult 
             since = 0;
         }
     }
+
     strip_read(strip, (double)setup->pace, result);
     result->work = strip_work(strip);
     result->end = reached > strip->last ? STRIP_THROUGH : result->work < setup->work_max ? STRIP_OUT : STRIP_CUT;
@@ -199,6 +212,7 @@ SingeResult strip_burn(const StripSetup *setup, StripResult *result, SingeError 
     def.gas.enabled = setup->gas;
     def.gas.cell_size = setup->gas_cell;
     for (int d = 0; d < 3; d++) def.gravity[d] = setup->gravity[d];
+
     SingeResult code = strip_mesh(&strip, setup) ? SINGE_OK : SINGE_ERROR_MEMORY;
     if (!code) code = singe_sim_create(&def, &strip.sim, error);
     else *error = (SingeError){.code = code, .element = -1};
@@ -207,6 +221,7 @@ SingeResult strip_burn(const StripSetup *setup, StripResult *result, SingeError 
         if (!code) code = strip_run(&strip, setup, result);
         if (code) *error = *singe_sim_error(strip.sim);
     }
+
     singe_sim_destroy(strip.sim);
     free(strip.positions);
     free(strip.lit);

@@ -1,4 +1,4 @@
-// Measures of a drawn sheet's shape: the directions of its creases, and its roughness.
+// Measures of a drawn sheet's shape: the directions of its creases, its roughness, and how smooth it is along folds.
 #ifndef ANALYSIS_WRINKLES_H
 #define ANALYSIS_WRINKLES_H
 
@@ -27,5 +27,16 @@ double wrinkles_bias(const Wrinkles *wrinkles);
 /// there are none.
 double wrinkles_burnt(const Wrinkles *wrinkles);
 double wrinkles_unburnt(const Wrinkles *wrinkles);
+
+/// Sums over a frame, or over many.
+typedef struct Folds {
+    double power, count; ///< rad2, and samples: the normal's angle along folds in wavelengths below three cells
+} Folds;
+
+/// Adds a frame. False when out of memory.
+bool folds_add(const SingeSurface *surface, Folds *folds);
+
+/// Degrees, root mean square; NaN if there is no fold.
+double folds_angle(const Folds *folds);
 
 #endif

@@ -11,7 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/folds.h"
 #include "analysis/numbers.h"
 #include "analysis/rim.h"
 #include "analysis/wrinkles.h"

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/initial.h"
+#include "analysis/crossings.h"
 #include "cli/interrupt.h"
 #include "cli/run.h"
 
@@ -188,7 +188,7 @@ SingeResult run_begin_frame(Run *run, int frame, bool last, SingeError *error) {
 
     // contact cannot separate triangles that cross in the first frame
     float at[3];
-    if (!result && frame == 1 && !initial_count(&run->frame.surface, &run->totals->crossed, at)) {
+    if (!result && frame == 1 && !crossings_count(&run->frame.surface, &run->totals->crossed, at)) {
         *error = (SingeError){
             .code = SINGE_ERROR_MEMORY, .element = -1, .message = "out of memory while looking for crossings"};
         result = SINGE_ERROR_MEMORY;

@@ -13,91 +13,53 @@ static void push_loop(Work *work, const Loops *loops, uint32_t loop, uint32_t or
     push_ring(work, loops->corner + loops->end[loop], loops->end[loop + 1] - loops->end[loop], origin, out);
 }
 
-/// Pushes a loop as it is if it is entirely visible from its centroid, else its triangles.
-static void push_cut_loop(Work *work, Loops *loops, uint32_t loop, uint32_t origin, Faces *out) {
-    const uint32_t first = loops->triangles[loop], end = loops->triangles[loop + 1];
-    if (first == end) return;
-    if (loops_is_star(loops, loop)) {
-        push_loop(work, loops, loop, origin, out);
-        return;
-    }
-    for (uint32_t t = first; t < end; t++) {
-        const uint32_t *triangle = loops->cut.triangle[t];
-        if (!loops_is_flat(loops, triangle, 3)) push_ring(work, triangle, 3, origin, out);
-    }
-}
-
-/// Copies a whole face; splits others into loops and triangles.
-static SingeResult clean_face(Work *work, uint32_t face, Loops *loops, Faces *out) {
-    const Faces *old = &work->faces;
-    const uint32_t origin = old->origin[face], name = work_face_name(work, origin);
-    const FaceKind kind = loops_find(loops, face);
-    if (kind == FACE_CROSSED) return work_refuse(work, origin, "crosses or overlaps itself: no quads cover it once");
-    if (kind == FACE_WHOLE) push_loop(work, loops, 0, origin, out);
-    if (kind == FACE_CUT)
-        for (uint32_t k = 0; k < loops->count; k++) push_cut_loop(work, loops, k, origin, out);
-    if (work->shrunk) return SINGE_OK;
-    if (kind == FACE_IDLE) work_did(work, MESH_DEGENERATE, 1, name);
-    else if (loops->repeats) work_did(work, MESH_REPEATED, 1, name);
-    else if (loops->spikes) work_did(work, MESH_SPIKE, 1, name);
-    if (kind == FACE_CUT) work_did(work, MESH_CONCAVE, 1, name);
-    return SINGE_OK;
-}
-
-static uint32_t min_corner(const Faces *faces, uint32_t face) {
-    uint32_t min = MESH_NONE;
-    for (uint32_t h = faces->first[face]; h < faces->first[face + 1]; h++)
-        if (faces->corner[h] < min) min = faces->corner[h];
-    return min;
-}
-
-static bool has_corner(const Faces *faces, uint32_t face, uint32_t vertex) {
-    for (uint32_t h = faces->first[face]; h < faces->first[face + 1]; h++)
-        if (faces->corner[h] == vertex) return true;
-    return false;
-}
-
 static bool same_corners(const Faces *faces, uint32_t a, uint32_t b) {
     if (faces->first[a + 1] - faces->first[a] != faces->first[b + 1] - faces->first[b]) return false;
-    for (uint32_t h = faces->first[a]; h < faces->first[a + 1]; h++)
-        if (!has_corner(faces, b, faces->corner[h])) return false;
-    return true;
-}
-
-/// Marks faces with the same corners as an earlier one, and returns how many. Only faces with the same lowest vertex
-/// are compared.
-static uint32_t find_duplicates(Work *work, uint8_t *gone) {
-    const Faces *faces = &work->faces;
-    uint32_t *head = work_new(work, work->vertex_count, sizeof *head);
-    uint32_t *next = work_new(work, faces->count, sizeof *next);
-    uint32_t found = 0;
-    if (work->no_memory) return 0;
-    memset(head, 0xff, work->vertex_count * sizeof *head);
-    for (uint32_t f = 0; f < faces->count; f++) {
-        uint32_t min = min_corner(faces, f), g = head[min];
-        while (g != MESH_NONE && !same_corners(faces, f, g)) g = next[g];
-        if (g != MESH_NONE) {
-            gone[f] = 1, found++;
-            work_did(work, MESH_DUPLICATE, 1, work_face_name(work, faces->origin[f]));
-            continue;
-        }
-        next[f] = head[min];
-        head[min] = f;
+    for (uint32_t h = faces->first[a]; h < faces->first[a + 1]; h++) {
+        uint32_t k = faces->first[b];
+        while (k < faces->first[b + 1] && faces->corner[k] != faces->corner[h]) k++;
+        if (k == faces->first[b + 1]) return false;
     }
-    return found;
+    return true;
 }
 
 void mesh_leave_out_copies(Work *work) {
     const Faces *old = &work->faces;
     uint8_t *gone = work_new(work, old->count, 1);
-    if (work->no_memory || !find_duplicates(work, gone) || work->no_memory) return;
+    uint32_t *head = work_new(work, work->vertex_count, sizeof *head); // faces by their lowest vertex
+    uint32_t *next = work_new(work, old->count, sizeof *next);
+    uint32_t found = 0;
+    if (work->no_memory) return;
+
+    // only faces with the same lowest vertex are compared
+    memset(head, 0xff, work->vertex_count * sizeof *head);
+    for (uint32_t f = 0; f < old->count; f++) {
+        uint32_t min = MESH_NONE;
+        for (uint32_t h = old->first[f]; h < old->first[f + 1]; h++)
+            if (old->corner[h] < min) min = old->corner[h];
+        uint32_t g = head[min];
+        while (g != MESH_NONE && !same_corners(old, f, g)) g = next[g];
+        if (g != MESH_NONE) {
+            gone[f] = 1;
+            found++;
+            work_did(work, MESH_DUPLICATE, 1, work_face_name(work, old->origin[f]));
+            continue;
+        }
+        next[f] = head[min];
+        head[min] = f;
+    }
+
+    if (!found) return;
+
     Faces out = work_faces(work, old->count, old->corner_count);
     if (work->no_memory) return;
+
     for (uint32_t f = 0; f < old->count; f++) {
         if (gone[f]) continue;
         for (uint32_t h = old->first[f]; h < old->first[f + 1]; h++) faces_push(&out, old->corner[h], old, h);
         faces_end(&out, old->origin[f]);
     }
+
     work->faces = out;
 }
 
@@ -106,11 +68,34 @@ SingeResult mesh_clean(Work *work) {
     Faces out = work_faces(work, old->count, old->corner_count);
     Loops loops = {0};
     if (work->no_memory || !loops_begin(&loops, work, old)) return SINGE_OK;
+
     for (uint32_t f = 0; f < old->count && !work->no_memory; f++) {
-        SingeResult result = clean_face(work, f, &loops, &out);
-        if (result) return result;
+        const uint32_t origin = old->origin[f], name = work_face_name(work, origin);
+        const FaceKind kind = loops_find(&loops, f);
+        if (kind == FACE_CROSSED)
+            return work_refuse(work, origin, "crosses or overlaps itself: no quads cover it once");
+        if (kind == FACE_WHOLE) push_loop(work, &loops, 0, origin, &out);
+
+        // loops that are visible from their centroid stay as they are, others become triangles
+        for (uint32_t k = 0; kind == FACE_CUT && k < loops.count; k++) {
+            const uint32_t first = loops.triangles[k], end = loops.triangles[k + 1];
+            const bool whole = first < end && loops_is_star(&loops, k);
+            if (whole) push_loop(work, &loops, k, origin, &out);
+            for (uint32_t t = first; t < end && !whole; t++) {
+                const uint32_t *triangle = loops.cut.triangle[t];
+                if (!loops_is_flat(&loops, triangle, 3)) push_ring(work, triangle, 3, origin, &out);
+            }
+        }
+
+        if (work->shrunk) continue;
+        if (kind == FACE_IDLE) work_did(work, MESH_DEGENERATE, 1, name);
+        else if (loops.repeats) work_did(work, MESH_REPEATED, 1, name);
+        else if (loops.spikes) work_did(work, MESH_SPIKE, 1, name);
+        if (kind == FACE_CUT) work_did(work, MESH_CONCAVE, 1, name);
     }
+
     if (work->no_memory) return SINGE_OK;
+
     work->faces = out;
     mesh_leave_out_copies(work);
     return SINGE_OK;

@@ -38,26 +38,6 @@ static double side_length(const Work *work, uint32_t half) {
                      work->position[faces->corner[faces_next(faces, work->face, half)]]);
 }
 
-static double median_side(Work *work) {
-    const uint32_t count = work->faces.corner_count;
-    double *lengths = work_new(work, count, sizeof *lengths);
-    if (!lengths || !count) return 0;
-    for (uint32_t h = 0; h < count; h++) lengths[h] = side_length(work, h);
-    qsort(lengths, count, sizeof *lengths, by_size);
-    return lengths[count / 2];
-}
-
-static Short *list_short(Work *work, double min, uint32_t *count) {
-    Short *list = work_new(work, work->faces.corner_count, sizeof *list);
-    *count = 0;
-    for (uint32_t h = 0; list && h < work->faces.corner_count; h++) {
-        double length = side_length(work, h);
-        if (length < min) list[(*count)++] = (Short){length, h};
-    }
-    if (*count) qsort(list, *count, sizeof *list, by_length);
-    return list;
-}
-
 /// Merges the sets of a side's ends, if the result is small enough.
 static bool join_ends(Shrink *shrink, uint32_t half) {
     const Work *work = shrink->work;
@@ -65,13 +45,16 @@ static bool join_ends(Shrink *shrink, uint32_t half) {
     uint32_t a = sets_find(shrink->set, faces->corner[half]);
     uint32_t b = sets_find(shrink->set, faces->corner[faces_next(faces, work->face, half)]);
     if (a == b || (shrink->open[a] && shrink->open[b] && work->twin[half] != MESH_NONE)) return false;
+
     double low[3], high[3], size[3];
     for (int k = 0; k < 3; k++) {
         low[k] = fmin(shrink->low[a][k], shrink->low[b][k]);
         high[k] = fmax(shrink->high[a][k], shrink->high[b][k]);
         size[k] = high[k] - low[k];
     }
+
     if (sqrt(dot3(size, size)) > shrink->min) return false;
+
     bool first = shrink->open[a] != shrink->open[b] ? shrink->open[a] : shrink->stays[a] < shrink->stays[b];
     uint32_t stays = first ? shrink->stays[a] : shrink->stays[b], root;
     uint8_t open = shrink->open[a] | shrink->open[b];
@@ -79,24 +62,9 @@ static bool join_ends(Shrink *shrink, uint32_t half) {
     root = sets_find(shrink->set, a);
     shrink->stays[root] = stays;
     shrink->open[root] = open;
-    memcpy(shrink->low[root], low, sizeof low), memcpy(shrink->high[root], high, sizeof high);
+    memcpy(shrink->low[root], low, sizeof low);
+    memcpy(shrink->high[root], high, sizeof high);
     return true;
-}
-
-static Shrink shrink_begin(Work *work, double min) {
-    const uint32_t count = work->vertex_count;
-    Shrink shrink = {.work = work,
-                     .min = min,
-                     .set = work_sets(work, count),
-                     .stays = work_sets(work, count),
-                     .open = work_new(work, count, 1),
-                     .low = work_new(work, count, sizeof *shrink.low),
-                     .high = work_new(work, count, sizeof *shrink.high)};
-    if (work->no_memory) return shrink;
-    work_mark_open(work, shrink.open);
-    memcpy(shrink.low, work->position, count * sizeof *shrink.low);
-    memcpy(shrink.high, work->position, count * sizeof *shrink.high);
-    return shrink;
 }
 
 /// The uv at a merged vertex differ slightly: those within about the size of a merged set of the first's become equal.
@@ -106,48 +74,88 @@ static void join_uv(Shrink *shrink, const uint8_t *several) {
     uint32_t *head = work_new(work, work->vertex_count, sizeof *head);
     uint32_t *next = work_new(work, faces->corner_count, sizeof *next);
     if (work->no_memory) return;
+
     memset(head, 0xff, work->vertex_count * sizeof *head);
+
     for (uint32_t h = 0; h < faces->corner_count; h++) {
         uint32_t v = faces->corner[h], to = faces_next(faces, work->face, h), g;
         if (!several[v]) continue;
         double length = fmax(side_length(work, h), shrink->min), same = 0;
         for (int k = 0; k < 2; k++) same = fmax(same, fabs((double)faces->uv[to][k] - (double)faces->uv[h][k]));
         same *= 4 * shrink->min / length;
+
         for (g = head[v]; g != MESH_NONE; g = next[g])
             if (fabs((double)faces->uv[g][0] - (double)faces->uv[h][0]) <= same &&
                 fabs((double)faces->uv[g][1] - (double)faces->uv[h][1]) <= same)
                 break;
         if (g != MESH_NONE) memcpy(faces->uv[h], faces->uv[g], sizeof *faces->uv);
-        else next[h] = head[v], head[v] = h;
+        else {
+            next[h] = head[v];
+            head[v] = h;
+        }
     }
 }
 
 SingeResult mesh_shrink(Work *work) {
     work_edges(work);
-    if (work->no_memory || !(work->smallest > 0)) return SINGE_OK;
-    const double min = work->smallest * median_side(work);
-    uint32_t count = 0, joined = 0;
-    Short *list = list_short(work, min, &count);
-    if (work->no_memory || !count) return SINGE_OK;
-    Shrink shrink = shrink_begin(work, min);
-    uint8_t *several = work_new(work, work->vertex_count, 1);
-    uint32_t *to = work_new(work, work->vertex_count, sizeof *to);
+    if (work->no_memory || !(work->smallest > 0) || !work->faces.corner_count) return SINGE_OK;
+
+    const Faces *faces = &work->faces;
+    const uint32_t vertices = work->vertex_count;
+
+    // sides shorter than a share of the median
+    double *lengths = work_new(work, faces->corner_count, sizeof *lengths);
+    Short *list = work_new(work, faces->corner_count, sizeof *list);
     if (work->no_memory) return SINGE_OK;
+
+    for (uint32_t h = 0; h < faces->corner_count; h++) lengths[h] = side_length(work, h);
+    qsort(lengths, faces->corner_count, sizeof *lengths, by_size);
+    const double min = work->smallest * lengths[faces->corner_count / 2];
+    uint32_t count = 0, joined = 0;
+    for (uint32_t h = 0; h < faces->corner_count; h++) {
+        double length = side_length(work, h);
+        if (length < min) list[count++] = (Short){length, h};
+    }
+
+    if (!count) return SINGE_OK;
+
+    qsort(list, count, sizeof *list, by_length);
+
+    // their ends are merged, the shortest first
+    Shrink shrink = {.work = work,
+                     .min = min,
+                     .set = work_sets(work, vertices),
+                     .stays = work_sets(work, vertices),
+                     .open = work_new(work, vertices, 1),
+                     .low = work_new(work, vertices, sizeof *shrink.low),
+                     .high = work_new(work, vertices, sizeof *shrink.high)};
+    uint8_t *several = work_new(work, vertices, 1);
+    uint32_t *to = work_new(work, vertices, sizeof *to);
+    if (work->no_memory) return SINGE_OK;
+
+    work_mark_open(work, shrink.open);
+    memcpy(shrink.low, work->position, vertices * sizeof *shrink.low);
+    memcpy(shrink.high, work->position, vertices * sizeof *shrink.high);
     for (uint32_t i = 0; i < count; i++) {
         if (!join_ends(&shrink, list[i].half)) continue;
         uint32_t face = work->face[list[i].half];
-        if (!joined++) work_did(work, MESH_SHRUNK, 1, work_face_name(work, work->faces.origin[face]));
+        if (!joined++) work_did(work, MESH_SHRUNK, 1, work_face_name(work, faces->origin[face]));
     }
+
     if (!joined) return SINGE_OK;
+
     work_did(work, MESH_SHRUNK, joined - 1, 0);
-    for (uint32_t v = 0; v < work->vertex_count; v++) {
+
+    for (uint32_t v = 0; v < vertices; v++) {
         to[v] = shrink.stays[sets_find(shrink.set, v)];
         if (to[v] != v) several[to[v]] = 1;
     }
+
     work_rename(work, to);
-    for (uint32_t h = 0; h < work->faces.corner_count; h++)
-        if (several[work->faces.corner[h]]) work->faces.id[h] = work->source[work->faces.corner[h]];
-    if (work->faces.uv) join_uv(&shrink, several);
+    for (uint32_t h = 0; h < faces->corner_count; h++)
+        if (several[faces->corner[h]]) faces->id[h] = work->source[faces->corner[h]];
+    if (faces->uv) join_uv(&shrink, several);
+
     work->shrunk = true;
     SingeResult result = mesh_clean(work);
     work->shrunk = false;

@@ -41,40 +41,24 @@ void mesh_grid_wear(Mesh *mesh, uint32_t cells_x, uint32_t cells_y, const GridWe
     uint32_t row = cells_x + 1, last = mesh->vertex_count - 1;
     double size_x = (double)mesh->positions[3 * last] * 2, size_y = (double)mesh->positions[3 * last + 1] * 2;
     double wavelength = 0.45 * fmin(size_x, size_y);
+
     for (uint32_t v = 0; v <= last; v++) {
         uint32_t i = v % row, j = v / row;
+
         // border vertices move only along the border
         bool free_x = i > 0 && i<cells_x, free_y = j> 0 && j < cells_y;
         double dx = free_x ? fmax(-1, fmin(1, 0.5 * grid_noise(i, j, jitter_wavelength, 2 * wear->seed))) : 0;
         double dy = free_y ? fmax(-1, fmin(1, 0.5 * grid_noise(i, j, jitter_wavelength, 2 * wear->seed + 1))) : 0;
         double x = (i + (double)wear->jitter * dx) / cells_x, y = (j + (double)wear->jitter * dy) / cells_y;
         float *position = mesh->positions + 3 * (size_t)v, *uv = mesh->uv + 2 * (size_t)v;
-        uv[0] = (float)x, uv[1] = (float)y;
-        position[0] = (float)((x - 0.5) * size_x), position[1] = (float)((y - 0.5) * size_y);
+        uv[0] = (float)x;
+        uv[1] = (float)y;
+        position[0] = (float)((x - 0.5) * size_x);
+        position[1] = (float)((y - 0.5) * size_y);
+
         double height = grid_noise((double)position[0], (double)position[1], wavelength, ~wear->seed);
         position[2] = (float)((double)wear->displacement * height);
     }
-}
-
-static void grid_fill(Mesh *mesh, double size_x, double size_y, uint32_t cells_x, uint32_t cells_y) {
-    float *position = mesh->positions, *uv = mesh->uv;
-    uint32_t *cell = mesh->cells, row = cells_x + 1;
-    for (uint32_t j = 0; j <= cells_y; j++)
-        for (uint32_t i = 0; i <= cells_x; i++, position += 3, uv += 2) {
-            double u = (double)i / cells_x, v = (double)j / cells_y;
-            position[0] = (float)(size_x * (u - 0.5));
-            position[1] = (float)(size_y * (v - 0.5));
-            position[2] = 0;
-            uv[0] = (float)u, uv[1] = (float)v;
-        }
-    for (uint32_t j = 0; j < cells_y; j++)
-        for (uint32_t i = 0; i < cells_x; i++, cell += 4) {
-            uint32_t first = j * row + i;
-            cell[0] = first;
-            cell[1] = first + 1;
-            cell[2] = first + row + 1;
-            cell[3] = first + row;
-        }
 }
 
 SingeResult mesh_grid(float size_x, float size_y, uint32_t cells_x, uint32_t cells_y, SingeAllocator allocator,
@@ -87,6 +71,7 @@ SingeResult mesh_grid(float size_x, float size_y, uint32_t cells_x, uint32_t cel
     uint64_t vertices = ((uint64_t)cells_x + 1) * ((uint64_t)cells_y + 1);
     if (cells_x > MESH_COUNT_LIMIT || cells_y > MESH_COUNT_LIMIT || vertices > MESH_COUNT_LIMIT)
         return refuse(error, SINGE_ERROR_LIMIT, "grid", -1, "grid: %u by %u cells are too many", cells_x, cells_y);
+
     mesh->allocator = allocator;
     mesh->vertex_count = (uint32_t)vertices;
     mesh->cell_count = cells_x * cells_y;
@@ -97,6 +82,26 @@ SingeResult mesh_grid(float size_x, float size_y, uint32_t cells_x, uint32_t cel
         mesh_free(mesh);
         return refuse_memory(error, "grid", "grid");
     }
-    grid_fill(mesh, size_x, size_y, cells_x, cells_y);
+
+    float *position = mesh->positions, *uv = mesh->uv;
+    for (uint32_t j = 0; j <= cells_y; j++)
+        for (uint32_t i = 0; i <= cells_x; i++, position += 3, uv += 2) {
+            double u = (double)i / cells_x, v = (double)j / cells_y;
+            position[0] = (float)((double)size_x * (u - 0.5));
+            position[1] = (float)((double)size_y * (v - 0.5));
+            position[2] = 0;
+            uv[0] = (float)u;
+            uv[1] = (float)v;
+        }
+
+    uint32_t *cell = mesh->cells, row = cells_x + 1;
+    for (uint32_t j = 0; j < cells_y; j++)
+        for (uint32_t i = 0; i < cells_x; i++, cell += 4) {
+            uint32_t first = j * row + i;
+            cell[0] = first;
+            cell[1] = first + 1;
+            cell[2] = first + row + 1;
+            cell[3] = first + row;
+        }
     return SINGE_OK;
 }

@@ -30,43 +30,42 @@ static int junction_by_position(const void *a, const void *b) {
     return (x->t > y->t) - (x->t < y->t);
 }
 
-/// Adds the vertices of a box that lie on the side from a to b.
-static void look_in_box(Junctions *j, uint32_t a, uint32_t b, const int64_t box[3]) {
-    const Work *work = j->work;
-    double d[3], e[3];
-    sub3(work->position[b], work->position[a], d);
-    const double square = dot3(d, d), max = fmax(work->weld, beside * sqrt(square));
-    for (uint32_t v = j->positions.head[positions_slot(&j->positions, box)]; v != MESH_NONE; v = j->positions.next[v]) {
-        bool known = false; // found before, or a corner of the face itself
-        for (uint32_t h = work->faces.first[j->face]; h < work->faces.first[j->face + 1]; h++)
-            known = known || work->faces.corner[h] == v;
-        for (int i = 0; i < j->count && !known; i++) known = j->found[i].vertex == v;
-        if (known || j->count == ON_SIDE_MAX) continue;
-        sub3(work->position[v], work->position[a], e);
-        double t = dot3(e, d) / square, off[3];
-        for (int k = 0; k < 3; k++) off[k] = e[k] - t * d[k];
-        if (t * sqrt(square) <= max || (1 - t) * sqrt(square) <= max || dot3(off, off) > max * max) continue;
-        j->found[j->count++] = (OnSide){t, v};
-    }
-}
-
-/// Finds the vertices on a side, in their order along it.
+/// Finds the vertices on the side from a to b, in their order along it.
 static void look_along(Junctions *j, uint32_t a, uint32_t b) {
     const Work *work = j->work;
     const double length = distance3(work->position[a], work->position[b]);
     const int steps = (int)fmin(1e4, ceil(length / j->positions.size));
+    double d[3];
+    sub3(work->position[b], work->position[a], d);
+    const double square = dot3(d, d), max = fmax(work->weld, beside * sqrt(square));
     j->count = 0;
+
     for (int s = 0; s <= steps && length > 0; s++) {
         double at[3];
+        int64_t own[3];
         for (int k = 0; k < 3; k++)
             at[k] = work->position[a][k] + (work->position[b][k] - work->position[a][k]) * s / steps;
-        int64_t own[3], box[3];
         positions_box(&j->positions, at, own);
         for (int i = 0; i < 27; i++) {
-            box[0] = own[0] + i % 3 - 1, box[1] = own[1] + i / 3 % 3 - 1, box[2] = own[2] + i / 9 - 1;
-            look_in_box(j, a, b, box);
+            const int64_t box[3] = {own[0] + i % 3 - 1, own[1] + i / 3 % 3 - 1, own[2] + i / 9 - 1};
+            const uint32_t slot = positions_slot(&j->positions, box);
+            for (uint32_t v = j->positions.head[slot]; v != MESH_NONE; v = j->positions.next[v]) {
+                bool known = false; // found before, or a corner of the face itself
+                for (uint32_t h = work->faces.first[j->face]; h < work->faces.first[j->face + 1]; h++)
+                    known = known || work->faces.corner[h] == v;
+                for (int n = 0; n < j->count && !known; n++) known = j->found[n].vertex == v;
+                if (known || j->count == ON_SIDE_MAX) continue;
+
+                double e[3], off[3];
+                sub3(work->position[v], work->position[a], e);
+                const double t = dot3(e, d) / square;
+                for (int k = 0; k < 3; k++) off[k] = e[k] - t * d[k];
+                if (t * sqrt(square) <= max || (1 - t) * sqrt(square) <= max || dot3(off, off) > max * max) continue;
+                j->found[j->count++] = (OnSide){t, v};
+            }
         }
     }
+
     qsort(j->found, (size_t)j->count, sizeof *j->found, junction_by_position);
 }
 
@@ -76,19 +75,7 @@ static bool open_edge(const Junctions *j, uint32_t a, uint32_t b) {
     return false;
 }
 
-/// Keeps the vertices that an open edge joins to the previous or the next one: the others close no gap.
-static void keep_joined(Junctions *j, uint32_t a, uint32_t b) {
-    int kept = 0;
-    uint32_t before = a;
-    for (int i = 0; i < j->count; i++) {
-        uint32_t v = j->found[i].vertex, next = i + 1 < j->count ? j->found[i + 1].vertex : b;
-        bool joined = open_edge(j, before, v) || open_edge(j, v, next);
-        before = v;
-        if (joined) j->found[kept++] = j->found[i];
-    }
-    j->count = kept;
-}
-
+/// Lists the open edges by their ends, and their vertices by position. False if there are none or memory is out.
 static bool list_open(Junctions *j) {
     Work *work = j->work;
     const Faces *faces = &work->faces;
@@ -96,6 +83,7 @@ static bool list_open(Junctions *j) {
     j->open_first = work_new(work, (size_t)work->vertex_count + 2, sizeof *j->open_first);
     j->open_to = work_new(work, (size_t)2 * faces->corner_count, sizeof *j->open_to);
     if (work->no_memory) return false;
+
     double total = 0;
     uint32_t count = 0;
     for (int fill = 0; fill < 2; fill++) {
@@ -107,29 +95,23 @@ static bool list_open(Junctions *j) {
                 j->open_to[j->open_first[b + 1]++] = a;
                 continue;
             }
-            j->open_first[a + 2]++, j->open_first[b + 2]++;
+            j->open_first[a + 2]++;
+            j->open_first[b + 2]++;
             total += distance3(work->position[a], work->position[b]);
             count++;
         }
         for (uint32_t v = 0; !fill && v < work->vertex_count; v++) j->open_first[v + 2] += j->open_first[v + 1];
     }
+
     if (!count) return false;
+
     work_mark_open(work, open);
     j->positions = positions_make(work, fmax(total / count, 1e-12));
     if (work->no_memory) return false;
+
     for (uint32_t v = 0; v < work->vertex_count; v++)
         if (open[v]) positions_add(work, &j->positions, v);
     return true;
-}
-
-/// Pushes a vertex on a side, with the uv interpolated between the side's ends.
-static void push_on_side(const Junctions *j, Faces *out, int i, uint32_t half, uint32_t next) {
-    const Faces *old = &j->work->faces;
-    uint32_t at = out->corner_count;
-    faces_push(out, j->found[i].vertex, old, half);
-    out->id[at] = j->work->source[j->found[i].vertex];
-    for (int k = 0; out->uv && k < 2; k++)
-        out->uv[at][k] += (float)j->found[i].t * (old->uv[next][k] - old->uv[half][k]);
 }
 
 /// Inserts vertices into the sides of all faces except those marked in `left`, and writes the faces unless `out` is
@@ -145,29 +127,28 @@ static uint32_t put_all(Junctions *j, const uint8_t *left, Faces *out) {
             if (left[f] || work->twin[h] != MESH_NONE) continue;
             j->face = f;
             look_along(j, old->corner[h], old->corner[next]);
-            keep_joined(j, old->corner[h], old->corner[next]);
-            for (int i = 0; i < j->count && out; i++) push_on_side(j, out, i, h, next);
-            added += (uint32_t)j->count;
+
+            // only vertices that an open edge joins to the previous or the next one: the others close no gap
+            uint32_t before = old->corner[h];
+            for (int i = 0; i < j->count; i++) {
+                const OnSide *on = &j->found[i];
+                const uint32_t after = i + 1 < j->count ? on[1].vertex : old->corner[next];
+                const bool joined = open_edge(j, before, on->vertex) || open_edge(j, on->vertex, after);
+                before = on->vertex;
+                if (!joined) continue;
+                added++;
+                if (!out) continue;
+                const uint32_t at = out->corner_count;
+                faces_push(out, on->vertex, old, h);
+                out->id[at] = work->source[on->vertex];
+                for (int k = 0; out->uv && k < 2; k++)
+                    out->uv[at][k] += (float)on->t * (old->uv[next][k] - old->uv[h][k]);
+            }
         }
         if (out) faces_end(out, old->origin[f]);
     }
-    return added;
-}
 
-/// Marks faces that cross themselves because of their new corners; faces narrower than `weld` may.
-static bool any_crossed(Work *work, const Faces *before, uint8_t *left) {
-    const Faces *faces = &work->faces;
-    Loops loops = {0};
-    bool any = false;
-    if (!loops_begin(&loops, work, faces)) return false;
-    for (uint32_t f = 0; f < faces->count; f++) {
-        const bool same = faces->first[f + 1] - faces->first[f] == before->first[f + 1] - before->first[f];
-        if (!same && loops_find(&loops, f) == FACE_CROSSED) {
-            left[f] = 1;
-            any = true;
-        }
-    }
-    return any;
+    return added;
 }
 
 SingeResult mesh_junctions(Work *work) {
@@ -177,6 +158,7 @@ SingeResult mesh_junctions(Work *work) {
     if (work->no_memory) return SINGE_OK;
     j->work = work;
     if (!list_open(j)) return SINGE_OK;
+
     const Faces before = work->faces;
     const uint32_t added = put_all(j, left, NULL), corners = before.corner_count + added;
     if (!added) return SINGE_OK;
@@ -184,7 +166,17 @@ SingeResult mesh_junctions(Work *work) {
     if (work->no_memory) return SINGE_OK;
     (void)put_all(j, left, &after);
     work->faces = after;
-    if (any_crossed(work, &before, left)) {
+
+    // once more, without the faces that cross themselves because of their new corners: faces narrower than `weld` may
+    Loops loops = {0};
+    bool crossed = false;
+    if (loops_begin(&loops, work, &work->faces))
+        for (uint32_t f = 0; f < before.count; f++) {
+            const bool same = after.first[f + 1] - after.first[f] == before.first[f + 1] - before.first[f];
+            left[f] = !same && loops_find(&loops, f) == FACE_CROSSED;
+            crossed = crossed || left[f];
+        }
+    if (crossed) {
         work->faces = before;
         work_edges(work);
         after = work_faces(work, before.count, corners);
@@ -192,6 +184,7 @@ SingeResult mesh_junctions(Work *work) {
         (void)put_all(j, left, &after);
         work->faces = after;
     }
+
     for (uint32_t f = 0; f < before.count; f++)
         work_did(work, MESH_JUNCTION, after.first[f + 1] - after.first[f] - (before.first[f + 1] - before.first[f]),
                  work_face_name(work, before.origin[f]));

@@ -26,30 +26,33 @@ bool loops_begin(Loops *loops, Work *work, const Faces *faces) {
 
 // ---- spikes
 
-/// Whether the ring doubles back at b, to the same vertex or without area, or repeats a vertex.
-static bool turns_back(const Loops *loops, uint32_t a, uint32_t b, uint32_t c) {
-    double p[3], q[3], n[3];
-    if (vertex_of(loops, a) == vertex_of(loops, c) || vertex_of(loops, a) == vertex_of(loops, b)) return true;
-    sub3(position_of(loops, a), position_of(loops, b), p), sub3(position_of(loops, c), position_of(loops, b), q);
-    cross3(p, q, n);
-    return dot3(p, q) > 0 && dot3(n, n) <= FACE_THIN * FACE_THIN * dot3(p, p) * dot3(q, q);
-}
-
-/// Leaves out corners at which the ring doubles back, and repeated vertices. Returns the number of corners left.
+/// Leaves out corners at which the ring doubles back, to the same vertex or without area, and repeated vertices. Returns
+/// the number of corners left.
 static uint32_t leave_out_spikes(const Loops *loops, uint32_t *ring, uint32_t n) {
     uint32_t good = 0; // consecutive corners that stay
     for (uint32_t at = 0; n >= 3 && good < n;) {
         at %= n;
-        const uint32_t before = (at + n - 1) % n;
-        if (!turns_back(loops, ring[before], ring[at], ring[(at + 1) % n])) {
-            at++, good++;
+        const uint32_t a = ring[(at + n - 1) % n], b = ring[at], c = ring[(at + 1) % n];
+        bool spike = vertex_of(loops, a) == vertex_of(loops, c) || vertex_of(loops, a) == vertex_of(loops, b);
+        if (!spike) {
+            double p[3], q[3], normal[3];
+            sub3(position_of(loops, a), position_of(loops, b), p);
+            sub3(position_of(loops, c), position_of(loops, b), q);
+            cross3(p, q, normal);
+            spike = dot3(p, q) > 0 && dot3(normal, normal) <= FACE_THIN * FACE_THIN * dot3(p, p) * dot3(q, q);
+        }
+        if (!spike) {
+            at++;
+            good++;
             continue;
         }
+
         memmove(ring + at, ring + at + 1, (n - 1 - at) * sizeof *ring);
         n--;
         at = (at + n - 1) % (n ? n : 1); // the corner before may be a spike now
         good = good > 2 ? good - 2 : 0;
     }
+
     return n >= 3 ? n : 0;
 }
 
@@ -68,6 +71,7 @@ static uint32_t corner_on(const Loops *loops, uint32_t n, uint32_t a, uint32_t b
     uint32_t found = MESH_NONE;
     sub3(position_of(loops, b), position_of(loops, a), d);
     const double square = dot3(d, d);
+
     for (uint32_t i = 0; i < n; i++) {
         const uint32_t half = loops->ring[i];
         double e[3], off[3];
@@ -83,33 +87,15 @@ static uint32_t corner_on(const Loops *loops, uint32_t n, uint32_t a, uint32_t b
     return found;
 }
 
-/// Inserts corners of the ring into those of its sides that they lie on. Returns the new number of corners.
-static uint32_t part_sides(Loops *loops, uint32_t n) {
-    for (uint32_t i = 0; i < n && n < loops->cut.capacity; i++) {
-        uint32_t on = corner_on(loops, n, loops->ring[i], loops->ring[(i + 1) % n]);
-        if (on == MESH_NONE) continue;
-        memmove(loops->ring + i + 2, loops->ring + i + 1, (n - 1 - i) * sizeof *loops->ring);
-        loops->ring[i + 1] = on;
-        n++;
-    }
-    return n;
-}
-
 // ---- loops
 
 static void end_loop(Loops *loops, const uint32_t *ring, uint32_t n) {
     uint32_t *to = loops->corner + loops->end[loops->count];
     memcpy(to, ring, n * sizeof *ring);
     n = leave_out_spikes(loops, to, n);
-    if (n) loops->end[loops->count + 1] = loops->end[loops->count] + n, loops->count++;
-}
-
-/// The area of a ring along a normal.
-static double area_along(const Loops *loops, const uint32_t *ring, uint32_t n, const double normal[3]) {
-    double own[3];
-    if (n < 3) return 0;
-    polygon_normal(&loops->cut, ring, n, own);
-    return dot3(own, normal);
+    if (!n) return;
+    loops->end[loops->count + 1] = loops->end[loops->count] + n;
+    loops->count++;
 }
 
 /// Splits a ring at the vertices that it names twice: at all of them, or only where both parts have the winding of the
@@ -121,10 +107,15 @@ static void fall_apart(Loops *loops, uint32_t n, bool all) {
     const double min = 1e-9 * left;
     uint32_t depth = 0;
     loops->count = loops->end[0] = 0;
+
     for (uint32_t i = 0; i < n; i++) {
         for (uint32_t at = depth; at-- > 0;) {
             if (vertex_of(loops, loops->stack[at]) != vertex_of(loops, loops->ring[i])) continue;
-            double area = area_along(loops, loops->stack + at, depth - at, normal);
+            double area = 0, part[3]; // along the normal of the whole
+            if (depth - at >= 3) {
+                polygon_normal(&loops->cut, loops->stack + at, depth - at, part);
+                area = dot3(part, normal);
+            }
             if (!all && fabs(area) > min && !(area > 0 && left - area > min)) continue;
             end_loop(loops, loops->stack + at, depth - at);
             left -= area;
@@ -132,6 +123,7 @@ static void fall_apart(Loops *loops, uint32_t n, bool all) {
         }
         loops->stack[depth++] = loops->ring[i];
     }
+
     end_loop(loops, loops->stack, depth);
 }
 
@@ -152,23 +144,16 @@ bool loops_is_flat(const Loops *loops, const uint32_t *ring, uint32_t n) {
         double p[3], q[3], m[3];
         const double *a = position_of(loops, ring[i]), *b = position_of(loops, ring[(i + 1) % n]);
         longest = fmax(longest, distance3(a, b));
-        sub3(a, position_of(loops, ring[0]), p), sub3(b, position_of(loops, ring[0]), q);
+        sub3(a, position_of(loops, ring[0]), p);
+        sub3(b, position_of(loops, ring[0]), q);
         cross3(p, q, m);
         area += sqrt(dot3(m, m));
     }
     return !(area > FACE_THIN * longest * longest);
 }
 
-/// Whether a loop has no area, or the same corners as an earlier one.
-static bool is_idle(const Loops *loops, uint32_t loop) {
-    const uint32_t first = loops->end[loop], n = loops->end[loop + 1] - first;
-    if (loops_is_flat(loops, loops->corner + first, n)) return true;
-    for (uint32_t other = 0; other < loop; other++)
-        if (same_loop(loops, loop, other)) return true;
-    return false;
-}
-
-/// Cuts the loops into triangles. False if one crosses itself or another.
+/// Cuts the loops into triangles, except those without area and those with the corners of an earlier one. False if one
+/// crosses itself or another.
 static bool cut_loops(Loops *loops) {
     double largest[3] = {0}, normal[3];
     loops->cut.count = 0;
@@ -176,10 +161,13 @@ static bool cut_loops(Loops *loops) {
         const uint32_t *ring = loops->corner + loops->end[k], n = loops->end[k + 1] - loops->end[k];
         loops->triangles[k] = loops->cut.count;
         polygon_normal(&loops->cut, ring, n, normal);
-        if (is_idle(loops, k)) continue;
+        bool idle = loops_is_flat(loops, ring, n);
+        for (uint32_t other = 0; other < k && !idle; other++) idle = same_loop(loops, k, other);
+        if (idle) continue;
         if (!polygon_cut(&loops->cut, ring, n)) return false;
         if (dot3(normal, normal) > dot3(largest, largest)) memcpy(largest, normal, sizeof largest);
     }
+
     loops->triangles[loops->count] = loops->cut.count;
     return loops->cut.count <= 2 || !polygon_overlaps(&loops->cut, largest);
 }
@@ -196,16 +184,27 @@ FaceKind loops_find(Loops *loops, uint32_t face) {
     uint32_t n = leave_out_spikes(loops, loops->ring, corners);
     loops->spikes = n < corners && !loops->repeats;
     if (n == 0) return FACE_IDLE;
+
     const bool repeats = loops->repeats && has_repeats(loops, loops->ring, n);
     if (!repeats && (n == 3 || polygon_is_star(&loops->cut, loops->ring, n))) {
         loops->count = loops->end[0] = 0;
         end_loop(loops, loops->ring, n);
         return loops_is_flat(loops, loops->ring, n) ? FACE_IDLE : FACE_WHOLE;
     }
-    n = part_sides(loops, n);
+
+    // corners that lie on a side of the ring become corners of that side, too
+    for (uint32_t i = 0; i < n && n < loops->cut.capacity; i++) {
+        uint32_t on = corner_on(loops, n, loops->ring[i], loops->ring[(i + 1) % n]);
+        if (on == MESH_NONE) continue;
+        memmove(loops->ring + i + 2, loops->ring + i + 1, (n - 1 - i) * sizeof *loops->ring);
+        loops->ring[i + 1] = on;
+        n++;
+    }
+
     for (int all = 0; all < 2; all++) {
         fall_apart(loops, n, all);
         if (cut_loops(loops)) return loops->cut.count ? FACE_CUT : FACE_IDLE;
     }
+
     return FACE_CROSSED;
 }

@@ -29,32 +29,6 @@ static void touch(Match *m, uint32_t v) {
     m->touched[m->touched_count++] = v;
 }
 
-static void forget(Match *m) {
-    for (uint32_t i = 0; i < m->touched_count; i++) {
-        uint32_t v = m->touched[i];
-        m->parent[v] = MESH_NONE;
-        m->base[v] = v;
-        m->outer[v] = m->blossom[v] = m->is_touched[v] = 0;
-    }
-    m->touched_count = m->queued = 0;
-}
-
-/// The first base that the paths from two outer nodes to the root have in common.
-static uint32_t common_base(Match *m, uint32_t a, uint32_t b) {
-    m->stamp++;
-    for (;;) {
-        a = m->base[a];
-        m->on_path[a] = m->stamp;
-        if (m->mate[a] == MESH_NONE) break;
-        a = m->parent[m->mate[a]];
-    }
-    for (;;) {
-        b = m->base[b];
-        if (m->on_path[b] == m->stamp) return b;
-        b = m->parent[m->mate[b]];
-    }
-}
-
 /// Marks the bases on the path from v down to `base`, and reverses its parents.
 static void mark_path(Match *m, uint32_t v, uint32_t base, uint32_t child) {
     while (m->base[v] != base) {
@@ -65,11 +39,24 @@ static void mark_path(Match *m, uint32_t v, uint32_t base, uint32_t child) {
     }
 }
 
+/// Shrinks the odd cycle that an edge between two outer nodes closes.
 static void shrink_cycle(Match *m, uint32_t v, uint32_t u) {
-    uint32_t base = common_base(m, v, u);
+    // its base: the first that the paths from both nodes to the root have in common
+    m->stamp++;
+    for (uint32_t a = v;;) {
+        a = m->base[a];
+        m->on_path[a] = m->stamp;
+        if (m->mate[a] == MESH_NONE) break;
+        a = m->parent[m->mate[a]];
+    }
+
+    uint32_t base = m->base[u];
+    while (m->on_path[base] != m->stamp) base = m->base[m->parent[m->mate[base]]];
+
     for (uint32_t i = 0; i < m->touched_count; i++) m->blossom[m->touched[i]] = 0;
     mark_path(m, v, base, u);
     mark_path(m, u, base, v);
+
     for (uint32_t i = 0; i < m->touched_count; i++) {
         uint32_t w = m->touched[i];
         if (!m->blossom[m->base[w]]) continue;
@@ -96,6 +83,7 @@ static bool search(Match *m, uint32_t root) {
     touch(m, root);
     m->outer[root] = 1;
     m->queue[m->queued++] = root;
+
     for (uint32_t at = 0; at < m->queued && m->touched_count < m->reach; at++) {
         uint32_t v = m->queue[at];
         for (uint32_t i = m->arc_first[v]; i < m->arc_first[v + 1]; i++) {
@@ -110,6 +98,7 @@ static bool search(Match *m, uint32_t root) {
                     change_over(m, u);
                     return true;
                 }
+
                 uint32_t w = m->mate[u];
                 touch(m, w);
                 if (m->open && m->open[w]) {
@@ -122,6 +111,7 @@ static bool search(Match *m, uint32_t root) {
             }
         }
     }
+
     return false;
 }
 
@@ -137,13 +127,23 @@ void match_grow(Work *work, uint32_t count, const uint32_t *arc_first, const uin
     m.touched = work_new(work, count, sizeof *m.touched);
     m.on_path = work_new(work, count, sizeof *m.on_path);
     if (work->no_memory) return;
+
     memset(m.parent, 0xff, count * sizeof *m.parent);
     uint32_t alone = 1;
     for (uint32_t v = 0; v < count; v++) alone += mate[v] == MESH_NONE && !(open && open[v]);
     m.reach = MATCH_WORK / alone > MATCH_REACH ? MATCH_WORK / alone : MATCH_REACH;
+
     for (uint32_t v = 0; v < count; v++) {
         if (mate[v] != MESH_NONE || (open && open[v])) continue;
         (void)search(&m, v);
-        forget(&m);
+
+        // forgets the search
+        for (uint32_t i = 0; i < m.touched_count; i++) {
+            const uint32_t u = m.touched[i];
+            m.parent[u] = MESH_NONE;
+            m.base[u] = u;
+            m.outer[u] = m.blossom[u] = m.is_touched[u] = 0;
+        }
+        m.touched_count = m.queued = 0;
     }
 }

@@ -33,32 +33,25 @@ static const RepairText texts[MESH_REPAIRS] = {
     [MESH_SPLIT] = {"face split into quads", "faces split into quads", NULL},
 };
 
-static void mesh_report_describe(const MeshReport *report, char *text, size_t size) {
-    int length = snprintf(text, size, "%u vertices, %u triangles, %u quads, %u polygons, %u component%s",
-                          report->vertices, report->triangles, report->quads, report->polygons, report->components,
-                          report->components == 1 ? "" : "s");
-    if (report->seam_vertices && length > 0 && (size_t)length < size)
-        snprintf(text + length, size - (size_t)length, ", %u vertices on seams", report->seam_vertices);
-}
-
-static void describe_repair(const MeshReport *report, MeshRepair repair, char *text, size_t size) {
-    const RepairText *words = &texts[repair];
-    uint32_t count = report->count[repair];
-    int length = snprintf(text, size, "%u %s", count, count == 1 ? words->one : words->many);
-    if (!words->at || length < 0 || (size_t)length >= size) return;
-    bool face = words->at[0] == 'f';
-    snprintf(text + length, size - (size_t)length, face && report->lines ? " (%s %u)" : " (%s %u, from 0)",
-             face && report->lines ? "line" : words->at, report->first[repair]);
-}
-
 bool mesh_report_line(const MeshReport *report, int index, char *text, size_t size) {
     if (index == 0) {
-        mesh_report_describe(report, text, size);
+        int length = snprintf(text, size, "%u vertices, %u triangles, %u quads, %u polygons, %u component%s",
+                              report->vertices, report->triangles, report->quads, report->polygons, report->components,
+                              report->components == 1 ? "" : "s");
+        if (report->seam_vertices && length > 0 && (size_t)length < size)
+            snprintf(text + length, size - (size_t)length, ", %u vertices on seams", report->seam_vertices);
         return report->faces > 0;
     }
+
     for (int i = 0; i < MESH_REPAIRS; i++) {
-        if (!report->count[i] || --index) continue;
-        describe_repair(report, (MeshRepair)i, text, size);
+        const uint32_t count = report->count[i];
+        const RepairText *words = &texts[i];
+        if (!count || --index) continue;
+        int length = snprintf(text, size, "%u %s", count, count == 1 ? words->one : words->many);
+        if (!words->at || length < 0 || (size_t)length >= size) return true;
+        const bool line = words->at[0] == 'f' && report->lines;
+        snprintf(text + length, size - (size_t)length, line ? " (%s %u)" : " (%s %u, from 0)",
+                 line ? "line" : words->at, report->first[i]);
         return true;
     }
     return false;

@@ -45,7 +45,8 @@ void polygon_normal(const PolygonCut *cut, const uint32_t *ring, uint32_t n, dou
     normal[0] = normal[1] = normal[2] = 0;
     for (uint32_t i = 1; i + 1 < n; i++) {
         double a[3], b[3], m[3];
-        sub3(position_of(cut, ring[i]), o, a), sub3(position_of(cut, ring[i + 1]), o, b);
+        sub3(position_of(cut, ring[i]), o, a);
+        sub3(position_of(cut, ring[i + 1]), o, b);
         cross3(a, b, m);
         for (int k = 0; k < 3; k++) normal[k] += m[k];
     }
@@ -59,7 +60,8 @@ static void project(PolygonCut *cut, const uint32_t *ring, uint32_t n, const dou
     const int u = (axis + (normal[axis] < 0 ? 2 : 1)) % 3, v = (axis + (normal[axis] < 0 ? 1 : 2)) % 3;
     for (uint32_t i = 0; i < n; i++) {
         const double *p = position_of(cut, ring[i]);
-        cut->at[i][0] = p[u], cut->at[i][1] = p[v];
+        cut->at[i][0] = p[u];
+        cut->at[i][1] = p[v];
     }
 }
 
@@ -82,23 +84,22 @@ static bool is_star(double (*at)[2], uint32_t n) {
     return rounds == 1;
 }
 
-/// The quad at a corner of a ring that is split (to_quads.c).
-static void corner_quad(double (*at)[2], uint32_t n, uint32_t i, const double centroid[2], double quad[4][2]) {
-    for (int k = 0; k < 2; k++) {
-        quad[0][k] = at[i][k], quad[2][k] = centroid[k];
-        quad[1][k] = 0.5 * (at[i][k] + at[(i + 1) % n][k]), quad[3][k] = 0.5 * (at[i][k] + at[(i + n - 1) % n][k]);
-    }
-}
-
 bool polygon_is_star(PolygonCut *cut, const uint32_t *ring, uint32_t n) {
     double normal[3], centroid[2] = {0, 0}, quad[4][2];
     polygon_normal(cut, ring, n, normal);
     project(cut, ring, n, normal);
     bool star = is_star(cut->at, n);
+
+    // the quads into which the polygon would be split (to_quads.c)
     for (uint32_t i = 0; i < n; i++)
         for (int k = 0; k < 2; k++) centroid[k] += cut->at[i][k] / n;
     for (uint32_t i = 0; i < n && star; i++) {
-        corner_quad(cut->at, n, i, centroid, quad);
+        for (int k = 0; k < 2; k++) {
+            quad[0][k] = cut->at[i][k];
+            quad[1][k] = 0.5 * (cut->at[i][k] + cut->at[(i + 1) % n][k]);
+            quad[2][k] = centroid[k];
+            quad[3][k] = 0.5 * (cut->at[i][k] + cut->at[(i + n - 1) % n][k]);
+        }
         star = is_star(quad, 4);
     }
     return star;
@@ -108,7 +109,8 @@ bool polygon_is_star(PolygonCut *cut, const uint32_t *ring, uint32_t n) {
 
 static double angle_at(const PolygonCut *cut, uint32_t a, uint32_t b, uint32_t c) {
     double p[3], q[3];
-    sub3(position_of(cut, a), position_of(cut, b), p), sub3(position_of(cut, c), position_of(cut, b), q);
+    sub3(position_of(cut, a), position_of(cut, b), p);
+    sub3(position_of(cut, c), position_of(cut, b), q);
     double square = dot3(p, p) * dot3(q, q);
     return square > 0 ? DEGREES * acos(fmax(-1, fmin(1, dot3(p, q) / sqrt(square)))) : 0;
 }
@@ -120,58 +122,44 @@ static double worth_of(const PolygonCut *cut, uint32_t i, uint32_t k, uint32_t j
     return turn2(cut->at[i], cut->at[k], cut->at[j]) > 0 ? min : -1 - min;
 }
 
-/// Whether some face has a side between the two vertices.
-static bool is_side(PolygonCut *cut, uint32_t a, uint32_t b) {
-    const Work *work = cut->work;
+/// Factor on the worth of a triangle with a diagonal between corners a and b of the ring: small if the two vertices are
+/// one, or some face has a side between them.
+static double worth_by_diagonal(PolygonCut *cut, uint32_t a, uint32_t b) {
     const Faces *faces = cut->faces;
+    const uint32_t v = faces->corner[cut->ring[a]], w = faces->corner[cut->ring[b]];
+    if (v == w) return taken_worth;
     if (!cut->order) cut->order = work_sorted_edges(cut->work);
-    if (!cut->order) return false;
-    const uint32_t ends[2] = {a < b ? a : b, a < b ? b : a};
+    if (!cut->order) return 1;
+
+    const uint32_t ends[2] = {v < w ? v : w, v < w ? w : v};
     uint32_t from = 0, to = faces->corner_count;
     while (from < to) {
         uint32_t at = (from + to) / 2, p = faces->corner[cut->order[at]];
-        uint32_t q = faces->corner[faces_next(faces, work->face, cut->order[at])];
+        uint32_t q = faces->corner[faces_next(faces, cut->work->face, cut->order[at])];
         uint32_t low = p < q ? p : q, high = p < q ? q : p;
-        if (low == ends[0] && high == ends[1]) return true;
+        if (low == ends[0] && high == ends[1]) return taken_worth;
         if (low < ends[0] || (low == ends[0] && high < ends[1])) from = at + 1;
         else to = at;
     }
-    return false;
-}
-
-static double worth_by_diagonal(PolygonCut *cut, uint32_t a, uint32_t b) {
-    const uint32_t *corner = cut->faces->corner;
-    return corner[cut->ring[a]] == corner[cut->ring[b]] || is_side(cut, corner[cut->ring[a]], corner[cut->ring[b]])
-               ? taken_worth
-               : 1;
+    return 1;
 }
 
 static void add_triangle(PolygonCut *cut, uint32_t i, uint32_t k, uint32_t j) {
     uint32_t *triangle = cut->triangle[cut->count++];
-    triangle[0] = cut->ring[i], triangle[1] = cut->ring[k], triangle[2] = cut->ring[j];
+    triangle[0] = cut->ring[i];
+    triangle[1] = cut->ring[k];
+    triangle[2] = cut->ring[j];
 }
 
 // ---- large polygons
-
-static bool same_position(const double *a, const double *b) { return a[0] == b[0] && a[1] == b[1]; }
 
 /// Whether `p` lies between the directions from `a` to `b` and to `c`, which are less than half a turn apart.
 static bool in_wedge(const double *a, const double *b, const double *c, const double *p) {
     return turn2(a, b, p) > 0 && turn2(a, p, c) > 0;
 }
 
-/// Whether corner i of the ring lies in an ear, or the ring enters the ear from there if it is at one of its corners.
-static bool enters(const PolygonCut *cut, uint32_t n, uint32_t i, const double *const ear[3]) {
-    const double *before = cut->at[(i + n - 1) % n], *after = cut->at[(i + 1) % n];
-    for (int k = 0; k < 3; k++)
-        if (same_position(cut->at[i], ear[k]))
-            return in_wedge(ear[k], ear[(k + 1) % 3], ear[(k + 2) % 3], before) ||
-                   in_wedge(ear[k], ear[(k + 1) % 3], ear[(k + 2) % 3], after);
-    return turn2(ear[0], ear[1], cut->at[i]) >= 0 && turn2(ear[1], ear[2], cut->at[i]) >= 0 &&
-           turn2(ear[2], ear[0], cut->at[i]) >= 0;
-}
-
-/// How well corner k of the ring can be cut off; negative if it cannot.
+/// How well corner k of the ring can be cut off; negative if it cannot, because another corner lies in that ear, or the
+/// ring enters the ear from a corner at the same position as one of the ear's.
 static double ear_worth(PolygonCut *cut, uint32_t n, uint32_t k) {
     const uint32_t a = (k + n - 1) % n, c = (k + 1) % n;
     const double *const ear[3] = {cut->at[a], cut->at[k], cut->at[c]};
@@ -180,19 +168,19 @@ static double ear_worth(PolygonCut *cut, uint32_t n, uint32_t k) {
         low[axis] = fmin(ear[0][axis], fmin(ear[1][axis], ear[2][axis]));
         high[axis] = fmax(ear[0][axis], fmax(ear[1][axis], ear[2][axis]));
     }
+
     for (uint32_t i = 0; i < n && worth >= 0; i++) {
-        const double *p = cut->at[i];
+        const double *p = cut->at[i], *before = cut->at[(i + n - 1) % n], *after = cut->at[(i + 1) % n];
         if (p[0] < low[0] || p[0] > high[0] || p[1] < low[1] || p[1] > high[1]) continue;
-        if (i != a && i != k && i != c && enters(cut, n, i, ear)) worth = -1;
+        if (i == a || i == k || i == c) continue;
+        int same = 0;
+        while (same < 3 && !(p[0] == ear[same][0] && p[1] == ear[same][1])) same++;
+        const double *o = ear[same % 3], *q = ear[(same + 1) % 3], *r = ear[(same + 2) % 3];
+        const bool enters = same < 3 ? in_wedge(o, q, r, before) || in_wedge(o, q, r, after)
+                                     : turn2(o, q, p) >= 0 && turn2(q, r, p) >= 0 && turn2(r, o, p) >= 0;
+        if (enters) worth = -1;
     }
     return worth >= 0 ? worth * worth_by_diagonal(cut, a, c) : worth;
-}
-
-static uint32_t best_ear(const PolygonCut *cut, uint32_t n) {
-    uint32_t best = 0;
-    for (uint32_t k = 1; k < n; k++)
-        if (cut->worth[k] > cut->worth[best]) best = k;
-    return best;
 }
 
 /// Cuts off corners until `max` are left. Returns how many there are.
@@ -201,13 +189,18 @@ static uint32_t cut_ears(PolygonCut *cut, uint32_t n, uint32_t max) {
     for (uint32_t looks = 0; looks < LOOKS_MAX && n > max; looks++) {
         for (uint32_t k = 0; k < n; k++) cut->worth[k] = ear_worth(cut, n, k);
         while (n > max) {
-            uint32_t best = best_ear(cut, n), after = n - 1 - best;
+            uint32_t best = 0;
+            for (uint32_t k = 1; k < n; k++)
+                if (cut->worth[k] > cut->worth[best]) best = k;
             if (cut->worth[best] < 0) break;
+
+            const uint32_t after = n - 1 - best;
             add_triangle(cut, (best + n - 1) % n, best, (best + 1) % n);
             memmove(cut->ring + best, cut->ring + best + 1, after * sizeof *cut->ring);
             memmove(cut->at + best, cut->at + best + 1, after * sizeof *cut->at);
             memmove(cut->worth + best, cut->worth + best + 1, after * sizeof *cut->worth);
             n--;
+
             const uint32_t beside[2] = {(best + n - 1) % n, best % n};
             for (int i = 0; i < 2; i++) cut->worth[beside[i]] = ear_worth(cut, n, beside[i]);
         }
@@ -229,21 +222,29 @@ static bool cut_best(PolygonCut *cut, uint32_t n) {
             worst[i][j] = span == 1 ? 180 : -1e9;
             for (uint32_t k = i + 1; k < j; k++) {
                 double value = fmin(worth_of(cut, i, k, j), fmin(worst[i][k], worst[k][j]));
-                if (value > worst[i][j]) worst[i][j] = value, apex[i][j] = (uint8_t)k;
+                if (value > worst[i][j]) {
+                    worst[i][j] = value;
+                    apex[i][j] = (uint8_t)k;
+                }
             }
             if (span > 1 && span + 1 < n && worst[i][j] > 0) worst[i][j] *= worth_by_diagonal(cut, i, j);
         }
     if (worst[0][n - 1] < 0) return false;
+
     uint32_t depth = 1;
-    stack[0][0] = 0, stack[0][1] = (uint8_t)(n - 1);
+    stack[0][0] = 0;
+    stack[0][1] = (uint8_t)(n - 1);
     while (depth) {
         uint32_t i = stack[--depth][0], j = stack[depth][1];
         if (j - i < 2) continue;
         uint32_t k = apex[i][j];
         add_triangle(cut, i, k, j);
-        stack[depth][0] = (uint8_t)i, stack[depth++][1] = (uint8_t)k;
-        stack[depth][0] = (uint8_t)k, stack[depth++][1] = (uint8_t)j;
+        stack[depth][0] = (uint8_t)i;
+        stack[depth++][1] = (uint8_t)k;
+        stack[depth][0] = (uint8_t)k;
+        stack[depth++][1] = (uint8_t)j;
     }
+
     return true;
 }
 
@@ -255,7 +256,8 @@ static bool cut_bent_quad(PolygonCut *cut) {
         const uint32_t a[3] = {cut->ring[s], cut->ring[s + 1], cut->ring[s + 2]};
         const uint32_t b[3] = {cut->ring[s], cut->ring[s + 2], cut->ring[(s + 3) % 4]};
         double p[3], q[3];
-        polygon_normal(cut, a, 3, p), polygon_normal(cut, b, 3, q);
+        polygon_normal(cut, a, 3, p);
+        polygon_normal(cut, b, 3, q);
         double square = dot3(p, p) * dot3(q, q);
         double fold = square > 0 ? DEGREES * acos(fmax(-1, fmin(1, dot3(p, q) / sqrt(square)))) : 180;
         if (fold < best) {
@@ -263,6 +265,7 @@ static bool cut_bent_quad(PolygonCut *cut) {
             start = s;
         }
     }
+
     if (start > 1) return false;
     add_triangle(cut, start, start + 1, start + 2);
     add_triangle(cut, start, start + 2, (start + 3) % 4);
@@ -301,27 +304,27 @@ static bool lies_beyond(const Seen *a, const Seen *b, double rounding) {
     return false;
 }
 
-static void see(PolygonCut *cut, const uint32_t *triangle, const double normal[3], Seen *seen) {
-    project(cut, triangle, 3, normal);
-    const bool turned = turn2(cut->at[0], cut->at[1], cut->at[2]) < 0;
-    for (int k = 0; k < 3; k++) memcpy(seen->at[k], cut->at[turned ? 2 - k : k], sizeof seen->at[k]);
-    seen->low = fmin(seen->at[0][0], fmin(seen->at[1][0], seen->at[2][0]));
-    seen->high = fmax(seen->at[0][0], fmax(seen->at[1][0], seen->at[2][0]));
-}
-
 bool polygon_overlaps(PolygonCut *cut, const double normal[3]) {
     Seen *seen = malloc((cut->count ? cut->count : 1) * sizeof *seen);
     double low = INFINITY, high = -INFINITY;
-    bool overlaps = false;
     cut->work->no_memory = cut->work->no_memory || !seen;
-    for (uint32_t t = 0; t < cut->count && seen; t++) {
-        see(cut, cut->triangle[t], normal, &seen[t]);
-        low = fmin(low, seen[t].low);
-        high = fmax(high, seen[t].high);
+    if (!seen) return false;
+
+    for (uint32_t t = 0; t < cut->count; t++) {
+        Seen *own = &seen[t];
+        project(cut, cut->triangle[t], 3, normal);
+        const bool turned = turn2(cut->at[0], cut->at[1], cut->at[2]) < 0;
+        for (int k = 0; k < 3; k++) memcpy(own->at[k], cut->at[turned ? 2 - k : k], sizeof own->at[k]);
+        own->low = fmin(own->at[0][0], fmin(own->at[1][0], own->at[2][0]));
+        own->high = fmax(own->at[0][0], fmax(own->at[1][0], own->at[2][0]));
+        low = fmin(low, own->low);
+        high = fmax(high, own->high);
     }
+
     const double rounding = 1e-7 * (high - low) * (high - low);
-    if (seen) qsort(seen, cut->count, sizeof *seen, by_low);
-    for (uint32_t i = 0; i < cut->count && seen && !overlaps; i++)
+    bool overlaps = false;
+    qsort(seen, cut->count, sizeof *seen, by_low);
+    for (uint32_t i = 0; i < cut->count && !overlaps; i++)
         for (uint32_t k = i + 1; k < cut->count && seen[k].low < seen[i].high && !overlaps; k++)
             overlaps = !lies_beyond(&seen[i], &seen[k], rounding) && !lies_beyond(&seen[k], &seen[i], rounding);
     free(seen);

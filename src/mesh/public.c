@@ -55,6 +55,7 @@ static SingeResult check_def(const SingeMeshDef *def, const char *name, uint32_t
     if (!def->positions || !def->corners) return bad(error, "positions or corners are NULL");
     if (def->face_count == 0) return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: has no faces", short_name(name));
     if (def->attribute_count && !def->attributes) return bad(error, "attributes are NULL");
+
     for (uint32_t i = 0; i < def->attribute_count; i++)
         if (!def->attributes[i].name || !def->attributes[i].values)
             return bad(error, "an attribute has no name or no values");
@@ -62,6 +63,7 @@ static SingeResult check_def(const SingeMeshDef *def, const char *name, uint32_t
         return bad(error, "quads is not a known choice");
     if (!(def->weld >= 0 && isfinite(def->weld))) return bad(error, "weld must be 0 or more");
     if (!(def->smallest >= 0 && def->smallest <= 1)) return bad(error, "smallest must be between 0 and 1");
+
     for (uint32_t f = 0; f < def->face_count; f++) {
         uint32_t size = def->face_sizes ? def->face_sizes[f] : 3;
         if (size < 3)
@@ -69,6 +71,7 @@ static SingeResult check_def(const SingeMeshDef *def, const char *name, uint32_t
                           f, size);
         total += size;
     }
+
     if (total > INT32_MAX || def->vertex_count > INT32_MAX || def->face_count > INT32_MAX)
         return refuse(error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: more vertices or corners than 2147483647",
                       short_name(name));
@@ -91,6 +94,7 @@ static bool take(const SingeMeshDef *def, uint32_t corners, Polygons *polygons) 
     polygons->first[0] = 0;
     for (uint32_t f = 0; f < def->face_count; f++)
         polygons->first[f + 1] = polygons->first[f] + (def->face_sizes ? def->face_sizes[f] : 3);
+
     polygons->uv = (float *)(uintptr_t)def->corner_uv;
     if (def->corner_uv || !def->uv) return true;
     if (!(polygons->uv = store_new(def->allocator, corners, 2 * sizeof *polygons->uv))) return false;
@@ -102,30 +106,10 @@ static bool take(const SingeMeshDef *def, uint32_t corners, Polygons *polygons) 
     return true;
 }
 
-static void give_back(const SingeMeshDef *def, Polygons *polygons) {
-    store_free(def->allocator, polygons->first, (size_t)def->face_count + 1, sizeof *polygons->first);
-    if (!def->corner_uv) store_free(def->allocator, polygons->uv, polygons->corner_count, 2 * sizeof *polygons->uv);
-}
-
-static SingeResult check_uv(const Polygons *polygons, const char *name, SingeError *error) {
-    for (size_t i = 0; polygons->uv && i < 2 * (size_t)polygons->corner_count; i++)
-        if (!isfinite(polygons->uv[i]))
-            return refuse(error, SINGE_ERROR_MESH, "mesh", (int64_t)(i / 2),
-                          "%s: corner %llu (from 0) has a uv that is not finite", short_name(name),
-                          (unsigned long long)(i / 2));
-    return SINGE_OK;
-}
-
 static SingeMesh *new_mesh(SingeAllocator allocator) {
     SingeMesh *made = store_new(allocator, 1, sizeof *made);
     if (made) *made = (SingeMesh){.allocator = allocator};
     return made;
-}
-
-static void log_report(const SingeLog *log, const MeshReport *report) {
-    char line[256];
-    for (int i = 0; log->write && mesh_report_line(report, i, line, sizeof line); i++)
-        log->write(log->context, SINGE_LOG_INFO, line);
 }
 
 SingeResult singe_mesh_create(const SingeMeshDef *given, SingeMesh **mesh, SingeError *error) {
@@ -136,19 +120,28 @@ SingeResult singe_mesh_create(const SingeMeshDef *given, SingeMesh **mesh, Singe
     const char *name = def.name ? def.name : "mesh";
     uint32_t corners = 0;
     TRY(check_def(&def, name, &corners, error));
+
     Polygons polygons;
     MeshReport report = {0};
     const MeshOptions options = {(MeshQuads)def.quads, def.weld, def.smallest};
     SingeMesh *made = new_mesh(def.allocator);
     SingeResult result = take(&def, corners, &polygons) && made ? SINGE_OK : refuse_memory(error, "mesh", name);
-    if (!result) result = check_uv(&polygons, name, error);
+    for (size_t i = 0; !result && polygons.uv && i < 2 * (size_t)corners; i++)
+        if (!isfinite(polygons.uv[i]))
+            result = refuse(error, SINGE_ERROR_MESH, "mesh", (int64_t)(i / 2),
+                            "%s: corner %llu (from 0) has a uv that is not finite", short_name(name),
+                            (unsigned long long)(i / 2));
     if (!result) result = mesh_make(name, &polygons, &options, def.allocator, &made->mesh, &report, error);
-    give_back(&def, &polygons);
+    store_free(def.allocator, polygons.first, (size_t)def.face_count + 1, sizeof *polygons.first);
+    if (!def.corner_uv) store_free(def.allocator, polygons.uv, corners, 2 * sizeof *polygons.uv);
     if (result) {
         store_free(def.allocator, made, 1, sizeof *made);
         return result;
     }
-    log_report(&def.log, &report);
+
+    char line[256];
+    for (int i = 0; def.log.write && mesh_report_line(&report, i, line, sizeof line); i++)
+        def.log.write(def.log.context, SINGE_LOG_INFO, line);
     *mesh = made;
     return SINGE_OK;
 }
@@ -169,6 +162,7 @@ SingeResult singe_mesh_create_grid(const SingeGridDef *given, SingeMesh **mesh, 
         store_free(def.allocator, made, 1, sizeof *made);
         return result;
     }
+
     mesh_grid_wear(&made->mesh, def.cells[0], def.cells[1], &(GridWear){def.jitter, def.displacement, def.seed});
     *mesh = made;
     return SINGE_OK;

@@ -36,16 +36,20 @@ static uint32_t renumber_walk(Order *order, uint32_t lower) {
         at = step(order, at, false);
         if (at != MESH_NONE && at / 4 == lower / 4) break; // a ring
     }
+
     for (uint32_t at = start; at != MESH_NONE; at = step(order, at, true)) {
         order->face[at / 4] = order->faces++;
         order->row[count++] = at;
         renumber_number(order, faces->corner[at]);
     }
+
     renumber_number(order, faces->corner[next4(order->row[count - 1])]);
+
     for (uint32_t i = 0; i < count; i++) {
         uint32_t twin = order->work->twin[across4(order->row[i])];
         if (twin != MESH_NONE && order->face[twin / 4] == MESH_NONE && above == MESH_NONE) above = twin;
     }
+
     if (above == MESH_NONE) // the top: no row above numbers it
         for (uint32_t i = 0; i < count; i++) {
             uint32_t top = across4(order->row[i]);
@@ -55,28 +59,7 @@ static uint32_t renumber_walk(Order *order, uint32_t lower) {
     return above;
 }
 
-/// The side to begin at: at a corner of the mesh if it has one, else an open side.
-static uint32_t first_side(const Work *work, const uint32_t *face, uint32_t from) {
-    uint32_t open = MESH_NONE;
-    for (uint32_t h = 4 * from; h < work->faces.corner_count; h++) {
-        if (face[h / 4] != MESH_NONE || work->twin[h] != MESH_NONE) continue;
-        if (work->twin[next4(across4(h))] == MESH_NONE) return h; // open below and to the left
-        if (open == MESH_NONE) open = h;
-    }
-    return open != MESH_NONE ? open : 4 * from;
-}
-
-/// Share of the sides whose ends have consecutive numbers: one half if rows are numbered one after the other.
-static double in_order(const Work *work) {
-    uint32_t beside = 0;
-    const Faces *faces = &work->faces;
-    for (uint32_t h = 0; h < faces->corner_count; h++) {
-        uint32_t a = faces->corner[h], b = faces->corner[next4(h)];
-        beside += a + 1 == b || b + 1 == a;
-    }
-    return (double)beside / faces->corner_count;
-}
-
+/// Gives vertices and quads their new numbers.
 static void apply(Order *order) {
     Work *work = order->work;
     const Faces *old = &work->faces;
@@ -86,6 +69,7 @@ static void apply(Order *order) {
     float *values = work_new(work, work->vertex_count * attributes, sizeof *values);
     Faces out = work_faces(work, old->count, old->corner_count);
     if (work->no_memory) return;
+
     for (uint32_t v = 0; v < work->vertex_count; v++) {
         uint32_t to = order->vertex[v];
         memcpy(position[to], work->position[v], sizeof *position);
@@ -93,6 +77,7 @@ static void apply(Order *order) {
         if (!attributes) continue;
         memcpy(values + to * attributes, work->attributes + v * attributes, attributes * sizeof *values);
     }
+
     for (uint32_t f = 0; f < old->count; f++) {
         uint32_t to = order->face[f];
         out.origin[to] = old->origin[f];
@@ -103,6 +88,7 @@ static void apply(Order *order) {
         }
         out.first[to + 1] = 4 * (to + 1);
     }
+
     out.count = old->count;
     out.corner_count = old->corner_count;
     for (uint32_t v = 0; v < work->file->vertex_count; v++) work->became[v] = order->vertex[work->became[v]];
@@ -116,21 +102,45 @@ static void apply(Order *order) {
 void mesh_order(Work *work) {
     const uint32_t count = work->faces.count;
     work_edges(work);
-    if (work->no_memory || count < MESH_ORDER_MIN || in_order(work) >= MESH_IN_ORDER) return;
+    if (work->no_memory || count < MESH_ORDER_MIN) return;
+
+    // the share of the sides whose ends have consecutive numbers: one half if rows are numbered one after the other
+    const Faces *faces = &work->faces;
+    uint32_t beside = 0;
+    for (uint32_t h = 0; h < faces->corner_count; h++) {
+        uint32_t a = faces->corner[h], b = faces->corner[next4(h)];
+        beside += a + 1 == b || b + 1 == a;
+    }
+
+    if ((double)beside / faces->corner_count >= MESH_IN_ORDER) return;
+
     Order order = {.work = work,
                    .vertex = work_new(work, work->vertex_count, sizeof *order.vertex),
                    .face = work_new(work, count, sizeof *order.face),
                    .row = work_new(work, count, sizeof *order.row)};
     if (work->no_memory) return;
+
     memset(order.vertex, 0xff, work->vertex_count * sizeof *order.vertex);
     memset(order.face, 0xff, count * sizeof *order.face);
+
     int searches = 64; // for good starts; later rows start anywhere, so that meshes of short rows take no longer
     for (uint32_t f = 0; f < count; f++) {
         if (order.face[f] != MESH_NONE) continue;
-        uint32_t side = searches-- > 0 ? first_side(work, order.face, f) : 4 * f;
+
+        // begins at a corner of the mesh if it has one, else at an open side
+        uint32_t side = 4 * f, open = MESH_NONE, corner = MESH_NONE;
+        for (uint32_t h = 4 * f; searches > 0 && corner == MESH_NONE && h < faces->corner_count; h++) {
+            if (order.face[h / 4] != MESH_NONE || work->twin[h] != MESH_NONE) continue;
+            if (work->twin[next4(across4(h))] == MESH_NONE) corner = h; // open below and to the left
+            else if (open == MESH_NONE) open = h;
+        }
+        searches--;
+        if (corner != MESH_NONE) side = corner;
+        else if (open != MESH_NONE) side = open;
         while (side != MESH_NONE) side = renumber_walk(&order, side);
         if (order.face[f] == MESH_NONE) f--; // not reached yet
     }
+
     for (uint32_t v = 0; v < work->vertex_count; v++) renumber_number(&order, v); // of no face
     apply(&order);
 }

@@ -32,41 +32,29 @@ void positions_add(const Work *work, Positions *positions, uint32_t v) {
     positions->head[slot] = v;
 }
 
-/// The vertex that `v` is merged with: the first in its box and those around it that is close enough.
-static uint32_t weld_find(const Work *work, const Positions *positions, uint32_t v) {
-    int64_t own[3], box[3];
-    uint32_t found = MESH_NONE;
-    positions_box(positions, work->position[v], own);
-    for (int i = 0; i < 27; i++) {
-        box[0] = own[0] + i % 3 - 1, box[1] = own[1] + i / 3 % 3 - 1, box[2] = own[2] + i / 9 - 1;
-        for (uint32_t u = positions->head[positions_slot(positions, box)]; u != MESH_NONE; u = positions->next[u])
-            if (u < found && distance3(work->position[u], work->position[v]) <= work->weld) found = u;
-    }
-    return found;
-}
-
-void work_mark_open(const Work *work, uint8_t *open) {
-    const Faces *faces = &work->faces;
-    for (uint32_t h = 0; h < faces->corner_count; h++)
-        if (work->twin[h] == MESH_NONE)
-            open[faces->corner[h]] = open[faces->corner[faces_next(faces, work->face, h)]] = 1;
-}
-
-void work_rename(Work *work, const uint32_t *to) {
-    for (uint32_t h = 0; h < work->faces.corner_count; h++) work->faces.corner[h] = to[work->faces.corner[h]];
-    for (uint32_t v = 0; v < work->file->vertex_count; v++) work->became[v] = to[work->became[v]];
-}
-
 void mesh_weld(Work *work) {
     work_edges(work);
     Positions positions = positions_make(work, fmax(2 * work->weld, 1e-12));
     uint8_t *open = work_new(work, work->vertex_count, 1);
     uint32_t *to = work_sets(work, work->vertex_count);
     if (work->no_memory) return;
+
     work_mark_open(work, open);
+
     for (uint32_t v = 0; v < work->vertex_count; v++) {
         if (!open[v]) continue;
-        uint32_t found = weld_find(work, &positions, v);
+
+        // the first vertex in its box and those around it that is close enough
+        int64_t own[3];
+        uint32_t found = MESH_NONE;
+        positions_box(&positions, work->position[v], own);
+        for (int i = 0; i < 27; i++) {
+            const int64_t box[3] = {own[0] + i % 3 - 1, own[1] + i / 3 % 3 - 1, own[2] + i / 9 - 1};
+            uint32_t u = positions.head[positions_slot(&positions, box)];
+            for (; u != MESH_NONE; u = positions.next[u])
+                if (u < found && distance3(work->position[u], work->position[v]) <= work->weld) found = u;
+        }
+
         if (found == MESH_NONE) {
             positions_add(work, &positions, v);
             continue;
@@ -74,5 +62,6 @@ void mesh_weld(Work *work) {
         to[v] = found;
         work_did(work, MESH_WELDED, 1, v);
     }
+
     work_rename(work, to);
 }

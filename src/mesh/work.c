@@ -49,6 +49,7 @@ bool work_faces_room(Work *work, Faces *faces, uint32_t more_faces, uint32_t mor
     if (count <= faces->capacity && corners <= faces->corner_capacity) return true;
     Faces larger = work_faces(work, count + count / 2, corners + corners / 2);
     if (work->no_memory) return false;
+
     larger.count = faces->count;
     larger.corner_count = faces->corner_count;
     memcpy(larger.first, faces->first, ((size_t)faces->count + 1) * sizeof *faces->first);
@@ -77,33 +78,31 @@ void faces_end(Faces *faces, uint32_t origin) {
     faces->first[faces->count] = faces->corner_count;
 }
 
-static bool work_room(Work *work) {
-    if (work->vertex_count < work->vertex_capacity) return true;
-    uint32_t capacity = work->vertex_capacity + work->vertex_capacity / 2 + 16;
-    size_t attributes = work->attribute_count;
-    double(*position)[3] = work_new(work, capacity, sizeof *position);
-    int32_t *source = work_new(work, capacity, sizeof *source);
-    float *values = work_new(work, capacity * attributes, sizeof *values);
-    if (work->no_memory) return false;
-    memcpy(position, work->position, work->vertex_count * sizeof *position);
-    memcpy(source, work->source, work->vertex_count * sizeof *source);
-    memcpy(values, work->attributes, work->vertex_count * attributes * sizeof *values);
-    work->position = position;
-    work->source = source;
-    work->attributes = values;
-    work->vertex_capacity = capacity;
-    return true;
-}
-
 uint32_t work_vertex(Work *work, const uint32_t *of, uint32_t count) {
-    if (work->no_memory || !work_room(work)) return MESH_NONE;
-    uint32_t v = work->vertex_count++;
     const size_t attributes = work->attribute_count;
+    if (work->no_memory) return MESH_NONE;
+    if (work->vertex_count == work->vertex_capacity) {
+        const uint32_t capacity = work->vertex_capacity + work->vertex_capacity / 2 + 16;
+        double(*position)[3] = work_new(work, capacity, sizeof *position);
+        int32_t *source = work_new(work, capacity, sizeof *source);
+        float *values = work_new(work, capacity * attributes, sizeof *values);
+        if (work->no_memory) return MESH_NONE;
+        memcpy(position, work->position, work->vertex_count * sizeof *position);
+        memcpy(source, work->source, work->vertex_count * sizeof *source);
+        memcpy(values, work->attributes, work->vertex_count * attributes * sizeof *values);
+        work->position = position;
+        work->source = source;
+        work->attributes = values;
+        work->vertex_capacity = capacity;
+    }
+
+    const uint32_t v = work->vertex_count++;
     for (uint32_t i = 0; i < count; i++) {
         for (int k = 0; k < 3; k++) work->position[v][k] += work->position[of[i]][k] / count;
         for (size_t k = 0; k < attributes; k++)
             work->attributes[v * attributes + k] += work->attributes[of[i] * attributes + k] / (float)count;
     }
+
     work->source[v] = -1;
     return v;
 }
@@ -112,6 +111,11 @@ uint32_t work_copy(Work *work, uint32_t vertex) {
     uint32_t copy = work_vertex(work, &vertex, 1);
     if (copy != MESH_NONE) work->source[copy] = work->source[vertex];
     return copy;
+}
+
+void work_rename(Work *work, const uint32_t *to) {
+    for (uint32_t h = 0; h < work->faces.corner_count; h++) work->faces.corner[h] = to[work->faces.corner[h]];
+    for (uint32_t v = 0; v < work->file->vertex_count; v++) work->became[v] = to[work->became[v]];
 }
 
 // ---- edges
@@ -128,7 +132,11 @@ static void edges_sort(const Work *work, bool high, const uint32_t *from, uint32
     const uint32_t count = work->faces.corner_count;
     memset(slot, 0, ((size_t)work->vertex_count + 1) * sizeof *slot);
     uint32_t end[2];
-    for (uint32_t h = 0; h < count; h++) edge_ends(work, h, &end[0], &end[1]), slot[end[high] + 1]++;
+    for (uint32_t h = 0; h < count; h++) {
+        edge_ends(work, h, &end[0], &end[1]);
+        slot[end[high] + 1]++;
+    }
+
     for (uint32_t v = 0; v < work->vertex_count; v++) slot[v + 1] += slot[v];
     for (uint32_t k = 0; k < count; k++) {
         uint32_t half = from ? from[k] : k;
@@ -144,6 +152,7 @@ uint32_t *work_sorted_edges(Work *work) {
     uint32_t *order = work_new(work, faces->corner_count, sizeof *order);
     uint32_t *slot = work_new(work, (size_t)work->vertex_count + 1, sizeof *slot);
     if (work->no_memory) return NULL;
+
     for (uint32_t f = 0; f < faces->count; f++)
         for (uint32_t h = faces->first[f]; h < faces->first[f + 1]; h++) work->face[h] = f;
     edges_sort(work, true, NULL, by_high, slot);
@@ -169,8 +178,17 @@ void work_edges(Work *work) {
     for (uint32_t k = 0, size; k < count; k += size) {
         size = work_edge_size(work, order, k);
         for (uint32_t i = 0; i < size; i++) work->twin[order[k + i]] = MESH_NONE;
-        if (size == 2) work->twin[order[k]] = order[k + 1], work->twin[order[k + 1]] = order[k];
+        if (size != 2) continue;
+        work->twin[order[k]] = order[k + 1];
+        work->twin[order[k + 1]] = order[k];
     }
+}
+
+void work_mark_open(const Work *work, uint8_t *open) {
+    const Faces *faces = &work->faces;
+    for (uint32_t h = 0; h < faces->corner_count; h++)
+        if (work->twin[h] == MESH_NONE)
+            open[faces->corner[h]] = open[faces->corner[faces_next(faces, work->face, h)]] = 1;
 }
 
 // ---- geometry

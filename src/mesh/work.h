@@ -2,6 +2,7 @@
 #ifndef MESH_WORK_H
 #define MESH_WORK_H
 
+#include "common/double3.h"
 #include "mesh/to_quads.h"
 
 #define MESH_NONE UINT32_MAX
@@ -100,13 +101,6 @@ static inline bool sets_join(uint32_t *set, uint32_t a, uint32_t b) {
 }
 uint32_t *work_sets(Work *work, uint32_t count);
 
-static inline double dot3(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-static inline void sub3(const double *a, const double *b, double *out) {
-    for (int k = 0; k < 3; k++) out[k] = a[k] - b[k];
-}
-static inline void cross3(const double *a, const double *b, double *out) {
-    out[0] = a[1] * b[2] - a[2] * b[1], out[1] = a[2] * b[0] - a[0] * b[2], out[2] = a[0] * b[1] - a[1] * b[0];
-}
 double distance3(const double *a, const double *b);
 /// Twice the area times the normal.
 void face_area(const Work *work, uint32_t face, double normal[3]);
@@ -145,14 +139,8 @@ SingeResult mesh_junctions(Work *work);
 /// Splits edges of more than two faces, makes the winding consistent, outwards on closed surfaces, and gives every fan
 /// of faces its own vertex (manifold.c).
 void mesh_manifold(Work *work);
-/// Fills work->face and twin, with at most two faces at a side (sides.c).
-void mesh_join_sides(Work *work);
-/// Gives distinct sides between the same two vertices corners of their own (sides.c).
-void mesh_part_sides(Work *work);
 /// Cuts polygons into triangles and joins these to quads (pair.c, match.c). False if some triangle stays single.
 bool mesh_pair(Work *work);
-/// Splits every face of n corners into n quads (to_quads.c).
-void mesh_split(Work *work);
 
 /// A mesh keeps its order if at least this share of its sides has ends with consecutive numbers.
 #define MESH_IN_ORDER 0.25

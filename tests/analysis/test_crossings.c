@@ -11,8 +11,6 @@
 
 #include "analysis/crossings.h"
 #include "analysis/exact.h"
-#include "analysis/hinges.h"
-#include "analysis/triangle_pair.h"
 
 static uint64_t random_state = 1;
 

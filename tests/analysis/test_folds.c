@@ -1,7 +1,7 @@
 // What is drawn along folds that run slantwise to the rows of cells: on the smooth surface, and on flat cells.
+#include "analysis/wrinkles.h"
 #include "surface/drawing.h"
 #include "common/random.h"
-#include "analysis/folds.h"
 
 static const float cell = 2.5e-3f;
 enum { CELLS = 40 };

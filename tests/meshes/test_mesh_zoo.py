@@ -16,7 +16,7 @@ import unittest
 from support import SANITIZED, Case
 from test_verify import Surface
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "..", "tools"))
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "..", "scripts"))
 import make_meshes  # noqa: E402
 
 SCENE = """\

@@ -257,8 +257,8 @@ class Given(Case):
     def test_a_callback_that_raises(self):
         sim = burning()
         answers = [lambda: 1 / 0, lambda: np.zeros(7), lambda: (1, 2), lambda: (0, -1, 300), lambda: "hot",
-                   lambda: sim.step(), lambda: sys.exit(3)]
-        kinds = [ZeroDivisionError, ValueError, ValueError, ValueError, ValueError, singe.StateError, SystemExit]
+                   lambda: None, lambda: (0, None, 300), lambda: sim.step(), lambda: sys.exit(3)]
+        kinds = [ZeroDivisionError, *[ValueError] * 4, TypeError, TypeError, singe.StateError, SystemExit]
         source = sim.source("callback", callback=lambda view: answers[0]())
         before = sim.position.copy()
         for kind in kinds:
@@ -333,6 +333,22 @@ class Given(Case):
             (ValueError, "one of attribute", lambda: singe.Sim().sheet(
                 *grid, material={"mass_rate": singe.Vary(0, 1)})),
             (singe.ArgumentError, "seconds", lambda: burning(4).advance(-1)),
+            (singe.ArgumentError, "seconds", lambda: burning(4).advance(float("nan"))),
+            (singe.ArgumentError, "seconds", lambda: burning(4).advance(float("inf"))),
+            (singe.ArgumentError, "seconds", lambda: burning(4).advance(1.1e6)),
+            (ValueError, "steps_max must fit", lambda: burning(4).advance(0.1, -1)),
+            (ValueError, "gravity must have 3 values, not 2", lambda: burning(4).set_gravity([1, 2])),
+            (ValueError, "gravity must have 3 values, not 4", lambda: burning(4).set_gravity([1, 2, 3, 4])),
+            (TypeError, "gravity must be a number", lambda: burning(4).set_gravity("abc")),
+            (ValueError, "triangles must have the shape", lambda: singe.Sim().collider(
+                "mesh", vertices=np.eye(3), triangles=[0, 1, 2])),
+            (ValueError, "heights must have the shape", lambda: singe.Sim().collider("heightfield", heights=[1, 2])),
+            (ValueError, "rows .time, factor.", lambda: burning(4).spot([0, 0, 0], strength=[1, 2])),
+            (ValueError, "name must not contain a NUL", lambda: singe.Sim().sheet(*grid, name="a\0b")),
+            (ValueError, "of an attribute must not", lambda: singe.Sim().sheet(*grid, **{"a\0b": np.zeros(2601)})),
+            (ValueError, "of an attribute must not", lambda: singe.Sim().sheet(
+                *grid, wet=np.zeros(2601), material={"mass_rate": singe.Vary(0, 1, attribute="wet\0b")})),
+            (ValueError, "of a material must not", lambda: singe.Sim().sheet(*grid, material="cotton\0b")),
             (singe.HandleError, "another simulation", lambda: burning(4).pin(burning(4).sheets[0], vertices=[0])),
         ]
         for kind, text, call in cases:

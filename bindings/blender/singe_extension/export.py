@@ -11,7 +11,7 @@ import os
 import bpy
 import numpy as np
 
-from . import mesh as meshes
+from . import files, mesh as meshes
 
 STEPS = {"DRAFT": (8, None), "NORMAL": (16, None), "FINE": (24, 16)}
 SPOTS_MAX = 24
@@ -100,8 +100,8 @@ class Exporter:
         """Writes all files and returns the path of the scene file."""
         sheets = objects(self.scene, "SHEET")
         if not sheets:
-            raise ExportError("no object is a sheet: choose one and set Singe to Sheet")
-        os.makedirs(self.folder, exist_ok=True)
+            raise ExportError("no object is a sheet: set Singe to Sheet in an object's Physics tab")
+        files.take(self.folder)
         now = self.scene.frame_current
         try:
             self.scene.frame_set(self.frames.start)
@@ -109,9 +109,9 @@ class Exporter:
             self._walk()
         finally:
             self.scene.frame_set(now)
-        path = os.path.join(self.folder, "burn.yaml")
-        with open(path + ".part", "w", encoding="utf-8") as file:
-            json.dump(document, file, indent=1)
+        path = os.path.join(self.folder, files.SCENE)
+        with files.create(path + ".part") as file:
+            file.write((files.MARK + json.dumps(document, indent=1)).encode())
         os.replace(path + ".part", path)
         return path
 
@@ -144,7 +144,9 @@ class Exporter:
             scene.view_settings.view_transform = "Raw"
             scene.render.image_settings.file_format = "PNG"
             scene.render.image_settings.color_mode = "RGB"
-            image.save_render(os.path.join(self.folder, name), scene=scene)
+            path = os.path.join(self.folder, name)
+            files.remove(path)
+            image.save_render(path, scene=scene)
         except RuntimeError as error:
             raise ExportError(f"'{sheet.name}': the speed texture '{image.name}' cannot be saved: {error}") from None
         finally:
@@ -178,13 +180,13 @@ class Exporter:
         if own.material == "FILE":
             path = bpy.path.abspath(own.material_file)
             if not os.path.isfile(path):
-                raise ExportError(f"'{sheet.name}': there is no material file {path or '(none chosen)'}")
+                raise ExportError(f"'{sheet.name}' has no material file {path or '(none chosen)'}")
             material["base"] = path
         if "rate_group" in mesh.weights:
             material["mass_rate"] = {"from": own.rate_low, "to": own.rate_high, "attribute": "speed"}
         elif own.rate_image:
             if mesh.uv is None:
-                raise ExportError(f"'{sheet.name}' has a speed texture, but no uv to put it by: unwrap its mesh")
+                raise ExportError(f"'{sheet.name}' has a speed texture but no UV map: unwrap its mesh")
             material["mass_rate"] = {"from": own.rate_low, "to": own.rate_high,
                                      "texture": texture}
             self._save_texture(own.rate_image, sheet, texture)
@@ -195,7 +197,7 @@ class Exporter:
             raise ExportError(f"'{sheet.name}' is lit by a vertex group, but none is chosen")
         points = mesh.points[mesh.weights["lit_group"] > 0.5]
         if not len(points):
-            raise ExportError(f"no vertex of '{sheet.name}' has a weight above a half in '{sheet.singe.lit_group}'")
+            raise ExportError(f"no vertex of '{sheet.name}' has a weight above 0.5 in '{sheet.singe.lit_group}'")
         chosen, reach = meshes.spread(points, SPOTS_MAX)
         radius = max(reach, 1.5 * mesh.edge_length(), 0.003)
         return [{"kind": "spot", "position": points[i].tolist(), "radius": radius, "falloff": radius,
@@ -229,7 +231,7 @@ class Exporter:
     def _pin(self, sheet, mesh, name):
         held = np.flatnonzero(mesh.weights["pin_group"] > 0.5)
         if not len(held):
-            raise ExportError(f"no vertex of '{sheet.name}' has a weight above a half in '{sheet.singe.pin_group}'")
+            raise ExportError(f"no vertex of '{sheet.name}' has a weight above 0.5 in '{sheet.singe.pin_group}'")
         pin = {"sheet": name, "vertices": held.tolist()}
         if moves(sheet):
             pin["motion"] = {"mesh": f"{name}-pin.####.ply"}
@@ -244,10 +246,10 @@ class Exporter:
         entry = {"friction": collider.singe.friction}
         if not mesh.is_closed() and mesh.is_flat():
             if moves(collider):
-                raise ExportError(f"'{collider.name}' is a plane that moves: give it a thickness")
+                raise ExportError(f"'{collider.name}' is a flat collider that moves: give it a thickness")
             return {**entry, "kind": "plane", "position": mesh.points.mean(0).tolist(), "rotation": _plane_angles(mesh)}
         if not mesh.is_closed():
-            raise ExportError(f"'{collider.name}' is a collider and has holes: close its mesh, or make it a flat plane")
+            raise ExportError(f"the collider '{collider.name}' has holes: close its mesh, or make it a flat plane")
         entry["kind"] = "mesh"
         if moves(collider):
             entry["motion"] = {"mesh": f"{file}.####.ply"}

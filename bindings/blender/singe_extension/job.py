@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs the program as a separate process: starts it, follows its output files, and stops it so that it can resume."""
 
+import importlib.util
 import json
 import os
 import re
-import shutil
 import signal
 import stat
 import subprocess
 import sys
+
+from . import files
 
 RUNNING = {}  # jobs of this Blender, by folder
 
@@ -17,25 +19,29 @@ class ProgramError(Exception):
     """There is no program to run."""
 
 
-def find_program(override=""):
-    """The program `override` if given, else that of the extension's wheel, else that in PATH."""
-    if override:
-        if not os.path.isfile(override):
-            raise ProgramError(f"there is no program {override}")
-        return override
-    try:
-        import singe
-        path = os.path.join(os.path.dirname(singe.__file__), "bin", "singe")
-    except ImportError:
-        path = ""
-    if os.path.isfile(path):
-        if not os.access(path, os.X_OK):  # Blender's installer drops this permission
-            os.chmod(path, os.stat(path).st_mode | stat.S_IXUSR)
-        return path
-    found = shutil.which("singe")
-    if not found:
-        raise ProgramError("this build of the extension has no program for this system; choose one under Program")
-    return found
+def find_program(chosen=""):
+    """The program `chosen` if given, else the one that SINGE_PROGRAM of the environment names, that of the extension's
+    wheel, or the first in PATH. None of these is saved in a .blend file, which may come from a stranger."""
+    chosen = chosen or os.environ.get("SINGE_PROGRAM", "")
+    if chosen:
+        if not os.path.isabs(chosen) or chosen.startswith("//"):  # Blender's //: beside the .blend file
+            raise ProgramError(f"the program must have an absolute path, not {chosen}")
+        if not os.path.isfile(chosen):
+            raise ProgramError(f"there is no program {chosen}")
+        return chosen
+    package = importlib.util.find_spec("singe")
+    if package and package.origin:
+        path = os.path.join(os.path.dirname(package.origin), "bin", "singe")
+        if os.path.isfile(path):
+            if not os.access(path, os.X_OK):  # Blender's installer drops this permission
+                os.chmod(path, os.stat(path).st_mode | stat.S_IXUSR)
+            return path
+    for folder in os.get_exec_path():
+        path = os.path.join(folder, "singe.exe" if sys.platform == "win32" else "singe")
+        # a relative folder of PATH could be that of the .blend file
+        if os.path.isabs(folder) and os.path.isfile(path) and os.access(path, os.X_OK):
+            return path
+    raise ProgramError("this build of the extension has no program for this system: choose one in its preferences")
 
 
 class Job:
@@ -45,10 +51,10 @@ class Job:
         self.folder, self.frames = folder, frames
         self.cache = os.path.join(folder, "cache")
         self.log = os.path.join(folder, "log.txt")
-        command = [program, "run", os.path.join(folder, "burn.yaml"), "-o", self.cache, "--no-preview"]
+        command = [program, "run", os.path.join(folder, files.SCENE), "-o", self.cache, "--no-preview"]
         self.started = self._mark()
         self.resumed = self.counting = resume
-        with open(self.log, "wb") as log:
+        with files.create(self.log) as log:
             self.process = subprocess.Popen(command + (["--resume"] if resume else []), stdin=subprocess.DEVNULL,
                                             stdout=log, stderr=log, cwd=folder,
                                             start_new_session=sys.platform != "win32")
@@ -83,8 +89,11 @@ class Job:
         RUNNING.pop(self.folder, None)
         # at its end a run writes run.json after stats.csv, so one that ends between two polls is noticed only here
         self.counting = self.counting or self._mark() not in (None, self.started)
-        with open(self.log, encoding="utf-8", errors="replace") as file:
-            lines = file.read().splitlines()
+        try:
+            with open(self.log, encoding="utf-8", errors="replace") as file:
+                lines = file.read().splitlines()
+        except OSError:
+            lines = []
         # only the lines of errors; the lines of the scene quoted below them are dropped
         said = [line for line in lines if "error:" in line]
         return code, "\n".join(re.sub(r"^singe: error: ", "", line) for line in said[:6])
@@ -117,15 +126,17 @@ def root_of(cache):
     """The cache's USD root, the gas of its first frame (or None) and its frame rate; None if there is no root."""
     try:
         with open(os.path.join(cache, "run.json"), encoding="utf-8") as file:
-            record = json.load(file)
-    except (OSError, ValueError):
+            scene = json.load(file)["scene"]
+        name, fps = scene["name"], float(scene["fps"])
+    except (OSError, ValueError, KeyError, TypeError):
         return None
-    name = record["scene"]["name"]
+    if not isinstance(name, str) or os.path.basename(name) != name:  # a name with folders leads out of the cache
+        return None
     root = os.path.join(cache, f"{name}.usda")
     if not os.path.exists(root):
         return None
     for part in ("gas_detail", "gas"):
         gas = os.path.join(cache, part, f"{name}.0001.vdb")
         if os.path.exists(gas):
-            return root, gas, float(record["scene"]["fps"])
-    return root, None, float(record["scene"]["fps"])
+            return root, gas, fps
+    return root, None, fps

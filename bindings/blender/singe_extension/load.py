@@ -70,11 +70,11 @@ def load(context, cache):
     """Loads a cache anew: makes objects for the sheets and the gas. Returns the number of frames."""
     found = job.root_of(cache)
     if not found:
-        raise LoadError(f"{cache} has no USD: add `usd` to the formats of its scene, or run singe convert --to usd")
+        raise LoadError(f"{cache} has no USD: run singe convert --to usd, or add usd to the formats of its scene")
     root, gas, fps = found
     scene = context.scene
     if abs(scene.render.fps / scene.render.fps_base - fps) > 1e-3:
-        raise LoadError(f"the cache has {fps:g} frames a second; set the scene's frame rate to that")
+        raise LoadError(f"the cache has {fps:g} frames a second: set the scene's frame rate to it")
     clear(context, cache)
     collection = collection_of(context, cache)
     sheets = _import_sheets(context, root, collection)

@@ -93,8 +93,8 @@ def sheet_material(name, image, colour):
                  (-300, 200))
     fine = _node(tree, "ShaderNodeTexNoise", (-900, -600), Scale=900.0, Detail=4.0)
     links.new(_attribute(tree, "rest", (-1100, -600)).outputs["Vector"], fine.inputs["Vector"])
-    grey = _range(tree, _math(tree, "MULTIPLY", (-700, -450), ash, _math(tree, "ADD", (-700, -600), fine.outputs[0], 0.5)),
-                  0.05, 0.16, (-500, -400))
+    speckled = _math(tree, "MULTIPLY", (-700, -450), ash, _math(tree, "ADD", (-700, -600), fine.outputs[0], 0.5))
+    grey = _range(tree, speckled, 0.05, 0.16, (-500, -400))
     coloured = _mix(tree, grey, black, (0.30, 0.29, 0.28, 1), (-100, 200))
 
     # embers: hot char glows in patches, where air reaches it. `ember` is the cache's colour of that glow. The attribute

@@ -3,6 +3,8 @@
 
 import numpy as np
 
+from . import files
+
 
 class Mesh:
     """points [n, 3] m; faces as corners [c] and sizes [f]; uv [c, 2] or None; weights by name [n], from 0 to 1."""
@@ -106,7 +108,7 @@ def write_ply(path, mesh):
             faces.append(np.int32(2 * size).astype("<i4").tobytes())
             faces.append(mesh.uv[at:at + size].astype("<f4").tobytes())
         at += size
-    with open(path, "wb") as file:
+    with files.create(path) as file:
         file.write(("\n".join(lines) + "\nend_header\n").encode("ascii"))
         file.write(table.tobytes())
         file.write(b"".join(faces))

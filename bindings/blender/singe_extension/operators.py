@@ -2,12 +2,12 @@
 """The operators: burn (also preview and resume), cancel, free and load."""
 
 import os
-import shutil
+import subprocess
 
 import bpy
 from bpy.props import BoolProperty, StringProperty
 
-from . import export, job, load
+from . import export, files, job, load, properties
 
 EVERY = 0.25  # s between polls
 
@@ -15,7 +15,7 @@ EVERY = 0.25  # s between polls
 def burn_folder(scene, preview=False):
     path = bpy.path.abspath(scene.singe.folder or "//singe")
     if path.startswith("//") or not os.path.isabs(path):
-        raise export.ExportError("save the .blend file first, or choose a cache folder that does not begin with //")
+        raise export.ExportError("save the .blend file first, or choose a cache folder with an absolute path")
     return os.path.join(path, "preview" if preview else "burn")
 
 
@@ -41,11 +41,15 @@ class Burning:
         scene = context.scene
         folder = burn_folder(scene, preview)
         if folder in job.RUNNING:
-            raise export.ExportError("it is burning already")
+            raise export.ExportError("this scene is already burning")
         if frame_count(scene) < 2:
-            raise export.ExportError("the scene has a single frame: set its end")
-        program = job.find_program(bpy.path.abspath(scene.singe.program) if scene.singe.program else "")
-        if not resume:
+            raise export.ExportError("the scene has only one frame: set its end frame")
+        program = job.find_program(properties.chosen_program(context))
+        if resume:
+            if not files.is_own(folder):
+                raise export.ExportError(f"{folder} has no burn to resume")
+            files.take(folder)
+        else:
             load.clear(context, os.path.join(folder, "cache"))
             export.Exporter(context, folder, preview).write()
         self.job = job.Job(program, folder, frame_count(scene), resume)
@@ -64,8 +68,9 @@ class Burning:
             redraw(context)
         found = job.root_of(self.job.cache) if frames else None
         time = os.stat(found[0]).st_mtime_ns if found else None
+        fresh = found and time != self.root_time and (self.job.resumed or time > (self.job.started or (0, 0))[1])
         # in a root of one frame nothing moves, and Blender makes no Mesh Sequence Cache of it
-        if found and time != self.root_time and job.root_frames(found[0]) > 1 and (self.job.resumed or time > (self.job.started or (0, 0))[1]):
+        if fresh and job.root_frames(found[0]) > 1:
             self.root_time = time
             if load.is_loaded(self.job.cache):
                 load.grow(context, self.job.cache)
@@ -79,14 +84,18 @@ class Burning:
         self.look(context)
         scene, frames = context.scene, job.frames_in(self.job.cache)
         if code == 0:
-            say(scene, f"{frames} frames are burnt")
+            say(scene, f"{frames} frames burnt")
         elif said:
             say(scene, said, True)
         else:
-            say(scene, f"stopped after frame {frames} of {self.job.frames}: Resume continues")
+            say(scene, f"stopped after frame {frames} of {self.job.frames}; Resume continues the burn")
         scene.singe.progress = frames / self.job.frames
         redraw(context)
         return code == 0
+
+
+# errors that the user can fix
+ERRORS = (export.ExportError, files.FolderError, load.LoadError, job.ProgramError, OSError, RuntimeError)
 
 
 class SINGE_OT_burn(bpy.types.Operator, Burning):
@@ -100,9 +109,9 @@ class SINGE_OT_burn(bpy.types.Operator, Burning):
     def _begin(self, context):
         try:
             self.begin_job(context, self.preview, self.resume)
-        except (export.ExportError, load.LoadError, job.ProgramError, OSError) as error:
-            say(context.scene, str(error), True)
-            self.report({"ERROR"}, str(error))
+        except ERRORS as error:
+            say(context.scene, files.sentence(error), True)
+            self.report({"ERROR"}, context.scene.singe.message)
             return False
         return True
 
@@ -114,12 +123,25 @@ class SINGE_OT_burn(bpy.types.Operator, Burning):
             while self.look(context):
                 try:
                     self.job.process.wait(EVERY)
-                except Exception:
+                except subprocess.TimeoutExpired:
                     pass
         except KeyboardInterrupt:
             self.job.stop()
-        if self.end_job(context):
-            return {"FINISHED"}
+        except ERRORS as error:
+            return self._abandon(context, error)
+        try:
+            if self.end_job(context):
+                return {"FINISHED"}
+        except ERRORS as error:
+            return self._abandon(context, error)
+        self.report({"ERROR"}, context.scene.singe.message)
+        return {"CANCELLED"}
+
+    def _abandon(self, context, error):
+        """Stops the program because what it has written cannot be shown."""
+        self.job.stop()
+        self.job.finish()
+        say(context.scene, files.sentence(error), True)
         self.report({"ERROR"}, context.scene.singe.message)
         return {"CANCELLED"}
 
@@ -135,18 +157,16 @@ class SINGE_OT_burn(bpy.types.Operator, Burning):
     def modal(self, context, event):
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
+        result = {"FINISHED"}
         try:
             if self.look(context):
                 return {"PASS_THROUGH"}
-            good = self.end_job(context)
-        except (load.LoadError, RuntimeError, OSError) as error:
-            self.job.stop()
-            say(context.scene, str(error), True)
-            good = False
+            if not self.end_job(context) and context.scene.singe.failed:
+                self.report({"ERROR"}, context.scene.singe.message)
+        except ERRORS as error:
+            result = self._abandon(context, error)
         context.window_manager.event_timer_remove(self.timer)
-        if not good and context.scene.singe.failed:
-            self.report({"ERROR"}, context.scene.singe.message)
-        return {"FINISHED"}
+        return result
 
 
 class SINGE_OT_cancel(bpy.types.Operator):
@@ -161,7 +181,7 @@ class SINGE_OT_cancel(bpy.types.Operator):
 
 
 class SINGE_OT_free(bpy.types.Operator):
-    """Delete the cache's files and everything loaded from it"""
+    """Delete the files that Burn and Preview wrote, and everything loaded from them"""
     bl_idname = "singe.free"
     bl_label = "Free Cache"
 
@@ -173,13 +193,12 @@ class SINGE_OT_free(bpy.types.Operator):
             for preview in (False, True):
                 folder = burn_folder(context.scene, preview)
                 if folder in job.RUNNING:
-                    self.report({"ERROR"}, "it is burning: cancel first")
+                    self.report({"ERROR"}, "the scene is burning: cancel it first")
                     return {"CANCELLED"}
                 load.clear(context, os.path.join(folder, "cache"))
-                if os.path.exists(os.path.join(folder, "burn.yaml")):  # a burn's folder
-                    shutil.rmtree(folder)
-        except (export.ExportError, OSError) as error:
-            self.report({"ERROR"}, str(error))
+                files.free(folder)
+        except ERRORS as error:
+            self.report({"ERROR"}, files.sentence(error))
             return {"CANCELLED"}
         context.scene.singe.progress = 0
         say(context.scene, "")
@@ -187,7 +206,7 @@ class SINGE_OT_free(bpy.types.Operator):
 
 
 class SINGE_OT_load(bpy.types.Operator):
-    """Load the cache of a run of Singe, made here or elsewhere"""
+    """Load the cache of any run of Singe"""
     bl_idname = "singe.load"
     bl_label = "Load Cache"
     bl_options = {"REGISTER", "UNDO"}
@@ -203,10 +222,10 @@ class SINGE_OT_load(bpy.types.Operator):
         folder = bpy.path.abspath(self.directory or os.path.dirname(self.filepath))
         try:
             frames = load.load(context, folder.rstrip("/\\"))
-        except (load.LoadError, RuntimeError) as error:
-            self.report({"ERROR"}, str(error))
+        except ERRORS as error:
+            self.report({"ERROR"}, files.sentence(error))
             return {"CANCELLED"}
-        say(context.scene, f"{frames} frames are loaded")
+        say(context.scene, f"{frames} frames loaded")
         self.report({"INFO"}, context.scene.singe.message)
         return {"FINISHED"}
 

@@ -5,7 +5,7 @@ import os
 
 import bpy
 
-from . import export, job, operators
+from . import export, files, job, operators
 
 
 def draw_sheet(layout, candidate):
@@ -60,7 +60,6 @@ def draw_burn(layout, context):
         row.operator("singe.free", icon="TRASH")
         for i, line in enumerate(own.message.splitlines()):
             layout.label(text=line, icon="ERROR" if own.failed and i == 0 else "NONE")
-    layout.prop(own, "program")
 
 
 def draw_resume(layout, scene):
@@ -68,7 +67,7 @@ def draw_resume(layout, scene):
         cache = os.path.join(operators.burn_folder(scene), "cache")
     except export.ExportError:
         return
-    if job.can_resume(cache, operators.frame_count(scene)):
+    if files.is_own(os.path.dirname(cache)) and job.can_resume(cache, operators.frame_count(scene)):
         layout.operator("singe.burn", text=f"Resume from Frame {job.frames_in(cache)}").resume = True
 
 

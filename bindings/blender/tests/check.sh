@@ -35,7 +35,7 @@ tried=0
 for version in 3.11:4.5 3.13:5.2; do
     blender=${version#*:}
     if ! python=$(find_python "${version%:*}"); then
-        echo "== Blender $blender: needs python${version%:*}, which is not here"
+        echo "== Blender $blender: python${version%:*} is not installed"
         continue
     fi
     [ -x "$folder/$blender/bin/python" ] || "$python" -m venv "$folder/$blender"
@@ -43,6 +43,7 @@ for version in 3.11:4.5 3.13:5.2; do
     python=$folder/$blender/bin/python
     tried=1
     "$python" "$here/test_mesh.py"
+    "$python" "$here/test_files.py"
     extension "sources-$blender" "$python" "$here/rig.py" "$singe" "$folder/work/sources-$blender"
     if [ -n "${3:-}" ]; then
         "$python" "$here/../build.py" --wheels "$3" --out "$folder"

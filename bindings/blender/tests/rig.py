@@ -20,6 +20,8 @@ import numpy as np
 
 program = os.path.abspath(sys.argv[1])
 archive = sys.argv[3] if len(sys.argv) > 3 else None
+if not archive:
+    os.environ["SINGE_PROGRAM"] = program
 
 
 def install():
@@ -46,7 +48,6 @@ def fresh(frames=12, start=1):
     scene.render.fps, scene.render.fps_base = 24, 1
     own = scene.singe
     own.folder, own.gas, own.quality, own.pace = os.path.join(folder, "cache"), False, "DRAFT", 8
-    own.program = "" if archive else program
     bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, "scene.blend"))
     return scene
 
@@ -146,7 +147,7 @@ def curtain_burns():
     curtain = add_curtain()
     assert bpy.ops.singe.burn() == {"FINISHED"}, scene.singe.message
     sheet, = burning()
-    assert curtain.hide_render and scene.singe.message == "20 frames are burnt", scene.singe.message
+    assert curtain.hide_render and scene.singe.message == "20 frames burnt", scene.singe.message
     first, last = evaluated(sheet, 11), None
     top = points(first)[:, 2].max()
     assert abs(top - 0.35) < 0.01, top
@@ -231,7 +232,7 @@ def errors():
         (lambda: (setattr(bpy.data.objects["Curtain"].singe, "lit_by", "NONE"), open_collider()), "has holes"),
         (lambda: setattr(bpy.data.objects["Curtain"].singe, "rate_image", lost_image()), "cannot be saved"),
         (lambda: (setattr(bpy.data.objects["Curtain"].singe, "rate_image", bpy.data.images.new("speed", 4, 4)),
-                  remove_uv(bpy.data.objects["Curtain"].data)), "no uv"),
+                  remove_uv(bpy.data.objects["Curtain"].data)), "no UV map"),
         (lambda: (setattr(bpy.data.objects["Curtain"].singe, "rate_image", None),
                   bpy.data.objects.remove(bpy.data.objects["Bowl"]),
                   setattr(bpy.data.objects["Curtain"].singe, "material", "FILE")), "no material file"),
@@ -245,6 +246,31 @@ def errors():
         except RuntimeError as error:  # how a report of an error arrives in a script
             result = str(error)
         assert scene.singe.failed and expected in scene.singe.message, (expected, scene.singe.message, result)
+
+
+def folders():
+    """A burn leaves the folders of others alone, and so does Free Cache; the .blend file names no program."""
+    scene = fresh(frames=4)
+    add_curtain()
+    scene.singe.folder = os.path.join(folder, "others")
+    os.makedirs(os.path.join(folder, "others", "preview"))
+    mine = os.path.join(folder, "others", "preview", "burn.yaml")
+    with open(mine, "w") as file:
+        file.write("mine\n")
+    assert bpy.ops.singe.burn() == {"FINISHED"}, scene.singe.message
+    for call in (lambda: bpy.ops.singe.burn(preview=True), lambda: bpy.ops.singe.free()):
+        try:
+            call()
+        except RuntimeError as error:
+            assert "did not write" in str(error), error
+    assert os.path.exists(mine) and not os.path.exists(os.path.join(folder, "others", "burn"))
+    scene.singe.folder = mine
+    try:
+        bpy.ops.singe.burn()
+        raise AssertionError("a file was taken for a folder")
+    except RuntimeError as error:
+        assert "Errno" not in str(error) and "ot a " in str(error), error
+    assert not hasattr(scene.singe, "program")
 
 
 def remove_uv(mesh):
@@ -361,8 +387,10 @@ def suzanne():
     assert bpy.ops.singe.burn() == {"FINISHED"}, scene.singe.message
     import json
     with open(os.path.join(folder, "cache", "burn", "burn.yaml")) as file:
+        file.readline()  # the extension's mark
         written = json.load(file)
-    assert len(written["sources"][0]["path"]) == 20 and abs(written["sources"][0]["path"][9]["position"][2] - 0.09) < 1e-6
+    path = written["sources"][0]["path"]
+    assert len(path) == 20 and abs(path[9]["position"][2] - 0.09) < 1e-6
     assert abs(written["wind"]["velocity"][0] - 0.4) < 1e-3
     kinds = sorted(c["kind"] for c in written["colliders"])
     assert kinds == ["mesh", "plane"] and "motion" in next(c for c in written["colliders"] if c["kind"] == "mesh")
@@ -402,7 +430,7 @@ def preview_and_load():
 
 def main():
     extension = install()
-    for scenario in (curtain_burns, lambda: saved_and_moved(extension), errors, burnt_again, speed_by_texture,
+    for scenario in (curtain_burns, lambda: saved_and_moved(extension), errors, folders, burnt_again, speed_by_texture,
                      lambda: cancel_and_resume(extension), preview_and_load, suzanne):
         begun = time.monotonic()
         scenario()

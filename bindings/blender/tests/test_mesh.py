@@ -4,12 +4,15 @@
 import os
 import sys
 import tempfile
+import types
 import unittest
 
 import numpy as np
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "singe_extension"))
-import mesh as meshes
+package = types.ModuleType("singe_extension")  # without its __init__, which needs Blender
+package.__path__ = [os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "singe_extension")]
+sys.modules["singe_extension"] = package
+from singe_extension import mesh as meshes  # noqa: E402
 
 
 def square(uv=True):

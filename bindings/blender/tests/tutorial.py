@@ -39,7 +39,8 @@ def main(program, folder):
     own.role, own.material, own.cell_size = "SHEET", "newsprint", 0.003
     own.pin_group = group(curtain, "held", lambda p: p.z > 0.299 and abs(abs(p.x) - 0.05) < 0.051)
     own.lit_by, own.lit_group = "GROUP", group(curtain, "match", lambda p: p.z < 0.105 and p.x < -0.06)
-    scene.singe.program, scene.singe.pace, scene.singe.gas_detail = os.path.abspath(program), 6, 4
+    os.environ["SINGE_PROGRAM"] = os.path.abspath(program)
+    scene.singe.pace, scene.singe.gas_detail = 6, 4
     assert bpy.ops.singe.burn() == {"FINISHED"}, scene.singe.message
 
     bpy.ops.object.camera_add(location=(0.12, -0.62, 0.24))

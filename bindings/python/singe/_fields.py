@@ -64,6 +64,22 @@ def indices(values: Any, what: str) -> np.ndarray:
     return np.ascontiguousarray(array.reshape(-1), dtype=np.uint32)
 
 
+def text(value: Any, what: str) -> bytes:
+    """A name for C; ValueError names `what`. C would read a name with a NUL character only up to it."""
+    name = str(value)
+    if "\0" in name:
+        raise ValueError(f"{what} must not contain a NUL character: {name!r}")
+    return name.encode()
+
+
+def vector(kind: Any, values: Any, what: str, enum: Optional[str] = None) -> Any:
+    """A C array of exactly as many values as the type `kind` has; ValueError names `what`."""
+    items = list(values)
+    if len(items) != kind._length_:
+        raise ValueError(f"{what} must have {kind._length_} values, not {len(items)}")
+    return kind(*(_enumerator(enum, item, what) if enum else number(kind._type_, item, what) for item in items))
+
+
 def pointer(array: np.ndarray, kind: Any, keep: List[Any]) -> Any:
     """A pointer to an array that `keep` holds during the call."""
     keep.append(array)
@@ -84,7 +100,8 @@ def _enumerator(enum: str, value: Any, what: str) -> int:
     return operator.index(value)
 
 
-def _number(kind: Any, value: Any, what: str) -> Any:
+def number(kind: Any, value: Any, what: str) -> Any:
+    """A number that fits the C type `kind`; TypeError or ValueError names `what`."""
     if kind in (ctypes.c_float, ctypes.c_double):
         try:
             return float(value)
@@ -93,12 +110,12 @@ def _number(kind: Any, value: Any, what: str) -> Any:
     if kind is ctypes.c_bool:
         return bool(value)
     try:
-        number = operator.index(value)
+        whole = operator.index(value)
     except TypeError:
         raise TypeError(f"{what} must be a whole number, not {value!r}") from None
-    if kind(number).value != number:
-        raise ValueError(f"{what} must fit {ctypes.sizeof(kind)} bytes, not be {number}")
-    return number
+    if kind(whole).value != whole:
+        raise ValueError(f"{what} must fit {ctypes.sizeof(kind)} bytes, not be {whole}")
+    return whole
 
 
 def assign(made: Any, values: Mapping[str, Any], keep: List[Any], sheet: Optional["Attributes"] = None) -> None:
@@ -117,14 +134,10 @@ def _assign_one(made: Any, name: str, kind: Any, value: Any, keep: List[Any], sh
     if kind is _abi.SingeParam:
         setattr(made, name, _param(value, name, keep, sheet))
     elif issubclass(kind, ctypes.Array):
-        one = kind._type_
-        if one is _abi.SingeParam:
+        if kind._type_ is _abi.SingeParam:
             _colours(getattr(made, name), value, name, keep, sheet)
             return
-        items = list(value)
-        if len(items) != kind._length_:
-            raise ValueError(f"{name} must have {kind._length_} values, not {len(items)}")
-        setattr(made, name, kind(*(_enumerator(enum, v, name) if enum else _number(one, v, name) for v in items)))
+        setattr(made, name, vector(kind, value, name, enum))
     elif issubclass(kind, ctypes.Structure):
         inner = getattr(made, name)
         if isinstance(value, bool):
@@ -133,9 +146,9 @@ def _assign_one(made: Any, name: str, kind: Any, value: Any, keep: List[Any], sh
             value = {"enabled": True, **value}
         assign(inner, value, keep, sheet)
     elif kind is ctypes.c_char_p:
-        setattr(made, name, None if value is None else str(value).encode())
+        setattr(made, name, None if value is None else text(value, name))
     else:
-        setattr(made, name, _enumerator(enum, value, name) if enum else _number(kind, value, name))
+        setattr(made, name, _enumerator(enum, value, name) if enum else number(kind, value, name))
 
 
 def _colours(params: Any, value: Any, name: str, keep: List[Any], sheet: Optional["Attributes"]) -> None:
@@ -167,7 +180,7 @@ class Attributes:
     def structs(self, keep: List[Any]) -> Any:
         made = (_abi.SingeAttribute * max(len(self.arrays), 1))()
         for struct, (name, array) in zip(made, self.arrays.items()):
-            struct.name, struct.values = name.encode(), pointer(array, ctypes.c_float, keep)
+            struct.name, struct.values = text(name, "the name of an attribute"), pointer(array, ctypes.c_float, keep)
         keep.append(made)
         return made
 
@@ -177,7 +190,7 @@ def _param(value: Any, name: str, keep: List[Any], sheet: Optional[Attributes]) 
     made = _abi.SingeParam()
     if not isinstance(value, Vary):
         if np.ndim(value) == 0:
-            made.value = _number(ctypes.c_float, value, name)
+            made.value = number(ctypes.c_float, value, name)
             return made
         array = floats(value, 0, name)
         low, high = (float(array.min()), float(array.max())) if len(array) else (0.0, 0.0)
@@ -206,7 +219,8 @@ def _field(made: _abi.SingeParam, kind: str, given: Any, name: str, keep: List[A
     else:
         if sheet is None:
             raise ValueError(f"{name} cannot follow an attribute here")
-        field.attribute = (given if isinstance(given, str) else sheet.add(f"parameter {name}", given)).encode()
+        attribute = given if isinstance(given, str) else sheet.add(f"parameter {name}", given)
+        field.attribute = text(attribute, f"{name}: the name of an attribute")
     keep.append(field)
     made.field = ctypes.pointer(field)
 

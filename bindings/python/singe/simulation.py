@@ -15,7 +15,8 @@ import numpy as np
 
 from . import _abi, errors
 from ._aside import LONG, Aside, is_interruptible
-from ._fields import (Attributes, Vary, as_dict, assign, default, floats, indices, path_keys, pointer, set_texture)
+from ._fields import (Attributes, as_dict, assign, default, floats, indices, number, path_keys, pointer, set_texture,
+                      text, vector)
 from ._library import library, log_callback, raise_for
 from .objects import Collider, Pin, Sheet, Source, make_mesh
 from .picture import draw_png, html_picture
@@ -27,6 +28,7 @@ Result = TypeVar("Result")
 Callback = Callable[[StepView], Any]
 EVENT = np.dtype(_abi.SingeEvent)
 _SLICE = 16  # steps between which advance() can be interrupted
+_SECONDS_MAX = 1e6  # the library's limit for one advance
 
 
 class _Handle:
@@ -185,7 +187,9 @@ class Sim(Views):
         if texture is not None:
             set_texture(made.texture, texture, "texture", keep)
         if strength is not None:
-            rows = np.asarray(strength, np.float64).reshape(-1, 2)
+            rows = np.asarray(strength, np.float64)
+            if rows.ndim != 2 or rows.shape[1] != 2:
+                raise ValueError("strength has rows (time, factor)")
             made.strength = (_abi.SingeValueKey * len(rows))(*(_abi.SingeValueKey(t, v) for t, v in rows))
             made.strength_count = len(rows)
         id_ = _abi.SingeSourceId()
@@ -269,10 +273,14 @@ class Sim(Views):
             array = floats(vertices, 3, "vertices")
             made.vertex_count, made.vertices = len(array), pointer(array, ctypes.c_float, keep)
         if triangles is not None:
+            if np.ndim(triangles) != 2 or np.shape(triangles)[1] != 3:
+                raise ValueError(f"triangles must have the shape [n, 3], not {list(np.shape(triangles))}")
             corners = indices(triangles, "triangles")
             made.triangle_count, made.triangles = len(corners) // 3, pointer(corners, ctypes.c_uint32, keep)
         if heights is not None:
             array = np.ascontiguousarray(heights, np.float32)
+            if array.ndim != 2:
+                raise ValueError(f"heights must have the shape [rows, columns], not {list(array.shape)}")
             made.rows, made.columns = array.shape
             made.heights = pointer(array, ctypes.c_float, keep)
         if path is not None:
@@ -290,7 +298,7 @@ class Sim(Views):
 
     def set_gravity(self, gravity: Vector) -> None:
         """Sets gravity, m/s2, from the next step on."""
-        self._call("singe_sim_set_gravity", (ctypes.c_float * 3)(*gravity))
+        self._call("singe_sim_set_gravity", vector(ctypes.c_float * 3, gravity, "gravity"))
 
     def set_pace(self, pace: float) -> None:
         """Sets the seconds of fire per second of motion, from the next step on."""
@@ -346,20 +354,22 @@ class Sim(Views):
         for steps in progress, at most 16 without `steps_max`, which end by themselves.
         """
         whole = float(seconds)
+        most = number(ctypes.c_uint32, steps_max, "steps_max")
         part = whole if steps_max else _SLICE * (self._time_step or self._mean_step() or 1e-3)
         done = 0
         found: List[np.ndarray] = []
 
         def some(handle: _Handle) -> int:
             count = ctypes.c_uint32()
-            result = library.singe_sim_advance(handle.pointer, now, steps_max, ctypes.byref(count))
+            result = library.singe_sim_advance(handle.pointer, now, most, ctypes.byref(count))
             found.extend(self._new_events(handle))
             self._checked(handle, result)
             return count.value
 
         try:
             while True:
-                now = min(part, whole)
+                # seconds that the library refuses, such as NaN and infinity, go to it undivided
+                now = part if part < whole <= _SECONDS_MAX else whole
                 done, whole = done + self._stepped(some), whole - now
                 if not whole > 0:
                     return done
@@ -547,8 +557,8 @@ def _material(material: Material, keep: List[Any], sheet: Optional[Attributes]) 
     values = {"base": material} if isinstance(material, str) else dict(material)
     made = default(_abi.SingeMaterialDef, "singe_init_material")
     error = _abi.SingeError()
-    base = str(values.pop("base", "office-paper")).replace("_", "-")
-    if library.singe_material_preset(base.encode(), ctypes.byref(made), ctypes.byref(error)):
+    base = text(values.pop("base", "office-paper"), "the name of a material").replace(b"_", b"-")
+    if library.singe_material_preset(base, ctypes.byref(made), ctypes.byref(error)):
         raise_for(error)
     assign(made, values, keep, sheet)
     return made
