@@ -1,22 +1,140 @@
-// Meshes by assimp's C interface: FBX, COLLADA, 3DS, X3D and glTF 1. assimp is large and was not written for hostile
-// files, so it runs in a child process, which answers with polygons (mesh_answer.h). Nothing is triangulated, smoothed
+// Meshes by assimp's C interface: FBX, COLLADA, 3DS, X3D, OFF and glTF 1. assimp is large and was not written for hostile
+// files, so it runs in a child process, which answers with polygons (mesh_reader.h). Nothing is triangulated, smoothed
 // or joined there: mesh_make does that by position. All meshes of all nodes are read with their transforms, in
 // depth-first order of the nodes.
-#include "formats/assimp_files.h"
+#include "common/store.h"
+#include "formats/formats.h"
+
+#ifndef SINGE_ASSIMP
+
+bool assimp_available(void) { return false; }
+
+SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                        Polygons *polygons, SingeError *error) {
+    (void)bytes, (void)size, (void)allocator;
+    memset(polygons, 0, sizeof *polygons);
+    return refuse(error, SINGE_ERROR_STATE, "mesh", -1,
+                  "%s: this singe was built without assimp; it reads OBJ, PLY, STL and glTF 2", short_name(name));
+}
+
+#else
+
 #include "formats/isolate.h"
 #include "formats/mesh_reader.h"
-#include "formats/mesh_answer.h"
-#include "common/store.h"
 
+#include <assimp/cfileio.h>
 #include <assimp/cimport.h>
 #include <assimp/scene.h>
 
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { DEPTH_LIMIT = 1000 }; ///< of nested nodes
 
 bool assimp_available(void) { return true; }
+
+// ---- the files that assimp may open: the one to read, which is in memory, and regular files in its folder or below
+
+typedef struct Source {
+    const char *name; ///< of the file to read; paths in it are relative to its folder
+    const uint8_t *bytes;
+    size_t size;
+    size_t beside_size;  ///< of the other files that were opened
+    const char *refused; ///< the end of a sentence about the first refused file, or NULL
+} Source;
+
+typedef struct Opened {
+    const uint8_t *bytes;
+    size_t size, at;
+    Bytes own; ///< of a file other than the first
+} Opened;
+
+// ---- one file
+
+static size_t opened_read(struct aiFile *file, char *to, size_t size, size_t count) {
+    Opened *opened = (void *)file->UserData;
+    if (!size) return 0;
+    size_t max = (opened->size - opened->at) / size;
+    if (count > max) count = max;
+    if (count) memcpy(to, opened->bytes + opened->at, size * count);
+    opened->at += size * count;
+    return count;
+}
+
+static size_t opened_write(struct aiFile *file, const char *from, size_t size, size_t count) {
+    (void)file, (void)from, (void)size, (void)count;
+    return 0;
+}
+
+static size_t opened_tell(struct aiFile *file) { return ((Opened *)(void *)file->UserData)->at; }
+static size_t opened_size(struct aiFile *file) { return ((Opened *)(void *)file->UserData)->size; }
+static void opened_flush(struct aiFile *file) { (void)file; }
+
+static enum aiReturn opened_seek(struct aiFile *file, size_t offset, enum aiOrigin origin) {
+    Opened *opened = (void *)file->UserData;
+    size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? opened->at : opened->size;
+    size_t to = from + offset; // wraps for negative offsets
+    if (to > opened->size) return aiReturn_FAILURE;
+    opened->at = to;
+    return aiReturn_SUCCESS;
+}
+
+// ---- which files
+
+static void note_refused(Source *source, const char *why) {
+    if (!source->refused) source->refused = why;
+}
+
+static bool open_beside(Source *source, const char *path, Opened *opened) {
+    if (!path_is_inside(source->name, path)) {
+        note_refused(source, "; it refers to something that is not a file in its folder or below");
+        return false;
+    }
+    if (file_read(path, (SingeAllocator){0}, &opened->own, NULL)) {
+        note_refused(source, "; it refers to a file that cannot be read");
+        return false;
+    }
+    opened->bytes = opened->own.data;
+    opened->size = opened->own.size;
+    source->beside_size += opened->size;
+    return true;
+}
+
+// ---- assimp's callbacks
+
+static struct aiFile *source_open(struct aiFileIO *io, const char *name, const char *mode) {
+    Source *source = (void *)io->UserData;
+    if (!mode || strchr(mode, 'w') || strchr(mode, 'a') || strchr(mode, '+')) return NULL;
+    struct aiFile *file = calloc(1, sizeof *file);
+    Opened *opened = calloc(1, sizeof *opened);
+    bool good = file && opened;
+    if (good && strcmp(name, source->name) == 0) {
+        opened->bytes = source->bytes;
+        opened->size = source->size;
+    } else good = good && open_beside(source, name, opened);
+    if (!good) {
+        free(file);
+        free(opened);
+        return NULL;
+    }
+    *file =
+        (struct aiFile){opened_read, opened_write, opened_tell, opened_size, opened_seek, opened_flush, (void *)opened};
+    return file;
+}
+
+static void source_close(struct aiFileIO *io, struct aiFile *file) {
+    (void)io;
+    Opened *opened = (void *)file->UserData;
+    bytes_free(&opened->own);
+    free(opened);
+    free(file);
+}
+
+/// assimp's file callbacks. They refer to `source`.
+static struct aiFileIO assimp_files(Source *source) {
+    return (struct aiFileIO){source_open, source_close, (void *)source};
+}
 
 // ---- a walk over the meshes of all nodes
 
@@ -226,7 +344,8 @@ static SingeResult check_kind(const char *name, const uint8_t *bytes, size_t siz
     static const struct {
         const char *ending, *begins;
     } kinds[] = {{".gltf", "{"},  {".glb", "glTF"}, {".fbx", "Kaydara FBX"}, {".fbx", ";"},
-                 {".fbx", "FBX"}, {".dae", "<"},    {".x3d", "<"},           {".3ds", "MM"}};
+                 {".fbx", "FBX"}, {".dae", "<"},    {".x3d", "<"},           {".3ds", "MM"},
+                 {".off", "OFF"}, {".off", "C"},    {".off", "N"},           {".off", "S"}};
     const uint8_t *at = bytes, *end = bytes + size;
     if (end - at >= 3 && memcmp(at, "\xef\xbb\xbf", 3) == 0) at += 3;
     while (at < end && (*at == ' ' || *at == '\t' || *at == '\n' || *at == '\r')) at++;
@@ -253,3 +372,5 @@ SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, Sin
     bytes_free(&answer);
     return result;
 }
+
+#endif

@@ -1,6 +1,18 @@
 // EXR by OpenEXRCore: one part of scan lines, ZIP-compressed, complete in memory before the file is written.
-#include "formats/codec.h"
 #include "common/store.h"
+#include "formats/formats.h"
+
+#ifndef SINGE_EXR
+
+bool exr_available(void) { return false; }
+
+SingeResult exr_write(const char *path, int width, int height, const ExrChannel *channels, int count,
+                      SingeError *error) {
+    (void)width, (void)height, (void)channels, (void)count;
+    return refuse(error, SINGE_ERROR_STATE, "exr", -1, "%s: this singe was built without EXR", short_name(path));
+}
+
+#else
 
 #include <openexr.h>
 #include <string.h>
@@ -110,3 +122,5 @@ SingeResult exr_write(const char *path, int width, int height, const ExrChannel 
 }
 
 bool exr_available(void) { return true; }
+
+#endif

@@ -2,7 +2,6 @@
 // buffers, and of accessors, which are arrays in a view.
 #include "formats/gltf.h"
 
-#include "formats/path_inside.h"
 #include "formats/mesh_reader.h"
 #include "common/store.h"
 

@@ -3,8 +3,6 @@
 //
 // Vertices of a sheet keep their order. Colours are indexed: they are rounded to 5, 6 and 5 bits of their square roots.
 #include "formats/burn_colour.h"
-#include "formats/fields.h"
-#include "formats/sheet_parts.h"
 #include "formats/usd.h"
 #include "formats/usd_crate.h"
 

@@ -11,7 +11,7 @@
 //
 // Vertices of the cache and the mesh are matched by rest position, sheet and, if present, number in the file. A vertex
 // that is gone follows its remaining neighbours, so that faces at the rim keep their shape.
-#include "formats/glb_file.h"
+#include "formats/glb.h"
 #include "formats/number.h"
 #include "common/store.h"
 

@@ -1,7 +1,6 @@
 // VTK's XML files of polygons, with raw appended arrays, and their collection file (ParaView, VTK, PyVista).
 //
 // Each array is its length in bytes (u64) and its values, little-endian; an XML element has its offset.
-#include "formats/fields.h"
 #include "formats/output.h"
 #include "formats/sink.h"
 
