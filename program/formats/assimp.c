@@ -131,11 +131,6 @@ static void source_close(struct aiFileIO *io, struct aiFile *file) {
     free(file);
 }
 
-/// assimp's file callbacks. They refer to `source`.
-static struct aiFileIO assimp_files(Source *source) {
-    return (struct aiFileIO){source_open, source_close, (void *)source};
-}
-
 // ---- a walk over the meshes of all nodes
 
 typedef struct Walk Walk;
@@ -197,22 +192,20 @@ static unsigned mesh_number(const Walk *walk, const struct aiMesh *mesh) {
     return i;
 }
 
-static SingeResult check_face(Walk *walk, const struct aiMesh *mesh, unsigned f) {
-    const struct aiFace *face = &mesh->mFaces[f];
-    for (unsigned i = 0; i < face->mNumIndices; i++)
-        if (face->mIndices[i] >= mesh->mNumVertices)
-            return refuse(walk->error, SINGE_ERROR_MESH, "mesh", f,
-                          "%s: mesh %u, face %u (from 0): vertex index %u is out of range: the mesh has %u vertices",
-                          short_name(walk->name), mesh_number(walk, mesh), f, face->mIndices[i], mesh->mNumVertices);
-    return SINGE_OK;
-}
-
 static SingeResult count_mesh(Walk *walk, const struct aiMesh *mesh, const struct aiMatrix4x4 *at) {
     (void)at;
     MeshCounts *counts = &walk->counts;
     for (unsigned f = 0; f < mesh->mNumFaces; f++) {
         unsigned corners = mesh->mFaces[f].mNumIndices;
-        TRY(check_face(walk, mesh, f));
+
+        const struct aiFace *face = &mesh->mFaces[f];
+        for (unsigned i = 0; i < face->mNumIndices; i++)
+            if (face->mIndices[i] >= mesh->mNumVertices)
+                return refuse(
+                    walk->error, SINGE_ERROR_MESH, "mesh", f,
+                    "%s: mesh %u, face %u (from 0): vertex index %u is out of range: the mesh has %u vertices",
+                    short_name(walk->name), mesh_number(walk, mesh), f, face->mIndices[i], mesh->mNumVertices);
+
         if (corners < 3) continue; // points and lines have no area
         counts->faces++, counts->corners += corners;
     }
@@ -275,21 +268,6 @@ static SingeResult put_uv(Walk *walk, const struct aiMesh *mesh, const struct ai
     return SINGE_OK;
 }
 
-static SingeResult put_scene(Walk *walk) {
-    TRY(walk_scene(walk, count_mesh));
-    MeshCounts counts = walk->counts;
-    if (counts.vertices > MESH_COUNT_LIMIT || counts.corners > MESH_COUNT_LIMIT)
-        return refuse(walk->error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: is too large", short_name(walk->name));
-    put(walk, &counts, sizeof counts);
-    TRY(walk_scene(walk, put_positions));
-    TRY(walk_scene(walk, put_sizes));
-    walk->counts.vertices = 0; // start again
-    TRY(walk_scene(walk, put_corners));
-    if (counts.uv) TRY(walk_scene(walk, put_uv));
-    isolate_put(walk->answer, walk->buffer, walk->held);
-    return SINGE_OK;
-}
-
 // ---- in the child
 
 /// assimp omits or changes some indices that are out of range, and reports that only in its log.
@@ -298,35 +276,33 @@ static void note_complaint(const char *message, char *bad_index) {
     if (strstr(message, "range") || strstr(message, "overflow") || strstr(message, "nvalid")) *bad_index = 1;
 }
 
-/// assimp's message without its quotes: whoever sees it may not be allowed to read the file.
-static void assimp_unquote(char *to, size_t max, const char *words) {
-    size_t length = 0;
-    bool quoted = false;
-    for (; *words && length + 4 < max; words++) {
-        if (*words == '"' && !quoted) memcpy(to + length, "...", 3), length += 3;
-        if (*words == '"') quoted = !quoted;
-        else if (!quoted && (unsigned char)*words >= ' ') to[length++] = *words;
-    }
-    to[length] = 0;
-}
-
-static SingeResult refuse_import(const Source *source, SingeError *error) {
-    const char *why = aiGetErrorString();
-    char words[160];
-    if (why && strstr(why, "bad_alloc")) errno = ENOMEM; // tells isolate_run
-    assimp_unquote(words, sizeof words, why && why[0] ? why : "cannot be read");
-    return refuse(error, SINGE_ERROR_FORMAT, "mesh", -1, "%s: %s%s", short_name(source->name), words,
-                  source->refused ? source->refused : "");
-}
-
 static SingeResult read_in_child(void *context, IsolateAnswer *answer, SingeError *error) {
     char bad_index = 0;
     Source *source = context;
-    struct aiFileIO files = assimp_files(source);
+    struct aiFileIO files = (struct aiFileIO){source_open, source_close, (void *)source};
     struct aiLogStream log = {note_complaint, &bad_index};
     aiAttachLogStream(&log);
     const struct aiScene *scene = aiImportFileEx(source->name, 0, &files);
-    if (!scene || !scene->mRootNode) return refuse_import(source, error);
+    if (!scene || !scene->mRootNode) {
+        const char *why = aiGetErrorString();
+        char words[160];
+        if (why && strstr(why, "bad_alloc")) errno = ENOMEM; // tells isolate_run
+
+        // without its quotes: whoever sees the message may not be allowed to read the file
+        size_t n = 0;
+        bool quoted = false;
+        for (const char *c = why && why[0] ? why : "cannot be read"; *c && n + 4 < sizeof words; c++) {
+            if (*c == '"' && !quoted) {
+                memcpy(words + n, "...", 3);
+                n += 3;
+            }
+            if (*c == '"') quoted = !quoted;
+            else if (!quoted && (unsigned char)*c >= ' ') words[n++] = *c;
+        }
+        words[n] = 0;
+        return refuse(error, SINGE_ERROR_FORMAT, "mesh", -1, "%s: %s%s", short_name(source->name), words,
+                      source->refused ? source->refused : "");
+    }
     if (bad_index)
         return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: an index is out of range", short_name(source->name));
     Walk walk = {.scene = scene,
@@ -334,7 +310,19 @@ static SingeResult read_in_child(void *context, IsolateAnswer *answer, SingeErro
                  .error = error,
                  .answer = answer,
                  .max = MESH_ANSWER_BASE + MESH_ANSWER_TIMES * ((uint64_t)source->size + source->beside_size)};
-    return put_scene(&walk);
+
+    TRY(walk_scene(&walk, count_mesh));
+    MeshCounts counts = walk.counts;
+    if (counts.vertices > MESH_COUNT_LIMIT || counts.corners > MESH_COUNT_LIMIT)
+        return refuse(walk.error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: is too large", short_name(walk.name));
+    put(&walk, &counts, sizeof counts);
+    TRY(walk_scene(&walk, put_positions));
+    TRY(walk_scene(&walk, put_sizes));
+    walk.counts.vertices = 0; // start again
+    TRY(walk_scene(&walk, put_corners));
+    if (counts.uv) TRY(walk_scene(&walk, put_uv));
+    isolate_put(walk.answer, walk.buffer, walk.held);
+    return SINGE_OK;
 }
 
 // ---- in the parent

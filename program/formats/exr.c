@@ -47,34 +47,15 @@ static int64_t exr_put(exr_const_context_t context, void *data, const void *buff
     return (int64_t)size;
 }
 
-static exr_pixel_type_t exr_type(ExrKind kind) {
-    return kind == EXR_KIND_ID ? EXR_PIXEL_UINT : kind == EXR_KIND_FLOAT ? EXR_PIXEL_FLOAT : EXR_PIXEL_HALF;
-}
-
 static exr_result_t exr_describe(exr_context_t file, int width, int height, const ExrChannel *channels, int count) {
     int part;
     exr_result_t result = exr_add_part(file, NULL, EXR_STORAGE_SCANLINE, &part);
     if (!result) result = exr_initialize_required_attr_simple(file, part, width, height, EXR_COMPRESSION_ZIP);
-    for (int i = 0; i < count && !result; i++)
-        result =
-            exr_add_channel(file, part, channels[i].name, exr_type(channels[i].kind), EXR_PERCEPTUALLY_LINEAR, 1, 1);
-    return result ? result : exr_write_header(file);
-}
-
-/// Gives the encoder the channels of the lines from `y`. It lists them by name in its own order.
-static void exr_aim(exr_encode_pipeline_t *encoder, const ExrChannel *channels, int count, int width, int y) {
-    for (int16_t i = 0; i < encoder->channel_count; i++) {
-        exr_coding_channel_info_t *to = &encoder->channels[i];
-        for (int k = 0; k < count; k++) {
-            if (strcmp(channels[k].name, to->channel_name) != 0) continue;
-            size_t stride = sizeof(float) * (size_t)channels[k].stride;
-            to->user_data_type = channels[k].kind == EXR_KIND_ID ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
-            to->user_bytes_per_element = 4;
-            to->user_pixel_stride = (int32_t)stride;
-            to->user_line_stride = (int32_t)(stride * (size_t)width);
-            to->encode_from_ptr = (const uint8_t *)channels[k].values + stride * (size_t)width * (size_t)y;
-        }
+    for (int i = 0; i < count && !result; i++) {
+        static const exr_pixel_type_t types[] = {EXR_PIXEL_HALF, EXR_PIXEL_FLOAT, EXR_PIXEL_UINT};
+        result = exr_add_channel(file, part, channels[i].name, types[channels[i].kind], EXR_PERCEPTUALLY_LINEAR, 1, 1);
     }
+    return result ? result : exr_write_header(file);
 }
 
 static exr_result_t exr_encode(exr_context_t file, int width, int height, const ExrChannel *channels, int count) {
@@ -88,7 +69,21 @@ static exr_result_t exr_encode(exr_context_t file, int width, int height, const 
             result =
                 y ? exr_encoding_update(file, 0, &chunk, &encoder) : exr_encoding_initialize(file, 0, &chunk, &encoder);
         if (result) break;
-        exr_aim(&encoder, channels, count, width, y);
+
+        // the encoder lists the channels by name, in its own order
+        for (int16_t i = 0; i < encoder.channel_count; i++) {
+            exr_coding_channel_info_t *to = &encoder.channels[i];
+            for (int k = 0; k < count; k++) {
+                if (strcmp(channels[k].name, to->channel_name) != 0) continue;
+                size_t stride = sizeof(float) * (size_t)channels[k].stride;
+                to->user_data_type = channels[k].kind == EXR_KIND_ID ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
+                to->user_bytes_per_element = 4;
+                to->user_pixel_stride = (int32_t)stride;
+                to->user_line_stride = (int32_t)(stride * (size_t)width);
+                to->encode_from_ptr = (const uint8_t *)channels[k].values + stride * (size_t)width * (size_t)y;
+            }
+        }
+
         if (y == 0) result = exr_encoding_choose_default_routines(file, 0, &encoder);
         if (!result) result = exr_encoding_run(file, 0, &encoder);
     }

@@ -33,21 +33,6 @@ static SingeResult refuse_system(SingeError *error, const char *doing, const cha
 
 // ---- reading
 
-static SingeResult read_bytes(int file, const char *path, Bytes *bytes, SingeError *error) {
-    size_t done = 0;
-    while (done < bytes->size) {
-        ssize_t count = read(file, bytes->data + done, bytes->size - done);
-        if (count < 0 && errno == EINTR) continue;
-        if (count < 0) return refuse_system(error, "read", path, errno);
-        if (count == 0)
-            return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: became shorter while it was read",
-                          short_name(path));
-        done += (size_t)count;
-    }
-    bytes->data[done] = 0;
-    return SINGE_OK;
-}
-
 static SingeResult read_open(int file, const char *path, size_t max, SingeAllocator allocator, Bytes *bytes,
                              SingeError *error) {
     struct stat about;
@@ -62,7 +47,19 @@ static SingeResult read_open(int file, const char *path, size_t max, SingeAlloca
     bytes->allocator = allocator;
     bytes->data = store_new(allocator, bytes->size + 1, 1);
     if (!bytes->data) return refuse_memory(error, "file", path);
-    return read_bytes(file, path, bytes, error);
+
+    size_t done = 0;
+    while (done < bytes->size) {
+        ssize_t count = read(file, bytes->data + done, bytes->size - done);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return refuse_system(error, "read", path, errno);
+        if (count == 0)
+            return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: became shorter while it was read",
+                          short_name(path));
+        done += (size_t)count;
+    }
+    bytes->data[done] = 0;
+    return SINGE_OK;
 }
 
 SingeResult file_read(const char *path, SingeAllocator allocator, Bytes *bytes, SingeError *error) {
@@ -126,19 +123,6 @@ static int temporary_open(const char *target, char *temporary, size_t length, in
     return EEXIST;
 }
 
-// The rename itself is durable only after the folder is flushed, too. A failure here loses no data.
-static void flush_folder(const char *target) {
-    char folder[PATH_MAX];
-    strcpy(folder, target);
-    char *slash = strrchr(folder, '/');
-    if (!slash) strcpy(folder, ".");
-    else slash[slash == folder] = 0;
-    int file = open(folder, O_RDONLY | O_CLOEXEC);
-    if (file < 0) return;
-    (void)fsync(file);
-    close(file);
-}
-
 // A rename replaces a link, never its target; but it would replace a device by a regular file.
 static SingeResult check_target(const char *path, SingeError *error) {
     struct stat about;
@@ -151,13 +135,19 @@ static SingeResult check_target(const char *path, SingeError *error) {
 
 static int put_in_place(const char *temporary, const char *target) {
     if (rename(temporary, target)) return errno;
-    flush_folder(target);
-    return 0;
-}
 
-/// The target becomes the backup; without a target the earlier backup remains.
-static int put_aside(const char *target, const char *backup) {
-    return backup && rename(target, backup) && errno != ENOENT ? errno : 0;
+    // the rename itself is durable only after the folder is flushed, too; a failure here loses no data
+    char folder[PATH_MAX];
+    strcpy(folder, target);
+    char *slash = strrchr(folder, '/');
+    if (!slash) strcpy(folder, ".");
+    else slash[slash == folder] = 0;
+    int file = open(folder, O_RDONLY | O_CLOEXEC);
+    if (file >= 0) {
+        (void)fsync(file);
+        close(file);
+    }
+    return 0;
 }
 
 SingeResult file_write_backup(const char *path, const char *backup, const void *data, size_t size, SingeError *error) {
@@ -170,7 +160,7 @@ SingeResult file_write_backup(const char *path, const char *backup, const void *
     if (!reason) {
         reason = write_bytes(file, data, size);
         if (close(file) && !reason) reason = errno;
-        if (!reason) reason = put_aside(path, backup);
+        if (!reason) reason = backup && rename(path, backup) && errno != ENOENT ? errno : 0;
         if (!reason) reason = put_in_place(temporary, path);
         if (reason) unlink(temporary);
     }
@@ -218,34 +208,27 @@ void file_discard(char *draft) {
 
 // ---- files that a file refers to
 
-/// Whether a path has a part "..".
-static bool goes_up(const char *path) {
-    for (const char *part = path;;) {
-        size_t length = strcspn(part, "/\\");
-        if (length == 2 && part[0] == '.' && part[1] == '.') return true;
-        if (!part[length]) return false;
-        part += length + 1;
-    }
-}
-
-/// Whether the path with links resolved is in the folder or below.
-static bool leads_inside(const char *folder, const char *path) {
-    char *real_folder = realpath(folder, NULL), *real = realpath(path, NULL);
-    size_t length = real_folder ? strlen(real_folder) : 0;
-    if (length == 1) length = 0; // "/"
-    bool inside = real_folder && real && strncmp(real, real_folder, length) == 0 && real[length] == '/';
-    free(real_folder);
-    free(real);
-    return inside;
-}
-
 bool path_is_inside(const char *name, const char *path) {
     const char *slash = strrchr(name, '/');
     size_t length = slash ? (size_t)(slash - name) + 1 : 0;
-    const char *inside = path + length;
-    if (strncmp(path, name, length) != 0 || *inside == '/' || *inside == 0 || goes_up(inside)) return false;
+    if (strncmp(path, name, length) != 0 || path[length] == '/' || path[length] == 0) return false;
+
+    // no part is ".."
+    for (const char *part = path + length;;) {
+        size_t size = strcspn(part, "/\\");
+        if (size == 2 && part[0] == '.' && part[1] == '.') return false;
+        if (!part[size]) break;
+        part += size + 1;
+    }
+
+    // with links resolved it is in the folder or below
     char *folder = length ? strndup(name, length) : strdup(".");
-    bool good = folder && leads_inside(folder, path);
+    char *real_folder = folder ? realpath(folder, NULL) : NULL, *real = realpath(path, NULL);
+    size_t kept = real_folder ? strlen(real_folder) : 0;
+    if (kept == 1) kept = 0; // "/"
+    bool inside = real_folder && real && strncmp(real, real_folder, kept) == 0 && real[kept] == '/';
     free(folder);
-    return good;
+    free(real_folder);
+    free(real);
+    return inside;
 }

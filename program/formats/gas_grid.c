@@ -88,20 +88,6 @@ static bool values_are_finite(const SingeGas *gas) {
     return sum == 0;
 }
 
-/// Still air in a block.
-static void clear_block(Gas *gas, const uint32_t block[3], float coolest) {
-    uint32_t low[3], high[3];
-    gas_block_box(&gas->view, block, low, high);
-    for (uint32_t z = low[2]; z < high[2]; z++)
-        for (uint32_t y = low[1]; y < high[1]; y++)
-            for (uint32_t x = low[0]; x < high[0]; x++) {
-                size_t i = gas_index(&gas->view, x, y, z);
-                gas->temperature[i] = coolest;
-                gas->smoke[i] = gas->flame[i] = gas->extinction[i] = gas->flame_share[i] = 0;
-                gas->velocity[i][0] = gas->velocity[i][1] = gas->velocity[i][2] = 0;
-            }
-}
-
 SingeResult gas_copy(const SingeGas *gas, SingeAllocator allocator, Gas *copy, SingeError *error) {
     *copy = (Gas){.allocator = allocator};
     if (!gas_shape_is_good(gas))
@@ -133,7 +119,20 @@ SingeResult gas_copy(const SingeGas *gas, SingeAllocator allocator, Gas *copy, S
     for (block[2] = 0; block[2] * GAS_BLOCK < n[2]; block[2]++)
         for (block[1] = 0; block[1] * GAS_BLOCK < n[1]; block[1]++)
             for (block[0] = 0; block[0] * GAS_BLOCK < n[0]; block[0]++)
-                if (!gas_block_holds(&copy->view, block, coolest)) clear_block(copy, block, coolest);
+                if (!gas_block_holds(&copy->view, block, coolest)) {
+                    // still air in a block
+                    uint32_t low[3], high[3];
+                    gas_block_box(&copy->view, block, low, high);
+                    for (uint32_t z = low[2]; z < high[2]; z++)
+                        for (uint32_t y = low[1]; y < high[1]; y++)
+                            for (uint32_t x = low[0]; x < high[0]; x++) {
+                                size_t cell = gas_index(&copy->view, x, y, z);
+                                copy->temperature[cell] = coolest;
+                                copy->smoke[cell] = copy->flame[cell] = copy->extinction[cell] =
+                                    copy->flame_share[cell] = 0;
+                                copy->velocity[cell][0] = copy->velocity[cell][1] = copy->velocity[cell][2] = 0;
+                            }
+                }
     return SINGE_OK;
 }
 

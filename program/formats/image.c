@@ -75,13 +75,6 @@ static void png_pull(png_structp png, png_bytep data, size_t length) {
     job->at += length;
 }
 
-// Deflate compresses at most 1032 to 1, so a short file that claims a large picture is refused before memory is
-// allocated.
-static void png_check_size(PngJob *job) {
-    uint64_t raw = (uint64_t)png_get_rowbytes(job->png, job->info) * png_get_image_height(job->png, job->info);
-    if (raw / 1032 > job->size) png_error(job->png, "the file is too short for its width and height");
-}
-
 static void png_set_up(PngJob *job) {
     png_structp png = job->png;
     png_set_read_fn(png, job, png_pull);
@@ -89,7 +82,11 @@ static void png_set_up(PngJob *job) {
     png_set_chunk_cache_max(png, 1000);
     png_set_chunk_malloc_max(png, 8000000);
     png_read_info(png, job->info);
-    png_check_size(job);
+
+    // deflate compresses at most 1032 to 1, so a short file that claims a large picture is refused before memory is allocated
+    uint64_t raw = (uint64_t)png_get_rowbytes(job->png, job->info) * png_get_image_height(job->png, job->info);
+    if (raw / 1032 > job->size) png_error(job->png, "the file is too short for its width and height");
+
     int colour = png_get_color_type(png, job->info);
     bool clear = (colour & PNG_COLOR_MASK_ALPHA) || png_get_valid(png, job->info, PNG_INFO_tRNS);
     png_set_expand(png);
@@ -100,7 +97,16 @@ static void png_set_up(PngJob *job) {
     job->height = (int)png_get_image_height(png, job->info);
 }
 
-static void png_pull_rows(PngJob *job) {
+static bool png_decode(PngJob *job) {
+    if (setjmp(job->jump)) return false;
+    job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, png_fail, png_ignore, job, png_take, png_supply);
+    if (job->png) job->info = png_create_info_struct(job->png);
+    if (!job->info) {
+        job->out_of_memory = true;
+        return false;
+    }
+    png_set_up(job);
+
     png_structp png = job->png;
     int passes = png_set_interlace_handling(png);
     png_read_update_info(png, job->info);
@@ -117,18 +123,7 @@ static void png_pull_rows(PngJob *job) {
     for (int pass = 0; pass < passes; pass++)
         for (int y = 0; y < job->height; y++) png_read_row(png, job->pixels + row * (size_t)y, NULL);
     png_read_end(png, NULL);
-}
 
-static bool png_decode(PngJob *job) {
-    if (setjmp(job->jump)) return false;
-    job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, png_fail, png_ignore, job, png_take, png_supply);
-    if (job->png) job->info = png_create_info_struct(job->png);
-    if (!job->info) {
-        job->out_of_memory = true;
-        return false;
-    }
-    png_set_up(job);
-    png_pull_rows(job);
     return true;
 }
 
@@ -148,12 +143,6 @@ static bool png_flatten(PngJob *job) {
     return true;
 }
 
-static SingeResult png_refuse(const PngJob *job, const char *name, SingeError *error) {
-    if (job->out_of_memory) return refuse_memory(error, "png", name);
-    return refuse(error, SINGE_ERROR_FORMAT, "png", (int64_t)job->at, "%s: byte %llu: %s", short_name(name),
-                  (unsigned long long)job->at, job->message);
-}
-
 static SingeResult png_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator, Image *image,
                             SingeError *error) {
     PngJob job;
@@ -169,7 +158,10 @@ static SingeResult png_read(const char *name, const uint8_t *bytes, size_t size,
     }
     if (!done) {
         store_free(allocator, job.pixels, job.pixel_count, (size_t)job.channels);
-        return png_refuse(&job, name, error);
+
+        if (job.out_of_memory) return refuse_memory(error, "png", name);
+        return refuse(error, SINGE_ERROR_FORMAT, "png", (int64_t)job.at, "%s: byte %llu: %s", short_name(name),
+                      (unsigned long long)job.at, job.message);
     }
     *image = (Image){job.width, job.height, job.pixels, allocator};
     return SINGE_OK;
@@ -277,18 +269,6 @@ static void jpeg_watch(j_common_ptr jpeg) {
         jpeg_fail_with((JpegJob *)jpeg->err, "more than 100 scans");
 }
 
-static void jpeg_allocate(JpegJob *job) {
-    struct jpeg_decompress_struct *jpeg = &job->jpeg;
-    if (jpeg->image_width > IMAGE_SIDE_LIMIT || jpeg->image_height > IMAGE_SIDE_LIMIT)
-        jpeg_fail_with(job, "larger than 16384 by 16384 pixels");
-    job->pixel_count = (size_t)jpeg->image_width * jpeg->image_height;
-    job->rgb = store_new(job->allocator, job->pixel_count, 3);
-    if (job->rgb && jpeg->out_color_space == JCS_CMYK) job->row = store_new(job->allocator, jpeg->image_width, 4);
-    if (job->rgb && (job->row || jpeg->out_color_space != JCS_CMYK)) return;
-    job->out_of_memory = true;
-    jpeg_fail_with(job, "out of memory");
-}
-
 // Ink to light without a profile: R = (1 - C)(1 - K). Adobe stores 255 minus the ink.
 static void jpeg_from_cmyk(const JpegJob *job, uint8_t *rgb) {
     unsigned flip = job->jpeg.saw_Adobe_marker ? 0 : 255;
@@ -311,7 +291,17 @@ static bool jpeg_decode(JpegJob *job, const uint8_t *bytes, size_t size) {
     bool ink = jpeg->jpeg_color_space == JCS_CMYK || jpeg->jpeg_color_space == JCS_YCCK;
     jpeg->out_color_space = ink ? JCS_CMYK : JCS_RGB;
     jpeg->dct_method = JDCT_ISLOW;
-    jpeg_allocate(job);
+
+    if (jpeg->image_width > IMAGE_SIDE_LIMIT || jpeg->image_height > IMAGE_SIDE_LIMIT)
+        jpeg_fail_with(job, "larger than 16384 by 16384 pixels");
+    job->pixel_count = (size_t)jpeg->image_width * jpeg->image_height;
+    job->rgb = store_new(job->allocator, job->pixel_count, 3);
+    if (job->rgb && ink) job->row = store_new(job->allocator, jpeg->image_width, 4);
+    if (!job->rgb || (ink && !job->row)) {
+        job->out_of_memory = true;
+        jpeg_fail_with(job, "out of memory");
+    }
+
     jpeg_start_decompress(jpeg);
     while (jpeg->output_scanline < jpeg->output_height) {
         uint8_t *target = job->rgb + (size_t)jpeg->output_scanline * jpeg->image_width * 3;
@@ -363,20 +353,6 @@ SingeResult image_read(const char *name, const uint8_t *bytes, size_t size, Sing
 
 static int be16(const uint8_t *p) { return p[0] << 8 | p[1]; }
 
-/// The frame header of a JPEG (ITU T.81, B.2.2) follows segments of stated lengths.
-static bool jpeg_size(const uint8_t *bytes, size_t size, int *width, int *height) {
-    for (size_t at = 2; at + 9 < size && bytes[at] == 0xff;) {
-        const uint8_t marker = bytes[at + 1];
-        if (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc) {
-            *height = be16(bytes + at + 5);
-            *width = be16(bytes + at + 7);
-            return true;
-        }
-        at += marker == 0xff ? 1 : 2 + (size_t)be16(bytes + at + 2);
-    }
-    return false;
-}
-
 bool image_size(const char *path, int *width, int *height) {
     enum { HEAD = 65536 };
     uint8_t head[HEAD];
@@ -388,7 +364,19 @@ bool image_size(const char *path, int *width, int *height) {
         *height = be16(head + 22);
         return true;
     }
-    return size >= 3 && memcmp(head, "\xff\xd8\xff", 3) == 0 && jpeg_size(head, size, width, height);
+
+    // the frame header of a JPEG (ITU T.81, B.2.2) follows segments of stated lengths
+    bool jpeg = size >= 3 && memcmp(head, "\xff\xd8\xff", 3) == 0;
+    for (size_t at = 2; jpeg && at + 9 < size && head[at] == 0xff;) {
+        const uint8_t marker = head[at + 1];
+        if (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc) {
+            *height = be16(head + at + 5);
+            *width = be16(head + at + 7);
+            return true;
+        }
+        at += marker == 0xff ? 1 : 2 + (size_t)be16(head + at + 2);
+    }
+    return false;
 }
 
 void image_free(Image *image) {

@@ -81,27 +81,6 @@ static void note_crash(int number) {
     raise(number);
 }
 
-// The parent's handlers would set its flags here; a sanitizer's would print.
-static void set_signals(void) {
-    static char stack[CRASH_STACK];
-    stack_t other = {.ss_sp = stack, .ss_size = sizeof stack};
-    struct sigaction now, plain = {.sa_handler = SIG_DFL};
-    for (int number = 1; number < NSIG; number++)
-        if (sigaction(number, NULL, &now) == 0 && (number == SIGPIPE || now.sa_handler != SIG_IGN))
-            sigaction(number, &plain, NULL);
-    struct sigaction crash = {.sa_handler = note_crash, .sa_flags = SA_ONSTACK | SA_RESETHAND | SA_NODEFER};
-    if (sigaltstack(&other, NULL)) return;
-    sigaction(SIGSEGV, &crash, NULL);
-    sigaction(SIGBUS, &crash, NULL);
-    sigaction(SIGABRT, &crash, NULL);
-}
-
-static void silence(void) {
-    int nowhere = open("/dev/null", O_RDWR);
-    for (int i = 0; i < 3 && nowhere >= 0; i++) dup2(nowhere, i);
-    if (nowhere > 2) close(nowhere);
-}
-
 static void limit(int resource, rlim_t max) {
     struct rlimit now;
     if (getrlimit(resource, &now)) return;
@@ -124,16 +103,6 @@ static bool read_pages(pid_t process, unsigned long long pages[2]) {
 }
 #endif
 
-static void set_limits(IsolateLimits limits) {
-    limit(RLIMIT_CORE, 0);
-    limit(RLIMIT_CPU, (rlim_t)ceil(limits.seconds));
-#if defined(__linux__)
-    unsigned long long pages[2];
-    size_t page = (size_t)sysconf(_SC_PAGESIZE);
-    if (!ISOLATE_SANITIZED && read_pages(getpid(), pages)) limit(RLIMIT_AS, (rlim_t)(pages[0] * page + limits.memory));
-#endif
-}
-
 static _Noreturn void child_main(int pipe, pid_t parent, const sigset_t *mask, IsolateWork *work, void *context,
                                  IsolateLimits limits) {
     if (pipe < 3) pipe = fcntl(pipe, F_DUPFD, 3); // the parent has closed these
@@ -142,9 +111,33 @@ static _Noreturn void child_main(int pipe, pid_t parent, const sigset_t *mask, I
     prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
     if (getppid() != parent) _exit(1);
-    silence();
-    set_signals();
-    set_limits(limits);
+
+    int nowhere = open("/dev/null", O_RDWR);
+    for (int i = 0; i < 3 && nowhere >= 0; i++) dup2(nowhere, i);
+    if (nowhere > 2) close(nowhere);
+
+    // the parent's handlers would set its flags here; a sanitizer's would print
+    static char stack[CRASH_STACK];
+    stack_t other = {.ss_sp = stack, .ss_size = sizeof stack};
+    struct sigaction now, plain = {.sa_handler = SIG_DFL};
+    for (int number = 1; number < NSIG; number++)
+        if (sigaction(number, NULL, &now) == 0 && (number == SIGPIPE || now.sa_handler != SIG_IGN))
+            sigaction(number, &plain, NULL);
+    struct sigaction crash = {.sa_handler = note_crash, .sa_flags = SA_ONSTACK | SA_RESETHAND | SA_NODEFER};
+    if (sigaltstack(&other, NULL) == 0) {
+        sigaction(SIGSEGV, &crash, NULL);
+        sigaction(SIGBUS, &crash, NULL);
+        sigaction(SIGABRT, &crash, NULL);
+    }
+
+    limit(RLIMIT_CORE, 0);
+    limit(RLIMIT_CPU, (rlim_t)ceil(limits.seconds));
+#if defined(__linux__)
+    unsigned long long pages[2];
+    size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    if (!ISOLATE_SANITIZED && read_pages(getpid(), pages)) limit(RLIMIT_AS, (rlim_t)(pages[0] * page + limits.memory));
+#endif
+
     sigprocmask(SIG_SETMASK, mask, NULL);
     IsolateAnswer answer = {pipe};
     Ending ending = {.magic = ENDING_MAGIC};
@@ -204,15 +197,6 @@ static SingeResult refuse_time(const Child *child) {
                   short_name(child->name), child->limits.seconds);
 }
 
-static SingeResult refuse_signal(const Child *child, int number) {
-    if (number == SIGXCPU) return refuse_time(child);
-    if (number == SIGINT || number == SIGTERM || number == SIGHUP || number == SIGQUIT)
-        return refuse(child->error, SINGE_ERROR_STATE, "file", -1, "%s: reading it was interrupted (signal %d)",
-                      short_name(child->name), number);
-    return refuse(child->error, SINGE_ERROR_FORMAT, "file", -1, "%s: cannot be read: its reader crashed (signal %d)",
-                  short_name(child->name), number);
-}
-
 /// Checks the child's time and memory. Time during which this process was stopped does not count.
 static SingeResult isolate_look(Child *child) {
     double now = clock_now(), passed = now - child->looked;
@@ -262,7 +246,14 @@ static SingeResult reap(Child *child, int *status) {
 
 /// Removes the ending from the answer and interprets it.
 static SingeResult isolate_judge(const Child *child, Bytes *answer, int status) {
-    if (WIFSIGNALED(status)) return refuse_signal(child, WTERMSIG(status));
+    const int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    if (number == SIGXCPU) return refuse_time(child);
+    if (number == SIGINT || number == SIGTERM || number == SIGHUP || number == SIGQUIT)
+        return refuse(child->error, SINGE_ERROR_STATE, "file", -1, "%s: reading it was interrupted (signal %d)",
+                      short_name(child->name), number);
+    if (number)
+        return refuse(child->error, SINGE_ERROR_FORMAT, "file", -1,
+                      "%s: cannot be read: its reader crashed (signal %d)", short_name(child->name), number);
     if (WEXITSTATUS(status) == EXIT_NO_MEMORY) return refuse_size(child);
     Ending ending = {0};
     if (answer->size >= sizeof ending) memcpy(&ending, answer->data + answer->size - sizeof ending, sizeof ending);

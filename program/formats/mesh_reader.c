@@ -50,15 +50,28 @@ static SingeResult refuse_answer(const char *name, SingeError *error) {
                   short_name(name));
 }
 
-/// False unless the size is that of these counts.
-static bool counts_agree(const MeshCounts *counts, size_t size) {
-    if (counts->vertices > MESH_COUNT_LIMIT || counts->faces > MESH_COUNT_LIMIT || counts->corners > MESH_COUNT_LIMIT ||
-        counts->uv > 1)
-        return false;
-    return size == sizeof *counts + 12 * counts->vertices + 4 * counts->faces + (4 + 8 * counts->uv) * counts->corners;
-}
+static SingeResult take_arrays(const char *name, const uint8_t *at, Polygons *made, SingeError *error) {
+    memcpy(made->positions, at, 12 * (size_t)made->vertex_count), at += 12 * (size_t)made->vertex_count;
+    memcpy(made->first + 1, at, 4 * (size_t)made->face_count), at += 4 * (size_t)made->face_count;
+    memcpy(made->corners, at, 4 * (size_t)made->corner_count), at += 4 * (size_t)made->corner_count;
+    if (made->uv) memcpy(made->uv, at, 8 * (size_t)made->corner_count);
 
-static SingeResult take_positions(const char *name, const Polygons *made, SingeError *error) {
+    // the faces' first corners, from their sizes, which are stored after the first entry
+    uint64_t corner = 0;
+    made->first[0] = 0;
+    for (size_t f = 0; f < made->face_count; f++) {
+        if (made->first[f + 1] < 3 || made->first[f + 1] > made->corner_count - corner)
+            return refuse_answer(name, error);
+        corner += made->first[f + 1];
+        made->first[f + 1] = (uint32_t)corner;
+    }
+    if (corner != made->corner_count) return refuse_answer(name, error);
+
+    for (size_t i = 0; i < made->corner_count; i++)
+        if (made->corners[i] >= made->vertex_count) return refuse_answer(name, error);
+    for (size_t i = 0; made->uv && i < 2 * (size_t)made->corner_count; i++)
+        if (!isfinite(made->uv[i])) made->uv[i] = 0;
+
     for (size_t i = 0; i < 3 * (size_t)made->vertex_count; i++)
         if (!isfinite(made->positions[i]))
             return refuse(error, SINGE_ERROR_MESH, "mesh", (int64_t)(i / 3),
@@ -67,38 +80,16 @@ static SingeResult take_positions(const char *name, const Polygons *made, SingeE
     return SINGE_OK;
 }
 
-/// The faces' first corners, from their sizes, which are stored after the first entry. False if their sum is wrong.
-static bool take_sizes(Polygons *made) {
-    uint64_t corner = 0;
-    made->first[0] = 0;
-    for (size_t f = 0; f < made->face_count; f++) {
-        if (made->first[f + 1] < 3 || made->first[f + 1] > made->corner_count - corner) return false;
-        corner += made->first[f + 1];
-        made->first[f + 1] = (uint32_t)corner;
-    }
-    return corner == made->corner_count;
-}
-
-static SingeResult take_arrays(const char *name, const uint8_t *at, Polygons *made, SingeError *error) {
-    memcpy(made->positions, at, 12 * (size_t)made->vertex_count), at += 12 * (size_t)made->vertex_count;
-    memcpy(made->first + 1, at, 4 * (size_t)made->face_count), at += 4 * (size_t)made->face_count;
-    memcpy(made->corners, at, 4 * (size_t)made->corner_count), at += 4 * (size_t)made->corner_count;
-    if (made->uv) memcpy(made->uv, at, 8 * (size_t)made->corner_count);
-    if (!take_sizes(made)) return refuse_answer(name, error);
-    for (size_t i = 0; i < made->corner_count; i++)
-        if (made->corners[i] >= made->vertex_count) return refuse_answer(name, error);
-    for (size_t i = 0; made->uv && i < 2 * (size_t)made->corner_count; i++)
-        if (!isfinite(made->uv[i])) made->uv[i] = 0;
-    return take_positions(name, made, error);
-}
-
 SingeResult mesh_answer_take(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                              Polygons *polygons, SingeError *error) {
     MeshCounts counts;
     *polygons = (Polygons){.allocator = allocator};
     if (size < sizeof counts) return refuse_answer(name, error);
     memcpy(&counts, bytes, sizeof counts);
-    if (!counts_agree(&counts, size)) return refuse_answer(name, error);
+    if (counts.vertices > MESH_COUNT_LIMIT || counts.faces > MESH_COUNT_LIMIT || counts.corners > MESH_COUNT_LIMIT ||
+        counts.uv > 1 ||
+        size != sizeof counts + 12 * counts.vertices + 4 * counts.faces + (4 + 8 * counts.uv) * counts.corners)
+        return refuse_answer(name, error);
     if (counts.faces == 0) return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: has no faces", short_name(name));
     Polygons made = {.vertex_count = (uint32_t)counts.vertices,
                      .face_count = (uint32_t)counts.faces,

@@ -150,20 +150,6 @@ static void big_subtract(Big *a, const Big *b) {
 
 // ---- rounding
 
-// Rounds quotient 2^-shift (a little more if `rest`) to `bits` bits, ties to even; the last bit is worth at least
-// 2^lowest.
-static double round_bits(uint64_t quotient, int shift, bool rest, int bits, int lowest) {
-    int have = 0;
-    for (uint64_t q = quotient; q; q >>= 1) have++;
-    int drop = have - bits;
-    if (drop - shift < lowest) drop = lowest + shift;
-    if (drop > 62) return 0;
-    uint64_t low = quotient & (((uint64_t)1 << drop) - 1), half = (uint64_t)1 << (drop - 1);
-    uint64_t kept = quotient >> drop;
-    if (low > half || (low == half && (rest || (kept & 1)))) kept++;
-    return ldexp((double)kept, drop - shift);
-}
-
 // The magnitude of the number, exactly rounded to `bits` bits.
 static double decimal_round(const Decimal *number, int bits, int lowest) {
     int count = number->digit_count < EXACT_DIGITS ? number->digit_count : EXACT_DIGITS;
@@ -198,7 +184,17 @@ static double decimal_round(const Decimal *number, int bits, int lowest) {
         if (!big_less(&over, &under)) big_subtract(&over, &under), quotient |= 1;
         big_shift_left(&over, 1);
     }
-    return round_bits(quotient, shift, over.count > 0, bits, lowest);
+
+    // rounds quotient 2^-shift (a little more if `rest`) to `bits` bits, ties to even; the last bit is worth at least 2^lowest
+    int have = 0;
+    for (uint64_t q = quotient; q; q >>= 1) have++;
+    int drop = have - bits;
+    if (drop - shift < lowest) drop = lowest + shift;
+    if (drop > 62) return 0;
+    uint64_t low = quotient & (((uint64_t)1 << drop) - 1), halfway = (uint64_t)1 << (drop - 1);
+    uint64_t kept = quotient >> drop;
+    if (low > halfway || (low == halfway && ((over.count > 0) || (kept & 1)))) kept++;
+    return ldexp((double)kept, drop - shift);
 }
 
 static bool round_fast(const Decimal *number, float *value) {

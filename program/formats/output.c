@@ -32,7 +32,11 @@ static void sort_by_sheet(const SheetParts *p, const uint32_t (*triangles)[3], u
     first[0] = 0;
 }
 
-static SingeResult check_sheets(const SingeSurface *s, uint32_t sheet_count, const char *path, SingeError *error) {
+SingeResult sheet_parts_make(SheetParts *p, const SingeSurface *s, uint32_t sheet_count, const char *path,
+                             SingeError *error) {
+    const SingeAllocator a = s->allocator;
+    *p = (SheetParts){.surface = s, .sheet_count = sheet_count};
+
     for (uint32_t v = 0; v < s->vertex_count; v++)
         if (s->sheet[v] < 0 || (uint32_t)s->sheet[v] >= sheet_count)
             return refuse(error, SINGE_ERROR_FORMAT, "output", v,
@@ -43,14 +47,7 @@ static SingeResult check_sheets(const SingeSurface *s, uint32_t sheet_count, con
             if (s->sheet[s->triangles[t][k]] != s->sheet[s->triangles[t][0]])
                 return refuse(error, SINGE_ERROR_FORMAT, "output", t, "%s: triangle %u belongs to two sheets",
                               short_name(path), t);
-    return SINGE_OK;
-}
 
-SingeResult sheet_parts_make(SheetParts *p, const SingeSurface *s, uint32_t sheet_count, const char *path,
-                             SingeError *error) {
-    const SingeAllocator a = s->allocator;
-    *p = (SheetParts){.surface = s, .sheet_count = sheet_count};
-    TRY(check_sheets(s, sheet_count, path, error));
     p->vertex_first = store_new(a, (size_t)sheet_count + 1, 4);
     p->triangle_first = store_new(a, (size_t)sheet_count + 1, 4);
     p->vertices = store_new(a, s->vertex_count, 4);

@@ -21,12 +21,6 @@ typedef struct PlyTarget {
 
 static SingeResult ply_ended(const Ply *ply) { return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file ends too soon"); }
 
-static uint64_t ply_bits(const uint8_t *p, size_t size, bool big) {
-    uint64_t bits = 0;
-    for (size_t i = 0; i < size; i++) bits |= (uint64_t)p[i] << 8 * (big ? size - 1 - i : i);
-    return bits;
-}
-
 static double ply_decode(PlyType type, uint64_t bits) {
     float single;
     double twice;
@@ -41,56 +35,42 @@ static double ply_decode(PlyType type, uint64_t bits) {
     }
 }
 
-static SingeResult ply_text_value(Ply *ply, PlyType type, double *value) {
-    static const double min[] = {-128, 0, -32768, 0, -2147483648.0, 0};
-    static const double max[] = {127, 255, 32767, 65535, 2147483647.0, 4294967295.0};
-    Text *text = &ply->text;
-    text_skip_blanks(text);
-    const uint8_t *word = text->at, *end = text_word_end(text);
-    if (word == end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the line has too few values");
-    float single = 0;
-    NumberStatus status = number_float(&text->at, end, &single);
-    *value = single;
-    // an integer is read as one: a float would round it
-    if (type < PLY_FLOAT32 && status == NUMBER_OK) {
-        int64_t integer = 0;
-        text->at = word;
-        status = number_integer(&text->at, end, &integer);
-        *value = (double)integer;
-        if (status == NUMBER_OK && (*value < min[type] || *value > max[type])) status = NUMBER_RANGE;
-    }
-    if (status == NUMBER_OK && text->at == end) return SINGE_OK;
-    text->at = word;
-    return ply_refuse(ply, SINGE_ERROR_FORMAT, "the value in column %lld is %s",
-                      (long long)text_column(text, ply->begin),
-                      status == NUMBER_NOT_FINITE ? "not a finite number"
-                      : status == NUMBER_RANGE    ? "out of range"
-                      : type < PLY_FLOAT32        ? "not an integer"
-                                                  : "not a number");
-}
-
 static SingeResult ply_value(Ply *ply, PlyType type, double *value) {
-    if (ply->header.format == PLY_ASCII) return ply_text_value(ply, type, value);
+    if (ply->header.format == PLY_ASCII) {
+        static const double min[] = {-128, 0, -32768, 0, -2147483648.0, 0};
+        static const double max[] = {127, 255, 32767, 65535, 2147483647.0, 4294967295.0};
+        Text *text = &ply->text;
+        text_skip_blanks(text);
+        const uint8_t *word = text->at, *end = text_word_end(text);
+        if (word == end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the line has too few values");
+        float single = 0;
+        NumberStatus status = number_float(&text->at, end, &single);
+        *value = single;
+        // an integer is read as one: a float would round it
+        if (type < PLY_FLOAT32 && status == NUMBER_OK) {
+            int64_t integer = 0;
+            text->at = word;
+            status = number_integer(&text->at, end, &integer);
+            *value = (double)integer;
+            if (status == NUMBER_OK && (*value < min[type] || *value > max[type])) status = NUMBER_RANGE;
+        }
+        if (status == NUMBER_OK && text->at == end) return SINGE_OK;
+        text->at = word;
+        return ply_refuse(ply, SINGE_ERROR_FORMAT, "the value in column %lld is %s",
+                          (long long)text_column(text, ply->begin),
+                          status == NUMBER_NOT_FINITE ? "not a finite number"
+                          : status == NUMBER_RANGE    ? "out of range"
+                          : type < PLY_FLOAT32        ? "not an integer"
+                                                      : "not a number");
+    }
     size_t size = ply_type_size(type);
     if ((size_t)(ply->text.end - ply->text.at) < size) return ply_ended(ply);
-    *value = ply_decode(type, ply_bits(ply->text.at, size, ply->header.format == PLY_BIG));
+    uint64_t bits = 0;
+    for (size_t i = 0; i < size; i++)
+        bits |= (uint64_t)ply->text.at[i] << 8 * (ply->header.format == PLY_BIG ? size - 1 - i : i);
+    *value = ply_decode(type, bits);
     if (!isfinite(*value)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a value is not a finite number");
     ply->text.at += size;
-    return SINGE_OK;
-}
-
-static SingeResult ply_skip_values(Ply *ply, PlyType type, uint64_t count) {
-    Text *text = &ply->text;
-    if (ply->header.format != PLY_ASCII) {
-        if ((uint64_t)(text->end - text->at) / ply_type_size(type) < count) return ply_ended(ply);
-        text->at += count * ply_type_size(type);
-        return SINGE_OK;
-    }
-    for (; count; count--) {
-        text_skip_blanks(text);
-        if (text_at_line_end(text)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the line has too few values");
-        text->at = text_word_end(text);
-    }
     return SINGE_OK;
 }
 
@@ -105,7 +85,19 @@ static SingeResult ply_list_length(Ply *ply, const PlyProperty *property, uint64
 static SingeResult ply_skip_property(Ply *ply, const PlyProperty *property) {
     uint64_t count = 1;
     if (property->is_list) TRY(ply_list_length(ply, property, &count));
-    return ply_skip_values(ply, property->type, count);
+
+    Text *text = &ply->text;
+    if (ply->header.format != PLY_ASCII) {
+        if ((uint64_t)(text->end - text->at) / ply_type_size(property->type) < count) return ply_ended(ply);
+        text->at += count * ply_type_size(property->type);
+        return SINGE_OK;
+    }
+    for (; count; count--) {
+        text_skip_blanks(text);
+        if (text_at_line_end(text)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the line has too few values");
+        text->at = text_word_end(text);
+    }
+    return SINGE_OK;
 }
 
 // In text, an element has a line of its own.
@@ -145,41 +137,6 @@ static bool ply_is_attribute(const PlyProperty *property, const PlyTarget *targe
     return !property->is_list && !target->values;
 }
 
-static SingeResult ply_plan_attribute(Ply *ply, const PlyProperty *property, uint32_t vertex_count,
-                                      SingeAttribute *attribute, PlyTarget *target) {
-    static const char *const colours[] = {"red", "green", "blue", "alpha"};
-    size_t length = (size_t)(property->name_end - property->name);
-    char *name = store_new(ply->allocator, length + 1, 1);
-    if (!name) return refuse_memory(ply->error, "ply", ply->name);
-    memcpy(name, property->name, length);
-    name[length] = 0;
-    attribute->name = name;
-    float *values = store_new(ply->allocator, vertex_count, sizeof *values);
-    if (!values) return refuse_memory(ply->error, "ply", ply->name);
-    attribute->values = values;
-    *target = (PlyTarget){values, 1, 1};
-    // 8-bit colours map to 0 to 1, as everywhere else
-    for (int i = 0; i < 4; i++)
-        if (property->type == PLY_UINT8 && strcmp(name, colours[i]) == 0) target->scale = 1 / 255.0f;
-    return SINGE_OK;
-}
-
-static SingeResult ply_plan_attributes(Ply *ply, const PlyElement *element, Polygons *mesh, PlyTarget *targets) {
-    const PlyProperty *properties = ply->header.properties + element->first_property;
-    uint32_t count = 0;
-    for (size_t i = 0; i < element->property_count; i++) count += ply_is_attribute(&properties[i], &targets[i]);
-    if (count == 0) return SINGE_OK;
-    mesh->attributes = store_new(ply->allocator, count, sizeof *mesh->attributes);
-    if (!mesh->attributes) return refuse_memory(ply->error, "ply", ply->name);
-    memset(mesh->attributes, 0, count * sizeof *mesh->attributes);
-    mesh->attribute_count = count;
-    SingeAttribute *next = mesh->attributes;
-    for (size_t i = 0; i < element->property_count; i++)
-        if (ply_is_attribute(&properties[i], &targets[i]))
-            TRY(ply_plan_attribute(ply, &properties[i], mesh->vertex_count, next++, &targets[i]));
-    return SINGE_OK;
-}
-
 static SingeResult ply_plan_vertices(Ply *ply, const PlyElement *element, Polygons *mesh, float **uv,
                                      PlyTarget *targets) {
     static const char *const axes[] = {"x", "y", "z"};
@@ -201,7 +158,34 @@ static SingeResult ply_plan_vertices(Ply *ply, const PlyElement *element, Polygo
         targets[index] = (PlyTarget){*uv, 2, 1};
         targets[other] = (PlyTarget){*uv + 1, 2, 1};
     }
-    return ply_plan_attributes(ply, element, mesh, targets);
+
+    const PlyProperty *properties = ply->header.properties + element->first_property;
+    uint32_t count = 0;
+    for (size_t i = 0; i < element->property_count; i++) count += ply_is_attribute(&properties[i], &targets[i]);
+    if (count == 0) return SINGE_OK;
+    mesh->attributes = store_new(ply->allocator, count, sizeof *mesh->attributes);
+    if (!mesh->attributes) return refuse_memory(ply->error, "ply", ply->name);
+    memset(mesh->attributes, 0, count * sizeof *mesh->attributes);
+    mesh->attribute_count = count;
+    SingeAttribute *next = mesh->attributes;
+    for (size_t i = 0; i < element->property_count; i++)
+        if (ply_is_attribute(&properties[i], &targets[i])) {
+            static const char *const colours[] = {"red", "green", "blue", "alpha"};
+            size_t length = (size_t)(properties[i].name_end - properties[i].name);
+            char *name = store_new(ply->allocator, length + 1, 1);
+            if (!name) return refuse_memory(ply->error, "ply", ply->name);
+            memcpy(name, properties[i].name, length);
+            name[length] = 0;
+            next->name = name;
+            float *values = store_new(ply->allocator, mesh->vertex_count, sizeof *values);
+            if (!values) return refuse_memory(ply->error, "ply", ply->name);
+            (next++)->values = values;
+            targets[i] = (PlyTarget){values, 1, 1};
+            // 8-bit colours map to 0 to 1, as everywhere else
+            for (int k = 0; k < 4; k++)
+                if (properties[i].type == PLY_UINT8 && strcmp(name, colours[k]) == 0) targets[i].scale = 1 / 255.0f;
+        }
+    return SINGE_OK;
 }
 
 static SingeResult ply_read_vertex(Ply *ply, const PlyElement *element, const PlyTarget *targets, size_t vertex) {
@@ -240,45 +224,6 @@ typedef struct PlyFaces {
     size_t corner_capacity, uv_capacity;
 } PlyFaces;
 
-static SingeResult ply_read_corners(Ply *ply, PlyFaces *faces) {
-    Polygons *mesh = faces->mesh;
-    uint64_t count = 0;
-    TRY(ply_list_length(ply, faces->corners, &count));
-    if (count < 3)
-        return ply_refuse(ply, SINGE_ERROR_MESH, "face has %llu corner%s; it needs three", (unsigned long long)count,
-                          count == 1 ? "" : "s");
-    for (; count; count--) {
-        double value;
-        TRY(ply_value(ply, faces->corners->type, &value));
-        if (value < 0 || value >= mesh->vertex_count)
-            return ply_refuse(ply, SINGE_ERROR_MESH, "vertex index %lld is out of range: the file has %u vertices",
-                              (long long)value, mesh->vertex_count);
-        if (mesh->corner_count >= MESH_COUNT_LIMIT) return ply_refuse(ply, SINGE_ERROR_LIMIT, "too many corners");
-        if (!store_grow(ply->allocator, &mesh->corners, &faces->corner_capacity, (size_t)mesh->corner_count + 1,
-                        sizeof *mesh->corners))
-            return refuse_memory(ply->error, "ply", ply->name);
-        mesh->corners[mesh->corner_count++] = (uint32_t)value;
-    }
-    return SINGE_OK;
-}
-
-// A list of u and v of each corner. It may precede the corners.
-static SingeResult ply_read_uvs(Ply *ply, PlyFaces *faces, size_t *uv_count) {
-    Polygons *mesh = faces->mesh;
-    uint64_t count = 0;
-    TRY(ply_list_length(ply, faces->uvs, &count));
-    for (; count; count--) {
-        double value;
-        TRY(ply_value(ply, faces->uvs->type, &value));
-        if (fabs(value) > 3.4028234663852886e38)
-            return ply_refuse(ply, SINGE_ERROR_FORMAT, "a value is too large for a float");
-        if (!store_grow(ply->allocator, &mesh->uv, &faces->uv_capacity, *uv_count + 1, sizeof *mesh->uv))
-            return refuse_memory(ply->error, "ply", ply->name);
-        mesh->uv[(*uv_count)++] = (float)value;
-    }
-    return SINGE_OK;
-}
-
 static bool ply_is_list(const PlyProperty *property, const char *name, const char *other) {
     return property->is_list && (text_word_is(property->name, property->name_end, name) ||
                                  text_word_is(property->name, property->name_end, other));
@@ -291,34 +236,45 @@ static SingeResult ply_read_face(Ply *ply, const PlyElement *element, PlyFaces *
     mesh->first[f] = mesh->corner_count;
     TRY(ply_begin_row(ply));
     for (size_t i = 0; i < element->property_count; i++) {
-        if (&properties[i] == faces->corners) TRY(ply_read_corners(ply, faces));
-        else if (&properties[i] == faces->uvs) TRY(ply_read_uvs(ply, faces, &uvs));
-        else TRY(ply_skip_property(ply, &properties[i]));
+        if (&properties[i] == faces->corners) {
+            uint64_t count = 0;
+            TRY(ply_list_length(ply, faces->corners, &count));
+            if (count < 3)
+                return ply_refuse(ply, SINGE_ERROR_MESH, "face has %llu corner%s; it needs three",
+                                  (unsigned long long)count, count == 1 ? "" : "s");
+            for (; count; count--) {
+                double value;
+                TRY(ply_value(ply, faces->corners->type, &value));
+                if (value < 0 || value >= mesh->vertex_count)
+                    return ply_refuse(ply, SINGE_ERROR_MESH,
+                                      "vertex index %lld is out of range: the file has %u vertices", (long long)value,
+                                      mesh->vertex_count);
+                if (mesh->corner_count >= MESH_COUNT_LIMIT)
+                    return ply_refuse(ply, SINGE_ERROR_LIMIT, "too many corners");
+                if (!store_grow(ply->allocator, &mesh->corners, &faces->corner_capacity, (size_t)mesh->corner_count + 1,
+                                sizeof *mesh->corners))
+                    return refuse_memory(ply->error, "ply", ply->name);
+                mesh->corners[mesh->corner_count++] = (uint32_t)value;
+            }
+        } else if (&properties[i] == faces->uvs) {
+            // a list of u and v of each corner. It may precede the corners.
+            uint64_t count = 0;
+            TRY(ply_list_length(ply, faces->uvs, &count));
+            for (; count; count--) {
+                double value;
+                TRY(ply_value(ply, faces->uvs->type, &value));
+                if (fabs(value) > 3.4028234663852886e38)
+                    return ply_refuse(ply, SINGE_ERROR_FORMAT, "a value is too large for a float");
+                if (!store_grow(ply->allocator, &mesh->uv, &faces->uv_capacity, uvs + 1, sizeof *mesh->uv))
+                    return refuse_memory(ply->error, "ply", ply->name);
+                mesh->uv[uvs++] = (float)value;
+            }
+        } else TRY(ply_skip_property(ply, &properties[i]));
     }
     TRY(ply_end_row(ply));
     if (faces->uvs && uvs != 2 * (size_t)mesh->corner_count)
         return ply_refuse(ply, SINGE_ERROR_MESH, "a face needs u and v for each of its corners in \"texcoord\"");
     return SINGE_OK;
-}
-
-// Sets the arrays and their counts, for polygons_free.
-static SingeResult ply_trim_faces(Ply *ply, PlyFaces *faces) {
-    Polygons *mesh = faces->mesh;
-    bool good =
-        store_trim(ply->allocator, &mesh->corners, &faces->corner_capacity, mesh->corner_count, sizeof *mesh->corners);
-    if (good && faces->uvs)
-        good = store_trim(ply->allocator, &mesh->uv, &faces->uv_capacity, 2 * (size_t)mesh->corner_count,
-                          sizeof *mesh->uv);
-    return good ? SINGE_OK : refuse_memory(ply->error, "ply", ply->name);
-}
-
-// Drops a partially read face.
-static void ply_drop_faces(Ply *ply, PlyFaces *faces) {
-    store_free(ply->allocator, faces->mesh->corners, faces->corner_capacity, sizeof *faces->mesh->corners);
-    store_free(ply->allocator, faces->mesh->uv, faces->uv_capacity, sizeof *faces->mesh->uv);
-    faces->mesh->corners = NULL;
-    faces->mesh->uv = NULL;
-    faces->mesh->corner_count = 0;
 }
 
 static SingeResult ply_read_faces(Ply *ply, const PlyElement *element, Polygons *mesh) {
@@ -336,31 +292,20 @@ static SingeResult ply_read_faces(Ply *ply, const PlyElement *element, Polygons 
     if (!mesh->first) return refuse_memory(ply->error, "ply", ply->name);
     SingeResult result = SINGE_OK;
     for (uint32_t f = 0; f < element->count && !result; f++) result = ply_read_face(ply, element, &faces, f);
-    if (!result) result = ply_trim_faces(ply, &faces);
-    if (result) ply_drop_faces(ply, &faces);
-    else mesh->first[mesh->face_count] = mesh->corner_count;
+    bool trimmed = result || (store_trim(ply->allocator, &mesh->corners, &faces.corner_capacity, mesh->corner_count,
+                                         sizeof *mesh->corners) &&
+                              (!faces.uvs || store_trim(ply->allocator, &mesh->uv, &faces.uv_capacity,
+                                                        2 * (size_t)mesh->corner_count, sizeof *mesh->uv)));
+    if (!trimmed) result = refuse_memory(ply->error, "ply", ply->name);
+    if (result) {
+        // drops a partially read face
+        store_free(ply->allocator, faces.mesh->corners, faces.corner_capacity, sizeof *faces.mesh->corners);
+        store_free(ply->allocator, faces.mesh->uv, faces.uv_capacity, sizeof *faces.mesh->uv);
+        faces.mesh->corners = NULL;
+        faces.mesh->uv = NULL;
+        faces.mesh->corner_count = 0;
+    } else mesh->first[mesh->face_count] = mesh->corner_count;
     return result;
-}
-
-// uv of the vertices, if the corners have none of their own.
-static SingeResult ply_spread_uv(Ply *ply, const float *uv, Polygons *mesh) {
-    if (!uv || mesh->uv) return SINGE_OK;
-    mesh->uv = store_new(ply->allocator, mesh->corner_count, 2 * sizeof *mesh->uv);
-    if (!mesh->uv) return refuse_memory(ply->error, "ply", ply->name);
-    for (uint32_t i = 0; i < mesh->corner_count; i++)
-        for (size_t k = 0; k < 2; k++) mesh->uv[2 * (size_t)i + k] = uv[2 * (size_t)mesh->corners[i] + k];
-    return SINGE_OK;
-}
-
-static SingeResult ply_skip_element(Ply *ply, const PlyElement *element) {
-    if (element->property_count == 0) return SINGE_OK;
-    for (uint32_t i = 0; i < element->count; i++) {
-        TRY(ply_begin_row(ply));
-        for (size_t k = 0; k < element->property_count; k++)
-            TRY(ply_skip_property(ply, &ply->header.properties[element->first_property + k]));
-        TRY(ply_end_row(ply));
-    }
-    return SINGE_OK;
 }
 
 static SingeResult ply_read_body(Ply *ply, Polygons *mesh, float **uv) {
@@ -373,9 +318,22 @@ static SingeResult ply_read_body(Ply *ply, Polygons *mesh, float **uv) {
         const PlyElement *element = &ply->header.elements[i];
         if (element == vertices) TRY(ply_read_vertices(ply, element, mesh, uv));
         else if (element == faces) TRY(ply_read_faces(ply, element, mesh));
-        else TRY(ply_skip_element(ply, element));
+        for (uint32_t row = 0; element != vertices && element != faces && row < element->count; row++) {
+            if (element->property_count == 0) break;
+            TRY(ply_begin_row(ply));
+            for (size_t k = 0; k < element->property_count; k++)
+                TRY(ply_skip_property(ply, &ply->header.properties[element->first_property + k]));
+            TRY(ply_end_row(ply));
+        }
     }
-    return ply_spread_uv(ply, *uv, mesh);
+
+    // uv of the vertices, if the corners have none of their own
+    if (!*uv || mesh->uv) return SINGE_OK;
+    mesh->uv = store_new(ply->allocator, mesh->corner_count, 2 * sizeof *mesh->uv);
+    if (!mesh->uv) return refuse_memory(ply->error, "ply", ply->name);
+    for (uint32_t i = 0; i < mesh->corner_count; i++)
+        for (size_t k = 0; k < 2; k++) mesh->uv[2 * (size_t)i + k] = (*uv)[2 * (size_t)mesh->corners[i] + k];
+    return SINGE_OK;
 }
 
 SingeResult ply_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator, Polygons *mesh,
@@ -523,57 +481,29 @@ static SingeResult ply_header_property(Ply *ply) {
     return SINGE_OK;
 }
 
-static SingeResult ply_header_format(Ply *ply, bool *known) {
-    static const char *const formats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
-    Word word = ply_word(ply), version = ply_word(ply);
-    if (*known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the format is declared twice");
-    for (int i = 0; i < 3; i++)
-        if (word_is(word, formats[i])) ply->header.format = (PlyFormat)i, *known = true;
-    if (!*known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a PLY format");
-    if (!word_is(version, "1.0")) return ply_refuse(ply, SINGE_ERROR_FORMAT, "only PLY version 1.0 is supported");
-    return SINGE_OK;
-}
-
-static void ply_header_comment(Ply *ply) {
-    text_skip_blanks(&ply->text);
-    const uint8_t *begin = ply->text.at;
-    while (!text_at_line_end(&ply->text)) ply->text.at++;
-    if (!ply->header.note && ply->text.at - begin > 6 && memcmp(begin, "singe ", 6) == 0)
-        ply->header.note = begin, ply->header.note_end = ply->text.at;
-}
-
 static SingeResult ply_header_line(Ply *ply, bool *format_known, bool *ended) {
     Word word = ply_word(ply);
     *ended = word_is(word, "end_header");
-    if (word_is(word, "comment") || word_is(word, "obj_info")) ply_header_comment(ply);
-    else if (word_is(word, "format")) TRY(ply_header_format(ply, format_known));
-    else if (word_is(word, "element")) TRY(ply_header_element(ply));
+    if (word_is(word, "comment") || word_is(word, "obj_info")) {
+        text_skip_blanks(&ply->text);
+        const uint8_t *begin = ply->text.at;
+        while (!text_at_line_end(&ply->text)) ply->text.at++;
+        if (!ply->header.note && ply->text.at - begin > 6 && memcmp(begin, "singe ", 6) == 0)
+            ply->header.note = begin, ply->header.note_end = ply->text.at;
+    } else if (word_is(word, "format")) {
+        static const char *const formats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+        Word name = ply_word(ply), version = ply_word(ply);
+        if (*format_known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the format is declared twice");
+        for (int i = 0; i < 3; i++)
+            if (word_is(name, formats[i])) ply->header.format = (PlyFormat)i, *format_known = true;
+        if (!*format_known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a PLY format");
+        if (!word_is(version, "1.0")) return ply_refuse(ply, SINGE_ERROR_FORMAT, "only PLY version 1.0 is supported");
+    } else if (word_is(word, "element")) TRY(ply_header_element(ply));
     else if (word_is(word, "property")) TRY(ply_header_property(ply));
     else if (!*ended) return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a line of a PLY header");
     text_skip_blanks(&ply->text);
     if (!text_at_line_end(&ply->text)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "too many words on the line");
     if (ply->text.at == ply->text.end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the header is cut off");
-    return SINGE_OK;
-}
-
-// Counts are checked against the size of the file before memory is allocated.
-static SingeResult ply_check_counts(const Ply *ply) {
-    const PlyHeader *header = &ply->header;
-    uint64_t left = (uint64_t)(ply->text.end - ply->text.at) + (header->format == PLY_ASCII);
-    for (size_t i = 0; i < header->element_count; i++) {
-        const PlyElement *element = &header->elements[i];
-        uint64_t min = 0;
-        for (size_t k = 0; k < element->property_count; k++) {
-            const PlyProperty *property = &header->properties[element->first_property + k];
-            if (header->format == PLY_ASCII) min += 2; // a digit and a separator
-            else min += ply_type_size(property->is_list ? property->count_type : property->type);
-        }
-        // the product is below 2^31 * 8000
-        if (min * element->count > left)
-            return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file is too short for its %u elements of kind %zu",
-                              element->count, i + 1);
-        left -= min * element->count;
-    }
     return SINGE_OK;
 }
 
@@ -594,7 +524,25 @@ SingeResult ply_read_header(Ply *ply) {
     text->at += lone_return ? 1 : text_end_length(text->at, text->end);
     text->line++;
     if (ply->header.format != PLY_ASCII) text->line = 0;
-    return ply_check_counts(ply);
+
+    // counts are checked against the size of the file before memory is allocated
+    const PlyHeader *header = &ply->header;
+    uint64_t left = (uint64_t)(ply->text.end - ply->text.at) + (header->format == PLY_ASCII);
+    for (size_t i = 0; i < header->element_count; i++) {
+        const PlyElement *element = &header->elements[i];
+        uint64_t min = 0;
+        for (size_t k = 0; k < element->property_count; k++) {
+            const PlyProperty *property = &header->properties[element->first_property + k];
+            if (header->format == PLY_ASCII) min += 2; // a digit and a separator
+            else min += ply_type_size(property->is_list ? property->count_type : property->type);
+        }
+        // the product is below 2^31 * 8000
+        if (min * element->count > left)
+            return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file is too short for its %u elements of kind %zu",
+                              element->count, i + 1);
+        left -= min * element->count;
+    }
+    return SINGE_OK;
 }
 
 void ply_header_free(Ply *ply) {

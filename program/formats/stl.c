@@ -118,19 +118,6 @@ static SingeResult stl_float(Stl *stl, float *value) {
                                                   : "not a number");
 }
 
-/// facet normal x y z / outer loop / vertex x y z, three times / endloop / endfacet, after the word "facet".
-static SingeResult stl_facet(Stl *stl, float position[9]) {
-    TRY(stl_expect(stl, "normal", NULL));
-    text_next_line(&stl->text); // the normal is often not a number
-    TRY(stl_expect(stl, "outer", "loop"));
-    for (size_t v = 0; v < 3; v++) {
-        TRY(stl_expect(stl, "vertex", NULL));
-        for (size_t i = 0; i < 3; i++) TRY(stl_float(stl, &position[3 * v + i]));
-    }
-    TRY(stl_expect(stl, "endloop", NULL));
-    return stl_expect(stl, "endfacet", NULL);
-}
-
 static SingeResult stl_solids(Stl *stl, Polygons *mesh, size_t *vertices, size_t *capacity) {
     while (stl_to_word(stl)) {
         TRY(stl_expect(stl, "solid", NULL));
@@ -138,7 +125,17 @@ static SingeResult stl_solids(Stl *stl, Polygons *mesh, size_t *vertices, size_t
         while (stl_word(stl, "facet")) {
             if (!store_grow(mesh->allocator, &mesh->positions, capacity, *vertices + 3, 3 * sizeof *mesh->positions))
                 return refuse_memory(stl->error, "stl", stl->name);
-            TRY(stl_facet(stl, mesh->positions + 3 * *vertices));
+
+            TRY(stl_expect(stl, "normal", NULL));
+            text_next_line(&stl->text); // the normal is often not a number
+            TRY(stl_expect(stl, "outer", "loop"));
+            for (size_t v = 0; v < 3; v++) {
+                TRY(stl_expect(stl, "vertex", NULL));
+                for (size_t i = 0; i < 3; i++) TRY(stl_float(stl, &(mesh->positions + 3 * *vertices)[3 * v + i]));
+            }
+            TRY(stl_expect(stl, "endloop", NULL));
+            TRY(stl_expect(stl, "endfacet", NULL));
+
             *vertices += 3;
         }
         TRY(stl_expect(stl, "endsolid", NULL));

@@ -39,12 +39,6 @@ static bool canvas_make(Canvas *c, SingeAllocator a, int size) {
     return true;
 }
 
-static void canvas_free(Canvas *c, SingeAllocator a, bool with_values) {
-    if (with_values) store_free(a, c->values, c->pixels, TEXTURE_CHANNELS * sizeof(float));
-    store_free(a, c->covered, c->pixels, 1), store_free(a, c->chart, c->pixels, 1);
-    store_free(a, c->nearest, c->pixels, 4), store_free(a, c->queue, c->pixels, 4);
-}
-
 static void draw_values(void *context, size_t pixel, const float weight[3]) {
     Canvas *c = context;
     c->covered[pixel] = c->chart[pixel] = 1;
@@ -89,17 +83,6 @@ static void draw_surface(Canvas *c, const SingeSurface *s, uint32_t sheet) {
     }
 }
 
-static void spread(Canvas *c) {
-    uv_spread(c->size, TEXTURE_MARGIN, c->chart, c->nearest, c->queue);
-    for (size_t i = 0; i < c->pixels; i++)
-        c->values[TEXTURE_CHANNELS * i + 3] = c->nearest[i] != UV_NONE && c->covered[c->nearest[i]];
-    uv_spread(c->size, TEXTURE_MARGIN, c->covered, c->nearest, c->queue);
-    for (size_t i = 0; i < c->pixels; i++)
-        if (c->nearest[i] != UV_NONE && c->nearest[i] != i)
-            memcpy(c->values + TEXTURE_CHANNELS * i, c->values + TEXTURE_CHANNELS * (size_t)c->nearest[i],
-                   3 * sizeof(float));
-}
-
 typedef struct Layers {
     uint32_t count;
     uint32_t sheets[TEXTURE_SHEETS];
@@ -117,10 +100,23 @@ static SingeResult draw_layer(Layers *layers, const OutputScene *scene, const Ou
     if (made) {
         draw_mesh(&canvas, &scene->sheets[sheet].mesh);
         draw_surface(&canvas, frame->surface, sheet);
-        spread(&canvas);
+
+        uv_spread(canvas.size, TEXTURE_MARGIN, canvas.chart, canvas.nearest, canvas.queue);
+        for (size_t i = 0; i < canvas.pixels; i++)
+            canvas.values[TEXTURE_CHANNELS * i + 3] = canvas.nearest[i] != UV_NONE && canvas.covered[canvas.nearest[i]];
+        uv_spread(canvas.size, TEXTURE_MARGIN, canvas.covered, canvas.nearest, canvas.queue);
+        for (size_t i = 0; i < canvas.pixels; i++)
+            if (canvas.nearest[i] != UV_NONE && canvas.nearest[i] != i)
+                memcpy(canvas.values + TEXTURE_CHANNELS * i,
+                       canvas.values + TEXTURE_CHANNELS * (size_t)canvas.nearest[i], 3 * sizeof(float));
+
         layers->values[layers->count] = canvas.values;
     }
-    canvas_free(&canvas, a, !made);
+
+    if (!made) store_free(a, canvas.values, canvas.pixels, TEXTURE_CHANNELS * sizeof(float));
+    store_free(a, canvas.covered, canvas.pixels, 1), store_free(a, canvas.chart, canvas.pixels, 1);
+    store_free(a, canvas.nearest, canvas.pixels, 4), store_free(a, canvas.queue, canvas.pixels, 4);
+
     if (!made) return refuse_memory(error, "textures", path);
     char prim[USD_NAME];
     usd_sheet_name(scene, sheet, prim);

@@ -66,20 +66,6 @@ static void put_packed(Crate *crate, Sink *sink, const uint8_t *bytes, size_t si
     if (sink->failed) crate->sink.failed = true;
 }
 
-/// The most frequent one-byte difference; of many differences one in seven is counted.
-static int32_t common_difference(const int32_t *values, size_t count) {
-    uint32_t counts[256] = {0};
-    const size_t stride = count > 1000 ? 7 : 1;
-    for (size_t i = 0; i < count; i += stride) {
-        const int32_t d = (int32_t)((uint32_t)values[i] - (i ? (uint32_t)values[i - 1] : 0));
-        if (d >= -128 && d <= 127) counts[d + 128]++;
-    }
-    int most = 128;
-    for (int i = 0; i < 256; i++)
-        if (counts[i] > counts[most]) most = i;
-    return most - 128;
-}
-
 /// Differences: the commonest one, two bits for each (it, or one, two or four bytes), then those bytes.
 static void put_ints(Crate *crate, Sink *sink, const int32_t *values, size_t count) {
     Sink *scratch = &crate->scratch;
@@ -90,7 +76,19 @@ static void put_ints(Crate *crate, Sink *sink, const int32_t *values, size_t cou
         crate->sink.failed = true;
         return;
     }
-    const int32_t common = common_difference(values, count);
+
+    // the most frequent one-byte difference; of many differences one in seven is counted
+    uint32_t counts[256] = {0};
+    const size_t stride = count > 1000 ? 7 : 1;
+    for (size_t i = 0; i < count; i += stride) {
+        const int32_t step = (int32_t)((uint32_t)values[i] - (i ? (uint32_t)values[i - 1] : 0));
+        if (step >= -128 && step <= 127) counts[step + 128]++;
+    }
+    int most = 128;
+    for (int i = 0; i < 256; i++)
+        if (counts[i] > counts[most]) most = i;
+    const int32_t common = most - 128;
+
     uint8_t *code = bytes + 4, *at = code + codes;
     uint32_t before = 0;
     store_u32_little(bytes, (uint32_t)common);
@@ -268,19 +266,6 @@ static void put_fieldsets(Crate *crate) {
     put_ints(crate, &crate->sink, (const int32_t *)crate->sets, crate->set_count);
 }
 
-/// How to go on from a path: 0 to a sibling that follows, -1 to its child alone, -2 nowhere, else to its child, and
-/// its sibling is so far on. `room` has a number a path.
-static void find_jumps(const Crate *crate, int32_t *room, int32_t *jumps) {
-    const CratePath *paths = crate->paths;
-    for (size_t i = 0; i < crate->path_count; i++) room[i] = 0; // the child of it that comes next; 0: none
-    for (size_t i = crate->path_count; i-- > 0;) {
-        const bool child = i + 1 < crate->path_count && paths[i + 1].parent == i;
-        const int32_t sibling = paths[i].parent == CRATE_NO_PARENT ? 0 : room[paths[i].parent];
-        jumps[i] = child && sibling ? sibling - (int32_t)i : child ? -1 : sibling ? 0 : -2;
-        if (paths[i].parent != CRATE_NO_PARENT) room[paths[i].parent] = (int32_t)i;
-    }
-}
-
 /// Numbers, names (those of properties negative) and jumps.
 static void put_paths(Crate *crate) {
     const size_t count = crate->path_count;
@@ -296,7 +281,18 @@ static void put_paths(Crate *crate) {
         columns[i] = (int32_t)i;
         columns[count + i] = crate->paths[i].property ? -name : name;
     }
-    find_jumps(crate, columns + 3 * count, columns + 2 * count);
+
+    // how to go on from a path: 0 to a sibling that follows, -1 to its child alone, -2 nowhere, else to its child, with the sibling so far on
+    const CratePath *paths = crate->paths;
+    for (size_t i = 0; i < crate->path_count; i++)
+        (columns + 3 * count)[i] = 0; // the child of it that comes next; 0: none
+    for (size_t i = crate->path_count; i-- > 0;) {
+        const bool child = i + 1 < crate->path_count && paths[i + 1].parent == i;
+        const int32_t sibling = paths[i].parent == CRATE_NO_PARENT ? 0 : (columns + 3 * count)[paths[i].parent];
+        (columns + 2 * count)[i] = child && sibling ? sibling - (int32_t)i : child ? -1 : sibling ? 0 : -2;
+        if (paths[i].parent != CRATE_NO_PARENT) (columns + 3 * count)[paths[i].parent] = (int32_t)i;
+    }
+
     sink_u64(&crate->sink, count);
     sink_u64(&crate->sink, count);
     for (int k = 0; k < 3; k++) put_ints(crate, &crate->sink, columns + (size_t)k * count, count);

@@ -110,26 +110,6 @@ static void put_embers(UsdWriter *w, const SheetPart *part, CrateValue *palette,
     *indices = crate_ints(&w->crate, w->numbers, part->count);
 }
 
-static void put_faces(UsdWriter *w, const SheetPart *part, CrateValue *counts, CrateValue *indices) {
-    for (uint32_t i = 0; i < part->triangle_count; i++) w->numbers[i] = 3;
-    *counts = crate_ints(&w->crate, w->numbers, part->triangle_count);
-    for (uint32_t i = 0; i < part->triangle_count; i++)
-        for (int k = 0; k < 3; k++)
-            w->numbers[3 * i + (uint32_t)k] = (int32_t)w->parts.local[w->surface->triangles[part->triangles[i]][k]];
-    *indices = crate_ints(&w->crate, w->numbers, 3 * (size_t)part->triangle_count);
-}
-
-static CrateValue put_extent(UsdWriter *w, const SheetPart *part) {
-    float box[2][3] = {{0}};
-    for (uint32_t i = 0; i < part->count; i++)
-        for (int c = 0; c < 3; c++) {
-            const float x = w->surface->position[part->vertices[i]][c];
-            box[0][c] = i && box[0][c] < x ? box[0][c] : x;
-            box[1][c] = i && box[1][c] > x ? box[1][c] : x;
-        }
-    return crate_floats(&w->crate, 3, box[0], 2);
-}
-
 // ---- prims
 
 /// The samples of a slot of a sheet: `value` for one frame, otherwise the kept values.
@@ -189,10 +169,25 @@ static void put_own(UsdWriter *w, const SheetPart *part, CrateValue values[USD_O
     values[USD_NORMALS] = put_vectors(w, part, s->normal, 3);
     values[USD_ST] = put_vectors(w, part, s->uv, 2);
     values[USD_REST] = put_vectors(w, part, s->rest_position, 3);
-    values[USD_EXTENT] = put_extent(w, part);
+
+    float box[2][3] = {{0}};
+    for (uint32_t i = 0; i < part->count; i++)
+        for (int c = 0; c < 3; c++) {
+            const float x = w->surface->position[part->vertices[i]][c];
+            box[0][c] = i && box[0][c] < x ? box[0][c] : x;
+            box[1][c] = i && box[1][c] > x ? box[1][c] : x;
+        }
+    values[USD_EXTENT] = crate_floats(&w->crate, 3, box[0], 2);
+
     put_colours(w, part, &values[USD_COLOUR], &values[USD_COLOUR_INDICES]);
     put_embers(w, part, &values[USD_EMBER], &values[USD_EMBER_INDICES]);
-    put_faces(w, part, &values[USD_COUNTS], &values[USD_INDICES]);
+
+    for (uint32_t i = 0; i < part->triangle_count; i++) w->numbers[i] = 3;
+    values[USD_COUNTS] = crate_ints(&w->crate, w->numbers, part->triangle_count);
+    for (uint32_t i = 0; i < part->triangle_count; i++)
+        for (int k = 0; k < 3; k++)
+            w->numbers[3 * i + (uint32_t)k] = (int32_t)w->parts.local[w->surface->triangles[part->triangles[i]][k]];
+    values[USD_INDICES] = crate_ints(&w->crate, w->numbers, 3 * (size_t)part->triangle_count);
 }
 
 static CrateValue put_field(UsdWriter *w, const SheetPart *part, const SurfaceField *field) {

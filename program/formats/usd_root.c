@@ -88,14 +88,6 @@ static float dot(const float a[3], const float b[3]) { return a[0] * b[0] + a[1]
 
 // ---- names of files
 
-/// A path in asset delimiters that its characters allow.
-static void put_asset(Root *r, const char *path) {
-    const char *mark = strchr(path, '@') ? "@@@" : "@";
-    put(r, mark);
-    put(r, path);
-    put(r, mark);
-}
-
 static void put_file(Root *r, const char *folder, int frame, const char *ending) {
     char number[24];
     const char *mark = strchr(r->scene->name, '@') ? "@@@" : "@";
@@ -105,23 +97,6 @@ static void put_file(Root *r, const char *folder, int frame, const char *ending)
 }
 
 // ---- sheets
-
-static void put_clips(Root *r) {
-    const int frames = r->scene->frames;
-    put(r, "        clips = {\n            dictionary default = {\n                asset[] assetPaths = [");
-    for (int i = 1; i <= frames; i++) {
-        put(r, i > 1 ? ", " : "");
-        put_file(r, "usd", i, ".usdc");
-    }
-    put(r, "]\n                double2[] active = [");
-    for (int i = 1; i <= frames; i++) sink_text(&r->sink, "%s(%d, %d)", i > 1 ? ", " : "", i, i - 1);
-    put(r, "]\n                double2[] times = [");
-    for (int i = 1; i <= frames; i++) sink_text(&r->sink, "%s(%d, %d)", i > 1 ? ", " : "", i, i);
-    sink_text(&r->sink, "]\n                string primPath = \"/%s/sheets\"\n", r->name);
-    put(r, "                asset manifestAssetPath = ");
-    put_file(r, "usd", 1, ".usdc");
-    put(r, "\n            }\n        }\n");
-}
 
 static void put_subset(Root *r, const char *name, const char *material) {
     sink_text(&r->sink,
@@ -159,7 +134,22 @@ static void put_sheet(Root *r, uint32_t sheet) {
 
 static void put_sheets(Root *r) {
     put(r, "\n    def Xform \"sheets\" (\n");
-    put_clips(r);
+
+    const int frames = r->scene->frames;
+    put(r, "        clips = {\n            dictionary default = {\n                asset[] assetPaths = [");
+    for (int i = 1; i <= frames; i++) {
+        put(r, i > 1 ? ", " : "");
+        put_file(r, "usd", i, ".usdc");
+    }
+    put(r, "]\n                double2[] active = [");
+    for (int i = 1; i <= frames; i++) sink_text(&r->sink, "%s(%d, %d)", i > 1 ? ", " : "", i, i - 1);
+    put(r, "]\n                double2[] times = [");
+    for (int i = 1; i <= frames; i++) sink_text(&r->sink, "%s(%d, %d)", i > 1 ? ", " : "", i, i);
+    sink_text(&r->sink, "]\n                string primPath = \"/%s/sheets\"\n", r->name);
+    put(r, "                asset manifestAssetPath = ");
+    put_file(r, "usd", 1, ".usdc");
+    put(r, "\n            }\n        }\n");
+
     put(r, "    )\n    {\n");
     for (uint32_t i = 0; i < r->scene->sheet_count; i++) put_sheet(r, i);
     put(r, "    }\n");
@@ -237,20 +227,6 @@ static void put_camera(Root *r) {
     put(r, "    }\n");
 }
 
-static void put_lights(Root *r) {
-    static const float nowhere[3] = {0, 0, 0}, up[3] = {0, 0, 1};
-    const OutputScene *s = r->scene;
-    put(r, "\n    def DistantLight \"sun\"\n    {\n        bool inputs:normalize = 1\n");
-    put_float(r, "        float inputs:angle = ", 2 * s->light_angle * 180 / PI);
-    put_triple(r, "        color3f inputs:color = ", s->light_colour[0], s->light_colour[1], s->light_colour[2]);
-    put_float(r, "        float inputs:intensity = ", PI * FILM_SPEED);
-    put_frame(r, s->light_direction, up, nowhere);
-    put(r, "    }\n\n    def DomeLight \"sky\"\n    {\n");
-    put_triple(r, "        color3f inputs:color = ", s->sky[0], s->sky[1], s->sky[2]);
-    put_float(r, "        float inputs:intensity = ", FILM_SPEED);
-    put(r, "    }\n");
-}
-
 // ---- props
 
 static void put_points(Root *r, const float *vertices, uint32_t count) {
@@ -276,19 +252,15 @@ static void put_box(Root *r, const float *vertices, uint32_t count) {
     put(r, "]");
 }
 
-/// The number of samples of moving vertices: up to the last frame that differs from the one before it. 1 for a rigid
-/// shape.
-static int moving_frames(const Root *r, const OutputShape *shape) {
-    int last = 0;
-    for (int i = 1; shape && i < r->scene->frames; i++)
-        if (shape->poses[i].vertices != shape->poses[i - 1].vertices) last = i;
-    return last + 1;
-}
-
 /// An array derived from the vertices, with a sample per frame if they move.
 static void put_samples(Root *r, const char *attribute, const float *vertices, uint32_t count, const OutputShape *shape,
                         void (*array)(Root *, const float *, uint32_t)) {
-    const int frames = moving_frames(r, shape);
+    // the number of samples of moving vertices: up to the last frame that differs from the one before it. 1 for a rigid shape.
+    int last = 0;
+    for (int i = 1; shape && i < r->scene->frames; i++)
+        if (shape->poses[i].vertices != shape->poses[i - 1].vertices) last = i;
+    const int frames = last + 1;
+
     put(r, attribute);
     if (frames == 1) {
         put(r, " = ");
@@ -319,13 +291,6 @@ static void put_mesh_arrays(Root *r, const float *vertices, uint32_t vertex_coun
     put(r, "]\n");
 }
 
-static bool same_pose(const OutputPose *a, const OutputPose *b) {
-    bool same = a->visible == b->visible;
-    for (int i = 0; i < 3; i++) same = same && a->position[i] == b->position[i];
-    for (int i = 0; i < 4; i++) same = same && a->rotation[i] == b->rotation[i];
-    return same;
-}
-
 static void put_position(Root *r, const OutputPose *pose) { put_numbers(r, pose->position, 3); }
 
 static void put_rotation(Root *r, const OutputPose *pose) {
@@ -339,7 +304,12 @@ static void put_visible(Root *r, const OutputPose *pose) { put(r, pose->visible 
 static void put_poses(Root *r, const char *attribute, const OutputShape *shape,
                       void (*value)(Root *, const OutputPose *)) {
     bool still = true;
-    for (int i = 1; i < r->scene->frames; i++) still = still && same_pose(&shape->poses[0], &shape->poses[i]);
+    for (int i = 1; i < r->scene->frames; i++) {
+        const OutputPose *a = &shape->poses[0], *b = &shape->poses[i];
+        still = still && a->visible == b->visible;
+        for (int c = 0; c < 3; c++) still = still && a->position[c] == b->position[c];
+        for (int c = 0; c < 4; c++) still = still && a->rotation[c] == b->rotation[c];
+    }
     put(r, attribute);
     put(r, still ? " = " : ".timeSamples = {");
     for (int i = 0; i < (still ? 1 : r->scene->frames); i++) {
@@ -394,26 +364,24 @@ static void put_shape(Root *r, uint32_t index) {
               scaled ? ", \"xformOp:scale\"" : "");
 }
 
-static void put_ground(Root *r) {
-    const OutputScene *s = r->scene;
-    if (!isfinite(s->ground_height)) return;
-    float far_off[3];
-    for (int i = 0; i < 3; i++) far_off[i] = s->eye[i] - s->target[i];
-    const float half = 20 * sqrtf(dot(far_off, far_off)), x = s->target[0], y = s->target[1], z = s->ground_height;
-    const float corners[12] = {x - half, y - half, z, x + half, y - half, z,
-                               x + half, y + half, z, x - half, y + half, z};
-    static const uint32_t indices[4] = {0, 1, 2, 3};
-    sink_text(&r->sink,
-              "\n        def Mesh \"ground\" (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n        )\n"
-              "        {\n            rel material:binding = </%s/materials/ground>\n",
-              r->name);
-    put_mesh_arrays(r, corners, 4, indices, 1, 4, NULL);
-    put(r, "        }\n");
-}
-
 static void put_props(Root *r) {
     put(r, "\n    def Xform \"props\"\n    {");
-    put_ground(r);
+    if (isfinite(r->scene->ground_height)) {
+        const OutputScene *s = r->scene;
+        float far_off[3];
+        for (int i = 0; i < 3; i++) far_off[i] = s->eye[i] - s->target[i];
+        const float half = 20 * sqrtf(dot(far_off, far_off)), x = s->target[0], y = s->target[1], z = s->ground_height;
+        const float corners[12] = {x - half, y - half, z, x + half, y - half, z,
+                                   x + half, y + half, z, x - half, y + half, z};
+        static const uint32_t indices[4] = {0, 1, 2, 3};
+        sink_text(
+            &r->sink,
+            "\n        def Mesh \"ground\" (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n        )\n"
+            "        {\n            rel material:binding = </%s/materials/ground>\n",
+            r->name);
+        put_mesh_arrays(r, corners, 4, indices, 1, 4, NULL);
+        put(r, "        }\n");
+    }
     for (uint32_t i = 0; i < r->scene->shape_count; i++) put_shape(r, i);
     put(r, "    }\n");
 }
@@ -448,30 +416,6 @@ static void put_plain(Root *r, const char *material, const float colour[3], floa
     put(r, "            }\n        }\n");
 }
 
-static void put_print(Root *r, uint32_t sheet) {
-    const OutputSheet *s = &r->scene->sheets[sheet];
-    char material[USD_NAME];
-    snprintf(material, sizeof material, "print%u", sheet);
-    put_surface(r, material);
-    sink_text(&r->sink,
-              "                color3f inputs:diffuseColor.connect = </%s/materials/%s/picture.outputs:rgb>\n"
-              "            }\n\n            def Shader \"picture\"\n            {\n"
-              "                uniform token info:id = \"UsdUVTexture\"\n                asset inputs:file = ",
-              r->name, material);
-    put_asset(r, s->picture);
-    const float scale[4] = {0.86f * s->colour[0], 0.852f * s->colour[1], 0.832f * s->colour[2], 1};
-    put(r, "\n                float4 inputs:scale = ");
-    put_numbers(r, scale, 4);
-    sink_text(&r->sink,
-              "\n                float2 inputs:st.connect = </%s/materials/%s/st.outputs:result>\n"
-              "                token inputs:sourceColorSpace = \"sRGB\"\n"
-              "                token inputs:wrapS = \"clamp\"\n                token inputs:wrapT = \"clamp\"\n"
-              "                float3 outputs:rgb\n            }\n",
-              r->name, material);
-    put_reader(r, "st", "st", "float2", 2);
-    put(r, "        }\n");
-}
-
 static void put_materials(Root *r) {
     put(r, "\n    def Scope \"materials\"\n    {");
     put_surface(r, "burning");
@@ -484,7 +428,35 @@ static void put_materials(Root *r) {
     put_reader(r, "ember", "ember", "float3", 3);
     put(r, "        }\n");
     for (uint32_t i = 0; i < r->scene->sheet_count; i++)
-        if (r->scene->sheets[i].picture) put_print(r, i);
+        if (r->scene->sheets[i].picture) {
+            const OutputSheet *s = &r->scene->sheets[i];
+            char print[USD_NAME];
+            snprintf(print, sizeof print, "print%u", i);
+            put_surface(r, print);
+            sink_text(&r->sink,
+                      "                color3f inputs:diffuseColor.connect = </%s/materials/%s/picture.outputs:rgb>\n"
+                      "            }\n\n            def Shader \"picture\"\n            {\n"
+                      "                uniform token info:id = \"UsdUVTexture\"\n                asset inputs:file = ",
+                      r->name, print);
+
+            // a path in asset delimiters that its characters allow
+            const char *mark = strchr(s->picture, '@') ? "@@@" : "@";
+            put(r, mark);
+            put(r, s->picture);
+            put(r, mark);
+
+            const float scale[4] = {0.86f * s->colour[0], 0.852f * s->colour[1], 0.832f * s->colour[2], 1};
+            put(r, "\n                float4 inputs:scale = ");
+            put_numbers(r, scale, 4);
+            sink_text(&r->sink,
+                      "\n                float2 inputs:st.connect = </%s/materials/%s/st.outputs:result>\n"
+                      "                token inputs:sourceColorSpace = \"sRGB\"\n"
+                      "                token inputs:wrapS = \"clamp\"\n                token inputs:wrapT = \"clamp\"\n"
+                      "                float3 outputs:rgb\n            }\n",
+                      r->name, print);
+            put_reader(r, "st", "st", "float2", 2);
+            put(r, "        }\n");
+        }
     for (uint32_t i = 0; i < r->scene->shape_count; i++) {
         char material[USD_NAME];
         snprintf(material, sizeof material, "shape%u", i);
@@ -507,7 +479,19 @@ void usd_put_root(Sink *sink, const OutputScene *scene) {
     put_sheets(r);
     if (scene->gas) put_gas(r);
     put_camera(r);
-    put_lights(r);
+
+    static const float nowhere[3] = {0, 0, 0}, up[3] = {0, 0, 1};
+    const OutputScene *s = r->scene;
+    put(r, "\n    def DistantLight \"sun\"\n    {\n        bool inputs:normalize = 1\n");
+    put_float(r, "        float inputs:angle = ", 2 * s->light_angle * 180 / PI);
+    put_triple(r, "        color3f inputs:color = ", s->light_colour[0], s->light_colour[1], s->light_colour[2]);
+    put_float(r, "        float inputs:intensity = ", PI * FILM_SPEED);
+    put_frame(r, s->light_direction, up, nowhere);
+    put(r, "    }\n\n    def DomeLight \"sky\"\n    {\n");
+    put_triple(r, "        color3f inputs:color = ", s->sky[0], s->sky[1], s->sky[2]);
+    put_float(r, "        float inputs:intensity = ", FILM_SPEED);
+    put(r, "    }\n");
+
     put_props(r);
     put_materials(r);
     put(r, "}\n");

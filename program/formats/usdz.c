@@ -22,22 +22,7 @@ enum {
     ZIP_PADDING = 0x1986
 };
 
-static void zip_begin(Zip *zip, SingeAllocator allocator) {
-    *zip = (Zip){.sink = {.allocator = allocator}, .directory = {.allocator = allocator}};
-}
-
 static void zip_free(Zip *zip) { sink_free(&zip->sink), sink_free(&zip->directory); }
-
-/// CRC-32 of ISO 3309.
-static uint32_t zip_sum(const uint8_t *bytes, size_t size) {
-    uint32_t table[256], sum = UINT32_MAX;
-    for (uint32_t i = 0; i < 256; i++) {
-        table[i] = i;
-        for (int k = 0; k < 8; k++) table[i] = table[i] >> 1 ^ (table[i] & 1 ? 0xedb88320u : 0);
-    }
-    for (size_t i = 0; i < size; i++) sum = sum >> 8 ^ table[(sum ^ bytes[i]) & 255];
-    return ~sum;
-}
 
 static void put_u16(Sink *sink, uint32_t value) {
     const uint8_t bytes[2] = {(uint8_t)value, (uint8_t)(value >> 8)};
@@ -57,7 +42,16 @@ static void zip_add(Zip *zip, const char *name, const void *bytes, size_t size) 
     const size_t offset = zip->sink.size, length = strlen(name), head = offset + 30 + length;
     // an extra field without meaning is the padding: 4 bytes and its contents
     const size_t extra = (ZIP_ALIGNMENT - (head + 4) % ZIP_ALIGNMENT) % ZIP_ALIGNMENT + 4;
-    const uint32_t sum = zip_sum(bytes, size);
+
+    // CRC-32 of ISO 3309
+    uint32_t table[256], sum = UINT32_MAX;
+    for (uint32_t i = 0; i < 256; i++) {
+        table[i] = i;
+        for (int k = 0; k < 8; k++) table[i] = table[i] >> 1 ^ (table[i] & 1 ? 0xedb88320u : 0);
+    }
+    for (size_t i = 0; i < size; i++) sum = sum >> 8 ^ table[(sum ^ ((const uint8_t *)bytes)[i]) & 255];
+    sum = ~sum;
+
     zip->too_large =
         zip->too_large || size > UINT32_MAX - 1024 || head + size > UINT32_MAX - 1024 || zip->count >= 65535;
     sink_bytes(&zip->sink, "PK\3\4", 4);
@@ -98,23 +92,19 @@ static SingeResult zip_write(Zip *zip, const char *path, SingeError *error) {
 
 typedef char PictureName[32];
 
-/// The path of a picture, which may be relative to the archive's folder.
-static SingeResult read_picture(const char *path, const char *picture, Bytes *bytes, SingeError *error) {
-    char name[8192];
-    const char *slash = strrchr(path, '/');
-    const int folder = *picture == '/' || !slash ? 0 : (int)(slash - path) + 1;
-    if ((size_t)snprintf(name, sizeof name, "%.*s%s", folder, path, picture) >= sizeof name)
-        return refuse(error, SINGE_ERROR_LIMIT, "usdz", -1, "%s: the name is too long", short_name(picture));
-    return file_read(name, (SingeAllocator){0}, bytes, error);
-}
-
 static SingeResult add_pictures(Zip *zip, const char *path, const OutputScene *scene, const PictureName *names,
                                 SingeError *error) {
     SingeResult result = SINGE_OK;
     for (uint32_t i = 0; i < scene->sheet_count && !result; i++) {
         Bytes bytes = {0};
         if (!scene->sheets[i].picture) continue;
-        result = read_picture(path, scene->sheets[i].picture, &bytes, error);
+        // its path may be relative to the archive's folder
+        char name[8192];
+        const char *picture = scene->sheets[i].picture, *slash = strrchr(path, '/');
+        const int folder = *picture == '/' || !slash ? 0 : (int)(slash - path) + 1;
+        if ((size_t)snprintf(name, sizeof name, "%.*s%s", folder, path, picture) >= sizeof name)
+            return refuse(error, SINGE_ERROR_LIMIT, "usdz", -1, "%s: the name is too long", short_name(picture));
+        result = file_read(name, (SingeAllocator){0}, &bytes, error);
         if (!result) zip_add(zip, names[i], bytes.data, bytes.size);
         bytes_free(&bytes);
     }
@@ -162,11 +152,11 @@ static SingeResult add_root(Zip *zip, const OutputScene *scene, OutputSheet *she
 }
 
 SingeResult usdz_write(const char *path, const OutputScene *scene, const OutputCache *cache, SingeError *error) {
-    Zip zip;
+    Zip zip = {0};
     OutputSheet *sheets = calloc(scene->sheet_count + 1, sizeof *sheets);
     PictureName *names = calloc(scene->sheet_count + 1, sizeof *names);
     SingeResult result = sheets && names ? SINGE_OK : refuse_memory(error, "usdz", path);
-    zip_begin(&zip, (SingeAllocator){0});
+
     if (!result) result = add_root(&zip, scene, sheets, names, path, error);
     if (!result) result = add_frames(&zip, path, scene, cache, error);
     if (!result) result = add_pictures(&zip, path, scene, (const PictureName *)names, error);

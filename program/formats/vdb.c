@@ -128,16 +128,6 @@ static float from_half(uint16_t half) {
     return half & 0x8000 ? -magnitude : magnitude;
 }
 
-static void put_value(Writer *w, float value) {
-    if (!w->half) {
-        put_float(w, value);
-        return;
-    }
-    const uint16_t half = to_half(value);
-    const uint8_t bytes[2] = {(uint8_t)half, (uint8_t)(half >> 8)};
-    put_bytes(w, bytes, 2);
-}
-
 static void put_double(Writer *w, double value) {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
@@ -171,22 +161,6 @@ static void put_number(Writer *w, const char *name, double value) {
     put_double(w, value);
 }
 
-static void put_header(Writer *w, double time) {
-    put_u64(w, VDB_MAGIC);
-    put_u32(w, VDB_VERSION);
-    put_u32(w, VDB_LIBRARY_MAJOR);
-    put_u32(w, VDB_LIBRARY_MINOR);
-    put_bytes(w, "\1", 1);
-    put_bytes(w, "00000000-0000-0000-0000-000000000000", VDB_ID); // the same gas gives the same bytes
-    put_u32(w, w->half ? 4 : 5);
-    put_text(w, "creator", "Singe " SINGE_VERSION);
-    put_triple(w, "size", w->gas->view.size);
-    put_number(w, "time", time);
-    put_number(w, VDB_EXTINCTION, (double)GAS_EXTINCTION);
-    if (!w->half) put_number(w, VDB_FLAME_UNIT, (double)GAS_FLAME_UNIT);
-    put_u32(w, VDB_FIELDS + 1);
-}
-
 /// Lets a program identify a grid from its first kilobyte.
 static void put_grid_metadata(Writer *w, const char *name, bool vector) {
     uint32_t low[3] = {UINT32_MAX, UINT32_MAX, UINT32_MAX}, high[3] = {0, 0, 0};
@@ -217,20 +191,10 @@ static void put_grid_metadata(Writer *w, const char *name, bool vector) {
     put_string(w, "int64");
     put_u32(w, 8);
     put_u64(w, cells);
-    if (!w->leaf_count) return;
-    put_triple(w, "file_bbox_min", low);
-    put_triple(w, "file_bbox_max", high);
-}
-
-/// Index to position: cell (0, 0, 0) has its centre half a cell from the origin.
-static void put_map(Writer *w) {
-    const SingeGas *gas = &w->gas->view;
-    double cell = (double)gas->cell;
-    put_string(w, VDB_MAP);
-    for (int c = 0; c < 3; c++) put_double(w, (double)gas->origin[c] + 0.5 * cell);
-    const double powers[5] = {cell, cell, 1 / cell, 1 / (cell * cell), 0.5 / cell};
-    for (int k = 0; k < 5; k++)
-        for (int c = 0; c < 3; c++) put_double(w, powers[k]);
+    if (w->leaf_count) {
+        put_triple(w, "file_bbox_min", low);
+        put_triple(w, "file_bbox_max", high);
+    }
 }
 
 // ---- the tree
@@ -278,25 +242,6 @@ static void put_topology(Writer *w, const VdbFieldInfo *field) {
     }
 }
 
-static void put_buffers(Writer *w, VdbField field) {
-    const SingeGas *gas = &w->gas->view;
-    const float *values = vdb_field(w->gas, field);
-    uint32_t width = vdb_fields[field].width;
-    for (size_t i = 0; i < w->leaf_count; i++) {
-        uint8_t mask[VDB_LEAF_MASK];
-        leaf_mask(w, &w->leaves[i], mask);
-        put_bytes(w, mask, sizeof mask);
-        put_zeros(w, 1);
-        const uint16_t *b = w->leaves[i].block;
-        for (uint32_t n = 0; n < GAS_BLOCK * GAS_BLOCK * GAS_BLOCK; n++) {
-            if (!vdb_bit(mask, n)) continue;
-            size_t cell = gas_index(gas, b[0] * GAS_BLOCK + (n >> 6), b[1] * GAS_BLOCK + (n >> 3 & 7),
-                                    b[2] * GAS_BLOCK + (n & 7));
-            for (uint32_t k = 0; k < width; k++) put_value(w, values[cell * width + k]);
-        }
-    }
-}
-
 /// A grid with its tree, or, if `parent` is given, one that shares the parent's.
 static void put_grid(Writer *w, const char *name, VdbField field, const char *parent) {
     put_string(w, name);
@@ -309,10 +254,44 @@ static void put_grid(Writer *w, const char *name, VdbField field, const char *pa
     uint64_t body = (uint64_t)(w->at - w->begin);
     put_u32(w, VDB_ACTIVE_VALUES);
     put_grid_metadata(w, name, vdb_fields[field].width == 3);
-    put_map(w);
+
+    // index to position: cell (0, 0, 0) has its centre half a cell from the origin
+    const SingeGas *gas = &w->gas->view;
+    double cell = (double)gas->cell;
+    put_string(w, VDB_MAP);
+    for (int c = 0; c < 3; c++) put_double(w, (double)gas->origin[c] + 0.5 * cell);
+    const double powers[5] = {cell, cell, 1 / cell, 1 / (cell * cell), 0.5 / cell};
+    for (int k = 0; k < 5; k++)
+        for (int c = 0; c < 3; c++) put_double(w, powers[k]);
+
     if (!*parent) put_topology(w, &vdb_fields[field]);
     uint64_t buffers = (uint64_t)(w->at - w->begin);
-    if (!*parent) put_buffers(w, field);
+    if (!*parent) {
+        const float *values = vdb_field(w->gas, field);
+        uint32_t width = vdb_fields[field].width;
+        for (size_t i = 0; i < w->leaf_count; i++) {
+            uint8_t mask[VDB_LEAF_MASK];
+            leaf_mask(w, &w->leaves[i], mask);
+            put_bytes(w, mask, sizeof mask);
+            put_zeros(w, 1);
+            const uint16_t *b = w->leaves[i].block;
+            for (uint32_t n = 0; n < GAS_BLOCK * GAS_BLOCK * GAS_BLOCK; n++) {
+                if (!vdb_bit(mask, n)) continue;
+                size_t at = gas_index(gas, b[0] * GAS_BLOCK + (n >> 6), b[1] * GAS_BLOCK + (n >> 3 & 7),
+                                      b[2] * GAS_BLOCK + (n & 7));
+                for (uint32_t k = 0; k < width; k++) {
+                    const float value = values[at * width + k];
+                    if (!w->half) {
+                        put_float(w, value);
+                        continue;
+                    }
+                    const uint16_t half = to_half(value);
+                    const uint8_t bytes[2] = {(uint8_t)half, (uint8_t)(half >> 8)};
+                    put_bytes(w, bytes, 2);
+                }
+            }
+        }
+    }
     uint8_t *end = w->at;
     w->at = locations;
     put_u64(w, body);
@@ -323,44 +302,31 @@ static void put_grid(Writer *w, const char *name, VdbField field, const char *pa
 
 // ---- the file
 
-/// Collects the leaves of one node of 16 x 16 x 16 blocks.
-static void find_leaves(Writer *w, const uint32_t node[3]) {
-    const uint32_t *n = w->gas->view.size;
-    bool opens = true;
-    for (uint32_t i = 0; i < NODE_SIDE * NODE_SIDE * NODE_SIDE; i++) {
-        uint32_t block[3] = {node[0] * NODE_SIDE + (i >> 8), node[1] * NODE_SIDE + (i >> 4 & 15),
-                             node[2] * NODE_SIDE + (i & 15)};
-        if (block[0] * GAS_BLOCK >= n[0] || block[1] * GAS_BLOCK >= n[1] || block[2] * GAS_BLOCK >= n[2]) continue;
-        if (!gas_block_holds(&w->gas->view, block, w->coolest)) continue;
-        w->leaves[w->leaf_count++] =
-            (Leaf){{(uint16_t)block[0], (uint16_t)block[1], (uint16_t)block[2]}, .opens = opens};
-        w->node_count += opens;
-        opens = false;
-    }
-}
-
-static void find_tree(Writer *w) {
-    const uint32_t side = NODE_SIDE * GAS_BLOCK, *n = w->gas->view.size;
-    uint32_t node[3];
-    for (node[0] = 0; node[0] * side < n[0]; node[0]++)
-        for (node[1] = 0; node[1] * side < n[1]; node[1]++)
-            for (node[2] = 0; node[2] * side < n[2]; node[2]++) find_leaves(w, node);
-}
-
-/// Max bytes of the whole file.
-static size_t size_max(const Writer *w) {
+static SingeResult write_file(Writer *w, const char *path, double time, SingeError *error) {
+    // max bytes of the whole file
     size_t leaf = 2 * VDB_LEAF_MASK + 1, cells = GAS_BLOCK * GAS_BLOCK * GAS_BLOCK, all = HEADER_MAX + GRID_MAX;
     for (int f = 0; f < VDB_FIELDS; f++)
         all += GRID_MAX + 2 * VDB_UPPER_MASK + w->node_count * (2 * VDB_LOWER_MASK + 1) +
                w->leaf_count * (leaf + cells * vdb_fields[f].width * 4);
-    return all;
-}
+    size_t max = all;
 
-static SingeResult write_file(Writer *w, const char *path, double time, SingeError *error) {
-    size_t max = size_max(w);
     w->begin = w->at = store_new(w->gas->allocator, max, 1);
     if (!w->begin) return refuse_memory(error, "gas", path);
-    put_header(w, time);
+
+    put_u64(w, VDB_MAGIC);
+    put_u32(w, VDB_VERSION);
+    put_u32(w, VDB_LIBRARY_MAJOR);
+    put_u32(w, VDB_LIBRARY_MINOR);
+    put_bytes(w, "\1", 1);
+    put_bytes(w, "00000000-0000-0000-0000-000000000000", VDB_ID); // the same gas gives the same bytes
+    put_u32(w, w->half ? 4 : 5);
+    put_text(w, "creator", "Singe " SINGE_VERSION);
+    put_triple(w, "size", w->gas->view.size);
+    put_number(w, "time", time);
+    put_number(w, VDB_EXTINCTION, (double)GAS_EXTINCTION);
+    if (!w->half) put_number(w, VDB_FLAME_UNIT, (double)GAS_FLAME_UNIT);
+    put_u32(w, VDB_FIELDS + 1);
+
     for (int f = 0; f < VDB_FIELDS; f++) put_grid(w, vdb_fields[f].name, (VdbField)f, "");
     put_grid(w, "vel", VDB_VELOCITY, vdb_fields[VDB_VELOCITY].name);
     SingeResult result = file_write(path, w->begin, (size_t)(w->at - w->begin), error);
@@ -377,7 +343,27 @@ static SingeResult write_gas(const char *path, const Gas *gas, double time, bool
     for (int c = 0; c < 3; c++) writer.block_count *= (gas->view.size[c] + GAS_BLOCK - 1) / GAS_BLOCK;
     writer.leaves = store_new(gas->allocator, writer.block_count, sizeof *writer.leaves);
     if (!writer.leaves) return refuse_memory(error, "gas", path);
-    find_tree(&writer);
+
+    const uint32_t side = NODE_SIDE * GAS_BLOCK, *n = writer.gas->view.size;
+    uint32_t node[3];
+    for (node[0] = 0; node[0] * side < n[0]; node[0]++)
+        for (node[1] = 0; node[1] * side < n[1]; node[1]++)
+            for (node[2] = 0; node[2] * side < n[2]; node[2]++) {
+                // collects the leaves of one node of 16 x 16 x 16 blocks
+                const uint32_t *cells = writer.gas->view.size;
+                bool opens = true;
+                for (uint32_t i = 0; i < NODE_SIDE * NODE_SIDE * NODE_SIDE; i++) {
+                    uint32_t at[3] = {node[0] * NODE_SIDE + (i >> 8), node[1] * NODE_SIDE + (i >> 4 & 15),
+                                      node[2] * NODE_SIDE + (i & 15)};
+                    if (at[0] * GAS_BLOCK >= cells[0] || at[1] * GAS_BLOCK >= cells[1] || at[2] * GAS_BLOCK >= cells[2])
+                        continue;
+                    if (!gas_block_holds(&writer.gas->view, at, writer.coolest)) continue;
+                    writer.leaves[writer.leaf_count++] =
+                        (Leaf){{(uint16_t)at[0], (uint16_t)at[1], (uint16_t)at[2]}, .opens = opens};
+                    writer.node_count += opens;
+                    opens = false;
+                }
+            }
     SingeResult result = write_file(&writer, path, time, error);
     store_free(gas->allocator, writer.leaves, writer.block_count, sizeof *writer.leaves);
     return result;
@@ -479,42 +465,7 @@ static SingeResult read_metadata(Reader *r, bool of_file) {
     return SINGE_OK;
 }
 
-static SingeResult read_head(Reader *r) {
-    if (get_u64(r) != VDB_MAGIC) return vdb_read_bad(r, "not a VDB file");
-    if (get_u32(r) != VDB_VERSION) return vdb_read_bad(r, "a VDB file of another version");
-    vdb_read_take(r, 8); // of the library
-    const uint8_t *offsets = vdb_read_take(r, 1);
-    if (!offsets || *offsets != 1 || !vdb_read_take(r, VDB_ID))
-        return vdb_read_bad(r, "the head is cut off or has no offsets");
-    r->time = (double)NAN;
-    TRY(read_metadata(r, true));
-    if (!isfinite(r->time) || !gas_cells(&r->gas->view))
-        return vdb_read_bad(r, "not a gas of Singe: no time or no size");
-    if (r->extinction != (double)GAS_EXTINCTION || r->flame_unit != (double)GAS_FLAME_UNIT)
-        return vdb_read_bad(r, "its density or its flame is in other units than those of this version");
-    r->gas->view.cell = 1; // set by the grids
-    if (!gas_shape_is_good(&r->gas->view)) return vdb_read_bad(r, "more cells than a gas can have");
-    if (get_u32(r) != VDB_FIELDS + 1) return vdb_read_bad(r, "other grids than those of Singe");
-    return SINGE_OK;
-}
-
 // ---- a grid
-
-static SingeResult read_map(Reader *r, bool first) {
-    if (!is(get_string(r), VDB_MAP)) return vdb_read_bad(r, "another map than " VDB_MAP);
-    double position[3], scale[3];
-    for (int c = 0; c < 3; c++) position[c] = get_double(r);
-    for (int c = 0; c < 3; c++) scale[c] = get_double(r);
-    if (!vdb_read_take(r, 12 * 8)) return vdb_read_bad(r, "the map is cut off");
-    SingeGas map = r->gas->view;
-    map.cell = (float)scale[0];
-    for (int c = 0; c < 3; c++) map.origin[c] = (float)(position[c] - 0.5 * scale[0]);
-    if (!gas_shape_is_good(&map) || scale[1] != scale[0] || scale[2] != scale[0]) return vdb_read_bad(r, "a bad map");
-    if (first) r->gas->view = map;
-    else if (memcmp(map.origin, r->gas->view.origin, sizeof map.origin) != 0 || map.cell != r->gas->view.cell)
-        return vdb_read_bad(r, "grids of different maps");
-    return SINGE_OK;
-}
 
 /// An inner node: returns the mask of its children. It must not have values.
 static const uint8_t *take_node(Reader *r, size_t mask_bytes) {
@@ -525,59 +476,33 @@ static const uint8_t *take_node(Reader *r, size_t mask_bytes) {
     return node;
 }
 
-/// A leaf: its mask from the topology, its values from the buffers.
-static SingeResult read_leaf(Reader *r, Reader *buffers, const uint32_t low[3], VdbField field) {
-    const SingeGas *gas = &r->gas->view;
-    uint32_t width = vdb_fields[field].width;
-    float *values = vdb_field(r->gas, field);
-    const uint8_t *mask = vdb_read_take(r, VDB_LEAF_MASK), *again = vdb_read_take(buffers, VDB_LEAF_MASK + 1);
-    if (!mask || !again || again[VDB_LEAF_MASK] || memcmp(mask, again, VDB_LEAF_MASK) != 0)
-        return vdb_read_bad(buffers, "a leaf is cut off, or its masks differ");
-    for (uint32_t n = 0; n < 8 * VDB_LEAF_MASK; n++) {
-        if (!vdb_bit(mask, n)) continue;
-        uint32_t x = low[0] + (n >> 6), y = low[1] + (n >> 3 & 7), z = low[2] + (n & 7);
-        if (x >= gas->size[0] || y >= gas->size[1] || z >= gas->size[2])
-            return vdb_read_bad(r, "a cell outside of the gas");
-        if (!has(buffers, 4 * (uint64_t)width)) return vdb_read_bad(buffers, "the values are cut off");
-        for (uint32_t k = 0; k < width; k++) {
-            float value = get_float(buffers);
-            if (!isfinite(value)) return vdb_read_bad(buffers, "a value is not finite");
-            values[gas_index(gas, x, y, z) * width + k] = value;
-        }
-    }
-    return SINGE_OK;
-}
-
 static SingeResult read_node(Reader *r, Reader *buffers, const uint32_t low[3], VdbField field) {
     const uint8_t *children = take_node(r, VDB_LOWER_MASK);
     if (!children) return vdb_read_bad(r, "a node is cut off or has values of its own");
     for (uint32_t n = 0; n < 8 * VDB_LOWER_MASK; n++) {
         const uint32_t at[3] = {low[0] + (n >> 8) * GAS_BLOCK, low[1] + (n >> 4 & 15) * GAS_BLOCK,
                                 low[2] + (n & 15) * GAS_BLOCK};
-        if (vdb_bit(children, n)) TRY(read_leaf(r, buffers, at, field));
-    }
-    return SINGE_OK;
-}
-
-static SingeResult read_tree(Reader *r, Reader *buffers, VdbField field) {
-    bool good = get_u32(r) == 1;
-    float background = 0;
-    for (uint32_t k = 0; k < vdb_fields[field].width; k++) {
-        background = get_float(r);
-        good = good && isfinite(background) && (background == 0 || field == VDB_TEMPERATURE);
-    }
-    uint32_t tiles = get_u32(r), children = get_u32(r);
-    if (!good || tiles || children > 1) return vdb_read_bad(r, "the tree's root is not as Singe writes it");
-    if (field == VDB_TEMPERATURE) gas_fill(r->gas, background);
-    if (!children) return SINGE_OK;
-    static const uint8_t zero[12];
-    const uint8_t *origin = vdb_read_take(r, 12), *nodes = take_node(r, VDB_UPPER_MASK);
-    if (!origin || memcmp(origin, zero, 12) != 0 || !nodes)
-        return vdb_read_bad(r, "the tree is cut off or lies elsewhere");
-    for (uint32_t n = 0; n < 8 * VDB_UPPER_MASK; n++) {
-        enum { SIDE = GAS_BLOCK << VDB_LOWER_LOG };
-        const uint32_t low[3] = {(n >> 10) * SIDE, (n >> 5 & 31) * SIDE, (n & 31) * SIDE};
-        if (vdb_bit(nodes, n)) TRY(read_node(r, buffers, low, field));
+        if (vdb_bit(children, n)) {
+            // a leaf: its mask from the topology, its values from the buffers
+            const SingeGas *gas = &r->gas->view;
+            uint32_t width = vdb_fields[field].width;
+            float *to = vdb_field(r->gas, field);
+            const uint8_t *mask = vdb_read_take(r, VDB_LEAF_MASK), *again = vdb_read_take(buffers, VDB_LEAF_MASK + 1);
+            if (!mask || !again || again[VDB_LEAF_MASK] || memcmp(mask, again, VDB_LEAF_MASK) != 0)
+                return vdb_read_bad(buffers, "a leaf is cut off, or its masks differ");
+            for (uint32_t cell = 0; cell < 8 * VDB_LEAF_MASK; cell++) {
+                if (!vdb_bit(mask, cell)) continue;
+                uint32_t x = at[0] + (cell >> 6), y = at[1] + (cell >> 3 & 7), z = at[2] + (cell & 7);
+                if (x >= gas->size[0] || y >= gas->size[1] || z >= gas->size[2])
+                    return vdb_read_bad(r, "a cell outside of the gas");
+                if (!has(buffers, 4 * (uint64_t)width)) return vdb_read_bad(buffers, "the values are cut off");
+                for (uint32_t k = 0; k < width; k++) {
+                    float value = get_float(buffers);
+                    if (!isfinite(value)) return vdb_read_bad(buffers, "a value is not finite");
+                    to[gas_index(gas, x, y, z) * width + k] = value;
+                }
+            }
+        }
     }
     return SINGE_OK;
 }
@@ -599,12 +524,60 @@ static SingeResult read_grid(Reader *r, VdbField field) {
     r->at = end;
     if (get_u32(&body) != VDB_ACTIVE_VALUES) return vdb_read_bad(&body, "another compression than by active values");
     TRY(read_metadata(&body, false));
-    TRY(read_map(&body, field == 0));
-    return read_tree(&body, &buffers, field);
+
+    if (!is(get_string(&body), VDB_MAP)) return vdb_read_bad(&body, "another map than " VDB_MAP);
+    double position[3], scale[3];
+    for (int c = 0; c < 3; c++) position[c] = get_double(&body);
+    for (int c = 0; c < 3; c++) scale[c] = get_double(&body);
+    if (!vdb_read_take(&body, 12 * 8)) return vdb_read_bad(&body, "the map is cut off");
+    SingeGas map = body.gas->view;
+    map.cell = (float)scale[0];
+    for (int c = 0; c < 3; c++) map.origin[c] = (float)(position[c] - 0.5 * scale[0]);
+    if (!gas_shape_is_good(&map) || scale[1] != scale[0] || scale[2] != scale[0])
+        return vdb_read_bad(&body, "a bad map");
+    if (field == 0) body.gas->view = map;
+    else if (memcmp(map.origin, body.gas->view.origin, sizeof map.origin) != 0 || map.cell != body.gas->view.cell)
+        return vdb_read_bad(&body, "grids of different maps");
+
+    bool good = get_u32(&body) == 1;
+    float background = 0;
+    for (uint32_t k = 0; k < vdb_fields[field].width; k++) {
+        background = get_float(&body);
+        good = good && isfinite(background) && (background == 0 || field == VDB_TEMPERATURE);
+    }
+    uint32_t tiles = get_u32(&body), children = get_u32(&body);
+    if (!good || tiles || children > 1) return vdb_read_bad(&body, "the tree's root is not as Singe writes it");
+    if (field == VDB_TEMPERATURE) gas_fill(body.gas, background);
+    if (!children) return SINGE_OK;
+    static const uint8_t zero[12];
+    const uint8_t *origin = vdb_read_take(&body, 12), *nodes = take_node(&body, VDB_UPPER_MASK);
+    if (!origin || memcmp(origin, zero, 12) != 0 || !nodes)
+        return vdb_read_bad(&body, "the tree is cut off or lies elsewhere");
+    for (uint32_t n = 0; n < 8 * VDB_UPPER_MASK; n++) {
+        enum { SIDE = GAS_BLOCK << VDB_LOWER_LOG };
+        const uint32_t low[3] = {(n >> 10) * SIDE, (n >> 5 & 31) * SIDE, (n & 31) * SIDE};
+        if (vdb_bit(nodes, n)) TRY(read_node(&body, &buffers, low, field));
+    }
+    return SINGE_OK;
 }
 
 static SingeResult read_all(Reader *r) {
-    TRY(read_head(r));
+    if (get_u64(r) != VDB_MAGIC) return vdb_read_bad(r, "not a VDB file");
+    if (get_u32(r) != VDB_VERSION) return vdb_read_bad(r, "a VDB file of another version");
+    vdb_read_take(r, 8); // of the library
+    const uint8_t *offsets = vdb_read_take(r, 1);
+    if (!offsets || *offsets != 1 || !vdb_read_take(r, VDB_ID))
+        return vdb_read_bad(r, "the head is cut off or has no offsets");
+    r->time = (double)NAN;
+    TRY(read_metadata(r, true));
+    if (!isfinite(r->time) || !gas_cells(&r->gas->view))
+        return vdb_read_bad(r, "not a gas of Singe: no time or no size");
+    if (r->extinction != (double)GAS_EXTINCTION || r->flame_unit != (double)GAS_FLAME_UNIT)
+        return vdb_read_bad(r, "its density or its flame is in other units than those of this version");
+    r->gas->view.cell = 1; // set by the grids
+    if (!gas_shape_is_good(&r->gas->view)) return vdb_read_bad(r, "more cells than a gas can have");
+    if (get_u32(r) != VDB_FIELDS + 1) return vdb_read_bad(r, "other grids than those of Singe");
+
     TRY(gas_make(r->gas, r->name, 0, r->error));
     for (int f = 0; f < VDB_FIELDS; f++) TRY(read_grid(r, (VdbField)f));
     return gas_decode(r->gas) ? SINGE_OK : vdb_read_bad(r, "a value is not finite");
