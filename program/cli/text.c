@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "common/utf8.h"
+#include "common/printable.h"
 
 /// A block that is there, or the end.
 static char *need(char *block) {
