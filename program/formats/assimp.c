@@ -91,10 +91,12 @@ static bool open_beside(Source *source, const char *path, Opened *opened) {
         note_refused(source, "; it refers to something that is not a file in its folder or below");
         return false;
     }
+
     if (file_read(path, (SingeAllocator){0}, &opened->own, NULL)) {
         note_refused(source, "; it refers to a file that cannot be read");
         return false;
     }
+
     opened->bytes = opened->own.data;
     opened->size = opened->own.size;
     source->beside_size += opened->size;
@@ -109,15 +111,18 @@ static struct aiFile *source_open(struct aiFileIO *io, const char *name, const c
     struct aiFile *file = calloc(1, sizeof *file);
     Opened *opened = calloc(1, sizeof *opened);
     bool good = file && opened;
+
     if (good && strcmp(name, source->name) == 0) {
         opened->bytes = source->bytes;
         opened->size = source->size;
     } else good = good && open_beside(source, name, opened);
+
     if (!good) {
         free(file);
         free(opened);
         return NULL;
     }
+
     *file =
         (struct aiFile){opened_read, opened_write, opened_tell, opened_size, opened_seek, opened_flush, (void *)opened};
     return file;
@@ -155,12 +160,14 @@ static SingeResult walk_node(Walk *walk, const struct aiNode *node, struct aiMat
         return refuse(walk->error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: nodes are nested more than %d deep",
                       short_name(walk->name), DEPTH_LIMIT);
     aiMultiplyMatrix4(&parent, &node->mTransformation);
+
     for (unsigned i = 0; i < node->mNumMeshes; i++) {
         if (node->mMeshes[i] >= scene->mNumMeshes)
             return refuse(walk->error, SINGE_ERROR_MESH, "mesh", -1, "%s: a node uses mesh %u of %u",
                           short_name(walk->name), node->mMeshes[i], scene->mNumMeshes);
         TRY(walk->visit(walk, scene->mMeshes[node->mMeshes[i]], &parent));
     }
+
     for (unsigned i = 0; i < node->mNumChildren; i++) TRY(walk_node(walk, node->mChildren[i], parent));
     walk->depth--;
     return SINGE_OK;
@@ -185,13 +192,6 @@ static void put(Walk *walk, const void *bytes, size_t size) {
     walk->held += size;
 }
 
-/// The number of a mesh in its file.
-static unsigned mesh_number(const Walk *walk, const struct aiMesh *mesh) {
-    unsigned i = 0;
-    while (i < walk->scene->mNumMeshes && walk->scene->mMeshes[i] != mesh) i++;
-    return i;
-}
-
 static SingeResult count_mesh(Walk *walk, const struct aiMesh *mesh, const struct aiMatrix4x4 *at) {
     (void)at;
     MeshCounts *counts = &walk->counts;
@@ -200,17 +200,21 @@ static SingeResult count_mesh(Walk *walk, const struct aiMesh *mesh, const struc
 
         const struct aiFace *face = &mesh->mFaces[f];
         for (unsigned i = 0; i < face->mNumIndices; i++)
-            if (face->mIndices[i] >= mesh->mNumVertices)
+            if (face->mIndices[i] >= mesh->mNumVertices) {
+                unsigned number = 0; // of the mesh in its file
+                while (number < walk->scene->mNumMeshes && walk->scene->mMeshes[number] != mesh) number++;
                 return refuse(
                     walk->error, SINGE_ERROR_MESH, "mesh", f,
                     "%s: mesh %u, face %u (from 0): vertex index %u is out of range: the mesh has %u vertices",
-                    short_name(walk->name), mesh_number(walk, mesh), f, face->mIndices[i], mesh->mNumVertices);
+                    short_name(walk->name), number, f, face->mIndices[i], mesh->mNumVertices);
+            }
 
         if (corners < 3) continue; // points and lines have no area
         counts->faces++, counts->corners += corners;
     }
     counts->vertices += mesh->mNumVertices;
     counts->uv = counts->uv || mesh->mTextureCoords[0];
+
     if (12 * counts->vertices + 12 * counts->corners > walk->max)
         return refuse(walk->error, SINGE_ERROR_LIMIT, "mesh", -1,
                       "%s: too large: its nodes repeat meshes, which come to more than %llu MB", short_name(walk->name),
@@ -283,6 +287,7 @@ static SingeResult read_in_child(void *context, IsolateAnswer *answer, SingeErro
     struct aiLogStream log = {note_complaint, &bad_index};
     aiAttachLogStream(&log);
     const struct aiScene *scene = aiImportFileEx(source->name, 0, &files);
+
     if (!scene || !scene->mRootNode) {
         const char *why = aiGetErrorString();
         char words[160];
@@ -305,6 +310,7 @@ static SingeResult read_in_child(void *context, IsolateAnswer *answer, SingeErro
     }
     if (bad_index)
         return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: an index is out of range", short_name(source->name));
+
     Walk walk = {.scene = scene,
                  .name = source->name,
                  .error = error,
@@ -334,9 +340,11 @@ static SingeResult check_kind(const char *name, const uint8_t *bytes, size_t siz
     } kinds[] = {{".gltf", "{"},  {".glb", "glTF"}, {".fbx", "Kaydara FBX"}, {".fbx", ";"},
                  {".fbx", "FBX"}, {".dae", "<"},    {".x3d", "<"},           {".3ds", "MM"},
                  {".off", "OFF"}, {".off", "C"},    {".off", "N"},           {".off", "S"}};
+
     const uint8_t *at = bytes, *end = bytes + size;
     if (end - at >= 3 && memcmp(at, "\xef\xbb\xbf", 3) == 0) at += 3;
     while (at < end && (*at == ' ' || *at == '\t' || *at == '\n' || *at == '\r')) at++;
+
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         size_t length = strlen(kinds[i].begins);
         if (mesh_name_ends(name, kinds[i].ending) && (size_t)(end - at) >= length &&

@@ -12,22 +12,8 @@ static float between(float low, float high, float x) {
     return t * t * (3 - 2 * t);
 }
 
-static void fresh_colour(const OutputSheet *sheet, const float uv[2], float colour[3]) {
-    static const float white[3] = {0.86f, 0.852f, 0.832f};
-    for (int c = 0; c < 3; c++) colour[c] = white[c] * sheet->colour[c];
-    const Image *image = sheet->image;
-    if (!image || !image->rgb) return;
-    float x = uv[0] * (float)image->width, y = (1 - uv[1]) * (float)image->height;
-    const int column = x > 0 ? (int)fminf(x, (float)(image->width - 1)) : 0;
-    const int row = y > 0 ? (int)fminf(y, (float)(image->height - 1)) : 0;
-    const uint8_t *texel = image->rgb + 3 * ((size_t)row * (size_t)image->width + (size_t)column);
-    for (int c = 0; c < 3; c++) {
-        const float encoded = (float)texel[c] / 255;
-        colour[c] *= encoded * (encoded * (encoded * 0.305306011f + 0.682171111f) + 0.012522878f); // to a thousandth
-    }
-}
-
 void burn_colour(const OutputSheet *sheet, const SingeSurface *s, uint32_t v, float colour[3]) {
+    static const float white[3] = {0.86f, 0.852f, 0.832f};
     static const float soot[3] = {0.018f, 0.016f, 0.015f}, grey[3] = {0.42f, 0.41f, 0.40f};
     static const float stops[][4] = {{0, 1, 1, 1},
                                      {0.14f, 0.965f, 0.90f, 0.74f},
@@ -36,7 +22,22 @@ void burn_colour(const OutputSheet *sheet, const SingeSurface *s, uint32_t v, fl
                                      {0.69f, 0.225f, 0.098f, 0.032f},
                                      {0.86f, 0.062f, 0.031f, 0.018f},
                                      {1, 0.020f, 0.016f, 0.014f}};
-    fresh_colour(sheet, s->uv[v], colour);
+
+    // fresh: white paper in the sheet's colour and picture
+    const Image *image = sheet->image;
+    for (int c = 0; c < 3; c++) colour[c] = white[c] * sheet->colour[c];
+
+    if (image && image->rgb) {
+        const float x = s->uv[v][0] * (float)image->width, y = (1 - s->uv[v][1]) * (float)image->height;
+        const int column = x > 0 ? (int)fminf(x, (float)(image->width - 1)) : 0;
+        const int row = y > 0 ? (int)fminf(y, (float)(image->height - 1)) : 0;
+        const uint8_t *texel = image->rgb + 3 * ((size_t)row * (size_t)image->width + (size_t)column);
+        for (int c = 0; c < 3; c++) {
+            const float e = (float)texel[c] / 255;
+            colour[c] *= e * (e * (e * 0.305306011f + 0.682171111f) + 0.012522878f); // from sRGB, to a thousandth
+        }
+    }
+
     if (s->burn[v] < BURN_COLOUR_MIN && s->temperature_peak[v] <= BURN_COLOUR_PEAK) return;
 
     // browns: scorched 0 fresh to 1 charred
@@ -45,6 +46,7 @@ void burn_colour(const OutputSheet *sheet, const SingeSurface *s, uint32_t v, fl
     const float by_burn = 1 - expf(-7.5f * fmaxf(s->burn[v], 0));
     const float scorched = 1 - (1 - by_heat) * (1 - by_burn);
     int i = 1;
+
     while (i < 6 && scorched > stops[i][0]) i++;
     const float f = (scorched - stops[i - 1][0]) / (stops[i][0] - stops[i - 1][0]);
     for (int c = 0; c < 3; c++) colour[c] *= stops[i - 1][c + 1] + f * (stops[i][c + 1] - stops[i - 1][c + 1]);
@@ -53,6 +55,7 @@ void burn_colour(const OutputSheet *sheet, const SingeSurface *s, uint32_t v, fl
     const float black = between(0.12f, 0.46f, s->burn[v]);
     const float residue = s->char_fraction[v] + s->ash_fraction[v];
     const float ash = residue > 0 ? between(0.25f, 0.85f, s->ash_fraction[v] / residue) : 0;
+
     for (int c = 0; c < 3; c++) {
         const float burnt = soot[c] + ash * (grey[c] - soot[c]);
         colour[c] += black * (burnt - colour[c]);

@@ -34,34 +34,27 @@ static int64_t exr_put(exr_const_context_t context, void *data, const void *buff
                        exr_stream_error_func_ptr_t fail) {
     ExrJob *job = data;
     size_t end = (size_t)(offset + size);
+
     if (!store_grow(job->allocator, &job->out, &job->capacity, end, 1)) {
         job->out_of_memory = true;
         fail(context, EXR_ERR_OUT_OF_MEMORY, "out of memory");
         return -1;
     }
+
     if (end > job->size) {
         if (offset > job->size) memset(job->out + job->size, 0, (size_t)offset - job->size);
         job->size = end;
     }
+
     memcpy(job->out + offset, buffer, (size_t)size);
     return (int64_t)size;
-}
-
-static exr_result_t exr_describe(exr_context_t file, int width, int height, const ExrChannel *channels, int count) {
-    int part;
-    exr_result_t result = exr_add_part(file, NULL, EXR_STORAGE_SCANLINE, &part);
-    if (!result) result = exr_initialize_required_attr_simple(file, part, width, height, EXR_COMPRESSION_ZIP);
-    for (int i = 0; i < count && !result; i++) {
-        static const exr_pixel_type_t types[] = {EXR_PIXEL_HALF, EXR_PIXEL_FLOAT, EXR_PIXEL_UINT};
-        result = exr_add_channel(file, part, channels[i].name, types[channels[i].kind], EXR_PERCEPTUALLY_LINEAR, 1, 1);
-    }
-    return result ? result : exr_write_header(file);
 }
 
 static exr_result_t exr_encode(exr_context_t file, int width, int height, const ExrChannel *channels, int count) {
     exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
     int32_t lines = 0;
     exr_result_t result = exr_get_scanlines_per_chunk(file, 0, &lines);
+
     for (int y = 0; y < height && !result; y += lines) {
         exr_chunk_info_t chunk;
         result = exr_write_scanline_chunk_info(file, 0, y, &chunk);
@@ -96,15 +89,25 @@ SingeResult exr_write(const char *path, int width, int height, const ExrChannel 
     if (width < 1 || height < 1 || width > IMAGE_SIDE_LIMIT || height > IMAGE_SIDE_LIMIT || count < 1)
         return refuse(error, SINGE_ERROR_ARGUMENT, "exr", -1, "%s: %d channels of %d by %d pixels cannot be written",
                       short_name(path), count, width, height);
+    static const exr_pixel_type_t types[] = {EXR_PIXEL_HALF, EXR_PIXEL_FLOAT, EXR_PIXEL_UINT};
+
     ExrJob job = {.out_of_memory = false};
+    int part;
     exr_context_initializer_t hooks = EXR_DEFAULT_CONTEXT_INITIALIZER;
     hooks.error_handler_fn = exr_hush;
     hooks.user_data = &job;
     hooks.write_fn = exr_put;
+
     exr_context_t file = NULL;
     exr_result_t done = exr_start_write(&file, short_name(path), EXR_WRITE_FILE_DIRECTLY, &hooks);
-    if (!done) done = exr_describe(file, width, height, channels, count);
+    if (!done) done = exr_add_part(file, NULL, EXR_STORAGE_SCANLINE, &part);
+    if (!done) done = exr_initialize_required_attr_simple(file, part, width, height, EXR_COMPRESSION_ZIP);
+
+    for (int i = 0; i < count && !done; i++)
+        done = exr_add_channel(file, part, channels[i].name, types[channels[i].kind], EXR_PERCEPTUALLY_LINEAR, 1, 1);
+    if (!done) done = exr_write_header(file);
     if (!done) done = exr_encode(file, width, height, channels, count);
+
     exr_result_t closed = exr_finish(&file); // writes the table of the lines' offsets
     SingeResult result = SINGE_OK;
     if (job.out_of_memory || done == EXR_ERR_OUT_OF_MEMORY) result = refuse_memory(error, "exr", path);

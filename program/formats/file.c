@@ -58,6 +58,7 @@ static SingeResult read_open(int file, const char *path, size_t max, SingeAlloca
                           short_name(path));
         done += (size_t)count;
     }
+
     bytes->data[done] = 0;
     return SINGE_OK;
 }
@@ -83,11 +84,13 @@ size_t file_read_head(const char *path, uint8_t *bytes, size_t max) {
     if (file < 0) return 0;
     size_t done = 0;
     ssize_t count = fstat(file, &about) || !S_ISREG(about.st_mode) ? 0 : 1;
+
     while (count > 0 && done < max) {
         count = read(file, bytes + done, max - done);
         if (count > 0) done += (size_t)count;
         else if (count < 0 && errno == EINTR) count = 1;
     }
+
     close(file);
     return done;
 }
@@ -143,6 +146,7 @@ static int put_in_place(const char *temporary, const char *target) {
     if (!slash) strcpy(folder, ".");
     else slash[slash == folder] = 0;
     int file = open(folder, O_RDONLY | O_CLOEXEC);
+
     if (file >= 0) {
         (void)fsync(file);
         close(file);
@@ -156,6 +160,7 @@ SingeResult file_write_backup(const char *path, const char *backup, const void *
     SingeResult result = check_target(path, error);
     if (!result && backup) result = check_target(backup, error);
     if (result) return result;
+
     int reason = temporary_open(path, temporary, sizeof temporary, &file);
     if (!reason) {
         reason = write_bytes(file, data, size);
@@ -164,6 +169,7 @@ SingeResult file_write_backup(const char *path, const char *backup, const void *
         if (!reason) reason = put_in_place(temporary, path);
         if (reason) unlink(temporary);
     }
+
     return reason ? refuse_system(error, "write", path, reason) : SINGE_OK;
 }
 
@@ -176,13 +182,16 @@ SingeResult file_draft(const char *path, char **draft, SingeError *error) {
     *draft = NULL;
     SingeResult result = check_target(path, error);
     if (result) return result;
+
     char *name = malloc(PATH_MAX + 64);
     if (!name) return refuse_memory(error, "file", path);
     int reason = temporary_open(path, name, PATH_MAX + 64, &file);
+
     if (reason) {
         free(name);
         return refuse_system(error, "write", path, reason);
     }
+
     close(file);
     *draft = name;
     return SINGE_OK;
@@ -226,6 +235,7 @@ bool path_is_inside(const char *name, const char *path) {
     char *real_folder = folder ? realpath(folder, NULL) : NULL, *real = realpath(path, NULL);
     size_t kept = real_folder ? strlen(real_folder) : 0;
     if (kept == 1) kept = 0; // "/"
+
     bool inside = real_folder && real && strncmp(real, real_folder, kept) == 0 && real[kept] == '/';
     free(folder);
     free(real_folder);

@@ -53,6 +53,7 @@ uint32_t glb_put_accessor(GlbFile *f, size_t begin, uint32_t count, int width, G
     else sink_text(&f->views, ",\"target\":%d}", use == GLB_OF_CORNERS ? GLB_CORNERS : GLB_VERTICES);
     sink_text(&f->accessors, "%s{\"bufferView\":%u,\"componentType\":%d,\"count\":%u,\"type\":\"%s\"", comma,
               f->view_count, use == GLB_OF_CORNERS ? GLB_UINT : GLB_FLOAT, count, types[width]);
+
     for (int side = 0; box && side < 2; side++) {
         sink_text(&f->accessors, side ? "],\"max\":[" : ",\"min\":[");
         for (int c = 0; c < width; c++) {
@@ -60,6 +61,7 @@ uint32_t glb_put_accessor(GlbFile *f, size_t begin, uint32_t count, int width, G
             sink_float(&f->accessors, box[width * side + c]);
         }
     }
+
     sink_text(&f->accessors, box ? "]}" : "}");
     return f->view_count++;
 }
@@ -81,6 +83,7 @@ static void put_scene(GlbFile *f, const char *up, const char *extras) {
     sink_text(&f->text, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"Singe " SINGE_VERSION "\",\"extras\":");
     sink_bytes(&f->text, extras, strlen(extras));
     sink_text(&f->text, "},\"scene\":0,\"scenes\":[{");
+
     if (f->mesh_count) {
         sink_text(&f->text, "\"nodes\":[");
         for (uint32_t i = 0; i < f->node_count; i++) sink_text(&f->text, i ? ",%u" : "%u", i);
@@ -131,6 +134,7 @@ static void put_scene(GlbFile *f, const char *up, const char *extras) {
     } else {
         sink_text(&f->text, "}]}");
     }
+
     while (f->text.size % 4 && !f->text.failed) sink_bytes(&f->text, " ", 1);
 }
 
@@ -148,11 +152,13 @@ SingeResult glb_finish(GlbFile *f, const char *up, const char *extras, const cha
     sink_u32(&sink, (uint32_t)f->text.size);
     sink_bytes(&sink, "JSON", 4);
     sink_bytes(&sink, f->text.bytes, f->text.size);
+
     if (body) {
         sink_u32(&sink, (uint32_t)f->data.size);
         sink_bytes(&sink, "BIN", 4);
         sink_bytes(&sink, f->data.bytes, f->data.size);
     }
+
     sink.failed = sink.failed || f->text.failed || f->data.failed || f->views.failed || f->accessors.failed ||
                   f->meshes.failed || f->nodes.failed || f->animations.failed;
     return sink_write(&sink, path, error);
@@ -176,6 +182,7 @@ static void put_vectors(GlbMeshes *w, const SheetPart *part, const char *name, f
                         bool box) {
     const size_t begin = w->file->data.size;
     float bounds[6] = {0};
+
     for (uint32_t i = 0; i < part->count; i++) {
         float v[3];
         glb_turn(values[part->vertices[i]], v);
@@ -186,6 +193,7 @@ static void put_vectors(GlbMeshes *w, const SheetPart *part, const char *name, f
         }
         sink_words(&w->file->data, v, 3);
     }
+
     put_named(w, name, begin, part->count, 3, box ? bounds : NULL);
 }
 
@@ -205,25 +213,30 @@ static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
 
     // v of glTF runs from the picture's top
     const size_t uv_begin = w->file->data.size;
+
     for (uint32_t i = 0; i < part.count; i++) {
         const float *uv = w->surface->uv[part.vertices[i]], turned[2] = {uv[0], 1 - uv[1]};
         sink_words(&w->file->data, turned, 2);
     }
+
     put_named(w, "TEXCOORD_0", uv_begin, part.count, 2, NULL);
 
     const size_t colour_begin = w->file->data.size;
     OutputSheet bare = w->file->scene->sheets[part.sheet];
     bare.image = NULL;
+
     for (uint32_t i = 0; i < part.count; i++) {
         float colour[3];
         burn_colour(&bare, w->surface, part.vertices[i], colour);
         for (int c = 0; c < 3; c++) colour[c] = colour[c] < 0 ? 0 : colour[c] > 1 ? 1 : colour[c];
         sink_words(&w->file->data, colour, 3);
     }
+
     put_named(w, "COLOR_0", colour_begin, part.count, 3, NULL);
 
     put_vectors(w, &part, "_VELOCITY", s->velocity, false, false);
     if (!w->lean) put_vectors(w, &part, "_REST", s->rest_position, false, false);
+
     for (int k = 0; k < SURFACE_FIELDS; k++)
         if (!w->lean ||
             (strcmp(surface_fields[k].name, "temperature") == 0 || strcmp(surface_fields[k].name, "burnt") == 0)) {
@@ -240,6 +253,7 @@ static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
                 key[i + 1] = surface_fields[k].name[i] == '_' ? '_' : (char)(surface_fields[k].name[i] - 'a' + 'A');
             put_named(w, key, begin, part.count, 1, NULL);
         }
+
     f->meshes.size--; // the last comma
     sink_text(&f->meshes, "},\"indices\":%u}]}", f->view_count);
 
@@ -257,12 +271,14 @@ SingeResult glb_write_frame(const char *path, const OutputScene *scene, const Ou
     GlbMeshes meshes = {.file = &file, .surface = frame->surface};
     glb_begin(&file, scene, frame->surface->allocator);
     sink_reserve(&file.data, 140 * (size_t)frame->surface->vertex_count);
+
     SingeResult result = sheet_parts_make(&meshes.parts, frame->surface, scene->sheet_count, path, error);
     for (uint32_t i = 0; i < scene->sheet_count && !result; i++)
         if (put_mesh(&meshes, i)) {
             sink_text(&file.nodes, "%s{\"mesh\":%u}", file.node_count ? "," : "", file.node_count);
             file.node_count++;
         }
+
     if (!result) {
         char extras[80];
         const int length = snprintf(extras, sizeof extras, "{\"time\":");
@@ -270,6 +286,7 @@ SingeResult glb_write_frame(const char *path, const OutputScene *scene, const Ou
         snprintf(extras + length + more, sizeof extras - (size_t)(length + more), "}");
         result = glb_finish(&file, "../", extras, path, error);
     }
+
     sheet_parts_free(&meshes.parts);
     glb_free(&file);
     return result;
@@ -320,11 +337,13 @@ SingeResult glb_write_single(const char *path, const OutputScene *scene, const O
     SingeResult result = SINGE_OK;
     glb_begin(&file, scene, (SingeAllocator){0});
     sink_text(&file.animations, "[{\"name\":\"burn\",\"samplers\":[");
+
     for (int i = 1; i <= cache->frames && !result; i++) {
         OutputFrame frame;
         result = cache->read(cache->context, i, &frame, error);
         if (!result) result = put_frame(&file, &frame, cache->frames, path, error);
     }
+
     sink_text(&file.animations, "],\"channels\":[");
     for (uint32_t i = 0; i < file.node_count; i++)
         sink_text(&file.animations, "%s{\"sampler\":%u,\"target\":{\"node\":%u,\"path\":\"scale\"}}", i ? "," : "", i,

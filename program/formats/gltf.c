@@ -55,28 +55,26 @@ static SingeResult list_items(Gltf *gltf, const char *key, uint32_t **items, uin
 
 // ---- buffers
 
-static int base64_digit(uint8_t c) {
-    if (c >= 'A' && c <= 'Z') return c - 'A';
-    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-    if (c >= '0' && c <= '9') return c - '0' + 52;
-    return c == '+' || c == '-' ? 62 : c == '/' || c == '_' ? 63 : -1;
-}
-
 static SingeResult decode_base64(Gltf *gltf, uint32_t number, const uint8_t *at, const uint8_t *end, Bytes *bytes) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     while (end > at && end[-1] == '=') end--;
     *bytes = (Bytes){.size = (size_t)(end - at) * 3 / 4, .allocator = gltf->allocator};
     bytes->data = store_new(gltf->allocator, bytes->size + 1, 1);
     if (!bytes->data) return refuse_memory(gltf->error, "gltf", gltf->name);
+
     uint32_t bits = 0;
     size_t done = 0;
+
     for (int held = 0; at < end; at++) {
-        int digit = base64_digit(*at);
+        const char *place = *at ? strchr(digits, *at) : NULL;
+        int digit = place ? (int)(place - digits) : *at == '-' ? 62 : *at == '_' ? 63 : -1;
         if (digit < 0 && *at == '\\' && at + 1 < end && at[1] == '/') continue; // an escaped / of JSON
         if (digit < 0) return gltf_bad(gltf, "buffers", number, "its data are not base64");
         bits = bits << 6 | (uint32_t)digit;
         held += 6;
         if (held >= 8) held -= 8, bytes->data[done++] = (uint8_t)(bits >> held);
     }
+
     bytes->size = done;
     return SINGE_OK;
 }
@@ -93,6 +91,7 @@ static bool make_path(const Gltf *gltf, const uint8_t *at, const uint8_t *end, c
     size_t length = slash ? (size_t)(slash - gltf->name) + 1 : 0;
     if (length >= PATH_LIMIT) return false;
     memcpy(path, gltf->name, length);
+
     for (; at < end; at++) {
         int c = *at;
         if (c == '%' && end - at > 2 && hex_digit(at[1]) >= 0 && hex_digit(at[2]) >= 0) {
@@ -102,6 +101,7 @@ static bool make_path(const Gltf *gltf, const uint8_t *at, const uint8_t *end, c
         if (c == 0 || length + 1 >= PATH_LIMIT) return false;
         path[length++] = (char)c;
     }
+
     path[length] = 0;
     return true;
 }
@@ -121,6 +121,7 @@ static SingeResult load_file(Gltf *gltf, uint32_t number, const uint8_t *at, con
 static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **bytes, uint64_t *size) {
     int64_t buffer = gltf->buffers[number], uri = json_member(&gltf->json, buffer, "uri");
     Bytes *loaded = &gltf->loaded[number];
+
     if (uri == JSON_NONE && number == 0 && gltf->chunk) {
         *bytes = gltf->chunk;
         *size = gltf->chunk_size;
@@ -137,10 +138,12 @@ static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **byte
         gltf->loaded_size += loaded->size;
         if (!inside) gltf->beside_size += loaded->size;
     }
+
     if (loaded->data) {
         *bytes = loaded->data;
         *size = loaded->size;
     }
+
     uint64_t claimed;
     if (!take_count(gltf, buffer, "byteLength", *size, *size, &claimed))
         return gltf_bad(gltf, "buffers", number, "its data are shorter than its byteLength");
@@ -170,6 +173,7 @@ static SingeResult find_elements(Gltf *gltf, int64_t object, uint32_t number, ui
     if (view == JSON_NONE) return gltf_bad(gltf, "accessors", number, "it has no data, or compressed ones");
     if (!take_count(gltf, object, "byteOffset", 0, INT64_MAX, &offset))
         return gltf_bad(gltf, "accessors", number, "its byteOffset is not a count");
+
     Slice slice = {0};
 
     int64_t held = gltf->views[((uint32_t)view)], extensions = json_member(&gltf->json, held, "extensions"), buffer;
@@ -177,6 +181,7 @@ static SingeResult find_elements(Gltf *gltf, int64_t object, uint32_t number, ui
         return gltf_bad(gltf, "bufferViews", ((uint32_t)view), "compressed data are not supported");
     TRY(gltf_index(gltf, held, "buffer", gltf->buffer_count, &buffer));
     if (buffer == JSON_NONE) return gltf_bad(gltf, "bufferViews", ((uint32_t)view), "it has no buffer");
+
     const uint8_t *from = NULL;
     uint64_t buffer_size = 0, begin, length;
     TRY(load_buffer(gltf, (uint32_t)buffer, &from, &buffer_size));
@@ -203,6 +208,7 @@ static SingeResult find_accessor(Gltf *gltf, int64_t number) {
     int64_t object = gltf->accessors[number], sparse = json_member(&gltf->json, object, "sparse");
     uint64_t type, count;
     GltfAccessor accessor = {0};
+
     for (uint32_t i = 0; i < 4; i++)
         if (json_is(&gltf->json, json_member(&gltf->json, object, "type"), widths[i])) accessor.width = i + 1;
     int64_t normalized = json_member(&gltf->json, object, "normalized");
@@ -212,8 +218,10 @@ static SingeResult find_accessor(Gltf *gltf, int64_t number) {
         return gltf_bad(gltf, "accessors", (uint32_t)number, "it has no type or count");
     accessor.type = (uint32_t)type;
     accessor.count = (uint32_t)count;
+
     uint32_t size = accessor.width * gltf_type_size(accessor.type);
     TRY(find_elements(gltf, object, (uint32_t)number, count, size, &accessor.bytes, &accessor.stride));
+
     if (sparse != JSON_NONE) {
         int64_t indices = json_member(&gltf->json, sparse, "indices"),
                 values = json_member(&gltf->json, sparse, "values");
@@ -222,8 +230,7 @@ static SingeResult find_accessor(Gltf *gltf, int64_t number) {
         if (!take_count(gltf, sparse, "count", 0, accessor.count, &sparse_count) || sparse_count == 0 ||
             !take_count(gltf, indices, "componentType", 0, 5125, &index_type) ||
             (index_type != 5121 && index_type != 5123 && index_type != 5125))
-            return gltf_bad(gltf, "accessors", (uint32_t)number,
-                            "its sparse elements have no count or type");
+            return gltf_bad(gltf, "accessors", (uint32_t)number, "its sparse elements have no count or type");
         accessor.sparse_type = (uint32_t)index_type;
         TRY(find_elements(gltf, indices, (uint32_t)number, sparse_count, gltf_type_size((uint32_t)index_type),
                           &accessor.sparse_index, &step));
@@ -233,6 +240,7 @@ static SingeResult find_accessor(Gltf *gltf, int64_t number) {
         if (step != size) return gltf_bad(gltf, "accessors", (uint32_t)number, "sparse elements with gaps");
         accessor.sparse_count = (uint32_t)sparse_count;
     }
+
     gltf->read[number] = accessor;
     return SINGE_OK;
 }
@@ -309,6 +317,7 @@ static SingeResult find_chunks(Gltf *gltf, const uint8_t *bytes, size_t size, co
         return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "byte 12: the first chunk is not JSON, or longer than the file");
     *json = at + 8;
     *json_size = length;
+
     for (at += 8 + length; end - at >= 8; at += 8 + length) {
         length = load_u32_little(at);
         if (length > (size_t)(end - at) - 8)
@@ -319,6 +328,7 @@ static SingeResult find_chunks(Gltf *gltf, const uint8_t *bytes, size_t size, co
             gltf->chunk_size = length;
         }
     }
+
     return SINGE_OK;
 }
 
@@ -338,18 +348,22 @@ SingeResult gltf_read(const char *name, const uint8_t *bytes, size_t size, Singe
     Gltf gltf = {.name = name, .allocator = allocator, .error = error};
     if (size == 0) return gltf_refuse(&gltf, SINGE_ERROR_FORMAT, "is empty");
     if (size > MESH_COUNT_LIMIT) return gltf_refuse(&gltf, SINGE_ERROR_LIMIT, "is too large");
+
     const uint8_t *json = bytes;
     size_t json_size = size;
     SingeResult result = SINGE_OK;
+
     if (size >= 8 && memcmp(bytes, "glTF", 4) == 0) {
         if (load_u32_little(bytes + 4) == 1) return assimp_read(name, bytes, size, allocator, polygons, error);
         result = find_chunks(&gltf, bytes, size, &json, &json_size);
     }
+
     if (!result) result = json_read(name, json, json_size, allocator, &gltf.json, error);
     if (!result && gltf.json.values[0].kind != JSON_OBJECT)
         result = gltf_refuse(&gltf, SINGE_ERROR_FORMAT, "not glTF: its JSON is not an object");
     bool other = !result && is_for_assimp(&gltf.json);
     if (!result && !other) result = read_meshes(&gltf);
+
     uint64_t max = MESH_ANSWER_BASE + MESH_ANSWER_TIMES * ((uint64_t)size + gltf.beside_size);
     if (!result && !other) result = gltf_make(&gltf, max, polygons);
 

@@ -62,11 +62,13 @@ static SingeResult node_transform(const Gltf *gltf, uint32_t node, Transform *at
                 take_numbers(json, object, "translation", 3, move) &&
                 take_numbers(json, object, "rotation", 4, rotation) && take_numbers(json, object, "scale", 3, scale);
     if (!good) return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: its transform is not finite", node);
+
     if (json_member(json, object, "matrix") != JSON_NONE) {
         for (int r = 0; r < 3; r++)
             for (int c = 0; c < 4; c++) at->m[r][c] = matrix[4 * c + r];
         return SINGE_OK;
     }
+
     Transform moved = {{{1, 0, 0, move[0]}, {0, 1, 0, move[1]}, {0, 0, 1, move[2]}}};
     float x = rotation[0], y = rotation[1], z = rotation[2], w = rotation[3];
     Transform turned = {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 0},
@@ -92,10 +94,12 @@ static SingeResult walk_node(Walk *walk, uint32_t node, const Transform *parent,
     if (json_member(&gltf->json, extensions, "EXT_mesh_gpu_instancing") != JSON_NONE)
         return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: EXT_mesh_gpu_instancing is not supported", node);
     walk->seen[node] = 1;
+
     Transform own, at;
     TRY(node_transform(gltf, node, &own));
     at = chain(parent, &own);
     TRY(gltf_index(gltf, object, "mesh", gltf->mesh_count, &mesh));
+
     if (mesh >= 0) {
         const GltfMesh *range = &walk->gltf->ranges[mesh];
         for (uint32_t i = 0; i < range->count; i++) {
@@ -125,6 +129,7 @@ static SingeResult walk_node(Walk *walk, uint32_t node, const Transform *parent,
             return refuse_memory(walk->gltf->error, "gltf", walk->gltf->name);
         walk->instances[walk->count++] = (Instance){(uint32_t)mesh, at};
     }
+
     return walk_nodes(walk, json_member(&gltf->json, object, "children"), &at, depth + 1);
 }
 
@@ -221,6 +226,7 @@ static SingeResult fill_primitive(Fill *fill, const GltfPrimitive *primitive, co
 
     float *positions = fill->mesh->positions + 3 * (size_t)fill->mesh->vertex_count;
     load_elements(position, position->count, positions);
+
     for (uint32_t v = 0; v < position->count; v++, positions += 3) {
         float x = positions[0], y = positions[1], z = positions[2];
         for (int r = 0; r < 3; r++) positions[r] = at->m[r][0] * x + at->m[r][1] * y + at->m[r][2] * z + at->m[r][3];
@@ -254,6 +260,7 @@ static SingeResult fill_primitive(Fill *fill, const GltfPrimitive *primitive, co
         }
         mesh->first[++mesh->face_count] = mesh->corner_count;
     }
+
     mesh->vertex_count += position->count;
     return SINGE_OK;
 }
@@ -261,11 +268,13 @@ static SingeResult fill_primitive(Fill *fill, const GltfPrimitive *primitive, co
 static SingeResult fill_all(const Walk *walk, Fill *fill) {
     const Gltf *gltf = walk->gltf;
     Polygons *mesh = fill->mesh;
+
     for (size_t n = 0; n < walk->count; n++) {
         const GltfMesh *range = &gltf->ranges[walk->instances[n].mesh];
         for (uint32_t i = 0; i < range->count; i++)
             TRY(fill_primitive(fill, &gltf->primitives[range->first + i], &walk->instances[n].at));
     }
+
     for (size_t i = 0; i < 3 * (size_t)mesh->vertex_count; i++)
         if (!isfinite(mesh->positions[i]))
             return gltf_refuse(gltf, SINGE_ERROR_MESH, "vertex %llu (from 0) has a position that is not finite",
@@ -279,6 +288,7 @@ static SingeResult make_polygons(const Walk *walk, Polygons *polygons) {
     if (walk->faces == 0) return gltf_refuse(gltf, SINGE_ERROR_MESH, "has no faces");
     if (walk->vertices > MESH_COUNT_LIMIT || walk->corners > MESH_COUNT_LIMIT)
         return gltf_refuse(gltf, SINGE_ERROR_LIMIT, "is too large");
+
     Polygons made = {.allocator = a};
     Fill fill = {.gltf = gltf, .mesh = &made};
     made.positions = store_new(a, walk->vertices, 3 * sizeof *made.positions);
@@ -286,10 +296,12 @@ static SingeResult make_polygons(const Walk *walk, Polygons *polygons) {
     made.corners = store_new(a, walk->corners, sizeof *made.corners);
     if (walk->uv) made.uv = store_new(a, walk->corners, 2 * sizeof *made.uv);
     if (walk->uv) fill.uv = store_new(a, walk->vertices, 2 * sizeof *fill.uv);
+
     bool room = made.positions && made.first && made.corners && (!walk->uv || (made.uv && fill.uv));
     if (room) made.first[0] = 0;
     SingeResult result = room ? fill_all(walk, &fill) : refuse_memory(gltf->error, "gltf", gltf->name);
     store_free(a, fill.uv, walk->vertices, 2 * sizeof *fill.uv);
+
     // the allocated counts, for polygons_free
     made.vertex_count = (uint32_t)walk->vertices;
     made.face_count = (uint32_t)walk->faces;

@@ -101,10 +101,12 @@ static bool png_decode(PngJob *job) {
     if (setjmp(job->jump)) return false;
     job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, png_fail, png_ignore, job, png_take, png_supply);
     if (job->png) job->info = png_create_info_struct(job->png);
+
     if (!job->info) {
         job->out_of_memory = true;
         return false;
     }
+
     png_set_up(job);
 
     png_structp png = job->png;
@@ -114,10 +116,12 @@ static bool png_decode(PngJob *job) {
     if (png_get_rowbytes(png, job->info) != row) png_error(png, "an unknown kind of pixel");
     job->pixel_count = (size_t)job->width * (size_t)job->height;
     job->pixels = store_new(job->allocator, job->pixel_count, (size_t)job->channels);
+
     if (!job->pixels) {
         job->out_of_memory = true;
         png_error(png, "out of memory");
     }
+
     // rows of an interlaced picture build on earlier passes
     memset(job->pixels, 0, job->pixel_count * (size_t)job->channels);
     for (int pass = 0; pass < passes; pass++)
@@ -132,10 +136,12 @@ static bool png_flatten(PngJob *job) {
     if (job->channels == 3) return true;
     const uint8_t *in = job->pixels;
     uint8_t *out = job->pixels;
+
     for (size_t i = 0; i < job->pixel_count; i++, in += 4, out += 3) {
         unsigned alpha = in[3], white = 255 * (255 - alpha);
         for (int k = 0; k < 3; k++) out[k] = (uint8_t)((in[k] * alpha + white + 127) / 255);
     }
+
     uint8_t *cut = allocator_resize(job->allocator, job->pixels, 4 * job->pixel_count, 3 * job->pixel_count);
     if (!cut) return false;
     job->pixels = cut;
@@ -150,12 +156,15 @@ static SingeResult png_read(const char *name, const uint8_t *bytes, size_t size,
     job.allocator = allocator;
     job.bytes = bytes;
     job.size = size;
+
     bool done = png_decode(&job);
     png_destroy_read_struct(&job.png, &job.info, NULL);
+
     if (done && !png_flatten(&job)) {
         done = false;
         job.out_of_memory = true;
     }
+
     if (!done) {
         store_free(allocator, job.pixels, job.pixel_count, (size_t)job.channels);
 
@@ -163,6 +172,7 @@ static SingeResult png_read(const char *name, const uint8_t *bytes, size_t size,
         return refuse(error, SINGE_ERROR_FORMAT, "png", (int64_t)job.at, "%s: byte %llu: %s", short_name(name),
                       (unsigned long long)job.at, job.message);
     }
+
     *image = (Image){job.width, job.height, job.pixels, allocator};
     return SINGE_OK;
 }
@@ -185,12 +195,15 @@ static bool png_encode(PngJob *job) {
     if (setjmp(job->jump)) return false;
     job->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, job, png_fail, png_ignore, job, png_take, png_supply);
     if (job->png) job->info = png_create_info_struct(job->png);
+
     if (!job->info) {
         job->out_of_memory = true;
         return false;
     }
+
     png_structp png = job->png;
     png_set_write_fn(png, job, png_push, png_flush_nothing);
+
     // hundreds of frames are written: a fast level, and one filter that suits smooth pictures
     png_set_compression_level(png, 2);
     png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
@@ -198,6 +211,7 @@ static bool png_encode(PngJob *job) {
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, job->info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(png, job->info);
+
     for (int y = 0; y < job->height; y++) png_write_row(png, job->rgb + (size_t)y * (size_t)job->width * 3);
     png_write_end(png, job->info);
     return true;
@@ -212,6 +226,7 @@ SingeResult png_write(const char *path, int width, int height, const uint8_t *rg
     job.width = width;
     job.height = height;
     job.rgb = rgb;
+
     SingeResult result = SINGE_OK;
     if (png_encode(&job)) result = file_write(path, job.out, job.out_size, error);
     else if (job.out_of_memory) result = refuse_memory(error, "png", path);
@@ -269,14 +284,6 @@ static void jpeg_watch(j_common_ptr jpeg) {
         jpeg_fail_with((JpegJob *)jpeg->err, "more than 100 scans");
 }
 
-// Ink to light without a profile: R = (1 - C)(1 - K). Adobe stores 255 minus the ink.
-static void jpeg_from_cmyk(const JpegJob *job, uint8_t *rgb) {
-    unsigned flip = job->jpeg.saw_Adobe_marker ? 0 : 255;
-    const uint8_t *p = job->row;
-    for (JDIMENSION x = 0; x < job->jpeg.image_width; x++, p += 4, rgb += 3)
-        for (int k = 0; k < 3; k++) rgb[k] = (uint8_t)(((p[k] ^ flip) * (p[3] ^ flip) + 127) / 255);
-}
-
 static bool jpeg_decode(JpegJob *job, const uint8_t *bytes, size_t size) {
     struct jpeg_decompress_struct *jpeg = &job->jpeg;
     if (setjmp(job->jump)) return false;
@@ -285,6 +292,7 @@ static bool jpeg_decode(JpegJob *job, const uint8_t *bytes, size_t size) {
     jpeg->progress = &job->progress;
     jpeg_mem_src(jpeg, bytes, (unsigned long)size);
     jpeg_read_header(jpeg, TRUE);
+
     // a coded block of 64 pixels takes at least a bit; otherwise a few bytes could request gigabytes
     if ((uint64_t)jpeg->image_width * jpeg->image_height / 4096 > size)
         jpeg_fail_with(job, "the file is too short for its width and height");
@@ -297,6 +305,7 @@ static bool jpeg_decode(JpegJob *job, const uint8_t *bytes, size_t size) {
     job->pixel_count = (size_t)jpeg->image_width * jpeg->image_height;
     job->rgb = store_new(job->allocator, job->pixel_count, 3);
     if (job->rgb && ink) job->row = store_new(job->allocator, jpeg->image_width, 4);
+
     if (!job->rgb || (ink && !job->row)) {
         job->out_of_memory = true;
         jpeg_fail_with(job, "out of memory");
@@ -307,7 +316,12 @@ static bool jpeg_decode(JpegJob *job, const uint8_t *bytes, size_t size) {
         uint8_t *target = job->rgb + (size_t)jpeg->output_scanline * jpeg->image_width * 3;
         JSAMPROW row = ink ? job->row : target;
         jpeg_read_scanlines(jpeg, &row, 1);
-        if (ink) jpeg_from_cmyk(job, target);
+
+        // ink to light without a profile: R = (1 - C)(1 - K). Adobe stores 255 minus the ink
+        const unsigned flip = jpeg->saw_Adobe_marker ? 0 : 255;
+        const uint8_t *p = job->row;
+        for (JDIMENSION x = 0; ink && x < jpeg->image_width; x++, p += 4, target += 3)
+            for (int k = 0; k < 3; k++) target[k] = (uint8_t)(((p[k] ^ flip) * (p[3] ^ flip) + 127) / 255);
     }
     jpeg_finish_decompress(jpeg);
     return true;
@@ -323,14 +337,17 @@ static SingeResult jpeg_read(const char *name, const uint8_t *bytes, size_t size
     job.errors.emit_message = jpeg_notice;
     job.errors.output_message = jpeg_say_nothing;
     job.progress.progress_monitor = jpeg_watch;
+
     bool done = jpeg_decode(&job, bytes, size);
     int width = (int)job.jpeg.image_width, height = (int)job.jpeg.image_height;
     store_free(allocator, job.row, job.jpeg.image_width, 4);
     if (job.created) jpeg_destroy_decompress(&job.jpeg);
+
     if (done) {
         *image = (Image){width, height, job.rgb, allocator};
         return SINGE_OK;
     }
+
     store_free(allocator, job.rgb, job.pixel_count, 3);
     if (job.out_of_memory) return refuse_memory(error, "jpeg", name);
     return refuse(error, SINGE_ERROR_FORMAT, "jpeg", -1, "%s: %s", short_name(name), job.message);
@@ -358,6 +375,7 @@ bool image_size(const char *path, int *width, int *height) {
     uint8_t head[HEAD];
     const size_t size = file_read_head(path, head, sizeof head);
     *width = *height = 0;
+
     if (size >= 24 && memcmp(head, "\x89PNG\r\n\x1a\n", 8) == 0) {
         if (head[16] || head[17] || head[20] || head[21]) return false; // larger than the reader accepts
         *width = be16(head + 18);
@@ -367,6 +385,7 @@ bool image_size(const char *path, int *width, int *height) {
 
     // the frame header of a JPEG (ITU T.81, B.2.2) follows segments of stated lengths
     bool jpeg = size >= 3 && memcmp(head, "\xff\xd8\xff", 3) == 0;
+
     for (size_t at = 2; jpeg && at + 9 < size && head[at] == 0xff;) {
         const uint8_t marker = head[at + 1];
         if (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc) {
@@ -376,6 +395,7 @@ bool image_size(const char *path, int *width, int *height) {
         }
         at += marker == 0xff ? 1 : 2 + (size_t)be16(head + at + 2);
     }
+
     return false;
 }
 

@@ -39,6 +39,7 @@ size_t lz4_pack(const uint8_t *in, size_t size, uint8_t *out) {
     uint32_t last[1 << HASH_BITS] = {0}; // one more than the offset; 0: none
     uint8_t *begin = out;
     size_t at = 0, literals = 0, misses = 0;
+
     while (size > MATCH_MARGIN && at < size - MATCH_MARGIN && at < UINT32_MAX) {
         const uint32_t hash = (read_word(in + at) * 2654435761u >> (32 - HASH_BITS)), before = last[hash];
         last[hash] = (uint32_t)at + 1;
@@ -54,6 +55,7 @@ size_t lz4_pack(const uint8_t *in, size_t size, uint8_t *out) {
         literals = at;
         misses = 0;
     }
+
     out = put_sequence(out, in + literals, size - literals, 0, 0);
     return (size_t)(out - begin);
 }

@@ -34,6 +34,7 @@ SingeResult polygons_read(const char *name, const uint8_t *bytes, size_t size, S
     for (size_t i = 0; i < FORMATS; i++)
         if (mesh_name_ends(name, mesh_formats[i].ending))
             return mesh_formats[i].read(name, bytes, size, allocator, polygons, error);
+
     char known[96] = "";
     for (size_t i = 0; i < FORMATS; i++) {
         if (i) strcat(known, ", ");
@@ -59,12 +60,14 @@ static SingeResult take_arrays(const char *name, const uint8_t *at, Polygons *ma
     // the faces' first corners, from their sizes, which are stored after the first entry
     uint64_t corner = 0;
     made->first[0] = 0;
+
     for (size_t f = 0; f < made->face_count; f++) {
         if (made->first[f + 1] < 3 || made->first[f + 1] > made->corner_count - corner)
             return refuse_answer(name, error);
         corner += made->first[f + 1];
         made->first[f + 1] = (uint32_t)corner;
     }
+
     if (corner != made->corner_count) return refuse_answer(name, error);
 
     for (size_t i = 0; i < made->corner_count; i++)
@@ -86,10 +89,12 @@ SingeResult mesh_answer_take(const char *name, const uint8_t *bytes, size_t size
     *polygons = (Polygons){.allocator = allocator};
     if (size < sizeof counts) return refuse_answer(name, error);
     memcpy(&counts, bytes, sizeof counts);
+
     if (counts.vertices > MESH_COUNT_LIMIT || counts.faces > MESH_COUNT_LIMIT || counts.corners > MESH_COUNT_LIMIT ||
         counts.uv > 1 ||
         size != sizeof counts + 12 * counts.vertices + 4 * counts.faces + (4 + 8 * counts.uv) * counts.corners)
         return refuse_answer(name, error);
+
     if (counts.faces == 0) return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: has no faces", short_name(name));
     Polygons made = {.vertex_count = (uint32_t)counts.vertices,
                      .face_count = (uint32_t)counts.faces,
@@ -99,6 +104,7 @@ SingeResult mesh_answer_take(const char *name, const uint8_t *bytes, size_t size
     made.first = store_new(allocator, (size_t)made.face_count + 1, sizeof *made.first);
     made.corners = store_new(allocator, made.corner_count, sizeof *made.corners);
     if (counts.uv) made.uv = store_new(allocator, made.corner_count, 2 * sizeof *made.uv);
+
     bool room = made.positions && made.first && made.corners && (!counts.uv || made.uv);
     SingeResult result =
         room ? take_arrays(name, bytes + sizeof counts, &made, error) : refuse_memory(error, "mesh", name);

@@ -81,6 +81,7 @@ static SingeResult obj_numbers(Obj *obj, int min, int max, int kept, float *valu
         }
         if (count < kept) values[count] = value;
     }
+
     return count < min ? obj_refuse(obj, SINGE_ERROR_FORMAT, expected) : SINGE_OK;
 }
 
@@ -93,11 +94,13 @@ static SingeResult obj_index(Obj *obj, size_t so_far, const char *what, int32_t 
     obj->text.at = word;
     if (status == NUMBER_JUNK || (status == NUMBER_OK && !ended)) return obj_refuse_word(obj, "is not an index");
     if (status == NUMBER_OK && value == 0) return obj_refuse_word(obj, "has index 0; OBJ counts from 1");
+
     if (status == NUMBER_RANGE || value > MESH_COUNT_LIMIT || value < -(int64_t)so_far)
         return refuse(obj->error, SINGE_ERROR_MESH, "obj", obj->text.line,
                       "%s:%lld:%lld: this %s index is out of range (%llu so far)", short_name(obj->name),
                       (long long)obj->text.line, (long long)text_column(&obj->text, obj->begin), what,
                       (unsigned long long)so_far);
+
     *index = (int32_t)(value > 0 ? value - 1 : value + (int64_t)so_far);
     (void)number_integer(&obj->text.at, obj->text.end, &value);
     return SINGE_OK;
@@ -110,14 +113,17 @@ static SingeResult obj_corner(Obj *obj, int32_t *vertex, int32_t *uv) {
     TRY(obj_index(obj, obj->position_count, "vertex", vertex));
     if (obj_word_ended(obj)) return SINGE_OK;
     text->at++;
+
     if (text->at < text->end && *text->at != '/') {
         TRY(obj_index(obj, obj->uv_count, "texture coordinate", uv));
         if (obj_word_ended(obj)) return SINGE_OK;
     }
+
     if (text->at == text->end || *text->at != '/') return obj_refuse_word(obj, "is not an index");
     text->at++;
     int64_t normal;
     const uint8_t *word = text->at;
+
     if (number_integer(&text->at, text->end, &normal) || normal == 0 || !obj_word_ended(obj)) {
         text->at = word;
         return obj_refuse_word(obj, "is not an index");
@@ -131,6 +137,7 @@ static SingeResult obj_face(Obj *obj) {
         return refuse_memory(obj->error, "obj", obj->name);
     size_t first = obj->corner_count;
     int64_t line = obj->text.line;
+
     for (obj_skip_blanks(obj); !obj_at_end(obj); obj_skip_blanks(obj), obj->corner_count++) {
         if (obj->corner_count >= MESH_COUNT_LIMIT) return obj_refuse(obj, SINGE_ERROR_LIMIT, "too many corners");
         if (!store_grow(obj->allocator, &obj->corners, &obj->corner_capacity, obj->corner_count + 1,
@@ -139,6 +146,7 @@ static SingeResult obj_face(Obj *obj) {
         ObjCorner *corner = &obj->corners[obj->corner_count];
         TRY(obj_corner(obj, &corner->vertex, &corner->uv));
     }
+
     size_t corners = obj->corner_count - first;
     if (corners < 3)
         return refuse(obj->error, SINGE_ERROR_MESH, "obj", line, "%s:%lld: face has %d corner%s; it needs three",
@@ -154,6 +162,7 @@ static SingeResult obj_line(Obj *obj) {
     const uint8_t *word = obj->text.at, *end = text_word_end(&obj->text);
     const uint8_t *cut = memchr(word, '\\', (size_t)(end - word));
     if (cut && obj_continuation(cut, obj->text.end)) end = cut;
+
     bool vertex = text_word_is(word, end, "v"), uv = text_word_is(word, end, "vt");
 
     // lines about appearance, groups, points and lines
@@ -180,6 +189,7 @@ static SingeResult obj_line(Obj *obj) {
         obj->position_count++;
         return SINGE_OK;
     }
+
     if (uv) { // vt u [v [w]]
         if (obj->uv_count >= MESH_COUNT_LIMIT)
             return obj_refuse(obj, SINGE_ERROR_LIMIT, "too many texture coordinates");
@@ -191,6 +201,7 @@ static SingeResult obj_line(Obj *obj) {
         obj->uv_count++;
         return SINGE_OK;
     }
+
     return obj_face(obj);
 }
 
@@ -243,6 +254,7 @@ static SingeResult obj_finish(Obj *obj, Polygons *polygons) {
             memcpy(polygons->uv + 2 * i, obj->uvs[corner.uv], 2 * sizeof *polygons->uv);
         }
     }
+
     polygons->first[obj->face_count] = (uint32_t)obj->corner_count;
 
     if (!store_trim(allocator, &obj->positions, &obj->position_capacity, obj->position_count, sizeof *obj->positions))

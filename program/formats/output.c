@@ -42,6 +42,7 @@ SingeResult sheet_parts_make(SheetParts *p, const SingeSurface *s, uint32_t shee
             return refuse(error, SINGE_ERROR_FORMAT, "output", v,
                           "%s: vertex %u belongs to sheet %d; the scene has %u sheets", short_name(path), v,
                           (int)s->sheet[v], sheet_count);
+
     for (uint32_t t = 0; t < s->triangle_count; t++)
         for (int k = 1; k < 3; k++)
             if (s->sheet[s->triangles[t][k]] != s->sheet[s->triangles[t][0]])
@@ -57,6 +58,7 @@ SingeResult sheet_parts_make(SheetParts *p, const SingeSurface *s, uint32_t shee
         return refuse_memory(error, "output", path);
     sort_by_sheet(p, NULL, s->vertex_count, p->vertex_first, p->vertices);
     sort_by_sheet(p, (const uint32_t(*)[3])s->triangles, s->triangle_count, p->triangle_first, p->triangles);
+
     for (uint32_t i = 0; i < s->vertex_count; i++) {
         const uint32_t v = p->vertices[i];
         p->local[v] = i - p->vertex_first[s->sheet[v]];

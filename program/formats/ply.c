@@ -21,20 +21,6 @@ typedef struct PlyTarget {
 
 static SingeResult ply_ended(const Ply *ply) { return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file ends too soon"); }
 
-static double ply_decode(PlyType type, uint64_t bits) {
-    float single;
-    double twice;
-    uint32_t low = (uint32_t)bits;
-    switch (type) {
-    case PLY_INT8: return (double)(bits & 0x7f) - (double)(bits & 0x80);
-    case PLY_INT16: return (double)(bits & 0x7fff) - (double)(bits & 0x8000);
-    case PLY_INT32: return (double)(bits & 0x7fffffff) - (double)(bits & 0x80000000);
-    case PLY_FLOAT32: memcpy(&single, &low, sizeof single); return single;
-    case PLY_FLOAT64: memcpy(&twice, &bits, sizeof twice); return twice;
-    default: return (double)bits;
-    }
-}
-
 static SingeResult ply_value(Ply *ply, PlyType type, double *value) {
     if (ply->header.format == PLY_ASCII) {
         static const double min[] = {-128, 0, -32768, 0, -2147483648.0, 0};
@@ -63,12 +49,26 @@ static SingeResult ply_value(Ply *ply, PlyType type, double *value) {
                           : type < PLY_FLOAT32        ? "not an integer"
                                                       : "not a number");
     }
+
     size_t size = ply_type_size(type);
     if ((size_t)(ply->text.end - ply->text.at) < size) return ply_ended(ply);
     uint64_t bits = 0;
     for (size_t i = 0; i < size; i++)
         bits |= (uint64_t)ply->text.at[i] << 8 * (ply->header.format == PLY_BIG ? size - 1 - i : i);
-    *value = ply_decode(type, bits);
+
+    float single;
+    uint32_t low = (uint32_t)bits;
+    switch (type) {
+    case PLY_INT8: *value = (double)(bits & 0x7f) - (double)(bits & 0x80); break;
+    case PLY_INT16: *value = (double)(bits & 0x7fff) - (double)(bits & 0x8000); break;
+    case PLY_INT32: *value = (double)(bits & 0x7fffffff) - (double)(bits & 0x80000000); break;
+    case PLY_FLOAT32:
+        memcpy(&single, &low, sizeof single);
+        *value = single;
+        break;
+    case PLY_FLOAT64: memcpy(value, &bits, sizeof *value); break;
+    default: *value = (double)bits; break;
+    }
     if (!isfinite(*value)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a value is not a finite number");
     ply->text.at += size;
     return SINGE_OK;
@@ -92,6 +92,7 @@ static SingeResult ply_skip_property(Ply *ply, const PlyProperty *property) {
         text->at += count * ply_type_size(property->type);
         return SINGE_OK;
     }
+
     for (; count; count--) {
         text_skip_blanks(text);
         if (text_at_line_end(text)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the line has too few values");
@@ -147,10 +148,12 @@ static SingeResult ply_plan_vertices(Ply *ply, const PlyElement *element, Polygo
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "vertices have no property \"%s\"", axes[i]);
     mesh->positions = store_new(ply->allocator, mesh->vertex_count, 3 * sizeof *mesh->positions);
     if (!mesh->positions) return refuse_memory(ply->error, "ply", ply->name);
+
     for (int i = 0; i < 3; i++) {
         ply_scalar(ply, element, axes[i], &index);
         targets[index] = (PlyTarget){mesh->positions + i, 3, 1};
     }
+
     for (int i = 0; i < 3 && !*uv; i++) {
         if (!ply_scalar(ply, element, uvs[i][0], &index) || !ply_scalar(ply, element, uvs[i][1], &other)) continue;
         *uv = store_new(ply->allocator, mesh->vertex_count, 2 * sizeof **uv);
@@ -167,6 +170,7 @@ static SingeResult ply_plan_vertices(Ply *ply, const PlyElement *element, Polygo
     if (!mesh->attributes) return refuse_memory(ply->error, "ply", ply->name);
     memset(mesh->attributes, 0, count * sizeof *mesh->attributes);
     mesh->attribute_count = count;
+
     SingeAttribute *next = mesh->attributes;
     for (size_t i = 0; i < element->property_count; i++)
         if (ply_is_attribute(&properties[i], &targets[i])) {
@@ -185,6 +189,7 @@ static SingeResult ply_plan_vertices(Ply *ply, const PlyElement *element, Polygo
             for (int k = 0; k < 4; k++)
                 if (properties[i].type == PLY_UINT8 && strcmp(name, colours[k]) == 0) targets[i].scale = 1 / 255.0f;
         }
+
     return SINGE_OK;
 }
 
@@ -202,6 +207,7 @@ static SingeResult ply_read_vertex(Ply *ply, const PlyElement *element, const Pl
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "a value is too large for a float");
         targets[i].values[targets[i].stride * vertex] = (float)value * targets[i].scale;
     }
+
     return ply_end_row(ply);
 }
 
@@ -235,6 +241,7 @@ static SingeResult ply_read_face(Ply *ply, const PlyElement *element, PlyFaces *
     size_t uvs = 2 * (size_t)mesh->corner_count;
     mesh->first[f] = mesh->corner_count;
     TRY(ply_begin_row(ply));
+
     for (size_t i = 0; i < element->property_count; i++) {
         if (&properties[i] == faces->corners) {
             uint64_t count = 0;
@@ -271,6 +278,7 @@ static SingeResult ply_read_face(Ply *ply, const PlyElement *element, PlyFaces *
             }
         } else TRY(ply_skip_property(ply, &properties[i]));
     }
+
     TRY(ply_end_row(ply));
     if (faces->uvs && uvs != 2 * (size_t)mesh->corner_count)
         return ply_refuse(ply, SINGE_ERROR_MESH, "a face needs u and v for each of its corners in \"texcoord\"");
@@ -280,16 +288,19 @@ static SingeResult ply_read_face(Ply *ply, const PlyElement *element, PlyFaces *
 static SingeResult ply_read_faces(Ply *ply, const PlyElement *element, Polygons *mesh) {
     const PlyProperty *properties = ply->header.properties + element->first_property;
     PlyFaces faces = {.mesh = mesh};
+
     for (size_t i = 0; i < element->property_count; i++) {
         if (!faces.corners && ply_is_list(&properties[i], "vertex_indices", "vertex_index"))
             faces.corners = &properties[i];
         if (!faces.uvs && ply_is_list(&properties[i], "texcoord", "texcoord")) faces.uvs = &properties[i];
     }
+
     if (!faces.corners) return ply_refuse(ply, SINGE_ERROR_FORMAT, "faces have no list \"vertex_indices\"");
     if (faces.corners->type >= PLY_FLOAT32)
         return ply_refuse(ply, SINGE_ERROR_FORMAT, "vertex indices must have an integer type");
     mesh->first = store_new(ply->allocator, (size_t)mesh->face_count + 1, sizeof *mesh->first);
     if (!mesh->first) return refuse_memory(ply->error, "ply", ply->name);
+
     SingeResult result = SINGE_OK;
     for (uint32_t f = 0; f < element->count && !result; f++) result = ply_read_face(ply, element, &faces, f);
     bool trimmed = result || (store_trim(ply->allocator, &mesh->corners, &faces.corner_capacity, mesh->corner_count,
@@ -297,6 +308,7 @@ static SingeResult ply_read_faces(Ply *ply, const PlyElement *element, Polygons 
                               (!faces.uvs || store_trim(ply->allocator, &mesh->uv, &faces.uv_capacity,
                                                         2 * (size_t)mesh->corner_count, sizeof *mesh->uv)));
     if (!trimmed) result = refuse_memory(ply->error, "ply", ply->name);
+
     if (result) {
         // drops a partially read face
         store_free(ply->allocator, faces.mesh->corners, faces.corner_capacity, sizeof *faces.mesh->corners);
@@ -305,6 +317,7 @@ static SingeResult ply_read_faces(Ply *ply, const PlyElement *element, Polygons 
         faces.mesh->uv = NULL;
         faces.mesh->corner_count = 0;
     } else mesh->first[mesh->face_count] = mesh->corner_count;
+
     return result;
 }
 
@@ -314,6 +327,7 @@ static SingeResult ply_read_body(Ply *ply, Polygons *mesh, float **uv) {
     if (!faces || faces->count == 0) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file has no faces");
     mesh->vertex_count = vertices->count;
     mesh->face_count = faces->count;
+
     for (size_t i = 0; i < ply->header.element_count; i++) {
         const PlyElement *element = &ply->header.elements[i];
         if (element == vertices) TRY(ply_read_vertices(ply, element, mesh, uv));
@@ -331,6 +345,7 @@ static SingeResult ply_read_body(Ply *ply, Polygons *mesh, float **uv) {
     if (!*uv || mesh->uv) return SINGE_OK;
     mesh->uv = store_new(ply->allocator, mesh->corner_count, 2 * sizeof *mesh->uv);
     if (!mesh->uv) return refuse_memory(ply->error, "ply", ply->name);
+
     for (uint32_t i = 0; i < mesh->corner_count; i++)
         for (size_t k = 0; k < 2; k++) mesh->uv[2 * (size_t)i + k] = (*uv)[2 * (size_t)mesh->corners[i] + k];
     return SINGE_OK;
@@ -432,6 +447,7 @@ static SingeResult ply_header_element(Ply *ply) {
     TRY(ply_header_name(ply, &name));
     if (header->element_count >= PLY_ELEMENT_LIMIT)
         return ply_refuse(ply, SINGE_ERROR_LIMIT, "more than %d kinds of elements", PLY_ELEMENT_LIMIT);
+
     for (size_t i = 0; i < header->element_count; i++)
         if (word_same(name, header->elements[i].name, header->elements[i].name_end))
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "an element is declared twice");
@@ -458,16 +474,19 @@ static SingeResult ply_header_property(Ply *ply) {
     PlyProperty property = {0};
     Word word = ply_word(ply), name;
     property.is_list = word_is(word, "list");
+
     if (property.is_list) {
         TRY(ply_header_type(ply, ply_word(ply), &property.count_type));
         if (property.count_type >= PLY_FLOAT32)
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "the length of a list must have an integer type");
         word = ply_word(ply);
     }
+
     TRY(ply_header_type(ply, word, &property.type));
     TRY(ply_header_name(ply, &name));
     if (element->property_count >= PLY_PROPERTY_LIMIT)
         return ply_refuse(ply, SINGE_ERROR_LIMIT, "more than %d properties", PLY_PROPERTY_LIMIT);
+
     for (size_t i = element->first_property; i < header->property_count; i++)
         if (word_same(name, header->properties[i].name, header->properties[i].name_end))
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "a property is declared twice");
@@ -481,44 +500,47 @@ static SingeResult ply_header_property(Ply *ply) {
     return SINGE_OK;
 }
 
-static SingeResult ply_header_line(Ply *ply, bool *format_known, bool *ended) {
-    Word word = ply_word(ply);
-    *ended = word_is(word, "end_header");
-    if (word_is(word, "comment") || word_is(word, "obj_info")) {
-        text_skip_blanks(&ply->text);
-        const uint8_t *begin = ply->text.at;
-        while (!text_at_line_end(&ply->text)) ply->text.at++;
-        if (!ply->header.note && ply->text.at - begin > 6 && memcmp(begin, "singe ", 6) == 0)
-            ply->header.note = begin, ply->header.note_end = ply->text.at;
-    } else if (word_is(word, "format")) {
-        static const char *const formats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
-        Word name = ply_word(ply), version = ply_word(ply);
-        if (*format_known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the format is declared twice");
-        for (int i = 0; i < 3; i++)
-            if (word_is(name, formats[i])) ply->header.format = (PlyFormat)i, *format_known = true;
-        if (!*format_known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a PLY format");
-        if (!word_is(version, "1.0")) return ply_refuse(ply, SINGE_ERROR_FORMAT, "only PLY version 1.0 is supported");
-    } else if (word_is(word, "element")) TRY(ply_header_element(ply));
-    else if (word_is(word, "property")) TRY(ply_header_property(ply));
-    else if (!*ended) return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a line of a PLY header");
-    text_skip_blanks(&ply->text);
-    if (!text_at_line_end(&ply->text)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "too many words on the line");
-    if (ply->text.at == ply->text.end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the header is cut off");
-    return SINGE_OK;
-}
-
 SingeResult ply_read_header(Ply *ply) {
     Text *text = &ply->text;
     if (text->at == text->end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file is empty");
     if (!word_is(ply_word(ply), "ply") || text_end_length(text->at, text->end) == 0)
         return ply_refuse(ply, SINGE_ERROR_FORMAT, "not a PLY file: it must begin with a line \"ply\"");
+
     bool known = false, ended = false;
     // the first line shows how lines end: after a lone CR, a first body byte of 10 is not part of the line end
     bool lone_return = text_end_length(text->at, text->end) == 1 && *text->at == '\r';
     while (!ended) {
         text->at += lone_return ? 1 : text_end_length(text->at, text->end);
         text->line++;
-        TRY(ply_header_line(ply, &known, &ended));
+
+        Word word = ply_word(ply);
+        ended = word_is(word, "end_header");
+        if (word_is(word, "comment") || word_is(word, "obj_info")) {
+            text_skip_blanks(&ply->text);
+            const uint8_t *begin = ply->text.at;
+            while (!text_at_line_end(&ply->text)) ply->text.at++;
+            if (!ply->header.note && ply->text.at - begin > 6 && memcmp(begin, "singe ", 6) == 0) {
+                ply->header.note = begin;
+                ply->header.note_end = ply->text.at;
+            }
+        } else if (word_is(word, "format")) {
+            static const char *const formats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+            Word name = ply_word(ply), version = ply_word(ply);
+            if (known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the format is declared twice");
+            for (int i = 0; i < 3; i++)
+                if (word_is(name, formats[i])) {
+                    ply->header.format = (PlyFormat)i;
+                    known = true;
+                }
+            if (!known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a PLY format");
+            if (!word_is(version, "1.0"))
+                return ply_refuse(ply, SINGE_ERROR_FORMAT, "only PLY version 1.0 is supported");
+        } else if (word_is(word, "element")) TRY(ply_header_element(ply));
+        else if (word_is(word, "property")) TRY(ply_header_property(ply));
+        else if (!ended) return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a line of a PLY header");
+        text_skip_blanks(&ply->text);
+        if (!text_at_line_end(&ply->text)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "too many words on the line");
+        if (ply->text.at == ply->text.end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the header is cut off");
     }
     if (!known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the header has no format line");
     text->at += lone_return ? 1 : text_end_length(text->at, text->end);
@@ -528,6 +550,7 @@ SingeResult ply_read_header(Ply *ply) {
     // counts are checked against the size of the file before memory is allocated
     const PlyHeader *header = &ply->header;
     uint64_t left = (uint64_t)(ply->text.end - ply->text.at) + (header->format == PLY_ASCII);
+
     for (size_t i = 0; i < header->element_count; i++) {
         const PlyElement *element = &header->elements[i];
         uint64_t min = 0;
@@ -542,6 +565,7 @@ SingeResult ply_read_header(Ply *ply) {
                               element->count, i + 1);
         left -= min * element->count;
     }
+
     return SINGE_OK;
 }
 

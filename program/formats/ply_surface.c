@@ -71,6 +71,7 @@ SingeResult ply_write_surface(const char *path, const SingeSurface *surface, dou
         return refuse(error, SINGE_ERROR_ARGUMENT, "cache", -1, "%s: the time is not finite", short_name(path));
     if (surface->vertex_count > MESH_COUNT_LIMIT || surface->triangle_count > MESH_COUNT_LIMIT)
         return refuse(error, SINGE_ERROR_LIMIT, "cache", -1, "%s: too many vertices or triangles", short_name(path));
+
     uint64_t max = HEADER_LIMIT + surface_data_size(surface);
     if (max > SIZE_MAX / 2) return refuse_memory(error, "cache", path);
     uint8_t *bytes = store_new(surface->allocator, (size_t)max, 1);
@@ -81,6 +82,7 @@ SingeResult ply_write_surface(const char *path, const SingeSurface *surface, dou
     size_t n = (size_t)snprintf(text, HEADER_LIMIT,
                                 "ply\nformat binary_little_endian 1.0\ncomment singe %s time %s\nelement vertex %u\n",
                                 SINGE_VERSION, number, surface->vertex_count);
+
     for (size_t i = 0; i < COLUMNS; i++)
         n += (size_t)snprintf(text + n, HEADER_LIMIT - n, "property %s %s\n", columns[i].integer ? "int" : "float",
                               columns[i].name);
@@ -92,6 +94,7 @@ SingeResult ply_write_surface(const char *path, const SingeSurface *surface, dou
     const uint8_t *source[COLUMNS];
     for (size_t i = 0; i < COLUMNS; i++)
         source[i] = surface->vertex_count ? column_array(surface, &columns[i]) + 4 * columns[i].index : NULL;
+
     for (uint32_t v = 0; v < surface->vertex_count; v++)
         for (size_t i = 0; i < COLUMNS; i++, out += 4) {
             uint32_t bits;
@@ -99,6 +102,7 @@ SingeResult ply_write_surface(const char *path, const SingeSurface *surface, dou
             source[i] += 4 * columns[i].width;
             store_u32_little(out, bits);
         }
+
     for (uint32_t f = 0; f < surface->triangle_count; f++) {
         *out++ = 3;
         for (int k = 0; k < 3; k++, out += 4) store_u32_little(out, surface->triangles[f][k]);
@@ -127,12 +131,14 @@ static SingeResult surface_check_header(const Ply *ply, SingeSurface *surface, d
     const PlyElement *vertices = ply_element(ply, "vertex"), *faces = ply_element(ply, "face");
     bool fits = header->format == PLY_LITTLE && header->element_count == 2 && vertices == &header->elements[0] &&
                 faces && vertices->property_count == COLUMNS && faces->property_count == 1;
+
     for (size_t i = 0; fits && i < COLUMNS; i++) {
         const PlyProperty *property = &header->properties[vertices->first_property + i];
         fits = !property->is_list && property->type == (columns[i].integer ? PLY_INT32 : PLY_FLOAT32) &&
                (text_word_is(property->name, property->name_end, columns[i].name) ||
                 (strcmp(columns[i].name, "burnt") == 0 && text_word_is(property->name, property->name_end, "char")));
     }
+
     const PlyProperty *list = fits ? &header->properties[faces->first_property] : NULL;
     if (!list || !list->is_list || list->count_type != PLY_UINT8 || list->type != PLY_INT32 ||
         !text_word_is(list->name, list->name_end, "vertex_indices"))
@@ -155,12 +161,14 @@ static SingeResult surface_allocate(Ply *ply, SingeSurface *surface) {
     uint32_t triangles = surface->triangle_count ? surface->triangle_count : 1;
     surface->vertex_capacity = vertices;
     surface->triangle_capacity = triangles;
+
     for (size_t i = 0; i < COLUMNS; i++) {
         if (columns[i].index) continue;
         void *array = store_new(ply->allocator, vertices, 4 * (size_t)columns[i].width);
         if (!array) return refuse_memory(ply->error, "ply", ply->name);
         memcpy((uint8_t *)surface + columns[i].array, &array, sizeof array);
     }
+
     surface->triangles = store_new(ply->allocator, triangles, sizeof *surface->triangles);
     return surface->triangles ? SINGE_OK : refuse_memory(ply->error, "ply", ply->name);
 }
@@ -168,6 +176,7 @@ static SingeResult surface_allocate(Ply *ply, SingeSurface *surface) {
 static SingeResult surface_unpack(Ply *ply, SingeSurface *surface) {
     uint8_t *target[COLUMNS];
     for (size_t i = 0; i < COLUMNS; i++) target[i] = column_array(surface, &columns[i]) + 4 * columns[i].index;
+
     for (uint32_t v = 0; v < surface->vertex_count; v++)
         for (size_t i = 0; i < COLUMNS; i++, ply->text.at += 4) {
             uint32_t bits = load_u32_little(ply->text.at);
@@ -177,6 +186,7 @@ static SingeResult surface_unpack(Ply *ply, SingeSurface *surface) {
             memcpy(target[i], &bits, sizeof bits);
             target[i] += 4 * columns[i].width;
         }
+
     for (uint32_t f = 0; f < surface->triangle_count; f++) {
         if (*ply->text.at != 3)
             return ply_refuse(ply, SINGE_ERROR_MESH, "face %u has %d corners where a cache has 3", f, *ply->text.at);
@@ -188,6 +198,7 @@ static SingeResult surface_unpack(Ply *ply, SingeSurface *surface) {
             surface->triangles[f][k] = index;
         }
     }
+
     return SINGE_OK;
 }
 

@@ -70,6 +70,7 @@ static SingeResult stl_read_bytes(const char *name, const uint8_t *bytes, size_t
                 return refuse(error, SINGE_ERROR_FORMAT, "stl", (int64_t)at, "%s: byte %llu: a position is not finite",
                               short_name(name), (unsigned long long)at);
         }
+
     return stl_arrays(mesh, name, (size_t)count, error);
 }
 
@@ -107,10 +108,12 @@ static SingeResult stl_float(Stl *stl, float *value) {
     text_skip_blanks(&stl->text);
     const uint8_t *at = stl->text.at, *end = text_word_end(&stl->text);
     NumberStatus status = number_float(&at, end, value);
+
     if (!status && at == end) {
         stl->text.at = at;
         return SINGE_OK;
     }
+
     if (stl->text.at == end) return stl_refuse(stl, "the line has too few values");
     return stl_refuse(stl, "the value in column %lld is %s", (long long)text_column(&stl->text, stl->begin),
                       status == NUMBER_NOT_FINITE ? "not a finite number"
@@ -156,6 +159,7 @@ SingeResult stl_read(const char *name, const uint8_t *bytes, size_t size, SingeA
     // binary files may begin with "solid", too: their size decides
     bool binary = size >= HEAD && size == HEAD + TRIANGLE * (uint64_t)load_u32_little(bytes + 80);
     SingeResult result;
+
     if (binary || !stl_word(&ahead, "solid")) {
         result = stl_read_bytes(name, bytes, size, mesh, error);
     } else {
@@ -166,6 +170,7 @@ SingeResult stl_read(const char *name, const uint8_t *bytes, size_t size, SingeA
         mesh->vertex_count = (uint32_t)capacity; // for polygons_free
         if (!result) result = stl_arrays(mesh, name, vertices / 3, error);
     }
+
     if (result) polygons_free(mesh);
     return result;
 }

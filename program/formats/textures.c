@@ -68,21 +68,6 @@ static void draw_mesh(Canvas *c, const OutputMesh *mesh) {
     }
 }
 
-static void draw_surface(Canvas *c, const SingeSurface *s, uint32_t sheet) {
-    for (uint32_t t = 0; t < s->triangle_count; t++) {
-        const uint32_t *v = s->triangles[t];
-        float uv[3][2];
-        if (s->sheet[v[0]] != (int32_t)sheet) continue;
-        for (int i = 0; i < 3; i++) {
-            memcpy(uv[i], s->uv[v[i]], sizeof uv[i]);
-            c->corners[i][0] = s->temperature[v[i]];
-            c->corners[i][1] = s->burn[v[i]];
-            c->corners[i][2] = s->burn[v[i]] > EMBER_BURNT ? ember_light(s->temperature[v[i]]) : 0;
-        }
-        uv_triangle(c->size, (const float(*)[2])uv, draw_values, c);
-    }
-}
-
 typedef struct Layers {
     uint32_t count;
     uint32_t sheets[TEXTURE_SHEETS];
@@ -99,8 +84,20 @@ static SingeResult draw_layer(Layers *layers, const OutputScene *scene, const Ou
     const bool made = canvas_make(&canvas, a, scene->texture_size);
     if (made) {
         draw_mesh(&canvas, &scene->sheets[sheet].mesh);
-        draw_surface(&canvas, frame->surface, sheet);
 
+        for (uint32_t t = 0; t < frame->surface->triangle_count; t++) {
+            const uint32_t *v = frame->surface->triangles[t];
+            float uv[3][2];
+            if (frame->surface->sheet[v[0]] != (int32_t)sheet) continue;
+            for (int k = 0; k < 3; k++) {
+                memcpy(uv[k], frame->surface->uv[v[k]], sizeof uv[k]);
+                canvas.corners[k][0] = frame->surface->temperature[v[k]];
+                canvas.corners[k][1] = frame->surface->burn[v[k]];
+                canvas.corners[k][2] =
+                    frame->surface->burn[v[k]] > EMBER_BURNT ? ember_light(frame->surface->temperature[v[k]]) : 0;
+            }
+            uv_triangle(canvas.size, (const float(*)[2])uv, draw_values, &canvas);
+        }
         uv_spread(canvas.size, TEXTURE_MARGIN, canvas.chart, canvas.nearest, canvas.queue);
         for (size_t i = 0; i < canvas.pixels; i++)
             canvas.values[TEXTURE_CHANNELS * i + 3] = canvas.nearest[i] != UV_NONE && canvas.covered[canvas.nearest[i]];
@@ -120,12 +117,14 @@ static SingeResult draw_layer(Layers *layers, const OutputScene *scene, const Ou
     if (!made) return refuse_memory(error, "textures", path);
     char prim[USD_NAME];
     usd_sheet_name(scene, sheet, prim);
+
     for (uint32_t k = 0; k < TEXTURE_CHANNELS; k++) {
         const uint32_t n = TEXTURE_CHANNELS * layers->count + k;
         snprintf(layers->names[n], sizeof layers->names[n], "%s%s%c", layers->count ? prim : "",
                  layers->count ? "." : "", letters[k]);
         layers->channels[n] = (ExrChannel){layers->names[n], EXR_KIND_HALF, canvas.values + k, TEXTURE_CHANNELS};
     }
+
     layers->count++;
     return SINGE_OK;
 }
@@ -137,6 +136,7 @@ SingeResult textures_write_frame(const char *path, const OutputScene *scene, con
     Layers *layers = store_new(a, 1, sizeof *layers);
     if (!layers) return refuse_memory(error, "textures", path);
     layers->count = 0;
+
     for (uint32_t i = 0; i < scene->sheet_count && !result; i++) {
         if (!output_mesh_has_uv(&scene->sheets[i].mesh)) continue;
         if (layers->count == TEXTURE_SHEETS)
@@ -144,11 +144,13 @@ SingeResult textures_write_frame(const char *path, const OutputScene *scene, con
                             short_name(path), TEXTURE_SHEETS);
         else result = draw_layer(layers, scene, frame, i, path, error);
     }
+
     if (!result && !layers->count)
         result = refuse(error, SINGE_ERROR_MESH, "textures", -1, "%s: no sheet has uv", short_name(path));
     if (!result)
         result = exr_write(path, scene->texture_size, scene->texture_size, layers->channels,
                            (int)(TEXTURE_CHANNELS * layers->count), error);
+
     const size_t pixels = (size_t)scene->texture_size * (size_t)scene->texture_size;
     for (uint32_t i = 0; i < layers->count; i++)
         store_free(a, layers->values[i], pixels, TEXTURE_CHANNELS * sizeof(float));

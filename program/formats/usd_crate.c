@@ -72,6 +72,7 @@ static void put_ints(Crate *crate, Sink *sink, const int32_t *values, size_t cou
     scratch->size = 0;
     const size_t codes = (count + 3) / 4;
     uint8_t *bytes = sink_room(scratch, 4 + codes + 4 * count + 4);
+
     if (!bytes) {
         crate->sink.failed = true;
         return;
@@ -80,10 +81,12 @@ static void put_ints(Crate *crate, Sink *sink, const int32_t *values, size_t cou
     // the most frequent one-byte difference; of many differences one in seven is counted
     uint32_t counts[256] = {0};
     const size_t stride = count > 1000 ? 7 : 1;
+
     for (size_t i = 0; i < count; i += stride) {
         const int32_t step = (int32_t)((uint32_t)values[i] - (i ? (uint32_t)values[i - 1] : 0));
         if (step >= -128 && step <= 127) counts[step + 128]++;
     }
+
     int most = 128;
     for (int i = 0; i < 256; i++)
         if (counts[i] > counts[most]) most = i;
@@ -92,6 +95,7 @@ static void put_ints(Crate *crate, Sink *sink, const int32_t *values, size_t cou
     uint8_t *code = bytes + 4, *at = code + codes;
     uint32_t before = 0;
     store_u32_little(bytes, (uint32_t)common);
+
     for (size_t i = 0; i < count; i += 4) {
         unsigned kinds = 0;
         for (size_t k = 0; k < 4 && i + k < count; k++) {
@@ -105,6 +109,7 @@ static void put_ints(Crate *crate, Sink *sink, const int32_t *values, size_t cou
         }
         *code++ = (uint8_t)kinds;
     }
+
     put_packed(crate, sink, bytes, (size_t)(at - bytes));
 }
 
@@ -150,6 +155,7 @@ static size_t number_values(Crate *crate, const uint32_t *bits, size_t count, in
     const size_t size = (size_t)1 << log;
     if (log > 31 || !store_grow(crate->sink.allocator, &crate->table, &crate->table_capacity, size, 4)) return 0;
     memset(crate->table, 0, size * sizeof *crate->table);
+
     size_t found = 0;
     for (size_t i = 0; i < count; i++) {
         size_t at = bits[i] * 2654435761u >> (32 - log);
@@ -161,6 +167,7 @@ static size_t number_values(Crate *crate, const uint32_t *bits, size_t count, in
         }
         numbers[i] = (int32_t)crate->table[at] - 1;
     }
+
     return found;
 }
 
@@ -170,11 +177,13 @@ static bool put_table(Crate *crate, const float *values, size_t count) {
     packed->size = 0;
     uint32_t *room = (uint32_t *)(void *)sink_room(packed, 3 * 4 * count);
     if (!room) return packed->failed = false;
+
     uint32_t *bits = room, *table = room + count;
     int32_t *numbers = (int32_t *)(room + 2 * count);
     memcpy(bits, values, 4 * count);
     const size_t found = number_values(crate, bits, count, numbers, table);
     if (!found) return false;
+
     const size_t before = crate->sink.size;
     sink_bytes(&crate->sink, "t", 1);
     sink_u32(&crate->sink, (uint32_t)found);
@@ -272,10 +281,12 @@ static void put_paths(Crate *crate) {
     Sink *room = &crate->packed;
     room->size = 0;
     int32_t *columns = (int32_t *)(void *)sink_room(room, 4 * 4 * count);
+
     if (!columns) {
         crate->sink.failed = true;
         return;
     }
+
     for (size_t i = 0; i < count; i++) {
         const int32_t name = (int32_t)crate->paths[i].token;
         columns[i] = (int32_t)i;
@@ -286,6 +297,7 @@ static void put_paths(Crate *crate) {
     const CratePath *paths = crate->paths;
     for (size_t i = 0; i < crate->path_count; i++)
         (columns + 3 * count)[i] = 0; // the child of it that comes next; 0: none
+
     for (size_t i = crate->path_count; i-- > 0;) {
         const bool child = i + 1 < crate->path_count && paths[i + 1].parent == i;
         const int32_t sibling = paths[i].parent == CRATE_NO_PARENT ? 0 : (columns + 3 * count)[paths[i].parent];
@@ -303,15 +315,18 @@ static void put_specs(Crate *crate) {
     Sink *room = &crate->packed;
     room->size = 0;
     int32_t *columns = (int32_t *)(void *)sink_room(room, 3 * 4 * count);
+
     if (!columns) {
         crate->sink.failed = true;
         return;
     }
+
     for (size_t i = 0; i < count; i++) {
         columns[i] = (int32_t)crate->specs[i].path;
         columns[count + i] = (int32_t)crate->specs[i].fields;
         columns[2 * count + i] = (int32_t)crate->specs[i].kind;
     }
+
     sink_u64(&crate->sink, count);
     for (int k = 0; k < 3; k++) put_ints(crate, &crate->sink, columns + (size_t)k * count, count);
 }
@@ -322,13 +337,16 @@ static void put_sections(Crate *crate) {
         void (*put)(Crate *);
     } sections[SECTIONS] = {{"TOKENS", put_tokens},       {"STRINGS", put_strings}, {"FIELDS", put_fields},
                             {"FIELDSETS", put_fieldsets}, {"PATHS", put_paths},     {"SPECS", put_specs}};
+
     size_t offsets[SECTIONS + 1];
     for (int i = 0; i < SECTIONS; i++) {
         offsets[i] = crate->sink.size;
         sections[i].put(crate);
     }
+
     offsets[SECTIONS] = crate->sink.size;
     sink_u64(&crate->sink, SECTIONS);
+
     for (int i = 0; i < SECTIONS; i++) {
         char name[16] = "";
         memcpy(name, sections[i].name, strlen(sections[i].name));
@@ -336,6 +354,7 @@ static void put_sections(Crate *crate) {
         sink_u64(&crate->sink, offsets[i]);
         sink_u64(&crate->sink, offsets[i + 1] - offsets[i]);
     }
+
     if (crate->sink.failed) return;
     uint8_t *header = crate->sink.bytes;
     memcpy(header, "PXR-USDC\0\10\0", 11);

@@ -116,12 +116,14 @@ static void put_sheet(Root *r, uint32_t sheet) {
               "            uniform token orientation = \"rightHanded\"\n            uniform bool doubleSided = 1\n"
               "            rel material:binding = </%s/materials/burning>\n",
               name, r->name);
+
     for (int i = 0; i < USD_OWN; i++)
         sink_text(&r->sink, "            %s %s%s\n", usd_attributes[i].type, usd_attributes[i].name,
                   usd_attributes[i].vertex ? " (\n                interpolation = \"vertex\"\n            )" : "");
     for (int i = 0; i < SURFACE_FIELDS; i++)
         sink_text(&r->sink, "            %s primvars:%s (\n                interpolation = \"vertex\"\n            )\n",
                   surface_fields[i].integer ? "int[]" : "float[]", surface_fields[i].name);
+
     if (r->scene->sheets[sheet].picture) {
         char print[USD_NAME];
         snprintf(print, sizeof print, "print%u", sheet);
@@ -132,29 +134,6 @@ static void put_sheet(Root *r, uint32_t sheet) {
     put(r, "        }\n");
 }
 
-static void put_sheets(Root *r) {
-    put(r, "\n    def Xform \"sheets\" (\n");
-
-    const int frames = r->scene->frames;
-    put(r, "        clips = {\n            dictionary default = {\n                asset[] assetPaths = [");
-    for (int i = 1; i <= frames; i++) {
-        put(r, i > 1 ? ", " : "");
-        put_file(r, "usd", i, ".usdc");
-    }
-    put(r, "]\n                double2[] active = [");
-    for (int i = 1; i <= frames; i++) sink_text(&r->sink, "%s(%d, %d)", i > 1 ? ", " : "", i, i - 1);
-    put(r, "]\n                double2[] times = [");
-    for (int i = 1; i <= frames; i++) sink_text(&r->sink, "%s(%d, %d)", i > 1 ? ", " : "", i, i);
-    sink_text(&r->sink, "]\n                string primPath = \"/%s/sheets\"\n", r->name);
-    put(r, "                asset manifestAssetPath = ");
-    put_file(r, "usd", 1, ".usdc");
-    put(r, "\n            }\n        }\n");
-
-    put(r, "    )\n    {\n");
-    for (uint32_t i = 0; i < r->scene->sheet_count; i++) put_sheet(r, i);
-    put(r, "    }\n");
-}
-
 // ---- gas
 
 static void put_gas(Root *r) {
@@ -162,6 +141,7 @@ static void put_gas(Root *r) {
     put(r, "\n    def Volume \"gas\"\n    {\n");
     for (int i = 0; i < 4; i++)
         sink_text(&r->sink, "        rel field:%s = </%s/gas/%s>\n", fields[i], r->name, fields[i]);
+
     for (int i = 0; i < 4; i++) {
         sink_text(&r->sink, "\n        def OpenVDBAsset \"%s\"\n        {\n            token fieldName = \"%s\"\n",
                   fields[i], fields[i]);
@@ -174,6 +154,7 @@ static void put_gas(Root *r) {
         }
         put(r, "            }\n        }\n");
     }
+
     put(r, "    }\n");
 }
 
@@ -193,10 +174,12 @@ static void put_frame(Root *r, const float back[3], const float up[3], const flo
     float x[3], y[3], z[3] = {back[0], back[1], back[2]};
     unit(z);
     cross(up, z, x);
+
     if (dot(x, x) < 1e-12f) {
         const float other[3] = {1, 0, 0};
         cross(other, z, x);
     }
+
     unit(x);
     cross(z, x, y);
     const float rows[4][4] = {{x[0], x[1], x[2], 0},
@@ -204,6 +187,7 @@ static void put_frame(Root *r, const float back[3], const float up[3], const flo
                               {z[0], z[1], z[2], 0},
                               {position[0], position[1], position[2], 1}};
     put(r, "        matrix4d xformOp:transform = (");
+
     for (int i = 0; i < 4; i++) {
         put(r, i ? ", " : " ");
         put_numbers(r, rows[i], 4);
@@ -259,6 +243,7 @@ static void put_samples(Root *r, const char *attribute, const float *vertices, u
     int last = 0;
     for (int i = 1; shape && i < r->scene->frames; i++)
         if (shape->poses[i].vertices != shape->poses[i - 1].vertices) last = i;
+
     const int frames = last + 1;
 
     put(r, attribute);
@@ -268,6 +253,7 @@ static void put_samples(Root *r, const char *attribute, const float *vertices, u
         put(r, "\n");
         return;
     }
+
     put(r, ".timeSamples = {\n");
     for (int i = 0; i < frames; i++) {
         const float *now = shape->poses[i].vertices;
@@ -310,8 +296,10 @@ static void put_poses(Root *r, const char *attribute, const OutputShape *shape,
         for (int c = 0; c < 3; c++) still = still && a->position[c] == b->position[c];
         for (int c = 0; c < 4; c++) still = still && a->rotation[c] == b->rotation[c];
     }
+
     put(r, attribute);
     put(r, still ? " = " : ".timeSamples = {");
+
     for (int i = 0; i < (still ? 1 : r->scene->frames); i++) {
         if (!still) sink_text(&r->sink, "%s%d: ", i ? ", " : "", i + 1);
         value(r, &shape->poses[i]);
@@ -330,12 +318,14 @@ static void put_shape(Root *r, uint32_t index) {
               "\n        def %s \"shape%u\" (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n        )\n"
               "        {\n            rel material:binding = </%s/materials/shape%u>\n",
               kinds[s->kind], index, r->name, index);
+
     float half[3] = {s->radius, s->radius, s->radius};
     if (s->kind == SINGE_COLLIDER_CAPSULE) {
         put(r, "            uniform token axis = \"Z\"\n");
         put_float(r, "            double height = ", s->height);
         half[2] += 0.5f * s->height;
     }
+
     if (s->kind == SINGE_COLLIDER_BOX) {
         put(r, "            double size = 2\n");
         for (int c = 0; c < 3; c++) half[c] = 1;
@@ -344,16 +334,19 @@ static void put_shape(Root *r, uint32_t index) {
     } else {
         put_mesh_arrays(r, s->vertices, s->vertex_count, s->triangles, s->triangle_count, 3, s);
     }
+
     if (!s->vertex_count) {
         const float low[3] = {-half[0], -half[1], -half[2]};
         put(r, "            float3[] extent = [");
         put_numbers(r, low, 3), put(r, ", "), put_numbers(r, half, 3);
         put(r, "]\n");
     }
+
     put_poses(r, "            token visibility", s, put_visible);
     put_poses(r, "            double3 xformOp:translate", s, put_position);
     put_poses(r, "            quatf xformOp:orient", s, put_rotation);
     const bool scaled = s->kind == SINGE_COLLIDER_BOX;
+
     if (scaled) {
         put(r, "            float3 xformOp:scale = ");
         put_numbers(r, s->half_size, 3);
@@ -382,6 +375,7 @@ static void put_props(Root *r) {
         put_mesh_arrays(r, corners, 4, indices, 1, 4, NULL);
         put(r, "        }\n");
     }
+
     for (uint32_t i = 0; i < r->scene->shape_count; i++) put_shape(r, i);
     put(r, "    }\n");
 }
@@ -427,6 +421,7 @@ static void put_materials(Root *r) {
     put_reader(r, "colour", "displayColor", "float3", 3);
     put_reader(r, "ember", "ember", "float3", 3);
     put(r, "        }\n");
+
     for (uint32_t i = 0; i < r->scene->sheet_count; i++)
         if (r->scene->sheets[i].picture) {
             const OutputSheet *s = &r->scene->sheets[i];
@@ -457,11 +452,13 @@ static void put_materials(Root *r) {
             put_reader(r, "st", "st", "float2", 2);
             put(r, "        }\n");
         }
+
     for (uint32_t i = 0; i < r->scene->shape_count; i++) {
         char material[USD_NAME];
         snprintf(material, sizeof material, "shape%u", i);
         put_plain(r, material, r->scene->shapes[i].colour, r->scene->shapes[i].temperature);
     }
+
     if (isfinite(r->scene->ground_height)) put_plain(r, "ground", r->scene->ground_colour, 0);
     put(r, "    }\n");
 }
@@ -476,7 +473,30 @@ void usd_put_root(Sink *sink, const OutputScene *scene) {
     put(r, "    metersPerUnit = 1\n    startTimeCode = 1\n");
     put_float(r, "    timeCodesPerSecond = ", scene->fps);
     sink_text(&r->sink, "    upAxis = \"Z\"\n)\n\ndef Xform \"%s\" (\n    kind = \"component\"\n)\n{", r->name);
-    put_sheets(r);
+
+    put(r, "\n    def Xform \"sheets\" (\n");
+
+    const int frames = r->scene->frames;
+    put(r, "        clips = {\n            dictionary default = {\n                asset[] assetPaths = [");
+
+    for (int i = 1; i <= frames; i++) {
+        put(r, i > 1 ? ", " : "");
+        put_file(r, "usd", i, ".usdc");
+    }
+
+    put(r, "]\n                double2[] active = [");
+    for (int i = 1; i <= frames; i++) sink_text(&r->sink, "%s(%d, %d)", i > 1 ? ", " : "", i, i - 1);
+    put(r, "]\n                double2[] times = [");
+    for (int i = 1; i <= frames; i++) sink_text(&r->sink, "%s(%d, %d)", i > 1 ? ", " : "", i, i);
+    sink_text(&r->sink, "]\n                string primPath = \"/%s/sheets\"\n", r->name);
+    put(r, "                asset manifestAssetPath = ");
+    put_file(r, "usd", 1, ".usdc");
+    put(r, "\n            }\n        }\n");
+
+    put(r, "    )\n    {\n");
+    for (uint32_t i = 0; i < r->scene->sheet_count; i++) put_sheet(r, i);
+    put(r, "    }\n");
+
     if (scene->gas) put_gas(r);
     put_camera(r);
 

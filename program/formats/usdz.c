@@ -45,10 +45,12 @@ static void zip_add(Zip *zip, const char *name, const void *bytes, size_t size) 
 
     // CRC-32 of ISO 3309
     uint32_t table[256], sum = UINT32_MAX;
+
     for (uint32_t i = 0; i < 256; i++) {
         table[i] = i;
         for (int k = 0; k < 8; k++) table[i] = table[i] >> 1 ^ (table[i] & 1 ? 0xedb88320u : 0);
     }
+
     for (size_t i = 0; i < size; i++) sum = sum >> 8 ^ table[(sum ^ ((const uint8_t *)bytes)[i]) & 255];
     sum = ~sum;
 
@@ -73,10 +75,12 @@ static void zip_add(Zip *zip, const char *name, const void *bytes, size_t size) 
 static SingeResult zip_write(Zip *zip, const char *path, SingeError *error) {
     Sink *sink = &zip->sink;
     const size_t offset = sink->size, size = zip->directory.size;
+
     if (zip->too_large) {
         zip_free(zip);
         return refuse(error, SINGE_ERROR_LIMIT, "zip", -1, "%s: more than 4 GiB, or 65535 files", short_name(path));
     }
+
     sink_bytes(sink, zip->directory.bytes, size);
     sink_bytes(sink, "PK\5\6", 4);
     sink_zeros(sink, 4);
@@ -92,9 +96,43 @@ static SingeResult zip_write(Zip *zip, const char *path, SingeError *error) {
 
 typedef char PictureName[32];
 
-static SingeResult add_pictures(Zip *zip, const char *path, const OutputScene *scene, const PictureName *names,
-                                SingeError *error) {
-    SingeResult result = SINGE_OK;
+/// Adds the root, the frames and the pictures. `sheets` and `names` have room for each sheet.
+static SingeResult add_files(Zip *zip, const char *path, const OutputScene *scene, const OutputCache *cache,
+                             OutputSheet *sheets, PictureName *names, SingeError *error) {
+    OutputScene packed = *scene;
+    char root_name[1024];
+    Sink root = {0};
+
+    for (uint32_t i = 0; i < scene->sheet_count; i++) {
+        const char *picture = scene->sheets[i].picture, *ending = picture ? strrchr(picture, '.') : NULL;
+        sheets[i] = scene->sheets[i];
+        if (!picture) continue;
+        const bool png = ending && (strcmp(ending, ".png") == 0 || strcmp(ending, ".PNG") == 0);
+        snprintf(names[i], sizeof names[i], "pictures/%u.%s", (unsigned)i, png ? "png" : "jpg");
+        sheets[i].picture = names[i];
+    }
+
+    packed.sheets = sheets;
+    packed.gas = false;
+    usd_put_root(&root, &packed);
+    snprintf(root_name, sizeof root_name, "%s.usda", scene->name);
+    if (!root.failed) zip_add(zip, root_name, root.bytes, root.size);
+
+    const bool failed = root.failed;
+    sink_free(&root);
+    SingeResult result = failed ? refuse_memory(error, "usdz", path) : SINGE_OK;
+
+    for (int i = 1; i <= cache->frames && !result; i++) {
+        OutputFrame frame;
+        Sink bytes = {0};
+        char name[1024];
+        snprintf(name, sizeof name, "usd/%s.%04d.usdc", scene->name, i);
+        result = cache->read(cache->context, i, &frame, error);
+        if (!result) result = usd_frame_bytes(path, scene, &frame, &bytes, error);
+        if (!result) zip_add(zip, name, bytes.bytes, bytes.size);
+        sink_free(&bytes);
+    }
+
     for (uint32_t i = 0; i < scene->sheet_count && !result; i++) {
         Bytes bytes = {0};
         if (!scene->sheets[i].picture) continue;
@@ -108,47 +146,8 @@ static SingeResult add_pictures(Zip *zip, const char *path, const OutputScene *s
         if (!result) zip_add(zip, names[i], bytes.data, bytes.size);
         bytes_free(&bytes);
     }
-    return result;
-}
 
-static SingeResult add_frames(Zip *zip, const char *path, const OutputScene *scene, const OutputCache *cache,
-                              SingeError *error) {
-    SingeResult result = SINGE_OK;
-    for (int i = 1; i <= cache->frames && !result; i++) {
-        OutputFrame frame;
-        Sink bytes = {0};
-        char name[1024];
-        snprintf(name, sizeof name, "usd/%s.%04d.usdc", scene->name, i);
-        result = cache->read(cache->context, i, &frame, error);
-        if (!result) result = usd_frame_bytes(path, scene, &frame, &bytes, error);
-        if (!result) zip_add(zip, name, bytes.bytes, bytes.size);
-        sink_free(&bytes);
-    }
     return result;
-}
-
-/// The scene with its pictures in the archive.
-static SingeResult add_root(Zip *zip, const OutputScene *scene, OutputSheet *sheets, PictureName *names,
-                            const char *path, SingeError *error) {
-    OutputScene packed = *scene;
-    char name[1024];
-    Sink root = {0};
-    for (uint32_t i = 0; i < scene->sheet_count; i++) {
-        const char *picture = scene->sheets[i].picture, *ending = picture ? strrchr(picture, '.') : NULL;
-        sheets[i] = scene->sheets[i];
-        if (!picture) continue;
-        const bool png = ending && (strcmp(ending, ".png") == 0 || strcmp(ending, ".PNG") == 0);
-        snprintf(names[i], sizeof names[i], "pictures/%u.%s", (unsigned)i, png ? "png" : "jpg");
-        sheets[i].picture = names[i];
-    }
-    packed.sheets = sheets;
-    packed.gas = false;
-    usd_put_root(&root, &packed);
-    snprintf(name, sizeof name, "%s.usda", scene->name);
-    if (!root.failed) zip_add(zip, name, root.bytes, root.size);
-    const bool failed = root.failed;
-    sink_free(&root);
-    return failed ? refuse_memory(error, "usdz", path) : SINGE_OK;
 }
 
 SingeResult usdz_write(const char *path, const OutputScene *scene, const OutputCache *cache, SingeError *error) {
@@ -157,9 +156,7 @@ SingeResult usdz_write(const char *path, const OutputScene *scene, const OutputC
     PictureName *names = calloc(scene->sheet_count + 1, sizeof *names);
     SingeResult result = sheets && names ? SINGE_OK : refuse_memory(error, "usdz", path);
 
-    if (!result) result = add_root(&zip, scene, sheets, names, path, error);
-    if (!result) result = add_frames(&zip, path, scene, cache, error);
-    if (!result) result = add_pictures(&zip, path, scene, (const PictureName *)names, error);
+    if (!result) result = add_files(&zip, path, scene, cache, sheets, names, error);
     if (!result) result = zip_write(&zip, path, error);
     else zip_free(&zip);
     free(sheets), free(names);

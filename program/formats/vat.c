@@ -56,16 +56,19 @@ static SingeResult vat_make(Vat *vat, const char *path, SingeError *error) {
     vat->first = calloc(sheets + 1, 4);
     vat->source_first = calloc(sheets + 1, 4);
     if (!vat->first || !vat->source_first) return refuse_memory(error, "vat", path);
+
     for (uint32_t i = 0; i < sheets; i++) {
         const OutputMesh *mesh = &vat->scene->sheets[i].mesh;
         vat->first[i + 1] = vat->first[i] + mesh->vertex_count;
         vat->source_first[i + 1] = vat->source_first[i] + (mesh->source ? mesh->source_count : mesh->vertex_count);
     }
+
     vat->count = vat->first[sheets];
     SingeResult result = vat_size(vat, path, error);
     if (result) return result;
     for (vat->log = 4; (uint64_t)1 << vat->log < 2 * (uint64_t)vat->count; vat->log++) {
     }
+
     const size_t texels = (size_t)vat->width * (size_t)vat->height;
     vat->position = calloc(texels, sizeof *vat->position);
     vat->normal = calloc(texels, sizeof *vat->normal);
@@ -110,6 +113,7 @@ static uint32_t vat_find(const Vat *vat, const SingeSurface *s, uint32_t i) {
     const uint32_t sheet = (uint32_t)s->sheet[i];
     if (sheet >= vat->scene->sheet_count) return UINT32_MAX;
     const OutputMesh *mesh = &vat->scene->sheets[sheet].mesh;
+
     for (uint32_t at = *vat_slot(vat, sheet, s->rest_position[i]); at; at = vat->next[at - 1]) {
         if (at - 1 < vat->first[sheet] || at - 1 >= vat->first[sheet + 1]) continue;
         const uint32_t v = at - 1 - vat->first[sheet];
@@ -118,6 +122,7 @@ static uint32_t vat_find(const Vat *vat, const SingeSurface *s, uint32_t i) {
             vat_numbers_fit(vat, sheet, v, s->source_vertex[i]))
             return at - 1;
     }
+
     return UINT32_MAX;
 }
 
@@ -131,6 +136,7 @@ static SingeResult take_frame(Vat *vat, int number, const char *path, SingeError
     // moves the remaining vertices, and records their displacements
     memset(vat->found, 0, vat->count);
     memset(vat->moved, 0, vat->count * sizeof *vat->moved);
+
     for (uint32_t k = 0; k < frame.surface->vertex_count; k++) {
         const uint32_t vertex = vat_find(vat, frame.surface, k);
         float at[3], facing[3];
@@ -160,6 +166,7 @@ static SingeResult take_frame(Vat *vat, int number, const char *path, SingeError
             }
         }
     }
+
     for (uint32_t gone = 0; gone < vat->count; gone++)
         for (int c = 0; c < 3 && !vat->found[gone] && vat->moved[gone][3] > 0; c++)
             vat->at[gone][c] += vat->moved[gone][c] / vat->moved[gone][3];
@@ -198,6 +205,7 @@ typedef struct VatCorner {
 static uint32_t number_corners(const OutputMesh *mesh, VatCorner *corners, uint32_t *number) {
     const size_t count = 4 * (size_t)mesh->cell_count;
     uint32_t *first = calloc(mesh->vertex_count, 4), *next = calloc(count, 4), made = 0;
+
     for (size_t i = 0; first && next && i < count; i++) {
         VatCorner corner = {.vertex = mesh->cells[i]};
         if (output_mesh_has_uv(mesh)) output_mesh_uv(mesh, (uint32_t)(i / 4), (int)(i & 3), corner.uv);
@@ -210,6 +218,7 @@ static uint32_t number_corners(const OutputMesh *mesh, VatCorner *corners, uint3
         }
         number[i] = at - 1;
     }
+
     if (!first || !next) made = 0;
     free(first), free(next);
     return made;
@@ -240,6 +249,7 @@ static bool put_sheet(GlbFile *f, const Vat *vat, uint32_t sheet) {
     VatCorner *corners = calloc(4 * (size_t)mesh->cell_count, sizeof *corners);
     uint32_t *number = calloc(4 * (size_t)mesh->cell_count, sizeof *number);
     const uint32_t count = corners && number ? number_corners(mesh, corners, number) : 0;
+
     if (count) {
         sink_text(&f->meshes, "%s{\"name\":", f->mesh_count ? "," : "");
         glb_put_string(&f->meshes, f->scene->sheets[sheet].name);
@@ -302,6 +312,7 @@ static SingeResult write_numbers(const char *path, const Vat *vat, SingeError *e
     char name[4096];
     float box[2][3];
     for (int c = 0; c < 3; c++) box[0][c] = box[1][c] = vat->position[0][c];
+
     for (int f = 0; f < vat->cache->frames; f++)
         for (uint32_t v = 0; v < vat->count; v++) {
             const float *at = vat->position[(size_t)f * (size_t)vat->rows * (size_t)vat->width + v];
@@ -310,6 +321,7 @@ static SingeResult write_numbers(const char *path, const Vat *vat, SingeError *e
                 box[1][c] = at[c] > box[1][c] ? at[c] : box[1][c];
             }
         }
+
     sink_text(&sink,
               "{\n  \"generator\": \"Singe " SINGE_VERSION "\",\n  \"frames\": %d,\n  \"fps\": ", vat->cache->frames);
     sink_float(&sink, vat->scene->fps);
@@ -324,6 +336,7 @@ static SingeResult write_numbers(const char *path, const Vat *vat, SingeError *e
 SingeResult vat_write(const char *path, const OutputScene *scene, const OutputCache *cache, SingeError *error) {
     Vat vat = {.scene = scene, .cache = cache};
     SingeResult result = vat_make(&vat, path, error);
+
     if (!result) {
         for (uint32_t s = 0; s < vat.scene->sheet_count; s++) {
             const OutputMesh *mesh = &vat.scene->sheets[s].mesh;
@@ -334,6 +347,7 @@ SingeResult vat_write(const char *path, const OutputScene *scene, const OutputCa
             }
         }
     }
+
     for (int i = 1; i <= cache->frames && !result; i++) result = take_frame(&vat, i, path, error);
     if (!result) result = write_texture(path, ".position.exr", &vat, vat.position, "RGBA", EXR_KIND_FLOAT, error);
     if (!result) result = write_texture(path, ".normal.exr", &vat, vat.normal, "RGB", EXR_KIND_HALF, error);

@@ -113,11 +113,13 @@ static uint16_t to_half(float value) {
     const uint16_t sign = (uint16_t)(bits >> 16 & 0x8000);
     bits &= 0x7fffffffu;
     if (bits >= 0x477ff000u) return sign | 0x7bff; // the largest finite number
-    if (bits < 0x38800000u) {                      // below 2^-14 they are multiples of 2^-24
+
+    if (bits < 0x38800000u) { // below 2^-14 they are multiples of 2^-24
         float magnitude;
         memcpy(&magnitude, &bits, sizeof magnitude);
         return sign | (uint16_t)nearbyintf(magnitude * 0x1p24f);
     }
+
     bits += 0xfffu + (bits >> 13 & 1);
     return sign | (uint16_t)((bits - 0x38000000u) >> 13);
 }
@@ -161,42 +163,6 @@ static void put_number(Writer *w, const char *name, double value) {
     put_double(w, value);
 }
 
-/// Lets a program identify a grid from its first kilobyte.
-static void put_grid_metadata(Writer *w, const char *name, bool vector) {
-    uint32_t low[3] = {UINT32_MAX, UINT32_MAX, UINT32_MAX}, high[3] = {0, 0, 0};
-    uint64_t cells = 0;
-    for (size_t i = 0; i < w->leaf_count; i++) {
-        uint32_t block[3], from[3], to[3], volume = 1;
-        for (int c = 0; c < 3; c++) block[c] = w->leaves[i].block[c];
-        gas_block_box(&w->gas->view, block, from, to);
-        for (int c = 0; c < 3; c++) {
-            low[c] = from[c] < low[c] ? from[c] : low[c];
-            high[c] = to[c] - 1 > high[c] ? to[c] - 1 : high[c];
-            volume *= to[c] - from[c];
-        }
-        cells += volume;
-    }
-    put_u32(w, (w->leaf_count ? 6u : 4u) + w->half);
-    if (w->half) {
-        put_string(w, "is_saved_as_half_float");
-        put_string(w, "bool");
-        put_u32(w, 1);
-        put_bytes(w, "\1", 1);
-    }
-    put_text(w, "name", name);
-    if (vector) put_text(w, "vector_type", "contravariant relative");
-    else put_text(w, "class", "fog volume");
-    put_text(w, "file_compression", "active values");
-    put_string(w, "file_voxel_count");
-    put_string(w, "int64");
-    put_u32(w, 8);
-    put_u64(w, cells);
-    if (w->leaf_count) {
-        put_triple(w, "file_bbox_min", low);
-        put_triple(w, "file_bbox_max", high);
-    }
-}
-
 // ---- the tree
 
 static void set_bit(uint8_t *mask, uint32_t x, uint32_t y, uint32_t z, int log) {
@@ -229,6 +195,7 @@ static void put_topology(Writer *w, const VdbFieldInfo *field) {
     if (!w->leaf_count) return;
     put_zeros(w, 12);
     uint8_t *upper = put_node(w, VDB_UPPER_MASK), *lower = NULL;
+
     for (size_t i = 0; i < w->leaf_count; i++) {
         const Leaf *leaf = &w->leaves[i];
         const uint16_t *b = leaf->block;
@@ -249,16 +216,55 @@ static void put_grid(Writer *w, const char *name, VdbField field, const char *pa
     snprintf(type, sizeof type, "%s%s", vdb_fields[field].type, w->half ? "_HalfFloat" : "");
     put_string(w, type);
     put_string(w, parent);
+
     uint8_t *locations = w->at;
     w->at += 24;
     uint64_t body = (uint64_t)(w->at - w->begin);
     put_u32(w, VDB_ACTIVE_VALUES);
-    put_grid_metadata(w, name, vdb_fields[field].width == 3);
+
+    // lets a program identify a grid from its first kilobyte
+    uint32_t low[3] = {UINT32_MAX, UINT32_MAX, UINT32_MAX}, high[3] = {0, 0, 0};
+    uint64_t cells = 0;
+
+    for (size_t i = 0; i < w->leaf_count; i++) {
+        uint32_t block[3], from[3], to[3], volume = 1;
+        for (int c = 0; c < 3; c++) block[c] = w->leaves[i].block[c];
+        gas_block_box(&w->gas->view, block, from, to);
+        for (int c = 0; c < 3; c++) {
+            low[c] = from[c] < low[c] ? from[c] : low[c];
+            high[c] = to[c] - 1 > high[c] ? to[c] - 1 : high[c];
+            volume *= to[c] - from[c];
+        }
+        cells += volume;
+    }
+
+    put_u32(w, (w->leaf_count ? 6u : 4u) + w->half);
+    if (w->half) {
+        put_string(w, "is_saved_as_half_float");
+        put_string(w, "bool");
+        put_u32(w, 1);
+        put_bytes(w, "\1", 1);
+    }
+
+    put_text(w, "name", name);
+    if ((vdb_fields[field].width == 3)) put_text(w, "vector_type", "contravariant relative");
+    else put_text(w, "class", "fog volume");
+    put_text(w, "file_compression", "active values");
+    put_string(w, "file_voxel_count");
+    put_string(w, "int64");
+    put_u32(w, 8);
+    put_u64(w, cells);
+
+    if (w->leaf_count) {
+        put_triple(w, "file_bbox_min", low);
+        put_triple(w, "file_bbox_max", high);
+    }
 
     // index to position: cell (0, 0, 0) has its centre half a cell from the origin
     const SingeGas *gas = &w->gas->view;
     double cell = (double)gas->cell;
     put_string(w, VDB_MAP);
+
     for (int c = 0; c < 3; c++) put_double(w, (double)gas->origin[c] + 0.5 * cell);
     const double powers[5] = {cell, cell, 1 / cell, 1 / (cell * cell), 0.5 / cell};
     for (int k = 0; k < 5; k++)
@@ -266,6 +272,7 @@ static void put_grid(Writer *w, const char *name, VdbField field, const char *pa
 
     if (!*parent) put_topology(w, &vdb_fields[field]);
     uint64_t buffers = (uint64_t)(w->at - w->begin);
+
     if (!*parent) {
         const float *values = vdb_field(w->gas, field);
         uint32_t width = vdb_fields[field].width;
@@ -292,6 +299,7 @@ static void put_grid(Writer *w, const char *name, VdbField field, const char *pa
             }
         }
     }
+
     uint8_t *end = w->at;
     w->at = locations;
     put_u64(w, body);
@@ -308,6 +316,7 @@ static SingeResult write_file(Writer *w, const char *path, double time, SingeErr
     for (int f = 0; f < VDB_FIELDS; f++)
         all += GRID_MAX + 2 * VDB_UPPER_MASK + w->node_count * (2 * VDB_LOWER_MASK + 1) +
                w->leaf_count * (leaf + cells * vdb_fields[f].width * 4);
+
     size_t max = all;
 
     w->begin = w->at = store_new(w->gas->allocator, max, 1);
@@ -339,6 +348,7 @@ static SingeResult write_gas(const char *path, const Gas *gas, double time, bool
         return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "%s: the time is not finite", short_name(path));
     if (!gas_cells(&gas->view) || !gas_shape_is_good(&gas->view))
         return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "%s: no gas, or too much", short_name(path));
+
     Writer writer = {.gas = gas, .half = half, .coolest = gas_coolest(&gas->view), .block_count = 1};
     for (int c = 0; c < 3; c++) writer.block_count *= (gas->view.size[c] + GAS_BLOCK - 1) / GAS_BLOCK;
     writer.leaves = store_new(gas->allocator, writer.block_count, sizeof *writer.leaves);
@@ -346,6 +356,7 @@ static SingeResult write_gas(const char *path, const Gas *gas, double time, bool
 
     const uint32_t side = NODE_SIDE * GAS_BLOCK, *n = writer.gas->view.size;
     uint32_t node[3];
+
     for (node[0] = 0; node[0] * side < n[0]; node[0]++)
         for (node[1] = 0; node[1] * side < n[1]; node[1]++)
             for (node[2] = 0; node[2] * side < n[2]; node[2]++) {
@@ -364,6 +375,7 @@ static SingeResult write_gas(const char *path, const Gas *gas, double time, bool
                     opens = false;
                 }
             }
+
     SingeResult result = write_file(&writer, path, time, error);
     store_free(gas->allocator, writer.leaves, writer.block_count, sizeof *writer.leaves);
     return result;
@@ -462,6 +474,7 @@ static SingeResult read_metadata(Reader *r, bool of_file) {
         if (of_file && is(name, "size") && is(type, "vec3i") && size == 12)
             for (int c = 0; c < 3; c++) r->gas->view.size[c] = get_u32(&value);
     }
+
     return SINGE_OK;
 }
 
@@ -479,6 +492,7 @@ static const uint8_t *take_node(Reader *r, size_t mask_bytes) {
 static SingeResult read_node(Reader *r, Reader *buffers, const uint32_t low[3], VdbField field) {
     const uint8_t *children = take_node(r, VDB_LOWER_MASK);
     if (!children) return vdb_read_bad(r, "a node is cut off or has values of its own");
+
     for (uint32_t n = 0; n < 8 * VDB_LOWER_MASK; n++) {
         const uint32_t at[3] = {low[0] + (n >> 8) * GAS_BLOCK, low[1] + (n >> 4 & 15) * GAS_BLOCK,
                                 low[2] + (n & 15) * GAS_BLOCK};
@@ -504,6 +518,7 @@ static SingeResult read_node(Reader *r, Reader *buffers, const uint32_t low[3], 
             }
         }
     }
+
     return SINGE_OK;
 }
 
@@ -519,6 +534,7 @@ static SingeResult read_grid(Reader *r, VdbField field) {
     Reader body = *r, buffers = *r;
     body.at = vdb_read_position(r, get_u64(r));
     buffers.at = vdb_read_position(r, get_u64(r));
+
     const uint8_t *end = vdb_read_position(r, get_u64(r));
     if (!body.at || !buffers.at || !end || end < r->at) return vdb_read_bad(r, "a grid lies outside of the file");
     r->at = end;
@@ -530,6 +546,7 @@ static SingeResult read_grid(Reader *r, VdbField field) {
     for (int c = 0; c < 3; c++) position[c] = get_double(&body);
     for (int c = 0; c < 3; c++) scale[c] = get_double(&body);
     if (!vdb_read_take(&body, 12 * 8)) return vdb_read_bad(&body, "the map is cut off");
+
     SingeGas map = body.gas->view;
     map.cell = (float)scale[0];
     for (int c = 0; c < 3; c++) map.origin[c] = (float)(position[c] - 0.5 * scale[0]);
@@ -541,18 +558,22 @@ static SingeResult read_grid(Reader *r, VdbField field) {
 
     bool good = get_u32(&body) == 1;
     float background = 0;
+
     for (uint32_t k = 0; k < vdb_fields[field].width; k++) {
         background = get_float(&body);
         good = good && isfinite(background) && (background == 0 || field == VDB_TEMPERATURE);
     }
+
     uint32_t tiles = get_u32(&body), children = get_u32(&body);
     if (!good || tiles || children > 1) return vdb_read_bad(&body, "the tree's root is not as Singe writes it");
     if (field == VDB_TEMPERATURE) gas_fill(body.gas, background);
     if (!children) return SINGE_OK;
     static const uint8_t zero[12];
+
     const uint8_t *origin = vdb_read_take(&body, 12), *nodes = take_node(&body, VDB_UPPER_MASK);
     if (!origin || memcmp(origin, zero, 12) != 0 || !nodes)
         return vdb_read_bad(&body, "the tree is cut off or lies elsewhere");
+
     for (uint32_t n = 0; n < 8 * VDB_UPPER_MASK; n++) {
         enum { SIDE = GAS_BLOCK << VDB_LOWER_LOG };
         const uint32_t low[3] = {(n >> 10) * SIDE, (n >> 5 & 31) * SIDE, (n & 31) * SIDE};

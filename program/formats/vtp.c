@@ -35,6 +35,7 @@ SingeResult vtp_write_frame(const char *path, const OutputScene *scene, const Ou
     arrays[1] = (VtpArray){"uv", "Float32", 2, s->uv, n};
     arrays[2] = (VtpArray){"velocity", "Float32", 3, s->velocity, n};
     arrays[3] = (VtpArray){"rest", "Float32", 3, s->rest_position, n};
+
     for (int i = 0; i < SURFACE_FIELDS; i++)
         arrays[POINT_VECTORS + i] = (VtpArray){surface_fields[i].name, surface_fields[i].integer ? "Int32" : "Float32",
                                                1, surface_field(s, &surface_fields[i]), n};
@@ -52,18 +53,22 @@ SingeResult vtp_write_frame(const char *path, const OutputScene *scene, const Ou
               "NumberOfStrips=\"0\" NumberOfPolys=\"%u\">\n"
               "<PointData Scalars=\"temperature\" Vectors=\"velocity\" Normals=\"normal\" TCoords=\"uv\">\n",
               s->vertex_count, s->triangle_count);
+
     for (int i = 0; i < POINT_DATA; i++) put_element(&sink, &arrays[i], &offset);
     sink_text(&sink, "</PointData>\n<Points>\n");
     put_element(&sink, &arrays[POINT_DATA], &offset);
     sink_text(&sink, "</Points>\n<Polys>\n");
+
     for (int i = POINT_DATA + 1; i < ARRAYS; i++) put_element(&sink, &arrays[i], &offset);
     sink_text(&sink, "</Polys>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_");
+
     for (int i = 0; i < ARRAYS; i++) {
         const size_t count = (size_t)arrays[i].width * arrays[i].count;
         sink_u64(&sink, value_size(&arrays[i]) * count);
         if (arrays[i].values) sink_words(&sink, arrays[i].values, count);
         for (uint64_t k = 1; !arrays[i].values && k <= count; k++) sink_u64(&sink, 3 * k); // where triangles end
     }
+
     sink_text(&sink, "\n</AppendedData>\n</VTKFile>\n");
     return sink_write(&sink, path, error);
 }
@@ -72,6 +77,7 @@ SingeResult pvd_write_root(const char *path, const OutputScene *scene, SingeErro
     Sink sink = {0};
     sink_text(&sink, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" "
                      "byte_order=\"LittleEndian\">\n<Collection>\n");
+
     for (int frame = 1; frame <= scene->frames; frame++) {
         sink_text(&sink, "<DataSet timestep=\"");
         sink_number(&sink, (frame - 1) / (double)scene->fps);
