@@ -33,36 +33,6 @@ static SingeResult refuse_system(SingeError *error, const char *doing, const cha
 
 // ---- reading
 
-static SingeResult read_open(int file, const char *path, size_t max, SingeAllocator allocator, Bytes *bytes,
-                             SingeError *error) {
-    struct stat about;
-    if (fstat(file, &about)) return refuse_system(error, "read", path, errno);
-    if (S_ISDIR(about.st_mode)) return refuse_system(error, "read", path, EISDIR);
-    if (!S_ISREG(about.st_mode))
-        return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot read: not a regular file", short_name(path));
-    if (about.st_size > (off_t)max)
-        return refuse(error, SINGE_ERROR_LIMIT, "file", -1, "%s: larger than %zu MiB", short_name(path),
-                      (max + 1) >> 20);
-    bytes->size = (size_t)about.st_size;
-    bytes->allocator = allocator;
-    bytes->data = store_new(allocator, bytes->size + 1, 1);
-    if (!bytes->data) return refuse_memory(error, "file", path);
-
-    size_t done = 0;
-    while (done < bytes->size) {
-        ssize_t count = read(file, bytes->data + done, bytes->size - done);
-        if (count < 0 && errno == EINTR) continue;
-        if (count < 0) return refuse_system(error, "read", path, errno);
-        if (count == 0)
-            return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: became shorter while it was read",
-                          short_name(path));
-        done += (size_t)count;
-    }
-
-    bytes->data[done] = 0;
-    return SINGE_OK;
-}
-
 SingeResult file_read(const char *path, SingeAllocator allocator, Bytes *bytes, SingeError *error) {
     return file_read_max(path, FILE_LIMIT, allocator, bytes, error);
 }
@@ -72,9 +42,37 @@ SingeResult file_read_max(const char *path, size_t max, SingeAllocator allocator
     // without O_NONBLOCK a named pipe would wait here for its writer
     int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) return refuse_system(error, "read", path, errno);
-    SingeResult result = read_open(file, path, max, allocator, bytes, error);
+
+    struct stat about;
+    SingeResult result = SINGE_OK;
+    if (fstat(file, &about)) result = refuse_system(error, "read", path, errno);
+    else if (S_ISDIR(about.st_mode)) result = refuse_system(error, "read", path, EISDIR);
+    else if (!S_ISREG(about.st_mode))
+        result = refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot read: not a regular file", short_name(path));
+    else if (about.st_size > (off_t)max)
+        result =
+            refuse(error, SINGE_ERROR_LIMIT, "file", -1, "%s: larger than %zu MiB", short_name(path), (max + 1) >> 20);
+
+    if (!result) {
+        *bytes = (Bytes){.size = (size_t)about.st_size, .allocator = allocator};
+        bytes->data = store_new(allocator, bytes->size + 1, 1);
+        if (!bytes->data) result = refuse_memory(error, "file", path);
+    }
+
+    size_t done = 0;
+    while (!result && done < bytes->size) {
+        ssize_t count = read(file, bytes->data + done, bytes->size - done);
+        if (count > 0) done += (size_t)count;
+        else if (count == 0)
+            result =
+                refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: became shorter while it was read", short_name(path));
+        else if (errno != EINTR) result = refuse_system(error, "read", path, errno);
+    }
+
     close(file);
+
     if (result) bytes_free(bytes);
+    else bytes->data[done] = 0;
     return result;
 }
 

@@ -52,22 +52,6 @@ static void draw_chart(void *context, size_t pixel, const float weight[3]) {
     ((Canvas *)context)->chart[pixel] = 1;
 }
 
-/// The uncut sheet: each cell as four triangles around the mean of its corners.
-static void draw_mesh(Canvas *c, const OutputMesh *mesh) {
-    for (uint32_t cell = 0; cell < mesh->cell_count; cell++) {
-        float uv[4][2], centroid[2] = {0, 0};
-        for (size_t i = 0; i < 4; i++) {
-            output_mesh_uv(mesh, cell, (int)i, uv[i]);
-            for (int k = 0; k < 2; k++) centroid[k] += uv[i][k] / 4;
-        }
-        for (int i = 0; i < 4; i++) {
-            const int j = (i + 1) & 3;
-            const float triangle[3][2] = {{centroid[0], centroid[1]}, {uv[i][0], uv[i][1]}, {uv[j][0], uv[j][1]}};
-            uv_triangle(c->size, triangle, draw_chart, c);
-        }
-    }
-}
-
 typedef struct Layers {
     uint32_t count;
     uint32_t sheets[TEXTURE_SHEETS];
@@ -82,9 +66,23 @@ static SingeResult draw_layer(Layers *layers, const OutputScene *scene, const Ou
     const SingeAllocator a = frame->surface->allocator;
     Canvas canvas;
     const bool made = canvas_make(&canvas, a, scene->texture_size);
-    if (made) {
-        draw_mesh(&canvas, &scene->sheets[sheet].mesh);
 
+    if (made) {
+        // the uncut sheet: each cell as four triangles around the mean of its corners
+        for (uint32_t cell = 0; cell < scene->sheets[sheet].mesh.cell_count; cell++) {
+            float cell_uv[4][2], centroid[2] = {0, 0};
+            for (size_t corner = 0; corner < 4; corner++) {
+                output_mesh_uv(&scene->sheets[sheet].mesh, cell, (int)corner, cell_uv[corner]);
+                for (int k = 0; k < 2; k++) centroid[k] += cell_uv[corner][k] / 4;
+            }
+            for (int corner = 0; corner < 4; corner++) {
+                const int j = (corner + 1) & 3;
+                const float triangle[3][2] = {{centroid[0], centroid[1]},
+                                              {cell_uv[corner][0], cell_uv[corner][1]},
+                                              {cell_uv[j][0], cell_uv[j][1]}};
+                uv_triangle(canvas.size, triangle, draw_chart, &canvas);
+            }
+        }
         for (uint32_t t = 0; t < frame->surface->triangle_count; t++) {
             const uint32_t *v = frame->surface->triangles[t];
             float uv[3][2];

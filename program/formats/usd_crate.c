@@ -101,7 +101,7 @@ static void put_ints(Crate *crate, Sink *sink, const int32_t *values, size_t cou
         for (size_t k = 0; k < 4 && i + k < count; k++) {
             const int32_t d = (int32_t)((uint32_t)values[i + k] - before);
             before = (uint32_t)values[i + k];
-            // without branches, which nothing could foretell: all four bytes are put, and as many count as are needed
+            // no branches, since they could not be predicted: writes all four bytes, and keeps as many as are needed
             const unsigned kind = (d != common) * (1u + (d != (int8_t)d) + (d != (int16_t)d));
             kinds |= kind << 2 * k;
             store_u32_little(at, (uint32_t)d);
@@ -146,8 +146,8 @@ CrateValue crate_ints(Crate *crate, const int32_t *values, size_t count) {
     return value | flag_packed;
 }
 
-/// Numbers the values that occur, in the order in which they do. How many there are, or 0 where so many differ that
-/// nothing is gained, or there is no memory, which matters as little.
+/// Numbers the values that occur, in their order. Returns their count, or 0 if a table would not be shorter or there is
+/// no memory for one.
 static size_t number_values(Crate *crate, const uint32_t *bits, size_t count, int32_t *numbers, uint32_t *values) {
     const size_t max = count - count / 3;
     int log = 5;
@@ -171,7 +171,7 @@ static size_t number_values(Crate *crate, const uint32_t *bits, size_t count, in
     return found;
 }
 
-/// Floats as numbers of a table: 't', the table's size, the table, the numbers. False where that is no shorter.
+/// Floats as indices into a table: 't', the table's size, the table, the indices. False if that is not shorter.
 static bool put_table(Crate *crate, const float *values, size_t count) {
     Sink *packed = &crate->packed;
     packed->size = 0;
@@ -215,7 +215,7 @@ CrateValue crate_times(Crate *crate, double first, size_t count) {
 
 CrateValue crate_series(Crate *crate, CrateValue times, const CrateValue *values, size_t count) {
     const CrateValue series = lies_here(crate, CRATE_SAMPLES);
-    sink_u64(&crate->sink, 8); // how far on the times' value is, and behind it the values
+    sink_u64(&crate->sink, 8); // the distance to the times, and behind them to the values
     sink_u64(&crate->sink, times);
     sink_u64(&crate->sink, 8);
     sink_u64(&crate->sink, count);
@@ -293,7 +293,8 @@ static void put_paths(Crate *crate) {
         columns[count + i] = crate->paths[i].property ? -name : name;
     }
 
-    // how to go on from a path: 0 to a sibling that follows, -1 to its child alone, -2 nowhere, else to its child, with the sibling so far on
+    // the jump from each path: 0 if only a sibling follows, -1 if only a child, -2 if neither; with both the child
+    // comes next, and the jump is the distance to the sibling
     const CratePath *paths = crate->paths;
     for (size_t i = 0; i < crate->path_count; i++)
         (columns + 3 * count)[i] = 0; // the child of it that comes next; 0: none

@@ -37,20 +37,6 @@ typedef struct Vat {
     int log;
 } Vat;
 
-static SingeResult vat_size(Vat *vat, const char *path, SingeError *error) {
-    for (vat->width = 4096; vat->width <= VAT_HEIGHT_MAX; vat->width *= 2) {
-        const uint32_t width = vat->count < (uint32_t)vat->width ? vat->count : (uint32_t)vat->width;
-        const uint64_t rows = (vat->count + width - 1) / width, height = rows * (uint64_t)vat->cache->frames;
-        if (height > VAT_HEIGHT_MAX) continue;
-        vat->width = (int)width;
-        vat->rows = (int)rows;
-        vat->height = (int)height;
-        return SINGE_OK;
-    }
-    return refuse(error, SINGE_ERROR_LIMIT, "vat", -1, "%s: %u vertices by %d frames do not fit on %d x %d texels",
-                  short_name(path), vat->count, vat->cache->frames, VAT_HEIGHT_MAX, VAT_HEIGHT_MAX);
-}
-
 static SingeResult vat_make(Vat *vat, const char *path, SingeError *error) {
     const uint32_t sheets = vat->scene->sheet_count;
     vat->first = calloc(sheets + 1, 4);
@@ -64,8 +50,21 @@ static SingeResult vat_make(Vat *vat, const char *path, SingeError *error) {
     }
 
     vat->count = vat->first[sheets];
-    SingeResult result = vat_size(vat, path, error);
-    if (result) return result;
+
+    // the narrowest textures that are not too high
+    uint64_t height = UINT64_MAX;
+
+    for (int widest = 4096; widest <= VAT_HEIGHT_MAX && height > VAT_HEIGHT_MAX; widest *= 2) {
+        vat->width = vat->count < (uint32_t)widest ? (int)vat->count : widest;
+        vat->rows = (int)((vat->count + (uint32_t)vat->width - 1) / (uint32_t)vat->width);
+        height = (uint64_t)vat->rows * (uint64_t)vat->cache->frames;
+    }
+
+    if (height > VAT_HEIGHT_MAX)
+        return refuse(error, SINGE_ERROR_LIMIT, "vat", -1, "%s: %u vertices by %d frames do not fit on %d x %d texels",
+                      short_name(path), vat->count, vat->cache->frames, VAT_HEIGHT_MAX, VAT_HEIGHT_MAX);
+    vat->height = (int)height;
+
     for (vat->log = 4; (uint64_t)1 << vat->log < 2 * (uint64_t)vat->count; vat->log++) {
     }
 

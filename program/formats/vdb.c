@@ -312,12 +312,10 @@ static void put_grid(Writer *w, const char *name, VdbField field, const char *pa
 
 static SingeResult write_file(Writer *w, const char *path, double time, SingeError *error) {
     // max bytes of the whole file
-    size_t leaf = 2 * VDB_LEAF_MASK + 1, cells = GAS_BLOCK * GAS_BLOCK * GAS_BLOCK, all = HEADER_MAX + GRID_MAX;
+    size_t leaf = 2 * VDB_LEAF_MASK + 1, cells = GAS_BLOCK * GAS_BLOCK * GAS_BLOCK, max = HEADER_MAX + GRID_MAX;
     for (int f = 0; f < VDB_FIELDS; f++)
-        all += GRID_MAX + 2 * VDB_UPPER_MASK + w->node_count * (2 * VDB_LOWER_MASK + 1) +
+        max += GRID_MAX + 2 * VDB_UPPER_MASK + w->node_count * (2 * VDB_LOWER_MASK + 1) +
                w->leaf_count * (leaf + cells * vdb_fields[f].width * 4);
-
-    size_t max = all;
 
     w->begin = w->at = store_new(w->gas->allocator, max, 1);
     if (!w->begin) return refuse_memory(error, "gas", path);
@@ -354,20 +352,17 @@ static SingeResult write_gas(const char *path, const Gas *gas, double time, bool
     writer.leaves = store_new(gas->allocator, writer.block_count, sizeof *writer.leaves);
     if (!writer.leaves) return refuse_memory(error, "gas", path);
 
-    const uint32_t side = NODE_SIDE * GAS_BLOCK, *n = writer.gas->view.size;
+    // the leaves, node after node of 16 x 16 x 16 blocks
+    const uint32_t side = NODE_SIDE * GAS_BLOCK, *n = gas->view.size;
     uint32_t node[3];
-
     for (node[0] = 0; node[0] * side < n[0]; node[0]++)
         for (node[1] = 0; node[1] * side < n[1]; node[1]++)
             for (node[2] = 0; node[2] * side < n[2]; node[2]++) {
-                // collects the leaves of one node of 16 x 16 x 16 blocks
-                const uint32_t *cells = writer.gas->view.size;
                 bool opens = true;
                 for (uint32_t i = 0; i < NODE_SIDE * NODE_SIDE * NODE_SIDE; i++) {
                     uint32_t at[3] = {node[0] * NODE_SIDE + (i >> 8), node[1] * NODE_SIDE + (i >> 4 & 15),
                                       node[2] * NODE_SIDE + (i & 15)};
-                    if (at[0] * GAS_BLOCK >= cells[0] || at[1] * GAS_BLOCK >= cells[1] || at[2] * GAS_BLOCK >= cells[2])
-                        continue;
+                    if (at[0] * GAS_BLOCK >= n[0] || at[1] * GAS_BLOCK >= n[1] || at[2] * GAS_BLOCK >= n[2]) continue;
                     if (!gas_block_holds(&writer.gas->view, at, writer.coolest)) continue;
                     writer.leaves[writer.leaf_count++] =
                         (Leaf){{(uint16_t)at[0], (uint16_t)at[1], (uint16_t)at[2]}, .opens = opens};
