@@ -7,7 +7,7 @@ set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 
 library='shell world heat burn ablate tear gas surface collision reference dynamics sim'
-files='formats common/allocator.h common/store.h common/printable.h common/utf8.h mesh/polygons.h'
+files='formats common/allocator.h common/store.h common/printable.h common/float3.h mesh/polygons.h'
 program="$files mesh/to_quads.h preview/preview.h scene analysis"
 rules="
 include/singe
@@ -27,7 +27,7 @@ src/sim          common $library
 src/mesh         common materials
 src/materials    common
 program/formats  $files
-program/preview  $files common/float3.h
+program/preview  $files
 program/scene    $files mesh/to_quads.h preview/preview.h
 program/analysis $files common/double3.h common/float3.h mesh/to_quads.h
 program/cli      $program

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "common/utf8.h"
+#include "common/printable.h"
 
 /// The block; without memory the program ends.
 static char *need(char *block) {

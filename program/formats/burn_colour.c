@@ -12,32 +12,9 @@ static float between(float low, float high, float x) {
     return t * t * (3 - 2 * t);
 }
 
-static float linear(uint8_t encoded) {
-    const float c = (float)encoded / 255;
-    return c * (c * (c * 0.305306011f + 0.682171111f) + 0.012522878f); // from sRGB, to a thousandth
-}
-
-static void fresh_colour(const OutputSheet *sheet, const float uv[2], float colour[3]) {
+void burn_colour(const OutputSheet *sheet, const SingeSurface *s, uint32_t v, float colour[3]) {
     static const float white[3] = {0.86f, 0.852f, 0.832f};
-    for (int c = 0; c < 3; c++) colour[c] = white[c] * sheet->colour[c];
-    const Image *image = sheet->image;
-    if (!image || !image->rgb) return;
-    float x = uv[0] * (float)image->width, y = (1 - uv[1]) * (float)image->height;
-    const int column = x > 0 ? (int)fminf(x, (float)(image->width - 1)) : 0;
-    const int row = y > 0 ? (int)fminf(y, (float)(image->height - 1)) : 0;
-    const uint8_t *texel = image->rgb + 3 * ((size_t)row * (size_t)image->width + (size_t)column);
-    for (int c = 0; c < 3; c++) colour[c] *= linear(texel[c]);
-}
-
-/// 0 fresh to 1 charred.
-static float scorch(float peak, float burnt) {
-    const float above = peak - 293, first = BURN_COLOUR_PEAK - 293, last = 360;
-    const float by_heat = above > first ? 0.76f * fminf(logf(above / first) / logf(last / first), 1) : 0;
-    const float by_burn = 1 - expf(-7.5f * fmaxf(burnt, 0));
-    return 1 - (1 - by_heat) * (1 - by_burn);
-}
-
-static void brown(float s, float colour[3]) {
+    static const float soot[3] = {0.018f, 0.016f, 0.015f}, grey[3] = {0.42f, 0.41f, 0.40f};
     static const float stops[][4] = {{0, 1, 1, 1},
                                      {0.14f, 0.965f, 0.90f, 0.74f},
                                      {0.32f, 0.85f, 0.655f, 0.36f},
@@ -45,20 +22,40 @@ static void brown(float s, float colour[3]) {
                                      {0.69f, 0.225f, 0.098f, 0.032f},
                                      {0.86f, 0.062f, 0.031f, 0.018f},
                                      {1, 0.020f, 0.016f, 0.014f}};
-    int i = 1;
-    while (i < 6 && s > stops[i][0]) i++;
-    const float f = (s - stops[i - 1][0]) / (stops[i][0] - stops[i - 1][0]);
-    for (int c = 0; c < 3; c++) colour[c] *= stops[i - 1][c + 1] + f * (stops[i][c + 1] - stops[i - 1][c + 1]);
-}
 
-void burn_colour(const OutputSheet *sheet, const SingeSurface *s, uint32_t v, float colour[3]) {
-    static const float soot[3] = {0.018f, 0.016f, 0.015f}, grey[3] = {0.42f, 0.41f, 0.40f};
-    fresh_colour(sheet, s->uv[v], colour);
+    // fresh: white paper in the sheet's colour and picture
+    const Image *image = sheet->image;
+    for (int c = 0; c < 3; c++) colour[c] = white[c] * sheet->colour[c];
+
+    if (image && image->rgb) {
+        const float x = s->uv[v][0] * (float)image->width, y = (1 - s->uv[v][1]) * (float)image->height;
+        const int column = x > 0 ? (int)fminf(x, (float)(image->width - 1)) : 0;
+        const int row = y > 0 ? (int)fminf(y, (float)(image->height - 1)) : 0;
+        const uint8_t *texel = image->rgb + 3 * ((size_t)row * (size_t)image->width + (size_t)column);
+        for (int c = 0; c < 3; c++) {
+            const float e = (float)texel[c] / 255;
+            colour[c] *= e * (e * (e * 0.305306011f + 0.682171111f) + 0.012522878f); // from sRGB, to a thousandth
+        }
+    }
+
     if (s->burn[v] < BURN_COLOUR_MIN && s->temperature_peak[v] <= BURN_COLOUR_PEAK) return;
-    brown(scorch(s->temperature_peak[v], s->burn[v]), colour);
+
+    // browns: scorched 0 fresh to 1 charred
+    const float above = s->temperature_peak[v] - 293, first = BURN_COLOUR_PEAK - 293, last = 360;
+    const float by_heat = above > first ? 0.76f * fminf(logf(above / first) / logf(last / first), 1) : 0;
+    const float by_burn = 1 - expf(-7.5f * fmaxf(s->burn[v], 0));
+    const float scorched = 1 - (1 - by_heat) * (1 - by_burn);
+    int i = 1;
+
+    while (i < 6 && scorched > stops[i][0]) i++;
+    const float f = (scorched - stops[i - 1][0]) / (stops[i][0] - stops[i - 1][0]);
+    for (int c = 0; c < 3; c++) colour[c] *= stops[i - 1][c + 1] + f * (stops[i][c + 1] - stops[i - 1][c + 1]);
+
+    // chars, and turns to ash
     const float black = between(0.12f, 0.46f, s->burn[v]);
     const float residue = s->char_fraction[v] + s->ash_fraction[v];
     const float ash = residue > 0 ? between(0.25f, 0.85f, s->ash_fraction[v] / residue) : 0;
+
     for (int c = 0; c < 3; c++) {
         const float burnt = soot[c] + ash * (grey[c] - soot[c]);
         colour[c] += black * (burnt - colour[c]);

@@ -1,6 +1,18 @@
 // EXR by OpenEXRCore: one part of scan lines, ZIP-compressed, complete in memory before the file is written.
-#include "formats/codec.h"
 #include "common/store.h"
+#include "formats/formats.h"
+
+#ifndef SINGE_EXR
+
+bool exr_available(void) { return false; }
+
+SingeResult exr_write(const char *path, int width, int height, const ExrChannel *channels, int count,
+                      SingeError *error) {
+    (void)width, (void)height, (void)channels, (void)count;
+    return refuse(error, SINGE_ERROR_STATE, "exr", -1, "%s: this singe was built without EXR", short_name(path));
+}
+
+#else
 
 #include <openexr.h>
 #include <string.h>
@@ -22,53 +34,27 @@ static int64_t exr_put(exr_const_context_t context, void *data, const void *buff
                        exr_stream_error_func_ptr_t fail) {
     ExrJob *job = data;
     size_t end = (size_t)(offset + size);
+
     if (!store_grow(job->allocator, &job->out, &job->capacity, end, 1)) {
         job->out_of_memory = true;
         fail(context, EXR_ERR_OUT_OF_MEMORY, "out of memory");
         return -1;
     }
+
     if (end > job->size) {
         if (offset > job->size) memset(job->out + job->size, 0, (size_t)offset - job->size);
         job->size = end;
     }
+
     memcpy(job->out + offset, buffer, (size_t)size);
     return (int64_t)size;
-}
-
-static exr_pixel_type_t exr_type(ExrKind kind) {
-    return kind == EXR_KIND_ID ? EXR_PIXEL_UINT : kind == EXR_KIND_FLOAT ? EXR_PIXEL_FLOAT : EXR_PIXEL_HALF;
-}
-
-static exr_result_t exr_describe(exr_context_t file, int width, int height, const ExrChannel *channels, int count) {
-    int part;
-    exr_result_t result = exr_add_part(file, NULL, EXR_STORAGE_SCANLINE, &part);
-    if (!result) result = exr_initialize_required_attr_simple(file, part, width, height, EXR_COMPRESSION_ZIP);
-    for (int i = 0; i < count && !result; i++)
-        result =
-            exr_add_channel(file, part, channels[i].name, exr_type(channels[i].kind), EXR_PERCEPTUALLY_LINEAR, 1, 1);
-    return result ? result : exr_write_header(file);
-}
-
-/// Gives the encoder the channels of the lines from `y`. It lists them by name in its own order.
-static void exr_aim(exr_encode_pipeline_t *encoder, const ExrChannel *channels, int count, int width, int y) {
-    for (int16_t i = 0; i < encoder->channel_count; i++) {
-        exr_coding_channel_info_t *to = &encoder->channels[i];
-        for (int k = 0; k < count; k++) {
-            if (strcmp(channels[k].name, to->channel_name) != 0) continue;
-            size_t stride = sizeof(float) * (size_t)channels[k].stride;
-            to->user_data_type = channels[k].kind == EXR_KIND_ID ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
-            to->user_bytes_per_element = 4;
-            to->user_pixel_stride = (int32_t)stride;
-            to->user_line_stride = (int32_t)(stride * (size_t)width);
-            to->encode_from_ptr = (const uint8_t *)channels[k].values + stride * (size_t)width * (size_t)y;
-        }
-    }
 }
 
 static exr_result_t exr_encode(exr_context_t file, int width, int height, const ExrChannel *channels, int count) {
     exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
     int32_t lines = 0;
     exr_result_t result = exr_get_scanlines_per_chunk(file, 0, &lines);
+
     for (int y = 0; y < height && !result; y += lines) {
         exr_chunk_info_t chunk;
         result = exr_write_scanline_chunk_info(file, 0, y, &chunk);
@@ -76,7 +62,21 @@ static exr_result_t exr_encode(exr_context_t file, int width, int height, const 
             result =
                 y ? exr_encoding_update(file, 0, &chunk, &encoder) : exr_encoding_initialize(file, 0, &chunk, &encoder);
         if (result) break;
-        exr_aim(&encoder, channels, count, width, y);
+
+        // the encoder lists the channels by name, in its own order
+        for (int16_t i = 0; i < encoder.channel_count; i++) {
+            exr_coding_channel_info_t *to = &encoder.channels[i];
+            for (int k = 0; k < count; k++) {
+                if (strcmp(channels[k].name, to->channel_name) != 0) continue;
+                size_t stride = sizeof(float) * (size_t)channels[k].stride;
+                to->user_data_type = channels[k].kind == EXR_KIND_ID ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
+                to->user_bytes_per_element = 4;
+                to->user_pixel_stride = (int32_t)stride;
+                to->user_line_stride = (int32_t)(stride * (size_t)width);
+                to->encode_from_ptr = (const uint8_t *)channels[k].values + stride * (size_t)width * (size_t)y;
+            }
+        }
+
         if (y == 0) result = exr_encoding_choose_default_routines(file, 0, &encoder);
         if (!result) result = exr_encoding_run(file, 0, &encoder);
     }
@@ -89,15 +89,25 @@ SingeResult exr_write(const char *path, int width, int height, const ExrChannel 
     if (width < 1 || height < 1 || width > IMAGE_SIDE_LIMIT || height > IMAGE_SIDE_LIMIT || count < 1)
         return refuse(error, SINGE_ERROR_ARGUMENT, "exr", -1, "%s: %d channels of %d by %d pixels cannot be written",
                       short_name(path), count, width, height);
+    static const exr_pixel_type_t types[] = {EXR_PIXEL_HALF, EXR_PIXEL_FLOAT, EXR_PIXEL_UINT};
+
     ExrJob job = {.out_of_memory = false};
+    int part;
     exr_context_initializer_t hooks = EXR_DEFAULT_CONTEXT_INITIALIZER;
     hooks.error_handler_fn = exr_hush;
     hooks.user_data = &job;
     hooks.write_fn = exr_put;
+
     exr_context_t file = NULL;
     exr_result_t done = exr_start_write(&file, short_name(path), EXR_WRITE_FILE_DIRECTLY, &hooks);
-    if (!done) done = exr_describe(file, width, height, channels, count);
+    if (!done) done = exr_add_part(file, NULL, EXR_STORAGE_SCANLINE, &part);
+    if (!done) done = exr_initialize_required_attr_simple(file, part, width, height, EXR_COMPRESSION_ZIP);
+
+    for (int i = 0; i < count && !done; i++)
+        done = exr_add_channel(file, part, channels[i].name, types[channels[i].kind], EXR_PERCEPTUALLY_LINEAR, 1, 1);
+    if (!done) done = exr_write_header(file);
     if (!done) done = exr_encode(file, width, height, channels, count);
+
     exr_result_t closed = exr_finish(&file); // writes the table of the lines' offsets
     SingeResult result = SINGE_OK;
     if (job.out_of_memory || done == EXR_ERR_OUT_OF_MEMORY) result = refuse_memory(error, "exr", path);
@@ -110,3 +120,5 @@ SingeResult exr_write(const char *path, int width, int height, const ExrChannel 
 }
 
 bool exr_available(void) { return true; }
+
+#endif

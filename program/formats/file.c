@@ -33,38 +33,6 @@ static SingeResult refuse_system(SingeError *error, const char *doing, const cha
 
 // ---- reading
 
-static SingeResult read_bytes(int file, const char *path, Bytes *bytes, SingeError *error) {
-    size_t done = 0;
-    while (done < bytes->size) {
-        ssize_t count = read(file, bytes->data + done, bytes->size - done);
-        if (count < 0 && errno == EINTR) continue;
-        if (count < 0) return refuse_system(error, "read", path, errno);
-        if (count == 0)
-            return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: became shorter while it was read",
-                          short_name(path));
-        done += (size_t)count;
-    }
-    bytes->data[done] = 0;
-    return SINGE_OK;
-}
-
-static SingeResult read_open(int file, const char *path, size_t max, SingeAllocator allocator, Bytes *bytes,
-                             SingeError *error) {
-    struct stat about;
-    if (fstat(file, &about)) return refuse_system(error, "read", path, errno);
-    if (S_ISDIR(about.st_mode)) return refuse_system(error, "read", path, EISDIR);
-    if (!S_ISREG(about.st_mode))
-        return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot read: not a regular file", short_name(path));
-    if (about.st_size > (off_t)max)
-        return refuse(error, SINGE_ERROR_LIMIT, "file", -1, "%s: larger than %zu MiB", short_name(path),
-                      (max + 1) >> 20);
-    bytes->size = (size_t)about.st_size;
-    bytes->allocator = allocator;
-    bytes->data = store_new(allocator, bytes->size + 1, 1);
-    if (!bytes->data) return refuse_memory(error, "file", path);
-    return read_bytes(file, path, bytes, error);
-}
-
 SingeResult file_read(const char *path, SingeAllocator allocator, Bytes *bytes, SingeError *error) {
     return file_read_max(path, FILE_LIMIT, allocator, bytes, error);
 }
@@ -74,9 +42,37 @@ SingeResult file_read_max(const char *path, size_t max, SingeAllocator allocator
     // without O_NONBLOCK a named pipe would wait here for its writer
     int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) return refuse_system(error, "read", path, errno);
-    SingeResult result = read_open(file, path, max, allocator, bytes, error);
+
+    struct stat about;
+    SingeResult result = SINGE_OK;
+    if (fstat(file, &about)) result = refuse_system(error, "read", path, errno);
+    else if (S_ISDIR(about.st_mode)) result = refuse_system(error, "read", path, EISDIR);
+    else if (!S_ISREG(about.st_mode))
+        result = refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot read: not a regular file", short_name(path));
+    else if (about.st_size > (off_t)max)
+        result =
+            refuse(error, SINGE_ERROR_LIMIT, "file", -1, "%s: larger than %zu MiB", short_name(path), (max + 1) >> 20);
+
+    if (!result) {
+        *bytes = (Bytes){.size = (size_t)about.st_size, .allocator = allocator};
+        bytes->data = store_new(allocator, bytes->size + 1, 1);
+        if (!bytes->data) result = refuse_memory(error, "file", path);
+    }
+
+    size_t done = 0;
+    while (!result && done < bytes->size) {
+        ssize_t count = read(file, bytes->data + done, bytes->size - done);
+        if (count > 0) done += (size_t)count;
+        else if (count == 0)
+            result =
+                refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: became shorter while it was read", short_name(path));
+        else if (errno != EINTR) result = refuse_system(error, "read", path, errno);
+    }
+
     close(file);
+
     if (result) bytes_free(bytes);
+    else bytes->data[done] = 0;
     return result;
 }
 
@@ -86,11 +82,13 @@ size_t file_read_head(const char *path, uint8_t *bytes, size_t max) {
     if (file < 0) return 0;
     size_t done = 0;
     ssize_t count = fstat(file, &about) || !S_ISREG(about.st_mode) ? 0 : 1;
+
     while (count > 0 && done < max) {
         count = read(file, bytes + done, max - done);
         if (count > 0) done += (size_t)count;
         else if (count < 0 && errno == EINTR) count = 1;
     }
+
     close(file);
     return done;
 }
@@ -126,19 +124,6 @@ static int temporary_open(const char *target, char *temporary, size_t length, in
     return EEXIST;
 }
 
-// The rename itself is durable only after the folder is flushed, too. A failure here loses no data.
-static void flush_folder(const char *target) {
-    char folder[PATH_MAX];
-    strcpy(folder, target);
-    char *slash = strrchr(folder, '/');
-    if (!slash) strcpy(folder, ".");
-    else slash[slash == folder] = 0;
-    int file = open(folder, O_RDONLY | O_CLOEXEC);
-    if (file < 0) return;
-    (void)fsync(file);
-    close(file);
-}
-
 // A rename replaces a link, never its target; but it would replace a device by a regular file.
 static SingeResult check_target(const char *path, SingeError *error) {
     struct stat about;
@@ -151,13 +136,20 @@ static SingeResult check_target(const char *path, SingeError *error) {
 
 static int put_in_place(const char *temporary, const char *target) {
     if (rename(temporary, target)) return errno;
-    flush_folder(target);
-    return 0;
-}
 
-/// The target becomes the backup; without a target the earlier backup remains.
-static int put_aside(const char *target, const char *backup) {
-    return backup && rename(target, backup) && errno != ENOENT ? errno : 0;
+    // the rename itself is durable only after the folder is flushed, too; a failure here loses no data
+    char folder[PATH_MAX];
+    strcpy(folder, target);
+    char *slash = strrchr(folder, '/');
+    if (!slash) strcpy(folder, ".");
+    else slash[slash == folder] = 0;
+    int file = open(folder, O_RDONLY | O_CLOEXEC);
+
+    if (file >= 0) {
+        (void)fsync(file);
+        close(file);
+    }
+    return 0;
 }
 
 SingeResult file_write_backup(const char *path, const char *backup, const void *data, size_t size, SingeError *error) {
@@ -166,14 +158,16 @@ SingeResult file_write_backup(const char *path, const char *backup, const void *
     SingeResult result = check_target(path, error);
     if (!result && backup) result = check_target(backup, error);
     if (result) return result;
+
     int reason = temporary_open(path, temporary, sizeof temporary, &file);
     if (!reason) {
         reason = write_bytes(file, data, size);
         if (close(file) && !reason) reason = errno;
-        if (!reason) reason = put_aside(path, backup);
+        if (!reason) reason = backup && rename(path, backup) && errno != ENOENT ? errno : 0;
         if (!reason) reason = put_in_place(temporary, path);
         if (reason) unlink(temporary);
     }
+
     return reason ? refuse_system(error, "write", path, reason) : SINGE_OK;
 }
 
@@ -186,13 +180,16 @@ SingeResult file_draft(const char *path, char **draft, SingeError *error) {
     *draft = NULL;
     SingeResult result = check_target(path, error);
     if (result) return result;
+
     char *name = malloc(PATH_MAX + 64);
     if (!name) return refuse_memory(error, "file", path);
     int reason = temporary_open(path, name, PATH_MAX + 64, &file);
+
     if (reason) {
         free(name);
         return refuse_system(error, "write", path, reason);
     }
+
     close(file);
     *draft = name;
     return SINGE_OK;
@@ -214,4 +211,32 @@ SingeResult file_publish(char *draft, const char *path, SingeError *error) {
 void file_discard(char *draft) {
     if (draft) unlink(draft);
     free(draft);
+}
+
+// ---- files that a file refers to
+
+bool path_is_inside(const char *name, const char *path) {
+    const char *slash = strrchr(name, '/');
+    size_t length = slash ? (size_t)(slash - name) + 1 : 0;
+    if (strncmp(path, name, length) != 0 || path[length] == '/' || path[length] == 0) return false;
+
+    // no part is ".."
+    for (const char *part = path + length;;) {
+        size_t size = strcspn(part, "/\\");
+        if (size == 2 && part[0] == '.' && part[1] == '.') return false;
+        if (!part[size]) break;
+        part += size + 1;
+    }
+
+    // with links resolved it is in the folder or below
+    char *folder = length ? strndup(name, length) : strdup(".");
+    char *real_folder = folder ? realpath(folder, NULL) : NULL, *real = realpath(path, NULL);
+    size_t kept = real_folder ? strlen(real_folder) : 0;
+    if (kept == 1) kept = 0; // "/"
+
+    bool inside = real_folder && real && strncmp(real, real_folder, kept) == 0 && real[kept] == '/';
+    free(folder);
+    free(real_folder);
+    free(real);
+    return inside;
 }

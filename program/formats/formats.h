@@ -24,6 +24,10 @@ SINGE_NODISCARD SingeResult file_read_max(const char *path, size_t max, SingeAll
 size_t file_read_head(const char *path, uint8_t *bytes, size_t max);
 void bytes_free(Bytes *bytes);
 
+/// Whether `path` is in the folder of the file `name` or below, contains no "..", and leads there through links, too.
+/// False when out of memory.
+bool path_is_inside(const char *name, const char *path);
+
 /// Writes path whole or leaves it as it was: a temporary file next to it is written, flushed and renamed. A link is
 /// replaced, not followed. Errors name the path and the system's reason (full disk, no permission) and remove the
 /// temporary file.
@@ -55,15 +59,13 @@ SINGE_NODISCARD SingeResult obj_read(const char *name, const uint8_t *bytes, siz
                                      Polygons *polygons, SingeError *error);
 SINGE_NODISCARD SingeResult ply_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                                      Polygons *polygons, SingeError *error);
-SINGE_NODISCARD SingeResult off_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
-                                     Polygons *polygons, SingeError *error);
 SINGE_NODISCARD SingeResult stl_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                                      Polygons *polygons, SingeError *error);
 /// glTF 2 and GLB: triangles of the scene's nodes, with their transforms. Opens the regular files that it refers to, in
 /// the folder of `name` and below. Version 1 is passed to assimp_read.
 SINGE_NODISCARD SingeResult gltf_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                                       Polygons *polygons, SingeError *error);
-/// FBX, COLLADA, 3DS, X3D and glTF 1 by assimp, from a file in memory. Vertices are assimp's, faces as in the file; all
+/// FBX, COLLADA, 3DS, X3D, OFF and glTF 1 by assimp, from a file in memory. Vertices are assimp's, faces as in the file; all
 /// of a scene's meshes with their nodes' transforms. assimp runs in a child process with limits (isolate.h): a crash is
 /// an error, and so is using more memory than 512 MiB plus 32 times the file's size, or more time than 10 s plus 1 s
 /// for each 2 MB. Only regular files in the folder of `name` and below are opened. Call it while there is one thread.
@@ -73,6 +75,9 @@ SINGE_NODISCARD SingeResult assimp_read(const char *name, const uint8_t *bytes, 
 bool assimp_available(void);
 
 // ---- pictures
+
+/// The most pixels along a side.
+enum { IMAGE_SIDE_LIMIT = 16384 };
 
 /// 8-bit RGB, rows from the top.
 typedef struct Image {

@@ -77,63 +77,66 @@ bool gas_decode(Gas *gas) {
     return sum == 0;
 }
 
-static bool values_are_finite(const SingeGas *gas) {
-    size_t count = gas_cells(gas);
-    float sum = 0; // of zeros, unless something is not finite
-    for (size_t i = 0; i < count; i++) {
-        const float *v = gas->velocity[i];
-        sum += 0 * gas->temperature[i] + 0 * (GAS_EXTINCTION * gas->smoke[i]) + 0 * gas->flame[i] + 0 * v[0] +
-               0 * v[1] + 0 * v[2];
-    }
-    return sum == 0;
-}
-
-/// Still air in a block.
-static void clear_block(Gas *gas, const uint32_t block[3], float coolest) {
-    uint32_t low[3], high[3];
-    gas_block_box(&gas->view, block, low, high);
-    for (uint32_t z = low[2]; z < high[2]; z++)
-        for (uint32_t y = low[1]; y < high[1]; y++)
-            for (uint32_t x = low[0]; x < high[0]; x++) {
-                size_t i = gas_index(&gas->view, x, y, z);
-                gas->temperature[i] = coolest;
-                gas->smoke[i] = gas->flame[i] = gas->extinction[i] = gas->flame_share[i] = 0;
-                gas->velocity[i][0] = gas->velocity[i][1] = gas->velocity[i][2] = 0;
-            }
-}
-
 SingeResult gas_copy(const SingeGas *gas, SingeAllocator allocator, Gas *copy, SingeError *error) {
     *copy = (Gas){.allocator = allocator};
     if (!gas_shape_is_good(gas))
         return refuse(error, SINGE_ERROR_LIMIT, "gas", -1,
                       "a gas of %u x %u x %u cells: at most 4096 a side and %d in all", gas->size[0], gas->size[1],
                       gas->size[2], GAS_CELL_LIMIT);
+
     size_t count = gas_cells(gas);
     if (!count) return SINGE_OK;
-    if (!values_are_finite(gas)) return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "a value is not finite");
+    float sum = 0; // of zeros, unless something is not finite
+    for (size_t i = 0; i < count; i++) {
+        const float *v = gas->velocity[i];
+        sum += 0 * gas->temperature[i] + 0 * (GAS_EXTINCTION * gas->smoke[i]) + 0 * gas->flame[i] + 0 * v[0] +
+               0 * v[1] + 0 * v[2];
+    }
+    if (sum != 0) return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "a value is not finite");
     copy->view = *gas;
+
     float coolest = gas_coolest(gas);
     SingeResult result = gas_make(copy, "gas", coolest, error);
+
     if (result) {
         gas_free(copy);
         return result;
     }
+
     memcpy(copy->temperature, gas->temperature, count * sizeof *gas->temperature);
     memcpy(copy->velocity, gas->velocity, count * sizeof *gas->velocity);
+
     for (size_t i = 0; i < count; i++) {
         copy->extinction[i] = GAS_EXTINCTION * gas->smoke[i];
         copy->flame_share[i] = gas->flame[i] / GAS_FLAME_UNIT;
     }
+
     if (!gas_decode(copy)) {
         gas_free(copy);
         return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "a value is too large for a file");
     }
+
     const uint32_t *n = gas->size;
     uint32_t block[3];
+
     for (block[2] = 0; block[2] * GAS_BLOCK < n[2]; block[2]++)
         for (block[1] = 0; block[1] * GAS_BLOCK < n[1]; block[1]++)
             for (block[0] = 0; block[0] * GAS_BLOCK < n[0]; block[0]++)
-                if (!gas_block_holds(&copy->view, block, coolest)) clear_block(copy, block, coolest);
+                if (!gas_block_holds(&copy->view, block, coolest)) {
+                    // still air in a block
+                    uint32_t low[3], high[3];
+                    gas_block_box(&copy->view, block, low, high);
+                    for (uint32_t z = low[2]; z < high[2]; z++)
+                        for (uint32_t y = low[1]; y < high[1]; y++)
+                            for (uint32_t x = low[0]; x < high[0]; x++) {
+                                size_t cell = gas_index(&copy->view, x, y, z);
+                                copy->temperature[cell] = coolest;
+                                copy->smoke[cell] = copy->flame[cell] = copy->extinction[cell] =
+                                    copy->flame_share[cell] = 0;
+                                copy->velocity[cell][0] = copy->velocity[cell][1] = copy->velocity[cell][2] = 0;
+                            }
+                }
+
     return SINGE_OK;
 }
 

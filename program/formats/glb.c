@@ -1,14 +1,170 @@
 // Frames as binary glTF 2.0: a mesh for each sheet that is not gone, in metres, y up ((x, y, z) of the cache is (x, z,
 // -y) here). Fields are attributes: an underscore and their names in capitals. Integers are floats, as glTF requires
 // (exact up to 16,777,216). COLOR_0 is the burn colour, which multiplies the picture.
-#include "formats/burn_colour.h"
-#include "formats/fields.h"
-#include "formats/glb_file.h"
-#include "formats/number.h"
-#include "formats/sheet_parts.h"
+#include "formats/glb.h"
 
+#include "formats/burn_colour.h"
+#include "formats/number.h"
+
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+// ---- the file
+
+enum { GLB_FLOAT = 5126, GLB_UINT = 5125, GLB_VERTICES = 34962, GLB_CORNERS = 34963 };
+
+void glb_begin(GlbFile *f, const OutputScene *scene, SingeAllocator a) {
+    *f = (GlbFile){.text.allocator = a,
+                   .data.allocator = a,
+                   .views.allocator = a,
+                   .accessors.allocator = a,
+                   .meshes.allocator = a,
+                   .nodes.allocator = a,
+                   .animations.allocator = a,
+                   .scene = scene};
+}
+
+void glb_free(GlbFile *f) {
+    sink_free(&f->text), sink_free(&f->data), sink_free(&f->views), sink_free(&f->accessors), sink_free(&f->meshes);
+    sink_free(&f->nodes), sink_free(&f->animations);
+}
+
+// ---- JSON
+
+/// Escapes everything but letters, digits and common marks, byte by byte if possible: names are UTF-8.
+void glb_put_string(Sink *sink, const char *text) {
+    sink_bytes(sink, "\"", 1);
+    for (const char *c = text; *c; c++) {
+        if (*c == '"' || *c == '\\') sink_text(sink, "\\%c", *c);
+        else if ((unsigned char)*c < 0x20) sink_text(sink, "\\u%04x", (unsigned)(unsigned char)*c);
+        else sink_bytes(sink, c, 1);
+    }
+    sink_bytes(sink, "\"", 1);
+}
+
+// ---- buffers
+
+uint32_t glb_put_accessor(GlbFile *f, size_t begin, uint32_t count, int width, GlbUse use, const float *box) {
+    static const char *const types[] = {[1] = "SCALAR", [2] = "VEC2", [3] = "VEC3", [4] = "VEC4"};
+    const char *comma = f->view_count ? "," : "";
+    sink_text(&f->views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu", comma, begin, f->data.size - begin);
+    if (use == GLB_OF_ANIMATION) sink_text(&f->views, "}");
+    else sink_text(&f->views, ",\"target\":%d}", use == GLB_OF_CORNERS ? GLB_CORNERS : GLB_VERTICES);
+    sink_text(&f->accessors, "%s{\"bufferView\":%u,\"componentType\":%d,\"count\":%u,\"type\":\"%s\"", comma,
+              f->view_count, use == GLB_OF_CORNERS ? GLB_UINT : GLB_FLOAT, count, types[width]);
+
+    for (int side = 0; box && side < 2; side++) {
+        sink_text(&f->accessors, side ? "],\"max\":[" : ",\"min\":[");
+        for (int c = 0; c < width; c++) {
+            sink_text(&f->accessors, c ? "," : "");
+            sink_float(&f->accessors, box[width * side + c]);
+        }
+    }
+
+    sink_text(&f->accessors, box ? "]}" : "}");
+    return f->view_count++;
+}
+
+void glb_make_unit(float v[3]) {
+    const float length = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    if (fabsf(length - 1) < 1e-4f) return;
+    for (int c = 0; c < 3; c++) v[c] = length > 0 ? v[c] / length : (float)(c == 1);
+}
+
+// ---- the whole
+
+static void put_part(GlbFile *f, const char *before, const Sink *part) {
+    sink_text(&f->text, "%s", before);
+    sink_bytes(&f->text, part->bytes, part->size);
+}
+
+static void put_scene(GlbFile *f, const char *up, const char *extras) {
+    sink_text(&f->text, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"Singe " SINGE_VERSION "\",\"extras\":");
+    sink_bytes(&f->text, extras, strlen(extras));
+    sink_text(&f->text, "},\"scene\":0,\"scenes\":[{");
+
+    if (f->mesh_count) {
+        sink_text(&f->text, "\"nodes\":[");
+        for (uint32_t i = 0; i < f->node_count; i++) sink_text(&f->text, i ? ",%u" : "%u", i);
+        put_part(f, "]}],\"nodes\":[", &f->nodes);
+        put_part(f, "],\"meshes\":[", &f->meshes);
+        sink_text(&f->text, "],\"materials\":[");
+
+        uint32_t textures = 0;
+        for (uint32_t i = 0; i < f->scene->sheet_count; i++) {
+            const bool pictured = f->scene->sheets[i].picture != NULL;
+            sink_text(&f->text,
+                      "%s{\"doubleSided\":true,\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.9",
+                      i ? "," : "");
+            if (pictured) sink_text(&f->text, ",\"baseColorTexture\":{\"index\":%u}", textures++);
+            sink_text(&f->text, "}}");
+        }
+
+        sink_text(&f->text, "]");
+
+        uint32_t pictures = 0;
+        for (uint32_t i = 0; i < f->scene->sheet_count; i++) {
+            if (!f->scene->sheets[i].picture) continue;
+            sink_text(&f->text, pictures++ ? ",{\"uri\":" : ",\"images\":[{\"uri\":");
+
+            // a path as a URI, prefixed by `up` if it is relative
+            sink_text(&f->text, "\"%s", *f->scene->sheets[i].picture == '/' ? "" : up);
+            for (const unsigned char *c = (const unsigned char *)f->scene->sheets[i].picture; *c; c++) {
+                const bool plain = (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9') ||
+                                   strchr("-_.~/", *c);
+                if (plain) sink_bytes(&f->text, c, 1);
+                else sink_text(&f->text, "%%%02X", (unsigned)*c);
+            }
+            sink_bytes(&f->text, "\"", 1);
+
+            sink_text(&f->text, "}");
+        }
+        if (pictures) {
+            sink_text(&f->text, "],\"samplers\":[{\"wrapS\":33071,\"wrapT\":33071}],\"textures\":[");
+            for (uint32_t i = 0; i < pictures; i++)
+                sink_text(&f->text, "%s{\"source\":%u,\"sampler\":0}", i ? "," : "", i);
+            sink_text(&f->text, "]");
+        }
+
+        if (f->animations.size) put_part(f, ",\"animations\":", &f->animations);
+        put_part(f, ",\"accessors\":[", &f->accessors);
+        put_part(f, "],\"bufferViews\":[", &f->views);
+        sink_text(&f->text, "],\"buffers\":[{\"byteLength\":%zu}]}", f->data.size);
+    } else {
+        sink_text(&f->text, "}]}");
+    }
+
+    while (f->text.size % 4 && !f->text.failed) sink_bytes(&f->text, " ", 1);
+}
+
+/// The header and the two chunks; the data are multiples of 4 bytes anyway.
+SingeResult glb_finish(GlbFile *f, const char *up, const char *extras, const char *path, SingeError *error) {
+    put_scene(f, up, extras);
+    if (f->data.size + f->text.size > UINT32_MAX / 2)
+        return refuse(error, SINGE_ERROR_LIMIT, "glb", -1, "%s: too large for a GLB", short_name(path));
+    Sink sink = {.allocator = f->text.allocator};
+    const uint32_t head = 12 + 8 + (uint32_t)f->text.size, body = f->mesh_count ? 8 + (uint32_t)f->data.size : 0;
+    sink_reserve(&sink, head + body);
+    sink_bytes(&sink, "glTF", 4);
+    sink_u32(&sink, 2);
+    sink_u32(&sink, head + body);
+    sink_u32(&sink, (uint32_t)f->text.size);
+    sink_bytes(&sink, "JSON", 4);
+    sink_bytes(&sink, f->text.bytes, f->text.size);
+
+    if (body) {
+        sink_u32(&sink, (uint32_t)f->data.size);
+        sink_bytes(&sink, "BIN", 4);
+        sink_bytes(&sink, f->data.bytes, f->data.size);
+    }
+
+    sink.failed = sink.failed || f->text.failed || f->data.failed || f->views.failed || f->accessors.failed ||
+                  f->meshes.failed || f->nodes.failed || f->animations.failed;
+    return sink_write(&sink, path, error);
+}
+
+// ---- the meshes
 
 typedef struct GlbMeshes {
     GlbFile *file;
@@ -26,6 +182,7 @@ static void put_vectors(GlbMeshes *w, const SheetPart *part, const char *name, f
                         bool box) {
     const size_t begin = w->file->data.size;
     float bounds[6] = {0};
+
     for (uint32_t i = 0; i < part->count; i++) {
         float v[3];
         glb_turn(values[part->vertices[i]], v);
@@ -36,57 +193,11 @@ static void put_vectors(GlbMeshes *w, const SheetPart *part, const char *name, f
         }
         sink_words(&w->file->data, v, 3);
     }
+
     put_named(w, name, begin, part->count, 3, box ? bounds : NULL);
 }
 
-/// v of glTF runs from the picture's top.
-static void put_uv(GlbMeshes *w, const SheetPart *part) {
-    const size_t begin = w->file->data.size;
-    for (uint32_t i = 0; i < part->count; i++) {
-        const float *uv = w->surface->uv[part->vertices[i]], turned[2] = {uv[0], 1 - uv[1]};
-        sink_words(&w->file->data, turned, 2);
-    }
-    put_named(w, "TEXCOORD_0", begin, part->count, 2, NULL);
-}
-
-static void put_colours(GlbMeshes *w, const SheetPart *part) {
-    const size_t begin = w->file->data.size;
-    OutputSheet bare = w->file->scene->sheets[part->sheet];
-    bare.image = NULL;
-    for (uint32_t i = 0; i < part->count; i++) {
-        float colour[3];
-        burn_colour(&bare, w->surface, part->vertices[i], colour);
-        for (int c = 0; c < 3; c++) colour[c] = colour[c] < 0 ? 0 : colour[c] > 1 ? 1 : colour[c];
-        sink_words(&w->file->data, colour, 3);
-    }
-    put_named(w, "COLOR_0", begin, part->count, 3, NULL);
-}
-
-static void put_field(GlbMeshes *w, const SheetPart *part, const SurfaceField *field) {
-    const size_t begin = w->file->data.size;
-    const void *values = surface_field(w->surface, field);
-    char name[40] = "_";
-    for (uint32_t i = 0; i < part->count; i++) {
-        const uint32_t v = part->vertices[i];
-        const float value = field->integer ? (float)((const int32_t *)values)[v] : ((const float *)values)[v];
-        sink_words(&w->file->data, &value, 1);
-    }
-    for (size_t i = 0; field->name[i]; i++)
-        name[i + 1] = field->name[i] == '_' ? '_' : (char)(field->name[i] - 'a' + 'A');
-    put_named(w, name, begin, part->count, 1, NULL);
-}
-
-static void put_corners(GlbMeshes *w, const SheetPart *part) {
-    const size_t begin = w->file->data.size;
-    for (uint32_t i = 0; i < part->triangle_count; i++)
-        for (int k = 0; k < 3; k++)
-            sink_u32(&w->file->data, w->parts.local[w->surface->triangles[part->triangles[i]][k]]);
-    glb_put_accessor(w->file, begin, 3 * part->triangle_count, 1, GLB_OF_CORNERS, NULL);
-}
-
 // ---- meshes
-
-static bool is_lean(const char *name) { return strcmp(name, "temperature") == 0 || strcmp(name, "burnt") == 0; }
 
 /// The mesh of a sheet. False if nothing of it is left: glTF has no empty meshes.
 static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
@@ -99,15 +210,59 @@ static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
     sink_text(&f->meshes, ",\"primitives\":[{\"material\":%u,\"attributes\":{", sheet);
     put_vectors(w, &part, "POSITION", s->position, false, true);
     put_vectors(w, &part, "NORMAL", s->normal, true, false);
-    put_uv(w, &part);
-    put_colours(w, &part);
+
+    // v of glTF runs from the picture's top
+    const size_t uv_begin = w->file->data.size;
+
+    for (uint32_t i = 0; i < part.count; i++) {
+        const float *uv = w->surface->uv[part.vertices[i]], turned[2] = {uv[0], 1 - uv[1]};
+        sink_words(&w->file->data, turned, 2);
+    }
+
+    put_named(w, "TEXCOORD_0", uv_begin, part.count, 2, NULL);
+
+    const size_t colour_begin = w->file->data.size;
+    OutputSheet bare = w->file->scene->sheets[part.sheet];
+    bare.image = NULL;
+
+    for (uint32_t i = 0; i < part.count; i++) {
+        float colour[3];
+        burn_colour(&bare, w->surface, part.vertices[i], colour);
+        for (int c = 0; c < 3; c++) colour[c] = colour[c] < 0 ? 0 : colour[c] > 1 ? 1 : colour[c];
+        sink_words(&w->file->data, colour, 3);
+    }
+
+    put_named(w, "COLOR_0", colour_begin, part.count, 3, NULL);
+
     put_vectors(w, &part, "_VELOCITY", s->velocity, false, false);
     if (!w->lean) put_vectors(w, &part, "_REST", s->rest_position, false, false);
-    for (int i = 0; i < SURFACE_FIELDS; i++)
-        if (!w->lean || is_lean(surface_fields[i].name)) put_field(w, &part, &surface_fields[i]);
+
+    for (int k = 0; k < SURFACE_FIELDS; k++)
+        if (!w->lean ||
+            (strcmp(surface_fields[k].name, "temperature") == 0 || strcmp(surface_fields[k].name, "burnt") == 0)) {
+            const size_t begin = w->file->data.size;
+            const void *values = surface_field(w->surface, &surface_fields[k]);
+            char key[40] = "_";
+            for (uint32_t i = 0; i < part.count; i++) {
+                const uint32_t vertex = part.vertices[i];
+                const float value = surface_fields[k].integer ? (float)((const int32_t *)values)[vertex]
+                                                              : ((const float *)values)[vertex];
+                sink_words(&w->file->data, &value, 1);
+            }
+            for (size_t i = 0; surface_fields[k].name[i]; i++)
+                key[i + 1] = surface_fields[k].name[i] == '_' ? '_' : (char)(surface_fields[k].name[i] - 'a' + 'A');
+            put_named(w, key, begin, part.count, 1, NULL);
+        }
+
     f->meshes.size--; // the last comma
     sink_text(&f->meshes, "},\"indices\":%u}]}", f->view_count);
-    put_corners(w, &part);
+
+    const size_t corner_begin = w->file->data.size;
+    for (uint32_t i = 0; i < part.triangle_count; i++)
+        for (int k = 0; k < 3; k++)
+            sink_u32(&w->file->data, w->parts.local[w->surface->triangles[part.triangles[i]][k]]);
+    glb_put_accessor(w->file, corner_begin, 3 * part.triangle_count, 1, GLB_OF_CORNERS, NULL);
+
     return true;
 }
 
@@ -116,12 +271,14 @@ SingeResult glb_write_frame(const char *path, const OutputScene *scene, const Ou
     GlbMeshes meshes = {.file = &file, .surface = frame->surface};
     glb_begin(&file, scene, frame->surface->allocator);
     sink_reserve(&file.data, 140 * (size_t)frame->surface->vertex_count);
+
     SingeResult result = sheet_parts_make(&meshes.parts, frame->surface, scene->sheet_count, path, error);
     for (uint32_t i = 0; i < scene->sheet_count && !result; i++)
         if (put_mesh(&meshes, i)) {
             sink_text(&file.nodes, "%s{\"mesh\":%u}", file.node_count ? "," : "", file.node_count);
             file.node_count++;
         }
+
     if (!result) {
         char extras[80];
         const int length = snprintf(extras, sizeof extras, "{\"time\":");
@@ -129,6 +286,7 @@ SingeResult glb_write_frame(const char *path, const OutputScene *scene, const Ou
         snprintf(extras + length + more, sizeof extras - (size_t)(length + more), "}");
         result = glb_finish(&file, "../", extras, path, error);
     }
+
     sheet_parts_free(&meshes.parts);
     glb_free(&file);
     return result;
@@ -136,34 +294,32 @@ SingeResult glb_write_frame(const char *path, const OutputScene *scene, const Ou
 
 // ---- animated
 
-/// Keys of a node's scale: 1 while its frame lasts, 0 otherwise; frames begin at (number - 1)/fps.
-static void put_keys(GlbFile *f, int number, int frames) {
-    float times[3], scales[3][3];
-    uint32_t count = 0;
-    for (int k = -1; k < 2; k++) {
-        const int at = number + k;
-        if (at > frames || (k < 0 && number == 1)) continue;
-        times[count] = k < 0 ? 0 : (float)((double)(at - 1) / (double)f->scene->fps);
-        for (int c = 0; c < 3; c++) scales[count][c] = k == 0;
-        count++;
-    }
-    size_t begin = f->data.size;
-    sink_words(&f->data, times, count);
-    const float box[2] = {times[0], times[count - 1]};
-    const uint32_t input = glb_put_accessor(f, begin, count, 1, GLB_OF_ANIMATION, box);
-    begin = f->data.size;
-    sink_words(&f->data, scales, 3 * (size_t)count);
-    const uint32_t output = glb_put_accessor(f, begin, count, 3, GLB_OF_ANIMATION, NULL);
-    sink_text(&f->animations, "%s{\"input\":%u,\"output\":%u,\"interpolation\":\"STEP\"}", f->node_count ? "," : "",
-              input, output);
-}
-
 static SingeResult put_frame(GlbFile *f, const OutputFrame *frame, int frames, const char *path, SingeError *error) {
     GlbMeshes meshes = {.file = f, .surface = frame->surface, .lean = true};
     SingeResult result = sheet_parts_make(&meshes.parts, frame->surface, f->scene->sheet_count, path, error);
     for (uint32_t i = 0; i < f->scene->sheet_count && !result; i++) {
         if (!put_mesh(&meshes, i)) continue;
-        put_keys(f, frame->number, frames);
+
+        // keys of a node's scale: 1 while its frame lasts, 0 otherwise; frames begin at (number - 1)/fps
+        float times[3], scales[3][3];
+        uint32_t count = 0;
+        for (int k = -1; k < 2; k++) {
+            const int at = frame->number + k;
+            if (at > frames || (k < 0 && frame->number == 1)) continue;
+            times[count] = k < 0 ? 0 : (float)((double)(at - 1) / (double)f->scene->fps);
+            for (int c = 0; c < 3; c++) scales[count][c] = k == 0;
+            count++;
+        }
+        size_t begin = f->data.size;
+        sink_words(&f->data, times, count);
+        const float box[2] = {times[0], times[count - 1]};
+        const uint32_t input = glb_put_accessor(f, begin, count, 1, GLB_OF_ANIMATION, box);
+        begin = f->data.size;
+        sink_words(&f->data, scales, 3 * (size_t)count);
+        const uint32_t output = glb_put_accessor(f, begin, count, 3, GLB_OF_ANIMATION, NULL);
+        sink_text(&f->animations, "%s{\"input\":%u,\"output\":%u,\"interpolation\":\"STEP\"}", f->node_count ? "," : "",
+                  input, output);
+
         sink_text(&f->nodes, "%s{\"mesh\":%u,\"name\":", f->node_count ? "," : "", f->node_count);
         glb_put_string(&f->nodes, f->scene->sheets[i].name);
         sink_text(&f->nodes, frame->number > 1 ? ",\"scale\":[0,0,0]}" : "}");
@@ -181,11 +337,13 @@ SingeResult glb_write_single(const char *path, const OutputScene *scene, const O
     SingeResult result = SINGE_OK;
     glb_begin(&file, scene, (SingeAllocator){0});
     sink_text(&file.animations, "[{\"name\":\"burn\",\"samplers\":[");
+
     for (int i = 1; i <= cache->frames && !result; i++) {
         OutputFrame frame;
         result = cache->read(cache->context, i, &frame, error);
         if (!result) result = put_frame(&file, &frame, cache->frames, path, error);
     }
+
     sink_text(&file.animations, "],\"channels\":[");
     for (uint32_t i = 0; i < file.node_count; i++)
         sink_text(&file.animations, "%s{\"sampler\":%u,\"target\":{\"node\":%u,\"path\":\"scale\"}}", i ? "," : "", i,

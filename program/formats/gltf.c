@@ -2,7 +2,6 @@
 // buffers, and of accessors, which are arrays in a view.
 #include "formats/gltf.h"
 
-#include "formats/path_inside.h"
 #include "formats/mesh_reader.h"
 #include "common/store.h"
 
@@ -56,28 +55,26 @@ static SingeResult list_items(Gltf *gltf, const char *key, uint32_t **items, uin
 
 // ---- buffers
 
-static int base64_digit(uint8_t c) {
-    if (c >= 'A' && c <= 'Z') return c - 'A';
-    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-    if (c >= '0' && c <= '9') return c - '0' + 52;
-    return c == '+' || c == '-' ? 62 : c == '/' || c == '_' ? 63 : -1;
-}
-
 static SingeResult decode_base64(Gltf *gltf, uint32_t number, const uint8_t *at, const uint8_t *end, Bytes *bytes) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     while (end > at && end[-1] == '=') end--;
     *bytes = (Bytes){.size = (size_t)(end - at) * 3 / 4, .allocator = gltf->allocator};
     bytes->data = store_new(gltf->allocator, bytes->size + 1, 1);
     if (!bytes->data) return refuse_memory(gltf->error, "gltf", gltf->name);
+
     uint32_t bits = 0;
     size_t done = 0;
+
     for (int held = 0; at < end; at++) {
-        int digit = base64_digit(*at);
+        const char *place = *at ? strchr(digits, *at) : NULL;
+        int digit = place ? (int)(place - digits) : *at == '-' ? 62 : *at == '_' ? 63 : -1;
         if (digit < 0 && *at == '\\' && at + 1 < end && at[1] == '/') continue; // an escaped / of JSON
         if (digit < 0) return gltf_bad(gltf, "buffers", number, "its data are not base64");
         bits = bits << 6 | (uint32_t)digit;
         held += 6;
         if (held >= 8) held -= 8, bytes->data[done++] = (uint8_t)(bits >> held);
     }
+
     bytes->size = done;
     return SINGE_OK;
 }
@@ -94,6 +91,7 @@ static bool make_path(const Gltf *gltf, const uint8_t *at, const uint8_t *end, c
     size_t length = slash ? (size_t)(slash - gltf->name) + 1 : 0;
     if (length >= PATH_LIMIT) return false;
     memcpy(path, gltf->name, length);
+
     for (; at < end; at++) {
         int c = *at;
         if (c == '%' && end - at > 2 && hex_digit(at[1]) >= 0 && hex_digit(at[2]) >= 0) {
@@ -103,6 +101,7 @@ static bool make_path(const Gltf *gltf, const uint8_t *at, const uint8_t *end, c
         if (c == 0 || length + 1 >= PATH_LIMIT) return false;
         path[length++] = (char)c;
     }
+
     path[length] = 0;
     return true;
 }
@@ -122,6 +121,7 @@ static SingeResult load_file(Gltf *gltf, uint32_t number, const uint8_t *at, con
 static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **bytes, uint64_t *size) {
     int64_t buffer = gltf->buffers[number], uri = json_member(&gltf->json, buffer, "uri");
     Bytes *loaded = &gltf->loaded[number];
+
     if (uri == JSON_NONE && number == 0 && gltf->chunk) {
         *bytes = gltf->chunk;
         *size = gltf->chunk_size;
@@ -138,10 +138,12 @@ static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **byte
         gltf->loaded_size += loaded->size;
         if (!inside) gltf->beside_size += loaded->size;
     }
+
     if (loaded->data) {
         *bytes = loaded->data;
         *size = loaded->size;
     }
+
     uint64_t claimed;
     if (!take_count(gltf, buffer, "byteLength", *size, *size, &claimed))
         return gltf_bad(gltf, "buffers", number, "its data are shorter than its byteLength");
@@ -157,34 +159,9 @@ typedef struct Slice {
     uint64_t size, stride; ///< 0: contiguous
 } Slice;
 
-static SingeResult find_view(Gltf *gltf, uint32_t number, uint64_t offset, Slice *slice) {
-    int64_t view = gltf->views[number], extensions = json_member(&gltf->json, view, "extensions"), buffer;
-    if (json_member(&gltf->json, extensions, "EXT_meshopt_compression") != JSON_NONE)
-        return gltf_bad(gltf, "bufferViews", number, "compressed data are not supported");
-    TRY(gltf_index(gltf, view, "buffer", gltf->buffer_count, &buffer));
-    if (buffer == JSON_NONE) return gltf_bad(gltf, "bufferViews", number, "it has no buffer");
-    const uint8_t *bytes = NULL;
-    uint64_t size = 0, begin, length;
-    TRY(load_buffer(gltf, (uint32_t)buffer, &bytes, &size));
-    bool good = take_count(gltf, view, "byteOffset", 0, size, &begin);
-    good = good && take_count(gltf, view, "byteLength", 0, size - begin, &length) && offset <= length;
-    if (!good || !take_count(gltf, view, "byteStride", 0, 252, &slice->stride))
-        return gltf_bad(gltf, "bufferViews", number, "it goes past the end of its buffer");
-    slice->bytes = bytes + begin + offset;
-    slice->size = length - offset;
-    return SINGE_OK;
-}
-
 uint32_t gltf_type_size(uint32_t type) {
     static const uint32_t sizes[] = {1, 1, 2, 2, 0, 4, 4};
     return type >= 5120 && type <= 5126 ? sizes[type - 5120] : 0;
-}
-
-static uint32_t type_width(const Gltf *gltf, int64_t type) {
-    static const char *const names[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
-    for (uint32_t i = 0; i < 4; i++)
-        if (json_is(&gltf->json, type, names[i])) return i + 1;
-    return 0;
 }
 
 /// Finds `count` elements of `size` bytes; *stride is their distance.
@@ -196,8 +173,25 @@ static SingeResult find_elements(Gltf *gltf, int64_t object, uint32_t number, ui
     if (view == JSON_NONE) return gltf_bad(gltf, "accessors", number, "it has no data, or compressed ones");
     if (!take_count(gltf, object, "byteOffset", 0, INT64_MAX, &offset))
         return gltf_bad(gltf, "accessors", number, "its byteOffset is not a count");
+
     Slice slice = {0};
-    TRY(find_view(gltf, (uint32_t)view, offset, &slice));
+
+    int64_t held = gltf->views[((uint32_t)view)], extensions = json_member(&gltf->json, held, "extensions"), buffer;
+    if (json_member(&gltf->json, extensions, "EXT_meshopt_compression") != JSON_NONE)
+        return gltf_bad(gltf, "bufferViews", ((uint32_t)view), "compressed data are not supported");
+    TRY(gltf_index(gltf, held, "buffer", gltf->buffer_count, &buffer));
+    if (buffer == JSON_NONE) return gltf_bad(gltf, "bufferViews", ((uint32_t)view), "it has no buffer");
+
+    const uint8_t *from = NULL;
+    uint64_t buffer_size = 0, begin, length;
+    TRY(load_buffer(gltf, (uint32_t)buffer, &from, &buffer_size));
+    bool good = take_count(gltf, held, "byteOffset", 0, buffer_size, &begin);
+    good = good && take_count(gltf, held, "byteLength", 0, buffer_size - begin, &length) && offset <= length;
+    if (!good || !take_count(gltf, held, "byteStride", 0, 252, &slice.stride))
+        return gltf_bad(gltf, "bufferViews", ((uint32_t)view), "it goes past the end of its buffer");
+    slice.bytes = from + begin + offset;
+    slice.size = length - offset;
+
     uint64_t step = slice.stride ? slice.stride : size;
     if (step < size) return gltf_bad(gltf, "accessors", number, "its elements overlap");
     if (count == 0 || slice.size < size || (slice.size - size) / step < count - 1)
@@ -207,29 +201,16 @@ static SingeResult find_elements(Gltf *gltf, int64_t object, uint32_t number, ui
     return SINGE_OK;
 }
 
-static SingeResult find_sparse(Gltf *gltf, int64_t sparse, uint32_t number, GltfAccessor *accessor, uint32_t size) {
-    int64_t indices = json_member(&gltf->json, sparse, "indices"), values = json_member(&gltf->json, sparse, "values");
-    uint64_t count, type;
-    uint32_t stride;
-    if (!take_count(gltf, sparse, "count", 0, accessor->count, &count) || count == 0 ||
-        !take_count(gltf, indices, "componentType", 0, 5125, &type) || (type != 5121 && type != 5123 && type != 5125))
-        return gltf_bad(gltf, "accessors", number, "its sparse elements have no count or type");
-    accessor->sparse_type = (uint32_t)type;
-    TRY(find_elements(gltf, indices, number, count, gltf_type_size((uint32_t)type), &accessor->sparse_index, &stride));
-    if (stride != gltf_type_size((uint32_t)type))
-        return gltf_bad(gltf, "accessors", number, "sparse indices with gaps");
-    TRY(find_elements(gltf, values, number, count, size, &accessor->sparse_bytes, &stride));
-    if (stride != size) return gltf_bad(gltf, "accessors", number, "sparse elements with gaps");
-    accessor->sparse_count = (uint32_t)count;
-    return SINGE_OK;
-}
-
 /// Finds an accessor that is needed, once.
 static SingeResult find_accessor(Gltf *gltf, int64_t number) {
+    static const char *const widths[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
     if (number < 0 || gltf->read[number].width) return SINGE_OK;
     int64_t object = gltf->accessors[number], sparse = json_member(&gltf->json, object, "sparse");
     uint64_t type, count;
-    GltfAccessor accessor = {.width = type_width(gltf, json_member(&gltf->json, object, "type"))};
+    GltfAccessor accessor = {0};
+
+    for (uint32_t i = 0; i < 4; i++)
+        if (json_is(&gltf->json, json_member(&gltf->json, object, "type"), widths[i])) accessor.width = i + 1;
     int64_t normalized = json_member(&gltf->json, object, "normalized");
     accessor.normalized = normalized != JSON_NONE && gltf->json.text[gltf->json.values[normalized].begin] == 't';
     if (!take_count(gltf, object, "componentType", 0, 5126, &type) || !gltf_type_size((uint32_t)type) ||
@@ -237,66 +218,36 @@ static SingeResult find_accessor(Gltf *gltf, int64_t number) {
         return gltf_bad(gltf, "accessors", (uint32_t)number, "it has no type or count");
     accessor.type = (uint32_t)type;
     accessor.count = (uint32_t)count;
+
     uint32_t size = accessor.width * gltf_type_size(accessor.type);
     TRY(find_elements(gltf, object, (uint32_t)number, count, size, &accessor.bytes, &accessor.stride));
-    if (sparse != JSON_NONE) TRY(find_sparse(gltf, sparse, (uint32_t)number, &accessor, size));
+
+    if (sparse != JSON_NONE) {
+        int64_t indices = json_member(&gltf->json, sparse, "indices"),
+                values = json_member(&gltf->json, sparse, "values");
+        uint64_t sparse_count, index_type;
+        uint32_t step;
+        if (!take_count(gltf, sparse, "count", 0, accessor.count, &sparse_count) || sparse_count == 0 ||
+            !take_count(gltf, indices, "componentType", 0, 5125, &index_type) ||
+            (index_type != 5121 && index_type != 5123 && index_type != 5125))
+            return gltf_bad(gltf, "accessors", (uint32_t)number, "its sparse elements have no count or type");
+        accessor.sparse_type = (uint32_t)index_type;
+        TRY(find_elements(gltf, indices, (uint32_t)number, sparse_count, gltf_type_size((uint32_t)index_type),
+                          &accessor.sparse_index, &step));
+        if (step != gltf_type_size((uint32_t)index_type))
+            return gltf_bad(gltf, "accessors", (uint32_t)number, "sparse indices with gaps");
+        TRY(find_elements(gltf, values, (uint32_t)number, sparse_count, size, &accessor.sparse_bytes, &step));
+        if (step != size) return gltf_bad(gltf, "accessors", (uint32_t)number, "sparse elements with gaps");
+        accessor.sparse_count = (uint32_t)sparse_count;
+    }
+
     gltf->read[number] = accessor;
     return SINGE_OK;
 }
 
 // ---- meshes
 
-static SingeResult read_primitive(Gltf *gltf, int64_t object, GltfPrimitive *primitive) {
-    int64_t attributes = json_member(&gltf->json, object, "attributes");
-    int64_t extensions = json_member(&gltf->json, object, "extensions");
-    uint64_t mode;
-    if (json_member(&gltf->json, extensions, "KHR_draco_mesh_compression") != JSON_NONE)
-        return gltf_bad(gltf, "meshes", primitive->mesh, "compressed data are not supported");
-    if (!take_count(gltf, object, "mode", 4, 6, &mode))
-        return gltf_bad(gltf, "meshes", primitive->mesh, "a primitive's mode is not known");
-    primitive->mode = (uint32_t)mode;
-    TRY(gltf_index(gltf, attributes, "POSITION", gltf->accessor_count, &primitive->position));
-    TRY(gltf_index(gltf, attributes, "TEXCOORD_0", gltf->accessor_count, &primitive->uv));
-    TRY(gltf_index(gltf, object, "indices", gltf->accessor_count, &primitive->indices));
-    return SINGE_OK;
-}
-
-static SingeResult check_primitive(const Gltf *gltf, const GltfPrimitive *p) {
-    const GltfAccessor *position = &gltf->read[p->position], *uv = p->uv < 0 ? NULL : &gltf->read[p->uv];
-    const GltfAccessor *indices = p->indices < 0 ? NULL : &gltf->read[p->indices];
-    if (position->width != 3) return gltf_bad(gltf, "meshes", p->mesh, "positions are not VEC3");
-    if (uv && (uv->width != 2 || uv->count < position->count))
-        return gltf_bad(gltf, "meshes", p->mesh, "texture coordinates are not VEC2, or fewer than the positions");
-    if (indices && (indices->width != 1 || indices->sparse_count ||
-                    (indices->type != 5121 && indices->type != 5123 && indices->type != 5125)))
-        return gltf_bad(gltf, "meshes", p->mesh, "indices are of another type than unsigned integers");
-    return SINGE_OK;
-}
-
 static SingeResult read_meshes(Gltf *gltf) {
-    for (uint32_t m = 0; m < gltf->mesh_count; m++) {
-        int64_t list = json_member(&gltf->json, gltf->meshes[m], "primitives"), at = list + 1;
-        uint32_t count = json_items(&gltf->json, list);
-        gltf->ranges[m] = (GltfMesh){(uint32_t)gltf->primitive_count, 0};
-        for (uint32_t i = 0; i < count; i++, at = gltf->json.values[at].after) {
-            GltfPrimitive primitive = {.number = i, .mesh = m};
-            TRY(read_primitive(gltf, at, &primitive));
-            if (primitive.position < 0) continue;
-            TRY(find_accessor(gltf, primitive.position));
-            TRY(find_accessor(gltf, primitive.indices));
-            TRY(find_accessor(gltf, primitive.uv));
-            TRY(check_primitive(gltf, &primitive));
-            if (!store_grow(gltf->allocator, &gltf->primitives, &gltf->primitive_capacity, gltf->primitive_count + 1,
-                            sizeof primitive))
-                return refuse_memory(gltf->error, "gltf", gltf->name);
-            gltf->primitives[gltf->primitive_count++] = primitive;
-            gltf->ranges[m].count++;
-        }
-    }
-    return SINGE_OK;
-}
-
-static SingeResult read_lists(Gltf *gltf) {
     TRY(list_items(gltf, "buffers", &gltf->buffers, &gltf->buffer_count));
     TRY(list_items(gltf, "bufferViews", &gltf->views, &gltf->view_count));
     TRY(list_items(gltf, "accessors", &gltf->accessors, &gltf->accessor_count));
@@ -308,23 +259,50 @@ static SingeResult read_lists(Gltf *gltf) {
     if (gltf->loaded) memset(gltf->loaded, 0, gltf->buffer_count * sizeof *gltf->loaded);
     if (!gltf->loaded || !gltf->read || !gltf->ranges) return refuse_memory(gltf->error, "gltf", gltf->name);
     memset(gltf->read, 0, gltf->accessor_count * sizeof *gltf->read);
-    return SINGE_OK;
-}
 
-static void free_all(Gltf *gltf) {
-    SingeAllocator a = gltf->allocator;
-    for (uint32_t i = 0; gltf->loaded && i < gltf->buffer_count; i++)
-        if (gltf->loaded[i].data) bytes_free(&gltf->loaded[i]);
-    store_free(a, gltf->loaded, gltf->buffer_count, sizeof *gltf->loaded);
-    store_free(a, gltf->read, gltf->accessor_count, sizeof *gltf->read);
-    store_free(a, gltf->ranges, gltf->mesh_count, sizeof *gltf->ranges);
-    store_free(a, gltf->primitives, gltf->primitive_capacity, sizeof *gltf->primitives);
-    store_free(a, gltf->buffers, gltf->buffer_count, sizeof *gltf->buffers);
-    store_free(a, gltf->views, gltf->view_count, sizeof *gltf->views);
-    store_free(a, gltf->accessors, gltf->accessor_count, sizeof *gltf->accessors);
-    store_free(a, gltf->meshes, gltf->mesh_count, sizeof *gltf->meshes);
-    store_free(a, gltf->nodes, gltf->node_count, sizeof *gltf->nodes);
-    json_free(&gltf->json);
+    for (uint32_t m = 0; m < gltf->mesh_count; m++) {
+        int64_t list = json_member(&gltf->json, gltf->meshes[m], "primitives"), at = list + 1;
+        uint32_t count = json_items(&gltf->json, list);
+        gltf->ranges[m] = (GltfMesh){(uint32_t)gltf->primitive_count, 0};
+        for (uint32_t i = 0; i < count; i++, at = gltf->json.values[at].after) {
+            GltfPrimitive primitive = {.number = i, .mesh = m};
+
+            int64_t attributes = json_member(&gltf->json, at, "attributes");
+            int64_t extensions = json_member(&gltf->json, at, "extensions");
+            uint64_t mode;
+            if (json_member(&gltf->json, extensions, "KHR_draco_mesh_compression") != JSON_NONE)
+                return gltf_bad(gltf, "meshes", primitive.mesh, "compressed data are not supported");
+            if (!take_count(gltf, at, "mode", 4, 6, &mode))
+                return gltf_bad(gltf, "meshes", primitive.mesh, "a primitive's mode is not known");
+            primitive.mode = (uint32_t)mode;
+            TRY(gltf_index(gltf, attributes, "POSITION", gltf->accessor_count, &primitive.position));
+            TRY(gltf_index(gltf, attributes, "TEXCOORD_0", gltf->accessor_count, &primitive.uv));
+            TRY(gltf_index(gltf, at, "indices", gltf->accessor_count, &primitive.indices));
+
+            if (primitive.position < 0) continue;
+            TRY(find_accessor(gltf, primitive.position));
+            TRY(find_accessor(gltf, primitive.indices));
+            TRY(find_accessor(gltf, primitive.uv));
+
+            const GltfAccessor *position = &gltf->read[primitive.position],
+                               *uv = primitive.uv < 0 ? NULL : &gltf->read[primitive.uv];
+            const GltfAccessor *indices = primitive.indices < 0 ? NULL : &gltf->read[primitive.indices];
+            if (position->width != 3) return gltf_bad(gltf, "meshes", primitive.mesh, "positions are not VEC3");
+            if (uv && (uv->width != 2 || uv->count < position->count))
+                return gltf_bad(gltf, "meshes", primitive.mesh,
+                                "texture coordinates are not VEC2, or fewer than the positions");
+            if (indices && (indices->width != 1 || indices->sparse_count ||
+                            (indices->type != 5121 && indices->type != 5123 && indices->type != 5125)))
+                return gltf_bad(gltf, "meshes", primitive.mesh, "indices are of another type than unsigned integers");
+
+            if (!store_grow(gltf->allocator, &gltf->primitives, &gltf->primitive_capacity, gltf->primitive_count + 1,
+                            sizeof primitive))
+                return refuse_memory(gltf->error, "gltf", gltf->name);
+            gltf->primitives[gltf->primitive_count++] = primitive;
+            gltf->ranges[m].count++;
+        }
+    }
+    return SINGE_OK;
 }
 
 // ---- the file
@@ -339,6 +317,7 @@ static SingeResult find_chunks(Gltf *gltf, const uint8_t *bytes, size_t size, co
         return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "byte 12: the first chunk is not JSON, or longer than the file");
     *json = at + 8;
     *json_size = length;
+
     for (at += 8 + length; end - at >= 8; at += 8 + length) {
         length = load_u32_little(at);
         if (length > (size_t)(end - at) - 8)
@@ -349,6 +328,7 @@ static SingeResult find_chunks(Gltf *gltf, const uint8_t *bytes, size_t size, co
             gltf->chunk_size = length;
         }
     }
+
     return SINGE_OK;
 }
 
@@ -368,21 +348,38 @@ SingeResult gltf_read(const char *name, const uint8_t *bytes, size_t size, Singe
     Gltf gltf = {.name = name, .allocator = allocator, .error = error};
     if (size == 0) return gltf_refuse(&gltf, SINGE_ERROR_FORMAT, "is empty");
     if (size > MESH_COUNT_LIMIT) return gltf_refuse(&gltf, SINGE_ERROR_LIMIT, "is too large");
+
     const uint8_t *json = bytes;
     size_t json_size = size;
     SingeResult result = SINGE_OK;
+
     if (size >= 8 && memcmp(bytes, "glTF", 4) == 0) {
         if (load_u32_little(bytes + 4) == 1) return assimp_read(name, bytes, size, allocator, polygons, error);
         result = find_chunks(&gltf, bytes, size, &json, &json_size);
     }
+
     if (!result) result = json_read(name, json, json_size, allocator, &gltf.json, error);
     if (!result && gltf.json.values[0].kind != JSON_OBJECT)
         result = gltf_refuse(&gltf, SINGE_ERROR_FORMAT, "not glTF: its JSON is not an object");
     bool other = !result && is_for_assimp(&gltf.json);
-    if (!result && !other) result = read_lists(&gltf);
     if (!result && !other) result = read_meshes(&gltf);
+
     uint64_t max = MESH_ANSWER_BASE + MESH_ANSWER_TIMES * ((uint64_t)size + gltf.beside_size);
     if (!result && !other) result = gltf_make(&gltf, max, polygons);
-    free_all(&gltf);
+
+    SingeAllocator a = gltf.allocator;
+    for (uint32_t i = 0; gltf.loaded && i < gltf.buffer_count; i++)
+        if (gltf.loaded[i].data) bytes_free(&gltf.loaded[i]);
+    store_free(a, gltf.loaded, gltf.buffer_count, sizeof *gltf.loaded);
+    store_free(a, gltf.read, gltf.accessor_count, sizeof *gltf.read);
+    store_free(a, gltf.ranges, gltf.mesh_count, sizeof *gltf.ranges);
+    store_free(a, gltf.primitives, gltf.primitive_capacity, sizeof *gltf.primitives);
+    store_free(a, gltf.buffers, gltf.buffer_count, sizeof *gltf.buffers);
+    store_free(a, gltf.views, gltf.view_count, sizeof *gltf.views);
+    store_free(a, gltf.accessors, gltf.accessor_count, sizeof *gltf.accessors);
+    store_free(a, gltf.meshes, gltf.mesh_count, sizeof *gltf.meshes);
+    store_free(a, gltf.nodes, gltf.node_count, sizeof *gltf.nodes);
+    json_free(&gltf.json);
+
     return other ? assimp_read(name, bytes, size, allocator, polygons, error) : result;
 }

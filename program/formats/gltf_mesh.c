@@ -54,13 +54,6 @@ static bool take_numbers(const Json *json, int64_t object, const char *key, uint
     return true;
 }
 
-static Transform gltf_mesh_turn(const float q[4]) {
-    float x = q[0], y = q[1], z = q[2], w = q[3];
-    return (Transform){{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 0},
-                        {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), 0},
-                        {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), 0}}};
-}
-
 static SingeResult node_transform(const Gltf *gltf, uint32_t node, Transform *at) {
     const Json *json = &gltf->json;
     int64_t object = gltf->nodes[node];
@@ -69,12 +62,18 @@ static SingeResult node_transform(const Gltf *gltf, uint32_t node, Transform *at
                 take_numbers(json, object, "translation", 3, move) &&
                 take_numbers(json, object, "rotation", 4, rotation) && take_numbers(json, object, "scale", 3, scale);
     if (!good) return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: its transform is not finite", node);
+
     if (json_member(json, object, "matrix") != JSON_NONE) {
         for (int r = 0; r < 3; r++)
             for (int c = 0; c < 4; c++) at->m[r][c] = matrix[4 * c + r];
         return SINGE_OK;
     }
-    Transform moved = {{{1, 0, 0, move[0]}, {0, 1, 0, move[1]}, {0, 0, 1, move[2]}}}, turned = gltf_mesh_turn(rotation);
+
+    Transform moved = {{{1, 0, 0, move[0]}, {0, 1, 0, move[1]}, {0, 0, 1, move[2]}}};
+    float x = rotation[0], y = rotation[1], z = rotation[2], w = rotation[3];
+    Transform turned = {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 0},
+                         {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), 0},
+                         {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), 0}}};
     Transform scaled = {{{scale[0], 0, 0, 0}, {0, scale[1], 0, 0}, {0, 0, scale[2], 0}}};
     *at = chain(&moved, &turned);
     *at = chain(at, &scaled);
@@ -82,37 +81,6 @@ static SingeResult node_transform(const Gltf *gltf, uint32_t node, Transform *at
 }
 
 // ---- the walk
-
-/// Adds the counts of a primitive.
-static SingeResult count_primitive(Walk *walk, const GltfPrimitive *primitive) {
-    const Gltf *gltf = walk->gltf;
-    uint64_t vertices = gltf->read[primitive->position].count, faces = 0;
-    uint64_t corners = primitive->indices < 0 ? vertices : gltf->read[primitive->indices].count;
-    if (primitive->mode == 4 && corners % 3)
-        return gltf_refuse(gltf, SINGE_ERROR_MESH, "meshes[%u]: primitive %u: triangles have %llu corners",
-                           primitive->mesh, primitive->number, (unsigned long long)corners);
-    if (primitive->mode == 4) faces = corners / 3;
-    else if (primitive->mode > 4) faces = corners > 2 ? corners - 2 : 0;
-    walk->vertices += vertices;
-    walk->faces += faces;
-    walk->corners += 3 * faces;
-    walk->uv = walk->uv || primitive->uv >= 0;
-    walk->primitives++;
-    if (12 * walk->vertices + 12 * walk->corners + 100 * walk->primitives > walk->max)
-        return gltf_refuse(gltf, SINGE_ERROR_LIMIT,
-                           "too large: its nodes repeat meshes, which come to more than %llu MB",
-                           (unsigned long long)walk->max / 1000000);
-    return SINGE_OK;
-}
-
-static SingeResult walk_mesh(Walk *walk, uint32_t mesh, const Transform *at) {
-    const GltfMesh *range = &walk->gltf->ranges[mesh];
-    for (uint32_t i = 0; i < range->count; i++) TRY(count_primitive(walk, &walk->gltf->primitives[range->first + i]));
-    if (!store_grow(walk->gltf->allocator, &walk->instances, &walk->capacity, walk->count + 1, sizeof *walk->instances))
-        return refuse_memory(walk->gltf->error, "gltf", walk->gltf->name);
-    walk->instances[walk->count++] = (Instance){mesh, *at};
-    return SINGE_OK;
-}
 
 static SingeResult walk_nodes(Walk *walk, int64_t list, const Transform *parent, int depth);
 
@@ -126,11 +94,42 @@ static SingeResult walk_node(Walk *walk, uint32_t node, const Transform *parent,
     if (json_member(&gltf->json, extensions, "EXT_mesh_gpu_instancing") != JSON_NONE)
         return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: EXT_mesh_gpu_instancing is not supported", node);
     walk->seen[node] = 1;
+
     Transform own, at;
     TRY(node_transform(gltf, node, &own));
     at = chain(parent, &own);
     TRY(gltf_index(gltf, object, "mesh", gltf->mesh_count, &mesh));
-    if (mesh >= 0) TRY(walk_mesh(walk, (uint32_t)mesh, &at));
+
+    if (mesh >= 0) {
+        const GltfMesh *range = &walk->gltf->ranges[mesh];
+        for (uint32_t i = 0; i < range->count; i++) {
+            // adds the counts of a primitive
+            uint64_t vertices = gltf->read[(&walk->gltf->primitives[range->first + i])->position].count, faces = 0;
+            uint64_t corners = (&walk->gltf->primitives[range->first + i])->indices < 0
+                                   ? vertices
+                                   : gltf->read[(&walk->gltf->primitives[range->first + i])->indices].count;
+            if ((&walk->gltf->primitives[range->first + i])->mode == 4 && corners % 3)
+                return gltf_refuse(gltf, SINGE_ERROR_MESH, "meshes[%u]: primitive %u: triangles have %llu corners",
+                                   (&walk->gltf->primitives[range->first + i])->mesh,
+                                   (&walk->gltf->primitives[range->first + i])->number, (unsigned long long)corners);
+            if ((&walk->gltf->primitives[range->first + i])->mode == 4) faces = corners / 3;
+            else if ((&walk->gltf->primitives[range->first + i])->mode > 4) faces = corners > 2 ? corners - 2 : 0;
+            walk->vertices += vertices;
+            walk->faces += faces;
+            walk->corners += 3 * faces;
+            walk->uv = walk->uv || (&walk->gltf->primitives[range->first + i])->uv >= 0;
+            walk->primitives++;
+            if (12 * walk->vertices + 12 * walk->corners + 100 * walk->primitives > walk->max)
+                return gltf_refuse(gltf, SINGE_ERROR_LIMIT,
+                                   "too large: its nodes repeat meshes, which come to more than %llu MB",
+                                   (unsigned long long)walk->max / 1000000);
+        }
+        if (!store_grow(walk->gltf->allocator, &walk->instances, &walk->capacity, walk->count + 1,
+                        sizeof *walk->instances))
+            return refuse_memory(walk->gltf->error, "gltf", walk->gltf->name);
+        walk->instances[walk->count++] = (Instance){(uint32_t)mesh, at};
+    }
+
     return walk_nodes(walk, json_member(&gltf->json, object, "children"), &at, depth + 1);
 }
 
@@ -213,34 +212,6 @@ typedef struct Fill {
     float *uv; ///< of a primitive's vertices
 } Fill;
 
-static void fill_positions(Fill *fill, const GltfAccessor *accessor, const Transform *at) {
-    float *positions = fill->mesh->positions + 3 * (size_t)fill->mesh->vertex_count;
-    load_elements(accessor, accessor->count, positions);
-    for (uint32_t v = 0; v < accessor->count; v++, positions += 3) {
-        float x = positions[0], y = positions[1], z = positions[2];
-        for (int r = 0; r < 3; r++) positions[r] = at->m[r][0] * x + at->m[r][1] * y + at->m[r][2] * z + at->m[r][3];
-    }
-}
-
-/// The vertex of the primitive's i-th corner.
-static SingeResult take_corner(const Fill *fill, const GltfPrimitive *primitive, uint64_t i, uint32_t *vertex) {
-    const GltfAccessor *indices = primitive->indices < 0 ? NULL : &fill->gltf->read[primitive->indices];
-    uint32_t count = fill->gltf->read[primitive->position].count;
-    *vertex = indices ? load_index(indices->bytes + i * indices->stride, indices->type) : (uint32_t)i;
-    if (*vertex < count) return SINGE_OK;
-    return gltf_refuse(fill->gltf, SINGE_ERROR_MESH,
-                       "meshes[%u]: primitive %u: index %llu (from 0): vertex %u is out of range: there are %u",
-                       primitive->mesh, primitive->number, (unsigned long long)i, *vertex, count);
-}
-
-/// The three corners of the primitive's f-th triangle.
-static void triangle_corners(const GltfPrimitive *primitive, uint64_t f, uint64_t corners[3]) {
-    bool odd = primitive->mode == 5 && f % 2;
-    corners[0] = primitive->mode == 4 ? 3 * f : primitive->mode == 6 ? 0 : f + odd;
-    corners[1] = primitive->mode == 4 ? 3 * f + 1 : primitive->mode == 6 ? f + 1 : f + !odd;
-    corners[2] = primitive->mode == 4 ? 3 * f + 2 : f + 2;
-}
-
 static SingeResult fill_primitive(Fill *fill, const GltfPrimitive *primitive, const Transform *at) {
     const GltfAccessor *position = &fill->gltf->read[primitive->position];
     Polygons *mesh = fill->mesh;
@@ -249,16 +220,37 @@ static SingeResult fill_primitive(Fill *fill, const GltfPrimitive *primitive, co
                         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) <
                     0;
-    uint64_t corners = primitive->indices < 0 ? position->count : fill->gltf->read[primitive->indices].count;
+    const GltfAccessor *indices = primitive->indices < 0 ? NULL : &fill->gltf->read[primitive->indices];
+    uint64_t corners = indices ? indices->count : position->count;
     uint64_t faces = primitive->mode < 4 ? 0 : primitive->mode == 4 ? corners / 3 : corners > 2 ? corners - 2 : 0;
-    fill_positions(fill, position, at);
+
+    float *positions = fill->mesh->positions + 3 * (size_t)fill->mesh->vertex_count;
+    load_elements(position, position->count, positions);
+
+    for (uint32_t v = 0; v < position->count; v++, positions += 3) {
+        float x = positions[0], y = positions[1], z = positions[2];
+        for (int r = 0; r < 3; r++) positions[r] = at->m[r][0] * x + at->m[r][1] * y + at->m[r][2] * z + at->m[r][3];
+    }
+
     if (primitive->uv >= 0) load_elements(&fill->gltf->read[primitive->uv], position->count, fill->uv);
     for (uint64_t f = 0; f < faces; f++) {
         uint64_t corner[3];
-        triangle_corners(primitive, f, corner);
+
+        // the three corners of the primitive's f-th triangle
+        bool odd = primitive->mode == 5 && f % 2;
+        corner[0] = primitive->mode == 4 ? 3 * f : primitive->mode == 6 ? 0 : f + odd;
+        corner[1] = primitive->mode == 4 ? 3 * f + 1 : primitive->mode == 6 ? f + 1 : f + !odd;
+        corner[2] = primitive->mode == 4 ? 3 * f + 2 : f + 2;
+
         for (int k = 0; k < 3; k++) {
-            uint32_t vertex, i = mesh->corner_count++;
-            TRY(take_corner(fill, primitive, corner[mirrored ? 2 - k : k], &vertex));
+            uint64_t at_corner = corner[mirrored ? 2 - k : k];
+            uint32_t i = mesh->corner_count++, vertex = (uint32_t)at_corner;
+            if (indices) vertex = load_index(indices->bytes + at_corner * indices->stride, indices->type);
+            if (vertex >= position->count)
+                return gltf_refuse(
+                    fill->gltf, SINGE_ERROR_MESH,
+                    "meshes[%u]: primitive %u: index %llu (from 0): vertex %u is out of range: there are %u",
+                    primitive->mesh, primitive->number, (unsigned long long)at_corner, vertex, position->count);
             mesh->corners[i] = mesh->vertex_count + vertex;
             if (!mesh->uv) continue;
             const float none[2] = {0, 1}, *uv = primitive->uv < 0 ? none : fill->uv + 2 * (size_t)vertex;
@@ -268,6 +260,7 @@ static SingeResult fill_primitive(Fill *fill, const GltfPrimitive *primitive, co
         }
         mesh->first[++mesh->face_count] = mesh->corner_count;
     }
+
     mesh->vertex_count += position->count;
     return SINGE_OK;
 }
@@ -275,11 +268,13 @@ static SingeResult fill_primitive(Fill *fill, const GltfPrimitive *primitive, co
 static SingeResult fill_all(const Walk *walk, Fill *fill) {
     const Gltf *gltf = walk->gltf;
     Polygons *mesh = fill->mesh;
+
     for (size_t n = 0; n < walk->count; n++) {
         const GltfMesh *range = &gltf->ranges[walk->instances[n].mesh];
         for (uint32_t i = 0; i < range->count; i++)
             TRY(fill_primitive(fill, &gltf->primitives[range->first + i], &walk->instances[n].at));
     }
+
     for (size_t i = 0; i < 3 * (size_t)mesh->vertex_count; i++)
         if (!isfinite(mesh->positions[i]))
             return gltf_refuse(gltf, SINGE_ERROR_MESH, "vertex %llu (from 0) has a position that is not finite",
@@ -293,6 +288,7 @@ static SingeResult make_polygons(const Walk *walk, Polygons *polygons) {
     if (walk->faces == 0) return gltf_refuse(gltf, SINGE_ERROR_MESH, "has no faces");
     if (walk->vertices > MESH_COUNT_LIMIT || walk->corners > MESH_COUNT_LIMIT)
         return gltf_refuse(gltf, SINGE_ERROR_LIMIT, "is too large");
+
     Polygons made = {.allocator = a};
     Fill fill = {.gltf = gltf, .mesh = &made};
     made.positions = store_new(a, walk->vertices, 3 * sizeof *made.positions);
@@ -300,10 +296,12 @@ static SingeResult make_polygons(const Walk *walk, Polygons *polygons) {
     made.corners = store_new(a, walk->corners, sizeof *made.corners);
     if (walk->uv) made.uv = store_new(a, walk->corners, 2 * sizeof *made.uv);
     if (walk->uv) fill.uv = store_new(a, walk->vertices, 2 * sizeof *fill.uv);
+
     bool room = made.positions && made.first && made.corners && (!walk->uv || (made.uv && fill.uv));
     if (room) made.first[0] = 0;
     SingeResult result = room ? fill_all(walk, &fill) : refuse_memory(gltf->error, "gltf", gltf->name);
     store_free(a, fill.uv, walk->vertices, 2 * sizeof *fill.uv);
+
     // the allocated counts, for polygons_free
     made.vertex_count = (uint32_t)walk->vertices;
     made.face_count = (uint32_t)walk->faces;

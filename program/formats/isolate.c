@@ -81,27 +81,6 @@ static void note_crash(int number) {
     raise(number);
 }
 
-// The parent's handlers would set its flags here; a sanitizer's would print.
-static void set_signals(void) {
-    static char stack[CRASH_STACK];
-    stack_t other = {.ss_sp = stack, .ss_size = sizeof stack};
-    struct sigaction now, plain = {.sa_handler = SIG_DFL};
-    for (int number = 1; number < NSIG; number++)
-        if (sigaction(number, NULL, &now) == 0 && (number == SIGPIPE || now.sa_handler != SIG_IGN))
-            sigaction(number, &plain, NULL);
-    struct sigaction crash = {.sa_handler = note_crash, .sa_flags = SA_ONSTACK | SA_RESETHAND | SA_NODEFER};
-    if (sigaltstack(&other, NULL)) return;
-    sigaction(SIGSEGV, &crash, NULL);
-    sigaction(SIGBUS, &crash, NULL);
-    sigaction(SIGABRT, &crash, NULL);
-}
-
-static void silence(void) {
-    int nowhere = open("/dev/null", O_RDWR);
-    for (int i = 0; i < 3 && nowhere >= 0; i++) dup2(nowhere, i);
-    if (nowhere > 2) close(nowhere);
-}
-
 static void limit(int resource, rlim_t max) {
     struct rlimit now;
     if (getrlimit(resource, &now)) return;
@@ -124,16 +103,6 @@ static bool read_pages(pid_t process, unsigned long long pages[2]) {
 }
 #endif
 
-static void set_limits(IsolateLimits limits) {
-    limit(RLIMIT_CORE, 0);
-    limit(RLIMIT_CPU, (rlim_t)ceil(limits.seconds));
-#if defined(__linux__)
-    unsigned long long pages[2];
-    size_t page = (size_t)sysconf(_SC_PAGESIZE);
-    if (!ISOLATE_SANITIZED && read_pages(getpid(), pages)) limit(RLIMIT_AS, (rlim_t)(pages[0] * page + limits.memory));
-#endif
-}
-
 static _Noreturn void child_main(int pipe, pid_t parent, const sigset_t *mask, IsolateWork *work, void *context,
                                  IsolateLimits limits) {
     if (pipe < 3) pipe = fcntl(pipe, F_DUPFD, 3); // the parent has closed these
@@ -142,13 +111,41 @@ static _Noreturn void child_main(int pipe, pid_t parent, const sigset_t *mask, I
     prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
     if (getppid() != parent) _exit(1);
-    silence();
-    set_signals();
-    set_limits(limits);
+
+    int nowhere = open("/dev/null", O_RDWR);
+    for (int i = 0; i < 3 && nowhere >= 0; i++) dup2(nowhere, i);
+    if (nowhere > 2) close(nowhere);
+
+    // the parent's handlers would set its flags here; a sanitizer's would print
+    static char stack[CRASH_STACK];
+    stack_t other = {.ss_sp = stack, .ss_size = sizeof stack};
+    struct sigaction now, plain = {.sa_handler = SIG_DFL};
+
+    for (int number = 1; number < NSIG; number++)
+        if (sigaction(number, NULL, &now) == 0 && (number == SIGPIPE || now.sa_handler != SIG_IGN))
+            sigaction(number, &plain, NULL);
+    struct sigaction crash = {.sa_handler = note_crash, .sa_flags = SA_ONSTACK | SA_RESETHAND | SA_NODEFER};
+
+    if (sigaltstack(&other, NULL) == 0) {
+        sigaction(SIGSEGV, &crash, NULL);
+        sigaction(SIGBUS, &crash, NULL);
+        sigaction(SIGABRT, &crash, NULL);
+    }
+
+    limit(RLIMIT_CORE, 0);
+    limit(RLIMIT_CPU, (rlim_t)ceil(limits.seconds));
+#if defined(__linux__)
+    unsigned long long pages[2];
+
+    size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    if (!ISOLATE_SANITIZED && read_pages(getpid(), pages)) limit(RLIMIT_AS, (rlim_t)(pages[0] * page + limits.memory));
+#endif
+
     sigprocmask(SIG_SETMASK, mask, NULL);
     IsolateAnswer answer = {pipe};
     Ending ending = {.magic = ENDING_MAGIC};
     errno = 0;
+
     SingeResult result = work(context, &answer, &ending.error);
     ending.no_memory = result != SINGE_OK && errno == ENOMEM;
     ending.error.code = result;
@@ -204,15 +201,6 @@ static SingeResult refuse_time(const Child *child) {
                   short_name(child->name), child->limits.seconds);
 }
 
-static SingeResult refuse_signal(const Child *child, int number) {
-    if (number == SIGXCPU) return refuse_time(child);
-    if (number == SIGINT || number == SIGTERM || number == SIGHUP || number == SIGQUIT)
-        return refuse(child->error, SINGE_ERROR_STATE, "file", -1, "%s: reading it was interrupted (signal %d)",
-                      short_name(child->name), number);
-    return refuse(child->error, SINGE_ERROR_FORMAT, "file", -1, "%s: cannot be read: its reader crashed (signal %d)",
-                  short_name(child->name), number);
-}
-
 /// Checks the child's time and memory. Time during which this process was stopped does not count.
 static SingeResult isolate_look(Child *child) {
     double now = clock_now(), passed = now - child->looked;
@@ -262,8 +250,16 @@ static SingeResult reap(Child *child, int *status) {
 
 /// Removes the ending from the answer and interprets it.
 static SingeResult isolate_judge(const Child *child, Bytes *answer, int status) {
-    if (WIFSIGNALED(status)) return refuse_signal(child, WTERMSIG(status));
+    const int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    if (number == SIGXCPU) return refuse_time(child);
+    if (number == SIGINT || number == SIGTERM || number == SIGHUP || number == SIGQUIT)
+        return refuse(child->error, SINGE_ERROR_STATE, "file", -1, "%s: reading it was interrupted (signal %d)",
+                      short_name(child->name), number);
+    if (number)
+        return refuse(child->error, SINGE_ERROR_FORMAT, "file", -1,
+                      "%s: cannot be read: its reader crashed (signal %d)", short_name(child->name), number);
     if (WEXITSTATUS(status) == EXIT_NO_MEMORY) return refuse_size(child);
+
     Ending ending = {0};
     if (answer->size >= sizeof ending) memcpy(&ending, answer->data + answer->size - sizeof ending, sizeof ending);
     if (WEXITSTATUS(status) != 0 || ending.magic != ENDING_MAGIC)
@@ -274,6 +270,7 @@ static SingeResult isolate_judge(const Child *child, Bytes *answer, int status) 
     if (ending.no_memory) return refuse_size(child);
     ending.error.stage[sizeof ending.error.stage - 1] = 0;
     ending.error.message[sizeof ending.error.message - 1] = 0;
+
     SingeResult code = ending.error.code;
     if ((int)code < 0 || code > SINGE_ERROR_LIMIT) code = ending.error.code = SINGE_ERROR_FORMAT;
     if (child->error) *child->error = ending.error;
@@ -285,14 +282,17 @@ static SingeResult wait_for(Child *child, Bytes *answer) {
     int status = 0;
     child->looked = clock_now();
     child->memory_before = memory_of(getpid());
+
     SingeResult result = take_answer(child, answer, &capacity);
     if (!result) result = reap(child, &status);
     if (!result) result = isolate_judge(child, answer, status);
+
     if (child->process) {
         kill(child->process, SIGKILL);
         while (waitpid(child->process, NULL, 0) < 0 && errno == EINTR) {
         }
     }
+
     // for bytes_free
     if (!result && !store_trim(answer->allocator, &answer->data, &capacity, answer->size + 1, 1))
         result = refuse_memory(child->error, "file", child->name);
@@ -301,6 +301,7 @@ static SingeResult wait_for(Child *child, Bytes *answer) {
         store_free(answer->allocator, answer->data, capacity, 1);
         memset(answer, 0, sizeof *answer);
     }
+
     return result;
 }
 
@@ -327,18 +328,22 @@ SingeResult isolate_run(const char *name, IsolateWork *work, void *context, Isol
     if (!isolate_possible())
         return refuse(error, SINGE_ERROR_STATE, "file", -1, "%s: cannot be read while other threads run",
                       short_name(name));
+
     int ends[2];
     if (pipe(ends)) return refuse_process(name, error, errno);
     for (int i = 0; i < 2; i++) fcntl(ends[i], F_SETFD, FD_CLOEXEC);
     sigset_t all, mask;
     sigfillset(&all);
     sigprocmask(SIG_BLOCK, &all, &mask); // until the child has its own handlers
+
     pid_t parent = getpid(), process = fork();
     int reason = errno;
+
     if (process == 0) {
         close(ends[0]);
         child_main(ends[1], parent, &mask, work, context, limits);
     }
+
     sigprocmask(SIG_SETMASK, &mask, NULL);
     close(ends[1]);
     Child child = {.name = name, .limits = limits, .error = error, .process = process, .pipe = ends[0]};

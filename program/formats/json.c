@@ -49,20 +49,20 @@ static SingeResult take_string(Parser *parser) {
     return SINGE_OK;
 }
 
-static SingeResult take_plain(Parser *parser) {
-    const uint8_t *begin = parser->at;
-    while ((parser->at < parser->end) && *parser->at > ' ' && !strchr(",]}[{:\"", *parser->at)) parser->at++;
-    if (parser->at == begin) return json_bad(parser, "a value is missing");
-    return json_add(parser, JSON_PLAIN, begin, parser->at);
-}
-
 /// Reads a value, or the beginning of an object or array.
 static SingeResult take_value(Parser *parser) {
     skip_blanks(parser);
     if (parser->at == parser->end) return json_bad(parser, "the text ends too soon");
     uint8_t c = *parser->at;
     if (c == '"') return take_string(parser);
-    if (c != '{' && c != '[') return take_plain(parser);
+
+    if (c != '{' && c != '[') {
+        const uint8_t *begin = parser->at;
+        while (parser->at<parser->end && * parser->at> ' ' && !strchr(",]}[{:\"", *parser->at)) parser->at++;
+        if (parser->at == begin) return json_bad(parser, "a value is missing");
+        return json_add(parser, JSON_PLAIN, begin, parser->at);
+    }
+
     if (parser->depth == JSON_DEPTH) return json_bad(parser, "nested too deeply");
     parser->open[parser->depth++] = (uint32_t)parser->json->count;
     TRY(json_add(parser, c == '{' ? JSON_OBJECT : JSON_ARRAY, parser->at, parser->at + 1));
@@ -75,17 +75,20 @@ static SingeResult go_on(Parser *parser) {
     JsonValue *open = &parser->json->values[parser->open[parser->depth - 1]];
     bool object = open->kind == JSON_OBJECT;
     skip_blanks(parser);
+
     if (parser->at < parser->end && *parser->at == (object ? '}' : ']')) {
         parser->at++, parser->depth--;
         open->end = (uint32_t)(parser->at - parser->json->text);
         open->after = (uint32_t)parser->json->count;
         return SINGE_OK;
     }
+
     if (open->count) {
         if (parser->at == parser->end || *parser->at != ',') return json_bad(parser, "a comma or an end is missing");
         parser->at++;
         skip_blanks(parser);
     }
+
     open->count++;
     if (object) {
         TRY(take_string(parser));

@@ -14,8 +14,6 @@ static uint32_t read_word(const uint8_t *p) {
     return word;
 }
 
-static uint32_t hash_word(uint32_t word) { return word * 2654435761u >> (32 - HASH_BITS); }
-
 static uint8_t *put_length(uint8_t *out, size_t rest) {
     for (; rest >= 255; rest -= 255) *out++ = 255;
     *out++ = (uint8_t)rest;
@@ -37,30 +35,27 @@ static uint8_t *put_sequence(uint8_t *out, const uint8_t *literals, size_t count
     return rest >= 15 ? put_length(out, rest - 15) : out;
 }
 
-static size_t match_length(const uint8_t *a, const uint8_t *b, const uint8_t *end) {
-    const uint8_t *from = b;
-    while (b < end && *a == *b) a++, b++;
-    return (size_t)(b - from);
-}
-
 size_t lz4_pack(const uint8_t *in, size_t size, uint8_t *out) {
     uint32_t last[1 << HASH_BITS] = {0}; // one more than the offset; 0: none
     uint8_t *begin = out;
     size_t at = 0, literals = 0, misses = 0;
+
     while (size > MATCH_MARGIN && at < size - MATCH_MARGIN && at < UINT32_MAX) {
-        const uint32_t hash = hash_word(read_word(in + at)), before = last[hash];
+        const uint32_t hash = (read_word(in + at) * 2654435761u >> (32 - HASH_BITS)), before = last[hash];
         last[hash] = (uint32_t)at + 1;
         const size_t distance = at + 1 - before;
         if (!before || distance > DISTANCE_MAX || read_word(in + before - 1) != read_word(in + at)) {
             at += 1 + (misses++ >> 6);
             continue;
         }
-        const size_t length = match_length(in + before - 1, in + at, in + size - TAIL);
+        size_t length = 0;
+        while (at + length < size - TAIL && in[before - 1 + length] == in[at + length]) length++;
         out = put_sequence(out, in + literals, at - literals, length, distance);
         at += length;
         literals = at;
         misses = 0;
     }
+
     out = put_sequence(out, in + literals, size - literals, 0, 0);
     return (size_t)(out - begin);
 }

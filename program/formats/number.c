@@ -28,22 +28,13 @@ typedef struct Decimal {
 
 static inline bool is_digit(uint8_t c) { return (uint8_t)(c - '0') < 10; }
 
-static NumberStatus decimal_word(const uint8_t *at, const uint8_t *end) {
-    static const char *const words[] = {"nan", "inf"};
-    for (int w = 0; w < 2; w++) {
-        int i = 0;
-        while (i < 3 && at + i < end && (at[i] | 32) == words[w][i]) i++;
-        if (i == 3) return NUMBER_NOT_FINITE;
-    }
-    return NUMBER_JUNK;
-}
-
 // The digits before and after the point.
 static const uint8_t *decimal_digits(const uint8_t *at, const uint8_t *end, Decimal *number) {
     bool point = false, any = false;
     int64_t behind = 0, count = 0, kept = 0;
     uint64_t leading = 0;
     number->digits = NULL;
+
     for (; at < end; at++) {
         uint8_t digit = (uint8_t)(*at - '0');
         if (digit > 9) {
@@ -58,6 +49,7 @@ static const uint8_t *decimal_digits(const uint8_t *at, const uint8_t *end, Deci
         count++;
         if (kept < FAST_DIGITS) leading = 10 * leading + digit, kept++;
     }
+
     if (!any) return NULL;
     if (behind > EXPONENT_LIMIT) behind = EXPONENT_LIMIT;
     if (count > EXPONENT_LIMIT) count = EXPONENT_LIMIT;
@@ -74,7 +66,17 @@ static NumberStatus decimal_read(const uint8_t **at, const uint8_t *end, Decimal
     number->negative = p < end && *p == '-';
     if (p < end && (*p == '-' || *p == '+')) p++;
     const uint8_t *behind = decimal_digits(p, end, number);
-    if (!behind) return decimal_word(p, end);
+
+    if (!behind) {
+        static const char *const words[] = {"nan", "inf"};
+        for (int w = 0; w < 2; w++) {
+            int i = 0;
+            while (i < 3 && p + i < end && (p[i] | 32) == words[w][i]) i++;
+            if (i == 3) return NUMBER_NOT_FINITE;
+        }
+        return NUMBER_JUNK;
+    }
+
     p = behind;
     if (p < end && (*p | 32) == 'e') {
         bool negative = ++p < end && *p == '-';
@@ -87,6 +89,7 @@ static NumberStatus decimal_read(const uint8_t **at, const uint8_t *end, Decimal
         number->exponent += negative ? -exponent : exponent;
         number->leading_exponent += negative ? -exponent : exponent;
     }
+
     *at = p;
     return NUMBER_OK;
 }
@@ -150,28 +153,16 @@ static void big_subtract(Big *a, const Big *b) {
 
 // ---- rounding
 
-// Rounds quotient 2^-shift (a little more if `rest`) to `bits` bits, ties to even; the last bit is worth at least
-// 2^lowest.
-static double round_bits(uint64_t quotient, int shift, bool rest, int bits, int lowest) {
-    int have = 0;
-    for (uint64_t q = quotient; q; q >>= 1) have++;
-    int drop = have - bits;
-    if (drop - shift < lowest) drop = lowest + shift;
-    if (drop > 62) return 0;
-    uint64_t low = quotient & (((uint64_t)1 << drop) - 1), half = (uint64_t)1 << (drop - 1);
-    uint64_t kept = quotient >> drop;
-    if (low > half || (low == half && (rest || (kept & 1)))) kept++;
-    return ldexp((double)kept, drop - shift);
-}
-
 // The magnitude of the number, exactly rounded to `bits` bits.
 static double decimal_round(const Decimal *number, int bits, int lowest) {
     int count = number->digit_count < EXACT_DIGITS ? number->digit_count : EXACT_DIGITS;
     int exponent = number->exponent + (number->digit_count - count);
     if (number->digit_count == 0 || exponent + count < -330) return 0;
     if (exponent + count > 310) return INFINITY;
+
     Big over = {0}, under = {.count = 1, .words = {1}};
     int taken = 0;
+
     for (const uint8_t *p = number->digits; p < number->digits_end && taken < count; p++)
         if (*p != '.') {
             uint32_t digit = (uint32_t)(*p - '0');
@@ -182,6 +173,7 @@ static double decimal_round(const Decimal *number, int bits, int lowest) {
             }
             taken++;
         }
+
     // digits beyond 800 can only break a tie
     if (number->digit_count > count) big_multiply_add(&over, 10, 1), exponent--;
     if (exponent >= 0) big_times_power_of_ten(&over, exponent);
@@ -192,27 +184,42 @@ static double decimal_round(const Decimal *number, int bits, int lowest) {
     if (shift > 0) big_shift_left(&over, shift);
     else big_shift_left(&under, -shift);
     big_shift_left(&under, bits + 1);
+
     uint64_t quotient = 0;
     for (int i = 0; i < bits + 2; i++) {
         quotient <<= 1;
         if (!big_less(&over, &under)) big_subtract(&over, &under), quotient |= 1;
         big_shift_left(&over, 1);
     }
-    return round_bits(quotient, shift, over.count > 0, bits, lowest);
+
+    // rounds quotient 2^-shift (a little more if `rest`) to `bits` bits, ties to even; the last bit is worth at least 2^lowest
+    int have = 0;
+    for (uint64_t q = quotient; q; q >>= 1) have++;
+    int drop = have - bits;
+    if (drop - shift < lowest) drop = lowest + shift;
+    if (drop > 62) return 0;
+
+    uint64_t low = quotient & (((uint64_t)1 << drop) - 1), halfway = (uint64_t)1 << (drop - 1);
+    uint64_t kept = quotient >> drop;
+    if (low > halfway || (low == halfway && ((over.count > 0) || (kept & 1)))) kept++;
+    return ldexp((double)kept, drop - shift);
 }
 
 static bool round_fast(const Decimal *number, float *value) {
     static const double power[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                    1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
     int e = number->leading_exponent;
+
     if (number->leading == 0) {
         *value = 0;
         return true;
     }
+
     if (e < -22 || e > 22) return false;
     double d = e < 0 ? (double)number->leading / power[-e] : (double)number->leading * power[e];
     uint64_t image;
     memcpy(&image, &d, sizeof image);
+
     int32_t from_tie = (int32_t)(image & 0x1fffffff) - 0x10000000;
     if (d < 1.2e-38 || d > 3.4e38 || (from_tie > -16 && from_tie < 16)) return false;
     *value = (float)d;
@@ -224,12 +231,14 @@ NumberStatus number_float(const uint8_t **at, const uint8_t *end, float *value) 
     const uint8_t *p = *at;
     NumberStatus status = decimal_read(&p, end, &number);
     if (status) return status;
+
     float result;
     if (!round_fast(&number, &result)) {
         double exact = decimal_round(&number, 24, -149);
         if (exact > 3.4028234663852886e38) return NUMBER_RANGE;
         result = (float)exact;
     }
+
     *value = number.negative ? -result : result;
     *at = p;
     return NUMBER_OK;
@@ -252,11 +261,13 @@ NumberStatus number_integer(const uint8_t **at, const uint8_t *end, int64_t *val
     bool negative = p < end && *p == '-';
     if (p < end && (*p == '-' || *p == '+')) p++;
     if (p == end || !is_digit(*p)) return NUMBER_JUNK;
+
     int64_t magnitude = 0;
     for (; p < end && is_digit(*p); p++) {
         if (magnitude > (INT64_MAX - 9) / 10) return NUMBER_RANGE;
         magnitude = 10 * magnitude + (*p - '0');
     }
+
     *value = negative ? -magnitude : magnitude;
     *at = p;
     return NUMBER_OK;
@@ -266,6 +277,7 @@ int number_print(double value, char text[40]) {
     char local[64];
     int length = snprintf(local, sizeof local, "%.17g", value), n = 0;
     bool in_point = false;
+
     // printf's decimal point depends on the locale and may be several bytes long
     for (int i = 0; i < length && n < 39; i++) {
         char c = local[i];
@@ -274,6 +286,7 @@ int number_print(double value, char text[40]) {
         else if (!in_point) text[n++] = '.';
         in_point = !plain;
     }
+
     text[n] = 0;
     return n;
 }

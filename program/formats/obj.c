@@ -65,50 +65,24 @@ static bool obj_word_ended(const Obj *obj) {
     return obj_at_end(obj) || text_is_blank(*obj->text.at) || obj_continuation(obj->text.at, obj->text.end);
 }
 
-static SingeResult obj_number(Obj *obj, float *value) {
-    const uint8_t *word = obj->text.at;
-    NumberStatus status = number_float(&obj->text.at, obj->text.end, value);
-    if (status == NUMBER_OK && obj_word_ended(obj)) return SINGE_OK;
-    obj->text.at = word;
-    if (status == NUMBER_NOT_FINITE) return obj_refuse_word(obj, "is not a finite number");
-    if (status == NUMBER_RANGE) return obj_refuse_word(obj, "is too large for a float");
-    return obj_refuse_word(obj, "is not a number");
-}
-
 // Reads the numbers of a line, at least `least`, and keeps the first `kept`; `count` gets how many there were.
 static SingeResult obj_numbers(Obj *obj, int min, int max, int kept, float *values, const char *expected) {
     int count = 0;
     for (obj_skip_blanks(obj); !obj_at_end(obj); obj_skip_blanks(obj), count++) {
         float value;
         if (count == max) return obj_refuse(obj, SINGE_ERROR_FORMAT, expected);
-        TRY(obj_number(obj, &value));
+        const uint8_t *word = obj->text.at;
+        NumberStatus status = number_float(&obj->text.at, obj->text.end, &value);
+        if (status != NUMBER_OK || !obj_word_ended(obj)) {
+            obj->text.at = word;
+            return obj_refuse_word(obj, status == NUMBER_NOT_FINITE ? "is not a finite number"
+                                        : status == NUMBER_RANGE    ? "is too large for a float"
+                                                                    : "is not a number");
+        }
         if (count < kept) values[count] = value;
     }
+
     return count < min ? obj_refuse(obj, SINGE_ERROR_FORMAT, expected) : SINGE_OK;
-}
-
-// v x y z [w | r g b [w]]
-static SingeResult obj_vertex(Obj *obj) {
-    if (obj->position_count >= MESH_COUNT_LIMIT) return obj_refuse(obj, SINGE_ERROR_LIMIT, "too many vertices");
-    if (!store_grow(obj->allocator, &obj->positions, &obj->position_capacity, obj->position_count + 1,
-                    sizeof *obj->positions))
-        return refuse_memory(obj->error, "obj", obj->name);
-    float *position = obj->positions[obj->position_count];
-    TRY(obj_numbers(obj, 3, 7, 3, position, "a vertex is v x y z"));
-    obj->position_count++;
-    return SINGE_OK;
-}
-
-// vt u [v [w]]
-static SingeResult obj_uv(Obj *obj) {
-    if (obj->uv_count >= MESH_COUNT_LIMIT) return obj_refuse(obj, SINGE_ERROR_LIMIT, "too many texture coordinates");
-    if (!store_grow(obj->allocator, &obj->uvs, &obj->uv_capacity, obj->uv_count + 1, sizeof *obj->uvs))
-        return refuse_memory(obj->error, "obj", obj->name);
-    float *uv = obj->uvs[obj->uv_count];
-    uv[0] = uv[1] = 0;
-    TRY(obj_numbers(obj, 1, 3, 2, uv, "a texture coordinate is vt u v"));
-    obj->uv_count++;
-    return SINGE_OK;
 }
 
 // An index counts from 1, or backwards from the last one so far. A positive one may be of a later vertex.
@@ -120,11 +94,13 @@ static SingeResult obj_index(Obj *obj, size_t so_far, const char *what, int32_t 
     obj->text.at = word;
     if (status == NUMBER_JUNK || (status == NUMBER_OK && !ended)) return obj_refuse_word(obj, "is not an index");
     if (status == NUMBER_OK && value == 0) return obj_refuse_word(obj, "has index 0; OBJ counts from 1");
+
     if (status == NUMBER_RANGE || value > MESH_COUNT_LIMIT || value < -(int64_t)so_far)
         return refuse(obj->error, SINGE_ERROR_MESH, "obj", obj->text.line,
                       "%s:%lld:%lld: this %s index is out of range (%llu so far)", short_name(obj->name),
                       (long long)obj->text.line, (long long)text_column(&obj->text, obj->begin), what,
                       (unsigned long long)so_far);
+
     *index = (int32_t)(value > 0 ? value - 1 : value + (int64_t)so_far);
     (void)number_integer(&obj->text.at, obj->text.end, &value);
     return SINGE_OK;
@@ -137,14 +113,17 @@ static SingeResult obj_corner(Obj *obj, int32_t *vertex, int32_t *uv) {
     TRY(obj_index(obj, obj->position_count, "vertex", vertex));
     if (obj_word_ended(obj)) return SINGE_OK;
     text->at++;
+
     if (text->at < text->end && *text->at != '/') {
         TRY(obj_index(obj, obj->uv_count, "texture coordinate", uv));
         if (obj_word_ended(obj)) return SINGE_OK;
     }
+
     if (text->at == text->end || *text->at != '/') return obj_refuse_word(obj, "is not an index");
     text->at++;
     int64_t normal;
     const uint8_t *word = text->at;
+
     if (number_integer(&text->at, text->end, &normal) || normal == 0 || !obj_word_ended(obj)) {
         text->at = word;
         return obj_refuse_word(obj, "is not an index");
@@ -158,6 +137,7 @@ static SingeResult obj_face(Obj *obj) {
         return refuse_memory(obj->error, "obj", obj->name);
     size_t first = obj->corner_count;
     int64_t line = obj->text.line;
+
     for (obj_skip_blanks(obj); !obj_at_end(obj); obj_skip_blanks(obj), obj->corner_count++) {
         if (obj->corner_count >= MESH_COUNT_LIMIT) return obj_refuse(obj, SINGE_ERROR_LIMIT, "too many corners");
         if (!store_grow(obj->allocator, &obj->corners, &obj->corner_capacity, obj->corner_count + 1,
@@ -166,6 +146,7 @@ static SingeResult obj_face(Obj *obj) {
         ObjCorner *corner = &obj->corners[obj->corner_count];
         TRY(obj_corner(obj, &corner->vertex, &corner->uv));
     }
+
     size_t corners = obj->corner_count - first;
     if (corners < 3)
         return refuse(obj->error, SINGE_ERROR_MESH, "obj", line, "%s:%lld: face has %d corner%s; it needs three",
@@ -174,37 +155,54 @@ static SingeResult obj_face(Obj *obj) {
     return SINGE_OK;
 }
 
-// Lines about appearance, groups, points and lines are ignored.
-static bool obj_is_passed_over(const uint8_t *begin, const uint8_t *end) {
-    static const char *const known[] = {"vn",     "vp",     "g",        "o",        "s",          "mg",
-                                        "usemtl", "mtllib", "usemap",   "maplib",   "shadow_obj", "trace_obj",
-                                        "bevel",  "lod",    "c_interp", "d_interp", "l",          "p"};
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        if (text_word_is(begin, end, known[i])) return true;
-    return false;
-}
-
-static void obj_skip_line(Obj *obj) {
-    for (; !text_at_line_end(&obj->text); obj->text.at++) {
-        size_t length = obj_continuation(obj->text.at, obj->text.end);
-        if (!length) continue;
-        obj->text.at += length - 1;
-        obj->text.line++;
-    }
-}
-
 static SingeResult obj_line(Obj *obj) {
+    static const char *const ignored[] = {"vn",     "vp",     "g",        "o",        "s",          "mg",
+                                          "usemtl", "mtllib", "usemap",   "maplib",   "shadow_obj", "trace_obj",
+                                          "bevel",  "lod",    "c_interp", "d_interp", "l",          "p"};
     const uint8_t *word = obj->text.at, *end = text_word_end(&obj->text);
     const uint8_t *cut = memchr(word, '\\', (size_t)(end - word));
     if (cut && obj_continuation(cut, obj->text.end)) end = cut;
+
     bool vertex = text_word_is(word, end, "v"), uv = text_word_is(word, end, "vt");
+
+    // lines about appearance, groups, points and lines
     if (!vertex && !uv && !text_word_is(word, end, "f")) {
-        if (!obj_is_passed_over(word, end)) return obj_refuse_word(obj, "is not a directive that Singe knows");
-        obj_skip_line(obj);
+        size_t i = 0;
+        while (i < sizeof ignored / sizeof *ignored && !text_word_is(word, end, ignored[i])) i++;
+        if (i == sizeof ignored / sizeof *ignored) return obj_refuse_word(obj, "is not a directive that Singe knows");
+        for (; !text_at_line_end(&obj->text); obj->text.at++) {
+            size_t length = obj_continuation(obj->text.at, obj->text.end);
+            if (!length) continue;
+            obj->text.at += length - 1;
+            obj->text.line++;
+        }
         return SINGE_OK;
     }
+
     obj->text.at = end;
-    return vertex ? obj_vertex(obj) : uv ? obj_uv(obj) : obj_face(obj);
+    if (vertex) { // v x y z [w | r g b [w]]
+        if (obj->position_count >= MESH_COUNT_LIMIT) return obj_refuse(obj, SINGE_ERROR_LIMIT, "too many vertices");
+        if (!store_grow(obj->allocator, &obj->positions, &obj->position_capacity, obj->position_count + 1,
+                        sizeof *obj->positions))
+            return refuse_memory(obj->error, "obj", obj->name);
+        TRY(obj_numbers(obj, 3, 7, 3, obj->positions[obj->position_count], "a vertex is v x y z"));
+        obj->position_count++;
+        return SINGE_OK;
+    }
+
+    if (uv) { // vt u [v [w]]
+        if (obj->uv_count >= MESH_COUNT_LIMIT)
+            return obj_refuse(obj, SINGE_ERROR_LIMIT, "too many texture coordinates");
+        if (!store_grow(obj->allocator, &obj->uvs, &obj->uv_capacity, obj->uv_count + 1, sizeof *obj->uvs))
+            return refuse_memory(obj->error, "obj", obj->name);
+        float *made = obj->uvs[obj->uv_count];
+        made[0] = made[1] = 0;
+        TRY(obj_numbers(obj, 1, 3, 2, made, "a texture coordinate is vt u v"));
+        obj->uv_count++;
+        return SINGE_OK;
+    }
+
+    return obj_face(obj);
 }
 
 static SingeResult obj_parse(Obj *obj) {
@@ -223,42 +221,10 @@ static SingeResult obj_parse(Obj *obj) {
 
 // ---- from the file's lists to the mesh
 
-static bool obj_has_uv(const Obj *obj) {
-    for (size_t i = 0; i < obj->corner_count; i++)
-        if (obj->corners[i].uv >= 0) return true;
-    return false;
-}
-
-static SingeResult obj_fill_corner(const Obj *obj, const ObjFace *face, size_t i, Polygons *polygons) {
-    ObjCorner corner = obj->corners[i];
-    if ((size_t)corner.vertex >= obj->position_count || (corner.uv >= 0 && (size_t)corner.uv >= obj->uv_count))
-        return refuse(obj->error, SINGE_ERROR_MESH, "obj", face->line,
-                      "%s:%u: corner %d is out of range: there are %llu vertices, %llu texture coordinates",
-                      short_name(obj->name), face->line, (int)(i - face->first) + 1,
-                      (unsigned long long)obj->position_count, (unsigned long long)obj->uv_count);
-    polygons->corners[i] = (uint32_t)corner.vertex;
-    if (!polygons->uv) return SINGE_OK;
-    if (corner.uv < 0)
-        return obj_refuse_at(obj, SINGE_ERROR_MESH, face->line,
-                             "a corner has no texture coordinate, though others have");
-    memcpy(polygons->uv + 2 * i, obj->uvs[corner.uv], 2 * sizeof *polygons->uv);
-    return SINGE_OK;
-}
-
-static SingeResult obj_fill(const Obj *obj, Polygons *polygons) {
-    for (size_t f = 0; f < obj->face_count; f++) {
-        size_t end = f + 1 < obj->face_count ? obj->faces[f + 1].first : obj->corner_count;
-        polygons->first[f] = obj->faces[f].first;
-        polygons->lines[f] = obj->faces[f].line;
-        for (size_t i = obj->faces[f].first; i < end; i++) TRY(obj_fill_corner(obj, &obj->faces[f], i, polygons));
-    }
-    polygons->first[obj->face_count] = (uint32_t)obj->corner_count;
-    return SINGE_OK;
-}
-
 static SingeResult obj_finish(Obj *obj, Polygons *polygons) {
     SingeAllocator allocator = obj->allocator;
-    bool uv = obj_has_uv(obj);
+    bool uv = false;
+    for (size_t i = 0; i < obj->corner_count && !uv; i++) uv = obj->corners[i].uv >= 0;
     polygons->allocator = allocator;
     polygons->face_count = (uint32_t)obj->face_count;
     polygons->corner_count = (uint32_t)obj->corner_count;
@@ -268,7 +234,29 @@ static SingeResult obj_finish(Obj *obj, Polygons *polygons) {
     if (uv) polygons->uv = store_new(allocator, obj->corner_count, 2 * sizeof *polygons->uv);
     if (!polygons->first || !polygons->corners || !polygons->lines || (uv && !polygons->uv))
         return refuse_memory(obj->error, "obj", obj->name);
-    TRY(obj_fill(obj, polygons));
+
+    for (size_t f = 0; f < obj->face_count; f++) {
+        size_t end = f + 1 < obj->face_count ? obj->faces[f + 1].first : obj->corner_count;
+        polygons->first[f] = obj->faces[f].first;
+        polygons->lines[f] = obj->faces[f].line;
+        for (size_t i = obj->faces[f].first; i < end; i++) {
+            ObjCorner corner = obj->corners[i];
+            if ((size_t)corner.vertex >= obj->position_count || (corner.uv >= 0 && (size_t)corner.uv >= obj->uv_count))
+                return refuse(obj->error, SINGE_ERROR_MESH, "obj", obj->faces[f].line,
+                              "%s:%u: corner %d is out of range: there are %llu vertices, %llu texture coordinates",
+                              short_name(obj->name), obj->faces[f].line, (int)(i - obj->faces[f].first) + 1,
+                              (unsigned long long)obj->position_count, (unsigned long long)obj->uv_count);
+            polygons->corners[i] = (uint32_t)corner.vertex;
+            if (!polygons->uv) continue;
+            if (corner.uv < 0)
+                return obj_refuse_at(obj, SINGE_ERROR_MESH, obj->faces[f].line,
+                                     "a corner has no texture coordinate, though others have");
+            memcpy(polygons->uv + 2 * i, obj->uvs[corner.uv], 2 * sizeof *polygons->uv);
+        }
+    }
+
+    polygons->first[obj->face_count] = (uint32_t)obj->corner_count;
+
     if (!store_trim(allocator, &obj->positions, &obj->position_capacity, obj->position_count, sizeof *obj->positions))
         return refuse_memory(obj->error, "obj", obj->name);
     polygons->positions = (float *)obj->positions;

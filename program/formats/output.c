@@ -1,4 +1,9 @@
+
 #include "formats/output.h"
+
+#include "common/store.h"
+
+#include <string.h>
 
 #define OUTPUT_ROW(name, ...) {#name, __VA_ARGS__},
 const OutputFormat output_formats[OUTPUT_COUNT] = {OUTPUT_FORMATS(OUTPUT_ROW)};
@@ -11,4 +16,62 @@ const OutputSingle output_singles[OUTPUT_SINGLE_COUNT] = {{"usd", true, ".usdc",
 SingeResult ply_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame, SingeError *error) {
     (void)scene;
     return ply_write_surface(path, frame->surface, frame->time, error);
+}
+
+// ---- sheets
+
+/// Sorts 0 to count - 1 by sheet. first[sheet_count] is the count.
+static void sort_by_sheet(const SheetParts *p, const uint32_t (*triangles)[3], uint32_t count, uint32_t *first,
+                          uint32_t *sorted) {
+    const int32_t *sheets = p->surface->sheet;
+    memset(first, 0, (p->sheet_count + 1) * sizeof *first);
+    for (uint32_t i = 0; i < count; i++) first[sheets[triangles ? triangles[i][0] : i] + 1]++;
+    for (uint32_t i = 0; i < p->sheet_count; i++) first[i + 1] += first[i];
+    for (uint32_t i = 0; i < count; i++) sorted[first[sheets[triangles ? triangles[i][0] : i]]++] = i;
+    memmove(first + 1, first, p->sheet_count * sizeof *first);
+    first[0] = 0;
+}
+
+SingeResult sheet_parts_make(SheetParts *p, const SingeSurface *s, uint32_t sheet_count, const char *path,
+                             SingeError *error) {
+    const SingeAllocator a = s->allocator;
+    *p = (SheetParts){.surface = s, .sheet_count = sheet_count};
+
+    for (uint32_t v = 0; v < s->vertex_count; v++)
+        if (s->sheet[v] < 0 || (uint32_t)s->sheet[v] >= sheet_count)
+            return refuse(error, SINGE_ERROR_FORMAT, "output", v,
+                          "%s: vertex %u belongs to sheet %d; the scene has %u sheets", short_name(path), v,
+                          (int)s->sheet[v], sheet_count);
+
+    for (uint32_t t = 0; t < s->triangle_count; t++)
+        for (int k = 1; k < 3; k++)
+            if (s->sheet[s->triangles[t][k]] != s->sheet[s->triangles[t][0]])
+                return refuse(error, SINGE_ERROR_FORMAT, "output", t, "%s: triangle %u belongs to two sheets",
+                              short_name(path), t);
+
+    p->vertex_first = store_new(a, (size_t)sheet_count + 1, 4);
+    p->triangle_first = store_new(a, (size_t)sheet_count + 1, 4);
+    p->vertices = store_new(a, s->vertex_count, 4);
+    p->triangles = store_new(a, s->triangle_count, 4);
+    p->local = store_new(a, s->vertex_count, 4);
+    if (!p->vertex_first || !p->triangle_first || !p->vertices || !p->triangles || !p->local)
+        return refuse_memory(error, "output", path);
+    sort_by_sheet(p, NULL, s->vertex_count, p->vertex_first, p->vertices);
+    sort_by_sheet(p, (const uint32_t(*)[3])s->triangles, s->triangle_count, p->triangle_first, p->triangles);
+
+    for (uint32_t i = 0; i < s->vertex_count; i++) {
+        const uint32_t v = p->vertices[i];
+        p->local[v] = i - p->vertex_first[s->sheet[v]];
+    }
+    return SINGE_OK;
+}
+
+void sheet_parts_free(SheetParts *p) {
+    const SingeSurface *s = p->surface;
+    const SingeAllocator a = s->allocator;
+    store_free(a, p->vertex_first, (size_t)p->sheet_count + 1, 4);
+    store_free(a, p->triangle_first, (size_t)p->sheet_count + 1, 4);
+    store_free(a, p->vertices, s->vertex_count, 4);
+    store_free(a, p->triangles, s->triangle_count, 4);
+    store_free(a, p->local, s->vertex_count, 4);
 }

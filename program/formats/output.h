@@ -6,6 +6,9 @@
 
 #include "formats/formats.h"
 
+#include <stddef.h>
+#include <string.h>
+
 /// A frame as passed to writers.
 typedef struct OutputFrame {
     const SingeSurface *surface;
@@ -154,5 +157,65 @@ extern const OutputSingle output_singles[OUTPUT_SINGLE_COUNT];
 /// A set of formats, a bit each.
 typedef uint32_t OutputSet;
 static inline bool output_has(OutputSet set, int format) { return set >> format & 1; }
+
+// ---- the fields of a drawn vertex, by their names in every format
+
+typedef struct SurfaceField {
+    const char *name;
+    size_t array; ///< offset of the array's pointer in SingeSurface
+    bool integer;
+} SurfaceField;
+
+/// Scalar fields; each format has names of its own for vectors.
+static const SurfaceField surface_fields[] = {
+    {"temperature", offsetof(SingeSurface, temperature), false},
+    {"temperature_peak", offsetof(SingeSurface, temperature_peak), false},
+    {"mass", offsetof(SingeSurface, mass), false},
+    {"burn_rate", offsetof(SingeSurface, burn_rate), false},
+    {"char_fraction", offsetof(SingeSurface, char_fraction), false},
+    {"ash_fraction", offsetof(SingeSurface, ash_fraction), false},
+    {"burnt", offsetof(SingeSurface, burn), false},
+    {"time_ignited", offsetof(SingeSurface, time_ignited), false},
+    {"piece_id", offsetof(SingeSurface, piece), true},
+    {"vertex_id", offsetof(SingeSurface, source_vertex), true},
+    {"sheet", offsetof(SingeSurface, sheet), true},
+};
+enum { SURFACE_FIELDS = sizeof surface_fields / sizeof *surface_fields };
+
+/// The values of a field: floats or int32_t.
+static inline const void *surface_field(const SingeSurface *surface, const SurfaceField *field) {
+    const void *array;
+    memcpy(&array, (const char *)surface + field->array, sizeof array);
+    return array;
+}
+
+// ---- a surface by sheet, for formats with a mesh for each
+
+/// Vertices and triangles by sheet, each in the surface's order.
+typedef struct SheetParts {
+    const SingeSurface *surface;
+    uint32_t sheet_count;
+    uint32_t *vertex_first, *triangle_first; ///< [sheet_count + 1]
+    uint32_t *vertices, *triangles;          ///< by sheet
+    uint32_t *local;                         ///< [vertex_count] a vertex's number in its sheet
+} SheetParts;
+
+/// The part of one sheet.
+typedef struct SheetPart {
+    uint32_t sheet, count, triangle_count;
+    const uint32_t *vertices, *triangles;
+} SheetPart;
+
+/// Sorts a surface whose sheets are 0 to sheet_count - 1. SINGE_ERROR_FORMAT if they are not, or if a triangle belongs
+/// to two. Free it also after failure.
+SINGE_NODISCARD SingeResult sheet_parts_make(SheetParts *parts, const SingeSurface *surface, uint32_t sheet_count,
+                                             const char *path, SingeError *error);
+void sheet_parts_free(SheetParts *parts);
+
+static inline SheetPart sheet_part(const SheetParts *p, uint32_t sheet) {
+    return (SheetPart){sheet, p->vertex_first[sheet + 1] - p->vertex_first[sheet],
+                       p->triangle_first[sheet + 1] - p->triangle_first[sheet], p->vertices + p->vertex_first[sheet],
+                       p->triangles + p->triangle_first[sheet]};
+}
 
 #endif

@@ -2,11 +2,13 @@
 // other properties of a face are ignored.
 #include "formats/ply.h"
 
+#include "common/store.h"
 #include "formats/mesh_reader.h"
 #include "formats/number.h"
-#include "common/store.h"
 
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 
 // The target of a vertex property: every `stride`th float from `values`, times `scale`; NULL: ignored.
 typedef struct PlyTarget {
@@ -19,76 +21,56 @@ typedef struct PlyTarget {
 
 static SingeResult ply_ended(const Ply *ply) { return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file ends too soon"); }
 
-static uint64_t ply_bits(const uint8_t *p, size_t size, bool big) {
-    uint64_t bits = 0;
-    for (size_t i = 0; i < size; i++) bits |= (uint64_t)p[i] << 8 * (big ? size - 1 - i : i);
-    return bits;
-}
-
-static double ply_decode(PlyType type, uint64_t bits) {
-    float single;
-    double twice;
-    uint32_t low = (uint32_t)bits;
-    switch (type) {
-    case PLY_INT8: return (double)(bits & 0x7f) - (double)(bits & 0x80);
-    case PLY_INT16: return (double)(bits & 0x7fff) - (double)(bits & 0x8000);
-    case PLY_INT32: return (double)(bits & 0x7fffffff) - (double)(bits & 0x80000000);
-    case PLY_FLOAT32: memcpy(&single, &low, sizeof single); return single;
-    case PLY_FLOAT64: memcpy(&twice, &bits, sizeof twice); return twice;
-    default: return (double)bits;
-    }
-}
-
-static SingeResult ply_text_value(Ply *ply, PlyType type, double *value) {
-    static const double min[] = {-128, 0, -32768, 0, -2147483648.0, 0};
-    static const double max[] = {127, 255, 32767, 65535, 2147483647.0, 4294967295.0};
-    Text *text = &ply->text;
-    text_skip_blanks(text);
-    const uint8_t *word = text->at, *end = text_word_end(text);
-    if (word == end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the line has too few values");
-    float single = 0;
-    NumberStatus status = number_float(&text->at, end, &single);
-    *value = single;
-    // an integer is read as one: a float would round it
-    if (type < PLY_FLOAT32 && status == NUMBER_OK) {
-        int64_t integer = 0;
-        text->at = word;
-        status = number_integer(&text->at, end, &integer);
-        *value = (double)integer;
-        if (status == NUMBER_OK && (*value < min[type] || *value > max[type])) status = NUMBER_RANGE;
-    }
-    if (status == NUMBER_OK && text->at == end) return SINGE_OK;
-    text->at = word;
-    return ply_refuse(ply, SINGE_ERROR_FORMAT, "the value in column %lld is %s",
-                      (long long)text_column(text, ply->begin),
-                      status == NUMBER_NOT_FINITE ? "not a finite number"
-                      : status == NUMBER_RANGE    ? "out of range"
-                      : type < PLY_FLOAT32        ? "not an integer"
-                                                  : "not a number");
-}
-
 static SingeResult ply_value(Ply *ply, PlyType type, double *value) {
-    if (ply->header.format == PLY_ASCII) return ply_text_value(ply, type, value);
+    if (ply->header.format == PLY_ASCII) {
+        static const double min[] = {-128, 0, -32768, 0, -2147483648.0, 0};
+        static const double max[] = {127, 255, 32767, 65535, 2147483647.0, 4294967295.0};
+        Text *text = &ply->text;
+        text_skip_blanks(text);
+        const uint8_t *word = text->at, *end = text_word_end(text);
+        if (word == end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the line has too few values");
+        float single = 0;
+        NumberStatus status = number_float(&text->at, end, &single);
+        *value = single;
+        // an integer is read as one: a float would round it
+        if (type < PLY_FLOAT32 && status == NUMBER_OK) {
+            int64_t integer = 0;
+            text->at = word;
+            status = number_integer(&text->at, end, &integer);
+            *value = (double)integer;
+            if (status == NUMBER_OK && (*value < min[type] || *value > max[type])) status = NUMBER_RANGE;
+        }
+        if (status == NUMBER_OK && text->at == end) return SINGE_OK;
+        text->at = word;
+        return ply_refuse(ply, SINGE_ERROR_FORMAT, "the value in column %lld is %s",
+                          (long long)text_column(text, ply->begin),
+                          status == NUMBER_NOT_FINITE ? "not a finite number"
+                          : status == NUMBER_RANGE    ? "out of range"
+                          : type < PLY_FLOAT32        ? "not an integer"
+                                                      : "not a number");
+    }
+
     size_t size = ply_type_size(type);
     if ((size_t)(ply->text.end - ply->text.at) < size) return ply_ended(ply);
-    *value = ply_decode(type, ply_bits(ply->text.at, size, ply->header.format == PLY_BIG));
+    uint64_t bits = 0;
+    for (size_t i = 0; i < size; i++)
+        bits |= (uint64_t)ply->text.at[i] << 8 * (ply->header.format == PLY_BIG ? size - 1 - i : i);
+
+    float single;
+    uint32_t low = (uint32_t)bits;
+    switch (type) {
+    case PLY_INT8: *value = (double)(bits & 0x7f) - (double)(bits & 0x80); break;
+    case PLY_INT16: *value = (double)(bits & 0x7fff) - (double)(bits & 0x8000); break;
+    case PLY_INT32: *value = (double)(bits & 0x7fffffff) - (double)(bits & 0x80000000); break;
+    case PLY_FLOAT32:
+        memcpy(&single, &low, sizeof single);
+        *value = single;
+        break;
+    case PLY_FLOAT64: memcpy(value, &bits, sizeof *value); break;
+    default: *value = (double)bits; break;
+    }
     if (!isfinite(*value)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a value is not a finite number");
     ply->text.at += size;
-    return SINGE_OK;
-}
-
-static SingeResult ply_skip_values(Ply *ply, PlyType type, uint64_t count) {
-    Text *text = &ply->text;
-    if (ply->header.format != PLY_ASCII) {
-        if ((uint64_t)(text->end - text->at) / ply_type_size(type) < count) return ply_ended(ply);
-        text->at += count * ply_type_size(type);
-        return SINGE_OK;
-    }
-    for (; count; count--) {
-        text_skip_blanks(text);
-        if (text_at_line_end(text)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the line has too few values");
-        text->at = text_word_end(text);
-    }
     return SINGE_OK;
 }
 
@@ -103,7 +85,20 @@ static SingeResult ply_list_length(Ply *ply, const PlyProperty *property, uint64
 static SingeResult ply_skip_property(Ply *ply, const PlyProperty *property) {
     uint64_t count = 1;
     if (property->is_list) TRY(ply_list_length(ply, property, &count));
-    return ply_skip_values(ply, property->type, count);
+
+    Text *text = &ply->text;
+    if (ply->header.format != PLY_ASCII) {
+        if ((uint64_t)(text->end - text->at) / ply_type_size(property->type) < count) return ply_ended(ply);
+        text->at += count * ply_type_size(property->type);
+        return SINGE_OK;
+    }
+
+    for (; count; count--) {
+        text_skip_blanks(text);
+        if (text_at_line_end(text)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the line has too few values");
+        text->at = text_word_end(text);
+    }
+    return SINGE_OK;
 }
 
 // In text, an element has a line of its own.
@@ -143,41 +138,6 @@ static bool ply_is_attribute(const PlyProperty *property, const PlyTarget *targe
     return !property->is_list && !target->values;
 }
 
-static SingeResult ply_plan_attribute(Ply *ply, const PlyProperty *property, uint32_t vertex_count,
-                                      SingeAttribute *attribute, PlyTarget *target) {
-    static const char *const colours[] = {"red", "green", "blue", "alpha"};
-    size_t length = (size_t)(property->name_end - property->name);
-    char *name = store_new(ply->allocator, length + 1, 1);
-    if (!name) return refuse_memory(ply->error, "ply", ply->name);
-    memcpy(name, property->name, length);
-    name[length] = 0;
-    attribute->name = name;
-    float *values = store_new(ply->allocator, vertex_count, sizeof *values);
-    if (!values) return refuse_memory(ply->error, "ply", ply->name);
-    attribute->values = values;
-    *target = (PlyTarget){values, 1, 1};
-    // 8-bit colours map to 0 to 1, as everywhere else
-    for (int i = 0; i < 4; i++)
-        if (property->type == PLY_UINT8 && strcmp(name, colours[i]) == 0) target->scale = 1 / 255.0f;
-    return SINGE_OK;
-}
-
-static SingeResult ply_plan_attributes(Ply *ply, const PlyElement *element, Polygons *mesh, PlyTarget *targets) {
-    const PlyProperty *properties = ply->header.properties + element->first_property;
-    uint32_t count = 0;
-    for (size_t i = 0; i < element->property_count; i++) count += ply_is_attribute(&properties[i], &targets[i]);
-    if (count == 0) return SINGE_OK;
-    mesh->attributes = store_new(ply->allocator, count, sizeof *mesh->attributes);
-    if (!mesh->attributes) return refuse_memory(ply->error, "ply", ply->name);
-    memset(mesh->attributes, 0, count * sizeof *mesh->attributes);
-    mesh->attribute_count = count;
-    SingeAttribute *next = mesh->attributes;
-    for (size_t i = 0; i < element->property_count; i++)
-        if (ply_is_attribute(&properties[i], &targets[i]))
-            TRY(ply_plan_attribute(ply, &properties[i], mesh->vertex_count, next++, &targets[i]));
-    return SINGE_OK;
-}
-
 static SingeResult ply_plan_vertices(Ply *ply, const PlyElement *element, Polygons *mesh, float **uv,
                                      PlyTarget *targets) {
     static const char *const axes[] = {"x", "y", "z"};
@@ -188,10 +148,12 @@ static SingeResult ply_plan_vertices(Ply *ply, const PlyElement *element, Polygo
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "vertices have no property \"%s\"", axes[i]);
     mesh->positions = store_new(ply->allocator, mesh->vertex_count, 3 * sizeof *mesh->positions);
     if (!mesh->positions) return refuse_memory(ply->error, "ply", ply->name);
+
     for (int i = 0; i < 3; i++) {
         ply_scalar(ply, element, axes[i], &index);
         targets[index] = (PlyTarget){mesh->positions + i, 3, 1};
     }
+
     for (int i = 0; i < 3 && !*uv; i++) {
         if (!ply_scalar(ply, element, uvs[i][0], &index) || !ply_scalar(ply, element, uvs[i][1], &other)) continue;
         *uv = store_new(ply->allocator, mesh->vertex_count, 2 * sizeof **uv);
@@ -199,7 +161,36 @@ static SingeResult ply_plan_vertices(Ply *ply, const PlyElement *element, Polygo
         targets[index] = (PlyTarget){*uv, 2, 1};
         targets[other] = (PlyTarget){*uv + 1, 2, 1};
     }
-    return ply_plan_attributes(ply, element, mesh, targets);
+
+    const PlyProperty *properties = ply->header.properties + element->first_property;
+    uint32_t count = 0;
+    for (size_t i = 0; i < element->property_count; i++) count += ply_is_attribute(&properties[i], &targets[i]);
+    if (count == 0) return SINGE_OK;
+    mesh->attributes = store_new(ply->allocator, count, sizeof *mesh->attributes);
+    if (!mesh->attributes) return refuse_memory(ply->error, "ply", ply->name);
+    memset(mesh->attributes, 0, count * sizeof *mesh->attributes);
+    mesh->attribute_count = count;
+
+    SingeAttribute *next = mesh->attributes;
+    for (size_t i = 0; i < element->property_count; i++)
+        if (ply_is_attribute(&properties[i], &targets[i])) {
+            static const char *const colours[] = {"red", "green", "blue", "alpha"};
+            size_t length = (size_t)(properties[i].name_end - properties[i].name);
+            char *name = store_new(ply->allocator, length + 1, 1);
+            if (!name) return refuse_memory(ply->error, "ply", ply->name);
+            memcpy(name, properties[i].name, length);
+            name[length] = 0;
+            next->name = name;
+            float *values = store_new(ply->allocator, mesh->vertex_count, sizeof *values);
+            if (!values) return refuse_memory(ply->error, "ply", ply->name);
+            (next++)->values = values;
+            targets[i] = (PlyTarget){values, 1, 1};
+            // 8-bit colours map to 0 to 1, as everywhere else
+            for (int k = 0; k < 4; k++)
+                if (properties[i].type == PLY_UINT8 && strcmp(name, colours[k]) == 0) targets[i].scale = 1 / 255.0f;
+        }
+
+    return SINGE_OK;
 }
 
 static SingeResult ply_read_vertex(Ply *ply, const PlyElement *element, const PlyTarget *targets, size_t vertex) {
@@ -216,6 +207,7 @@ static SingeResult ply_read_vertex(Ply *ply, const PlyElement *element, const Pl
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "a value is too large for a float");
         targets[i].values[targets[i].stride * vertex] = (float)value * targets[i].scale;
     }
+
     return ply_end_row(ply);
 }
 
@@ -238,45 +230,6 @@ typedef struct PlyFaces {
     size_t corner_capacity, uv_capacity;
 } PlyFaces;
 
-static SingeResult ply_read_corners(Ply *ply, PlyFaces *faces) {
-    Polygons *mesh = faces->mesh;
-    uint64_t count = 0;
-    TRY(ply_list_length(ply, faces->corners, &count));
-    if (count < 3)
-        return ply_refuse(ply, SINGE_ERROR_MESH, "face has %llu corner%s; it needs three", (unsigned long long)count,
-                          count == 1 ? "" : "s");
-    for (; count; count--) {
-        double value;
-        TRY(ply_value(ply, faces->corners->type, &value));
-        if (value < 0 || value >= mesh->vertex_count)
-            return ply_refuse(ply, SINGE_ERROR_MESH, "vertex index %lld is out of range: the file has %u vertices",
-                              (long long)value, mesh->vertex_count);
-        if (mesh->corner_count >= MESH_COUNT_LIMIT) return ply_refuse(ply, SINGE_ERROR_LIMIT, "too many corners");
-        if (!store_grow(ply->allocator, &mesh->corners, &faces->corner_capacity, (size_t)mesh->corner_count + 1,
-                        sizeof *mesh->corners))
-            return refuse_memory(ply->error, "ply", ply->name);
-        mesh->corners[mesh->corner_count++] = (uint32_t)value;
-    }
-    return SINGE_OK;
-}
-
-// A list of u and v of each corner. It may precede the corners.
-static SingeResult ply_read_uvs(Ply *ply, PlyFaces *faces, size_t *uv_count) {
-    Polygons *mesh = faces->mesh;
-    uint64_t count = 0;
-    TRY(ply_list_length(ply, faces->uvs, &count));
-    for (; count; count--) {
-        double value;
-        TRY(ply_value(ply, faces->uvs->type, &value));
-        if (fabs(value) > 3.4028234663852886e38)
-            return ply_refuse(ply, SINGE_ERROR_FORMAT, "a value is too large for a float");
-        if (!store_grow(ply->allocator, &mesh->uv, &faces->uv_capacity, *uv_count + 1, sizeof *mesh->uv))
-            return refuse_memory(ply->error, "ply", ply->name);
-        mesh->uv[(*uv_count)++] = (float)value;
-    }
-    return SINGE_OK;
-}
-
 static bool ply_is_list(const PlyProperty *property, const char *name, const char *other) {
     return property->is_list && (text_word_is(property->name, property->name_end, name) ||
                                  text_word_is(property->name, property->name_end, other));
@@ -288,77 +241,84 @@ static SingeResult ply_read_face(Ply *ply, const PlyElement *element, PlyFaces *
     size_t uvs = 2 * (size_t)mesh->corner_count;
     mesh->first[f] = mesh->corner_count;
     TRY(ply_begin_row(ply));
+
     for (size_t i = 0; i < element->property_count; i++) {
-        if (&properties[i] == faces->corners) TRY(ply_read_corners(ply, faces));
-        else if (&properties[i] == faces->uvs) TRY(ply_read_uvs(ply, faces, &uvs));
-        else TRY(ply_skip_property(ply, &properties[i]));
+        if (&properties[i] == faces->corners) {
+            uint64_t count = 0;
+            TRY(ply_list_length(ply, faces->corners, &count));
+            if (count < 3)
+                return ply_refuse(ply, SINGE_ERROR_MESH, "face has %llu corner%s; it needs three",
+                                  (unsigned long long)count, count == 1 ? "" : "s");
+            for (; count; count--) {
+                double value;
+                TRY(ply_value(ply, faces->corners->type, &value));
+                if (value < 0 || value >= mesh->vertex_count)
+                    return ply_refuse(ply, SINGE_ERROR_MESH,
+                                      "vertex index %lld is out of range: the file has %u vertices", (long long)value,
+                                      mesh->vertex_count);
+                if (mesh->corner_count >= MESH_COUNT_LIMIT)
+                    return ply_refuse(ply, SINGE_ERROR_LIMIT, "too many corners");
+                if (!store_grow(ply->allocator, &mesh->corners, &faces->corner_capacity, (size_t)mesh->corner_count + 1,
+                                sizeof *mesh->corners))
+                    return refuse_memory(ply->error, "ply", ply->name);
+                mesh->corners[mesh->corner_count++] = (uint32_t)value;
+            }
+        } else if (&properties[i] == faces->uvs) {
+            // a list of u and v of each corner. It may precede the corners.
+            uint64_t count = 0;
+            TRY(ply_list_length(ply, faces->uvs, &count));
+            for (; count; count--) {
+                double value;
+                TRY(ply_value(ply, faces->uvs->type, &value));
+                if (fabs(value) > 3.4028234663852886e38)
+                    return ply_refuse(ply, SINGE_ERROR_FORMAT, "a value is too large for a float");
+                if (!store_grow(ply->allocator, &mesh->uv, &faces->uv_capacity, uvs + 1, sizeof *mesh->uv))
+                    return refuse_memory(ply->error, "ply", ply->name);
+                mesh->uv[uvs++] = (float)value;
+            }
+        } else TRY(ply_skip_property(ply, &properties[i]));
     }
+
     TRY(ply_end_row(ply));
     if (faces->uvs && uvs != 2 * (size_t)mesh->corner_count)
         return ply_refuse(ply, SINGE_ERROR_MESH, "a face needs u and v for each of its corners in \"texcoord\"");
     return SINGE_OK;
 }
 
-// Sets the arrays and their counts, for polygons_free.
-static SingeResult ply_trim_faces(Ply *ply, PlyFaces *faces) {
-    Polygons *mesh = faces->mesh;
-    bool good =
-        store_trim(ply->allocator, &mesh->corners, &faces->corner_capacity, mesh->corner_count, sizeof *mesh->corners);
-    if (good && faces->uvs)
-        good = store_trim(ply->allocator, &mesh->uv, &faces->uv_capacity, 2 * (size_t)mesh->corner_count,
-                          sizeof *mesh->uv);
-    return good ? SINGE_OK : refuse_memory(ply->error, "ply", ply->name);
-}
-
-// Drops a partially read face.
-static void ply_drop_faces(Ply *ply, PlyFaces *faces) {
-    store_free(ply->allocator, faces->mesh->corners, faces->corner_capacity, sizeof *faces->mesh->corners);
-    store_free(ply->allocator, faces->mesh->uv, faces->uv_capacity, sizeof *faces->mesh->uv);
-    faces->mesh->corners = NULL;
-    faces->mesh->uv = NULL;
-    faces->mesh->corner_count = 0;
-}
-
 static SingeResult ply_read_faces(Ply *ply, const PlyElement *element, Polygons *mesh) {
     const PlyProperty *properties = ply->header.properties + element->first_property;
     PlyFaces faces = {.mesh = mesh};
+
     for (size_t i = 0; i < element->property_count; i++) {
         if (!faces.corners && ply_is_list(&properties[i], "vertex_indices", "vertex_index"))
             faces.corners = &properties[i];
         if (!faces.uvs && ply_is_list(&properties[i], "texcoord", "texcoord")) faces.uvs = &properties[i];
     }
+
     if (!faces.corners) return ply_refuse(ply, SINGE_ERROR_FORMAT, "faces have no list \"vertex_indices\"");
     if (faces.corners->type >= PLY_FLOAT32)
         return ply_refuse(ply, SINGE_ERROR_FORMAT, "vertex indices must have an integer type");
     mesh->first = store_new(ply->allocator, (size_t)mesh->face_count + 1, sizeof *mesh->first);
     if (!mesh->first) return refuse_memory(ply->error, "ply", ply->name);
+
     SingeResult result = SINGE_OK;
     for (uint32_t f = 0; f < element->count && !result; f++) result = ply_read_face(ply, element, &faces, f);
-    if (!result) result = ply_trim_faces(ply, &faces);
-    if (result) ply_drop_faces(ply, &faces);
-    else mesh->first[mesh->face_count] = mesh->corner_count;
+    bool trimmed = result || (store_trim(ply->allocator, &mesh->corners, &faces.corner_capacity, mesh->corner_count,
+                                         sizeof *mesh->corners) &&
+                              (!faces.uvs || store_trim(ply->allocator, &mesh->uv, &faces.uv_capacity,
+                                                        2 * (size_t)mesh->corner_count, sizeof *mesh->uv)));
+    if (!trimmed) result = refuse_memory(ply->error, "ply", ply->name);
+
+    if (result) {
+        // drops a partially read face
+        store_free(ply->allocator, faces.mesh->corners, faces.corner_capacity, sizeof *faces.mesh->corners);
+        store_free(ply->allocator, faces.mesh->uv, faces.uv_capacity, sizeof *faces.mesh->uv);
+        faces.mesh->corners = NULL;
+        faces.mesh->uv = NULL;
+        faces.mesh->corner_count = 0;
+    } else mesh->first[mesh->face_count] = mesh->corner_count;
+
     return result;
-}
-
-// uv of the vertices, if the corners have none of their own.
-static SingeResult ply_spread_uv(Ply *ply, const float *uv, Polygons *mesh) {
-    if (!uv || mesh->uv) return SINGE_OK;
-    mesh->uv = store_new(ply->allocator, mesh->corner_count, 2 * sizeof *mesh->uv);
-    if (!mesh->uv) return refuse_memory(ply->error, "ply", ply->name);
-    for (uint32_t i = 0; i < mesh->corner_count; i++)
-        for (size_t k = 0; k < 2; k++) mesh->uv[2 * (size_t)i + k] = uv[2 * (size_t)mesh->corners[i] + k];
-    return SINGE_OK;
-}
-
-static SingeResult ply_skip_element(Ply *ply, const PlyElement *element) {
-    if (element->property_count == 0) return SINGE_OK;
-    for (uint32_t i = 0; i < element->count; i++) {
-        TRY(ply_begin_row(ply));
-        for (size_t k = 0; k < element->property_count; k++)
-            TRY(ply_skip_property(ply, &ply->header.properties[element->first_property + k]));
-        TRY(ply_end_row(ply));
-    }
-    return SINGE_OK;
 }
 
 static SingeResult ply_read_body(Ply *ply, Polygons *mesh, float **uv) {
@@ -367,13 +327,28 @@ static SingeResult ply_read_body(Ply *ply, Polygons *mesh, float **uv) {
     if (!faces || faces->count == 0) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file has no faces");
     mesh->vertex_count = vertices->count;
     mesh->face_count = faces->count;
+
     for (size_t i = 0; i < ply->header.element_count; i++) {
         const PlyElement *element = &ply->header.elements[i];
         if (element == vertices) TRY(ply_read_vertices(ply, element, mesh, uv));
         else if (element == faces) TRY(ply_read_faces(ply, element, mesh));
-        else TRY(ply_skip_element(ply, element));
+        for (uint32_t row = 0; element != vertices && element != faces && row < element->count; row++) {
+            if (element->property_count == 0) break;
+            TRY(ply_begin_row(ply));
+            for (size_t k = 0; k < element->property_count; k++)
+                TRY(ply_skip_property(ply, &ply->header.properties[element->first_property + k]));
+            TRY(ply_end_row(ply));
+        }
     }
-    return ply_spread_uv(ply, *uv, mesh);
+
+    // uv of the vertices, if the corners have none of their own
+    if (!*uv || mesh->uv) return SINGE_OK;
+    mesh->uv = store_new(ply->allocator, mesh->corner_count, 2 * sizeof *mesh->uv);
+    if (!mesh->uv) return refuse_memory(ply->error, "ply", ply->name);
+
+    for (uint32_t i = 0; i < mesh->corner_count; i++)
+        for (size_t k = 0; k < 2; k++) mesh->uv[2 * (size_t)i + k] = (*uv)[2 * (size_t)mesh->corners[i] + k];
+    return SINGE_OK;
 }
 
 SingeResult ply_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator, Polygons *mesh,
@@ -389,4 +364,214 @@ SingeResult ply_read(const char *name, const uint8_t *bytes, size_t size, SingeA
     ply_header_free(&ply);
     if (result) polygons_free(mesh);
     return result;
+}
+
+// ---- the header
+
+// Each name is compared with all earlier ones.
+enum { PLY_ELEMENT_LIMIT = 100, PLY_PROPERTY_LIMIT = 1000 };
+
+// Each type has an old and a new name.
+static const struct {
+    const char *name, *other;
+    size_t size;
+} ply_types[PLY_TYPE_COUNT] = {
+    {"char", "int8", 1}, {"uchar", "uint8", 1}, {"short", "int16", 2},   {"ushort", "uint16", 2},
+    {"int", "int32", 4}, {"uint", "uint32", 4}, {"float", "float32", 4}, {"double", "float64", 8},
+};
+
+size_t ply_type_size(PlyType type) { return ply_types[type].size; }
+const char *ply_type_name(PlyType type) { return ply_types[type].name; }
+
+SingeResult ply_refuse(const Ply *ply, SingeResult code, const char *format, ...) {
+    char what[320];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    long long byte = (long long)(ply->text.at - ply->begin);
+    if (ply->text.line > 0)
+        return refuse(ply->error, code, "ply", ply->text.line, "%s:%lld: %s", short_name(ply->name),
+                      (long long)ply->text.line, what);
+    return refuse(ply->error, code, "ply", byte, "%s: byte %lld: %s", short_name(ply->name), byte, what);
+}
+
+const PlyElement *ply_element(const Ply *ply, const char *name) {
+    for (size_t i = 0; i < ply->header.element_count; i++) {
+        const PlyElement *element = &ply->header.elements[i];
+        if (text_word_is(element->name, element->name_end, name)) return element;
+    }
+    return NULL;
+}
+
+// ---- header lines
+
+typedef struct Word {
+    const uint8_t *begin, *end;
+} Word;
+
+static Word ply_word(Ply *ply) {
+    text_skip_blanks(&ply->text);
+    Word word = {ply->text.at, text_word_end(&ply->text)};
+    ply->text.at = word.end;
+    return word;
+}
+
+static bool word_is(Word word, const char *text) { return text_word_is(word.begin, word.end, text); }
+
+static bool word_same(Word a, const uint8_t *begin, const uint8_t *end) {
+    return a.end - a.begin == end - begin && memcmp(a.begin, begin, (size_t)(end - begin)) == 0;
+}
+
+static SingeResult ply_header_name(Ply *ply, Word *word) {
+    *word = ply_word(ply);
+    if (word->begin == word->end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a name is missing");
+    for (const uint8_t *p = word->begin; p < word->end; p++)
+        if (*p < 32 || *p == 127) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a name has a control character");
+    if (word->end - word->begin > 200) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a name is longer than 200 bytes");
+    return SINGE_OK;
+}
+
+static SingeResult ply_header_type(Ply *ply, Word word, PlyType *type) {
+    for (int i = 0; i < PLY_TYPE_COUNT; i++)
+        if (word_is(word, ply_types[i].name) || word_is(word, ply_types[i].other)) {
+            *type = (PlyType)i;
+            return SINGE_OK;
+        }
+    return ply_refuse(ply, SINGE_ERROR_FORMAT, "a PLY type is missing");
+}
+
+static SingeResult ply_header_element(Ply *ply) {
+    PlyHeader *header = &ply->header;
+    Word name;
+    TRY(ply_header_name(ply, &name));
+    if (header->element_count >= PLY_ELEMENT_LIMIT)
+        return ply_refuse(ply, SINGE_ERROR_LIMIT, "more than %d kinds of elements", PLY_ELEMENT_LIMIT);
+
+    for (size_t i = 0; i < header->element_count; i++)
+        if (word_same(name, header->elements[i].name, header->elements[i].name_end))
+            return ply_refuse(ply, SINGE_ERROR_FORMAT, "an element is declared twice");
+    Word number = ply_word(ply);
+    const uint8_t *at = number.begin;
+    int64_t count;
+    NumberStatus status = number_integer(&at, number.end, &count);
+    if (status == NUMBER_JUNK || (status == NUMBER_OK && (at != number.end || count < 0)))
+        return ply_refuse(ply, SINGE_ERROR_FORMAT, "the line has no count of elements");
+    if (status == NUMBER_RANGE || count > MESH_COUNT_LIMIT)
+        return ply_refuse(ply, SINGE_ERROR_LIMIT, "too many elements");
+    if (!store_grow(ply->allocator, &header->elements, &header->element_capacity, header->element_count + 1,
+                    sizeof(PlyElement)))
+        return refuse_memory(ply->error, "ply", ply->name);
+    header->elements[header->element_count++] =
+        (PlyElement){name.begin, name.end, (uint32_t)count, header->property_count, 0};
+    return SINGE_OK;
+}
+
+static SingeResult ply_header_property(Ply *ply) {
+    PlyHeader *header = &ply->header;
+    if (header->element_count == 0) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a property before any element");
+    PlyElement *element = &header->elements[header->element_count - 1];
+    PlyProperty property = {0};
+    Word word = ply_word(ply), name;
+    property.is_list = word_is(word, "list");
+
+    if (property.is_list) {
+        TRY(ply_header_type(ply, ply_word(ply), &property.count_type));
+        if (property.count_type >= PLY_FLOAT32)
+            return ply_refuse(ply, SINGE_ERROR_FORMAT, "the length of a list must have an integer type");
+        word = ply_word(ply);
+    }
+
+    TRY(ply_header_type(ply, word, &property.type));
+    TRY(ply_header_name(ply, &name));
+    if (element->property_count >= PLY_PROPERTY_LIMIT)
+        return ply_refuse(ply, SINGE_ERROR_LIMIT, "more than %d properties", PLY_PROPERTY_LIMIT);
+
+    for (size_t i = element->first_property; i < header->property_count; i++)
+        if (word_same(name, header->properties[i].name, header->properties[i].name_end))
+            return ply_refuse(ply, SINGE_ERROR_FORMAT, "a property is declared twice");
+    property.name = name.begin;
+    property.name_end = name.end;
+    if (!store_grow(ply->allocator, &header->properties, &header->property_capacity, header->property_count + 1,
+                    sizeof property))
+        return refuse_memory(ply->error, "ply", ply->name);
+    header->properties[header->property_count++] = property;
+    element->property_count++;
+    return SINGE_OK;
+}
+
+SingeResult ply_read_header(Ply *ply) {
+    Text *text = &ply->text;
+    if (text->at == text->end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file is empty");
+    if (!word_is(ply_word(ply), "ply") || text_end_length(text->at, text->end) == 0)
+        return ply_refuse(ply, SINGE_ERROR_FORMAT, "not a PLY file: it must begin with a line \"ply\"");
+
+    bool known = false, ended = false;
+    // the first line shows how lines end: after a lone CR, a first body byte of 10 is not part of the line end
+    bool lone_return = text_end_length(text->at, text->end) == 1 && *text->at == '\r';
+    while (!ended) {
+        text->at += lone_return ? 1 : text_end_length(text->at, text->end);
+        text->line++;
+
+        Word word = ply_word(ply);
+        ended = word_is(word, "end_header");
+        if (word_is(word, "comment") || word_is(word, "obj_info")) {
+            text_skip_blanks(&ply->text);
+            const uint8_t *begin = ply->text.at;
+            while (!text_at_line_end(&ply->text)) ply->text.at++;
+            if (!ply->header.note && ply->text.at - begin > 6 && memcmp(begin, "singe ", 6) == 0) {
+                ply->header.note = begin;
+                ply->header.note_end = ply->text.at;
+            }
+        } else if (word_is(word, "format")) {
+            static const char *const formats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+            Word name = ply_word(ply), version = ply_word(ply);
+            if (known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the format is declared twice");
+            for (int i = 0; i < 3; i++)
+                if (word_is(name, formats[i])) {
+                    ply->header.format = (PlyFormat)i;
+                    known = true;
+                }
+            if (!known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a PLY format");
+            if (!word_is(version, "1.0"))
+                return ply_refuse(ply, SINGE_ERROR_FORMAT, "only PLY version 1.0 is supported");
+        } else if (word_is(word, "element")) TRY(ply_header_element(ply));
+        else if (word_is(word, "property")) TRY(ply_header_property(ply));
+        else if (!ended) return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a line of a PLY header");
+        text_skip_blanks(&ply->text);
+        if (!text_at_line_end(&ply->text)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "too many words on the line");
+        if (ply->text.at == ply->text.end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the header is cut off");
+    }
+    if (!known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the header has no format line");
+    text->at += lone_return ? 1 : text_end_length(text->at, text->end);
+    text->line++;
+    if (ply->header.format != PLY_ASCII) text->line = 0;
+
+    // counts are checked against the size of the file before memory is allocated
+    const PlyHeader *header = &ply->header;
+    uint64_t left = (uint64_t)(ply->text.end - ply->text.at) + (header->format == PLY_ASCII);
+
+    for (size_t i = 0; i < header->element_count; i++) {
+        const PlyElement *element = &header->elements[i];
+        uint64_t min = 0;
+        for (size_t k = 0; k < element->property_count; k++) {
+            const PlyProperty *property = &header->properties[element->first_property + k];
+            if (header->format == PLY_ASCII) min += 2; // a digit and a separator
+            else min += ply_type_size(property->is_list ? property->count_type : property->type);
+        }
+        // the product is below 2^31 * 8000
+        if (min * element->count > left)
+            return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file is too short for its %u elements of kind %zu",
+                              element->count, i + 1);
+        left -= min * element->count;
+    }
+
+    return SINGE_OK;
+}
+
+void ply_header_free(Ply *ply) {
+    PlyHeader *header = &ply->header;
+    store_free(ply->allocator, header->elements, header->element_capacity, sizeof *header->elements);
+    store_free(ply->allocator, header->properties, header->property_capacity, sizeof *header->properties);
+    memset(header, 0, sizeof *header);
 }

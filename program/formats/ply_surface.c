@@ -66,25 +66,35 @@ static uint64_t surface_data_size(const SingeSurface *surface) {
 
 // ---- writing
 
-static size_t surface_header(char *text, const SingeSurface *surface, double time) {
-    char number[40];
+SingeResult ply_write_surface(const char *path, const SingeSurface *surface, double time, SingeError *error) {
+    if (!isfinite(time))
+        return refuse(error, SINGE_ERROR_ARGUMENT, "cache", -1, "%s: the time is not finite", short_name(path));
+    if (surface->vertex_count > MESH_COUNT_LIMIT || surface->triangle_count > MESH_COUNT_LIMIT)
+        return refuse(error, SINGE_ERROR_LIMIT, "cache", -1, "%s: too many vertices or triangles", short_name(path));
+
+    uint64_t max = HEADER_LIMIT + surface_data_size(surface);
+    if (max > SIZE_MAX / 2) return refuse_memory(error, "cache", path);
+    uint8_t *bytes = store_new(surface->allocator, (size_t)max, 1);
+    if (!bytes) return refuse_memory(error, "cache", path);
+
+    char number[40], *text = (char *)bytes;
     number_print(time, number);
     size_t n = (size_t)snprintf(text, HEADER_LIMIT,
                                 "ply\nformat binary_little_endian 1.0\ncomment singe %s time %s\nelement vertex %u\n",
                                 SINGE_VERSION, number, surface->vertex_count);
+
     for (size_t i = 0; i < COLUMNS; i++)
         n += (size_t)snprintf(text + n, HEADER_LIMIT - n, "property %s %s\n", columns[i].integer ? "int" : "float",
                               columns[i].name);
     n += (size_t)snprintf(text + n, HEADER_LIMIT - n,
                           "element face %u\nproperty list uchar int vertex_indices\nend_header\n",
                           surface->triangle_count);
-    return n;
-}
 
-static uint8_t *surface_pack(uint8_t *out, const SingeSurface *surface) {
+    uint8_t *out = bytes + n;
     const uint8_t *source[COLUMNS];
     for (size_t i = 0; i < COLUMNS; i++)
         source[i] = surface->vertex_count ? column_array(surface, &columns[i]) + 4 * columns[i].index : NULL;
+
     for (uint32_t v = 0; v < surface->vertex_count; v++)
         for (size_t i = 0; i < COLUMNS; i++, out += 4) {
             uint32_t bits;
@@ -92,77 +102,49 @@ static uint8_t *surface_pack(uint8_t *out, const SingeSurface *surface) {
             source[i] += 4 * columns[i].width;
             store_u32_little(out, bits);
         }
+
     for (uint32_t f = 0; f < surface->triangle_count; f++) {
         *out++ = 3;
         for (int k = 0; k < 3; k++, out += 4) store_u32_little(out, surface->triangles[f][k]);
     }
-    return out;
-}
 
-SingeResult ply_write_surface(const char *path, const SingeSurface *surface, double time, SingeError *error) {
-    if (!isfinite(time))
-        return refuse(error, SINGE_ERROR_ARGUMENT, "cache", -1, "%s: the time is not finite", short_name(path));
-    if (surface->vertex_count > MESH_COUNT_LIMIT || surface->triangle_count > MESH_COUNT_LIMIT)
-        return refuse(error, SINGE_ERROR_LIMIT, "cache", -1, "%s: too many vertices or triangles", short_name(path));
-    uint64_t max = HEADER_LIMIT + surface_data_size(surface);
-    if (max > SIZE_MAX / 2) return refuse_memory(error, "cache", path);
-    uint8_t *bytes = store_new(surface->allocator, (size_t)max, 1);
-    if (!bytes) return refuse_memory(error, "cache", path);
-    size_t header = surface_header((char *)bytes, surface, time);
-    const uint8_t *end = surface_pack(bytes + header, surface);
-    SingeResult result = file_write(path, bytes, (size_t)(end - bytes), error);
+    SingeResult result = file_write(path, bytes, (size_t)(out - bytes), error);
     store_free(surface->allocator, bytes, (size_t)max, 1);
     return result;
 }
 
 // ---- reading
 
-// The old name of `burnt`, before version 0.2: it is reserved in shading languages.
-static bool is_column(const PlyProperty *property, const char *name) {
-    return text_word_is(property->name, property->name_end, name) ||
-           (strcmp(name, "burnt") == 0 && text_word_is(property->name, property->name_end, "char"));
-}
-
-static bool surface_has_columns(const Ply *ply, const PlyElement *vertices) {
-    if (vertices->property_count != COLUMNS) return false;
-    for (size_t i = 0; i < COLUMNS; i++) {
-        const PlyProperty *property = &ply->header.properties[vertices->first_property + i];
-        if (property->is_list || property->type != (columns[i].integer ? PLY_INT32 : PLY_FLOAT32) ||
-            !is_column(property, columns[i].name))
-            return false;
-    }
-    return true;
-}
-
-static bool surface_has_triangles(const Ply *ply, const PlyElement *faces) {
-    if (faces->property_count != 1) return false;
-    const PlyProperty *list = &ply->header.properties[faces->first_property];
-    return list->is_list && list->count_type == PLY_UINT8 && list->type == PLY_INT32 &&
-           text_word_is(list->name, list->name_end, "vertex_indices");
-}
-
-// "singe VERSION time SECONDS"
-static SingeResult surface_time(const Ply *ply, double *time) {
-    const PlyHeader *header = &ply->header;
-    const uint8_t *p = header->note, *end = header->note_end;
-    for (; p && end - p > 6; p++)
-        if (memcmp(p, " time ", 6) == 0) {
-            p += 6;
-            if (number_double(&p, end, time) == NUMBER_OK && p == end) return SINGE_OK;
-            break;
-        }
-    return ply_refuse(ply, SINGE_ERROR_FORMAT,
-                      "not a cache of Singe: the header has no \"comment singe ... time ...\"");
-}
-
 static SingeResult surface_check_header(const Ply *ply, SingeSurface *surface, double *time) {
     const PlyHeader *header = &ply->header;
-    TRY(surface_time(ply, time));
+
+    // "singe VERSION time SECONDS"
+    const uint8_t *note = header->note, *end = header->note_end;
+    while (note && end - note > 6 && memcmp(note, " time ", 6) != 0) note++;
+    bool timed = note && end - note > 6;
+    if (timed) note += 6;
+    if (!timed || number_double(&note, end, time) != NUMBER_OK || note != end)
+        return ply_refuse(ply, SINGE_ERROR_FORMAT,
+                          "not a cache of Singe: the header has no \"comment singe ... time ...\"");
+
+    // the columns, and triangles; `burnt` was called `char`, which shading languages reserve, before version 0.2
     const PlyElement *vertices = ply_element(ply, "vertex"), *faces = ply_element(ply, "face");
-    bool fits = header->format == PLY_LITTLE && header->element_count == 2 && vertices == &header->elements[0] && faces;
-    if (!fits || !surface_has_columns(ply, vertices) || !surface_has_triangles(ply, faces))
+    bool fits = header->format == PLY_LITTLE && header->element_count == 2 && vertices == &header->elements[0] &&
+                faces && vertices->property_count == COLUMNS && faces->property_count == 1;
+
+    for (size_t i = 0; fits && i < COLUMNS; i++) {
+        const PlyProperty *property = &header->properties[vertices->first_property + i];
+        fits = !property->is_list && property->type == (columns[i].integer ? PLY_INT32 : PLY_FLOAT32) &&
+               (text_word_is(property->name, property->name_end, columns[i].name) ||
+                (strcmp(columns[i].name, "burnt") == 0 && text_word_is(property->name, property->name_end, "char")));
+    }
+
+    const PlyProperty *list = fits ? &header->properties[faces->first_property] : NULL;
+    if (!list || !list->is_list || list->count_type != PLY_UINT8 || list->type != PLY_INT32 ||
+        !text_word_is(list->name, list->name_end, "vertex_indices"))
         return ply_refuse(ply, SINGE_ERROR_FORMAT,
                           "not a cache of this version of Singe: other elements or properties");
+
     surface->vertex_count = vertices->count;
     surface->triangle_count = faces->count;
     uint64_t expected = surface_data_size(surface);
@@ -179,12 +161,14 @@ static SingeResult surface_allocate(Ply *ply, SingeSurface *surface) {
     uint32_t triangles = surface->triangle_count ? surface->triangle_count : 1;
     surface->vertex_capacity = vertices;
     surface->triangle_capacity = triangles;
+
     for (size_t i = 0; i < COLUMNS; i++) {
         if (columns[i].index) continue;
         void *array = store_new(ply->allocator, vertices, 4 * (size_t)columns[i].width);
         if (!array) return refuse_memory(ply->error, "ply", ply->name);
         memcpy((uint8_t *)surface + columns[i].array, &array, sizeof array);
     }
+
     surface->triangles = store_new(ply->allocator, triangles, sizeof *surface->triangles);
     return surface->triangles ? SINGE_OK : refuse_memory(ply->error, "ply", ply->name);
 }
@@ -192,6 +176,7 @@ static SingeResult surface_allocate(Ply *ply, SingeSurface *surface) {
 static SingeResult surface_unpack(Ply *ply, SingeSurface *surface) {
     uint8_t *target[COLUMNS];
     for (size_t i = 0; i < COLUMNS; i++) target[i] = column_array(surface, &columns[i]) + 4 * columns[i].index;
+
     for (uint32_t v = 0; v < surface->vertex_count; v++)
         for (size_t i = 0; i < COLUMNS; i++, ply->text.at += 4) {
             uint32_t bits = load_u32_little(ply->text.at);
@@ -201,6 +186,7 @@ static SingeResult surface_unpack(Ply *ply, SingeSurface *surface) {
             memcpy(target[i], &bits, sizeof bits);
             target[i] += 4 * columns[i].width;
         }
+
     for (uint32_t f = 0; f < surface->triangle_count; f++) {
         if (*ply->text.at != 3)
             return ply_refuse(ply, SINGE_ERROR_MESH, "face %u has %d corners where a cache has 3", f, *ply->text.at);
@@ -212,6 +198,7 @@ static SingeResult surface_unpack(Ply *ply, SingeSurface *surface) {
             surface->triangles[f][k] = index;
         }
     }
+
     return SINGE_OK;
 }
 

@@ -39,12 +39,6 @@ static bool canvas_make(Canvas *c, SingeAllocator a, int size) {
     return true;
 }
 
-static void canvas_free(Canvas *c, SingeAllocator a, bool with_values) {
-    if (with_values) store_free(a, c->values, c->pixels, TEXTURE_CHANNELS * sizeof(float));
-    store_free(a, c->covered, c->pixels, 1), store_free(a, c->chart, c->pixels, 1);
-    store_free(a, c->nearest, c->pixels, 4), store_free(a, c->queue, c->pixels, 4);
-}
-
 static void draw_values(void *context, size_t pixel, const float weight[3]) {
     Canvas *c = context;
     c->covered[pixel] = c->chart[pixel] = 1;
@@ -56,48 +50,6 @@ static void draw_values(void *context, size_t pixel, const float weight[3]) {
 static void draw_chart(void *context, size_t pixel, const float weight[3]) {
     (void)weight;
     ((Canvas *)context)->chart[pixel] = 1;
-}
-
-/// The uncut sheet: each cell as four triangles around the mean of its corners.
-static void draw_mesh(Canvas *c, const OutputMesh *mesh) {
-    for (uint32_t cell = 0; cell < mesh->cell_count; cell++) {
-        float uv[4][2], centroid[2] = {0, 0};
-        for (size_t i = 0; i < 4; i++) {
-            output_mesh_uv(mesh, cell, (int)i, uv[i]);
-            for (int k = 0; k < 2; k++) centroid[k] += uv[i][k] / 4;
-        }
-        for (int i = 0; i < 4; i++) {
-            const int j = (i + 1) & 3;
-            const float triangle[3][2] = {{centroid[0], centroid[1]}, {uv[i][0], uv[i][1]}, {uv[j][0], uv[j][1]}};
-            uv_triangle(c->size, triangle, draw_chart, c);
-        }
-    }
-}
-
-static void draw_surface(Canvas *c, const SingeSurface *s, uint32_t sheet) {
-    for (uint32_t t = 0; t < s->triangle_count; t++) {
-        const uint32_t *v = s->triangles[t];
-        float uv[3][2];
-        if (s->sheet[v[0]] != (int32_t)sheet) continue;
-        for (int i = 0; i < 3; i++) {
-            memcpy(uv[i], s->uv[v[i]], sizeof uv[i]);
-            c->corners[i][0] = s->temperature[v[i]];
-            c->corners[i][1] = s->burn[v[i]];
-            c->corners[i][2] = s->burn[v[i]] > EMBER_BURNT ? ember_light(s->temperature[v[i]]) : 0;
-        }
-        uv_triangle(c->size, (const float(*)[2])uv, draw_values, c);
-    }
-}
-
-static void spread(Canvas *c) {
-    uv_spread(c->size, TEXTURE_MARGIN, c->chart, c->nearest, c->queue);
-    for (size_t i = 0; i < c->pixels; i++)
-        c->values[TEXTURE_CHANNELS * i + 3] = c->nearest[i] != UV_NONE && c->covered[c->nearest[i]];
-    uv_spread(c->size, TEXTURE_MARGIN, c->covered, c->nearest, c->queue);
-    for (size_t i = 0; i < c->pixels; i++)
-        if (c->nearest[i] != UV_NONE && c->nearest[i] != i)
-            memcpy(c->values + TEXTURE_CHANNELS * i, c->values + TEXTURE_CHANNELS * (size_t)c->nearest[i],
-                   3 * sizeof(float));
 }
 
 typedef struct Layers {
@@ -114,22 +66,63 @@ static SingeResult draw_layer(Layers *layers, const OutputScene *scene, const Ou
     const SingeAllocator a = frame->surface->allocator;
     Canvas canvas;
     const bool made = canvas_make(&canvas, a, scene->texture_size);
+
     if (made) {
-        draw_mesh(&canvas, &scene->sheets[sheet].mesh);
-        draw_surface(&canvas, frame->surface, sheet);
-        spread(&canvas);
+        // the uncut sheet: each cell as four triangles around the mean of its corners
+        for (uint32_t cell = 0; cell < scene->sheets[sheet].mesh.cell_count; cell++) {
+            float cell_uv[4][2], centroid[2] = {0, 0};
+            for (size_t corner = 0; corner < 4; corner++) {
+                output_mesh_uv(&scene->sheets[sheet].mesh, cell, (int)corner, cell_uv[corner]);
+                for (int k = 0; k < 2; k++) centroid[k] += cell_uv[corner][k] / 4;
+            }
+            for (int corner = 0; corner < 4; corner++) {
+                const int j = (corner + 1) & 3;
+                const float triangle[3][2] = {{centroid[0], centroid[1]},
+                                              {cell_uv[corner][0], cell_uv[corner][1]},
+                                              {cell_uv[j][0], cell_uv[j][1]}};
+                uv_triangle(canvas.size, triangle, draw_chart, &canvas);
+            }
+        }
+        for (uint32_t t = 0; t < frame->surface->triangle_count; t++) {
+            const uint32_t *v = frame->surface->triangles[t];
+            float uv[3][2];
+            if (frame->surface->sheet[v[0]] != (int32_t)sheet) continue;
+            for (int k = 0; k < 3; k++) {
+                memcpy(uv[k], frame->surface->uv[v[k]], sizeof uv[k]);
+                canvas.corners[k][0] = frame->surface->temperature[v[k]];
+                canvas.corners[k][1] = frame->surface->burn[v[k]];
+                canvas.corners[k][2] =
+                    frame->surface->burn[v[k]] > EMBER_BURNT ? ember_light(frame->surface->temperature[v[k]]) : 0;
+            }
+            uv_triangle(canvas.size, (const float(*)[2])uv, draw_values, &canvas);
+        }
+        uv_spread(canvas.size, TEXTURE_MARGIN, canvas.chart, canvas.nearest, canvas.queue);
+        for (size_t i = 0; i < canvas.pixels; i++)
+            canvas.values[TEXTURE_CHANNELS * i + 3] = canvas.nearest[i] != UV_NONE && canvas.covered[canvas.nearest[i]];
+        uv_spread(canvas.size, TEXTURE_MARGIN, canvas.covered, canvas.nearest, canvas.queue);
+        for (size_t i = 0; i < canvas.pixels; i++)
+            if (canvas.nearest[i] != UV_NONE && canvas.nearest[i] != i)
+                memcpy(canvas.values + TEXTURE_CHANNELS * i,
+                       canvas.values + TEXTURE_CHANNELS * (size_t)canvas.nearest[i], 3 * sizeof(float));
+
         layers->values[layers->count] = canvas.values;
     }
-    canvas_free(&canvas, a, !made);
+
+    if (!made) store_free(a, canvas.values, canvas.pixels, TEXTURE_CHANNELS * sizeof(float));
+    store_free(a, canvas.covered, canvas.pixels, 1), store_free(a, canvas.chart, canvas.pixels, 1);
+    store_free(a, canvas.nearest, canvas.pixels, 4), store_free(a, canvas.queue, canvas.pixels, 4);
+
     if (!made) return refuse_memory(error, "textures", path);
     char prim[USD_NAME];
     usd_sheet_name(scene, sheet, prim);
+
     for (uint32_t k = 0; k < TEXTURE_CHANNELS; k++) {
         const uint32_t n = TEXTURE_CHANNELS * layers->count + k;
         snprintf(layers->names[n], sizeof layers->names[n], "%s%s%c", layers->count ? prim : "",
                  layers->count ? "." : "", letters[k]);
         layers->channels[n] = (ExrChannel){layers->names[n], EXR_KIND_HALF, canvas.values + k, TEXTURE_CHANNELS};
     }
+
     layers->count++;
     return SINGE_OK;
 }
@@ -141,6 +134,7 @@ SingeResult textures_write_frame(const char *path, const OutputScene *scene, con
     Layers *layers = store_new(a, 1, sizeof *layers);
     if (!layers) return refuse_memory(error, "textures", path);
     layers->count = 0;
+
     for (uint32_t i = 0; i < scene->sheet_count && !result; i++) {
         if (!output_mesh_has_uv(&scene->sheets[i].mesh)) continue;
         if (layers->count == TEXTURE_SHEETS)
@@ -148,11 +142,13 @@ SingeResult textures_write_frame(const char *path, const OutputScene *scene, con
                             short_name(path), TEXTURE_SHEETS);
         else result = draw_layer(layers, scene, frame, i, path, error);
     }
+
     if (!result && !layers->count)
         result = refuse(error, SINGE_ERROR_MESH, "textures", -1, "%s: no sheet has uv", short_name(path));
     if (!result)
         result = exr_write(path, scene->texture_size, scene->texture_size, layers->channels,
                            (int)(TEXTURE_CHANNELS * layers->count), error);
+
     const size_t pixels = (size_t)scene->texture_size * (size_t)scene->texture_size;
     for (uint32_t i = 0; i < layers->count; i++)
         store_free(a, layers->values[i], pixels, TEXTURE_CHANNELS * sizeof(float));

@@ -66,40 +66,42 @@ static void put_packed(Crate *crate, Sink *sink, const uint8_t *bytes, size_t si
     if (sink->failed) crate->sink.failed = true;
 }
 
-/// The most frequent one-byte difference; of many differences one in seven is counted.
-static int32_t common_difference(const int32_t *values, size_t count) {
-    uint32_t counts[256] = {0};
-    const size_t stride = count > 1000 ? 7 : 1;
-    for (size_t i = 0; i < count; i += stride) {
-        const int32_t d = (int32_t)((uint32_t)values[i] - (i ? (uint32_t)values[i - 1] : 0));
-        if (d >= -128 && d <= 127) counts[d + 128]++;
-    }
-    int most = 128;
-    for (int i = 0; i < 256; i++)
-        if (counts[i] > counts[most]) most = i;
-    return most - 128;
-}
-
 /// Differences: the commonest one, two bits for each (it, or one, two or four bytes), then those bytes.
 static void put_ints(Crate *crate, Sink *sink, const int32_t *values, size_t count) {
     Sink *scratch = &crate->scratch;
     scratch->size = 0;
     const size_t codes = (count + 3) / 4;
     uint8_t *bytes = sink_room(scratch, 4 + codes + 4 * count + 4);
+
     if (!bytes) {
         crate->sink.failed = true;
         return;
     }
-    const int32_t common = common_difference(values, count);
+
+    // the most frequent one-byte difference; of many differences one in seven is counted
+    uint32_t counts[256] = {0};
+    const size_t stride = count > 1000 ? 7 : 1;
+
+    for (size_t i = 0; i < count; i += stride) {
+        const int32_t step = (int32_t)((uint32_t)values[i] - (i ? (uint32_t)values[i - 1] : 0));
+        if (step >= -128 && step <= 127) counts[step + 128]++;
+    }
+
+    int most = 128;
+    for (int i = 0; i < 256; i++)
+        if (counts[i] > counts[most]) most = i;
+    const int32_t common = most - 128;
+
     uint8_t *code = bytes + 4, *at = code + codes;
     uint32_t before = 0;
     store_u32_little(bytes, (uint32_t)common);
+
     for (size_t i = 0; i < count; i += 4) {
         unsigned kinds = 0;
         for (size_t k = 0; k < 4 && i + k < count; k++) {
             const int32_t d = (int32_t)((uint32_t)values[i + k] - before);
             before = (uint32_t)values[i + k];
-            // without branches, which nothing could foretell: all four bytes are put, and as many count as are needed
+            // no branches, since they could not be predicted: writes all four bytes, and keeps as many as are needed
             const unsigned kind = (d != common) * (1u + (d != (int8_t)d) + (d != (int16_t)d));
             kinds |= kind << 2 * k;
             store_u32_little(at, (uint32_t)d);
@@ -107,6 +109,7 @@ static void put_ints(Crate *crate, Sink *sink, const int32_t *values, size_t cou
         }
         *code++ = (uint8_t)kinds;
     }
+
     put_packed(crate, sink, bytes, (size_t)(at - bytes));
 }
 
@@ -143,8 +146,8 @@ CrateValue crate_ints(Crate *crate, const int32_t *values, size_t count) {
     return value | flag_packed;
 }
 
-/// Numbers the values that occur, in the order in which they do. How many there are, or 0 where so many differ that
-/// nothing is gained, or there is no memory, which matters as little.
+/// Numbers the values that occur, in their order. Returns their count, or 0 if a table would not be shorter or there is
+/// no memory for one.
 static size_t number_values(Crate *crate, const uint32_t *bits, size_t count, int32_t *numbers, uint32_t *values) {
     const size_t max = count - count / 3;
     int log = 5;
@@ -152,6 +155,7 @@ static size_t number_values(Crate *crate, const uint32_t *bits, size_t count, in
     const size_t size = (size_t)1 << log;
     if (log > 31 || !store_grow(crate->sink.allocator, &crate->table, &crate->table_capacity, size, 4)) return 0;
     memset(crate->table, 0, size * sizeof *crate->table);
+
     size_t found = 0;
     for (size_t i = 0; i < count; i++) {
         size_t at = bits[i] * 2654435761u >> (32 - log);
@@ -163,20 +167,23 @@ static size_t number_values(Crate *crate, const uint32_t *bits, size_t count, in
         }
         numbers[i] = (int32_t)crate->table[at] - 1;
     }
+
     return found;
 }
 
-/// Floats as numbers of a table: 't', the table's size, the table, the numbers. False where that is no shorter.
+/// Floats as indices into a table: 't', the table's size, the table, the indices. False if that is not shorter.
 static bool put_table(Crate *crate, const float *values, size_t count) {
     Sink *packed = &crate->packed;
     packed->size = 0;
     uint32_t *room = (uint32_t *)(void *)sink_room(packed, 3 * 4 * count);
     if (!room) return packed->failed = false;
+
     uint32_t *bits = room, *table = room + count;
     int32_t *numbers = (int32_t *)(room + 2 * count);
     memcpy(bits, values, 4 * count);
     const size_t found = number_values(crate, bits, count, numbers, table);
     if (!found) return false;
+
     const size_t before = crate->sink.size;
     sink_bytes(&crate->sink, "t", 1);
     sink_u32(&crate->sink, (uint32_t)found);
@@ -208,7 +215,7 @@ CrateValue crate_times(Crate *crate, double first, size_t count) {
 
 CrateValue crate_series(Crate *crate, CrateValue times, const CrateValue *values, size_t count) {
     const CrateValue series = lies_here(crate, CRATE_SAMPLES);
-    sink_u64(&crate->sink, 8); // how far on the times' value is, and behind it the values
+    sink_u64(&crate->sink, 8); // the distance to the times, and behind them to the values
     sink_u64(&crate->sink, times);
     sink_u64(&crate->sink, 8);
     sink_u64(&crate->sink, count);
@@ -268,35 +275,37 @@ static void put_fieldsets(Crate *crate) {
     put_ints(crate, &crate->sink, (const int32_t *)crate->sets, crate->set_count);
 }
 
-/// How to go on from a path: 0 to a sibling that follows, -1 to its child alone, -2 nowhere, else to its child, and
-/// its sibling is so far on. `room` has a number a path.
-static void find_jumps(const Crate *crate, int32_t *room, int32_t *jumps) {
-    const CratePath *paths = crate->paths;
-    for (size_t i = 0; i < crate->path_count; i++) room[i] = 0; // the child of it that comes next; 0: none
-    for (size_t i = crate->path_count; i-- > 0;) {
-        const bool child = i + 1 < crate->path_count && paths[i + 1].parent == i;
-        const int32_t sibling = paths[i].parent == CRATE_NO_PARENT ? 0 : room[paths[i].parent];
-        jumps[i] = child && sibling ? sibling - (int32_t)i : child ? -1 : sibling ? 0 : -2;
-        if (paths[i].parent != CRATE_NO_PARENT) room[paths[i].parent] = (int32_t)i;
-    }
-}
-
 /// Numbers, names (those of properties negative) and jumps.
 static void put_paths(Crate *crate) {
     const size_t count = crate->path_count;
     Sink *room = &crate->packed;
     room->size = 0;
     int32_t *columns = (int32_t *)(void *)sink_room(room, 4 * 4 * count);
+
     if (!columns) {
         crate->sink.failed = true;
         return;
     }
+
     for (size_t i = 0; i < count; i++) {
         const int32_t name = (int32_t)crate->paths[i].token;
         columns[i] = (int32_t)i;
         columns[count + i] = crate->paths[i].property ? -name : name;
     }
-    find_jumps(crate, columns + 3 * count, columns + 2 * count);
+
+    // the jump from each path: 0 if only a sibling follows, -1 if only a child, -2 if neither; with both the child
+    // comes next, and the jump is the distance to the sibling
+    const CratePath *paths = crate->paths;
+    for (size_t i = 0; i < crate->path_count; i++)
+        (columns + 3 * count)[i] = 0; // the child of it that comes next; 0: none
+
+    for (size_t i = crate->path_count; i-- > 0;) {
+        const bool child = i + 1 < crate->path_count && paths[i + 1].parent == i;
+        const int32_t sibling = paths[i].parent == CRATE_NO_PARENT ? 0 : (columns + 3 * count)[paths[i].parent];
+        (columns + 2 * count)[i] = child && sibling ? sibling - (int32_t)i : child ? -1 : sibling ? 0 : -2;
+        if (paths[i].parent != CRATE_NO_PARENT) (columns + 3 * count)[paths[i].parent] = (int32_t)i;
+    }
+
     sink_u64(&crate->sink, count);
     sink_u64(&crate->sink, count);
     for (int k = 0; k < 3; k++) put_ints(crate, &crate->sink, columns + (size_t)k * count, count);
@@ -307,15 +316,18 @@ static void put_specs(Crate *crate) {
     Sink *room = &crate->packed;
     room->size = 0;
     int32_t *columns = (int32_t *)(void *)sink_room(room, 3 * 4 * count);
+
     if (!columns) {
         crate->sink.failed = true;
         return;
     }
+
     for (size_t i = 0; i < count; i++) {
         columns[i] = (int32_t)crate->specs[i].path;
         columns[count + i] = (int32_t)crate->specs[i].fields;
         columns[2 * count + i] = (int32_t)crate->specs[i].kind;
     }
+
     sink_u64(&crate->sink, count);
     for (int k = 0; k < 3; k++) put_ints(crate, &crate->sink, columns + (size_t)k * count, count);
 }
@@ -326,13 +338,16 @@ static void put_sections(Crate *crate) {
         void (*put)(Crate *);
     } sections[SECTIONS] = {{"TOKENS", put_tokens},       {"STRINGS", put_strings}, {"FIELDS", put_fields},
                             {"FIELDSETS", put_fieldsets}, {"PATHS", put_paths},     {"SPECS", put_specs}};
+
     size_t offsets[SECTIONS + 1];
     for (int i = 0; i < SECTIONS; i++) {
         offsets[i] = crate->sink.size;
         sections[i].put(crate);
     }
+
     offsets[SECTIONS] = crate->sink.size;
     sink_u64(&crate->sink, SECTIONS);
+
     for (int i = 0; i < SECTIONS; i++) {
         char name[16] = "";
         memcpy(name, sections[i].name, strlen(sections[i].name));
@@ -340,6 +355,7 @@ static void put_sections(Crate *crate) {
         sink_u64(&crate->sink, offsets[i]);
         sink_u64(&crate->sink, offsets[i + 1] - offsets[i]);
     }
+
     if (crate->sink.failed) return;
     uint8_t *header = crate->sink.bytes;
     memcpy(header, "PXR-USDC\0\10\0", 11);

@@ -3,8 +3,6 @@
 //
 // Vertices of a sheet keep their order. Colours are indexed: they are rounded to 5, 6 and 5 bits of their square roots.
 #include "formats/burn_colour.h"
-#include "formats/fields.h"
-#include "formats/sheet_parts.h"
 #include "formats/usd.h"
 #include "formats/usd_crate.h"
 
@@ -72,6 +70,7 @@ static CrateValue put_vectors(UsdWriter *w, const SheetPart *part, const void *v
 static void put_colours(UsdWriter *w, const SheetPart *part, CrateValue *palette, CrateValue *indices) {
     uint32_t found = 0;
     memset(w->palette, 0xff, COLOURS * sizeof *w->palette);
+
     for (uint32_t i = 0; i < part->count; i++) {
         static const float steps[3] = {31, 63, 31};
         float colour[3];
@@ -90,6 +89,7 @@ static void put_colours(UsdWriter *w, const SheetPart *part, CrateValue *palette
         }
         w->numbers[i] = *entry;
     }
+
     *palette = crate_floats(&w->crate, 3, w->gathered, found);
     *indices = crate_ints(&w->crate, w->numbers, part->count);
 }
@@ -99,6 +99,7 @@ static void put_embers(UsdWriter *w, const SheetPart *part, CrateValue *palette,
     float colours[EMBER_STEPS][3];
     int32_t entries[EMBER_STEPS], found = 0;
     memset(entries, 0xff, sizeof entries);
+
     for (uint32_t i = 0; i < part->count; i++) {
         const uint32_t v = part->vertices[i];
         const uint8_t step = w->surface->burn[v] > EMBER_BURNT ? ember_step(w->surface->temperature[v]) : 0;
@@ -108,28 +109,9 @@ static void put_embers(UsdWriter *w, const SheetPart *part, CrateValue *palette,
         }
         w->numbers[i] = entries[step];
     }
+
     *palette = crate_floats(&w->crate, 3, colours[0], (size_t)found);
     *indices = crate_ints(&w->crate, w->numbers, part->count);
-}
-
-static void put_faces(UsdWriter *w, const SheetPart *part, CrateValue *counts, CrateValue *indices) {
-    for (uint32_t i = 0; i < part->triangle_count; i++) w->numbers[i] = 3;
-    *counts = crate_ints(&w->crate, w->numbers, part->triangle_count);
-    for (uint32_t i = 0; i < part->triangle_count; i++)
-        for (int k = 0; k < 3; k++)
-            w->numbers[3 * i + (uint32_t)k] = (int32_t)w->parts.local[w->surface->triangles[part->triangles[i]][k]];
-    *indices = crate_ints(&w->crate, w->numbers, 3 * (size_t)part->triangle_count);
-}
-
-static CrateValue put_extent(UsdWriter *w, const SheetPart *part) {
-    float box[2][3] = {{0}};
-    for (uint32_t i = 0; i < part->count; i++)
-        for (int c = 0; c < 3; c++) {
-            const float x = w->surface->position[part->vertices[i]][c];
-            box[0][c] = i && box[0][c] < x ? box[0][c] : x;
-            box[1][c] = i && box[1][c] > x ? box[1][c] : x;
-        }
-    return crate_floats(&w->crate, 3, box[0], 2);
 }
 
 // ---- prims
@@ -191,10 +173,26 @@ static void put_own(UsdWriter *w, const SheetPart *part, CrateValue values[USD_O
     values[USD_NORMALS] = put_vectors(w, part, s->normal, 3);
     values[USD_ST] = put_vectors(w, part, s->uv, 2);
     values[USD_REST] = put_vectors(w, part, s->rest_position, 3);
-    values[USD_EXTENT] = put_extent(w, part);
+
+    float box[2][3] = {{0}};
+    for (uint32_t i = 0; i < part->count; i++)
+        for (int c = 0; c < 3; c++) {
+            const float x = w->surface->position[part->vertices[i]][c];
+            box[0][c] = i && box[0][c] < x ? box[0][c] : x;
+            box[1][c] = i && box[1][c] > x ? box[1][c] : x;
+        }
+
+    values[USD_EXTENT] = crate_floats(&w->crate, 3, box[0], 2);
+
     put_colours(w, part, &values[USD_COLOUR], &values[USD_COLOUR_INDICES]);
     put_embers(w, part, &values[USD_EMBER], &values[USD_EMBER_INDICES]);
-    put_faces(w, part, &values[USD_COUNTS], &values[USD_INDICES]);
+
+    for (uint32_t i = 0; i < part->triangle_count; i++) w->numbers[i] = 3;
+    values[USD_COUNTS] = crate_ints(&w->crate, w->numbers, part->triangle_count);
+    for (uint32_t i = 0; i < part->triangle_count; i++)
+        for (int k = 0; k < 3; k++)
+            w->numbers[3 * i + (uint32_t)k] = (int32_t)w->parts.local[w->surface->triangles[part->triangles[i]][k]];
+    values[USD_INDICES] = crate_ints(&w->crate, w->numbers, 3 * (size_t)part->triangle_count);
 }
 
 static CrateValue put_field(UsdWriter *w, const SheetPart *part, const SurfaceField *field) {
@@ -209,16 +207,20 @@ static void put_mesh(UsdWriter *w, uint32_t sheets, uint32_t sheet) {
     const SheetPart part = w->kept ? (SheetPart){.sheet = sheet} : sheet_part(&w->parts, sheet);
     const bool pictured = w->scene->sheets[sheet].picture != NULL;
     const char *names[ATTRIBUTES_MAX + 4];
+
     // programs that bind no subsets, such as Blender from the second frame on, use the first for all faces
     const char *children[] = {"burnt", "fresh"};
     char primvars[SURFACE_FIELDS][40], name[USD_NAME];
     size_t count = 0;
+
     for (int i = 0; i < 3; i++) names[count++] = uniforms[i][0];
     for (int i = 0; i < USD_OWN; i++) names[count++] = usd_attributes[i].name;
+
     for (int i = 0; i < SURFACE_FIELDS; i++) {
         strcat(strcpy(primvars[i], "primvars:"), surface_fields[i].name);
         names[count++] = primvars[i];
     }
+
     if (pictured) names[count++] = "subsetFamily:materialBind:familyType";
     usd_sheet_name(w->scene, sheet, name);
     const uint32_t mesh = crate_path(&w->crate, name, false, sheets);
@@ -227,18 +229,22 @@ static void put_mesh(UsdWriter *w, uint32_t sheets, uint32_t sheet) {
                                       {"properties", crate_token_list(&w->crate, names, count)}};
     if (pictured) fields[3] = (CrateField){"primChildren", crate_token_list(&w->crate, children, 2)};
     crate_spec(&w->crate, mesh, CRATE_PRIM, fields, pictured ? 4 : 3);
+
     for (int i = 0; i < 2; i++) put_uniform(w, mesh, uniforms[i][0], "token", crate_token(&w->crate, uniforms[i][1]));
     put_uniform(w, mesh, uniforms[2][0], "bool", crate_inline(CRATE_BOOL, 1));
     CrateValue values[USD_OWN] = {0};
     if (!w->kept) put_own(w, &part, values);
+
     for (int i = 0; i < USD_OWN; i++)
         put_sampled(w, mesh, usd_attributes[i].name, usd_attributes[i].type, usd_attributes[i].vertex,
                     put_samples(w, sheet, i, values[i]));
+
     for (int i = 0; i < SURFACE_FIELDS; i++) {
         const CrateValue value = w->kept ? 0 : put_field(w, &part, &surface_fields[i]);
         put_sampled(w, mesh, primvars[i], surface_fields[i].integer ? "int[]" : "float[]", true,
                     put_samples(w, sheet, SLOT_FIELDS + i, value));
     }
+
     if (!pictured) return;
     put_uniform(w, mesh, "subsetFamily:materialBind:familyType", "token", crate_token(&w->crate, "nonOverlapping"));
     put_subset(w, &part, mesh, children[0], false);
@@ -260,6 +266,7 @@ static void put_stage(UsdWriter *w, int first, int last) {
     char name[USD_NAME];
     const char *only[1] = {name};
     usd_name(w->scene->name, name);
+
     const uint32_t root = crate_path(crate, "", false, CRATE_NO_PARENT);
     CrateField fields[] = {{"defaultPrim", crate_token(crate, name)},
                            {"metersPerUnit", crate_double(1)},
@@ -271,9 +278,11 @@ static void put_stage(UsdWriter *w, int first, int last) {
                            {"primChildren", crate_token_list(crate, only, 1)}};
     crate_spec(crate, root, CRATE_ROOT, fields, sizeof fields / sizeof *fields);
     static const char *const sheets[] = {"sheets"};
+
     const uint32_t top = put_group(w, name, root, sheets, 1);
     char(*names)[USD_NAME] = store_new(w->crate.sink.allocator, count, USD_NAME);
     const char **list = store_new(w->crate.sink.allocator, count, sizeof *list);
+
     if (names && list) {
         for (uint32_t i = 0; i < count; i++) {
             usd_sheet_name(w->scene, i, names[i]);
@@ -285,6 +294,7 @@ static void put_stage(UsdWriter *w, int first, int last) {
     } else {
         crate->sink.failed = true;
     }
+
     store_free(w->crate.sink.allocator, names, count, USD_NAME);
     store_free(w->crate.sink.allocator, list, count, sizeof *list);
 }
@@ -326,12 +336,14 @@ static SingeResult keep_frame(UsdWriter *w, const OutputFrame *frame, CrateValue
     UsdWriter one = {.crate = w->crate, .scene = w->scene, .surface = frame->surface};
     SingeResult result = sheet_parts_make(&one.parts, frame->surface, w->scene->sheet_count, path, error);
     if (!result && !writer_make(&one)) result = refuse_memory(error, "usd", path);
+
     for (uint32_t i = 0; i < w->scene->sheet_count && !result; i++, kept += SLOTS) {
         const SheetPart part = sheet_part(&one.parts, i);
         put_own(&one, &part, kept);
         for (int k = 0; k < SURFACE_FIELDS; k++) kept[SLOT_FIELDS + k] = put_field(&one, &part, &surface_fields[k]);
         for (int k = 0; k < 2; k++) kept[SLOT_SUBSETS + k] = put_subset_faces(&one, &part, k);
     }
+
     w->crate = one.crate; // keep everything written so far
     one.crate = (Crate){.sink = {.allocator = frame->surface->allocator}};
     writer_free(&one);
@@ -344,19 +356,23 @@ SingeResult usd_write_single(const char *path, const OutputScene *scene, const O
     UsdWriter writer = {.scene = scene, .frames = frames};
     SingeResult result = SINGE_OK;
     crate_begin(&writer.crate, a);
+
     CrateValue *kept = store_new(a, frames * each, sizeof *kept);
     writer.column = store_new(a, frames, sizeof *writer.column);
     if (!kept || !writer.column) result = refuse_memory(error, "usd", path);
+
     for (int i = 1; i <= cache->frames && !result; i++) {
         OutputFrame frame;
         result = cache->read(cache->context, i, &frame, error);
         if (!result) result = keep_frame(&writer, &frame, kept + (size_t)(i - 1) * each, path, error);
     }
+
     writer.kept = kept;
     if (!result) {
         put_stage(&writer, 1, cache->frames);
         result = crate_write(&writer.crate, path, error);
     }
+
     crate_free(&writer.crate);
     store_free(a, kept, frames * each, sizeof *kept);
     store_free(a, writer.column, frames, sizeof *writer.column);

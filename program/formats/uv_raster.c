@@ -21,10 +21,12 @@ void uv_triangle(int size, const float uv[3][2], UvPixel *draw, void *context) {
         p[i][0] = (double)uv[i][0] * size, p[i][1] = (1 - (double)uv[i][1]) * size;
         for (int k = 0; k < 2; k++) low[k] = fmin(low[k], p[i][k]), high[k] = fmax(high[k], p[i][k]);
     }
+
     const double area = uv_turn(p[0], p[1], p[2]);
     int x0, x1, y0, y1;
     if (!(fabs(area) > 0) || !isfinite(area)) return;
     uv_span(low[0], high[0], size, &x0, &x1), uv_span(low[1], high[1], size, &y0, &y1);
+
     for (int y = y0; y <= y1; y++)
         for (int x = x0; x <= x1; x++) {
             const double c[2] = {x + 0.5, y + 0.5};
@@ -40,10 +42,12 @@ void uv_triangle(int size, const float uv[3][2], UvPixel *draw, void *context) {
 void uv_spread(int size, int reach, const uint8_t *covered, uint32_t *nearest, uint32_t *queue) {
     const size_t side = (size_t)size, count = side * side;
     size_t begin = 0, end = 0;
+
     for (size_t i = 0; i < count; i++) {
         nearest[i] = covered[i] ? (uint32_t)i : UV_NONE;
         if (covered[i]) queue[end++] = (uint32_t)i;
     }
+
     for (int ring = 0; ring < reach; ring++) {
         const size_t last = end;
         for (; begin < last; begin++) {

@@ -11,7 +11,7 @@
 //
 // Vertices of the cache and the mesh are matched by rest position, sheet and, if present, number in the file. A vertex
 // that is gone follows its remaining neighbours, so that faces at the rim keep their shape.
-#include "formats/glb_file.h"
+#include "formats/glb.h"
 #include "formats/number.h"
 #include "common/store.h"
 
@@ -37,35 +37,37 @@ typedef struct Vat {
     int log;
 } Vat;
 
-static SingeResult vat_size(Vat *vat, const char *path, SingeError *error) {
-    for (vat->width = 4096; vat->width <= VAT_HEIGHT_MAX; vat->width *= 2) {
-        const uint32_t width = vat->count < (uint32_t)vat->width ? vat->count : (uint32_t)vat->width;
-        const uint64_t rows = (vat->count + width - 1) / width, height = rows * (uint64_t)vat->cache->frames;
-        if (height > VAT_HEIGHT_MAX) continue;
-        vat->width = (int)width;
-        vat->rows = (int)rows;
-        vat->height = (int)height;
-        return SINGE_OK;
-    }
-    return refuse(error, SINGE_ERROR_LIMIT, "vat", -1, "%s: %u vertices by %d frames do not fit on %d x %d texels",
-                  short_name(path), vat->count, vat->cache->frames, VAT_HEIGHT_MAX, VAT_HEIGHT_MAX);
-}
-
 static SingeResult vat_make(Vat *vat, const char *path, SingeError *error) {
     const uint32_t sheets = vat->scene->sheet_count;
     vat->first = calloc(sheets + 1, 4);
     vat->source_first = calloc(sheets + 1, 4);
     if (!vat->first || !vat->source_first) return refuse_memory(error, "vat", path);
+
     for (uint32_t i = 0; i < sheets; i++) {
         const OutputMesh *mesh = &vat->scene->sheets[i].mesh;
         vat->first[i + 1] = vat->first[i] + mesh->vertex_count;
         vat->source_first[i + 1] = vat->source_first[i] + (mesh->source ? mesh->source_count : mesh->vertex_count);
     }
+
     vat->count = vat->first[sheets];
-    SingeResult result = vat_size(vat, path, error);
-    if (result) return result;
+
+    // the narrowest textures that are not too high
+    uint64_t height = UINT64_MAX;
+
+    for (int widest = 4096; widest <= VAT_HEIGHT_MAX && height > VAT_HEIGHT_MAX; widest *= 2) {
+        vat->width = vat->count < (uint32_t)widest ? (int)vat->count : widest;
+        vat->rows = (int)((vat->count + (uint32_t)vat->width - 1) / (uint32_t)vat->width);
+        height = (uint64_t)vat->rows * (uint64_t)vat->cache->frames;
+    }
+
+    if (height > VAT_HEIGHT_MAX)
+        return refuse(error, SINGE_ERROR_LIMIT, "vat", -1, "%s: %u vertices by %d frames do not fit on %d x %d texels",
+                      short_name(path), vat->count, vat->cache->frames, VAT_HEIGHT_MAX, VAT_HEIGHT_MAX);
+    vat->height = (int)height;
+
     for (vat->log = 4; (uint64_t)1 << vat->log < 2 * (uint64_t)vat->count; vat->log++) {
     }
+
     const size_t texels = (size_t)vat->width * (size_t)vat->height;
     vat->position = calloc(texels, sizeof *vat->position);
     vat->normal = calloc(texels, sizeof *vat->normal);
@@ -80,11 +82,6 @@ static SingeResult vat_make(Vat *vat, const char *path, SingeError *error) {
     return all ? SINGE_OK : refuse_memory(error, "vat", path);
 }
 
-static void vat_free(Vat *vat) {
-    free(vat->position), free(vat->normal), free(vat->at), free(vat->facing), free(vat->moved), free(vat->found);
-    free(vat->table), free(vat->next), free(vat->first), free(vat->source_first);
-}
-
 // ---- matching vertices
 
 static uint32_t *vat_slot(const Vat *vat, uint32_t sheet, const float rest[3]) {
@@ -97,17 +94,6 @@ static uint32_t *vat_slot(const Vat *vat, uint32_t sheet, const float rest[3]) {
         hash ^= hash >> 15;
     }
     return &vat->table[hash * 2654435761u >> (32 - vat->log)];
-}
-
-static void vat_index(Vat *vat) {
-    for (uint32_t s = 0; s < vat->scene->sheet_count; s++) {
-        const OutputMesh *mesh = &vat->scene->sheets[s].mesh;
-        for (uint32_t v = mesh->vertex_count; v-- > 0;) {
-            uint32_t *slot = vat_slot(vat, s, mesh->positions + 3 * (size_t)v);
-            vat->next[vat->first[s] + v] = *slot;
-            *slot = vat->first[s] + v + 1;
-        }
-    }
 }
 
 /// Whether a vertex of the cache with that number may be vertex v of a sheet's mesh. On a seam, where several vertices
@@ -126,6 +112,7 @@ static uint32_t vat_find(const Vat *vat, const SingeSurface *s, uint32_t i) {
     const uint32_t sheet = (uint32_t)s->sheet[i];
     if (sheet >= vat->scene->sheet_count) return UINT32_MAX;
     const OutputMesh *mesh = &vat->scene->sheets[sheet].mesh;
+
     for (uint32_t at = *vat_slot(vat, sheet, s->rest_position[i]); at; at = vat->next[at - 1]) {
         if (at - 1 < vat->first[sheet] || at - 1 >= vat->first[sheet + 1]) continue;
         const uint32_t v = at - 1 - vat->first[sheet];
@@ -134,56 +121,55 @@ static uint32_t vat_find(const Vat *vat, const SingeSurface *s, uint32_t i) {
             vat_numbers_fit(vat, sheet, v, s->source_vertex[i]))
             return at - 1;
     }
+
     return UINT32_MAX;
 }
 
 // ---- frames
 
-/// Moves the remaining vertices, and records their displacements.
-static void take_found(Vat *vat, const SingeSurface *s) {
-    memset(vat->found, 0, vat->count);
-    memset(vat->moved, 0, vat->count * sizeof *vat->moved);
-    for (uint32_t i = 0; i < s->vertex_count; i++) {
-        const uint32_t v = vat_find(vat, s, i);
-        float at[3], facing[3];
-        if (v == UINT32_MAX || vat->found[v]) continue;
-        vat->found[v] = 1;
-        glb_turn(s->position[i], at), glb_turn(s->normal[i], facing);
-        glb_make_unit(facing);
-        for (int c = 0; c < 3; c++) vat->moved[v][c] = at[c] - vat->at[v][c];
-        memcpy(vat->at[v], at, sizeof at), memcpy(vat->facing[v], facing, sizeof facing);
-    }
-}
-
-/// Moves the vertices that are gone by the mean displacement of the remaining ones in their cells.
-static void take_gone(Vat *vat) {
-    for (uint32_t s = 0; s < vat->scene->sheet_count; s++) {
-        const OutputMesh *mesh = &vat->scene->sheets[s].mesh;
-        for (size_t corner = 0; corner < 4 * (size_t)mesh->cell_count; corner++) {
-            const uint32_t v = vat->first[s] + mesh->cells[corner];
-            for (size_t k = corner & ~(size_t)3, end = k + 4; k < end && !vat->found[v]; k++) {
-                const uint32_t other = vat->first[s] + mesh->cells[k];
-                if (!vat->found[other]) continue;
-                for (int c = 0; c < 3; c++) vat->moved[v][c] += vat->moved[other][c];
-                vat->moved[v][3]++;
-            }
-        }
-    }
-    for (uint32_t v = 0; v < vat->count; v++)
-        for (int c = 0; c < 3 && !vat->found[v] && vat->moved[v][3] > 0; c++)
-            vat->at[v][c] += vat->moved[v][c] / vat->moved[v][3];
-}
-
 static SingeResult take_frame(Vat *vat, int number, const char *path, SingeError *error) {
     OutputFrame frame;
     SingeResult result = vat->cache->read(vat->cache->context, number, &frame, error);
     if (result) return result;
-    take_found(vat, frame.surface);
+
+    // moves the remaining vertices, and records their displacements
+    memset(vat->found, 0, vat->count);
+    memset(vat->moved, 0, vat->count * sizeof *vat->moved);
+
+    for (uint32_t k = 0; k < frame.surface->vertex_count; k++) {
+        const uint32_t vertex = vat_find(vat, frame.surface, k);
+        float at[3], facing[3];
+        if (vertex == UINT32_MAX || vat->found[vertex]) continue;
+        vat->found[vertex] = 1;
+        glb_turn(frame.surface->position[k], at), glb_turn(frame.surface->normal[k], facing);
+        glb_make_unit(facing);
+        for (int c = 0; c < 3; c++) vat->moved[vertex][c] = at[c] - vat->at[vertex][c];
+        memcpy(vat->at[vertex], at, sizeof at), memcpy(vat->facing[vertex], facing, sizeof facing);
+    }
+
     for (uint32_t v = 0; number == 1 && v < vat->count; v++)
         if (!vat->found[v])
             return refuse(error, SINGE_ERROR_FORMAT, "vat", v, "%s: vertex %u of the mesh is not in frame 1",
                           short_name(path), v);
-    take_gone(vat);
+
+    // moves the vertices that are gone by the mean displacement of the remaining ones in their cells
+    for (uint32_t s = 0; s < vat->scene->sheet_count; s++) {
+        const OutputMesh *quads = &vat->scene->sheets[s].mesh;
+        for (size_t corner = 0; corner < 4 * (size_t)quads->cell_count; corner++) {
+            const uint32_t gone = vat->first[s] + quads->cells[corner];
+            for (size_t k = corner & ~(size_t)3, end = k + 4; k < end && !vat->found[gone]; k++) {
+                const uint32_t other = vat->first[s] + quads->cells[k];
+                if (!vat->found[other]) continue;
+                for (int c = 0; c < 3; c++) vat->moved[gone][c] += vat->moved[other][c];
+                vat->moved[gone][3]++;
+            }
+        }
+    }
+
+    for (uint32_t gone = 0; gone < vat->count; gone++)
+        for (int c = 0; c < 3 && !vat->found[gone] && vat->moved[gone][3] > 0; c++)
+            vat->at[gone][c] += vat->moved[gone][c] / vat->moved[gone][3];
+
     for (uint32_t v = 0; v < vat->count; v++) {
         const size_t texel = (size_t)(number - 1) * (size_t)vat->rows * (size_t)vat->width + v;
         memcpy(vat->position[texel], vat->at[v], sizeof vat->at[v]);
@@ -218,6 +204,7 @@ typedef struct VatCorner {
 static uint32_t number_corners(const OutputMesh *mesh, VatCorner *corners, uint32_t *number) {
     const size_t count = 4 * (size_t)mesh->cell_count;
     uint32_t *first = calloc(mesh->vertex_count, 4), *next = calloc(count, 4), made = 0;
+
     for (size_t i = 0; first && next && i < count; i++) {
         VatCorner corner = {.vertex = mesh->cells[i]};
         if (output_mesh_has_uv(mesh)) output_mesh_uv(mesh, (uint32_t)(i / 4), (int)(i & 3), corner.uv);
@@ -230,6 +217,7 @@ static uint32_t number_corners(const OutputMesh *mesh, VatCorner *corners, uint3
         }
         number[i] = at - 1;
     }
+
     if (!first || !next) made = 0;
     free(first), free(next);
     return made;
@@ -255,35 +243,34 @@ static void put_values(GlbFile *f, const char *name, const VatCorner *corners, u
     put_attribute(f, name, begin, count, 3, boxed ? box : NULL);
 }
 
-static void put_uvs(GlbFile *f, const Vat *vat, uint32_t sheet, const VatCorner *corners, uint32_t count) {
-    size_t begin = f->data.size;
-    for (uint32_t i = 0; i < count; i++) {
-        const float uv[2] = {corners[i].uv[0], 1 - corners[i].uv[1]};
-        sink_words(&f->data, uv, 2);
-    }
-    put_attribute(f, "TEXCOORD_0", begin, count, 2, NULL);
-    begin = f->data.size;
-    for (uint32_t i = 0; i < count; i++) {
-        const uint32_t v = vat->first[sheet] + corners[i].vertex, width = (uint32_t)vat->width;
-        const float uv[2] = {((float)(v % width) + 0.5f) / (float)width,
-                             ((float)(v / width) + 0.5f) / (float)vat->height};
-        sink_words(&f->data, uv, 2);
-    }
-    put_attribute(f, "TEXCOORD_1", begin, count, 2, NULL);
-}
-
 static bool put_sheet(GlbFile *f, const Vat *vat, uint32_t sheet) {
     const OutputMesh *mesh = &vat->scene->sheets[sheet].mesh;
     VatCorner *corners = calloc(4 * (size_t)mesh->cell_count, sizeof *corners);
     uint32_t *number = calloc(4 * (size_t)mesh->cell_count, sizeof *number);
     const uint32_t count = corners && number ? number_corners(mesh, corners, number) : 0;
+
     if (count) {
         sink_text(&f->meshes, "%s{\"name\":", f->mesh_count ? "," : "");
         glb_put_string(&f->meshes, f->scene->sheets[sheet].name);
         sink_text(&f->meshes, ",\"primitives\":[{\"material\":%u,\"attributes\":{", sheet);
         put_values(f, "POSITION", corners, count, vat->position + vat->first[sheet], true);
         put_values(f, "NORMAL", corners, count, vat->normal + vat->first[sheet], false);
-        put_uvs(f, vat, sheet, corners, count);
+
+        size_t uv_begin = f->data.size;
+        for (uint32_t k = 0; k < count; k++) {
+            const float uv[2] = {corners[k].uv[0], 1 - corners[k].uv[1]};
+            sink_words(&f->data, uv, 2);
+        }
+        put_attribute(f, "TEXCOORD_0", uv_begin, count, 2, NULL);
+        uv_begin = f->data.size;
+        for (uint32_t k = 0; k < count; k++) {
+            const uint32_t v = vat->first[sheet] + corners[k].vertex, width = (uint32_t)vat->width;
+            const float uv[2] = {((float)(v % width) + 0.5f) / (float)width,
+                                 ((float)(v / width) + 0.5f) / (float)vat->height};
+            sink_words(&f->data, uv, 2);
+        }
+        put_attribute(f, "TEXCOORD_1", uv_begin, count, 2, NULL);
+
         f->meshes.size--; // the last comma
         const size_t begin = f->data.size;
         for (uint32_t c = 0; c < mesh->cell_count; c++) {
@@ -324,6 +311,7 @@ static SingeResult write_numbers(const char *path, const Vat *vat, SingeError *e
     char name[4096];
     float box[2][3];
     for (int c = 0; c < 3; c++) box[0][c] = box[1][c] = vat->position[0][c];
+
     for (int f = 0; f < vat->cache->frames; f++)
         for (uint32_t v = 0; v < vat->count; v++) {
             const float *at = vat->position[(size_t)f * (size_t)vat->rows * (size_t)vat->width + v];
@@ -332,6 +320,7 @@ static SingeResult write_numbers(const char *path, const Vat *vat, SingeError *e
                 box[1][c] = at[c] > box[1][c] ? at[c] : box[1][c];
             }
         }
+
     sink_text(&sink,
               "{\n  \"generator\": \"Singe " SINGE_VERSION "\",\n  \"frames\": %d,\n  \"fps\": ", vat->cache->frames);
     sink_float(&sink, vat->scene->fps);
@@ -346,12 +335,26 @@ static SingeResult write_numbers(const char *path, const Vat *vat, SingeError *e
 SingeResult vat_write(const char *path, const OutputScene *scene, const OutputCache *cache, SingeError *error) {
     Vat vat = {.scene = scene, .cache = cache};
     SingeResult result = vat_make(&vat, path, error);
-    if (!result) vat_index(&vat);
+
+    if (!result) {
+        for (uint32_t s = 0; s < vat.scene->sheet_count; s++) {
+            const OutputMesh *mesh = &vat.scene->sheets[s].mesh;
+            for (uint32_t v = mesh->vertex_count; v-- > 0;) {
+                uint32_t *slot = vat_slot(&vat, s, mesh->positions + 3 * (size_t)v);
+                vat.next[vat.first[s] + v] = *slot;
+                *slot = vat.first[s] + v + 1;
+            }
+        }
+    }
+
     for (int i = 1; i <= cache->frames && !result; i++) result = take_frame(&vat, i, path, error);
     if (!result) result = write_texture(path, ".position.exr", &vat, vat.position, "RGBA", EXR_KIND_FLOAT, error);
     if (!result) result = write_texture(path, ".normal.exr", &vat, vat.normal, "RGB", EXR_KIND_HALF, error);
     if (!result) result = write_mesh(path, &vat, error);
     if (!result) result = write_numbers(path, &vat, error);
-    vat_free(&vat);
+
+    free(vat.position), free(vat.normal), free(vat.at), free(vat.facing), free(vat.moved), free(vat.found);
+    free(vat.table), free(vat.next), free(vat.first), free(vat.source_first);
+
     return result;
 }

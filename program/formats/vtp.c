@@ -1,7 +1,6 @@
 // VTK's XML files of polygons, with raw appended arrays, and their collection file (ParaView, VTK, PyVista).
 //
 // Each array is its length in bytes (u64) and its values, little-endian; an XML element has its offset.
-#include "formats/fields.h"
 #include "formats/output.h"
 #include "formats/sink.h"
 
@@ -22,30 +21,7 @@ static void put_element(Sink *xml, const VtpArray *array, uint64_t *offset) {
     *offset += 8 + value_size(array) * (size_t)array->width * array->count;
 }
 
-static void put_values(Sink *sink, const VtpArray *array) {
-    sink_u64(sink, value_size(array) * (size_t)array->width * array->count);
-    if (array->values) {
-        sink_words(sink, array->values, (size_t)array->width * array->count);
-        return;
-    }
-    for (uint64_t i = 1; i <= array->count; i++) sink_u64(sink, 3 * i); // where triangles end
-}
-
 enum { POINT_VECTORS = 4, POINT_DATA = POINT_VECTORS + SURFACE_FIELDS, ARRAYS = POINT_DATA + 3 };
-
-static void list_arrays(const SingeSurface *s, VtpArray arrays[ARRAYS]) {
-    const size_t n = s->vertex_count;
-    arrays[0] = (VtpArray){"normal", "Float32", 3, s->normal, n};
-    arrays[1] = (VtpArray){"uv", "Float32", 2, s->uv, n};
-    arrays[2] = (VtpArray){"velocity", "Float32", 3, s->velocity, n};
-    arrays[3] = (VtpArray){"rest", "Float32", 3, s->rest_position, n};
-    for (int i = 0; i < SURFACE_FIELDS; i++)
-        arrays[POINT_VECTORS + i] = (VtpArray){surface_fields[i].name, surface_fields[i].integer ? "Int32" : "Float32",
-                                               1, surface_field(s, &surface_fields[i]), n};
-    arrays[POINT_DATA] = (VtpArray){"points", "Float32", 3, s->position, n};
-    arrays[POINT_DATA + 1] = (VtpArray){"connectivity", "Int32", 1, s->triangles, 3 * (size_t)s->triangle_count};
-    arrays[POINT_DATA + 2] = (VtpArray){"offsets", "Int64", 1, NULL, s->triangle_count};
-}
 
 SingeResult vtp_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame, SingeError *error) {
     (void)scene;
@@ -53,7 +29,20 @@ SingeResult vtp_write_frame(const char *path, const OutputScene *scene, const Ou
     Sink sink = {.allocator = s->allocator};
     VtpArray arrays[ARRAYS];
     uint64_t offset = 0;
-    list_arrays(s, arrays);
+
+    const size_t n = s->vertex_count;
+    arrays[0] = (VtpArray){"normal", "Float32", 3, s->normal, n};
+    arrays[1] = (VtpArray){"uv", "Float32", 2, s->uv, n};
+    arrays[2] = (VtpArray){"velocity", "Float32", 3, s->velocity, n};
+    arrays[3] = (VtpArray){"rest", "Float32", 3, s->rest_position, n};
+
+    for (int i = 0; i < SURFACE_FIELDS; i++)
+        arrays[POINT_VECTORS + i] = (VtpArray){surface_fields[i].name, surface_fields[i].integer ? "Int32" : "Float32",
+                                               1, surface_field(s, &surface_fields[i]), n};
+    arrays[POINT_DATA] = (VtpArray){"points", "Float32", 3, s->position, n};
+    arrays[POINT_DATA + 1] = (VtpArray){"connectivity", "Int32", 1, s->triangles, 3 * (size_t)s->triangle_count};
+    arrays[POINT_DATA + 2] = (VtpArray){"offsets", "Int64", 1, NULL, s->triangle_count};
+
     sink_text(&sink, "<?xml version=\"1.0\"?>\n"
                      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
                      "<PolyData>\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
@@ -64,39 +53,47 @@ SingeResult vtp_write_frame(const char *path, const OutputScene *scene, const Ou
               "NumberOfStrips=\"0\" NumberOfPolys=\"%u\">\n"
               "<PointData Scalars=\"temperature\" Vectors=\"velocity\" Normals=\"normal\" TCoords=\"uv\">\n",
               s->vertex_count, s->triangle_count);
+
     for (int i = 0; i < POINT_DATA; i++) put_element(&sink, &arrays[i], &offset);
     sink_text(&sink, "</PointData>\n<Points>\n");
     put_element(&sink, &arrays[POINT_DATA], &offset);
     sink_text(&sink, "</Points>\n<Polys>\n");
+
     for (int i = POINT_DATA + 1; i < ARRAYS; i++) put_element(&sink, &arrays[i], &offset);
     sink_text(&sink, "</Polys>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_");
-    for (int i = 0; i < ARRAYS; i++) put_values(&sink, &arrays[i]);
+
+    for (int i = 0; i < ARRAYS; i++) {
+        const size_t count = (size_t)arrays[i].width * arrays[i].count;
+        sink_u64(&sink, value_size(&arrays[i]) * count);
+        if (arrays[i].values) sink_words(&sink, arrays[i].values, count);
+        for (uint64_t k = 1; !arrays[i].values && k <= count; k++) sink_u64(&sink, 3 * k); // where triangles end
+    }
+
     sink_text(&sink, "\n</AppendedData>\n</VTKFile>\n");
     return sink_write(&sink, path, error);
-}
-
-/// A name in an XML attribute.
-static void put_xml(Sink *sink, const char *text) {
-    for (const char *c = text; *c; c++) {
-        const char *entity = *c == '&'   ? "&amp;"
-                             : *c == '<' ? "&lt;"
-                             : *c == '>' ? "&gt;"
-                             : *c == '"' ? "&quot;"
-                                         : NULL;
-        if (entity) sink_text(sink, "%s", entity);
-        else sink_bytes(sink, c, 1);
-    }
 }
 
 SingeResult pvd_write_root(const char *path, const OutputScene *scene, SingeError *error) {
     Sink sink = {0};
     sink_text(&sink, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" "
                      "byte_order=\"LittleEndian\">\n<Collection>\n");
+
     for (int frame = 1; frame <= scene->frames; frame++) {
         sink_text(&sink, "<DataSet timestep=\"");
         sink_number(&sink, (frame - 1) / (double)scene->fps);
         sink_text(&sink, "\" part=\"0\" file=\"vtp/");
-        put_xml(&sink, scene->name);
+
+        // a name in an XML attribute
+        for (const char *c = scene->name; *c; c++) {
+            const char *entity = *c == '&'   ? "&amp;"
+                                 : *c == '<' ? "&lt;"
+                                 : *c == '>' ? "&gt;"
+                                 : *c == '"' ? "&quot;"
+                                             : NULL;
+            if (entity) sink_text(&sink, "%s", entity);
+            else sink_bytes(&sink, c, 1);
+        }
+
         sink_text(&sink, ".%04d.vtp\"/>\n", frame);
     }
     sink_text(&sink, "</Collection>\n</VTKFile>\n");

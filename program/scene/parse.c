@@ -2,7 +2,6 @@
 #include "scene/values.h"
 
 #include "common/printable.h"
-#include "common/utf8.h"
 
 #include <string.h>
 

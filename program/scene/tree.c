@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "common/printable.h"
-#include "common/utf8.h"
 #include "scene/yaml.h"
 
 enum { DEPTH_MAX = YAML_DEPTH };

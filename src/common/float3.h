@@ -1,4 +1,4 @@
-// Three floats, and the quaternions of poses.
+// Three floats, three doubles, and the quaternions of poses.
 #ifndef COMMON_FLOAT3_H
 #define COMMON_FLOAT3_H
 
@@ -10,7 +10,11 @@ typedef struct Float3 {
 
 static inline Float3 float3(float x, float y, float z) { return (Float3){x, y, z}; }
 static inline Float3 float3_load(const float *p) { return (Float3){p[0], p[1], p[2]}; }
-static inline void float3_store(float *p, Float3 a) { p[0] = a.x, p[1] = a.y, p[2] = a.z; }
+static inline void float3_store(float *p, Float3 a) {
+    p[0] = a.x;
+    p[1] = a.y;
+    p[2] = a.z;
+}
 static inline Float3 float3_add(Float3 a, Float3 b) { return (Float3){a.x + b.x, a.y + b.y, a.z + b.z}; }
 static inline Float3 float3_sub(Float3 a, Float3 b) { return (Float3){a.x - b.x, a.y - b.y, a.z - b.z}; }
 static inline Float3 float3_scale(Float3 a, float s) { return (Float3){a.x * s, a.y * s, a.z * s}; }
@@ -27,6 +31,17 @@ static inline Float3 float3_unit(Float3 a) {
     float l = float3_length(a);
     return l > 0 ? float3_scale(a, 1 / l) : a;
 }
+
+// three doubles, in arrays
+static inline double double3_dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+static inline void double3_cross(const double a[3], const double b[3], double c[3]) {
+    c[0] = a[1] * b[2] - a[2] * b[1];
+    c[1] = a[2] * b[0] - a[0] * b[2];
+    c[2] = a[0] * b[1] - a[1] * b[0];
+}
+static inline double double3_length(const double a[3]) { return sqrt(double3_dot(a, a)); }
 
 /// Rotates by the unit quaternion q = (x, y, z, w): v + 2 q × (q × v + w v).
 static inline Float3 quat_rotate(const float q[4], Float3 v) {

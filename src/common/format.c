@@ -29,45 +29,35 @@ static bool text_in_number(char c) {
            c == ' ';
 }
 
-/// Adds a number as printf gives it; its decimal point may be several bytes long.
-static void text_add_real(Text *text, const char *number) {
-    for (const char *c = number; *c; c++) {
-        if (text_in_number(*c)) text_add(text, c, 1);
-        else if (text_in_number(c[1])) text_add(text, ".", 1);
-    }
-}
-
-static void text_add_string(Text *text, const char *spec, const char *string) {
-    size_t room = text->size - text->length;
-    int bytes = snprintf(text->out + text->length, room, spec, string);
-    if (bytes > 0) text->length += (size_t)bytes < room ? (size_t)bytes : room - 1;
-}
-
-/// Prints an integer of the width that the lengths in `spec` give.
-static void text_print_integer(char number[TEXT_NUMBER], const char *spec, va_list *arguments) {
-    if (strstr(spec, "ll")) snprintf(number, TEXT_NUMBER, spec, va_arg(*arguments, long long));
-    else if (strchr(spec, 'l')) snprintf(number, TEXT_NUMBER, spec, va_arg(*arguments, long));
-    else if (strchr(spec, 'z')) snprintf(number, TEXT_NUMBER, spec, va_arg(*arguments, size_t));
-    else snprintf(number, TEXT_NUMBER, spec, va_arg(*arguments, int));
-}
-
 /// Adds the conversion `spec` of the next argument; false if it is unknown.
 static bool text_convert(Text *text, const char *spec, va_list *arguments) {
     char number[TEXT_NUMBER];
+    size_t room = text->size - text->length;
+    int bytes;
     switch (spec[strlen(spec) - 1]) {
     case '%': text_add(text, "%", 1); return true;
-    case 's': text_add_string(text, spec, va_arg(*arguments, const char *)); return true;
+    case 's':
+        bytes = snprintf(text->out + text->length, room, spec, va_arg(*arguments, const char *));
+        if (bytes > 0) text->length += (size_t)bytes < room ? (size_t)bytes : room - 1;
+        return true;
     case 'd':
     case 'u':
     case 'x':
-        text_print_integer(number, spec, arguments);
+        if (strstr(spec, "ll")) snprintf(number, sizeof number, spec, va_arg(*arguments, long long));
+        else if (strchr(spec, 'l')) snprintf(number, sizeof number, spec, va_arg(*arguments, long));
+        else if (strchr(spec, 'z')) snprintf(number, sizeof number, spec, va_arg(*arguments, size_t));
+        else snprintf(number, sizeof number, spec, va_arg(*arguments, int));
         text_add(text, number, strlen(number));
         return true;
     case 'e':
     case 'f':
     case 'g':
         snprintf(number, sizeof number, spec, va_arg(*arguments, double));
-        text_add_real(text, number);
+        // printf's decimal point may be several bytes long
+        for (const char *c = number; *c; c++) {
+            if (text_in_number(*c)) text_add(text, c, 1);
+            else if (text_in_number(c[1])) text_add(text, ".", 1);
+        }
         return true;
     default: return false;
     }

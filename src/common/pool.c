@@ -7,7 +7,6 @@
 //
 // Idle workers watch for the next job for a short while, as a step has many, and then block; no more of them watch, or
 // are woken, than there are processors to run them.
-#include "common/assertion.h"
 #include "common/pool.h"
 
 #include "common/error.h"
@@ -70,26 +69,24 @@ static void pool_run_ranges(Pool *pool, bool back) {
     }
 }
 
-/// Watches for a while for a job after `seen`.
-static bool pool_watch(Pool *pool, unsigned seen) {
-    bool found = false;
-    if (atomic_fetch_add(&pool->watching, 1) + 1 < pool->processors)
-        for (int i = 0; i < POOL_PAUSES + POOL_YIELDS && !found; i++) {
-            if (i < POOL_PAUSES) pool_pause();
-            else thread_yield();
-            found = atomic_load_explicit(&pool->generation, memory_order_relaxed) != seen;
-        }
-    atomic_fetch_sub(&pool->watching, 1);
-    return found;
-}
-
 static void pool_worker(void *argument) {
     Pool *pool = argument;
     unsigned seen = 0;
     while (!atomic_load(&pool->quit)) {
-        if (!pool_watch(pool, seen)) {
+        // watches for a while
+        bool found = false;
+        if (atomic_fetch_add(&pool->watching, 1) + 1 < pool->processors)
+            for (int i = 0; i < POOL_PAUSES + POOL_YIELDS && !found; i++) {
+                if (i < POOL_PAUSES) pool_pause();
+                else thread_yield();
+                found = atomic_load_explicit(&pool->generation, memory_order_relaxed) != seen;
+            }
+        atomic_fetch_sub(&pool->watching, 1);
+
+        // then sleeps
+        if (!found) {
             mutex_lock(&pool->mutex);
-            atomic_fetch_add(&pool->asleep, 1); // before the generation is read: see pool_wake
+            atomic_fetch_add(&pool->asleep, 1); // before the generation is read: see pool_for
             while (atomic_load(&pool->generation) == seen) condition_wait(&pool->wake, &pool->mutex);
             atomic_fetch_sub(&pool->asleep, 1);
             mutex_unlock(&pool->mutex);
@@ -97,32 +94,6 @@ static void pool_worker(void *argument) {
         seen = atomic_load(&pool->generation);
         pool_run_ranges(pool, true);
     }
-}
-
-/// Wakes as many sleepers as the ranges and processors can use, less the threads awake. The generation is raised before
-/// `asleep` is read: a worker that is not counted as asleep here sees the new generation before it sleeps.
-static void pool_wake(Pool *pool, int ranges) {
-    atomic_fetch_add(&pool->generation, 1);
-    int asleep = atomic_load(&pool->asleep), awake = pool->thread_count - asleep;
-    int useful = ranges < pool->processors ? ranges : pool->processors;
-    if (asleep == 0 || awake >= useful) return;
-    mutex_lock(&pool->mutex);
-    for (; awake < useful && asleep > 0; awake++, asleep--) condition_signal(&pool->wake);
-    mutex_unlock(&pool->mutex);
-}
-
-/// Waits until the ranges taken by others are done.
-static void pool_join(Pool *pool, int ranges) {
-    for (int i = 0; i < POOL_PAUSES + POOL_YIELDS; i++) {
-        if (atomic_load(&pool->done) == ranges) return;
-        if (i < POOL_PAUSES) pool_pause();
-        else thread_yield();
-    }
-    mutex_lock(&pool->mutex);
-    atomic_store(&pool->caller_asleep, true);
-    while (atomic_load(&pool->done) != ranges) condition_wait(&pool->over, &pool->mutex);
-    atomic_store(&pool->caller_asleep, false);
-    mutex_unlock(&pool->mutex);
 }
 
 SingeResult pool_create(Memory *memory, SingeTasks tasks, int thread_count, Pool **out) {
@@ -181,9 +152,31 @@ void pool_for(Pool *pool, int count, int grain, SingeTaskFn *run, void *context)
     pool->ranges = ranges;
     atomic_store(&pool->done, 0);
     atomic_store(&pool->left, (uint64_t)ranges);
-    pool_wake(pool, ranges);
+
+    // wakes as many sleepers as the ranges and processors can use, less the threads awake. The generation is raised
+    // before `asleep` is read: a worker that is not counted as asleep here sees the new generation before it sleeps
+    atomic_fetch_add(&pool->generation, 1);
+    int asleep = atomic_load(&pool->asleep), awake = pool->thread_count - asleep;
+    int useful = ranges < pool->processors ? ranges : pool->processors;
+    if (asleep > 0 && awake < useful) {
+        mutex_lock(&pool->mutex);
+        for (; awake < useful && asleep > 0; awake++, asleep--) condition_signal(&pool->wake);
+        mutex_unlock(&pool->mutex);
+    }
+
     pool_run_ranges(pool, false);
-    pool_join(pool, ranges);
+
+    // waits until the ranges taken by others are done
+    for (int i = 0; i < POOL_PAUSES + POOL_YIELDS; i++) {
+        if (atomic_load(&pool->done) == ranges) return;
+        if (i < POOL_PAUSES) pool_pause();
+        else thread_yield();
+    }
+    mutex_lock(&pool->mutex);
+    atomic_store(&pool->caller_asleep, true);
+    while (atomic_load(&pool->done) != ranges) condition_wait(&pool->over, &pool->mutex);
+    atomic_store(&pool->caller_asleep, false);
+    mutex_unlock(&pool->mutex);
 }
 
 typedef struct PoolSum {
@@ -195,7 +188,6 @@ typedef struct PoolSum {
 
 static void pool_sum_blocks(void *task, int begin, int end) {
     PoolSum *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int block = begin; block < end; block++) {
         int first = block * POOL_BLOCK, rest = job->count - first;
         job->partial[block] = job->sum(job->context, first, first + (rest < POOL_BLOCK ? rest : POOL_BLOCK));

@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-#include "common/utf8.h"
-
 /// Unicode characters that are controls, have no width or change the direction of writing.
 static const struct Range {
     uint32_t first, last;

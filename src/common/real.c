@@ -76,39 +76,24 @@ float portable_powf(float x, float y) {
     return (float)portable_exp((double)y * real_log((double)x));
 }
 
-/// x less the nearest multiple k of pi/2; k modulo 4 in *quarter.
-static double real_quarter(double x, int *quarter) {
-    static const double high = 0x1.921fb544p0, mid = 0x1.0b4611a6p-34,
-                        low = 0x1.3198a2e037073p-69; // 33, 33 and 53 bits
-    double k = floor(x * (2 / PI) + 0.5);
-    *quarter = (int)(k - 4 * floor(0.25 * k));
-    return ((x - k * high) - k * mid) - k * low;
-}
-
-static double real_sin_series(double r) {
-    static const double over_factorial[] = {
-        1.0 / 355687428096000, -1.0 / 1307674368000, 1.0 / 6227020800, -1.0 / 39916800,
-        1.0 / 362880,          -1.0 / 5040,          1.0 / 120,        -1.0 / 6};
-    double square = r * r, sum = 0;
-    for (int i = 0; i < 8; i++) sum = sum * square + over_factorial[i];
-    return r + r * square * sum;
-}
-
-static double real_cos_series(double r) {
-    static const double over_factorial[] = {1.0 / 20922789888000, -1.0 / 87178291200, 1.0 / 479001600, -1.0 / 3628800,
-                                            1.0 / 40320,          -1.0 / 720,         1.0 / 24,        -0.5};
-    double square = r * r, sum = 0;
-    for (int i = 0; i < 8; i++) sum = sum * square + over_factorial[i];
-    return 1 + square * sum;
-}
-
 /// sin(x + turn pi/2).
 static float real_wave(float x, int turn) {
-    int quarter;
+    static const double high = 0x1.921fb544p0, mid = 0x1.0b4611a6p-34, low = 0x1.3198a2e037073p-69; // of pi/2
+    static const double sine[] = {1.0 / 355687428096000, -1.0 / 1307674368000, 1.0 / 6227020800, -1.0 / 39916800,
+                                  1.0 / 362880,          -1.0 / 5040,          1.0 / 120,        -1.0 / 6};
+    static const double cosine[] = {1.0 / 20922789888000, -1.0 / 87178291200, 1.0 / 479001600, -1.0 / 3628800,
+                                    1.0 / 40320,          -1.0 / 720,         1.0 / 24,        -0.5};
     if (!isfinite(x)) return NAN;
-    double r = real_quarter((double)x, &quarter);
-    quarter = (quarter + turn) & 3;
-    double value = quarter & 1 ? real_cos_series(r) : real_sin_series(r);
+
+    // x less the nearest multiple k of pi/2, which is in parts of 33, 33 and 53 bits
+    double y = (double)x, k = floor(y * (2 / PI) + 0.5);
+    double r = ((y - k * high) - k * mid) - k * low;
+    int quarter = ((int)(k - 4 * floor(0.25 * k)) + turn) & 3;
+
+    const double *over_factorial = quarter & 1 ? cosine : sine;
+    double square = r * r, sum = 0;
+    for (int i = 0; i < 8; i++) sum = sum * square + over_factorial[i];
+    double value = quarter & 1 ? 1 + square * sum : r + r * square * sum;
     return (float)(quarter & 2 ? -value : value);
 }
 

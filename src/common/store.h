@@ -1,14 +1,10 @@
-// Memory from the caller's hook, and messages, for all readers and writers.
+// Memory from the caller's hook, and messages about files, for what lies outside libsinge: the makers of meshes, and the
+// readers and writers of the program. They link a copy of their own, since a shared libsinge hides its inside.
 #ifndef COMMON_STORE_H
 #define COMMON_STORE_H
 
+#include "common/error.h"
 #include "singe/material.h"
-
-#define TRY(call)                            \
-    do {                                     \
-        SingeResult try_result_ = (call);    \
-        if (try_result_) return try_result_; \
-    } while (0)
 
 /// An uninitialised array; NULL when out of memory or if its size overflows. At least one byte is allocated, so NULL
 /// always means failure; free it with the same count.
@@ -24,7 +20,8 @@ bool store_trim(SingeAllocator allocator, void *array_pointer, size_t *capacity,
 /// Frees the names and the values, [count] each, and the array.
 void attributes_free(SingeAllocator allocator, SingeAttribute *attributes, uint32_t attribute_count, size_t count);
 
-/// Fills *error (may be NULL) and returns `code`.
+/// Fills *error (may be NULL) and returns `code`: error_set of libsinge for names of files, whose last character may be
+/// cut off in the middle.
 SingeResult refuse(SingeError *error, SingeResult code, const char *stage, int64_t element, const char *format, ...)
     SINGE_PRINTF(5, 6);
 SingeResult refuse_memory(SingeError *error, const char *stage, const char *name);

@@ -12,15 +12,10 @@ const char *singe_material_preset_name(uint32_t index) {
     return material_presets[index].name;
 }
 
-static const MaterialPreset *preset_find(const char *name) {
+SingeResult singe_material_preset(const char *name, SingeMaterialDef *def, SingeError *error) {
     const MaterialPreset *preset = material_presets;
     while (preset->name && !(name && strcmp(preset->name, name) == 0)) preset++;
-    return preset->name ? preset : NULL;
-}
-
-SingeResult singe_material_preset(const char *name, SingeMaterialDef *def, SingeError *error) {
-    const MaterialPreset *preset = preset_find(name);
-    if (!preset) {
+    if (!preset->name) {
         char names[200] = "";
         for (const MaterialPreset *p = material_presets; p->name; p++)
             snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", p == material_presets ? "" : ", ",

@@ -18,7 +18,7 @@
 #include "cli/pictures.h"
 #include "cli/interrupt.h"
 #include "cli/text.h"
-#include "common/utf8.h"
+#include "common/printable.h"
 
 static void expect_member(const char *json, const char *name, const char *expected) {
     const char *value;

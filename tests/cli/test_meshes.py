@@ -9,7 +9,7 @@ from hostile import GOOD, HOSTILE, SQUARE, TWO, gltf, struct
 from support import SINGE, Case
 
 HAS_ASSIMP = os.environ["SINGE_ASSIMP"] == "1"
-OWN = (".obj", ".ply", ".off", ".stl", ".gltf", ".glb")
+OWN = (".obj", ".ply", ".stl", ".gltf", ".glb")
 SANITIZED = os.environ["SINGE_SANITIZED"] == "1"
 SECONDS = 30
 MEGABYTES = 4000 if SANITIZED else 750

@@ -1,5 +1,5 @@
 // What a reader in a child process answers is checked as a file is.
-#include "formats/mesh_answer.h"
+#include "formats/mesh_reader.h"
 #include "format_test.h"
 
 #include <math.h>

@@ -1,7 +1,6 @@
 // Frames of the USD format: every value comes back by a reader of the tests' own, in the bytes and the time promised.
 #include "crate_reader.h"
 
-#include "formats/fields.h"
 #include "formats/lz4.h"
 #include "formats/output.h"
 

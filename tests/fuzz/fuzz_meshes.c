@@ -1,6 +1,6 @@
-// The mesh formats that have no target of their own, by the first byte: OFF, STL, glTF and GLB, and what a reader in a
-// child process answers.
-#include "formats/mesh_answer.h"
+// The mesh formats that have no target of their own, by the first byte: STL, glTF and GLB, and the answer of a reader in
+// a child process.
+#include "formats/mesh_reader.h"
 #include "fuzz_mesh.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
@@ -10,7 +10,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     SingeAllocator libc = {0};
     if (size == 0) return 0;
     switch (data[0] % 4) {
-    case 0: result = off_read("fuzz.off", data + 1, size - 1, libc, &mesh, &error); break;
     case 1: result = stl_read("fuzz.stl", data + 1, size - 1, libc, &mesh, &error); break;
     // in a folder that is not there, so that no files are opened
     case 2: result = gltf_read("/nowhere/fuzz.gltf", data + 1, size - 1, libc, &mesh, &error); break;

@@ -214,14 +214,14 @@ static void other_formats_are_made_too(void **state) {
     assert_int_equal(mesh.vertex_count, 4);
     mesh_free(&mesh);
     polygons_free(&polygons);
-    static const char off[] = "OFF\n5 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 .5 0\n4 0 1 2 3\n3 1 4 2\n";
-    result = polygons_read("a.off", (const uint8_t *)off, sizeof off - 1, (SingeAllocator){0}, &polygons, &error);
+    static const char obj[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 .5 0\nf 1 2 3 4\nf 2 5 3\n";
+    result = polygons_read("a.obj", (const uint8_t *)obj, sizeof obj - 1, (SingeAllocator){0}, &polygons, &error);
     if (result) fail_msg("%s", error.message);
     assert_int_equal(polygons.face_count, 2);
     assert_int_equal(polygons.corner_count, 7); // quads stay quads
     polygons_free(&polygons);
     assert_int_equal(
-        polygons_read("a.glb", (const uint8_t *)off + 4, sizeof off - 5, (SingeAllocator){0}, &polygons, &error),
+        polygons_read("a.glb", (const uint8_t *)obj, sizeof obj - 1, (SingeAllocator){0}, &polygons, &error),
         SINGE_ERROR_FORMAT);
     assert_non_null(strstr(error.message, "a.glb"));
 }

@@ -1,4 +1,4 @@
-// OFF and STL: what is read, and what is refused with its line or byte.
+// STL: what is read, and what is refused with its line or byte.
 #include "format_test.h"
 
 #include <math.h>
@@ -40,77 +40,6 @@ static void expect_error(const char *name, const char *text, size_t size, SingeR
     assert_null(mesh.positions);
     assert_null(mesh.corners);
 }
-
-// ---- OFF
-
-#define POINTS "0 0 0\n1 0 0\n1 1 0\n0 1 .5\n"
-
-static void off_is_read(void **state) {
-    (void)state;
-    static const float positions[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, .5f};
-    static const uint32_t corners[] = {0, 1, 2, 3, 0, 2, 3};
-    static const char *const texts[] = {
-        "OFF\n4 2 0\n" POINTS "4 0 1 2 3\n3 0 2 3\n",
-        "OFF 4 2\n" POINTS "4 0 1 2 3\n3 0 2 3",
-        "# a comment\n\nOFF # here\n\n 4 2 5 # there\r\n" POINTS
-        "\n# between\n4 0 1 2 3 .5 .5 .5\r\n3  0\t2 3 17\n# end",
-        "COFF\n4 2 0\n0 0 0 255 0 0 255\n1 0 0 1 2 3 4\n1 1 0 1 2 3 4\n0 1 .5 1 2 3 4\n4 0 1 2 3\n3 0 2 3\n",
-        "STCNOFF\r4 2 0\r0 0 0 a\r1 0 0 b\r1 1 0 c\r0 1 .5 d\r4 0 1 2 3\r3 0 2 3\r",
-    };
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
-        expect_mesh("a.off", texts[i], positions, 4, corners, 7, 2);
-}
-
-static void off_faces_have_lines(void **state) {
-    (void)state;
-    Polygons mesh;
-    SingeError error;
-    static const char text[] = "OFF\n4 2 0\n" POINTS "4 0 1 2 3\n\n3 0 2 3\n";
-    assert_int_equal(parse_bytes("a.off", text, sizeof text - 1, &mesh, &error), SINGE_OK);
-    assert_int_equal(mesh.lines[0], 7);
-    assert_int_equal(mesh.lines[1], 9);
-    polygons_free(&mesh);
-}
-
-static void off_is_refused(void **state) {
-    (void)state;
-    static const struct {
-        const char *text;
-        SingeResult code;
-        int line;
-        const char *part;
-    } cases[] = {
-        {"", SINGE_ERROR_FORMAT, 1, "empty"},
-        {"# only\n", SINGE_ERROR_FORMAT, 2, "nothing but comments"},
-        {"ply\n", SINGE_ERROR_FORMAT, 1, "its header is unknown"},
-        {"4OFF\n4 2 0\n", SINGE_ERROR_FORMAT, 1, "its header is unknown"},
-        {"OFF BINARY\n", SINGE_ERROR_FORMAT, 1, "binary"},
-        {"OFF", SINGE_ERROR_FORMAT, 1, "ends too soon"},
-        {"OFF\n4\n" POINTS, SINGE_ERROR_FORMAT, 2, "too few values"},
-        {"OFF\n4 x 0\n" POINTS, SINGE_ERROR_FORMAT, 2, "column 3 is not an integer of at least 0"},
-        {"OFF\n-4 1 0\n" POINTS, SINGE_ERROR_FORMAT, 2, "column 1 is not an integer of at least 0"},
-        {"OFF\n4.5 1 0\n" POINTS, SINGE_ERROR_FORMAT, 2, "column 1 is not an integer"},
-        {"OFF\n0 1 0\n3 0 1 2\n", SINGE_ERROR_FORMAT, 2, "no vertices"},
-        {"OFF\n4 0 0\n" POINTS, SINGE_ERROR_FORMAT, 2, "no faces"},
-        {"OFF\n2147483647 1 0\n" POINTS, SINGE_ERROR_FORMAT, 2, "too short for its 2147483647 vertices"},
-        {"OFF\n4 4611686018427387904 0\n" POINTS, SINGE_ERROR_FORMAT, 2, "too short"},
-        {"OFF\n9223372036854775807 9223372036854775807 0\n", SINGE_ERROR_FORMAT, 2, "column 1 is out of range"},
-        {"OFF\n4 1 0\n0 0 0\n1 0 nan\n1 1 0\n0 1 0\n3 0 1 2\n", SINGE_ERROR_FORMAT, 4, "not a finite number"},
-        {"OFF\n4 1 0\n0 0 0\n1 0 1e39\n1 1 0\n0 1 0\n3 0 1 2\n", SINGE_ERROR_FORMAT, 4, "out of range"},
-        {"OFF\n4 1 0\n0 0 0\n1 0\n1 1 0\n0 1 0\n3 0 1 2\n   ", SINGE_ERROR_FORMAT, 4, "too few values"},
-        {"OFF\n4 1 0\n" POINTS "4 0 1 2 999999\n", SINGE_ERROR_MESH, 7, "index 999999 is out of range"},
-        {"OFF\n4 1 0\n" POINTS "4 0 1 2 4\n", SINGE_ERROR_MESH, 7, "index 4 is out of range: the file has 4"},
-        {"OFF\n4 1 0\n" POINTS "4 0 1 2 -1\n", SINGE_ERROR_FORMAT, 7, "column 9 is not"},
-        {"OFF\n4 1 0\n" POINTS "2 0 1       \n", SINGE_ERROR_MESH, 7, "face has 2 corners; it needs three"},
-        {"OFF\n4 1 0\n" POINTS "4000000000 0 1 2\n", SINGE_ERROR_FORMAT, 7, "too few values"},
-        {"OFF\n4 1 0\n0 0 0      \n1 0 0      \n1 1 0\n3 0 1 2", SINGE_ERROR_FORMAT, 6, "ends too soon"},
-        {"OFF\n4 1 0\n" POINTS "4 0 1 2 3\n3 0 1 2\n", SINGE_ERROR_FORMAT, 8, "after the 4 vertices and 1 faces"},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-        expect_error("a.off", cases[i].text, strlen(cases[i].text), cases[i].code, cases[i].line, cases[i].part);
-}
-
-// ---- STL
 
 static const float triangles[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, .5f};
 static const uint32_t in_order[] = {0, 1, 2, 3, 4, 5};
@@ -198,9 +127,6 @@ static void stl_text_is_refused(void **state) {
         expect_error("a.stl", cases[i].text, strlen(cases[i].text), SINGE_ERROR_FORMAT, cases[i].line, cases[i].part);
 }
 
-// ---- both
-
-static const char good_off[] = "OFF\n4 2 0\n" POINTS "4 0 1 2 3\n3 0 2 3\n";
 static const char good_stl[] =
     "solid a\n" FACET("0 0 0", "1 0 0", "1 1 0") FACET("0 0 0", "1 1 0", "0 1 .5") "endsolid";
 
@@ -213,8 +139,6 @@ static void every_cut_is_refused(void **state) {
         assert_int_equal(parse_bytes("a.stl", good_stl, size, &mesh, &error), SINGE_ERROR_FORMAT);
     for (size_t size = 0; size < binary(bytes, "a", 2); size++)
         assert_int_equal(parse_bytes("a.stl", bytes, size, &mesh, &error), SINGE_ERROR_FORMAT);
-    for (size_t size = 0; size < sizeof good_off - 3; size++)
-        assert_int_not_equal(parse_bytes("a.off", good_off, size, &mesh, &error), SINGE_OK);
 }
 
 static void failing_memory_is_reported(void **state) {
@@ -225,10 +149,8 @@ static void failing_memory_is_reported(void **state) {
         const char *name;
         const void *data;
         size_t size;
-    } files[] = {{"a.off", good_off, sizeof good_off - 1},
-                 {"a.stl", good_stl, sizeof good_stl - 1},
-                 {"b.stl", bytes, sizeof bytes}};
-    for (int i = 0; i < 3; i++)
+    } files[] = {{"a.stl", good_stl, sizeof good_stl - 1}, {"b.stl", bytes, sizeof bytes}};
+    for (int i = 0; i < 2; i++)
         for (long at = 1;; at++) {
             TestAllocator counts = {.fail_at = at};
             Polygons mesh;
@@ -244,15 +166,9 @@ static void failing_memory_is_reported(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(off_is_read),
-        cmocka_unit_test(off_faces_have_lines),
-        cmocka_unit_test(off_is_refused),
-        cmocka_unit_test(stl_text_is_read),
-        cmocka_unit_test(stl_bytes_are_read),
-        cmocka_unit_test(stl_bytes_are_refused),
-        cmocka_unit_test(stl_text_is_refused),
-        cmocka_unit_test(every_cut_is_refused),
-        cmocka_unit_test(failing_memory_is_reported),
+        cmocka_unit_test(stl_text_is_read),      cmocka_unit_test(stl_bytes_are_read),
+        cmocka_unit_test(stl_bytes_are_refused), cmocka_unit_test(stl_text_is_refused),
+        cmocka_unit_test(every_cut_is_refused),  cmocka_unit_test(failing_memory_is_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
 // A binary glTF 2.0 file in the making: its buffer and the parts of its JSON.
-#ifndef FORMATS_GLB_FILE_H
-#define FORMATS_GLB_FILE_H
+#ifndef FORMATS_GLB_H
+#define FORMATS_GLB_H
 
 #include "formats/output.h"
 #include "formats/sink.h"

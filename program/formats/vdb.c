@@ -1,0 +1,610 @@
+// The part of the OpenVDB file format that Singe writes and reads.
+//
+// File, all little-endian; a string is its length (u32) and its bytes:
+//     magic (i64), file version 224 (u32), library version (2 u32), 1: grids have offsets (u8), id (36 bytes),
+//     metadata, number of grids (u32), then for each grid its name, type and the grid whose tree it shares (strings),
+//     the offsets in the file of its body, of its buffers and of its end (3 i64), and there
+//     body: compression (u32), metadata, map (a string and 15 doubles), number of buffers (u32, 1), topology
+// Metadata: their number (u32), each a name, a type (strings), a size (u32) and the bytes. Topology, depth first: the
+// root has its background value, no tiles and at most one child at (0, 0, 0) (2 u32, 3 i32): a node of 32^3 children,
+// each a node of 16^3 leaves of 8^3 cells. A node is the mask of its children, the mask of its values and, as the
+// compression is by active values alone and there are none, one zero byte; a leaf is the mask of its cells. The buffers
+// hold, for each leaf, the mask again, a zero byte and the values of its cells. A node's entries, and a mask's bits
+// from the lowest, are numbered with z fastest.
+#include "common/store.h"
+#include "formats/gas_grid.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define VDB_MAGIC 0x56444220u
+enum {
+    VDB_VERSION = 224,
+    VDB_LIBRARY_MAJOR = 10,
+    VDB_LIBRARY_MINOR = 0,
+    VDB_ACTIVE_VALUES = 2, ///< compression: values of inactive cells are omitted
+    VDB_ID = 36,
+    VDB_UPPER_LOG = 5,
+    VDB_LOWER_LOG = 4,
+    VDB_LEAF_LOG = 3,
+    VDB_UPPER_MASK = 1 << (3 * VDB_UPPER_LOG - 3), ///< bytes
+    VDB_LOWER_MASK = 1 << (3 * VDB_LOWER_LOG - 3),
+    VDB_LEAF_MASK = 1 << (3 * VDB_LEAF_LOG - 3),
+};
+
+#define VDB_MAP "UniformScaleTranslateMap"
+// metadata for computing smoke and flame from the file's grids
+#define VDB_EXTINCTION "extinction_of_soot" ///< m2/kg
+#define VDB_FLAME_UNIT "flame_unit"         ///< W/m3
+
+/// The grids of a file, in its order. `vel` is `velocity` under Houdini's name: it shares the tree.
+typedef enum VdbField { VDB_DENSITY, VDB_FLAME, VDB_TEMPERATURE, VDB_VELOCITY, VDB_FIELDS } VdbField;
+
+typedef struct VdbFieldInfo {
+    const char *name, *type;
+    uint32_t width; ///< floats a cell
+} VdbFieldInfo;
+
+static const VdbFieldInfo vdb_fields[VDB_FIELDS] = {
+    [VDB_DENSITY] = {"density", "Tree_float_5_4_3", 1},
+    [VDB_FLAME] = {"flame", "Tree_float_5_4_3", 1},
+    [VDB_TEMPERATURE] = {"temperature", "Tree_float_5_4_3", 1},
+    [VDB_VELOCITY] = {"velocity", "Tree_vec3s_5_4_3", 3},
+};
+
+static inline float *vdb_field(const Gas *gas, VdbField field) {
+    float *const arrays[VDB_FIELDS] = {gas->extinction, gas->flame_share, gas->temperature, (float *)gas->velocity};
+    return arrays[field];
+}
+
+static bool vdb_bit(const uint8_t *mask, uint32_t n) { return mask[n >> 3] >> (n & 7) & 1; }
+
+// ---- writing: one leaf for every block of cells that is not still air; all of its cells are active
+
+enum { HEADER_MAX = 2048, GRID_MAX = 2048, NODE_SIDE = 1 << VDB_LOWER_LOG };
+
+/// Blocks that are leaves, in the order of the tree; those of a node are contiguous.
+typedef struct Leaf {
+    uint16_t block[3];
+    bool opens; ///< the first of its node
+} Leaf;
+
+typedef struct Writer {
+    const Gas *gas;
+    Leaf *leaves;
+    size_t leaf_count, node_count, block_count;
+    float coolest;
+    bool half; ///< values are 16-bit floats
+    uint8_t *begin, *at;
+} Writer;
+
+// ---- bytes
+
+static void put_bytes(Writer *w, const void *bytes, size_t size) {
+    memcpy(w->at, bytes, size);
+    w->at += size;
+}
+
+static void put_zeros(Writer *w, size_t size) {
+    memset(w->at, 0, size);
+    w->at += size;
+}
+
+static void put_u32(Writer *w, uint32_t value) {
+    store_u32_little(w->at, value);
+    w->at += 4;
+}
+
+static void put_u64(Writer *w, uint64_t value) {
+    put_u32(w, (uint32_t)value);
+    put_u32(w, (uint32_t)(value >> 32));
+}
+
+static void put_float(Writer *w, float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    put_u32(w, bits);
+}
+
+/// Rounds to the nearest 16-bit float, ties to even.
+static uint16_t to_half(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    const uint16_t sign = (uint16_t)(bits >> 16 & 0x8000);
+    bits &= 0x7fffffffu;
+    if (bits >= 0x477ff000u) return sign | 0x7bff; // the largest finite number
+
+    if (bits < 0x38800000u) { // below 2^-14 they are multiples of 2^-24
+        float magnitude;
+        memcpy(&magnitude, &bits, sizeof magnitude);
+        return sign | (uint16_t)nearbyintf(magnitude * 0x1p24f);
+    }
+
+    bits += 0xfffu + (bits >> 13 & 1);
+    return sign | (uint16_t)((bits - 0x38000000u) >> 13);
+}
+
+static float from_half(uint16_t half) {
+    const int exponent = half >> 10 & 31, fraction = half & 1023;
+    const float magnitude = exponent ? ldexpf((float)(1024 + fraction), exponent - 25) : ldexpf((float)fraction, -24);
+    return half & 0x8000 ? -magnitude : magnitude;
+}
+
+static void put_double(Writer *w, double value) {
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    put_u64(w, bits);
+}
+
+static void put_string(Writer *w, const char *text) {
+    put_u32(w, (uint32_t)strlen(text));
+    put_bytes(w, text, strlen(text));
+}
+
+// ---- metadata
+
+static void put_text(Writer *w, const char *name, const char *value) {
+    put_string(w, name);
+    put_string(w, "string");
+    put_string(w, value);
+}
+
+static void put_triple(Writer *w, const char *name, const uint32_t value[3]) {
+    put_string(w, name);
+    put_string(w, "vec3i");
+    put_u32(w, 12);
+    for (int c = 0; c < 3; c++) put_u32(w, value[c]);
+}
+
+static void put_number(Writer *w, const char *name, double value) {
+    put_string(w, name);
+    put_string(w, "double");
+    put_u32(w, 8);
+    put_double(w, value);
+}
+
+// ---- the tree
+
+static void set_bit(uint8_t *mask, uint32_t x, uint32_t y, uint32_t z, int log) {
+    uint32_t n = (x << 2 * log) + (y << log) + z;
+    mask[n >> 3] |= (uint8_t)(1 << (n & 7));
+}
+
+static void leaf_mask(const Writer *w, const Leaf *leaf, uint8_t mask[VDB_LEAF_MASK]) {
+    uint32_t block[3] = {leaf->block[0], leaf->block[1], leaf->block[2]}, low[3], high[3];
+    gas_block_box(&w->gas->view, block, low, high);
+    memset(mask, 0, VDB_LEAF_MASK);
+    for (uint32_t x = 0; x < high[0] - low[0]; x++)
+        for (uint32_t y = 0; y < high[1] - low[1]; y++)
+            for (uint32_t z = 0; z < high[2] - low[2]; z++) set_bit(mask, x, y, z, VDB_LEAF_LOG);
+}
+
+/// The masks of an inner node: children, then values, of which there are none.
+static uint8_t *put_node(Writer *w, size_t mask_bytes) {
+    uint8_t *children = w->at;
+    put_zeros(w, 2 * mask_bytes + 1);
+    return children;
+}
+
+static void put_topology(Writer *w, const VdbFieldInfo *field) {
+    put_u32(w, 1);                                                             // buffers a leaf
+    const float still = w->half ? from_half(to_half(w->coolest)) : w->coolest; // the background, a whole float anyway
+    for (uint32_t k = 0; k < field->width; k++) put_float(w, field == &vdb_fields[VDB_TEMPERATURE] ? still : 0);
+    put_u32(w, 0); // tiles
+    put_u32(w, w->leaf_count > 0);
+    if (!w->leaf_count) return;
+    put_zeros(w, 12);
+    uint8_t *upper = put_node(w, VDB_UPPER_MASK), *lower = NULL;
+
+    for (size_t i = 0; i < w->leaf_count; i++) {
+        const Leaf *leaf = &w->leaves[i];
+        const uint16_t *b = leaf->block;
+        if (leaf->opens) {
+            set_bit(upper, b[0] / NODE_SIDE, b[1] / NODE_SIDE, b[2] / NODE_SIDE, VDB_UPPER_LOG);
+            lower = put_node(w, VDB_LOWER_MASK);
+        }
+        set_bit(lower, b[0] % NODE_SIDE, b[1] % NODE_SIDE, b[2] % NODE_SIDE, VDB_LOWER_LOG);
+        leaf_mask(w, leaf, w->at);
+        w->at += VDB_LEAF_MASK;
+    }
+}
+
+/// A grid with its tree, or, if `parent` is given, one that shares the parent's.
+static void put_grid(Writer *w, const char *name, VdbField field, const char *parent) {
+    put_string(w, name);
+    char type[64];
+    snprintf(type, sizeof type, "%s%s", vdb_fields[field].type, w->half ? "_HalfFloat" : "");
+    put_string(w, type);
+    put_string(w, parent);
+
+    uint8_t *locations = w->at;
+    w->at += 24;
+    uint64_t body = (uint64_t)(w->at - w->begin);
+    put_u32(w, VDB_ACTIVE_VALUES);
+
+    // lets a program identify a grid from its first kilobyte
+    uint32_t low[3] = {UINT32_MAX, UINT32_MAX, UINT32_MAX}, high[3] = {0, 0, 0};
+    uint64_t cells = 0;
+
+    for (size_t i = 0; i < w->leaf_count; i++) {
+        uint32_t block[3], from[3], to[3], volume = 1;
+        for (int c = 0; c < 3; c++) block[c] = w->leaves[i].block[c];
+        gas_block_box(&w->gas->view, block, from, to);
+        for (int c = 0; c < 3; c++) {
+            low[c] = from[c] < low[c] ? from[c] : low[c];
+            high[c] = to[c] - 1 > high[c] ? to[c] - 1 : high[c];
+            volume *= to[c] - from[c];
+        }
+        cells += volume;
+    }
+
+    put_u32(w, (w->leaf_count ? 6u : 4u) + w->half);
+    if (w->half) {
+        put_string(w, "is_saved_as_half_float");
+        put_string(w, "bool");
+        put_u32(w, 1);
+        put_bytes(w, "\1", 1);
+    }
+
+    put_text(w, "name", name);
+    if ((vdb_fields[field].width == 3)) put_text(w, "vector_type", "contravariant relative");
+    else put_text(w, "class", "fog volume");
+    put_text(w, "file_compression", "active values");
+    put_string(w, "file_voxel_count");
+    put_string(w, "int64");
+    put_u32(w, 8);
+    put_u64(w, cells);
+
+    if (w->leaf_count) {
+        put_triple(w, "file_bbox_min", low);
+        put_triple(w, "file_bbox_max", high);
+    }
+
+    // index to position: cell (0, 0, 0) has its centre half a cell from the origin
+    const SingeGas *gas = &w->gas->view;
+    double cell = (double)gas->cell;
+    put_string(w, VDB_MAP);
+
+    for (int c = 0; c < 3; c++) put_double(w, (double)gas->origin[c] + 0.5 * cell);
+    const double powers[5] = {cell, cell, 1 / cell, 1 / (cell * cell), 0.5 / cell};
+    for (int k = 0; k < 5; k++)
+        for (int c = 0; c < 3; c++) put_double(w, powers[k]);
+
+    if (!*parent) put_topology(w, &vdb_fields[field]);
+    uint64_t buffers = (uint64_t)(w->at - w->begin);
+
+    if (!*parent) {
+        const float *values = vdb_field(w->gas, field);
+        uint32_t width = vdb_fields[field].width;
+        for (size_t i = 0; i < w->leaf_count; i++) {
+            uint8_t mask[VDB_LEAF_MASK];
+            leaf_mask(w, &w->leaves[i], mask);
+            put_bytes(w, mask, sizeof mask);
+            put_zeros(w, 1);
+            const uint16_t *b = w->leaves[i].block;
+            for (uint32_t n = 0; n < GAS_BLOCK * GAS_BLOCK * GAS_BLOCK; n++) {
+                if (!vdb_bit(mask, n)) continue;
+                size_t at = gas_index(gas, b[0] * GAS_BLOCK + (n >> 6), b[1] * GAS_BLOCK + (n >> 3 & 7),
+                                      b[2] * GAS_BLOCK + (n & 7));
+                for (uint32_t k = 0; k < width; k++) {
+                    const float value = values[at * width + k];
+                    if (!w->half) {
+                        put_float(w, value);
+                        continue;
+                    }
+                    const uint16_t half = to_half(value);
+                    const uint8_t bytes[2] = {(uint8_t)half, (uint8_t)(half >> 8)};
+                    put_bytes(w, bytes, 2);
+                }
+            }
+        }
+    }
+
+    uint8_t *end = w->at;
+    w->at = locations;
+    put_u64(w, body);
+    put_u64(w, buffers);
+    put_u64(w, (uint64_t)(end - w->begin));
+    w->at = end;
+}
+
+// ---- the file
+
+static SingeResult write_file(Writer *w, const char *path, double time, SingeError *error) {
+    // max bytes of the whole file
+    size_t leaf = 2 * VDB_LEAF_MASK + 1, cells = GAS_BLOCK * GAS_BLOCK * GAS_BLOCK, max = HEADER_MAX + GRID_MAX;
+    for (int f = 0; f < VDB_FIELDS; f++)
+        max += GRID_MAX + 2 * VDB_UPPER_MASK + w->node_count * (2 * VDB_LOWER_MASK + 1) +
+               w->leaf_count * (leaf + cells * vdb_fields[f].width * 4);
+
+    w->begin = w->at = store_new(w->gas->allocator, max, 1);
+    if (!w->begin) return refuse_memory(error, "gas", path);
+
+    put_u64(w, VDB_MAGIC);
+    put_u32(w, VDB_VERSION);
+    put_u32(w, VDB_LIBRARY_MAJOR);
+    put_u32(w, VDB_LIBRARY_MINOR);
+    put_bytes(w, "\1", 1);
+    put_bytes(w, "00000000-0000-0000-0000-000000000000", VDB_ID); // the same gas gives the same bytes
+    put_u32(w, w->half ? 4 : 5);
+    put_text(w, "creator", "Singe " SINGE_VERSION);
+    put_triple(w, "size", w->gas->view.size);
+    put_number(w, "time", time);
+    put_number(w, VDB_EXTINCTION, (double)GAS_EXTINCTION);
+    if (!w->half) put_number(w, VDB_FLAME_UNIT, (double)GAS_FLAME_UNIT);
+    put_u32(w, VDB_FIELDS + 1);
+
+    for (int f = 0; f < VDB_FIELDS; f++) put_grid(w, vdb_fields[f].name, (VdbField)f, "");
+    put_grid(w, "vel", VDB_VELOCITY, vdb_fields[VDB_VELOCITY].name);
+    SingeResult result = file_write(path, w->begin, (size_t)(w->at - w->begin), error);
+    store_free(w->gas->allocator, w->begin, max, 1);
+    return result;
+}
+
+static SingeResult write_gas(const char *path, const Gas *gas, double time, bool half, SingeError *error) {
+    if (!isfinite(time))
+        return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "%s: the time is not finite", short_name(path));
+    if (!gas_cells(&gas->view) || !gas_shape_is_good(&gas->view))
+        return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "%s: no gas, or too much", short_name(path));
+
+    Writer writer = {.gas = gas, .half = half, .coolest = gas_coolest(&gas->view), .block_count = 1};
+    for (int c = 0; c < 3; c++) writer.block_count *= (gas->view.size[c] + GAS_BLOCK - 1) / GAS_BLOCK;
+    writer.leaves = store_new(gas->allocator, writer.block_count, sizeof *writer.leaves);
+    if (!writer.leaves) return refuse_memory(error, "gas", path);
+
+    // the leaves, node after node of 16 x 16 x 16 blocks
+    const uint32_t side = NODE_SIDE * GAS_BLOCK, *n = gas->view.size;
+    uint32_t node[3];
+    for (node[0] = 0; node[0] * side < n[0]; node[0]++)
+        for (node[1] = 0; node[1] * side < n[1]; node[1]++)
+            for (node[2] = 0; node[2] * side < n[2]; node[2]++) {
+                bool opens = true;
+                for (uint32_t i = 0; i < NODE_SIDE * NODE_SIDE * NODE_SIDE; i++) {
+                    uint32_t at[3] = {node[0] * NODE_SIDE + (i >> 8), node[1] * NODE_SIDE + (i >> 4 & 15),
+                                      node[2] * NODE_SIDE + (i & 15)};
+                    if (at[0] * GAS_BLOCK >= n[0] || at[1] * GAS_BLOCK >= n[1] || at[2] * GAS_BLOCK >= n[2]) continue;
+                    if (!gas_block_holds(&writer.gas->view, at, writer.coolest)) continue;
+                    writer.leaves[writer.leaf_count++] =
+                        (Leaf){{(uint16_t)at[0], (uint16_t)at[1], (uint16_t)at[2]}, .opens = opens};
+                    writer.node_count += opens;
+                    opens = false;
+                }
+            }
+
+    SingeResult result = write_file(&writer, path, time, error);
+    store_free(gas->allocator, writer.leaves, writer.block_count, sizeof *writer.leaves);
+    return result;
+}
+
+SingeResult vdb_write_gas(const char *path, const Gas *gas, double time, SingeError *error) {
+    return write_gas(path, gas, time, false, error);
+}
+
+SingeResult vdb_write_fine(const char *path, const Gas *gas, double time, SingeError *error) {
+    return write_gas(path, gas, time, true, error);
+}
+
+// ---- reading: files of vdb_write_gas and no others; everything is validated
+
+typedef struct Reader {
+    const char *name;
+    const uint8_t *begin, *at, *end;
+    Gas *gas;
+    double time, extinction, flame_unit;
+    SingeError *error;
+} Reader;
+
+static SingeResult vdb_read_bad(const Reader *r, const char *what) {
+    return refuse(r->error, SINGE_ERROR_FORMAT, "gas", r->at - r->begin, "%s: at byte %lld: %s", short_name(r->name),
+                  (long long)(r->at - r->begin), what);
+}
+
+// ---- bytes; reads past the end give 0 and leave `at` beyond it
+
+static bool has(const Reader *r, uint64_t size) { return (uint64_t)(r->end - r->at) >= size; }
+
+static const uint8_t *vdb_read_take(Reader *r, uint64_t size) {
+    if (!has(r, size)) {
+        r->at = r->end;
+        return NULL;
+    }
+    const uint8_t *p = r->at;
+    r->at += size;
+    return p;
+}
+
+static uint32_t get_u32(Reader *r) {
+    const uint8_t *p = vdb_read_take(r, 4);
+    return p ? load_u32_little(p) : 0;
+}
+
+static uint64_t get_u64(Reader *r) {
+    uint64_t low = get_u32(r);
+    return low | (uint64_t)get_u32(r) << 32;
+}
+
+static float get_float(Reader *r) {
+    uint32_t bits = get_u32(r);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static double get_double(Reader *r) {
+    uint64_t bits = get_u64(r);
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+typedef struct Text {
+    const uint8_t *bytes; ///< NULL past the end
+    uint32_t size;
+} Text;
+
+static Text get_string(Reader *r) {
+    if (!has(r, 4)) return (Text){NULL, 0};
+    uint32_t size = get_u32(r);
+    return (Text){vdb_read_take(r, size), size};
+}
+
+static bool is(Text text, const char *word) {
+    return text.bytes && text.size == strlen(word) && memcmp(text.bytes, word, text.size) == 0;
+}
+
+// ---- the file's head
+
+/// Reads the metadata; keeps time and size from the file's metadata.
+static SingeResult read_metadata(Reader *r, bool of_file) {
+    uint32_t count = get_u32(r);
+    for (uint32_t i = 0; i < count; i++) {
+        Text name = get_string(r), type = get_string(r);
+        uint32_t size = get_u32(r);
+        if (!name.bytes || !type.bytes || !has(r, size)) return vdb_read_bad(r, "metadata are cut off");
+        Reader value = *r;
+        r->at += size;
+        if (of_file && is(name, "time") && is(type, "double") && size == 8) r->time = get_double(&value);
+        if (of_file && is(name, VDB_EXTINCTION) && is(type, "double") && size == 8) r->extinction = get_double(&value);
+        if (of_file && is(name, VDB_FLAME_UNIT) && is(type, "double") && size == 8) r->flame_unit = get_double(&value);
+        if (of_file && is(name, "size") && is(type, "vec3i") && size == 12)
+            for (int c = 0; c < 3; c++) r->gas->view.size[c] = get_u32(&value);
+    }
+
+    return SINGE_OK;
+}
+
+// ---- a grid
+
+/// An inner node: returns the mask of its children. It must not have values.
+static const uint8_t *take_node(Reader *r, size_t mask_bytes) {
+    const uint8_t *node = vdb_read_take(r, 2 * mask_bytes + 1);
+    if (!node || node[2 * mask_bytes]) return NULL;
+    for (size_t i = 0; i < mask_bytes; i++)
+        if (node[mask_bytes + i]) return NULL;
+    return node;
+}
+
+static SingeResult read_node(Reader *r, Reader *buffers, const uint32_t low[3], VdbField field) {
+    const uint8_t *children = take_node(r, VDB_LOWER_MASK);
+    if (!children) return vdb_read_bad(r, "a node is cut off or has values of its own");
+
+    for (uint32_t n = 0; n < 8 * VDB_LOWER_MASK; n++) {
+        const uint32_t at[3] = {low[0] + (n >> 8) * GAS_BLOCK, low[1] + (n >> 4 & 15) * GAS_BLOCK,
+                                low[2] + (n & 15) * GAS_BLOCK};
+        if (vdb_bit(children, n)) {
+            // a leaf: its mask from the topology, its values from the buffers
+            const SingeGas *gas = &r->gas->view;
+            uint32_t width = vdb_fields[field].width;
+            float *to = vdb_field(r->gas, field);
+            const uint8_t *mask = vdb_read_take(r, VDB_LEAF_MASK), *again = vdb_read_take(buffers, VDB_LEAF_MASK + 1);
+            if (!mask || !again || again[VDB_LEAF_MASK] || memcmp(mask, again, VDB_LEAF_MASK) != 0)
+                return vdb_read_bad(buffers, "a leaf is cut off, or its masks differ");
+            for (uint32_t cell = 0; cell < 8 * VDB_LEAF_MASK; cell++) {
+                if (!vdb_bit(mask, cell)) continue;
+                uint32_t x = at[0] + (cell >> 6), y = at[1] + (cell >> 3 & 7), z = at[2] + (cell & 7);
+                if (x >= gas->size[0] || y >= gas->size[1] || z >= gas->size[2])
+                    return vdb_read_bad(r, "a cell outside of the gas");
+                if (!has(buffers, 4 * (uint64_t)width)) return vdb_read_bad(buffers, "the values are cut off");
+                for (uint32_t k = 0; k < width; k++) {
+                    float value = get_float(buffers);
+                    if (!isfinite(value)) return vdb_read_bad(buffers, "a value is not finite");
+                    to[gas_index(gas, x, y, z) * width + k] = value;
+                }
+            }
+        }
+    }
+
+    return SINGE_OK;
+}
+
+/// A pointer into the file; NULL if outside.
+static const uint8_t *vdb_read_position(const Reader *r, uint64_t offset) {
+    return offset <= (uint64_t)(r->end - r->begin) ? r->begin + offset : NULL;
+}
+
+static SingeResult read_grid(Reader *r, VdbField field) {
+    if (!is(get_string(r), vdb_fields[field].name) || !is(get_string(r), vdb_fields[field].type) ||
+        !is(get_string(r), ""))
+        return vdb_read_bad(r, "other grids than those of Singe");
+    Reader body = *r, buffers = *r;
+    body.at = vdb_read_position(r, get_u64(r));
+    buffers.at = vdb_read_position(r, get_u64(r));
+
+    const uint8_t *end = vdb_read_position(r, get_u64(r));
+    if (!body.at || !buffers.at || !end || end < r->at) return vdb_read_bad(r, "a grid lies outside of the file");
+    r->at = end;
+    if (get_u32(&body) != VDB_ACTIVE_VALUES) return vdb_read_bad(&body, "another compression than by active values");
+    TRY(read_metadata(&body, false));
+
+    if (!is(get_string(&body), VDB_MAP)) return vdb_read_bad(&body, "another map than " VDB_MAP);
+    double position[3], scale[3];
+    for (int c = 0; c < 3; c++) position[c] = get_double(&body);
+    for (int c = 0; c < 3; c++) scale[c] = get_double(&body);
+    if (!vdb_read_take(&body, 12 * 8)) return vdb_read_bad(&body, "the map is cut off");
+
+    SingeGas map = body.gas->view;
+    map.cell = (float)scale[0];
+    for (int c = 0; c < 3; c++) map.origin[c] = (float)(position[c] - 0.5 * scale[0]);
+    if (!gas_shape_is_good(&map) || scale[1] != scale[0] || scale[2] != scale[0])
+        return vdb_read_bad(&body, "a bad map");
+    if (field == 0) body.gas->view = map;
+    else if (memcmp(map.origin, body.gas->view.origin, sizeof map.origin) != 0 || map.cell != body.gas->view.cell)
+        return vdb_read_bad(&body, "grids of different maps");
+
+    bool good = get_u32(&body) == 1;
+    float background = 0;
+
+    for (uint32_t k = 0; k < vdb_fields[field].width; k++) {
+        background = get_float(&body);
+        good = good && isfinite(background) && (background == 0 || field == VDB_TEMPERATURE);
+    }
+
+    uint32_t tiles = get_u32(&body), children = get_u32(&body);
+    if (!good || tiles || children > 1) return vdb_read_bad(&body, "the tree's root is not as Singe writes it");
+    if (field == VDB_TEMPERATURE) gas_fill(body.gas, background);
+    if (!children) return SINGE_OK;
+    static const uint8_t zero[12];
+
+    const uint8_t *origin = vdb_read_take(&body, 12), *nodes = take_node(&body, VDB_UPPER_MASK);
+    if (!origin || memcmp(origin, zero, 12) != 0 || !nodes)
+        return vdb_read_bad(&body, "the tree is cut off or lies elsewhere");
+
+    for (uint32_t n = 0; n < 8 * VDB_UPPER_MASK; n++) {
+        enum { SIDE = GAS_BLOCK << VDB_LOWER_LOG };
+        const uint32_t low[3] = {(n >> 10) * SIDE, (n >> 5 & 31) * SIDE, (n & 31) * SIDE};
+        if (vdb_bit(nodes, n)) TRY(read_node(&body, &buffers, low, field));
+    }
+    return SINGE_OK;
+}
+
+static SingeResult read_all(Reader *r) {
+    if (get_u64(r) != VDB_MAGIC) return vdb_read_bad(r, "not a VDB file");
+    if (get_u32(r) != VDB_VERSION) return vdb_read_bad(r, "a VDB file of another version");
+    vdb_read_take(r, 8); // of the library
+    const uint8_t *offsets = vdb_read_take(r, 1);
+    if (!offsets || *offsets != 1 || !vdb_read_take(r, VDB_ID))
+        return vdb_read_bad(r, "the head is cut off or has no offsets");
+    r->time = (double)NAN;
+    TRY(read_metadata(r, true));
+    if (!isfinite(r->time) || !gas_cells(&r->gas->view))
+        return vdb_read_bad(r, "not a gas of Singe: no time or no size");
+    if (r->extinction != (double)GAS_EXTINCTION || r->flame_unit != (double)GAS_FLAME_UNIT)
+        return vdb_read_bad(r, "its density or its flame is in other units than those of this version");
+    r->gas->view.cell = 1; // set by the grids
+    if (!gas_shape_is_good(&r->gas->view)) return vdb_read_bad(r, "more cells than a gas can have");
+    if (get_u32(r) != VDB_FIELDS + 1) return vdb_read_bad(r, "other grids than those of Singe");
+
+    TRY(gas_make(r->gas, r->name, 0, r->error));
+    for (int f = 0; f < VDB_FIELDS; f++) TRY(read_grid(r, (VdbField)f));
+    return gas_decode(r->gas) ? SINGE_OK : vdb_read_bad(r, "a value is not finite");
+}
+
+SingeResult vdb_read_gas(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator, Gas *gas,
+                         double *time, SingeError *error) {
+    *gas = (Gas){.allocator = allocator};
+    Reader reader = {.name = name, .begin = bytes, .at = bytes, .end = bytes + size, .gas = gas, .error = error};
+    SingeResult result = read_all(&reader);
+    if (result) gas_free(gas);
+    else if (time) *time = reader.time;
+    return result;
+}
