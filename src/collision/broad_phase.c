@@ -116,7 +116,7 @@ static void add_cells(CollisionPlan *plan) {
     }
 }
 
-static SingeResult find_pairs(Find *find, Pool *pool) {
+static SingeResult find_pairs(Memory *memory, Find *find, Pool *pool) {
     enum { TRIALS = 5 };
     CollisionPlan *plan = find->plan;
     uint64_t count;
@@ -128,7 +128,7 @@ static SingeResult find_pairs(Find *find, Pool *pool) {
         if (count + plan->cell_count <= plan->sizes.pair_budget || trial == TRIALS) break;
         plan->slack *= 0.5f; // too crowded: search less far
     }
-    if (!collision_grow_pairs(plan, count + plan->cell_count)) return SINGE_ERROR_MEMORY;
+    if (!collision_grow_pairs(memory, plan, count + plan->cell_count)) return SINGE_ERROR_MEMORY;
     broad_grid_keep(plan, find->shell, pool, count, plan->pair_capacity - plan->cell_count);
     plan->counters.dropped += count - plan->pair_count;
     add_cells(plan);
@@ -152,15 +152,15 @@ static void choose_steps(CollisionPlan *plan, const Shell *shell) {
     plan->steps = step * COLLISION_STEPS < max ? COLLISION_STEPS : step * 2 <= max ? (uint32_t)(max / step) : 2;
 }
 
-SingeResult broad_search(CollisionPlan *plan, const Shell *shell, Pool *pool) {
+SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool) {
     Find find = {plan, shell};
     plan->listed_count = plan->pair_count = 0;
     plan->restless = 0;
     choose_steps(plan, shell);
     find_owners(plan, shell);
     pool_for(pool, (int)plan->cell_count, 512, box_range, &find);
-    TRY(find_pairs(&find, pool));
-    TRY(initial_find(plan, shell, plan->searched == 0));
+    TRY(find_pairs(memory, &find, pool));
+    TRY(initial_find(memory, plan, shell, plan->searched == 0));
     plan->searched = 1;
     plan->counters.searches++;
     return SINGE_OK;

@@ -139,7 +139,7 @@ static SingeResult search_again(Ccd *ccd, const StateInput *state, Pool *pool, f
     for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = ccd->cell_flags[c] & SINGE_ALIVE;
     plan->step = state->step;
     ccd->time = h;
-    return broad_search(plan, ccd->shell, pool);
+    return broad_search(ccd->memory, plan, ccd->shell, pool);
 }
 
 static void ccd_measure(Ccd *ccd, Pool *pool) { pool_for(pool, (int)ccd->plan->cell_count, 512, measure_range, ccd); }
@@ -173,7 +173,7 @@ static SingeResult follow_out_of_bounds(Ccd *ccd, const StateInput *state, Pool 
         ccd_measure(ccd, pool);
         count = list_out_of_bounds(plan);
     }
-    TRY(broad_search_outside(plan, ccd->shell, pool, count, (const float(*)[4])ccd->dynamics->position));
+    TRY(broad_search_outside(ccd->memory, plan, ccd->shell, pool, count, (const float(*)[4])ccd->dynamics->position));
     plan->restless = plan->step < state->step && count > plan->cell_count / OUTSIDE_PART;
     *first = all ? 0 : plan->listed_count;
     return SINGE_OK;
@@ -244,10 +244,10 @@ static void empty_zones(CollisionPlan *plan) {
     plan->stopped_count = 0;
 }
 
-static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
-                              DynamicsState *dynamics) {
+static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state,
+                              Pool *pool, float h, DynamicsState *dynamics) {
     SINGE_ASSERT(h > 0);
-    Ccd ccd = {plan, shell, dynamics, state->ablate->cell_flags, h * (float)(state->step - plan->step + 1), 0};
+    Ccd ccd = {memory, plan, shell, dynamics, state->ablate->cell_flags, h * (float)(state->step - plan->step + 1), 0};
     bool stopped = false;
     if (plan->closed) mark_moved(&ccd);
 
@@ -276,11 +276,11 @@ static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const Sta
     return SINGE_OK;
 }
 
-SingeResult ccd_apply(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
-                      DynamicsState *dynamics) {
+SingeResult ccd_apply(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
+                      float h, DynamicsState *dynamics) {
     SINGE_ASSERT(h > 0);
     double start = clock_seconds();
-    SingeResult result = close_step(plan, shell, state, pool, h, dynamics);
+    SingeResult result = close_step(memory, plan, shell, state, pool, h, dynamics);
     plan->pair_count = plan->listed_count;
     empty_zones(plan);
     if (result) collision_plan_forget(plan);

@@ -38,7 +38,7 @@ static uint32_t with_margin(uint64_t wanted, uint32_t max) {
     return wanted < max ? (uint32_t)wanted : max;
 }
 
-bool collision_grow_pairs(CollisionPlan *plan, uint64_t wanted) {
+bool collision_grow_pairs(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
     uint32_t before = plan->pair_capacity, after = with_margin(wanted, plan->sizes.pair_max);
     if (wanted <= before || before >= plan->sizes.pair_max) return true;
     const Room room[ROOMS] = {
@@ -48,20 +48,19 @@ bool collision_grow_pairs(CollisionPlan *plan, uint64_t wanted) {
         {&plan->partial, (size_t)pool_blocks((int)before), (size_t)pool_blocks((int)after), sizeof *plan->partial},
     };
     BlockList *pairs = &plan->found_pairs, *repulsions = &plan->found;
-    if (!block_list_grow(plan->memory, pairs, after, pairs->block_count) ||
-        !block_list_grow(plan->memory, repulsions, repulsions->capacity, collision_look_blocks(after)) ||
-        !grow_rooms(plan->memory, room, ROOMS))
+    if (!block_list_grow(memory, pairs, after, pairs->block_count) ||
+        !block_list_grow(memory, repulsions, repulsions->capacity, collision_look_blocks(after)) ||
+        !grow_rooms(memory, room, ROOMS))
         return false;
     plan->pair_capacity = after;
     return true;
 }
 
-bool collision_grow_repulsions(CollisionPlan *plan, uint64_t wanted) {
+bool collision_grow_repulsions(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
     uint32_t before = plan->repulsion_capacity, after = with_margin(wanted, plan->sizes.repulsion_max);
     if (wanted <= before || before >= plan->sizes.repulsion_max) return true;
     const Room room = {&plan->repulsions, before, after, sizeof *plan->repulsions};
-    if (!block_list_grow(plan->memory, &plan->found, after, plan->found.block_count) ||
-        !grow_rooms(plan->memory, &room, 1))
+    if (!block_list_grow(memory, &plan->found, after, plan->found.block_count) || !grow_rooms(memory, &room, 1))
         return false;
     plan->repulsion_capacity = after;
     return true;

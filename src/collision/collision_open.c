@@ -271,12 +271,12 @@ static void open_repulsion(void *context, const void *item, uint32_t number) {
     open_gather(repulsion, job->shell->cells[pair->b], wb, -1);
 }
 
-static SingeResult open_repulsions(Opening *job, Pool *pool) {
+static SingeResult open_repulsions(Memory *memory, Opening *job, Pool *pool) {
     CollisionPlan *plan = job->plan;
     BlockList *list = &plan->found;
     int blocks = (int)collision_look_blocks(plan->listed_count);
     uint64_t count = block_list_write(list, pool, blocks, plan->sizes.repulsion_max, look_block, job);
-    if (!collision_grow_repulsions(plan, count)) return SINGE_ERROR_MEMORY;
+    if (!collision_grow_repulsions(memory, plan, count)) return SINGE_ERROR_MEMORY;
     job->again = true;
     plan->repulsion_count = block_list_settle(list, pool, blocks, count, plan->repulsion_capacity, look_block, job);
     plan->counters.dropped += count - plan->repulsion_count;
@@ -284,28 +284,28 @@ static SingeResult open_repulsions(Opening *job, Pool *pool) {
     return SINGE_OK;
 }
 
-static SingeResult open_step(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
-                             const DynamicsState *dynamics) {
+static SingeResult open_step(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state,
+                             Pool *pool, const DynamicsState *dynamics) {
     bool search =
         !plan->searched || plan->restless || state->step < plan->step || state->step - plan->step >= plan->steps;
     Opening job = {plan, shell, dynamics, state->ablate->cell_flags, search, false};
     if (search) {
         note_search(plan, state, dynamics);
-        TRY(broad_search(plan, shell, pool));
+        TRY(broad_search(memory, plan, shell, pool));
         memcpy(plan->start, dynamics->position, plan->vertex_count * sizeof *plan->start);
     }
     pool_for(pool, (int)plan->cell_count, 512, measure_range, &job);
     plan->closed = false;
     if (!search) memcpy(plan->start, dynamics->position, plan->vertex_count * sizeof *plan->start);
-    TRY(open_repulsions(&job, pool));
+    TRY(open_repulsions(memory, &job, pool));
     plan->counters.pairs += plan->listed_count;
     return SINGE_OK;
 }
 
-SingeResult collision_open(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
+SingeResult collision_open(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
                            const DynamicsState *dynamics) {
     double start = clock_seconds();
-    SingeResult result = open_step(plan, shell, state, pool, dynamics);
+    SingeResult result = open_step(memory, plan, shell, state, pool, dynamics);
     if (result) collision_plan_forget(plan);
     plan->counters.seconds += clock_seconds() - start;
     return result;

@@ -161,7 +161,6 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     CollisionPlan *plan;
     *out = NULL;
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
-    plan->memory = memory;
     plan->def = *def;
     plan->time_step = time_step;
     size_plan(plan, shell, sizes);
@@ -191,7 +190,7 @@ static bool collision_fits(const CollisionPlan *plan, const uint8_t *cell_flags)
 }
 
 /// The pairs that have intersected since the start: the count of each cell, then their other cells.
-static SingeResult stream_initial(CollisionPlan *plan, Stream *stream) {
+static SingeResult stream_initial(Memory *memory, CollisionPlan *plan, Stream *stream) {
     uint32_t *first = plan->initial_first, count = first[plan->cell_count];
     STREAM(stream, count);
     stream_data(stream, first, ((size_t)plan->cell_count + 1) * sizeof *first);
@@ -204,26 +203,27 @@ static SingeResult stream_initial(CollisionPlan *plan, Stream *stream) {
             stream->failed = true;
             return SINGE_OK;
         }
-        if (!initial_reserve(plan, count)) return SINGE_ERROR_MEMORY;
+        if (!initial_reserve(memory, plan, count)) return SINGE_ERROR_MEMORY;
     }
     stream_data(stream, plan->initial_other, count * sizeof *plan->initial_other);
     return SINGE_OK;
 }
 
-SingeResult collision_plan_stream(CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags, Stream *stream) {
+SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags,
+                                  Stream *stream) {
     STREAM(stream, plan->searched);
     STREAM(stream, plan->restless);
     STREAM(stream, plan->step);
     stream_data(stream, plan->position, plan->vertex_count * sizeof *plan->position);
     stream_data(stream, plan->speed, plan->vertex_count * sizeof *plan->speed);
     stream_data(stream, plan->alive, plan->cell_count);
-    TRY(stream_initial(plan, stream));
+    TRY(stream_initial(memory, plan, stream));
     if (stream->mode == STREAM_READ && !collision_fits(plan, cell_flags)) stream->failed = true;
     if (stream->mode != STREAM_READ || stream->failed || !plan->searched) return SINGE_OK;
     initial_mark(plan);
     plan->closed = false;
     uint32_t restless = plan->restless;
-    TRY(broad_search(plan, shell, NULL));
+    TRY(broad_search(memory, plan, shell, NULL));
     plan->restless = restless;
     // how far pairs have moved since is unknown
     for (uint32_t k = 0; k < plan->listed_count; k++) plan->pairs[k].distance = 0;

@@ -50,17 +50,17 @@ void initial_mark(CollisionPlan *plan) {
         if (plan->intersecting[c] && counters->intersecting++ == 0) counters->intersecting_first = c;
 }
 
-bool initial_reserve(CollisionPlan *plan, uint32_t count) {
-    FREE(plan->memory, plan->initial_other, plan->initial_capacity);
+bool initial_reserve(Memory *memory, CollisionPlan *plan, uint32_t count) {
+    FREE(memory, plan->initial_other, plan->initial_capacity);
     plan->initial_capacity = 0;
     if (count == 0) return true;
-    if (!NEW(plan->memory, plan->initial_other, count)) return false;
+    if (!NEW(memory, plan->initial_other, count)) return false;
     plan->initial_capacity = count;
     return true;
 }
 
 /// The first search: lists all pairs that intersect. plan->active is free until CCD, and marks them.
-static SingeResult list_all(CollisionPlan *plan, const Shell *shell) {
+static SingeResult list_all(Memory *memory, CollisionPlan *plan, const Shell *shell) {
     uint32_t *first = plan->initial_first, count = 0;
 
     // find them, and count those of each cell
@@ -70,7 +70,7 @@ static SingeResult list_all(CollisionPlan *plan, const Shell *shell) {
         plan->active[k] = pair_intersects(plan, shell, pair);
         if (plan->active[k]) first[pair->a + 2]++, count++;
     }
-    if (!initial_reserve(plan, count)) {
+    if (!initial_reserve(memory, plan, count)) {
         memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
         return SINGE_ERROR_MEMORY;
     }
@@ -104,9 +104,9 @@ static void keep_crossing(CollisionPlan *plan, const Shell *shell) {
     }
 }
 
-SingeResult initial_find(CollisionPlan *plan, const Shell *shell, bool first) {
+SingeResult initial_find(Memory *memory, CollisionPlan *plan, const Shell *shell, bool first) {
     if (!first && plan->counters.intersecting == 0) return SINGE_OK;
-    if (first) TRY(list_all(plan, shell));
+    if (first) TRY(list_all(memory, plan, shell));
     else keep_crossing(plan, shell);
     initial_mark(plan);
     return SINGE_OK;

@@ -145,8 +145,8 @@ static void keep_pair(void *context, const void *item, uint32_t number) {
     memcpy(&plan->pairs[plan->listed_count + number], item, sizeof(CollisionPair));
 }
 
-SingeResult broad_search_outside(CollisionPlan *plan, const Shell *shell, Pool *pool, uint32_t outside_count,
-                                 const float (*x)[4]) {
+SingeResult broad_search_outside(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool,
+                                 uint32_t outside_count, const float (*x)[4]) {
     OutsideSearch job = {plan, shell, x, outside_count, 0, false};
     plan->pair_count = plan->listed_count;
     if (outside_count == 0 || !(plan->edge > 0)) return SINGE_OK;
@@ -155,7 +155,7 @@ SingeResult broad_search_outside(CollisionPlan *plan, const Shell *shell, Pool *
     chain_outside(&job);
     BlockList *list = &plan->found_pairs;
     uint64_t count = block_list_write(list, pool, blocks, plan->sizes.pair_max, outside_block, &job);
-    if (!collision_grow_pairs(plan, plan->listed_count + count)) return SINGE_ERROR_MEMORY;
+    if (!collision_grow_pairs(memory, plan, plan->listed_count + count)) return SINGE_ERROR_MEMORY;
     uint32_t room = plan->pair_capacity - plan->listed_count;
     uint32_t kept = block_list_settle(list, pool, blocks, count, room, outside_block, &job);
     plan->counters.dropped += count - kept;

@@ -116,9 +116,11 @@ void dynamics_plan_velocity_changed(DynamicsPlan *plan) {
     if (plan->collision) collision_plan_forget(plan->collision); // its boxes are for the old velocities
 }
 
-SingeResult dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, const State *state, Stream *stream) {
+SingeResult dynamics_plan_stream(Memory *memory, DynamicsPlan *plan, const Shell *shell, const State *state,
+                                 Stream *stream) {
     attach_stream(&plan->attachments, shell, stream);
-    return plan->collision ? collision_plan_stream(plan->collision, shell, state->ablate.cell_flags, stream) : SINGE_OK;
+    return plan->collision ? collision_plan_stream(memory, plan->collision, shell, state->ablate.cell_flags, stream)
+                           : SINGE_OK;
 }
 
 CollisionCounters dynamics_plan_contacts(const DynamicsPlan *plan) {
@@ -194,7 +196,8 @@ static void dynamics_project(DynamicsPlan *plan, const Shell *shell, Pool *pool,
 }
 
 /// Alternates limits and CCD: what CCD has stopped may be too far from what it has not.
-static SingeResult dynamics_close(DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics) {
+static SingeResult dynamics_close(Memory *memory, DynamicsPlan *plan, const StepContext *context,
+                                  DynamicsState *dynamics) {
     enum { TURNS = 8 };
     const Shell *shell = context->shell;
     const StateInput *state = &context->state;
@@ -202,7 +205,7 @@ static SingeResult dynamics_close(DynamicsPlan *plan, const StepContext *context
         bool limited = dynamics_limit(plan, shell, state, context->pool, dynamics);
         if (!plan->collision || (turn > 0 && !limited)) break;
         uint64_t stops = collision_counters(plan->collision).stops;
-        TRY(ccd_apply(plan->collision, shell, state, context->pool, context->h, dynamics));
+        TRY(ccd_apply(memory, plan->collision, shell, state, context->pool, context->h, dynamics));
         if (collision_counters(plan->collision).stops == stops) break;
     }
     return SINGE_OK;
@@ -212,7 +215,7 @@ static SingeResult dynamics_contact_result(SingeResult result, SingeError *error
     return result ? error_set(error, result, "contact", -1, "out of memory for what is near each other") : SINGE_OK;
 }
 
-SingeResult dynamics_step(DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics,
+SingeResult dynamics_step(Memory *memory, DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics,
                           DynamicsCounters *counters) {
     const SingeSolverDef *solver = &plan->settings.solver;
     const Shell *shell = context->shell;
@@ -226,7 +229,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const StepContext *context, Dynami
     dynamics_prepare(plan, shell, state, context->wind, pool, dynamics);
     if (plan->paper) paper_prepare(plan, shell, state, pool);
     if (plan->collision)
-        TRY(dynamics_contact_result(collision_open(plan->collision, shell, state, pool, dynamics), error));
+        TRY(dynamics_contact_result(collision_open(memory, plan->collision, shell, state, pool, dynamics), error));
 
     // each pass closes a substep and opens the next: one pass more than substeps
     Between between = {.opens = true};
@@ -260,7 +263,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const StepContext *context, Dynami
     // forces for the tears; limits and CCD
     if (shell->spare_count > 0) patch_gather(plan, shell, pool, h_sub);
     TRY(dynamics_check(plan, pool, dynamics, error));
-    TRY(dynamics_contact_result(dynamics_close(plan, context, dynamics), error));
+    TRY(dynamics_contact_result(dynamics_close(memory, plan, context, dynamics), error));
 
     // once a step: internal friction, order of the layers, creases, attachments
     dynamics_smooth(plan, shell, ablate, pool, h, dynamics);
