@@ -2,7 +2,6 @@
 #ifndef ABLATE_ABLATE_PLAN_H
 #define ABLATE_ABLATE_PLAN_H
 
-#include "common/assertion.h"
 #include "ablate/ablate.h"
 
 /// Corners, virtual centres, cuts of blue springs and cuts of red springs, numbered in this order: every
@@ -38,7 +37,6 @@ void ablate_levels(AblatePlan *plan, const Shell *shell, const BurnState *burn);
 /// The remaining triangles of a cell: bit i is the triangle of side i (corners i, i + 1 and the virtual centre). A
 /// triangle is gone when its three levels are negative.
 static inline unsigned ablate_triangles(const AblatePlan *plan, const Shell *shell, uint32_t cell) {
-    SINGE_ASSERT(cell < shell->cell_count);
     const uint32_t *corners = shell->cells[cell];
     unsigned left = 0;
     if (plan->level[shell_centre(shell, cell)] >= 0) return 15;

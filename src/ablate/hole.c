@@ -4,7 +4,6 @@
 // were connected with it by springs at the start is burnt through or gone, and if it is not at the mesh's boundary,
 // where it leaves a notch. Of neighbours that burn through in the same step only the first in order of particle opens a
 // hole. A centre is never at the boundary.
-#include "common/assertion.h"
 #include "ablate/ablate_plan.h"
 
 typedef struct HoleSearch {
@@ -16,13 +15,11 @@ typedef struct HoleSearch {
 } HoleSearch;
 
 static bool burnt_now(const HoleSearch *search, uint32_t particle) {
-    SINGE_ASSERT(particle < search->shell->particle_count);
     return search->state->burn->time_burnt[particle] == search->now && search->plan->level[particle] < 0;
 }
 
 /// Burnt through or gone before `particle`, in time or in order.
 static bool open_before(const HoleSearch *search, uint32_t other, uint32_t particle) {
-    SINGE_ASSERT(particle < search->shell->particle_count);
     if (other == particle) return false;
     if (!(search->ablate->particle_flags[other] & SINGE_ALIVE)) return true;
     return search->plan->level[other] < 0 && (!burnt_now(search, other) || other < particle);
@@ -30,15 +27,12 @@ static bool open_before(const HoleSearch *search, uint32_t other, uint32_t parti
 
 /// Whether a corner or the centre of a cell is open: the red, blue and yellow neighbours of its particles.
 static bool cell_open_before(const HoleSearch *search, uint32_t cell, uint32_t particle) {
-    SINGE_ASSERT(cell < search->shell->cell_count);
-    SINGE_ASSERT(particle < search->shell->particle_count);
     for (int i = 0; i < 4; i++)
         if (open_before(search, search->shell->cells[cell][i], particle)) return true;
     return open_before(search, shell_centre(search->shell, cell), particle);
 }
 
 static bool corner_opens(const HoleSearch *search, uint32_t vertex) {
-    SINGE_ASSERT(vertex < search->shell->vertex_count);
     const Shell *shell = search->shell;
     if (search->plan->rim[vertex]) return false;
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
@@ -47,7 +41,6 @@ static bool corner_opens(const HoleSearch *search, uint32_t vertex) {
 }
 
 static bool centre_opens(const HoleSearch *search, uint32_t cell) {
-    SINGE_ASSERT(cell < search->shell->cell_count);
     uint32_t centre = shell_centre(search->shell, cell);
     if (cell_open_before(search, cell, centre)) return false;
     for (int i = 0; i < 4; i++) {

@@ -3,11 +3,9 @@
 //   m' = m - m_loss
 //
 // The sheet is left where it is not negative. A sheet that is not ablated is inside everywhere.
-#include "common/assertion.h"
 #include "ablate/ablate_plan.h"
 
 float ablate_level(const Shell *shell, const State *state, uint32_t particle) {
-    SINGE_ASSERT(particle < shell->particle_count);
     const Matter *matter = &shell->matter;
     if (!shell->sheets[matter->sheet[particle]].material.ablate) return 1;
     return state->burn.mass[particle] - field_at(matter->mass_loss, particle);

@@ -11,11 +11,9 @@
 // and a particle goes with its last spring, with its mass and its enthalpy C (T - T_amb). The mass that it burnt in the
 // step that removes it is in mass_burnt, but that step's heat of combustion is not released: heat is released in the
 // next step, to particles that are then alive. It is not counted either, so that the ledger closes.
-#include "common/assertion.h"
 #include "ablate/ablate_plan.h"
 
 static void remove_particle(Removal *removal, uint32_t particle) {
-    SINGE_ASSERT(particle < removal->shell->particle_count);
     const Matter *matter = &removal->shell->matter;
     AblateState *ablate = removal->ablate;
     double above = (double)removal->state->heat->temperature[particle] - (double)removal->heat_ambient;
@@ -26,8 +24,6 @@ static void remove_particle(Removal *removal, uint32_t particle) {
 }
 
 void remove_spring(Removal *removal, SingeColour colour, uint32_t spring) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    SINGE_ASSERT(spring < removal->shell->springs[colour].count);
     AblateState *ablate = removal->ablate;
     uint8_t *flags = &ablate->spring_flags[colour][spring];
     if (!(*flags & SINGE_ALIVE)) return;
@@ -42,14 +38,12 @@ void remove_spring(Removal *removal, SingeColour colour, uint32_t spring) {
 /// Whether the triangle across side i is gone, or never existed. The two share the side's corners, so only the other
 /// centre remains to be checked.
 static bool gone_across(const Removal *removal, uint32_t cell, int i) {
-    SINGE_ASSERT(cell < removal->shell->cell_count);
     uint32_t other = shell_neighbour(removal->shell, cell, i);
     if (other == SHELL_NONE || !(removal->ablate->cell_flags[other] & SINGE_ALIVE)) return true;
     return removal->plan->level[shell_centre(removal->shell, other)] < 0;
 }
 
 static void remove_from_cell(Removal *removal, uint32_t cell) {
-    SINGE_ASSERT(cell < removal->shell->cell_count);
     const CellSprings *springs = &removal->shell->cell_springs[cell];
     unsigned left = ablate_triangles(removal->plan, removal->shell, cell);
     for (int i = 0; i < 4; i++) {

@@ -1,4 +1,3 @@
-#include "common/assertion.h"
 #include "collision/block_list.h"
 
 #include <string.h>
@@ -41,7 +40,6 @@ typedef struct Job {
 
 static void write_blocks(void *task, int begin, int end) {
     const Job *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int b = begin; b < end; b++) {
         ListBlock *block = &job->list->blocks[b];
         if (job->again) block->room = block->start < job->count ? job->count - block->start : 0;
@@ -84,7 +82,6 @@ uint32_t block_list_settle(BlockList *list, Pool *pool, int blocks, uint64_t cou
 
 static void read_blocks(void *task, int begin, int end) {
     const Job *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const BlockList *list = job->list;
     for (int b = begin; b < end; b++) {
         const ListBlock *block = &list->blocks[b];

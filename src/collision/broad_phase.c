@@ -3,7 +3,6 @@
 // A cell is a moving box: its box at the search, widened by half of thickness + slack, along the trajectory that its
 // corners were on. Two cells whose boxes do not meet in plan->steps steps stay farther apart than the thickness, as
 // long as no corner deviates from its trajectory by more than half the slack; ccd.c watches that.
-#include "common/assertion.h"
 #include "common/error.h"
 #include "collision/collision_plan.h"
 
@@ -22,7 +21,6 @@ static bool has_corners(const uint32_t cell[4], uint32_t a, uint32_t b) {
 
 /// A side shared by two cells belongs to the lower of the two.
 static bool owns_side(const CollisionPlan *plan, const Shell *shell, uint32_t c, int side) {
-    SINGE_ASSERT(side >= 0 && side < 4);
     uint32_t across = shell_neighbour(shell, c, side);
     if (across == SHELL_NONE || across > c || !plan->alive[across]) return true;
     return !has_corners(shell->cells[across], shell->cells[c][side], shell->cells[c][(side + 1) & 3]);
@@ -76,7 +74,6 @@ static CollisionSlab slab(const Float4 position[4]) {
 
 static void box_range(void *task, int begin, int end) {
     Find *find = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     CollisionPlan *plan = find->plan;
     float time = (float)plan->steps * plan->time_step;
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
@@ -95,7 +92,6 @@ static void box_range(void *task, int begin, int end) {
 
 /// Widens the swept boxes for plan->reach.
 static void sweep_boxes(void *task, int begin, int end) {
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     CollisionPlan *plan = ((Find *)task)->plan;
     float wide = 0.5f * plan->reach;
     Float4 zero = {0};

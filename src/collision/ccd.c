@@ -6,7 +6,6 @@
 //
 // A corner that has left the box that the search gave its cell may have met a cell that the search did not list: then
 // the search is repeated for this step's own displacements.
-#include "common/assertion.h"
 #include "common/clock.h"
 #include "common/error.h"
 #include "collision/ccd.h"
@@ -45,7 +44,6 @@ static void measure_cell(const Ccd *ccd, uint32_t c) {
 
 static void measure_range(void *task, int begin, int end) {
     const Ccd *ccd = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int c = begin; c < end; c++) {
         if (ccd_is_alive(ccd, (uint32_t)c)) measure_cell(ccd, (uint32_t)c);
         else ccd->plan->is_outside[c] = 0;
@@ -54,7 +52,6 @@ static void measure_range(void *task, int begin, int end) {
 
 static void measure_changed(void *task, int begin, int end) {
     const Ccd *ccd = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= ccd->plan->changed_count);
     for (int k = begin; k < end; k++) measure_cell(ccd, ccd->plan->changed_list[k]);
 }
 
@@ -66,7 +63,6 @@ void ccd_forget_changed(CollisionPlan *plan) {
 }
 
 void ccd_mark_changed(const Ccd *ccd, uint32_t cell) {
-    SINGE_ASSERT(cell < ccd->shell->cell_count);
     CollisionPlan *plan = ccd->plan;
     if (plan->changed[cell] || !ccd_is_alive(ccd, cell)) return;
     plan->changed[cell] = 1;
@@ -128,7 +124,6 @@ static uint32_t list_changed(CollisionPlan *plan) {
 
 /// Searches for the displacements of this step.
 static SingeResult search_again(Ccd *ccd, const StateInput *state, Pool *pool, float h) {
-    SINGE_ASSERT(h > 0);
     CollisionPlan *plan = ccd->plan;
     for (uint32_t v = 0; v < plan->vertex_count; v++) {
         Float4 start = float4_load(plan->start[v]), speed = (float4_load(ccd->dynamics->position[v]) - start) / h;
@@ -162,7 +157,6 @@ static uint32_t list_out_of_bounds(CollisionPlan *plan) {
 /// Lists the pairs that cells outside their boxes may have met; searches all again if these are many. *first is the
 /// first new pair.
 static SingeResult follow_out_of_bounds(Ccd *ccd, const StateInput *state, Pool *pool, float h, uint32_t *first) {
-    SINGE_ASSERT(h > 0);
     CollisionPlan *plan = ccd->plan;
     uint32_t count = list_out_of_bounds(plan);
     *first = plan->pair_count;
@@ -181,7 +175,6 @@ static SingeResult follow_out_of_bounds(Ccd *ccd, const StateInput *state, Pool 
 
 /// Checks all pairs that may have met, or those that the last round has changed; *hits is the number that have.
 static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float h, bool changed, uint32_t *hits) {
-    SINGE_ASSERT(h > 0);
     uint32_t first;
     if (changed) {
         *hits = meet_changed(ccd, pool);
@@ -199,7 +192,6 @@ static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float
 /// and the step's displacement over h. The velocity contains all of the change in the last substep, the displacement
 /// only a small part of it.
 static Float4 shifted_velocity(Float4 before, Float4 shift, Float4 displacement, float h) {
-    SINGE_ASSERT(h > 0);
     Float4 after = before + shift / h, gone = displacement / h;
     float max = fmaxf(float4_dot(before, before), float4_dot(gone, gone)), square = float4_dot(after, after);
     return square > max ? sqrtf(max / square) * after : after;
@@ -207,7 +199,6 @@ static Float4 shifted_velocity(Float4 before, Float4 shift, Float4 displacement,
 
 /// Velocities and centres follow the changed positions.
 static void close_trajectories(const Ccd *ccd, float h) {
-    SINGE_ASSERT(h > 0);
     CollisionPlan *plan = ccd->plan;
     DynamicsState *dynamics = ccd->dynamics;
 
@@ -246,7 +237,6 @@ static void empty_zones(CollisionPlan *plan) {
 
 static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state,
                               Pool *pool, float h, DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
     Ccd ccd = {memory, plan, shell, dynamics, state->ablate->cell_flags, h * (float)(state->step - plan->step + 1), 0};
     bool stopped = false;
     if (plan->closed) mark_moved(&ccd);
@@ -278,7 +268,6 @@ static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *
 
 SingeResult ccd_apply(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
                       float h, DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
     double start = clock_seconds();
     SingeResult result = close_step(memory, plan, shell, state, pool, h, dynamics);
     plan->pair_count = plan->listed_count;

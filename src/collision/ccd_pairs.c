@@ -7,7 +7,6 @@
 //
 // Connected cells (that share a side or a corner) are free if their normals, or a plane between them, show that they do
 // not cross at the end of the step (feature_distance.c). The other pairs are swept, feature by feature.
-#include "common/assertion.h"
 #include "collision/ccd.h"
 #include "collision/feature_distance.h"
 
@@ -113,7 +112,6 @@ static void sweep_pair(const Ccd *ccd, CollisionPair *pair) {
 /// itself during the step: then it is on the wrong side of a cell that shares two sides with it, though it met no
 /// feature of that cell.
 static bool own_is_free(const Ccd *ccd, uint32_t cell) {
-    SINGE_ASSERT(cell < ccd->shell->cell_count);
     const Float4 *motion = ccd->plan->motion[cell];
     const float(*x)[4] = (const float(*)[4])ccd->dynamics->position;
     const uint32_t *corner = ccd->shell->cells[cell];
@@ -193,7 +191,6 @@ typedef struct Look {
 
 static double look_range(void *task, int begin, int end) {
     const Look *look = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     double hits = 0;
     for (int k = begin; k < end; k += 4) {
         uint32_t number[4], count = end - k < 4 ? (uint32_t)(end - k) : 4;

@@ -9,7 +9,6 @@
 // closed the gap. A zone that collides again halves its share, and has 0 from round ZONE_PATIENCE on, when it moves as
 // one piece (the impact zones of Provot, 1997). Zones are only ever joined, and shares only reduced, so the rounds end.
 // Held corners keep their own displacement.
-#include "common/assertion.h"
 #include "collision/ccd.h"
 #include "collision/feature_distance.h"
 
@@ -63,7 +62,6 @@ static Float4 impact_points(const CollisionPair *pair, const Swept *p, const Swe
 /// quarter of the heaviest. Otherwise a light corner, far from the point, would be thrown far to move it. Returns the
 /// point's own inverse mass.
 static float impact_lever(const Ccd *ccd, uint32_t cell, const float w[4], float lever[4]) {
-    SINGE_ASSERT(cell < ccd->shell->cell_count);
     const uint32_t *corner = ccd->shell->cells[cell];
     float min = INFINITY, inverse[4], own = 0, sum = 0;
     for (int i = 0; i < 4; i++) {

@@ -3,7 +3,6 @@
 // A pair's distance is kept as a bound: it is at least the last measured distance, less the relative motion of the two
 // cells since. Features are checked only where the bound does not show that all of them stay apart in this step. So the
 // result depends on the pair's positions and speeds alone, not on when it was measured.
-#include "common/assertion.h"
 #include "common/clock.h"
 #include "common/error.h"
 #include "collision/narrow_phase.h"
@@ -38,7 +37,6 @@ static bool is_as_left(const CollisionPlan *plan, const uint32_t corner[4], cons
 
 static void measure_range(void *task, int begin, int end) {
     const Opening *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     CollisionPlan *plan = job->plan;
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     for (int c = begin; c < end; c++) {
@@ -159,7 +157,6 @@ static float target(const Opening *job, const CollisionPair *pair, const Look *l
 }
 
 static void node_velocities(const Opening *job, uint32_t cell, Float4 speed[5]) {
-    SINGE_ASSERT(cell < job->shell->cell_count);
     for (int i = 0; i < 4; i++) speed[i] = float4_load(job->dynamics->velocity[job->shell->cells[cell][i]]);
     speed[4] = 0.25f * ((speed[0] + speed[1]) + (speed[2] + speed[3]));
 }

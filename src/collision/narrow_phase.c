@@ -1,7 +1,6 @@
 // Nearest points of all features of two cells: a node against the four triangles of the other at once, an edge against
 // its four sides and against the four lines to its centroid. The regions are those of Ericson, Real-time collision
 // detection (2005), 5.1.5 and 5.1.9, as in feature_distance.c, but chosen by masks.
-#include "common/assertion.h"
 #include "collision/narrow_phase.h"
 
 #include <math.h>
@@ -77,7 +76,6 @@ static FourNear from_segments(FourVectors a, FourVectors b, FourVectors c, FourV
 
 void narrow_cell_set(const CollisionPlan *plan, const Shell *shell, uint32_t cell, const float (*x)[4], Float4 origin,
                      NarrowCell *out) {
-    SINGE_ASSERT(cell < shell->cell_count);
     collision_nodes(shell->cells[cell], x, origin, out->node);
     out->corner = four_of(out->node);
     out->turned = four_turned(out->corner);

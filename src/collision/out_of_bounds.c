@@ -1,5 +1,4 @@
 // Cells that have left their boxes of the search: pairs that they may have met in this step.
-#include "common/assertion.h"
 #include "collision/broad_grid.h"
 
 typedef struct OutsideSearch {
@@ -12,7 +11,6 @@ typedef struct OutsideSearch {
 } OutsideSearch;
 
 static OutsideBox outside_box(const OutsideSearch *job, uint32_t cell) {
-    SINGE_ASSERT(cell < job->shell->cell_count);
     const CollisionPlan *plan = job->plan;
     const uint32_t *corner = job->shell->cells[cell];
     Float4 low = float4_load(job->x[corner[0]]), high = low;
@@ -27,7 +25,6 @@ static OutsideBox outside_box(const OutsideSearch *job, uint32_t cell) {
 
 static void box_range(void *task, int begin, int end) {
     const OutsideSearch *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int k = begin; k < end; k++) job->plan->outside_boxes[k] = outside_box(job, job->plan->outside[k]);
 }
 

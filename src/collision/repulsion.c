@@ -9,14 +9,12 @@
 // separates them at COLLISION_PART m/s. Slip across n since the substep began is taken back by at most mu |C|
 // (Coulomb), as in contact with colliders. A virtual centre is replaced by its four corners, a quarter each. Points
 // nearer at rest than twice the thickness (the edges of a tear) are kept apart by four times CCD's gap only.
-#include "common/assertion.h"
 #include "common/clock.h"
 #include "collision/collision_plan.h"
 
 /// Takes back slip across the normal, at most `max`.
 static void repulsion_friction(const Repulsion *repulsion, const float (*predicted)[4], float h, float max,
                                float weight, DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
     float(*x)[4] = dynamics->position;
     Float4 slip = {0};
     for (uint32_t i = 0; i < repulsion->count; i++) {
@@ -36,7 +34,6 @@ static void repulsion_friction(const Repulsion *repulsion, const float (*predict
 }
 
 void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
     double start = clock_seconds();
     float(*x)[4] = dynamics->position;
     for (uint32_t k = 0; k < plan->repulsion_count; k++) {

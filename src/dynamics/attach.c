@@ -15,7 +15,6 @@
 // lengths of vertices that are too far from a source that replaces a burnt one, and of vertices that moved too far
 // while a tight sheet that may tear was left to its springs. Vertices that have come free of a source are released at
 // the end of the step. A sheet whose mesh may stretch by its compliance has no attachments.
-#include "common/assertion.h"
 #include "dynamics/attach.h"
 
 #include "common/float3.h"
@@ -243,7 +242,6 @@ void attach_position(Attachments *attachments, const Shell *shell, const Dynamic
 
 void attach_range(const Attachments *attachments, const Shell *shell, AttachHold *hold, DynamicsState *dynamics,
                   int begin, int end) {
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const AttachSpread *spread = &attachments->spread[s];
         int first = (int)shell->sheets[s].vertex_first, last = first + (int)shell->sheets[s].vertex_count;
@@ -265,7 +263,6 @@ typedef struct Attach {
 
 static void attach_task(void *task, int begin, int end) {
     const Attach *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->shell->vertex_count);
     attach_range(job->attachments, job->shell, job->hold, job->dynamics, begin, end);
 }
 

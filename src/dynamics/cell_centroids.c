@@ -6,7 +6,6 @@
 // is kept out of colliders like a particle, with friction, and its corners move with it; held corners stay. Cells of
 // one family share no corner; families follow each other. Contact of the particles comes after it and has the last
 // word.
-#include "common/assertion.h"
 #include "dynamics/dynamics_plan.h"
 
 typedef struct Centroid {
@@ -68,14 +67,12 @@ static void centroid_cell(const Centroid *job, const uint32_t corner[4]) {
 
 static void centroid_cells(void *task, int begin, int end) {
     const Centroid *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int k = begin; k < end; k++)
         if (job->ablate->cell_flags[job->cells[k]] & SINGE_ALIVE) centroid_cell(job, job->shell->cells[job->cells[k]]);
 }
 
 void contact_centroids(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
                        Pool *pool, float h, DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
     bool any = false;
     for (uint32_t c = 0; c < collider_count; c++) any |= plan->colliders[c].collider->def.kind != SINGE_COLLIDER_PLANE;
     for (uint32_t f = 0; any && f < shell->cell_family_count; f++) {

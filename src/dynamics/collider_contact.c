@@ -9,7 +9,6 @@
 // displacement over the collider in this substep is longer than its distance, its path is followed from the start, in
 // the collider's frame, by steps that the distance allows (contact_enters); a particle that enters goes back to the
 // plane that touches the surface there.
-#include "common/assertion.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
@@ -157,8 +156,6 @@ static inline bool contact_any_near(const MovingCollider *collider, const Float4
 
 uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
                        int end) {
-    SINGE_ASSERT(h > 0);
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     uint64_t contacts = 0;
     float(*position)[4] = dynamics->position;
     for (int first = begin; first < end && collider_count > 0; first += 4) {
@@ -194,12 +191,10 @@ typedef struct Contact {
 
 static double contact_block(void *task, int begin, int end) {
     const Contact *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     return (double)contact_range(job->plan, job->collider_count, job->h, job->dynamics, begin, end);
 }
 
 uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
     if (collider_count == 0) return 0;
     Contact job = {plan, collider_count, h, dynamics};
     return (uint64_t)pool_sum(pool, (int)plan->particle_count, contact_block, &job, plan->partial);

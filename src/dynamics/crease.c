@@ -52,7 +52,6 @@
 //
 // Char breaks instead of folding: with the burn progress B of the two cells a crease fades, k_p (1 - B) of it counts,
 // and no more than that share of a bend is kept.
-#include "common/assertion.h"
 #include "common/real.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
@@ -88,7 +87,6 @@ typedef struct Crease {
 
 /// The side of a cell across which `other` lies.
 static uint8_t hinge_side(const Shell *shell, uint32_t cell, uint32_t other) {
-    SINGE_ASSERT(cell < shell->cell_count);
     uint8_t side = 0;
     while (side < 3 && shell_neighbour(shell, cell, side) != other) side++;
     return side;
@@ -293,7 +291,6 @@ static bool crease_spring(const Crease *job, uint32_t k) {
 
 static void crease_bends(void *task, int begin, int end) {
     const Crease *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const uint8_t *flags = job->state->ablate->spring_flags[SINGE_GREEN];
     for (int k = begin; k < end; k++)
         if (flags[k] & SINGE_ALIVE) crease_bend(job, (uint32_t)k);
@@ -301,7 +298,6 @@ static void crease_bends(void *task, int begin, int end) {
 
 static double crease_springs(void *task, int begin, int end) {
     const Crease *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const uint8_t *flags = job->state->ablate->spring_flags[SINGE_GREEN];
     double creased = 0;
     for (int k = begin; k < end; k++)
@@ -311,14 +307,12 @@ static double crease_springs(void *task, int begin, int end) {
 
 static void crease_normals(void *task, int begin, int end) {
     const Crease *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->shell->cell_count);
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     for (int c = begin; c < end; c++) float3_store(job->plan->cell_normal[c], hinge_normal(x, job->shell->cells[c]));
 }
 
 void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
                      DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
     if (!plan->hinges) return;
     Crease job = {plan, shell, state, dynamics, 1 - real_expf(-h / CREASE_TIME), state->burn->mass_burnt > 0};
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, crease_normals, &job);

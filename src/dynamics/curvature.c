@@ -15,7 +15,6 @@
 //   m = gain (|r| - B)/|r| r/(w_a + 4 w_b + w_c),   x_a -= w_a m,   x_b += 2 w_b m,   x_c -= w_c m
 //
 // Families of strands follow each other; strands of one family share no particle.
-#include "common/assertion.h"
 #include "common/real.h"
 #include "dynamics/dynamics_plan.h"
 
@@ -56,7 +55,6 @@ static float bend_limit(const Shell *shell, uint32_t a, uint32_t b, uint32_t c, 
 
 void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour colour, uint32_t strand,
                        StrandSet *set) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     const SpringSet *springs = &shell->springs[colour];
     const float *mass = state->burn->mass, *length = state->burn->spring_length[colour];
     const uint32_t first = springs->strand_first[strand], end = springs->strand_first[strand + 1];
@@ -91,7 +89,6 @@ typedef struct Curvature {
 
 static void curvature_range(void *task, int begin, int end) {
     const Curvature *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int i = begin; i < end; i++) job->bend(job->set, job->position, job->first_group + (uint32_t)i);
 }
 

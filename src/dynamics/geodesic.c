@@ -10,7 +10,6 @@
 //
 // This is exact in the plane and on what unrolls to it (Novotni and Klein, Computing geodesic distances on
 // triangular meshes, 2002). The metric is intrinsic: target lengths of blue and yellow springs, wherever the sheet is.
-#include "common/assertion.h"
 #include "dynamics/geodesic.h"
 
 #include "common/float3.h"
@@ -77,7 +76,6 @@ static float geodesic_through(float dv, float dw, float c, float vu, float wu) {
 /// Length of the side or diagonal between corners i and j of a cell. A spring between held ends cannot shrink to its
 /// target.
 static float cell_length(const Shell *shell, const StateInput *state, uint32_t cell, int i, int j) {
-    SINGE_ASSERT(cell < shell->cell_count);
     const CellSprings *springs = &shell->cell_springs[cell];
     const DynamicsState *dynamics = state->dynamics;
     int side = ((i + 1) & 3) == j ? i : j;
@@ -92,7 +90,6 @@ static float cell_length(const Shell *shell, const StateInput *state, uint32_t c
 /// Lowers the distances at a cell's other corners, once that of corner i is final.
 static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const StateInput *state, uint32_t cell, int i,
                                 float *distance) {
-    SINGE_ASSERT(cell < shell->cell_count);
     const uint32_t *corner = shell->cells[cell];
     float dv = distance[corner[i]];
     for (int turn = 1; turn < 4; turn++) {

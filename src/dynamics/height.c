@@ -11,7 +11,6 @@
 // momentum where the centre stands over the mean of its corners; a centre that leans aside gets a small moment. Cells
 // of one family share no corner; families follow each other. Blocks of cells whose centres are all twice as high as
 // they must be are skipped for some substeps.
-#include "common/assertion.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
@@ -71,7 +70,6 @@ static inline bool height_cell(const Height *job, uint32_t c) {
 /// Blocks of the family's cells.
 static void height_blocks(void *task, int begin, int end) {
     const Height *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int b = begin; b < end; b++) {
         uint8_t *wait = &job->wait[b];
         if (*wait > 0) {

@@ -12,7 +12,6 @@
 //
 // A cell whose diagonals are parallel has no normal, and no front for its centre to be on: it is left as it is and
 // counts neither as inverted nor as in order (sim/sim_stats.c).
-#include "common/assertion.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
@@ -55,7 +54,6 @@ static inline void order_cell(const Order *job, uint32_t c) {
 
 static void order_cells(void *task, int begin, int end) {
     const Order *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->shell->cell_count);
     for (int c = begin; c < end; c++)
         if (job->ablate->cell_flags[c] & SINGE_ALIVE) order_cell(job, (uint32_t)c);
 }

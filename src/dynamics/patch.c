@@ -8,7 +8,6 @@
 // The force f of a spring, from which line forces come, by the sums of mu = lambda/|d| over the projections of a step:
 //
 //   pull = f/|d| l/L = (sum mu) l/(L substeps h^2)    [N/m], target length l, length at rest L
-#include "common/assertion.h"
 #include "dynamics/dynamics_plan.h"
 
 #include "common/float4.h"
@@ -19,8 +18,6 @@
 /// From the lanes themselves: a spring whose ends are not the nodes of its slot is in no strand.
 bool patch_is_in_strand(const DynamicsPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring,
                         size_t slot) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    SINGE_ASSERT(spring < shell->springs[colour].count);
     const uint32_t *node = plan->strands.sets[colour].node + slot, *ends = shell->springs[colour].ends[spring];
     return node[0] == 4 * ends[0] && node[STRAND_LANES] == 4 * ends[1];
 }
@@ -55,7 +52,6 @@ static float strand_compliance(const StrandSet *set, const SpringSet *springs, u
 }
 
 static void patch_push(Patches *patches, SingeColour colour, uint32_t spring, float compliance) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     if (patches->count[colour] == patches->capacity) return; // split_is_possible prevents it
     patches->items[colour][patches->count[colour]++] = (Patch){.spring = spring, .compliance = compliance};
 }
@@ -108,7 +104,6 @@ void patch_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *sta
 }
 
 void patch_project(DynamicsPlan *plan, SingeColour colour, float inverse_h2, DynamicsState *dynamics) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     const float softness = 1 + 0.5f * plan->settings.solver.regularisation[colour];
     for (uint32_t k = 0; k < plan->patches.count[colour]; k++) {
         Patch *patch = &plan->patches.items[colour][k];
@@ -138,7 +133,6 @@ typedef struct Gather {
 /// A spring held at both ends has a row without a diagonal, whose mu is meaningless.
 static void gather_strands(void *task, int begin, int end) {
     const Gather *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const SpringSet *springs = &job->shell->springs[job->colour];
     const StrandSet *set = &job->plan->strands.sets[job->colour];
     const float *inverse_mass = job->plan->inverse_mass, *rest = springs->rest;
@@ -153,7 +147,6 @@ static void gather_strands(void *task, int begin, int end) {
 }
 
 void patch_gather(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h) {
-    SINGE_ASSERT(h > 0);
     Gather job = {plan, shell, SINGE_RED, 1 / ((float)plan->settings.solver.substeps * h * h)};
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         job.colour = (SingeColour)colour;

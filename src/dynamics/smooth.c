@@ -12,7 +12,6 @@
 // from a wave falls with the fourth power of its length over smoothing_length, whatever the mesh. The second removes
 // what the first cannot see. A rigid motion of a flat sheet has r = 0 and is unchanged. Where the nodes are not
 // collinear or not equally far apart, r sees a rotation too: a curved sheet that spins loses angular momentum.
-#include "common/assertion.h"
 #include "common/real.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
@@ -60,7 +59,6 @@ static uint32_t smooth_reach(const Smooth *job, uint32_t begin, uint32_t end) {
 
 static void smooth_range(void *task, int begin, int end) {
     const Smooth *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int i = begin; i < end; i++) {
         const uint32_t *first = &job->set->strand_first[job->first_strand + (uint32_t)i];
         uint32_t reach = smooth_reach(job, first[0], first[1]);
@@ -78,7 +76,6 @@ static int smooth_grain(const SpringSet *set, uint32_t family) {
 
 void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h,
                      DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
     if (plan->settings.solver.smoothing <= 0) return;
     const SingeColour layers[] = {SINGE_BLUE, SINGE_GREEN};
     for (int layer = 0; layer < 2; layer++) {

@@ -16,7 +16,6 @@
 //   h <= sqrt(c_spring m/(a + r))
 //
 // Sheets have one s and one grammage here, their median and mean.
-#include "common/assertion.h"
 #include "dynamics/stiffness.h"
 
 #include <math.h>
@@ -41,13 +40,11 @@ static float thickness_share(const Shell *shell, const Sheet *sheet, uint32_t ce
 }
 
 static float mean_compliance(const Shell *shell, SingeColour colour, const uint32_t *ends) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     const Field compliance = shell->matter.compliance[colour];
     return 0.5f * (field_at(compliance, ends[0]) + field_at(compliance, ends[1]));
 }
 
 void stiffness_begin(const Shell *shell, SingeColour colour, float h, float regularisation, Stiffness *stiffness) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     float softness = (colour == SINGE_RED ? COUPLING : 0) + regularisation;
     *stiffness = (Stiffness){.shell = shell, .colour = colour, .softness = softness * h * h, .sheet = UINT32_MAX};
 }
@@ -69,7 +66,6 @@ float stiffness_compliance(Stiffness *stiffness, uint32_t spring) {
 }
 
 int stiffness_substeps(const Shell *shell, float h, float regularisation) {
-    SINGE_ASSERT(h > 0);
     const float softness = COUPLING + regularisation;
     float count = 1;
     for (uint32_t i = 0; i < shell->sheet_count; i++) {

@@ -6,7 +6,6 @@
 // in three sweeps an iteration: the product with its dot, r with its dot, and x with p. The scaling to a unit diagonal
 // is Jacobi's preconditioner, folded into the matrix. Sums run in NETWORK_LANES lanes over blocks of POOL_BLOCK rows:
 // the same for any number of threads and any width of the processor's registers.
-#include "common/assertion.h"
 #include "reference/conjugate.h"
 
 #include "common/cpu.h"
@@ -15,7 +14,6 @@
 
 static void conjugate_begin(void *task, int begin, int end) {
     const Conjugate *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int row = begin; row < end; row++) job->x[row] = 0, job->p[row] = job->r[row];
 }
 

@@ -9,7 +9,6 @@
 // longest; here that holds within slices of 8 rows (Monakov, Lokhmotov and Avetisyan, HiPEAC 2010), whose entries are
 // contiguous, so that 8 rows are multiplied at once. Where the 8 columns are consecutive, as on grids whose springs are
 // numbered cell by cell, they are loaded as a run instead of one by one.
-#include "common/assertion.h"
 #include "reference/spring_network.h"
 
 enum { LINK_MINUS = 2, LINK_EMPTY = 4 };
@@ -97,7 +96,6 @@ static void ellpack_assemble_row(Network *network, const SpringGroup *group, uin
 
 static void ellpack_assemble_range(void *task, int begin, int end) {
     Assemble *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int row = begin; row < end; row++) ellpack_assemble_row(job->network, job->group, (uint32_t)row);
 }
 

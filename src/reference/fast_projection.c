@@ -12,7 +12,6 @@
 //   S = compliance/h^2 + regularisation (w_a + w_b)/2
 //
 // is solved for mu = D^(1/2) lambda, D the diagonal:  D^(-1/2) (J M^-1 J^T + S) D^(-1/2) mu = D^(-1/2) W C.
-#include "common/assertion.h"
 #include "reference/spring_network.h"
 
 #include <math.h>
@@ -43,7 +42,6 @@ double network_constraint(const Network *network, uint32_t group, uint32_t sprin
 /// Gradients, scales and right-hand sides of [begin, end); returns the sum of squares of the right-hand sides.
 static double projection_rows(void *task, int begin, int end) {
     const Rows *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     Network *network = job->network;
     const SpringGroup *group = job->group;
     const double *w = network->inverse_mass;
@@ -80,7 +78,6 @@ double network_rows(Network *network, uint32_t group, Pool *pool) {
 /// The target lengths in the norm of the residual: the reference of its tolerance for the early exit.
 static double projection_lengths(void *task, int begin, int end) {
     const Rows *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     double sum = 0;
     for (int k = begin; k < end; k++) {
         double l = job->network->scale[k] * job->group->length[k];
@@ -92,7 +89,6 @@ static double projection_lengths(void *task, int begin, int end) {
 /// Eq 17, particle by particle: each gathers from its springs.
 static void projection_move(void *task, int begin, int end) {
     const Rows *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     Network *network = job->network;
     const SpringGroup *group = job->group;
     for (int i = begin; i < end; i++) {

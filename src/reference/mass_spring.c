@@ -7,7 +7,6 @@
 //
 // k is `stiffness`, the same for every spring, times its weight W. The method is stable while h times the highest
 // frequency is below 2 - about h < sqrt(1/(6 k w)), each particle being in up to twelve springs - and blows up above.
-#include "common/assertion.h"
 #include "reference/spring_network.h"
 
 #include <math.h>
@@ -24,7 +23,6 @@ typedef struct Hooke {
 /// Forces on end b, into `gradient`.
 static void hooke_forces(void *task, int begin, int end) {
     const Hooke *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const Network *network = job->network;
     for (int k = begin; k < end; k++) {
         const uint32_t *ends = job->group->ends[k];
@@ -51,7 +49,6 @@ static void hooke_forces(void *task, int begin, int end) {
 
 static void hooke_move(void *task, int begin, int end) {
     const Hooke *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const SpringGroup *group = job->group;
     for (int i = begin; i < end; i++) {
         double force[3] = {0, 0, 0}, displacement = job->h * job->h * job->network->inverse_mass[i];

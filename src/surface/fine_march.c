@@ -10,7 +10,6 @@
 // sides from the centre, at rest and now:
 //
 //   lambda^2 > TORN^2,   lambda^2 the larger eigenvalue of C^-1 C'
-#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>
@@ -104,8 +103,6 @@ static void count(Marching *march, int inside) {
 
 /// The entry in `cuts` of part i of a cell's side that is in `parts` parts.
 static uint32_t *side_cut(const Fine *fine, uint32_t cell, int side, int parts, int i) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     const Shell *shell = fine->shell;
     uint32_t blue = shell->cell_springs[cell].blue[side];
     bool forwards = shell->springs[SINGE_BLUE].ends[blue][0] == shell->cells[cell][side];
@@ -116,7 +113,6 @@ static uint32_t *side_cut(const Fine *fine, uint32_t cell, int side, int parts, 
 
 /// Dot products of the two sides of a cell's triangle that begin at its virtual centre.
 static void metric(const uint32_t at[4], int side, const float (*field)[4], float product[3]) {
-    SINGE_ASSERT(side >= 0 && side < 4);
     Float3 centre = {0, 0, 0};
     for (int i = 0; i < 4; i++) centre = float3_mad(centre, float3_load(field[at[i]]), 0.25f);
     Float3 a = float3_sub(float3_load(field[at[side]]), centre),
@@ -125,7 +121,6 @@ static void metric(const uint32_t at[4], int side, const float (*field)[4], floa
 }
 
 static bool has_lost_a_spring(const Fine *fine, uint32_t cell) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
     const CellSprings *springs = &fine->shell->cell_springs[cell];
     uint8_t *const *flags = fine->state->ablate.spring_flags, left = SINGE_ALIVE;
     for (int i = 0; i < 4; i++) left &= flags[SINGE_BLUE][springs->blue[i]] & flags[SINGE_RED][springs->red[i]];
@@ -133,8 +128,6 @@ static bool has_lost_a_spring(const Fine *fine, uint32_t cell) {
 }
 
 bool fine_is_torn(const Fine *fine, uint32_t cell, int side) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     if (!has_lost_a_spring(fine, cell)) return false;
     float rest[3], now[3];
     metric(fine->shell->cells[cell], side, (const float(*)[4])fine->shell->rest_position, rest);
@@ -201,7 +194,6 @@ static void march_row(Marching *march, const Row *row) {
 
 /// The rows of one of a cell's four triangles. `first` and `last` are the cuts of its two sides to the centre.
 static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *first, uint32_t *last) {
-    SINGE_ASSERT(side >= 0 && side < 4);
     const Fine *fine = march->fine;
     int splits = fine->splits[cell];
     uint32_t line[2][FINE_SPLITS_MAX]; // cuts of the lines between rows

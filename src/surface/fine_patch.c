@@ -14,11 +14,9 @@
 // ignore torn cells, which are drawn flat. Where the surface may not be this far from a corner, all points around the
 // corner are moved by the same vector. This keeps tangent planes; moved by the whole distance, the patches pass through
 // the corners.
-#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 static bool is_sound(const Fine *fine, uint32_t cell) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
     bool sound = fine->state->ablate.cell_flags[cell] & SINGE_ALIVE;
     for (int side = 0; side < 4 && sound; side++) sound = !fine_is_torn(fine, cell, side);
     return sound;
@@ -34,7 +32,6 @@ typedef struct Ring {
 } Ring;
 
 static void add_borders(const Fine *fine, uint32_t cell, int corner, Ring *ring) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
     const uint32_t *at = fine->shell->cells[cell];
     for (int turn = 0; turn < 2; turn++) {
         uint32_t other = shell_neighbour(fine->shell, cell, turn ? (corner + 3) & 3 : corner);
@@ -45,7 +42,6 @@ static void add_borders(const Fine *fine, uint32_t cell, int corner, Ring *ring)
 }
 
 static Ring ring_of(const Fine *fine, uint32_t vertex) {
-    SINGE_ASSERT(vertex < fine->shell->vertex_count);
     const Shell *shell = fine->shell;
     Ring ring = {0};
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++) {
@@ -62,13 +58,11 @@ static Ring ring_of(const Fine *fine, uint32_t vertex) {
 
 static void find_sound(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= fine->shell->cell_count);
     for (int c = begin; c < end; c++) fine->sound[c] = is_sound(fine, (uint32_t)c);
 }
 
 static void count_cells(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int v = begin; v < end; v++) {
         Ring ring = ring_of(fine, (uint32_t)v);
         bool closed = ring.borders == 0 && ring.cells > 0;
@@ -79,7 +73,6 @@ static void count_cells(void *context, int begin, int end) {
 
 static void put_inner(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int c = begin; c < end; c++) {
         const uint32_t *at = fine->shell->cells[c];
         for (int i = 0; i < 4; i++) {
@@ -94,7 +87,6 @@ static void put_inner(void *context, int begin, int end) {
 
 /// The two points within side i of a cell, in the order of its corners.
 static void put_rail(const Fine *fine, uint32_t cell, int i, Float3 point[2]) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
     const Shell *shell = fine->shell;
     const uint32_t end[2] = {shell->cells[cell][i], shell->cells[cell][(i + 1) & 3]};
     uint32_t other = shell_neighbour(shell, cell, i);
@@ -111,7 +103,6 @@ static void put_rail(const Fine *fine, uint32_t cell, int i, Float3 point[2]) {
 
 static void put_rails(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const Shell *shell = fine->shell;
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++)
         for (int i = 0; i < 4; i++) {
@@ -127,7 +118,6 @@ static void put_rails(void *context, int begin, int end) {
 /// The point where the patches meet at a vertex, and the shift that keeps them within its max distance.
 static void put_limits(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (uint32_t v = (uint32_t)begin; v < (uint32_t)end; v++) {
         Ring ring = ring_of(fine, v);
         Float3 x = corner_of(fine, v), limit = x, normal = float3_load(fine->normal[v]);
@@ -160,7 +150,6 @@ static const uint8_t net_locations[4][4][2] = {{{0, 0}, {1, 0}, {0, 1}, {1, 1}},
                                                {{0, 3}, {0, 2}, {1, 3}, {1, 2}}};
 
 FinePatch fine_patch(const Fine *fine, uint32_t cell) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
     const Shell *shell = fine->shell;
     const uint32_t *at = shell->cells[cell], *sides = shell->cell_springs[cell].blue;
     const uint32_t(*ends)[2] = (const uint32_t(*)[2])shell->springs[SINGE_BLUE].ends;

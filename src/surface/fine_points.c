@@ -7,7 +7,6 @@
 //
 // A bent cell that is not split gets points to show its shape, in fewer parts. A side is drawn in the max of the
 // numbers of parts of its two cells.
-#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>
@@ -15,8 +14,6 @@
 static bool points_alive(const Fine *fine, uint32_t cell) { return fine->state->ablate.cell_flags[cell] & SINGE_ALIVE; }
 
 static bool gone_beside(const Fine *fine, uint32_t cell, int side) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     uint32_t other = shell_neighbour(fine->shell, cell, side);
     return other != SHELL_NONE && !points_alive(fine, other);
 }
@@ -25,7 +22,6 @@ static bool gone_beside(const Fine *fine, uint32_t cell, int side) {
 
 /// Lengths of a cell's two axes at rest.
 static void measure_axes(const Shell *shell, uint32_t cell, float axes[2]) {
-    SINGE_ASSERT(cell < shell->cell_count);
     const uint32_t *at = shell->cells[cell];
     Float3 corner[4];
     for (int i = 0; i < 4; i++) corner[i] = float3_load(shell->rest_position[at[i]]);
@@ -50,7 +46,6 @@ static void bound_cells(Fine *fine) {
 }
 
 static bool negative_around(const Fine *fine, uint32_t cell) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
     const Shell *shell = fine->shell;
     for (int i = 0; i < 4; i++) {
         uint32_t v = shell->cells[cell][i];
@@ -61,15 +56,12 @@ static bool negative_around(const Fine *fine, uint32_t cell) {
 }
 
 static uint32_t side_of_cell(const Fine *fine, uint32_t cell, int side) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     return fine->shell->cell_springs[cell].blue[side];
 }
 
 static int inner_points(int splits) { return 4 * (splits - 1) + 2 * (splits - 1) * (splits - 2); }
 
 static void number_cell(Fine *fine, uint32_t cell, uint64_t *point) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
     int splits = fine_splits(fine, cell);
     for (int i = 0; i < 4; i++) {
         uint32_t blue = side_of_cell(fine, cell, i);
@@ -121,8 +113,6 @@ static SingeResult points_number(Fine *fine, SingeError *error) {
 }
 
 uint32_t fine_side_point(const Fine *fine, uint32_t cell, int side, int parts, int i) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     const uint32_t *at = fine->shell->cells[cell];
     if (i == 0) return at[side];
     if (i == parts) return at[(side + 1) & 3];
@@ -132,8 +122,6 @@ uint32_t fine_side_point(const Fine *fine, uint32_t cell, int side, int parts, i
 }
 
 uint32_t fine_point(const Fine *fine, uint32_t cell, int side, int splits, int i, int j) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     int next = (side + 1) & 3, line = splits - 1;
     if (j == splits) return shell_centre(fine->shell, cell);
     if (j == 0) return fine_side_point(fine, cell, side, splits, i);
@@ -145,7 +133,6 @@ uint32_t fine_point(const Fine *fine, uint32_t cell, int side, int splits, int i
 }
 
 FineLocation fine_point_location(uint32_t cell, int side, int splits, int i, int j) {
-    SINGE_ASSERT(side >= 0 && side < 4);
     float part = 1 / (float)splits;
     return (FineLocation){cell, (uint8_t)side, {(float)(splits - i - j) * part, (float)i * part, (float)j * part}};
 }
@@ -153,7 +140,6 @@ FineLocation fine_point_location(uint32_t cell, int side, int splits, int i, int
 // ---- evaluation
 
 static bool even_around(const Fine *fine, uint32_t vertex) {
-    SINGE_ASSERT(vertex < fine->shell->vertex_count);
     const Shell *shell = fine->shell;
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
         if (!(fine->flags[shell->fan[k]] & FINE_EVEN)) return false;
@@ -167,13 +153,11 @@ static FineValue held_back(FineValue value, float level) {
 }
 
 static FineValue particle_value(const Fine *fine, uint32_t particle) {
-    SINGE_ASSERT(particle < fine->shell->particle_count);
     return (FineValue){fine->raw_level[particle], fine->state->burn.mass[particle]};
 }
 
 static void evaluate_vertices(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= fine->shell->vertex_count);
     const Shell *shell = fine->shell;
     for (uint32_t v = (uint32_t)begin; v < (uint32_t)end; v++) {
         uint32_t home = SHELL_NONE;
@@ -197,7 +181,6 @@ static void evaluate_vertices(void *context, int begin, int end) {
 
 static void evaluate_centres(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= fine->shell->cell_count);
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         FineValue *value = &fine->values[shell_centre(fine->shell, c)];
         *value = (FineValue){-1, 0};
@@ -209,7 +192,6 @@ static void evaluate_centres(void *context, int begin, int end) {
 
 static void evaluate_sides(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int s = begin; s < end; s++) {
         uint32_t cell = fine->side_owner[s] / 4;
         int side = (int)(fine->side_owner[s] & 3), splits = fine_splits(fine, cell);
@@ -228,7 +210,6 @@ static void evaluate_sides(void *context, int begin, int end) {
 
 /// Whether a cell's points differ in the sign of the level; if so, the cell is split.
 static bool differs(const Fine *fine, uint32_t cell, int splits) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
     bool inside = false, outside = false;
     for (int side = 0; side < 4; side++)
         for (int j = 0; j <= splits; j++)
@@ -243,7 +224,6 @@ static bool differs(const Fine *fine, uint32_t cell, int splits) {
 
 static void evaluate_cells(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int n = begin; n < end; n++) {
         uint32_t cell = fine->near[n];
         int splits = fine_splits(fine, cell);
@@ -258,7 +238,6 @@ static void evaluate_cells(void *context, int begin, int end) {
 /// A pass of its own, as evaluation reads the flags of other cells.
 static void mark_split(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int n = begin; n < end; n++)
         if (differs(fine, fine->near[n], fine_splits(fine, fine->near[n]))) fine->flags[fine->near[n]] |= FINE_SPLIT;
 }
@@ -288,7 +267,6 @@ static void points_settle(Fine *fine) {
 
 /// The value at a position of a cell that is not split. Its level has the sign of that at `particle`.
 static FineValue bent_value(const Fine *fine, uint32_t particle, FineLocation location) {
-    SINGE_ASSERT(particle < fine->shell->particle_count);
     const FineValue *there = &fine->values[particle];
     if (fine->flags[location.cell] & FINE_EVEN) return *there;
     FineValue value = fine_value(fine, location);
@@ -298,8 +276,6 @@ static FineValue bent_value(const Fine *fine, uint32_t particle, FineLocation lo
 
 /// Whether a side's points are evaluated in this cell, for a bent and unsplit cell.
 static bool is_bent_side(const Fine *fine, uint32_t cell, int side) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     uint32_t other = shell_neighbour(fine->shell, cell, side);
     if (fine_parts(fine, cell, side) == 1 || fine_is_split(fine, cell)) return false;
     return other == SHELL_NONE || !points_alive(fine, other) || (cell < other && !fine_is_split(fine, other));
@@ -307,7 +283,6 @@ static bool is_bent_side(const Fine *fine, uint32_t cell, int side) {
 
 static void evaluate_bent(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= fine->shell->cell_count);
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         int splits = fine->splits[c];
         if (!points_alive(fine, c) || fine_is_split(fine, c)) continue;

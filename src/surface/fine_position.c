@@ -16,7 +16,6 @@
 //
 // Both edges of a tear coincide until they separate. They are cut differently on either side, so their corners are
 // drawn back from each other, by a small fraction of a cell's side.
-#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>
@@ -51,7 +50,6 @@ static float fade(float value, float low, float high) { return fmaxf(0, fminf((v
 
 /// A vertex's position, moved by `length` towards the centroids of its cells.
 static Float3 drawn_back(const Fine *fine, uint32_t vertex, float length) {
-    SINGE_ASSERT(vertex < fine->shell->vertex_count);
     const Shell *shell = fine->shell;
     const float(*position)[4] = (const float(*)[4])fine->state->dynamics.position;
     Float3 location = float3_load(position[vertex]), sum = {0, 0, 0};
@@ -159,7 +157,6 @@ static void gather_shares(Fine *fine) {
 
 /// The number of parts in which the sides of a cell's triangles are drawn, to show its bending.
 static int parts_of(const Fine *fine, uint32_t cell) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
     const uint32_t *at = fine->shell->cells[cell];
     float turn = 0, freedom = 0;
     for (int i = 0; i < 4; i++) {

@@ -15,7 +15,6 @@
 // (Zwart 1973; Peters and Reif, The simplest subdivision scheme for smoothing polyhedra, 1997, for meshes that are not
 // regular: C1 except at their irregular vertices). All weights are positive: if no particle's mass grows, S does not
 // grow. It is exact for linear fields on parallelograms, and its isolines have no corners where cells meet.
-#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>
@@ -70,7 +69,6 @@ void fine_spline_cells(const Fine *fine, Spline *spline) {
 }
 
 void fine_spline_bounds(const Shell *shell, const Spline *spline, uint32_t cell, float *low, float *high) {
-    SINGE_ASSERT(cell < shell->cell_count);
     *low = INFINITY;
     *high = -INFINITY;
     for (int i = 0; i < 4; i++) { // the other coefficients are means of these
@@ -135,7 +133,6 @@ static FineLocation from_coordinates(uint32_t cell, float x, float y) {
 
 /// The side of a cell that has spring `blue`.
 static int side_of(const Shell *shell, uint32_t cell, uint32_t blue) {
-    SINGE_ASSERT(cell < shell->cell_count);
     int side = 0;
     while (side < 3 && shell->cell_springs[cell].blue[side] != blue) side++;
     return side;

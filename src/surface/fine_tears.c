@@ -13,7 +13,6 @@
 // cell torn off on all sides is drawn, too.
 //
 // Nothing is drawn outside the cells, so tear edges intersect only what the cells intersect.
-#include "common/assertion.h"
 #include "common/real.h"
 #include "surface/surface_fine.h"
 #include "common/random.h"
@@ -28,7 +27,6 @@ static const float TEAR_EDGE_STRENGTH = 0.6f,
 static const float pi = 3.14159265f;
 
 static float angle_at(const Shell *shell, uint32_t cell, int corner) {
-    SINGE_ASSERT(cell < shell->cell_count);
     const uint32_t *at = shell->cells[cell];
     Float3 p = float3_load(shell->rest_position[at[corner]]);
     Float3 a = float3_unit(float3_sub(float3_load(shell->rest_position[at[(corner + 1) & 3]]), p));
@@ -38,7 +36,6 @@ static float angle_at(const Shell *shell, uint32_t cell, int corner) {
 
 /// b of a vertex at a tear; marks its cells.
 static void tear_edge_vertex(Fine *fine, uint32_t vertex) {
-    SINGE_ASSERT(vertex < fine->shell->vertex_count);
     const Shell *shell = fine->shell;
     const Spline *spline = &fine->splines[SPLINE_TEAR_EDGE];
     float angle = 0;

@@ -2,7 +2,6 @@
 // corners of the cell's triangle and its virtual centre. Temperatures and rates follow their splines. The mass is the
 // one found with the level. The time of ignition is the weighted mean over the corners that have ignited. Positions and
 // normals come from fine_position.c.
-#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 /// Interpolates between a triangle's corners: two particles, and the mean of four for the virtual centre.
@@ -69,7 +68,6 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
 
 static void fill_range(void *context, int begin, int end) {
     const Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     FinePatch patch;
     uint32_t cell = SHELL_NONE;
     for (int v = begin; v < end; v++) {

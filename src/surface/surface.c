@@ -9,7 +9,6 @@
 // order, virtual centres, cuts. A cut at its inside end becomes that end; polygons with fewer than three corners are
 // dropped. Cuts keep a distance from ends, and quadrilaterals are divided along the diagonal that gives the rounder
 // triangles, so that no triangle is as thin as the rounding of its vertices.
-#include "common/assertion.h"
 #include "ablate/ablate_plan.h"
 #include "common/float3.h"
 
@@ -27,8 +26,6 @@ static void polygon_push(Polygon *polygon, uint32_t key) {
 
 /// Triangle `side` of a cell, clipped: it walks along the cell's side, to the virtual centre and back.
 static Polygon surface_clip(const AblatePlan *plan, const Shell *shell, uint32_t cell, int side) {
-    SINGE_ASSERT(cell < shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     const CellSprings *springs = &shell->cell_springs[cell];
     int next = (side + 1) & 3;
     uint32_t corner[3] = {shell->cells[cell][side], shell->cells[cell][next], shell_centre(shell, cell)};

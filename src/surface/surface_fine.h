@@ -2,7 +2,6 @@
 #ifndef SURFACE_SURFACE_FINE_H
 #define SURFACE_SURFACE_FINE_H
 
-#include "common/assertion.h"
 #include "ablate/ablate_plan.h"
 #include "common/float3.h"
 
@@ -173,14 +172,11 @@ FineLocation fine_point_location(uint32_t cell, int side, int splits, int i, int
 static inline bool fine_is_split(const Fine *fine, uint32_t cell) { return fine->flags[cell] & FINE_SPLIT; }
 
 static inline int fine_splits(const Fine *fine, uint32_t cell) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
     return fine->sheets[fine->shell->matter.sheet[shell_centre(fine->shell, cell)]].splits;
 }
 
 /// The parts in which a side of a cell is drawn.
 static inline int fine_parts(const Fine *fine, uint32_t cell, int side) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     return fine->parts[fine->shell->cell_springs[cell].blue[side]];
 }
 

@@ -5,7 +5,6 @@
 // with end 0 inside (m' >= 0) and end 1 outside, for the position and every other field alike. A virtual
 // centre lies at the mean of its cell's four corners, in space, at rest and in velocity; temperature,
 // mass and times are those of the cell's centre particle.
-#include "common/assertion.h"
 #include "ablate/ablate_plan.h"
 #include "common/float3.h"
 
@@ -39,7 +38,6 @@ static Float3 mean_of_corners(const uint32_t corners[4], const float (*field)[4]
 }
 
 static Sample sample_particle(const Shell *shell, const State *state, uint32_t particle) {
-    SINGE_ASSERT(particle < shell->particle_count);
     const float(*position)[4] = (const float(*)[4])state->dynamics.position;
     const float(*velocity)[4] = (const float(*)[4])state->dynamics.velocity;
     const float(*rest)[4] = (const float(*)[4])shell->rest_position;
