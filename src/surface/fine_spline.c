@@ -49,8 +49,8 @@ static void corner_coefficients(const Fine *fine, const float *values, Spline *s
         for (int end = 0; end < 2; end++) spline->corner[blue->ends[s][end]] += spline->edge[s];
     for (uint32_t v = 0; v < shell->vertex_count; v++) {
         uint32_t cells = shell->fan_first[v + 1] - shell->fan_first[v];
-        uint32_t sides = cells + fine->plan->rim[v]; // one more at the border
-        if (cells == 0 || (values && fine->plan->rim[v])) spline->corner[v] = values ? values[v] : 0;
+        uint32_t sides = cells + fine->rim[v]; // one more at the border
+        if (cells == 0 || (values && fine->rim[v])) spline->corner[v] = values ? values[v] : 0;
         else spline->corner[v] /= (float)sides;
     }
 }

@@ -1,5 +1,5 @@
 // The memory of a surface.
-#include "ablate/ablate_plan.h"
+#include "surface/surface_parts.h"
 
 #include <string.h>
 
@@ -59,7 +59,7 @@ void surface_clear(SingeSurface *surface) {
 
 static SingeResult arrays_fail(SingeSurface *surface, SingeResult code, const char *message, SingeError *error) {
     surface_clear(surface);
-    return error_set(error, code, "ablate", -1, "%s", message);
+    return error_set(error, code, "surface", -1, "%s", message);
 }
 
 static SingeResult arrays_reserve(SingeSurface *surface, const SurfaceArray *arrays, int array_count,

@@ -6,7 +6,7 @@
 //
 // Only cells whose uv differ from those of their vertices (Shell.uv) are visited. If the input had several vertices on
 // a seam, each copy keeps its own source vertex.
-#include "ablate/ablate_plan.h"
+#include "surface/surface_parts.h"
 #include "common/float3.h"
 
 #include <string.h>
@@ -166,7 +166,7 @@ SingeResult surface_seams(const Shell *shell, const uint32_t *cell_first, SingeS
             if (is_seamed(shell, c)) part_cell(&seams, c, cell_first[c], cell_first[c + 1]);
     } else {
         surface_clear(surface);
-        result = error_set(error, SINGE_ERROR_MEMORY, "ablate", -1, "out of memory for the surface's seams");
+        result = error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's seams");
     }
     FREE(&memory, seams.claimed, seams.capacity);
     FREE(&memory, seams.next, seams.capacity);
