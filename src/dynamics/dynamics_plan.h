@@ -144,7 +144,7 @@ void patch_gather(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h);
 /// Bytes of height_wait.
 size_t height_wait_count(const Shell *shell);
 
-/// Keeps every centre above its cell's corners (height.c).
+/// Keeps every centre above its cell's corners (layer_order.c).
 void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
                     DynamicsState *dynamics);
 
@@ -191,7 +191,7 @@ uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float 
 /// false without contact.
 bool contact_particle(const MovingCollider *collider, float offset, Float3 previous, float *position);
 
-/// Contact of a cell's centroid, between its corners (cell_centroids.c).
+/// Contact of a cell's centroid, between its corners (collider_contact.c).
 void contact_centroids(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
                        Pool *pool, float h, DynamicsState *dynamics);
 

@@ -33,17 +33,6 @@ static void heap_put(Geodesic *search, uint32_t at, uint32_t vertex) {
     search->position[vertex] = at;
 }
 
-/// Moves a vertex up to its position, after its distance has become smaller.
-static void heap_rise(Geodesic *search, const float *distance, uint32_t vertex) {
-    uint32_t at = search->position[vertex];
-    for (; at > 0; at = (at - 1) / 2) {
-        uint32_t above = search->heap[(at - 1) / 2];
-        if (distance[above] <= distance[vertex]) break;
-        heap_put(search, at, above);
-    }
-    heap_put(search, at, vertex);
-}
-
 static uint32_t heap_pop(Geodesic *search, const float *distance) {
     uint32_t nearest = search->heap[0], last = search->heap[--search->waiting], at = 0;
     search->position[nearest] = GEODESIC_DONE;
@@ -110,13 +99,19 @@ static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const Stat
         if (d >= distance[u]) continue;
         distance[u] = d;
         if (search->position[u] == GEODESIC_FAR) heap_put(search, search->waiting++, u);
-        heap_rise(search, distance, u);
+        uint32_t at = search->position[u];
+        for (; at > 0 && distance[search->heap[(at - 1) / 2]] > d; at = (at - 1) / 2)
+            heap_put(search, at, search->heap[(at - 1) / 2]);
+        heap_put(search, at, u);
     }
 }
 
 void geodesic_from(Geodesic *search, const Shell *shell, const StateInput *state, uint32_t source, uint32_t first,
                    uint32_t last, float *distance) {
-    for (uint32_t v = first; v < last; v++) distance[v] = INFINITY, search->position[v] = GEODESIC_FAR;
+    for (uint32_t v = first; v < last; v++) {
+        distance[v] = INFINITY;
+        search->position[v] = GEODESIC_FAR;
+    }
     distance[source] = 0;
     search->waiting = 1;
     heap_put(search, 0, source);

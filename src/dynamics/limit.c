@@ -94,33 +94,31 @@ static double limit_count(void *task, int begin, int end) {
     return over;
 }
 
-static void limit_shorten(const Limit *job, SingeColour colour, uint32_t spring) {
-    float(*x)[4] = job->dynamics->position, (*v)[4] = job->dynamics->velocity;
-    const uint32_t *ends = job->shell->springs[colour].ends[spring], a = ends[0], b = ends[1];
-    const float max = limit_factor(colour) * job->state->burn->spring_length[colour][spring];
-    float wa = x[a][3], wb = x[b][3];
-    Float4 displacement = limit_displacement(job, colour, spring), relative = float4_load(v[b]) - float4_load(v[a]);
-    displacement[3] = 0;
-    float length = sqrtf(float4_dot(displacement, displacement)), opens = float4_dot(relative, displacement) / length;
-    Float4 unit = displacement / length, shift = (length - max) / (wa + wb) * unit;
-    Float4 slow = (opens > 0 ? opens : 0) / (wa + wb) * unit;
-    float4_store(x[a], float4_load(x[a]) + wa * shift);
-    float4_store(x[b], float4_load(x[b]) - wb * shift);
-    float4_store(v[a], float4_load(v[a]) + wa * slow);
-    float4_store(v[b], float4_load(v[b]) - wb * slow);
-}
-
 /// Shortens springs that are too long, one after another, in blocks with a count above 0. Returns whether there were
 /// any.
 static bool limit_sweep(const Limit *job, const double *over) {
+    float(*x)[4] = job->dynamics->position, (*v)[4] = job->dynamics->velocity;
     bool some = false;
     for (uint32_t block = 0; block < job->end; block += POOL_BLOCK) {
         if (over[block / POOL_BLOCK] == 0) continue;
-        uint32_t end = job->end - block < POOL_BLOCK ? job->end : block + POOL_BLOCK;
+        const uint32_t end = job->end - block < POOL_BLOCK ? job->end : block + POOL_BLOCK;
         const LimitRange range = limit_range(job, block, end);
         for (uint32_t s = range.first; s < range.end; s++) {
             if (!limit_is_over(job, range.colour, s)) continue;
-            limit_shorten(job, range.colour, s);
+            const uint32_t *ends = job->shell->springs[range.colour].ends[s], a = ends[0], b = ends[1];
+            const float max = limit_factor(range.colour) * job->state->burn->spring_length[range.colour][s];
+            float wa = x[a][3], wb = x[b][3];
+            Float4 displacement = limit_displacement(job, range.colour, s);
+            Float4 relative = float4_load(v[b]) - float4_load(v[a]);
+            displacement[3] = 0;
+            float length = sqrtf(float4_dot(displacement, displacement));
+            float opens = float4_dot(relative, displacement) / length;
+            Float4 unit = displacement / length, shift = (length - max) / (wa + wb) * unit;
+            Float4 slow = (opens > 0 ? opens : 0) / (wa + wb) * unit;
+            float4_store(x[a], float4_load(x[a]) + wa * shift);
+            float4_store(x[b], float4_load(x[b]) - wb * shift);
+            float4_store(v[a], float4_load(v[a]) + wa * slow);
+            float4_store(v[b], float4_load(v[b]) - wb * slow);
             some = true;
         }
     }

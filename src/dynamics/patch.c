@@ -40,17 +40,6 @@ void patches_free(Memory *memory, const Shell *shell, Patches *patches) {
     }
 }
 
-/// The slot of every strand's first spring is known; bisection finds the strand of a spring.
-static float strand_compliance(const StrandSet *set, const SpringSet *springs, uint32_t spring) {
-    uint32_t low = 0, high = springs->strand_count;
-    while (high - low > 1) {
-        uint32_t middle = low + (high - low) / 2;
-        if (springs->strand_first[middle] <= spring) low = middle;
-        else high = middle;
-    }
-    return set->compliance[set->strand_slot[low] + (size_t)(spring - springs->strand_first[low]) * STRAND_LANES];
-}
-
 static void patch_push(Patches *patches, SingeColour colour, uint32_t spring, float compliance) {
     if (patches->count[colour] == patches->capacity) return; // split_is_possible prevents it
     patches->items[colour][patches->count[colour]++] = (Patch){.spring = spring, .compliance = compliance};
@@ -73,11 +62,23 @@ bool patch_follow(DynamicsPlan *plan, const Shell *shell) {
                     patch_push(patches, (SingeColour)colour, k, set->compliance[slot]);
         }
     }
+
+    // second edges of tears
     const SpringSet *blue = &shell->springs[SINGE_BLUE];
     uint32_t first = blue->count - shell->edge_spare_count;
-    for (uint32_t k = 0; k < shell->edge_spare_used; k++)
-        patch_push(patches, SINGE_BLUE, first + k,
-                   strand_compliance(&plan->strands.sets[SINGE_BLUE], blue, shell->edge_origin[k]));
+    const StrandSet *set = &plan->strands.sets[SINGE_BLUE];
+    for (uint32_t k = 0; k < shell->edge_spare_used; k++) {
+        // the compliance of the spring that it comes from, whose strand bisection finds
+        const uint32_t origin = shell->edge_origin[k];
+        uint32_t low = 0, high = blue->strand_count;
+        while (high - low > 1) {
+            uint32_t middle = low + (high - low) / 2;
+            if (blue->strand_first[middle] <= origin) low = middle;
+            else high = middle;
+        }
+        size_t slot = set->strand_slot[low] + (size_t)(origin - blue->strand_first[low]) * STRAND_LANES;
+        patch_push(patches, SINGE_BLUE, first + k, set->compliance[slot]);
+    }
     return true;
 }
 

@@ -39,11 +39,6 @@ static float thickness_share(const Shell *shell, const Sheet *sheet, uint32_t ce
     return t * t / (0.5f * s * s + t * t);
 }
 
-static float mean_compliance(const Shell *shell, SingeColour colour, const uint32_t *ends) {
-    const Field compliance = shell->matter.compliance[colour];
-    return 0.5f * (field_at(compliance, ends[0]) + field_at(compliance, ends[1]));
-}
-
 void stiffness_begin(const Shell *shell, SingeColour colour, float h, float regularisation, Stiffness *stiffness) {
     float softness = (colour == SINGE_RED ? COUPLING : 0) + regularisation;
     *stiffness = (Stiffness){.shell = shell, .colour = colour, .softness = softness * h * h, .sheet = UINT32_MAX};
@@ -52,7 +47,8 @@ void stiffness_begin(const Shell *shell, SingeColour colour, float h, float regu
 float stiffness_compliance(Stiffness *stiffness, uint32_t spring) {
     const Shell *shell = stiffness->shell;
     const uint32_t *ends = shell->springs[stiffness->colour].ends[spring];
-    float compliance = mean_compliance(shell, stiffness->colour, ends);
+    const Field material = shell->matter.compliance[stiffness->colour];
+    float compliance = 0.5f * (field_at(material, ends[0]) + field_at(material, ends[1]));
     uint32_t index = shell->matter.sheet[ends[0]];
     const Sheet *sheet = &shell->sheets[index];
     if (index != stiffness->sheet) {
