@@ -13,29 +13,19 @@ typedef struct Find {
 
 // ---- features that a cell owns
 
-static bool has_corners(const uint32_t cell[4], uint32_t a, uint32_t b) {
-    bool first = false, second = false;
-    for (int i = 0; i < 4; i++) first |= cell[i] == a, second |= cell[i] == b;
-    return first && second;
-}
-
-/// A side shared by two cells belongs to the lower of the two.
-static bool owns_side(const CollisionPlan *plan, const Shell *shell, uint32_t c, int side) {
-    uint32_t across = shell_neighbour(shell, c, side);
-    if (across == SHELL_NONE || across > c || !plan->alive[across]) return true;
-    return !has_corners(shell->cells[across], shell->cells[c][side], shell->cells[c][(side + 1) & 3]);
-}
-
-static void find_owners(CollisionPlan *plan, const Shell *shell) {
-    for (uint32_t c = plan->cell_count; c-- > 0;)
-        for (int i = 0; plan->alive[c] && i < 4; i++) plan->owner[shell->cells[c][i]] = c;
-}
-
+/// Bits of the corners and sides that a cell owns. A side shared by two cells belongs to the lower of the two.
 static uint8_t owned(const CollisionPlan *plan, const Shell *shell, uint32_t c) {
+    const uint32_t *corner = shell->cells[c];
     uint8_t bits = 0;
     for (int i = 0; i < 4; i++) {
-        bits |= (uint8_t)((plan->owner[shell->cells[c][i]] == c) << i);
-        bits |= (uint8_t)(owns_side(plan, shell, c, i) << (4 + i));
+        bits |= (uint8_t)((plan->owner[corner[i]] == c) << i);
+        const uint32_t across = shell_neighbour(shell, c, i);
+        bool first = false, second = false; // the one across has the side's corners
+        for (int k = 0; k < 4 && across != SHELL_NONE && across <= c && plan->alive[across]; k++) {
+            first |= shell->cells[across][k] == corner[i];
+            second |= shell->cells[across][k] == corner[(i + 1) & 3];
+        }
+        bits |= (uint8_t)(!(first && second) << (4 + i));
     }
     return bits;
 }
@@ -104,40 +94,15 @@ static void sweep_boxes(void *task, int begin, int end) {
 
 // ---- the search
 
-/// Also pairs a cell with itself: it may fold onto itself.
-static void add_cells(CollisionPlan *plan) {
-    for (uint32_t c = 0; c < plan->cell_count; c++) {
-        if (!plan->alive[c]) continue;
-        plan->pairs[plan->pair_count++] = (CollisionPair){.a = c, .b = c, .hit = 2, .bridge = c};
-    }
-}
-
-static SingeResult find_pairs(Memory *memory, Find *find, Pool *pool) {
-    enum { TRIALS = 5 };
-    CollisionPlan *plan = find->plan;
-    uint64_t count;
-    plan->slack = plan->slack_max;
-    for (int trial = 1;; trial++) {
-        plan->reach = plan->thickness + plan->slack;
-        pool_for(pool, (int)plan->cell_count, 512, sweep_boxes, find);
-        count = broad_grid_pairs(plan, find->shell, pool);
-        if (count + plan->cell_count <= plan->sizes.pair_budget || trial == TRIALS) break;
-        plan->slack *= 0.5f; // too crowded: search less far
-    }
-    if (!collision_grow_pairs(memory, plan, count + plan->cell_count)) return SINGE_ERROR_MEMORY;
-    broad_grid_keep(plan, find->shell, pool, count, plan->pair_capacity - plan->cell_count);
-    plan->counters.dropped += count - plan->pair_count;
-    add_cells(plan);
-    plan->listed_count = plan->pair_count;
-    return SINGE_OK;
-}
-
 /// Fewer steps where corners move fast relative to each other: on average by at most a third of a cell.
 static void choose_steps(CollisionPlan *plan, const Shell *shell) {
     Float4 mean = {0};
     double sum = 0, count = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++)
-        if (plan->alive[c]) mean += float4_load(plan->speed[shell->cells[c][0]]), count++;
+        if (plan->alive[c]) {
+            mean += float4_load(plan->speed[shell->cells[c][0]]);
+            count++;
+        }
     mean = mean / (float)fmax(count, 1);
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         Float4 off = float4_load(plan->speed[shell->cells[c][0]]) - mean;
@@ -149,13 +114,36 @@ static void choose_steps(CollisionPlan *plan, const Shell *shell) {
 }
 
 SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool) {
+    enum { TRIALS = 5 };
     Find find = {plan, shell};
     plan->listed_count = plan->pair_count = 0;
     plan->restless = 0;
     choose_steps(plan, shell);
-    find_owners(plan, shell);
+
+    // boxes; a vertex is owned by its lowest cell
+    for (uint32_t c = plan->cell_count; c-- > 0;)
+        for (int i = 0; plan->alive[c] && i < 4; i++) plan->owner[shell->cells[c][i]] = c;
     pool_for(pool, (int)plan->cell_count, 512, box_range, &find);
-    TRY(find_pairs(memory, &find, pool));
+
+    // pairs whose swept boxes meet; where they are too crowded, search less far
+    uint64_t count;
+    plan->slack = plan->slack_max;
+    for (int trial = 1;; trial++) {
+        plan->reach = plan->thickness + plan->slack;
+        pool_for(pool, (int)plan->cell_count, 512, sweep_boxes, &find);
+        count = broad_grid_pairs(plan, shell, pool);
+        if (count + plan->cell_count <= plan->sizes.pair_budget || trial == TRIALS) break;
+        plan->slack *= 0.5f;
+    }
+    if (!collision_grow_pairs(memory, plan, count + plan->cell_count)) return SINGE_ERROR_MEMORY;
+    broad_grid_keep(plan, shell, pool, count, plan->pair_capacity - plan->cell_count);
+    plan->counters.dropped += count - plan->pair_count;
+
+    // a cell may fold onto itself
+    for (uint32_t c = 0; c < plan->cell_count; c++)
+        if (plan->alive[c]) plan->pairs[plan->pair_count++] = (CollisionPair){.a = c, .b = c, .hit = 2, .bridge = c};
+    plan->listed_count = plan->pair_count;
+
     TRY(initial_find(memory, plan, shell, plan->searched == 0));
     plan->searched = 1;
     plan->counters.searches++;

@@ -74,42 +74,31 @@ void ccd_mark_around(const Ccd *ccd, uint32_t v) {
     for (uint32_t f = shell->fan_first[v]; f < shell->fan_first[v + 1]; f++) ccd_mark_changed(ccd, shell->fan[f]);
 }
 
-/// Marks the cells that have moved since CCD last ran in this step.
-static void mark_moved(const Ccd *ccd) {
-    const CollisionPlan *plan = ccd->plan;
-    ccd_forget_changed(ccd->plan);
-    for (uint32_t v = 0; v < plan->vertex_count; v++) {
-        Float4Mask moved = float4_load(ccd->dynamics->position[v]) != float4_load(plan->end[v]);
-        if (float4_bits(moved) & 7) ccd_mark_around(ccd, v);
-    }
-}
-
-/// Sorts the search's pairs by their cells, once for each search.
-static void sort_around(CollisionPlan *plan) {
-    if (plan->around_search == plan->counters.searches) return;
-    plan->around_search = plan->counters.searches;
-    uint32_t *first = plan->around_first;
-    memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
-    for (uint32_t k = 0; k < plan->listed_count; k++) {
-        const CollisionPair *pair = &plan->pairs[k];
-        first[pair->a + 2]++;
-        first[pair->b + 2] += pair->a != pair->b;
-    }
-    for (uint32_t c = 0; c < plan->cell_count; c++) first[c + 2] += first[c + 1];
-    for (uint32_t k = 0; k < plan->listed_count; k++) {
-        const CollisionPair *pair = &plan->pairs[k];
-        plan->around[first[pair->a + 1]++] = k;
-        if (pair->a != pair->b) plan->around[first[pair->b + 1]++] = k;
-    }
-}
-
 /// Lists the pairs of cells that have changed. Returns how many.
 static uint32_t list_changed(CollisionPlan *plan) {
-    uint32_t count = 0;
-    sort_around(plan);
+    uint32_t *first = plan->around_first, count = 0;
+
+    // sort the search's pairs by their cells, once for each search
+    if (plan->around_search != plan->counters.searches) {
+        plan->around_search = plan->counters.searches;
+        memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
+        for (uint32_t k = 0; k < plan->listed_count; k++) {
+            const CollisionPair *pair = &plan->pairs[k];
+            first[pair->a + 2]++;
+            first[pair->b + 2] += pair->a != pair->b;
+        }
+        for (uint32_t c = 0; c < plan->cell_count; c++) first[c + 2] += first[c + 1];
+        for (uint32_t k = 0; k < plan->listed_count; k++) {
+            const CollisionPair *pair = &plan->pairs[k];
+            plan->around[first[pair->a + 1]++] = k;
+            if (pair->a != pair->b) plan->around[first[pair->b + 1]++] = k;
+        }
+    }
+
+    // those of cells that have changed; the pair of two such cells once
     for (uint32_t l = 0; l < plan->changed_count; l++) {
         uint32_t c = plan->changed_list[l];
-        for (uint32_t e = plan->around_first[c]; e < plan->around_first[c + 1]; e++) {
+        for (uint32_t e = first[c]; e < first[c + 1]; e++) {
             const CollisionPair *pair = &plan->pairs[plan->around[e]];
             uint32_t other = pair->a == c ? pair->b : pair->a;
             if (!plan->changed[other] || other >= c) plan->active[count++] = plan->around[e];
@@ -122,30 +111,7 @@ static uint32_t list_changed(CollisionPlan *plan) {
 
 // ---- the step's end
 
-/// Searches for the displacements of this step.
-static SingeResult search_again(Ccd *ccd, const StateInput *state, Pool *pool, float h) {
-    CollisionPlan *plan = ccd->plan;
-    for (uint32_t v = 0; v < plan->vertex_count; v++) {
-        Float4 start = float4_load(plan->start[v]), speed = (float4_load(ccd->dynamics->position[v]) - start) / h;
-        speed[3] = 0;
-        float4_store(plan->position[v], start);
-        float4_store(plan->speed[v], speed);
-    }
-    for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = ccd->cell_flags[c] & SINGE_ALIVE;
-    plan->step = state->step;
-    ccd->time = h;
-    return broad_search(ccd->memory, plan, ccd->shell, pool);
-}
-
 static void ccd_measure(Ccd *ccd, Pool *pool) { pool_for(pool, (int)ccd->plan->cell_count, 512, measure_range, ccd); }
-
-/// Checks the pairs of cells that the last round has changed. Returns how many collide.
-static uint32_t meet_changed(Ccd *ccd, Pool *pool) {
-    pool_for(pool, (int)ccd->plan->changed_count, 512, measure_changed, ccd);
-    uint32_t count = list_changed(ccd->plan);
-    ccd->looked += count;
-    return ccd_meet_active(ccd, pool, count);
-}
 
 static uint32_t list_out_of_bounds(CollisionPlan *plan) {
     uint32_t count = 0;
@@ -163,7 +129,16 @@ static SingeResult follow_out_of_bounds(Ccd *ccd, const StateInput *state, Pool 
     if (count == 0) return SINGE_OK;
     bool all = count > plan->cell_count / OUTSIDE_MAX || plan->edge <= 0;
     if (all) {
-        TRY(search_again(ccd, state, pool, h));
+        for (uint32_t v = 0; v < plan->vertex_count; v++) {
+            Float4 start = float4_load(plan->start[v]), speed = (float4_load(ccd->dynamics->position[v]) - start) / h;
+            speed[3] = 0;
+            float4_store(plan->position[v], start);
+            float4_store(plan->speed[v], speed);
+        }
+        for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = ccd->cell_flags[c] & SINGE_ALIVE;
+        plan->step = state->step;
+        ccd->time = h;
+        TRY(broad_search(ccd->memory, plan, ccd->shell, pool));
         ccd_measure(ccd, pool);
         count = list_out_of_bounds(plan);
     }
@@ -177,7 +152,10 @@ static SingeResult follow_out_of_bounds(Ccd *ccd, const StateInput *state, Pool 
 static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float h, bool changed, uint32_t *hits) {
     uint32_t first;
     if (changed) {
-        *hits = meet_changed(ccd, pool);
+        pool_for(pool, (int)ccd->plan->changed_count, 512, measure_changed, ccd);
+        uint32_t count = list_changed(ccd->plan);
+        ccd->looked += count;
+        *hits = ccd_meet_active(ccd, pool, count);
     } else {
         ccd_measure(ccd, pool);
         *hits = ccd_meet(ccd, pool, 0);
@@ -230,16 +208,17 @@ static void close_trajectories(const Ccd *ccd, float h) {
     }
 }
 
-static void empty_zones(CollisionPlan *plan) {
-    for (uint32_t k = 0; k < plan->stopped_count; k++) plan->zone[plan->stopped[k]] = SHELL_NONE;
-    plan->stopped_count = 0;
-}
-
 static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state,
                               Pool *pool, float h, DynamicsState *dynamics) {
     Ccd ccd = {memory, plan, shell, dynamics, state->ablate->cell_flags, h * (float)(state->step - plan->step + 1), 0};
     bool stopped = false;
-    if (plan->closed) mark_moved(&ccd);
+
+    // where CCD has run in this step before, only what has moved since counts
+    if (plan->closed) ccd_forget_changed(plan);
+    for (uint32_t v = 0; v < plan->vertex_count && plan->closed; v++) {
+        Float4Mask moved = float4_load(dynamics->position[v]) != float4_load(plan->end[v]);
+        if (float4_bits(moved) & 7) ccd_mark_around(&ccd, v);
+    }
 
     // stop colliding cells until there are none: impacts one by one, then zones
     for (int impacts = 0, zones = 0;;) {
@@ -254,8 +233,12 @@ static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *
         plan->counters.stops += hits;
         stopped = true;
         bool crowd = ccd.looked > (uint64_t)IMPACT_LOOKS * plan->pair_count;
-        if (zones > 0 || impacts == IMPACT_ROUNDS || crowd) ccd_zones(&ccd, zones++);
-        else ccd_impacts(&ccd), impacts++;
+        if (zones > 0 || impacts == IMPACT_ROUNDS || crowd) {
+            ccd_zones(&ccd, zones++);
+        } else {
+            ccd_impacts(&ccd);
+            impacts++;
+        }
     }
 
     // remember where the step has ended, for the next one
@@ -271,7 +254,8 @@ SingeResult ccd_apply(Memory *memory, CollisionPlan *plan, const Shell *shell, c
     double start = clock_seconds();
     SingeResult result = close_step(memory, plan, shell, state, pool, h, dynamics);
     plan->pair_count = plan->listed_count;
-    empty_zones(plan);
+    for (uint32_t k = 0; k < plan->stopped_count; k++) plan->zone[plan->stopped[k]] = SHELL_NONE;
+    plan->stopped_count = 0;
     if (result) collision_plan_forget(plan);
     plan->counters.seconds += clock_seconds() - start;
     return result;

@@ -25,27 +25,12 @@ static void sweep_nodes(const Ccd *ccd, uint32_t c, Float4 origin, Float4 mean, 
     narrow_boxes(four_of(out->low), four_of(out->high), out->low[4], out->high[4], &out->boxes);
 }
 
-static float sweep_node(const Ccd *ccd, const Swept *p, int i, const Swept *q, int j) {
-    const uint8_t *k = collision_triangle[j];
-    FeatureSweep sweep = {{p->position[i], q->position[k[0]], q->position[k[1]], q->position[k[2]]},
-                          {p->displacement[i], q->displacement[k[0]], q->displacement[k[1]], q->displacement[k[2]]},
-                          false};
-    return feature_sweep(&sweep, ccd->plan->gap, ccd->plan->noise);
-}
-
-static float sweep_edge(const Ccd *ccd, const Swept *p, int i, const Swept *q, int j) {
-    const uint8_t *k = collision_edge[i], *l = collision_edge[j];
-    FeatureSweep sweep = {{p->position[k[0]], p->position[k[1]], q->position[l[0]], q->position[l[1]]},
-                          {p->displacement[k[0]], p->displacement[k[1]], q->displacement[l[0]], q->displacement[l[1]]},
-                          true};
-    return feature_sweep(&sweep, ccd->plan->gap, ccd->plan->noise);
-}
-
 static void note_hit(CollisionPair *pair, float hit, int kind, int i, int j) {
     if (!(hit < pair->hit)) return;
     pair->hit = hit;
     pair->kind = (uint8_t)kind;
-    pair->first[0] = (uint8_t)i, pair->first[1] = (uint8_t)j;
+    pair->first[0] = (uint8_t)i;
+    pair->first[1] = (uint8_t)j;
 }
 
 void ccd_sweep_cells(const Ccd *ccd, const CollisionPair *pair, Swept *p, Swept *q) {
@@ -67,7 +52,12 @@ static void sweep_all_nodes(const Ccd *ccd, CollisionPair *pair, uint32_t c, con
         if (meet) meet &= four_meet(&q->boxes.triangles, p->low[i] - ccd->plan->gap, p->high[i] + ccd->plan->gap);
         for (; meet; meet &= meet - 1) {
             int j = __builtin_ctz(meet);
-            note_hit(pair, sweep_node(ccd, p, i, q, j), kind, i, j);
+            const uint8_t *k = collision_triangle[j];
+            FeatureSweep sweep = {
+                {p->position[i], q->position[k[0]], q->position[k[1]], q->position[k[2]]},
+                {p->displacement[i], q->displacement[k[0]], q->displacement[k[1]], q->displacement[k[2]]},
+                false};
+            note_hit(pair, feature_sweep(&sweep, ccd->plan->gap, ccd->plan->noise), kind, i, j);
         }
     }
 }
@@ -83,13 +73,18 @@ static void sweep_all_edges(const Ccd *ccd, CollisionPair *pair, const Swept *p,
         Float4 high = float4_max(p->high[k[0]], p->high[k[1]]) + plan->gap;
         unsigned sides = four_meet(&q->boxes.sides, low, high) & plan->owned[pair->b] >> 4 & ~narrow_around(corners);
         unsigned spokes = four_meet(&q->boxes.spokes, low, high) & ~corners;
-        if (pair->a == pair->b) {
+        if (pair->a == pair->b) { // each pair once
             sides &= 14u << i;
             spokes = i < 4 ? spokes : 0;
-        } // each pair once
+        }
         for (unsigned meet = sides | spokes << 4; meet; meet &= meet - 1) {
             int j = __builtin_ctz(meet);
-            note_hit(pair, sweep_edge(ccd, p, i, q, j), COLLISION_EDGES, i, j);
+            const uint8_t *l = collision_edge[j];
+            FeatureSweep sweep = {
+                {p->position[k[0]], p->position[k[1]], q->position[l[0]], q->position[l[1]]},
+                {p->displacement[k[0]], p->displacement[k[1]], q->displacement[l[0]], q->displacement[l[1]]},
+                true};
+            note_hit(pair, feature_sweep(&sweep, plan->gap, plan->noise), COLLISION_EDGES, i, j);
         }
     }
 }
@@ -165,32 +160,17 @@ static bool plane_parts(const Ccd *ccd, const CollisionPair *pair) {
     return float4_dot(normal[0], normal[1]) > 0;
 }
 
-/// Returns whether a pair collides.
-static bool look_at_pair(const Ccd *ccd, CollisionPair *pair) {
-    if (!ccd_is_alive(ccd, pair->a) || !ccd_is_alive(ccd, pair->b)) return false;
-    if (initial_is_crossing(ccd->plan, pair)) return false;
-    if (!plane_parts(ccd, pair)) sweep_pair(ccd, pair);
-    return pair->hit < 2;
-}
-
-/// Checks the pairs whose numbers are given, four at a time. Returns how many collide.
-static uint32_t look_at_four(const Ccd *ccd, const uint32_t number[4], uint32_t count) {
-    CollisionPlan *plan = ccd->plan;
-    uint32_t hits = 0;
-    for (uint32_t i = 0; i < count; i++) plan->pairs[number[i]].hit = 2;
-    for (unsigned look = ((1u << count) - 1) & ~four_are_free(ccd, number); look; look &= look - 1)
-        hits += look_at_pair(ccd, &plan->pairs[number[__builtin_ctz(look)]]);
-    return hits;
-}
-
 typedef struct Look {
     const Ccd *ccd;
     uint32_t first;         ///< pair
     const uint32_t *active; ///< pairs, or NULL for all from the first on
 } Look;
 
+/// Checks pairs, four at a time. Returns how many collide.
 static double look_range(void *task, int begin, int end) {
     const Look *look = task;
+    const Ccd *ccd = look->ccd;
+    CollisionPair *pairs = ccd->plan->pairs;
     double hits = 0;
     for (int k = begin; k < end; k += 4) {
         uint32_t number[4], count = end - k < 4 ? (uint32_t)(end - k) : 4;
@@ -198,7 +178,16 @@ static double look_range(void *task, int begin, int end) {
             uint32_t at = (uint32_t)k + (i < count ? i : 0);
             number[i] = look->active ? look->active[at] : look->first + at;
         }
-        hits += look_at_four(look->ccd, number, count);
+
+        // those of the four that are not free
+        for (uint32_t i = 0; i < count; i++) pairs[number[i]].hit = 2;
+        for (unsigned left = ((1u << count) - 1) & ~four_are_free(ccd, number); left; left &= left - 1) {
+            CollisionPair *pair = &pairs[number[__builtin_ctz(left)]];
+            if (!ccd_is_alive(ccd, pair->a) || !ccd_is_alive(ccd, pair->b)) continue;
+            if (initial_is_crossing(ccd->plan, pair)) continue;
+            if (!plane_parts(ccd, pair)) sweep_pair(ccd, pair);
+            hits += pair->hit < 2;
+        }
     }
     return hits;
 }

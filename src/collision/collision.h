@@ -11,7 +11,7 @@
 //
 // Both use pairs of nearby cells. The search for pairs runs again when cells have used up the motion that the last
 // search allowed for (broad_phase.c). All lists have a fixed order: the same bytes for any number of threads. A list
-// that is too small for its pairs grows (collision_capacity.c).
+// that is too small for its pairs grows (collision_plan.c).
 #ifndef COLLISION_COLLISION_H
 #define COLLISION_COLLISION_H
 
@@ -66,7 +66,7 @@ typedef struct CollisionCounters {
 
 CollisionCounters collision_counters(const CollisionPlan *plan);
 
-/// NULL, or which invariant of the plan is broken between two steps (collision_validate.c).
+/// NULL, or which invariant of the plan is broken between two steps (collision_plan.c).
 const char *collision_validate(const CollisionPlan *plan);
 
 /// Lowers room[vertices], m, at vertices whose cells have another cell near in the present state, to its distance: the

@@ -28,13 +28,6 @@ typedef struct Opening {
 
 // ---- how cells move
 
-/// Whether a cell is as CCD has left and measured it in the last step.
-static bool is_as_left(const CollisionPlan *plan, const uint32_t corner[4], const float (*x)[4]) {
-    Float4Mask moved = {0};
-    for (int i = 0; i < 4; i++) moved |= float4_load(x[corner[i]]) != float4_load(plan->end[corner[i]]);
-    return !(float4_bits(moved) & 7); // the fourth components are inverse masses
-}
-
 static void measure_range(void *task, int begin, int end) {
     const Opening *job = task;
     CollisionPlan *plan = job->plan;
@@ -45,28 +38,16 @@ static void measure_range(void *task, int begin, int end) {
         Float4 speed[4], node[5];
         for (int i = 0; i < 4; i++) speed[i] = float4_load(job->dynamics->velocity[corner[i]]);
         motion[COLLISION_VELOCITY] = collision_mean(speed);
-        bool known = plan->closed && is_as_left(plan, corner, x);
+
+        // a cell that is as CCD has left it is measured already
+        Float4Mask moved = {0};
+        for (int i = 0; i < 4; i++) moved |= float4_load(x[corner[i]]) != float4_load(plan->end[corner[i]]);
+        bool known = plan->closed && !(float4_bits(moved) & 7); // the fourth components are inverse masses
         if (!known || job->searched) motion[COLLISION_DISPLACEMENT] = collision_displacement(plan, corner, x);
         if (known) continue;
         collision_nodes(corner, x, float4_load(x[corner[0]]), node);
         motion[COLLISION_NORMAL] = feature_normals(node);
     }
-}
-
-/// Stores where corners are and how they move: as since the last search, as resting corners tremble; else by their
-/// velocities.
-static void note_search(CollisionPlan *plan, const StateInput *state, const DynamicsState *dynamics) {
-    bool known = plan->searched && state->step > plan->step;
-    float since = known ? (float)(state->step - plan->step) * plan->time_step : 1;
-    for (uint32_t v = 0; v < plan->vertex_count; v++) {
-        Float4 now = float4_load(dynamics->position[v]);
-        Float4 speed = known ? (now - float4_load(plan->position[v])) / since : float4_load(dynamics->velocity[v]);
-        speed[3] = 0;
-        float4_store(plan->speed[v], speed);
-        float4_store(plan->position[v], now);
-    }
-    for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = state->ablate->cell_flags[c] & SINGE_ALIVE;
-    plan->step = state->step;
 }
 
 // ---- nearby features
@@ -85,22 +66,6 @@ static inline float due(float thickness, const CollisionPlan *plan, float approa
     return 1.25f * thickness + 1.5f * plan->time_step * (approach > 0 ? approach : 0);
 }
 
-static Float4 point_speed(const Look *look, const NearFeatures *near) {
-    Float4 one, two;
-    if (near->kind == COLLISION_EDGES) {
-        const uint8_t *k = collision_edge[near->first], *l = collision_edge[near->second];
-        one = look->speed_a[k[0]] + near->u * (look->speed_a[k[1]] - look->speed_a[k[0]]);
-        two = look->speed_b[l[0]] + near->v * (look->speed_b[l[1]] - look->speed_b[l[0]]);
-        return one - two;
-    }
-    bool turned = near->kind == COLLISION_NODE_OF_B;
-    const Float4 *own = turned ? look->speed_b : look->speed_a, *other = turned ? look->speed_a : look->speed_b;
-    const uint8_t *k = collision_triangle[near->second];
-    one = own[near->first];
-    two = other[k[0]] + near->u * (other[k[1]] - other[k[0]]) + near->v * (other[k[2]] - other[k[0]]);
-    return turned ? two - one : one - two;
-}
-
 /// Adds a node's weight to the corners of its cell.
 static void add_node(float corner[4], int node, float weight) {
     if (node < 4) {
@@ -114,14 +79,18 @@ static void add_node(float corner[4], int node, float weight) {
 static void point_weights(int kind, int first, int second, float u, float v, float wa[4], float wb[4]) {
     if (kind == COLLISION_EDGES) {
         const uint8_t *k = collision_edge[first], *l = collision_edge[second];
-        add_node(wa, k[0], 1 - u), add_node(wa, k[1], u);
-        add_node(wb, l[0], 1 - v), add_node(wb, l[1], v);
+        add_node(wa, k[0], 1 - u);
+        add_node(wa, k[1], u);
+        add_node(wb, l[0], 1 - v);
+        add_node(wb, l[1], v);
         return;
     }
     float *own = kind == COLLISION_NODE_OF_B ? wb : wa, *other = kind == COLLISION_NODE_OF_B ? wa : wb;
     const uint8_t *k = collision_triangle[second];
     add_node(own, first, 1);
-    add_node(other, k[0], 1 - u - v), add_node(other, k[1], u), add_node(other, k[2], v);
+    add_node(other, k[0], 1 - u - v);
+    add_node(other, k[1], u);
+    add_node(other, k[2], v);
 }
 
 /// Whether two points of one sheet are nearer at rest than `far`.
@@ -146,7 +115,23 @@ static float target(const Opening *job, const CollisionPair *pair, const Look *l
     const CollisionPlan *plan = job->plan;
     float thickness = open_min(plan->thin[pair->a], plan->thin[pair->b]), distance = near->distance;
     if (!(distance > 0)) return 0;
-    float toward = -float4_dot(point_speed(look, near), near->separation) / distance;
+
+    // velocity of the point of a relative to that of b
+    Float4 speed;
+    if (near->kind == COLLISION_EDGES) {
+        const uint8_t *k = collision_edge[near->first], *l = collision_edge[near->second];
+        speed = (look->speed_a[k[0]] + near->u * (look->speed_a[k[1]] - look->speed_a[k[0]])) -
+                (look->speed_b[l[0]] + near->v * (look->speed_b[l[1]] - look->speed_b[l[0]]));
+    } else {
+        bool turned = near->kind == COLLISION_NODE_OF_B;
+        const Float4 *own = turned ? look->speed_b : look->speed_a, *other = turned ? look->speed_a : look->speed_b;
+        const uint8_t *k = collision_triangle[near->second];
+        Float4 there = other[k[0]] + near->u * (other[k[1]] - other[k[0]]) + near->v * (other[k[2]] - other[k[0]]);
+        speed = turned ? there - own[near->first] : own[near->first] - there;
+    }
+
+    // contact is due where they may be too near at the step's end
+    float toward = -float4_dot(speed, near->separation) / distance;
     if (distance > due(plan->thickness, plan, toward)) return 0;
     if (near_at_rest(job, pair, near, 2 * thickness)) {
         thickness = open_min(thickness, 4 * plan->gap);
@@ -200,41 +185,40 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Blo
     }
 }
 
-/// Measures those of four pairs, from `first` on, of which `count` are left.
-static void look_at_four(const Opening *job, uint32_t first, uint32_t count, BlockWriter *writer) {
-    CollisionPlan *plan = job->plan;
-    uint32_t number[4];
-    for (uint32_t i = 0; i < 4; i++) number[i] = first + (i < count ? i : 0);
-    CollisionFourPairs four = collision_four_pairs(plan, number);
-
-    // connected cells whose normals lie within a cone cannot collide
-    unsigned joined = four.bridged;
-    if (joined) joined &= float4_bits(collision_four_within(&four, four.a, four.b, FEATURE_CONE));
-
-    // bounds of the distances, and where contact is possible
-    Float4 due = 1.25f * plan->thickness + 1.5f * plan->time_step * collision_four_differ(&four, COLLISION_VELOCITY);
-    Float4 left = four.distance;
-    if (!job->again)
-        left = float4_max(left - collision_four_differ(&four, COLLISION_DISPLACEMENT) - plan->noise, float4_all(0));
-    unsigned near = float4_bits(left <= due) & ~joined;
-    for (uint32_t i = 0; i < count && i < 4; i++) plan->pairs[first + i].distance = joined >> i & 1 ? 0 : left[i];
-
-    // measure the pairs that may be in contact
-    for (near &= (1u << (count < 4 ? count : 4)) - 1; near; near &= near - 1) {
-        int i = __builtin_ctz(near);
-        const CollisionPair *pair = &plan->pairs[first + (uint32_t)i];
-        bool alive = job->cell_flags[pair->a] & job->cell_flags[pair->b] & SINGE_ALIVE;
-        if (alive && pair->a != pair->b && !initial_is_crossing(plan, pair))
-            measure_pair(job, first + (uint32_t)i, due[i], writer);
-    }
-}
-
 static void look_block(void *context, BlockList *list, int block) {
     const Opening *job = context;
+    CollisionPlan *plan = job->plan;
     BlockWriter writer = block_list_begin(list, block);
-    uint32_t first = (uint32_t)block * COLLISION_BLOCK, last = first + COLLISION_BLOCK;
-    if (last > job->plan->listed_count) last = job->plan->listed_count;
-    for (uint32_t k = first; k < last; k += 4) look_at_four(job, k, last - k, &writer);
+    uint32_t begin = (uint32_t)block * COLLISION_BLOCK, end = begin + COLLISION_BLOCK;
+    if (end > plan->listed_count) end = plan->listed_count;
+    for (uint32_t first = begin; first < end; first += 4) {
+        const uint32_t count = end - first < 4 ? end - first : 4;
+        uint32_t number[4];
+        for (uint32_t i = 0; i < 4; i++) number[i] = first + (i < count ? i : 0);
+        CollisionFourPairs four = collision_four_pairs(plan, number);
+
+        // connected cells whose normals lie within a cone cannot collide
+        unsigned joined = four.bridged;
+        if (joined) joined &= float4_bits(collision_four_within(&four, four.a, four.b, FEATURE_CONE));
+
+        // bounds of the distances, and where contact is possible
+        Float4 due =
+            1.25f * plan->thickness + 1.5f * plan->time_step * collision_four_differ(&four, COLLISION_VELOCITY);
+        Float4 left = four.distance;
+        if (!job->again)
+            left = float4_max(left - collision_four_differ(&four, COLLISION_DISPLACEMENT) - plan->noise, float4_all(0));
+        unsigned near = float4_bits(left <= due) & ~joined;
+        for (uint32_t i = 0; i < count; i++) plan->pairs[first + i].distance = joined >> i & 1 ? 0 : left[i];
+
+        // measure the pairs that may be in contact
+        for (near &= (1u << count) - 1; near; near &= near - 1) {
+            int i = __builtin_ctz(near);
+            const CollisionPair *pair = &plan->pairs[first + (uint32_t)i];
+            bool alive = job->cell_flags[pair->a] & job->cell_flags[pair->b] & SINGE_ALIVE;
+            if (alive && pair->a != pair->b && !initial_is_crossing(plan, pair))
+                measure_pair(job, first + (uint32_t)i, due[i], &writer);
+        }
+    }
     block_list_end(&writer);
 }
 
@@ -268,33 +252,43 @@ static void open_repulsion(void *context, const void *item, uint32_t number) {
     open_gather(repulsion, job->shell->cells[pair->b], wb, -1);
 }
 
-static SingeResult open_repulsions(Memory *memory, Opening *job, Pool *pool) {
-    CollisionPlan *plan = job->plan;
-    BlockList *list = &plan->found;
-    int blocks = (int)collision_look_blocks(plan->listed_count);
-    uint64_t count = block_list_write(list, pool, blocks, plan->sizes.repulsion_max, look_block, job);
-    if (!collision_grow_repulsions(memory, plan, count)) return SINGE_ERROR_MEMORY;
-    job->again = true;
-    plan->repulsion_count = block_list_settle(list, pool, blocks, count, plan->repulsion_capacity, look_block, job);
-    plan->counters.dropped += count - plan->repulsion_count;
-    block_list_read(list, pool, blocks, plan->repulsion_count, open_repulsion, job);
-    return SINGE_OK;
-}
-
 static SingeResult open_step(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state,
                              Pool *pool, const DynamicsState *dynamics) {
     bool search =
         !plan->searched || plan->restless || state->step < plan->step || state->step - plan->step >= plan->steps;
     Opening job = {plan, shell, dynamics, state->ablate->cell_flags, search, false};
     if (search) {
-        note_search(plan, state, dynamics);
+        // where corners are and how they move: as since the last search, as resting corners tremble; else by their
+        // velocities
+        bool known = plan->searched && state->step > plan->step;
+        float since = known ? (float)(state->step - plan->step) * plan->time_step : 1;
+        for (uint32_t v = 0; v < plan->vertex_count; v++) {
+            Float4 now = float4_load(dynamics->position[v]);
+            Float4 speed = known ? (now - float4_load(plan->position[v])) / since : float4_load(dynamics->velocity[v]);
+            speed[3] = 0;
+            float4_store(plan->speed[v], speed);
+            float4_store(plan->position[v], now);
+        }
+        for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = state->ablate->cell_flags[c] & SINGE_ALIVE;
+        plan->step = state->step;
         TRY(broad_search(memory, plan, shell, pool));
         memcpy(plan->start, dynamics->position, plan->vertex_count * sizeof *plan->start);
     }
+
+    // how cells have moved since the last step began
     pool_for(pool, (int)plan->cell_count, 512, measure_range, &job);
     plan->closed = false;
     if (!search) memcpy(plan->start, dynamics->position, plan->vertex_count * sizeof *plan->start);
-    TRY(open_repulsions(memory, &job, pool));
+
+    // points that are near, and their repulsions
+    BlockList *list = &plan->found;
+    const int blocks = (int)collision_look_blocks(plan->listed_count);
+    uint64_t count = block_list_write(list, pool, blocks, plan->sizes.repulsion_max, look_block, &job);
+    if (!collision_grow_repulsions(memory, plan, count)) return SINGE_ERROR_MEMORY;
+    job.again = true;
+    plan->repulsion_count = block_list_settle(list, pool, blocks, count, plan->repulsion_capacity, look_block, &job);
+    plan->counters.dropped += count - plan->repulsion_count;
+    block_list_read(list, pool, blocks, plan->repulsion_count, open_repulsion, &job);
     plan->counters.pairs += plan->listed_count;
     return SINGE_OK;
 }
@@ -336,6 +330,9 @@ void collision_clearance(const CollisionPlan *plan, const Shell *shell, const St
         // the distance is the room of all corners
         for (int i = 0; i < 16; i++)
             if (a[i / 4] == b[i % 4]) nearest = 0; // towards shared corners
-        for (int i = 0; i < 4; i++) room[a[i]] = fminf(room[a[i]], nearest), room[b[i]] = fminf(room[b[i]], nearest);
+        for (int i = 0; i < 4; i++) {
+            room[a[i]] = fminf(room[a[i]], nearest);
+            room[b[i]] = fminf(room[b[i]], nearest);
+        }
     }
 }

@@ -8,12 +8,13 @@ static double feature_dot(Float4 a, Float4 b) {
     return (double)a[0] * (double)b[0] + (double)a[1] * (double)b[1] + (double)a[2] * (double)b[2];
 }
 
-static Float4 mix3(Float4 a, Float4 b, Float4 c, const float w[3]) { return w[0] * a + w[1] * b + w[2] * c; }
+static void set_weights(float w[3], double b, double c) {
+    w[0] = (float)(1 - b - c);
+    w[1] = (float)b;
+    w[2] = (float)c;
+}
 
-static void set_weights(float w[3], double b, double c) { w[0] = (float)(1 - b - c), w[1] = (float)b, w[2] = (float)c; }
-
-/// Weights of the triangle's point nearest to p.
-static void triangle_weights(Float4 p, Float4 a, Float4 b, Float4 c, float w[3]) {
+Float4 feature_from_triangle(Float4 p, Float4 a, Float4 b, Float4 c, float w[3]) {
     Float4 ab = b - a, ac = c - a, ap = p - a;
     double d1 = feature_dot(ab, ap), d2 = feature_dot(ac, ap), both = feature_dot(ab, ac);
     // not from p - b and p - c, whose rounding would not match
@@ -27,16 +28,10 @@ static void triangle_weights(Float4 p, Float4 a, Float4 b, Float4 c, float w[3])
     else if (va <= 0 && d4 >= d3 && d5 >= d6)
         set_weights(w, (d5 - d6) / ((d4 - d3) + (d5 - d6)), (d4 - d3) / ((d4 - d3) + (d5 - d6)));
     else set_weights(w, vb / (va + vb + vc), vc / (va + vb + vc));
-}
 
-Float4 feature_from_triangle(Float4 p, Float4 a, Float4 b, Float4 c, float weight[3]) {
-    triangle_weights(p, a, b, c, weight);
     // a triangle without area has no weights in its interior: then its first corner is used
-    if (!(weight[0] + weight[1] + weight[2] > 0.5f)) {
-        weight[0] = 1;
-        weight[1] = weight[2] = 0;
-    }
-    return p - mix3(a, b, c, weight);
+    if (!(w[0] + w[1] + w[2] > 0.5f)) set_weights(w, 0, 0);
+    return p - (w[0] * a + w[1] * b + w[2] * c);
 }
 
 // ---- cells that are connected
@@ -91,21 +86,15 @@ static bool is_beyond(const Float4 corner[4], unsigned shared, Float4 origin, Fl
     return true;
 }
 
-/// The corners of a that are shared: how many, and the first and the last.
-static int shared_corners(const Float4 a[4], unsigned shared, Float4 *first, Float4 *last) {
-    int count = 0;
-    for (int i = 0; i < 4; i++)
-        if (shared >> i & 1) {
-            if (count++ == 0) *first = a[i];
-            *last = a[i];
-        }
-    return count;
-}
-
 bool feature_is_separated(const Float4 a[4], const Float4 b[4], const unsigned shared[2], float margin,
                           Float4 *normal) {
     Float4 first = {0}, last = {0};
-    int count = shared_corners(a, shared[0], &first, &last);
+    int count = 0;
+    for (int i = 0; i < 4; i++)
+        if (shared[0] >> i & 1) {
+            if (count++ == 0) first = a[i];
+            last = a[i];
+        }
     if (count < 1 || count > 2) return false;
     Float4 away = ((a[0] + a[1]) + (a[2] + a[3])) - ((b[0] + b[1]) + (b[2] + b[3])), side = last - first;
     float square = float4_dot(side, side);
@@ -162,8 +151,10 @@ static float sweep_planes(const FeatureSweep *sweep, float time, float keep) {
     int own = sweep->edges ? 2 : 1;
     float longest = 2, height[4], speed[4];
     normal = normal / sqrtf(float4_dot(normal, normal));
-    for (int i = 0; i < 4; i++)
-        height[i] = float4_dot(x[i] - x[0], normal), speed[i] = float4_dot(sweep->displacement[i], normal);
+    for (int i = 0; i < 4; i++) {
+        height[i] = float4_dot(x[i] - x[0], normal);
+        speed[i] = float4_dot(sweep->displacement[i], normal);
+    }
     for (int i = 0; i < own; i++)
         for (int j = own; j < 4; j++) {
             float left = height[i] - height[j] - keep, nearing = speed[j] - speed[i];

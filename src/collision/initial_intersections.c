@@ -13,10 +13,13 @@
 /// Marks an entry of initial_other, which is a cell's number: there are fewer than 2^31.
 #define KEPT (1u << 31)
 
-/// Whether two cells that are not connected coincide within rounding.
-static bool cells_coincide(const CollisionPlan *plan, const Shell *shell, const CollisionPair *pair) {
-    if (pair->bridge != SHELL_NONE) return false;
+/// Whether two cells cross or, if they are not connected, coincide within rounding.
+static bool pair_intersects(const CollisionPlan *plan, const Shell *shell, const CollisionPair *pair) {
+    const CollisionBox *p = &plan->boxes[pair->a], *q = &plan->boxes[pair->b];
     const float(*x)[4] = (const float(*)[4])plan->position;
+    if (!quads_meet(p->low, p->high, q->low, q->high)) return false;
+    if (cross_cells(shell, x, pair->a, pair->b)) return true;
+    if (pair->bridge != SHELL_NONE) return false;
     Float4 origin = float4_load(x[shell->cells[pair->a][0]]);
     FeatureRange far = {4 * plan->noise, 0, 0, true};
     NearFeatures near[NARROW_MAX];
@@ -27,12 +30,6 @@ static bool cells_coincide(const CollisionPlan *plan, const Shell *shell, const 
     if (narrow_slabs_distance(&a, &b) > far.measured) return false;
     narrow_features(shell, pair, &a, &b, &far, near, &nearest);
     return nearest < far.measured;
-}
-
-static bool pair_intersects(const CollisionPlan *plan, const Shell *shell, const CollisionPair *pair) {
-    const CollisionBox *p = &plan->boxes[pair->a], *q = &plan->boxes[pair->b];
-    if (!quads_meet(p->low, p->high, q->low, q->high)) return false;
-    return cross_cells(shell, (const float(*)[4])plan->position, pair->a, pair->b) || cells_coincide(plan, shell, pair);
 }
 
 void initial_mark(CollisionPlan *plan) {
@@ -68,7 +65,9 @@ static SingeResult list_all(Memory *memory, CollisionPlan *plan, const Shell *sh
     for (uint32_t k = 0; k < plan->pair_count; k++) {
         const CollisionPair *pair = &plan->pairs[k];
         plan->active[k] = pair_intersects(plan, shell, pair);
-        if (plan->active[k]) first[pair->a + 2]++, count++;
+        if (!plan->active[k]) continue;
+        first[pair->a + 2]++;
+        count++;
     }
     if (!initial_reserve(memory, plan, count)) {
         memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);

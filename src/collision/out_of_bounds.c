@@ -10,22 +10,21 @@ typedef struct OutsideSearch {
     bool crowded;         ///< it has no room for all: cells out of bounds are checked against all others
 } OutsideSearch;
 
-static OutsideBox outside_box(const OutsideSearch *job, uint32_t cell) {
-    const CollisionPlan *plan = job->plan;
-    const uint32_t *corner = job->shell->cells[cell];
-    Float4 low = float4_load(job->x[corner[0]]), high = low;
-    for (int i = 0; i < 4; i++) {
-        Float4 start = float4_load(plan->start[corner[i]]), end = float4_load(job->x[corner[i]]);
-        low = float4_min(low, float4_min(start, end));
-        high = float4_max(high, float4_max(start, end));
-    }
-    low[3] = high[3] = 0;
-    return (OutsideBox){low - 2 * plan->gap, high + 2 * plan->gap};
-}
-
+/// The slightly widened regions that cells out of bounds pass over.
 static void box_range(void *task, int begin, int end) {
     const OutsideSearch *job = task;
-    for (int k = begin; k < end; k++) job->plan->outside_boxes[k] = outside_box(job, job->plan->outside[k]);
+    const CollisionPlan *plan = job->plan;
+    for (int k = begin; k < end; k++) {
+        const uint32_t *corner = job->shell->cells[plan->outside[k]];
+        Float4 low = float4_load(job->x[corner[0]]), high = low;
+        for (int i = 0; i < 4; i++) {
+            Float4 from = float4_load(plan->start[corner[i]]), to = float4_load(job->x[corner[i]]);
+            low = float4_min(low, float4_min(from, to));
+            high = float4_max(high, float4_max(from, to));
+        }
+        low[3] = high[3] = 0;
+        plan->outside_boxes[k] = (OutsideBox){low - 2 * plan->gap, high + 2 * plan->gap};
+    }
 }
 
 /// Adds a pair unless the search has listed it.

@@ -12,27 +12,6 @@
 #include "common/clock.h"
 #include "collision/collision_plan.h"
 
-/// Takes back slip across the normal, at most `max`.
-static void repulsion_friction(const Repulsion *repulsion, const float (*predicted)[4], float h, float max,
-                               float weight, DynamicsState *dynamics) {
-    float(*x)[4] = dynamics->position;
-    Float4 slip = {0};
-    for (uint32_t i = 0; i < repulsion->count; i++) {
-        uint32_t at = repulsion->node[i];
-        Float4 before = float4_load(predicted[at]) - h * float4_load(dynamics->velocity[at]);
-        slip += repulsion->weight[i] * (float4_load(x[at]) - before);
-    }
-    slip[3] = 0;
-    slip -= float4_dot(slip, repulsion->normal) * repulsion->normal;
-    float length = sqrtf(float4_dot(slip, slip));
-    if (!(length > 0)) return;
-    Float4 back = (length <= max ? 1 : max / length) / weight * slip;
-    for (uint32_t i = 0; i < repulsion->count; i++) {
-        Float4 position = float4_load(x[repulsion->node[i]]);
-        float4_store(x[repulsion->node[i]], position - position[3] * repulsion->weight[i] * back);
-    }
-}
-
 void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics) {
     double start = clock_seconds();
     float(*x)[4] = dynamics->position;
@@ -56,10 +35,26 @@ void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, 
             float4_store(x[repulsion->node[i]], position + position[3] * repulsion->weight[i] * away);
         }
 
-        // friction across it
-        if (plan->def.friction > 0)
-            repulsion_friction(repulsion, predicted, h, -plan->def.friction * height, weight, dynamics);
         plan->counters.repulsions++;
+        if (!(plan->def.friction > 0)) continue;
+
+        // friction: take back slip across the normal, at most `max`
+        const float max = -plan->def.friction * height;
+        Float4 slip = {0};
+        for (uint32_t i = 0; i < repulsion->count; i++) {
+            uint32_t at = repulsion->node[i];
+            Float4 before = float4_load(predicted[at]) - h * float4_load(dynamics->velocity[at]);
+            slip += repulsion->weight[i] * (float4_load(x[at]) - before);
+        }
+        slip[3] = 0;
+        slip -= float4_dot(slip, repulsion->normal) * repulsion->normal;
+        float length = sqrtf(float4_dot(slip, slip));
+        if (!(length > 0)) continue;
+        Float4 back = (length <= max ? 1 : max / length) / weight * slip;
+        for (uint32_t i = 0; i < repulsion->count; i++) {
+            Float4 position = float4_load(x[repulsion->node[i]]);
+            float4_store(x[repulsion->node[i]], position - position[3] * repulsion->weight[i] * back);
+        }
     }
     plan->counters.seconds += clock_seconds() - start;
 }
