@@ -101,14 +101,6 @@ static const float TEAR_EDGE_WAVE = 2.2f;      ///< largest features of D, over 
 static const float TEAR_EDGE_STRENGTH = 0.6f,
                    TEAR_EDGE_GAIN = 2.4f; ///< of an octave over that of the one before; of the first
 
-static float angle_at(const Shell *shell, uint32_t cell, int corner) {
-    const uint32_t *at = shell->cells[cell];
-    Float3 p = float3_load(shell->rest_position[at[corner]]);
-    Float3 a = float3_unit(float3_sub(float3_load(shell->rest_position[at[(corner + 1) & 3]]), p));
-    Float3 b = float3_unit(float3_sub(float3_load(shell->rest_position[at[(corner + 3) & 3]]), p));
-    return real_atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b));
-}
-
 /// b of a vertex at a tear; marks its cells.
 static void tear_edge_vertex(Fine *fine, uint32_t vertex) {
     const Shell *shell = fine->shell;
@@ -121,7 +113,11 @@ static void tear_edge_vertex(Fine *fine, uint32_t vertex) {
         uint32_t cell = shell->fan[k];
         int i = 0;
         while (shell->cells[cell][i] != vertex) i++;
-        angle += angle_at(shell, cell, i);
+        const uint32_t *at = shell->cells[cell];
+        Float3 p = float3_load(shell->rest_position[vertex]);
+        Float3 a = float3_unit(float3_sub(float3_load(shell->rest_position[at[(i + 1) & 3]]), p));
+        Float3 b = float3_unit(float3_sub(float3_load(shell->rest_position[at[(i + 3) & 3]]), p));
+        angle += real_atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b));
         for (int side = i, turn = 0; turn < 2; turn++, side = (i + 3) & 3)
             border |= shell_neighbour(shell, cell, side) == SHELL_NONE &&
                       spline->edge[shell->cell_springs[cell].blue[side]] > 0;

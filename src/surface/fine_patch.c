@@ -16,12 +16,6 @@
 // the corners.
 #include "surface/surface_fine.h"
 
-static bool is_sound(const Fine *fine, uint32_t cell) {
-    bool sound = fine->state->ablate.cell_flags[cell] & SINGE_ALIVE;
-    for (int side = 0; side < 4 && sound; side++) sound = !fine_is_torn(fine, cell, side);
-    return sound;
-}
-
 static Float3 corner_of(const Fine *fine, uint32_t vertex) { return float3_load(fine->corner[vertex]); }
 
 /// Sums over the sound cells around a vertex.
@@ -30,16 +24,6 @@ typedef struct Ring {
     Float3 along;            ///< sum of the vertex's neighbours along these sides
     Float3 inner;            ///< sum of the cells' inner points
 } Ring;
-
-static void add_borders(const Fine *fine, uint32_t cell, int corner, Ring *ring) {
-    const uint32_t *at = fine->shell->cells[cell];
-    for (int turn = 0; turn < 2; turn++) {
-        uint32_t other = shell_neighbour(fine->shell, cell, turn ? (corner + 3) & 3 : corner);
-        if (other != SHELL_NONE && fine->sound[other]) continue;
-        ring->borders++;
-        ring->along = float3_add(ring->along, corner_of(fine, at[(corner + (turn ? 3 : 1)) & 3]));
-    }
-}
 
 static Ring ring_of(const Fine *fine, uint32_t vertex) {
     const Shell *shell = fine->shell;
@@ -51,14 +35,25 @@ static Ring ring_of(const Fine *fine, uint32_t vertex) {
         while (shell->cells[cell][i] != vertex) i++;
         ring.cells++;
         ring.inner = float3_add(ring.inner, float3_load(fine->inner[cell][i]));
-        add_borders(fine, cell, i, &ring);
+
+        // its two sides at the vertex, where no sound cell is across
+        for (int turn = 0; turn < 2; turn++) {
+            uint32_t other = shell_neighbour(shell, cell, turn ? (i + 3) & 3 : i);
+            if (other != SHELL_NONE && fine->sound[other]) continue;
+            ring.borders++;
+            ring.along = float3_add(ring.along, corner_of(fine, shell->cells[cell][(i + (turn ? 3 : 1)) & 3]));
+        }
     }
     return ring;
 }
 
 static void find_sound(void *context, int begin, int end) {
     Fine *fine = context;
-    for (int c = begin; c < end; c++) fine->sound[c] = is_sound(fine, (uint32_t)c);
+    for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
+        bool sound = fine->state->ablate.cell_flags[c] & SINGE_ALIVE;
+        for (int side = 0; side < 4 && sound; side++) sound = !fine_is_torn(fine, c, side);
+        fine->sound[c] = sound;
+    }
 }
 
 static void count_cells(void *context, int begin, int end) {
@@ -85,22 +80,7 @@ static void put_inner(void *context, int begin, int end) {
     }
 }
 
-/// The two points within side i of a cell, in the order of its corners.
-static void put_rail(const Fine *fine, uint32_t cell, int i, Float3 point[2]) {
-    const Shell *shell = fine->shell;
-    const uint32_t end[2] = {shell->cells[cell][i], shell->cells[cell][(i + 1) & 3]};
-    uint32_t other = shell_neighbour(shell, cell, i);
-    bool both = other != SHELL_NONE && fine->sound[cell] && fine->sound[other];
-    for (int k = 0; k < 2; k++) {
-        point[k] = float3_scale(float3_mad(corner_of(fine, end[1 - k]), corner_of(fine, end[k]), 2), 1 / 3.0f);
-        if (!both) continue;
-        int j = 0;
-        while (shell->cells[other][j] != end[k]) j++;
-        point[k] = float3_scale(
-            float3_add(float3_load(fine->inner[cell][(i + k) & 3]), float3_load(fine->inner[other][j])), 0.5f);
-    }
-}
-
+/// The two points within each side, in the order of its spring's ends.
 static void put_rails(void *context, int begin, int end) {
     Fine *fine = context;
     const Shell *shell = fine->shell;
@@ -108,10 +88,20 @@ static void put_rails(void *context, int begin, int end) {
         for (int i = 0; i < 4; i++) {
             uint32_t other = shell_neighbour(shell, c, i), blue = shell->cell_springs[c].blue[i];
             if (other != SHELL_NONE && other < c) continue;
-            Float3 point[2];
-            put_rail(fine, c, i, point);
-            bool forwards = shell->springs[SINGE_BLUE].ends[blue][0] == shell->cells[c][i];
-            for (int k = 0; k < 2; k++) float3_store(fine->rail[blue][forwards ? k : 1 - k], point[k]);
+            const uint32_t ends[2] = {shell->cells[c][i], shell->cells[c][(i + 1) & 3]};
+            const bool both = other != SHELL_NONE && fine->sound[c] && fine->sound[other];
+            const bool forwards = shell->springs[SINGE_BLUE].ends[blue][0] == ends[0];
+            for (int k = 0; k < 2; k++) {
+                Float3 x = corner_of(fine, ends[k]), point;
+                point = float3_scale(float3_mad(corner_of(fine, ends[1 - k]), x, 2), 1 / 3.0f);
+                if (both) {
+                    int j = 0;
+                    while (shell->cells[other][j] != ends[k]) j++;
+                    point = float3_add(float3_load(fine->inner[c][(i + k) & 3]), float3_load(fine->inner[other][j]));
+                    point = float3_scale(point, 0.5f);
+                }
+                float3_store(fine->rail[blue][forwards ? k : 1 - k], point);
+            }
         }
 }
 
@@ -184,7 +174,8 @@ static void bernstein(float t, float value[4], float slope[4]) {
 FinePoint fine_patch_at(const FinePatch *patch, float u, float v) {
     float bu[4], du[4], bv[4], dv[4];
     FinePoint point = {0};
-    bernstein(u, bu, du), bernstein(v, bv, dv);
+    bernstein(u, bu, du);
+    bernstein(v, bv, dv);
     for (int i = 0; i < 4; i++) {
         Float3 row = {0, 0, 0}, slope = {0, 0, 0};
         for (int j = 0; j < 4; j++) {

@@ -13,21 +13,7 @@
 
 static bool points_alive(const Fine *fine, uint32_t cell) { return fine->state->ablate.cell_flags[cell] & SINGE_ALIVE; }
 
-static bool gone_beside(const Fine *fine, uint32_t cell, int side) {
-    uint32_t other = shell_neighbour(fine->shell, cell, side);
-    return other != SHELL_NONE && !points_alive(fine, other);
-}
-
 // ---- numbering
-
-/// Lengths of a cell's two axes at rest.
-static void measure_axes(const Shell *shell, uint32_t cell, float axes[2]) {
-    const uint32_t *at = shell->cells[cell];
-    Float3 corner[4];
-    for (int i = 0; i < 4; i++) corner[i] = float3_load(shell->rest_position[at[i]]);
-    axes[0] = 0.5f * float3_length(float3_sub(float3_add(corner[1], corner[2]), float3_add(corner[0], corner[3])));
-    axes[1] = 0.5f * float3_length(float3_sub(float3_add(corner[3], corner[2]), float3_add(corner[0], corner[1])));
-}
 
 /// Sets the cells' flags from the bounds of their splines, and their axes.
 static void bound_cells(Fine *fine) {
@@ -38,10 +24,18 @@ static void bound_cells(Fine *fine) {
         fine_spline_bounds(fine->shell, &fine->splines[SPLINE_MASS], c, &lightest, &heaviest);
         low = fminf(low, fine_whole_level(whole));
         fine->low[c] = low;
-        measure_axes(fine->shell, c, fine->axes[c]);
         fine->flags[c] = low >= 0 && heaviest - lightest < 1e-5f ? FINE_EVEN : 0;
         if (whole == 1) fine->flags[c] |= FINE_WHOLE;
         if (points_alive(fine, c) && high >= 0) fine->flags[c] |= FINE_NEAR; // until its neighbours are checked
+
+        // lengths of the cell's two axes at rest
+        const uint32_t *at = fine->shell->cells[c];
+        Float3 p[4];
+        for (int i = 0; i < 4; i++) p[i] = float3_load(fine->shell->rest_position[at[i]]);
+        Float3 along = float3_sub(float3_add(p[1], p[2]), float3_add(p[0], p[3]));
+        Float3 up = float3_sub(float3_add(p[3], p[2]), float3_add(p[0], p[1]));
+        fine->axes[c][0] = 0.5f * float3_length(along);
+        fine->axes[c][1] = 0.5f * float3_length(up);
     }
 }
 
@@ -61,51 +55,47 @@ static uint32_t side_of_cell(const Fine *fine, uint32_t cell, int side) {
 
 static int inner_points(int splits) { return 4 * (splits - 1) + 2 * (splits - 1) * (splits - 2); }
 
-static void number_cell(Fine *fine, uint32_t cell, uint64_t *point) {
-    int splits = fine_splits(fine, cell);
-    for (int i = 0; i < 4; i++) {
-        uint32_t blue = side_of_cell(fine, cell, i);
-        if (fine->side_point[blue] != SHELL_NONE) continue;
-        fine->side_owner[fine->side_count++] = 4 * cell + (uint32_t)i;
-        fine->side_point[blue] = (uint32_t)*point;
-        *point += (uint64_t)splits - 1;
-    }
-    fine->cell_point[cell] = (uint32_t)*point;
-    fine->near[fine->near_count++] = cell;
-    *point += (uint64_t)inner_points(splits);
-}
-
-/// Numbers the points of bent cells and of their sides, for the case that they are not split.
-static void number_bent(Fine *fine, uint64_t *point) {
+static SingeResult points_number(Fine *fine, SingeError *error) {
     const Shell *shell = fine->shell;
-    memset(fine->parts, 1, shell->springs[SINGE_BLUE].count);
+    const uint32_t sides = shell->springs[SINGE_BLUE].count;
+    uint64_t point = shell->particle_count;
+
+    // of cells near the front, and of their sides
+    memset(fine->side_point, 0xff, sides * sizeof *fine->side_point);
+    for (uint32_t c = 0; c < shell->cell_count && point <= INT32_MAX; c++) {
+        const int splits = fine_splits(fine, c);
+        if (!(fine->flags[c] & FINE_NEAR)) continue;
+        if (splits == 1 || !(fine->flags[c] & FINE_TEAR_EDGE || negative_around(fine, c))) {
+            fine->flags[c] &= (uint8_t)~FINE_NEAR;
+            continue;
+        }
+        for (int i = 0; i < 4; i++) {
+            const uint32_t blue = side_of_cell(fine, c, i);
+            if (fine->side_point[blue] != SHELL_NONE) continue;
+            fine->side_owner[fine->side_count++] = 4 * c + (uint32_t)i;
+            fine->side_point[blue] = (uint32_t)point;
+            point += (uint64_t)splits - 1;
+        }
+        fine->cell_point[c] = (uint32_t)point;
+        fine->near[fine->near_count++] = c;
+        point += (uint64_t)inner_points(splits);
+    }
+
+    // of bent cells and of their sides, for the case that they are not split
+    memset(fine->parts, 1, sides);
     for (uint32_t c = 0; c < shell->cell_count; c++)
         for (int i = 0; i < 4 && fine->bent[c] > 1; i++) {
             uint8_t *parts = &fine->parts[side_of_cell(fine, c, i)];
             if (*parts < fine->bent[c]) *parts = fine->bent[c];
         }
-    for (uint32_t s = 0; s < shell->springs[SINGE_BLUE].count; s++) {
-        fine->bent_side[s] = (uint32_t)*point;
-        *point += (uint64_t)fine->parts[s] - 1;
+    for (uint32_t s = 0; s < sides; s++) {
+        fine->bent_side[s] = (uint32_t)point;
+        point += (uint64_t)fine->parts[s] - 1;
     }
     for (uint32_t c = 0; c < shell->cell_count; c++) {
-        fine->bent_point[c] = (uint32_t)*point;
-        *point += (uint64_t)inner_points(fine->bent[c]);
+        fine->bent_point[c] = (uint32_t)point;
+        point += (uint64_t)inner_points(fine->bent[c]);
     }
-}
-
-static SingeResult points_number(Fine *fine, SingeError *error) {
-    const Shell *shell = fine->shell;
-    uint64_t point = shell->particle_count;
-    memset(fine->side_point, 0xff, shell->springs[SINGE_BLUE].count * sizeof *fine->side_point);
-    for (uint32_t c = 0; c < shell->cell_count; c++) {
-        if (!(fine->flags[c] & FINE_NEAR)) continue;
-        bool near = fine->flags[c] & FINE_TEAR_EDGE || negative_around(fine, c);
-        if (fine_splits(fine, c) > 1 && near) number_cell(fine, c, &point);
-        else fine->flags[c] &= (uint8_t)~FINE_NEAR;
-        if (point > INT32_MAX) break;
-    }
-    number_bent(fine, &point);
     if (point > INT32_MAX)
         return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "the drawn surface's detail is too fine");
     fine->point_count = (uint32_t)point;
@@ -196,7 +186,8 @@ static void evaluate_sides(void *context, int begin, int end) {
         uint32_t cell = fine->side_owner[s] / 4;
         int side = (int)(fine->side_owner[s] & 3), splits = fine_splits(fine, cell);
         const uint32_t *at = fine->shell->cells[cell];
-        bool gone = gone_beside(fine, cell, side);
+        const uint32_t other = shell_neighbour(fine->shell, cell, side);
+        const bool gone = other != SHELL_NONE && !points_alive(fine, other);
         for (int i = 1; i < splits; i++) {
             FineLocation location = fine_point_location(cell, side, splits, i, 0);
             FineValue value = fine_value(fine, location);
@@ -260,7 +251,8 @@ static void points_settle(Fine *fine) {
         fine->splits[c] = (uint8_t)fine_splits(fine, c);
         for (int i = 0; i < 4; i++) {
             uint32_t blue = side_of_cell(fine, c, i);
-            fine->parts[blue] = fine->splits[c], fine->side_point[blue] = fine->bent_side[blue];
+            fine->parts[blue] = fine->splits[c];
+            fine->side_point[blue] = fine->bent_side[blue];
         }
     }
 }
@@ -274,23 +266,22 @@ static FineValue bent_value(const Fine *fine, uint32_t particle, FineLocation lo
     return value;
 }
 
-/// Whether a side's points are evaluated in this cell, for a bent and unsplit cell.
-static bool is_bent_side(const Fine *fine, uint32_t cell, int side) {
-    uint32_t other = shell_neighbour(fine->shell, cell, side);
-    if (fine_parts(fine, cell, side) == 1 || fine_is_split(fine, cell)) return false;
-    return other == SHELL_NONE || !points_alive(fine, other) || (cell < other && !fine_is_split(fine, other));
-}
-
 static void evaluate_bent(void *context, int begin, int end) {
     Fine *fine = context;
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         int splits = fine->splits[c];
         if (!points_alive(fine, c) || fine_is_split(fine, c)) continue;
         for (int side = 0; side < 4; side++) {
-            int parts = fine_parts(fine, c, side);
-            for (int i = 1; i < parts && is_bent_side(fine, c, side); i++)
+            // the side's points, in one of its cells
+            const int parts = fine_parts(fine, c, side);
+            const uint32_t other = shell_neighbour(fine->shell, c, side);
+            const bool own =
+                other == SHELL_NONE || !points_alive(fine, other) || (c < other && !fine_is_split(fine, other));
+            for (int i = 1; i < parts && own; i++)
                 fine->values[fine_side_point(fine, c, side, parts, i)] =
                     bent_value(fine, fine->shell->cells[c][side], fine_point_location(c, side, parts, i, 0));
+
+            // those within the triangle
             for (int j = 1; j < splits; j++)
                 for (int i = 0; i + j < splits; i++)
                     fine->values[fine_point(fine, c, side, splits, i, j)] =

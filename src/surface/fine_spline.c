@@ -19,15 +19,6 @@
 
 #include <string.h>
 
-static void cell_values(const Fine *fine, const float *values) {
-    const Shell *shell = fine->shell;
-    for (uint32_t c = 0; c < shell->cell_count; c++) {
-        const uint32_t *at = shell->cells[c];
-        float corners = values[at[0]] + values[at[1]] + values[at[2]] + values[at[3]];
-        fine->cell_value[c] = 0.5f * values[shell_centre(shell, c)] + 0.125f * corners;
-    }
-}
-
 /// The cells' values are in place. Without values at the particles, the field is constant across the sheet's border.
 static void side_coefficients(const Fine *fine, const float *values, float *edge) {
     const Shell *shell = fine->shell;
@@ -56,7 +47,12 @@ static void corner_coefficients(const Fine *fine, const float *values, Spline *s
 }
 
 void fine_spline(const Fine *fine, const float *values, Spline *spline) {
-    cell_values(fine, values);
+    const Shell *shell = fine->shell;
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        const uint32_t *at = shell->cells[c];
+        float corners = values[at[0]] + values[at[1]] + values[at[2]] + values[at[3]];
+        fine->cell_value[c] = 0.5f * values[shell_centre(shell, c)] + 0.125f * corners;
+    }
     side_coefficients(fine, values, spline->edge);
     corner_coefficients(fine, values, spline);
 }
@@ -131,13 +127,6 @@ static FineLocation from_coordinates(uint32_t cell, float x, float y) {
     return location;
 }
 
-/// The side of a cell that has spring `blue`.
-static int side_of(const Shell *shell, uint32_t cell, uint32_t blue) {
-    int side = 0;
-    while (side < 3 && shell->cell_springs[cell].blue[side] != blue) side++;
-    return side;
-}
-
 FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, float dy) {
     uint32_t cell = location.cell;
     float x, y;
@@ -155,8 +144,9 @@ FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, floa
         // the neighbour's centre is the new origin; then quarter turns until the side that was crossed lies behind
         if (side & 1) x += side == 1 ? -1.0f : 1.0f;
         else y += side == 2 ? -1.0f : 1.0f;
-        int turns = (side_of(shell, other, shell->cell_springs[cell].blue[side]) + 2 - side) & 3;
-        for (; turns > 0; turns--) {
+        int behind = 0;
+        while (behind < 3 && shell->cell_springs[other].blue[behind] != shell->cell_springs[cell].blue[side]) behind++;
+        for (int turns = (behind + 2 - side) & 3; turns > 0; turns--) {
             float turned = -y;
             y = x;
             x = turned;

@@ -15,16 +15,6 @@
 
 #define LEVEL_GONE 0.12f
 
-static FineSheet fine_describe(const SurfaceDetail *detail, const Sheet *sheet, uint32_t index) {
-    float splits = roundf(sheet->cell_size / (1.4142136f * detail->size));
-    FineSheet fine = {.splits = splits < 1 ? 1 : splits > FINE_SPLITS_MAX ? FINE_SPLITS_MAX : (int)splits};
-    float spacing = sheet->cell_size / (1.4142136f * (float)fine.splits);
-    fine.reach = fminf(detail->raggedness, 0.5f * sheet->cell_size);
-    fine.octaves = fine_octaves(spacing);
-    fine.seed = random_hash(index, 0, 0, detail->seed);
-    return fine;
-}
-
 typedef struct FineArray {
     size_t offset, size, count;
 } FineArray;
@@ -49,21 +39,6 @@ static int list_arrays(const Fine *fine, FineArray arrays[]) {
 }
 
 enum { FINE_ARRAYS_MAX = 32 };
-
-static bool fine_allocate(Fine *fine) {
-    FineArray arrays[FINE_ARRAYS_MAX];
-    int count = list_arrays(fine, arrays);
-    for (int i = 0; i < count; i++) {
-        void *block = memory_new(fine->memory, arrays[i].count, arrays[i].size);
-        if (!block) return false;
-        memcpy((char *)fine + arrays[i].offset, &block, sizeof block);
-    }
-    for (int f = 0; f < SPLINE_COUNT; f++)
-        if (!NEW(fine->memory, fine->splines[f].edge, fine->shell->springs[SINGE_BLUE].count) ||
-            !NEW(fine->memory, fine->splines[f].corner, fine->shell->vertex_count))
-            return false;
-    return true;
-}
 
 static void fine_release(Fine *fine) {
     FineArray arrays[FINE_ARRAYS_MAX];
@@ -115,13 +90,6 @@ static Float3 blend(const uint32_t at[4], const FineLocation *location, const fl
     return sum;
 }
 
-static float blend_times(const float *time, const uint32_t particle[3], const float weight[3]) {
-    float sum = 0, total = 0;
-    for (int i = 0; i < 3; i++)
-        if (time[particle[i]] >= 0) sum += weight[i] * time[particle[i]], total += weight[i];
-    return total > 0 ? sum / total : -1;
-}
-
 static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) {
     const FineVertex *vertex = &fine->vertices[v];
     const FineLocation *location = &vertex->location;
@@ -159,7 +127,14 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
     surface->burn[v] = shell_burn_progress(vertex->mass, mass_min);
 
     // fields that are not interpolated smoothly
-    surface->time_ignited[v] = blend_times(state->burn.time_ignited, particle, location->weight);
+    const float *ignited = state->burn.time_ignited;
+    float sum = 0, total = 0;
+    for (int i = 0; i < 3; i++) {
+        if (!(ignited[particle[i]] >= 0)) continue;
+        sum += location->weight[i] * ignited[particle[i]];
+        total += location->weight[i];
+    }
+    surface->time_ignited[v] = total > 0 ? sum / total : -1;
     surface->piece[v] = state->ablate.piece[particle[0]];
     surface->sheet[v] = shell->matter.sheet[centre];
     surface->source_vertex[v] = vertex->source == SHELL_NONE ? -1 : shell->source_vertex[vertex->source];
@@ -182,10 +157,29 @@ static void fill_range(void *context, int begin, int end) {
 
 static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError *error) {
     const State *state = fine->state;
-    if (!fine_allocate(fine))
-        return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");
-    for (uint32_t s = 0; s < fine->shell->sheet_count; s++)
-        fine->sheets[s] = fine_describe(detail, &fine->shell->sheets[s], s);
+    const Shell *shell = fine->shell;
+    FineArray arrays[FINE_ARRAYS_MAX];
+    const int count = list_arrays(fine, arrays);
+    bool ok = true;
+    for (int i = 0; i < count && ok; i++) {
+        void *block = memory_new(fine->memory, arrays[i].count, arrays[i].size);
+        ok = block != NULL;
+        memcpy((char *)fine + arrays[i].offset, &block, sizeof block);
+    }
+    for (int f = 0; f < SPLINE_COUNT && ok; f++)
+        ok = NEW(fine->memory, fine->splines[f].edge, shell->springs[SINGE_BLUE].count) &&
+             NEW(fine->memory, fine->splines[f].corner, shell->vertex_count);
+    if (!ok) return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");
+
+    // how each sheet's cells are split
+    for (uint32_t s = 0; s < shell->sheet_count; s++) {
+        const float cell = shell->sheets[s].cell_size, splits = roundf(cell / (1.4142136f * detail->size));
+        FineSheet *sheet = &fine->sheets[s];
+        sheet->splits = splits < 1 ? 1 : splits > FINE_SPLITS_MAX ? FINE_SPLITS_MAX : (int)splits;
+        sheet->reach = fminf(detail->raggedness, 0.5f * cell);
+        sheet->octaves = fine_octaves(cell / (1.4142136f * (float)sheet->splits));
+        sheet->seed = random_hash(s, 0, 0, detail->seed);
+    }
     fill_levels(fine);
 
     // splines of the fields

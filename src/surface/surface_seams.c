@@ -34,15 +34,12 @@ static Float3 corner_rest(const Shell *shell, uint32_t cell, int i) {
     return float3_load(shell->rest_position[shell->cells[cell][i]]);
 }
 
-static Float3 centre_rest(const Shell *shell, uint32_t cell) {
-    Float3 sum = {0, 0, 0};
-    for (int i = 0; i < 4; i++) sum = float3_add(sum, corner_rest(shell, cell, i));
-    return float3_scale(sum, 0.25f);
-}
-
 /// Barycentric weights of a point in the cell's triangle of that side.
 static void weights_at(const Shell *shell, uint32_t cell, int side, Float3 point, float weight[3]) {
-    Float3 c = centre_rest(shell, cell), a = float3_sub(corner_rest(shell, cell, side), c);
+    Float3 c = {0, 0, 0};
+    for (int i = 0; i < 4; i++) c = float3_add(c, corner_rest(shell, cell, i));
+    c = float3_scale(c, 0.25f);
+    Float3 a = float3_sub(corner_rest(shell, cell, side), c);
     Float3 b = float3_sub(corner_rest(shell, cell, (side + 1) & 3), c), p = float3_sub(point, c);
     float aa = float3_dot(a, a), ab = float3_dot(a, b), bb = float3_dot(b, b), pa = float3_dot(p, a),
           pb = float3_dot(p, b);
@@ -86,14 +83,6 @@ static void cell_uv(const Shell *shell, uint32_t cell, int side, Float3 point, f
     }
 }
 
-static float cell_uv_size(const Shell *shell, uint32_t cell) {
-    const float(*corner)[2] = (const float(*)[2])shell->corner_uv[cell];
-    float size = 0;
-    for (int i = 1; i < 4; i++)
-        size = fmaxf(size, fmaxf(fabsf(corner[i][0] - corner[0][0]), fabsf(corner[i][1] - corner[0][1])));
-    return size;
-}
-
 /// The copy of a vertex that has this uv and source vertex; created if there is none.
 static uint32_t copy_with(Seams *seams, uint32_t vertex, const float uv[2], float same, int32_t source) {
     SingeSurface *surface = seams->surface;
@@ -123,7 +112,10 @@ static uint32_t copy_with(Seams *seams, uint32_t vertex, const float uv[2], floa
 }
 
 static void part_cell(Seams *seams, uint32_t cell, uint32_t begin, uint32_t end) {
-    const float same = SEAM_SAME * cell_uv_size(seams->shell, cell);
+    const float(*uvs)[2] = (const float(*)[2])seams->shell->corner_uv[cell];
+    float size = 0;
+    for (int i = 1; i < 4; i++) size = fmaxf(size, fmaxf(fabsf(uvs[i][0] - uvs[0][0]), fabsf(uvs[i][1] - uvs[0][1])));
+    const float same = SEAM_SAME * size;
     for (uint32_t t = begin; t < end; t++) {
         uint32_t *triangle = seams->surface->triangles[t], parted[3];
         int side = side_of(seams, cell, triangle);
