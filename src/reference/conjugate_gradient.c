@@ -14,7 +14,10 @@
 
 static void conjugate_begin(void *task, int begin, int end) {
     const Conjugate *job = task;
-    for (int row = begin; row < end; row++) job->x[row] = 0, job->p[row] = job->r[row];
+    for (int row = begin; row < end; row++) {
+        job->x[row] = 0;
+        job->p[row] = job->r[row];
+    }
 }
 
 const ConjugateKernel *conjugate_choose(SingeInstructions instructions) {
