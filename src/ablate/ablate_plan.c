@@ -11,6 +11,7 @@ SingeResult ablate_plan_create(Memory *memory, const Shell *shell, AblatePlan **
     AblatePlan *plan;
     *plan_out = NULL;
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
+
     size_t particles = plan->particle_count = shell->particle_count;
     plan->vertex_count = shell->vertex_count;
     plan->split_count = SHELL_NONE; // of no shell yet
@@ -21,6 +22,7 @@ SingeResult ablate_plan_create(Memory *memory, const Shell *shell, AblatePlan **
         ablate_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
+
     *plan_out = plan;
     return SINGE_OK;
 }
@@ -67,6 +69,7 @@ const float *ablate_levels(AblatePlan *plan, const Shell *shell, const BurnState
         level_fill(plan, shell, burn->mass, sheet->material.ablate, shell_centre(shell, sheet->cell_first),
                    sheet->cell_count);
     }
+
     return plan->level;
 }
 

@@ -53,6 +53,7 @@ static bool hole_opens(const HoleSearch *search, uint32_t particle) {
     const Shell *shell = search->shell;
     if (shell_is_corner(shell, particle)) {
         if (search->plan->rim[particle]) return false;
+
         for (uint32_t k = shell->fan_first[particle]; k < shell->fan_first[particle + 1]; k++)
             if (cell_open_before(search, shell->fan[k], particle)) return false;
         return true;
@@ -61,10 +62,12 @@ static bool hole_opens(const HoleSearch *search, uint32_t particle) {
     // a centre: its cell, and the centres of the cells around
     uint32_t cell = particle - shell->vertex_count;
     if (cell_open_before(search, cell, particle)) return false;
+
     for (int i = 0; i < 4; i++) {
         uint32_t other = shell_neighbour(shell, cell, i);
         if (other != SHELL_NONE && open_before(search, shell_centre(shell, other), particle)) return false;
     }
+
     return true;
 }
 
@@ -73,6 +76,7 @@ static void hole_report(const AblatePlan *plan, const StepContext *context, cons
     const Shell *shell = context->shell;
     const StateInput *state = &context->state;
     HoleSearch search = {plan, shell, state, ablate, (float)state->time};
+
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         if (!burnt_now(&search, i) || !(ablate->particle_flags[i] & SINGE_ALIVE) || !hole_opens(&search, i)) continue;
         event_push(context->events, SINGE_EVENT_HOLE_OPENED, (int32_t)i, state->time, state->dynamics->position[i]);
@@ -86,6 +90,7 @@ void remove_spring(Removal *removal, SingeColour colour, uint32_t spring) {
     AblateState *ablate = removal->ablate;
     uint8_t *flags = &ablate->spring_flags[colour][spring];
     if (!(*flags & SINGE_ALIVE)) return;
+
     *flags &= (uint8_t)~SINGE_ALIVE;
     removal->changed = true;
     for (int end = 0; end < 2; end++) {
@@ -106,6 +111,7 @@ static unsigned triangles_left(const AblatePlan *plan, const Shell *shell, uint3
     const uint32_t *corners = shell->cells[cell];
     unsigned left = 0;
     if (plan->level[shell_centre(shell, cell)] >= 0) return 15;
+
     for (unsigned i = 0; i < 4; i++)
         if (plan->level[corners[i]] >= 0) left |= 1u << i | 1u << ((i + 3) & 3);
     return left;
@@ -115,6 +121,7 @@ static void remove_from_cell(Removal *removal, uint32_t cell) {
     const Shell *shell = removal->shell;
     const CellSprings *springs = &shell->cell_springs[cell];
     unsigned left = triangles_left(removal->plan, shell, cell);
+
     for (int i = 0; i < 4; i++) {
         if (left >> i & 1) continue;
         if (!(left >> ((i + 3) & 3) & 1)) remove_spring(removal, SINGE_RED, springs->red[i]);
@@ -125,6 +132,7 @@ static void remove_from_cell(Removal *removal, uint32_t cell) {
             removal->plan->level[shell_centre(shell, other)] < 0)
             remove_spring(removal, SINGE_BLUE, springs->blue[i]);
     }
+
     if (left) return;
     for (int i = 0; i < 4; i++)
         if (springs->green[i] != SHELL_NONE) remove_spring(removal, SINGE_GREEN, springs->green[i]);
@@ -158,6 +166,7 @@ void ablate_step(AblatePlan *plan, const StepContext *context, AblateState *abla
         if (plan->level[shell_centre(context->shell, c)] < 0 && ablate->cell_flags[c] & SINGE_ALIVE)
             remove_from_cell(&removal, c);
     if (!removal.changed) return;
+
     piece_update(&removal, context->events);
     ablate->topology_version++;
 }

@@ -15,6 +15,7 @@ static uint32_t piece_find(uint32_t *root, uint32_t i) {
         root[i] = root[root[i]];
         i = root[i];
     }
+
     return i;
 }
 
@@ -32,6 +33,7 @@ static void find_sets(AblatePlan *plan, const Shell *shell, const AblateState *a
             else root[a] = b;
         }
     }
+
     // a root precedes the other particles of its set, so one lookup is enough
     for (uint32_t i = 0; i < shell->particle_count; i++) root[i] = root[root[i]];
 }
@@ -44,6 +46,7 @@ static void piece_measure(AblatePlan *plan, const Shell *shell, const AblateStat
     for (uint32_t i = 0; i < count; i++) plan->area[i] = 0;
     for (uint32_t i = 0; i < count; i++) {
         if (ablate->degree[i] == 0) continue;
+
         uint32_t root = plan->root[i];
         plan->size[root]++;
         if (i < shell->vertex_count) plan->area[root] += (double)shell->matter.area[i];
@@ -61,9 +64,11 @@ static bool mark_small(AblatePlan *plan, const Sheet *sheet) {
     for (uint32_t r = first; r < last; r++) {
         if (!plan->size[r] || r == largest || plan->mark[r] & PIECE_HELD) continue;
         if (!(plan->area[r] < (double)sheet->drop_pieces_below)) continue;
+
         plan->mark[r] |= PIECE_DROPPED;
         any = true;
     }
+
     return any;
 }
 
@@ -108,6 +113,7 @@ void piece_update(Removal *removal, EventList *events) {
     memset(plan->heir, 0xff, plan->particle_count * sizeof *plan->heir);
     for (uint32_t r = 0; r < plan->particle_count; r++) {
         if (!is_piece(plan, r)) continue;
+
         uint32_t *heir = &plan->heir[ablate->piece[r]];
         if (*heir == SHELL_NONE || plan->size[r] > plan->size[*heir]) *heir = r;
     }
@@ -116,11 +122,13 @@ void piece_update(Removal *removal, EventList *events) {
     ablate->piece_count = 0;
     for (uint32_t r = 0; r < plan->particle_count; r++) {
         if (!is_piece(plan, r)) continue;
+
         ablate->piece_count++;
         if (plan->heir[ablate->piece[r]] == r) continue;
         ablate->piece[r] = (int32_t)ablate->next_piece++;
         event_push(events, SINGE_EVENT_PIECE_FREED, ablate->piece[r], state->time, state->dynamics->position[r]);
     }
+
     spread_ids(plan, ablate);
 }
 
@@ -137,6 +145,7 @@ static bool springs_fit(AblatePlan *plan, const Shell *shell, const AblateState 
             for (int k = 0; k < 2 && flags; k++) plan->size[springs->ends[s][k]]++;
         }
     }
+
     for (uint32_t c = 0; c < shell->cell_count; c++)
         if (ablate->cell_flags[c] & ~SINGE_ALIVE) return false;
     for (uint32_t i = 0; i < shell->particle_count; i++) {
@@ -144,6 +153,7 @@ static bool springs_fit(AblatePlan *plan, const Shell *shell, const AblateState 
         if ((flags & ~(SINGE_ALIVE | SINGE_PINNED)) || (ablate->degree[i] && !(flags & SINGE_ALIVE))) return false;
         if (plan->size[i] != ablate->degree[i]) return false;
     }
+
     return true;
 }
 
@@ -153,6 +163,7 @@ static bool pieces_fit(AblatePlan *plan, const Shell *shell, const AblateState *
     uint64_t pieces = 0, particles = 0;
     find_sets(plan, shell, ablate);
     memset(plan->heir, 0xff, shell->particle_count * sizeof *plan->heir);
+
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         int32_t piece = ablate->piece[i];
         uint32_t root = plan->root[i];
@@ -163,9 +174,11 @@ static bool pieces_fit(AblatePlan *plan, const Shell *shell, const AblateState *
         if ((uint32_t)piece >= shell->particle_count) return false;
         if (root == i && plan->heir[piece] != SHELL_NONE) return false;
         if (root != i) continue;
+
         plan->heir[piece] = i;
         pieces++;
     }
+
     return pieces == ablate->piece_count && ablate->next_piece + particles <= shell->particle_count + pieces;
 }
 

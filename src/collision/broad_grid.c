@@ -21,11 +21,13 @@ static uint64_t fill_grid(CollisionPlan *plan, bool writing) {
     uint64_t count = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         if (!plan->alive[c]) continue;
+
         const CollisionBox *box = &plan->boxes[c];
         Cube first = collision_cube(box->swept_low, inverse), last = collision_cube(box->swept_high, inverse),
              at = first;
         count += collision_cubes(first, last, plan->sizes.entries);
         if (count > plan->sizes.entries) return count;
+
         for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
             for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
                 for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
@@ -42,6 +44,7 @@ static uint64_t fill_grid(CollisionPlan *plan, bool writing) {
                                          .key = key | (float4_bits(at == first) & 7) << 29};
                 }
     }
+
     return count;
 }
 
@@ -64,16 +67,20 @@ static inline float slab_gap(const CollisionSlab *a, const CollisionSlab *b) {
 bool collision_is_listed(const CollisionPlan *plan, uint32_t a, uint32_t b, float *distance) {
     const CollisionBox *p = &plan->boxes[a], *q = &plan->boxes[b];
     Float4 displacement = q->displacement - p->displacement, zero = {0};
+
     // b's box, swept by its displacement relative to a
     Float4 low = q->low + float4_min(displacement, zero), high = q->high + float4_max(displacement, zero);
     if (!quads_meet(p->low - plan->reach, p->high + plan->reach, low, high)) return false;
+
     Float4 separation = float4_max(float4_max(q->low - p->high, p->low - q->high), zero);
     float boxes = float4_dot(separation, separation),
           far = plan->reach + sqrtf(float4_dot(displacement, displacement)) + p->displacement[3] + q->displacement[3];
     if (boxes > far * far) return false;
+
     const CollisionSlab *s = &plan->slabs[a], *t = &plan->slabs[b];
     float one = slab_gap(s, t), two = slab_gap(t, s), slabs = one > two ? one : two;
     if (slabs > far) return false;
+
     boxes = sqrtf(boxes);
     float min = (slabs > boxes ? slabs : boxes) - 4 * plan->noise;
     *distance = min > 0 ? min : 0;
@@ -92,6 +99,7 @@ uint32_t collision_bridge(const CollisionPlan *plan, const Shell *shell, uint32_
     // across a tear or a hole two cells may share a corner and yet slide over each other
     uint32_t shared = corners_shared(shell->cells[a], shell->cells[b]);
     if (shared != 1) return shared ? a : SHELL_NONE;
+
     for (int side = 0; side < 4; side++) {
         uint32_t between = shell_neighbour(shell, a, side);
         if (between != SHELL_NONE && plan->alive[between] &&
@@ -99,6 +107,7 @@ uint32_t collision_bridge(const CollisionPlan *plan, const Shell *shell, uint32_
             corners_shared(shell->cells[between], shell->cells[b]) > 1)
             return between;
     }
+
     return SHELL_NONE;
 }
 
@@ -134,6 +143,7 @@ static void bucket_pairs(const Find *find, const CollisionEntry *entries, uint32
             tile->key[i] = (int32_t)(entry->key & COLLISION_KEY);
             tile->firsts[i] = (int32_t)(entry->key >> 29);
         }
+
         for (uint32_t i = tile->count; i & 3; i++) tile->key[i] = -1;
 
         // four of the tile at once against each entry up to them
@@ -168,6 +178,7 @@ static void pair_block(void *context, BlockList *list, int block) {
         uint32_t at = plan->bucket_first[b], count = plan->bucket_first[b + 1] - at;
         if (count > 1) bucket_pairs(find, plan->entries + at, count, &tile, &writer);
     }
+
     block_list_end(&writer);
 }
 
@@ -188,27 +199,32 @@ uint64_t broad_grid_pairs(CollisionPlan *plan, const Shell *shell, Pool *pool) {
     uint32_t cells = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         if (!plan->alive[c]) continue;
+
         Float4 size = plan->boxes[c].swept_high - plan->boxes[c].swept_low;
         float longest = size[0] > size[1] ? size[0] : size[1];
         sum += (double)(longest > size[2] ? longest : size[2]);
         cells++;
     }
+
     plan->edge = cells ? (float)(2 * sum / cells) : 0;
 
     // larger cubes until all entries have room; then the entries, sorted by buckets
     uint64_t count = 0;
     clear_buckets(plan);
+
     for (; plan->edge > 0; plan->edge *= 1.3f) {
         if (!(plan->edge < 1e30f)) plan->edge = 0; // a position is not finite: the step will fail
         else if ((count = fill_grid(plan, false)) <= plan->sizes.entries) break;
         clear_buckets(plan);
     }
+
     plan->entry_count = 0;
     if (plan->edge > 0) {
         for (uint32_t k = 0; k < plan->bucket_count; k++) plan->bucket_first[k + 2] += plan->bucket_first[k + 1];
         fill_grid(plan, true);
         plan->entry_count = (uint32_t)count;
     }
+
     return block_list_write(&plan->found_pairs, pool, grid_blocks(plan), plan->sizes.pair_max, pair_block, &find);
 }
 

@@ -25,8 +25,10 @@ static uint8_t owned(const CollisionPlan *plan, const Shell *shell, uint32_t c) 
             first |= shell->cells[across][k] == corner[i];
             second |= shell->cells[across][k] == corner[(i + 1) & 3];
         }
+
         bits |= (uint8_t)(!(first && second) << (4 + i));
     }
+
     return bits;
 }
 
@@ -40,6 +42,7 @@ static CollisionBox moving_box(const Float4 position[4], const Float4 displaceme
         box.low = i ? float4_min(box.low, low) : low;
         box.high = i ? float4_max(box.high, high) : high;
     }
+
     box.low = float4_flat(box.low);
     box.high = float4_flat(box.high);
     return box;
@@ -50,11 +53,13 @@ static CollisionSlab slab(const Float4 position[4]) {
            normal = float4_cross(position[2] - position[0], position[3] - position[1]);
     float length = sqrtf(float4_dot(normal, normal));
     CollisionSlab slab = {.normal = length > 0 ? normal / length : (Float4){0}};
+
     for (int i = 1; i < 4; i++) {
         float along = float4_dot(slab.normal, position[i] - position[0]);
         slab.low = along < slab.low ? along : slab.low;
         slab.high = along > slab.high ? along : slab.high;
     }
+
     float4_transpose(corner);
     slab.x = corner[0];
     slab.y = corner[1];
@@ -66,6 +71,7 @@ static void box_range(void *task, int begin, int end) {
     Find *find = task;
     CollisionPlan *plan = find->plan;
     float time = (float)plan->steps * plan->time_step;
+
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         if (!plan->alive[c]) continue;
         const uint32_t *corner = find->shell->cells[c];
@@ -74,6 +80,7 @@ static void box_range(void *task, int begin, int end) {
             position[i] = float4_flat(float4_load(plan->position[corner[i]]));
             displacement[i] = time * float4_load(plan->speed[corner[i]]);
         }
+
         plan->boxes[c] = moving_box(position, displacement);
         plan->slabs[c] = slab(position);
         plan->owned[c] = owned(plan, find->shell, c);
@@ -104,11 +111,14 @@ static void choose_steps(CollisionPlan *plan, const Shell *shell) {
             count++;
         }
     mean = mean / (float)fmax(count, 1);
+
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         Float4 off = float4_load(plan->speed[shell->cells[c][0]]) - mean;
         if (plan->alive[c]) sum += (double)sqrtf(float4_dot(off, off));
     }
+
     double step = sum / fmax(count, 1) * (double)plan->time_step, max = (double)plan->cell_size / 2;
+
     // a step that is not finite, as with positions that overflow, gets the fewest
     plan->steps = step * COLLISION_STEPS < max ? COLLISION_STEPS : step * 2 <= max ? (uint32_t)(max / step) : 2;
 }
@@ -128,6 +138,7 @@ SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell
     // pairs whose swept boxes meet; where they are too crowded, search less far
     uint64_t count;
     plan->slack = plan->slack_max;
+
     for (int trial = 1;; trial++) {
         plan->reach = plan->thickness + plan->slack;
         pool_for(pool, (int)plan->cell_count, 512, sweep_boxes, &find);
@@ -135,6 +146,7 @@ SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell
         if (count + plan->cell_count <= plan->sizes.pair_budget || trial == TRIALS) break;
         plan->slack *= 0.5f;
     }
+
     if (!collision_grow_pairs(memory, plan, count + plan->cell_count)) return SINGE_ERROR_MEMORY;
     broad_grid_keep(plan, shell, pool, count, plan->pair_capacity - plan->cell_count);
     plan->counters.dropped += count - plan->pair_count;

@@ -31,10 +31,12 @@ static void measure_cell(const Ccd *ccd, uint32_t c) {
     const uint32_t *corner = ccd->shell->cells[c];
     const float(*x)[4] = (const float(*)[4])ccd->dynamics->position;
     Float4 node[5], outside[4];
+
     for (int i = 0; i < 4; i++) {
         Float4 foreseen = float4_load(plan->position[corner[i]]) + ccd->time * float4_load(plan->speed[corner[i]]);
         outside[i] = float4_load(x[corner[i]]) - foreseen;
     }
+
     FourVectors astray = four_of(outside);
     collision_nodes(corner, x, float4_load(x[corner[0]]), node);
     plan->motion[c][COLLISION_DISPLACEMENT] = collision_displacement(plan, corner, x);
@@ -65,6 +67,7 @@ void ccd_forget_changed(CollisionPlan *plan) {
 void ccd_mark_changed(const Ccd *ccd, uint32_t cell) {
     CollisionPlan *plan = ccd->plan;
     if (plan->changed[cell] || !ccd_is_alive(ccd, cell)) return;
+
     plan->changed[cell] = 1;
     plan->changed_list[plan->changed_count++] = cell;
 }
@@ -87,6 +90,7 @@ static uint32_t list_changed(CollisionPlan *plan) {
             first[pair->a + 2]++;
             first[pair->b + 2] += pair->a != pair->b;
         }
+
         for (uint32_t c = 0; c < plan->cell_count; c++) first[c + 2] += first[c + 1];
         for (uint32_t k = 0; k < plan->listed_count; k++) {
             const CollisionPair *pair = &plan->pairs[k];
@@ -104,6 +108,7 @@ static uint32_t list_changed(CollisionPlan *plan) {
             if (!plan->changed[other] || other >= c) plan->active[count++] = plan->around[e];
         }
     }
+
     for (uint32_t k = plan->listed_count; k < plan->pair_count; k++)
         if (plan->changed[plan->pairs[k].a] | plan->changed[plan->pairs[k].b]) plan->active[count++] = k;
     return count;
@@ -127,6 +132,7 @@ static SingeResult follow_out_of_bounds(Ccd *ccd, const StateInput *state, Pool 
     uint32_t count = list_out_of_bounds(plan);
     *first = plan->pair_count;
     if (count == 0) return SINGE_OK;
+
     bool all = count > plan->cell_count / OUTSIDE_MAX || plan->edge <= 0;
     if (all) {
         for (uint32_t v = 0; v < plan->vertex_count; v++) {
@@ -135,6 +141,7 @@ static SingeResult follow_out_of_bounds(Ccd *ccd, const StateInput *state, Pool 
             float4_store(plan->position[v], start);
             float4_store(plan->speed[v], speed);
         }
+
         for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = ccd->cell_flags[c] & SINGE_ALIVE;
         plan->step = state->step;
         ccd->time = h;
@@ -142,6 +149,7 @@ static SingeResult follow_out_of_bounds(Ccd *ccd, const StateInput *state, Pool 
         ccd_measure(ccd, pool);
         count = list_out_of_bounds(plan);
     }
+
     TRY(broad_search_outside(ccd->memory, plan, ccd->shell, pool, count, (const float(*)[4])ccd->dynamics->position));
     plan->restless = plan->step < state->step && count > plan->cell_count / OUTSIDE_PART;
     *first = all ? 0 : plan->listed_count;
@@ -160,6 +168,7 @@ static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float
         ccd_measure(ccd, pool);
         *hits = ccd_meet(ccd, pool, 0);
     }
+
     if (*hits > 0) return SINGE_OK;
     TRY(follow_out_of_bounds(ccd, state, pool, h, &first));
     *hits = ccd_meet(ccd, pool, first);
@@ -190,6 +199,7 @@ static void close_trajectories(const Ccd *ccd, float h) {
             shift += 0.25f * (corner - float4_load(plan->want[v]));
             displacement += 0.25f * (corner - float4_load(plan->start[v]));
         }
+
         shift[3] = displacement[3] = 0;
         if (position[3] == 0 || float4_dot(shift, shift) == 0) continue;
         float4_store(dynamics->position[centre], position + shift);
@@ -229,6 +239,7 @@ static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *
             plan->counters.unresolved += hits;
             break;
         }
+
         if (!stopped) memcpy(plan->want, dynamics->position, plan->vertex_count * sizeof *plan->want);
         plan->counters.stops += hits;
         stopped = true;

@@ -17,11 +17,13 @@ static void sweep_nodes(const Ccd *ccd, uint32_t c, Float4 origin, Float4 mean, 
     Float4 end[5];
     collision_nodes(corner, (const float(*)[4])ccd->plan->start, origin, out->position);
     collision_nodes(corner, (const float(*)[4])ccd->dynamics->position, origin + mean, end);
+
     for (int i = 0; i < 5; i++) {
         out->displacement[i] = end[i] - out->position[i];
         out->low[i] = float4_min(out->position[i], end[i]);
         out->high[i] = float4_max(out->position[i], end[i]);
     }
+
     narrow_boxes(four_of(out->low), four_of(out->high), out->low[4], out->high[4], &out->boxes);
 }
 
@@ -47,6 +49,7 @@ static void sweep_all_nodes(const Ccd *ccd, CollisionPair *pair, uint32_t c, con
                             const unsigned same[4], int kind) {
     for (int i = 0; i < 5; i++) {
         if (!collision_owns_node(ccd->plan, c, i)) continue;
+
         // within one cell, the centroid is in all triangles
         unsigned meet = i < 4 ? 15 & ~narrow_around(same[i]) : pair->a == pair->b ? 0 : 15;
         if (meet) meet &= four_meet(&q->boxes.triangles, p->low[i] - ccd->plan->gap, p->high[i] + ccd->plan->gap);
@@ -67,6 +70,7 @@ static void sweep_all_edges(const Ccd *ccd, CollisionPair *pair, const Swept *p,
     const CollisionPlan *plan = ccd->plan;
     for (int i = 0; i < 8; i++) {
         if (!collision_owns_edge(plan, pair->a, i)) continue;
+
         const uint8_t *k = collision_edge[i];
         unsigned corners = same[k[0]] | (k[1] < 4 ? same[k[1]] : 0);
         Float4 low = float4_min(p->low[k[0]], p->low[k[1]]) - plan->gap;
@@ -77,6 +81,7 @@ static void sweep_all_edges(const Ccd *ccd, CollisionPair *pair, const Swept *p,
             sides &= 14u << i;
             spokes = i < 4 ? spokes : 0;
         }
+
         for (unsigned meet = sides | spokes << 4; meet; meet &= meet - 1) {
             int j = __builtin_ctz(meet);
             const uint8_t *l = collision_edge[j];
@@ -111,6 +116,7 @@ static bool own_is_free(const Ccd *ccd, uint32_t cell) {
     const float(*x)[4] = (const float(*)[4])ccd->dynamics->position;
     const uint32_t *corner = ccd->shell->cells[cell];
     if (!(motion[COLLISION_NORMAL][3] < FEATURE_CONE)) return false;
+
     Float4 one = float4_flat(float4_load(x[corner[2]]) - float4_load(x[corner[0]]));
     Float4 two = float4_flat(float4_load(x[corner[3]]) - float4_load(x[corner[1]])), area = float4_cross(one, two);
     float displacement = 8 * motion[COLLISION_DISPLACEMENT][3];
@@ -122,15 +128,18 @@ static bool own_is_free(const Ccd *ccd, uint32_t cell) {
 static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
     const CollisionPlan *plan = ccd->plan;
     CollisionFourPairs four = collision_four_pairs(plan, number);
+
     // so far apart that the sweep, which stops a little before the gap, would not stop either
     Float4Mask separation =
         (four.distance > 2 * plan->gap) &
         (collision_four_differ(&four, COLLISION_DISPLACEMENT) + plan->noise < 0.9f * (four.distance - plan->gap));
     unsigned free = float4_bits(separation), bridged = four.bridged & ~free;
     if (!bridged) return free;
+
     Float4Mask sides = collision_four_within(&four, four.a, four.b, FEATURE_CONE_SIDE);
     Float4Mask corners = collision_four_within(&four, four.a, four.bridge, FEATURE_CONE_CORNER) &
                          collision_four_within(&four, four.b, four.bridge, FEATURE_CONE_CORNER);
+
     for (unsigned i = 0; i < 4; i++) {
         if (!(bridged >> i & 1) || !ccd_is_alive(ccd, four.bridge[i])) continue;
         bool part = four.a[i] == four.b[i]        ? own_is_free(ccd, four.a[i])
@@ -138,6 +147,7 @@ static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
                                                   : corners[i] != 0;
         free |= (unsigned)part << i;
     }
+
     return free;
 }
 
@@ -150,6 +160,7 @@ static bool plane_parts(const Ccd *ccd, const CollisionPair *pair) {
     for (int i = 0; i < 16; i++)
         if (a[i >> 2] == b[i & 3]) shared[0] |= 1u << (i >> 2), shared[1] |= 1u << (i & 3);
     if (!shared[0] || pair->a == pair->b) return false;
+
     Float4 p[5], q[5], normal[2];
     for (int k = 0; k < 2; k++) {
         Float4 origin = float4_load(positions[k][a[0]]);
@@ -157,6 +168,7 @@ static bool plane_parts(const Ccd *ccd, const CollisionPair *pair) {
         collision_nodes(b, positions[k], origin, q);
         if (!feature_is_separated(p, q, shared, ccd->plan->gap, &normal[k])) return false;
     }
+
     return float4_dot(normal[0], normal[1]) > 0;
 }
 
@@ -189,6 +201,7 @@ static double look_range(void *task, int begin, int end) {
             hits += pair->hit < 2;
         }
     }
+
     return hits;
 }
 

@@ -71,10 +71,12 @@ static float impact_lever(const Ccd *ccd, uint32_t cell, const float w[4], float
         own += w[i] * w[i] * inverse[i];
         if (w[i] != 0 && inverse[i] > 0) min = fminf(min, inverse[i]);
     }
+
     for (int i = 0; i < 4; i++) {
         inverse[i] = fminf(inverse[i], 4 * min);
         sum += w[i] * w[i] * inverse[i];
     }
+
     for (int i = 0; i < 4; i++) lever[i] = sum > 0 ? fminf(w[i] * inverse[i] / sum, 2) : 0;
     return own;
 }
@@ -98,12 +100,15 @@ static void impact(const Ccd *ccd, const CollisionPair *pair) {
     Float4 normal = impact_points(pair, &p, &q, wa, wb);
     float distance = sqrtf(float4_dot(normal, normal));
     if (!(distance > 0)) return;
+
     normal = normal / distance;
     Float4 end = impact_slip(ccd, pair, wa, wb, (const float(*)[4])ccd->dynamics->position);
     Float4 slip = end - impact_slip(ccd, pair, wa, wb, (const float(*)[4])ccd->plan->start);
+
     // after previous impacts have changed the displacements, these points are already farther apart than where they met
     float repulsion = fminf(distance, 2 * ccd->plan->gap) + IMPACT_PART * ccd->plan->gap - float4_dot(end, normal);
     if (repulsion <= 0) return;
+
     slip -= float4_dot(slip, normal) * normal;
     float length = sqrtf(float4_dot(slip, slip)), max = ccd->plan->def.friction * repulsion;
     Float4 shift = repulsion * normal - (length <= max ? 1 : max / length) * slip;
@@ -114,6 +119,7 @@ static void impact(const Ccd *ccd, const CollisionPair *pair) {
         uint32_t v = ccd->shell->cells[k < 4 ? pair->a : pair->b][k & 3];
         float go = (k < 4 ? a : -b) / (a + b) * lever[k >> 2][k & 3], *x = ccd->dynamics->position[v];
         if (go == 0) continue;
+
         float4_store(x, float4_load(x) + go * shift);
         ccd_mark_around(ccd, v);
     }
@@ -152,6 +158,7 @@ static void zone_join(const Ccd *ccd, const CollisionPair *pair, int round) {
             plan->stopped[plan->stopped_count++] = v;
             memcpy(plan->goal[v], ccd->dynamics->position[v], sizeof *plan->goal);
         }
+
         uint32_t other = zone_root(plan, v);
         share = fminf(share, plan->share[other]);
         if (root == SHELL_NONE) root = other;
@@ -160,6 +167,7 @@ static void zone_join(const Ccd *ccd, const CollisionPair *pair, int round) {
             root = other;
         } else plan->zone[other] = root;
     }
+
     // in the first round the share is the free one; later the displacements of the zone itself have changed
     float less = round == 0 ? 0.9f * pair->hit : round < ZONE_PATIENCE ? 0.5f * share : 0;
     plan->share[root] = fminf(share, less);
@@ -183,12 +191,14 @@ void ccd_zones(const Ccd *ccd, int round) {
     for (uint32_t k = 0; k < plan->stopped_count; k++) {
         uint32_t v = plan->stopped[k], root = zone_root(plan, v);
         if (plan->start[v][3] == 0) continue;
+
         Float4 drift = plan->drift[root] / plan->drift[root][3], start = float4_load(plan->start[v]);
         Float4 displacement = float4_load(plan->goal[v]) - start;
         Float4 end = start + drift + plan->share[root] * (displacement - drift);
         end[3] = start[3];
         float4_store(ccd->dynamics->position[v], end);
     }
+
     ccd_forget_changed(plan);
     for (uint32_t k = 0; k < plan->stopped_count; k++) ccd_mark_around(ccd, plan->stopped[k]);
 }

@@ -32,6 +32,7 @@ static void measure_range(void *task, int begin, int end) {
     const Opening *job = task;
     CollisionPlan *plan = job->plan;
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
+
     for (int c = begin; c < end; c++) {
         const uint32_t *corner = job->shell->cells[c];
         Float4 *motion = plan->motion[c];
@@ -45,6 +46,7 @@ static void measure_range(void *task, int begin, int end) {
         bool known = plan->closed && !(float4_bits(moved) & 7); // the fourth components are inverse masses
         if (!known || job->searched) motion[COLLISION_DISPLACEMENT] = collision_displacement(plan, corner, x);
         if (known) continue;
+
         collision_nodes(corner, x, float4_load(x[corner[0]]), node);
         motion[COLLISION_NORMAL] = feature_normals(node);
     }
@@ -72,6 +74,7 @@ static void add_node(float corner[4], int node, float weight) {
         corner[node] += weight;
         return;
     }
+
     for (int i = 0; i < 4; i++) corner[i] += 0.25f * weight;
 }
 
@@ -85,6 +88,7 @@ static void point_weights(int kind, int first, int second, float u, float v, flo
         add_node(wb, l[1], v);
         return;
     }
+
     float *own = kind == COLLISION_NODE_OF_B ? wb : wa, *other = kind == COLLISION_NODE_OF_B ? wa : wb;
     const uint8_t *k = collision_triangle[second];
     add_node(own, first, 1);
@@ -99,8 +103,10 @@ static bool near_at_rest(const Opening *job, const CollisionPair *pair, const Ne
     Float4 separation = job->plan->rest[pair->a] - job->plan->rest[pair->b];
     float max = far + job->plan->rest[pair->a][3] + job->plan->rest[pair->b][3];
     if (float4_dot(separation, separation) > max * max) return false;
+
     const uint16_t *sheet = shell->matter.sheet;
     if (sheet[shell_centre(shell, pair->a)] != sheet[shell_centre(shell, pair->b)]) return false;
+
     float wa[4] = {0}, wb[4] = {0};
     point_weights(near->kind, near->first, near->second, near->u, near->v, wa, wb);
     separation = (Float4){0};
@@ -137,6 +143,7 @@ static float target(const Opening *job, const CollisionPair *pair, const Look *l
         thickness = open_min(thickness, 4 * plan->gap);
         if (distance > due(thickness, plan, toward)) return 0;
     }
+
     float parted = distance + COLLISION_PART * plan->time_step;
     return parted < thickness ? parted : thickness;
 }
@@ -159,12 +166,15 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Blo
     float separation = narrow_boxes_distance(&look.a, &look.b) - plan->noise;
     pair->distance = separation > pair->distance ? separation : pair->distance;
     if (pair->distance > look.due) return;
+
     separation = narrow_slabs_distance(&look.a, &look.b) - plan->noise;
     pair->distance = separation > pair->distance ? separation : pair->distance;
     if (pair->distance > look.due) return;
+
     // a node beside a triangle may be over the next one: a fixed normal would make a ridge of the edge between
     FeatureRange far = {look.due, look.due, open_min(plan->thin[pair->a], plan->thin[pair->b]),
                         separation < FEATURE_SEPARATED * plan->thickness};
+
     // measures a little farther, so that not every step must measure again
     if (far.edges) far.measured += 0.25f * plan->thickness;
     NearFeatures near[NARROW_MAX];
@@ -174,12 +184,14 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Blo
     if (doubt > 0.5f * plan->gap) nearest -= doubt; // CCD keeps a gap, which covers less doubt
     if (far.edges && nearest > pair->distance) pair->distance = nearest;
     if (count == 0) return;
+
     node_velocities(job, pair->a, look.speed_a);
     node_velocities(job, pair->b, look.speed_b);
     for (int i = 0; i < count; i++) {
         float keep = target(job, pair, &look, &near[i]);
         FoundPoints *found = keep > 0 ? block_list_add(writer) : NULL;
         if (!found) continue;
+
         *found = (FoundPoints){k, near[i].kind, near[i].first, near[i].second, near[i].u, near[i].v, {0}, keep};
         for (int d = 0; d < 3; d++) found->normal[d] = near[i].separation[d] / near[i].distance;
     }
@@ -219,6 +231,7 @@ static void look_block(void *context, BlockList *list, int block) {
                 measure_pair(job, first + (uint32_t)i, due[i], &writer);
         }
     }
+
     block_list_end(&writer);
 }
 
@@ -233,6 +246,7 @@ static void open_gather(Repulsion *repulsion, const uint32_t corner[4], const fl
             repulsion->node[repulsion->count] = corner[i];
             repulsion->weight[repulsion->count++] = 0;
         }
+
         repulsion->weight[k] += sign * weight[i];
     }
 }
@@ -269,6 +283,7 @@ static SingeResult open_step(Memory *memory, CollisionPlan *plan, const Shell *s
             float4_store(plan->speed[v], speed);
             float4_store(plan->position[v], now);
         }
+
         for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = state->ablate->cell_flags[c] & SINGE_ALIVE;
         plan->step = state->step;
         TRY(broad_search(memory, plan, shell, pool));
@@ -285,6 +300,7 @@ static SingeResult open_step(Memory *memory, CollisionPlan *plan, const Shell *s
     const int blocks = (int)collision_look_blocks(plan->listed_count);
     uint64_t count = block_list_write(list, pool, blocks, plan->sizes.repulsion_max, look_block, &job);
     if (!collision_grow_repulsions(memory, plan, count)) return SINGE_ERROR_MEMORY;
+
     job.again = true;
     plan->repulsion_count = block_list_settle(list, pool, blocks, count, plan->repulsion_capacity, look_block, &job);
     plan->counters.dropped += count - plan->repulsion_count;
@@ -310,6 +326,7 @@ void collision_clearance(const CollisionPlan *plan, const Shell *shell, const St
     FeatureRange far = {looks, looks, looks, true};
     NearFeatures found[NARROW_MAX];
     NarrowCell p, q;
+
     for (uint32_t k = 0; plan->searched && k < plan->listed_count; k++) {
         const CollisionPair *pair = &plan->pairs[k];
         const uint32_t *a = shell->cells[pair->a], *b = shell->cells[pair->b];

@@ -110,6 +110,7 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     CollisionPlan *plan;
     *out = NULL;
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
+
     plan->def = *def;
     plan->time_step = time_step;
     plan->vertex_count = shell->vertex_count;
@@ -139,6 +140,7 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
         done = block != NULL;
         memcpy(list[k].at, &block, sizeof block);
     }
+
     uint32_t buckets = plan->bucket_count / COLLISION_BUCKETS + 1, blocks = plan->cell_count / COLLISION_OUTSIDE + 1;
     if (buckets < blocks) buckets = blocks;
     if (!done || !block_list_create(memory, &plan->found_pairs, sizeof(CollisionPair), plan->pair_capacity, buckets) ||
@@ -147,11 +149,13 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
         collision_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
+
     for (uint32_t v = 0; v < plan->vertex_count; v++) plan->zone[v] = SHELL_NONE;
 
     // centroids at rest, and the thickness of cells: cells far smaller than the rest of their sheet would be torn apart
     // by the contact of their own corners
     float min = plan->cell_size;
+
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         Float4 position[4];
         float shortest = INFINITY;
@@ -160,11 +164,13 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
             Float4 side = position[(i + 1) & 3] - position[i];
             shortest = fminf(shortest, float4_dot(side, side));
         }
+
         plan->rest[c] = collision_mean(position);
         shortest = sqrtf(shortest);
         plan->thin[c] = fminf(plan->thickness, 0.4f * shortest);
         min = fminf(min, 4 * shortest);
     }
+
     plan->gap = 5e-3f * min + 4 * plan->noise;
     *out = plan;
     return SINGE_OK;
@@ -178,10 +184,12 @@ static bool collision_fits(const CollisionPlan *plan, const uint8_t *cell_flags)
             if (!isfinite(plan->position[v][k]) || !isfinite(plan->speed[v][k])) return false;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         if (plan->alive[c] > 1) return false;
+
         for (uint32_t k = plan->initial_first[c]; k < plan->initial_first[c + 1]; k++)
             if (plan->initial_other[k] < c || plan->initial_other[k] >= plan->cell_count) return false;
         if (plan->searched && (cell_flags[c] & SINGE_ALIVE) && !plan->alive[c]) return false;
     }
+
     return true;
 }
 
@@ -199,8 +207,10 @@ static SingeResult stream_initial(Memory *memory, CollisionPlan *plan, Stream *s
             stream->failed = true;
             return SINGE_OK;
         }
+
         if (!initial_reserve(memory, plan, count)) return SINGE_ERROR_MEMORY;
     }
+
     stream_data(stream, plan->initial_other, count * sizeof *plan->initial_other);
     return SINGE_OK;
 }
@@ -216,11 +226,13 @@ SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const She
     TRY(stream_initial(memory, plan, stream));
     if (stream->mode == STREAM_READ && !collision_fits(plan, cell_flags)) stream->failed = true;
     if (stream->mode != STREAM_READ || stream->failed || !plan->searched) return SINGE_OK;
+
     initial_mark(plan);
     plan->closed = false;
     uint32_t restless = plan->restless;
     TRY(broad_search(memory, plan, shell, NULL));
     plan->restless = restless;
+
     // how far pairs have moved since is unknown
     for (uint32_t k = 0; k < plan->listed_count; k++) plan->pairs[k].distance = 0;
     return SINGE_OK;
@@ -249,15 +261,18 @@ static bool grow_rooms(Memory *memory, const Room *room, int count) {
     for (int k = 0; k < count; k++) {
         grown[k] = memory_new(memory, room[k].after, room[k].size);
         if (grown[k]) continue;
+
         while (k-- > 0) memory_free(memory, (void *)&grown[k], room[k].after, room[k].size);
         return false;
     }
+
     for (int k = 0; k < count; k++) {
         memcpy(&old, room[k].at, sizeof old);
         memcpy(grown[k], old, room[k].before * room[k].size);
         memory_free(memory, (void *)&old, room[k].before, room[k].size);
         memcpy(room[k].at, &grown[k], sizeof old);
     }
+
     return true;
 }
 
@@ -270,6 +285,7 @@ static uint32_t with_margin(uint64_t wanted, uint32_t max) {
 bool collision_grow_pairs(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
     uint32_t before = plan->pair_capacity, after = with_margin(wanted, plan->sizes.pair_max);
     if (wanted <= before || before >= plan->sizes.pair_max) return true;
+
     const Room room[ROOMS] = {
         {&plan->pairs, before, after, sizeof *plan->pairs},
         {&plan->active, before, after, sizeof *plan->active},
@@ -288,6 +304,7 @@ bool collision_grow_pairs(Memory *memory, CollisionPlan *plan, uint64_t wanted) 
 bool collision_grow_repulsions(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
     uint32_t before = plan->repulsion_capacity, after = with_margin(wanted, plan->sizes.repulsion_max);
     if (wanted <= before || before >= plan->sizes.repulsion_max) return true;
+
     const Room room = {&plan->repulsions, before, after, sizeof *plan->repulsions};
     if (!block_list_grow(memory, &plan->found, after, plan->found.block_count) || !grow_rooms(memory, &room, 1))
         return false;
@@ -303,6 +320,7 @@ const char *collision_validate(const CollisionPlan *plan) {
     if (plan->listed_count > plan->pair_count && plan->pair_count) return "a step's pairs begin with the search's";
     if (plan->pair_count > plan->pair_capacity || plan->listed_count > plan->pair_capacity) return "pairs have room";
     if (plan->pair_capacity > plan->sizes.pair_max) return "lists of pairs do not outgrow their limit";
+
     for (uint32_t k = 0; k < plan->listed_count; k++) {
         const CollisionPair *pair = &plan->pairs[k];
         if (pair->a >= plan->cell_count || pair->b >= plan->cell_count || pair->a > pair->b)
@@ -313,16 +331,20 @@ const char *collision_validate(const CollisionPlan *plan) {
 
     if (plan->repulsion_count > plan->repulsion_capacity) return "repulsions have room";
     if (plan->repulsion_capacity > plan->sizes.repulsion_max) return "lists of repulsions do not outgrow their limit";
+
     for (uint32_t k = 0; k < plan->repulsion_count; k++) {
         const Repulsion *repulsion = &plan->repulsions[k];
         float sum = 0;
         if (repulsion->count < 1 || repulsion->count > 8) return "a repulsion is of one to eight corners";
+
         for (uint32_t n = 0; n < repulsion->count; n++) {
             if (repulsion->node[n] >= plan->vertex_count) return "a repulsion is of vertices";
             sum += repulsion->weight[n];
         }
+
         if (!(fabsf(sum) < 1e-4f)) return "the weights of two points cancel";
         if (!isfinite(repulsion->target)) return "a repulsion has a target";
     }
+
     return NULL;
 }

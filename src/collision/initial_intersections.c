@@ -20,6 +20,7 @@ static bool pair_intersects(const CollisionPlan *plan, const Shell *shell, const
     if (!quads_meet(p->low, p->high, q->low, q->high)) return false;
     if (cross_cells(shell, x, pair->a, pair->b)) return true;
     if (pair->bridge != SHELL_NONE) return false;
+
     Float4 origin = float4_load(x[shell->cells[pair->a][0]]);
     FeatureRange far = {4 * plan->noise, 0, 0, true};
     NearFeatures near[NARROW_MAX];
@@ -28,6 +29,7 @@ static bool pair_intersects(const CollisionPlan *plan, const Shell *shell, const
     narrow_cell_set(plan, shell, pair->a, x, origin, &a);
     narrow_cell_set(plan, shell, pair->b, x, origin, &b);
     if (narrow_slabs_distance(&a, &b) > far.measured) return false;
+
     narrow_features(shell, pair, &a, &b, &far, near, &nearest);
     return nearest < far.measured;
 }
@@ -52,6 +54,7 @@ bool initial_reserve(Memory *memory, CollisionPlan *plan, uint32_t count) {
     plan->initial_capacity = 0;
     if (count == 0) return true;
     if (!NEW(memory, plan->initial_other, count)) return false;
+
     plan->initial_capacity = count;
     return true;
 }
@@ -66,9 +69,11 @@ static SingeResult list_all(Memory *memory, CollisionPlan *plan, const Shell *sh
         const CollisionPair *pair = &plan->pairs[k];
         plan->active[k] = pair_intersects(plan, shell, pair);
         if (!plan->active[k]) continue;
+
         first[pair->a + 2]++;
         count++;
     }
+
     if (!initial_reserve(memory, plan, count)) {
         memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
         return SINGE_ERROR_MEMORY;

@@ -24,6 +24,7 @@ void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, 
             separation += repulsion->weight[i] * float4_load(x[repulsion->node[i]]);
         float height = float4_dot(separation, repulsion->normal) - repulsion->target, weight = 0;
         if (height >= 0) continue;
+
         for (uint32_t i = 0; i < repulsion->count; i++)
             weight += repulsion->weight[i] * repulsion->weight[i] * x[repulsion->node[i]][3];
         if (weight <= 0) continue;
@@ -46,15 +47,18 @@ void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, 
             Float4 before = float4_load(predicted[at]) - h * float4_load(dynamics->velocity[at]);
             slip += repulsion->weight[i] * (float4_load(x[at]) - before);
         }
+
         slip[3] = 0;
         slip -= float4_dot(slip, repulsion->normal) * repulsion->normal;
         float length = sqrtf(float4_dot(slip, slip));
         if (!(length > 0)) continue;
+
         Float4 back = (length <= max ? 1 : max / length) / weight * slip;
         for (uint32_t i = 0; i < repulsion->count; i++) {
             Float4 position = float4_load(x[repulsion->node[i]]);
             float4_store(x[repulsion->node[i]], position - position[3] * repulsion->weight[i] * back);
         }
     }
+
     plan->counters.seconds += clock_seconds() - start;
 }

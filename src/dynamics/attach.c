@@ -54,17 +54,20 @@ static uint32_t attach_farthest(const Shell *shell, const StateInput *state, con
     float max = 0;
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
         if (!state->dynamics->pinned[v] || !(state->ablate->particle_flags[v] & SINGE_ALIVE)) continue;
+
         float nearest = INFINITY;
         for (int k = 0; k < count; k++) {
             Float3 displacement =
                 float3_sub(float3_load(shell->rest_position[v]), float3_load(shell->rest_position[source[k]]));
             nearest = fminf(nearest, float3_dot(displacement, displacement));
         }
+
         if (nearest > max) {
             farthest = v;
             max = nearest;
         }
     }
+
     if (count < 2 || farthest == SHELL_NONE) return farthest;
     Float3 first =
         float3_sub(float3_load(shell->rest_position[source[1]]), float3_load(shell->rest_position[source[0]]));
@@ -116,6 +119,7 @@ static void attach_follow(Attachments *attachments, const Shell *shell, const Dy
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const uint32_t first = shell->sheets[s].vertex_first, *source = attachments->source[s];
         if (!attach_rests(shell, &attachments->spread[s])) continue;
+
         for (int k = 0; k < ATTACH_SOURCES && source[k] != SHELL_NONE; k++) {
             Float3 position = float3_load(dynamics->position[source[k]]);
             for (uint32_t v = first; v < first + shell->sheets[s].vertex_count; v++) {
@@ -136,6 +140,7 @@ void attach_update(Attachments *attachments, const Shell *shell, const StateInpu
     const int32_t *piece = state->ablate->piece;
     const bool parted = attachments->topology != state->ablate->topology_version;
     attachments->topology = state->ablate->topology_version;
+
     for (uint32_t v = 0; parted && v < shell->vertex_count; v++) {
         const uint32_t *source = attachments->source[shell->matter.sheet[v]];
         for (int k = 0; k < ATTACH_SOURCES && source[k] != SHELL_NONE; k++)
@@ -162,6 +167,7 @@ void attach_update(Attachments *attachments, const Shell *shell, const StateInpu
     bool changed = attachments->mass_burnt != state->burn->mass_burnt && (state->step + 1) % ATTACH_PERIOD == 0;
     bool torn = attachments->split_count != shell->split_count && (state->step + 1) % ATTACH_TORN_PERIOD == 0;
     if (!pins_changed && !changed && !torn) return;
+
     attach_measure(attachments, shell, state, pins_changed);
     attachments->mass_burnt = state->burn->mass_burnt;
     attachments->split_count = shell->split_count;
@@ -219,6 +225,7 @@ void attach_position(Attachments *attachments, const Shell *shell, const Dynamic
                     spread->ratio[p][q] > 1.001f; // sources held at their own distance are not pulled apart
             }
         }
+
         if (attach_rests(shell, spread)) spread->count = 0;
     }
 }
@@ -231,6 +238,7 @@ void attach_range(const Attachments *attachments, const Shell *shell, AttachHold
         first = first > begin ? first : begin;
         last = last < end ? last : end;
         if (spread->count == 0 || first >= last) continue;
+
         int whole = (last - first) / ATTACH_BLOCK * ATTACH_BLOCK, rest = first + whole;
         hold(spread, attachments->length[first], dynamics->position[first], whole);
         attach_hold_plain(spread, attachments->length[rest], dynamics->position[rest], last - rest);

@@ -56,6 +56,7 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
         turn += a * a;
         back += b * b;
     }
+
     float angle = 2 * sqrtf(fminf(turn, back)) * 1.05f; // the chord of half the angle, in the space of quaternions
     float motion = float3_length(float3_sub(moving.after.position, moving.before.position)) +
                    (angle > 1e-6f ? angle * sqrtf(size) : 0);
@@ -69,6 +70,7 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
         moving.low[i] = ends[i][0] - margin;
         moving.high[i] = ends[i][1] + margin;
     }
+
     return moving;
 }
 
@@ -92,8 +94,10 @@ static bool contact_enters(const Collider *collider, Float3 from, Float3 to, Ent
         if (next.distance < 0 || turned) return began; // *entry is just outside. Inside from the start: depth tells
         *entry = next;
         if (next.distance <= skin && float3_dot(displacement, next.normal) < 0) return true;
+
         done += fmaxf(next.distance, min);
     }
+
     return false;
 }
 
@@ -102,6 +106,7 @@ static float contact_out(const Collider *collider, float offset, Float3 from, Fl
     float displacement = float3_length(float3_sub(*to, from));
     float distance = collider_distance(collider, *to, offset + displacement, normal);
     Entry entry = {0};
+
     // behind a plane, at any depth, a particle moves out along the plane's normal
     if (distance < displacement && collider->def.kind != SINGE_COLLIDER_PLANE &&
         contact_enters(collider, from, *to, &entry) &&
@@ -114,6 +119,7 @@ static float contact_out(const Collider *collider, float offset, Float3 from, Fl
         *normal = entry.normal;
         return depth;
     }
+
     if (distance >= offset) return 0;
     *to = float3_mad(*to, *normal, offset - distance);
     return offset - distance;
@@ -134,6 +140,7 @@ bool contact_particle(const MovingCollider *moving, float offset, Float3 previou
     // out of the collider
     float depth = contact_out(collider, offset, from, &out, &normal);
     if (depth <= 0) return false;
+
     normal = quat_rotate(moving->after.rotation, normal);
     Float3 x = float3_add(float3_load(position), quat_rotate(moving->after.rotation, float3_sub(out, local)));
 
@@ -154,12 +161,14 @@ static inline bool contact_any_near(const MovingCollider *collider, const Float4
     Float3 origin = collider->after.position;
     Float4 dx = x[0] - origin.x, dy = x[1] - origin.y, dz = x[2] - origin.z;
     Float4Mask near = {-1, -1, -1, -1};
+
     for (int i = 2; i >= 0; i--) {
         Float3 axis = collider->axis[i];
         Float4 along = dx * axis.x + dy * axis.y + dz * axis.z;
         near &= (along < collider->high[i]) & (along > collider->low[i]);
         if (!(near[0] | near[1] | near[2] | near[3])) return false;
     }
+
     return true;
 }
 
@@ -167,6 +176,7 @@ uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float 
                        int end) {
     uint64_t contacts = 0;
     float(*position)[4] = dynamics->position;
+
     for (int first = begin; first < end && collider_count > 0; first += 4) {
         // four particles at once, against boxes
         int count = end - first < 4 ? end - first : 4;
@@ -188,6 +198,7 @@ uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float 
             float4_transpose(x);
         }
     }
+
     return contacts;
 }
 
@@ -232,6 +243,7 @@ static bool centroid_is_near(const MovingCollider *moving, float limit, Float3 p
         float along = float3_dot(from, moving->axis[i]);
         if (!(along < moving->high[i] && along > moving->low[i])) return false;
     }
+
     return collider_distance(collider, quat_unrotate(moving->after.rotation, from), limit, &normal) < limit;
 }
 
@@ -241,6 +253,7 @@ static void centroid_cells(void *task, int begin, int end) {
     for (int k = begin; k < end; k++) {
         const uint32_t *corner = job->shell->cells[job->cells[k]];
         if (!(job->ablate->cell_flags[job->cells[k]] & SINGE_ALIVE)) continue;
+
         Float3 sum = {0, 0, 0};
         for (int i = 0; i < 4; i++) sum = float3_add(sum, float3_load(position[corner[i]]));
         Float3 mean = float3_scale(sum, 0.25f);
@@ -261,6 +274,7 @@ static void centroid_cells(void *task, int begin, int end) {
                                                        float3_load(job->dynamics->velocity[corner[i]]), -job->h));
             touched |= contact_particle(collider, offset, float3_scale(before, 0.25f), point);
         }
+
         if (!touched) continue;
 
         // its corners move with it
@@ -276,6 +290,7 @@ void contact_centroids(DynamicsPlan *plan, const Shell *shell, const AblateState
                        Pool *pool, float h, DynamicsState *dynamics) {
     bool any = false;
     for (uint32_t c = 0; c < collider_count; c++) any |= plan->colliders[c].collider->def.kind != SINGE_COLLIDER_PLANE;
+
     for (uint32_t f = 0; any && f < shell->cell_family_count; f++) {
         uint32_t first = shell->cell_family_first[f], count = shell->cell_family_first[f + 1] - first;
         Centroid job = {plan, shell, ablate, dynamics, shell->cell_order + first, collider_count, h};

@@ -107,8 +107,10 @@ static Float3 hinge_centroid(const float (*x)[4], const uint32_t *corner) {
 static inline float hinge_angle(Float3 a, Float3 b, Float3 edge) {
     float along = float3_dot(a, b), length = float3_length(edge);
     if (!(length > 0 && float3_dot(a, a) > 0.5f && float3_dot(b, b) > 0.5f)) return NAN;
+
     float across = float3_dot(float3_cross(a, b), edge) / length;
     if (along < 0.9f) return real_atan2f(across, along);
+
     float square = across * across; // asin, with a relative error of 1e-4
     return across * (1 + square * (1.0f / 6 + square * (3.0f / 40 + square * (15.0f / 336))));
 }
@@ -176,6 +178,7 @@ float crease_kept(const Shell *shell, const StateInput *state, uint32_t green) {
         float mass = state->burn->mass[ends[k]];
         if (mass < 1) kept -= 0.5f * shell_burn_progress(mass, field_at(shell->matter.mass_min, ends[k]));
     }
+
     return kept;
 }
 
@@ -245,10 +248,12 @@ static float crease_counts(const Crease *job, uint32_t k) {
         sum += 0.5f * bend[k - 1];
         weight += 0.5f;
     }
+
     if (k + 1 < green->count && flags[k + 1] & SINGE_ALIVE && green->ends[k + 1][0] == green->ends[k][1]) {
         sum += 0.5f * bend[k + 1];
         weight += 0.5f;
     }
+
     const float max = CREASE_PEAK * fabsf(sum) / weight;
     return sum * bend[k] > 0 ? fmaxf(-max, fminf(bend[k], max)) : 0;
 }
@@ -259,6 +264,7 @@ static void crease_bends(void *task, int begin, int end) {
     const uint8_t *flags = job->state->ablate->spring_flags[SINGE_GREEN];
     for (uint32_t k = (uint32_t)begin; k < (uint32_t)end; k++) {
         if (!(flags[k] & SINGE_ALIVE)) continue;
+
         float *bend = &job->dynamics->bend[k], arc = job->plan->hinges[k].arc;
         float turned = crease_turned(job, k, *bend * arc);
         if (!isnan(turned)) *bend += job->follows * (turned / arc - *bend);
@@ -273,6 +279,7 @@ static double crease_springs(void *task, int begin, int end) {
     double creased = 0;
     for (uint32_t k = (uint32_t)begin; k < (uint32_t)end; k++) {
         if (!(flags[k] & SINGE_ALIVE)) continue;
+
         const uint32_t *ends = job->shell->springs[SINGE_GREEN].ends[k];
         float *crease = &job->dynamics->crease[k];
         const float bend = crease_counts(job, k);
@@ -288,8 +295,10 @@ static double crease_springs(void *task, int begin, int end) {
             const float excess = fabsf(elastic) - slant / radius - (1 / share - 1) * fabsf(held);
             *crease += kept * (excess > 0 ? copysignf(share * excess, elastic) : 0);
         }
+
         creased += *crease != 0;
     }
+
     return creased;
 }
 
@@ -302,6 +311,7 @@ static void crease_normals(void *task, int begin, int end) {
 void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
                      DynamicsState *dynamics) {
     if (!plan->hinges) return;
+
     Crease job = {plan, shell, state, dynamics, 1 - real_expf(-h / CREASE_TIME), state->burn->mass_burnt > 0};
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, crease_normals, &job);
     pool_for(pool, (int)shell->springs[SINGE_GREEN].count, POOL_BLOCK, crease_bends, &job);

@@ -30,12 +30,15 @@ bool curvature_create(Memory *memory, const Shell *shell, Strands *strands) {
     bool limited = false;
     for (uint32_t v = 0; v < shell->vertex_count && !limited; v++) limited = field_at(limit, v) > 0;
     if (!limited) return true;
+
     for (int i = 0; i < 2; i++) {
         StrandSet *set = &strands->sets[i ? SINGE_YELLOW : SINGE_BLUE];
         size_t slots = (size_t)set->row_count * STRAND_LANES;
         if (!NEW(memory, set->bend_limit, slots)) return false;
+
         for (size_t slot = 0; slot < slots; slot++) set->bend_limit[slot] = INFINITY;
     }
+
     return true;
 }
 
@@ -45,6 +48,7 @@ static float bend_limit(const Shell *shell, uint32_t a, uint32_t b, uint32_t c, 
     const float curvature = field_at(shell->matter.curvature_max, b);
     float thickness = field_at(shell->matter.thickness, b);
     if (!(curvature > 0) || side > BEND_COARSE * thickness) return INFINITY;
+
     Float3 rest =
         float3_sub(float3_sub(float3_load(x[c]), float3_load(x[b])), float3_sub(float3_load(x[b]), float3_load(x[a])));
     float turned = 2 * length * real_sinf(0.5f * fminf(curvature * length, 2.8f));
@@ -60,6 +64,7 @@ void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour 
     const uint32_t first = springs->strand_first[strand], end = springs->strand_first[strand + 1];
     const float side = colour == SINGE_YELLOW ? 0.70710678f : 1; // of a cell, over the spring
     size_t slot = set->strand_slot[strand];
+
     for (uint32_t k = first; k < end; k++, slot += STRAND_LANES) {
         // the spring before, which is the last one at the start of a ring
         const uint32_t b = springs->ends[k][0], c = springs->ends[k][1];

@@ -15,6 +15,7 @@ static int plan_partials(const Shell *shell) {
         int blocks = pool_blocks((int)shell->springs[i].count);
         springs = springs > blocks ? springs : blocks;
     }
+
     return particles > 2 * springs ? particles : 2 * springs;
 }
 
@@ -59,6 +60,7 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
         dynamics_plan_free(memory, shell, plan);
         return SINGE_ERROR_MEMORY;
     }
+
     *out = plan;
     return SINGE_OK;
 }
@@ -145,6 +147,7 @@ static double dynamics_count_lost(void *task, int begin, int end) {
         lost += !(fabsf(x[0]) < 1e4f && fabsf(x[1]) < 1e4f && fabsf(x[2]) < 1e4f) ||
                 !(fabsf(v[0]) < 1e18f && fabsf(v[1]) < 1e18f && fabsf(v[2]) < 1e18f);
     }
+
     return lost;
 }
 
@@ -164,6 +167,7 @@ static SingeResult dynamics_close(Memory *memory, DynamicsPlan *plan, const Step
     enum { TURNS = 8 };
     const Shell *shell = context->shell;
     const StateInput *state = &context->state;
+
     for (int turn = 0; turn < TURNS; turn++) {
         bool limited = plan->solver->limit(plan, shell, state, context->pool, dynamics);
         if (!plan->collision || (turn > 0 && !limited)) break;
@@ -171,11 +175,12 @@ static SingeResult dynamics_close(Memory *memory, DynamicsPlan *plan, const Step
         TRY(ccd_apply(memory, plan->collision, shell, state, context->pool, context->h, dynamics));
         if (collision_counters(plan->collision).stops == stops) break;
     }
+
     return SINGE_OK;
 }
 
 static SingeResult dynamics_contact_result(SingeResult result, SingeError *error) {
-    return result ? error_set(error, result, "contact", -1, "out of memory for what is near each other") : SINGE_OK;
+    return result ? error_set(error, result, "contact", -1, "out of memory for the list of contacts") : SINGE_OK;
 }
 
 SingeResult dynamics_step(Memory *memory, DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics,
@@ -197,6 +202,7 @@ SingeResult dynamics_step(Memory *memory, DynamicsPlan *plan, const StepContext 
     Substep part = {shell, state, pool, 0, h / (float)solver->substeps, dynamics, counters, error};
     Between between = {.opens = true};
     double before = state->time;
+
     for (int substep = 0; substep <= solver->substeps; substep++) {
         double after = state->time + (double)h * (substep + 1) / solver->substeps;
         between.opens = substep < solver->substeps;
@@ -214,6 +220,7 @@ SingeResult dynamics_step(Memory *memory, DynamicsPlan *plan, const StepContext 
             if (collider->generation == 0) continue;
             plan->colliders[part.collider_count++] = contact_collider(collider, before, after);
         }
+
         before = after;
 
         // projection

@@ -37,6 +37,7 @@ static uint32_t heap_pop(Geodesic *search, const float *distance) {
     uint32_t nearest = search->heap[0], last = search->heap[--search->waiting], at = 0;
     search->position[nearest] = GEODESIC_DONE;
     if (search->waiting == 0) return nearest;
+
     for (;;) {
         uint32_t below = 2 * at + 1;
         if (below >= search->waiting) break;
@@ -45,6 +46,7 @@ static uint32_t heap_pop(Geodesic *search, const float *distance) {
         heap_put(search, at, search->heap[below]);
         at = below;
     }
+
     heap_put(search, at, last);
     return nearest;
 }
@@ -52,12 +54,15 @@ static uint32_t heap_pop(Geodesic *search, const float *distance) {
 /// The distance at u through the segment vw of length c, or INFINITY where the path does not cross it.
 static float geodesic_through(float dv, float dw, float c, float vu, float wu) {
     if (c <= 0) return INFINITY;
+
     // v at the origin, w at (c, 0), u above, the virtual source below
     float ux = (vu * vu - wu * wu + c * c) / (2 * c), uy = sqrtf(fmaxf(0, vu * vu - ux * ux));
     float sx = (dv * dv - dw * dw + c * c) / (2 * c), sy = -sqrtf(fmaxf(0, dv * dv - sx * sx));
     if (uy - sy <= 0) return INFINITY;
+
     float cross = sx - (ux - sx) * sy / (uy - sy);
     if (!(cross >= 0 && cross <= c)) return INFINITY;
+
     double x = (double)(ux - sx), y = (double)(uy - sy); // exact squares: what hypotf gives, everywhere
     return (float)sqrt(x * x + y * y);
 }
@@ -81,6 +86,7 @@ static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const Stat
                                 float *distance) {
     const uint32_t *corner = shell->cells[cell];
     float dv = distance[corner[i]];
+
     for (int turn = 1; turn < 4; turn++) {
         int j = (i + turn) & 3;
         uint32_t u = corner[j];
@@ -112,9 +118,11 @@ void geodesic_from(Geodesic *search, const Shell *shell, const StateInput *state
         distance[v] = INFINITY;
         search->position[v] = GEODESIC_FAR;
     }
+
     distance[source] = 0;
     search->waiting = 1;
     heap_put(search, 0, source);
+
     while (search->waiting > 0) {
         uint32_t v = heap_pop(search, distance);
         for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++) {

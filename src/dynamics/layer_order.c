@@ -70,6 +70,7 @@ static inline bool height_cell(const Height *job, uint32_t c) {
     float missing = enough - above / length, max = HEIGHT_MAX * sqrtf(length);
     float w[4] = {p0[3], p1[3], p2[3], p3[3]}, weight = x_centre[3] + (w[0] + w[1] + w[2] + w[3]) / 16;
     if (weight <= 0) return false;
+
     float gain = job->plan->settings.solver.height_gain;
     Float4 correction = gain * (missing < max ? missing : max) / (weight * length) * normal;
     float4_store(x_centre, float4_load(x_centre) + x_centre[3] * correction);
@@ -87,6 +88,7 @@ static void height_blocks(void *task, int begin, int end) {
             --*wait;
             continue;
         }
+
         bool all_high = true;
         uint32_t first = (uint32_t)b * HEIGHT_BLOCK, last = first + HEIGHT_BLOCK;
         for (uint32_t k = first; k < (last < job->count ? last : job->count); k++)
@@ -100,6 +102,7 @@ size_t height_wait_count(const Shell *shell) { return shell->cell_count / HEIGHT
 void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
                     DynamicsState *dynamics) {
     if (plan->settings.solver.height_min <= 0) return;
+
     uint8_t *wait = plan->height_wait;
     for (uint32_t f = 0; f < shell->cell_family_count; f++) {
         uint32_t first = shell->cell_family_first[f], count = shell->cell_family_first[f + 1] - first;
@@ -127,6 +130,7 @@ static void order_cells(void *task, int begin, int end) {
     float(*x)[4] = job->dynamics->position, (*v)[4] = job->dynamics->velocity;
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         if (!(job->ablate->cell_flags[c] & SINGE_ALIVE)) continue;
+
         uint32_t centre = shell_centre(job->shell, c);
         const uint32_t *corner = job->shell->cells[c];
         Float4 p0 = float4_load(x[corner[0]]), p1 = float4_load(x[corner[1]]);
@@ -154,6 +158,7 @@ static void order_cells(void *task, int begin, int end) {
 void dynamics_order(const DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
                     DynamicsState *dynamics) {
     if (plan->settings.solver.height_min <= 0) return;
+
     Order job = {plan, shell, ablate, dynamics};
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, order_cells, &job);
 }

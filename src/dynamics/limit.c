@@ -101,6 +101,7 @@ static bool limit_sweep(const Limit *job, const double *over) {
     bool some = false;
     for (uint32_t block = 0; block < job->end; block += POOL_BLOCK) {
         if (over[block / POOL_BLOCK] == 0) continue;
+
         const uint32_t end = job->end - block < POOL_BLOCK ? job->end : block + POOL_BLOCK;
         const LimitRange range = limit_range(job, block, end);
         for (uint32_t s = range.first; s < range.end; s++) {
@@ -122,6 +123,7 @@ static bool limit_sweep(const Limit *job, const double *over) {
             some = true;
         }
     }
+
     return some;
 }
 
@@ -131,10 +133,12 @@ bool dynamics_limit(DynamicsPlan *plan, const Shell *shell, const StateInput *st
     job.sides = shell->springs[SINGE_BLUE].count - shell->edge_spare_count + shell->edge_spare_used;
     job.first_diagonal = (uint32_t)pool_blocks((int)job.sides) * POOL_BLOCK;
     job.end = job.first_diagonal + shell->springs[SINGE_YELLOW].count;
+
     for (int round = 0; round < LIMIT_ROUNDS; round++) {
         if (pool_sum(pool, (int)job.end, limit_count, &job, plan->partial) == 0) return round > 0;
         for (int sweep = 0; sweep < LIMIT_SWEEPS && limit_sweep(&job, plan->partial); sweep++) {
         }
     }
+
     return true;
 }

@@ -38,6 +38,7 @@ static inline void move_particles(const Move *job, int begin, int end, bool clos
     float(*restrict predicted)[4] = plan->predicted;
     float h = job->h, inverse_h = 1 / h, keep = 1 / (1 + h * field_at(damping, 0));
     Float4 fall = {h * gravity[0], h * gravity[1], h * gravity[2], 0};
+
     for (int i = begin; i < end; i++) {
         Float4 point = float4_load(position[i]), velocity = float4_load(velocities[i]);
         if (point[3] == 0) continue; // pinned or gone
@@ -54,6 +55,7 @@ static inline void move_particles(const Move *job, int begin, int end, bool clos
             float4_store(position[i], point);
             float4_store(predicted[i], point);
         }
+
         float4_store(velocities[i], velocity);
     }
 }
@@ -67,6 +69,7 @@ static double move_block(void *task, int begin, int end) {
     const Field drag = job->shell->matter.drag, damping = job->shell->matter.damping;
     bool still = plan->settings.air_density == 0 || (drag.mask == 0 && field_at(drag, 0) == 0);
     bool plain = still && damping.mask == 0;
+
     // each call becomes a loop of its own
     if (closes && opens && plain) move_particles(job, begin, end, true, true, true);
     else if (closes && opens) move_particles(job, begin, end, true, true, false);
@@ -89,6 +92,7 @@ void dynamics_move_pins(DynamicsPlan *plan, const PinList *pins, const AblateSta
     for (uint32_t p = 0; p < pins->count; p++) {
         const Pin *pin = &pins->items[p];
         if (pin->generation == 0) continue;
+
         Pose pose = path_pose(&pin->path, time);
         const float share = motion_share(&pin->motion, time);
         for (uint32_t k = 0; k < pin->count; k++) {

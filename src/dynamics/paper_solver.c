@@ -35,6 +35,7 @@ static bool paper_number(Memory *memory, const Shell *shell, SingeColour colour,
     uint8_t *seen;
     paper->spring_count[colour] = set->count;
     if (!NEW(memory, paper->order[colour], set->count) || !NEW(memory, seen, set->count)) return false;
+
     uint32_t row = 0;
     for (uint32_t slot = 0; slot < 4; slot++)
         for (uint32_t cell = 0; cell < shell->cell_count; cell++) {
@@ -58,6 +59,7 @@ static bool paper_number(Memory *memory, const Shell *shell, SingeColour colour,
 static bool paper_create(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
     Paper *paper;
     if (!NEW(memory, plan->paper, 1)) return false;
+
     paper = plan->paper;
     paper->solver = plan->settings.solver;
     paper->particle_count = shell->particle_count;
@@ -68,10 +70,12 @@ static bool paper_create(Memory *memory, const Shell *shell, DynamicsPlan *plan)
     uint32_t total = 0, (*ends)[2];
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) total += shell->springs[c].count;
     bool ok = NEW(memory, ends, total);
+
     for (uint32_t c = 0, first = 0; ok && c < SINGE_COLOUR_COUNT; first += springs[c++].count) {
         springs[c] = (NetworkSprings){shell->springs[c].count, (const uint32_t(*)[2])(ends + first)};
         ok = paper_number(memory, shell, (SingeColour)c, paper, ends + first);
     }
+
     bool one = paper_one_system(paper->solver.method), matrix = paper->solver.method != SINGE_SOLVER_MASS_SPRING;
     if (one) springs[0].count = total;
     ok = ok && network_create(memory, shell->particle_count, one ? 1 : SINGE_COLOUR_COUNT, springs, matrix,
@@ -85,6 +89,7 @@ static void paper_release(Memory *memory, const Shell *shell, DynamicsPlan *plan
     (void)shell;
     Paper *paper = plan->paper;
     if (!paper) return;
+
     FREE(memory, paper->predicted, paper->particle_count);
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) FREE(memory, paper->order[c], paper->spring_count[c]);
     network_free(memory, &paper->network);
@@ -107,8 +112,10 @@ static void paper_fill_particles(void *task, int begin, int end) {
     const Fill *job = task;
     Network *network = &job->paper->network;
     bool literal = job->paper->solver.method == SINGE_SOLVER_PAPER_LITERAL;
+
     for (int i = begin; i < end; i++) {
         network->inverse_mass[i] = (double)job->plan->inverse_mass[i];
+
         // to the letter: M = I, and held particles are put back afterwards
         if (literal) network->inverse_mass[i] = job->state->ablate->particle_flags[i] & SINGE_ALIVE ? 1 : 0;
         network->held[i] = job->plan->inverse_mass[i] == 0;
@@ -122,6 +129,7 @@ static void paper_fill_springs(void *task, int begin, int end) {
     const float *length = job->state->burn->spring_length[job->colour];
     const Field material = job->shell->matter.weight[job->colour];
     const uint8_t *flags = job->state->ablate->spring_flags[job->colour];
+
     for (uint32_t k = (uint32_t)begin; k < (uint32_t)end; k++) {
         uint32_t spring = job->paper->order[job->colour][k], row = job->offset + k;
         const uint32_t *ends = job->group->ends[row];
@@ -138,6 +146,7 @@ static void paper_prepare(DynamicsPlan *plan, const Shell *shell, const StateInp
     Paper *paper = plan->paper;
     Fill job = {.paper = paper, .plan = plan, .shell = shell, .state = state, .group = paper->network.groups};
     pool_for(pool, (int)shell->particle_count, POOL_BLOCK, paper_fill_particles, &job);
+
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
         job.colour = (SingeColour)c;
         pool_for(pool, (int)shell->springs[c].count, POOL_BLOCK, paper_fill_springs, &job);
@@ -216,6 +225,7 @@ static SingeResult paper_step(Paper *paper, Pool *pool, DynamicsCounters *counte
                              one ? "all" : names[group]);
         if (report.iterations) *solved = true;
     }
+
     return SINGE_OK;
 }
 
@@ -252,6 +262,7 @@ static SingeResult paper_project(DynamicsPlan *plan, const Substep *substep) {
         } else {
             TRY(paper_step(paper, pool, counters, &solved, substep->error));
         }
+
         counters->seconds += clock_seconds() - start;
         if (substep->collider_count == 0) continue;
         pool_for(pool, particles, POOL_BLOCK, paper_put, &exchange);
@@ -265,6 +276,7 @@ static SingeResult paper_project(DynamicsPlan *plan, const Substep *substep) {
         height_project(plan, substep->shell, substep->state->ablate, pool, dynamics);
         pool_for(pool, particles, POOL_BLOCK, paper_take, &exchange);
     }
+
     pool_for(pool, particles, POOL_BLOCK, paper_finish, &exchange);
     return SINGE_OK;
 }

@@ -29,6 +29,7 @@ bool patches_create(Memory *memory, const Shell *shell, Patches *patches) {
         if (!NEW(memory, patches->items[colour], patches->capacity) || !NEW(memory, patches->pull[colour], springs))
             return false;
     }
+
     return true;
 }
 
@@ -48,8 +49,10 @@ static void patch_push(Patches *patches, SingeColour colour, uint32_t spring, fl
 bool patch_follow(DynamicsPlan *plan, const Shell *shell) {
     Patches *patches = &plan->patches;
     if (shell->spare_count == 0) return false;
+
     // a step that was undone may have dropped springs that are alive again
     if (patches->split_count == shell->split_count && plan->strands_written) return false;
+
     patches->split_count = shell->split_count;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         const SpringSet *springs = &shell->springs[colour];
@@ -67,6 +70,7 @@ bool patch_follow(DynamicsPlan *plan, const Shell *shell) {
     const SpringSet *blue = &shell->springs[SINGE_BLUE];
     uint32_t first = blue->count - shell->edge_spare_count;
     const StrandSet *set = &plan->strands.sets[SINGE_BLUE];
+
     for (uint32_t k = 0; k < shell->edge_spare_used; k++) {
         // the compliance of the spring that it comes from, whose strand bisection finds
         const uint32_t origin = shell->edge_origin[k];
@@ -76,9 +80,11 @@ bool patch_follow(DynamicsPlan *plan, const Shell *shell) {
             if (blue->strand_first[middle] <= origin) low = middle;
             else high = middle;
         }
+
         size_t slot = set->strand_slot[low] + (size_t)(origin - blue->strand_first[low]) * STRAND_LANES;
         patch_push(patches, SINGE_BLUE, first + k, set->compliance[slot]);
     }
+
     return true;
 }
 
@@ -100,6 +106,7 @@ void patch_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *sta
             patch->weight = dynamics_weight(shell->matter.weight[colour], plan->soft, patch->a, patch->b);
             left++;
         }
+
         plan->patches.count[colour] = left;
     }
 }
@@ -111,6 +118,7 @@ void patch_project(DynamicsPlan *plan, SingeColour colour, float inverse_h2, Dyn
         Float4 a = float4_load(dynamics->position[patch->a]), b = float4_load(dynamics->position[patch->b]), d = b - a;
         float weights = a[3] + b[3], target = patch->length * patch->length;
         if (!(patch->weight > 0 && weights > 0)) continue;
+
         float square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], e = (square - target) * 0.5f;
         if (square < target * 0.17157288f) e = -patch->length * sqrtf(square); // crushed, as in strand_kernel.h
         float beyond = fmaxf(e - square * 0.01f, 0);
@@ -138,6 +146,7 @@ static void gather_strands(void *task, int begin, int end) {
     const StrandSet *set = &job->plan->strands.sets[job->colour];
     const float *inverse_mass = job->plan->inverse_mass, *rest = springs->rest;
     float *pull = job->plan->patches.pull[job->colour];
+
     for (int s = begin; s < end; s++) {
         size_t slot = set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {

@@ -36,6 +36,7 @@ static void prepare_particles(void *task, int begin, int end) {
     const StateInput *state = job->state;
     const Shell *shell = job->shell;
     const Matter *matter = &shell->matter;
+
     for (int i = begin; i < end; i++) {
         // inverse mass; weight, which falls with char
         bool alive = state->ablate->particle_flags[i] & SINGE_ALIVE;
@@ -51,6 +52,7 @@ static void prepare_particles(void *task, int begin, int end) {
         float drag = plan->settings.air_density * field_at(matter->drag, (uint32_t)i);
         plan->drag[i] = 0.25f * drag * matter->area[i] / mass;
         if (drag == 0) continue;
+
         Float3 normal = {0, 0, 0};
         if ((uint32_t)i >= shell->vertex_count)
             normal = float3_load(plan->cell_normal[(uint32_t)i - shell->vertex_count]);

@@ -32,6 +32,7 @@ static inline void smooth_triple(const Smooth *job, uint32_t a, uint32_t b, uint
     float wa = job->position[a][3], wb = job->position[b][3], wc = job->position[c][3];
     float weight = wa + 4 * wb + wc;
     if (weight <= 0) return;
+
     Float4 va = float4_load(job->velocity[a]), vb = float4_load(job->velocity[b]), vc = float4_load(job->velocity[c]);
     Float4 j = (job->share / weight) * (va - 2 * vb + vc);
     float4_store(job->velocity[a], va - wa * j);
@@ -66,6 +67,7 @@ static void smooth_range(void *task, int begin, int end) {
 void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h,
                      DynamicsState *dynamics) {
     if (plan->settings.solver.smoothing <= 0) return;
+
     const SingeColour layers[] = {SINGE_BLUE, SINGE_GREEN};
     for (int layer = 0; layer < 2; layer++) {
         const SpringSet *set = &shell->springs[layers[layer]];

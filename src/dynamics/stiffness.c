@@ -30,6 +30,7 @@ static float particle_mass(const Shell *shell, const Sheet *sheet) {
         mass += (double)shell->matter.mass[shell_centre(shell, c)];
         area += (double)shell->matter.area[shell_centre(shell, c)];
     }
+
     return area > 0 ? (float)(mass / area) * sheet->cell_size * sheet->cell_size : 0;
 }
 
@@ -56,6 +57,7 @@ float stiffness_compliance(Stiffness *stiffness, uint32_t spring) {
         stiffness->sheet = index;
         stiffness->own = mass > 0 ? stiffness->softness / mass : 0;
     }
+
     uint32_t centre = ends[0] > ends[1] ? ends[0] : ends[1]; // of a red spring: they come after all vertices
     if (stiffness->colour == SINGE_RED) compliance *= thickness_share(shell, sheet, centre);
     return compliance > stiffness->own ? compliance - stiffness->own : 0;
@@ -72,7 +74,9 @@ int stiffness_substeps(const Shell *shell, float h, float regularisation) {
             float compliance = field_at(shell->matter.compliance[SINGE_RED], centre);
             min = fminf(min, compliance * thickness_share(shell, sheet, centre));
         }
+
         if (sheet->cell_count > 0) count = fmaxf(count, ceilf(h * sqrtf(softness / (min * mass))));
     }
+
     return count < STIFFNESS_MAX ? (int)count : STIFFNESS_MAX;
 }

@@ -46,6 +46,7 @@ ProjectionReport conjugate_gradient(Network *network, uint32_t group, Pool *pool
     // iterate until the residual is small enough
     double rest = square;
     pool_for(pool, rows, POOL_BLOCK, conjugate_begin, &job);
+
     while (rest > enough && report.iterations < network->rules.iterations) {
         double curvature = pool_sum(pool, rows, kernel->multiply, &job, network->partial);
         report.iterations++;
@@ -53,6 +54,7 @@ ProjectionReport conjugate_gradient(Network *network, uint32_t group, Pool *pool
             report.broken = true;
             break;
         }
+
         job.alpha = rest / curvature;
         double before = rest;
         rest = pool_sum(pool, rows, kernel->reduce, &job, network->partial);

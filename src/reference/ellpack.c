@@ -21,6 +21,7 @@ bool ellpack_create(Memory *memory, SpringGroup *group) {
     // widths of the slices: of their longest rows
     const uint32_t slices = group->padded / NETWORK_LANES;
     if (!NEW(memory, group->slice_first, (size_t)slices + 1)) return false;
+
     for (uint32_t s = 0; s < slices; s++) {
         size_t width = 0;
         for (uint32_t k = s * NETWORK_LANES; k < (s + 1) * NETWORK_LANES && k < group->count; k++) {
@@ -28,8 +29,10 @@ bool ellpack_create(Memory *memory, SpringGroup *group) {
             size_t row = (size_t)ellpack_degree(group, ends[0]) + ellpack_degree(group, ends[1]) - 2;
             if (width < row) width = row;
         }
+
         group->slice_first[s + 1] = group->slice_first[s] + width;
     }
+
     const size_t entries = ellpack_entries(group);
     if (!NEW(memory, group->column, entries) || !NEW(memory, group->link, entries) ||
         !NEW(memory, group->run, entries / NETWORK_LANES))
@@ -49,6 +52,7 @@ bool ellpack_create(Memory *memory, SpringGroup *group) {
                 at += NETWORK_LANES;
             }
         }
+
         for (; at < slice_end; at += NETWORK_LANES) {
             group->column[at] = row;
             group->link[at] = LINK_EMPTY;
@@ -62,6 +66,7 @@ bool ellpack_create(Memory *memory, SpringGroup *group) {
         for (uint32_t lane = 1; lane < NETWORK_LANES; lane++)
             if (column[lane] != column[0] + lane) group->run[k] = NETWORK_NO_RUN;
     }
+
     return true;
 }
 
@@ -85,6 +90,7 @@ static void ellpack_assemble_range(void *task, int begin, int end) {
     const SpringGroup *group = job->group;
     Network *network = job->network;
     const double *scale = network->scale;
+
     for (uint32_t row = (uint32_t)begin; row < (uint32_t)end; row++) {
         const uint32_t *ends = group->ends[row];
         const double *g = network->gradient[row];
@@ -110,6 +116,7 @@ void ellpack_dense(const Network *network, uint32_t group_index, double *dense) 
     const double *scale = network->scale;
     for (size_t row = 0; row < group->count; row++) {
         if (scale[row] == 0) continue;
+
         size_t slice = row / NETWORK_LANES, end = NETWORK_LANES * group->slice_first[slice + 1];
         dense[row * group->count + row] += 1 / (scale[row] * scale[row]);
         for (size_t e = NETWORK_LANES * group->slice_first[slice] + row % NETWORK_LANES; e < end; e += NETWORK_LANES)

@@ -32,6 +32,7 @@ static void hooke_forces(void *task, int begin, int end) {
         double stiffness = job->stiffness * job->group->weight[k];
         force[0] = force[1] = force[2] = 0;
         if (both <= 0 || stiffness <= 0) continue;
+
         for (int i = 0; i < 3; i++) {
             double v = (double)vb[i] - (double)va[i];
             // positions before the substep: x~ less the displacement by v~; held particles have v~ too
@@ -39,6 +40,7 @@ static void hooke_forces(void *task, int begin, int end) {
             square += d[i] * d[i];
             closing += d[i] * v;
         }
+
         double distance = sqrt(square);
         if (!(distance > 0)) continue;
         double damping = 2 * MASS_SPRING_DAMPING * sqrt(stiffness / both);
@@ -53,11 +55,13 @@ static void hooke_move(void *task, int begin, int end) {
     for (int i = begin; i < end; i++) {
         double force[3] = {0, 0, 0}, displacement = job->h * job->h * job->network->inverse_mass[i];
         if (displacement == 0) continue;
+
         for (uint32_t s = group->first[i]; s < group->first[i + 1]; s++) {
             const double *f = job->network->gradient[group->incident[s] / 2];
             double sign = group->incident[s] % 2 ? 1 : -1;
             for (int c = 0; c < 3; c++) force[c] += sign * f[c];
         }
+
         for (int c = 0; c < 3; c++) job->network->position[i][c] += displacement * force[c];
     }
 }

@@ -41,6 +41,7 @@ SingeResult network_create(Memory *memory, uint32_t particle_count, uint32_t gro
         if (network->row_max < group->padded) network->row_max = group->padded;
         if (matrix && network->entry_max < ellpack_entries(group)) network->entry_max = ellpack_entries(group);
     }
+
     const uint32_t rows = network->row_max;
     ok = ok && NEW(memory, network->gradient, rows);
     if (matrix)
@@ -49,6 +50,7 @@ SingeResult network_create(Memory *memory, uint32_t particle_count, uint32_t gro
              NEW(memory, network->direction, rows) && NEW(memory, network->product, rows) &&
              NEW(memory, network->partial, pool_blocks((int)rows));
     if (ok) return SINGE_OK;
+
     network_free(memory, network);
     return SINGE_ERROR_MEMORY;
 }
@@ -64,6 +66,7 @@ void network_free(Memory *memory, Network *network) {
         FREE(memory, group->first, (size_t)network->particle_count + 1);
         FREE(memory, group->incident, 2 * (size_t)group->count);
     }
+
     uint32_t rows = network->row_max;
     FREE(memory, network->position, network->particle_count);
     FREE(memory, network->inverse_mass, network->particle_count);

@@ -58,6 +58,7 @@ static Float3 fine_rest(const Shell *shell, FineLocation location) {
         if (i == ((location.side + 1) & 3)) weight += location.weight[1];
         sum = float3_mad(sum, float3_load(shell->rest_position[at[i]]), weight);
     }
+
     return sum;
 }
 
@@ -77,6 +78,7 @@ static float eaten(const Fine *fine, FineLocation location, const FineSheet *she
         strength *= NOISE_STRENGTH;
         p = float3_add(float3_scale(p, 2), float3(17.31f, 5.77f, 11.83f));
     }
+
     float depth = fabsf(NOISE_MEAN + sum); // reflected into 0 to 1, so that no edge is smooth
     if (depth > 1) depth = fmaxf(2 - depth, 0);
     return sheet->reach * depth;
@@ -123,6 +125,7 @@ static void tear_edge_vertex(Fine *fine, uint32_t vertex) {
                       spline->edge[shell->cell_springs[cell].blue[side]] > 0;
         fine->flags[cell] = (uint8_t)((fine->flags[cell] | FINE_TEAR_EDGE) & ~FINE_EVEN);
     }
+
     spline->corner[vertex] = fmaxf(-0.5f, fminf((border ? 2 : 1) * angle / PI - 1, 0.75f));
 }
 
@@ -132,6 +135,7 @@ void fine_tear_edges(Fine *fine) {
     const Spline *spline = &fine->splines[SPLINE_TEAR_EDGE];
     uint32_t first = blue->count - shell->edge_spare_count;
     if (shell->edge_spare_used == 0) return;
+
     for (uint32_t s = 0; s < blue->count; s++) spline->edge[s] = 1;
     for (uint32_t v = 0; v < shell->vertex_count; v++) spline->corner[v] = 1;
     for (uint32_t k = 0; k < shell->edge_spare_used; k++)
@@ -155,6 +159,7 @@ static Float3 wander(const FineSheet *sheet, Float3 location, float size, float 
         strength *= TEAR_EDGE_STRENGTH;
         p = float3_add(float3_scale(p, 2), float3(11.83f, 17.31f, 5.77f));
     }
+
     float length = float3_length(sum);
     return float3_scale(sum, length > 1 ? reach / length : reach);
 }
@@ -174,6 +179,7 @@ static float fine_tear_level(const Fine *fine, FineLocation location) {
         location = fine_walk(shell, location, float3_dot(displacement, along) / float3_dot(along, along),
                              float3_dot(displacement, up) / float3_dot(up, up));
     }
+
     float field = fine_spline_at(shell, &fine->splines[SPLINE_TEAR_EDGE], location);
     return 0.5f * fmaxf(field - TEAR_EDGE_MIN, location.weight[2] - TEAR_EDGE_CENTROID);
 }

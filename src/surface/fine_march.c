@@ -54,10 +54,12 @@ static uint32_t cut_vertex(Fine *fine, const Piece *piece, int edge) {
         inside = outside;
         outside = edge;
     }
+
     const FineValue *in = &fine->values[piece->point[inside]], *out = &fine->values[piece->point[outside]];
     float t = surface_cut(in->level, out->level, NEAREST);
     if (!(t > 0)) return point_vertex(fine, piece, inside);
     if (*piece->cut[edge]) return *piece->cut[edge];
+
     FineLocation location = piece->location[inside];
     for (int i = 0; i < 3; i++) location.weight[i] += t * (piece->location[outside].weight[i] - location.weight[i]);
     return *piece->cut[edge] = add_vertex(fine, location, in->mass + t * (out->mass - in->mass), SHELL_NONE);
@@ -81,6 +83,7 @@ static void march_draw(Fine *fine, const Piece *piece) {
         for (int m = 0; m < made; m++)
             if (!count || polygon[count - 1] != vertex[m]) polygon[count++] = vertex[m];
     }
+
     if (count > 1 && polygon[count - 1] == polygon[0]) count--;
 
     // a fan of triangles
@@ -159,6 +162,7 @@ static void march_row(Marching *march, const Row *row) {
     uint32_t rung[2 * FINE_SPLITS_MAX + 1]; // cuts of the sides between the lines
     int low = 0, high = 0, steps = row->lower + row->upper;
     memset(rung, 0, ((size_t)steps + 1) * sizeof *rung);
+
     for (int step = 0; step < steps; step++) {
         Piece piece;
 
@@ -181,6 +185,7 @@ static void march_row(Marching *march, const Row *row) {
             march->triangles += inside == 2 ? 2 : inside > 0;
             march->crossed += inside == 1 || inside == 2;
         }
+
         if (on_lower) low++;
         else high++;
     }
@@ -217,6 +222,7 @@ static void march_cells(Marching *march) {
     for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
         if (fine->cell_triangle && march->drawing) fine->cell_triangle[c] = fine->surface->triangle_count;
         if (!(fine->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+
         uint32_t before = fine->surface->triangle_count;
         uint32_t line[4][FINE_SPLITS_MAX]; // cuts of the lines from the corners to the centre
         for (int side = 0; side < 4; side++) memset(line[side], 0, (size_t)fine->splits[c] * sizeof *line[side]);
@@ -224,6 +230,7 @@ static void march_cells(Marching *march) {
             if (!fine_is_torn(fine, c, side)) march_triangle(march, c, side, line[side], line[(side + 1) & 3]);
         if (fine_is_split(fine, c)) fine->surface->fine_triangle_count += fine->surface->triangle_count - before;
     }
+
     if (fine->cell_triangle && march->drawing)
         fine->cell_triangle[fine->shell->cell_count] = fine->surface->triangle_count;
 }
@@ -245,6 +252,7 @@ SingeResult fine_march(Fine *fine, SingeError *error) {
     uint64_t max = 2 * march.crossed;
     for (uint32_t p = 0; p < fine->point_count; p++) max += fine->values[p].level >= 0;
     if (max > INT32_MAX) return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "too many vertices");
+
     fine->vertex_capacity = (uint32_t)max;
     if (!NEW(fine->memory, fine->vertices, fine->vertex_capacity))
         return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");

@@ -31,6 +31,7 @@ static Ring ring_of(const Fine *fine, uint32_t vertex) {
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++) {
         uint32_t cell = shell->fan[k];
         if (!fine->sound[cell]) continue;
+
         int i = 0;
         while (shell->cells[cell][i] != vertex) i++;
         ring.cells++;
@@ -44,6 +45,7 @@ static Ring ring_of(const Fine *fine, uint32_t vertex) {
             ring.along = float3_add(ring.along, corner_of(fine, shell->cells[cell][(i + (turn ? 3 : 1)) & 3]));
         }
     }
+
     return ring;
 }
 
@@ -144,6 +146,7 @@ FinePatch fine_patch(const Fine *fine, uint32_t cell) {
     const uint32_t *at = shell->cells[cell], *sides = shell->cell_springs[cell].blue;
     const uint32_t(*ends)[2] = (const uint32_t(*)[2])shell->springs[SINGE_BLUE].ends;
     FinePatch patch;
+
     for (int i = 0; i < 4; i++) {
         uint32_t next = sides[i], last = sides[(i + 3) & 3];
         Float3 shift = float3_load(fine->shift[at[i]]);
@@ -155,6 +158,7 @@ FinePatch fine_patch(const Fine *fine, uint32_t cell) {
             float3_add(shift, float3_load(fine->rail[last][ends[last][0] != at[i]]));
         patch.net[location[3][0]][location[3][1]] = float3_add(shift, float3_load(fine->inner[cell][i]));
     }
+
     return patch;
 }
 
@@ -176,15 +180,18 @@ FinePoint fine_patch_at(const FinePatch *patch, float u, float v) {
     FinePoint point = {0};
     bernstein(u, bu, du);
     bernstein(v, bv, dv);
+
     for (int i = 0; i < 4; i++) {
         Float3 row = {0, 0, 0}, slope = {0, 0, 0};
         for (int j = 0; j < 4; j++) {
             row = float3_mad(row, patch->net[i][j], bv[j]);
             slope = float3_mad(slope, patch->net[i][j], dv[j]);
         }
+
         point.position = float3_mad(point.position, row, bu[i]);
         point.along_u = float3_mad(point.along_u, row, du[i]);
         point.along_v = float3_mad(point.along_v, slope, bu[i]);
     }
+
     return point;
 }

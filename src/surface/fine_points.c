@@ -46,6 +46,7 @@ static bool negative_around(const Fine *fine, uint32_t cell) {
         for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++)
             if (fine->low[shell->fan[k]] < 0) return true;
     }
+
     return false;
 }
 
@@ -69,6 +70,7 @@ static SingeResult points_number(Fine *fine, SingeError *error) {
             fine->flags[c] &= (uint8_t)~FINE_NEAR;
             continue;
         }
+
         for (int i = 0; i < 4; i++) {
             const uint32_t blue = side_of_cell(fine, c, i);
             if (fine->side_point[blue] != SHELL_NONE) continue;
@@ -76,6 +78,7 @@ static SingeResult points_number(Fine *fine, SingeError *error) {
             fine->side_point[blue] = (uint32_t)point;
             point += (uint64_t)splits - 1;
         }
+
         fine->cell_point[c] = (uint32_t)point;
         fine->near[fine->near_count++] = c;
         point += (uint64_t)inner_points(splits);
@@ -88,14 +91,17 @@ static SingeResult points_number(Fine *fine, SingeError *error) {
             uint8_t *parts = &fine->parts[side_of_cell(fine, c, i)];
             if (*parts < fine->bent[c]) *parts = fine->bent[c];
         }
+
     for (uint32_t s = 0; s < sides; s++) {
         fine->bent_side[s] = (uint32_t)point;
         point += (uint64_t)fine->parts[s] - 1;
     }
+
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         fine->bent_point[c] = (uint32_t)point;
         point += (uint64_t)inner_points(fine->bent[c]);
     }
+
     if (point > INT32_MAX)
         return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "the drawn surface's detail is too fine");
     fine->point_count = (uint32_t)point;
@@ -106,6 +112,7 @@ uint32_t fine_side_point(const Fine *fine, uint32_t cell, int side, int parts, i
     const uint32_t *at = fine->shell->cells[cell];
     if (i == 0) return at[side];
     if (i == parts) return at[(side + 1) & 3];
+
     uint32_t blue = side_of_cell(fine, cell, side);
     bool forwards = fine->shell->springs[SINGE_BLUE].ends[blue][0] == at[side];
     return fine->side_point[blue] + (uint32_t)((forwards ? i : parts - i) - 1);
@@ -115,9 +122,11 @@ uint32_t fine_point(const Fine *fine, uint32_t cell, int side, int splits, int i
     int next = (side + 1) & 3, line = splits - 1;
     if (j == splits) return shell_centre(fine->shell, cell);
     if (j == 0) return fine_side_point(fine, cell, side, splits, i);
+
     uint32_t first = fine->cell_point[cell];
     if (i == 0) return first + (uint32_t)(side * line + j - 1);
     if (i + j == splits) return first + (uint32_t)(next * line + j - 1);
+
     int row = (j - 1) * line - (j - 1) * j / 2;
     return first + (uint32_t)(4 * line + side * (line * (splits - 2) / 2) + row + i - 1);
 }
@@ -160,6 +169,7 @@ static void evaluate_vertices(void *context, int begin, int end) {
         // its value in one of the remaining cells
         fine->values[v] = (FineValue){-1, 0};
         if (home == SHELL_NONE) continue;
+
         fine->values[v] = particle_value(fine, v);
         if (even_around(fine, v)) continue;
         uint8_t corner = 0;
@@ -241,13 +251,16 @@ static void points_settle(Fine *fine) {
     uint32_t *split_side = fine->bent_side; // swapped; sides of split cells get theirs back below
     fine->bent_side = fine->side_point;
     fine->side_point = split_side;
+
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         fine->splits[c] = fine->bent[c];
         if (!fine_is_split(fine, c)) fine->cell_point[c] = fine->bent_point[c];
     }
+
     for (uint32_t n = 0; n < fine->near_count; n++) {
         uint32_t c = fine->near[n];
         if (!fine_is_split(fine, c)) continue;
+
         fine->splits[c] = (uint8_t)fine_splits(fine, c);
         for (int i = 0; i < 4; i++) {
             uint32_t blue = side_of_cell(fine, c, i);
@@ -261,6 +274,7 @@ static void points_settle(Fine *fine) {
 static FineValue bent_value(const Fine *fine, uint32_t particle, FineLocation location) {
     const FineValue *there = &fine->values[particle];
     if (fine->flags[location.cell] & FINE_EVEN) return *there;
+
     FineValue value = fine_value(fine, location);
     value.level = there->level < 0 ? fminf(value.level, there->level) : fmaxf(value.level, 0);
     return value;
@@ -271,6 +285,7 @@ static void evaluate_bent(void *context, int begin, int end) {
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         int splits = fine->splits[c];
         if (!points_alive(fine, c) || fine_is_split(fine, c)) continue;
+
         for (int side = 0; side < 4; side++) {
             // the side's points, in one of its cells
             const int parts = fine_parts(fine, c, side);

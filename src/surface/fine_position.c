@@ -58,6 +58,7 @@ static void part_side(Fine *fine, const uint32_t one[2], const uint32_t other[2]
     float share[2] = {1, 1}, min = 0;
     for (int end = 0; end < 2; end++) {
         if (one[end] == other[end]) continue;
+
         const uint32_t vertex[2] = {one[end], other[end]};
         const float side = shell->sheets[shell->matter.sheet[vertex[0]]].cell_size;
         float apart = float3_length(float3_sub(float3_load(position[vertex[0]]), float3_load(position[vertex[1]])));
@@ -70,9 +71,11 @@ static void part_side(Fine *fine, const uint32_t one[2], const uint32_t other[2]
                 sum = float3_add(sum, float3_sub(centre_of(shell->cells[shell->fan[k]], position), location));
             float3_store(fine->corner[v], float3_mad(location, float3_unit(sum), TEAR_EDGE * side));
         }
+
         share[end] = fade(apart, TEAR_EDGES_CLOSED * side, TEAR_EDGES_OPEN * side);
         min = fmaxf(min, share[end]);
     }
+
     for (int end = 0; end < 2; end++) {
         if (one[end] == other[end]) share[end] = min;
         lessen(&fine->share[one[end]], share[end]);
@@ -86,6 +89,7 @@ static void gather_normals(Fine *fine) {
     const float(*position)[4] = (const float(*)[4])fine->corner;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (!is_alive(fine, c)) continue;
+
         const uint32_t *at = shell->cells[c];
         Float3 centre = centre_of(at, position);
         for (int i = 0; i < 4; i++) {
@@ -97,6 +101,7 @@ static void gather_normals(Fine *fine) {
                 float3_store(fine->normal[corner[k]], float3_add(float3_load(fine->normal[corner[k]]), doubled));
         }
     }
+
     for (uint32_t i = 0; i < shell->particle_count; i++)
         float3_store(fine->normal[i], float3_unit(float3_load(fine->normal[i])));
 }
@@ -115,6 +120,7 @@ static void gather_shares(Fine *fine) {
     const float(*position)[4] = (const float(*)[4])fine->corner;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (!is_alive(fine, c)) continue;
+
         const uint32_t *at = shell->cells[c];
         Float3 centre = centre_of(at, position);
         float whole = fine->sound[c]; // the share that the normal at the virtual centre allows
@@ -132,6 +138,7 @@ static void gather_shares(Fine *fine) {
             }
             lessen(&whole, allowed(doubled, longest, float3_load(fine->normal[shell_centre(shell, c)])));
         }
+
         for (int i = 0; i < 4; i++) lessen(&fine->share[at[i]], whole);
     }
 }
@@ -147,6 +154,7 @@ void fine_position(Fine *fine) {
         fine->share[v] = 1;
         fine->max[v] = fine->room ? fminf(fine->bulge_max, ROOM_SHARE * fine->room[v]) : fine->bulge_max;
     }
+
     for (uint32_t k = 0; k < shell->edge_spare_used; k++)
         part_side(fine, blue->ends[spare + k], blue->ends[shell->edge_origin[k]]);
     gather_normals(fine);
@@ -158,6 +166,7 @@ void fine_position(Fine *fine) {
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         fine->bent[c] = 1;
         if (!is_alive(fine, c)) continue;
+
         const uint32_t *at = shell->cells[c];
         float turn = 0, freedom = 0;
         for (int i = 0; i < 4; i++) {
@@ -167,6 +176,7 @@ void fine_position(Fine *fine) {
                 turn = fmaxf(turn, float3_length(turned));
             }
         }
+
         int parts = 1 + (int)(turn / TURN_A_PART), max = fine_splits(fine, c);
         if (freedom > 0) fine->bent[c] = (uint8_t)(parts < max ? parts : max);
     }
@@ -225,6 +235,7 @@ void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocati
         share *= max / fabsf(height);
         height = copysignf(max, height);
     }
+
     if (fabsf(height) > FLAT * float3_length(float3_sub(corner[1], corner[0])))
         float3_store(position, float3_mad(flat, lean, height));
 

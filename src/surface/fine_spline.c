@@ -38,6 +38,7 @@ static void corner_coefficients(const Fine *fine, const float *values, Spline *s
     memset(spline->corner, 0, shell->vertex_count * sizeof *spline->corner);
     for (uint32_t s = 0; s < blue->count; s++)
         for (int end = 0; end < 2; end++) spline->corner[blue->ends[s][end]] += spline->edge[s];
+
     for (uint32_t v = 0; v < shell->vertex_count; v++) {
         uint32_t cells = shell->fan_first[v + 1] - shell->fan_first[v];
         uint32_t sides = cells + fine->rim[v]; // one more at the border
@@ -53,6 +54,7 @@ void fine_spline(const Fine *fine, const float *values, Spline *spline) {
         float corners = values[at[0]] + values[at[1]] + values[at[2]] + values[at[3]];
         fine->cell_value[c] = 0.5f * values[shell_centre(shell, c)] + 0.125f * corners;
     }
+
     side_coefficients(fine, values, spline->edge);
     corner_coefficients(fine, values, spline);
 }
@@ -121,6 +123,7 @@ static FineLocation from_coordinates(uint32_t cell, float x, float y) {
         out = fabsf(y);
         along = y > 0 ? -x : x;
     }
+
     location.weight[0] = out - along;
     location.weight[1] = out + along;
     location.weight[2] = 1 - 2 * out;
@@ -133,6 +136,7 @@ FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, floa
     fine_coordinates(location, &x, &y);
     x += dx;
     y += dy;
+
     for (int crossing = 0; crossing < 2 && fmaxf(fabsf(x), fabsf(y)) > 0.5f; crossing++) {
         int side = fabsf(x) > fabsf(y) ? (x > 0 ? 1 : 3) : (y > 0 ? 2 : 0);
         uint32_t other = shell_neighbour(shell, cell, side);
@@ -141,6 +145,7 @@ FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, floa
             else y = fmaxf(-0.5f, fminf(y, 0.5f));
             continue;
         }
+
         // the neighbour's centre is the new origin; then quarter turns until the side that was crossed lies behind
         if (side & 1) x += side == 1 ? -1.0f : 1.0f;
         else y += side == 2 ? -1.0f : 1.0f;
@@ -151,8 +156,10 @@ FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, floa
             y = x;
             x = turned;
         }
+
         cell = other;
     }
+
     x = fmaxf(-0.5f, fminf(x, 0.5f));
     y = fmaxf(-0.5f, fminf(y, 0.5f));
     return from_coordinates(cell, x, y);

@@ -51,9 +51,11 @@ int surface_fan(const float level[3], float nearest) {
     for (int outside = 0; outside < 3; outside++) {
         int a = (outside + 1) % 3, b = (outside + 2) % 3;
         if (level[outside] >= 0 || level[a] < 0 || level[b] < 0) continue;
+
         float cut_a = surface_cut(level[a], level[outside], nearest);
         return cut_a < surface_cut(level[b], level[outside], nearest) ? b : a;
     }
+
     return 0;
 }
 
@@ -82,9 +84,11 @@ static int clip(const Drawing *drawing, uint32_t cell, int side, uint32_t polygo
             const int in = inside ? a : b, out = inside ? b : a;
             vertex[made++] = surface_cut(level[in], level[out], SURFACE_NEAREST) > 0 ? edge[a] : corner[in];
         }
+
         for (int m = 0; m < made; m++)
             if (!count || polygon[count - 1] != vertex[m]) polygon[count++] = vertex[m];
     }
+
     return count > 1 && polygon[count - 1] == polygon[0] ? count - 1 : count;
 }
 
@@ -93,6 +97,7 @@ static void draw_cells(const Drawing *drawing) {
     const Shell *shell = drawing->shell;
     SingeSurface *surface = drawing->surface;
     uint32_t *cell_first = drawing->cell_first;
+
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         for (int side = 0; side < 4 && drawing->state->ablate.cell_flags[c] & SINGE_ALIVE; side++) {
             uint32_t polygon[4];
@@ -105,6 +110,7 @@ static void draw_cells(const Drawing *drawing) {
                 for (int i = 0; i < 3; i++) drawing->output[triangle[i]] = 1;
             }
         }
+
         if (cell_first) cell_first[c + 1] = surface->triangle_count;
     }
 }
@@ -156,6 +162,7 @@ static Sample sample_particle(const Shell *shell, const State *state, uint32_t p
         sample.velocity = mean_of_corners(corners, velocity);
         sample.rest = mean_of_corners(corners, rest);
     }
+
     return sample;
 }
 
@@ -230,6 +237,7 @@ void surface_normals(SingeSurface *surface) {
             float3_store(normal, float3_add(float3_load(normal), doubled));
         }
     }
+
     for (uint32_t v = 0; v < surface->vertex_count; v++) {
         Float3 normal = float3_unit(float3_load(surface->normal[v]));
         bool unit = float3_dot(normal, normal) > 0.5f;
@@ -247,10 +255,12 @@ static SingeResult draw(Drawing *drawing, SingeError *error) {
     uint64_t max = 0;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (!(drawing->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+
         bool whole = drawing->level[shell_centre(shell, c)] >= 0;
         for (int i = 0; i < 4; i++) whole = whole && drawing->level[shell->cells[c][i]] >= 0;
         max += whole ? 4 : 8;
     }
+
     TRY(surface_reserve_triangles(surface, max, error));
     draw_cells(drawing);
 
@@ -258,11 +268,13 @@ static SingeResult draw(Drawing *drawing, SingeError *error) {
     uint32_t count = 0;
     for (uint32_t key = 0; key < drawing->keys.count; key++) count += drawing->output[key];
     TRY(surface_reserve_vertices(surface, count, error));
+
     for (uint32_t key = 0; key < drawing->keys.count; key++) {
         if (!drawing->output[key]) continue;
         drawing->output[key] = surface->vertex_count++;
         put_vertex(drawing, key, drawing->output[key]);
     }
+
     for (uint32_t t = 0; t < surface->triangle_count; t++)
         for (int i = 0; i < 3; i++) surface->triangles[t][i] = drawing->output[surface->triangles[t][i]];
 
@@ -289,6 +301,7 @@ SingeResult surface_draw(AblatePlan *plan, const Shell *shell, const State *stat
         surface_clear(surface);
         result = error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface");
     }
+
     FREE(&memory, drawing.output, drawing.keys.count);
     FREE(&memory, drawing.cell_first, cells);
     return result;

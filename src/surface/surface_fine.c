@@ -45,10 +45,12 @@ static void fine_release(Fine *fine) {
     int count = list_arrays(fine, arrays);
     for (int i = 0; i < count; i++)
         memory_free(fine->memory, (char *)fine + arrays[i].offset, arrays[i].count, arrays[i].size);
+
     for (int f = 0; f < SPLINE_COUNT; f++) {
         FREE(fine->memory, fine->splines[f].edge, fine->shell->springs[SINGE_BLUE].count);
         FREE(fine->memory, fine->splines[f].corner, fine->shell->vertex_count);
     }
+
     FREE(fine->memory, fine->values, fine->point_count);
     FREE(fine->memory, fine->drawn, fine->point_count);
     FREE(fine->memory, fine->cuts, fine->cut_count);
@@ -64,6 +66,7 @@ static void fill_levels(Fine *fine) {
     const State *state = fine->state;
     const BurnState *burn = &state->burn;
     float now = (float)state->time;
+
     for (uint32_t i = 0; i < fine->shell->particle_count; i++) {
         float level = fine->level[i], burnt = burn->time_burnt[i];
         if (!(state->ablate.particle_flags[i] & SINGE_ALIVE)) level = fminf(level, -1e-4f); // also in a loose piece
@@ -72,6 +75,7 @@ static void fill_levels(Fine *fine) {
             float gone = loss * (now - burnt);
             level = fminf(level, gone < LEVEL_GONE * took ? -gone / took : -LEVEL_GONE);
         }
+
         fine->raw_level[i] = level;
     }
 }
@@ -87,6 +91,7 @@ static Float3 blend(const uint32_t at[4], const FineLocation *location, const fl
         if (i == ((location->side + 1) & 3)) weight += location->weight[1];
         sum = float3_mad(sum, float3_load(field[at[i]]), weight);
     }
+
     return sum;
 }
 
@@ -113,6 +118,7 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
         mass_min += location->weight[i] * field_at(shell->matter.mass_min, particle[i]);
         yield += location->weight[i] * field_at(shell->matter.char_yield, particle[i]);
     }
+
     surface->uv[v][0] = u;
     surface->uv[v][1] = w;
 
@@ -131,9 +137,11 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
     float sum = 0, total = 0;
     for (int i = 0; i < 3; i++) {
         if (!(ignited[particle[i]] >= 0)) continue;
+
         sum += location->weight[i] * ignited[particle[i]];
         total += location->weight[i];
     }
+
     surface->time_ignited[v] = total > 0 ? sum / total : -1;
     surface->piece[v] = state->ablate.piece[particle[0]];
     surface->sheet[v] = shell->matter.sheet[centre];
@@ -149,6 +157,7 @@ static void fill_range(void *context, int begin, int end) {
             cell = fine->vertices[v].location.cell;
             patch = fine_patch(fine, cell);
         }
+
         vertices_fill(fine, &patch, (uint32_t)v);
     }
 }
@@ -166,6 +175,7 @@ static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError
         ok = block != NULL;
         memcpy((char *)fine + arrays[i].offset, &block, sizeof block);
     }
+
     for (int f = 0; f < SPLINE_COUNT && ok; f++)
         ok = NEW(fine->memory, fine->splines[f].edge, shell->springs[SINGE_BLUE].count) &&
              NEW(fine->memory, fine->splines[f].corner, shell->vertex_count);
@@ -180,6 +190,7 @@ static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError
         sheet->octaves = fine_octaves(cell / (1.4142136f * (float)sheet->splits));
         sheet->seed = random_hash(s, 0, 0, detail->seed);
     }
+
     fill_levels(fine);
 
     // splines of the fields

@@ -66,6 +66,7 @@ static int side_of(const Seams *seams, uint32_t cell, const uint32_t triangle[3]
             best = side;
         }
     }
+
     return best;
 }
 
@@ -116,6 +117,7 @@ static void part_cell(Seams *seams, uint32_t cell, uint32_t begin, uint32_t end)
     float size = 0;
     for (int i = 1; i < 4; i++) size = fmaxf(size, fmaxf(fabsf(uvs[i][0] - uvs[0][0]), fabsf(uvs[i][1] - uvs[0][1])));
     const float same = SEAM_SAME * size;
+
     for (uint32_t t = begin; t < end; t++) {
         uint32_t *triangle = seams->surface->triangles[t], parted[3];
         int side = side_of(seams, cell, triangle);
@@ -125,6 +127,7 @@ static void part_cell(Seams *seams, uint32_t cell, uint32_t begin, uint32_t end)
             cell_uv(seams->shell, cell, side, float3_load(seams->surface->rest_position[triangle[k]]), uv, &source);
             parted[k] = copy_with(seams, triangle[k], uv, same, source);
         }
+
         memcpy(triangle, parted, sizeof parted);
     }
 }
@@ -138,9 +141,11 @@ static uint64_t claim(Seams *seams, const uint32_t *cell_first) {
             copies += 3 * (uint64_t)(cell_first[c + 1] - cell_first[c]);
             continue;
         }
+
         for (uint32_t t = cell_first[c]; t < cell_first[c + 1] && seams->claimed; t++)
             for (int k = 0; k < 3; k++) seams->claimed[seams->surface->triangles[t][k]] = 1;
     }
+
     return copies;
 }
 
@@ -150,6 +155,7 @@ SingeResult surface_seams(const Shell *shell, const uint32_t *cell_first, SingeS
     uint64_t max = surface->vertex_count + claim(&seams, cell_first);
     SingeResult result = surface_grow_vertices(surface, max, error);
     if (result) return result;
+
     seams.capacity = (uint32_t)max;
     if (NEW(&memory, seams.claimed, seams.capacity) && NEW(&memory, seams.next, seams.capacity)) {
         memset(seams.next, 0xff, seams.capacity * sizeof *seams.next);
@@ -160,6 +166,7 @@ SingeResult surface_seams(const Shell *shell, const uint32_t *cell_first, SingeS
         surface_clear(surface);
         result = error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's seams");
     }
+
     FREE(&memory, seams.claimed, seams.capacity);
     FREE(&memory, seams.next, seams.capacity);
     return result;

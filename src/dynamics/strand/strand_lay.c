@@ -61,14 +61,17 @@ static bool lay_list(Lay *lay, uint32_t family, bool ring) {
         lay->head[length] = SHELL_NONE;
         lay->below[length] = length ? length - 1 : 0;
     }
+
     bool any = false;
     for (uint32_t s = springs->family_first[family + 1]; s-- > springs->family_first[family];) {
         if ((springs->strand_ring[s] != 0) != ring || lay_is_laid(lay, s)) continue;
+
         uint32_t length = strand_length(springs, s);
         lay->next[s] = lay->head[length];
         lay->head[length] = s;
         any = true;
     }
+
     return any;
 }
 
@@ -81,11 +84,13 @@ static uint32_t lay_longest(Lay *lay, uint32_t max) {
         if (lay->head[found] != SHELL_NONE) break;
         found = lay->below[found];
     }
+
     while (max > found) {
         uint32_t next = lay->below[max];
         lay->below[max] = found;
         max = next;
     }
+
     return found;
 }
 
@@ -111,6 +116,7 @@ static void lay_close_group(Lay *lay, uint32_t first) {
         low = low < row ? low : row;
         high = high > end ? high : end;
     }
+
     for (uint32_t i = first; i < lay->laid_count; i++) lay->laid[i].row -= low;
     lay->set->groups[lay->set->group_count - 1].rows = high - low;
 }
@@ -122,6 +128,7 @@ static void lay_own(Lay *lay, uint32_t family, bool own) {
     const SpringSet *springs = lay->springs;
     for (uint32_t s = springs->family_first[family]; s < springs->family_first[family + 1]; s++) {
         if (springs->strand_ring[s]) continue;
+
         for (uint32_t k = 0; k <= strand_length(springs, s); k++) {
             uint32_t p = strand_node(springs, s, k);
             lay->owner[p] = own ? s : SHELL_NONE;
@@ -134,6 +141,7 @@ static void lay_own(Lay *lay, uint32_t family, bool own) {
 static void lay_put_right(Lay *lay, uint32_t s, uint32_t column, uint32_t row) {
     uint32_t length = strand_length(lay->springs, s);
     if (row + length >= lay->frame) return;
+
     for (uint32_t k = 0; k <= length; k++)
         if (lay->right[row + k] != SHELL_NONE) return;
     for (uint32_t k = 0; k <= length; k++) lay->right[row + k] = strand_node(lay->springs, s, k);
@@ -148,11 +156,13 @@ static uint32_t lay_right(Lay *lay, uint32_t column) {
     for (uint32_t k = 0; k < lay->frame; k++) lay->right[k] = SHELL_NONE;
     for (uint32_t k = 0; k < lay->frame; k++) {
         if (lay->left[k] == SHELL_NONE || lay->left[k] + 1 >= lay->particle_count) continue;
+
         uint32_t p = lay->left[k] + 1, s = lay->owner[p];
         if (s == SHELL_NONE || lay_is_laid(lay, s) || lay->tried[s] == lay->lane_serial || lay->index[p] > k) continue;
         lay->tried[s] = lay->lane_serial;
         lay_put_right(lay, s, column, k - lay->index[p]);
     }
+
     for (uint32_t k = 0; k < lay->frame; k++)
         contiguous += lay->left[k] != SHELL_NONE && lay->right[k] == lay->left[k] + 1;
     return contiguous;
@@ -180,6 +190,7 @@ static bool lay_run(Lay *lay, uint32_t s) {
             group = lay_open_group(lay, false);
             first = lay->laid_count;
         }
+
         before = lay->laid_count;
         contiguous = lay_right(lay, group->columns);
     }
@@ -195,6 +206,7 @@ static bool lay_run(Lay *lay, uint32_t s) {
 static void lay_runs(Lay *lay, uint32_t family) {
     uint32_t length = lay->springs->longest;
     if (!lay_list(lay, family, false)) return;
+
     lay_own(lay, family, true);
     while ((length = lay_longest(lay, length)) > 0) {
         // from the longest to the left while the strands are equally long
@@ -206,8 +218,10 @@ static void lay_runs(Lay *lay, uint32_t family) {
             if (strand_length(lay->springs, t) != length) break;
             s = t;
         }
+
         if (!lay_run(lay, s)) lay_take(lay, length);
     }
+
     lay_own(lay, family, false);
 }
 
@@ -223,6 +237,7 @@ static uint32_t lay_fill(Lay *lay, uint32_t group, uint32_t column, uint32_t row
         row += length + 1;
         nodes -= length + 1;
     }
+
     return row;
 }
 
@@ -238,6 +253,7 @@ static void lay_rest(Lay *lay, uint32_t family, uint32_t first) {
         lay_fill(lay, laid.group, laid.column, row, laid.row - row);
         row = laid.row + strand_length(lay->springs, laid.strand) + 1;
         if (i + 1 < count && lay->laid[i + 1].group == laid.group && lay->laid[i + 1].column == laid.column) continue;
+
         lay_fill(lay, laid.group, laid.column, row, set->groups[laid.group].rows + 1 - row);
         row = 0;
     }
@@ -249,6 +265,7 @@ static void lay_rest(Lay *lay, uint32_t family, uint32_t first) {
             if (lay_longest(lay, rows) == 0) break;
             lay_fill(lay, g, group->columns, 0, group->rows + 1);
         }
+
     // every lane up to the longest: diagonals of a rectangle thus pair up
     for (uint32_t longest = lay_longest(lay, lay->springs->longest); lay_longest(lay, longest) > 0;) {
         StrandGroup *group = lay_open_group(lay, false);
@@ -284,12 +301,14 @@ static void lay_family(Lay *lay, uint32_t family) {
         group->row = set->row_count;
         set->row_count += group->rows + 1; // one more for the last node
     }
+
     for (uint32_t i = first; i < lay->laid_count; i++) {
         const Laid *laid = &lay->laid[i];
         const StrandGroup *group = &set->groups[laid->group];
         uint32_t lane = strand_lane(group->width, laid->column);
         set->strand_slot[laid->strand] = (group->row + laid->row) * STRAND_LANES + lane;
     }
+
     set->family_first[family + 1] = set->group_count;
 }
 
@@ -339,6 +358,7 @@ bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowher
     const size_t slots = (size_t)set->row_count * STRAND_LANES;
     float *words = memory_new(memory, set_words(set), sizeof *words);
     if (!words) return false;
+
     set->block = words;
     words += (64 - (uintptr_t)words % 64) % 64 / sizeof *words;
     set->length = words;
@@ -377,6 +397,7 @@ bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowher
                 if (node[strand_lane(group->width, c)] != node[0] + 4 * c) set->contiguous[row] = STRAND_GATHERED;
         }
     }
+
     return true;
 }
 

@@ -24,6 +24,7 @@ static bool strands_create(Memory *memory, const Shell *shell, DynamicsPlan *pla
     const float h = plan->settings.time_step / (float)solver->substeps;
     Strands *strands = &plan->strands;
     *strands = (Strands){.solve = plan->kernels->solve, .room_count = plan->settings.thread_count};
+
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         const SpringSet *springs = &shell->springs[colour];
         StrandSet *set = &strands->sets[colour];
@@ -43,10 +44,12 @@ static bool strands_create(Memory *memory, const Shell *shell, DynamicsPlan *pla
             }
         }
     }
+
     if (!NEW(memory, strands->keep, keep_floats(strands) * (size_t)strands->room_count)) return false;
     if (!curvature_create(memory, shell, strands)) return false;
     if (!shell->creases) return true;
     if (!NEW(memory, plan->hinges, shell->springs[SINGE_GREEN].count)) return false;
+
     creases_measure(shell, plan->hinges);
     return true;
 }
@@ -79,6 +82,7 @@ static void prepare_range(void *task, int begin, int end) {
     const Hinge *hinges = job->colour == SINGE_GREEN ? job->plan->hinges : NULL;
     const float *crease = job->dynamics->crease, *bend = job->dynamics->bend;
     const bool torn = job->shell->split_count > 0;
+
     for (int s = begin; s < end; s++) {
         // weights and lengths into the lanes; a crease changes lengths of green springs
         size_t slot = set->strand_slot[s];
@@ -92,6 +96,7 @@ static void prepare_range(void *task, int begin, int end) {
             float stays = crease[k] * hinges[k].arc * crease_kept(job->shell, job->state, k);
             set->length[slot] *= crease_ratio(&hinges[k], stays, bend[k] * hinges[k].arc);
         }
+
         if (set->bend_limit) curvature_prepare(job->shell, job->state, job->colour, (uint32_t)s, set);
     }
 }
@@ -106,11 +111,13 @@ static void strands_prepare(DynamicsPlan *plan, const Shell *shell, const StateI
     plan->strands_written = false; // till the step is done: one that is undone may have written other weights
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         if (same && !(plan->creased && colour == SINGE_GREEN)) continue;
+
         job.colour = (SingeColour)colour;
         const SpringSet *springs = &shell->springs[colour];
         int grain = 1 + (int)((uint64_t)POOL_BLOCK * springs->strand_count / (springs->count + 1));
         pool_for(pool, (int)springs->strand_count, grain, prepare_range, &job);
     }
+
     patch_prepare(plan, shell, state);
 }
 
@@ -147,10 +154,12 @@ void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h,
     const StrandSet *set = &strands->sets[colour];
     Project project = {
         {set, dynamics->position[0], plan->settings.solver.regularisation[colour], 1 / (h * h)}, strands, 0};
+
     for (uint32_t f = 0; f < set->family_count; f++) {
         project.first_group = set->family_first[f];
         pool_for(pool, (int)(set->family_first[f + 1] - project.first_group), 1, project_range, &project);
     }
+
     patch_project(plan, colour, 1 / (h * h), dynamics);
     counters->strands += set->strand_count;
     counters->springs += plan->spring_count[colour];
