@@ -113,28 +113,6 @@ static void attach_measure(Attachments *attachments, const Shell *shell, const S
     }
 }
 
-/// Lengths of a resting sheet grow to the present distances. Those of held vertices tell whether it is tight: they
-/// stay.
-static void attach_follow(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics) {
-    for (uint32_t s = 0; s < shell->sheet_count; s++) {
-        const uint32_t first = shell->sheets[s].vertex_first, *source = attachments->source[s];
-        if (!attach_rests(shell, &attachments->spread[s])) continue;
-
-        for (int k = 0; k < ATTACH_SOURCES && source[k] != SHELL_NONE; k++) {
-            Float3 position = float3_load(dynamics->position[source[k]]);
-            for (uint32_t v = first; v < first + shell->sheets[s].vertex_count; v++) {
-                Float3 displacement = float3_sub(float3_load(dynamics->position[v]), position);
-                float *length = &attachments->length[v][k];
-                if (dynamics->position[v][3] == 0) continue;
-                if (float3_dot(displacement, displacement) > *length * *length) {
-                    *length = float3_length(displacement);
-                    attachments->settled = false;
-                }
-            }
-        }
-    }
-}
-
 void attach_update(Attachments *attachments, const Shell *shell, const StateInput *state, bool pins_changed) {
     // pieces never join again: a vertex in another piece than a source is out of its reach for good
     const int32_t *piece = state->ablate->piece;
@@ -160,7 +138,21 @@ void attach_update(Attachments *attachments, const Shell *shell, const StateInpu
                 *length -= fminf((*length - goal) * share, ATTACH_HASTE * *length);
                 attachments->settled = false;
             }
-        attach_follow(attachments, shell, state->dynamics);
+    }
+
+    // lengths of a resting sheet grow to the present distances; those of held vertices tell whether it is tight, and stay
+    const float(*position)[4] = (const float(*)[4])state->dynamics->position;
+    for (uint32_t s = 0; s < shell->sheet_count && !pins_changed; s++) {
+        const uint32_t first = shell->sheets[s].vertex_first, *source = attachments->source[s];
+        if (!attach_rests(shell, &attachments->spread[s])) continue;
+        for (int k = 0; k < ATTACH_SOURCES && source[k] != SHELL_NONE; k++)
+            for (uint32_t v = first; v < first + shell->sheets[s].vertex_count; v++) {
+                Float3 displacement = float3_sub(float3_load(position[v]), float3_load(position[source[k]]));
+                float *length = &attachments->length[v][k];
+                if (position[v][3] == 0 || !(float3_dot(displacement, displacement) > *length * *length)) continue;
+                *length = float3_length(displacement);
+                attachments->settled = false;
+            }
     }
 
     // measure again where pins, the fire or a tear have changed the distances

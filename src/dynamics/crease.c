@@ -182,26 +182,6 @@ float crease_kept(const Shell *shell, const StateInput *state, uint32_t green) {
     return kept;
 }
 
-/// The angle by which layers that have shrunk differently curl by themselves.
-static float crease_curl(const Crease *job, uint32_t k, const uint32_t *ends, const Hinge *hinge) {
-    const float *length = job->state->burn->spring_length[SINGE_BLUE], *rest = job->shell->springs[SINGE_BLUE].rest;
-
-    // length of the mesh along the spring over that at rest: the mean of its cells' four blue springs
-    float sum = 0;
-    for (int end = 0; end < 2; end++) {
-        const CellSprings *cell = &job->shell->cell_springs[ends[end] - job->shell->vertex_count];
-        for (int i = 1; i < 4; i += 2) {
-            uint32_t spring = cell->blue[(hinge->side[end] + i) & 3];
-            sum += 0.25f * length[spring] / rest[spring];
-        }
-    }
-
-    float green = job->state->burn->spring_length[SINGE_GREEN][k] / job->shell->springs[SINGE_GREEN].rest[k];
-    float ratio = green / sum * real_cosf(hinge->lean);
-    float lean = real_acosf(ratio < 1 ? ratio : 1);
-    return 2 * ((hinge->lean > 0 ? lean : -lean) - hinge->lean);
-}
-
 static Float3 crease_edge(const Crease *job, const uint32_t *ends, const Hinge *hinge) {
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     const uint32_t *corner = job->shell->cells[ends[0] - job->shell->vertex_count];
@@ -214,11 +194,27 @@ static float crease_turned(const Crease *job, uint32_t k, float last) {
     const Hinge *hinge = &job->plan->hinges[k];
     const float(*normal)[4] = (const float(*)[4])job->plan->cell_normal;
     const uint32_t first = ends[0] - job->shell->vertex_count, second = ends[1] - job->shell->vertex_count;
-    const bool whole = !job->burning || crease_kept(job->shell, job->state, k) == 1;
-    const float curl = whole ? 0 : crease_curl(job, k, ends, hinge), before = last + curl + hinge->angle;
+
+    // the angle by which layers that have shrunk differently curl by themselves
+    float curl = 0;
+    if (job->burning && crease_kept(job->shell, job->state, k) != 1) {
+        const float *length = job->state->burn->spring_length[SINGE_BLUE], *rest = job->shell->springs[SINGE_BLUE].rest;
+        float blue = 0; // length of the mesh along the spring over that at rest: the mean of its cells' four springs
+        for (int end = 0; end < 2; end++)
+            for (int i = 1; i < 4; i += 2) {
+                const CellSprings *cell = &job->shell->cell_springs[ends[end] - job->shell->vertex_count];
+                const uint32_t spring = cell->blue[(hinge->side[end] + i) & 3];
+                blue += 0.25f * length[spring] / rest[spring];
+            }
+        const float green = job->state->burn->spring_length[SINGE_GREEN][k] / job->shell->springs[SINGE_GREEN].rest[k];
+        const float ratio = green / blue * real_cosf(hinge->lean), lean = real_acosf(ratio < 1 ? ratio : 1);
+        curl = 2 * ((hinge->lean > 0 ? lean : -lean) - hinge->lean);
+    }
+
     float angle = hinge_angle(float3_load(normal[first]), float3_load(normal[second]), crease_edge(job, ends, hinge));
 
     // a sheet folded flat on itself has both signs: the angle keeps the sign that it had
+    const float before = last + curl + hinge->angle;
     if (angle - before > CREASE_PI) angle = CREASE_PI * -1;
     else if (angle - before < -CREASE_PI) angle = CREASE_PI;
     return angle - hinge->angle - curl;
@@ -238,26 +234,6 @@ static float crease_slant(const Crease *job, uint32_t k) {
     return fmaxf(slant, CREASE_SLANT);
 }
 
-/// The part of a green spring's bend that counts next to those of its neighbours along the strand.
-static float crease_counts(const Crease *job, uint32_t k) {
-    const uint8_t *flags = job->state->ablate->spring_flags[SINGE_GREEN];
-    const SpringSet *green = &job->shell->springs[SINGE_GREEN];
-    const float *bend = job->dynamics->bend;
-    float sum = bend[k], weight = 1;
-    if (k > 0 && flags[k - 1] & SINGE_ALIVE && green->ends[k - 1][1] == green->ends[k][0]) {
-        sum += 0.5f * bend[k - 1];
-        weight += 0.5f;
-    }
-
-    if (k + 1 < green->count && flags[k + 1] & SINGE_ALIVE && green->ends[k + 1][0] == green->ends[k][1]) {
-        sum += 0.5f * bend[k + 1];
-        weight += 0.5f;
-    }
-
-    const float max = CREASE_PEAK * fabsf(sum) / weight;
-    return sum * bend[k] > 0 ? fmaxf(-max, fminf(bend[k], max)) : 0;
-}
-
 /// Filters the bends of green springs, without the curl of their layers.
 static void crease_bends(void *task, int begin, int end) {
     const Crease *job = task;
@@ -275,14 +251,28 @@ static void crease_bends(void *task, int begin, int end) {
 static double crease_springs(void *task, int begin, int end) {
     const Crease *job = task;
     const uint8_t *flags = job->state->ablate->spring_flags[SINGE_GREEN];
+    const SpringSet *green = &job->shell->springs[SINGE_GREEN];
+    const float *bends = job->dynamics->bend;
     const Matter *matter = &job->shell->matter;
     double creased = 0;
     for (uint32_t k = (uint32_t)begin; k < (uint32_t)end; k++) {
         if (!(flags[k] & SINGE_ALIVE)) continue;
 
-        const uint32_t *ends = job->shell->springs[SINGE_GREEN].ends[k];
+        const uint32_t *ends = green->ends[k];
         float *crease = &job->dynamics->crease[k];
-        const float bend = crease_counts(job, k);
+
+        // the part of the bend that counts next to those of its neighbours along the strand
+        float sum = bends[k], weight = 1;
+        if (k > 0 && flags[k - 1] & SINGE_ALIVE && green->ends[k - 1][1] == ends[0]) {
+            sum += 0.5f * bends[k - 1];
+            weight += 0.5f;
+        }
+        if (k + 1 < green->count && flags[k + 1] & SINGE_ALIVE && green->ends[k + 1][0] == ends[1]) {
+            sum += 0.5f * bends[k + 1];
+            weight += 0.5f;
+        }
+        const float peak = CREASE_PEAK * fabsf(sum) / weight;
+        const float bend = sum * bends[k] > 0 ? fmaxf(-peak, fminf(bends[k], peak)) : 0;
         float radius = 0.5f * (field_at(matter->crease_radius, ends[0]) + field_at(matter->crease_radius, ends[1]));
         if (fabsf(bend) * radius < CREASE_SLANT && *crease == 0) continue; // the usual case
 

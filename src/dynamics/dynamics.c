@@ -19,21 +19,6 @@ static int plan_partials(const Shell *shell) {
     return particles > 2 * springs ? particles : 2 * springs;
 }
 
-static bool plan_allocate(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
-    const DynamicsSettings *settings = &plan->settings;
-    const bool arrays =
-        NEW(memory, plan->inverse_mass, plan->particle_count) && NEW(memory, plan->drag, plan->particle_count) &&
-        NEW(memory, plan->normal, plan->particle_count) && NEW(memory, plan->air, plan->particle_count) &&
-        NEW(memory, plan->predicted, plan->particle_count) && NEW(memory, plan->soft, plan->particle_count) &&
-        NEW(memory, plan->cell_normal, plan->cell_count) && NEW(memory, plan->height_wait, height_wait_count(shell)) &&
-        NEW(memory, plan->colliders, plan->collider_capacity) && NEW(memory, plan->partial, plan_partials(shell));
-    if (!arrays || !plan->solver->create(memory, shell, plan) || !patches_create(memory, shell, &plan->patches) ||
-        !attach_create(memory, shell, &plan->attachments))
-        return false;
-    return !settings->contact.enabled ||
-           !collision_plan_create(memory, shell, &settings->contact, settings->time_step, &plan->collision);
-}
-
 bool dynamics_runs_here(SingeInstructions instructions) { return kernels_choose(instructions) != NULL; }
 SingeInstructions dynamics_instructions(SingeInstructions asked) { return kernels_choose(asked)->instructions; }
 
@@ -56,7 +41,17 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     // arrays, and what the solver needs
     plan->kernels = kernels_choose(settings->instructions);
     plan->solver = solver->method == SINGE_SOLVER_STRAND ? &strand_solver : &paper_solver;
-    if (!plan_allocate(memory, shell, plan)) {
+    const bool done =
+        NEW(memory, plan->inverse_mass, plan->particle_count) && NEW(memory, plan->drag, plan->particle_count) &&
+        NEW(memory, plan->normal, plan->particle_count) && NEW(memory, plan->air, plan->particle_count) &&
+        NEW(memory, plan->predicted, plan->particle_count) && NEW(memory, plan->soft, plan->particle_count) &&
+        NEW(memory, plan->cell_normal, plan->cell_count) && NEW(memory, plan->height_wait, height_wait_count(shell)) &&
+        NEW(memory, plan->colliders, plan->collider_capacity) && NEW(memory, plan->partial, plan_partials(shell)) &&
+        plan->solver->create(memory, shell, plan) && patches_create(memory, shell, &plan->patches) &&
+        attach_create(memory, shell, &plan->attachments) &&
+        (!settings->contact.enabled ||
+         !collision_plan_create(memory, shell, &settings->contact, settings->time_step, &plan->collision));
+    if (!done) {
         dynamics_plan_free(memory, shell, plan);
         return SINGE_ERROR_MEMORY;
     }

@@ -81,37 +81,6 @@ static float cell_length(const Shell *shell, const StateInput *state, uint32_t c
                  float3_length(float3_sub(float3_load(dynamics->position[a]), float3_load(dynamics->position[b]))));
 }
 
-/// Lowers the distances at a cell's other corners, once that of corner i is final.
-static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const StateInput *state, uint32_t cell, int i,
-                                float *distance) {
-    const uint32_t *corner = shell->cells[cell];
-    float dv = distance[corner[i]];
-
-    for (int turn = 1; turn < 4; turn++) {
-        int j = (i + turn) & 3;
-        uint32_t u = corner[j];
-        if (search->position[u] == GEODESIC_DONE) continue;
-
-        // along the side or diagonal, or through the segment to another corner
-        float vu = cell_length(shell, state, cell, i, j), d = dv + vu;
-        for (int other = 1; other < 4; other++) {
-            int k = (i + other) & 3;
-            if (k == j || search->position[corner[k]] != GEODESIC_DONE) continue;
-            d = fminf(d, geodesic_through(dv, distance[corner[k]], cell_length(shell, state, cell, i, k), vu,
-                                          cell_length(shell, state, cell, k, j)));
-        }
-
-        // keep the shorter distance
-        if (d >= distance[u]) continue;
-        distance[u] = d;
-        if (search->position[u] == GEODESIC_FAR) heap_put(search, search->waiting++, u);
-        uint32_t at = search->position[u];
-        for (; at > 0 && distance[search->heap[(at - 1) / 2]] > d; at = (at - 1) / 2)
-            heap_put(search, at, search->heap[(at - 1) / 2]);
-        heap_put(search, at, u);
-    }
-}
-
 void geodesic_from(Geodesic *search, const Shell *shell, const StateInput *state, uint32_t source, uint32_t first,
                    uint32_t last, float *distance) {
     for (uint32_t v = first; v < last; v++) {
@@ -128,9 +97,35 @@ void geodesic_from(Geodesic *search, const Shell *shell, const StateInput *state
         for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++) {
             uint32_t cell = shell->fan[k];
             if (!(state->ablate->cell_flags[cell] & SINGE_ALIVE)) continue;
+
+            // lower the distances at the cell's other corners
+            const uint32_t *corner = shell->cells[cell];
+            const float dv = distance[v];
             int i = 0;
-            while (shell->cells[cell][i] != v) i++;
-            geodesic_cross_cell(search, shell, state, cell, i, distance);
+            while (corner[i] != v) i++;
+            for (int turn = 1; turn < 4; turn++) {
+                const int j = (i + turn) & 3;
+                const uint32_t u = corner[j];
+                if (search->position[u] == GEODESIC_DONE) continue;
+
+                // along the side or diagonal, or through the segment to another corner
+                float vu = cell_length(shell, state, cell, i, j), d = dv + vu;
+                for (int other = 1; other < 4; other++) {
+                    const int m = (i + other) & 3;
+                    if (m == j || search->position[corner[m]] != GEODESIC_DONE) continue;
+                    d = fminf(d, geodesic_through(dv, distance[corner[m]], cell_length(shell, state, cell, i, m), vu,
+                                                  cell_length(shell, state, cell, m, j)));
+                }
+
+                // the vertex rises in the heap with a shorter distance
+                if (d >= distance[u]) continue;
+                distance[u] = d;
+                if (search->position[u] == GEODESIC_FAR) heap_put(search, search->waiting++, u);
+                uint32_t at = search->position[u];
+                for (; at > 0 && distance[search->heap[(at - 1) / 2]] > d; at = (at - 1) / 2)
+                    heap_put(search, at, search->heap[(at - 1) / 2]);
+                heap_put(search, at, u);
+            }
         }
     }
 }

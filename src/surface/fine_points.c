@@ -138,13 +138,6 @@ FineLocation fine_point_location(uint32_t cell, int side, int splits, int i, int
 
 // ---- evaluation
 
-static bool even_around(const Fine *fine, uint32_t vertex) {
-    const Shell *shell = fine->shell;
-    for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
-        if (!(fine->flags[shell->fan[k]] & FINE_EVEN)) return false;
-    return true;
-}
-
 /// The value next to a cell that is gone: its level is limited to the linear interpolation of the side's ends.
 static FineValue held_back(FineValue value, float level) {
     if (level < value.level) value.level = level;
@@ -160,8 +153,9 @@ static void evaluate_vertices(void *context, int begin, int end) {
     const Shell *shell = fine->shell;
     for (uint32_t v = (uint32_t)begin; v < (uint32_t)end; v++) {
         uint32_t home = SHELL_NONE;
-        bool gone = false;
+        bool gone = false, even = true;
         for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++) {
+            even &= (fine->flags[shell->fan[k]] & FINE_EVEN) != 0;
             if (!points_alive(fine, shell->fan[k])) gone = true;
             else if (home == SHELL_NONE) home = shell->fan[k];
         }
@@ -171,7 +165,7 @@ static void evaluate_vertices(void *context, int begin, int end) {
         if (home == SHELL_NONE) continue;
 
         fine->values[v] = particle_value(fine, v);
-        if (even_around(fine, v)) continue;
+        if (even) continue;
         uint8_t corner = 0;
         while (shell->cells[home][corner] != v) corner++;
         fine->values[v] = fine_value(fine, (FineLocation){home, corner, {1, 0, 0}});
@@ -209,20 +203,6 @@ static void evaluate_sides(void *context, int begin, int end) {
     }
 }
 
-/// Whether a cell's points differ in the sign of the level; if so, the cell is split.
-static bool differs(const Fine *fine, uint32_t cell, int splits) {
-    bool inside = false, outside = false;
-    for (int side = 0; side < 4; side++)
-        for (int j = 0; j <= splits; j++)
-            for (int i = 0; i + j <= splits; i++) {
-                float level = fine->values[fine_point(fine, cell, side, splits, i, j)].level;
-                inside |= level >= 0;
-                outside |= level < 0;
-                if (inside && outside) return true;
-            }
-    return false;
-}
-
 static void evaluate_cells(void *context, int begin, int end) {
     Fine *fine = context;
     for (int n = begin; n < end; n++) {
@@ -236,11 +216,23 @@ static void evaluate_cells(void *context, int begin, int end) {
     }
 }
 
-/// A pass of its own, as evaluation reads the flags of other cells.
+/// Cells whose points differ in the sign of the level are split. A pass of its own, as evaluation reads the flags of
+/// other cells.
 static void mark_split(void *context, int begin, int end) {
     Fine *fine = context;
-    for (int n = begin; n < end; n++)
-        if (differs(fine, fine->near[n], fine_splits(fine, fine->near[n]))) fine->flags[fine->near[n]] |= FINE_SPLIT;
+    for (int n = begin; n < end; n++) {
+        const uint32_t cell = fine->near[n];
+        const int splits = fine_splits(fine, cell);
+        bool inside = false, outside = false;
+        for (int side = 0; side < 4 && !(inside && outside); side++)
+            for (int j = 0; j <= splits && !(inside && outside); j++)
+                for (int i = 0; i + j <= splits; i++) {
+                    const float level = fine->values[fine_point(fine, cell, side, splits, i, j)].level;
+                    inside |= level >= 0;
+                    outside |= level < 0;
+                }
+        if (inside && outside) fine->flags[cell] |= FINE_SPLIT;
+    }
 }
 
 // ---- bent cells that are not split

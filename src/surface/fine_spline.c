@@ -111,25 +111,6 @@ void fine_coordinates(FineLocation location, float *x, float *y) {
     }
 }
 
-static FineLocation from_coordinates(uint32_t cell, float x, float y) {
-    FineLocation location = {.cell = cell};
-    float out, along;
-    if (fabsf(x) > fabsf(y)) {
-        location.side = x > 0 ? 1 : 3;
-        out = fabsf(x);
-        along = x > 0 ? y : -y;
-    } else {
-        location.side = y > 0 ? 2 : 0;
-        out = fabsf(y);
-        along = y > 0 ? -x : x;
-    }
-
-    location.weight[0] = out - along;
-    location.weight[1] = out + along;
-    location.weight[2] = 1 - 2 * out;
-    return location;
-}
-
 FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, float dy) {
     uint32_t cell = location.cell;
     float x, y;
@@ -162,5 +143,11 @@ FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, floa
 
     x = fmaxf(-0.5f, fminf(x, 0.5f));
     y = fmaxf(-0.5f, fminf(y, 0.5f));
-    return from_coordinates(cell, x, y);
+
+    // the position as weights
+    const bool across = fabsf(x) > fabsf(y);
+    const float out = across ? fabsf(x) : fabsf(y), along = across ? (x > 0 ? y : -y) : (y > 0 ? -x : x);
+    return (FineLocation){.cell = cell,
+                          .side = (uint8_t)(across ? (x > 0 ? 1 : 3) : (y > 0 ? 2 : 0)),
+                          .weight = {out - along, out + along, 1 - 2 * out}};
 }
