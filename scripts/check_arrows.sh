@@ -75,8 +75,8 @@ circles=$(find "${parts[@]}" -name '*.h' -print0 | xargs -0r grep -HE '^[[:space
     tsort 2>&1 >/dev/null || true)
 [ -z "$circles" ] || fault "headers include each other: $circles"
 
-# the name of a file says which one is meant
-twice=$(find "${parts[@]}" -name '*.[ch]' -exec basename {} \; | sort | uniq -d)
+# the name of a file says which one is meant; a public header is singe/NAME
+twice=$(find "${parts[@]}" -path include -prune -o -name '*.[ch]' -exec basename {} \; | sort | uniq -d)
 [ -z "$twice" ] || fault "files with the same name: $twice"
 
 [ $bad -eq 0 ] && echo "includes follow the arrows"

@@ -1,4 +1,4 @@
-// Ablation: removes burnt parts (section 6), labels the pieces, and gives the level set that is drawn.
+// Ablation: removes burnt parts (section 6), labels the pieces, and gives the level set that surface/ draws.
 #ifndef ABLATE_ABLATE_H
 #define ABLATE_ABLATE_H
 
@@ -13,6 +13,12 @@ void ablate_plan_free(Memory *memory, AblatePlan *plan);
 
 /// m' = m - m_loss at a particle; where the sheet's `ablate` is false, always 1.
 float ablate_level(const Shell *shell, const State *state, uint32_t particle);
+
+/// The same at all [particles], until the next call.
+const float *ablate_levels(AblatePlan *plan, const Shell *shell, const BurnState *burn);
+
+/// [vertices] 1 at the mesh's boundary and where it is torn, as of the last ablate_levels.
+const uint8_t *ablate_rim(const AblatePlan *plan);
 
 /// Labels the pieces in order of their smallest particle, unless they have labels. ablate_step does this
 /// first; a caller that reads pieces before the first step calls it too.
@@ -29,22 +35,5 @@ void ablate_step(AblatePlan *plan, const StepContext *context, AblateState *abla
 
 /// Relabels the pieces after a tear, removes small loose ones, and reports those that separated.
 void ablate_torn(AblatePlan *plan, const StepContext *context, AblateState *ablate);
-
-/// Draws the surface (marching triangles, surface.c). Grows `surface` through its allocator.
-SingeResult ablate_surface(AblatePlan *plan, const Shell *shell, const State *state, SingeSurface *surface,
-                           SingeError *error);
-
-/// How finely the surface is drawn near the front.
-typedef struct SurfaceDetail {
-    float size;        ///< m, distance of the points of the level set, > 0
-    float raggedness;  ///< m, max depth of the raggedness of burnt edges, >= 0
-    uint32_t seed;     ///< of the noise; each sheet has its own
-    const float *room; ///< [vertices] m, distance of another surface, or INFINITY; NULL: none is near
-    float bulge_max;   ///< m, max distance of the surface from flat triangles; 0: only by the cells' size
-} SurfaceDetail;
-
-/// The same, refined near the front (surface_fine.c). Its scratch comes from `memory` and is freed before it returns.
-SingeResult ablate_surface_fine(AblatePlan *plan, const Shell *shell, const State *state, const SurfaceDetail *detail,
-                                Memory *memory, Pool *pool, SingeSurface *surface, SingeError *error);
 
 #endif

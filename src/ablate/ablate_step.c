@@ -1,5 +1,147 @@
-// The ablate stage: holes, removal, pieces.
+// The ablate stage: where holes open, what goes, and then the pieces (piece.c).
+//
+// A hole opens at a particle that burnt through in this step (its level fell below 0) if none of the particles that
+// were connected with it by springs at the start is burnt through or gone, and if it is not at the mesh's boundary,
+// where it leaves a notch. Of neighbours that burn through in the same step only the first in order of particle opens a
+// hole. A centre is never at the boundary.
+//
+// Removal (section 6): "if both triangles that share a spring disappear, we remove that spring".
+//
+// Triangle i of a cell joins corners i and i + 1 and the virtual centre. It is gone when its three levels are negative;
+// mass never grows, so it stays gone. Then
+//
+//   blue   i goes when triangle i and the one across side i (none at the boundary) are gone
+//   red    i goes when triangles i - 1 and i are gone
+//   yellow   goes when its cell's four triangles are gone
+//   green    goes when either of its cells' four triangles are gone
+//
+// and a particle goes with its last spring, with its mass and its enthalpy C (T - T_amb). The mass that it burnt in the
+// step that removes it is in mass_burnt, but that step's heat of combustion is not released: heat is released in the
+// next step, to particles that are then alive. It is not counted either, so that the ledger closes.
 #include "ablate/ablate_plan.h"
+
+// ---- holes
+
+typedef struct HoleSearch {
+    const AblatePlan *plan;
+    const Shell *shell;
+    const StateInput *state;
+    const AblateState *ablate;
+    float now; ///< s, time stamp of the burn stage
+} HoleSearch;
+
+static bool burnt_now(const HoleSearch *search, uint32_t particle) {
+    return search->state->burn->time_burnt[particle] == search->now && search->plan->level[particle] < 0;
+}
+
+/// Burnt through or gone before `particle`, in time or in order.
+static bool open_before(const HoleSearch *search, uint32_t other, uint32_t particle) {
+    if (other == particle) return false;
+    if (!(search->ablate->particle_flags[other] & SINGE_ALIVE)) return true;
+    return search->plan->level[other] < 0 && (!burnt_now(search, other) || other < particle);
+}
+
+/// Whether a corner or the centre of a cell is open: the red, blue and yellow neighbours of its particles.
+static bool cell_open_before(const HoleSearch *search, uint32_t cell, uint32_t particle) {
+    for (int i = 0; i < 4; i++)
+        if (open_before(search, search->shell->cells[cell][i], particle)) return true;
+    return open_before(search, shell_centre(search->shell, cell), particle);
+}
+
+/// Whether a hole opens at a particle that has just burnt through.
+static bool hole_opens(const HoleSearch *search, uint32_t particle) {
+    const Shell *shell = search->shell;
+    if (shell_is_corner(shell, particle)) {
+        if (search->plan->rim[particle]) return false;
+
+        for (uint32_t k = shell->fan_first[particle]; k < shell->fan_first[particle + 1]; k++)
+            if (cell_open_before(search, shell->fan[k], particle)) return false;
+        return true;
+    }
+
+    // a centre: its cell, and the centres of the cells around
+    uint32_t cell = particle - shell->vertex_count;
+    if (cell_open_before(search, cell, particle)) return false;
+
+    for (int i = 0; i < 4; i++) {
+        uint32_t other = shell_neighbour(shell, cell, i);
+        if (other != SHELL_NONE && open_before(search, shell_centre(shell, other), particle)) return false;
+    }
+
+    return true;
+}
+
+/// Pushes a SINGE_EVENT_HOLE_OPENED for every hole that opens in this step. Before the removal.
+static void hole_report(const AblatePlan *plan, const StepContext *context, const AblateState *ablate) {
+    const Shell *shell = context->shell;
+    const StateInput *state = &context->state;
+    HoleSearch search = {plan, shell, state, ablate, (float)state->time};
+
+    for (uint32_t i = 0; i < shell->particle_count; i++) {
+        if (!burnt_now(&search, i) || !(ablate->particle_flags[i] & SINGE_ALIVE) || !hole_opens(&search, i)) continue;
+        event_push(context->events, SINGE_EVENT_HOLE_OPENED, (int32_t)i, state->time, state->dynamics->position[i]);
+    }
+}
+
+// ---- removal
+
+void remove_spring(Removal *removal, SingeColour colour, uint32_t spring) {
+    const Matter *matter = &removal->shell->matter;
+    AblateState *ablate = removal->ablate;
+    uint8_t *flags = &ablate->spring_flags[colour][spring];
+    if (!(*flags & SINGE_ALIVE)) return;
+
+    *flags &= (uint8_t)~SINGE_ALIVE;
+    removal->changed = true;
+    for (int end = 0; end < 2; end++) {
+        uint32_t particle = removal->shell->springs[colour].ends[spring][end];
+        if (--ablate->degree[particle] > 0) continue;
+
+        // the particle's last spring
+        double above = (double)removal->state->heat->temperature[particle] - (double)removal->heat_ambient;
+        ablate->heat_removed += (double)matter->capacity[particle] * above;
+        ablate->mass_removed += (double)removal->state->burn->mass[particle] * (double)matter->mass[particle];
+        ablate->particle_flags[particle] &= (uint8_t)~SINGE_ALIVE;
+        ablate->piece[particle] = -1;
+    }
+}
+
+/// The remaining triangles of a cell: bit i is the triangle of side i.
+static unsigned triangles_left(const AblatePlan *plan, const Shell *shell, uint32_t cell) {
+    const uint32_t *corners = shell->cells[cell];
+    unsigned left = 0;
+    if (plan->level[shell_centre(shell, cell)] >= 0) return 15;
+
+    for (unsigned i = 0; i < 4; i++)
+        if (plan->level[corners[i]] >= 0) left |= 1u << i | 1u << ((i + 3) & 3);
+    return left;
+}
+
+static void remove_from_cell(Removal *removal, uint32_t cell) {
+    const Shell *shell = removal->shell;
+    const CellSprings *springs = &shell->cell_springs[cell];
+    unsigned left = triangles_left(removal->plan, shell, cell);
+
+    for (int i = 0; i < 4; i++) {
+        if (left >> i & 1) continue;
+        if (!(left >> ((i + 3) & 3) & 1)) remove_spring(removal, SINGE_RED, springs->red[i]);
+
+        // the triangle across side i shares the side's corners, so only the other centre remains to be checked
+        uint32_t other = shell_neighbour(shell, cell, i);
+        if (other == SHELL_NONE || !(removal->ablate->cell_flags[other] & SINGE_ALIVE) ||
+            removal->plan->level[shell_centre(shell, other)] < 0)
+            remove_spring(removal, SINGE_BLUE, springs->blue[i]);
+    }
+
+    if (left) return;
+    for (int i = 0; i < 4; i++)
+        if (springs->green[i] != SHELL_NONE) remove_spring(removal, SINGE_GREEN, springs->green[i]);
+    for (int i = 0; i < 2; i++) remove_spring(removal, SINGE_YELLOW, springs->yellow[i]);
+    removal->ablate->cell_flags[cell] &= (uint8_t)~SINGE_ALIVE;
+    removal->changed = true;
+}
+
+// ---- the stage
 
 static Removal removal_begin(AblatePlan *plan, const StepContext *context, AblateState *ablate) {
     return (Removal){.plan = plan,
@@ -19,9 +161,12 @@ void ablate_step(AblatePlan *plan, const StepContext *context, AblateState *abla
     Removal removal = removal_begin(plan, context, ablate);
     ablate_label(plan, context->shell, ablate);
     ablate_levels(plan, context->shell, context->state.burn);
-    hole_report(plan, context->shell, &context->state, ablate, context->events);
-    remove_burnt(&removal);
+    hole_report(plan, context, ablate);
+    for (uint32_t c = 0; c < context->shell->cell_count; c++) // a cell whose centre is left keeps everything
+        if (plan->level[shell_centre(context->shell, c)] < 0 && ablate->cell_flags[c] & SINGE_ALIVE)
+            remove_from_cell(&removal, c);
     if (!removal.changed) return;
+
     piece_update(&removal, context->events);
     ablate->topology_version++;
 }

@@ -15,14 +15,8 @@ static uint32_t piece_find(uint32_t *root, uint32_t i) {
         root[i] = root[root[i]];
         i = root[i];
     }
-    return i;
-}
 
-static void piece_join(uint32_t *root, uint32_t a, uint32_t b) {
-    a = piece_find(root, a);
-    b = piece_find(root, b);
-    if (a < b) root[b] = a;
-    else root[a] = b;
+    return i;
 }
 
 /// Sets plan->root[i] to the smallest particle that is connected with i.
@@ -32,9 +26,14 @@ static void find_sets(AblatePlan *plan, const Shell *shell, const AblateState *a
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         const SpringSet *springs = &shell->springs[colour];
         const uint8_t *flags = ablate->spring_flags[colour];
-        for (uint32_t s = 0; s < springs->count; s++)
-            if (flags[s] & SINGE_ALIVE) piece_join(root, springs->ends[s][0], springs->ends[s][1]);
+        for (uint32_t s = 0; s < springs->count; s++) {
+            if (!(flags[s] & SINGE_ALIVE)) continue;
+            uint32_t a = piece_find(root, springs->ends[s][0]), b = piece_find(root, springs->ends[s][1]);
+            if (a < b) root[b] = a;
+            else root[a] = b;
+        }
     }
+
     // a root precedes the other particles of its set, so one lookup is enough
     for (uint32_t i = 0; i < shell->particle_count; i++) root[i] = root[root[i]];
 }
@@ -47,6 +46,7 @@ static void piece_measure(AblatePlan *plan, const Shell *shell, const AblateStat
     for (uint32_t i = 0; i < count; i++) plan->area[i] = 0;
     for (uint32_t i = 0; i < count; i++) {
         if (ablate->degree[i] == 0) continue;
+
         uint32_t root = plan->root[i];
         plan->size[root]++;
         if (i < shell->vertex_count) plan->area[root] += (double)shell->matter.area[i];
@@ -64,37 +64,16 @@ static bool mark_small(AblatePlan *plan, const Sheet *sheet) {
     for (uint32_t r = first; r < last; r++) {
         if (!plan->size[r] || r == largest || plan->mark[r] & PIECE_HELD) continue;
         if (!(plan->area[r] < (double)sheet->drop_pieces_below)) continue;
+
         plan->mark[r] |= PIECE_DROPPED;
         any = true;
     }
-    return any;
-}
 
-/// Removes the marked pieces whole: cells, springs and, with their last spring, particles.
-static void drop_marked(Removal *removal) {
-    const AblatePlan *plan = removal->plan;
-    const Shell *shell = removal->shell;
-    for (uint32_t c = 0; c < shell->cell_count; c++)
-        if (plan->mark[plan->root[shell->cells[c][0]]] & PIECE_DROPPED)
-            removal->ablate->cell_flags[c] &= (uint8_t)~SINGE_ALIVE;
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
-        for (uint32_t s = 0; s < shell->springs[colour].count; s++)
-            if (plan->mark[plan->root[shell->springs[colour].ends[s][0]]] & PIECE_DROPPED)
-                remove_spring(removal, (SingeColour)colour, s);
+    return any;
 }
 
 static bool is_piece(const AblatePlan *plan, uint32_t root) {
     return plan->size[root] > 0 && !(plan->mark[root] & PIECE_DROPPED);
-}
-
-/// Finds for every id the root of the part that keeps it.
-static void choose_heirs(AblatePlan *plan, const AblateState *ablate) {
-    memset(plan->heir, 0xff, plan->particle_count * sizeof *plan->heir);
-    for (uint32_t r = 0; r < plan->particle_count; r++) {
-        if (!is_piece(plan, r)) continue;
-        uint32_t *heir = &plan->heir[ablate->piece[r]];
-        if (*heir == SHELL_NONE || plan->size[r] > plan->size[*heir]) *heir = r;
-    }
 }
 
 /// Gives every particle the id of its root.
@@ -114,50 +93,67 @@ void ablate_label(AblatePlan *plan, const Shell *shell, AblateState *ablate) {
 
 void piece_update(Removal *removal, EventList *events) {
     AblatePlan *plan = removal->plan;
+    const Shell *shell = removal->shell;
     const StateInput *state = removal->state;
     AblateState *ablate = removal->ablate;
+    find_sets(plan, shell, ablate);
+    piece_measure(plan, shell, ablate, state->dynamics->pinned);
+
+    // small loose pieces go whole: cells, springs and, with their last spring, particles
     bool drop = false;
-    find_sets(plan, removal->shell, ablate);
-    piece_measure(plan, removal->shell, ablate, state->dynamics->pinned);
-    for (uint32_t s = 0; s < removal->shell->sheet_count; s++) drop |= mark_small(plan, &removal->shell->sheets[s]);
-    if (drop) drop_marked(removal);
-    choose_heirs(plan, ablate);
+    for (uint32_t s = 0; s < shell->sheet_count; s++) drop |= mark_small(plan, &shell->sheets[s]);
+    for (uint32_t c = 0; drop && c < shell->cell_count; c++)
+        if (plan->mark[plan->root[shell->cells[c][0]]] & PIECE_DROPPED) ablate->cell_flags[c] &= (uint8_t)~SINGE_ALIVE;
+    for (int colour = 0; drop && colour < SINGE_COLOUR_COUNT; colour++)
+        for (uint32_t s = 0; s < shell->springs[colour].count; s++)
+            if (plan->mark[plan->root[shell->springs[colour].ends[s][0]]] & PIECE_DROPPED)
+                remove_spring(removal, (SingeColour)colour, s);
+
+    // for every id, the root of the part that keeps it
+    memset(plan->heir, 0xff, plan->particle_count * sizeof *plan->heir);
+    for (uint32_t r = 0; r < plan->particle_count; r++) {
+        if (!is_piece(plan, r)) continue;
+
+        uint32_t *heir = &plan->heir[ablate->piece[r]];
+        if (*heir == SHELL_NONE || plan->size[r] > plan->size[*heir]) *heir = r;
+    }
+
+    // new ids for the others
     ablate->piece_count = 0;
     for (uint32_t r = 0; r < plan->particle_count; r++) {
         if (!is_piece(plan, r)) continue;
+
         ablate->piece_count++;
         if (plan->heir[ablate->piece[r]] == r) continue;
         ablate->piece[r] = (int32_t)ablate->next_piece++;
         event_push(events, SINGE_EVENT_PIECE_FREED, ablate->piece[r], state->time, state->dynamics->position[r]);
     }
+
     spread_ids(plan, ablate);
 }
 
-static bool flags_fit(const Shell *shell, const AblateState *ablate) {
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
-        for (uint32_t s = 0; s < shell->springs[colour].count; s++) {
+// ---- what was read back
+
+static bool springs_fit(AblatePlan *plan, const Shell *shell, const AblateState *ablate) {
+    // flags, and a count of the springs at their ends
+    memset(plan->size, 0, shell->particle_count * sizeof *plan->size);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        const SpringSet *springs = &shell->springs[colour];
+        for (uint32_t s = 0; s < springs->count; s++) {
             uint8_t flags = ablate->spring_flags[colour][s];
-            if ((flags & ~SINGE_ALIVE) || (flags && !(shell->springs[colour].rest[s] > 0))) return false;
+            if ((flags & ~SINGE_ALIVE) || (flags && !(springs->rest[s] > 0))) return false;
+            for (int k = 0; k < 2 && flags; k++) plan->size[springs->ends[s][k]]++;
         }
+    }
+
     for (uint32_t c = 0; c < shell->cell_count; c++)
         if (ablate->cell_flags[c] & ~SINGE_ALIVE) return false;
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         uint8_t flags = ablate->particle_flags[i];
         if ((flags & ~(SINGE_ALIVE | SINGE_PINNED)) || (ablate->degree[i] && !(flags & SINGE_ALIVE))) return false;
-    }
-    return true;
-}
-
-/// Counts springs at their ends into plan->size, and compares.
-static bool degrees_fit(AblatePlan *plan, const Shell *shell, const AblateState *ablate) {
-    memset(plan->size, 0, shell->particle_count * sizeof *plan->size);
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
-        const SpringSet *springs = &shell->springs[colour];
-        for (uint32_t s = 0; s < springs->count; s++)
-            for (int k = 0; k < 2 && ablate->spring_flags[colour][s]; k++) plan->size[springs->ends[s][k]]++;
-    }
-    for (uint32_t i = 0; i < shell->particle_count; i++)
         if (plan->size[i] != ablate->degree[i]) return false;
+    }
+
     return true;
 }
 
@@ -167,6 +163,7 @@ static bool pieces_fit(AblatePlan *plan, const Shell *shell, const AblateState *
     uint64_t pieces = 0, particles = 0;
     find_sets(plan, shell, ablate);
     memset(plan->heir, 0xff, shell->particle_count * sizeof *plan->heir);
+
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         int32_t piece = ablate->piece[i];
         uint32_t root = plan->root[i];
@@ -176,11 +173,15 @@ static bool pieces_fit(AblatePlan *plan, const Shell *shell, const AblateState *
         if ((uint32_t)piece >= ablate->next_piece || piece != ablate->piece[root]) return false;
         if ((uint32_t)piece >= shell->particle_count) return false;
         if (root == i && plan->heir[piece] != SHELL_NONE) return false;
-        if (root == i) plan->heir[piece] = i, pieces++;
+        if (root != i) continue;
+
+        plan->heir[piece] = i;
+        pieces++;
     }
+
     return pieces == ablate->piece_count && ablate->next_piece + particles <= shell->particle_count + pieces;
 }
 
 bool ablate_fits(AblatePlan *plan, const Shell *shell, const AblateState *ablate) {
-    return flags_fit(shell, ablate) && degrees_fit(plan, shell, ablate) && pieces_fit(plan, shell, ablate);
+    return springs_fit(plan, shell, ablate) && pieces_fit(plan, shell, ablate);
 }

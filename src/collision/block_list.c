@@ -1,4 +1,3 @@
-#include "common/assertion.h"
 #include "collision/block_list.h"
 
 #include <string.h>
@@ -24,6 +23,7 @@ bool block_list_grow(Memory *memory, BlockList *list, uint32_t capacity, uint32_
         block_list_free(memory, &grown);
         return false;
     }
+
     memcpy(grown.blocks, list->blocks, list->block_count * sizeof *list->blocks);
     block_list_free(memory, list);
     *list = grown;
@@ -41,7 +41,6 @@ typedef struct Job {
 
 static void write_blocks(void *task, int begin, int end) {
     const Job *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int b = begin; b < end; b++) {
         ListBlock *block = &job->list->blocks[b];
         if (job->again) block->room = block->start < job->count ? job->count - block->start : 0;
@@ -57,6 +56,7 @@ static uint64_t number_blocks(BlockList *list, int blocks) {
         list->blocks[b].start = (uint32_t)(sum < UINT32_MAX ? sum : UINT32_MAX);
         sum += list->blocks[b].count;
     }
+
     return sum;
 }
 
@@ -73,6 +73,7 @@ uint32_t block_list_settle(BlockList *list, Pool *pool, int blocks, uint64_t cou
                            void *context) {
     uint32_t kept = count < room ? (uint32_t)count : room;
     if (list->whole) return kept;
+
     // which blocks found no room depended on the threads: now each has its own
     Job job = {.list = list, .write = write, .context = context, .count = kept, .again = true};
     atomic_store(&list->taken, 0);
@@ -84,7 +85,6 @@ uint32_t block_list_settle(BlockList *list, Pool *pool, int blocks, uint64_t cou
 
 static void read_blocks(void *task, int begin, int end) {
     const Job *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const BlockList *list = job->list;
     for (int b = begin; b < end; b++) {
         const ListBlock *block = &list->blocks[b];

@@ -15,67 +15,41 @@ typedef struct Find {
 
 // ---- the grid
 
-/// The cubes' initial edge: twice the boxes' mean longest side. 0 if no cell is left.
-static float first_edge(const CollisionPlan *plan) {
-    double sum = 0;
-    uint32_t count = 0;
-    for (uint32_t c = 0; c < plan->cell_count; c++) {
-        if (!plan->alive[c]) continue;
-        Float4 size = plan->boxes[c].swept_high - plan->boxes[c].swept_low;
-        float longest = size[0] > size[1] ? size[0] : size[1];
-        sum += (double)(longest > size[2] ? longest : size[2]);
-        count++;
-    }
-    return count ? (float)(2 * sum / count) : 0;
-}
-
-static void put_entry(CollisionPlan *plan, uint32_t cell, uint32_t key) {
-    const CollisionBox *box = &plan->boxes[cell];
-    Float4 low = box->swept_low, high = box->swept_high;
-    plan->entries[plan->bucket_first[collision_bucket(plan, key & COLLISION_KEY) + 1]++] = (CollisionEntry){
-        .low = {low[0], low[1], low[2]}, .cell = cell, .high = {high[0], high[1], high[2]}, .key = key};
-}
-
 /// Calls for every cube of every swept box: counts the entries of buckets, or writes them.
 static uint64_t fill_grid(CollisionPlan *plan, bool writing) {
     float inverse = 1 / plan->edge;
     uint64_t count = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         if (!plan->alive[c]) continue;
+
         const CollisionBox *box = &plan->boxes[c];
         Cube first = collision_cube(box->swept_low, inverse), last = collision_cube(box->swept_high, inverse),
              at = first;
         count += collision_cubes(first, last, plan->sizes.entries);
         if (count > plan->sizes.entries) return count;
+
         for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
             for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
                 for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
                     uint32_t key = collision_key(at);
-                    if (writing) put_entry(plan, c, key | (float4_bits(at == first) & 7) << 29);
-                    else plan->bucket_first[collision_bucket(plan, key) + 2]++;
+                    if (!writing) {
+                        plan->bucket_first[collision_bucket(plan, key) + 2]++;
+                        continue;
+                    }
+                    const Float4 low = box->swept_low, high = box->swept_high;
+                    plan->entries[plan->bucket_first[collision_bucket(plan, key) + 1]++] =
+                        (CollisionEntry){.low = {low[0], low[1], low[2]},
+                                         .cell = c,
+                                         .high = {high[0], high[1], high[2]},
+                                         .key = key | (float4_bits(at == first) & 7) << 29};
                 }
     }
+
     return count;
 }
 
 static void clear_buckets(CollisionPlan *plan) {
     memset(plan->bucket_first, 0, ((size_t)plan->bucket_count + 2) * sizeof *plan->bucket_first);
-}
-
-static void sort_into_grid(CollisionPlan *plan) {
-    plan->entry_count = 0;
-    plan->edge = first_edge(plan);
-    clear_buckets(plan);
-    uint64_t count = 0;
-    for (; plan->edge > 0; plan->edge *= 1.3f) {
-        if (!(plan->edge < 1e30f)) plan->edge = 0; // a position is not finite: the step will fail
-        else if ((count = fill_grid(plan, false)) <= plan->sizes.entries) break;
-        clear_buckets(plan);
-    }
-    if (!(plan->edge > 0)) return;
-    for (uint32_t b = 0; b < plan->bucket_count; b++) plan->bucket_first[b + 2] += plan->bucket_first[b + 1];
-    fill_grid(plan, true);
-    plan->entry_count = (uint32_t)count;
 }
 
 // ---- pairs
@@ -93,16 +67,20 @@ static inline float slab_gap(const CollisionSlab *a, const CollisionSlab *b) {
 bool collision_is_listed(const CollisionPlan *plan, uint32_t a, uint32_t b, float *distance) {
     const CollisionBox *p = &plan->boxes[a], *q = &plan->boxes[b];
     Float4 displacement = q->displacement - p->displacement, zero = {0};
+
     // b's box, swept by its displacement relative to a
     Float4 low = q->low + float4_min(displacement, zero), high = q->high + float4_max(displacement, zero);
     if (!quads_meet(p->low - plan->reach, p->high + plan->reach, low, high)) return false;
+
     Float4 separation = float4_max(float4_max(q->low - p->high, p->low - q->high), zero);
     float boxes = float4_dot(separation, separation),
           far = plan->reach + sqrtf(float4_dot(displacement, displacement)) + p->displacement[3] + q->displacement[3];
     if (boxes > far * far) return false;
+
     const CollisionSlab *s = &plan->slabs[a], *t = &plan->slabs[b];
     float one = slab_gap(s, t), two = slab_gap(t, s), slabs = one > two ? one : two;
     if (slabs > far) return false;
+
     boxes = sqrtf(boxes);
     float min = (slabs > boxes ? slabs : boxes) - 4 * plan->noise;
     *distance = min > 0 ? min : 0;
@@ -121,6 +99,7 @@ uint32_t collision_bridge(const CollisionPlan *plan, const Shell *shell, uint32_
     // across a tear or a hole two cells may share a corner and yet slide over each other
     uint32_t shared = corners_shared(shell->cells[a], shell->cells[b]);
     if (shared != 1) return shared ? a : SHELL_NONE;
+
     for (int side = 0; side < 4; side++) {
         uint32_t between = shell_neighbour(shell, a, side);
         if (between != SHELL_NONE && plan->alive[between] &&
@@ -128,17 +107,8 @@ uint32_t collision_bridge(const CollisionPlan *plan, const Shell *shell, uint32_
             corners_shared(shell->cells[between], shell->cells[b]) > 1)
             return between;
     }
-    return SHELL_NONE;
-}
 
-static void list_pair(const Find *find, uint32_t a, uint32_t b, BlockWriter *writer) {
-    float distance;
-    if (!collision_is_listed(find->plan, a, b, &distance)) return;
-    CollisionPair *pair = block_list_add(writer);
-    if (!pair) return;
-    uint32_t bridge = collision_bridge(find->plan, find->shell, a, b);
-    *pair =
-        (CollisionPair){.a = a, .b = b, .distance = bridge == SHELL_NONE ? distance : 0, .hit = 2, .bridge = bridge};
+    return SHELL_NONE;
 }
 
 /// Entries of a bucket, with one array per number: four are tested at once.
@@ -148,16 +118,6 @@ typedef struct Tile {
     int32_t key[TILE], firsts[TILE];
     uint32_t count;
 } Tile;
-
-static void fill_tile(const CollisionEntry *entries, uint32_t count, Tile *tile) {
-    tile->count = count;
-    for (uint32_t i = 0; i < count; i++) {
-        for (int k = 0; k < 3; k++) tile->low[k][i] = entries[i].low[k], tile->high[k][i] = entries[i].high[k];
-        tile->key[i] = (int32_t)(entries[i].key & COLLISION_KEY);
-        tile->firsts[i] = (int32_t)(entries[i].key >> 29);
-    }
-    for (uint32_t i = count; i & 3; i++) tile->key[i] = -1;
-}
 
 /// Bit k is set where the tile's entry j + k is in the same cube, which is where the two boxes' common region begins.
 static inline unsigned meet_four(const Tile *tile, uint32_t j, const CollisionEntry *entry) {
@@ -169,17 +129,39 @@ static inline unsigned meet_four(const Tile *tile, uint32_t j, const CollisionEn
     return float4_bits(meet);
 }
 
+/// Lists the pairs of a bucket.
 static void bucket_pairs(const Find *find, const CollisionEntry *entries, uint32_t count, Tile *tile,
                          BlockWriter *writer) {
     for (uint32_t first = 0; first < count; first += TILE) {
-        fill_tile(entries + first, count - first < TILE ? count - first : TILE, tile);
+        tile->count = count - first < TILE ? count - first : TILE;
+        for (uint32_t i = 0; i < tile->count; i++) {
+            const CollisionEntry *entry = &entries[first + i];
+            for (int k = 0; k < 3; k++) {
+                tile->low[k][i] = entry->low[k];
+                tile->high[k][i] = entry->high[k];
+            }
+            tile->key[i] = (int32_t)(entry->key & COLLISION_KEY);
+            tile->firsts[i] = (int32_t)(entry->key >> 29);
+        }
+
+        for (uint32_t i = tile->count; i & 3; i++) tile->key[i] = -1;
+
+        // four of the tile at once against each entry up to them
         for (uint32_t i = 0; i < first + tile->count && !block_list_is_full(writer); i++) {
-            uint32_t after = i < first ? 0 : i - first + 1;
+            const uint32_t after = i < first ? 0 : i - first + 1, a = entries[i].cell;
             for (uint32_t j = after & ~3u; j < tile->count; j += 4) {
                 unsigned meet = meet_four(tile, j, &entries[i]);
                 if (j < after) meet &= 15u << (after - j);
-                for (; meet; meet &= meet - 1)
-                    list_pair(find, entries[i].cell, entries[first + j + (unsigned)__builtin_ctz(meet)].cell, writer);
+                for (; meet; meet &= meet - 1) {
+                    const uint32_t b = entries[first + j + (unsigned)__builtin_ctz(meet)].cell;
+                    float distance;
+                    if (!collision_is_listed(find->plan, a, b, &distance)) continue;
+                    CollisionPair *pair = block_list_add(writer);
+                    if (!pair) continue;
+                    const uint32_t bridge = collision_bridge(find->plan, find->shell, a, b);
+                    *pair = (CollisionPair){.a = a, .b = b, .hit = 2, .bridge = bridge};
+                    if (bridge == SHELL_NONE) pair->distance = distance;
+                }
             }
         }
     }
@@ -196,6 +178,7 @@ static void pair_block(void *context, BlockList *list, int block) {
         uint32_t at = plan->bucket_first[b], count = plan->bucket_first[b + 1] - at;
         if (count > 1) bucket_pairs(find, plan->entries + at, count, &tile, &writer);
     }
+
     block_list_end(&writer);
 }
 
@@ -210,7 +193,38 @@ static int grid_blocks(const CollisionPlan *plan) {
 
 uint64_t broad_grid_pairs(CollisionPlan *plan, const Shell *shell, Pool *pool) {
     Find find = {plan, shell};
-    sort_into_grid(plan);
+
+    // the cubes' initial edge: twice the boxes' mean longest side; 0 if no cell is left
+    double sum = 0;
+    uint32_t cells = 0;
+    for (uint32_t c = 0; c < plan->cell_count; c++) {
+        if (!plan->alive[c]) continue;
+
+        Float4 size = plan->boxes[c].swept_high - plan->boxes[c].swept_low;
+        float longest = size[0] > size[1] ? size[0] : size[1];
+        sum += (double)(longest > size[2] ? longest : size[2]);
+        cells++;
+    }
+
+    plan->edge = cells ? (float)(2 * sum / cells) : 0;
+
+    // larger cubes until all entries have room; then the entries, sorted by buckets
+    uint64_t count = 0;
+    clear_buckets(plan);
+
+    for (; plan->edge > 0; plan->edge *= 1.3f) {
+        if (!(plan->edge < 1e30f)) plan->edge = 0; // a position is not finite: the step will fail
+        else if ((count = fill_grid(plan, false)) <= plan->sizes.entries) break;
+        clear_buckets(plan);
+    }
+
+    plan->entry_count = 0;
+    if (plan->edge > 0) {
+        for (uint32_t k = 0; k < plan->bucket_count; k++) plan->bucket_first[k + 2] += plan->bucket_first[k + 1];
+        fill_grid(plan, true);
+        plan->entry_count = (uint32_t)count;
+    }
+
     return block_list_write(&plan->found_pairs, pool, grid_blocks(plan), plan->sizes.pair_max, pair_block, &find);
 }
 

@@ -3,7 +3,6 @@
 // A cell is a moving box: its box at the search, widened by half of thickness + slack, along the trajectory that its
 // corners were on. Two cells whose boxes do not meet in plan->steps steps stay farther apart than the thickness, as
 // long as no corner deviates from its trajectory by more than half the slack; ccd.c watches that.
-#include "common/assertion.h"
 #include "common/error.h"
 #include "collision/collision_plan.h"
 
@@ -14,31 +13,22 @@ typedef struct Find {
 
 // ---- features that a cell owns
 
-static bool has_corners(const uint32_t cell[4], uint32_t a, uint32_t b) {
-    bool first = false, second = false;
-    for (int i = 0; i < 4; i++) first |= cell[i] == a, second |= cell[i] == b;
-    return first && second;
-}
-
-/// A side shared by two cells belongs to the lower of the two.
-static bool owns_side(const CollisionPlan *plan, const Shell *shell, uint32_t c, int side) {
-    SINGE_ASSERT(side >= 0 && side < 4);
-    uint32_t across = shell_neighbour(shell, c, side);
-    if (across == SHELL_NONE || across > c || !plan->alive[across]) return true;
-    return !has_corners(shell->cells[across], shell->cells[c][side], shell->cells[c][(side + 1) & 3]);
-}
-
-static void find_owners(CollisionPlan *plan, const Shell *shell) {
-    for (uint32_t c = plan->cell_count; c-- > 0;)
-        for (int i = 0; plan->alive[c] && i < 4; i++) plan->owner[shell->cells[c][i]] = c;
-}
-
+/// Bits of the corners and sides that a cell owns. A side shared by two cells belongs to the lower of the two.
 static uint8_t owned(const CollisionPlan *plan, const Shell *shell, uint32_t c) {
+    const uint32_t *corner = shell->cells[c];
     uint8_t bits = 0;
     for (int i = 0; i < 4; i++) {
-        bits |= (uint8_t)((plan->owner[shell->cells[c][i]] == c) << i);
-        bits |= (uint8_t)(owns_side(plan, shell, c, i) << (4 + i));
+        bits |= (uint8_t)((plan->owner[corner[i]] == c) << i);
+        const uint32_t across = shell_neighbour(shell, c, i);
+        bool first = false, second = false; // the one across has the side's corners
+        for (int k = 0; k < 4 && across != SHELL_NONE && across <= c && plan->alive[across]; k++) {
+            first |= shell->cells[across][k] == corner[i];
+            second |= shell->cells[across][k] == corner[(i + 1) & 3];
+        }
+
+        bits |= (uint8_t)(!(first && second) << (4 + i));
     }
+
     return bits;
 }
 
@@ -52,6 +42,7 @@ static CollisionBox moving_box(const Float4 position[4], const Float4 displaceme
         box.low = i ? float4_min(box.low, low) : low;
         box.high = i ? float4_max(box.high, high) : high;
     }
+
     box.low = float4_flat(box.low);
     box.high = float4_flat(box.high);
     return box;
@@ -62,11 +53,13 @@ static CollisionSlab slab(const Float4 position[4]) {
            normal = float4_cross(position[2] - position[0], position[3] - position[1]);
     float length = sqrtf(float4_dot(normal, normal));
     CollisionSlab slab = {.normal = length > 0 ? normal / length : (Float4){0}};
+
     for (int i = 1; i < 4; i++) {
         float along = float4_dot(slab.normal, position[i] - position[0]);
         slab.low = along < slab.low ? along : slab.low;
         slab.high = along > slab.high ? along : slab.high;
     }
+
     float4_transpose(corner);
     slab.x = corner[0];
     slab.y = corner[1];
@@ -76,9 +69,9 @@ static CollisionSlab slab(const Float4 position[4]) {
 
 static void box_range(void *task, int begin, int end) {
     Find *find = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     CollisionPlan *plan = find->plan;
     float time = (float)plan->steps * plan->time_step;
+
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         if (!plan->alive[c]) continue;
         const uint32_t *corner = find->shell->cells[c];
@@ -87,6 +80,7 @@ static void box_range(void *task, int begin, int end) {
             position[i] = float4_flat(float4_load(plan->position[corner[i]]));
             displacement[i] = time * float4_load(plan->speed[corner[i]]);
         }
+
         plan->boxes[c] = moving_box(position, displacement);
         plan->slabs[c] = slab(position);
         plan->owned[c] = owned(plan, find->shell, c);
@@ -95,7 +89,6 @@ static void box_range(void *task, int begin, int end) {
 
 /// Widens the swept boxes for plan->reach.
 static void sweep_boxes(void *task, int begin, int end) {
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     CollisionPlan *plan = ((Find *)task)->plan;
     float wide = 0.5f * plan->reach;
     Float4 zero = {0};
@@ -108,59 +101,62 @@ static void sweep_boxes(void *task, int begin, int end) {
 
 // ---- the search
 
-/// Also pairs a cell with itself: it may fold onto itself.
-static void add_cells(CollisionPlan *plan) {
-    for (uint32_t c = 0; c < plan->cell_count; c++) {
-        if (!plan->alive[c]) continue;
-        plan->pairs[plan->pair_count++] = (CollisionPair){.a = c, .b = c, .hit = 2, .bridge = c};
-    }
-}
-
-static SingeResult find_pairs(Find *find, Pool *pool) {
-    enum { TRIALS = 5 };
-    CollisionPlan *plan = find->plan;
-    uint64_t count;
-    plan->slack = plan->slack_max;
-    for (int trial = 1;; trial++) {
-        plan->reach = plan->thickness + plan->slack;
-        pool_for(pool, (int)plan->cell_count, 512, sweep_boxes, find);
-        count = broad_grid_pairs(plan, find->shell, pool);
-        if (count + plan->cell_count <= plan->sizes.pair_budget || trial == TRIALS) break;
-        plan->slack *= 0.5f; // too crowded: search less far
-    }
-    if (!collision_grow_pairs(plan, count + plan->cell_count)) return SINGE_ERROR_MEMORY;
-    broad_grid_keep(plan, find->shell, pool, count, plan->pair_capacity - plan->cell_count);
-    plan->counters.dropped += count - plan->pair_count;
-    add_cells(plan);
-    plan->listed_count = plan->pair_count;
-    return SINGE_OK;
-}
-
 /// Fewer steps where corners move fast relative to each other: on average by at most a third of a cell.
 static void choose_steps(CollisionPlan *plan, const Shell *shell) {
     Float4 mean = {0};
     double sum = 0, count = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++)
-        if (plan->alive[c]) mean += float4_load(plan->speed[shell->cells[c][0]]), count++;
+        if (plan->alive[c]) {
+            mean += float4_load(plan->speed[shell->cells[c][0]]);
+            count++;
+        }
     mean = mean / (float)fmax(count, 1);
+
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         Float4 off = float4_load(plan->speed[shell->cells[c][0]]) - mean;
         if (plan->alive[c]) sum += (double)sqrtf(float4_dot(off, off));
     }
+
     double step = sum / fmax(count, 1) * (double)plan->time_step, max = (double)plan->cell_size / 2;
+
     // a step that is not finite, as with positions that overflow, gets the fewest
     plan->steps = step * COLLISION_STEPS < max ? COLLISION_STEPS : step * 2 <= max ? (uint32_t)(max / step) : 2;
 }
 
-SingeResult broad_search(CollisionPlan *plan, const Shell *shell, Pool *pool) {
+SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool) {
+    enum { TRIALS = 5 };
     Find find = {plan, shell};
     plan->listed_count = plan->pair_count = 0;
     plan->restless = 0;
     choose_steps(plan, shell);
-    find_owners(plan, shell);
+
+    // boxes; a vertex is owned by its lowest cell
+    for (uint32_t c = plan->cell_count; c-- > 0;)
+        for (int i = 0; plan->alive[c] && i < 4; i++) plan->owner[shell->cells[c][i]] = c;
     pool_for(pool, (int)plan->cell_count, 512, box_range, &find);
-    TRY(find_pairs(&find, pool));
-    TRY(initial_find(plan, shell, plan->searched == 0));
+
+    // pairs whose swept boxes meet; where they are too crowded, search less far
+    uint64_t count;
+    plan->slack = plan->slack_max;
+
+    for (int trial = 1;; trial++) {
+        plan->reach = plan->thickness + plan->slack;
+        pool_for(pool, (int)plan->cell_count, 512, sweep_boxes, &find);
+        count = broad_grid_pairs(plan, shell, pool);
+        if (count + plan->cell_count <= plan->sizes.pair_budget || trial == TRIALS) break;
+        plan->slack *= 0.5f;
+    }
+
+    if (!collision_grow_pairs(memory, plan, count + plan->cell_count)) return SINGE_ERROR_MEMORY;
+    broad_grid_keep(plan, shell, pool, count, plan->pair_capacity - plan->cell_count);
+    plan->counters.dropped += count - plan->pair_count;
+
+    // a cell may fold onto itself
+    for (uint32_t c = 0; c < plan->cell_count; c++)
+        if (plan->alive[c]) plan->pairs[plan->pair_count++] = (CollisionPair){.a = c, .b = c, .hit = 2, .bridge = c};
+    plan->listed_count = plan->pair_count;
+
+    TRY(initial_find(memory, plan, shell, plan->searched == 0));
     plan->searched = 1;
     plan->counters.searches++;
     return SINGE_OK;

@@ -6,7 +6,6 @@
 //
 // A corner that has left the box that the search gave its cell may have met a cell that the search did not list: then
 // the search is repeated for this step's own displacements.
-#include "common/assertion.h"
 #include "common/clock.h"
 #include "common/error.h"
 #include "collision/ccd.h"
@@ -32,10 +31,12 @@ static void measure_cell(const Ccd *ccd, uint32_t c) {
     const uint32_t *corner = ccd->shell->cells[c];
     const float(*x)[4] = (const float(*)[4])ccd->dynamics->position;
     Float4 node[5], outside[4];
+
     for (int i = 0; i < 4; i++) {
         Float4 foreseen = float4_load(plan->position[corner[i]]) + ccd->time * float4_load(plan->speed[corner[i]]);
         outside[i] = float4_load(x[corner[i]]) - foreseen;
     }
+
     FourVectors astray = four_of(outside);
     collision_nodes(corner, x, float4_load(x[corner[0]]), node);
     plan->motion[c][COLLISION_DISPLACEMENT] = collision_displacement(plan, corner, x);
@@ -45,7 +46,6 @@ static void measure_cell(const Ccd *ccd, uint32_t c) {
 
 static void measure_range(void *task, int begin, int end) {
     const Ccd *ccd = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int c = begin; c < end; c++) {
         if (ccd_is_alive(ccd, (uint32_t)c)) measure_cell(ccd, (uint32_t)c);
         else ccd->plan->is_outside[c] = 0;
@@ -54,7 +54,6 @@ static void measure_range(void *task, int begin, int end) {
 
 static void measure_changed(void *task, int begin, int end) {
     const Ccd *ccd = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= ccd->plan->changed_count);
     for (int k = begin; k < end; k++) measure_cell(ccd, ccd->plan->changed_list[k]);
 }
 
@@ -66,9 +65,9 @@ void ccd_forget_changed(CollisionPlan *plan) {
 }
 
 void ccd_mark_changed(const Ccd *ccd, uint32_t cell) {
-    SINGE_ASSERT(cell < ccd->shell->cell_count);
     CollisionPlan *plan = ccd->plan;
     if (plan->changed[cell] || !ccd_is_alive(ccd, cell)) return;
+
     plan->changed[cell] = 1;
     plan->changed_list[plan->changed_count++] = cell;
 }
@@ -78,47 +77,38 @@ void ccd_mark_around(const Ccd *ccd, uint32_t v) {
     for (uint32_t f = shell->fan_first[v]; f < shell->fan_first[v + 1]; f++) ccd_mark_changed(ccd, shell->fan[f]);
 }
 
-/// Marks the cells that have moved since CCD last ran in this step.
-static void mark_moved(const Ccd *ccd) {
-    const CollisionPlan *plan = ccd->plan;
-    ccd_forget_changed(ccd->plan);
-    for (uint32_t v = 0; v < plan->vertex_count; v++) {
-        Float4Mask moved = float4_load(ccd->dynamics->position[v]) != float4_load(plan->end[v]);
-        if (float4_bits(moved) & 7) ccd_mark_around(ccd, v);
-    }
-}
-
-/// Sorts the search's pairs by their cells, once for each search.
-static void sort_around(CollisionPlan *plan) {
-    if (plan->around_search == plan->counters.searches) return;
-    plan->around_search = plan->counters.searches;
-    uint32_t *first = plan->around_first;
-    memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
-    for (uint32_t k = 0; k < plan->listed_count; k++) {
-        const CollisionPair *pair = &plan->pairs[k];
-        first[pair->a + 2]++;
-        first[pair->b + 2] += pair->a != pair->b;
-    }
-    for (uint32_t c = 0; c < plan->cell_count; c++) first[c + 2] += first[c + 1];
-    for (uint32_t k = 0; k < plan->listed_count; k++) {
-        const CollisionPair *pair = &plan->pairs[k];
-        plan->around[first[pair->a + 1]++] = k;
-        if (pair->a != pair->b) plan->around[first[pair->b + 1]++] = k;
-    }
-}
-
 /// Lists the pairs of cells that have changed. Returns how many.
 static uint32_t list_changed(CollisionPlan *plan) {
-    uint32_t count = 0;
-    sort_around(plan);
+    uint32_t *first = plan->around_first, count = 0;
+
+    // sort the search's pairs by their cells, once for each search
+    if (plan->around_search != plan->counters.searches) {
+        plan->around_search = plan->counters.searches;
+        memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
+        for (uint32_t k = 0; k < plan->listed_count; k++) {
+            const CollisionPair *pair = &plan->pairs[k];
+            first[pair->a + 2]++;
+            first[pair->b + 2] += pair->a != pair->b;
+        }
+
+        for (uint32_t c = 0; c < plan->cell_count; c++) first[c + 2] += first[c + 1];
+        for (uint32_t k = 0; k < plan->listed_count; k++) {
+            const CollisionPair *pair = &plan->pairs[k];
+            plan->around[first[pair->a + 1]++] = k;
+            if (pair->a != pair->b) plan->around[first[pair->b + 1]++] = k;
+        }
+    }
+
+    // those of cells that have changed; the pair of two such cells once
     for (uint32_t l = 0; l < plan->changed_count; l++) {
         uint32_t c = plan->changed_list[l];
-        for (uint32_t e = plan->around_first[c]; e < plan->around_first[c + 1]; e++) {
+        for (uint32_t e = first[c]; e < first[c + 1]; e++) {
             const CollisionPair *pair = &plan->pairs[plan->around[e]];
             uint32_t other = pair->a == c ? pair->b : pair->a;
             if (!plan->changed[other] || other >= c) plan->active[count++] = plan->around[e];
         }
     }
+
     for (uint32_t k = plan->listed_count; k < plan->pair_count; k++)
         if (plan->changed[plan->pairs[k].a] | plan->changed[plan->pairs[k].b]) plan->active[count++] = k;
     return count;
@@ -126,31 +116,7 @@ static uint32_t list_changed(CollisionPlan *plan) {
 
 // ---- the step's end
 
-/// Searches for the displacements of this step.
-static SingeResult search_again(Ccd *ccd, const StateInput *state, Pool *pool, float h) {
-    SINGE_ASSERT(h > 0);
-    CollisionPlan *plan = ccd->plan;
-    for (uint32_t v = 0; v < plan->vertex_count; v++) {
-        Float4 start = float4_load(plan->start[v]), speed = (float4_load(ccd->dynamics->position[v]) - start) / h;
-        speed[3] = 0;
-        float4_store(plan->position[v], start);
-        float4_store(plan->speed[v], speed);
-    }
-    for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = ccd->cell_flags[c] & SINGE_ALIVE;
-    plan->step = state->step;
-    ccd->time = h;
-    return broad_search(plan, ccd->shell, pool);
-}
-
 static void ccd_measure(Ccd *ccd, Pool *pool) { pool_for(pool, (int)ccd->plan->cell_count, 512, measure_range, ccd); }
-
-/// Checks the pairs of cells that the last round has changed. Returns how many collide.
-static uint32_t meet_changed(Ccd *ccd, Pool *pool) {
-    pool_for(pool, (int)ccd->plan->changed_count, 512, measure_changed, ccd);
-    uint32_t count = list_changed(ccd->plan);
-    ccd->looked += count;
-    return ccd_meet_active(ccd, pool, count);
-}
 
 static uint32_t list_out_of_bounds(CollisionPlan *plan) {
     uint32_t count = 0;
@@ -162,18 +128,29 @@ static uint32_t list_out_of_bounds(CollisionPlan *plan) {
 /// Lists the pairs that cells outside their boxes may have met; searches all again if these are many. *first is the
 /// first new pair.
 static SingeResult follow_out_of_bounds(Ccd *ccd, const StateInput *state, Pool *pool, float h, uint32_t *first) {
-    SINGE_ASSERT(h > 0);
     CollisionPlan *plan = ccd->plan;
     uint32_t count = list_out_of_bounds(plan);
     *first = plan->pair_count;
     if (count == 0) return SINGE_OK;
+
     bool all = count > plan->cell_count / OUTSIDE_MAX || plan->edge <= 0;
     if (all) {
-        TRY(search_again(ccd, state, pool, h));
+        for (uint32_t v = 0; v < plan->vertex_count; v++) {
+            Float4 start = float4_load(plan->start[v]), speed = (float4_load(ccd->dynamics->position[v]) - start) / h;
+            speed[3] = 0;
+            float4_store(plan->position[v], start);
+            float4_store(plan->speed[v], speed);
+        }
+
+        for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = ccd->cell_flags[c] & SINGE_ALIVE;
+        plan->step = state->step;
+        ccd->time = h;
+        TRY(broad_search(ccd->memory, plan, ccd->shell, pool));
         ccd_measure(ccd, pool);
         count = list_out_of_bounds(plan);
     }
-    TRY(broad_search_outside(plan, ccd->shell, pool, count, (const float(*)[4])ccd->dynamics->position));
+
+    TRY(broad_search_outside(ccd->memory, plan, ccd->shell, pool, count, (const float(*)[4])ccd->dynamics->position));
     plan->restless = plan->step < state->step && count > plan->cell_count / OUTSIDE_PART;
     *first = all ? 0 : plan->listed_count;
     return SINGE_OK;
@@ -181,14 +158,17 @@ static SingeResult follow_out_of_bounds(Ccd *ccd, const StateInput *state, Pool 
 
 /// Checks all pairs that may have met, or those that the last round has changed; *hits is the number that have.
 static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float h, bool changed, uint32_t *hits) {
-    SINGE_ASSERT(h > 0);
     uint32_t first;
     if (changed) {
-        *hits = meet_changed(ccd, pool);
+        pool_for(pool, (int)ccd->plan->changed_count, 512, measure_changed, ccd);
+        uint32_t count = list_changed(ccd->plan);
+        ccd->looked += count;
+        *hits = ccd_meet_active(ccd, pool, count);
     } else {
         ccd_measure(ccd, pool);
         *hits = ccd_meet(ccd, pool, 0);
     }
+
     if (*hits > 0) return SINGE_OK;
     TRY(follow_out_of_bounds(ccd, state, pool, h, &first));
     *hits = ccd_meet(ccd, pool, first);
@@ -199,7 +179,6 @@ static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float
 /// and the step's displacement over h. The velocity contains all of the change in the last substep, the displacement
 /// only a small part of it.
 static Float4 shifted_velocity(Float4 before, Float4 shift, Float4 displacement, float h) {
-    SINGE_ASSERT(h > 0);
     Float4 after = before + shift / h, gone = displacement / h;
     float max = fmaxf(float4_dot(before, before), float4_dot(gone, gone)), square = float4_dot(after, after);
     return square > max ? sqrtf(max / square) * after : after;
@@ -207,7 +186,6 @@ static Float4 shifted_velocity(Float4 before, Float4 shift, Float4 displacement,
 
 /// Velocities and centres follow the changed positions.
 static void close_trajectories(const Ccd *ccd, float h) {
-    SINGE_ASSERT(h > 0);
     CollisionPlan *plan = ccd->plan;
     DynamicsState *dynamics = ccd->dynamics;
 
@@ -221,6 +199,7 @@ static void close_trajectories(const Ccd *ccd, float h) {
             shift += 0.25f * (corner - float4_load(plan->want[v]));
             displacement += 0.25f * (corner - float4_load(plan->start[v]));
         }
+
         shift[3] = displacement[3] = 0;
         if (position[3] == 0 || float4_dot(shift, shift) == 0) continue;
         float4_store(dynamics->position[centre], position + shift);
@@ -239,17 +218,17 @@ static void close_trajectories(const Ccd *ccd, float h) {
     }
 }
 
-static void empty_zones(CollisionPlan *plan) {
-    for (uint32_t k = 0; k < plan->stopped_count; k++) plan->zone[plan->stopped[k]] = SHELL_NONE;
-    plan->stopped_count = 0;
-}
-
-static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
-                              DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
-    Ccd ccd = {plan, shell, dynamics, state->ablate->cell_flags, h * (float)(state->step - plan->step + 1), 0};
+static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state,
+                              Pool *pool, float h, DynamicsState *dynamics) {
+    Ccd ccd = {memory, plan, shell, dynamics, state->ablate->cell_flags, h * (float)(state->step - plan->step + 1), 0};
     bool stopped = false;
-    if (plan->closed) mark_moved(&ccd);
+
+    // where CCD has run in this step before, only what has moved since counts
+    if (plan->closed) ccd_forget_changed(plan);
+    for (uint32_t v = 0; v < plan->vertex_count && plan->closed; v++) {
+        Float4Mask moved = float4_load(dynamics->position[v]) != float4_load(plan->end[v]);
+        if (float4_bits(moved) & 7) ccd_mark_around(&ccd, v);
+    }
 
     // stop colliding cells until there are none: impacts one by one, then zones
     for (int impacts = 0, zones = 0;;) {
@@ -260,12 +239,17 @@ static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const Sta
             plan->counters.unresolved += hits;
             break;
         }
+
         if (!stopped) memcpy(plan->want, dynamics->position, plan->vertex_count * sizeof *plan->want);
         plan->counters.stops += hits;
         stopped = true;
         bool crowd = ccd.looked > (uint64_t)IMPACT_LOOKS * plan->pair_count;
-        if (zones > 0 || impacts == IMPACT_ROUNDS || crowd) ccd_zones(&ccd, zones++);
-        else ccd_impacts(&ccd), impacts++;
+        if (zones > 0 || impacts == IMPACT_ROUNDS || crowd) {
+            ccd_zones(&ccd, zones++);
+        } else {
+            ccd_impacts(&ccd);
+            impacts++;
+        }
     }
 
     // remember where the step has ended, for the next one
@@ -276,13 +260,13 @@ static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const Sta
     return SINGE_OK;
 }
 
-SingeResult ccd_apply(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
-                      DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
+SingeResult ccd_apply(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
+                      float h, DynamicsState *dynamics) {
     double start = clock_seconds();
-    SingeResult result = close_step(plan, shell, state, pool, h, dynamics);
+    SingeResult result = close_step(memory, plan, shell, state, pool, h, dynamics);
     plan->pair_count = plan->listed_count;
-    empty_zones(plan);
+    for (uint32_t k = 0; k < plan->stopped_count; k++) plan->zone[plan->stopped[k]] = SHELL_NONE;
+    plan->stopped_count = 0;
     if (result) collision_plan_forget(plan);
     plan->counters.seconds += clock_seconds() - start;
     return result;

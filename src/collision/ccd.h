@@ -6,6 +6,7 @@
 #include "collision/collision_plan.h"
 
 typedef struct Ccd {
+    Memory *memory;
     CollisionPlan *plan;
     const Shell *shell;
     DynamicsState *dynamics;

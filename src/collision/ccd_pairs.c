@@ -7,7 +7,6 @@
 //
 // Connected cells (that share a side or a corner) are free if their normals, or a plane between them, show that they do
 // not cross at the end of the step (feature_distance.c). The other pairs are swept, feature by feature.
-#include "common/assertion.h"
 #include "collision/ccd.h"
 #include "collision/feature_distance.h"
 
@@ -18,35 +17,22 @@ static void sweep_nodes(const Ccd *ccd, uint32_t c, Float4 origin, Float4 mean, 
     Float4 end[5];
     collision_nodes(corner, (const float(*)[4])ccd->plan->start, origin, out->position);
     collision_nodes(corner, (const float(*)[4])ccd->dynamics->position, origin + mean, end);
+
     for (int i = 0; i < 5; i++) {
         out->displacement[i] = end[i] - out->position[i];
         out->low[i] = float4_min(out->position[i], end[i]);
         out->high[i] = float4_max(out->position[i], end[i]);
     }
+
     narrow_boxes(four_of(out->low), four_of(out->high), out->low[4], out->high[4], &out->boxes);
-}
-
-static float sweep_node(const Ccd *ccd, const Swept *p, int i, const Swept *q, int j) {
-    const uint8_t *k = collision_triangle[j];
-    FeatureSweep sweep = {{p->position[i], q->position[k[0]], q->position[k[1]], q->position[k[2]]},
-                          {p->displacement[i], q->displacement[k[0]], q->displacement[k[1]], q->displacement[k[2]]},
-                          false};
-    return feature_sweep(&sweep, ccd->plan->gap, ccd->plan->noise);
-}
-
-static float sweep_edge(const Ccd *ccd, const Swept *p, int i, const Swept *q, int j) {
-    const uint8_t *k = collision_edge[i], *l = collision_edge[j];
-    FeatureSweep sweep = {{p->position[k[0]], p->position[k[1]], q->position[l[0]], q->position[l[1]]},
-                          {p->displacement[k[0]], p->displacement[k[1]], q->displacement[l[0]], q->displacement[l[1]]},
-                          true};
-    return feature_sweep(&sweep, ccd->plan->gap, ccd->plan->noise);
 }
 
 static void note_hit(CollisionPair *pair, float hit, int kind, int i, int j) {
     if (!(hit < pair->hit)) return;
     pair->hit = hit;
     pair->kind = (uint8_t)kind;
-    pair->first[0] = (uint8_t)i, pair->first[1] = (uint8_t)j;
+    pair->first[0] = (uint8_t)i;
+    pair->first[1] = (uint8_t)j;
 }
 
 void ccd_sweep_cells(const Ccd *ccd, const CollisionPair *pair, Swept *p, Swept *q) {
@@ -63,12 +49,18 @@ static void sweep_all_nodes(const Ccd *ccd, CollisionPair *pair, uint32_t c, con
                             const unsigned same[4], int kind) {
     for (int i = 0; i < 5; i++) {
         if (!collision_owns_node(ccd->plan, c, i)) continue;
+
         // within one cell, the centroid is in all triangles
         unsigned meet = i < 4 ? 15 & ~narrow_around(same[i]) : pair->a == pair->b ? 0 : 15;
         if (meet) meet &= four_meet(&q->boxes.triangles, p->low[i] - ccd->plan->gap, p->high[i] + ccd->plan->gap);
         for (; meet; meet &= meet - 1) {
             int j = __builtin_ctz(meet);
-            note_hit(pair, sweep_node(ccd, p, i, q, j), kind, i, j);
+            const uint8_t *k = collision_triangle[j];
+            FeatureSweep sweep = {
+                {p->position[i], q->position[k[0]], q->position[k[1]], q->position[k[2]]},
+                {p->displacement[i], q->displacement[k[0]], q->displacement[k[1]], q->displacement[k[2]]},
+                false};
+            note_hit(pair, feature_sweep(&sweep, ccd->plan->gap, ccd->plan->noise), kind, i, j);
         }
     }
 }
@@ -78,19 +70,26 @@ static void sweep_all_edges(const Ccd *ccd, CollisionPair *pair, const Swept *p,
     const CollisionPlan *plan = ccd->plan;
     for (int i = 0; i < 8; i++) {
         if (!collision_owns_edge(plan, pair->a, i)) continue;
+
         const uint8_t *k = collision_edge[i];
         unsigned corners = same[k[0]] | (k[1] < 4 ? same[k[1]] : 0);
         Float4 low = float4_min(p->low[k[0]], p->low[k[1]]) - plan->gap;
         Float4 high = float4_max(p->high[k[0]], p->high[k[1]]) + plan->gap;
         unsigned sides = four_meet(&q->boxes.sides, low, high) & plan->owned[pair->b] >> 4 & ~narrow_around(corners);
         unsigned spokes = four_meet(&q->boxes.spokes, low, high) & ~corners;
-        if (pair->a == pair->b) {
+        if (pair->a == pair->b) { // each pair once
             sides &= 14u << i;
             spokes = i < 4 ? spokes : 0;
-        } // each pair once
+        }
+
         for (unsigned meet = sides | spokes << 4; meet; meet &= meet - 1) {
             int j = __builtin_ctz(meet);
-            note_hit(pair, sweep_edge(ccd, p, i, q, j), COLLISION_EDGES, i, j);
+            const uint8_t *l = collision_edge[j];
+            FeatureSweep sweep = {
+                {p->position[k[0]], p->position[k[1]], q->position[l[0]], q->position[l[1]]},
+                {p->displacement[k[0]], p->displacement[k[1]], q->displacement[l[0]], q->displacement[l[1]]},
+                true};
+            note_hit(pair, feature_sweep(&sweep, plan->gap, plan->noise), COLLISION_EDGES, i, j);
         }
     }
 }
@@ -113,11 +112,11 @@ static void sweep_pair(const Ccd *ccd, CollisionPair *pair) {
 /// itself during the step: then it is on the wrong side of a cell that shares two sides with it, though it met no
 /// feature of that cell.
 static bool own_is_free(const Ccd *ccd, uint32_t cell) {
-    SINGE_ASSERT(cell < ccd->shell->cell_count);
     const Float4 *motion = ccd->plan->motion[cell];
     const float(*x)[4] = (const float(*)[4])ccd->dynamics->position;
     const uint32_t *corner = ccd->shell->cells[cell];
     if (!(motion[COLLISION_NORMAL][3] < FEATURE_CONE)) return false;
+
     Float4 one = float4_flat(float4_load(x[corner[2]]) - float4_load(x[corner[0]]));
     Float4 two = float4_flat(float4_load(x[corner[3]]) - float4_load(x[corner[1]])), area = float4_cross(one, two);
     float displacement = 8 * motion[COLLISION_DISPLACEMENT][3];
@@ -129,15 +128,18 @@ static bool own_is_free(const Ccd *ccd, uint32_t cell) {
 static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
     const CollisionPlan *plan = ccd->plan;
     CollisionFourPairs four = collision_four_pairs(plan, number);
+
     // so far apart that the sweep, which stops a little before the gap, would not stop either
     Float4Mask separation =
         (four.distance > 2 * plan->gap) &
         (collision_four_differ(&four, COLLISION_DISPLACEMENT) + plan->noise < 0.9f * (four.distance - plan->gap));
     unsigned free = float4_bits(separation), bridged = four.bridged & ~free;
     if (!bridged) return free;
+
     Float4Mask sides = collision_four_within(&four, four.a, four.b, FEATURE_CONE_SIDE);
     Float4Mask corners = collision_four_within(&four, four.a, four.bridge, FEATURE_CONE_CORNER) &
                          collision_four_within(&four, four.b, four.bridge, FEATURE_CONE_CORNER);
+
     for (unsigned i = 0; i < 4; i++) {
         if (!(bridged >> i & 1) || !ccd_is_alive(ccd, four.bridge[i])) continue;
         bool part = four.a[i] == four.b[i]        ? own_is_free(ccd, four.a[i])
@@ -145,6 +147,7 @@ static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
                                                   : corners[i] != 0;
         free |= (unsigned)part << i;
     }
+
     return free;
 }
 
@@ -157,6 +160,7 @@ static bool plane_parts(const Ccd *ccd, const CollisionPair *pair) {
     for (int i = 0; i < 16; i++)
         if (a[i >> 2] == b[i & 3]) shared[0] |= 1u << (i >> 2), shared[1] |= 1u << (i & 3);
     if (!shared[0] || pair->a == pair->b) return false;
+
     Float4 p[5], q[5], normal[2];
     for (int k = 0; k < 2; k++) {
         Float4 origin = float4_load(positions[k][a[0]]);
@@ -164,25 +168,8 @@ static bool plane_parts(const Ccd *ccd, const CollisionPair *pair) {
         collision_nodes(b, positions[k], origin, q);
         if (!feature_is_separated(p, q, shared, ccd->plan->gap, &normal[k])) return false;
     }
+
     return float4_dot(normal[0], normal[1]) > 0;
-}
-
-/// Returns whether a pair collides.
-static bool look_at_pair(const Ccd *ccd, CollisionPair *pair) {
-    if (!ccd_is_alive(ccd, pair->a) || !ccd_is_alive(ccd, pair->b)) return false;
-    if (initial_is_crossing(ccd->plan, pair)) return false;
-    if (!plane_parts(ccd, pair)) sweep_pair(ccd, pair);
-    return pair->hit < 2;
-}
-
-/// Checks the pairs whose numbers are given, four at a time. Returns how many collide.
-static uint32_t look_at_four(const Ccd *ccd, const uint32_t number[4], uint32_t count) {
-    CollisionPlan *plan = ccd->plan;
-    uint32_t hits = 0;
-    for (uint32_t i = 0; i < count; i++) plan->pairs[number[i]].hit = 2;
-    for (unsigned look = ((1u << count) - 1) & ~four_are_free(ccd, number); look; look &= look - 1)
-        hits += look_at_pair(ccd, &plan->pairs[number[__builtin_ctz(look)]]);
-    return hits;
 }
 
 typedef struct Look {
@@ -191,9 +178,11 @@ typedef struct Look {
     const uint32_t *active; ///< pairs, or NULL for all from the first on
 } Look;
 
+/// Checks pairs, four at a time. Returns how many collide.
 static double look_range(void *task, int begin, int end) {
     const Look *look = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
+    const Ccd *ccd = look->ccd;
+    CollisionPair *pairs = ccd->plan->pairs;
     double hits = 0;
     for (int k = begin; k < end; k += 4) {
         uint32_t number[4], count = end - k < 4 ? (uint32_t)(end - k) : 4;
@@ -201,8 +190,18 @@ static double look_range(void *task, int begin, int end) {
             uint32_t at = (uint32_t)k + (i < count ? i : 0);
             number[i] = look->active ? look->active[at] : look->first + at;
         }
-        hits += look_at_four(look->ccd, number, count);
+
+        // those of the four that are not free
+        for (uint32_t i = 0; i < count; i++) pairs[number[i]].hit = 2;
+        for (unsigned left = ((1u << count) - 1) & ~four_are_free(ccd, number); left; left &= left - 1) {
+            CollisionPair *pair = &pairs[number[__builtin_ctz(left)]];
+            if (!ccd_is_alive(ccd, pair->a) || !ccd_is_alive(ccd, pair->b)) continue;
+            if (initial_is_crossing(ccd->plan, pair)) continue;
+            if (!plane_parts(ccd, pair)) sweep_pair(ccd, pair);
+            hits += pair->hit < 2;
+        }
     }
+
     return hits;
 }
 

@@ -9,7 +9,6 @@
 // closed the gap. A zone that collides again halves its share, and has 0 from round ZONE_PATIENCE on, when it moves as
 // one piece (the impact zones of Provot, 1997). Zones are only ever joined, and shares only reduced, so the rounds end.
 // Held corners keep their own displacement.
-#include "common/assertion.h"
 #include "collision/ccd.h"
 #include "collision/feature_distance.h"
 
@@ -45,8 +44,10 @@ static Float4 impact_points(const CollisionPair *pair, const Swept *p, const Swe
         const uint8_t *k = collision_edge[pair->first[0]], *l = collision_edge[pair->first[1]];
         float s, t;
         separation = feature_from_segment(x[k[0]], x[k[1]], y[l[0]], y[l[1]], &s, &t);
-        zones_spread(w1, k[0], 1 - s), zones_spread(w1, k[1], s);
-        zones_spread(w2, l[0], 1 - t), zones_spread(w2, l[1], t);
+        zones_spread(w1, k[0], 1 - s);
+        zones_spread(w1, k[1], s);
+        zones_spread(w2, l[0], 1 - t);
+        zones_spread(w2, l[1], t);
         return separation;
     }
 
@@ -63,7 +64,6 @@ static Float4 impact_points(const CollisionPair *pair, const Swept *p, const Swe
 /// quarter of the heaviest. Otherwise a light corner, far from the point, would be thrown far to move it. Returns the
 /// point's own inverse mass.
 static float impact_lever(const Ccd *ccd, uint32_t cell, const float w[4], float lever[4]) {
-    SINGE_ASSERT(cell < ccd->shell->cell_count);
     const uint32_t *corner = ccd->shell->cells[cell];
     float min = INFINITY, inverse[4], own = 0, sum = 0;
     for (int i = 0; i < 4; i++) {
@@ -71,21 +71,14 @@ static float impact_lever(const Ccd *ccd, uint32_t cell, const float w[4], float
         own += w[i] * w[i] * inverse[i];
         if (w[i] != 0 && inverse[i] > 0) min = fminf(min, inverse[i]);
     }
-    for (int i = 0; i < 4; i++) inverse[i] = fminf(inverse[i], 4 * min), sum += w[i] * w[i] * inverse[i];
+
+    for (int i = 0; i < 4; i++) {
+        inverse[i] = fminf(inverse[i], 4 * min);
+        sum += w[i] * w[i] * inverse[i];
+    }
+
     for (int i = 0; i < 4; i++) lever[i] = sum > 0 ? fminf(w[i] * inverse[i] / sum, 2) : 0;
     return own;
-}
-
-/// Moves the colliding points by `shift` relative to each other, each according to its mass.
-static void impact_move(const Ccd *ccd, const CollisionPair *pair, const float wa[4], const float wb[4], Float4 shift) {
-    float lever[2][4], a = impact_lever(ccd, pair->a, wa, lever[0]), b = impact_lever(ccd, pair->b, wb, lever[1]);
-    for (int k = 0; a + b > 0 && k < 8; k++) {
-        uint32_t v = ccd->shell->cells[k < 4 ? pair->a : pair->b][k & 3];
-        float go = (k < 4 ? a : -b) / (a + b) * lever[k >> 2][k & 3], *x = ccd->dynamics->position[v];
-        if (go == 0) continue;
-        float4_store(x, float4_load(x) + go * shift);
-        ccd_mark_around(ccd, v);
-    }
 }
 
 static Float4 impact_slip(const Ccd *ccd, const CollisionPair *pair, const float wa[4], const float wb[4],
@@ -107,16 +100,29 @@ static void impact(const Ccd *ccd, const CollisionPair *pair) {
     Float4 normal = impact_points(pair, &p, &q, wa, wb);
     float distance = sqrtf(float4_dot(normal, normal));
     if (!(distance > 0)) return;
+
     normal = normal / distance;
     Float4 end = impact_slip(ccd, pair, wa, wb, (const float(*)[4])ccd->dynamics->position);
     Float4 slip = end - impact_slip(ccd, pair, wa, wb, (const float(*)[4])ccd->plan->start);
+
     // after previous impacts have changed the displacements, these points are already farther apart than where they met
     float repulsion = fminf(distance, 2 * ccd->plan->gap) + IMPACT_PART * ccd->plan->gap - float4_dot(end, normal);
     if (repulsion <= 0) return;
+
     slip -= float4_dot(slip, normal) * normal;
     float length = sqrtf(float4_dot(slip, slip)), max = ccd->plan->def.friction * repulsion;
     Float4 shift = repulsion * normal - (length <= max ? 1 : max / length) * slip;
-    impact_move(ccd, pair, wa, wb, shift);
+
+    // each point according to its mass
+    float lever[2][4], a = impact_lever(ccd, pair->a, wa, lever[0]), b = impact_lever(ccd, pair->b, wb, lever[1]);
+    for (int k = 0; a + b > 0 && k < 8; k++) {
+        uint32_t v = ccd->shell->cells[k < 4 ? pair->a : pair->b][k & 3];
+        float go = (k < 4 ? a : -b) / (a + b) * lever[k >> 2][k & 3], *x = ccd->dynamics->position[v];
+        if (go == 0) continue;
+
+        float4_store(x, float4_load(x) + go * shift);
+        ccd_mark_around(ccd, v);
+    }
 }
 
 void ccd_impacts(const Ccd *ccd) {
@@ -125,7 +131,8 @@ void ccd_impacts(const Ccd *ccd) {
     for (uint32_t k = 0; k < plan->hit_count; k++) {
         const CollisionPair *pair = &plan->pairs[plan->active[k]];
         impact(ccd, pair);
-        ccd_mark_changed(ccd, pair->a), ccd_mark_changed(ccd, pair->b);
+        ccd_mark_changed(ccd, pair->a);
+        ccd_mark_changed(ccd, pair->b);
     }
 }
 
@@ -137,16 +144,6 @@ static uint32_t zone_root(CollisionPlan *plan, uint32_t v) {
     return v;
 }
 
-/// Puts a vertex into a zone of its own, with all of its displacement, unless it already is in a zone.
-static void zone_enter(const Ccd *ccd, uint32_t v) {
-    CollisionPlan *plan = ccd->plan;
-    if (plan->zone[v] != SHELL_NONE) return;
-    plan->zone[v] = v;
-    plan->share[v] = 1;
-    plan->stopped[plan->stopped_count++] = v;
-    memcpy(plan->goal[v], ccd->dynamics->position[v], sizeof *plan->goal);
-}
-
 /// Joins the corners of a colliding pair, and reduces their share of the displacement.
 static void zone_join(const Ccd *ccd, const CollisionPair *pair, int round) {
     CollisionPlan *plan = ccd->plan;
@@ -155,7 +152,13 @@ static void zone_join(const Ccd *ccd, const CollisionPair *pair, int round) {
     float share = 1;
     for (int i = 0; i < 8; i++) {
         uint32_t v = i < 4 ? a[i] : b[i - 4];
-        zone_enter(ccd, v);
+        if (plan->zone[v] == SHELL_NONE) { // into a zone of its own, with all of its displacement
+            plan->zone[v] = v;
+            plan->share[v] = 1;
+            plan->stopped[plan->stopped_count++] = v;
+            memcpy(plan->goal[v], ccd->dynamics->position[v], sizeof *plan->goal);
+        }
+
         uint32_t other = zone_root(plan, v);
         share = fminf(share, plan->share[other]);
         if (root == SHELL_NONE) root = other;
@@ -164,14 +167,17 @@ static void zone_join(const Ccd *ccd, const CollisionPair *pair, int round) {
             root = other;
         } else plan->zone[other] = root;
     }
+
     // in the first round the share is the free one; later the displacements of the zone itself have changed
     float less = round == 0 ? 0.9f * pair->hit : round < ZONE_PATIENCE ? 0.5f * share : 0;
     plan->share[root] = fminf(share, less);
 }
 
-/// Mean displacements by mass; if there are held corners, only theirs count.
-static void zone_drift(const Ccd *ccd) {
+void ccd_zones(const Ccd *ccd, int round) {
     CollisionPlan *plan = ccd->plan;
+    for (uint32_t k = 0; k < plan->hit_count; k++) zone_join(ccd, &plan->pairs[plan->active[k]], round);
+
+    // mean displacements by mass; if there are held corners, only theirs count
     for (uint32_t k = 0; k < plan->stopped_count; k++) plan->drift[plan->stopped[k]] = (Float4){0};
     for (uint32_t k = 0; k < plan->stopped_count; k++) {
         uint32_t v = plan->stopped[k];
@@ -180,27 +186,19 @@ static void zone_drift(const Ccd *ccd) {
         displacement[3] = 1;
         plan->drift[zone_root(plan, v)] += mass * displacement;
     }
-}
 
-/// Moves the vertices in zones, and marks the cells around them.
-static void zone_move(const Ccd *ccd) {
-    CollisionPlan *plan = ccd->plan;
-    zone_drift(ccd);
+    // move the vertices, and mark the cells around them
     for (uint32_t k = 0; k < plan->stopped_count; k++) {
         uint32_t v = plan->stopped[k], root = zone_root(plan, v);
         if (plan->start[v][3] == 0) continue;
+
         Float4 drift = plan->drift[root] / plan->drift[root][3], start = float4_load(plan->start[v]);
         Float4 displacement = float4_load(plan->goal[v]) - start;
         Float4 end = start + drift + plan->share[root] * (displacement - drift);
         end[3] = start[3];
         float4_store(ccd->dynamics->position[v], end);
     }
+
     ccd_forget_changed(plan);
     for (uint32_t k = 0; k < plan->stopped_count; k++) ccd_mark_around(ccd, plan->stopped[k]);
-}
-
-void ccd_zones(const Ccd *ccd, int round) {
-    const CollisionPlan *plan = ccd->plan;
-    for (uint32_t k = 0; k < plan->hit_count; k++) zone_join(ccd, &plan->pairs[plan->active[k]], round);
-    zone_move(ccd);
 }

@@ -11,7 +11,7 @@
 //
 // Both use pairs of nearby cells. The search for pairs runs again when cells have used up the motion that the last
 // search allowed for (broad_phase.c). All lists have a fixed order: the same bytes for any number of threads. A list
-// that is too small for its pairs grows (collision_capacity.c).
+// that is too small for its pairs grows (collision_plan.c).
 #ifndef COLLISION_COLLISION_H
 #define COLLISION_COLLISION_H
 
@@ -21,21 +21,23 @@
 
 typedef struct CollisionPlan CollisionPlan;
 
-/// Scratch for the shell, of `memory`, which outlives it; `time_step` in s. SINGE_ERROR_MEMORY.
+/// Scratch for the shell; `time_step` in s. SINGE_ERROR_MEMORY. The plan does not keep `memory`, which its owner may move:
+/// calls that may grow its lists are given it.
 SingeResult collision_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
                                   CollisionPlan **plan);
 void collision_plan_free(Memory *memory, CollisionPlan *plan);
 
 /// The plan's data of the last search, as part of a snapshot of cells with these flags. SINGE_ERROR_MEMORY when
 /// reading; data that does not fit fails the stream.
-SingeResult collision_plan_stream(CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags, Stream *stream);
+SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags,
+                                  Stream *stream);
 
 /// Must be called when the corners of cells have changed.
 void collision_plan_forget(CollisionPlan *plan);
 
 /// Opens a step whose particles are at `dynamics`, the inverse masses in place. SINGE_ERROR_MEMORY, as ccd_apply:
 /// where sheets crowd, lists grow. After an error the step must be rolled back; the next one searches again.
-SingeResult collision_open(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
+SingeResult collision_open(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
                            const DynamicsState *dynamics);
 
 /// Pushes points apart that are too near, in a substep of h seconds that began at `predicted` less h times the
@@ -43,8 +45,8 @@ SingeResult collision_open(CollisionPlan *plan, const Shell *shell, const StateI
 void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics);
 
 /// Closes the step: no cell of the drawn mesh has passed through another since collision_open.
-SingeResult ccd_apply(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
-                      DynamicsState *dynamics);
+SingeResult ccd_apply(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
+                      float h, DynamicsState *dynamics);
 
 /// Counts since the plan was made.
 typedef struct CollisionCounters {
@@ -62,7 +64,7 @@ typedef struct CollisionCounters {
 
 CollisionCounters collision_counters(const CollisionPlan *plan);
 
-/// NULL, or which invariant of the plan is broken between two steps (collision_validate.c).
+/// NULL, or which invariant of the plan is broken between two steps (collision_plan.c).
 const char *collision_validate(const CollisionPlan *plan);
 
 /// Lowers room[vertices], m, at vertices whose cells have another cell near in the present state, to its distance: the

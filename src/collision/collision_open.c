@@ -3,7 +3,6 @@
 // A pair's distance is kept as a bound: it is at least the last measured distance, less the relative motion of the two
 // cells since. Features are checked only where the bound does not show that all of them stay apart in this step. So the
 // result depends on the pair's positions and speeds alone, not on when it was measured.
-#include "common/assertion.h"
 #include "common/clock.h"
 #include "common/error.h"
 #include "collision/narrow_phase.h"
@@ -29,46 +28,28 @@ typedef struct Opening {
 
 // ---- how cells move
 
-/// Whether a cell is as CCD has left and measured it in the last step.
-static bool is_as_left(const CollisionPlan *plan, const uint32_t corner[4], const float (*x)[4]) {
-    Float4Mask moved = {0};
-    for (int i = 0; i < 4; i++) moved |= float4_load(x[corner[i]]) != float4_load(plan->end[corner[i]]);
-    return !(float4_bits(moved) & 7); // the fourth components are inverse masses
-}
-
 static void measure_range(void *task, int begin, int end) {
     const Opening *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     CollisionPlan *plan = job->plan;
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
+
     for (int c = begin; c < end; c++) {
         const uint32_t *corner = job->shell->cells[c];
         Float4 *motion = plan->motion[c];
         Float4 speed[4], node[5];
         for (int i = 0; i < 4; i++) speed[i] = float4_load(job->dynamics->velocity[corner[i]]);
         motion[COLLISION_VELOCITY] = collision_mean(speed);
-        bool known = plan->closed && is_as_left(plan, corner, x);
+
+        // a cell that is as CCD has left it is measured already
+        Float4Mask moved = {0};
+        for (int i = 0; i < 4; i++) moved |= float4_load(x[corner[i]]) != float4_load(plan->end[corner[i]]);
+        bool known = plan->closed && !(float4_bits(moved) & 7); // the fourth components are inverse masses
         if (!known || job->searched) motion[COLLISION_DISPLACEMENT] = collision_displacement(plan, corner, x);
         if (known) continue;
+
         collision_nodes(corner, x, float4_load(x[corner[0]]), node);
         motion[COLLISION_NORMAL] = feature_normals(node);
     }
-}
-
-/// Stores where corners are and how they move: as since the last search, as resting corners tremble; else by their
-/// velocities.
-static void note_search(CollisionPlan *plan, const StateInput *state, const DynamicsState *dynamics) {
-    bool known = plan->searched && state->step > plan->step;
-    float since = known ? (float)(state->step - plan->step) * plan->time_step : 1;
-    for (uint32_t v = 0; v < plan->vertex_count; v++) {
-        Float4 now = float4_load(dynamics->position[v]);
-        Float4 speed = known ? (now - float4_load(plan->position[v])) / since : float4_load(dynamics->velocity[v]);
-        speed[3] = 0;
-        float4_store(plan->speed[v], speed);
-        float4_store(plan->position[v], now);
-    }
-    for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = state->ablate->cell_flags[c] & SINGE_ALIVE;
-    plan->step = state->step;
 }
 
 // ---- nearby features
@@ -87,28 +68,13 @@ static inline float due(float thickness, const CollisionPlan *plan, float approa
     return 1.25f * thickness + 1.5f * plan->time_step * (approach > 0 ? approach : 0);
 }
 
-static Float4 point_speed(const Look *look, const NearFeatures *near) {
-    Float4 one, two;
-    if (near->kind == COLLISION_EDGES) {
-        const uint8_t *k = collision_edge[near->first], *l = collision_edge[near->second];
-        one = look->speed_a[k[0]] + near->u * (look->speed_a[k[1]] - look->speed_a[k[0]]);
-        two = look->speed_b[l[0]] + near->v * (look->speed_b[l[1]] - look->speed_b[l[0]]);
-        return one - two;
-    }
-    bool turned = near->kind == COLLISION_NODE_OF_B;
-    const Float4 *own = turned ? look->speed_b : look->speed_a, *other = turned ? look->speed_a : look->speed_b;
-    const uint8_t *k = collision_triangle[near->second];
-    one = own[near->first];
-    two = other[k[0]] + near->u * (other[k[1]] - other[k[0]]) + near->v * (other[k[2]] - other[k[0]]);
-    return turned ? two - one : one - two;
-}
-
 /// Adds a node's weight to the corners of its cell.
 static void add_node(float corner[4], int node, float weight) {
     if (node < 4) {
         corner[node] += weight;
         return;
     }
+
     for (int i = 0; i < 4; i++) corner[i] += 0.25f * weight;
 }
 
@@ -116,14 +82,19 @@ static void add_node(float corner[4], int node, float weight) {
 static void point_weights(int kind, int first, int second, float u, float v, float wa[4], float wb[4]) {
     if (kind == COLLISION_EDGES) {
         const uint8_t *k = collision_edge[first], *l = collision_edge[second];
-        add_node(wa, k[0], 1 - u), add_node(wa, k[1], u);
-        add_node(wb, l[0], 1 - v), add_node(wb, l[1], v);
+        add_node(wa, k[0], 1 - u);
+        add_node(wa, k[1], u);
+        add_node(wb, l[0], 1 - v);
+        add_node(wb, l[1], v);
         return;
     }
+
     float *own = kind == COLLISION_NODE_OF_B ? wb : wa, *other = kind == COLLISION_NODE_OF_B ? wa : wb;
     const uint8_t *k = collision_triangle[second];
     add_node(own, first, 1);
-    add_node(other, k[0], 1 - u - v), add_node(other, k[1], u), add_node(other, k[2], v);
+    add_node(other, k[0], 1 - u - v);
+    add_node(other, k[1], u);
+    add_node(other, k[2], v);
 }
 
 /// Whether two points of one sheet are nearer at rest than `far`.
@@ -132,8 +103,10 @@ static bool near_at_rest(const Opening *job, const CollisionPair *pair, const Ne
     Float4 separation = job->plan->rest[pair->a] - job->plan->rest[pair->b];
     float max = far + job->plan->rest[pair->a][3] + job->plan->rest[pair->b][3];
     if (float4_dot(separation, separation) > max * max) return false;
+
     const uint16_t *sheet = shell->matter.sheet;
     if (sheet[shell_centre(shell, pair->a)] != sheet[shell_centre(shell, pair->b)]) return false;
+
     float wa[4] = {0}, wb[4] = {0};
     point_weights(near->kind, near->first, near->second, near->u, near->v, wa, wb);
     separation = (Float4){0};
@@ -148,18 +121,34 @@ static float target(const Opening *job, const CollisionPair *pair, const Look *l
     const CollisionPlan *plan = job->plan;
     float thickness = open_min(plan->thin[pair->a], plan->thin[pair->b]), distance = near->distance;
     if (!(distance > 0)) return 0;
-    float toward = -float4_dot(point_speed(look, near), near->separation) / distance;
+
+    // velocity of the point of a relative to that of b
+    Float4 speed;
+    if (near->kind == COLLISION_EDGES) {
+        const uint8_t *k = collision_edge[near->first], *l = collision_edge[near->second];
+        speed = (look->speed_a[k[0]] + near->u * (look->speed_a[k[1]] - look->speed_a[k[0]])) -
+                (look->speed_b[l[0]] + near->v * (look->speed_b[l[1]] - look->speed_b[l[0]]));
+    } else {
+        bool turned = near->kind == COLLISION_NODE_OF_B;
+        const Float4 *own = turned ? look->speed_b : look->speed_a, *other = turned ? look->speed_a : look->speed_b;
+        const uint8_t *k = collision_triangle[near->second];
+        Float4 there = other[k[0]] + near->u * (other[k[1]] - other[k[0]]) + near->v * (other[k[2]] - other[k[0]]);
+        speed = turned ? there - own[near->first] : own[near->first] - there;
+    }
+
+    // contact is due where they may be too near at the step's end
+    float toward = -float4_dot(speed, near->separation) / distance;
     if (distance > due(plan->thickness, plan, toward)) return 0;
     if (near_at_rest(job, pair, near, 2 * thickness)) {
         thickness = open_min(thickness, 4 * plan->gap);
         if (distance > due(thickness, plan, toward)) return 0;
     }
+
     float parted = distance + COLLISION_PART * plan->time_step;
     return parted < thickness ? parted : thickness;
 }
 
 static void node_velocities(const Opening *job, uint32_t cell, Float4 speed[5]) {
-    SINGE_ASSERT(cell < job->shell->cell_count);
     for (int i = 0; i < 4; i++) speed[i] = float4_load(job->dynamics->velocity[job->shell->cells[cell][i]]);
     speed[4] = 0.25f * ((speed[0] + speed[1]) + (speed[2] + speed[3]));
 }
@@ -177,12 +166,15 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Blo
     float separation = narrow_boxes_distance(&look.a, &look.b) - plan->noise;
     pair->distance = separation > pair->distance ? separation : pair->distance;
     if (pair->distance > look.due) return;
+
     separation = narrow_slabs_distance(&look.a, &look.b) - plan->noise;
     pair->distance = separation > pair->distance ? separation : pair->distance;
     if (pair->distance > look.due) return;
+
     // a node beside a triangle may be over the next one: a fixed normal would make a ridge of the edge between
     FeatureRange far = {look.due, look.due, open_min(plan->thin[pair->a], plan->thin[pair->b]),
                         separation < FEATURE_SEPARATED * plan->thickness};
+
     // measures a little farther, so that not every step must measure again
     if (far.edges) far.measured += 0.25f * plan->thickness;
     NearFeatures near[NARROW_MAX];
@@ -192,52 +184,54 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Blo
     if (doubt > 0.5f * plan->gap) nearest -= doubt; // CCD keeps a gap, which covers less doubt
     if (far.edges && nearest > pair->distance) pair->distance = nearest;
     if (count == 0) return;
+
     node_velocities(job, pair->a, look.speed_a);
     node_velocities(job, pair->b, look.speed_b);
     for (int i = 0; i < count; i++) {
         float keep = target(job, pair, &look, &near[i]);
         FoundPoints *found = keep > 0 ? block_list_add(writer) : NULL;
         if (!found) continue;
+
         *found = (FoundPoints){k, near[i].kind, near[i].first, near[i].second, near[i].u, near[i].v, {0}, keep};
         for (int d = 0; d < 3; d++) found->normal[d] = near[i].separation[d] / near[i].distance;
     }
 }
 
-/// Measures those of four pairs, from `first` on, of which `count` are left.
-static void look_at_four(const Opening *job, uint32_t first, uint32_t count, BlockWriter *writer) {
-    CollisionPlan *plan = job->plan;
-    uint32_t number[4];
-    for (uint32_t i = 0; i < 4; i++) number[i] = first + (i < count ? i : 0);
-    CollisionFourPairs four = collision_four_pairs(plan, number);
-
-    // connected cells whose normals lie within a cone cannot collide
-    unsigned joined = four.bridged;
-    if (joined) joined &= float4_bits(collision_four_within(&four, four.a, four.b, FEATURE_CONE));
-
-    // bounds of the distances, and where contact is possible
-    Float4 due = 1.25f * plan->thickness + 1.5f * plan->time_step * collision_four_differ(&four, COLLISION_VELOCITY);
-    Float4 left = four.distance;
-    if (!job->again)
-        left = float4_max(left - collision_four_differ(&four, COLLISION_DISPLACEMENT) - plan->noise, float4_all(0));
-    unsigned near = float4_bits(left <= due) & ~joined;
-    for (uint32_t i = 0; i < count && i < 4; i++) plan->pairs[first + i].distance = joined >> i & 1 ? 0 : left[i];
-
-    // measure the pairs that may be in contact
-    for (near &= (1u << (count < 4 ? count : 4)) - 1; near; near &= near - 1) {
-        int i = __builtin_ctz(near);
-        const CollisionPair *pair = &plan->pairs[first + (uint32_t)i];
-        bool alive = job->cell_flags[pair->a] & job->cell_flags[pair->b] & SINGE_ALIVE;
-        if (alive && pair->a != pair->b && !initial_is_crossing(plan, pair))
-            measure_pair(job, first + (uint32_t)i, due[i], writer);
-    }
-}
-
 static void look_block(void *context, BlockList *list, int block) {
     const Opening *job = context;
+    CollisionPlan *plan = job->plan;
     BlockWriter writer = block_list_begin(list, block);
-    uint32_t first = (uint32_t)block * COLLISION_BLOCK, last = first + COLLISION_BLOCK;
-    if (last > job->plan->listed_count) last = job->plan->listed_count;
-    for (uint32_t k = first; k < last; k += 4) look_at_four(job, k, last - k, &writer);
+    uint32_t begin = (uint32_t)block * COLLISION_BLOCK, end = begin + COLLISION_BLOCK;
+    if (end > plan->listed_count) end = plan->listed_count;
+    for (uint32_t first = begin; first < end; first += 4) {
+        const uint32_t count = end - first < 4 ? end - first : 4;
+        uint32_t number[4];
+        for (uint32_t i = 0; i < 4; i++) number[i] = first + (i < count ? i : 0);
+        CollisionFourPairs four = collision_four_pairs(plan, number);
+
+        // connected cells whose normals lie within a cone cannot collide
+        unsigned joined = four.bridged;
+        if (joined) joined &= float4_bits(collision_four_within(&four, four.a, four.b, FEATURE_CONE));
+
+        // bounds of the distances, and where contact is possible
+        Float4 due =
+            1.25f * plan->thickness + 1.5f * plan->time_step * collision_four_differ(&four, COLLISION_VELOCITY);
+        Float4 left = four.distance;
+        if (!job->again)
+            left = float4_max(left - collision_four_differ(&four, COLLISION_DISPLACEMENT) - plan->noise, float4_all(0));
+        unsigned near = float4_bits(left <= due) & ~joined;
+        for (uint32_t i = 0; i < count; i++) plan->pairs[first + i].distance = joined >> i & 1 ? 0 : left[i];
+
+        // measure the pairs that may be in contact
+        for (near &= (1u << count) - 1; near; near &= near - 1) {
+            int i = __builtin_ctz(near);
+            const CollisionPair *pair = &plan->pairs[first + (uint32_t)i];
+            bool alive = job->cell_flags[pair->a] & job->cell_flags[pair->b] & SINGE_ALIVE;
+            if (alive && pair->a != pair->b && !initial_is_crossing(plan, pair))
+                measure_pair(job, first + (uint32_t)i, due[i], &writer);
+        }
+    }
+
     block_list_end(&writer);
 }
 
@@ -252,6 +246,7 @@ static void open_gather(Repulsion *repulsion, const uint32_t corner[4], const fl
             repulsion->node[repulsion->count] = corner[i];
             repulsion->weight[repulsion->count++] = 0;
         }
+
         repulsion->weight[k] += sign * weight[i];
     }
 }
@@ -271,41 +266,53 @@ static void open_repulsion(void *context, const void *item, uint32_t number) {
     open_gather(repulsion, job->shell->cells[pair->b], wb, -1);
 }
 
-static SingeResult open_repulsions(Opening *job, Pool *pool) {
-    CollisionPlan *plan = job->plan;
-    BlockList *list = &plan->found;
-    int blocks = (int)collision_look_blocks(plan->listed_count);
-    uint64_t count = block_list_write(list, pool, blocks, plan->sizes.repulsion_max, look_block, job);
-    if (!collision_grow_repulsions(plan, count)) return SINGE_ERROR_MEMORY;
-    job->again = true;
-    plan->repulsion_count = block_list_settle(list, pool, blocks, count, plan->repulsion_capacity, look_block, job);
-    plan->counters.dropped += count - plan->repulsion_count;
-    block_list_read(list, pool, blocks, plan->repulsion_count, open_repulsion, job);
-    return SINGE_OK;
-}
-
-static SingeResult open_step(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
-                             const DynamicsState *dynamics) {
+static SingeResult open_step(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state,
+                             Pool *pool, const DynamicsState *dynamics) {
     bool search =
         !plan->searched || plan->restless || state->step < plan->step || state->step - plan->step >= plan->steps;
     Opening job = {plan, shell, dynamics, state->ablate->cell_flags, search, false};
     if (search) {
-        note_search(plan, state, dynamics);
-        TRY(broad_search(plan, shell, pool));
+        // where corners are and how they move: as since the last search, as resting corners tremble; else by their
+        // velocities
+        bool known = plan->searched && state->step > plan->step;
+        float since = known ? (float)(state->step - plan->step) * plan->time_step : 1;
+        for (uint32_t v = 0; v < plan->vertex_count; v++) {
+            Float4 now = float4_load(dynamics->position[v]);
+            Float4 speed = known ? (now - float4_load(plan->position[v])) / since : float4_load(dynamics->velocity[v]);
+            speed[3] = 0;
+            float4_store(plan->speed[v], speed);
+            float4_store(plan->position[v], now);
+        }
+
+        for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = state->ablate->cell_flags[c] & SINGE_ALIVE;
+        plan->step = state->step;
+        TRY(broad_search(memory, plan, shell, pool));
         memcpy(plan->start, dynamics->position, plan->vertex_count * sizeof *plan->start);
     }
+
+    // how cells have moved since the last step began
     pool_for(pool, (int)plan->cell_count, 512, measure_range, &job);
     plan->closed = false;
     if (!search) memcpy(plan->start, dynamics->position, plan->vertex_count * sizeof *plan->start);
-    TRY(open_repulsions(&job, pool));
+
+    // points that are near, and their repulsions
+    BlockList *list = &plan->found;
+    const int blocks = (int)collision_look_blocks(plan->listed_count);
+    uint64_t count = block_list_write(list, pool, blocks, plan->sizes.repulsion_max, look_block, &job);
+    if (!collision_grow_repulsions(memory, plan, count)) return SINGE_ERROR_MEMORY;
+
+    job.again = true;
+    plan->repulsion_count = block_list_settle(list, pool, blocks, count, plan->repulsion_capacity, look_block, &job);
+    plan->counters.dropped += count - plan->repulsion_count;
+    block_list_read(list, pool, blocks, plan->repulsion_count, open_repulsion, &job);
     plan->counters.pairs += plan->listed_count;
     return SINGE_OK;
 }
 
-SingeResult collision_open(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
+SingeResult collision_open(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
                            const DynamicsState *dynamics) {
     double start = clock_seconds();
-    SingeResult result = open_step(plan, shell, state, pool, dynamics);
+    SingeResult result = open_step(memory, plan, shell, state, pool, dynamics);
     if (result) collision_plan_forget(plan);
     plan->counters.seconds += clock_seconds() - start;
     return result;
@@ -319,6 +326,7 @@ void collision_clearance(const CollisionPlan *plan, const Shell *shell, const St
     FeatureRange far = {looks, looks, looks, true};
     NearFeatures found[NARROW_MAX];
     NarrowCell p, q;
+
     for (uint32_t k = 0; plan->searched && k < plan->listed_count; k++) {
         const CollisionPair *pair = &plan->pairs[k];
         const uint32_t *a = shell->cells[pair->a], *b = shell->cells[pair->b];
@@ -339,6 +347,9 @@ void collision_clearance(const CollisionPlan *plan, const Shell *shell, const St
         // the distance is the room of all corners
         for (int i = 0; i < 16; i++)
             if (a[i / 4] == b[i % 4]) nearest = 0; // towards shared corners
-        for (int i = 0; i < 4; i++) room[a[i]] = fminf(room[a[i]], nearest), room[b[i]] = fminf(room[b[i]], nearest);
+        for (int i = 0; i < 4; i++) {
+            room[a[i]] = fminf(room[a[i]], nearest);
+            room[b[i]] = fminf(room[b[i]], nearest);
+        }
     }
 }

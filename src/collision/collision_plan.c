@@ -1,4 +1,9 @@
-// The plan: its memory, sizes and snapshot.
+// The plan: its memory, sizes, snapshot and invariants.
+//
+// The lists of pairs and repulsions have room for folds and heaps; in denser crowds they grow as needed, up to a max that
+// only sheets lying within each other reach. Items beyond that are dropped and counted. The size of a list does not
+// affect results: any sufficient size gives the same items, so that a run continued from a snapshot, where lists begin
+// small again, has the same bytes.
 #include "common/error.h"
 #include "collision/feature_distance.h"
 #include "collision/collision_plan.h"
@@ -21,26 +26,6 @@ CollisionSizes collision_sizes(const Shell *shell) {
     sizes.repulsion_max = capacity_max(sizes.repulsions);
     sizes.pair_budget = sizes.pairs;
     return sizes;
-}
-
-/// Finds the sizes of lists and lengths that follow from the shell.
-static void size_plan(CollisionPlan *plan, const Shell *shell, const CollisionSizes *sizes) {
-    uint64_t cells = shell->cell_count;
-    plan->vertex_count = shell->vertex_count;
-    plan->cell_count = shell->cell_count;
-    plan->sizes = *sizes;
-    plan->pair_capacity = sizes->pairs;
-    plan->repulsion_capacity = sizes->repulsions;
-    for (plan->bucket_count = 256; plan->bucket_count < 2 * cells;) plan->bucket_count *= 2;
-    plan->cell_size = INFINITY;
-    float far = 0;
-    for (uint32_t s = 0; s < shell->sheet_count; s++)
-        plan->cell_size = fminf(plan->cell_size, shell->sheets[s].cell_size);
-    for (uint32_t v = 0; v < shell->vertex_count; v++)
-        for (int k = 0; k < 3; k++) far = fmaxf(far, fabsf(shell->rest_position[v][k]));
-    plan->thickness = fminf(plan->def.thickness, 0.4f * plan->cell_size);
-    plan->slack_max = fmaxf(0.3f * plan->cell_size, plan->thickness);
-    plan->noise = 4e-7f * far;
 }
 
 typedef struct Array {
@@ -96,22 +81,6 @@ static void list_arrays(CollisionPlan *plan, Array list[ARRAYS]) {
     memcpy(list, all, sizeof all);
 }
 
-static bool collision_plan_allocate(Memory *memory, CollisionPlan *plan) {
-    Array list[ARRAYS];
-    list_arrays(plan, list);
-    for (int k = 0; k < ARRAYS; k++) {
-        void *block = memory_new(memory, list[k].count, list[k].size);
-        if (!block) return false;
-        memcpy(list[k].at, &block, sizeof block);
-    }
-    uint32_t max = plan->pair_capacity, blocks = collision_look_blocks(max);
-    uint32_t buckets = plan->bucket_count / COLLISION_BUCKETS + 1,
-             outside_blocks = plan->cell_count / COLLISION_OUTSIDE + 1;
-    if (buckets < outside_blocks) buckets = outside_blocks;
-    return block_list_create(memory, &plan->found_pairs, sizeof(CollisionPair), max, buckets) &&
-           block_list_create(memory, &plan->found, sizeof(FoundPoints), plan->repulsion_capacity, blocks);
-}
-
 void collision_plan_free(Memory *memory, CollisionPlan *plan) {
     if (!plan) return;
     Array list[ARRAYS];
@@ -121,26 +90,6 @@ void collision_plan_free(Memory *memory, CollisionPlan *plan) {
     block_list_free(memory, &plan->found_pairs);
     block_list_free(memory, &plan->found);
     FREE(memory, plan, 1);
-}
-
-/// Centroids at rest, and the thickness of cells: cells far smaller than the rest of their sheet would be torn apart by
-/// the contact of their own corners.
-static void measure_cells(CollisionPlan *plan, const Shell *shell) {
-    float min = plan->cell_size;
-    for (uint32_t c = 0; c < plan->cell_count; c++) {
-        Float4 position[4];
-        float shortest = INFINITY;
-        for (int i = 0; i < 4; i++) position[i] = float4_load(shell->rest_position[shell->cells[c][i]]);
-        for (int i = 0; i < 4; i++) {
-            Float4 side = position[(i + 1) & 3] - position[i];
-            shortest = fminf(shortest, float4_dot(side, side));
-        }
-        plan->rest[c] = collision_mean(position);
-        shortest = sqrtf(shortest);
-        plan->thin[c] = fminf(plan->thickness, 0.4f * shortest);
-        min = fminf(min, 4 * shortest);
-    }
-    plan->gap = 5e-3f * min + 4 * plan->noise;
 }
 
 SingeResult collision_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
@@ -154,16 +103,68 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     CollisionPlan *plan;
     *out = NULL;
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
-    plan->memory = memory;
+
     plan->def = *def;
     plan->time_step = time_step;
-    size_plan(plan, shell, sizes);
-    if (!collision_plan_allocate(memory, plan)) {
+    plan->vertex_count = shell->vertex_count;
+    plan->cell_count = shell->cell_count;
+    plan->sizes = *sizes;
+    plan->pair_capacity = sizes->pairs;
+    plan->repulsion_capacity = sizes->repulsions;
+    for (plan->bucket_count = 256; plan->bucket_count < 2 * (uint64_t)plan->cell_count;) plan->bucket_count *= 2;
+
+    // lengths that follow from the sheets
+    plan->cell_size = INFINITY;
+    float far = 0;
+    for (uint32_t s = 0; s < shell->sheet_count; s++)
+        plan->cell_size = fminf(plan->cell_size, shell->sheets[s].cell_size);
+    for (uint32_t v = 0; v < shell->vertex_count; v++)
+        for (int k = 0; k < 3; k++) far = fmaxf(far, fabsf(shell->rest_position[v][k]));
+    plan->thickness = fminf(plan->def.thickness, 0.4f * plan->cell_size);
+    plan->slack_max = fmaxf(0.3f * plan->cell_size, plan->thickness);
+    plan->noise = 4e-7f * far;
+
+    // arrays
+    Array list[ARRAYS];
+    list_arrays(plan, list);
+    bool done = true;
+    for (int k = 0; k < ARRAYS && done; k++) {
+        void *block = memory_new(memory, list[k].count, list[k].size);
+        done = block != NULL;
+        memcpy(list[k].at, &block, sizeof block);
+    }
+
+    uint32_t buckets = plan->bucket_count / COLLISION_BUCKETS + 1, blocks = plan->cell_count / COLLISION_OUTSIDE + 1;
+    if (buckets < blocks) buckets = blocks;
+    if (!done || !block_list_create(memory, &plan->found_pairs, sizeof(CollisionPair), plan->pair_capacity, buckets) ||
+        !block_list_create(memory, &plan->found, sizeof(FoundPoints), plan->repulsion_capacity,
+                           collision_look_blocks(plan->pair_capacity))) {
         collision_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
+
     for (uint32_t v = 0; v < plan->vertex_count; v++) plan->zone[v] = SHELL_NONE;
-    measure_cells(plan, shell);
+
+    // centroids at rest, and the thickness of cells: cells far smaller than the rest of their sheet would be torn apart
+    // by the contact of their own corners
+    float min = plan->cell_size;
+
+    for (uint32_t c = 0; c < plan->cell_count; c++) {
+        Float4 position[4];
+        float shortest = INFINITY;
+        for (int i = 0; i < 4; i++) position[i] = float4_load(shell->rest_position[shell->cells[c][i]]);
+        for (int i = 0; i < 4; i++) {
+            Float4 side = position[(i + 1) & 3] - position[i];
+            shortest = fminf(shortest, float4_dot(side, side));
+        }
+
+        plan->rest[c] = collision_mean(position);
+        shortest = sqrtf(shortest);
+        plan->thin[c] = fminf(plan->thickness, 0.4f * shortest);
+        min = fminf(min, 4 * shortest);
+    }
+
+    plan->gap = 5e-3f * min + 4 * plan->noise;
     *out = plan;
     return SINGE_OK;
 }
@@ -176,15 +177,17 @@ static bool collision_fits(const CollisionPlan *plan, const uint8_t *cell_flags)
             if (!isfinite(plan->position[v][k]) || !isfinite(plan->speed[v][k])) return false;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         if (plan->alive[c] > 1) return false;
+
         for (uint32_t k = plan->initial_first[c]; k < plan->initial_first[c + 1]; k++)
             if (plan->initial_other[k] < c || plan->initial_other[k] >= plan->cell_count) return false;
         if (plan->searched && (cell_flags[c] & SINGE_ALIVE) && !plan->alive[c]) return false;
     }
+
     return true;
 }
 
 /// The pairs that have intersected since the start: the count of each cell, then their other cells.
-static SingeResult stream_initial(CollisionPlan *plan, Stream *stream) {
+static SingeResult stream_initial(Memory *memory, CollisionPlan *plan, Stream *stream) {
     uint32_t *first = plan->initial_first, count = first[plan->cell_count];
     STREAM(stream, count);
     stream_data(stream, first, ((size_t)plan->cell_count + 1) * sizeof *first);
@@ -197,33 +200,144 @@ static SingeResult stream_initial(CollisionPlan *plan, Stream *stream) {
             stream->failed = true;
             return SINGE_OK;
         }
-        if (!initial_reserve(plan, count)) return SINGE_ERROR_MEMORY;
+
+        if (!initial_reserve(memory, plan, count)) return SINGE_ERROR_MEMORY;
     }
+
     stream_data(stream, plan->initial_other, count * sizeof *plan->initial_other);
     return SINGE_OK;
 }
 
-SingeResult collision_plan_stream(CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags, Stream *stream) {
+SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags,
+                                  Stream *stream) {
     STREAM(stream, plan->searched);
     STREAM(stream, plan->restless);
     STREAM(stream, plan->step);
     stream_data(stream, plan->position, plan->vertex_count * sizeof *plan->position);
     stream_data(stream, plan->speed, plan->vertex_count * sizeof *plan->speed);
     stream_data(stream, plan->alive, plan->cell_count);
-    TRY(stream_initial(plan, stream));
+    TRY(stream_initial(memory, plan, stream));
     if (stream->mode == STREAM_READ && !collision_fits(plan, cell_flags)) stream->failed = true;
     if (stream->mode != STREAM_READ || stream->failed || !plan->searched) return SINGE_OK;
+
     initial_mark(plan);
     plan->closed = false;
     uint32_t restless = plan->restless;
-    TRY(broad_search(plan, shell, NULL));
+    TRY(broad_search(memory, plan, shell, NULL));
     plan->restless = restless;
+
     // how far pairs have moved since is unknown
     for (uint32_t k = 0; k < plan->listed_count; k++) plan->pairs[k].distance = 0;
     return SINGE_OK;
 }
 
 // a search from a later step than the present one counts as none
-void collision_plan_forget(CollisionPlan *plan) { plan->step = UINT64_MAX, plan->closed = false; }
+void collision_plan_forget(CollisionPlan *plan) {
+    plan->step = UINT64_MAX;
+    plan->closed = false;
+}
 
 CollisionCounters collision_counters(const CollisionPlan *plan) { return plan->counters; }
+
+// ---- growth
+
+typedef struct Room {
+    void *at; ///< the plan's pointer
+    size_t before, after, size;
+} Room;
+
+enum { ROOMS = 4 };
+
+/// Grows all of them or none.
+static bool grow_rooms(Memory *memory, const Room *room, int count) {
+    void *grown[ROOMS], *old;
+    for (int k = 0; k < count; k++) {
+        grown[k] = memory_new(memory, room[k].after, room[k].size);
+        if (grown[k]) continue;
+
+        while (k-- > 0) memory_free(memory, (void *)&grown[k], room[k].after, room[k].size);
+        return false;
+    }
+
+    for (int k = 0; k < count; k++) {
+        memcpy(&old, room[k].at, sizeof old);
+        memcpy(grown[k], old, room[k].before * room[k].size);
+        memory_free(memory, (void *)&old, room[k].before, room[k].size);
+        memcpy(room[k].at, &grown[k], sizeof old);
+    }
+
+    return true;
+}
+
+/// A quarter more than needed, so that lists do not grow at every step.
+static uint32_t with_margin(uint64_t wanted, uint32_t max) {
+    wanted += wanted / 4;
+    return wanted < max ? (uint32_t)wanted : max;
+}
+
+bool collision_grow_pairs(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
+    uint32_t before = plan->pair_capacity, after = with_margin(wanted, plan->sizes.pair_max);
+    if (wanted <= before || before >= plan->sizes.pair_max) return true;
+
+    const Room room[ROOMS] = {
+        {&plan->pairs, before, after, sizeof *plan->pairs},
+        {&plan->active, before, after, sizeof *plan->active},
+        {&plan->around, 2 * (size_t)before, 2 * (size_t)after, sizeof *plan->around},
+        {&plan->partial, (size_t)pool_blocks((int)before), (size_t)pool_blocks((int)after), sizeof *plan->partial},
+    };
+    BlockList *pairs = &plan->found_pairs, *repulsions = &plan->found;
+    if (!block_list_grow(memory, pairs, after, pairs->block_count) ||
+        !block_list_grow(memory, repulsions, repulsions->capacity, collision_look_blocks(after)) ||
+        !grow_rooms(memory, room, ROOMS))
+        return false;
+    plan->pair_capacity = after;
+    return true;
+}
+
+bool collision_grow_repulsions(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
+    uint32_t before = plan->repulsion_capacity, after = with_margin(wanted, plan->sizes.repulsion_max);
+    if (wanted <= before || before >= plan->sizes.repulsion_max) return true;
+
+    const Room room = {&plan->repulsions, before, after, sizeof *plan->repulsions};
+    if (!block_list_grow(memory, &plan->found, after, plan->found.block_count) || !grow_rooms(memory, &room, 1))
+        return false;
+    plan->repulsion_capacity = after;
+    return true;
+}
+
+// ---- invariants, for assertions and tests
+
+const char *collision_validate(const CollisionPlan *plan) {
+    if (!plan->searched) return NULL;
+
+    if (plan->listed_count > plan->pair_count && plan->pair_count) return "a step's pairs begin with the search's";
+    if (plan->pair_count > plan->pair_capacity || plan->listed_count > plan->pair_capacity) return "pairs have room";
+    if (plan->pair_capacity > plan->sizes.pair_max) return "lists of pairs do not outgrow their limit";
+
+    for (uint32_t k = 0; k < plan->listed_count; k++) {
+        const CollisionPair *pair = &plan->pairs[k];
+        if (pair->a >= plan->cell_count || pair->b >= plan->cell_count || pair->a > pair->b)
+            return "a pair is of cells in order";
+        if (pair->bridge != SHELL_NONE && pair->bridge >= plan->cell_count) return "a bridge is a cell";
+        if (!(pair->distance >= 0)) return "distances are not negative";
+    }
+
+    if (plan->repulsion_count > plan->repulsion_capacity) return "repulsions have room";
+    if (plan->repulsion_capacity > plan->sizes.repulsion_max) return "lists of repulsions do not outgrow their limit";
+
+    for (uint32_t k = 0; k < plan->repulsion_count; k++) {
+        const Repulsion *repulsion = &plan->repulsions[k];
+        float sum = 0;
+        if (repulsion->count < 1 || repulsion->count > 8) return "a repulsion is of one to eight corners";
+
+        for (uint32_t n = 0; n < repulsion->count; n++) {
+            if (repulsion->node[n] >= plan->vertex_count) return "a repulsion is of vertices";
+            sum += repulsion->weight[n];
+        }
+
+        if (!(fabsf(sum) < 1e-4f)) return "the weights of two points cancel";
+        if (!isfinite(repulsion->target)) return "a repulsion has a target";
+    }
+
+    return NULL;
+}

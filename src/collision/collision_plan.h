@@ -110,7 +110,6 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
                                         const CollisionSizes *sizes, CollisionPlan **plan);
 
 struct CollisionPlan {
-    Memory *memory;
     SingeContactDef def;
     CollisionSizes sizes;
     uint32_t cell_count, vertex_count;
@@ -186,7 +185,7 @@ struct CollisionPlan {
 
 /// Finds the pairs for plan->position, speed, alive. Their distances are those at plan->position. SINGE_ERROR_MEMORY:
 /// then there are none.
-SingeResult broad_search(CollisionPlan *plan, const Shell *shell, Pool *pool);
+SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool);
 
 /// Pairs of cells whose swept boxes meet (broad_grid.c): sorts them into the grid, and writes those that `reach` allows
 /// to plan->found_pairs. Returns how many there are, with or without room.
@@ -200,8 +199,8 @@ static inline uint32_t collision_look_blocks(uint32_t pairs) { return (pairs + C
 
 /// Makes room for `wanted` pairs or repulsions, or the max if that is less; plan->found_pairs and plan->found lose
 /// their content. False when out of memory.
-bool collision_grow_pairs(CollisionPlan *plan, uint64_t wanted);
-bool collision_grow_repulsions(CollisionPlan *plan, uint64_t wanted);
+bool collision_grow_pairs(Memory *memory, CollisionPlan *plan, uint64_t wanted);
+bool collision_grow_repulsions(Memory *memory, CollisionPlan *plan, uint64_t wanted);
 
 /// Whether the search has listed two cells, a before b; *distance is a lower bound of their distance at plan->position.
 bool collision_is_listed(const CollisionPlan *plan, uint32_t a, uint32_t b, float *distance);
@@ -211,15 +210,15 @@ uint32_t collision_bridge(const CollisionPlan *plan, const Shell *shell, uint32_
 
 /// Lists, after the search's own pairs, those that cells outside their boxes may have met on their displacement from
 /// plan->start to `x`. SINGE_ERROR_MEMORY.
-SingeResult broad_search_outside(CollisionPlan *plan, const Shell *shell, Pool *pool, uint32_t outside_count,
-                                 const float (*x)[4]);
+SingeResult broad_search_outside(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool,
+                                 uint32_t outside_count, const float (*x)[4]);
 
 /// Lists the pairs of cells that intersect: all of them at the first search, later those that have not separated since.
 /// SINGE_ERROR_MEMORY: there are none.
-SingeResult initial_find(CollisionPlan *plan, const Shell *shell, bool first);
+SingeResult initial_find(Memory *memory, CollisionPlan *plan, const Shell *shell, bool first);
 
 /// Makes room for `count` such pairs; the previous content is lost. False when out of memory.
-bool initial_reserve(CollisionPlan *plan, uint32_t count);
+bool initial_reserve(Memory *memory, CollisionPlan *plan, uint32_t count);
 
 /// Sets plan->intersecting, and counts the cells.
 void initial_mark(CollisionPlan *plan);

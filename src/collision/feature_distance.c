@@ -8,14 +8,16 @@ static double feature_dot(Float4 a, Float4 b) {
     return (double)a[0] * (double)b[0] + (double)a[1] * (double)b[1] + (double)a[2] * (double)b[2];
 }
 
-static Float4 mix3(Float4 a, Float4 b, Float4 c, const float w[3]) { return w[0] * a + w[1] * b + w[2] * c; }
+static void set_weights(float w[3], double b, double c) {
+    w[0] = (float)(1 - b - c);
+    w[1] = (float)b;
+    w[2] = (float)c;
+}
 
-static void set_weights(float w[3], double b, double c) { w[0] = (float)(1 - b - c), w[1] = (float)b, w[2] = (float)c; }
-
-/// Weights of the triangle's point nearest to p.
-static void triangle_weights(Float4 p, Float4 a, Float4 b, Float4 c, float w[3]) {
+Float4 feature_from_triangle(Float4 p, Float4 a, Float4 b, Float4 c, float w[3]) {
     Float4 ab = b - a, ac = c - a, ap = p - a;
     double d1 = feature_dot(ab, ap), d2 = feature_dot(ac, ap), both = feature_dot(ab, ac);
+
     // not from p - b and p - c, whose rounding would not match
     double d3 = d1 - feature_dot(ab, ab), d4 = d2 - both, d5 = d1 - both, d6 = d2 - feature_dot(ac, ac);
     double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
@@ -27,16 +29,10 @@ static void triangle_weights(Float4 p, Float4 a, Float4 b, Float4 c, float w[3])
     else if (va <= 0 && d4 >= d3 && d5 >= d6)
         set_weights(w, (d5 - d6) / ((d4 - d3) + (d5 - d6)), (d4 - d3) / ((d4 - d3) + (d5 - d6)));
     else set_weights(w, vb / (va + vb + vc), vc / (va + vb + vc));
-}
 
-Float4 feature_from_triangle(Float4 p, Float4 a, Float4 b, Float4 c, float weight[3]) {
-    triangle_weights(p, a, b, c, weight);
     // a triangle without area has no weights in its interior: then its first corner is used
-    if (!(weight[0] + weight[1] + weight[2] > 0.5f)) {
-        weight[0] = 1;
-        weight[1] = weight[2] = 0;
-    }
-    return p - mix3(a, b, c, weight);
+    if (!(w[0] + w[1] + w[2] > 0.5f)) set_weights(w, 0, 0);
+    return p - (w[0] * a + w[1] * b + w[2] * c);
 }
 
 // ---- cells that are connected
@@ -72,11 +68,13 @@ Float4 feature_normals(const Float4 node[5]) {
     FourVectors normal = four_cross(corner, four_turned(corner));
     Float4 length = float4_sqrt(four_dot(normal, normal));
     if (float4_bits(length > 0) != 15) return none;
+
     Float4 inverse = 1 / length;
     normal = (FourVectors){normal.x * inverse, normal.y * inverse, normal.z * inverse};
     Float4 mean = {float4_sum(normal.x), float4_sum(normal.y), float4_sum(normal.z), 0};
     float size = sqrtf(float4_dot(mean, mean));
     if (!(size > 0)) return none;
+
     mean = mean / size;
     FourVectors along = four_all(mean), off = four_minus(normal, along);
     float spread = sqrtf(float4_largest(four_dot(off, off)));
@@ -91,22 +89,17 @@ static bool is_beyond(const Float4 corner[4], unsigned shared, Float4 origin, Fl
     return true;
 }
 
-/// The corners of a that are shared: how many, and the first and the last.
-static int shared_corners(const Float4 a[4], unsigned shared, Float4 *first, Float4 *last) {
-    int count = 0;
-    for (int i = 0; i < 4; i++)
-        if (shared >> i & 1) {
-            if (count++ == 0) *first = a[i];
-            *last = a[i];
-        }
-    return count;
-}
-
 bool feature_is_separated(const Float4 a[4], const Float4 b[4], const unsigned shared[2], float margin,
                           Float4 *normal) {
     Float4 first = {0}, last = {0};
-    int count = shared_corners(a, shared[0], &first, &last);
+    int count = 0;
+    for (int i = 0; i < 4; i++)
+        if (shared[0] >> i & 1) {
+            if (count++ == 0) first = a[i];
+            last = a[i];
+        }
     if (count < 1 || count > 2) return false;
+
     Float4 away = ((a[0] + a[1]) + (a[2] + a[3])) - ((b[0] + b[1]) + (b[2] + b[3])), side = last - first;
     float square = float4_dot(side, side);
     if (count == 2 && square > 0) away -= float4_dot(away, side) / square * side;
@@ -127,6 +120,7 @@ Float4 feature_from_segment(Float4 a, Float4 b, Float4 c, Float4 d, float *s, fl
         other = feature_clamp01(other);
         along = uu > 0 ? feature_clamp01((other * uv - ur) / uu) : 0;
     }
+
     *s = (float)along;
     *t = (float)other;
     return (a + *s * u) - (c + *t * v);
@@ -162,8 +156,12 @@ static float sweep_planes(const FeatureSweep *sweep, float time, float keep) {
     int own = sweep->edges ? 2 : 1;
     float longest = 2, height[4], speed[4];
     normal = normal / sqrtf(float4_dot(normal, normal));
-    for (int i = 0; i < 4; i++)
-        height[i] = float4_dot(x[i] - x[0], normal), speed[i] = float4_dot(sweep->displacement[i], normal);
+
+    for (int i = 0; i < 4; i++) {
+        height[i] = float4_dot(x[i] - x[0], normal);
+        speed[i] = float4_dot(sweep->displacement[i], normal);
+    }
+
     for (int i = 0; i < own; i++)
         for (int j = own; j < 4; j++) {
             float left = height[i] - height[j] - keep, nearing = speed[j] - speed[i];
@@ -178,17 +176,22 @@ float feature_sweep(const FeatureSweep *sweep, float gap, float noise) {
     float approach = sweep_approach(sweep), distance = sweep_distance(sweep, 0), time = 0;
     bool close = distance <= 2 * gap; // then the distance may only grow
     if (close && sweep_distance(sweep, 1) < distance - noise) return 0;
+
     // impacts separate features by more than `stop`, however far they have moved
     float keep = close ? 0.5f * distance : gap, stop = keep + 0.1f * fminf(distance - keep, 10 * gap);
     if (approach < distance - keep) return 2;
+
     for (int round = 0; round < ROUNDS; round++) {
         float next = time + 0.9f * (distance - keep) / approach;
+
         // features that slide past each other, fast for their distance, make small steps only
         if (round >= SIMPLE_ROUNDS) next = fmaxf(next, time + 0.9f * sweep_planes(sweep, time, keep));
         if (next > 1) return 2;
+
         distance = sweep_distance(sweep, next);
         if (!(distance > stop)) return time;
         time = next;
     }
+
     return time;
 }

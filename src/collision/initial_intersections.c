@@ -13,10 +13,14 @@
 /// Marks an entry of initial_other, which is a cell's number: there are fewer than 2^31.
 #define KEPT (1u << 31)
 
-/// Whether two cells that are not connected coincide within rounding.
-static bool cells_coincide(const CollisionPlan *plan, const Shell *shell, const CollisionPair *pair) {
-    if (pair->bridge != SHELL_NONE) return false;
+/// Whether two cells cross or, if they are not connected, coincide within rounding.
+static bool pair_intersects(const CollisionPlan *plan, const Shell *shell, const CollisionPair *pair) {
+    const CollisionBox *p = &plan->boxes[pair->a], *q = &plan->boxes[pair->b];
     const float(*x)[4] = (const float(*)[4])plan->position;
+    if (!quads_meet(p->low, p->high, q->low, q->high)) return false;
+    if (cross_cells(shell, x, pair->a, pair->b)) return true;
+    if (pair->bridge != SHELL_NONE) return false;
+
     Float4 origin = float4_load(x[shell->cells[pair->a][0]]);
     FeatureRange far = {4 * plan->noise, 0, 0, true};
     NearFeatures near[NARROW_MAX];
@@ -25,14 +29,9 @@ static bool cells_coincide(const CollisionPlan *plan, const Shell *shell, const 
     narrow_cell_set(plan, shell, pair->a, x, origin, &a);
     narrow_cell_set(plan, shell, pair->b, x, origin, &b);
     if (narrow_slabs_distance(&a, &b) > far.measured) return false;
+
     narrow_features(shell, pair, &a, &b, &far, near, &nearest);
     return nearest < far.measured;
-}
-
-static bool pair_intersects(const CollisionPlan *plan, const Shell *shell, const CollisionPair *pair) {
-    const CollisionBox *p = &plan->boxes[pair->a], *q = &plan->boxes[pair->b];
-    if (!quads_meet(p->low, p->high, q->low, q->high)) return false;
-    return cross_cells(shell, (const float(*)[4])plan->position, pair->a, pair->b) || cells_coincide(plan, shell, pair);
 }
 
 void initial_mark(CollisionPlan *plan) {
@@ -50,17 +49,18 @@ void initial_mark(CollisionPlan *plan) {
         if (plan->intersecting[c] && counters->intersecting++ == 0) counters->intersecting_first = c;
 }
 
-bool initial_reserve(CollisionPlan *plan, uint32_t count) {
-    FREE(plan->memory, plan->initial_other, plan->initial_capacity);
+bool initial_reserve(Memory *memory, CollisionPlan *plan, uint32_t count) {
+    FREE(memory, plan->initial_other, plan->initial_capacity);
     plan->initial_capacity = 0;
     if (count == 0) return true;
-    if (!NEW(plan->memory, plan->initial_other, count)) return false;
+    if (!NEW(memory, plan->initial_other, count)) return false;
+
     plan->initial_capacity = count;
     return true;
 }
 
 /// The first search: lists all pairs that intersect. plan->active is free until CCD, and marks them.
-static SingeResult list_all(CollisionPlan *plan, const Shell *shell) {
+static SingeResult list_all(Memory *memory, CollisionPlan *plan, const Shell *shell) {
     uint32_t *first = plan->initial_first, count = 0;
 
     // find them, and count those of each cell
@@ -68,9 +68,13 @@ static SingeResult list_all(CollisionPlan *plan, const Shell *shell) {
     for (uint32_t k = 0; k < plan->pair_count; k++) {
         const CollisionPair *pair = &plan->pairs[k];
         plan->active[k] = pair_intersects(plan, shell, pair);
-        if (plan->active[k]) first[pair->a + 2]++, count++;
+        if (!plan->active[k]) continue;
+
+        first[pair->a + 2]++;
+        count++;
     }
-    if (!initial_reserve(plan, count)) {
+
+    if (!initial_reserve(memory, plan, count)) {
         memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
         return SINGE_ERROR_MEMORY;
     }
@@ -104,9 +108,9 @@ static void keep_crossing(CollisionPlan *plan, const Shell *shell) {
     }
 }
 
-SingeResult initial_find(CollisionPlan *plan, const Shell *shell, bool first) {
+SingeResult initial_find(Memory *memory, CollisionPlan *plan, const Shell *shell, bool first) {
     if (!first && plan->counters.intersecting == 0) return SINGE_OK;
-    if (first) TRY(list_all(plan, shell));
+    if (first) TRY(list_all(memory, plan, shell));
     else keep_crossing(plan, shell);
     initial_mark(plan);
     return SINGE_OK;

@@ -1,7 +1,6 @@
 // Nearest points of all features of two cells: a node against the four triangles of the other at once, an edge against
 // its four sides and against the four lines to its centroid. The regions are those of Ericson, Real-time collision
 // detection (2005), 5.1.5 and 5.1.9, as in feature_distance.c, but chosen by masks.
-#include "common/assertion.h"
 #include "collision/narrow_phase.h"
 
 #include <math.h>
@@ -27,6 +26,7 @@ static FourNear from_triangles(FourVectors p, FourVectors a, FourVectors b, Four
     FourNear out;
     out.faces = (va > 0) & (vb > 0) & (vc > 0);
     Float4 u = vb / sum, v = vc / sum;
+
     // regions later in this list come before the others
     Float4Mask on_bc = (va <= 0) & (e43 >= 0) & (e56 >= 0), on_ac = (vb <= 0) & (d2 >= 0) & (d6 <= 0);
     Float4Mask on_ab = (vc <= 0) & (d1 >= 0) & (d3 <= 0);
@@ -42,6 +42,7 @@ static FourNear from_triangles(FourVectors p, FourVectors a, FourVectors b, Four
     v = float4_select(at_c, one, v);
     u = float4_select(at_b, one, u);
     v = float4_select(at_b, zero, v);
+
     // a triangle without area has no weights in its interior: then its first corner is used
     at_a |= ~((u > -0.5f) & (v > -0.5f) & (u + v < 2));
     out.u = float4_select(at_a, zero, u);
@@ -67,6 +68,7 @@ static FourNear from_segments(FourVectors a, FourVectors b, FourVectors c, FourV
     FourNear out = {.u = s, .v = t};
     out.separation = four_along(four_along(r, s, along), -t, others);
     out.square = four_dot(out.separation, out.separation);
+
     // if an end is the nearest point, that node's triangles find it too; and nearly parallel edges, less than 10
     // degrees apart, would make ridges of a flat sheet
     out.faces = (s > 0) & (s < one) & (t > 0) & (t < one) & (uv * uv < 0.97f * uu * vv);
@@ -77,7 +79,6 @@ static FourNear from_segments(FourVectors a, FourVectors b, FourVectors c, FourV
 
 void narrow_cell_set(const CollisionPlan *plan, const Shell *shell, uint32_t cell, const float (*x)[4], Float4 origin,
                      NarrowCell *out) {
-    SINGE_ASSERT(cell < shell->cell_count);
     collision_nodes(shell->cells[cell], x, origin, out->node);
     out->corner = four_of(out->node);
     out->turned = four_turned(out->corner);
@@ -104,6 +105,7 @@ static float separation_along(const NarrowCell *a, const NarrowCell *b) {
     Float4 normal = float4_cross(a->node[2] - a->node[0], a->node[3] - a->node[1]);
     float square = float4_dot(normal, normal);
     if (!(square > 0)) return -1;
+
     FourVectors n = four_all(normal);
     Float4 p = four_dot(n, a->corner), q = four_dot(n, b->corner); // the centroids lie between
     float above = float4_smallest(p) - float4_largest(q), below = float4_smallest(q) - float4_largest(p);
@@ -146,6 +148,7 @@ static void narrow_note(Search *search, const FourNear *four, unsigned meet, int
     meet &=
         float4_bits((four->square <= search->listed) &
                     (four->faces | (four->square <= (kind == COLLISION_EDGES ? float4_all(-1) : search->adjacent))));
+
     for (; meet; meet &= meet - 1) {
         int k = __builtin_ctz(meet);
         search->near[search->count++] = (NearFeatures){
@@ -164,9 +167,11 @@ static void find_nodes(Search *search, const NarrowCell *p, const NarrowCell *q,
     FourVectors centroid = four_all(q->node[4]);
     for (int i = 0; i < 5; i++) {
         if (!(p->owned >> i & 1)) continue;
+
         unsigned meet = four_meet(&q->boxes.triangles, p->node[i] - search->far, p->node[i] + search->far);
         if (i < 4) meet &= ~narrow_around(same[i]);
         if (!meet) continue;
+
         FourNear four = from_triangles(four_all(p->node[i]), q->corner, q->turned, centroid);
         narrow_note(search, &four, meet, kind, i, 0, kind == COLLISION_NODE_OF_B ? -1 : 1);
     }
@@ -176,6 +181,7 @@ static void find_edges(Search *search, const NarrowCell *p, const NarrowCell *q,
     FourVectors centroid = four_all(q->node[4]);
     for (int i = 0; i < 8; i++) {
         if (!(p->owned >> (8 + i) & 1)) continue;
+
         const uint8_t *k = collision_edge[i];
         unsigned corners = same[k[0]] | (k[1] < 4 ? same[k[1]] : 0);
         Float4 a = p->node[k[0]], b = p->node[k[1]];
@@ -186,6 +192,7 @@ static void find_edges(Search *search, const NarrowCell *p, const NarrowCell *q,
             FourNear four = from_segments(four_all(a), four_all(b), q->corner, q->turned);
             narrow_note(search, &four, sides, COLLISION_EDGES, i, 0, 1);
         }
+
         if (spokes) {
             FourNear four = from_segments(four_all(a), four_all(b), q->corner, centroid);
             narrow_note(search, &four, spokes, COLLISION_EDGES, i, 4, 1);

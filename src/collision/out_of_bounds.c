@@ -1,5 +1,4 @@
 // Cells that have left their boxes of the search: pairs that they may have met in this step.
-#include "common/assertion.h"
 #include "collision/broad_grid.h"
 
 typedef struct OutsideSearch {
@@ -11,24 +10,22 @@ typedef struct OutsideSearch {
     bool crowded;         ///< it has no room for all: cells out of bounds are checked against all others
 } OutsideSearch;
 
-static OutsideBox outside_box(const OutsideSearch *job, uint32_t cell) {
-    SINGE_ASSERT(cell < job->shell->cell_count);
-    const CollisionPlan *plan = job->plan;
-    const uint32_t *corner = job->shell->cells[cell];
-    Float4 low = float4_load(job->x[corner[0]]), high = low;
-    for (int i = 0; i < 4; i++) {
-        Float4 start = float4_load(plan->start[corner[i]]), end = float4_load(job->x[corner[i]]);
-        low = float4_min(low, float4_min(start, end));
-        high = float4_max(high, float4_max(start, end));
-    }
-    low[3] = high[3] = 0;
-    return (OutsideBox){low - 2 * plan->gap, high + 2 * plan->gap};
-}
-
+/// The slightly widened regions that cells out of bounds pass over.
 static void box_range(void *task, int begin, int end) {
     const OutsideSearch *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
-    for (int k = begin; k < end; k++) job->plan->outside_boxes[k] = outside_box(job, job->plan->outside[k]);
+    const CollisionPlan *plan = job->plan;
+    for (int k = begin; k < end; k++) {
+        const uint32_t *corner = job->shell->cells[plan->outside[k]];
+        Float4 low = float4_load(job->x[corner[0]]), high = low;
+        for (int i = 0; i < 4; i++) {
+            Float4 from = float4_load(plan->start[corner[i]]), to = float4_load(job->x[corner[i]]);
+            low = float4_min(low, float4_min(from, to));
+            high = float4_max(high, float4_max(from, to));
+        }
+
+        low[3] = high[3] = 0;
+        plan->outside_boxes[k] = (OutsideBox){low - 2 * plan->gap, high + 2 * plan->gap};
+    }
 }
 
 /// Adds a pair unless the search has listed it.
@@ -39,6 +36,7 @@ static void add_pair(const OutsideSearch *job, uint32_t a, uint32_t b, BlockWrit
         a = b;
         b = c;
     }
+
     if (a == b || collision_is_listed(job->plan, a, b, &distance)) return;
     CollisionPair *pair = block_list_add(writer);
     if (pair)
@@ -82,12 +80,14 @@ static void chain_outside(OutsideSearch *job) {
     CollisionPlan *plan = job->plan;
     float inverse = 1 / plan->edge;
     memset(plan->outside_chain, 0xff, plan->bucket_count * sizeof *plan->outside_chain);
+
     for (uint32_t k = job->count; k-- > 0;) {
         const OutsideBox *box = &plan->outside_boxes[k];
         Cube first = collision_cube(box->low, inverse), last = collision_cube(box->high, inverse), at = first;
         uint64_t cubes = collision_cubes(first, last, plan->sizes.entries);
         job->crowded |= cubes > plan->sizes.entries - job->entry_count;
         if (job->crowded) return;
+
         for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
             for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
                 for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
@@ -111,6 +111,7 @@ static void against_outside(const OutsideSearch *job, uint32_t k, BlockWriter *w
         for (uint32_t l = k + 1; l < job->count; l++) add_outside_pair(job, k, l, writer);
         return;
     }
+
     const OutsideBox *box = &plan->outside_boxes[k];
     float inverse = 1 / plan->edge;
     Cube first = collision_cube(box->low, inverse), last = collision_cube(box->high, inverse), at = first;
@@ -133,10 +134,12 @@ static void outside_block(void *context, BlockList *list, int block) {
     const OutsideSearch *job = context;
     BlockWriter writer = block_list_begin(list, block);
     uint32_t first = (uint32_t)block * COLLISION_OUTSIDE, last = first + COLLISION_OUTSIDE;
+
     for (uint32_t k = first; k < last && k < job->count && !block_list_is_full(&writer); k++) {
         against_boxes(job, job->plan->outside[k], &job->plan->outside_boxes[k], &writer);
         against_outside(job, k, &writer);
     }
+
     block_list_end(&writer);
 }
 
@@ -145,17 +148,19 @@ static void keep_pair(void *context, const void *item, uint32_t number) {
     memcpy(&plan->pairs[plan->listed_count + number], item, sizeof(CollisionPair));
 }
 
-SingeResult broad_search_outside(CollisionPlan *plan, const Shell *shell, Pool *pool, uint32_t outside_count,
-                                 const float (*x)[4]) {
+SingeResult broad_search_outside(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool,
+                                 uint32_t outside_count, const float (*x)[4]) {
     OutsideSearch job = {plan, shell, x, outside_count, 0, false};
     plan->pair_count = plan->listed_count;
     if (outside_count == 0 || !(plan->edge > 0)) return SINGE_OK;
+
     int blocks = (int)((outside_count + COLLISION_OUTSIDE - 1) / COLLISION_OUTSIDE);
     pool_for(pool, (int)outside_count, COLLISION_OUTSIDE, box_range, &job);
     chain_outside(&job);
     BlockList *list = &plan->found_pairs;
     uint64_t count = block_list_write(list, pool, blocks, plan->sizes.pair_max, outside_block, &job);
-    if (!collision_grow_pairs(plan, plan->listed_count + count)) return SINGE_ERROR_MEMORY;
+    if (!collision_grow_pairs(memory, plan, plan->listed_count + count)) return SINGE_ERROR_MEMORY;
+
     uint32_t room = plan->pair_capacity - plan->listed_count;
     uint32_t kept = block_list_settle(list, pool, blocks, count, room, outside_block, &job);
     plan->counters.dropped += count - kept;

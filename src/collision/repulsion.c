@@ -9,34 +9,10 @@
 // separates them at COLLISION_PART m/s. Slip across n since the substep began is taken back by at most mu |C|
 // (Coulomb), as in contact with colliders. A virtual centre is replaced by its four corners, a quarter each. Points
 // nearer at rest than twice the thickness (the edges of a tear) are kept apart by four times CCD's gap only.
-#include "common/assertion.h"
 #include "common/clock.h"
 #include "collision/collision_plan.h"
 
-/// Takes back slip across the normal, at most `max`.
-static void repulsion_friction(const Repulsion *repulsion, const float (*predicted)[4], float h, float max,
-                               float weight, DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
-    float(*x)[4] = dynamics->position;
-    Float4 slip = {0};
-    for (uint32_t i = 0; i < repulsion->count; i++) {
-        uint32_t at = repulsion->node[i];
-        Float4 before = float4_load(predicted[at]) - h * float4_load(dynamics->velocity[at]);
-        slip += repulsion->weight[i] * (float4_load(x[at]) - before);
-    }
-    slip[3] = 0;
-    slip -= float4_dot(slip, repulsion->normal) * repulsion->normal;
-    float length = sqrtf(float4_dot(slip, slip));
-    if (!(length > 0)) return;
-    Float4 back = (length <= max ? 1 : max / length) / weight * slip;
-    for (uint32_t i = 0; i < repulsion->count; i++) {
-        Float4 position = float4_load(x[repulsion->node[i]]);
-        float4_store(x[repulsion->node[i]], position - position[3] * repulsion->weight[i] * back);
-    }
-}
-
 void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
     double start = clock_seconds();
     float(*x)[4] = dynamics->position;
     for (uint32_t k = 0; k < plan->repulsion_count; k++) {
@@ -48,6 +24,7 @@ void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, 
             separation += repulsion->weight[i] * float4_load(x[repulsion->node[i]]);
         float height = float4_dot(separation, repulsion->normal) - repulsion->target, weight = 0;
         if (height >= 0) continue;
+
         for (uint32_t i = 0; i < repulsion->count; i++)
             weight += repulsion->weight[i] * repulsion->weight[i] * x[repulsion->node[i]][3];
         if (weight <= 0) continue;
@@ -59,10 +36,29 @@ void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, 
             float4_store(x[repulsion->node[i]], position + position[3] * repulsion->weight[i] * away);
         }
 
-        // friction across it
-        if (plan->def.friction > 0)
-            repulsion_friction(repulsion, predicted, h, -plan->def.friction * height, weight, dynamics);
         plan->counters.repulsions++;
+        if (!(plan->def.friction > 0)) continue;
+
+        // friction: take back slip across the normal, at most `max`
+        const float max = -plan->def.friction * height;
+        Float4 slip = {0};
+        for (uint32_t i = 0; i < repulsion->count; i++) {
+            uint32_t at = repulsion->node[i];
+            Float4 before = float4_load(predicted[at]) - h * float4_load(dynamics->velocity[at]);
+            slip += repulsion->weight[i] * (float4_load(x[at]) - before);
+        }
+
+        slip[3] = 0;
+        slip -= float4_dot(slip, repulsion->normal) * repulsion->normal;
+        float length = sqrtf(float4_dot(slip, slip));
+        if (!(length > 0)) continue;
+
+        Float4 back = (length <= max ? 1 : max / length) / weight * slip;
+        for (uint32_t i = 0; i < repulsion->count; i++) {
+            Float4 position = float4_load(x[repulsion->node[i]]);
+            float4_store(x[repulsion->node[i]], position - position[3] * repulsion->weight[i] * back);
+        }
     }
+
     plan->counters.seconds += clock_seconds() - start;
 }

@@ -15,7 +15,6 @@
 // lengths of vertices that are too far from a source that replaces a burnt one, and of vertices that moved too far
 // while a tight sheet that may tear was left to its springs. Vertices that have come free of a source are released at
 // the end of the step. A sheet whose mesh may stretch by its compliance has no attachments.
-#include "common/assertion.h"
 #include "dynamics/attach.h"
 
 #include "common/float3.h"
@@ -47,10 +46,6 @@ void attach_free(Memory *memory, const Shell *shell, Attachments *attachments) {
     geodesic_free(memory, shell->vertex_count, &attachments->search);
 }
 
-static bool attach_may_hold(const StateInput *state, uint32_t v) {
-    return state->dynamics->pinned[v] && (state->ablate->particle_flags[v] & SINGE_ALIVE);
-}
-
 /// The held vertex that is farthest, at rest, from the sources found so far; the first one if there are none.
 /// SHELL_NONE if it is nearer than a tenth of the distance between the first two: it would hardly hold anything else.
 static uint32_t attach_farthest(const Shell *shell, const StateInput *state, const Sheet *sheet, const uint32_t *source,
@@ -58,127 +53,113 @@ static uint32_t attach_farthest(const Shell *shell, const StateInput *state, con
     uint32_t farthest = SHELL_NONE;
     float max = 0;
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
-        if (!attach_may_hold(state, v)) continue;
+        if (!state->dynamics->pinned[v] || !(state->ablate->particle_flags[v] & SINGE_ALIVE)) continue;
+
         float nearest = INFINITY;
         for (int k = 0; k < count; k++) {
             Float3 displacement =
                 float3_sub(float3_load(shell->rest_position[v]), float3_load(shell->rest_position[source[k]]));
             nearest = fminf(nearest, float3_dot(displacement, displacement));
         }
+
         if (nearest > max) {
             farthest = v;
             max = nearest;
         }
     }
+
     if (count < 2 || farthest == SHELL_NONE) return farthest;
     Float3 first =
         float3_sub(float3_load(shell->rest_position[source[1]]), float3_load(shell->rest_position[source[0]]));
     return max < 0.01f * float3_dot(first, first) ? SHELL_NONE : farthest;
 }
 
-/// Whether no part of a sheet's mesh may stretch.
-static bool attach_is_inextensible(const Shell *shell, const Sheet *sheet) {
-    for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
-        if (field_at(shell->matter.compliance[SINGE_BLUE], v) > 0) return false;
-    return true;
-}
-
-/// Accepts measured lengths: those that have grown at once, or all of them. Cells may share a vertex where no spring
-/// joins them any more: another piece is out of reach, whatever was measured.
-static void attach_accept(Attachments *attachments, const Sheet *sheet, const int32_t *piece, uint32_t source, int k,
-                          bool all) {
-    for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
-        float measured = piece[v] == piece[source] ? attachments->distance[v] : INFINITY;
-        float *length = &attachments->length[v][k];
-        attachments->goal[v][k] = measured;
-        if (all || isinf(*length) || measured > *length) *length = measured;
-    }
-    attachments->settled = false;
-}
-
-/// A new source starts with the present distances, so that it pulls nothing at first: vertices that are too far
-/// approach gradually.
-static void attach_start(Attachments *attachments, const Sheet *sheet, const DynamicsState *dynamics, uint32_t source,
-                         int k) {
-    Float3 position = float3_load(dynamics->position[source]);
-    for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
-        attachments->length[v][k] = float3_length(float3_sub(float3_load(dynamics->position[v]), position));
-}
-
+/// Finds the sources, and measures their distances. `at_once`: all lengths follow; else those that have grown.
 static void attach_measure(Attachments *attachments, const Shell *shell, const StateInput *state, bool at_once) {
+    const float(*position)[4] = (const float(*)[4])state->dynamics->position;
+    const int32_t *piece = state->ablate->piece;
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const Sheet *sheet = &shell->sheets[s];
+        const uint32_t first = sheet->vertex_first, last = first + sheet->vertex_count;
         uint32_t *source = attachments->source[s];
-        bool more = attach_is_inextensible(shell, sheet);
+
+        // a mesh that may stretch anywhere has no sources
+        bool more = true;
+        for (uint32_t v = first; v < last && more; v++) more = !(field_at(shell->matter.compliance[SINGE_BLUE], v) > 0);
+
         for (int k = 0; k < ATTACH_SOURCES; k++) {
-            uint32_t before = source[k];
+            const uint32_t before = source[k];
             source[k] = more ? attach_farthest(shell, state, sheet, source, k) : SHELL_NONE;
             more = source[k] != SHELL_NONE;
             if (!more) continue;
-            geodesic_from(&attachments->search, shell, state, source[k], sheet->vertex_first,
-                          sheet->vertex_first + sheet->vertex_count, attachments->distance);
-            if (source[k] != before && !at_once) attach_start(attachments, sheet, state->dynamics, source[k], k);
-            attach_accept(attachments, sheet, state->ablate->piece, source[k], k, at_once);
+            geodesic_from(&attachments->search, shell, state, source[k], first, last, attachments->distance);
+
+            // a new source starts with the present distances, so that it pulls nothing at first: vertices that are too
+            // far approach gradually
+            const Float3 from = float3_load(position[source[k]]);
+            for (uint32_t v = first; v < last && source[k] != before && !at_once; v++)
+                attachments->length[v][k] = float3_length(float3_sub(float3_load(position[v]), from));
+
+            // cells may share a vertex where no spring joins them any more: another piece is out of reach, whatever was
+            // measured
+            for (uint32_t v = first; v < last; v++) {
+                const float measured = piece[v] == piece[source[k]] ? attachments->distance[v] : INFINITY;
+                float *length = &attachments->length[v][k];
+                attachments->goal[v][k] = measured;
+                if (at_once || isinf(*length) || measured > *length) *length = measured;
+            }
+            attachments->settled = false;
         }
     }
 }
 
-/// Pieces never join again: a vertex in another piece than a source is out of its reach for good.
-static void attach_let_go(Attachments *attachments, const Shell *shell, const int32_t *piece) {
-    for (uint32_t v = 0; v < shell->vertex_count; v++) {
+void attach_update(Attachments *attachments, const Shell *shell, const StateInput *state, bool pins_changed) {
+    // pieces never join again: a vertex in another piece than a source is out of its reach for good
+    const int32_t *piece = state->ablate->piece;
+    const bool parted = attachments->topology != state->ablate->topology_version;
+    attachments->topology = state->ablate->topology_version;
+
+    for (uint32_t v = 0; parted && v < shell->vertex_count; v++) {
         const uint32_t *source = attachments->source[shell->matter.sheet[v]];
         for (int k = 0; k < ATTACH_SOURCES && source[k] != SHELL_NONE; k++)
             if (piece[v] != piece[source[k]]) attachments->length[v][k] = attachments->goal[v][k] = INFINITY;
     }
-}
 
-/// Lengths of a resting sheet grow to the present distances. Those of held vertices tell whether it is tight: they
-/// stay.
-static void attach_follow(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics) {
-    for (uint32_t s = 0; s < shell->sheet_count; s++) {
+    // lengths shorten, so that they reach their goals when the next measurement is due, or at the max rate: at once would
+    // jerk the vertices
+    if (!pins_changed) {
+        const float share = 1 / (float)(ATTACH_PERIOD - state->step % ATTACH_PERIOD);
+        const bool settled = attachments->settled;
+        attachments->settled = true;
+        for (uint32_t v = 0; !settled && v < shell->vertex_count; v++)
+            for (int k = 0; k < ATTACH_SOURCES; k++) {
+                float *length = &attachments->length[v][k], goal = attachments->goal[v][k];
+                if (!(goal < *length)) continue;
+                *length -= fminf((*length - goal) * share, ATTACH_HASTE * *length);
+                attachments->settled = false;
+            }
+    }
+
+    // lengths of a resting sheet grow to the present distances; those of held vertices tell whether it is tight, and stay
+    const float(*position)[4] = (const float(*)[4])state->dynamics->position;
+    for (uint32_t s = 0; s < shell->sheet_count && !pins_changed; s++) {
         const uint32_t first = shell->sheets[s].vertex_first, *source = attachments->source[s];
         if (!attach_rests(shell, &attachments->spread[s])) continue;
-        for (int k = 0; k < ATTACH_SOURCES && source[k] != SHELL_NONE; k++) {
-            Float3 position = float3_load(dynamics->position[source[k]]);
+        for (int k = 0; k < ATTACH_SOURCES && source[k] != SHELL_NONE; k++)
             for (uint32_t v = first; v < first + shell->sheets[s].vertex_count; v++) {
-                Float3 displacement = float3_sub(float3_load(dynamics->position[v]), position);
+                Float3 displacement = float3_sub(float3_load(position[v]), float3_load(position[source[k]]));
                 float *length = &attachments->length[v][k];
-                if (dynamics->position[v][3] == 0) continue;
-                if (float3_dot(displacement, displacement) > *length * *length) {
-                    *length = float3_length(displacement);
-                    attachments->settled = false;
-                }
+                if (position[v][3] == 0 || !(float3_dot(displacement, displacement) > *length * *length)) continue;
+                *length = float3_length(displacement);
+                attachments->settled = false;
             }
-        }
     }
-}
 
-/// Shortens lengths for a step, so that they reach their goals when the next measurement is due, or at the max rate: at
-/// once would jerk the vertices.
-static void attach_shorten(Attachments *attachments, const Shell *shell, uint64_t step) {
-    if (attachments->settled) return;
-    attachments->settled = true;
-    float share = 1 / (float)(ATTACH_PERIOD - step % ATTACH_PERIOD);
-    for (uint32_t v = 0; v < shell->vertex_count; v++)
-        for (int k = 0; k < ATTACH_SOURCES; k++) {
-            float *length = &attachments->length[v][k], goal = attachments->goal[v][k];
-            if (!(goal < *length)) continue;
-            *length -= fminf((*length - goal) * share, ATTACH_HASTE * *length);
-            attachments->settled = false;
-        }
-}
-
-void attach_update(Attachments *attachments, const Shell *shell, const StateInput *state, bool pins_changed) {
-    if (attachments->topology != state->ablate->topology_version)
-        attach_let_go(attachments, shell, state->ablate->piece);
-    attachments->topology = state->ablate->topology_version;
-    if (!pins_changed) {
-        attach_shorten(attachments, shell, state->step);
-        attach_follow(attachments, shell, state->dynamics);
-    }
+    // measure again where pins, the fire or a tear have changed the distances
     bool changed = attachments->mass_burnt != state->burn->mass_burnt && (state->step + 1) % ATTACH_PERIOD == 0;
     bool torn = attachments->split_count != shell->split_count && (state->step + 1) % ATTACH_TORN_PERIOD == 0;
     if (!pins_changed && !changed && !torn) return;
+
     attach_measure(attachments, shell, state, pins_changed);
     attachments->mass_burnt = state->burn->mass_burnt;
     attachments->split_count = shell->split_count;
@@ -217,39 +198,39 @@ void attach_stream(Attachments *attachments, const Shell *shell, Stream *stream)
     if (stream->mode == STREAM_READ && !attach_fits(attachments, shell)) stream->failed = true;
 }
 
-/// Present positions of a sheet's sources, their distances, and the ratios to the lengths of the sheet between them.
-static void attach_spread(const Attachments *attachments, const float (*position)[4], const uint32_t *source,
-                          AttachSpread *spread) {
-    *spread = (AttachSpread){0};
-    for (int p = 0; p < ATTACH_SOURCES && source[p] != SHELL_NONE; p++, spread->count++) {
-        float3_store(spread->position[p], float3_load(position[source[p]]));
-        for (int q = 0; q < p; q++) {
-            float apart = float3_length(float3_sub(float3_load(spread->position[p]), float3_load(spread->position[q])));
-            spread->apart[p][q] = apart;
-            spread->ratio[p][q] = apart / attachments->length[source[p]][q];
-            spread->max = fmaxf(spread->max, isfinite(spread->ratio[p][q]) ? spread->ratio[p][q] : 0);
-            spread->tight |= spread->ratio[p][q] > 1.001f; // sources held at their own distance are not pulled apart
-        }
-    }
-}
-
 void attach_position(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics) {
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
+        const uint32_t *source = attachments->source[s];
         AttachSpread *spread = &attachments->spread[s];
-        attach_spread(attachments, (const float(*)[4])dynamics->position, attachments->source[s], spread);
+        *spread = (AttachSpread){0};
+
+        // positions, distances, and their ratios to the lengths of the sheet between the sources
+        for (int p = 0; p < ATTACH_SOURCES && source[p] != SHELL_NONE; p++, spread->count++) {
+            const Float3 position = float3_load(dynamics->position[source[p]]);
+            float3_store(spread->position[p], position);
+            for (int q = 0; q < p; q++) {
+                float apart = float3_length(float3_sub(position, float3_load(spread->position[q])));
+                spread->apart[p][q] = apart;
+                spread->ratio[p][q] = apart / attachments->length[source[p]][q];
+                spread->max = fmaxf(spread->max, isfinite(spread->ratio[p][q]) ? spread->ratio[p][q] : 0);
+                spread->tight |=
+                    spread->ratio[p][q] > 1.001f; // sources held at their own distance are not pulled apart
+            }
+        }
+
         if (attach_rests(shell, spread)) spread->count = 0;
     }
 }
 
 void attach_range(const Attachments *attachments, const Shell *shell, AttachHold *hold, DynamicsState *dynamics,
                   int begin, int end) {
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const AttachSpread *spread = &attachments->spread[s];
         int first = (int)shell->sheets[s].vertex_first, last = first + (int)shell->sheets[s].vertex_count;
         first = first > begin ? first : begin;
         last = last < end ? last : end;
         if (spread->count == 0 || first >= last) continue;
+
         int whole = (last - first) / ATTACH_BLOCK * ATTACH_BLOCK, rest = first + whole;
         hold(spread, attachments->length[first], dynamics->position[first], whole);
         attach_hold_plain(spread, attachments->length[rest], dynamics->position[rest], last - rest);
@@ -265,7 +246,6 @@ typedef struct Attach {
 
 static void attach_task(void *task, int begin, int end) {
     const Attach *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->shell->vertex_count);
     attach_range(job->attachments, job->shell, job->hold, job->dynamics, begin, end);
 }
 

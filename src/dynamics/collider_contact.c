@@ -9,7 +9,15 @@
 // displacement over the collider in this substep is longer than its distance, its path is followed from the start, in
 // the collider's frame, by steps that the distance allows (contact_enters); a particle that enters goes back to the
 // plane that touches the surface there.
-#include "common/assertion.h"
+//
+// Cells are in contact too. Particles of a layer are a cell apart: a collider smaller than a cell would
+// reach through it. So the mean of a cell's corners,
+//
+//   x = (x_0 + x_1 + x_2 + x_3)/4,
+//
+// is kept out of colliders like a particle, with friction, and its corners move with it; held corners stay. Cells of
+// one family share no corner; families follow each other. Contact of the particles comes after it and has the last
+// word.
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
@@ -21,18 +29,6 @@ enum { CONTACT_STEPS = 128 };
 
 /// A position this near outside a surface, as a share of the offset or in m, counts as on it.
 static const float CONTACT_SKIN = 1.0f / 16, CONTACT_SKIN_MIN = 1e-6f;
-
-/// Max displacement of any point of a box about the origin between two poses.
-static float contact_motion(const Pose *before, const Pose *after, float size) {
-    float turn = 0, back = 0;
-    for (int k = 0; k < 4; k++) {
-        float a = after->rotation[k] - before->rotation[k], b = after->rotation[k] + before->rotation[k];
-        turn += a * a;
-        back += b * b;
-    }
-    float angle = 2 * sqrtf(fminf(turn, back)) * 1.05f; // the chord of half the angle, in the space of quaternions
-    return float3_length(float3_sub(after->position, before->position)) + (angle > 1e-6f ? angle * size : 0);
-}
 
 MovingCollider contact_collider(const Collider *collider, double before, double after) {
     MovingCollider moving = {
@@ -52,15 +48,29 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
         if (isfinite(far)) size += far * far; // a collider without end along an axis is taken not to turn about another
     }
 
+    // the max displacement of any point of the box between the two poses
+    float turn = 0, back = 0;
+    for (int i = 0; i < 4; i++) {
+        float a = moving.after.rotation[i] - moving.before.rotation[i];
+        float b = moving.after.rotation[i] + moving.before.rotation[i];
+        turn += a * a;
+        back += b * b;
+    }
+
+    float angle = 2 * sqrtf(fminf(turn, back)) * 1.05f; // the chord of half the angle, in the space of quaternions
+    float motion = float3_length(float3_sub(moving.after.position, moving.before.position)) +
+                   (angle > 1e-6f ? angle * sqrtf(size) : 0);
+
     // box in its own frame, widened by the motion in the substep
-    float margin = collider->def.offset + CONTACT_SPEED * (float)(after - before) +
-                   contact_motion(&moving.before, &moving.after, sqrtf(size));
+    float margin = collider->def.offset + CONTACT_SPEED * (float)(after - before) + motion;
     for (int i = 0; i < 3; i++) {
         float unit[3] = {0, 0, 0};
         unit[i] = 1;
         moving.axis[i] = quat_rotate(moving.after.rotation, float3_load(unit));
-        moving.low[i] = ends[i][0] - margin, moving.high[i] = ends[i][1] + margin;
+        moving.low[i] = ends[i][0] - margin;
+        moving.high[i] = ends[i][1] + margin;
     }
+
     return moving;
 }
 
@@ -84,8 +94,10 @@ static bool contact_enters(const Collider *collider, Float3 from, Float3 to, Ent
         if (next.distance < 0 || turned) return began; // *entry is just outside. Inside from the start: depth tells
         *entry = next;
         if (next.distance <= skin && float3_dot(displacement, next.normal) < 0) return true;
+
         done += fmaxf(next.distance, min);
     }
+
     return false;
 }
 
@@ -94,6 +106,7 @@ static float contact_out(const Collider *collider, float offset, Float3 from, Fl
     float displacement = float3_length(float3_sub(*to, from));
     float distance = collider_distance(collider, *to, offset + displacement, normal);
     Entry entry = {0};
+
     // behind a plane, at any depth, a particle moves out along the plane's normal
     if (distance < displacement && collider->def.kind != SINGE_COLLIDER_PLANE &&
         contact_enters(collider, from, *to, &entry) &&
@@ -106,29 +119,31 @@ static float contact_out(const Collider *collider, float offset, Float3 from, Fl
         *normal = entry.normal;
         return depth;
     }
+
     if (distance >= offset) return 0;
     *to = float3_mad(*to, *normal, offset - distance);
     return offset - distance;
 }
 
-/// Displacement of a deforming mesh's surface near a particle; zero if it is too far for contact.
-static Float3 contact_drift(const MovingCollider *moving, float offset, Float3 from, Float3 to) {
-    Float3 normal;
-    if (moving->drift == 0) return float3(0, 0, 0);
-    float reach = offset + float3_length(float3_sub(to, from)) + 2 * moving->drift;
-    if (collider_distance(moving->collider, to, reach, &normal) >= reach) return float3(0, 0, 0);
-    return deform_drift(&moving->collider->deform, from);
-}
-
 bool contact_particle(const MovingCollider *moving, float offset, Float3 previous, float *position) {
     const Collider *collider = moving->collider;
     Float3 local = pose_unapply(&moving->after, float3_load(position)), out = local, normal;
-    Float3 from = pose_unapply(&moving->before, previous), drift = contact_drift(moving, offset, from, local);
-    if (moving->drift > 0) from = float3_add(from, drift);
+    Float3 from = pose_unapply(&moving->before, previous), drift = {0, 0, 0};
+
+    // displacement of a deforming mesh's surface near the particle; zero if it is too far for contact
+    if (moving->drift != 0) {
+        float reach = offset + float3_length(float3_sub(local, from)) + 2 * moving->drift;
+        if (collider_distance(collider, local, reach, &normal) < reach) drift = deform_drift(&collider->deform, from);
+        from = float3_add(from, drift);
+    }
+
+    // out of the collider
     float depth = contact_out(collider, offset, from, &out, &normal);
     if (depth <= 0) return false;
+
     normal = quat_rotate(moving->after.rotation, normal);
     Float3 x = float3_add(float3_load(position), quat_rotate(moving->after.rotation, float3_sub(out, local)));
+
     // slip: the particle's displacement less the collider's at this position
     Float3 displacement = float3_sub(x, previous);
     Float3 carried = float3_sub(pose_apply(&moving->after, local), pose_apply(&moving->before, local));
@@ -146,21 +161,22 @@ static inline bool contact_any_near(const MovingCollider *collider, const Float4
     Float3 origin = collider->after.position;
     Float4 dx = x[0] - origin.x, dy = x[1] - origin.y, dz = x[2] - origin.z;
     Float4Mask near = {-1, -1, -1, -1};
+
     for (int i = 2; i >= 0; i--) {
         Float3 axis = collider->axis[i];
         Float4 along = dx * axis.x + dy * axis.y + dz * axis.z;
         near &= (along < collider->high[i]) & (along > collider->low[i]);
         if (!(near[0] | near[1] | near[2] | near[3])) return false;
     }
+
     return true;
 }
 
 uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
                        int end) {
-    SINGE_ASSERT(h > 0);
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     uint64_t contacts = 0;
     float(*position)[4] = dynamics->position;
+
     for (int first = begin; first < end && collider_count > 0; first += 4) {
         // four particles at once, against boxes
         int count = end - first < 4 ? end - first : 4;
@@ -182,6 +198,7 @@ uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float 
             float4_transpose(x);
         }
     }
+
     return contacts;
 }
 
@@ -194,13 +211,89 @@ typedef struct Contact {
 
 static double contact_block(void *task, int begin, int end) {
     const Contact *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     return (double)contact_range(job->plan, job->collider_count, job->h, job->dynamics, begin, end);
 }
 
 uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
     if (collider_count == 0) return 0;
     Contact job = {plan, collider_count, h, dynamics};
     return (uint64_t)pool_sum(pool, (int)plan->particle_count, contact_block, &job, plan->partial);
+}
+
+// ---- cells
+
+/// Share of the offset that cells keep: less than all, so that a sheet on something flat is left to its particles.
+static const float CENTROID_SHARE = 0.875f;
+
+typedef struct Centroid {
+    const DynamicsPlan *plan;
+    const Shell *shell;
+    const AblateState *ablate;
+    DynamicsState *dynamics;
+    const uint32_t *cells; ///< of the family
+    uint32_t collider_count;
+    float h;
+} Centroid;
+
+/// Whether a point is nearer to a collider than `limit`.
+static bool centroid_is_near(const MovingCollider *moving, float limit, Float3 point) {
+    const Collider *collider = moving->collider;
+    Float3 from = float3_sub(point, moving->after.position), normal;
+    for (int i = 2; i >= 0; i--) {
+        float along = float3_dot(from, moving->axis[i]);
+        if (!(along < moving->high[i] && along > moving->low[i])) return false;
+    }
+
+    return collider_distance(collider, quat_unrotate(moving->after.rotation, from), limit, &normal) < limit;
+}
+
+static void centroid_cells(void *task, int begin, int end) {
+    const Centroid *job = task;
+    float(*position)[4] = job->dynamics->position;
+    for (int k = begin; k < end; k++) {
+        const uint32_t *corner = job->shell->cells[job->cells[k]];
+        if (!(job->ablate->cell_flags[job->cells[k]] & SINGE_ALIVE)) continue;
+
+        Float3 sum = {0, 0, 0};
+        for (int i = 0; i < 4; i++) sum = float3_add(sum, float3_load(position[corner[i]]));
+        Float3 mean = float3_scale(sum, 0.25f);
+        float point[3];
+        bool touched = false;
+        float3_store(point, mean);
+        for (uint32_t c = 0; c < job->collider_count; c++) {
+            const MovingCollider *collider = &job->plan->colliders[c];
+            // no part of a plane lies between points outside it
+            if (collider->collider->def.kind == SINGE_COLLIDER_PLANE) continue;
+            float offset = CENTROID_SHARE * collider->collider->def.offset;
+            if (!centroid_is_near(collider, offset, float3_load(point))) continue;
+
+            // from where the centroid was when the substep began
+            Float3 before = {0, 0, 0};
+            for (int i = 0; i < 4; i++)
+                before = float3_add(before, float3_mad(float3_load(job->plan->predicted[corner[i]]),
+                                                       float3_load(job->dynamics->velocity[corner[i]]), -job->h));
+            touched |= contact_particle(collider, offset, float3_scale(before, 0.25f), point);
+        }
+
+        if (!touched) continue;
+
+        // its corners move with it
+        Float3 moved = float3_sub(float3_load(point), mean);
+        for (int i = 0; i < 4; i++) {
+            float *x = position[corner[i]];
+            if (x[3] > 0) float3_store(x, float3_add(float3_load(x), moved));
+        }
+    }
+}
+
+void contact_centroids(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
+                       Pool *pool, float h, DynamicsState *dynamics) {
+    bool any = false;
+    for (uint32_t c = 0; c < collider_count; c++) any |= plan->colliders[c].collider->def.kind != SINGE_COLLIDER_PLANE;
+
+    for (uint32_t f = 0; any && f < shell->cell_family_count; f++) {
+        uint32_t first = shell->cell_family_first[f], count = shell->cell_family_first[f + 1] - first;
+        Centroid job = {plan, shell, ablate, dynamics, shell->cell_order + first, collider_count, h};
+        pool_for(pool, (int)count, POOL_BLOCK, centroid_cells, &job);
+    }
 }

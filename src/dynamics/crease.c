@@ -52,7 +52,6 @@
 //
 // Char breaks instead of folding: with the burn progress B of the two cells a crease fades, k_p (1 - B) of it counts,
 // and no more than that share of a bend is kept.
-#include "common/assertion.h"
 #include "common/real.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
@@ -88,7 +87,6 @@ typedef struct Crease {
 
 /// The side of a cell across which `other` lies.
 static uint8_t hinge_side(const Shell *shell, uint32_t cell, uint32_t other) {
-    SINGE_ASSERT(cell < shell->cell_count);
     uint8_t side = 0;
     while (side < 3 && shell_neighbour(shell, cell, side) != other) side++;
     return side;
@@ -109,16 +107,12 @@ static Float3 hinge_centroid(const float (*x)[4], const uint32_t *corner) {
 static inline float hinge_angle(Float3 a, Float3 b, Float3 edge) {
     float along = float3_dot(a, b), length = float3_length(edge);
     if (!(length > 0 && float3_dot(a, a) > 0.5f && float3_dot(b, b) > 0.5f)) return NAN;
+
     float across = float3_dot(float3_cross(a, b), edge) / length;
     if (along < 0.9f) return real_atan2f(across, along);
+
     float square = across * across; // asin, with a relative error of 1e-4
     return across * (1 + square * (1.0f / 6 + square * (3.0f / 40 + square * (15.0f / 336))));
-}
-
-/// curvature_max at the midpoint of an edge, if both its ends have one, and at most what cells of this size can bear.
-static float hinge_limit(const Shell *shell, uint32_t from, uint32_t to, float borne) {
-    float a = field_at(shell->matter.curvature_max, from), b = field_at(shell->matter.curvature_max, to);
-    return a > 0 && b > 0 ? fminf(0.5f * (a + b), borne) : INFINITY;
 }
 
 /// tau: the part of the rotation from one unit normal to the other about the direction across the edge.
@@ -129,31 +123,36 @@ static float hinge_twist(Float3 a, Float3 b, Float3 edge) {
     return real_atan2f(sine, float3_dot(a, b)) / sine * float3_dot(turn, across) / length;
 }
 
-static Hinge hinge_measure(const Shell *shell, uint32_t green) {
-    const uint32_t *ends = shell->springs[SINGE_GREEN].ends[green];
-    const float(*x)[4] = (const float(*)[4])shell->rest_position;
-    uint32_t cell[2] = {ends[0] - shell->vertex_count, ends[1] - shell->vertex_count};
-    Hinge hinge = {.side = {hinge_side(shell, cell[0], cell[1]), hinge_side(shell, cell[1], cell[0])}};
-    const uint32_t *corner = shell->cells[cell[0]], *other = shell->cells[cell[1]];
-    const uint32_t first = corner[hinge.side[0]], second = corner[(hinge.side[0] + 1) & 3];
-    Float3 from = float3_load(x[first]), to = float3_load(x[second]);
-    Float3 edge = float3_sub(to, from), midpoint = float3_scale(float3_add(from, to), 0.5f);
-    hinge.arc = float3_length(float3_sub(hinge_centroid(x, corner), midpoint)) +
-                float3_length(float3_sub(hinge_centroid(x, other), midpoint));
-    float thickness = 0.5f * (field_at(shell->matter.thickness, ends[0]) + field_at(shell->matter.thickness, ends[1]));
-    const Float3 normal = hinge_normal(x, corner), beyond = hinge_normal(x, other);
-    float angle = hinge_angle(normal, beyond, edge);
-    hinge.angle = isnan(angle) ? 0 : angle;
-    hinge.twist = hinge_twist(normal, beyond, edge);
-    hinge.max = real_atan2f(2 * thickness, hinge.arc);
-    hinge.limit = hinge_limit(shell, first, second, hinge.max / hinge.arc);
-    // limited, so that the length at rest, r cos phi, is not 0
-    hinge.lean = fmaxf(-1.5f, fminf(0.5f * hinge.angle - hinge.max, 1.5f));
-    return hinge;
-}
-
 void creases_measure(const Shell *shell, Hinge *hinges) {
-    for (uint32_t k = 0; k < shell->springs[SINGE_GREEN].count; k++) hinges[k] = hinge_measure(shell, k);
+    const float(*x)[4] = (const float(*)[4])shell->rest_position;
+    const Matter *matter = &shell->matter;
+    for (uint32_t k = 0; k < shell->springs[SINGE_GREEN].count; k++) {
+        const uint32_t *ends = shell->springs[SINGE_GREEN].ends[k];
+        const uint32_t cell[2] = {ends[0] - shell->vertex_count, ends[1] - shell->vertex_count};
+        Hinge hinge = {.side = {hinge_side(shell, cell[0], cell[1]), hinge_side(shell, cell[1], cell[0])}};
+        const uint32_t *corner = shell->cells[cell[0]], *other = shell->cells[cell[1]];
+        const uint32_t first = corner[hinge.side[0]], second = corner[(hinge.side[0] + 1) & 3];
+
+        // the edge, and the arc from centroid to centroid
+        Float3 from = float3_load(x[first]), to = float3_load(x[second]);
+        Float3 edge = float3_sub(to, from), midpoint = float3_scale(float3_add(from, to), 0.5f);
+        hinge.arc = float3_length(float3_sub(hinge_centroid(x, corner), midpoint)) +
+                    float3_length(float3_sub(hinge_centroid(x, other), midpoint));
+
+        // angles at rest
+        float thickness = 0.5f * (field_at(matter->thickness, ends[0]) + field_at(matter->thickness, ends[1]));
+        const Float3 normal = hinge_normal(x, corner), beyond = hinge_normal(x, other);
+        float angle = hinge_angle(normal, beyond, edge);
+        hinge.angle = isnan(angle) ? 0 : angle;
+        hinge.twist = hinge_twist(normal, beyond, edge);
+        hinge.max = real_atan2f(2 * thickness, hinge.arc);
+        hinge.lean = fmaxf(-1.5f, fminf(0.5f * hinge.angle - hinge.max, 1.5f)); // so that r cos phi is not 0
+
+        // curvature_max at the midpoint, if both ends have one, and at most what cells of this size can bear
+        float a = field_at(matter->curvature_max, first), b = field_at(matter->curvature_max, second);
+        hinge.limit = a > 0 && b > 0 ? fminf(0.5f * (a + b), hinge.max / hinge.arc) : INFINITY;
+        hinges[k] = hinge;
+    }
 }
 
 // ---- a step
@@ -179,29 +178,8 @@ float crease_kept(const Shell *shell, const StateInput *state, uint32_t green) {
         float mass = state->burn->mass[ends[k]];
         if (mass < 1) kept -= 0.5f * shell_burn_progress(mass, field_at(shell->matter.mass_min, ends[k]));
     }
+
     return kept;
-}
-
-/// Length of the mesh along a green spring over that at rest: the mean of its cells' four blue springs.
-static float crease_blue_ratio(const Crease *job, const uint32_t *ends, const Hinge *hinge) {
-    const float *length = job->state->burn->spring_length[SINGE_BLUE], *rest = job->shell->springs[SINGE_BLUE].rest;
-    float sum = 0;
-    for (int k = 0; k < 2; k++) {
-        const CellSprings *cell = &job->shell->cell_springs[ends[k] - job->shell->vertex_count];
-        for (int i = 1; i < 4; i += 2) {
-            uint32_t spring = cell->blue[(hinge->side[k] + i) & 3];
-            sum += 0.25f * length[spring] / rest[spring];
-        }
-    }
-    return sum;
-}
-
-/// The angle by which layers that have shrunk differently curl by themselves.
-static float crease_curl(const Crease *job, uint32_t k, const uint32_t *ends, const Hinge *hinge) {
-    float green = job->state->burn->spring_length[SINGE_GREEN][k] / job->shell->springs[SINGE_GREEN].rest[k];
-    float ratio = green / crease_blue_ratio(job, ends, hinge) * real_cosf(hinge->lean);
-    float lean = real_acosf(ratio < 1 ? ratio : 1);
-    return 2 * ((hinge->lean > 0 ? lean : -lean) - hinge->lean);
 }
 
 static Float3 crease_edge(const Crease *job, const uint32_t *ends, const Hinge *hinge) {
@@ -210,23 +188,36 @@ static Float3 crease_edge(const Crease *job, const uint32_t *ends, const Hinge *
     return float3_sub(float3_load(x[corner[(hinge->side[0] + 1) & 3]]), float3_load(x[corner[hinge->side[0]]]));
 }
 
-/// The present angle of a fold. A sheet folded flat on itself has both signs: the angle keeps the sign that it had.
-static float crease_angle(const Crease *job, const uint32_t *ends, const Hinge *hinge, float last) {
-    uint32_t first = ends[0] - job->shell->vertex_count, second = ends[1] - job->shell->vertex_count;
-    const float(*normal)[4] = (const float(*)[4])job->plan->cell_normal;
-    float angle = hinge_angle(float3_load(normal[first]), float3_load(normal[second]), crease_edge(job, ends, hinge));
-    if (angle - last > CREASE_PI) return CREASE_PI * -1 - hinge->angle;
-    if (angle - last < -CREASE_PI) return CREASE_PI - hinge->angle;
-    return angle - hinge->angle;
-}
-
 /// The present k - k_6, in rad; NAN where it is not known. `last` is the previous one.
 static float crease_turned(const Crease *job, uint32_t k, float last) {
     const uint32_t *ends = job->shell->springs[SINGE_GREEN].ends[k];
     const Hinge *hinge = &job->plan->hinges[k];
-    bool whole = !job->burning || crease_kept(job->shell, job->state, k) == 1;
-    float curl = whole ? 0 : crease_curl(job, k, ends, hinge);
-    return crease_angle(job, ends, hinge, last + curl + hinge->angle) - curl;
+    const float(*normal)[4] = (const float(*)[4])job->plan->cell_normal;
+    const uint32_t first = ends[0] - job->shell->vertex_count, second = ends[1] - job->shell->vertex_count;
+
+    // the angle by which layers that have shrunk differently curl by themselves
+    float curl = 0;
+    if (job->burning && crease_kept(job->shell, job->state, k) != 1) {
+        const float *length = job->state->burn->spring_length[SINGE_BLUE], *rest = job->shell->springs[SINGE_BLUE].rest;
+        float blue = 0; // length of the mesh along the spring over that at rest: the mean of its cells' four springs
+        for (int end = 0; end < 2; end++)
+            for (int i = 1; i < 4; i += 2) {
+                const CellSprings *cell = &job->shell->cell_springs[ends[end] - job->shell->vertex_count];
+                const uint32_t spring = cell->blue[(hinge->side[end] + i) & 3];
+                blue += 0.25f * length[spring] / rest[spring];
+            }
+        const float green = job->state->burn->spring_length[SINGE_GREEN][k] / job->shell->springs[SINGE_GREEN].rest[k];
+        const float ratio = green / blue * real_cosf(hinge->lean), lean = real_acosf(ratio < 1 ? ratio : 1);
+        curl = 2 * ((hinge->lean > 0 ? lean : -lean) - hinge->lean);
+    }
+
+    float angle = hinge_angle(float3_load(normal[first]), float3_load(normal[second]), crease_edge(job, ends, hinge));
+
+    // a sheet folded flat on itself has both signs: the angle keeps the sign that it had
+    const float before = last + curl + hinge->angle;
+    if (angle - before > CREASE_PI) angle = CREASE_PI * -1;
+    else if (angle - before < -CREASE_PI) angle = CREASE_PI;
+    return angle - hinge->angle - curl;
 }
 
 /// cos^2 omega. The bend is the larger of the present and the filtered one: no edge seems oblique while its fold opens.
@@ -243,83 +234,74 @@ static float crease_slant(const Crease *job, uint32_t k) {
     return fmaxf(slant, CREASE_SLANT);
 }
 
-/// Growth of |k_p| at a bend k - k_6, with the sign of the bend that causes it; 0 where it does not yield.
-static float crease_yield(const Hinge *hinge, float bend, float held, float radius, float share, float slant) {
-    float max = slant * hinge->limit, elastic = fmaxf(-max, fminf(bend, max)) - held;
-    float excess = fabsf(elastic) - slant / radius - (1 / share - 1) * fabsf(held);
-    return excess > 0 ? copysignf(share * excess, elastic) : 0;
-}
-
-/// Filters the bend of a green spring, without the curl of its layers.
-static void crease_bend(const Crease *job, uint32_t k) {
-    float *bend = &job->dynamics->bend[k], arc = job->plan->hinges[k].arc;
-    float turned = crease_turned(job, k, *bend * arc);
-    if (!isnan(turned)) *bend += job->follows * (turned / arc - *bend);
-}
-
-/// The part of a green spring's bend that counts next to those of its neighbours along the strand.
-static float crease_counts(const Crease *job, uint32_t k) {
-    const uint8_t *flags = job->state->ablate->spring_flags[SINGE_GREEN];
-    const SpringSet *green = &job->shell->springs[SINGE_GREEN];
-    const float *bend = job->dynamics->bend;
-    float sum = bend[k], weight = 1;
-    if (k > 0 && flags[k - 1] & SINGE_ALIVE && green->ends[k - 1][1] == green->ends[k][0]) {
-        sum += 0.5f * bend[k - 1];
-        weight += 0.5f;
-    }
-    if (k + 1 < green->count && flags[k + 1] & SINGE_ALIVE && green->ends[k + 1][0] == green->ends[k][1]) {
-        sum += 0.5f * bend[k + 1];
-        weight += 0.5f;
-    }
-    const float max = CREASE_PEAK * fabsf(sum) / weight;
-    return sum * bend[k] > 0 ? fmaxf(-max, fminf(bend[k], max)) : 0;
-}
-
-/// Returns whether there is a crease.
-static bool crease_spring(const Crease *job, uint32_t k) {
-    const uint32_t *ends = job->shell->springs[SINGE_GREEN].ends[k];
-    const Hinge *hinge = &job->plan->hinges[k];
-    const Matter *matter = &job->shell->matter;
-    float *crease = &job->dynamics->crease[k];
-    const float bend = crease_counts(job, k);
-    float radius = 0.5f * (field_at(matter->crease_radius, ends[0]) + field_at(matter->crease_radius, ends[1]));
-    if (fabsf(bend) * radius < CREASE_SLANT && *crease == 0) return false; // the usual case
-    float kept = job->burning ? crease_kept(job->shell, job->state, k) : 1;
-    float share = 0.5f * (field_at(matter->crease_share, ends[0]) + field_at(matter->crease_share, ends[1]));
-    if (!(radius > 0 && share > 0 && kept > 0)) return *crease != 0;
-    *crease += kept * crease_yield(hinge, bend, kept * *crease, radius, share, crease_slant(job, k));
-    return *crease != 0;
-}
-
+/// Filters the bends of green springs, without the curl of their layers.
 static void crease_bends(void *task, int begin, int end) {
     const Crease *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const uint8_t *flags = job->state->ablate->spring_flags[SINGE_GREEN];
-    for (int k = begin; k < end; k++)
-        if (flags[k] & SINGE_ALIVE) crease_bend(job, (uint32_t)k);
+    for (uint32_t k = (uint32_t)begin; k < (uint32_t)end; k++) {
+        if (!(flags[k] & SINGE_ALIVE)) continue;
+
+        float *bend = &job->dynamics->bend[k], arc = job->plan->hinges[k].arc;
+        float turned = crease_turned(job, k, *bend * arc);
+        if (!isnan(turned)) *bend += job->follows * (turned / arc - *bend);
+    }
 }
 
+/// Lets creases grow. Returns how many there are.
 static double crease_springs(void *task, int begin, int end) {
     const Crease *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const uint8_t *flags = job->state->ablate->spring_flags[SINGE_GREEN];
+    const SpringSet *green = &job->shell->springs[SINGE_GREEN];
+    const float *bends = job->dynamics->bend;
+    const Matter *matter = &job->shell->matter;
     double creased = 0;
-    for (int k = begin; k < end; k++)
-        if (flags[k] & SINGE_ALIVE) creased += crease_spring(job, (uint32_t)k);
+    for (uint32_t k = (uint32_t)begin; k < (uint32_t)end; k++) {
+        if (!(flags[k] & SINGE_ALIVE)) continue;
+
+        const uint32_t *ends = green->ends[k];
+        float *crease = &job->dynamics->crease[k];
+
+        // the part of the bend that counts next to those of its neighbours along the strand
+        float sum = bends[k], weight = 1;
+        if (k > 0 && flags[k - 1] & SINGE_ALIVE && green->ends[k - 1][1] == ends[0]) {
+            sum += 0.5f * bends[k - 1];
+            weight += 0.5f;
+        }
+        if (k + 1 < green->count && flags[k + 1] & SINGE_ALIVE && green->ends[k + 1][0] == ends[1]) {
+            sum += 0.5f * bends[k + 1];
+            weight += 0.5f;
+        }
+        const float peak = CREASE_PEAK * fabsf(sum) / weight;
+        const float bend = sum * bends[k] > 0 ? fmaxf(-peak, fminf(bends[k], peak)) : 0;
+        float radius = 0.5f * (field_at(matter->crease_radius, ends[0]) + field_at(matter->crease_radius, ends[1]));
+        if (fabsf(bend) * radius < CREASE_SLANT && *crease == 0) continue; // the usual case
+
+        float kept = job->burning ? crease_kept(job->shell, job->state, k) : 1;
+        float share = 0.5f * (field_at(matter->crease_share, ends[0]) + field_at(matter->crease_share, ends[1]));
+        if (radius > 0 && share > 0 && kept > 0) {
+            // growth of |k_p|, with the sign of the bend that causes it
+            const float slant = crease_slant(job, k), held = kept * *crease;
+            const float max = slant * job->plan->hinges[k].limit, elastic = fmaxf(-max, fminf(bend, max)) - held;
+            const float excess = fabsf(elastic) - slant / radius - (1 / share - 1) * fabsf(held);
+            *crease += kept * (excess > 0 ? copysignf(share * excess, elastic) : 0);
+        }
+
+        creased += *crease != 0;
+    }
+
     return creased;
 }
 
 static void crease_normals(void *task, int begin, int end) {
     const Crease *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->shell->cell_count);
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     for (int c = begin; c < end; c++) float3_store(job->plan->cell_normal[c], hinge_normal(x, job->shell->cells[c]));
 }
 
 void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
                      DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
     if (!plan->hinges) return;
+
     Crease job = {plan, shell, state, dynamics, 1 - real_expf(-h / CREASE_TIME), state->burn->mass_burnt > 0};
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, crease_normals, &job);
     pool_for(pool, (int)shell->springs[SINGE_GREEN].count, POOL_BLOCK, crease_bends, &job);

@@ -15,7 +15,6 @@
 //   m = gain (|r| - B)/|r| r/(w_a + 4 w_b + w_c),   x_a -= w_a m,   x_b += 2 w_b m,   x_c -= w_c m
 //
 // Families of strands follow each other; strands of one family share no particle.
-#include "common/assertion.h"
 #include "common/real.h"
 #include "dynamics/dynamics_plan.h"
 
@@ -31,12 +30,15 @@ bool curvature_create(Memory *memory, const Shell *shell, Strands *strands) {
     bool limited = false;
     for (uint32_t v = 0; v < shell->vertex_count && !limited; v++) limited = field_at(limit, v) > 0;
     if (!limited) return true;
+
     for (int i = 0; i < 2; i++) {
         StrandSet *set = &strands->sets[i ? SINGE_YELLOW : SINGE_BLUE];
         size_t slots = (size_t)set->row_count * STRAND_LANES;
         if (!NEW(memory, set->bend_limit, slots)) return false;
+
         for (size_t slot = 0; slot < slots; slot++) set->bend_limit[slot] = INFINITY;
     }
+
     return true;
 }
 
@@ -46,6 +48,7 @@ static float bend_limit(const Shell *shell, uint32_t a, uint32_t b, uint32_t c, 
     const float curvature = field_at(shell->matter.curvature_max, b);
     float thickness = field_at(shell->matter.thickness, b);
     if (!(curvature > 0) || side > BEND_COARSE * thickness) return INFINITY;
+
     Float3 rest =
         float3_sub(float3_sub(float3_load(x[c]), float3_load(x[b])), float3_sub(float3_load(x[b]), float3_load(x[a])));
     float turned = 2 * length * real_sinf(0.5f * fminf(curvature * length, 2.8f));
@@ -56,12 +59,12 @@ static float bend_limit(const Shell *shell, uint32_t a, uint32_t b, uint32_t c, 
 
 void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour colour, uint32_t strand,
                        StrandSet *set) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     const SpringSet *springs = &shell->springs[colour];
     const float *mass = state->burn->mass, *length = state->burn->spring_length[colour];
     const uint32_t first = springs->strand_first[strand], end = springs->strand_first[strand + 1];
     const float side = colour == SINGE_YELLOW ? 0.70710678f : 1; // of a cell, over the spring
     size_t slot = set->strand_slot[strand];
+
     for (uint32_t k = first; k < end; k++, slot += STRAND_LANES) {
         // the spring before, which is the last one at the start of a ring
         const uint32_t b = springs->ends[k][0], c = springs->ends[k][1];
@@ -91,7 +94,6 @@ typedef struct Curvature {
 
 static void curvature_range(void *task, int begin, int end) {
     const Curvature *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int i = begin; i < end; i++) job->bend(job->set, job->position, job->first_group + (uint32_t)i);
 }
 

@@ -36,7 +36,8 @@ int dynamics_plan_substeps(const DynamicsPlan *plan);
 
 /// The plan's data of earlier steps, as part of a snapshot of this State. SINGE_ERROR_MEMORY when reading; data that
 /// does not fit fails the stream.
-SingeResult dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, const State *state, Stream *stream);
+SingeResult dynamics_plan_stream(Memory *memory, DynamicsPlan *plan, const Shell *shell, const State *state,
+                                 Stream *stream);
 
 /// Must be called when the set of pinned particles has changed.
 void dynamics_plan_hold(DynamicsPlan *plan, const Shell *shell, const State *state);
@@ -75,8 +76,8 @@ typedef struct DynamicsCounters {
 } DynamicsCounters;
 
 /// One step in settings.solver.substeps substeps. Reads the other parts of the State, and writes `dynamics`. Adds to
-/// *counters. SINGE_ERROR_DIVERGED if a particle is out of bounds; SINGE_ERROR_MEMORY if contact lists cannot grow.
-SingeResult dynamics_step(DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics,
+/// *counters; `memory` is for contact lists that grow. SINGE_ERROR_DIVERGED if a particle is out of bounds; SINGE_ERROR_MEMORY if contact lists cannot grow.
+SingeResult dynamics_step(Memory *memory, DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics,
                           DynamicsCounters *counters);
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "dynamics/attach.h"
 #include "dynamics/dynamics.h"
+#include "dynamics/solver.h"
 #include "dynamics/strand/strand_lanes.h"
 
 #include <stdatomic.h>
@@ -39,11 +40,6 @@ typedef struct Strands {
     _Atomic uint64_t taken;
 } Strands;
 
-/// For substeps of h seconds.
-bool strands_create(Memory *memory, const Shell *shell, const SingeSolverDef *solver, float h, int room_count,
-                    StrandSolve *solve, Strands *strands);
-void strands_free(Memory *memory, Strands *strands);
-
 /// A spring that a tear has removed from its strand, or made (patch.c).
 typedef struct Patch {
     uint32_t spring, a, b;
@@ -75,7 +71,7 @@ typedef struct Hinge {
 
 struct DynamicsPlan {
     DynamicsSettings settings;
-    Paper *paper; ///< of the methods other than strand, else NULL
+    const Solver *solver;
     // per particle, refreshed at every step
     float *inverse_mass;   ///< 1/kg; 0 if pinned or gone
     float *drag;           ///< 1/m, k of the quadratic drag: dv/dt = -k |v_n| v_n
@@ -83,8 +79,9 @@ struct DynamicsPlan {
     float (*air)[4];       ///< m/s, the wind there
     float (*predicted)[4]; ///< m, x~ of eq 9
     const Kernels *kernels;
-    float *soft; ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min
-    Strands strands;
+    float *soft;     ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min
+    Strands strands; ///< of the strand solver
+    Paper *paper;    ///< of the paper's methods
     Patches patches;
     bool strands_written; ///< their weights and targets, in a step that succeeded
     Attachments attachments;
@@ -119,7 +116,7 @@ uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float
 void dynamics_move_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
                         DynamicsState *dynamics);
 
-/// One projection of one colour, family after family (strand_project.c).
+/// One projection of one colour, family after family (strand_solver.c).
 void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h, DynamicsState *dynamics,
                     DynamicsCounters *counters);
 
@@ -147,7 +144,7 @@ void patch_gather(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h);
 /// Bytes of height_wait.
 size_t height_wait_count(const Shell *shell);
 
-/// Keeps every centre above its cell's corners (height.c).
+/// Keeps every centre above its cell's corners (layer_order.c).
 void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
                     DynamicsState *dynamics);
 
@@ -194,7 +191,7 @@ uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float 
 /// false without contact.
 bool contact_particle(const MovingCollider *collider, float offset, Float3 previous, float *position);
 
-/// Contact of a cell's centroid, between its corners (cell_centroids.c).
+/// Contact of a cell's centroid, between its corners (collider_contact.c).
 void contact_centroids(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
                        Pool *pool, float h, DynamicsState *dynamics);
 

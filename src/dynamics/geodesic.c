@@ -10,7 +10,6 @@
 //
 // This is exact in the plane and on what unrolls to it (Novotni and Klein, Computing geodesic distances on
 // triangular meshes, 2002). The metric is intrinsic: target lengths of blue and yellow springs, wherever the sheet is.
-#include "common/assertion.h"
 #include "dynamics/geodesic.h"
 
 #include "common/float3.h"
@@ -34,21 +33,11 @@ static void heap_put(Geodesic *search, uint32_t at, uint32_t vertex) {
     search->position[vertex] = at;
 }
 
-/// Moves a vertex up to its position, after its distance has become smaller.
-static void heap_rise(Geodesic *search, const float *distance, uint32_t vertex) {
-    uint32_t at = search->position[vertex];
-    for (; at > 0; at = (at - 1) / 2) {
-        uint32_t above = search->heap[(at - 1) / 2];
-        if (distance[above] <= distance[vertex]) break;
-        heap_put(search, at, above);
-    }
-    heap_put(search, at, vertex);
-}
-
 static uint32_t heap_pop(Geodesic *search, const float *distance) {
     uint32_t nearest = search->heap[0], last = search->heap[--search->waiting], at = 0;
     search->position[nearest] = GEODESIC_DONE;
     if (search->waiting == 0) return nearest;
+
     for (;;) {
         uint32_t below = 2 * at + 1;
         if (below >= search->waiting) break;
@@ -57,6 +46,7 @@ static uint32_t heap_pop(Geodesic *search, const float *distance) {
         heap_put(search, at, search->heap[below]);
         at = below;
     }
+
     heap_put(search, at, last);
     return nearest;
 }
@@ -64,12 +54,15 @@ static uint32_t heap_pop(Geodesic *search, const float *distance) {
 /// The distance at u through the segment vw of length c, or INFINITY where the path does not cross it.
 static float geodesic_through(float dv, float dw, float c, float vu, float wu) {
     if (c <= 0) return INFINITY;
+
     // v at the origin, w at (c, 0), u above, the virtual source below
     float ux = (vu * vu - wu * wu + c * c) / (2 * c), uy = sqrtf(fmaxf(0, vu * vu - ux * ux));
     float sx = (dv * dv - dw * dw + c * c) / (2 * c), sy = -sqrtf(fmaxf(0, dv * dv - sx * sx));
     if (uy - sy <= 0) return INFINITY;
+
     float cross = sx - (ux - sx) * sy / (uy - sy);
     if (!(cross >= 0 && cross <= c)) return INFINITY;
+
     double x = (double)(ux - sx), y = (double)(uy - sy); // exact squares: what hypotf gives, everywhere
     return (float)sqrt(x * x + y * y);
 }
@@ -77,7 +70,6 @@ static float geodesic_through(float dv, float dw, float c, float vu, float wu) {
 /// Length of the side or diagonal between corners i and j of a cell. A spring between held ends cannot shrink to its
 /// target.
 static float cell_length(const Shell *shell, const StateInput *state, uint32_t cell, int i, int j) {
-    SINGE_ASSERT(cell < shell->cell_count);
     const CellSprings *springs = &shell->cell_springs[cell];
     const DynamicsState *dynamics = state->dynamics;
     int side = ((i + 1) & 3) == j ? i : j;
@@ -89,48 +81,51 @@ static float cell_length(const Shell *shell, const StateInput *state, uint32_t c
                  float3_length(float3_sub(float3_load(dynamics->position[a]), float3_load(dynamics->position[b]))));
 }
 
-/// Lowers the distances at a cell's other corners, once that of corner i is final.
-static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const StateInput *state, uint32_t cell, int i,
-                                float *distance) {
-    SINGE_ASSERT(cell < shell->cell_count);
-    const uint32_t *corner = shell->cells[cell];
-    float dv = distance[corner[i]];
-    for (int turn = 1; turn < 4; turn++) {
-        int j = (i + turn) & 3;
-        uint32_t u = corner[j];
-        if (search->position[u] == GEODESIC_DONE) continue;
-
-        // along the side or diagonal, or through the segment to another corner
-        float vu = cell_length(shell, state, cell, i, j), d = dv + vu;
-        for (int other = 1; other < 4; other++) {
-            int k = (i + other) & 3;
-            if (k == j || search->position[corner[k]] != GEODESIC_DONE) continue;
-            d = fminf(d, geodesic_through(dv, distance[corner[k]], cell_length(shell, state, cell, i, k), vu,
-                                          cell_length(shell, state, cell, k, j)));
-        }
-
-        // keep the shorter distance
-        if (d >= distance[u]) continue;
-        distance[u] = d;
-        if (search->position[u] == GEODESIC_FAR) heap_put(search, search->waiting++, u);
-        heap_rise(search, distance, u);
-    }
-}
-
 void geodesic_from(Geodesic *search, const Shell *shell, const StateInput *state, uint32_t source, uint32_t first,
                    uint32_t last, float *distance) {
-    for (uint32_t v = first; v < last; v++) distance[v] = INFINITY, search->position[v] = GEODESIC_FAR;
+    for (uint32_t v = first; v < last; v++) {
+        distance[v] = INFINITY;
+        search->position[v] = GEODESIC_FAR;
+    }
+
     distance[source] = 0;
     search->waiting = 1;
     heap_put(search, 0, source);
+
     while (search->waiting > 0) {
         uint32_t v = heap_pop(search, distance);
         for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++) {
             uint32_t cell = shell->fan[k];
             if (!(state->ablate->cell_flags[cell] & SINGE_ALIVE)) continue;
+
+            // lower the distances at the cell's other corners
+            const uint32_t *corner = shell->cells[cell];
+            const float dv = distance[v];
             int i = 0;
-            while (shell->cells[cell][i] != v) i++;
-            geodesic_cross_cell(search, shell, state, cell, i, distance);
+            while (corner[i] != v) i++;
+            for (int turn = 1; turn < 4; turn++) {
+                const int j = (i + turn) & 3;
+                const uint32_t u = corner[j];
+                if (search->position[u] == GEODESIC_DONE) continue;
+
+                // along the side or diagonal, or through the segment to another corner
+                float vu = cell_length(shell, state, cell, i, j), d = dv + vu;
+                for (int other = 1; other < 4; other++) {
+                    const int m = (i + other) & 3;
+                    if (m == j || search->position[corner[m]] != GEODESIC_DONE) continue;
+                    d = fminf(d, geodesic_through(dv, distance[corner[m]], cell_length(shell, state, cell, i, m), vu,
+                                                  cell_length(shell, state, cell, m, j)));
+                }
+
+                // the vertex rises in the heap with a shorter distance
+                if (d >= distance[u]) continue;
+                distance[u] = d;
+                if (search->position[u] == GEODESIC_FAR) heap_put(search, search->waiting++, u);
+                uint32_t at = search->position[u];
+                for (; at > 0 && distance[search->heap[(at - 1) / 2]] > d; at = (at - 1) / 2)
+                    heap_put(search, at, search->heap[(at - 1) / 2]);
+                heap_put(search, at, u);
+            }
         }
     }
 }

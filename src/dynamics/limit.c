@@ -15,7 +15,6 @@
 //
 // Where a spring has burnt, a load on its cell may pull it open: if it were held, it would stretch intact cells next to
 // it.
-#include "common/assertion.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
@@ -42,8 +41,6 @@ typedef struct LimitRange {
 } LimitRange;
 
 static Float4 limit_displacement(const Limit *job, SingeColour colour, uint32_t spring) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    SINGE_ASSERT(spring < job->shell->springs[colour].count);
     const uint32_t *ends = job->shell->springs[colour].ends[spring];
     return float4_load(job->dynamics->position[ends[1]]) - float4_load(job->dynamics->position[ends[0]]);
 }
@@ -52,7 +49,6 @@ static float limit_factor(SingeColour colour) { return colour == SINGE_BLUE ? LI
 
 /// Bit k: whether spring first + k, of four, is too long, by more than rounding.
 static inline unsigned limit_four(const Limit *job, SingeColour colour, uint32_t first) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     Float4 max = limit_factor(colour) * float4_load(job->state->burn->spring_length[colour] + first), displacement[4];
     for (uint32_t k = 0; k < 4; k++) displacement[k] = limit_displacement(job, colour, first + k);
     float4_transpose(displacement);
@@ -64,8 +60,6 @@ static inline unsigned limit_four(const Limit *job, SingeColour colour, uint32_t
 /// Whether a spring that is too long may be shortened: it is not gone nor in a mesh that may stretch, its ends are not
 /// both held, and the sheet is not held farther apart than it reaches.
 static bool limit_holds(const Limit *job, SingeColour colour, uint32_t spring) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    SINGE_ASSERT(spring < job->shell->springs[colour].count);
     const uint32_t *ends = job->shell->springs[colour].ends[spring];
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     const Field compliance = job->shell->matter.compliance[SINGE_BLUE];
@@ -75,8 +69,6 @@ static bool limit_holds(const Limit *job, SingeColour colour, uint32_t spring) {
 }
 
 static bool limit_is_over(const Limit *job, SingeColour colour, uint32_t spring) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    SINGE_ASSERT(spring < job->shell->springs[colour].count);
     Float4 displacement = limit_displacement(job, colour, spring);
     float max = limit_factor(colour) * job->state->burn->spring_length[colour][spring];
     return float4_dot(displacement, displacement) > max * max * 1.0001f && limit_holds(job, colour, spring);
@@ -92,7 +84,6 @@ static LimitRange limit_range(const Limit *job, uint32_t begin, uint32_t end) {
 /// Number of springs to shorten in a block.
 static double limit_count(void *task, int begin, int end) {
     const Limit *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const LimitRange range = limit_range(job, (uint32_t)begin, (uint32_t)end);
     double over = 0;
     uint32_t s = range.first;
@@ -103,52 +94,51 @@ static double limit_count(void *task, int begin, int end) {
     return over;
 }
 
-static void limit_shorten(const Limit *job, SingeColour colour, uint32_t spring) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    SINGE_ASSERT(spring < job->shell->springs[colour].count);
-    float(*x)[4] = job->dynamics->position, (*v)[4] = job->dynamics->velocity;
-    const uint32_t *ends = job->shell->springs[colour].ends[spring], a = ends[0], b = ends[1];
-    const float max = limit_factor(colour) * job->state->burn->spring_length[colour][spring];
-    float wa = x[a][3], wb = x[b][3];
-    Float4 displacement = limit_displacement(job, colour, spring), relative = float4_load(v[b]) - float4_load(v[a]);
-    displacement[3] = 0;
-    float length = sqrtf(float4_dot(displacement, displacement)), opens = float4_dot(relative, displacement) / length;
-    Float4 unit = displacement / length, shift = (length - max) / (wa + wb) * unit;
-    Float4 slow = (opens > 0 ? opens : 0) / (wa + wb) * unit;
-    float4_store(x[a], float4_load(x[a]) + wa * shift);
-    float4_store(x[b], float4_load(x[b]) - wb * shift);
-    float4_store(v[a], float4_load(v[a]) + wa * slow);
-    float4_store(v[b], float4_load(v[b]) - wb * slow);
-}
-
 /// Shortens springs that are too long, one after another, in blocks with a count above 0. Returns whether there were
 /// any.
 static bool limit_sweep(const Limit *job, const double *over) {
+    float(*x)[4] = job->dynamics->position, (*v)[4] = job->dynamics->velocity;
     bool some = false;
     for (uint32_t block = 0; block < job->end; block += POOL_BLOCK) {
         if (over[block / POOL_BLOCK] == 0) continue;
-        uint32_t end = job->end - block < POOL_BLOCK ? job->end : block + POOL_BLOCK;
+
+        const uint32_t end = job->end - block < POOL_BLOCK ? job->end : block + POOL_BLOCK;
         const LimitRange range = limit_range(job, block, end);
         for (uint32_t s = range.first; s < range.end; s++) {
             if (!limit_is_over(job, range.colour, s)) continue;
-            limit_shorten(job, range.colour, s);
+            const uint32_t *ends = job->shell->springs[range.colour].ends[s], a = ends[0], b = ends[1];
+            const float max = limit_factor(range.colour) * job->state->burn->spring_length[range.colour][s];
+            float wa = x[a][3], wb = x[b][3];
+            Float4 displacement = limit_displacement(job, range.colour, s);
+            Float4 relative = float4_load(v[b]) - float4_load(v[a]);
+            displacement[3] = 0;
+            float length = sqrtf(float4_dot(displacement, displacement));
+            float opens = float4_dot(relative, displacement) / length;
+            Float4 unit = displacement / length, shift = (length - max) / (wa + wb) * unit;
+            Float4 slow = (opens > 0 ? opens : 0) / (wa + wb) * unit;
+            float4_store(x[a], float4_load(x[a]) + wa * shift);
+            float4_store(x[b], float4_load(x[b]) - wb * shift);
+            float4_store(v[a], float4_load(v[a]) + wa * slow);
+            float4_store(v[b], float4_load(v[b]) - wb * slow);
             some = true;
         }
     }
+
     return some;
 }
 
 bool dynamics_limit(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
                     DynamicsState *dynamics) {
     Limit job = {.shell = shell, .state = state, .dynamics = dynamics, .spread = plan->attachments.spread};
-    if (plan->paper) return false;
     job.sides = shell->springs[SINGE_BLUE].count - shell->edge_spare_count + shell->edge_spare_used;
     job.first_diagonal = (uint32_t)pool_blocks((int)job.sides) * POOL_BLOCK;
     job.end = job.first_diagonal + shell->springs[SINGE_YELLOW].count;
+
     for (int round = 0; round < LIMIT_ROUNDS; round++) {
         if (pool_sum(pool, (int)job.end, limit_count, &job, plan->partial) == 0) return round > 0;
         for (int sweep = 0; sweep < LIMIT_SWEEPS && limit_sweep(&job, plan->partial); sweep++) {
         }
     }
+
     return true;
 }

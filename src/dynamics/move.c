@@ -11,7 +11,6 @@
 // implicitly (v_n <- v_n / (1 + h k |v_n|)), so that no time step makes it overshoot. Damping: v <- v / (1 + h d).
 //
 // The fourth component: of a position, the inverse mass, which its prediction repeats; of a velocity, 0.
-#include "common/assertion.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
@@ -25,7 +24,6 @@ typedef struct Move {
 
 /// Drag on a velocity that already has gravity and damping.
 static inline Float4 move_drag(const DynamicsPlan *plan, uint32_t i, float h, Float4 velocity) {
-    SINGE_ASSERT(h > 0);
     Float4 normal = float4_load(plan->normal[i]), slips = (velocity - float4_load(plan->air[i])) * normal;
     float slip = slips[0] + slips[1] + slips[2], k = h * plan->drag[i] * fabsf(slip);
     return velocity - slip * k / (1 + k) * normal;
@@ -33,7 +31,6 @@ static inline Float4 move_drag(const DynamicsPlan *plan, uint32_t i, float h, Fl
 
 /// Particles [begin, end); `plain` where none has drag and damping is the same for all.
 static inline void move_particles(const Move *job, int begin, int end, bool closes, bool opens, bool plain) {
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const DynamicsPlan *plan = job->plan;
     const Field damping = job->shell->matter.damping;
     const float *gravity = plan->settings.gravity, *drag = plan->drag;
@@ -41,6 +38,7 @@ static inline void move_particles(const Move *job, int begin, int end, bool clos
     float(*restrict predicted)[4] = plan->predicted;
     float h = job->h, inverse_h = 1 / h, keep = 1 / (1 + h * field_at(damping, 0));
     Float4 fall = {h * gravity[0], h * gravity[1], h * gravity[2], 0};
+
     for (int i = begin; i < end; i++) {
         Float4 point = float4_load(position[i]), velocity = float4_load(velocities[i]);
         if (point[3] == 0) continue; // pinned or gone
@@ -57,6 +55,7 @@ static inline void move_particles(const Move *job, int begin, int end, bool clos
             float4_store(position[i], point);
             float4_store(predicted[i], point);
         }
+
         float4_store(velocities[i], velocity);
     }
 }
@@ -64,13 +63,13 @@ static inline void move_particles(const Move *job, int begin, int end, bool clos
 /// A block of particles stays in the cache during all of this.
 static double move_block(void *task, int begin, int end) {
     const Move *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     DynamicsPlan *plan = job->plan;
     uint64_t contacts = contact_range(plan, job->between.collider_count, job->h, job->dynamics, begin, end);
     bool closes = job->between.closes, opens = job->between.opens;
     const Field drag = job->shell->matter.drag, damping = job->shell->matter.damping;
     bool still = plan->settings.air_density == 0 || (drag.mask == 0 && field_at(drag, 0) == 0);
     bool plain = still && damping.mask == 0;
+
     // each call becomes a loop of its own
     if (closes && opens && plain) move_particles(job, begin, end, true, true, true);
     else if (closes && opens) move_particles(job, begin, end, true, true, false);
@@ -83,7 +82,6 @@ static double move_block(void *task, int begin, int end) {
 
 uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, const Between *between,
                        DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
     Move job = {plan, shell, dynamics, *between, h};
     if (between->attaches) attach_position(&plan->attachments, shell, dynamics);
     return (uint64_t)pool_sum(pool, (int)shell->particle_count, move_block, &job, plan->partial);
@@ -91,10 +89,10 @@ uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float
 
 void dynamics_move_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
                         DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
     for (uint32_t p = 0; p < pins->count; p++) {
         const Pin *pin = &pins->items[p];
         if (pin->generation == 0) continue;
+
         Pose pose = path_pose(&pin->path, time);
         const float share = motion_share(&pin->motion, time);
         for (uint32_t k = 0; k < pin->count; k++) {

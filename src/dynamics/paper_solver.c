@@ -1,13 +1,15 @@
+// The paper's methods, on a Network in double precision: its own (eq 16 to 19), the same to the letter, all springs in
+// one system, and the mass-spring model of section 8.
+//
 // Successive fast projection as in the paper (section 7.1): each of `projections` steps projects the colours one after
 // another, each to the solution of its linear system, and then moves particles out of colliders.
 //
 // With early_exit the projection steps also end after one in which every colour began with a residual below `tolerance`
 // of its target lengths, so that there was nothing to solve.
-#include "common/assertion.h"
-#include "dynamics/paper_solver.h"
-
 #include "common/clock.h"
+#include "dynamics/dynamics_plan.h"
 #include "dynamics/stiffness.h"
+#include "reference/spring_network.h"
 
 /// A system of n rows takes some hundreds of iterations at most; a singular one would not end.
 enum { PAPER_ITERATIONS = 5000 };
@@ -25,30 +27,24 @@ static bool paper_one_system(SingeSolverMethod method) {
     return method == SINGE_SOLVER_ALL_AT_ONCE || method == SINGE_SOLVER_MASS_SPRING;
 }
 
-/// Spring `slot` of a cell, of the slots of its colour in the order in which they are numbered.
-static uint32_t paper_slot(const CellSprings *cell, SingeColour colour, uint32_t slot) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    static const uint32_t sides[] = {0, 3, 1, 2}; // on a grid the first two sides of all cells are nearly all edges
-    switch (colour) {
-    case SINGE_RED: return cell->red[slot];
-    case SINGE_GREEN: return cell->green[sides[slot]];
-    case SINGE_BLUE: return cell->blue[sides[slot]];
-    default: return slot < 2 ? cell->yellow[slot] : SHELL_NONE;
-    }
-}
-
 /// Numbers a colour's springs slot by slot, and within a slot cell by cell. Then the neighbours of springs in a row are
 /// in a row themselves, along the lines of a grid, and the matrix is read in runs. `ends`: of the springs, by row.
 static bool paper_number(Memory *memory, const Shell *shell, SingeColour colour, Paper *paper, uint32_t (*ends)[2]) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
+    static const uint32_t sides[] = {0, 3, 1, 2}; // on a grid the first two sides of all cells are nearly all edges
     const SpringSet *set = &shell->springs[colour];
     uint8_t *seen;
     paper->spring_count[colour] = set->count;
     if (!NEW(memory, paper->order[colour], set->count) || !NEW(memory, seen, set->count)) return false;
+
     uint32_t row = 0;
     for (uint32_t slot = 0; slot < 4; slot++)
         for (uint32_t cell = 0; cell < shell->cell_count; cell++) {
-            uint32_t k = paper_slot(&shell->cell_springs[cell], colour, slot);
+            const CellSprings *springs = &shell->cell_springs[cell];
+            uint32_t k = colour == SINGE_RED     ? springs->red[slot]
+                         : colour == SINGE_GREEN ? springs->green[sides[slot]]
+                         : colour == SINGE_BLUE  ? springs->blue[sides[slot]]
+                         : slot < 2              ? springs->yellow[slot]
+                                                 : SHELL_NONE;
             if (k == SHELL_NONE || seen[k]) continue;
             seen[k] = 1;
             uint32_t a = set->ends[k][0], b = set->ends[k][1];
@@ -60,46 +56,44 @@ static bool paper_number(Memory *memory, const Shell *shell, SingeColour colour,
     return true;
 }
 
-static SingeResult paper_create_network(Memory *memory, const Shell *shell, Paper *paper) {
+static bool paper_create(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
+    Paper *paper;
+    if (!NEW(memory, plan->paper, 1)) return false;
+
+    paper = plan->paper;
+    paper->solver = plan->settings.solver;
+    paper->particle_count = shell->particle_count;
+    if (!NEW(memory, paper->predicted, shell->particle_count)) return false;
+
+    // a network of the springs in their order
     NetworkSprings springs[SINGE_COLOUR_COUNT];
     uint32_t total = 0, (*ends)[2];
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) total += shell->springs[c].count;
     bool ok = NEW(memory, ends, total);
+
     for (uint32_t c = 0, first = 0; ok && c < SINGE_COLOUR_COUNT; first += springs[c++].count) {
         springs[c] = (NetworkSprings){shell->springs[c].count, (const uint32_t(*)[2])(ends + first)};
         ok = paper_number(memory, shell, (SingeColour)c, paper, ends + first);
     }
+
     bool one = paper_one_system(paper->solver.method), matrix = paper->solver.method != SINGE_SOLVER_MASS_SPRING;
     if (one) springs[0].count = total;
-    SingeResult result = SINGE_ERROR_MEMORY;
-    if (ok)
-        result = network_create(memory, shell->particle_count, one ? 1 : SINGE_COLOUR_COUNT, springs, matrix,
-                                &paper->network);
+    ok = ok && network_create(memory, shell->particle_count, one ? 1 : SINGE_COLOUR_COUNT, springs, matrix,
+                              &paper->network) == SINGE_OK;
     FREE(memory, ends, total);
-    return result;
+    if (ok) paper->network.kernel = conjugate_choose(plan->settings.instructions);
+    return ok;
 }
 
-SingeResult paper_create(Memory *memory, const Shell *shell, const DynamicsSettings *settings, Paper **out) {
-    *out = NULL;
-    Paper *paper = memory_new(memory, 1, sizeof *paper);
-    if (!paper) return SINGE_ERROR_MEMORY;
-    paper->solver = settings->solver;
-    paper->particle_count = shell->particle_count;
-    if (!NEW(memory, paper->predicted, shell->particle_count) || paper_create_network(memory, shell, paper)) {
-        paper_free(memory, paper);
-        return SINGE_ERROR_MEMORY;
-    }
-    paper->network.kernel = conjugate_choose(settings->instructions);
-    *out = paper;
-    return SINGE_OK;
-}
-
-void paper_free(Memory *memory, Paper *paper) {
+static void paper_release(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
+    (void)shell;
+    Paper *paper = plan->paper;
     if (!paper) return;
+
     FREE(memory, paper->predicted, paper->particle_count);
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) FREE(memory, paper->order[c], paper->spring_count[c]);
     network_free(memory, &paper->network);
-    FREE(memory, paper, 1);
+    FREE(memory, plan->paper, 1);
 }
 
 // ---- a step's masses, weights and lengths
@@ -116,11 +110,12 @@ typedef struct Fill {
 
 static void paper_fill_particles(void *task, int begin, int end) {
     const Fill *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->shell->particle_count);
     Network *network = &job->paper->network;
     bool literal = job->paper->solver.method == SINGE_SOLVER_PAPER_LITERAL;
+
     for (int i = begin; i < end; i++) {
         network->inverse_mass[i] = (double)job->plan->inverse_mass[i];
+
         // to the letter: M = I, and held particles are put back afterwards
         if (literal) network->inverse_mass[i] = job->state->ablate->particle_flags[i] & SINGE_ALIVE ? 1 : 0;
         network->held[i] = job->plan->inverse_mass[i] == 0;
@@ -129,12 +124,12 @@ static void paper_fill_particles(void *task, int begin, int end) {
 
 static void paper_fill_springs(void *task, int begin, int end) {
     const Fill *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     Stiffness stiffness;
     stiffness_begin(job->shell, job->colour, 0, 0, &stiffness);
     const float *length = job->state->burn->spring_length[job->colour];
     const Field material = job->shell->matter.weight[job->colour];
     const uint8_t *flags = job->state->ablate->spring_flags[job->colour];
+
     for (uint32_t k = (uint32_t)begin; k < (uint32_t)end; k++) {
         uint32_t spring = job->paper->order[job->colour][k], row = job->offset + k;
         const uint32_t *ends = job->group->ends[row];
@@ -145,10 +140,13 @@ static void paper_fill_springs(void *task, int begin, int end) {
     }
 }
 
-void paper_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool) {
+static void paper_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
+                          const DynamicsState *dynamics) {
+    (void)dynamics;
     Paper *paper = plan->paper;
     Fill job = {.paper = paper, .plan = plan, .shell = shell, .state = state, .group = paper->network.groups};
     pool_for(pool, (int)shell->particle_count, POOL_BLOCK, paper_fill_particles, &job);
+
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
         job.colour = (SingeColour)c;
         pool_for(pool, (int)shell->springs[c].count, POOL_BLOCK, paper_fill_springs, &job);
@@ -170,7 +168,6 @@ typedef struct Exchange {
 
 static void paper_begin(void *task, int begin, int end) {
     const Exchange *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     bool literal = job->paper->solver.method == SINGE_SOLVER_PAPER_LITERAL;
     for (int i = begin; i < end; i++)
         for (int c = 0; c < 3; c++) {
@@ -184,7 +181,6 @@ static void paper_begin(void *task, int begin, int end) {
 /// Positions to single precision: for the contacts, and for the state.
 static void paper_put(void *task, int begin, int end) {
     const Exchange *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int i = begin; i < end; i++)
         for (int c = 0; c < 3; c++) job->dynamics->position[i][c] = (float)job->paper->network.position[i][c];
 }
@@ -192,7 +188,6 @@ static void paper_put(void *task, int begin, int end) {
 /// Takes over positions that changed since paper_put; the others keep their double precision.
 static void paper_take(void *task, int begin, int end) {
     const Exchange *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int i = begin; i < end; i++)
         for (int c = 0; c < 3; c++) {
             double *x = &job->paper->network.position[i][c];
@@ -203,7 +198,6 @@ static void paper_take(void *task, int begin, int end) {
 /// Eq 13: v^ = v~ + (x^ - x~)/h.
 static void paper_finish(void *task, int begin, int end) {
     const Exchange *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int i = begin; i < end; i++)
         for (int c = 0; c < 3; c++) {
             double moved = job->paper->network.position[i][c] - job->paper->predicted[i][c];
@@ -212,18 +206,9 @@ static void paper_finish(void *task, int begin, int end) {
     paper_put(task, begin, end);
 }
 
-static SingeResult paper_broken(const Paper *paper, SingeColour colour, SingeError *error) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    static const char *const names[] = {"red", "green", "blue", "yellow"};
-    return error_set(
-        error, SINGE_ERROR_DIVERGED, "dynamics", -1,
-        "the system of %s springs is singular or not finite, and conjugate gradients broke down; a smaller "
-        "time_step, more substeps or the method paper may help",
-        paper_one_system(paper->solver.method) ? "all" : names[colour]);
-}
-
 /// One projection step (eq 18): *solved says whether any system had something to solve.
 static SingeResult paper_step(Paper *paper, Pool *pool, DynamicsCounters *counters, bool *solved, SingeError *error) {
+    static const char *const names[] = {"red", "green", "blue", "yellow"};
     bool one = paper_one_system(paper->solver.method);
     *solved = false;
     for (int i = 0; i < (one ? 1 : SINGE_COLOUR_COUNT); i++) {
@@ -233,57 +218,91 @@ static SingeResult paper_step(Paper *paper, Pool *pool, DynamicsCounters *counte
         counters->iterations += report.iterations;
         counters->flops += report.flops;
         counters->bytes += report.bytes;
-        if (report.broken) return paper_broken(paper, (SingeColour)group, error);
+        if (report.broken)
+            return error_set(error, SINGE_ERROR_DIVERGED, "dynamics", -1,
+                             "the system of %s springs is singular or not finite, and conjugate gradients broke down; "
+                             "a smaller time_step, more substeps or the method paper may help",
+                             one ? "all" : names[group]);
         if (report.iterations) *solved = true;
     }
+
     return SINGE_OK;
 }
 
-static void paper_hooke(Paper *paper, Pool *pool, float h, const DynamicsState *dynamics, DynamicsCounters *counters) {
-    SINGE_ASSERT(h > 0);
-    ProjectionReport report = mass_spring_project(&paper->network, (double)paper->solver.stiffness,
-                                                  (const float(*)[4])dynamics->velocity, (double)h, pool);
-    counters->flops += report.flops;
-    counters->bytes += report.bytes;
-    counters->springs += paper->network.groups[0].count;
-}
-
-SingeResult paper_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
-                          Pool *pool, float h, DynamicsState *dynamics, DynamicsCounters *counters, SingeError *error) {
-    SINGE_ASSERT(h > 0);
+static SingeResult paper_project(DynamicsPlan *plan, const Substep *substep) {
     Paper *paper = plan->paper;
     const SingeSolverDef *solver = &paper->solver;
-    int particles = (int)shell->particle_count;
-    Exchange exchange = {paper, plan, dynamics, (double)h};
+    Pool *pool = substep->pool;
+    DynamicsState *dynamics = substep->dynamics;
+    DynamicsCounters *counters = substep->counters;
+    const int particles = (int)substep->shell->particle_count;
+    const double h = (double)substep->h;
+    Exchange exchange = {paper, plan, dynamics, h};
 
     // to double precision
     paper->network.rules = (ProjectionRules){.literal = solver->method == SINGE_SOLVER_PAPER_LITERAL,
                                              .early_exit = solver->early_exit,
                                              .tolerance = (double)solver->tolerance,
                                              .iterations = PAPER_ITERATIONS,
-                                             .inverse_h2 = 1 / ((double)h * (double)h)};
+                                             .inverse_h2 = 1 / (h * h)};
     pool_for(pool, particles, POOL_BLOCK, paper_begin, &exchange);
 
     // projections, each followed by contact
+    const bool hooke = solver->method == SINGE_SOLVER_MASS_SPRING;
     bool solved = true;
-    int max = solver->method == SINGE_SOLVER_MASS_SPRING ? 1 : solver->projections; // forces act once a substep
+    int max = hooke ? 1 : solver->projections; // forces act once a substep
     for (int projection = 0; projection < max && (solved || !solver->early_exit); projection++) {
         double start = clock_seconds();
-        if (solver->method == SINGE_SOLVER_MASS_SPRING) paper_hooke(paper, pool, h, dynamics, counters);
-        else TRY(paper_step(paper, pool, counters, &solved, error));
+        if (hooke) {
+            ProjectionReport report = mass_spring_project(&paper->network, (double)solver->stiffness,
+                                                          (const float(*)[4])dynamics->velocity, h, pool);
+            counters->flops += report.flops;
+            counters->bytes += report.bytes;
+            counters->springs += paper->network.groups[0].count;
+        } else {
+            TRY(paper_step(paper, pool, counters, &solved, substep->error));
+        }
+
         counters->seconds += clock_seconds() - start;
-        if (collider_count == 0) continue;
+        if (substep->collider_count == 0) continue;
         pool_for(pool, particles, POOL_BLOCK, paper_put, &exchange);
-        counters->contacts += contact_project(plan, collider_count, pool, h, dynamics);
+        counters->contacts += contact_project(plan, substep->collider_count, pool, substep->h, dynamics);
         pool_for(pool, particles, POOL_BLOCK, paper_take, &exchange);
     }
 
     // heights of centres, and back to single precision
     if (solver->height_min > 0) {
         pool_for(pool, particles, POOL_BLOCK, paper_put, &exchange);
-        height_project(plan, shell, ablate, pool, dynamics);
+        height_project(plan, substep->shell, substep->state->ablate, pool, dynamics);
         pool_for(pool, particles, POOL_BLOCK, paper_take, &exchange);
     }
+
     pool_for(pool, particles, POOL_BLOCK, paper_finish, &exchange);
     return SINGE_OK;
 }
+
+/// Sheets do not tear by these methods: they have no forces of a step.
+static void paper_gather(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h) {
+    (void)plan;
+    (void)shell;
+    (void)pool;
+    (void)h;
+}
+
+/// What these methods leave too long is shown as it is.
+static bool paper_limit(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
+                        DynamicsState *dynamics) {
+    (void)plan;
+    (void)shell;
+    (void)state;
+    (void)pool;
+    (void)dynamics;
+    return false;
+}
+
+const Solver paper_solver = {.create = paper_create,
+                             .release = paper_release,
+                             .prepare = paper_prepare,
+                             .project = paper_project,
+                             .gather = paper_gather,
+                             .limit = paper_limit};

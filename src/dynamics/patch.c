@@ -8,7 +8,6 @@
 // The force f of a spring, from which line forces come, by the sums of mu = lambda/|d| over the projections of a step:
 //
 //   pull = f/|d| l/L = (sum mu) l/(L substeps h^2)    [N/m], target length l, length at rest L
-#include "common/assertion.h"
 #include "dynamics/dynamics_plan.h"
 
 #include "common/float4.h"
@@ -19,8 +18,6 @@
 /// From the lanes themselves: a spring whose ends are not the nodes of its slot is in no strand.
 bool patch_is_in_strand(const DynamicsPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring,
                         size_t slot) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    SINGE_ASSERT(spring < shell->springs[colour].count);
     const uint32_t *node = plan->strands.sets[colour].node + slot, *ends = shell->springs[colour].ends[spring];
     return node[0] == 4 * ends[0] && node[STRAND_LANES] == 4 * ends[1];
 }
@@ -32,6 +29,7 @@ bool patches_create(Memory *memory, const Shell *shell, Patches *patches) {
         if (!NEW(memory, patches->items[colour], patches->capacity) || !NEW(memory, patches->pull[colour], springs))
             return false;
     }
+
     return true;
 }
 
@@ -43,19 +41,7 @@ void patches_free(Memory *memory, const Shell *shell, Patches *patches) {
     }
 }
 
-/// The slot of every strand's first spring is known; bisection finds the strand of a spring.
-static float strand_compliance(const StrandSet *set, const SpringSet *springs, uint32_t spring) {
-    uint32_t low = 0, high = springs->strand_count;
-    while (high - low > 1) {
-        uint32_t middle = low + (high - low) / 2;
-        if (springs->strand_first[middle] <= spring) low = middle;
-        else high = middle;
-    }
-    return set->compliance[set->strand_slot[low] + (size_t)(spring - springs->strand_first[low]) * STRAND_LANES];
-}
-
 static void patch_push(Patches *patches, SingeColour colour, uint32_t spring, float compliance) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     if (patches->count[colour] == patches->capacity) return; // split_is_possible prevents it
     patches->items[colour][patches->count[colour]++] = (Patch){.spring = spring, .compliance = compliance};
 }
@@ -63,8 +49,10 @@ static void patch_push(Patches *patches, SingeColour colour, uint32_t spring, fl
 bool patch_follow(DynamicsPlan *plan, const Shell *shell) {
     Patches *patches = &plan->patches;
     if (shell->spare_count == 0) return false;
+
     // a step that was undone may have dropped springs that are alive again
     if (patches->split_count == shell->split_count && plan->strands_written) return false;
+
     patches->split_count = shell->split_count;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         const SpringSet *springs = &shell->springs[colour];
@@ -77,11 +65,26 @@ bool patch_follow(DynamicsPlan *plan, const Shell *shell) {
                     patch_push(patches, (SingeColour)colour, k, set->compliance[slot]);
         }
     }
+
+    // second edges of tears
     const SpringSet *blue = &shell->springs[SINGE_BLUE];
     uint32_t first = blue->count - shell->edge_spare_count;
-    for (uint32_t k = 0; k < shell->edge_spare_used; k++)
-        patch_push(patches, SINGE_BLUE, first + k,
-                   strand_compliance(&plan->strands.sets[SINGE_BLUE], blue, shell->edge_origin[k]));
+    const StrandSet *set = &plan->strands.sets[SINGE_BLUE];
+
+    for (uint32_t k = 0; k < shell->edge_spare_used; k++) {
+        // the compliance of the spring that it comes from, whose strand bisection finds
+        const uint32_t origin = shell->edge_origin[k];
+        uint32_t low = 0, high = blue->strand_count;
+        while (high - low > 1) {
+            uint32_t middle = low + (high - low) / 2;
+            if (blue->strand_first[middle] <= origin) low = middle;
+            else high = middle;
+        }
+
+        size_t slot = set->strand_slot[low] + (size_t)(origin - blue->strand_first[low]) * STRAND_LANES;
+        patch_push(patches, SINGE_BLUE, first + k, set->compliance[slot]);
+    }
+
     return true;
 }
 
@@ -103,18 +106,19 @@ void patch_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *sta
             patch->weight = dynamics_weight(shell->matter.weight[colour], plan->soft, patch->a, patch->b);
             left++;
         }
+
         plan->patches.count[colour] = left;
     }
 }
 
 void patch_project(DynamicsPlan *plan, SingeColour colour, float inverse_h2, DynamicsState *dynamics) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     const float softness = 1 + 0.5f * plan->settings.solver.regularisation[colour];
     for (uint32_t k = 0; k < plan->patches.count[colour]; k++) {
         Patch *patch = &plan->patches.items[colour][k];
         Float4 a = float4_load(dynamics->position[patch->a]), b = float4_load(dynamics->position[patch->b]), d = b - a;
         float weights = a[3] + b[3], target = patch->length * patch->length;
         if (!(patch->weight > 0 && weights > 0)) continue;
+
         float square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], e = (square - target) * 0.5f;
         if (square < target * 0.17157288f) e = -patch->length * sqrtf(square); // crushed, as in strand_kernel.h
         float beyond = fmaxf(e - square * 0.01f, 0);
@@ -138,11 +142,11 @@ typedef struct Gather {
 /// A spring held at both ends has a row without a diagonal, whose mu is meaningless.
 static void gather_strands(void *task, int begin, int end) {
     const Gather *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const SpringSet *springs = &job->shell->springs[job->colour];
     const StrandSet *set = &job->plan->strands.sets[job->colour];
     const float *inverse_mass = job->plan->inverse_mass, *rest = springs->rest;
     float *pull = job->plan->patches.pull[job->colour];
+
     for (int s = begin; s < end; s++) {
         size_t slot = set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
@@ -153,7 +157,6 @@ static void gather_strands(void *task, int begin, int end) {
 }
 
 void patch_gather(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h) {
-    SINGE_ASSERT(h > 0);
     Gather job = {plan, shell, SINGE_RED, 1 / ((float)plan->settings.solver.substeps * h * h)};
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         job.colour = (SingeColour)colour;

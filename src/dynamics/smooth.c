@@ -12,7 +12,6 @@
 // from a wave falls with the fourth power of its length over smoothing_length, whatever the mesh. The second removes
 // what the first cannot see. A rigid motion of a flat sheet has r = 0 and is unchanged. Where the nodes are not
 // collinear or not equally far apart, r sees a rotation too: a curved sheet that spins loses angular momentum.
-#include "common/assertion.h"
 #include "common/real.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
@@ -33,6 +32,7 @@ static inline void smooth_triple(const Smooth *job, uint32_t a, uint32_t b, uint
     float wa = job->position[a][3], wb = job->position[b][3], wc = job->position[c][3];
     float weight = wa + 4 * wb + wc;
     if (weight <= 0) return;
+
     Float4 va = float4_load(job->velocity[a]), vb = float4_load(job->velocity[b]), vc = float4_load(job->velocity[c]);
     Float4 j = (job->share / weight) * (va - 2 * vb + vc);
     float4_store(job->velocity[a], va - wa * j);
@@ -51,35 +51,23 @@ static void smooth_strand(const Smooth *job, uint32_t begin, uint32_t end, uint3
     }
 }
 
-static uint32_t smooth_reach(const Smooth *job, uint32_t begin, uint32_t end) {
-    float length = 0;
-    for (uint32_t k = begin; k < end; k++) length += job->set->rest[k];
-    float reach = job->plan->settings.solver.smoothing_length * (float)(end - begin) / length;
-    return reach >= 2 ? (uint32_t)(reach < (float)(end - begin) ? reach + 0.5f : (float)(end - begin)) : 1;
-}
-
 static void smooth_range(void *task, int begin, int end) {
     const Smooth *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int i = begin; i < end; i++) {
         const uint32_t *first = &job->set->strand_first[job->first_strand + (uint32_t)i];
-        uint32_t reach = smooth_reach(job, first[0], first[1]);
-        if (reach > 1) smooth_strand(job, first[0], first[1], reach);
+        const float springs = (float)(first[1] - first[0]);
+        float length = 0;
+        for (uint32_t k = first[0]; k < first[1]; k++) length += job->set->rest[k];
+        float reach = job->plan->settings.solver.smoothing_length * springs / length;
+        if (reach >= 2) smooth_strand(job, first[0], first[1], (uint32_t)(reach < springs ? reach + 0.5f : springs));
         smooth_strand(job, first[0], first[1], 1);
     }
 }
 
-/// Strands of a family that make about 2,048 springs: the min for a thread.
-static int smooth_grain(const SpringSet *set, uint32_t family) {
-    uint32_t first = set->family_first[family], last = set->family_first[family + 1];
-    uint32_t springs = set->strand_first[last] - set->strand_first[first];
-    return (int)(2048 * (last - first) / (springs + 1)) + 1;
-}
-
 void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h,
                      DynamicsState *dynamics) {
-    SINGE_ASSERT(h > 0);
     if (plan->settings.solver.smoothing <= 0) return;
+
     const SingeColour layers[] = {SINGE_BLUE, SINGE_GREEN};
     for (int layer = 0; layer < 2; layer++) {
         const SpringSet *set = &shell->springs[layers[layer]];
@@ -94,8 +82,10 @@ void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *
         // families in turn, their strands in parallel
         for (uint32_t f = 0; f < set->family_count; f++) {
             job.first_strand = set->family_first[f];
-            uint32_t strands = set->family_first[f + 1] - job.first_strand;
-            pool_for(pool, (int)strands, smooth_grain(set, f), smooth_range, &job);
+            const uint32_t last = set->family_first[f + 1], strands = last - job.first_strand;
+            const uint32_t springs = set->strand_first[last] - set->strand_first[job.first_strand];
+            const int grain = (int)(2048 * strands / (springs + 1)) + 1; // about 2,048 springs: the min for a thread
+            pool_for(pool, (int)strands, grain, smooth_range, &job);
         }
     }
 }

@@ -16,7 +16,6 @@
 //   h <= sqrt(c_spring m/(a + r))
 //
 // Sheets have one s and one grammage here, their median and mean.
-#include "common/assertion.h"
 #include "dynamics/stiffness.h"
 
 #include <math.h>
@@ -31,6 +30,7 @@ static float particle_mass(const Shell *shell, const Sheet *sheet) {
         mass += (double)shell->matter.mass[shell_centre(shell, c)];
         area += (double)shell->matter.area[shell_centre(shell, c)];
     }
+
     return area > 0 ? (float)(mass / area) * sheet->cell_size * sheet->cell_size : 0;
 }
 
@@ -40,14 +40,7 @@ static float thickness_share(const Shell *shell, const Sheet *sheet, uint32_t ce
     return t * t / (0.5f * s * s + t * t);
 }
 
-static float mean_compliance(const Shell *shell, SingeColour colour, const uint32_t *ends) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
-    const Field compliance = shell->matter.compliance[colour];
-    return 0.5f * (field_at(compliance, ends[0]) + field_at(compliance, ends[1]));
-}
-
 void stiffness_begin(const Shell *shell, SingeColour colour, float h, float regularisation, Stiffness *stiffness) {
-    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     float softness = (colour == SINGE_RED ? COUPLING : 0) + regularisation;
     *stiffness = (Stiffness){.shell = shell, .colour = colour, .softness = softness * h * h, .sheet = UINT32_MAX};
 }
@@ -55,7 +48,8 @@ void stiffness_begin(const Shell *shell, SingeColour colour, float h, float regu
 float stiffness_compliance(Stiffness *stiffness, uint32_t spring) {
     const Shell *shell = stiffness->shell;
     const uint32_t *ends = shell->springs[stiffness->colour].ends[spring];
-    float compliance = mean_compliance(shell, stiffness->colour, ends);
+    const Field material = shell->matter.compliance[stiffness->colour];
+    float compliance = 0.5f * (field_at(material, ends[0]) + field_at(material, ends[1]));
     uint32_t index = shell->matter.sheet[ends[0]];
     const Sheet *sheet = &shell->sheets[index];
     if (index != stiffness->sheet) {
@@ -63,13 +57,13 @@ float stiffness_compliance(Stiffness *stiffness, uint32_t spring) {
         stiffness->sheet = index;
         stiffness->own = mass > 0 ? stiffness->softness / mass : 0;
     }
+
     uint32_t centre = ends[0] > ends[1] ? ends[0] : ends[1]; // of a red spring: they come after all vertices
     if (stiffness->colour == SINGE_RED) compliance *= thickness_share(shell, sheet, centre);
     return compliance > stiffness->own ? compliance - stiffness->own : 0;
 }
 
 int stiffness_substeps(const Shell *shell, float h, float regularisation) {
-    SINGE_ASSERT(h > 0);
     const float softness = COUPLING + regularisation;
     float count = 1;
     for (uint32_t i = 0; i < shell->sheet_count; i++) {
@@ -80,7 +74,9 @@ int stiffness_substeps(const Shell *shell, float h, float regularisation) {
             float compliance = field_at(shell->matter.compliance[SINGE_RED], centre);
             min = fminf(min, compliance * thickness_share(shell, sheet, centre));
         }
+
         if (sheet->cell_count > 0) count = fmaxf(count, ceilf(h * sqrtf(softness / (min * mass))));
     }
+
     return count < STIFFNESS_MAX ? (int)count : STIFFNESS_MAX;
 }

@@ -6,7 +6,6 @@
 // in three sweeps an iteration: the product with its dot, r with its dot, and x with p. The scaling to a unit diagonal
 // is Jacobi's preconditioner, folded into the matrix. Sums run in NETWORK_LANES lanes over blocks of POOL_BLOCK rows:
 // the same for any number of threads and any width of the processor's registers.
-#include "common/assertion.h"
 #include "reference/conjugate.h"
 
 #include "common/cpu.h"
@@ -15,8 +14,10 @@
 
 static void conjugate_begin(void *task, int begin, int end) {
     const Conjugate *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
-    for (int row = begin; row < end; row++) job->x[row] = 0, job->p[row] = job->r[row];
+    for (int row = begin; row < end; row++) {
+        job->x[row] = 0;
+        job->p[row] = job->r[row];
+    }
 }
 
 const ConjugateKernel *conjugate_choose(SingeInstructions instructions) {
@@ -45,6 +46,7 @@ ProjectionReport conjugate_gradient(Network *network, uint32_t group, Pool *pool
     // iterate until the residual is small enough
     double rest = square;
     pool_for(pool, rows, POOL_BLOCK, conjugate_begin, &job);
+
     while (rest > enough && report.iterations < network->rules.iterations) {
         double curvature = pool_sum(pool, rows, kernel->multiply, &job, network->partial);
         report.iterations++;
@@ -52,6 +54,7 @@ ProjectionReport conjugate_gradient(Network *network, uint32_t group, Pool *pool
             report.broken = true;
             break;
         }
+
         job.alpha = rest / curvature;
         double before = rest;
         rest = pool_sum(pool, rows, kernel->reduce, &job, network->partial);

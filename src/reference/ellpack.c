@@ -9,7 +9,6 @@
 // longest; here that holds within slices of 8 rows (Monakov, Lokhmotov and Avetisyan, HiPEAC 2010), whose entries are
 // contiguous, so that 8 rows are multiplied at once. Where the 8 columns are consecutive, as on grids whose springs are
 // numbered cell by cell, they are loaded as a run instead of one by one.
-#include "common/assertion.h"
 #include "reference/spring_network.h"
 
 enum { LINK_MINUS = 2, LINK_EMPTY = 4 };
@@ -18,51 +17,56 @@ static uint32_t ellpack_degree(const SpringGroup *group, uint32_t particle) {
     return group->first[particle + 1] - group->first[particle];
 }
 
-/// Entries of the longest row of a slice.
-static size_t ellpack_width(const SpringGroup *group, uint32_t slice) {
-    size_t width = 0;
-    for (uint32_t lane = 0; lane < NETWORK_LANES; lane++) {
-        uint32_t k = slice * NETWORK_LANES + lane;
-        if (k >= group->count) break;
-        size_t row = (size_t)ellpack_degree(group, group->ends[k][0]) + ellpack_degree(group, group->ends[k][1]) - 2;
-        if (width < row) width = row;
-    }
-    return width;
-}
-
-static void ellpack_list_row(SpringGroup *group, uint32_t row) {
-    size_t slice = row / NETWORK_LANES, position = NETWORK_LANES * group->slice_first[slice] + row % NETWORK_LANES;
-    size_t end_position = NETWORK_LANES * group->slice_first[slice + 1];
-    for (uint32_t end = 0; end < 2 && row < group->count; end++) {
-        uint32_t particle = group->ends[row][end];
-        for (uint32_t i = group->first[particle]; i < group->first[particle + 1]; i++) {
-            uint32_t other = group->incident[i] / 2, other_end = group->incident[i] % 2;
-            if (other == row) continue;
-            group->column[position] = other;
-            group->link[position] = (uint8_t)(end | (end == other_end ? 0 : LINK_MINUS));
-            position += NETWORK_LANES;
-        }
-    }
-    for (; position < end_position; position += NETWORK_LANES)
-        group->column[position] = row, group->link[position] = LINK_EMPTY;
-}
-
-static uint32_t ellpack_run(const uint32_t *column) {
-    for (uint32_t lane = 1; lane < NETWORK_LANES; lane++)
-        if (column[lane] != column[0] + lane) return NETWORK_NO_RUN;
-    return column[0];
-}
-
 bool ellpack_create(Memory *memory, SpringGroup *group) {
-    uint32_t slices = group->padded / NETWORK_LANES;
+    // widths of the slices: of their longest rows
+    const uint32_t slices = group->padded / NETWORK_LANES;
     if (!NEW(memory, group->slice_first, (size_t)slices + 1)) return false;
-    for (uint32_t s = 0; s < slices; s++) group->slice_first[s + 1] = group->slice_first[s] + ellpack_width(group, s);
-    size_t entries = ellpack_entries(group);
+
+    for (uint32_t s = 0; s < slices; s++) {
+        size_t width = 0;
+        for (uint32_t k = s * NETWORK_LANES; k < (s + 1) * NETWORK_LANES && k < group->count; k++) {
+            const uint32_t *ends = group->ends[k];
+            size_t row = (size_t)ellpack_degree(group, ends[0]) + ellpack_degree(group, ends[1]) - 2;
+            if (width < row) width = row;
+        }
+
+        group->slice_first[s + 1] = group->slice_first[s] + width;
+    }
+
+    const size_t entries = ellpack_entries(group);
     if (!NEW(memory, group->column, entries) || !NEW(memory, group->link, entries) ||
         !NEW(memory, group->run, entries / NETWORK_LANES))
         return false;
-    for (uint32_t row = 0; row < group->padded; row++) ellpack_list_row(group, row);
-    for (size_t k = 0; k < entries / NETWORK_LANES; k++) group->run[k] = ellpack_run(group->column + NETWORK_LANES * k);
+
+    // the neighbours of each spring, and empty entries up to the slice's width
+    for (uint32_t row = 0; row < group->padded; row++) {
+        const size_t slice = row / NETWORK_LANES, slice_end = NETWORK_LANES * group->slice_first[slice + 1];
+        size_t at = NETWORK_LANES * group->slice_first[slice] + row % NETWORK_LANES;
+        for (uint32_t end = 0; end < 2 && row < group->count; end++) {
+            const uint32_t particle = group->ends[row][end];
+            for (uint32_t i = group->first[particle]; i < group->first[particle + 1]; i++) {
+                const uint32_t other = group->incident[i] / 2, other_end = group->incident[i] % 2;
+                if (other == row) continue;
+                group->column[at] = other;
+                group->link[at] = (uint8_t)(end | (end == other_end ? 0 : LINK_MINUS));
+                at += NETWORK_LANES;
+            }
+        }
+
+        for (; at < slice_end; at += NETWORK_LANES) {
+            group->column[at] = row;
+            group->link[at] = LINK_EMPTY;
+        }
+    }
+
+    // which eight columns are consecutive
+    for (size_t k = 0; k < entries / NETWORK_LANES; k++) {
+        const uint32_t *column = group->column + NETWORK_LANES * k;
+        group->run[k] = column[0];
+        for (uint32_t lane = 1; lane < NETWORK_LANES; lane++)
+            if (column[lane] != column[0] + lane) group->run[k] = NETWORK_NO_RUN;
+    }
+
     return true;
 }
 
@@ -80,25 +84,26 @@ typedef struct Assemble {
     const SpringGroup *group;
 } Assemble;
 
-static void ellpack_assemble_row(Network *network, const SpringGroup *group, uint32_t row) {
-    static const double sign[] = {1, -1, 0};
-    const uint32_t *ends = group->ends[row];
-    const double *g = network->gradient[row], *scale = network->scale;
-    double factor[2];
-    for (int end = 0; end < 2; end++) factor[end] = scale[row] * network->inverse_mass[ends[end]];
-    size_t slice = row / NETWORK_LANES, end = NETWORK_LANES * group->slice_first[slice + 1];
-    for (size_t e = NETWORK_LANES * group->slice_first[slice] + row % NETWORK_LANES; e < end; e += NETWORK_LANES) {
-        uint32_t j = group->column[e];
-        const double *h = network->gradient[j];
-        double dot = g[0] * h[0] + g[1] * h[1] + g[2] * h[2];
-        network->value[e] = sign[group->link[e] / 2] * factor[group->link[e] % 2] * scale[j] * dot;
-    }
-}
-
 static void ellpack_assemble_range(void *task, int begin, int end) {
-    Assemble *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
-    for (int row = begin; row < end; row++) ellpack_assemble_row(job->network, job->group, (uint32_t)row);
+    static const double sign[] = {1, -1, 0};
+    const Assemble *job = task;
+    const SpringGroup *group = job->group;
+    Network *network = job->network;
+    const double *scale = network->scale;
+
+    for (uint32_t row = (uint32_t)begin; row < (uint32_t)end; row++) {
+        const uint32_t *ends = group->ends[row];
+        const double *g = network->gradient[row];
+        double factor[2];
+        for (int k = 0; k < 2; k++) factor[k] = scale[row] * network->inverse_mass[ends[k]];
+        const size_t slice = row / NETWORK_LANES, last = NETWORK_LANES * group->slice_first[slice + 1];
+        for (size_t e = NETWORK_LANES * group->slice_first[slice] + row % NETWORK_LANES; e < last; e += NETWORK_LANES) {
+            uint32_t j = group->column[e];
+            const double *h = network->gradient[j];
+            double dot = g[0] * h[0] + g[1] * h[1] + g[2] * h[2];
+            network->value[e] = sign[group->link[e] / 2] * factor[group->link[e] % 2] * scale[j] * dot;
+        }
+    }
 }
 
 void ellpack_assemble(Network *network, uint32_t group, Pool *pool) {
@@ -111,6 +116,7 @@ void ellpack_dense(const Network *network, uint32_t group_index, double *dense) 
     const double *scale = network->scale;
     for (size_t row = 0; row < group->count; row++) {
         if (scale[row] == 0) continue;
+
         size_t slice = row / NETWORK_LANES, end = NETWORK_LANES * group->slice_first[slice + 1];
         dense[row * group->count + row] += 1 / (scale[row] * scale[row]);
         for (size_t e = NETWORK_LANES * group->slice_first[slice] + row % NETWORK_LANES; e < end; e += NETWORK_LANES)

@@ -12,7 +12,6 @@
 //   S = compliance/h^2 + regularisation (w_a + w_b)/2
 //
 // is solved for mu = D^(1/2) lambda, D the diagonal:  D^(-1/2) (J M^-1 J^T + S) D^(-1/2) mu = D^(-1/2) W C.
-#include "common/assertion.h"
 #include "reference/spring_network.h"
 
 #include <math.h>
@@ -31,6 +30,7 @@ static Row projection_row(const Network *network, const SpringGroup *group, uint
     double d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, l = group->length[k];
     double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], distance = sqrt(square);
     if (network->rules.literal) return (Row){{2 * d[0] / l, 2 * d[1] / l, 2 * d[2] / l}, square / l - l};
+
     // a spring crushed below half its length has hardly a direction: its row's request is limited
     double inverse = 1 / fmax(distance, 1e-30), divisor = 2 * fmax(distance, 0.5 * l);
     return (Row){{d[0] * inverse, d[1] * inverse, d[2] * inverse}, (square - l * l) / divisor};
@@ -43,7 +43,6 @@ double network_constraint(const Network *network, uint32_t group, uint32_t sprin
 /// Gradients, scales and right-hand sides of [begin, end); returns the sum of squares of the right-hand sides.
 static double projection_rows(void *task, int begin, int end) {
     const Rows *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     Network *network = job->network;
     const SpringGroup *group = job->group;
     const double *w = network->inverse_mass;
@@ -52,6 +51,7 @@ static double projection_rows(void *task, int begin, int end) {
         double *g = network->gradient[k];
         g[0] = g[1] = g[2] = network->scale[k] = network->residual[k] = 0;
         if (group->weight[k] <= 0) continue;
+
         Row row = projection_row(network, group, (uint32_t)k);
 
         // diagonal of J M^-1 J^T, with regularisation and compliance
@@ -69,6 +69,7 @@ static double projection_rows(void *task, int begin, int end) {
         network->residual[k] = network->scale[k] * group->weight[k] * row.constraint;
         sum += network->residual[k] * network->residual[k];
     }
+
     return sum;
 }
 
@@ -80,30 +81,32 @@ double network_rows(Network *network, uint32_t group, Pool *pool) {
 /// The target lengths in the norm of the residual: the reference of its tolerance for the early exit.
 static double projection_lengths(void *task, int begin, int end) {
     const Rows *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     double sum = 0;
     for (int k = begin; k < end; k++) {
         double l = job->network->scale[k] * job->group->length[k];
         sum += l * l;
     }
+
     return sum;
 }
 
 /// Eq 17, particle by particle: each gathers from its springs.
 static void projection_move(void *task, int begin, int end) {
     const Rows *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     Network *network = job->network;
     const SpringGroup *group = job->group;
+
     for (int i = begin; i < end; i++) {
         double push[3] = {0, 0, 0}, w = network->held[i] ? 0 : network->inverse_mass[i];
         if (w == 0) continue;
+
         for (uint32_t s = group->first[i]; s < group->first[i + 1]; s++) {
             uint32_t k = group->incident[s] / 2;
             double lambda = network->scale[k] * network->solution[k];
             if (group->incident[s] % 2) lambda = -lambda;
             for (int c = 0; c < 3; c++) push[c] += network->gradient[k][c] * lambda;
         }
+
         for (int c = 0; c < 3; c++) network->position[i][c] += w * push[c];
     }
 }
@@ -132,6 +135,7 @@ ProjectionReport network_project(Network *network, uint32_t group, Pool *pool) {
         report.flops += 16.0 * rows + 6 * particles;
         report.bytes += 48.0 * rows + 56 * particles;
     }
+
     report.flops += 34.0 * rows;
     report.bytes += 120.0 * rows;
     return report;

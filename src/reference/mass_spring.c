@@ -7,7 +7,6 @@
 //
 // k is `stiffness`, the same for every spring, times its weight W. The method is stable while h times the highest
 // frequency is below 2 - about h < sqrt(1/(6 k w)), each particle being in up to twelve springs - and blows up above.
-#include "common/assertion.h"
 #include "reference/spring_network.h"
 
 #include <math.h>
@@ -24,7 +23,6 @@ typedef struct Hooke {
 /// Forces on end b, into `gradient`.
 static void hooke_forces(void *task, int begin, int end) {
     const Hooke *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const Network *network = job->network;
     for (int k = begin; k < end; k++) {
         const uint32_t *ends = job->group->ends[k];
@@ -34,6 +32,7 @@ static void hooke_forces(void *task, int begin, int end) {
         double stiffness = job->stiffness * job->group->weight[k];
         force[0] = force[1] = force[2] = 0;
         if (both <= 0 || stiffness <= 0) continue;
+
         for (int i = 0; i < 3; i++) {
             double v = (double)vb[i] - (double)va[i];
             // positions before the substep: x~ less the displacement by v~; held particles have v~ too
@@ -41,6 +40,7 @@ static void hooke_forces(void *task, int begin, int end) {
             square += d[i] * d[i];
             closing += d[i] * v;
         }
+
         double distance = sqrt(square);
         if (!(distance > 0)) continue;
         double damping = 2 * MASS_SPRING_DAMPING * sqrt(stiffness / both);
@@ -51,16 +51,17 @@ static void hooke_forces(void *task, int begin, int end) {
 
 static void hooke_move(void *task, int begin, int end) {
     const Hooke *job = task;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const SpringGroup *group = job->group;
     for (int i = begin; i < end; i++) {
         double force[3] = {0, 0, 0}, displacement = job->h * job->h * job->network->inverse_mass[i];
         if (displacement == 0) continue;
+
         for (uint32_t s = group->first[i]; s < group->first[i + 1]; s++) {
             const double *f = job->network->gradient[group->incident[s] / 2];
             double sign = group->incident[s] % 2 ? 1 : -1;
             for (int c = 0; c < 3; c++) force[c] += sign * f[c];
         }
+
         for (int c = 0; c < 3; c++) job->network->position[i][c] += displacement * force[c];
     }
 }

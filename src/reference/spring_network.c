@@ -1,46 +1,29 @@
 // The network's memory, and the springs around each particle.
 #include "reference/spring_network.h"
 
-static bool group_incidence(Memory *memory, SpringGroup *group, uint32_t particle_count) {
-    if (!NEW(memory, group->first, (size_t)particle_count + 1) ||
-        !NEW(memory, group->incident, 2 * (size_t)group->count))
-        return false;
-    for (uint32_t k = 0; k < group->count; k++)
-        for (int end = 0; end < 2; end++) group->first[group->ends[k][end] + 1]++;
-    for (uint32_t i = 0; i < particle_count; i++) group->first[i + 1] += group->first[i];
-    // fills from each particle's last entry down; afterwards first[i] is the first entry again
-    for (uint32_t k = group->count; k-- > 0;)
-        for (uint32_t end = 2; end-- > 0;) group->incident[--group->first[group->ends[k][end] + 1]] = 2 * k + end;
-    for (uint32_t i = 0; i < particle_count; i++) group->first[i] = group->first[i + 1];
-    group->first[particle_count] = 2 * group->count;
-    return true;
-}
-
 static bool group_create(Memory *memory, SpringGroup *group, const NetworkSprings *springs, uint32_t particle_count,
                          bool matrix) {
     group->count = springs->count;
     group->padded = (springs->count + NETWORK_LANES - 1) / NETWORK_LANES * NETWORK_LANES;
     if (!NEW(memory, group->ends, group->padded) || !NEW(memory, group->length, group->padded) ||
-        !NEW(memory, group->weight, group->padded) || !NEW(memory, group->compliance, group->padded))
+        !NEW(memory, group->weight, group->padded) || !NEW(memory, group->compliance, group->padded) ||
+        !NEW(memory, group->first, (size_t)particle_count + 1) ||
+        !NEW(memory, group->incident, 2 * (size_t)group->count))
         return false;
     for (uint32_t k = 0; k < group->count; k++)
         for (int end = 0; end < 2; end++) group->ends[k][end] = springs->ends[k][end];
-    return group_incidence(memory, group, particle_count) && (!matrix || ellpack_create(memory, group));
-}
 
-static bool network_scratch(Memory *memory, Network *network) {
-    for (uint32_t g = 0; g < network->group_count; g++) {
-        const SpringGroup *group = &network->groups[g];
-        if (network->row_max < group->padded) network->row_max = group->padded;
-        if (network->matrix && network->entry_max < ellpack_entries(group)) network->entry_max = ellpack_entries(group);
-    }
-    uint32_t rows = network->row_max;
-    if (!NEW(memory, network->gradient, rows)) return false;
-    if (!network->matrix) return true;
-    return NEW(memory, network->value, network->entry_max) && NEW(memory, network->scale, rows) &&
-           NEW(memory, network->solution, rows) && NEW(memory, network->residual, rows) &&
-           NEW(memory, network->direction, rows) && NEW(memory, network->product, rows) &&
-           NEW(memory, network->partial, pool_blocks((int)rows));
+    // the springs around each particle
+    for (uint32_t k = 0; k < group->count; k++)
+        for (int end = 0; end < 2; end++) group->first[group->ends[k][end] + 1]++;
+    for (uint32_t i = 0; i < particle_count; i++) group->first[i + 1] += group->first[i];
+
+    // fills from each particle's last entry down; afterwards first[i] is the first entry again
+    for (uint32_t k = group->count; k-- > 0;)
+        for (uint32_t end = 2; end-- > 0;) group->incident[--group->first[group->ends[k][end] + 1]] = 2 * k + end;
+    for (uint32_t i = 0; i < particle_count; i++) group->first[i] = group->first[i + 1];
+    group->first[particle_count] = 2 * group->count;
+    return !matrix || ellpack_create(memory, group);
 }
 
 SingeResult network_create(Memory *memory, uint32_t particle_count, uint32_t group_count, const NetworkSprings *springs,
@@ -51,8 +34,23 @@ SingeResult network_create(Memory *memory, uint32_t particle_count, uint32_t gro
               NEW(memory, network->held, particle_count) && NEW(memory, network->groups, group_count);
     for (uint32_t g = 0; ok && g < group_count; g++)
         ok = group_create(memory, &network->groups[g], &springs[g], particle_count, matrix);
-    ok = ok && network_scratch(memory, network);
+
+    // scratch, as long as the largest group needs
+    for (uint32_t g = 0; ok && g < group_count; g++) {
+        const SpringGroup *group = &network->groups[g];
+        if (network->row_max < group->padded) network->row_max = group->padded;
+        if (matrix && network->entry_max < ellpack_entries(group)) network->entry_max = ellpack_entries(group);
+    }
+
+    const uint32_t rows = network->row_max;
+    ok = ok && NEW(memory, network->gradient, rows);
+    if (matrix)
+        ok = ok && NEW(memory, network->value, network->entry_max) && NEW(memory, network->scale, rows) &&
+             NEW(memory, network->solution, rows) && NEW(memory, network->residual, rows) &&
+             NEW(memory, network->direction, rows) && NEW(memory, network->product, rows) &&
+             NEW(memory, network->partial, pool_blocks((int)rows));
     if (ok) return SINGE_OK;
+
     network_free(memory, network);
     return SINGE_ERROR_MEMORY;
 }
@@ -68,6 +66,7 @@ void network_free(Memory *memory, Network *network) {
         FREE(memory, group->first, (size_t)network->particle_count + 1);
         FREE(memory, group->incident, 2 * (size_t)group->count);
     }
+
     uint32_t rows = network->row_max;
     FREE(memory, network->position, network->particle_count);
     FREE(memory, network->inverse_mass, network->particle_count);

@@ -1,5 +1,6 @@
 // Read-only views, events, timers, counts and the drawn surface.
 #include "sim/sim_internal.h"
+#include "surface/surface.h"
 
 void singe_sim_read_view(const SingeSim *sim, SingeView *out, size_t struct_size) {
     const Shell *shell = &sim->shell;
@@ -107,14 +108,14 @@ SingeResult singe_sim_draw(SingeSim *sim, SingeSurface *surface, size_t struct_s
         return sim_fail(sim, SINGE_ERROR_STATE, "surface", -1, "singe_sim_commit must come before the surface");
     SurfaceDetail detail = {sim->def.surface_detail, sim->def.surface_raggedness, (uint32_t)sim->def.seed, NULL,
                             bulge_max(sim)};
-    if (!(detail.size > 0)) return ablate_surface(sim->ablate, &sim->shell, &sim->state, surface, &sim->error);
+    if (!(detail.size > 0)) return surface_draw(sim->ablate, &sim->shell, &sim->state, surface, &sim->error);
     float *room;
     if (!NEW(&sim->memory, room, sim->shell.vertex_count))
         return sim_fail(sim, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface");
     dynamics_plan_clearance(sim->dynamics, &sim->shell, &sim->state, room);
     detail.room = room;
-    SingeResult result = ablate_surface_fine(sim->ablate, &sim->shell, &sim->state, &detail, &sim->memory, sim->pool,
-                                             surface, &sim->error);
+    SingeResult result = surface_draw_fine(sim->ablate, &sim->shell, &sim->state, &detail, &sim->memory, sim->pool,
+                                           surface, &sim->error);
     FREE(&sim->memory, room, sim->shell.vertex_count);
     return result;
 }

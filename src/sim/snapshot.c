@@ -64,7 +64,7 @@ static SingeResult snapshot_state(Stream *stream, SingeSim *sim) {
     if (stream->failed) return SINGE_OK; // the caller reports it
 
     // plans with data of their own
-    SingeResult result = dynamics_plan_stream(sim->dynamics, &sim->shell, state, stream);
+    SingeResult result = dynamics_plan_stream(&sim->memory, sim->dynamics, &sim->shell, state, stream);
     if (sim->gas) gas_plan_stream(sim->gas, &sim->state.gas, stream);
     return result;
 }

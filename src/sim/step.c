@@ -113,7 +113,7 @@ static SingeResult step_stages(SingeSim *sim) {
     // 4. positions and velocities (eq 8 to 19)
     context = all;
     context.state.dynamics = NULL;
-    TRY(dynamics_step(sim->dynamics, &context, &state->dynamics, &dynamics));
+    TRY(dynamics_step(&sim->memory, sim->dynamics, &context, &state->dynamics, &dynamics));
     step_lap(sim, SINGE_STAGE_DYNAMICS, &start);
 
     // 5. tears by too large forces; this cannot fail, so no step that tore has to be undone

@@ -10,7 +10,6 @@
 // sides from the centre, at rest and now:
 //
 //   lambda^2 > TORN^2,   lambda^2 the larger eigenvalue of C^-1 C'
-#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>
@@ -55,10 +54,12 @@ static uint32_t cut_vertex(Fine *fine, const Piece *piece, int edge) {
         inside = outside;
         outside = edge;
     }
+
     const FineValue *in = &fine->values[piece->point[inside]], *out = &fine->values[piece->point[outside]];
     float t = surface_cut(in->level, out->level, NEAREST);
     if (!(t > 0)) return point_vertex(fine, piece, inside);
     if (*piece->cut[edge]) return *piece->cut[edge];
+
     FineLocation location = piece->location[inside];
     for (int i = 0; i < 3; i++) location.weight[i] += t * (piece->location[outside].weight[i] - location.weight[i]);
     return *piece->cut[edge] = add_vertex(fine, location, in->mass + t * (out->mass - in->mass), SHELL_NONE);
@@ -82,30 +83,20 @@ static void march_draw(Fine *fine, const Piece *piece) {
         for (int m = 0; m < made; m++)
             if (!count || polygon[count - 1] != vertex[m]) polygon[count++] = vertex[m];
     }
+
     if (count > 1 && polygon[count - 1] == polygon[0]) count--;
 
     // a fan of triangles
     for (int k = 2; k < count; k++) {
         uint32_t *triangle = fine->surface->triangles[fine->surface->triangle_count++];
-        triangle[0] = polygon[0] - 1, triangle[1] = polygon[k - 1] - 1, triangle[2] = polygon[k] - 1;
+        triangle[0] = polygon[0] - 1;
+        triangle[1] = polygon[k - 1] - 1;
+        triangle[2] = polygon[k] - 1;
     }
-}
-
-static int inside_count(const Fine *fine, const uint32_t point[3]) {
-    int inside = 0;
-    for (int i = 0; i < 3; i++) inside += fine->values[point[i]].level >= 0;
-    return inside;
-}
-
-static void count(Marching *march, int inside) {
-    march->triangles += inside == 2 ? 2 : inside > 0;
-    march->crossed += inside == 1 || inside == 2;
 }
 
 /// The entry in `cuts` of part i of a cell's side that is in `parts` parts.
 static uint32_t *side_cut(const Fine *fine, uint32_t cell, int side, int parts, int i) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     const Shell *shell = fine->shell;
     uint32_t blue = shell->cell_springs[cell].blue[side];
     bool forwards = shell->springs[SINGE_BLUE].ends[blue][0] == shell->cells[cell][side];
@@ -116,26 +107,22 @@ static uint32_t *side_cut(const Fine *fine, uint32_t cell, int side, int parts, 
 
 /// Dot products of the two sides of a cell's triangle that begin at its virtual centre.
 static void metric(const uint32_t at[4], int side, const float (*field)[4], float product[3]) {
-    SINGE_ASSERT(side >= 0 && side < 4);
     Float3 centre = {0, 0, 0};
     for (int i = 0; i < 4; i++) centre = float3_mad(centre, float3_load(field[at[i]]), 0.25f);
     Float3 a = float3_sub(float3_load(field[at[side]]), centre),
            b = float3_sub(float3_load(field[at[(side + 1) & 3]]), centre);
-    product[0] = float3_dot(a, a), product[1] = float3_dot(a, b), product[2] = float3_dot(b, b);
-}
-
-static bool has_lost_a_spring(const Fine *fine, uint32_t cell) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    const CellSprings *springs = &fine->shell->cell_springs[cell];
-    uint8_t *const *flags = fine->state->ablate.spring_flags, left = SINGE_ALIVE;
-    for (int i = 0; i < 4; i++) left &= flags[SINGE_BLUE][springs->blue[i]] & flags[SINGE_RED][springs->red[i]];
-    return !left;
+    product[0] = float3_dot(a, a);
+    product[1] = float3_dot(a, b);
+    product[2] = float3_dot(b, b);
 }
 
 bool fine_is_torn(const Fine *fine, uint32_t cell, int side) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
-    if (!has_lost_a_spring(fine, cell)) return false;
+    // only a cell that has lost a spring
+    const CellSprings *springs = &fine->shell->cell_springs[cell];
+    uint8_t *const *flags = fine->state->ablate.spring_flags, left = SINGE_ALIVE;
+    for (int i = 0; i < 4; i++) left &= flags[SINGE_BLUE][springs->blue[i]] & flags[SINGE_RED][springs->red[i]];
+    if (left) return false;
+
     float rest[3], now[3];
     metric(fine->shell->cells[cell], side, (const float(*)[4])fine->shell->rest_position, rest);
     metric(fine->shell->cells[cell], side, (const float(*)[4])fine->state->dynamics.position, now);
@@ -170,30 +157,35 @@ static float along_row(const Row *row, bool upper, int i) {
     return parts == 0 ? 0.5f : inset + (1 - 2 * inset) * (float)i / (float)parts;
 }
 
-/// Whether the next triangle has its base on the lower line: if that leaves the ends of the lines closer to each other.
-static bool stands(const Row *row, int low, int high) {
-    if (low == row->lower || high == row->upper) return low < row->lower;
-    return along_row(row, false, low + 1) - along_row(row, true, high) <=
-           along_row(row, true, high + 1) - along_row(row, false, low);
-}
-
 static void march_row(Marching *march, const Row *row) {
     Fine *fine = march->fine;
     uint32_t rung[2 * FINE_SPLITS_MAX + 1]; // cuts of the sides between the lines
     int low = 0, high = 0, steps = row->lower + row->upper;
     memset(rung, 0, ((size_t)steps + 1) * sizeof *rung);
+
     for (int step = 0; step < steps; step++) {
         Piece piece;
-        bool on_lower = stands(row, low, high);
+
+        // the next triangle has its base on the lower line if that leaves the ends of the lines closer to each other
+        bool on_lower = low < row->lower;
+        if (low < row->lower && high < row->upper)
+            on_lower = along_row(row, false, low + 1) - along_row(row, true, high) <=
+                       along_row(row, true, high + 1) - along_row(row, false, low);
         row_point(fine, row, false, low, &piece.point[0], &piece.location[0]);
         row_point(fine, row, !on_lower, on_lower ? low + 1 : high + 1, &piece.point[1], &piece.location[1]);
         row_point(fine, row, true, high, &piece.point[2], &piece.location[2]);
         uint32_t *back = step == 0 ? row->first : &rung[step], *on = step + 1 == steps ? row->last : &rung[step + 1];
-        piece.cut[0] = on_lower ? row->lower_cut[low] : on, piece.cut[1] = on_lower ? on : row->upper_cut[high];
+        piece.cut[0] = on_lower ? row->lower_cut[low] : on;
+        piece.cut[1] = on_lower ? on : row->upper_cut[high];
         piece.cut[2] = back;
-        int inside = inside_count(fine, piece.point);
-        if (!march->drawing) count(march, inside);
-        else if (inside > 0) march_draw(fine, &piece);
+        int inside = 0;
+        for (int i = 0; i < 3; i++) inside += fine->values[piece.point[i]].level >= 0;
+        if (march->drawing && inside > 0) march_draw(fine, &piece);
+        if (!march->drawing) {
+            march->triangles += inside == 2 ? 2 : inside > 0;
+            march->crossed += inside == 1 || inside == 2;
+        }
+
         if (on_lower) low++;
         else high++;
     }
@@ -201,7 +193,6 @@ static void march_row(Marching *march, const Row *row) {
 
 /// The rows of one of a cell's four triangles. `first` and `last` are the cuts of its two sides to the centre.
 static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *first, uint32_t *last) {
-    SINGE_ASSERT(side >= 0 && side < 4);
     const Fine *fine = march->fine;
     int splits = fine->splits[cell];
     uint32_t line[2][FINE_SPLITS_MAX]; // cuts of the lines between rows
@@ -224,13 +215,6 @@ static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *f
     }
 }
 
-static void march_cell(Marching *march, uint32_t cell) {
-    uint32_t line[4][FINE_SPLITS_MAX]; // cuts of the lines from the corners to the centre
-    for (int side = 0; side < 4; side++) memset(line[side], 0, (size_t)march->fine->splits[cell] * sizeof *line[side]);
-    for (int side = 0; side < 4; side++)
-        if (!fine_is_torn(march->fine, cell, side)) march_triangle(march, cell, side, line[side], line[(side + 1) & 3]);
-}
-
 // ---- all cells
 
 static void march_cells(Marching *march) {
@@ -238,40 +222,42 @@ static void march_cells(Marching *march) {
     for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
         if (fine->cell_triangle && march->drawing) fine->cell_triangle[c] = fine->surface->triangle_count;
         if (!(fine->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+
         uint32_t before = fine->surface->triangle_count;
-        march_cell(march, c);
+        uint32_t line[4][FINE_SPLITS_MAX]; // cuts of the lines from the corners to the centre
+        for (int side = 0; side < 4; side++) memset(line[side], 0, (size_t)fine->splits[c] * sizeof *line[side]);
+        for (int side = 0; side < 4; side++)
+            if (!fine_is_torn(fine, c, side)) march_triangle(march, c, side, line[side], line[(side + 1) & 3]);
         if (fine_is_split(fine, c)) fine->surface->fine_triangle_count += fine->surface->triangle_count - before;
     }
+
     if (fine->cell_triangle && march->drawing)
         fine->cell_triangle[fine->shell->cell_count] = fine->surface->triangle_count;
 }
 
-/// Lays out the cuts on the cells' sides.
-static void lay_cuts(Fine *fine) {
-    uint32_t sides = fine->shell->springs[SINGE_BLUE].count;
+SingeResult fine_march(Fine *fine, SingeError *error) {
+    Marching march = {.fine = fine};
+    const uint32_t sides = fine->shell->springs[SINGE_BLUE].count;
+
+    // lay out the cuts on the cells' sides
     fine->side_cut[0] = 0;
     for (uint32_t s = 0; s < sides; s++) fine->side_cut[s + 1] = fine->side_cut[s] + fine->parts[s];
     fine->cut_count = fine->side_cut[sides];
-}
-
-static uint64_t points_inside(const Fine *fine) {
-    uint64_t inside = 0;
-    for (uint32_t p = 0; p < fine->point_count; p++) inside += fine->values[p].level >= 0;
-    return inside;
-}
-
-SingeResult fine_march(Fine *fine, SingeError *error) {
-    Marching march = {.fine = fine};
-    lay_cuts(fine);
     if (!NEW(fine->memory, fine->cuts, fine->cut_count) || !NEW(fine->memory, fine->drawn, fine->point_count))
         return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");
+
+    // count; a crossed triangle has two cuts, most of which are shared
     march_cells(&march);
     TRY(surface_reserve_triangles(fine->surface, march.triangles, error));
-    uint64_t max = points_inside(fine) + 2 * march.crossed; // a crossed triangle has two cuts; most are shared
+    uint64_t max = 2 * march.crossed;
+    for (uint32_t p = 0; p < fine->point_count; p++) max += fine->values[p].level >= 0;
     if (max > INT32_MAX) return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "too many vertices");
+
     fine->vertex_capacity = (uint32_t)max;
     if (!NEW(fine->memory, fine->vertices, fine->vertex_capacity))
         return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");
+
+    // draw
     march.drawing = true;
     march_cells(&march);
     return SINGE_OK;

@@ -14,15 +14,7 @@
 // ignore torn cells, which are drawn flat. Where the surface may not be this far from a corner, all points around the
 // corner are moved by the same vector. This keeps tangent planes; moved by the whole distance, the patches pass through
 // the corners.
-#include "common/assertion.h"
 #include "surface/surface_fine.h"
-
-static bool is_sound(const Fine *fine, uint32_t cell) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    bool sound = fine->state->ablate.cell_flags[cell] & SINGE_ALIVE;
-    for (int side = 0; side < 4 && sound; side++) sound = !fine_is_torn(fine, cell, side);
-    return sound;
-}
 
 static Float3 corner_of(const Fine *fine, uint32_t vertex) { return float3_load(fine->corner[vertex]); }
 
@@ -33,42 +25,41 @@ typedef struct Ring {
     Float3 inner;            ///< sum of the cells' inner points
 } Ring;
 
-static void add_borders(const Fine *fine, uint32_t cell, int corner, Ring *ring) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    const uint32_t *at = fine->shell->cells[cell];
-    for (int turn = 0; turn < 2; turn++) {
-        uint32_t other = shell_neighbour(fine->shell, cell, turn ? (corner + 3) & 3 : corner);
-        if (other != SHELL_NONE && fine->sound[other]) continue;
-        ring->borders++;
-        ring->along = float3_add(ring->along, corner_of(fine, at[(corner + (turn ? 3 : 1)) & 3]));
-    }
-}
-
 static Ring ring_of(const Fine *fine, uint32_t vertex) {
-    SINGE_ASSERT(vertex < fine->shell->vertex_count);
     const Shell *shell = fine->shell;
     Ring ring = {0};
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++) {
         uint32_t cell = shell->fan[k];
         if (!fine->sound[cell]) continue;
+
         int i = 0;
         while (shell->cells[cell][i] != vertex) i++;
         ring.cells++;
         ring.inner = float3_add(ring.inner, float3_load(fine->inner[cell][i]));
-        add_borders(fine, cell, i, &ring);
+
+        // its two sides at the vertex, where no sound cell is across
+        for (int turn = 0; turn < 2; turn++) {
+            uint32_t other = shell_neighbour(shell, cell, turn ? (i + 3) & 3 : i);
+            if (other != SHELL_NONE && fine->sound[other]) continue;
+            ring.borders++;
+            ring.along = float3_add(ring.along, corner_of(fine, shell->cells[cell][(i + (turn ? 3 : 1)) & 3]));
+        }
     }
+
     return ring;
 }
 
 static void find_sound(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= fine->shell->cell_count);
-    for (int c = begin; c < end; c++) fine->sound[c] = is_sound(fine, (uint32_t)c);
+    for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
+        bool sound = fine->state->ablate.cell_flags[c] & SINGE_ALIVE;
+        for (int side = 0; side < 4 && sound; side++) sound = !fine_is_torn(fine, c, side);
+        fine->sound[c] = sound;
+    }
 }
 
 static void count_cells(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int v = begin; v < end; v++) {
         Ring ring = ring_of(fine, (uint32_t)v);
         bool closed = ring.borders == 0 && ring.cells > 0;
@@ -79,7 +70,6 @@ static void count_cells(void *context, int begin, int end) {
 
 static void put_inner(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int c = begin; c < end; c++) {
         const uint32_t *at = fine->shell->cells[c];
         for (int i = 0; i < 4; i++) {
@@ -92,42 +82,34 @@ static void put_inner(void *context, int begin, int end) {
     }
 }
 
-/// The two points within side i of a cell, in the order of its corners.
-static void put_rail(const Fine *fine, uint32_t cell, int i, Float3 point[2]) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    const Shell *shell = fine->shell;
-    const uint32_t end[2] = {shell->cells[cell][i], shell->cells[cell][(i + 1) & 3]};
-    uint32_t other = shell_neighbour(shell, cell, i);
-    bool both = other != SHELL_NONE && fine->sound[cell] && fine->sound[other];
-    for (int k = 0; k < 2; k++) {
-        point[k] = float3_scale(float3_mad(corner_of(fine, end[1 - k]), corner_of(fine, end[k]), 2), 1 / 3.0f);
-        if (!both) continue;
-        int j = 0;
-        while (shell->cells[other][j] != end[k]) j++;
-        point[k] = float3_scale(
-            float3_add(float3_load(fine->inner[cell][(i + k) & 3]), float3_load(fine->inner[other][j])), 0.5f);
-    }
-}
-
+/// The two points within each side, in the order of its spring's ends.
 static void put_rails(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     const Shell *shell = fine->shell;
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++)
         for (int i = 0; i < 4; i++) {
             uint32_t other = shell_neighbour(shell, c, i), blue = shell->cell_springs[c].blue[i];
             if (other != SHELL_NONE && other < c) continue;
-            Float3 point[2];
-            put_rail(fine, c, i, point);
-            bool forwards = shell->springs[SINGE_BLUE].ends[blue][0] == shell->cells[c][i];
-            for (int k = 0; k < 2; k++) float3_store(fine->rail[blue][forwards ? k : 1 - k], point[k]);
+            const uint32_t ends[2] = {shell->cells[c][i], shell->cells[c][(i + 1) & 3]};
+            const bool both = other != SHELL_NONE && fine->sound[c] && fine->sound[other];
+            const bool forwards = shell->springs[SINGE_BLUE].ends[blue][0] == ends[0];
+            for (int k = 0; k < 2; k++) {
+                Float3 x = corner_of(fine, ends[k]), point;
+                point = float3_scale(float3_mad(corner_of(fine, ends[1 - k]), x, 2), 1 / 3.0f);
+                if (both) {
+                    int j = 0;
+                    while (shell->cells[other][j] != ends[k]) j++;
+                    point = float3_add(float3_load(fine->inner[c][(i + k) & 3]), float3_load(fine->inner[other][j]));
+                    point = float3_scale(point, 0.5f);
+                }
+                float3_store(fine->rail[blue][forwards ? k : 1 - k], point);
+            }
         }
 }
 
 /// The point where the patches meet at a vertex, and the shift that keeps them within its max distance.
 static void put_limits(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (uint32_t v = (uint32_t)begin; v < (uint32_t)end; v++) {
         Ring ring = ring_of(fine, v);
         Float3 x = corner_of(fine, v), limit = x, normal = float3_load(fine->normal[v]);
@@ -160,11 +142,11 @@ static const uint8_t net_locations[4][4][2] = {{{0, 0}, {1, 0}, {0, 1}, {1, 1}},
                                                {{0, 3}, {0, 2}, {1, 3}, {1, 2}}};
 
 FinePatch fine_patch(const Fine *fine, uint32_t cell) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
     const Shell *shell = fine->shell;
     const uint32_t *at = shell->cells[cell], *sides = shell->cell_springs[cell].blue;
     const uint32_t(*ends)[2] = (const uint32_t(*)[2])shell->springs[SINGE_BLUE].ends;
     FinePatch patch;
+
     for (int i = 0; i < 4; i++) {
         uint32_t next = sides[i], last = sides[(i + 3) & 3];
         Float3 shift = float3_load(fine->shift[at[i]]);
@@ -176,6 +158,7 @@ FinePatch fine_patch(const Fine *fine, uint32_t cell) {
             float3_add(shift, float3_load(fine->rail[last][ends[last][0] != at[i]]));
         patch.net[location[3][0]][location[3][1]] = float3_add(shift, float3_load(fine->inner[cell][i]));
     }
+
     return patch;
 }
 
@@ -195,16 +178,20 @@ static void bernstein(float t, float value[4], float slope[4]) {
 FinePoint fine_patch_at(const FinePatch *patch, float u, float v) {
     float bu[4], du[4], bv[4], dv[4];
     FinePoint point = {0};
-    bernstein(u, bu, du), bernstein(v, bv, dv);
+    bernstein(u, bu, du);
+    bernstein(v, bv, dv);
+
     for (int i = 0; i < 4; i++) {
         Float3 row = {0, 0, 0}, slope = {0, 0, 0};
         for (int j = 0; j < 4; j++) {
             row = float3_mad(row, patch->net[i][j], bv[j]);
             slope = float3_mad(slope, patch->net[i][j], dv[j]);
         }
+
         point.position = float3_mad(point.position, row, bu[i]);
         point.along_u = float3_mad(point.along_u, row, du[i]);
         point.along_v = float3_mad(point.along_v, slope, bu[i]);
     }
+
     return point;
 }

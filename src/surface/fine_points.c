@@ -7,31 +7,13 @@
 //
 // A bent cell that is not split gets points to show its shape, in fewer parts. A side is drawn in the max of the
 // numbers of parts of its two cells.
-#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>
 
 static bool points_alive(const Fine *fine, uint32_t cell) { return fine->state->ablate.cell_flags[cell] & SINGE_ALIVE; }
 
-static bool gone_beside(const Fine *fine, uint32_t cell, int side) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
-    uint32_t other = shell_neighbour(fine->shell, cell, side);
-    return other != SHELL_NONE && !points_alive(fine, other);
-}
-
 // ---- numbering
-
-/// Lengths of a cell's two axes at rest.
-static void measure_axes(const Shell *shell, uint32_t cell, float axes[2]) {
-    SINGE_ASSERT(cell < shell->cell_count);
-    const uint32_t *at = shell->cells[cell];
-    Float3 corner[4];
-    for (int i = 0; i < 4; i++) corner[i] = float3_load(shell->rest_position[at[i]]);
-    axes[0] = 0.5f * float3_length(float3_sub(float3_add(corner[1], corner[2]), float3_add(corner[0], corner[3])));
-    axes[1] = 0.5f * float3_length(float3_sub(float3_add(corner[3], corner[2]), float3_add(corner[0], corner[1])));
-}
 
 /// Sets the cells' flags from the bounds of their splines, and their axes.
 static void bound_cells(Fine *fine) {
@@ -42,78 +24,84 @@ static void bound_cells(Fine *fine) {
         fine_spline_bounds(fine->shell, &fine->splines[SPLINE_MASS], c, &lightest, &heaviest);
         low = fminf(low, fine_whole_level(whole));
         fine->low[c] = low;
-        measure_axes(fine->shell, c, fine->axes[c]);
         fine->flags[c] = low >= 0 && heaviest - lightest < 1e-5f ? FINE_EVEN : 0;
         if (whole == 1) fine->flags[c] |= FINE_WHOLE;
         if (points_alive(fine, c) && high >= 0) fine->flags[c] |= FINE_NEAR; // until its neighbours are checked
+
+        // lengths of the cell's two axes at rest
+        const uint32_t *at = fine->shell->cells[c];
+        Float3 p[4];
+        for (int i = 0; i < 4; i++) p[i] = float3_load(fine->shell->rest_position[at[i]]);
+        Float3 along = float3_sub(float3_add(p[1], p[2]), float3_add(p[0], p[3]));
+        Float3 up = float3_sub(float3_add(p[3], p[2]), float3_add(p[0], p[1]));
+        fine->axes[c][0] = 0.5f * float3_length(along);
+        fine->axes[c][1] = 0.5f * float3_length(up);
     }
 }
 
 static bool negative_around(const Fine *fine, uint32_t cell) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
     const Shell *shell = fine->shell;
     for (int i = 0; i < 4; i++) {
         uint32_t v = shell->cells[cell][i];
         for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++)
             if (fine->low[shell->fan[k]] < 0) return true;
     }
+
     return false;
 }
 
 static uint32_t side_of_cell(const Fine *fine, uint32_t cell, int side) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     return fine->shell->cell_springs[cell].blue[side];
 }
 
 static int inner_points(int splits) { return 4 * (splits - 1) + 2 * (splits - 1) * (splits - 2); }
 
-static void number_cell(Fine *fine, uint32_t cell, uint64_t *point) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    int splits = fine_splits(fine, cell);
-    for (int i = 0; i < 4; i++) {
-        uint32_t blue = side_of_cell(fine, cell, i);
-        if (fine->side_point[blue] != SHELL_NONE) continue;
-        fine->side_owner[fine->side_count++] = 4 * cell + (uint32_t)i;
-        fine->side_point[blue] = (uint32_t)*point;
-        *point += (uint64_t)splits - 1;
-    }
-    fine->cell_point[cell] = (uint32_t)*point;
-    fine->near[fine->near_count++] = cell;
-    *point += (uint64_t)inner_points(splits);
-}
-
-/// Numbers the points of bent cells and of their sides, for the case that they are not split.
-static void number_bent(Fine *fine, uint64_t *point) {
+static SingeResult points_number(Fine *fine, SingeError *error) {
     const Shell *shell = fine->shell;
-    memset(fine->parts, 1, shell->springs[SINGE_BLUE].count);
+    const uint32_t sides = shell->springs[SINGE_BLUE].count;
+    uint64_t point = shell->particle_count;
+
+    // of cells near the front, and of their sides
+    memset(fine->side_point, 0xff, sides * sizeof *fine->side_point);
+    for (uint32_t c = 0; c < shell->cell_count && point <= INT32_MAX; c++) {
+        const int splits = fine_splits(fine, c);
+        if (!(fine->flags[c] & FINE_NEAR)) continue;
+        if (splits == 1 || !(fine->flags[c] & FINE_TEAR_EDGE || negative_around(fine, c))) {
+            fine->flags[c] &= (uint8_t)~FINE_NEAR;
+            continue;
+        }
+
+        for (int i = 0; i < 4; i++) {
+            const uint32_t blue = side_of_cell(fine, c, i);
+            if (fine->side_point[blue] != SHELL_NONE) continue;
+            fine->side_owner[fine->side_count++] = 4 * c + (uint32_t)i;
+            fine->side_point[blue] = (uint32_t)point;
+            point += (uint64_t)splits - 1;
+        }
+
+        fine->cell_point[c] = (uint32_t)point;
+        fine->near[fine->near_count++] = c;
+        point += (uint64_t)inner_points(splits);
+    }
+
+    // of bent cells and of their sides, for the case that they are not split
+    memset(fine->parts, 1, sides);
     for (uint32_t c = 0; c < shell->cell_count; c++)
         for (int i = 0; i < 4 && fine->bent[c] > 1; i++) {
             uint8_t *parts = &fine->parts[side_of_cell(fine, c, i)];
             if (*parts < fine->bent[c]) *parts = fine->bent[c];
         }
-    for (uint32_t s = 0; s < shell->springs[SINGE_BLUE].count; s++) {
-        fine->bent_side[s] = (uint32_t)*point;
-        *point += (uint64_t)fine->parts[s] - 1;
-    }
-    for (uint32_t c = 0; c < shell->cell_count; c++) {
-        fine->bent_point[c] = (uint32_t)*point;
-        *point += (uint64_t)inner_points(fine->bent[c]);
-    }
-}
 
-static SingeResult points_number(Fine *fine, SingeError *error) {
-    const Shell *shell = fine->shell;
-    uint64_t point = shell->particle_count;
-    memset(fine->side_point, 0xff, shell->springs[SINGE_BLUE].count * sizeof *fine->side_point);
-    for (uint32_t c = 0; c < shell->cell_count; c++) {
-        if (!(fine->flags[c] & FINE_NEAR)) continue;
-        bool near = fine->flags[c] & FINE_TEAR_EDGE || negative_around(fine, c);
-        if (fine_splits(fine, c) > 1 && near) number_cell(fine, c, &point);
-        else fine->flags[c] &= (uint8_t)~FINE_NEAR;
-        if (point > INT32_MAX) break;
+    for (uint32_t s = 0; s < sides; s++) {
+        fine->bent_side[s] = (uint32_t)point;
+        point += (uint64_t)fine->parts[s] - 1;
     }
-    number_bent(fine, &point);
+
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        fine->bent_point[c] = (uint32_t)point;
+        point += (uint64_t)inner_points(fine->bent[c]);
+    }
+
     if (point > INT32_MAX)
         return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "the drawn surface's detail is too fine");
     fine->point_count = (uint32_t)point;
@@ -121,44 +109,34 @@ static SingeResult points_number(Fine *fine, SingeError *error) {
 }
 
 uint32_t fine_side_point(const Fine *fine, uint32_t cell, int side, int parts, int i) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     const uint32_t *at = fine->shell->cells[cell];
     if (i == 0) return at[side];
     if (i == parts) return at[(side + 1) & 3];
+
     uint32_t blue = side_of_cell(fine, cell, side);
     bool forwards = fine->shell->springs[SINGE_BLUE].ends[blue][0] == at[side];
     return fine->side_point[blue] + (uint32_t)((forwards ? i : parts - i) - 1);
 }
 
 uint32_t fine_point(const Fine *fine, uint32_t cell, int side, int splits, int i, int j) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     int next = (side + 1) & 3, line = splits - 1;
     if (j == splits) return shell_centre(fine->shell, cell);
     if (j == 0) return fine_side_point(fine, cell, side, splits, i);
+
     uint32_t first = fine->cell_point[cell];
     if (i == 0) return first + (uint32_t)(side * line + j - 1);
     if (i + j == splits) return first + (uint32_t)(next * line + j - 1);
+
     int row = (j - 1) * line - (j - 1) * j / 2;
     return first + (uint32_t)(4 * line + side * (line * (splits - 2) / 2) + row + i - 1);
 }
 
 FineLocation fine_point_location(uint32_t cell, int side, int splits, int i, int j) {
-    SINGE_ASSERT(side >= 0 && side < 4);
     float part = 1 / (float)splits;
     return (FineLocation){cell, (uint8_t)side, {(float)(splits - i - j) * part, (float)i * part, (float)j * part}};
 }
 
 // ---- evaluation
-
-static bool even_around(const Fine *fine, uint32_t vertex) {
-    SINGE_ASSERT(vertex < fine->shell->vertex_count);
-    const Shell *shell = fine->shell;
-    for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
-        if (!(fine->flags[shell->fan[k]] & FINE_EVEN)) return false;
-    return true;
-}
 
 /// The value next to a cell that is gone: its level is limited to the linear interpolation of the side's ends.
 static FineValue held_back(FineValue value, float level) {
@@ -167,18 +145,17 @@ static FineValue held_back(FineValue value, float level) {
 }
 
 static FineValue particle_value(const Fine *fine, uint32_t particle) {
-    SINGE_ASSERT(particle < fine->shell->particle_count);
     return (FineValue){fine->raw_level[particle], fine->state->burn.mass[particle]};
 }
 
 static void evaluate_vertices(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= fine->shell->vertex_count);
     const Shell *shell = fine->shell;
     for (uint32_t v = (uint32_t)begin; v < (uint32_t)end; v++) {
         uint32_t home = SHELL_NONE;
-        bool gone = false;
+        bool gone = false, even = true;
         for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++) {
+            even &= (fine->flags[shell->fan[k]] & FINE_EVEN) != 0;
             if (!points_alive(fine, shell->fan[k])) gone = true;
             else if (home == SHELL_NONE) home = shell->fan[k];
         }
@@ -186,8 +163,9 @@ static void evaluate_vertices(void *context, int begin, int end) {
         // its value in one of the remaining cells
         fine->values[v] = (FineValue){-1, 0};
         if (home == SHELL_NONE) continue;
+
         fine->values[v] = particle_value(fine, v);
-        if (even_around(fine, v)) continue;
+        if (even) continue;
         uint8_t corner = 0;
         while (shell->cells[home][corner] != v) corner++;
         fine->values[v] = fine_value(fine, (FineLocation){home, corner, {1, 0, 0}});
@@ -197,7 +175,6 @@ static void evaluate_vertices(void *context, int begin, int end) {
 
 static void evaluate_centres(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= fine->shell->cell_count);
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         FineValue *value = &fine->values[shell_centre(fine->shell, c)];
         *value = (FineValue){-1, 0};
@@ -209,12 +186,12 @@ static void evaluate_centres(void *context, int begin, int end) {
 
 static void evaluate_sides(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int s = begin; s < end; s++) {
         uint32_t cell = fine->side_owner[s] / 4;
         int side = (int)(fine->side_owner[s] & 3), splits = fine_splits(fine, cell);
         const uint32_t *at = fine->shell->cells[cell];
-        bool gone = gone_beside(fine, cell, side);
+        const uint32_t other = shell_neighbour(fine->shell, cell, side);
+        const bool gone = other != SHELL_NONE && !points_alive(fine, other);
         for (int i = 1; i < splits; i++) {
             FineLocation location = fine_point_location(cell, side, splits, i, 0);
             FineValue value = fine_value(fine, location);
@@ -226,24 +203,8 @@ static void evaluate_sides(void *context, int begin, int end) {
     }
 }
 
-/// Whether a cell's points differ in the sign of the level; if so, the cell is split.
-static bool differs(const Fine *fine, uint32_t cell, int splits) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    bool inside = false, outside = false;
-    for (int side = 0; side < 4; side++)
-        for (int j = 0; j <= splits; j++)
-            for (int i = 0; i + j <= splits; i++) {
-                float level = fine->values[fine_point(fine, cell, side, splits, i, j)].level;
-                inside |= level >= 0;
-                outside |= level < 0;
-                if (inside && outside) return true;
-            }
-    return false;
-}
-
 static void evaluate_cells(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int n = begin; n < end; n++) {
         uint32_t cell = fine->near[n];
         int splits = fine_splits(fine, cell);
@@ -255,12 +216,23 @@ static void evaluate_cells(void *context, int begin, int end) {
     }
 }
 
-/// A pass of its own, as evaluation reads the flags of other cells.
+/// Cells whose points differ in the sign of the level are split. A pass of its own, as evaluation reads the flags of
+/// other cells.
 static void mark_split(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end);
-    for (int n = begin; n < end; n++)
-        if (differs(fine, fine->near[n], fine_splits(fine, fine->near[n]))) fine->flags[fine->near[n]] |= FINE_SPLIT;
+    for (int n = begin; n < end; n++) {
+        const uint32_t cell = fine->near[n];
+        const int splits = fine_splits(fine, cell);
+        bool inside = false, outside = false;
+        for (int side = 0; side < 4 && !(inside && outside); side++)
+            for (int j = 0; j <= splits && !(inside && outside); j++)
+                for (int i = 0; i + j <= splits; i++) {
+                    const float level = fine->values[fine_point(fine, cell, side, splits, i, j)].level;
+                    inside |= level >= 0;
+                    outside |= level < 0;
+                }
+        if (inside && outside) fine->flags[cell] |= FINE_SPLIT;
+    }
 }
 
 // ---- bent cells that are not split
@@ -271,51 +243,52 @@ static void points_settle(Fine *fine) {
     uint32_t *split_side = fine->bent_side; // swapped; sides of split cells get theirs back below
     fine->bent_side = fine->side_point;
     fine->side_point = split_side;
+
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         fine->splits[c] = fine->bent[c];
         if (!fine_is_split(fine, c)) fine->cell_point[c] = fine->bent_point[c];
     }
+
     for (uint32_t n = 0; n < fine->near_count; n++) {
         uint32_t c = fine->near[n];
         if (!fine_is_split(fine, c)) continue;
+
         fine->splits[c] = (uint8_t)fine_splits(fine, c);
         for (int i = 0; i < 4; i++) {
             uint32_t blue = side_of_cell(fine, c, i);
-            fine->parts[blue] = fine->splits[c], fine->side_point[blue] = fine->bent_side[blue];
+            fine->parts[blue] = fine->splits[c];
+            fine->side_point[blue] = fine->bent_side[blue];
         }
     }
 }
 
 /// The value at a position of a cell that is not split. Its level has the sign of that at `particle`.
 static FineValue bent_value(const Fine *fine, uint32_t particle, FineLocation location) {
-    SINGE_ASSERT(particle < fine->shell->particle_count);
     const FineValue *there = &fine->values[particle];
     if (fine->flags[location.cell] & FINE_EVEN) return *there;
+
     FineValue value = fine_value(fine, location);
     value.level = there->level < 0 ? fminf(value.level, there->level) : fmaxf(value.level, 0);
     return value;
 }
 
-/// Whether a side's points are evaluated in this cell, for a bent and unsplit cell.
-static bool is_bent_side(const Fine *fine, uint32_t cell, int side) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
-    uint32_t other = shell_neighbour(fine->shell, cell, side);
-    if (fine_parts(fine, cell, side) == 1 || fine_is_split(fine, cell)) return false;
-    return other == SHELL_NONE || !points_alive(fine, other) || (cell < other && !fine_is_split(fine, other));
-}
-
 static void evaluate_bent(void *context, int begin, int end) {
     Fine *fine = context;
-    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= fine->shell->cell_count);
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         int splits = fine->splits[c];
         if (!points_alive(fine, c) || fine_is_split(fine, c)) continue;
+
         for (int side = 0; side < 4; side++) {
-            int parts = fine_parts(fine, c, side);
-            for (int i = 1; i < parts && is_bent_side(fine, c, side); i++)
+            // the side's points, in one of its cells
+            const int parts = fine_parts(fine, c, side);
+            const uint32_t other = shell_neighbour(fine->shell, c, side);
+            const bool own =
+                other == SHELL_NONE || !points_alive(fine, other) || (c < other && !fine_is_split(fine, other));
+            for (int i = 1; i < parts && own; i++)
                 fine->values[fine_side_point(fine, c, side, parts, i)] =
                     bent_value(fine, fine->shell->cells[c][side], fine_point_location(c, side, parts, i, 0));
+
+            // those within the triangle
             for (int j = 1; j < splits; j++)
                 for (int i = 0; i + j < splits; i++)
                     fine->values[fine_point(fine, c, side, splits, i, j)] =

@@ -16,7 +16,6 @@
 //
 // Both edges of a tear coincide until they separate. They are cut differently on either side, so their corners are
 // drawn back from each other, by a small fraction of a cell's side.
-#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>
@@ -49,56 +48,39 @@ static bool is_alive(const Fine *fine, uint32_t cell) { return fine->state->abla
 /// 0 up to `low`, 1 from `high` on, linear between.
 static float fade(float value, float low, float high) { return fmaxf(0, fminf((value - low) / (high - low), 1)); }
 
-/// A vertex's position, moved by `length` towards the centroids of its cells.
-static Float3 drawn_back(const Fine *fine, uint32_t vertex, float length) {
-    SINGE_ASSERT(vertex < fine->shell->vertex_count);
-    const Shell *shell = fine->shell;
-    const float(*position)[4] = (const float(*)[4])fine->state->dynamics.position;
-    Float3 location = float3_load(position[vertex]), sum = {0, 0, 0};
-    for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
-        sum = float3_add(sum, float3_sub(centre_of(shell->cells[shell->fan[k]], position), location));
-    return float3_mad(location, float3_unit(sum), length);
-}
-
 static void lessen(float *value, float max) { *value = fminf(*value, max); }
 
-/// Draws two vertices that were one back from each other, and returns their max share.
-static float part_tear_edges(Fine *fine, const uint32_t tear_edge[2]) {
-    const float(*position)[4] = (const float(*)[4])fine->state->dynamics.position;
-    const float side = fine->shell->sheets[fine->shell->matter.sheet[tear_edge[0]]].cell_size;
-    float apart = float3_length(float3_sub(float3_load(position[tear_edge[0]]), float3_load(position[tear_edge[1]])));
-    for (int i = 0; i < 2 && apart < TEAR_EDGES_CLOSED * side; i++)
-        float3_store(fine->corner[tear_edge[i]], drawn_back(fine, tear_edge[i], TEAR_EDGE * side));
-    return fade(apart, TEAR_EDGES_CLOSED * side, TEAR_EDGES_OPEN * side);
-}
-
-/// A torn side with its two tear edges. Where both end at one vertex, the tip of a tear, the share is that of the other
-/// end.
+/// A torn side with its two tear edges: draws vertices that were one back from each other, and limits their shares. Where
+/// both edges end at one vertex, the tip of a tear, the share is that of the other end.
 static void part_side(Fine *fine, const uint32_t one[2], const uint32_t other[2]) {
+    const Shell *shell = fine->shell;
+    const float(*position)[4] = (const float(*)[4])fine->state->dynamics.position;
     float share[2] = {1, 1}, min = 0;
-    for (int end = 0; end < 2; end++)
-        if (one[end] != other[end]) {
-            share[end] = part_tear_edges(fine, (const uint32_t[2]){one[end], other[end]});
-            min = fmaxf(min, share[end]);
+    for (int end = 0; end < 2; end++) {
+        if (one[end] == other[end]) continue;
+
+        const uint32_t vertex[2] = {one[end], other[end]};
+        const float side = shell->sheets[shell->matter.sheet[vertex[0]]].cell_size;
+        float apart = float3_length(float3_sub(float3_load(position[vertex[0]]), float3_load(position[vertex[1]])));
+
+        // towards the centroids of their cells
+        for (int i = 0; i < 2 && apart < TEAR_EDGES_CLOSED * side; i++) {
+            const uint32_t v = vertex[i];
+            Float3 location = float3_load(position[v]), sum = {0, 0, 0};
+            for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++)
+                sum = float3_add(sum, float3_sub(centre_of(shell->cells[shell->fan[k]], position), location));
+            float3_store(fine->corner[v], float3_mad(location, float3_unit(sum), TEAR_EDGE * side));
         }
+
+        share[end] = fade(apart, TEAR_EDGES_CLOSED * side, TEAR_EDGES_OPEN * side);
+        min = fmaxf(min, share[end]);
+    }
+
     for (int end = 0; end < 2; end++) {
         if (one[end] == other[end]) share[end] = min;
-        lessen(&fine->share[one[end]], share[end]), lessen(&fine->share[other[end]], share[end]);
+        lessen(&fine->share[one[end]], share[end]);
+        lessen(&fine->share[other[end]], share[end]);
     }
-}
-
-/// Sets the corners' positions, their shares, and the surface's max distance from them.
-static void fine_put_corners(Fine *fine) {
-    const Shell *shell = fine->shell;
-    const SpringSet *blue = &shell->springs[SINGE_BLUE];
-    const uint32_t spare = blue->count - shell->edge_spare_count;
-    memcpy(fine->corner, fine->state->dynamics.position, shell->vertex_count * sizeof *fine->corner);
-    for (uint32_t v = 0; v < shell->vertex_count; v++) {
-        fine->share[v] = 1;
-        fine->max[v] = fine->room ? fminf(fine->bulge_max, ROOM_SHARE * fine->room[v]) : fine->bulge_max;
-    }
-    for (uint32_t k = 0; k < shell->edge_spare_used; k++)
-        part_side(fine, blue->ends[spare + k], blue->ends[shell->edge_origin[k]]);
 }
 
 /// Unit normals of corners and virtual centres: those of the triangles around them, weighted by area.
@@ -107,6 +89,7 @@ static void gather_normals(Fine *fine) {
     const float(*position)[4] = (const float(*)[4])fine->corner;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (!is_alive(fine, c)) continue;
+
         const uint32_t *at = shell->cells[c];
         Float3 centre = centre_of(at, position);
         for (int i = 0; i < 4; i++) {
@@ -118,6 +101,7 @@ static void gather_normals(Fine *fine) {
                 float3_store(fine->normal[corner[k]], float3_add(float3_load(fine->normal[corner[k]]), doubled));
         }
     }
+
     for (uint32_t i = 0; i < shell->particle_count; i++)
         float3_store(fine->normal[i], float3_unit(float3_load(fine->normal[i])));
 }
@@ -136,6 +120,7 @@ static void gather_shares(Fine *fine) {
     const float(*position)[4] = (const float(*)[4])fine->corner;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (!is_alive(fine, c)) continue;
+
         const uint32_t *at = shell->cells[c];
         Float3 centre = centre_of(at, position);
         float whole = fine->sound[c]; // the share that the normal at the virtual centre allows
@@ -153,33 +138,48 @@ static void gather_shares(Fine *fine) {
             }
             lessen(&whole, allowed(doubled, longest, float3_load(fine->normal[shell_centre(shell, c)])));
         }
+
         for (int i = 0; i < 4; i++) lessen(&fine->share[at[i]], whole);
     }
 }
 
-/// The number of parts in which the sides of a cell's triangles are drawn, to show its bending.
-static int parts_of(const Fine *fine, uint32_t cell) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    const uint32_t *at = fine->shell->cells[cell];
-    float turn = 0, freedom = 0;
-    for (int i = 0; i < 4; i++) {
-        freedom = fmaxf(freedom, fine->share[at[i]] * fine->max[at[i]]);
-        for (int k = 0; k < i; k++)
-            turn = fmaxf(turn,
-                         float3_length(float3_sub(float3_load(fine->normal[at[i]]), float3_load(fine->normal[at[k]]))));
-    }
-    int parts = 1 + (int)(turn / TURN_A_PART), max = fine_splits(fine, cell);
-    return !(freedom > 0) ? 1 : parts < max ? parts : max;
-}
-
 void fine_position(Fine *fine) {
-    fine_put_corners(fine);
+    const Shell *shell = fine->shell;
+    const SpringSet *blue = &shell->springs[SINGE_BLUE];
+    const uint32_t spare = blue->count - shell->edge_spare_count;
+
+    // the corners' positions, their shares, and the surface's max distance from them
+    memcpy(fine->corner, fine->state->dynamics.position, shell->vertex_count * sizeof *fine->corner);
+    for (uint32_t v = 0; v < shell->vertex_count; v++) {
+        fine->share[v] = 1;
+        fine->max[v] = fine->room ? fminf(fine->bulge_max, ROOM_SHARE * fine->room[v]) : fine->bulge_max;
+    }
+
+    for (uint32_t k = 0; k < shell->edge_spare_used; k++)
+        part_side(fine, blue->ends[spare + k], blue->ends[shell->edge_origin[k]]);
     gather_normals(fine);
     fine_find_sound(fine);
     gather_shares(fine);
     fine_patches(fine);
-    for (uint32_t c = 0; c < fine->shell->cell_count; c++)
-        fine->bent[c] = (uint8_t)(is_alive(fine, c) ? parts_of(fine, c) : 1);
+
+    // the number of parts in which the sides of a cell's triangles are drawn, to show its bending
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        fine->bent[c] = 1;
+        if (!is_alive(fine, c)) continue;
+
+        const uint32_t *at = shell->cells[c];
+        float turn = 0, freedom = 0;
+        for (int i = 0; i < 4; i++) {
+            freedom = fmaxf(freedom, fine->share[at[i]] * fine->max[at[i]]);
+            for (int k = 0; k < i; k++) {
+                Float3 turned = float3_sub(float3_load(fine->normal[at[i]]), float3_load(fine->normal[at[k]]));
+                turn = fmaxf(turn, float3_length(turned));
+            }
+        }
+
+        int parts = 1 + (int)(turn / TURN_A_PART), max = fine_splits(fine, c);
+        if (freedom > 0) fine->bent[c] = (uint8_t)(parts < max ? parts : max);
+    }
 }
 
 // ---- one position
@@ -188,24 +188,7 @@ static Float3 weigh(const Float3 corner[3], const float weight[3]) {
     return float3_mad(float3_mad(float3_scale(corner[0], weight[0]), corner[1], weight[1]), corner[2], weight[2]);
 }
 
-/// The step along the patch from (u, v) to the point nearest to `target`, approximately.
-static void step_beneath(const FinePoint *point, Float3 target, float *du, float *dv) {
-    Float3 left = float3_sub(target, point->position);
-    float uu = float3_dot(point->along_u, point->along_u), vv = float3_dot(point->along_v, point->along_v);
-    float uv = float3_dot(point->along_u, point->along_v), det = uu * vv - uv * uv;
-    float to_u = float3_dot(left, point->along_u), to_v = float3_dot(left, point->along_v);
-    *du = det > 0 ? (to_u * vv - to_v * uv) / det : 2 * STEP_MAX;
-    *dv = det > 0 ? (to_v * uu - to_u * uv) / det : 0;
-}
-
 static Float3 across(const FinePoint *point) { return float3_unit(float3_cross(point->along_u, point->along_v)); }
-
-/// Normal of the patch at the end of that step.
-static Float3 normal_beneath(const FinePatch *patch, float u, float v, float du, float dv) {
-    FinePoint point =
-        fine_patch_at(patch, u + fmaxf(-STEP_MAX, fminf(du, STEP_MAX)), v + fmaxf(-STEP_MAX, fminf(dv, STEP_MAX)));
-    return across(&point);
-}
 
 /// Interpolates a field of the vertices: linear between the corners, the mean of all four at the centre.
 static float blend_corners(const uint32_t at[4], const FineLocation *location, const float *value) {
@@ -233,13 +216,13 @@ void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocati
     for (int i = 0; i < 3; i++) normals[i] = float3_load(fine->normal[particle[i]]);
     Float3 lean = float3_unit(weigh(normals, location->weight));
     float share = blend_corners(at, location, fine->share), max = blend_corners(at, location, fine->max), x, y;
-    float3_store(position, flat), float3_store(normal, unit_or_up(lean));
+    float3_store(position, flat);
+    float3_store(normal, unit_or_up(lean));
     if (!(share * max > 0)) return;
 
     // the smooth patch beneath the point
     fine_coordinates(*location, &x, &y);
     const float u = x + 0.5f, v = y + 0.5f;
-    float du, dv;
     FinePoint point = fine_patch_at(patch, u, v);
     const float regular = blend_corners(at, location, fine->regular);
     Float3 beneath = float3_mad(float3_scale(lean, 1 - regular * regular), across(&point), regular * regular);
@@ -252,12 +235,18 @@ void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocati
         share *= max / fabsf(height);
         height = copysignf(max, height);
     }
+
     if (fabsf(height) > FLAT * float3_length(float3_sub(corner[1], corner[0])))
         float3_store(position, float3_mad(flat, lean, height));
 
-    // normal
-    step_beneath(&point, flat, &du, &dv);
+    // the step along the patch to the point nearest to the flat one, approximately, and the normal at its end
+    Float3 left = float3_sub(flat, point.position);
+    float uu = float3_dot(point.along_u, point.along_u), vv = float3_dot(point.along_v, point.along_v);
+    float uv = float3_dot(point.along_u, point.along_v), det = uu * vv - uv * uv;
+    float to_u = float3_dot(left, point.along_u), to_v = float3_dot(left, point.along_v);
+    float du = det > 0 ? (to_u * vv - to_v * uv) / det : 2 * STEP_MAX;
+    float dv = det > 0 ? (to_v * uu - to_u * uv) / det : 0;
     share *= 1 - fade(fmaxf(fabsf(du), fabsf(dv)), 0.5f * STEP_MAX, STEP_MAX);
-    float3_store(normal,
-                 unit_or_up(float3_mad(float3_scale(lean, 1 - share), normal_beneath(patch, u, v, du, dv), share)));
+    point = fine_patch_at(patch, u + fmaxf(-STEP_MAX, fminf(du, STEP_MAX)), v + fmaxf(-STEP_MAX, fminf(dv, STEP_MAX)));
+    float3_store(normal, unit_or_up(float3_mad(float3_scale(lean, 1 - share), across(&point), share)));
 }

@@ -15,19 +15,9 @@
 // (Zwart 1973; Peters and Reif, The simplest subdivision scheme for smoothing polyhedra, 1997, for meshes that are not
 // regular: C1 except at their irregular vertices). All weights are positive: if no particle's mass grows, S does not
 // grow. It is exact for linear fields on parallelograms, and its isolines have no corners where cells meet.
-#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>
-
-static void cell_values(const Fine *fine, const float *values) {
-    const Shell *shell = fine->shell;
-    for (uint32_t c = 0; c < shell->cell_count; c++) {
-        const uint32_t *at = shell->cells[c];
-        float corners = values[at[0]] + values[at[1]] + values[at[2]] + values[at[3]];
-        fine->cell_value[c] = 0.5f * values[shell_centre(shell, c)] + 0.125f * corners;
-    }
-}
 
 /// The cells' values are in place. Without values at the particles, the field is constant across the sheet's border.
 static void side_coefficients(const Fine *fine, const float *values, float *edge) {
@@ -48,16 +38,23 @@ static void corner_coefficients(const Fine *fine, const float *values, Spline *s
     memset(spline->corner, 0, shell->vertex_count * sizeof *spline->corner);
     for (uint32_t s = 0; s < blue->count; s++)
         for (int end = 0; end < 2; end++) spline->corner[blue->ends[s][end]] += spline->edge[s];
+
     for (uint32_t v = 0; v < shell->vertex_count; v++) {
         uint32_t cells = shell->fan_first[v + 1] - shell->fan_first[v];
-        uint32_t sides = cells + fine->plan->rim[v]; // one more at the border
-        if (cells == 0 || (values && fine->plan->rim[v])) spline->corner[v] = values ? values[v] : 0;
+        uint32_t sides = cells + fine->rim[v]; // one more at the border
+        if (cells == 0 || (values && fine->rim[v])) spline->corner[v] = values ? values[v] : 0;
         else spline->corner[v] /= (float)sides;
     }
 }
 
 void fine_spline(const Fine *fine, const float *values, Spline *spline) {
-    cell_values(fine, values);
+    const Shell *shell = fine->shell;
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        const uint32_t *at = shell->cells[c];
+        float corners = values[at[0]] + values[at[1]] + values[at[2]] + values[at[3]];
+        fine->cell_value[c] = 0.5f * values[shell_centre(shell, c)] + 0.125f * corners;
+    }
+
     side_coefficients(fine, values, spline->edge);
     corner_coefficients(fine, values, spline);
 }
@@ -70,7 +67,6 @@ void fine_spline_cells(const Fine *fine, Spline *spline) {
 }
 
 void fine_spline_bounds(const Shell *shell, const Spline *spline, uint32_t cell, float *low, float *high) {
-    SINGE_ASSERT(cell < shell->cell_count);
     *low = INFINITY;
     *high = -INFINITY;
     for (int i = 0; i < 4; i++) { // the other coefficients are means of these
@@ -115,38 +111,13 @@ void fine_coordinates(FineLocation location, float *x, float *y) {
     }
 }
 
-static FineLocation from_coordinates(uint32_t cell, float x, float y) {
-    FineLocation location = {.cell = cell};
-    float out, along;
-    if (fabsf(x) > fabsf(y)) {
-        location.side = x > 0 ? 1 : 3;
-        out = fabsf(x);
-        along = x > 0 ? y : -y;
-    } else {
-        location.side = y > 0 ? 2 : 0;
-        out = fabsf(y);
-        along = y > 0 ? -x : x;
-    }
-    location.weight[0] = out - along;
-    location.weight[1] = out + along;
-    location.weight[2] = 1 - 2 * out;
-    return location;
-}
-
-/// The side of a cell that has spring `blue`.
-static int side_of(const Shell *shell, uint32_t cell, uint32_t blue) {
-    SINGE_ASSERT(cell < shell->cell_count);
-    int side = 0;
-    while (side < 3 && shell->cell_springs[cell].blue[side] != blue) side++;
-    return side;
-}
-
 FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, float dy) {
     uint32_t cell = location.cell;
     float x, y;
     fine_coordinates(location, &x, &y);
     x += dx;
     y += dy;
+
     for (int crossing = 0; crossing < 2 && fmaxf(fabsf(x), fabsf(y)) > 0.5f; crossing++) {
         int side = fabsf(x) > fabsf(y) ? (x > 0 ? 1 : 3) : (y > 0 ? 2 : 0);
         uint32_t other = shell_neighbour(shell, cell, side);
@@ -155,18 +126,28 @@ FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, floa
             else y = fmaxf(-0.5f, fminf(y, 0.5f));
             continue;
         }
+
         // the neighbour's centre is the new origin; then quarter turns until the side that was crossed lies behind
         if (side & 1) x += side == 1 ? -1.0f : 1.0f;
         else y += side == 2 ? -1.0f : 1.0f;
-        int turns = (side_of(shell, other, shell->cell_springs[cell].blue[side]) + 2 - side) & 3;
-        for (; turns > 0; turns--) {
+        int behind = 0;
+        while (behind < 3 && shell->cell_springs[other].blue[behind] != shell->cell_springs[cell].blue[side]) behind++;
+        for (int turns = (behind + 2 - side) & 3; turns > 0; turns--) {
             float turned = -y;
             y = x;
             x = turned;
         }
+
         cell = other;
     }
+
     x = fmaxf(-0.5f, fminf(x, 0.5f));
     y = fmaxf(-0.5f, fminf(y, 0.5f));
-    return from_coordinates(cell, x, y);
+
+    // the position as weights
+    const bool across = fabsf(x) > fabsf(y);
+    const float out = across ? fabsf(x) : fabsf(y), along = across ? (x > 0 ? y : -y) : (y > 0 ? -x : x);
+    return (FineLocation){.cell = cell,
+                          .side = (uint8_t)(across ? (x > 0 ? 1 : 3) : (y > 0 ? 2 : 0)),
+                          .weight = {out - along, out + along, 1 - 2 * out}};
 }

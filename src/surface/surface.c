@@ -1,106 +1,227 @@
-// Marching triangles (section 6, Fig 6). Every remaining cell is drawn as four triangles around its virtual centre; the
+// The drawn surface as the cells are, by marching triangles (section 6, Fig 6). Every remaining cell is drawn as four triangles around its virtual centre; the
 // level set m' cuts them:
 //
 //   corners inside   3          2                1              0
 //   drawn            all of it  a quadrilateral  a triangle     nothing
 //
-// m' >= 0 is inside. Each triangle is clipped into a polygon of keys (AblatePlan), one key per vertex that neighbouring
+// m' >= 0 is inside. Each triangle is clipped into a polygon of keys (SurfaceKeys), one key per vertex that neighbouring
 // triangles share, so that they meet without cracks. The keys in use are then numbered in order: corners in the input's
 // order, virtual centres, cuts. A cut at its inside end becomes that end; polygons with fewer than three corners are
 // dropped. Cuts keep a distance from ends, and quadrilaterals are divided along the diagonal that gives the rounder
 // triangles, so that no triangle is as thin as the rounding of its vertices.
-#include "common/assertion.h"
-#include "ablate/ablate_plan.h"
+//
+// Vertices are corners, virtual centres, and points cut by eq 7:
+//
+//   x = x0 + (x1 - x0) t,   t = m'0 / (m'0 - m'1)
+//
+// with end 0 inside (m' >= 0) and end 1 outside, for the position and every other field alike. A virtual
+// centre lies at the mean of its cell's four corners, in space, at rest and in velocity; temperature,
+// mass and times are those of the cell's centre particle.
 #include "common/float3.h"
+#include "surface/surface_parts.h"
 
+#include <math.h>
 #include <string.h>
 
-typedef struct Polygon {
-    int count;
-    uint32_t keys[4];
-} Polygon;
+/// Corners, virtual centres, cuts of blue springs and cuts of red springs, numbered in this order: every vertex that a
+/// surface may have.
+typedef struct SurfaceKeys {
+    uint32_t centre, blue, red; ///< the first of each; corners begin at 0
+    uint32_t count;
+} SurfaceKeys;
 
-static void polygon_push(Polygon *polygon, uint32_t key) {
-    if (polygon->count && polygon->keys[polygon->count - 1] == key) return;
-    polygon->keys[polygon->count++] = key;
+typedef struct Drawing {
+    const Shell *shell;
+    const State *state;
+    const float *level; ///< [particles] m'
+    SurfaceKeys keys;
+    uint32_t *output;     ///< [keys.count] first 1 where a vertex is drawn, then its index in the surface
+    uint32_t *cell_first; ///< [cells + 1] first of a cell's triangles, where the sheets have seams; else NULL
+    SingeSurface *surface;
+} Drawing;
+
+// ---- clipping
+
+float surface_cut(float inside, float outside, float nearest) {
+    float t = inside / (inside - outside);
+    return t < nearest ? 0 : t > 1 - nearest ? 1 - nearest : t;
 }
 
-/// Triangle `side` of a cell, clipped: it walks along the cell's side, to the virtual centre and back.
-static Polygon surface_clip(const AblatePlan *plan, const Shell *shell, uint32_t cell, int side) {
-    SINGE_ASSERT(cell < shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
-    const CellSprings *springs = &shell->cell_springs[cell];
-    int next = (side + 1) & 3;
-    uint32_t corner[3] = {shell->cells[cell][side], shell->cells[cell][next], shell_centre(shell, cell)};
-    uint32_t edge[3] = {plan->keys.blue + springs->blue[side], plan->keys.red + springs->red[next],
-                        plan->keys.red + springs->red[side]};
-    const float level[3] = {plan->level[corner[0]], plan->level[corner[1]], plan->level[corner[2]]};
+int surface_fan(const float level[3], float nearest) {
+    for (int outside = 0; outside < 3; outside++) {
+        int a = (outside + 1) % 3, b = (outside + 2) % 3;
+        if (level[outside] >= 0 || level[a] < 0 || level[b] < 0) continue;
+
+        float cut_a = surface_cut(level[a], level[outside], nearest);
+        return cut_a < surface_cut(level[b], level[outside], nearest) ? b : a;
+    }
+
+    return 0;
+}
+
+/// Triangle `side` of a cell, clipped: it walks along the cell's side, to the virtual centre and back. Returns the
+/// number of corners.
+static int clip(const Drawing *drawing, uint32_t cell, int side, uint32_t polygon[4]) {
+    const CellSprings *springs = &drawing->shell->cell_springs[cell];
+    const uint32_t *at = drawing->shell->cells[cell];
+    const SurfaceKeys *keys = &drawing->keys;
+    const int next = (side + 1) & 3;
+    const uint32_t corner[3] = {at[side], at[next], shell_centre(drawing->shell, cell)};
+    const uint32_t edge[3] = {keys->blue + springs->blue[side], keys->red + springs->red[next],
+                              keys->red + springs->red[side]};
+    const float level[3] = {drawing->level[corner[0]], drawing->level[corner[1]], drawing->level[corner[2]]};
     const int first = surface_fan(level, SURFACE_NEAREST);
-    Polygon polygon = {0};
+    int count = 0;
 
     // corners inside and cuts, without repetitions
     for (int i = 0; i < 3; i++) {
-        int a = (first + i) % 3, b = (a + 1) % 3;
-        float level_a = level[a], level_b = level[b];
-        if (level_a >= 0) {
-            polygon_push(&polygon, corner[a]);
-            if (level_b < 0)
-                polygon_push(&polygon, surface_cut(level_a, level_b, SURFACE_NEAREST) > 0 ? edge[a] : corner[a]);
-        } else if (level_b >= 0) {
-            polygon_push(&polygon, surface_cut(level_b, level_a, SURFACE_NEAREST) > 0 ? edge[a] : corner[b]);
+        const int a = (first + i) % 3, b = (a + 1) % 3;
+        const bool inside = level[a] >= 0;
+        uint32_t vertex[2];
+        int made = 0;
+        if (inside) vertex[made++] = corner[a];
+        if (inside != (level[b] >= 0)) {
+            const int in = inside ? a : b, out = inside ? b : a;
+            vertex[made++] = surface_cut(level[in], level[out], SURFACE_NEAREST) > 0 ? edge[a] : corner[in];
         }
+
+        for (int m = 0; m < made; m++)
+            if (!count || polygon[count - 1] != vertex[m]) polygon[count++] = vertex[m];
     }
-    if (polygon.count > 1 && polygon.keys[polygon.count - 1] == polygon.keys[0]) polygon.count--;
-    return polygon;
+
+    return count > 1 && polygon[count - 1] == polygon[0] ? count - 1 : count;
 }
 
-/// Draws the cells with keys as vertices, and marks these keys in plan->output.
-static void draw_cells(AblatePlan *plan, const Shell *shell, const State *state, uint32_t *cell_first,
-                       SingeSurface *surface) {
-    memset(plan->output, 0, plan->keys.count * sizeof *plan->output);
+/// Draws the cells with keys as vertices, and marks these keys.
+static void draw_cells(const Drawing *drawing) {
+    const Shell *shell = drawing->shell;
+    SingeSurface *surface = drawing->surface;
+    uint32_t *cell_first = drawing->cell_first;
+
     for (uint32_t c = 0; c < shell->cell_count; c++) {
-        if (cell_first) cell_first[c + 1] = surface->triangle_count;
-        if (!(state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
-        for (int side = 0; side < 4; side++) {
-            Polygon polygon = surface_clip(plan, shell, c, side);
-            for (int k = 2; k < polygon.count; k++) {
+        for (int side = 0; side < 4 && drawing->state->ablate.cell_flags[c] & SINGE_ALIVE; side++) {
+            uint32_t polygon[4];
+            const int count = clip(drawing, c, side, polygon);
+            for (int k = 2; k < count; k++) {
                 uint32_t *triangle = surface->triangles[surface->triangle_count++];
-                triangle[0] = polygon.keys[0], triangle[1] = polygon.keys[k - 1], triangle[2] = polygon.keys[k];
-                for (int i = 0; i < 3; i++) plan->output[triangle[i]] = 1;
+                triangle[0] = polygon[0];
+                triangle[1] = polygon[k - 1];
+                triangle[2] = polygon[k];
+                for (int i = 0; i < 3; i++) drawing->output[triangle[i]] = 1;
             }
         }
+
         if (cell_first) cell_first[c + 1] = surface->triangle_count;
     }
 }
 
-/// Max number of triangles: four per remaining cell, or eight where the level set may cross it.
-static uint64_t max_triangles(const AblatePlan *plan, const Shell *shell, const State *state) {
-    uint64_t max = 0;
-    for (uint32_t c = 0; c < shell->cell_count; c++) {
-        if (!(state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
-        const uint32_t *corners = shell->cells[c];
-        bool whole = plan->level[shell_centre(shell, c)] >= 0;
-        for (int i = 0; i < 4; i++) whole = whole && plan->level[corners[i]] >= 0;
-        max += whole ? 4 : 8;
-    }
-    return max;
+// ---- vertices
+
+typedef struct Sample {
+    Float3 position, velocity, rest;
+    float u, v, temperature, temperature_peak, mass, burn_rate, coal, ash, burn, time_ignited;
+    int32_t piece, sheet;
+} Sample;
+
+static Float3 mean_of_corners(const uint32_t corners[4], const float (*field)[4]) {
+    Float3 sum = {0, 0, 0};
+    for (int i = 0; i < 4; i++) sum = float3_add(sum, float3_load(field[corners[i]]));
+    return float3_scale(sum, 0.25f);
 }
 
-/// How many keys are marked.
-static uint32_t count_vertices(AblatePlan *plan) {
-    uint32_t count = 0;
-    for (uint32_t key = 0; key < plan->keys.count; key++) count += plan->output[key];
-    return count;
+static Sample sample_particle(const Shell *shell, const State *state, uint32_t particle) {
+    const float(*position)[4] = (const float(*)[4])state->dynamics.position;
+    const float(*velocity)[4] = (const float(*)[4])state->dynamics.velocity;
+    const float(*rest)[4] = (const float(*)[4])shell->rest_position;
+    const BurnState *burn = &state->burn;
+    float min = field_at(shell->matter.mass_min, particle), yield = field_at(shell->matter.char_yield, particle);
+    float coal = yield * shell_char(burn->mass[particle], burn->fuel[particle], min, yield);
+    Sample sample = {
+        .u = shell->uv[particle][0],
+        .v = shell->uv[particle][1],
+        .temperature = state->heat.temperature[particle],
+        .temperature_peak = state->heat.temperature_peak[particle],
+        .mass = burn->mass[particle],
+        .burn_rate = burn->burn_rate[particle],
+        .coal = coal,
+        .ash = fmaxf(burn->mass[particle] - burn->fuel[particle] - coal, 0),
+        .burn = shell_burn_progress(burn->mass[particle], min),
+        .time_ignited = burn->time_ignited[particle],
+        .piece = state->ablate.piece[particle],
+        .sheet = shell->matter.sheet[particle],
+    };
+
+    // a vertex, or a virtual centre
+    if (shell_is_corner(shell, particle)) {
+        sample.position = float3_load(position[particle]);
+        sample.velocity = float3_load(velocity[particle]);
+        sample.rest = float3_load(rest[particle]);
+    } else {
+        const uint32_t *corners = shell->cells[particle - shell->vertex_count];
+        sample.position = mean_of_corners(corners, position);
+        sample.velocity = mean_of_corners(corners, velocity);
+        sample.rest = mean_of_corners(corners, rest);
+    }
+
+    return sample;
 }
 
-static void fill_vertices(AblatePlan *plan, const Shell *shell, const State *state, SingeSurface *surface) {
-    for (uint32_t key = 0; key < plan->keys.count; key++) {
-        if (!plan->output[key]) continue;
-        plan->output[key] = surface->vertex_count++;
-        surface_vertex(plan, shell, state, key, plan->output[key], surface);
-    }
-    for (uint32_t t = 0; t < surface->triangle_count; t++)
-        for (int i = 0; i < 3; i++) surface->triangles[t][i] = plan->output[surface->triangles[t][i]];
+static float mix(float a, float b, float t) { return a + (b - a) * t; }
+static Float3 mix_float3(Float3 a, Float3 b, float t) { return float3_mad(a, float3_sub(b, a), t); }
+
+/// A cut, interpolated from the inside end, whose piece and sheet it has.
+static Sample sample_cut(const Drawing *drawing, const uint32_t ends[2]) {
+    const float *level = drawing->level;
+    const int first = level[ends[0]] >= 0 ? 0 : 1;
+    const uint32_t inside = ends[first], outside = ends[1 - first];
+    const Sample a = sample_particle(drawing->shell, drawing->state, inside);
+    const Sample b = sample_particle(drawing->shell, drawing->state, outside);
+    const float t = surface_cut(level[inside], level[outside], SURFACE_NEAREST);
+    return (Sample){
+        .position = mix_float3(a.position, b.position, t),
+        .velocity = mix_float3(a.velocity, b.velocity, t),
+        .rest = mix_float3(a.rest, b.rest, t),
+        .u = mix(a.u, b.u, t),
+        .v = mix(a.v, b.v, t),
+        .temperature = mix(a.temperature, b.temperature, t),
+        .temperature_peak = mix(a.temperature_peak, b.temperature_peak, t),
+        .mass = mix(a.mass, b.mass, t),
+        .burn_rate = mix(a.burn_rate, b.burn_rate, t),
+        .coal = mix(a.coal, b.coal, t),
+        .ash = mix(a.ash, b.ash, t),
+        .burn = mix(a.burn, b.burn, t),
+        .time_ignited = a.time_ignited < 0   ? b.time_ignited // -1, never
+                        : b.time_ignited < 0 ? a.time_ignited
+                                             : mix(a.time_ignited, b.time_ignited, t),
+        .piece = a.piece,
+        .sheet = a.sheet,
+    };
+}
+
+/// Fills the vertex of a key at `index`, all but its normal.
+static void put_vertex(const Drawing *drawing, uint32_t key, uint32_t index) {
+    const Shell *shell = drawing->shell;
+    const SurfaceKeys *keys = &drawing->keys;
+    SingeSurface *surface = drawing->surface;
+    const Sample sample = key < keys->blue  ? sample_particle(shell, drawing->state, key)
+                          : key < keys->red ? sample_cut(drawing, shell->springs[SINGE_BLUE].ends[key - keys->blue])
+                                            : sample_cut(drawing, shell->springs[SINGE_RED].ends[key - keys->red]);
+    float3_store(surface->position[index], sample.position);
+    float3_store(surface->velocity[index], sample.velocity);
+    float3_store(surface->rest_position[index], sample.rest);
+    surface->uv[index][0] = sample.u;
+    surface->uv[index][1] = sample.v;
+    surface->temperature[index] = sample.temperature;
+    surface->temperature_peak[index] = sample.temperature_peak;
+    surface->mass[index] = sample.mass;
+    surface->burn_rate[index] = sample.burn_rate;
+    surface->char_fraction[index] = sample.coal;
+    surface->ash_fraction[index] = sample.ash;
+    surface->burn[index] = sample.burn;
+    surface->time_ignited[index] = sample.time_ignited;
+    surface->piece[index] = sample.piece;
+    surface->sheet[index] = sample.sheet;
+    surface->source_vertex[index] = key < keys->centre ? shell->source_vertex[key] : -1;
 }
 
 /// The normalised sum of 2 A n over the triangles around each vertex; +z where they cancel.
@@ -116,6 +237,7 @@ void surface_normals(SingeSurface *surface) {
             float3_store(normal, float3_add(float3_load(normal), doubled));
         }
     }
+
     for (uint32_t v = 0; v < surface->vertex_count; v++) {
         Float3 normal = float3_unit(float3_load(surface->normal[v]));
         bool unit = float3_dot(normal, normal) > 0.5f;
@@ -123,29 +245,64 @@ void surface_normals(SingeSurface *surface) {
     }
 }
 
-static SingeResult surface_draw(AblatePlan *plan, const Shell *shell, const State *state, uint32_t *cell_first,
-                                SingeSurface *surface, SingeError *error) {
-    TRY(surface_reserve_triangles(surface, max_triangles(plan, shell, state), error));
-    draw_cells(plan, shell, state, cell_first, surface);
-    TRY(surface_reserve_vertices(surface, count_vertices(plan), error));
-    fill_vertices(plan, shell, state, surface);
+// ---- the surface
+
+static SingeResult draw(Drawing *drawing, SingeError *error) {
+    const Shell *shell = drawing->shell;
+    SingeSurface *surface = drawing->surface;
+
+    // at most four triangles per remaining cell, or eight where the level set may cross it
+    uint64_t max = 0;
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        if (!(drawing->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+
+        bool whole = drawing->level[shell_centre(shell, c)] >= 0;
+        for (int i = 0; i < 4; i++) whole = whole && drawing->level[shell->cells[c][i]] >= 0;
+        max += whole ? 4 : 8;
+    }
+
+    TRY(surface_reserve_triangles(surface, max, error));
+    draw_cells(drawing);
+
+    // number the keys in use, and fill their vertices
+    uint32_t count = 0;
+    for (uint32_t key = 0; key < drawing->keys.count; key++) count += drawing->output[key];
+    TRY(surface_reserve_vertices(surface, count, error));
+
+    for (uint32_t key = 0; key < drawing->keys.count; key++) {
+        if (!drawing->output[key]) continue;
+        drawing->output[key] = surface->vertex_count++;
+        put_vertex(drawing, key, drawing->output[key]);
+    }
+
+    for (uint32_t t = 0; t < surface->triangle_count; t++)
+        for (int i = 0; i < 3; i++) surface->triangles[t][i] = drawing->output[surface->triangles[t][i]];
+
     if (surface->vertex_count) surface_normals(surface);
-    return cell_first ? surface_seams(shell, cell_first, surface, error) : SINGE_OK;
+    return drawing->cell_first ? surface_seams(shell, drawing->cell_first, surface, error) : SINGE_OK;
 }
 
-SingeResult ablate_surface(AblatePlan *plan, const Shell *shell, const State *state, SingeSurface *surface,
-                           SingeError *error) {
-    ablate_levels(plan, shell, &state->burn);
-    surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
-    if (!shell->corner_uv) return surface_draw(plan, shell, state, NULL, surface, error);
+SingeResult surface_draw(AblatePlan *plan, const Shell *shell, const State *state, SingeSurface *surface,
+                         SingeError *error) {
+    const size_t cells = (size_t)shell->cell_count + 1;
     Memory memory = memory_make(surface->allocator);
-    uint32_t *cell_first;
-    size_t cells = (size_t)shell->cell_count + 1;
-    if (!NEW(&memory, cell_first, cells)) {
+    Drawing drawing = {.shell = shell, .state = state, .surface = surface};
+    drawing.level = ablate_levels(plan, shell, &state->burn);
+    drawing.keys = (SurfaceKeys){.centre = shell->vertex_count, .blue = shell->particle_count};
+    drawing.keys.red = drawing.keys.blue + shell->springs[SINGE_BLUE].count;
+    drawing.keys.count = drawing.keys.red + shell->springs[SINGE_RED].count;
+    surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
+
+    SingeResult result;
+    if (NEW(&memory, drawing.output, drawing.keys.count) &&
+        (!shell->corner_uv || NEW(&memory, drawing.cell_first, cells))) {
+        result = draw(&drawing, error);
+    } else {
         surface_clear(surface);
-        return error_set(error, SINGE_ERROR_MEMORY, "ablate", -1, "out of memory for the surface's seams");
+        result = error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface");
     }
-    SingeResult result = surface_draw(plan, shell, state, cell_first, surface, error);
-    FREE(&memory, cell_first, cells);
+
+    FREE(&memory, drawing.output, drawing.keys.count);
+    FREE(&memory, drawing.cell_first, cells);
     return result;
 }

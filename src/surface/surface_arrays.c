@@ -1,5 +1,5 @@
 // The memory of a surface.
-#include "ablate/ablate_plan.h"
+#include "surface/surface_parts.h"
 
 #include <string.h>
 
@@ -59,13 +59,14 @@ void surface_clear(SingeSurface *surface) {
 
 static SingeResult arrays_fail(SingeSurface *surface, SingeResult code, const char *message, SingeError *error) {
     surface_clear(surface);
-    return error_set(error, code, "ablate", -1, "%s", message);
+    return error_set(error, code, "surface", -1, "%s", message);
 }
 
 static SingeResult arrays_reserve(SingeSurface *surface, const SurfaceArray *arrays, int array_count,
                                   uint32_t *capacity, uint64_t count, SingeError *error) {
     if (count > INT32_MAX) return arrays_fail(surface, SINGE_ERROR_LIMIT, "the surface has too many elements", error);
     if (count <= *capacity) return SINGE_OK;
+
     Memory memory = memory_make(surface->allocator);
     for (int i = 0; i < array_count; i++) arrays_release(&memory, surface, &arrays[i], *capacity);
     *capacity = (uint32_t)(count + count / 4); // a burning sheet's surface grows a little in most frames
@@ -86,6 +87,7 @@ SingeResult surface_reserve_vertices(SingeSurface *surface, uint64_t count, Sing
 SingeResult surface_grow_vertices(SingeSurface *surface, uint64_t count, SingeError *error) {
     if (count > INT32_MAX) return arrays_fail(surface, SINGE_ERROR_LIMIT, "the surface has too many elements", error);
     if (count <= surface->vertex_capacity) return SINGE_OK;
+
     Memory memory = memory_make(surface->allocator);
     SingeSurface grown = {.vertex_capacity = (uint32_t)(count + count / 4), .allocator = surface->allocator};
     bool good = true;
@@ -99,6 +101,7 @@ SingeResult surface_grow_vertices(SingeSurface *surface, uint64_t count, SingeEr
         memcpy(&to, (char *)&grown + array->offset, sizeof to);
         if (good && from) memcpy(to, from, surface->vertex_count * array->element_size);
     }
+
     for (int i = 0; i < VERTEX_ARRAYS; i++) { // frees the old ones, or on failure the new ones
         const SurfaceArray *array = &vertex_arrays[i];
         void *to;
@@ -107,6 +110,7 @@ SingeResult surface_grow_vertices(SingeSurface *surface, uint64_t count, SingeEr
                        good ? surface->vertex_capacity : grown.vertex_capacity);
         if (good) memcpy((char *)surface + array->offset, &to, sizeof to);
     }
+
     if (!good) return arrays_fail(surface, SINGE_ERROR_MEMORY, "out of memory for the surface", error);
     surface->vertex_capacity = grown.vertex_capacity;
     return SINGE_OK;

@@ -2,9 +2,8 @@
 #ifndef SURFACE_SURFACE_FINE_H
 #define SURFACE_SURFACE_FINE_H
 
-#include "common/assertion.h"
-#include "ablate/ablate_plan.h"
 #include "common/float3.h"
+#include "surface/surface_parts.h"
 
 /// A cell's side is split into at most this many parts.
 enum { FINE_SPLITS_MAX = 16 };
@@ -67,9 +66,10 @@ typedef struct FineSheet {
 /// A drawing in progress. Points are numbered: vertices, cells' centres, points on split sides of cells near the front,
 /// points within these cells.
 typedef struct Fine {
-    const AblatePlan *plan;
     const Shell *shell;
     const State *state;
+    const float *level; ///< [particles] m'
+    const uint8_t *rim; ///< [vertices] 1 at the mesh's boundary
     Memory *memory;
     Pool *pool;
     const float *room; ///< [vertices] m, of SurfaceDetail
@@ -137,25 +137,16 @@ void fine_coordinates(FineLocation location, float *x, float *y);
 /// cells' sides have corners, so that the sides are never visible.
 static inline float fine_whole_level(float whole) { return 0.5f * (whole - 0.25f); }
 
-// ---- fine_noise.c
+// ---- fine_level.c
 
 /// The number of octaves of the noise that points with this spacing (m) can resolve.
 int fine_octaves(float spacing);
 
-/// The level and the mass at a position.
-FineValue fine_value(const Fine *fine, FineLocation location);
-
-/// A rest position, and a vector rotated out of every plane that sheets and their grids may lie in.
-Float3 fine_rest(const Shell *shell, FineLocation location);
-Float3 fine_askew(Float3 p);
-
-// ---- fine_tears.c
-
 /// Fills SPLINE_TEAR_EDGE where sheets have torn, and marks the cells there. Their other flags are in place.
 void fine_tear_edges(Fine *fine);
 
-/// The level due to tears at a position in a marked cell; below 0 it is not drawn.
-float fine_tear_level(const Fine *fine, FineLocation location);
+/// The level and the mass at a position.
+FineValue fine_value(const Fine *fine, FineLocation location);
 
 // ---- fine_points.c
 
@@ -173,14 +164,11 @@ FineLocation fine_point_location(uint32_t cell, int side, int splits, int i, int
 static inline bool fine_is_split(const Fine *fine, uint32_t cell) { return fine->flags[cell] & FINE_SPLIT; }
 
 static inline int fine_splits(const Fine *fine, uint32_t cell) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
     return fine->sheets[fine->shell->matter.sheet[shell_centre(fine->shell, cell)]].splits;
 }
 
 /// The parts in which a side of a cell is drawn.
 static inline int fine_parts(const Fine *fine, uint32_t cell, int side) {
-    SINGE_ASSERT(cell < fine->shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     return fine->parts[fine->shell->cell_springs[cell].blue[side]];
 }
 
@@ -221,10 +209,5 @@ void fine_position(Fine *fine);
 /// Position and unit normal at a location; `patch` is that of its cell.
 void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocation *location, float position[3],
                       float normal[3]);
-
-// ---- fine_vertices.c
-
-/// Fills the surface's vertices.
-void fine_vertices(const Fine *fine);
 
 #endif

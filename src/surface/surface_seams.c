@@ -6,8 +6,7 @@
 //
 // Only cells whose uv differ from those of their vertices (Shell.uv) are visited. If the input had several vertices on
 // a seam, each copy keeps its own source vertex.
-#include "common/assertion.h"
-#include "ablate/ablate_plan.h"
+#include "surface/surface_parts.h"
 #include "common/float3.h"
 
 #include <string.h>
@@ -24,7 +23,6 @@ typedef struct Seams {
 } Seams;
 
 static bool is_seamed(const Shell *shell, uint32_t cell) {
-    SINGE_ASSERT(cell < shell->cell_count);
     for (int i = 0; i < 4; i++)
         if (memcmp(shell->corner_uv[cell][i], shell->uv[shell->cells[cell][i]], 2 * sizeof(float)) != 0 ||
             shell->corner_source[cell][i] != shell->source_vertex[shell->cells[cell][i]])
@@ -33,22 +31,15 @@ static bool is_seamed(const Shell *shell, uint32_t cell) {
 }
 
 static Float3 corner_rest(const Shell *shell, uint32_t cell, int i) {
-    SINGE_ASSERT(cell < shell->cell_count);
     return float3_load(shell->rest_position[shell->cells[cell][i]]);
-}
-
-static Float3 centre_rest(const Shell *shell, uint32_t cell) {
-    SINGE_ASSERT(cell < shell->cell_count);
-    Float3 sum = {0, 0, 0};
-    for (int i = 0; i < 4; i++) sum = float3_add(sum, corner_rest(shell, cell, i));
-    return float3_scale(sum, 0.25f);
 }
 
 /// Barycentric weights of a point in the cell's triangle of that side.
 static void weights_at(const Shell *shell, uint32_t cell, int side, Float3 point, float weight[3]) {
-    SINGE_ASSERT(cell < shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
-    Float3 c = centre_rest(shell, cell), a = float3_sub(corner_rest(shell, cell, side), c);
+    Float3 c = {0, 0, 0};
+    for (int i = 0; i < 4; i++) c = float3_add(c, corner_rest(shell, cell, i));
+    c = float3_scale(c, 0.25f);
+    Float3 a = float3_sub(corner_rest(shell, cell, side), c);
     Float3 b = float3_sub(corner_rest(shell, cell, (side + 1) & 3), c), p = float3_sub(point, c);
     float aa = float3_dot(a, a), ab = float3_dot(a, b), bb = float3_dot(b, b), pa = float3_dot(p, a),
           pb = float3_dot(p, b);
@@ -60,7 +51,6 @@ static void weights_at(const Shell *shell, uint32_t cell, int side, Float3 point
 
 /// The side in whose triangle a drawn triangle lies: where the smallest weight of its centroid is largest.
 static int side_of(const Seams *seams, uint32_t cell, const uint32_t triangle[3]) {
-    SINGE_ASSERT(cell < seams->shell->cell_count);
     Float3 centroid = {0, 0, 0};
     for (int k = 0; k < 3; k++)
         centroid = float3_add(centroid, float3_load(seams->surface->rest_position[triangle[k]]));
@@ -76,13 +66,12 @@ static int side_of(const Seams *seams, uint32_t cell, const uint32_t triangle[3]
             best = side;
         }
     }
+
     return best;
 }
 
 /// uv of a point, and its source vertex if it is a corner that has one.
 static void cell_uv(const Shell *shell, uint32_t cell, int side, Float3 point, float uv[2], int32_t *source) {
-    SINGE_ASSERT(cell < shell->cell_count);
-    SINGE_ASSERT(side >= 0 && side < 4);
     const float(*corner)[2] = (const float(*)[2])shell->corner_uv[cell];
     const int next = (side + 1) & 3;
     float weight[3];
@@ -95,18 +84,8 @@ static void cell_uv(const Shell *shell, uint32_t cell, int side, Float3 point, f
     }
 }
 
-static float cell_uv_size(const Shell *shell, uint32_t cell) {
-    SINGE_ASSERT(cell < shell->cell_count);
-    const float(*corner)[2] = (const float(*)[2])shell->corner_uv[cell];
-    float size = 0;
-    for (int i = 1; i < 4; i++)
-        size = fmaxf(size, fmaxf(fabsf(corner[i][0] - corner[0][0]), fabsf(corner[i][1] - corner[0][1])));
-    return size;
-}
-
 /// The copy of a vertex that has this uv and source vertex; created if there is none.
 static uint32_t copy_with(Seams *seams, uint32_t vertex, const float uv[2], float same, int32_t source) {
-    SINGE_ASSERT(vertex < seams->surface->vertex_count);
     SingeSurface *surface = seams->surface;
     uint32_t last = vertex;
     if (!seams->claimed[vertex]) {
@@ -134,8 +113,11 @@ static uint32_t copy_with(Seams *seams, uint32_t vertex, const float uv[2], floa
 }
 
 static void part_cell(Seams *seams, uint32_t cell, uint32_t begin, uint32_t end) {
-    SINGE_ASSERT(cell < seams->shell->cell_count);
-    const float same = SEAM_SAME * cell_uv_size(seams->shell, cell);
+    const float(*uvs)[2] = (const float(*)[2])seams->shell->corner_uv[cell];
+    float size = 0;
+    for (int i = 1; i < 4; i++) size = fmaxf(size, fmaxf(fabsf(uvs[i][0] - uvs[0][0]), fabsf(uvs[i][1] - uvs[0][1])));
+    const float same = SEAM_SAME * size;
+
     for (uint32_t t = begin; t < end; t++) {
         uint32_t *triangle = seams->surface->triangles[t], parted[3];
         int side = side_of(seams, cell, triangle);
@@ -145,6 +127,7 @@ static void part_cell(Seams *seams, uint32_t cell, uint32_t begin, uint32_t end)
             cell_uv(seams->shell, cell, side, float3_load(seams->surface->rest_position[triangle[k]]), uv, &source);
             parted[k] = copy_with(seams, triangle[k], uv, same, source);
         }
+
         memcpy(triangle, parted, sizeof parted);
     }
 }
@@ -158,9 +141,11 @@ static uint64_t claim(Seams *seams, const uint32_t *cell_first) {
             copies += 3 * (uint64_t)(cell_first[c + 1] - cell_first[c]);
             continue;
         }
+
         for (uint32_t t = cell_first[c]; t < cell_first[c + 1] && seams->claimed; t++)
             for (int k = 0; k < 3; k++) seams->claimed[seams->surface->triangles[t][k]] = 1;
     }
+
     return copies;
 }
 
@@ -170,6 +155,7 @@ SingeResult surface_seams(const Shell *shell, const uint32_t *cell_first, SingeS
     uint64_t max = surface->vertex_count + claim(&seams, cell_first);
     SingeResult result = surface_grow_vertices(surface, max, error);
     if (result) return result;
+
     seams.capacity = (uint32_t)max;
     if (NEW(&memory, seams.claimed, seams.capacity) && NEW(&memory, seams.next, seams.capacity)) {
         memset(seams.next, 0xff, seams.capacity * sizeof *seams.next);
@@ -178,8 +164,9 @@ SingeResult surface_seams(const Shell *shell, const uint32_t *cell_first, SingeS
             if (is_seamed(shell, c)) part_cell(&seams, c, cell_first[c], cell_first[c + 1]);
     } else {
         surface_clear(surface);
-        result = error_set(error, SINGE_ERROR_MEMORY, "ablate", -1, "out of memory for the surface's seams");
+        result = error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's seams");
     }
+
     FREE(&memory, seams.claimed, seams.capacity);
     FREE(&memory, seams.next, seams.capacity);
     return result;

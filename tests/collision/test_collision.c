@@ -320,7 +320,8 @@ static Searched *searched(uint32_t n) {
     assert_int_equal(collision_plan_create(&s->memory, &s->shell, &contact, 1.0f / 480, &s->plan), SINGE_OK);
     for (uint32_t v = 0; v < row * row; v++)
         for (int k = 0; k < 3; k++) s->state.dynamics.velocity[v][k] = 0.5f * sinf((float)(v * (uint32_t)(k + 3)));
-    assert_int_equal(collision_open(s->plan, &s->shell, STATE_INPUT(&s->state), NULL, &s->state.dynamics), SINGE_OK);
+    assert_int_equal(collision_open(&s->memory, s->plan, &s->shell, STATE_INPUT(&s->state), NULL, &s->state.dynamics),
+                     SINGE_OK);
     free(x), free(cells);
     return s;
 }
@@ -468,7 +469,7 @@ static void check_outside(float far) {
         for (int i = 0; i < 4; i++) plan->is_outside[c] |= s->shell.cells[c][i] % 17 == 0;
         if (plan->is_outside[c]) plan->outside[count++] = c;
     }
-    assert_int_equal(broad_search_outside(plan, &s->shell, NULL, count, (const float(*)[4])x), SINGE_OK);
+    assert_int_equal(broad_search_outside(&s->memory, plan, &s->shell, NULL, count, (const float(*)[4])x), SINGE_OK);
     uint8_t *listed = calloc((size_t)n * n, 1);
     for (uint32_t k = 0; k < plan->pair_count; k++) {
         const CollisionPair *pair = &plan->pairs[k];
@@ -499,7 +500,7 @@ static void the_grid_has_bounds(void **unused) {
     CollisionPlan *plan = s->plan;
     uint32_t n = plan->cell_count, listed = plan->listed_count;
     plan->position[500][0] += 200;
-    assert_int_equal(broad_search(plan, &s->shell, NULL), SINGE_OK);
+    assert_int_equal(broad_search(&s->memory, plan, &s->shell, NULL), SINGE_OK);
     assert_true(plan->listed_count >= listed / 2);
     uint8_t *seen = calloc((size_t)n * n, 1);
     for (uint32_t k = 0; k < plan->listed_count; k++) {
@@ -508,8 +509,9 @@ static void the_grid_has_bounds(void **unused) {
         *at = 1;
     }
     plan->position[500][1] = NAN, plan->speed[77][2] = INFINITY;
-    assert_int_equal(broad_search(plan, &s->shell, NULL), SINGE_OK);
-    assert_int_equal(broad_search_outside(plan, &s->shell, NULL, 3, (const float(*)[4])plan->position), SINGE_OK);
+    assert_int_equal(broad_search(&s->memory, plan, &s->shell, NULL), SINGE_OK);
+    assert_int_equal(broad_search_outside(&s->memory, plan, &s->shell, NULL, 3, (const float(*)[4])plan->position),
+                     SINGE_OK);
     free(seen);
     searched_free(s);
 }

@@ -278,11 +278,32 @@ static void no_memory_to_grow(void **state) {
     assert_true(failures > 8);
 }
 
+/// A simulation that was rebuilt counts the memory by which its lists grow.
+static void a_rebuilt_crowd_counts_its_memory(void **state) {
+    (void)state;
+    TestAllocator hook = {0};
+    SingeAllocator allocator = test_allocator(&hook);
+    SingeSim *sim = crowd(&stack, 1, &allocator);
+    test_ok(sim, singe_sim_set_ambient_temperature(sim, 350));
+    size_t uncounted = hook.bytes - singe_sim_counts(sim).memory;
+
+    test_steps(sim, 15);
+    assert_true(collision(sim)->repulsion_capacity > collision(sim)->sizes.repulsions);
+    assert_int_equal(hook.bytes - singe_sim_counts(sim).memory, uncounted);
+
+    singe_sim_destroy(sim);
+    test_allocator_check(&hook);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_list_keeps_what_comes_first), cmocka_unit_test(a_block_counts_up_to_the_most),
-        cmocka_unit_test(crowds_grow_the_lists),         cmocka_unit_test(what_lists_grow_to_decides_nothing),
-        cmocka_unit_test(what_is_dropped_is_counted),    cmocka_unit_test(no_memory_to_grow),
+        cmocka_unit_test(a_list_keeps_what_comes_first),
+        cmocka_unit_test(a_block_counts_up_to_the_most),
+        cmocka_unit_test(crowds_grow_the_lists),
+        cmocka_unit_test(what_lists_grow_to_decides_nothing),
+        cmocka_unit_test(what_is_dropped_is_counted),
+        cmocka_unit_test(no_memory_to_grow),
+        cmocka_unit_test(a_rebuilt_crowd_counts_its_memory),
     };
     return cmocka_run_group_tests_name("collision_crowd", tests, NULL, NULL);
 }

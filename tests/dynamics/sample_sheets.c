@@ -88,7 +88,7 @@ void bench_step(Bench *bench, float h) {
                            .error = &bench->error,
                            .h = h};
     context.state.dynamics = NULL;
-    SingeResult result = dynamics_step(bench->plan, &context, &bench->state.dynamics, &bench->counters);
+    SingeResult result = dynamics_step(&bench->memory, bench->plan, &context, &bench->state.dynamics, &bench->counters);
     assert_int_equal(result, SINGE_OK);
     bench->state.time += (double)h;
     bench->state.step++;

@@ -1,6 +1,6 @@
 // The paper's solver and its relatives: the matrix and its solution against dense ones, the same bytes for any threads
 // and instructions, what fails and how, the mass-spring model's period, and the paper beside the strands.
-#include "dynamics/paper_solver.h"
+#include "reference/spring_network.h"
 
 #include "common/random.h"
 #include "support/support.h"

@@ -248,8 +248,8 @@ static void forged_snapshots(void **state) {
 }
 
 /// Makes the first cell intersect one that is not there.
-static void one_crossing(CollisionPlan *plan) {
-    assert_true(initial_reserve(plan, 1));
+static void one_crossing(Memory *memory, CollisionPlan *plan) {
+    assert_true(initial_reserve(memory, plan, 1));
     plan->initial_other[0] = plan->cell_count;
     for (uint32_t c = 1; c <= plan->cell_count; c++) plan->initial_first[c] = 1;
 }
@@ -337,7 +337,7 @@ POKE(collision_position, sim->dynamics->collision->position[VERTEX][0] = NAN)
 POKE(collision_speed, sim->dynamics->collision->speed[VERTEX][0] = INFINITY)
 POKE(collision_alive, sim->dynamics->collision->alive[1] = 0)
 POKE(initial_crossing, sim->dynamics->collision->initial_first[1] = 9)
-POKE(initial_cell, one_crossing(sim->dynamics->collision))
+POKE(initial_cell, one_crossing(&sim->memory, sim->dynamics->collision))
 POKE(gas_field, sim->gas->turn[sim->state.gas.turn].field[GAS_LIGHTNESS][99] = NAN)
 POKE(gas_air, sim->gas->turn[sim->state.gas.turn].air[VERTEX][1] = INFINITY)
 

@@ -40,13 +40,13 @@ static inline void drawing_free(Drawing *d) {
 
 static inline void draw_coarse(Drawing *d) {
     const BurningSheet *b = d->sheet;
-    assert_int_equal(ablate_surface(d->plan, &b->shell, &b->state, &d->surface, &d->sheet->error), SINGE_OK);
+    assert_int_equal(surface_draw(d->plan, &b->shell, &b->state, &d->surface, &d->sheet->error), SINGE_OK);
 }
 
 static inline void draw_fine(Drawing *d) {
     const BurningSheet *b = d->sheet;
-    assert_int_equal(ablate_surface_fine(d->plan, &b->shell, &b->state, &d->detail, &d->sheet->memory, d->pool,
-                                         &d->surface, &d->sheet->error),
+    assert_int_equal(surface_draw_fine(d->plan, &b->shell, &b->state, &d->detail, &d->sheet->memory, d->pool,
+                                       &d->surface, &d->sheet->error),
                      SINGE_OK);
 }
 

@@ -339,7 +339,7 @@ static void survives_lack_of_memory(void **unused) {
         TestAllocator allocator = {.fail_at = n + 1};
         Memory memory = memory_make(test_allocator(&allocator));
         SingeSurface surface = {.allocator = test_allocator(&allocator)};
-        result = ablate_surface_fine(d->plan, &b->shell, &b->state, &d->detail, &memory, NULL, &surface, NULL);
+        result = surface_draw_fine(d->plan, &b->shell, &b->state, &d->detail, &memory, NULL, &surface, NULL);
         assert_int_equal(memory.held, 0);
         assert_true(result == SINGE_OK || result == SINGE_ERROR_MEMORY);
         failures += result != SINGE_OK;

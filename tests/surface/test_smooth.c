@@ -23,12 +23,11 @@ static void bend(Bent *b, float size) {
     }
 }
 
-/// The arrays of fine_position, as ablate_surface_fine lays them out.
+/// The arrays of fine_position, as surface_draw_fine lays them out.
 static void location(Bent *b) {
     Fine *fine = &b->fine;
     const size_t corners = b->shell.vertex_count, cells = b->shell.cell_count;
-    *fine =
-        (Fine){.plan = b->plan, .shell = &b->shell, .state = &b->state, .memory = &b->memory, .bulge_max = INFINITY};
+    *fine = (Fine){.shell = &b->shell, .state = &b->state, .memory = &b->memory, .bulge_max = INFINITY};
     assert_non_null(NEW(&b->memory, fine->sheets, b->shell.sheet_count));
     assert_non_null(NEW(&b->memory, fine->normal, b->shell.particle_count));
     assert_non_null(NEW(&b->memory, fine->share, corners)), assert_non_null(NEW(&b->memory, fine->max, corners));

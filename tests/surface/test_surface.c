@@ -249,24 +249,24 @@ static void survives_lack_of_memory(void **unused) {
             TestAllocator allocator = {0};
             SingeSurface surface = {.allocator = test_allocator(&allocator)};
             const BurningSheet *b = small->sheet;
-            if (grow) assert_int_equal(ablate_surface(small->plan, &b->shell, &b->state, &surface, NULL), SINGE_OK);
+            if (grow) assert_int_equal(surface_draw(small->plan, &b->shell, &b->state, &surface, NULL), SINGE_OK);
             allocator.calls = 0, allocator.fail_at = n + 1;
             b = large->sheet;
-            result = ablate_surface(large->plan, &b->shell, &b->state, &surface, NULL);
+            result = surface_draw(large->plan, &b->shell, &b->state, &surface, NULL);
             assert_true(result == SINGE_OK || result == SINGE_ERROR_MEMORY);
             if (result) {
                 failures++;
                 assert_int_equal(surface.vertex_count + surface.triangle_count, 0);
                 test_allocator_check(&allocator);
                 allocator.fail_at = 0; // it can be used again
-                assert_int_equal(ablate_surface(large->plan, &b->shell, &b->state, &surface, NULL), SINGE_OK);
+                assert_int_equal(surface_draw(large->plan, &b->shell, &b->state, &surface, NULL), SINGE_OK);
             }
             assert_int_equal(surface.triangle_count, 9 * 9 * 4);
             singe_surface_free(&surface);
             test_allocator_check(&allocator);
         }
     }
-    assert_int_equal(failures, 2 * 17);
+    assert_int_equal(failures, 2 * 18);
     singe_surface_free(NULL);
     drawing_free(small), drawing_free(large);
 }

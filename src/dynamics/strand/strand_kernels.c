@@ -24,9 +24,11 @@ const Kernels *kernels_choose(SingeInstructions instructions) {
     static const SingeInstructions best_first[] = {SINGE_INSTRUCTIONS_ARM_NEON, SINGE_INSTRUCTIONS_X86_V4,
                                                    SINGE_INSTRUCTIONS_X86_V3, SINGE_INSTRUCTIONS_X86_V2};
     if (instructions != SINGE_INSTRUCTIONS_BEST) return kernels_of(instructions);
+
     for (size_t i = 0; i < sizeof best_first / sizeof best_first[0]; i++) {
         const Kernels *kernels = kernels_of(best_first[i]);
         if (kernels) return kernels;
     }
+
     return kernels_of(SINGE_INSTRUCTIONS_PLAIN);
 }

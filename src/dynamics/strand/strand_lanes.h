@@ -61,9 +61,6 @@ static inline uint32_t strand_column(uint32_t width, uint32_t lane) { return lan
 bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowhere, bool pulls, StrandSet *set);
 void strand_set_free(Memory *memory, StrandSet *set);
 
-/// Gives every strand its slot, and writes groups, families and rows (strand_lay.c). False when out of memory.
-bool strand_lay(Memory *memory, const SpringSet *springs, uint32_t particle_count, StrandSet *set);
-
 typedef struct StrandJob {
     const StrandSet *set;
     float *position; ///< [4 (particles + 1)] m, fourth: inverse mass

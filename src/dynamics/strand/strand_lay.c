@@ -57,16 +57,21 @@ static void lay_put(Lay *lay, uint32_t s, uint32_t group, uint32_t column, uint3
 /// Lists the chains or the rings of a family that are not laid; true where there are any.
 static bool lay_list(Lay *lay, uint32_t family, bool ring) {
     const SpringSet *springs = lay->springs;
-    for (uint32_t length = 0; length <= springs->longest; length++)
-        lay->head[length] = SHELL_NONE, lay->below[length] = length ? length - 1 : 0;
+    for (uint32_t length = 0; length <= springs->longest; length++) {
+        lay->head[length] = SHELL_NONE;
+        lay->below[length] = length ? length - 1 : 0;
+    }
+
     bool any = false;
     for (uint32_t s = springs->family_first[family + 1]; s-- > springs->family_first[family];) {
         if ((springs->strand_ring[s] != 0) != ring || lay_is_laid(lay, s)) continue;
+
         uint32_t length = strand_length(springs, s);
         lay->next[s] = lay->head[length];
         lay->head[length] = s;
         any = true;
     }
+
     return any;
 }
 
@@ -79,11 +84,13 @@ static uint32_t lay_longest(Lay *lay, uint32_t max) {
         if (lay->head[found] != SHELL_NONE) break;
         found = lay->below[found];
     }
+
     while (max > found) {
         uint32_t next = lay->below[max];
         lay->below[max] = found;
         max = next;
     }
+
     return found;
 }
 
@@ -109,6 +116,7 @@ static void lay_close_group(Lay *lay, uint32_t first) {
         low = low < row ? low : row;
         high = high > end ? high : end;
     }
+
     for (uint32_t i = first; i < lay->laid_count; i++) lay->laid[i].row -= low;
     lay->set->groups[lay->set->group_count - 1].rows = high - low;
 }
@@ -120,6 +128,7 @@ static void lay_own(Lay *lay, uint32_t family, bool own) {
     const SpringSet *springs = lay->springs;
     for (uint32_t s = springs->family_first[family]; s < springs->family_first[family + 1]; s++) {
         if (springs->strand_ring[s]) continue;
+
         for (uint32_t k = 0; k <= strand_length(springs, s); k++) {
             uint32_t p = strand_node(springs, s, k);
             lay->owner[p] = own ? s : SHELL_NONE;
@@ -132,6 +141,7 @@ static void lay_own(Lay *lay, uint32_t family, bool own) {
 static void lay_put_right(Lay *lay, uint32_t s, uint32_t column, uint32_t row) {
     uint32_t length = strand_length(lay->springs, s);
     if (row + length >= lay->frame) return;
+
     for (uint32_t k = 0; k <= length; k++)
         if (lay->right[row + k] != SHELL_NONE) return;
     for (uint32_t k = 0; k <= length; k++) lay->right[row + k] = strand_node(lay->springs, s, k);
@@ -146,31 +156,16 @@ static uint32_t lay_right(Lay *lay, uint32_t column) {
     for (uint32_t k = 0; k < lay->frame; k++) lay->right[k] = SHELL_NONE;
     for (uint32_t k = 0; k < lay->frame; k++) {
         if (lay->left[k] == SHELL_NONE || lay->left[k] + 1 >= lay->particle_count) continue;
+
         uint32_t p = lay->left[k] + 1, s = lay->owner[p];
         if (s == SHELL_NONE || lay_is_laid(lay, s) || lay->tried[s] == lay->lane_serial || lay->index[p] > k) continue;
         lay->tried[s] = lay->lane_serial;
         lay_put_right(lay, s, column, k - lay->index[p]);
     }
+
     for (uint32_t k = 0; k < lay->frame; k++)
         contiguous += lay->left[k] != SHELL_NONE && lay->right[k] == lay->left[k] + 1;
     return contiguous;
-}
-
-/// Goes from `s` to the left while the strands are equally long.
-static uint32_t lay_leftmost(const Lay *lay, uint32_t s) {
-    uint32_t start = s, length = strand_length(lay->springs, s);
-    for (;;) {
-        uint32_t p = strand_node(lay->springs, s, 0), t = p > 0 ? lay->owner[p - 1] : SHELL_NONE;
-        if (t == SHELL_NONE || t == start || lay_is_laid(lay, t) || lay->index[p - 1] != 0 ||
-            strand_length(lay->springs, t) != length)
-            return s;
-        s = t;
-    }
-}
-
-/// Removes the strands laid since there were `count`.
-static void lay_take_back(Lay *lay, uint32_t count) {
-    while (lay->laid_count > count) lay->set->strand_slot[lay->laid[--lay->laid_count].strand] = SHELL_NONE;
 }
 
 /// Lays the run that begins with `s`, and takes it back when it has few lanes.
@@ -195,12 +190,14 @@ static bool lay_run(Lay *lay, uint32_t s) {
             group = lay_open_group(lay, false);
             first = lay->laid_count;
         }
+
         before = lay->laid_count;
         contiguous = lay_right(lay, group->columns);
     }
 
     // keep the run if it is long enough
-    lay_take_back(lay, lanes < LAY_RUN_MIN ? start : before);
+    const uint32_t kept = lanes < LAY_RUN_MIN ? start : before;
+    while (lay->laid_count > kept) lay->set->strand_slot[lay->laid[--lay->laid_count].strand] = SHELL_NONE;
     if (first < lay->laid_count) lay_close_group(lay, first);
     else lay->set->group_count = lanes < LAY_RUN_MIN ? groups : lay->set->group_count - 1;
     return lanes >= LAY_RUN_MIN;
@@ -209,9 +206,22 @@ static bool lay_run(Lay *lay, uint32_t s) {
 static void lay_runs(Lay *lay, uint32_t family) {
     uint32_t length = lay->springs->longest;
     if (!lay_list(lay, family, false)) return;
+
     lay_own(lay, family, true);
-    while ((length = lay_longest(lay, length)) > 0)
-        if (!lay_run(lay, lay_leftmost(lay, lay->head[length]))) lay_take(lay, length);
+    while ((length = lay_longest(lay, length)) > 0) {
+        // from the longest to the left while the strands are equally long
+        const uint32_t start = lay->head[length];
+        uint32_t s = start;
+        for (;;) {
+            uint32_t p = strand_node(lay->springs, s, 0), t = p > 0 ? lay->owner[p - 1] : SHELL_NONE;
+            if (t == SHELL_NONE || t == start || lay_is_laid(lay, t) || lay->index[p - 1] != 0) break;
+            if (strand_length(lay->springs, t) != length) break;
+            s = t;
+        }
+
+        if (!lay_run(lay, s)) lay_take(lay, length);
+    }
+
     lay_own(lay, family, false);
 }
 
@@ -227,33 +237,35 @@ static uint32_t lay_fill(Lay *lay, uint32_t group, uint32_t column, uint32_t row
         row += length + 1;
         nodes -= length + 1;
     }
-    return row;
-}
 
-/// Fills the gaps between the strands laid from `first` on, which lie column after column from the top down.
-static void lay_fill_gaps(Lay *lay, uint32_t first) {
-    uint32_t count = lay->laid_count;
-    for (uint32_t i = first, row = 0; i < count; i++) {
-        Laid laid = lay->laid[i];
-        lay_fill(lay, laid.group, laid.column, row, laid.row - row);
-        row = laid.row + strand_length(lay->springs, laid.strand) + 1;
-        if (i + 1 < count && lay->laid[i + 1].group == laid.group && lay->laid[i + 1].column == laid.column) continue;
-        lay_fill(lay, laid.group, laid.column, row, lay->set->groups[laid.group].rows + 1 - row);
-        row = 0;
-    }
+    return row;
 }
 
 /// Fills the gaps of the family's groups, then their empty columns, then new groups.
 static void lay_rest(Lay *lay, uint32_t family, uint32_t first) {
     StrandSet *set = lay->set;
     if (!lay_list(lay, family, false)) return;
-    lay_fill_gaps(lay, first);
+
+    // gaps between the strands laid from `first` on, which lie column after column from the top down
+    const uint32_t count = lay->laid_count;
+    for (uint32_t i = first, row = 0; i < count; i++) {
+        Laid laid = lay->laid[i];
+        lay_fill(lay, laid.group, laid.column, row, laid.row - row);
+        row = laid.row + strand_length(lay->springs, laid.strand) + 1;
+        if (i + 1 < count && lay->laid[i + 1].group == laid.group && lay->laid[i + 1].column == laid.column) continue;
+
+        lay_fill(lay, laid.group, laid.column, row, set->groups[laid.group].rows + 1 - row);
+        row = 0;
+    }
+
+    // empty columns
     for (uint32_t g = set->family_first[family]; g < set->group_count; g++)
         for (StrandGroup *group = &set->groups[g]; group->columns < STRAND_LANES; group->columns++) {
             uint32_t rows = group->rows < lay->springs->longest ? group->rows : lay->springs->longest;
             if (lay_longest(lay, rows) == 0) break;
             lay_fill(lay, g, group->columns, 0, group->rows + 1);
         }
+
     // every lane up to the longest: diagonals of a rectangle thus pair up
     for (uint32_t longest = lay_longest(lay, lay->springs->longest); lay_longest(lay, longest) > 0;) {
         StrandGroup *group = lay_open_group(lay, false);
@@ -274,68 +286,127 @@ static void lay_rings(Lay *lay, uint32_t family) {
     }
 }
 
-/// Widths and rows of the family's groups, and the slots of its strands.
-static void lay_slots(Lay *lay, uint32_t family, uint32_t first) {
+static void lay_family(Lay *lay, uint32_t family) {
+    const uint32_t first = lay->laid_count;
     StrandSet *set = lay->set;
+    set->family_first[family] = set->group_count;
+    lay_runs(lay, family);
+    lay_rest(lay, family, first);
+    lay_rings(lay, family);
+
+    // widths and rows of its groups, and the slots of its strands
     for (uint32_t g = set->family_first[family]; g < set->group_count; g++) {
         StrandGroup *group = &set->groups[g];
         group->width = group->columns <= 4 ? 4 : group->columns <= 8 ? 8 : STRAND_LANES;
         group->row = set->row_count;
         set->row_count += group->rows + 1; // one more for the last node
     }
+
     for (uint32_t i = first; i < lay->laid_count; i++) {
         const Laid *laid = &lay->laid[i];
         const StrandGroup *group = &set->groups[laid->group];
         uint32_t lane = strand_lane(group->width, laid->column);
         set->strand_slot[laid->strand] = (group->row + laid->row) * STRAND_LANES + lane;
     }
+
+    set->family_first[family + 1] = set->group_count;
 }
 
-static void lay_family(Lay *lay, uint32_t family) {
-    uint32_t first = lay->laid_count;
-    lay->set->family_first[family] = lay->set->group_count;
-    lay_runs(lay, family);
-    lay_rest(lay, family, first);
-    lay_rings(lay, family);
-    lay_slots(lay, family, first);
-    lay->set->family_first[family + 1] = lay->set->group_count;
-}
-
-static size_t lay_frame_max(const SpringSet *springs) {
-    return (size_t)springs->longest + 1 + 2 * (LAY_MARGIN + springs->longest / 32);
-}
-
-static bool lay_create(Memory *memory, Lay *lay) {
-    const SpringSet *springs = lay->springs;
-    size_t lengths = (size_t)springs->longest + 1;
-    return NEW(memory, lay->head, lengths) && NEW(memory, lay->below, lengths) &&
-           NEW(memory, lay->next, springs->strand_count) && NEW(memory, lay->tried, springs->strand_count) &&
-           NEW(memory, lay->laid, springs->strand_count) && NEW(memory, lay->owner, lay->particle_count) &&
-           NEW(memory, lay->index, lay->particle_count) && NEW(memory, lay->left, lay_frame_max(springs)) &&
-           NEW(memory, lay->right, lay_frame_max(springs));
-}
-
-static void lay_free(Memory *memory, Lay *lay) {
-    const SpringSet *springs = lay->springs;
-    FREE(memory, lay->head, (size_t)springs->longest + 1);
-    FREE(memory, lay->below, (size_t)springs->longest + 1);
-    FREE(memory, lay->next, springs->strand_count);
-    FREE(memory, lay->tried, springs->strand_count);
-    FREE(memory, lay->laid, springs->strand_count);
-    FREE(memory, lay->owner, lay->particle_count);
-    FREE(memory, lay->index, lay->particle_count);
-    FREE(memory, lay->left, lay_frame_max(springs));
-    FREE(memory, lay->right, lay_frame_max(springs));
-}
-
-bool strand_lay(Memory *memory, const SpringSet *springs, uint32_t particle_count, StrandSet *set) {
+/// Gives every strand its slot, and writes groups, families and rows. False when out of memory.
+static bool lay_strands(Memory *memory, const SpringSet *springs, uint32_t particle_count, StrandSet *set) {
+    const size_t lengths = (size_t)springs->longest + 1;
+    const size_t frame = lengths + 2 * (LAY_MARGIN + springs->longest / 32);
     Lay lay = {.springs = springs, .set = set, .particle_count = particle_count};
-    bool done = lay_create(memory, &lay);
-    if (done) {
-        for (uint32_t p = 0; p < particle_count; p++) lay.owner[p] = SHELL_NONE;
-        for (uint32_t s = 0; s < springs->strand_count; s++) set->strand_slot[s] = SHELL_NONE;
-        for (uint32_t f = 0; f < springs->family_count; f++) lay_family(&lay, f);
-    }
-    lay_free(memory, &lay);
+    bool done = NEW(memory, lay.head, lengths) && NEW(memory, lay.below, lengths) &&
+                NEW(memory, lay.next, springs->strand_count) && NEW(memory, lay.tried, springs->strand_count) &&
+                NEW(memory, lay.laid, springs->strand_count) && NEW(memory, lay.owner, particle_count) &&
+                NEW(memory, lay.index, particle_count) && NEW(memory, lay.left, frame) && NEW(memory, lay.right, frame);
+    for (uint32_t p = 0; p < particle_count && done; p++) lay.owner[p] = SHELL_NONE;
+    for (uint32_t s = 0; s < springs->strand_count && done; s++) set->strand_slot[s] = SHELL_NONE;
+    for (uint32_t f = 0; f < springs->family_count && done; f++) lay_family(&lay, f);
+    FREE(memory, lay.head, lengths);
+    FREE(memory, lay.below, lengths);
+    FREE(memory, lay.next, springs->strand_count);
+    FREE(memory, lay.tried, springs->strand_count);
+    FREE(memory, lay.laid, springs->strand_count);
+    FREE(memory, lay.owner, particle_count);
+    FREE(memory, lay.index, particle_count);
+    FREE(memory, lay.left, frame);
+    FREE(memory, lay.right, frame);
     return done;
+}
+
+// ---- the arrays that kernels read
+
+/// Words of the block: four arrays, each on a boundary of STRAND_LANES words, and one more.
+static size_t set_words(const StrandSet *set) {
+    return (4 * (size_t)set->row_count + 1) * STRAND_LANES + set->row_count;
+}
+
+bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowhere, bool pulls, StrandSet *set) {
+    *set = (StrandSet){.family_count = springs->family_count, .strand_count = springs->strand_count};
+    set->group_capacity = set->strand_count; // a strand has a group of its own at most
+    if (!NEW(memory, set->groups, set->group_capacity) ||
+        !NEW(memory, set->family_first, (size_t)set->family_count + 1) ||
+        !NEW(memory, set->strand_slot, set->strand_count) || !lay_strands(memory, springs, nowhere, set) ||
+        !memory_grow(memory, &set->groups, set->group_capacity, set->group_count, sizeof *set->groups))
+        return false;
+    set->group_capacity = set->group_count;
+    if (set->row_count > UINT32_MAX / STRAND_LANES) return false; // slots are numbered in 32 bits
+
+    // one block for five arrays
+    const size_t slots = (size_t)set->row_count * STRAND_LANES;
+    float *words = memory_new(memory, set_words(set), sizeof *words);
+    if (!words) return false;
+
+    set->block = words;
+    words += (64 - (uintptr_t)words % 64) % 64 / sizeof *words;
+    set->length = words;
+    set->weight = words + slots;
+    set->compliance = words + 2 * slots;
+    set->node = (uint32_t *)(void *)(words + 3 * slots);
+    set->contiguous = set->node + slots;
+    if (pulls && !NEW(memory, set->pull, slots)) return false;
+
+    // a particle of no mass everywhere: groups that are solved side by side write to positions of their own
+    for (uint32_t f = 0; f < set->family_count; f++)
+        for (uint32_t g = set->family_first[f]; g < set->family_first[f + 1]; g++) {
+            const StrandGroup *group = &set->groups[g];
+            uint32_t *node = set->node + (size_t)group->row * STRAND_LANES;
+            for (uint32_t i = 0; i < (group->rows + 1) * STRAND_LANES; i++)
+                node[i] = 4 * (nowhere + g - set->family_first[f]);
+        }
+
+    // but for the particles along every strand
+    for (uint32_t s = 0; s < set->strand_count; s++) {
+        uint32_t *node = set->node + set->strand_slot[s];
+        for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, node += STRAND_LANES) {
+            node[0] = 4 * springs->ends[k][0];
+            node[STRAND_LANES] = 4 * springs->ends[k][1];
+        }
+    }
+
+    // rows whose particles have consecutive numbers
+    for (uint32_t g = 0; g < set->group_count; g++) {
+        const StrandGroup *group = &set->groups[g];
+        if (set->longest < group->rows) set->longest = group->rows;
+        for (uint32_t row = group->row; row <= group->row + group->rows; row++) {
+            const uint32_t *node = set->node + (size_t)row * STRAND_LANES;
+            set->contiguous[row] = node[0];
+            for (uint32_t c = 0; c < group->width; c++)
+                if (node[strand_lane(group->width, c)] != node[0] + 4 * c) set->contiguous[row] = STRAND_GATHERED;
+        }
+    }
+
+    return true;
+}
+
+void strand_set_free(Memory *memory, StrandSet *set) {
+    FREE(memory, set->groups, set->group_capacity);
+    FREE(memory, set->family_first, (size_t)set->family_count + 1);
+    FREE(memory, set->strand_slot, set->strand_count);
+    memory_free(memory, &set->block, set_words(set), sizeof(float));
+    FREE(memory, set->pull, (size_t)set->row_count * STRAND_LANES);
+    FREE(memory, set->bend_limit, (size_t)set->row_count * STRAND_LANES);
+    *set = (StrandSet){0};
 }

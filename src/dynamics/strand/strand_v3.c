@@ -42,6 +42,7 @@ static inline Float4s float4s_gather(const float *position, const uint32_t *node
         __m256 q = _mm256_castps128_ps256(_mm_loadu_ps(position + node[e]));
         float4s.at[e] = _mm256_insertf128_ps(q, _mm_loadu_ps(position + node[e + 4]), 1);
     }
+
     return float4s;
 }
 

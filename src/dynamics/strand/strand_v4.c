@@ -45,6 +45,7 @@ static inline Float4s float4s_gather(const float *position, const uint32_t *node
         q = _mm512_insertf32x4(q, _mm_loadu_ps(position + node[e + 8]), 2);
         float4s.at[e] = _mm512_insertf32x4(q, _mm_loadu_ps(position + node[e + 12]), 3);
     }
+
     return float4s;
 }
 

@@ -1,0 +1,202 @@
+// The solver of strands: each substep projects the colours in turn, and a colour's springs along their strands.
+//
+// Families of a colour follow each other as in block Gauss-Seidel; the groups of a family go side by side and share no
+// particle, so that their order and the number of threads do not matter.
+#include "common/clock.h"
+#include "common/thread.h"
+#include "dynamics/dynamics_plan.h"
+#include "dynamics/stiffness.h"
+
+#include <stdatomic.h>
+
+/// Operations of a row of the chain's solve and bytes it moves, counted in strand_kernel.h. The bytes: node, length,
+/// weight, compliance and position forward; node, position twice back. Rows whose particles are contiguous do without
+/// the nodes.
+enum { STRAND_FLOPS = 51, STRAND_BYTES = 4 * 4 + 16 + 4 + 2 * 16 };
+
+/// Floats that one solve needs: STRAND_KEEP for each row and lane.
+static size_t keep_floats(const Strands *strands) {
+    return ((size_t)strands->longest * STRAND_KEEP + 1) * STRAND_LANES;
+}
+
+static bool strands_create(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
+    const SingeSolverDef *solver = &plan->settings.solver;
+    const float h = plan->settings.time_step / (float)solver->substeps;
+    Strands *strands = &plan->strands;
+    *strands = (Strands){.solve = plan->kernels->solve, .room_count = plan->settings.thread_count};
+
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        const SpringSet *springs = &shell->springs[colour];
+        StrandSet *set = &strands->sets[colour];
+        if (!strand_set_create(memory, springs, shell->particle_count, shell->spare_count > 0, set)) return false;
+        if (strands->longest < set->longest) strands->longest = set->longest;
+
+        // compliances, and whether they are all the same
+        Stiffness stiffness;
+        stiffness_begin(shell, (SingeColour)colour, h, solver->regularisation[colour], &stiffness);
+        set->compliance_all = 0;
+        for (uint32_t s = 0; s < set->strand_count; s++) {
+            float *slot = set->compliance + set->strand_slot[s];
+            for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
+                *slot = stiffness_compliance(&stiffness, k);
+                if (s == 0 && k == 0) set->compliance_all = *slot;
+                if (*slot != set->compliance_all) set->compliance_all = -1;
+            }
+        }
+    }
+
+    if (!NEW(memory, strands->keep, keep_floats(strands) * (size_t)strands->room_count)) return false;
+    if (!curvature_create(memory, shell, strands)) return false;
+    if (!shell->creases) return true;
+    if (!NEW(memory, plan->hinges, shell->springs[SINGE_GREEN].count)) return false;
+
+    creases_measure(shell, plan->hinges);
+    return true;
+}
+
+static void strands_release(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
+    Strands *strands = &plan->strands;
+    FREE(memory, strands->keep, keep_floats(strands) * (size_t)strands->room_count);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) strand_set_free(memory, &strands->sets[colour]);
+    FREE(memory, plan->hinges, shell->springs[SINGE_GREEN].count);
+}
+
+// ---- a step's weights and lengths
+
+typedef struct Prepare {
+    DynamicsPlan *plan;
+    const Shell *shell;
+    const StateInput *state;
+    const DynamicsState *dynamics;
+    SingeColour colour;
+} Prepare;
+
+static void prepare_range(void *task, int begin, int end) {
+    const Prepare *job = task;
+    const SpringSet *springs = &job->shell->springs[job->colour];
+    StrandSet *set = &job->plan->strands.sets[job->colour];
+    const uint8_t *flags = job->state->ablate->spring_flags[job->colour];
+    const float *target = job->state->burn->spring_length[job->colour];
+    const Field material = job->shell->matter.weight[job->colour];
+    const float *soft = job->plan->soft;
+    const Hinge *hinges = job->colour == SINGE_GREEN ? job->plan->hinges : NULL;
+    const float *crease = job->dynamics->crease, *bend = job->dynamics->bend;
+    const bool torn = job->shell->split_count > 0;
+
+    for (int s = begin; s < end; s++) {
+        // weights and lengths into the lanes; a crease changes lengths of green springs
+        size_t slot = set->strand_slot[s];
+        for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
+            uint32_t a = springs->ends[k][0], b = springs->ends[k][1];
+            bool here = flags[k] & SINGE_ALIVE;
+            if (torn) here = here && patch_is_in_strand(job->plan, job->shell, job->colour, k, slot);
+            set->weight[slot] = here ? dynamics_weight(material, soft, a, b) : 0;
+            set->length[slot] = target[k];
+            if (!hinges || crease[k] == 0) continue;
+            float stays = crease[k] * hinges[k].arc * crease_kept(job->shell, job->state, k);
+            set->length[slot] *= crease_ratio(&hinges[k], stays, bend[k] * hinges[k].arc);
+        }
+
+        if (set->bend_limit) curvature_prepare(job->shell, job->state, job->colour, (uint32_t)s, set);
+    }
+}
+
+static void strands_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
+                            const DynamicsState *dynamics) {
+    Prepare job = {plan, shell, state, dynamics, SINGE_RED};
+    bool torn = patch_follow(plan, shell);
+
+    // where nothing has burnt, the values of an earlier step are still right
+    bool same = plan->strands_written && state->burn->mass_burnt == 0 && !torn;
+    plan->strands_written = false; // till the step is done: one that is undone may have written other weights
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        if (same && !(plan->creased && colour == SINGE_GREEN)) continue;
+
+        job.colour = (SingeColour)colour;
+        const SpringSet *springs = &shell->springs[colour];
+        int grain = 1 + (int)((uint64_t)POOL_BLOCK * springs->strand_count / (springs->count + 1));
+        pool_for(pool, (int)springs->strand_count, grain, prepare_range, &job);
+    }
+
+    patch_prepare(plan, shell, state);
+}
+
+// ---- a substep
+
+typedef struct Project {
+    StrandJob job;
+    Strands *strands;
+    uint32_t first_group;
+} Project;
+
+static void project_range(void *task, int begin, int end) {
+    Project *project = task;
+    Strands *strands = project->strands;
+
+    // take a room of the scratch for this thread, a bit of `taken`. A host's scheduler may run more threads than there
+    // are rooms; they wait
+    int room = 0;
+    while (atomic_fetch_or(&strands->taken, (uint64_t)1 << room) & (uint64_t)1 << room)
+        if (++room == strands->room_count) {
+            room = 0;
+            thread_yield();
+        }
+
+    float *keep = strands->keep + keep_floats(strands) * (size_t)room;
+    keep += (64 - (uintptr_t)keep % 64) % 64 / sizeof *keep;
+    for (int i = begin; i < end; i++) strands->solve(&project->job, project->first_group + (uint32_t)i, keep);
+    atomic_fetch_and(&strands->taken, ~((uint64_t)1 << room));
+}
+
+void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h, DynamicsState *dynamics,
+                    DynamicsCounters *counters) {
+    Strands *strands = &plan->strands;
+    const StrandSet *set = &strands->sets[colour];
+    Project project = {
+        {set, dynamics->position[0], plan->settings.solver.regularisation[colour], 1 / (h * h)}, strands, 0};
+
+    for (uint32_t f = 0; f < set->family_count; f++) {
+        project.first_group = set->family_first[f];
+        pool_for(pool, (int)(set->family_first[f + 1] - project.first_group), 1, project_range, &project);
+    }
+
+    patch_project(plan, colour, 1 / (h * h), dynamics);
+    counters->strands += set->strand_count;
+    counters->springs += plan->spring_count[colour];
+    counters->flops += (double)STRAND_FLOPS * plan->spring_count[colour];
+    counters->bytes += (double)STRAND_BYTES * plan->spring_count[colour];
+}
+
+/// A projection of all colours: the attachments come first, for the load, and before the last colour, which is satisfied
+/// best: so it repairs what they disturb.
+static SingeResult strands_project(DynamicsPlan *plan, const Substep *substep) {
+    const SingeSolverDef *solver = &plan->settings.solver;
+    const Shell *shell = substep->shell;
+    const AblateState *ablate = substep->state->ablate;
+    Pool *pool = substep->pool;
+    DynamicsState *dynamics = substep->dynamics;
+    const float h = substep->h;
+    for (int projection = 0; projection < solver->projections; projection++)
+        for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
+            const bool last = i == SINGE_COLOUR_COUNT - 1,
+                       again = i == 0 && projection > 0; // the first: with prediction
+            if (solver->attachments && (again || last))
+                attach_project(&plan->attachments, shell, plan->kernels->hold, pool, dynamics);
+            if (last) curvature_project(plan, pool, dynamics);
+            double start = clock_seconds();
+            strand_project(plan, solver->order[i], pool, h, dynamics, substep->counters);
+            substep->counters->seconds += clock_seconds() - start;
+        }
+    height_project(plan, shell, ablate, pool, dynamics);
+    if (plan->collision) repulsion_apply(plan->collision, (const float(*)[4])plan->predicted, h, dynamics);
+    contact_centroids(plan, shell, ablate, substep->collider_count, pool, h, dynamics);
+    return SINGE_OK;
+}
+
+const Solver strand_solver = {.create = strands_create,
+                              .release = strands_release,
+                              .prepare = strands_prepare,
+                              .project = strands_project,
+                              .gather = patch_gather,
+                              .limit = dynamics_limit,
+                              .leaves_closing = true};
