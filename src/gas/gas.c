@@ -40,6 +40,22 @@ static void gas_look(void *context, int begin, int end) {
     }
 }
 
+/// Whether any gas is left at the end of a step. If not, it comes to rest; fuel that the sheets still hold stays.
+static bool gas_is_left(const GasPass *pass) {
+    const GasPlan *plan = pass->plan;
+    const GasGrid *grid = &plan->grid;
+    GasTurn *to = pass->to;
+    int left = 0;
+    gas_planes(pass, grid, gas_look);
+    for (int k = 0; k < grid->n[2]; k++) left |= plan->hot[k];
+    if (left) return true;
+
+    for (int f = 0; f < GAS_FIELDS; f++) memset(to->field[f], 0, grid->cells * sizeof(float));
+    memset(to->conductance, 0, plan->particles * sizeof(float));
+    memset(to->air, 0, plan->particles * sizeof *to->air);
+    return false;
+}
+
 void gas_step(GasPlan *plan, const StepContext *context, GasState *gas) {
     const StateInput *state = &context->state;
     const GasGrid *grid = &plan->grid;
@@ -56,7 +72,7 @@ void gas_step(GasPlan *plan, const StepContext *context, GasState *gas) {
                     .dt = plan->dt};
     pass.fire = plan->dt * (float)plan->parts * plan->settings.pace;
 
-    // a step that was rolled back must have restored which set of fields is current
+    // the state points at the current set of fields, also after a step that was rolled back
     SINGE_ASSERT(gas->conductance == pass.from->conductance && gas->fuel == pass.from->fuel);
 
     // nothing burns and nothing moves: no step
@@ -77,19 +93,7 @@ void gas_step(GasPlan *plan, const StepContext *context, GasState *gas) {
         gas_force(&pass);
         gas_project(&pass);
 
-        // at the end, gas without heat, fuel and smoke comes to rest; what the sheets still hold stays
-        gas->awake = true;
-        if (part + 1 == plan->parts) {
-            gas_planes(&pass, grid, gas_look);
-            gas->awake = false;
-            for (int k = 0; k < grid->n[2]; k++) gas->awake |= plan->hot[k];
-        }
-
-        if (!gas->awake) {
-            for (int f = 0; f < GAS_FIELDS; f++) memset(pass.to->field[f], 0, grid->cells * sizeof(float));
-            memset(pass.to->conductance, 0, plan->particles * sizeof(float));
-            memset(pass.to->air, 0, plan->particles * sizeof *pass.to->air);
-        }
+        gas->awake = part + 1 < plan->parts || gas_is_left(&pass);
 
         // the new set of fields becomes the current one
         gas->turn = !gas->turn;

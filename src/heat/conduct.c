@@ -242,7 +242,7 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
         counters->iterations++;
     }
 
-    // the new temperatures; where one has left the range, bound.c makes them
+    // the new temperatures; bound.c makes them if one has left the range
     bool within = true;
     heat_blocks(pass, conduct_settle);
     heat_blocks(pass, conduct_finish);

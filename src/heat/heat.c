@@ -106,7 +106,7 @@ static void heat_exchange(void *context, int begin, int end) {
         for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
             uint32_t first = g * HEAT_GROUP, last = heat_group_last(plan, g);
 
-            // eq 1 changes nothing where all is at the ambient temperature, without a source and fire
+            // eq 1 changes nothing in a group at the ambient temperature that no source or fire heats
             int busy = 0, warm = 0;
             for (uint32_t i = first; i < last; i++)
                 busy |= (temperature[i] != ambient) | (flux[i] != 0) | (conductance[i] != 0) | (tends[i] != 0) |
@@ -116,7 +116,7 @@ static void heat_exchange(void *context, int begin, int end) {
                 plan->delta[i] = 0;
             }
 
-            // elsewhere, sheet by sheet; then whether a live particle is or gets warm
+            // otherwise exchange heat, sheet by sheet; a group is warm if a live particle leaves that temperature
             for (uint32_t i = first, run; i < last && busy; i = run) {
                 for (run = i + 1; run < last && sheet[run] == sheet[i];) run++;
                 heat_exchange_run(pass, i, run, ledger);

@@ -83,7 +83,7 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
 
     for (size_t k = 0; k < ARRAYS; k++) *arrays[k] = (float *)plan->scratch + k * stride;
 
-    // thickening, conductances, which must stay finite in a step
+    // thickening, then conductances, which must stay finite in a step
     SingeResult result = plan_thicken(plan, shell, error);
     if (!result) heat_operator(plan, shell);
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
@@ -94,7 +94,7 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
                                    "thickening",
                                    shell->sheets[shell->matter.sheet[shell->springs[c].ends[k][0]]].name);
 
-    // the matrix; tears need the conductances again
+    // the matrix; after it only tears need the conductances
     if (!result) {
         result = heat_matrix_create(memory, plan, shell);
         if (shell->spare_count == 0) FREE(memory, plan->conductance, plan->springs);
@@ -161,7 +161,7 @@ void heat_plan_follow(HeatPlan *plan, const Shell *shell, const StateInput *stat
     plan->split_count = shell->split_count;
     if (first == shell->split_count || follow_splits(plan, shell, state, first)) return;
 
-    // all anew; the step's scratch is free, as the step has not begun
+    // rebuild everything; the step's scratch is free, as the step has not begun
     for (uint32_t k = 0; k < plan->springs; k++) plan->conductance[k] = 0;
     for (uint32_t i = 0; i < plan->particles; i++) plan->measure[i] = 0;
     heat_operator(plan, shell);

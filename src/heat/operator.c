@@ -169,7 +169,7 @@ static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell)
     Float3 normal = float3_unit(float3_cross(float3_sub(x[2], x[0]), float3_sub(x[3], x[1])));
     Float3 centroid = float3_scale(float3_add(float3_add(x[0], x[1]), float3_add(x[2], x[3])), 0.25f);
 
-    // twice the triangle at each side, negative if it faces away
+    // the triangle at each side, negative if it faces away
     double triangle[4];
     bool even = false;
     for (int k = 0; k < 4; k++) {

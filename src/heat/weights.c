@@ -204,7 +204,7 @@ void heat_cell_weights(const Float3 x[4], const double across[4], double w[6]) {
     for (int e = 0; e < SPRINGS; e++)
         if (twice > 0 && springs[e].square > 0) positive[e] = twice * k[e] / (even * springs[e].square);
 
-    // the smallest s with which nothing is negative
+    // the smallest s for which no weight is negative
     for (int e = 0; e < SPRINGS && linear; e++) {
         double min = e < SIDES ? fmin(-across[e], 0) : 0;
         if (w[e] < min) mix = fmax(mix, (min - w[e]) / (positive[e] - w[e]));

@@ -23,7 +23,7 @@ static SingeResult shell_no_memory(const Shell *shell, SingeError *error) {
     return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells", shell->cell_count);
 }
 
-/// Counts what the sheets have, and allocates.
+/// Counts the vertices and cells of all sheets, and allocates the arrays.
 static SingeResult shell_alloc(Memory *memory, const SheetSource *sources, uint32_t source_count, Shell *shell,
                                SingeError *error) {
     uint64_t vertices = 0, cells = 0, numbers = 0;
