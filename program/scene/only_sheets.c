@@ -15,7 +15,7 @@ void scene_keep_only_sheets(Reader *reader, const YamlNode *node, Scene *scene) 
         const uint32_t sheet = scene->only_sheets[i];
         if (sheet >= scene->sheet_count)
             message_add(reader->messages, reader->text, number->location,
-                        "there is no sheet %u: the scene has %u, from 0", sheet, scene->sheet_count);
+                        "there is no sheet %u; the scene has %u, numbered from 0", sheet, scene->sheet_count);
         else if (now[sheet] != LEFT_OUT)
             message_add(reader->messages, reader->text, number->location, "sheet %u is given twice", sheet);
         else now[sheet] = 0;

@@ -122,7 +122,7 @@ class Sheets(Case):
         with open(self.path("plan.yaml"), "w") as file:
             file.write("scene: many.yaml\nmargin: 1\nparameters: {pace: [1]}\n")
         self.assertIn("'margin' belongs to method sheets", self.sweep(expect=2)[1])
-        for only, expected in (("[1]", "there is no sheet 1: the scene has 1, from 0"),
+        for only, expected in (("[1]", "there is no sheet 1; the scene has 1, numbered from 0"),
                                ("[0, 0]", "sheet 0 is given twice"),
                                ("[]", "only_sheets must be a list of whole numbers, at least one")):
             err = self.singe("check", self.path("many.yaml"), "--set", f"only_sheets={only}", expect=2)[1]
