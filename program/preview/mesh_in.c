@@ -171,7 +171,7 @@ static SingeResult check_surface(const SingeSurface *surface, SingeError *error)
           surface->temperature_peak && surface->burn && surface->burn_rate && surface->sheet))
         return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the surface lacks one of the arrays that are drawn");
     if (surface->triangle_count && !surface->triangles)
-        return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the surface has a triangle count and no triangles");
+        return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the surface has a triangle count but no triangles");
     for (uint32_t t = 0; t < surface->triangle_count; t++)
         for (int k = 0; k < 3; k++)
             if (surface->triangles[t][k] >= surface->vertex_count)

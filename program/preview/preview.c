@@ -65,7 +65,7 @@ static SingeResult check_camera(const PreviewCamera *camera, SingeError *error) 
 }
 
 static SingeResult check_shapes(const PreviewShape *shapes, uint32_t count, SingeError *error) {
-    if (count && !shapes) return preview_refuse(error, -1, "shapes: there is a count and no array");
+    if (count && !shapes) return preview_refuse(error, -1, "shapes: there is a count but no array");
     for (uint32_t i = 0; i < count; i++) {
         const PreviewShape *shape = &shapes[i];
         const float *q = shape->rotation, length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];

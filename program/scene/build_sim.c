@@ -124,7 +124,7 @@ static SingeResult vertices_of_file(const SceneBuilder *builder, const ScenePin 
         if (now != UINT32_MAX) held[mesh->source[now]] = 1;
         else
             result = refuse(builder->error, SINGE_ERROR_ARGUMENT, "pin", v,
-                            "vertex %u is out of range or of no face of the mesh", (unsigned)v);
+                            "vertex %u is out of range or belongs to no face of the mesh", (unsigned)v);
     }
 
     *count = 0;

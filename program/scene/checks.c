@@ -28,7 +28,7 @@ static bool check_path(Reader *reader, const YamlNode *map, const SceneKey *keys
     const YamlNode *rotation = node_find(map, "rotation"), *other = position ? position : rotation;
     if (path && other)
         message_add(reader->messages, reader->text, other->key_location,
-                    "'%s' is short for a path of one entry; give it or 'path'", other->key);
+                    "'%s' stands for a path of one entry; give either it or 'path'", other->key);
     if (path && path->kind == NODE_LIST && path->count == 0)
         complain(reader, path->location, "a path needs at least one entry");
     check_times(reader, path, keys, sizeof *keys, count);
@@ -48,7 +48,7 @@ void finish_material(Reader *reader, const YamlNode *map, void *object) {
     for (int i = 0; i < 3; i++)
         if (measured && node_find(measured, keys[i]) && ranges[i][0] > ranges[i][1])
             message_add(reader->messages, reader->text, node_find(measured, keys[i])->location,
-                        "%s must not begin above its end", keys[i]);
+                        "%s must be a range from low to high", keys[i]);
     const YamlNode *thickening = node_find(map, "thickening");
     float value = material->def.thickening;
     if (thickening && value > 0 && value < 1)

@@ -25,7 +25,7 @@ static void take_name(Reader *reader, const YamlNode *root) {
     reader->scene->name = name;
     if (name && !node_find(root, "name") && !value_names_files(name))
         message_add(reader->messages, reader->text, (SceneLocation){.line = 1, .column = 1},
-                    "the outputs cannot be called '%s' as the file is; give the scene a name: %s", shown(name).text,
+                    "the outputs cannot have the file's name, '%s'; give the scene a name: %s", shown(name).text,
                     expected);
 }
 

@@ -112,17 +112,6 @@ static void read_list(Reader *reader, const SchemaRow *row, const YamlNode *node
     }
 }
 
-static void read_strength(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
-    if (node->kind == NODE_LIST) {
-        read_list(reader, row, node, object);
-        return;
-    }
-    float value;
-    if (!value_float(reader, row, node, &value)) return;
-    SingeValueKey *items = list_new(reader, object, row, 1, sizeof *items);
-    if (items) items[0] = (SingeValueKey){0, value};
-}
-
 /// A list of points, or of indices, at least one.
 static void read_elements(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     if (node->kind != NODE_LIST || !node->count) {
@@ -213,7 +202,16 @@ static void read_row(Reader *reader, const SchemaRow *row, const YamlNode *node,
     case ROW_LIST: read_list(reader, row, node, object); break;
     case ROW_POINTS:
     case ROW_INDICES: read_elements(reader, row, node, object); break;
-    case ROW_STRENGTH: read_strength(reader, row, node, object); break;
+    case ROW_STRENGTH: {
+        float value;
+        if (node->kind == NODE_LIST) {
+            read_list(reader, row, node, object);
+        } else if (value_float(reader, row, node, &value)) {
+            SingeValueKey *items = list_new(reader, object, row, 1, sizeof *items);
+            if (items) items[0] = (SingeValueKey){0, value};
+        }
+        break;
+    }
     case ROW_POSITION:
     case ROW_ROTATION: read_key_part(reader, row, node, object); break;
     }

@@ -61,10 +61,10 @@ static SingeResult sequence_read_frame(const SceneMotion *motion, const char *pa
         if (!sequence->frames) result = sequence_no_memory(error);
     } else if (!result && (surface->vertex_count != sequence->vertex_count ||
                            surface->triangle_count != sequence->triangle_count)) {
-        result =
-            refuse(error, SINGE_ERROR_MESH, "scene", -1,
-                   "%s: has %u vertices and %u triangles, the first of the motion %u and %u", short_name(path),
-                   surface->vertex_count, surface->triangle_count, sequence->vertex_count, sequence->triangle_count);
+        result = refuse(error, SINGE_ERROR_MESH, "scene", -1,
+                        "%s has %u vertices and %u triangles, but the first file of the motion has %u and %u",
+                        short_name(path), surface->vertex_count, surface->triangle_count, sequence->vertex_count,
+                        sequence->triangle_count);
     }
 
     for (uint32_t v = 0; !result && v < surface->vertex_count; v++) {

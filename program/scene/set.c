@@ -51,7 +51,7 @@ static YamlNode *setter_walk(Setter *setter, YamlNode *root) {
             for (child = node->first; child && index; child = child->next) index--;
             if (!child) {
                 message_add(setter->messages, setter->text, setter->location,
-                            "'%s' is not an entry of that list, which has %u (the first is 0)", step,
+                            "'%s' is not an entry of that list, which has %u entries (the first is 0)", step,
                             (unsigned)node->count);
                 return NULL;
             }

@@ -38,7 +38,7 @@ static void warn_of_pin(const Scene *scene, const SceneAssets *assets, const Sce
         if (!(gap > reach)) continue;
         message_warn(
             log, scene->text, pin->location,
-            "the pin's point [%.6g, %.6g, %.6g] m misses the sheet: it holds only the nearest vertex, %.3g m away",
+            "the pin's point [%.6g, %.6g, %.6g] m misses the sheet: it holds only the nearest vertex, which is %.3g m away",
             (double)p[0], (double)p[1], (double)p[2], gap);
         return; // one warning is enough
     }
@@ -63,7 +63,7 @@ static void warn_of_motion(const Scene *scene, const SceneMotion *motion, const 
                            const SingeLog *log) {
     if (sequence->frame_count && sequence->frame_count < (uint32_t)scene->frames)
         message_warn(log, scene->text, motion->mesh.location,
-                     "the motion has files for %u of %d frames; after them it stands still", sequence->frame_count,
+                     "the motion has files for %u of %d frames; it stops after them", sequence->frame_count,
                      scene->frames);
 }
 
@@ -79,7 +79,7 @@ static void warn_of_source(const Scene *scene, const SceneSource *source, const 
     else if (def->kind != SINGE_SOURCE_TEXTURE && def->conductance == 0) why = "its conductance is 0";
     else if (def->kind != SINGE_SOURCE_TEXTURE && def->radius + def->falloff == 0)
         why = "its radius and its falloff are 0";
-    else if (def->end <= def->start) why = "it ends as it starts";
+    else if (def->end <= def->start) why = "it ends when it starts";
     else if (scene->frames > 1 && (double)def->start >= end) why = "it starts after the last frame";
     if (why) message_warn(log, scene->text, source->location, "the source heats nothing: %s", why);
 }

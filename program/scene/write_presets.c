@@ -99,21 +99,26 @@ static void write_material(FILE *out, const char *name, const SingeMaterialDef *
     fprintf(out, "}\n\n");
 }
 
-static bool write_presets(FILE *out) {
+int main(int argc, char **argv) {
+    char *text = NULL;
     const char *name;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) return 1;
+
     fprintf(out,
             "// Made by scene_presets from the files of this folder. Do not edit: change those and run\n"
             "// `build/program/scene/scene_presets > src/materials/presets.c`.\n#include \"materials/preset.h\"\n\n");
     for (int i = 0; (name = scene_material_name(i)); i++) {
         // read as a scene does
         Scene *scene;
-        char text[200];
+        char sheet[200];
         SceneMessages messages = {0};
-        snprintf(text, sizeof text, "sheets: [{grid: {size: [10 cm, 10 cm], cells: [2, 2]}, material: %s}]\n", name);
-        SingeResult result = scene_parse("presets", text, strlen(text), NULL, NULL, 0, &scene, &messages);
+        snprintf(sheet, sizeof sheet, "sheets: [{grid: {size: [10 cm, 10 cm], cells: [2, 2]}, material: %s}]\n", name);
+        SingeResult result = scene_parse("presets", sheet, strlen(sheet), NULL, NULL, 0, &scene, &messages);
         scene_messages_print(&messages, stderr);
         scene_messages_free(&messages);
-        if (result) return false;
+        if (result) return 1;
         write_material(out, name, &scene->sheets[0].material.def);
         scene_free(scene);
     }
@@ -124,17 +129,8 @@ static bool write_presets(FILE *out) {
         for (const char *c = name; *c; c++) fputc(*c == '-' ? '_' : *c, out);
         fprintf(out, "},\n");
     }
-
     fprintf(out, "    {0},\n};\n");
-    return true;
-}
-
-int main(int argc, char **argv) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *memory = open_memstream(&text, &size);
-    bool written = memory && write_presets(memory);
-    if (!memory || fclose(memory) || !written) return 1;
+    if (fclose(out)) return 1;
     if (argc < 2) return fwrite(text, 1, size, stdout) == size && fflush(stdout) == 0 ? 0 : 1;
 
     Bytes bytes = {0};
@@ -143,7 +139,6 @@ int main(int argc, char **argv) {
         fprintf(stderr, "%s\n", error.message);
         return 1;
     }
-
     bool equal = bytes.size == size && memcmp(bytes.data, text, size) == 0;
     if (!equal) fprintf(stderr, "%s: differs from the material files; run scene_presets > %s\n", argv[1], argv[1]);
     bytes_free(&bytes);

@@ -169,7 +169,7 @@ class Motion(Case):
         self.wrong("needs 'mesh' (a file) or 'motion'", replace=("    motion: {mesh: body.####.obj, up: y}\n", ""))
         corners, faces = box((0, 0.04, 0), 1)
         write_obj(self.path("body.0003.obj"), corners + [(9, 9, 9)], faces)
-        self.wrong("body.0003.obj: has 9 vertices and 12 triangles, the first of the motion 8 and 12")
+        self.wrong("body.0003.obj has 9 vertices and 12 triangles, but the first file of the motion has 8 and 12")
         corners[2] = (1e9, 0, 0)
         write_obj(self.path("body.0003.obj"), corners, faces)
         self.wrong("body.0003.obj: vertex 2 (from 0) is not finite or beyond 10 km")

@@ -211,7 +211,7 @@ static void test_warnings(void **state) {
         {"pins: [{points: [[0, 0, 0]], radius: 1 mm}]", NULL},
         {"pins: [{points: [[0, 0, 0]]}]", NULL},
         {"pins: [{points: [[0, 0, 0], [0, 0, 5 cm]], radius: 1 cm}]",
-         "t.yaml:3:8: the pin's point [0, 0, 0.05] m misses the sheet: it holds only the nearest vertex, 0.05 m away\n"},
+         "t.yaml:3:8: the pin's point [0, 0, 0.05] m misses the sheet: it holds only the nearest vertex, which is 0.05 m away\n"},
         {"pins: [{points: [[0, 0, 5 cm]], radius: 6 cm}]", NULL},
         {"pins: [{points: [[0, 0, 3 cm]], radius: 0}]", NULL},
         {"pins: [{points: [[0, 0, 5]], radius: 0}]", "t.yaml:3:8: the pin's point [0, 0, 5] m misses the sheet"},
@@ -220,7 +220,7 @@ static void test_warnings(void **state) {
         {"sources: [{kind: spot, position: [0, 0, 0], conductance: 0}]",
          "t.yaml:3:11: the source heats nothing: its conductance is 0\n"},
         {"sources: [{kind: spot, position: [0, 0, 0], radius: 0, falloff: 0}]", "its radius and its falloff are 0\n"},
-        {"sources: [{kind: spot, position: [0, 0, 0], start: 1, end: 1}]", "it ends as it starts\n"},
+        {"sources: [{kind: spot, position: [0, 0, 0], start: 1, end: 1}]", "it ends when it starts\n"},
         {"frames: 25\nsources: [{kind: ball, position: [0, 0, 0], start: 1}]",
          "t.yaml:4:11: the source heats nothing: it starts"},
         {"frames: 26\nsources: [{kind: ball, position: [0, 0, 0], start: 1}]", NULL},
@@ -435,7 +435,7 @@ static void test_mesh_files(void **state) {
     scene_free(scene);
     messages = refused("sheets: [{mesh: a.obj, units: mm}]\npins: [{vertices: [0]}]\n", folder);
     assert_int_equal(messages.count, 1);
-    assert_non_null(strstr(messages.items[0].text, "vertex 0 is out of range or of no face"));
+    assert_non_null(strstr(messages.items[0].text, "vertex 0 is out of range or belongs to no face"));
     scene_messages_free(&messages);
     snprintf(path, sizeof path, "%s/a.obj", folder);
     unlink(path);

@@ -164,7 +164,7 @@ static void test_objects(void **state) {
     one("sources: [{kind: bal, position: [0, 0, 0]}]", "bad.yaml:3:18", "did you mean 'ball'?");
     one("sources: [{kind: ball}]", "bad.yaml:3:11", "a ball needs 'path' or 'position'");
     one("sources: [{kind: ball, path: []}]", "bad.yaml:3:30", "at least one entry");
-    one("sources: [{kind: ball, path: [{time: 0}], position: [0, 0, 0]}]", "bad.yaml:3:43", "short for a path");
+    one("sources: [{kind: ball, path: [{time: 0}], position: [0, 0, 0]}]", "bad.yaml:3:43", "stands for a path");
     one("sources: [{kind: ball, path: [{position: [0, 0, 0]}]}]", "bad.yaml:3:31", "needs 'time'");
     one("sources: [{kind: ball, path: [{time: 1}, {time: 1}]}]", "bad.yaml:3:49", "times must increase");
     one("sources: [{flux: 3, kind: spot, position: [0, 0, 0]}]", "bad.yaml:3:12", "a spot has no 'flux'");
