@@ -180,23 +180,6 @@ static bool draw_mask(const Folder *folder, int number, bool whole, uint8_t *pix
     return good;
 }
 
-/// Share of the sheet's pixels that are burnt in only one of the two.
-static double mask_difference(const Image *image, const uint8_t *fresh, const uint8_t *sheet) {
-    uint32_t different = 0, all = 0;
-    for (int y = 0; y < MASK_SIZE; y++)
-        for (int x = 0; x < MASK_SIZE; x++) {
-            const size_t pixel = (size_t)y * MASK_SIZE + (size_t)x;
-            const size_t column = (size_t)x * (size_t)image->width / MASK_SIZE;
-            const size_t line = (size_t)y * (size_t)image->height / MASK_SIZE;
-            const uint8_t *rgb = image->rgb + 3 * (line * (size_t)image->width + column);
-            const bool burnt = rgb[0] + rgb[1] + rgb[2] >= 3 * 128;
-            if (!sheet[pixel]) continue;
-            all++;
-            different += burnt == (fresh[pixel] != 0);
-        }
-    return all ? (double)different / all : 1;
-}
-
 static bool masks_error(const FitTarget *target, const Sweep *sweep, uint32_t row, double *error) {
     const char *pattern = target->plan->masks, *slash = strrchr(pattern, '/');
     const char *run = strchr(slash ? slash : pattern, '#');
@@ -219,8 +202,20 @@ static bool masks_error(const FitTarget *target, const Sweep *sweep, uint32_t ro
                    !image_read(mask, bytes.data, bytes.size, (SingeAllocator){0}, &image, &read_error);
             if (!good) console_result(sweep->console, &read_error);
             good = good && draw_mask(&folder, (int)frame, false, fresh, sweep->console);
-            if (good) sum += mask_difference(&image, fresh, sheet);
             count += good;
+
+            // the share of the sheet's pixels that are burnt in only one of the two
+            uint32_t different = 0, all = 0;
+            for (size_t pixel = 0; good && pixel < pixels; pixel++) {
+                if (!sheet[pixel]) continue;
+                const size_t column = pixel % MASK_SIZE * (size_t)image.width / MASK_SIZE;
+                const size_t line = pixel / MASK_SIZE * (size_t)image.height / MASK_SIZE;
+                const uint8_t *rgb = image.rgb + 3 * (line * (size_t)image.width + column);
+                const bool burnt = rgb[0] + rgb[1] + rgb[2] >= 3 * 128;
+                all++;
+                different += burnt == (fresh[pixel] != 0);
+            }
+            if (good) sum += all ? (double)different / all : 1;
             image_free(&image);
             bytes_free(&bytes);
         }

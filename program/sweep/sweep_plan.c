@@ -182,8 +182,7 @@ static void read_parameters(PlanReader *reader, const YamlNode *map) {
         parameter->key = node->key;
         parameter->location = node->location;
         if (strcmp(node->key, "name") == 0)
-            message_add(&reader->messages, &reader->text, node->key_location,
-                        "a row cannot change 'name': all rows have the scene's");
+            message_add(&reader->messages, &reader->text, node->key_location, "all rows have the scene's name");
         if (node->kind == NODE_MAP) {
             read_range(reader, node, parameter);
         } else if (node->kind == NODE_LIST && node->count) {

@@ -57,7 +57,7 @@ class Output(Case):
                 _, err = self.run_scene("strained", "--set", "frames=2", "--set",
                                         "colliders=[{kind: plane, rotation: [0, 40, 0], offset: %s}]" % depth)
                 self.assertEqual("begin inside it, up to 0." in err, reported)
-                self.assertEqual("the strain of one edge in a hundred is" in err, reported)
+                self.assertEqual("one edge in a hundred is strained by" in err, reported)
 
     def test_record(self):
         self.run_scene("o", "--set", "seed=7", "--threads", "2")

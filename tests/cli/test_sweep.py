@@ -175,7 +175,7 @@ class Sweep(Case):
         self.assertIn("another plan: line 3 differs", self.sweep(expect=2)[1])
         self.write_plan("parameters:\n  pace: [2, 5]\n")
         self.write_scene(frames=self.FRAMES, steps=3, gas="no")
-        self.assertIn("has changed since", self.sweep(expect=2)[1])
+        self.assertIn("has changed; use", self.sweep(expect=2)[1])
         self.assertEqual(self.complete(), ["0001"])
 
     def test_two_sweeps_in_one_folder(self):
