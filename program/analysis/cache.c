@@ -76,29 +76,6 @@ static SingeResult read_header(const Ply *ply, CacheFrame *frame) {
                       (unsigned long long)actual, (unsigned long long)needed);
 }
 
-static SingeResult unpack(Ply *ply, CacheFrame *frame) {
-    frame->position = malloc(((size_t)frame->vertex_count + 1) * sizeof *frame->position);
-    frame->rest = malloc(((size_t)frame->vertex_count + 1) * sizeof *frame->rest);
-    frame->triangles = malloc(((size_t)frame->triangle_count + 1) * sizeof *frame->triangles);
-    if (!frame->position || !frame->rest || !frame->triangles) return refuse_memory(ply->error, "ply", ply->name);
-
-    frame->rows = ply->text.at;
-    for (uint32_t v = 0; v < frame->vertex_count; v++)
-        for (int k = 0; k < 3; k++) {
-            frame->position[v][k] = cache_value(frame, CACHE_X + k, v);
-            frame->rest[v][k] = cache_value(frame, CACHE_REST + k, v);
-        }
-
-    ply->text.at += frame->row * frame->vertex_count;
-    for (uint32_t f = 0; f < frame->triangle_count; f++) {
-        if (*ply->text.at != 3)
-            return ply_refuse(ply, SINGE_ERROR_MESH, "face %u has %d corners where a cache has 3", f, *ply->text.at);
-        ply->text.at++;
-        for (int k = 0; k < 3; k++, ply->text.at += 4) frame->triangles[f][k] = load_u32_little(ply->text.at);
-    }
-    return SINGE_OK;
-}
-
 SingeResult cache_read(const char *path, CacheFrame *frame, SingeError *error) {
     *frame = (CacheFrame){0};
     TRY(file_read(path, (SingeAllocator){0}, &frame->bytes, error));
@@ -106,9 +83,28 @@ SingeResult cache_read(const char *path, CacheFrame *frame, SingeError *error) {
     Ply ply = {.name = path, .begin = bytes->data, .text = {bytes->data, bytes->data + bytes->size, 1}, .error = error};
     SingeResult result = ply_read_header(&ply);
     if (!result) result = read_header(&ply, frame);
-    if (!result) result = unpack(&ply, frame);
     ply_header_free(&ply);
-    return result;
+    if (result) return result;
+
+    frame->position = malloc(((size_t)frame->vertex_count + 1) * sizeof *frame->position);
+    frame->rest = malloc(((size_t)frame->vertex_count + 1) * sizeof *frame->rest);
+    frame->triangles = malloc(((size_t)frame->triangle_count + 1) * sizeof *frame->triangles);
+    if (!frame->position || !frame->rest || !frame->triangles) return refuse_memory(error, "ply", path);
+    frame->rows = ply.text.at;
+    for (uint32_t v = 0; v < frame->vertex_count; v++)
+        for (int k = 0; k < 3; k++) {
+            frame->position[v][k] = cache_value(frame, CACHE_X + k, v);
+            frame->rest[v][k] = cache_value(frame, CACHE_REST + k, v);
+        }
+
+    ply.text.at += frame->row * frame->vertex_count;
+    for (uint32_t f = 0; f < frame->triangle_count; f++) {
+        if (*ply.text.at != 3)
+            return ply_refuse(&ply, SINGE_ERROR_MESH, "face %u has %d corners where a cache has 3", f, *ply.text.at);
+        ply.text.at++;
+        for (int k = 0; k < 3; k++, ply.text.at += 4) frame->triangles[f][k] = load_u32_little(ply.text.at);
+    }
+    return SINGE_OK;
 }
 
 void cache_free(CacheFrame *frame) {

@@ -419,26 +419,27 @@ static bool list_add(CrossingList *list, uint32_t a, uint32_t b) {
     return true;
 }
 
-static bool test_pair(BoxTree *tree, uint32_t a, uint32_t b, CrossingList *list) {
-    const uint32_t *s = tree->triangles[a], *t = tree->triangles[b];
-    const Corners first = {tree->position[s[0]], tree->position[s[1]], tree->position[s[2]]};
-    const Corners second = {tree->position[t[0]], tree->position[t[1]], tree->position[t[2]]};
-    bool touch;
-    list->tested++;
-    if (triangles_cross(first, second, &touch)) return list_add(list, a, b);
-
-    int shared = 0; // triangles that share an edge have nothing else in common
-    for (int i = 0; i < 9; i++) shared += s[i / 3] == t[i % 3];
-    return !touch || shared > 1 || list_add(&tree->touching, a, b);
-}
-
-/// All pairs of two leaves, or within one.
+/// Tests the pairs of two leaves, or within one, whose boxes meet.
 static bool test_leaves(BoxTree *tree, uint32_t a, uint32_t b, CrossingList *list) {
+    const float(*position)[3] = tree->position;
     for (uint32_t i = leaf_begin(tree, a); i < leaf_begin(tree, a + 1); i++)
-        for (uint32_t j = a == b ? i + 1 : leaf_begin(tree, b); j < leaf_begin(tree, b + 1); j++)
-            if (boxes_meet(&tree->boxes[i], &tree->boxes[j]) &&
-                !test_pair(tree, tree->order[i].triangle, tree->order[j].triangle, list))
-                return false;
+        for (uint32_t j = a == b ? i + 1 : leaf_begin(tree, b); j < leaf_begin(tree, b + 1); j++) {
+            if (!boxes_meet(&tree->boxes[i], &tree->boxes[j])) continue;
+            const uint32_t one = tree->order[i].triangle, other = tree->order[j].triangle;
+            const uint32_t *s = tree->triangles[one], *t = tree->triangles[other];
+            const Corners first = {position[s[0]], position[s[1]], position[s[2]]};
+            const Corners second = {position[t[0]], position[t[1]], position[t[2]]};
+            bool touch;
+            list->tested++;
+            if (triangles_cross(first, second, &touch)) {
+                if (!list_add(list, one, other)) return false;
+                continue;
+            }
+
+            int shared = 0; // triangles that share an edge have nothing else in common
+            for (int k = 0; k < 9; k++) shared += s[k / 3] == t[k % 3];
+            if (touch && shared < 2 && !list_add(&tree->touching, one, other)) return false;
+        }
     return true;
 }
 

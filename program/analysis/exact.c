@@ -73,24 +73,6 @@ static bool is_short(const float a[3], const float d[3], const double p[3]) {
     return true;
 }
 
-/// Uses the differences from d if they are short, else the determinant of the four points with a column of ones.
-static int orient3_slowly(const float *const points[4], const double p[3], const double q[3], const double r[3]) {
-    Expansion sum = {0};
-    const float *d = points[3];
-    if (is_short(points[0], d, p) && is_short(points[1], d, q) && is_short(points[2], d, r)) {
-        add_determinant(&sum, 1, p, q, r);
-        return expansion_sign(&sum);
-    }
-
-    double at[4][3];
-    for (int i = 0; i < 12; i++) at[i / 3][i % 3] = (double)points[i / 3][i % 3];
-    add_determinant(&sum, 1, at[0], at[1], at[2]);
-    add_determinant(&sum, -1, at[0], at[1], at[3]);
-    add_determinant(&sum, 1, at[0], at[2], at[3]);
-    add_determinant(&sum, -1, at[1], at[2], at[3]);
-    return expansion_sign(&sum);
-}
-
 int exact_orient3(const float a[3], const float b[3], const float c[3], const float d[3]) {
     double p[3], q[3], r[3], value = 0, permanent = 0;
     for (int k = 0; k < 3; k++) {
@@ -107,16 +89,20 @@ int exact_orient3(const float a[3], const float b[3], const float c[3], const fl
     // a rounded difference is 0 only if the exact one is, and then its products are 0, too
     if (permanent == 0) return 0;
     if (fabs(value) > (7 + 56 * rounding) * rounding * permanent) return sign_of(value);
-    return orient3_slowly((const float *const[4]){a, b, c, d}, p, q, r);
-}
 
-static int orient2_slowly(const float a[3], const float b[3], const float c[3], int x, int y) {
+    // the differences from d if they are short, else the determinant of the four points with a column of ones
     Expansion sum = {0};
-    const float *pairs[3][2] = {{a, b}, {b, c}, {c, a}};
-    for (int i = 0; i < 3; i++) {
-        exact_add(&sum, (double)pairs[i][0][x] * (double)pairs[i][1][y]);
-        exact_add(&sum, -(double)pairs[i][0][y] * (double)pairs[i][1][x]);
+    if (is_short(a, d, p) && is_short(b, d, q) && is_short(c, d, r)) {
+        add_determinant(&sum, 1, p, q, r);
+        return expansion_sign(&sum);
     }
+    const float *const points[4] = {a, b, c, d};
+    double at[4][3];
+    for (int i = 0; i < 12; i++) at[i / 3][i % 3] = (double)points[i / 3][i % 3];
+    add_determinant(&sum, 1, at[0], at[1], at[2]);
+    add_determinant(&sum, -1, at[0], at[1], at[3]);
+    add_determinant(&sum, 1, at[0], at[2], at[3]);
+    add_determinant(&sum, -1, at[1], at[2], at[3]);
     return expansion_sign(&sum);
 }
 
@@ -126,7 +112,14 @@ int exact_orient2(const float a[3], const float b[3], const float c[3], int x, i
     const double permanent = fabs(one) + fabs(other), value = one - other;
     if (permanent == 0) return 0;
     if (fabs(value) > (3 + 16 * rounding) * rounding * permanent) return sign_of(value);
-    return orient2_slowly(a, b, c, x, y);
+
+    Expansion sum = {0};
+    const float *const pairs[3][2] = {{a, b}, {b, c}, {c, a}};
+    for (int i = 0; i < 3; i++) {
+        exact_add(&sum, (double)pairs[i][0][x] * (double)pairs[i][1][y]);
+        exact_add(&sum, -(double)pairs[i][0][y] * (double)pairs[i][1][x]);
+    }
+    return expansion_sign(&sum);
 }
 
 int exact_collinear(const float a[3], const float b[3], const float c[3]) {

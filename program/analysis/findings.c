@@ -276,30 +276,6 @@ static double rounding(const float from[3], const float to[3]) {
     return sqrt(squares);
 }
 
-/// An edge and the `count` triangles at it.
-static void check_edge(const CacheFrame *frame, const Side *sides, uint32_t count, Findings *findings) {
-    const uint32_t low = sides->low, high = sides->high;
-    if (count > 2)
-        findings_add(findings, FAULT_NON_MANIFOLD, "edge %u-%u has %u triangles: %u, %u, %u%s", low, high, count,
-                     sides[0].triangle, sides[1].triangle, sides[2].triangle, count > 3 ? ", ..." : "");
-    if (count == 2 && sides[0].forward == sides[1].forward)
-        findings_add(findings, FAULT_WINDING, "triangles %u and %u run the same way along edge %u-%u",
-                     sides[0].triangle, sides[1].triangle, low, high);
-    if (!has_rest(frame, sides)) return;
-
-    const double length = findings_distance(frame->position[low], frame->position[high]);
-    const double rest = findings_distance(frame->rest[low], frame->rest[high]);
-    const double shortest = length - rounding(frame->position[low], frame->position[high]);
-    const double longest = rest + rounding(frame->rest[low], frame->rest[high]);
-    if (shortest > findings->stretch * longest)
-        findings_add(findings, FAULT_STRETCHED, "edge %u-%u of triangle %u is %.4g mm long, %.4g mm at rest", low, high,
-                     sides->triangle, 1e3 * length, 1e3 * rest);
-    if (count == 2 && has_rest(frame, &sides[1]) &&
-        findings_bend(frame->position, &sides[0], &sides[1]) < fold_cosine &&
-        findings_bend(frame->rest, &sides[0], &sides[1]) > 0)
-        findings->folded++;
-}
-
 static bool check_edges(const CacheFrame *frame, const uint32_t *sound, uint32_t count, Findings *findings) {
     const size_t side_count = 3 * (size_t)count;
     Side *sides = malloc((side_count + 1) * sizeof *sides);
@@ -316,7 +292,26 @@ static bool check_edges(const CacheFrame *frame, const uint32_t *sound, uint32_t
     for (size_t i = 0, end; i < side_count; i = end) {
         for (end = i + 1; end < side_count && sides[end].low == sides[i].low && sides[end].high == sides[i].high;)
             end++;
-        check_edge(frame, &sides[i], (uint32_t)(end - i), findings);
+        const Side *at = &sides[i]; // the triangles at one edge
+        const uint32_t near = (uint32_t)(end - i), low = at->low, high = at->high;
+        if (near > 2)
+            findings_add(findings, FAULT_NON_MANIFOLD, "edge %u-%u has %u triangles: %u, %u, %u%s", low, high, near,
+                         at[0].triangle, at[1].triangle, at[2].triangle, near > 3 ? ", ..." : "");
+        if (near == 2 && at[0].forward == at[1].forward)
+            findings_add(findings, FAULT_WINDING, "triangles %u and %u run the same way along edge %u-%u",
+                         at[0].triangle, at[1].triangle, low, high);
+        if (!has_rest(frame, at)) continue;
+
+        const double length = findings_distance(frame->position[low], frame->position[high]);
+        const double rest = findings_distance(frame->rest[low], frame->rest[high]);
+        const double shortest = length - rounding(frame->position[low], frame->position[high]);
+        const double longest = rest + rounding(frame->rest[low], frame->rest[high]);
+        if (shortest > findings->stretch * longest)
+            findings_add(findings, FAULT_STRETCHED, "edge %u-%u of triangle %u is %.4g mm long, %.4g mm at rest", low,
+                         high, at->triangle, 1e3 * length, 1e3 * rest);
+        if (near == 2 && has_rest(frame, &at[1]) && findings_bend(frame->position, &at[0], &at[1]) < fold_cosine &&
+            findings_bend(frame->rest, &at[0], &at[1]) > 0)
+            findings->folded++;
     }
 
     free(sides);

@@ -140,15 +140,6 @@ static Edge *find_edges(const SingeSurface *surface, int32_t piece, size_t *coun
 
 // ---- points along the rim, in a grid
 
-static void points_free(RimPoints *points) {
-    free(points->position);
-    free(points->near);
-    free(points->normal);
-    free(points->first);
-    free(points->order);
-    *points = (RimPoints){0};
-}
-
 static int steps_along(const SingeSurface *surface, const Edge *edge) {
     double square = 0;
     for (int k = 0; k < 3; k++)
@@ -512,7 +503,11 @@ bool rim_add(const SingeSurface *surface, Rim *rim) {
     }
 
     free(work.inland);
-    points_free(&work.points);
+    free(work.points.position);
+    free(work.points.near);
+    free(work.points.normal);
+    free(work.points.first);
+    free(work.points.order);
     return good;
 }
 

@@ -169,25 +169,6 @@ double wrinkles_unburnt(const Wrinkles *wrinkles) { return over(wrinkles->unburn
 
 // ---- folds
 
-/// Length of the sheet's cells, m: its area at rest over the vertices of the input that are drawn.
-static double cell_length(const SingeSurface *surface, int32_t sheet) {
-    double area = 0, vertices = 0;
-    for (uint32_t v = 0; v < surface->vertex_count; v++)
-        vertices += surface->sheet[v] == sheet && surface->source_vertex[v] >= 0;
-    for (uint32_t t = 0; t < surface->triangle_count; t++) {
-        const uint32_t *at = surface->triangles[t];
-        double a[3], b[3], square = 0;
-        if (surface->sheet[at[0]] != sheet) continue;
-        for (int k = 0; k < 3; k++) {
-            a[k] = (double)surface->rest_position[at[1]][k] - (double)surface->rest_position[at[0]][k];
-            b[k] = (double)surface->rest_position[at[2]][k] - (double)surface->rest_position[at[0]][k];
-        }
-        for (int k = 0; k < 3; k++) square += pow(a[k] * b[(k + 1) % 3] - a[(k + 1) % 3] * b[k], 2);
-        area += 0.5 * sqrt(square);
-    }
-    return vertices > 0 ? sqrt(area / vertices) : 0;
-}
-
 /// N at a position between pixels. False if one of them does not count.
 static bool normal_at(const RestRaster *raster, const Fields *fields, double x, double y, double normal[3]) {
     int i = (int)floor(x), j = (int)floor(y);
@@ -228,10 +209,27 @@ static void add_line(const RestRaster *raster, const Fields *fields, int i, int 
 }
 
 static bool folds_add_sheet(const SingeSurface *surface, int32_t sheet, void *sums) {
-    const double cell = cell_length(surface, sheet);
     RestRaster raster;
     Fields fields = {0};
+
+    // the length of the sheet's cells: its area at rest over the vertices of the input that are drawn
+    double area = 0, vertices = 0;
+    for (uint32_t v = 0; v < surface->vertex_count; v++)
+        vertices += surface->sheet[v] == sheet && surface->source_vertex[v] >= 0;
+    for (uint32_t t = 0; t < surface->triangle_count; t++) {
+        const uint32_t *at = surface->triangles[t];
+        double a[3], b[3], square = 0;
+        if (surface->sheet[at[0]] != sheet) continue;
+        for (int k = 0; k < 3; k++) {
+            a[k] = (double)surface->rest_position[at[1]][k] - (double)surface->rest_position[at[0]][k];
+            b[k] = (double)surface->rest_position[at[2]][k] - (double)surface->rest_position[at[0]][k];
+        }
+        for (int k = 0; k < 3; k++) square += pow(a[k] * b[(k + 1) % 3] - a[(k + 1) % 3] * b[k], 2);
+        area += 0.5 * sqrt(square);
+    }
+    const double cell = vertices > 0 ? sqrt(area / vertices) : 0;
     if (!(cell > 0)) return true;
+
     if (!rest_raster_draw(surface, sheet, cell / SAMPLES_A_CELL, &raster)) return false;
     if (raster.width == 0) return true;
     const bool good = fields_make(&raster, &fields);

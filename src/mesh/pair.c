@@ -269,34 +269,28 @@ static uint32_t shared_half(const Pairs *pairs, uint32_t triangle) {
     return MESH_NONE;
 }
 
-/// The gain of the pair across `half` from continuing the rows of the quads around it.
-static double pair_gain(const Pairs *pairs, uint32_t half) {
-    const Work *work = pairs->work;
-    uint32_t twin = work->twin[half];
-    double gain = 0;
-    for (int i = 0; i < 4; i++) {
-        uint32_t inner = i < 2 ? half : twin, other = i < 2 ? twin : half;
-        uint32_t side = i & 1 ? pair_next3(inner) : pair_last3(inner), across = work->twin[side];
-        if (across == MESH_NONE || pairs->mate[across / 3] == MESH_NONE) continue;
-        uint32_t shared = shared_half(pairs, across / 3);
-        if (shared == MESH_NONE || shared == across) continue;
-        uint32_t shared_twin = work->twin[shared];
-        double from =
-            quad_angle(pairs, side, inner, other) + quad_angle(pairs, pair_next3(across), shared, shared_twin);
-        double to = quad_angle(pairs, pair_next3(side), inner, other) + quad_angle(pairs, across, shared, shared_twin);
-        gain += fmax(0, straight_within - 0.5 * (fabs(from - 180) + fabs(to - 180)));
-    }
-    return straight_gain * gain;
-}
-
 /// Offers the pairs of a single triangle.
 static void offer(Pairs *pairs, uint32_t triangle) {
     const Work *work = pairs->work;
     for (uint32_t h = 3 * triangle; h < 3 * triangle + 3; h++) {
         if (work->twin[h] == MESH_NONE || pairs->mate[work->twin[h] / 3] != MESH_NONE) continue;
-        uint32_t name = pair_name(pairs, h);
-        if (pairs->good[name])
-            heap_push(pairs->work, &pairs->heap, (PairItem){pairs->cost[name] - pair_gain(pairs, name), name});
+        const uint32_t name = pair_name(pairs, h), twin = work->twin[name];
+        if (!pairs->good[name]) continue;
+
+        // the gain from continuing the rows of the quads around the pair
+        double gain = 0;
+        for (int i = 0; i < 4; i++) {
+            uint32_t inner = i < 2 ? name : twin, other = i < 2 ? twin : name;
+            uint32_t side = i & 1 ? pair_next3(inner) : pair_last3(inner), across = work->twin[side];
+            if (across == MESH_NONE || pairs->mate[across / 3] == MESH_NONE) continue;
+            uint32_t shared = shared_half(pairs, across / 3);
+            if (shared == MESH_NONE || shared == across) continue;
+            uint32_t beyond = work->twin[shared];
+            double from = quad_angle(pairs, side, inner, other) + quad_angle(pairs, pair_next3(across), shared, beyond);
+            double to = quad_angle(pairs, pair_next3(side), inner, other) + quad_angle(pairs, across, shared, beyond);
+            gain += fmax(0, straight_within - 0.5 * (fabs(from - 180) + fabs(to - 180)));
+        }
+        heap_push(pairs->work, &pairs->heap, (PairItem){pairs->cost[name] - straight_gain * gain, name});
     }
 }
 

@@ -248,8 +248,17 @@ static bool cut_best(PolygonCut *cut, uint32_t n) {
     return true;
 }
 
-/// Cuts a quad that is too bent for its normal to be useful, along the diagonal at which it is folded less.
-static bool cut_bent_quad(PolygonCut *cut) {
+bool polygon_cut(PolygonCut *cut, const uint32_t *ring, uint32_t n) {
+    double normal[3];
+    polygon_normal(cut, ring, n, normal);
+    project(cut, ring, n, normal);
+    memcpy(cut->ring, ring, n * sizeof *ring);
+    uint32_t left = cut_ears(cut, n, BEST_CUT_MAX);
+    if (left > BEST_CUT_MAX) return false;
+    if (cut_best(cut, left)) return true;
+    if (n != 4) return false;
+
+    // a quad that is too bent for its normal to be useful is cut along the diagonal at which it is folded less
     double best = fold_max;
     uint32_t start = 4;
     for (uint32_t s = 0; s < 2; s++) {
@@ -270,16 +279,6 @@ static bool cut_bent_quad(PolygonCut *cut) {
     add_triangle(cut, start, start + 1, start + 2);
     add_triangle(cut, start, start + 2, (start + 3) % 4);
     return true;
-}
-
-bool polygon_cut(PolygonCut *cut, const uint32_t *ring, uint32_t n) {
-    double normal[3];
-    polygon_normal(cut, ring, n, normal);
-    project(cut, ring, n, normal);
-    memcpy(cut->ring, ring, n * sizeof *ring);
-    uint32_t left = cut_ears(cut, n, BEST_CUT_MAX);
-    if (left > BEST_CUT_MAX) return false;
-    return cut_best(cut, left) || (n == 4 && cut_bent_quad(cut));
 }
 
 // ---- overlapping triangles

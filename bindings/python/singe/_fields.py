@@ -124,7 +124,7 @@ def assign(made: Any, values: Mapping[str, Any], keep: List[Any], sheet: Optiona
     for name, value in values.items():
         if name not in kinds:
             near = difflib.get_close_matches(name, kinds, 1)
-            hint = f"; did you mean {near[0]!r}?" if near else f"; there are {', '.join(kinds)}"
+            hint = f"; did you mean {near[0]!r}?" if near else f"; choose one of {', '.join(kinds)}"
             raise TypeError(f"there is no {name!r}{hint}")
         _assign_one(made, name, kinds[name], value, keep, sheet)
 
@@ -157,7 +157,7 @@ def _colours(params: Any, value: Any, name: str, keep: List[Any], sheet: Optiona
         value = dict.fromkeys(COLOURS, value)
     for colour, one in value.items():
         if colour not in COLOURS:
-            raise TypeError(f"{name}: there is no colour {colour!r}; there are {', '.join(COLOURS)}")
+            raise TypeError(f"{name}: there is no colour {colour!r}; choose one of {', '.join(COLOURS)}")
         params[COLOURS.index(colour)] = _param(one, f"{name}.{colour}", keep, sheet)
 
 
@@ -201,7 +201,7 @@ def _param(value: Any, name: str, keep: List[Any], sheet: Optional[Attributes]) 
     given = [(kind, getattr(value, kind)) for kind in ("texture", "attribute", "noise")
              if getattr(value, kind) is not None]
     if len(given) != 1:
-        raise ValueError(f"{name}: give one of attribute, texture and noise")
+        raise ValueError(f"{name}: give exactly one of attribute, texture and noise")
     made.value, made.to = float(value.value), float(value.to)
     _field(made, *given[0], name, keep, sheet)
     return made
@@ -218,7 +218,7 @@ def _field(made: _abi.SingeParam, kind: str, given: Any, name: str, keep: List[A
         field.noise.scale, field.noise.octaves, field.noise.seed = float(size), int(octaves), int(seed)
     else:
         if sheet is None:
-            raise ValueError(f"{name} cannot follow an attribute here")
+            raise ValueError(f"{name} cannot follow an attribute here: only a sheet has attributes")
         attribute = given if isinstance(given, str) else sheet.add(f"parameter {name}", given)
         field.attribute = text(attribute, f"{name}: the name of an attribute")
     keep.append(field)
@@ -229,7 +229,7 @@ def set_texture(texture: _abi.SingeTexture, values: Any, name: str, keep: List[A
     """A grey picture, [rows, columns], 0 black to 1 white, the first row at the top."""
     array = np.ascontiguousarray(values, dtype=np.float32)
     if array.ndim != 2 or array.size == 0:
-        raise ValueError(f"{name}: a texture has the shape [rows, columns], not {list(array.shape)}")
+        raise ValueError(f"{name}: a texture must have the shape [rows, columns], not {list(array.shape)}")
     texture.height, texture.width = array.shape
     texture.values = pointer(array, ctypes.c_float, keep)
 
@@ -238,7 +238,7 @@ def path_keys(path: Any, keep: List[Any]) -> Tuple[int, Any]:
     """Key frames: rows (time, x, y, z) or (time, x, y, z, qx, qy, qz, qw), in s and m."""
     rows = np.asarray(path, dtype=np.float64)
     if rows.ndim != 2 or rows.shape[1] not in (4, 8):
-        raise ValueError("a path has rows (time, x, y, z) or (time, x, y, z, qx, qy, qz, qw)")
+        raise ValueError("a path must have rows (time, x, y, z) or (time, x, y, z, qx, qy, qz, qw)")
     keys = (_abi.SingePoseKey * len(rows))()
     for key, row in zip(keys, rows):
         key.time, key.position = row[0], tuple(row[1:4])

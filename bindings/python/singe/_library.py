@@ -28,13 +28,13 @@ def _opened() -> ctypes.CDLL:
     try:
         opened = ctypes.CDLL(path)  # calls release the interpreter's lock
     except OSError as error:
-        raise ImportError(f"singe: cannot open its library: {error}") from error
+        raise ImportError(f"singe: cannot open the library: {error}") from error
     for name, (result, arguments) in _abi.FUNCTIONS.items():
         function = getattr(opened, name)
         function.restype, function.argtypes = result, arguments
     version = opened.singe_version().decode()
     if version != _abi.VERSION:
-        raise ImportError(f"singe: {path} has version {version}, this package is of {_abi.VERSION}")
+        raise ImportError(f"singe: {path} has version {version}, but this package needs {_abi.VERSION}")
     return opened
 
 

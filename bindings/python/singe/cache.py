@@ -76,7 +76,7 @@ class Frame:
         self._fill(table, [name for _, name in fields])
         self.triangles = np.frombuffer(rest, face, faces, vertices * row.itemsize)["corners"]
         if faces and not 0 <= self.triangles.min() <= self.triangles.max() < vertices:
-            raise errors.FormatError(f"{path} has a triangle with a corner that there is not", "ply")
+            raise errors.FormatError(f"{path} has a triangle whose vertex is out of range", "ply")
 
     def _fill(self, table: np.ndarray, names: Sequence[str]) -> None:
         taken = set()
@@ -134,7 +134,7 @@ class Cache:
             number = there[number]
         if number not in there:
             span = f"{there[0]} to {there[-1]}" if there else "none"
-            raise IndexError(f"{self.folder} has no frame {number}: there are {span}")
+            raise IndexError(f"{self.folder} has no frame {number}; it has {span}")
         return Frame(self._path(number), number)
 
     def __iter__(self) -> Iterator[Frame]:

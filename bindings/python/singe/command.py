@@ -32,8 +32,9 @@ def command_path() -> pathlib.Path:
     named = os.environ.get("SINGE_PROGRAM")
     path = pathlib.Path(named) if named else pathlib.Path(__file__).with_name("bin") / "singe"
     if not path.is_file():
-        raise errors.CommandMissingError(f"there is no {path}" if named else "this package was built without the "
-                                         "command; SINGE_PROGRAM may name one that was built otherwise")
+        raise errors.CommandMissingError(
+            f"SINGE_PROGRAM names {path}, which does not exist" if named else
+            "this package has no command singe: set SINGE_PROGRAM to the path of one")
     if not os.access(path, os.X_OK):
         path.chmod(path.stat().st_mode | stat.S_IXUSR | stat.S_IXGRP | stat.S_IXOTH)
     return path
@@ -109,7 +110,7 @@ class _Process:
             self._close()
         if self.child.returncode:
             text = "\n".join(line[len("singe: error: "):] if line.startswith("singe: error: ") else line
-                             for line in self.said) or f"it ended with {self.child.returncode}"
+                             for line in self.said) or f"singe ended with exit code {self.child.returncode}"
             kind = errors.SceneError if self.child.returncode == 2 else errors.CommandError
             raise kind(text, self.child.returncode)
         return self.printed.decode("utf-8", "replace")

@@ -165,7 +165,7 @@ class Collider(Placed):
         if wanted is not None and len(array) != wanted:
             raise ValueError(f"the collider has {wanted} vertices, not {len(array)}")
         if wanted is None:
-            raise ValueError("only a deforming collider that this Sim has added takes vertices")
+            raise ValueError("set_vertices needs a deforming collider that this Sim added")
         self._sim._call("singe_sim_set_collider_vertices", self.id, pointer(array, ctypes.c_float, keep), float(time))
 
 

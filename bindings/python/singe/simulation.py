@@ -178,7 +178,7 @@ class Sim(Views):
         strength: rows (time, factor). callback: see Source.set_callback.
         """
         if (callback is not None) != (kind == "callback"):
-            raise ValueError("a source of the kind 'callback' has a callback, and no other kind has one")
+            raise ValueError("a source of the kind 'callback' needs a callback, and no other kind takes one")
         keep: List[Any] = []
         made = default(_abi.SingeSourceDef, "singe_init_source")
         assign(made, {"kind": kind, **fields}, keep)
@@ -189,7 +189,7 @@ class Sim(Views):
         if strength is not None:
             rows = np.asarray(strength, np.float64)
             if rows.ndim != 2 or rows.shape[1] != 2:
-                raise ValueError("strength has rows (time, factor)")
+                raise ValueError("strength must have rows (time, factor)")
             made.strength = (_abi.SingeValueKey * len(rows))(*(_abi.SingeValueKey(t, v) for t, v in rows))
             made.strength_count = len(rows)
         id_ = _abi.SingeSourceId()
@@ -245,7 +245,7 @@ class Sim(Views):
         made = default(_abi.SingePinDef, "singe_init_pin")
         made.sheet, made.radius = sheet.id, float(radius)
         if sheet._sim is not self:
-            raise errors.HandleError("the sheet is of another simulation")
+            raise errors.HandleError("the sheet belongs to another simulation")
         if points is not None:
             array = floats(points, 3, "points")
             made.point_count, made.points = len(array), pointer(array, ctypes.c_float, keep)
@@ -315,7 +315,7 @@ class Sim(Views):
         if share is not None:
             values, wanted = floats(share, 0, "share"), sheet._range().vertex_count
             if len(values) != wanted:
-                raise ValueError(f"share must have {wanted} values, one a vertex, after the commit; not {len(values)}")
+                raise ValueError(f"share must have a value for each of {wanted} vertices, not {len(values)} values")
             array = pointer(values, ctypes.c_float, keep)
         self._rebuilt("singe_sim_set_material", sheet.id, ctypes.byref(made), array)
 
@@ -548,7 +548,7 @@ def _now(sheet: Sheet, vertices: np.ndarray) -> np.ndarray:
     if sheet.became is None:
         return vertices
     if len(vertices) and vertices.max() >= len(sheet.became):
-        raise ValueError(f"there is no vertex {vertices.max()}: the mesh has {len(sheet.became)}")
+        raise ValueError(f"vertex {vertices.max()} is out of range: the mesh has {len(sheet.became)} vertices")
     now = sheet.became[vertices]
     return now[now >= 0]
 

@@ -170,7 +170,7 @@ def add_fluxes(returned: Any, sums: Any, count: int) -> None:
     """Adds a callback's result to the library's sums: flux, conductance, conductance times temperature."""
     parts = returned if isinstance(returned, tuple) else (returned, 0, 0)
     if len(parts) != 3:
-        raise ValueError(f"a callback returns a flux, or (flux, conductance, temperature), not {len(parts)} parts")
+        raise ValueError(f"a callback must return a flux, or (flux, conductance, temperature), not {len(parts)} parts")
     if any(part is None for part in parts):  # NumPy would make NaN of it
         raise TypeError("a callback returned None: it must return a flux, or (flux, conductance, temperature)")
     flux, conductance, temperature = (np.broadcast_to(np.asarray(part, np.float32), count) for part in parts)
