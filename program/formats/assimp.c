@@ -11,8 +11,8 @@ bool assimp_available(void) { return false; }
 
 SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                         Polygons *polygons, SingeError *error) {
-    (void)bytes, (void)size, (void)allocator;
-    memset(polygons, 0, sizeof *polygons);
+    (void)bytes, (void)size;
+    *polygons = (Polygons){.allocator = allocator};
     return refuse(error, SINGE_ERROR_STATE, "mesh", -1,
                   "%s: this singe was built without assimp; it reads OBJ, PLY, STL and glTF 2", short_name(name));
 }

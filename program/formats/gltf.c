@@ -176,11 +176,11 @@ static SingeResult find_elements(Gltf *gltf, int64_t object, uint32_t number, ui
 
     Slice slice = {0};
 
-    int64_t held = gltf->views[((uint32_t)view)], extensions = json_member(&gltf->json, held, "extensions"), buffer;
+    int64_t held = gltf->views[view], extensions = json_member(&gltf->json, held, "extensions"), buffer;
     if (json_member(&gltf->json, extensions, "EXT_meshopt_compression") != JSON_NONE)
-        return gltf_bad(gltf, "bufferViews", ((uint32_t)view), "compressed data are not supported");
+        return gltf_bad(gltf, "bufferViews", (uint32_t)view, "compressed data are not supported");
     TRY(gltf_index(gltf, held, "buffer", gltf->buffer_count, &buffer));
-    if (buffer == JSON_NONE) return gltf_bad(gltf, "bufferViews", ((uint32_t)view), "it has no buffer");
+    if (buffer == JSON_NONE) return gltf_bad(gltf, "bufferViews", (uint32_t)view, "it has no buffer");
 
     const uint8_t *from = NULL;
     uint64_t buffer_size = 0, begin, length;
@@ -188,7 +188,7 @@ static SingeResult find_elements(Gltf *gltf, int64_t object, uint32_t number, ui
     bool good = take_count(gltf, held, "byteOffset", 0, buffer_size, &begin);
     good = good && take_count(gltf, held, "byteLength", 0, buffer_size - begin, &length) && offset <= length;
     if (!good || !take_count(gltf, held, "byteStride", 0, 252, &slice.stride))
-        return gltf_bad(gltf, "bufferViews", ((uint32_t)view), "it goes past the end of its buffer");
+        return gltf_bad(gltf, "bufferViews", (uint32_t)view, "it goes past the end of its buffer");
     slice.bytes = from + begin + offset;
     slice.size = length - offset;
 

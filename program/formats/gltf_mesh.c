@@ -101,32 +101,28 @@ static SingeResult walk_node(Walk *walk, uint32_t node, const Transform *parent,
     TRY(gltf_index(gltf, object, "mesh", gltf->mesh_count, &mesh));
 
     if (mesh >= 0) {
-        const GltfMesh *range = &walk->gltf->ranges[mesh];
+        const GltfMesh *range = &gltf->ranges[mesh];
         for (uint32_t i = 0; i < range->count; i++) {
-            // adds the counts of a primitive
-            uint64_t vertices = gltf->read[(&walk->gltf->primitives[range->first + i])->position].count, faces = 0;
-            uint64_t corners = (&walk->gltf->primitives[range->first + i])->indices < 0
-                                   ? vertices
-                                   : gltf->read[(&walk->gltf->primitives[range->first + i])->indices].count;
-            if ((&walk->gltf->primitives[range->first + i])->mode == 4 && corners % 3)
+            const GltfPrimitive *primitive = &gltf->primitives[range->first + i];
+            uint64_t vertices = gltf->read[primitive->position].count, faces = 0;
+            uint64_t corners = primitive->indices < 0 ? vertices : gltf->read[primitive->indices].count;
+            if (primitive->mode == 4 && corners % 3)
                 return gltf_refuse(gltf, SINGE_ERROR_MESH, "meshes[%u]: primitive %u: triangles have %llu corners",
-                                   (&walk->gltf->primitives[range->first + i])->mesh,
-                                   (&walk->gltf->primitives[range->first + i])->number, (unsigned long long)corners);
-            if ((&walk->gltf->primitives[range->first + i])->mode == 4) faces = corners / 3;
-            else if ((&walk->gltf->primitives[range->first + i])->mode > 4) faces = corners > 2 ? corners - 2 : 0;
+                                   primitive->mesh, primitive->number, (unsigned long long)corners);
+            if (primitive->mode == 4) faces = corners / 3;
+            else if (primitive->mode > 4) faces = corners > 2 ? corners - 2 : 0;
             walk->vertices += vertices;
             walk->faces += faces;
             walk->corners += 3 * faces;
-            walk->uv = walk->uv || (&walk->gltf->primitives[range->first + i])->uv >= 0;
+            walk->uv = walk->uv || primitive->uv >= 0;
             walk->primitives++;
             if (12 * walk->vertices + 12 * walk->corners + 100 * walk->primitives > walk->max)
                 return gltf_refuse(gltf, SINGE_ERROR_LIMIT,
                                    "too large: its nodes repeat meshes, which come to more than %llu MB",
                                    (unsigned long long)walk->max / 1000000);
         }
-        if (!store_grow(walk->gltf->allocator, &walk->instances, &walk->capacity, walk->count + 1,
-                        sizeof *walk->instances))
-            return refuse_memory(walk->gltf->error, "gltf", walk->gltf->name);
+        if (!store_grow(gltf->allocator, &walk->instances, &walk->capacity, walk->count + 1, sizeof *walk->instances))
+            return refuse_memory(gltf->error, "gltf", gltf->name);
         walk->instances[walk->count++] = (Instance){(uint32_t)mesh, at};
     }
 

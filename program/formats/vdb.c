@@ -209,6 +209,42 @@ static void put_topology(Writer *w, const VdbFieldInfo *field) {
     }
 }
 
+/// Lets a program identify a grid from its first kilobyte.
+static void put_grid_metadata(Writer *w, const char *name, bool vector) {
+    uint32_t low[3] = {UINT32_MAX, UINT32_MAX, UINT32_MAX}, high[3] = {0, 0, 0};
+    uint64_t cells = 0;
+    for (size_t i = 0; i < w->leaf_count; i++) {
+        uint32_t block[3], from[3], to[3], volume = 1;
+        for (int c = 0; c < 3; c++) block[c] = w->leaves[i].block[c];
+        gas_block_box(&w->gas->view, block, from, to);
+        for (int c = 0; c < 3; c++) {
+            low[c] = from[c] < low[c] ? from[c] : low[c];
+            high[c] = to[c] - 1 > high[c] ? to[c] - 1 : high[c];
+            volume *= to[c] - from[c];
+        }
+        cells += volume;
+    }
+    put_u32(w, (w->leaf_count ? 6u : 4u) + w->half);
+    if (w->half) {
+        put_string(w, "is_saved_as_half_float");
+        put_string(w, "bool");
+        put_u32(w, 1);
+        put_bytes(w, "\1", 1);
+    }
+    put_text(w, "name", name);
+    if (vector) put_text(w, "vector_type", "contravariant relative");
+    else put_text(w, "class", "fog volume");
+    put_text(w, "file_compression", "active values");
+    put_string(w, "file_voxel_count");
+    put_string(w, "int64");
+    put_u32(w, 8);
+    put_u64(w, cells);
+    if (w->leaf_count) {
+        put_triple(w, "file_bbox_min", low);
+        put_triple(w, "file_bbox_max", high);
+    }
+}
+
 /// A grid with its tree, or, if `parent` is given, one that shares the parent's.
 static void put_grid(Writer *w, const char *name, VdbField field, const char *parent) {
     put_string(w, name);
@@ -221,50 +257,12 @@ static void put_grid(Writer *w, const char *name, VdbField field, const char *pa
     w->at += 24;
     uint64_t body = (uint64_t)(w->at - w->begin);
     put_u32(w, VDB_ACTIVE_VALUES);
-
-    // lets a program identify a grid from its first kilobyte
-    uint32_t low[3] = {UINT32_MAX, UINT32_MAX, UINT32_MAX}, high[3] = {0, 0, 0};
-    uint64_t cells = 0;
-
-    for (size_t i = 0; i < w->leaf_count; i++) {
-        uint32_t block[3], from[3], to[3], volume = 1;
-        for (int c = 0; c < 3; c++) block[c] = w->leaves[i].block[c];
-        gas_block_box(&w->gas->view, block, from, to);
-        for (int c = 0; c < 3; c++) {
-            low[c] = from[c] < low[c] ? from[c] : low[c];
-            high[c] = to[c] - 1 > high[c] ? to[c] - 1 : high[c];
-            volume *= to[c] - from[c];
-        }
-        cells += volume;
-    }
-
-    put_u32(w, (w->leaf_count ? 6u : 4u) + w->half);
-    if (w->half) {
-        put_string(w, "is_saved_as_half_float");
-        put_string(w, "bool");
-        put_u32(w, 1);
-        put_bytes(w, "\1", 1);
-    }
-
-    put_text(w, "name", name);
-    if ((vdb_fields[field].width == 3)) put_text(w, "vector_type", "contravariant relative");
-    else put_text(w, "class", "fog volume");
-    put_text(w, "file_compression", "active values");
-    put_string(w, "file_voxel_count");
-    put_string(w, "int64");
-    put_u32(w, 8);
-    put_u64(w, cells);
-
-    if (w->leaf_count) {
-        put_triple(w, "file_bbox_min", low);
-        put_triple(w, "file_bbox_max", high);
-    }
+    put_grid_metadata(w, name, vdb_fields[field].width == 3);
 
     // index to position: cell (0, 0, 0) has its centre half a cell from the origin
     const SingeGas *gas = &w->gas->view;
     double cell = (double)gas->cell;
     put_string(w, VDB_MAP);
-
     for (int c = 0; c < 3; c++) put_double(w, (double)gas->origin[c] + 0.5 * cell);
     const double powers[5] = {cell, cell, 1 / cell, 1 / (cell * cell), 0.5 / cell};
     for (int k = 0; k < 5; k++)
