@@ -4,6 +4,7 @@
 // result does not depend on the order of the springs. When a piece falls apart, the part with most particles keeps its
 // id (among equals the one with the smallest particle); the others get new ids in order of their smallest particle. A
 // particle without springs belongs to no piece.
+#include "common/assertion.h"
 #include "ablate/ablate_plan.h"
 
 #include <string.h>
@@ -126,6 +127,7 @@ void piece_update(Removal *removal, EventList *events) {
         ablate->piece_count++;
         if (plan->heir[ablate->piece[r]] == r) continue;
         ablate->piece[r] = (int32_t)ablate->next_piece++;
+        SINGE_ASSERT(ablate->next_piece <= plan->particle_count); // as ablate_fits requires of a snapshot
         event_push(events, SINGE_EVENT_PIECE_FREED, ablate->piece[r], state->time, state->dynamics->position[r]);
     }
 

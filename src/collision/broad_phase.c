@@ -3,6 +3,7 @@
 // A cell is a moving box: its box at the search, widened by half of thickness + slack, along the trajectory that its
 // corners were on. Two cells whose boxes do not meet in plan->steps steps stay farther apart than the thickness, as
 // long as no corner deviates from its trajectory by more than half the slack; ccd.c watches that.
+#include "common/assertion.h"
 #include "common/error.h"
 #include "collision/collision_plan.h"
 
@@ -155,6 +156,7 @@ SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell
     for (uint32_t c = 0; c < plan->cell_count; c++)
         if (plan->alive[c]) plan->pairs[plan->pair_count++] = (CollisionPair){.a = c, .b = c, .hit = 2, .bridge = c};
     plan->listed_count = plan->pair_count;
+    SINGE_ASSERT(plan->pair_count <= plan->pair_capacity);
 
     TRY(initial_find(memory, plan, shell, plan->searched == 0));
     plan->searched = 1;

@@ -6,6 +6,7 @@
 //
 // A corner that has left the box that the search gave its cell may have met a cell that the search did not list: then
 // the search is repeated for this step's own displacements.
+#include "common/assertion.h"
 #include "common/clock.h"
 #include "common/error.h"
 #include "collision/ccd.h"
@@ -222,6 +223,7 @@ static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *
                               Pool *pool, float h, DynamicsState *dynamics) {
     Ccd ccd = {memory, plan, shell, dynamics, state->ablate->cell_flags, h * (float)(state->step - plan->step + 1), 0};
     bool stopped = false;
+    SINGE_ASSERT(plan->stopped_count == 0); // ccd_apply has emptied the zones of the last run
 
     // where CCD has run in this step before, only what has moved since counts
     if (plan->closed) ccd_forget_changed(plan);

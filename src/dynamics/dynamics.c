@@ -2,6 +2,7 @@
 //
 // One projection of every colour a substep instead of several a step: the same cost and a smaller
 // error (Macklin et al., Small steps in physics simulation, 2019).
+#include "common/assertion.h"
 #include "common/clock.h"
 #include "dynamics/stiffness.h"
 #include "dynamics/dynamics_plan.h"
@@ -213,6 +214,7 @@ SingeResult dynamics_step(Memory *memory, DynamicsPlan *plan, const StepContext 
         for (uint32_t i = 0; i < context->colliders->count; i++) {
             const Collider *collider = &context->colliders->items[i];
             if (collider->generation == 0) continue;
+            SINGE_ASSERT(part.collider_count < plan->collider_capacity);
             plan->colliders[part.collider_count++] = contact_collider(collider, before, after);
         }
 

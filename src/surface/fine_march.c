@@ -10,6 +10,7 @@
 // sides from the centre, at rest and now:
 //
 //   lambda^2 > TORN^2,   lambda^2 the larger eigenvalue of C^-1 C'
+#include "common/assertion.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>
@@ -260,5 +261,6 @@ SingeResult fine_march(Fine *fine, SingeError *error) {
     // draw
     march.drawing = true;
     march_cells(&march);
+    SINGE_ASSERT(fine->vertex_count <= fine->vertex_capacity && fine->surface->triangle_count <= march.triangles);
     return SINGE_OK;
 }

@@ -17,6 +17,7 @@
 // with end 0 inside (m' >= 0) and end 1 outside, for the position and every other field alike. A virtual
 // centre lies at the mean of its cell's four corners, in space, at rest and in velocity; temperature,
 // mass and times are those of the cell's centre particle.
+#include "common/assertion.h"
 #include "common/float3.h"
 #include "surface/surface_parts.h"
 
@@ -263,6 +264,7 @@ static SingeResult draw(Drawing *drawing, SingeError *error) {
 
     TRY(surface_reserve_triangles(surface, max, error));
     draw_cells(drawing);
+    SINGE_ASSERT(surface->triangle_count <= max);
 
     // number the keys in use, and fill their vertices
     uint32_t count = 0;

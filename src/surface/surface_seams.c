@@ -6,6 +6,7 @@
 //
 // Only cells whose uv differ from those of their vertices (Shell.uv) are visited. If the input had several vertices on
 // a seam, each copy keeps its own source vertex.
+#include "common/assertion.h"
 #include "surface/surface_parts.h"
 #include "common/float3.h"
 
@@ -162,6 +163,7 @@ SingeResult surface_seams(const Shell *shell, const uint32_t *cell_first, SingeS
         claim(&seams, cell_first);
         for (uint32_t c = 0; c < shell->cell_count; c++)
             if (is_seamed(shell, c)) part_cell(&seams, c, cell_first[c], cell_first[c + 1]);
+        SINGE_ASSERT(surface->vertex_count <= seams.capacity);
     } else {
         surface_clear(surface);
         result = error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's seams");

@@ -5,6 +5,7 @@
 // side, the row's last particle is followed by the first of the next row, where a diagonal enters on the other side:
 // lanes stay full. Strands outside all runs fill the rest of the lanes, then lanes of their own, longest first. Rings
 // keep a lane each, and only rings of one length share a group.
+#include "common/assertion.h"
 #include "dynamics/strand/strand_lanes.h"
 
 /// Where a strand's first node is.
@@ -324,6 +325,7 @@ static bool lay_strands(Memory *memory, const SpringSet *springs, uint32_t parti
     for (uint32_t p = 0; p < particle_count && done; p++) lay.owner[p] = SHELL_NONE;
     for (uint32_t s = 0; s < springs->strand_count && done; s++) set->strand_slot[s] = SHELL_NONE;
     for (uint32_t f = 0; f < springs->family_count && done; f++) lay_family(&lay, f);
+    SINGE_ASSERT(!done || lay.laid_count == springs->strand_count); // in runs, gaps, empty columns or rings
     FREE(memory, lay.head, lengths);
     FREE(memory, lay.below, lengths);
     FREE(memory, lay.next, springs->strand_count);
