@@ -84,31 +84,6 @@ static bool read_word(const Parser *parser, const char *text, const char *const 
     return bench_args_refuse(parser, expected, text);
 }
 
-static bool read_solver(const Parser *parser, const char *text, SingeSolverMethod *method) {
-    static const char *const words[] = {"strand", "paper", "paper-literal", "all-at-once", "mass-spring"};
-    int value;
-    if (!read_word(parser, text, words, 5, "strand, paper, paper-literal, all-at-once or mass-spring", &value))
-        return false;
-    *method = (SingeSolverMethod)value;
-    return true;
-}
-
-static bool read_instructions(const Parser *parser, const char *text, SingeInstructions *instructions) {
-    static const char *const words[] = {"best", "plain", "v2", "v3", "v4", "neon"};
-    int value;
-    if (!read_word(parser, text, words, 6, "best, plain, v2, v3, v4 or neon", &value)) return false;
-    *instructions = (SingeInstructions)value;
-    return true;
-}
-
-static bool read_state(const Parser *parser, const char *text, BenchState *state) {
-    static const char *const words[] = {"swing", "shrink"};
-    int value;
-    if (!read_word(parser, text, words, 2, "swing or shrink", &value)) return false;
-    *state = (BenchState)value;
-    return true;
-}
-
 static bool read_outline(const Parser *parser, const char *text, BenchOutline *outline) {
     static const char *const words[] = {"square", "disc"};
     int value;
@@ -133,13 +108,32 @@ static bool read_option(Parser *parser, const char *text, BenchRequest *request)
     case BENCH_OPT_STEPS: return args_int(reader, option, text, 1, 1000, &o->steps);
     case BENCH_OPT_SMOOTHING: return read_one(parser, text, 0, 1e6, "a number from 0 to 1e6", &o->smoothing);
     case BENCH_OPT_THREADS: return args_int(reader, option, text, 1, 64, &o->threads);
-    case BENCH_OPT_SOLVER: return read_solver(parser, text, &o->solver);
-    case BENCH_OPT_INSTRUCTIONS: return read_instructions(parser, text, &o->instructions);
+    case BENCH_OPT_SOLVER: {
+        static const char *const words[] = {"strand", "paper", "paper-literal", "all-at-once", "mass-spring"};
+        int value;
+        if (!read_word(parser, text, words, 5, "strand, paper, paper-literal, all-at-once or mass-spring", &value))
+            return false;
+        o->solver = (SingeSolverMethod)value;
+        return true;
+    }
+    case BENCH_OPT_INSTRUCTIONS: {
+        static const char *const words[] = {"best", "plain", "v2", "v3", "v4", "neon"};
+        int value;
+        if (!read_word(parser, text, words, 6, "best, plain, v2, v3, v4 or neon", &value)) return false;
+        o->instructions = (SingeInstructions)value;
+        return true;
+    }
     case BENCH_OPT_PROJECTIONS: return args_int(reader, option, text, 1, 1000, &o->projections);
     case BENCH_OPT_SPRINGS:
         return read_list(parser, text, 40, 4e7, true, 1, "whole numbers from 40 to 40000000 as in 1000,16000",
                          &o->springs);
-    case BENCH_OPT_STATE: return read_state(parser, text, &o->state);
+    case BENCH_OPT_STATE: {
+        static const char *const words[] = {"swing", "shrink"};
+        int value;
+        if (!read_word(parser, text, words, 2, "swing or shrink", &value)) return false;
+        o->state = (BenchState)value;
+        return true;
+    }
     case BENCH_OPT_LIMIT: return read_one(parser, text, 1e-3, 1e6, "milliseconds from 0.001 to 1e6", &o->limit_ms);
     case BENCH_OPT_QUICK: o->quick = true; return true;
     case BENCH_OPT_TIMED: return args_int(reader, option, text, 1, 100000, &o->steps);

@@ -89,17 +89,7 @@ static const struct {
 
 enum { MEASUREMENTS = sizeof measurements / sizeof *measurements };
 
-static void bench_help(void) {
-    printf("usage: singe bench MEASUREMENT [options]\n\nmeasurements:\n");
-    for (int i = 0; i < MEASUREMENTS; i++) printf("  %-16s %s\n", measurements[i].name, measurements[i].summary);
-    printf("  %-16s %s\n", "plot", "Draws cost against springs of tables written with --csv.");
-    printf("\n  singe bench MEASUREMENT --help   its options\n");
-}
-
 static void print_csv(FILE *file, const void *context) { table_write_csv(context, file); }
-
-/// A refused argument is the user's error; everything else is a failure.
-static ExitCode exit_code(SingeResult result) { return result == SINGE_ERROR_ARGUMENT ? EXIT_INPUT : EXIT_FAILED; }
 
 static ExitCode bench_measure(int m, const BenchRequest *request) {
     Console console = console_make(false);
@@ -111,7 +101,9 @@ static ExitCode bench_measure(int m, const BenchRequest *request) {
         fflush(stdout);
         error.code = result;
         console_result(&console, &error);
-        code = exit_code(result);
+
+        // a refused argument is the user's error; everything else is a failure
+        code = result == SINGE_ERROR_ARGUMENT ? EXIT_INPUT : EXIT_FAILED;
     }
     if (!result && request->json) table_write_json(&table, stdout);
     if (!result && request->csv) code = streams_write(&console, request->csv, print_csv, &table);
@@ -136,7 +128,11 @@ int command_bench(int argc, char **argv) {
         return EXIT_INPUT;
     }
     if (strcmp(argv[0], "--help") == 0 || strcmp(argv[0], "-h") == 0) {
-        bench_help();
+        printf("usage: singe bench MEASUREMENT [options]\n\nmeasurements:\n");
+        for (int i = 0; i < MEASUREMENTS; i++) printf("  %-16s %s\n", measurements[i].name, measurements[i].summary);
+        printf("  %-16s %s\n", "plot", "Draws cost against springs of tables written with --csv.");
+        printf("\n  singe bench MEASUREMENT --help   its options\n");
+
         return EXIT_GOOD;
     }
     if (strcmp(argv[0], "plot") == 0) return bench_plot(argc - 1, argv + 1);

@@ -176,28 +176,6 @@ static SingeResult isotropy_compare(const Burn *burn, int index, BenchTable *tab
     return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
 }
 
-/// The same burn over the seeds.
-static SingeResult compare_seeds(Burn *burn, BenchTable *table, SingeError *error) {
-    static const double four[] = {1, 2, 3, 4};
-    const BenchList seeds = bench_list(&burn->options->seeds, burn->options->quick ? 2 : 4, four);
-    double sum = 0;
-    SingeResult result = SINGE_OK;
-    for (int i = 0; i < seeds.count && !result; i++) {
-        burn->seed = (uint32_t)seeds.values[i];
-        result = isotropy_compare(burn, i, table, &sum, error);
-    }
-    return result;
-}
-
-static SingeResult compare_outlines(Burn *burn, BenchTable *table, SingeError *error) {
-    SingeResult result = SINGE_OK;
-    for (int disc = 0; disc < 2 && !result; disc++) {
-        burn->disc = disc;
-        if (burn->options->outline != (disc ? BENCH_SQUARE : BENCH_DISC)) result = compare_seeds(burn, table, error);
-    }
-    return result;
-}
-
 SingeResult bench_isotropy(const BenchOptions *options, BenchTable *table, SingeError *error) {
     const double cell = 2e-3, sheet = 1e-3, limit = (double)singe_default_material().curvature_max.value;
     const double along = round(size / cell);
@@ -213,7 +191,22 @@ SingeResult bench_isotropy(const BenchOptions *options, BenchTable *table, Singe
                 burn.cells = (int)cells.values[c];
                 burn.thickness = thickness.values[t];
                 burn.limit = limits.values[l];
-                result = compare_outlines(&burn, table, error);
+
+                result = SINGE_OK;
+                for (int disc = 0; disc < 2 && !result; disc++) {
+                    burn.disc = disc;
+                    if (burn.options->outline != (disc ? BENCH_SQUARE : BENCH_DISC)) {
+                        // the same burn over the seeds
+                        static const double four[] = {1, 2, 3, 4};
+                        const BenchList seeds = bench_list(&burn.options->seeds, burn.options->quick ? 2 : 4, four);
+                        double sum = 0;
+                        result = SINGE_OK;
+                        for (int i = 0; i < seeds.count && !result; i++) {
+                            burn.seed = (uint32_t)seeds.values[i];
+                            result = isotropy_compare(&burn, i, table, &sum, error);
+                        }
+                    }
+                }
             }
     return result;
 }

@@ -15,18 +15,6 @@ typedef struct Frame {
     int springs_low, springs_high, ms_low, ms_high;
 } Frame;
 
-static Frame frame_around(const Curves *curves) {
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (int c = 0; c < curves->count; c++)
-        for (int p = 0; p < curves->list[c].count; p++) {
-            const double at[2] = {log10(curves->list[c].springs[p]), log10(curves->list[c].ms[p])};
-            for (int axis = 0; axis < 2; axis++) low[axis] = fmin(low[axis], at[axis]);
-            for (int axis = 0; axis < 2; axis++) high[axis] = fmax(high[axis], at[axis]);
-        }
-    return (Frame){(int)floor(low[0]), (int)fmax(ceil(high[0]), floor(low[0]) + 1), (int)floor(low[1]),
-                   (int)fmax(ceil(high[1]), floor(low[1]) + 1)};
-}
-
 static double position_x(const Frame *f, double power) {
     return LEFT + (power - f->springs_low) / (f->springs_high - f->springs_low) * (WIDTH - LEFT - RIGHT);
 }
@@ -43,32 +31,6 @@ static void draw_number(FILE *file, double x, double y, const char *anchor, int 
     fputs("</text>\n", file);
 }
 
-static void draw_grid(FILE *file, const Frame *f) {
-    const double bottom = HEIGHT - BOTTOM, right = WIDTH - RIGHT;
-    for (int p = f->springs_low; p <= f->springs_high; p++) {
-        double x = position_x(f, p);
-        fprintf(file, "<path d=\"M%.1f %d V%.1f\" stroke=\"#dddddd\"/>\n", x, TOP, bottom);
-        draw_number(file, x, bottom + 20, "middle", p);
-    }
-    for (int p = f->ms_low; p <= f->ms_high; p++) {
-        double y = position_y(f, p);
-        fprintf(file, "<path d=\"M%d %.1f H%.1f\" stroke=\"#dddddd\"/>\n", LEFT, y, right);
-        draw_number(file, LEFT - 8, y + 4, "end", p);
-    }
-    fprintf(file, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">springs</text>\n", 0.5 * (LEFT + right),
-            bottom + 42);
-    fprintf(file, "<text transform=\"translate(20 %.1f) rotate(-90)\" text-anchor=\"middle\">ms a step</text>\n",
-            0.5 * (TOP + bottom));
-}
-
-static void write_text(FILE *file, const char *text) {
-    for (; *text; text++) {
-        if (*text == '<') fputs("&lt;", file);
-        else if (*text == '&') fputs("&amp;", file);
-        else if ((unsigned char)*text >= ' ') fputc(*text, file);
-    }
-}
-
 static void draw_curve(FILE *file, const Frame *f, const Curve *curve, int index) {
     const char *colour = colours[index];
     const double right = WIDTH - RIGHT + 16, y = TOP + 12 + 20 * index;
@@ -82,12 +44,28 @@ static void draw_curve(FILE *file, const Frame *f, const Curve *curve, int index
                 position_x(f, log10(curve->springs[p])), position_y(f, log10(curve->ms[p])), colour);
     fprintf(file, "<path d=\"M%.1f %.1f h20\" stroke=\"%s\" stroke-width=\"2\"/>\n", right, y - 4, colour);
     fprintf(file, "<text x=\"%.1f\" y=\"%.1f\">", right + 26, y);
-    write_text(file, curve->name);
+
+    const char *text = curve->name;
+    for (; *text; text++) {
+        if (*text == '<') fputs("&lt;", file);
+        else if (*text == '&') fputs("&amp;", file);
+        else if ((unsigned char)*text >= ' ') fputc(*text, file);
+    }
+
     fputs("</text>\n", file);
 }
 
 SingeResult curves_draw(const Curves *curves, const char *path, SingeError *error) {
-    const Frame frame = frame_around(curves);
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int c = 0; c < curves->count; c++)
+        for (int p = 0; p < curves->list[c].count; p++) {
+            const double at[2] = {log10(curves->list[c].springs[p]), log10(curves->list[c].ms[p])};
+            for (int axis = 0; axis < 2; axis++) low[axis] = fmin(low[axis], at[axis]);
+            for (int axis = 0; axis < 2; axis++) high[axis] = fmax(high[axis], at[axis]);
+        }
+    const Frame frame = (Frame){(int)floor(low[0]), (int)fmax(ceil(high[0]), floor(low[0]) + 1), (int)floor(low[1]),
+                                (int)fmax(ceil(high[1]), floor(low[1]) + 1)};
+
     FILE *file = fopen(path, "w");
     if (file) {
         fprintf(file,
@@ -95,7 +73,23 @@ SingeResult curves_draw(const Curves *curves, const char *path, SingeError *erro
                 "font-family=\"sans-serif\" font-size=\"12\" fill=\"#222222\">\n"
                 "<rect width=\"%d\" height=\"%d\" fill=\"#ffffff\"/>\n",
                 WIDTH, HEIGHT, WIDTH, HEIGHT, WIDTH, HEIGHT);
-        draw_grid(file, &frame);
+
+        const double bottom = HEIGHT - BOTTOM, right = WIDTH - RIGHT;
+        for (int p = frame.springs_low; p <= frame.springs_high; p++) {
+            double x = position_x(&frame, p);
+            fprintf(file, "<path d=\"M%.1f %d V%.1f\" stroke=\"#dddddd\"/>\n", x, TOP, bottom);
+            draw_number(file, x, bottom + 20, "middle", p);
+        }
+        for (int p = frame.ms_low; p <= frame.ms_high; p++) {
+            double y = position_y(&frame, p);
+            fprintf(file, "<path d=\"M%d %.1f H%.1f\" stroke=\"#dddddd\"/>\n", LEFT, y, right);
+            draw_number(file, LEFT - 8, y + 4, "end", p);
+        }
+        fprintf(file, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">springs</text>\n", 0.5 * (LEFT + right),
+                bottom + 42);
+        fprintf(file, "<text transform=\"translate(20 %.1f) rotate(-90)\" text-anchor=\"middle\">ms a step</text>\n",
+                0.5 * (TOP + bottom));
+
         for (int c = 0; c < curves->count; c++) draw_curve(file, &frame, &curves->list[c], c);
         fputs("</svg>\n", file);
     }

@@ -63,35 +63,6 @@ typedef struct Columns {
     int springs, ms, solver, threads; ///< of the columns; -1 if there is none
 } Columns;
 
-/// "strand, 2 threads, zen4" of a file zen4.csv.
-static void name_curve(char *name, size_t size, char **fields, const Columns *columns, const char *path) {
-    const char *base = strrchr(path, '/'), *end;
-    base = base ? base + 1 : path;
-    end = strrchr(base, '.');
-    int length = end && end > base ? (int)(end - base) : (int)strlen(base);
-    const char *solver = columns->solver >= 0 ? fields[columns->solver] : "";
-    const char *threads = columns->threads >= 0 ? fields[columns->threads] : "";
-    const char *word = !*threads ? "" : strcmp(threads, "1") == 0 ? " thread, " : " threads, ";
-    snprintf(name, size, "%s%s%s%s%.*s", solver, *solver ? ", " : "", threads, word, length > 40 ? 40 : length, base);
-}
-
-static SingeResult read_row(Curves *curves, int first, char **fields, int count, const Columns *columns,
-                            const char *path, int line, SingeError *error) {
-    char *springs_end, *ms_end, name[80];
-    if (columns->springs >= count || columns->ms >= count || columns->solver >= count || columns->threads >= count)
-        return curves_read_fail(error, SINGE_ERROR_FORMAT, path, line, "has fewer fields than the heading");
-    double springs = strtod(fields[columns->springs], &springs_end), ms = strtod(fields[columns->ms], &ms_end);
-    if (*springs_end || *ms_end || !(springs > 0) || !(ms > 0) || !isfinite(springs) || !isfinite(ms))
-        return curves_read_fail(error, SINGE_ERROR_FORMAT, path, line, "springs and step_ms must be numbers above 0");
-    name_curve(name, sizeof name, fields, columns, path);
-    Curve *curve = curve_named(curves, first, name);
-    if (!curve || curve->count == CURVE_POINTS_MAX)
-        return curves_read_fail(error, SINGE_ERROR_LIMIT, path, line, "more curves or points than can be drawn");
-    curve->springs[curve->count] = springs;
-    curve->ms[curve->count++] = ms;
-    return SINGE_OK;
-}
-
 static SingeResult read_lines(Curves *curves, FILE *file, const char *path, SingeError *error) {
     char text[LINE_MAX_LENGTH], *fields[COLUMNS_MAX];
     Columns columns = {-1, -1, -1, -1};
@@ -100,8 +71,33 @@ static SingeResult read_lines(Curves *curves, FILE *file, const char *path, Sing
         if (text[0] == '#' || text[0] == '\n') continue;
         int count = curves_read_split(text, fields);
         if (columns.springs >= 0) {
-            SingeResult result = read_row(curves, first, fields, count, &columns, path, line, error);
-            if (result) return result;
+            char *springs_end, *ms_end, name[80];
+            if (columns.springs >= count || columns.ms >= count || columns.solver >= count || columns.threads >= count)
+                return curves_read_fail(error, SINGE_ERROR_FORMAT, path, line, "has fewer fields than the heading");
+            double springs = strtod(fields[columns.springs], &springs_end), ms = strtod(fields[columns.ms], &ms_end);
+            if (*springs_end || *ms_end || !(springs > 0) || !(ms > 0) || !isfinite(springs) || !isfinite(ms))
+                return curves_read_fail(error, SINGE_ERROR_FORMAT, path, line,
+                                        "springs and step_ms must be numbers above 0");
+
+            // "strand, 2 threads, zen4" of a file zen4.csv
+            const size_t size = sizeof name;
+            const char *base = strrchr(path, '/'), *end;
+            base = base ? base + 1 : path;
+            end = strrchr(base, '.');
+            int length = end && end > base ? (int)(end - base) : (int)strlen(base);
+            const char *solver = columns.solver >= 0 ? fields[columns.solver] : "";
+            const char *threads = columns.threads >= 0 ? fields[columns.threads] : "";
+            const char *word = !*threads ? "" : strcmp(threads, "1") == 0 ? " thread, " : " threads, ";
+            snprintf(name, size, "%s%s%s%s%.*s", solver, *solver ? ", " : "", threads, word, length > 40 ? 40 : length,
+                     base);
+
+            Curve *curve = curve_named(curves, first, name);
+            if (!curve || curve->count == CURVE_POINTS_MAX)
+                return curves_read_fail(error, SINGE_ERROR_LIMIT, path, line,
+                                        "more curves or points than can be drawn");
+            curve->springs[curve->count] = springs;
+            curve->ms[curve->count++] = ms;
+
             continue;
         }
         columns = (Columns){curves_read_find(fields, count, "springs"), curves_read_find(fields, count, "step_ms"),

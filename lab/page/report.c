@@ -245,19 +245,6 @@ static void measure_csv(Report *report, const ReportBar *bar, bool holds) {
     else fprintf(file, ",\n");
 }
 
-static void keep(Report *report, const ReportBar *bar, bool holds) {
-    Taken *larger = realloc(report->taken, ((size_t)report->measures + 1) * sizeof *larger);
-    if (larger) {
-        report->taken = larger;
-        larger[report->measures] =
-            (Taken){text_format("%s", report->name), text_format("%s", bar->name), bar->value, holds};
-        report->measures++;
-    } else {
-        report->result = SINGE_ERROR_MEMORY;
-    }
-    if (!holds) report->failed++;
-}
-
 static bool within(double value, double low, double high) { return value >= low && value <= high; }
 
 void report_bar(Report *report, const ReportBar *bar) {
@@ -283,7 +270,17 @@ void report_bar(Report *report, const ReportBar *bar) {
     fflush(echo);
     measure_csv(report, bar, holds);
     measure_json(report, bar, holds);
-    keep(report, bar, holds);
+
+    Taken *larger = realloc(report->taken, ((size_t)report->measures + 1) * sizeof *larger);
+    if (larger) {
+        report->taken = larger;
+        larger[report->measures] =
+            (Taken){text_format("%s", report->name), text_format("%s", bar->name), bar->value, holds};
+        report->measures++;
+    } else {
+        report->result = SINGE_ERROR_MEMORY;
+    }
+    if (!holds) report->failed++;
 }
 
 void report_measure(Report *report, const char *name, const char *what, double value, double low, double high) {
@@ -298,23 +295,6 @@ ReportVerdict report_find(const Report *report, const char *item, const char *na
         return taken->holds ? REPORT_HOLDS : REPORT_FAILS;
     }
     return REPORT_UNKNOWN;
-}
-
-/// Moves a report's measures to the page's.
-static void take_measures(ReportPage *page, Report *report) {
-    const size_t count = (size_t)page->measures + (size_t)report->measures;
-    Taken *larger = realloc(page->taken, (count + 1) * sizeof *larger);
-    if (larger) page->taken = larger;
-    else page->result = SINGE_ERROR_MEMORY;
-    for (int i = 0; i < report->measures; i++) {
-        if (larger) larger[page->measures++] = report->taken[i];
-        else free(report->taken[i].item), free(report->taken[i].name);
-    }
-    page->failed += report->failed;
-    if (report->result && !page->result) {
-        page->result = report->result;
-        page->error = report->error;
-    }
 }
 
 void report_end(ReportPage *page, Report *report) {
@@ -338,7 +318,22 @@ void report_end(ReportPage *page, Report *report) {
     } else {
         page->result = SINGE_ERROR_MEMORY;
     }
-    take_measures(page, report);
+
+    // moves a report's measures to the page's
+    const size_t count = (size_t)page->measures + (size_t)report->measures;
+    Taken *larger = realloc(page->taken, (count + 1) * sizeof *larger);
+    if (larger) page->taken = larger;
+    else page->result = SINGE_ERROR_MEMORY;
+    for (int i = 0; i < report->measures; i++) {
+        if (larger) larger[page->measures++] = report->taken[i];
+        else free(report->taken[i].item), free(report->taken[i].name);
+    }
+    page->failed += report->failed;
+    if (report->result && !page->result) {
+        page->result = report->result;
+        page->error = report->error;
+    }
+
     report_free(report);
 }
 

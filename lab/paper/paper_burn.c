@@ -87,41 +87,6 @@ enum { COLUMNS = 4, ROWS = 4 };
 
 enum { FIG4_MEAN = COLUMNS }; ///< a fifth run, not drawn: the mean of (d)'s texture everywhere
 
-/// *rate: the mean of (d)'s rate, which the next run uses.
-static SingeResult fig4_column(Lab *lab, int i, Look *look, double *rate, uint8_t **rgb, int size[2],
-                               SingeError *error) {
-    static const double times[ROWS] = {0.9, 1.6, 2.3, 2.7};
-    static const char *const variants[FIG4_MEAN + 1][3] = {
-        {"sheets.0.material.shrink_front=0", "sheets.0.material.shrink_back=0", "tearing=no"},
-        {"sheets.0.material.ablate=no", "tearing=no", ""},
-        {"", "", ""},
-        {"sheets.0.material.mass_rate={from: 1e-3, to: 20e-3, texture: rate.png}", "", ""},
-        {"", "", ""}};
-    char mean[60] = "";
-    if (i == FIG4_MEAN) snprintf(mean, sizeof mean, "sheets.0.material.mass_rate=%g", *rate);
-    const double cut = i == 1 ? 0.2 : 0; // the scene's mass_loss: where the edge of (b) would be
-    Play play;
-    const char *sets[] = {variants[i][0],
-                          variants[i][1],
-                          variants[i][2],
-                          mean,
-                          lab->quick ? small_grid : "",
-                          lab->quick ? "preview.size=[320, 384]" : "",
-                          NULL};
-    SingeResult result = play_open(&play, lab, "fig4.yaml", sets, error);
-    if (!result && i == FIG4_MEAN - 1)
-        *rate = 1e-3 + 19e-3 * texture_mean(&play.job.assets.fields[0][SCENE_PARAM_SLOT(mass_rate)].texture);
-    for (int k = 0; k < ROWS && !result; k++) {
-        result = play_until(&play, times[k], error);
-        if (!result && i < COLUMNS) result = play_draw(&play, &rgb[k], size, error);
-        if (!result && times[k] > 2) result = look_take(&play, cut, look, error);
-    }
-    if (!result) result = play_until(&play, 3.6, error);
-    if (!result) result = look_take(&play, cut, look, error);
-    play_close(&play);
-    return result;
-}
-
 static void fig4_report(Report *report, const Look *look) {
     static const char *const same = "(a) over itself", *const whole = "(b), which stays whole";
     static const char *const short_names[COLUMNS] = {"(a)", "(b)", "(c)", "(d)"};
@@ -159,7 +124,38 @@ SingeResult paper_fig4(Lab *lab, SingeError *error) {
     uint8_t *rgb[COLUMNS + 1][ROWS] = {{NULL}};
     int size[2] = {0};
     SingeResult result = SINGE_OK;
-    for (int i = 0; i <= FIG4_MEAN && !result; i++) result = fig4_column(lab, i, &look[i], &rate, rgb[i], size, error);
+    for (int i = 0; i <= FIG4_MEAN && !result; i++) {
+        // *rate: the mean of (d)'s rate, which the next run uses
+        static const double times[ROWS] = {0.9, 1.6, 2.3, 2.7};
+        static const char *const variants[FIG4_MEAN + 1][3] = {
+            {"sheets.0.material.shrink_front=0", "sheets.0.material.shrink_back=0", "tearing=no"},
+            {"sheets.0.material.ablate=no", "tearing=no", ""},
+            {"", "", ""},
+            {"sheets.0.material.mass_rate={from: 1e-3, to: 20e-3, texture: rate.png}", "", ""},
+            {"", "", ""}};
+        char mean[60] = "";
+        if (i == FIG4_MEAN) snprintf(mean, sizeof mean, "sheets.0.material.mass_rate=%g", rate);
+        const double cut = i == 1 ? 0.2 : 0; // the scene's mass_loss: where the edge of (b) would be
+        Play play;
+        const char *sets[] = {variants[i][0],
+                              variants[i][1],
+                              variants[i][2],
+                              mean,
+                              lab->quick ? small_grid : "",
+                              lab->quick ? "preview.size=[320, 384]" : "",
+                              NULL};
+        result = play_open(&play, lab, "fig4.yaml", sets, error);
+        if (!result && i == FIG4_MEAN - 1)
+            rate = 1e-3 + 19e-3 * texture_mean(&play.job.assets.fields[0][SCENE_PARAM_SLOT(mass_rate)].texture);
+        for (int k = 0; k < ROWS && !result; k++) {
+            result = play_until(&play, times[k], error);
+            if (!result && i < COLUMNS) result = play_draw(&play, &rgb[i][k], size, error);
+            if (!result && times[k] > 2) result = look_take(&play, cut, &look[i], error);
+        }
+        if (!result) result = play_until(&play, 3.6, error);
+        if (!result) result = look_take(&play, cut, &look[i], error);
+        play_close(&play);
+    }
     if (!result) report_pictures(lab->report, COLUMNS);
     for (int k = 0; k < ROWS; k++)
         for (int i = 0; i < COLUMNS; i++) {
@@ -288,26 +284,6 @@ SingeResult paper_mass_loss(Lab *lab, SingeError *error) {
 
 enum { RIVAL_LOOKS = 145 };
 
-/// K, temperature of the front minus that of the back; 1/m, curvature along the strip's centre line, positive towards
-/// the back.
-static void rival_look(const SingeView *view, double *difference, double *curvature) {
-    enum { ALONG = 30 };
-    double front = 0, back = 0, angle = 0, length = 0;
-    const uint32_t row = ALONG + 1;
-    for (uint32_t i = 0; i < view->cell_count; i++)
-        front += (double)view->temperature[view->vertex_count + i] / view->cell_count;
-    for (uint32_t v = 0; v < view->vertex_count; v++) back += (double)view->temperature[v] / view->vertex_count;
-    for (uint32_t i = 2; i + 3 < row; i++) {
-        const float *p = view->position[row + i], *q = view->position[row + i + 1], *r = view->position[row + i + 2];
-        double a[2] = {(double)q[0] - (double)p[0], (double)q[2] - (double)p[2]};
-        double b[2] = {(double)r[0] - (double)q[0], (double)r[2] - (double)q[2]};
-        angle += atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
-        length += hypot(a[0], a[1]);
-    }
-    *difference = front - back;
-    *curvature = angle / length;
-}
-
 static void scale_to_one(double *values, int count) {
     double max = 0;
     for (int i = 0; i < count; i++) max = fmax(max, fabs(values[i]));
@@ -363,7 +339,25 @@ SingeResult paper_rival(Lab *lab, SingeError *error) {
         time[k] = k / 24.0;
         result = play_until(&play, time[k], error);
         SingeView view = singe_sim_view(play.sim);
-        rival_look(&view, &difference[k], &curvature[k]);
+
+        // K, temperature of the front minus that of the back; 1/m, curvature along the strip's centre line, positive
+        // towards the back
+        enum { ALONG = 30 };
+        double front = 0, back = 0, angle = 0, length = 0;
+        const uint32_t row = ALONG + 1;
+        for (uint32_t i = 0; i < view.cell_count; i++)
+            front += (double)view.temperature[view.vertex_count + i] / view.cell_count;
+        for (uint32_t v = 0; v < view.vertex_count; v++) back += (double)view.temperature[v] / view.vertex_count;
+        for (uint32_t i = 2; i + 3 < row; i++) {
+            const float *p = view.position[row + i], *q = view.position[row + i + 1], *r = view.position[row + i + 2];
+            double a[2] = {(double)q[0] - (double)p[0], (double)q[2] - (double)p[2]};
+            double b[2] = {(double)r[0] - (double)q[0], (double)r[2] - (double)q[2]};
+            angle += atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+            length += hypot(a[0], a[1]);
+        }
+        difference[k] = front - back;
+        curvature[k] = angle / length;
+
         for (int s = 0; s < RIVAL_SHOTS; s++)
             if (k == rival_shots[s]) rival_profile(&view, profiles[s]);
     }
