@@ -90,24 +90,6 @@ static SingeResult isotropy_sheet(SingeSim *sim, const Burn *burn, double angle,
     return result;
 }
 
-static SingeResult add_world(SingeSim *sim, SingeError *error) {
-    const SingePoseKey centre = {0, {0, 0, 0}, {0, 0, 0, 1}};
-    SingeColliderDef ground = singe_default_collider();
-    SingeSourceDef spot = singe_default_source();
-    SingeColliderId collider;
-    SingeSourceId source;
-    ground.path_count = spot.path_count = 1;
-    ground.path = spot.path = &centre;
-    spot.radius = 0.01f;
-    spot.falloff = 0.015f;
-    spot.temperature = 1123.15f;
-    spot.end = 1.5f;
-    SingeResult result = singe_sim_add_collider(sim, &ground, &collider);
-    if (!result) result = singe_sim_add_source(sim, &spot, &source);
-    if (result) *error = *singe_sim_error(sim);
-    return result;
-}
-
 static SingeResult isotropy_build(const Burn *burn, double angle, SingeSim **sim, SingeError *error) {
     SingeSimDef def = singe_default_sim();
     const BenchOptions *options = burn->options;
@@ -121,7 +103,22 @@ static SingeResult isotropy_build(const Burn *burn, double angle, SingeSim **sim
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
     result = isotropy_sheet(*sim, burn, angle, error);
-    if (!result) result = add_world(*sim, error);
+    if (!result) {
+        const SingePoseKey centre = {0, {0, 0, 0}, {0, 0, 0, 1}};
+        SingeColliderDef ground = singe_default_collider();
+        SingeSourceDef spot = singe_default_source();
+        SingeColliderId collider;
+        SingeSourceId source;
+        ground.path_count = spot.path_count = 1;
+        ground.path = spot.path = &centre;
+        spot.radius = 0.01f;
+        spot.falloff = 0.015f;
+        spot.temperature = 1123.15f;
+        spot.end = 1.5f;
+        result = singe_sim_add_collider(*sim, &ground, &collider);
+        if (!result) result = singe_sim_add_source(*sim, &spot, &source);
+        if (result) *error = *singe_sim_error(*sim);
+    }
     if (result) singe_sim_destroy(*sim), *sim = NULL;
     return result;
 }

@@ -50,54 +50,12 @@ static double band_wave(int band) { return shortest * pow(2, (band + 0.5) / 2); 
 
 static int wave_band(double wave) { return (int)floor(2 * log2(wave / shortest) + 1e-9); }
 
-/// The number of integer wave counts in a band.
-static int band_waves(int band) {
-    int count = 0;
-    for (int k = 1; k <= SAMPLES / 2; k++) count += wave_band(width / k) == band;
-    return count;
-}
-
 // ---- the sheet
 
 typedef struct Strip {
     int across, up; ///< cells
     double cell;    ///< m
 } Strip;
-
-static SingeResult strip_add(SingeSim *sim, const Strip *strip, SingeSheetDef *def, SingeSheetId *id) {
-    const uint32_t row = (uint32_t)strip->across + 1, rows = (uint32_t)strip->up + 1;
-    float *positions = malloc((size_t)3 * row * rows * sizeof *positions), *hot = malloc(row * rows * sizeof *hot);
-    uint32_t *cells = malloc((size_t)4 * row * rows * sizeof *cells), count = 0;
-    SingeResult result = SINGE_ERROR_MEMORY;
-    if (positions && hot && cells) {
-        for (uint32_t v = 0; v < row * rows; v++) {
-            double z = v / row * strip->cell;
-            positions[3 * v] = (float)(v % row * strip->cell), positions[3 * v + 1] = 0;
-            positions[3 * v + 2] = (float)z;
-            hot[v] = (float)fmax(0, 1 - z / 0.004); // K above ignition at the edge, falling to 0 within 4 mm
-        }
-        for (uint32_t v = 0; v + row < row * rows; v++) {
-            if (v % row + 1 == row) continue;
-            uint32_t *cell = cells + (size_t)4 * count++;
-            cell[0] = v;
-            cell[1] = v + 1;
-            cell[2] = v + row + 1;
-            cell[3] = v + row;
-        }
-        const SingeAttribute attribute = {"hot", hot};
-        def->vertex_count = row * rows;
-        def->positions = positions;
-        def->cell_count = count;
-        def->cells = cells;
-        def->attribute_count = 1;
-        def->attributes = &attribute;
-        result = singe_sim_add_sheet(sim, def, id);
-    }
-    free(positions);
-    free(hot);
-    free(cells);
-    return result;
-}
 
 static SingeResult strip_hold(SingeSim *sim, const Strip *strip, SingeSheetId id) {
     const uint32_t row = (uint32_t)strip->across + 1;
@@ -134,7 +92,39 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
     if (thickness > 0) sheet.material.thickness = singe_param((float)thickness);
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
-    result = strip_add(*sim, strip, &sheet, &id);
+
+    const uint32_t row = (uint32_t)strip->across + 1, rows = (uint32_t)strip->up + 1;
+    float *positions = malloc((size_t)3 * row * rows * sizeof *positions), *hot = malloc(row * rows * sizeof *hot);
+    uint32_t *cells = malloc((size_t)4 * row * rows * sizeof *cells), count = 0;
+    result = SINGE_ERROR_MEMORY;
+    if (positions && hot && cells) {
+        for (uint32_t v = 0; v < row * rows; v++) {
+            double z = v / row * strip->cell;
+            positions[3 * v] = (float)(v % row * strip->cell), positions[3 * v + 1] = 0;
+            positions[3 * v + 2] = (float)z;
+            hot[v] = (float)fmax(0, 1 - z / 0.004); // K above ignition at the edge, falling to 0 within 4 mm
+        }
+        for (uint32_t v = 0; v + row < row * rows; v++) {
+            if (v % row + 1 == row) continue;
+            uint32_t *cell = cells + (size_t)4 * count++;
+            cell[0] = v;
+            cell[1] = v + 1;
+            cell[2] = v + row + 1;
+            cell[3] = v + row;
+        }
+        const SingeAttribute attribute = {"hot", hot};
+        sheet.vertex_count = row * rows;
+        sheet.positions = positions;
+        sheet.cell_count = count;
+        sheet.cells = cells;
+        sheet.attribute_count = 1;
+        sheet.attributes = &attribute;
+        result = singe_sim_add_sheet(*sim, &sheet, &id);
+    }
+    free(positions);
+    free(hot);
+    free(cells);
+
     if (!result) result = singe_sim_commit(*sim);
     if (!result) result = strip_hold(*sim, strip, id);
     if (!result) return SINGE_OK;
@@ -217,7 +207,11 @@ static SingeResult spectrum_observe(const BenchOptions *options, int setting, ui
                         for (int i = 0; i < SAMPLES; i++)
                             re += line[i] * cos(2 * pi * k * i / SAMPLES),
                                 im += line[i] * sin(2 * pi * k * i / SAMPLES);
-                        spectrum->band[band] += k * (re * re + im * im) / band_waves(band);
+
+                        // the number of integer wave counts in a band
+                        int count = 0;
+                        for (int wave = 1; wave <= SAMPLES / 2; wave++) count += wave_band(width / wave) == band;
+                        spectrum->band[band] += k * (re * re + im * im) / count;
                     }
                 }
         }

@@ -217,34 +217,6 @@ static void print_bar(FILE *file, double low, double high, const char *min, cons
     else fprintf(file, max, high);
 }
 
-static void measure_json(Report *report, const ReportBar *bar, bool holds) {
-    FILE *file = report->json.file;
-    fprintf(file, "%s\n  {\"item\": \"%s\", \"measure\": \"%s\", \"value\": ", report->measures ? "," : "",
-            report->name, bar->name);
-    text_json_number(file, bar->value);
-    fprintf(file, ", \"low\": ");
-    text_json_number(file, bar->low);
-    fprintf(file, ", \"high\": ");
-    text_json_number(file, bar->high);
-    fprintf(file, ", \"holds\": %s, \"what\": ", holds ? "true" : "false");
-    text_json_string(file, bar->what);
-    if (bar->bad_what) {
-        fprintf(file, ", \"bad\": ");
-        text_json_number(file, bar->bad);
-        fprintf(file, ", \"bad_what\": ");
-        text_json_string(file, bar->bad_what);
-    }
-    fputc('}', file);
-}
-
-static void measure_csv(Report *report, const ReportBar *bar, bool holds) {
-    FILE *file = report->csv.file;
-    fprintf(file, "%s,%s,%.9g,%.9g,%.9g,%s,\"%s\",", report->name, bar->name, bar->value, bar->low, bar->high,
-            holds ? "holds" : "fails", bar->what);
-    if (bar->bad_what) fprintf(file, "%.9g,\"%s\"\n", bar->bad, bar->bad_what);
-    else fprintf(file, ",\n");
-}
-
 static bool within(double value, double low, double high) { return value >= low && value <= high; }
 
 void report_bar(Report *report, const ReportBar *bar) {
@@ -268,8 +240,30 @@ void report_bar(Report *report, const ReportBar *bar) {
     if (bar->bad_what) fprintf(echo, "; not %.4g (%s)", bar->bad, bar->bad_what);
     fprintf(echo, "\n");
     fflush(echo);
-    measure_csv(report, bar, holds);
-    measure_json(report, bar, holds);
+
+    FILE *csv = report->csv.file;
+    fprintf(csv, "%s,%s,%.9g,%.9g,%.9g,%s,\"%s\",", report->name, bar->name, bar->value, bar->low, bar->high,
+            holds ? "holds" : "fails", bar->what);
+    if (bar->bad_what) fprintf(csv, "%.9g,\"%s\"\n", bar->bad, bar->bad_what);
+    else fprintf(csv, ",\n");
+
+    FILE *json = report->json.file;
+    fprintf(json, "%s\n  {\"item\": \"%s\", \"measure\": \"%s\", \"value\": ", report->measures ? "," : "",
+            report->name, bar->name);
+    text_json_number(json, bar->value);
+    fprintf(json, ", \"low\": ");
+    text_json_number(json, bar->low);
+    fprintf(json, ", \"high\": ");
+    text_json_number(json, bar->high);
+    fprintf(json, ", \"holds\": %s, \"what\": ", holds ? "true" : "false");
+    text_json_string(json, bar->what);
+    if (bar->bad_what) {
+        fprintf(json, ", \"bad\": ");
+        text_json_number(json, bar->bad);
+        fprintf(json, ", \"bad_what\": ");
+        text_json_string(json, bar->bad_what);
+    }
+    fputc('}', json);
 
     Taken *larger = realloc(report->taken, ((size_t)report->measures + 1) * sizeof *larger);
     if (larger) {

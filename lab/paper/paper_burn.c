@@ -33,34 +33,32 @@ typedef struct Fig1 {
     Look look;                    ///< from 2.2 s on
 } Fig1;
 
-static SingeResult fig1_run(Lab *lab, bool plain, Fig1 *fig, SingeError *error) {
-    static const double times[FIG1_SHOTS] = {0.1, 0.5, 1, 1.6, 2.2, 3};
-    Play play;
-    const char *sets[] = {plain ? "sheets.0.material.shrink_front=0" : "",
-                          plain ? "sheets.0.material.shrink_back=0" : "", lab->quick ? small_grid : "", NULL};
-    SingeResult result = play_open(&play, lab, "fig1.yaml", sets, error);
-    const SingeTexture *picture = &play.job.assets.fields[0][SCENE_PARAM_SLOT(mass_rate)].texture;
-    if (!result && !plain) report_pictures(lab->report, 4), texture_show(lab, picture);
-    for (int i = 0; i < FIG1_SHOTS && !result; i++) {
-        result = plain ? play_until(&play, times[i], error) : play_shoot_at(&play, times[i], error);
-        if (result) break;
-        SingeView view = singe_sim_view(play.sim);
-        if (i == 0) {
-            fig->correlation = -texture_correlation(&view, picture, false, view.mass);
-            fig->mirrored = -texture_correlation(&view, picture, true, view.mass);
-            fig->gone = 1 - shape_left(&view);
-        }
-        fig->inner = fmax(fig->inner, bend_of_unburnt(&view, 0.7f));
-        if (times[i] > 2) result = look_take(&play, 0, &fig->look, error);
-    }
-    play_close(&play);
-    return result;
-}
-
 SingeResult paper_fig1(Lab *lab, SingeError *error) {
     Fig1 runs[FIG1_RUNS] = {{0}};
     SingeResult result = SINGE_OK;
-    for (int i = 0; i < FIG1_RUNS && !result; i++) result = fig1_run(lab, i == 1, &runs[i], error);
+    for (int i = 0; i < FIG1_RUNS && !result; i++) {
+        const bool plain = i == 1; // without shrinkage
+        static const double times[FIG1_SHOTS] = {0.1, 0.5, 1, 1.6, 2.2, 3};
+        Play play;
+        const char *sets[] = {plain ? "sheets.0.material.shrink_front=0" : "",
+                              plain ? "sheets.0.material.shrink_back=0" : "", lab->quick ? small_grid : "", NULL};
+        result = play_open(&play, lab, "fig1.yaml", sets, error);
+        const SingeTexture *picture = &play.job.assets.fields[0][SCENE_PARAM_SLOT(mass_rate)].texture;
+        if (!result && !plain) report_pictures(lab->report, 4), texture_show(lab, picture);
+        for (int shot = 0; shot < FIG1_SHOTS && !result; shot++) {
+            result = plain ? play_until(&play, times[shot], error) : play_shoot_at(&play, times[shot], error);
+            if (result) break;
+            SingeView view = singe_sim_view(play.sim);
+            if (shot == 0) {
+                runs[i].correlation = -texture_correlation(&view, picture, false, view.mass);
+                runs[i].mirrored = -texture_correlation(&view, picture, true, view.mass);
+                runs[i].gone = 1 - shape_left(&view);
+            }
+            runs[i].inner = fmax(runs[i].inner, bend_of_unburnt(&view, 0.7f));
+            if (times[shot] > 2) result = look_take(&play, 0, &runs[i].look, error);
+        }
+        play_close(&play);
+    }
     if (result) return result;
     const Fig1 *fig = &runs[0], *flat = &runs[1];
     static const char *const without = "the same sheet without shrinkage";
@@ -170,19 +168,6 @@ SingeResult paper_fig4(Lab *lab, SingeError *error) {
 
 // ---- Fig 11: the torus burns
 
-/// The number of sectors, of 12 around the hole, in which a fifth of the vertices have ignited.
-static int sectors_lit(const SingeView *view) {
-    double lit[12] = {0}, all[12] = {0};
-    int count = 0;
-    for (uint32_t v = 0; v < view->vertex_count; v++) {
-        if (view->source_vertex[v] < 0) continue; // in reserve for tears
-        int k = (int)(6 + 6 * atan2((double)view->rest_position[v][1], (double)view->rest_position[v][0]) / acos(-1));
-        all[k % 12]++, lit[k % 12] += view->time_ignited[v] >= 0;
-    }
-    for (int k = 0; k < 12; k++) count += lit[k] >= 0.2 * all[k];
-    return count;
-}
-
 /// The largest error of the heat ledger if losses to the air were omitted from it.
 static double ledger_without_losses(const SingeStats *stats) {
     const double in = stats->heat_in + stats->heat_of_combustion;
@@ -212,7 +197,20 @@ SingeResult paper_fig11(Lab *lab, SingeError *error) {
             if (!result && times[i] > 2 && times[i] < 7) result = look_take(&play, 0, &looks[plain], error);
             if (result || plain) continue;
             SingeView view = singe_sim_view(play.sim);
-            lit[i] = sectors_lit(&view), stats = singe_sim_stats(play.sim);
+
+            // the number of sectors, of 12 around the hole, in which a fifth of the vertices have ignited
+            double ignited[12] = {0}, all[12] = {0};
+            int count = 0;
+            for (uint32_t v = 0; v < view.vertex_count; v++) {
+                if (view.source_vertex[v] < 0) continue; // in reserve for tears
+                int k =
+                    (int)(6 + 6 * atan2((double)view.rest_position[v][1], (double)view.rest_position[v][0]) / acos(-1));
+                all[k % 12]++;
+                ignited[k % 12] += view.time_ignited[v] >= 0;
+            }
+            for (int k = 0; k < 12; k++) count += ignited[k] >= 0.2 * all[k];
+            lit[i] = count;
+            stats = singe_sim_stats(play.sim);
             if (i == 0) first = shape_left(&view);
             looks[0].left = shape_left(&view);
         }

@@ -163,27 +163,6 @@ SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
 
 enum { SHELLS = 4 };
 
-/// m, height of the sheet's centre above the mean of its border; degrees, bending of the sheet from there: the mean
-/// slope of the border's cells, across the border.
-static void shell_measure(const SingeView *view, int n, double *sag, double *bend) {
-    const uint32_t row = (uint32_t)n + 1, last = (uint32_t)n;
-    double border = 0, slope = 0, count = 0;
-    for (uint32_t i = 1; i < last; i++) {
-        const uint32_t pairs[4][2] = {{i, i + row},
-                                      {i + row * last, i + row * (last - 1)},
-                                      {i * row, i * row + 1},
-                                      {i * row + last, i * row + last - 1}};
-        for (int k = 0; k < 4; k++, count++) {
-            const float *p = view->position[pairs[k][0]], *q = view->position[pairs[k][1]];
-            double across = hypot((double)p[0] - (double)q[0], (double)p[1] - (double)q[1]);
-            border += (double)p[2];
-            slope += atan2((double)q[2] - (double)p[2], across) * 180 / acos(-1);
-        }
-    }
-    *sag = (double)view->position[row * (last / 2) + last / 2][2] - border / count;
-    *bend = slope / count;
-}
-
 typedef struct Shell10 {
     const char *name, *thickness, *weight;
 } Shell10;
@@ -227,7 +206,26 @@ static SingeResult shell_run(Lab *lab, const Shell10 *shell, int n, bool papers,
         result = play_shoot(&play, caption, error);
     const SingeView view = play.sim ? singe_sim_view(play.sim) : (SingeView){0};
     double down = 0, slope = 0;
-    if (!result) shell_measure(&view, n, &down, &slope);
+    if (!result) {
+        // m, height of the sheet's centre above the mean of its border; degrees, bending of the sheet from there: the
+        // mean slope of the border's cells, across the border
+        const uint32_t row = (uint32_t)n + 1, last = (uint32_t)n;
+        double border = 0, border_slope = 0, count = 0;
+        for (uint32_t i = 1; i < last; i++) {
+            const uint32_t pairs[4][2] = {{i, i + row},
+                                          {i + row * last, i + row * (last - 1)},
+                                          {i * row, i * row + 1},
+                                          {i * row + last, i * row + last - 1}};
+            for (int k = 0; k < 4; k++, count++) {
+                const float *p = view.position[pairs[k][0]], *q = view.position[pairs[k][1]];
+                double across = hypot((double)p[0] - (double)q[0], (double)p[1] - (double)q[1]);
+                border += (double)p[2];
+                border_slope += atan2((double)q[2] - (double)p[2], across) * 180 / acos(-1);
+            }
+        }
+        down = (double)view.position[row * (last / 2) + last / 2][2] - border / count;
+        slope = border_slope / count;
+    }
     *sag += papers ? down : down / FIG10_MESHES;
     *bend += papers ? slope : slope / FIG10_MESHES;
     play_close(&play);
