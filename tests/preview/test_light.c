@@ -75,7 +75,7 @@ static PreviewDef at_night(void) {
 
 /// A sheet between the flame and the table: the table's light is that of the open times what comes through. An eighth
 /// of it is the bar for an opaque sheet, and a sheet that lets half through breaks it.
-static void test_shadow_of_flame(void **state) {
+static void a_sheet_shadows_the_light_of_a_flame(void **state) {
     (void)state;
     Float4 q;
     SingeSurface nothing = {0};
@@ -94,7 +94,7 @@ static void test_shadow_of_flame(void **state) {
 }
 
 /// Seen from the other side, a sheet before a flame shines by what it lets through, and its print shows.
-static void test_lit_through(void **state) {
+static void a_sheet_before_a_flame_shines_through(void **state) {
     (void)state;
     Float4 q;
     uint8_t texels[2 * 1 * 3] = {255, 255, 255, 60, 60, 60};
@@ -128,7 +128,7 @@ static void see_shadow(int samples, float (*beauty)[3]) {
 
 /// The rim of a shadow is smooth: the default's sixteen samples differ from very many by less than 1 % of the sun's
 /// light in the root mean square; four break that bar.
-static void test_rim_of_shadow(void **state) {
+static void the_rim_of_a_shadow_is_smooth(void **state) {
     (void)state;
     static float exact[W * H][3], picture[W * H][3];
     see_shadow(1024, exact);
@@ -150,7 +150,7 @@ static void test_rim_of_shadow(void **state) {
     }
 }
 
-static void test_bad_transmittance(void **state) {
+static void bad_transmittance_is_refused(void **state) {
     (void)state;
     const float bad[] = {-0.1f, 1.1f, NAN};
     for (int k = 0; k < 3; k++) {
@@ -165,10 +165,10 @@ static void test_bad_transmittance(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_shadow_of_flame),
-        cmocka_unit_test(test_lit_through),
-        cmocka_unit_test(test_rim_of_shadow),
-        cmocka_unit_test(test_bad_transmittance),
+        cmocka_unit_test(a_sheet_shadows_the_light_of_a_flame),
+        cmocka_unit_test(a_sheet_before_a_flame_shines_through),
+        cmocka_unit_test(the_rim_of_a_shadow_is_smooth),
+        cmocka_unit_test(bad_transmittance_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,7 +16,7 @@ static void turn(const float q[4], const double v[3], double out[3]) {
 }
 
 // About x, then y, then z: a quarter about x takes y to z, then one about z leaves it; and matrix = quaternion.
-static void test_rotation(void **state) {
+static void rotations_turn_about_x_then_y_then_z(void **state) {
     (void)state;
     const float quarter = 1.57079633f, angles[3] = {quarter, 0, quarter}, any[3] = {0.3f, -1.2f, 2.5f};
     const double y[3] = {0, 1, 0}, x[3] = {1, 0, 0}, v[3] = {0.2, -0.7, 1.1};
@@ -34,7 +34,7 @@ static void test_rotation(void **state) {
         assert_true(fabs(out[i] - (m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2])) < 1e-6);
 }
 
-static void test_sim(void **state) {
+static void a_simulation_has_what_the_scene_says(void **state) {
     (void)state;
     Scene *scene = good_scene("sheets:\n  - grid: {size: [0.2, 0.1], cells: [4, 2]}\n    rotate: [90, 0, 0]\n"
                               "    translate: [0, 0, 1]\n    scale: 2\n"
@@ -68,7 +68,7 @@ static void test_sim(void **state) {
 }
 
 // What the library refuses is reported at the object that it is about.
-static void test_refused(void **state) {
+static void refused_objects_are_named(void **state) {
     (void)state;
     Scene *scene = good_scene(SHEET "pins:\n  - {vertices: [0]}\n  - {vertices: [99999]}\n", NULL, 0);
     SceneAssets assets;
@@ -86,7 +86,7 @@ static void test_refused(void **state) {
 }
 
 // Files that are there but are not what they should be: every one is reported, at the line of its name.
-static void test_bad_files(void **state) {
+static void bad_files_are_reported(void **state) {
     (void)state;
     char folder[] = "/tmp/singe-scene-XXXXXX", path[64];
     assert_non_null(mkdtemp(folder));
@@ -145,7 +145,7 @@ static SceneMessages refused(const char *text, const char *folder) {
 }
 
 // Meshes that can be read but not burnt: all of them at once, each with its file, line or face, at its name.
-static void test_bad_meshes(void **state) {
+static void bad_meshes_are_reported(void **state) {
     (void)state;
     static const struct {
         const char *name, *text, *origin, *fault;
@@ -203,7 +203,7 @@ static void keep_line(void *context, SingeLogLevel level, const char *line) {
 }
 
 /// What can be simulated and has no effect is warned of, with its location.
-static void test_warnings(void **state) {
+static void values_without_effect_are_warned_of(void **state) {
     (void)state;
     static const struct {
         const char *more, *warning;
@@ -255,7 +255,7 @@ static const char nut[] = "v -2 -2 0\nv 2 -2 0\nv 2 0 0\nv 1 0 0\nv 1 -1 0\nv -1
                           "f 4 5 13 12\nf 5 6 14 13\nf 6 7 15 14\nf 7 8 16 15\nf 8 1 9 16\n";
 
 /// Meshes and pictures of heights become colliders and shapes; what is not closed is reported at its collider.
-static void test_solids(void **state) {
+static void solids_become_colliders_and_shapes(void **state) {
     (void)state;
     char folder[] = "/tmp/singe-scene-XXXXXX", text[600], path[100];
     const char *const names[] = {"cube.obj", "open.obj", "heights.png", "nut.obj"};
@@ -314,7 +314,7 @@ static void test_solids(void **state) {
     rmdir(folder);
 }
 
-static void test_preview(void **state) {
+static void the_preview_has_what_the_scene_says(void **state) {
     (void)state;
     Scene *scene = good_scene(
         SHEET "    colour: [0.5, 0.25, 1]\n"
@@ -344,7 +344,7 @@ static void test_preview(void **state) {
     scene_free(scene);
 }
 
-static void test_examples(void **state) {
+static void the_examples_build(void **state) {
     (void)state;
     static const char *const paths[] = {"examples/letter/letter.yaml", "examples/letter-hanging/letter-hanging.yaml",
                                         "examples/hot-sphere/hot-sphere.yaml"};
@@ -398,7 +398,7 @@ static double reach_in_picture(const Scene *scene, const SceneAssets *assets) {
 }
 
 // A file in millimetres whose y is up, of triangles; a pin takes the file's numbers of vertices, also of a welded one.
-static void test_mesh_files(void **state) {
+static void mesh_files_are_scaled_and_welded(void **state) {
     (void)state;
     char folder[] = "/tmp/singe-scene-XXXXXX", path[100];
     assert_non_null(mkdtemp(folder));
@@ -442,7 +442,7 @@ static void test_mesh_files(void **state) {
     rmdir(folder);
 }
 
-static void test_camera_finds_the_sheets(void **state) {
+static void the_camera_finds_the_sheets(void **state) {
     (void)state;
     static const char *const scenes[] = {
         "sheets: [{grid: {size: [0.2, 0.3], cells: [4, 6]}}]",
@@ -484,17 +484,17 @@ static void test_camera_finds_the_sheets(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rotation),
-        cmocka_unit_test(test_sim),
-        cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_bad_files),
-        cmocka_unit_test(test_bad_meshes),
-        cmocka_unit_test(test_warnings),
-        cmocka_unit_test(test_solids),
-        cmocka_unit_test(test_preview),
-        cmocka_unit_test(test_mesh_files),
-        cmocka_unit_test(test_examples),
-        cmocka_unit_test(test_camera_finds_the_sheets),
+        cmocka_unit_test(rotations_turn_about_x_then_y_then_z),
+        cmocka_unit_test(a_simulation_has_what_the_scene_says),
+        cmocka_unit_test(refused_objects_are_named),
+        cmocka_unit_test(bad_files_are_reported),
+        cmocka_unit_test(bad_meshes_are_reported),
+        cmocka_unit_test(values_without_effect_are_warned_of),
+        cmocka_unit_test(solids_become_colliders_and_shapes),
+        cmocka_unit_test(the_preview_has_what_the_scene_says),
+        cmocka_unit_test(mesh_files_are_scaled_and_welded),
+        cmocka_unit_test(the_examples_build),
+        cmocka_unit_test(the_camera_finds_the_sheets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -123,7 +123,7 @@ static void walk(Page *page, const Schema *schema, const char *object) {
     }
 }
 
-static void test_documented(void **state) {
+static void documented_defaults_are_those_in_use(void **state) {
     (void)state;
     Bytes bytes;
     SingeError error;
@@ -136,6 +136,6 @@ static void test_documented(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_documented)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(documented_defaults_are_those_in_use)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -208,7 +208,7 @@ static void walk_schema(Walk *walk, const Schema *schema, const char *prefix, un
     }
 }
 
-static void test_every_row(void **state) {
+static void every_row_keeps_its_range(void **state) {
     (void)state;
     Walk walk = {.folder = "/tmp/singe-ranges-XXXXXX"};
     char picture[64];
@@ -237,6 +237,6 @@ static void test_every_row(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_row)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_row_keeps_its_range)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
