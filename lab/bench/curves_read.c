@@ -73,7 +73,7 @@ static SingeResult read_lines(Curves *curves, FILE *file, const char *path, Sing
         if (columns.springs >= 0) {
             char *springs_end, *ms_end, name[80];
             if (columns.springs >= count || columns.ms >= count || columns.solver >= count || columns.threads >= count)
-                return curves_read_fail(error, SINGE_ERROR_FORMAT, path, line, "has fewer fields than the heading");
+                return curves_read_fail(error, SINGE_ERROR_FORMAT, path, line, "has fewer fields than the header");
             double springs = strtod(fields[columns.springs], &springs_end), ms = strtod(fields[columns.ms], &ms_end);
             if (*springs_end || *ms_end || !(springs > 0) || !(ms > 0) || !isfinite(springs) || !isfinite(ms))
                 return curves_read_fail(error, SINGE_ERROR_FORMAT, path, line,
@@ -94,7 +94,7 @@ static SingeResult read_lines(Curves *curves, FILE *file, const char *path, Sing
             Curve *curve = curve_named(curves, first, name);
             if (!curve || curve->count == CURVE_POINTS_MAX)
                 return curves_read_fail(error, SINGE_ERROR_LIMIT, path, line,
-                                        "more curves or points than can be drawn");
+                                        "more curves or points than a picture can hold");
             curve->springs[curve->count] = springs;
             curve->ms[curve->count++] = ms;
 
@@ -103,7 +103,8 @@ static SingeResult read_lines(Curves *curves, FILE *file, const char *path, Sing
         columns = (Columns){curves_read_find(fields, count, "springs"), curves_read_find(fields, count, "step_ms"),
                             curves_read_find(fields, count, "solver"), curves_read_find(fields, count, "threads")};
         if (columns.springs < 0 || columns.ms < 0)
-            return curves_read_fail(error, SINGE_ERROR_FORMAT, path, line, "needs columns springs and step_ms");
+            return curves_read_fail(error, SINGE_ERROR_FORMAT, path, line,
+                                    "the columns springs and step_ms are missing");
     }
     return curves->count > first ? SINGE_OK : curves_read_fail(error, SINGE_ERROR_FORMAT, path, 0, "holds no rows");
 }

@@ -58,13 +58,13 @@ static SingeResult stages_judge(const BenchOptions *options, const Timing *timin
     if (limit <= 0) return SINGE_OK;
     if (table->text)
         fprintf(table->text,
-                "%.2f ms at the reference machine's pace (this one is %.2f times slower); "
+                "%.2f ms at the pace of the reference machine (this one is %.2f times slower); "
                 "limit %.4g ms\n",
                 step, slowness, limit);
     if (step <= limit) return SINGE_OK;
     *error = (SingeError){.code = SINGE_ERROR_LIMIT, .element = -1};
     snprintf(error->message, sizeof error->message,
-             "%.2f ms a step at the reference machine's pace, above the limit of %.4g ms", step, limit);
+             "%.2f ms per step at the pace of the reference machine, above the limit of %.4g ms", step, limit);
     return SINGE_ERROR_LIMIT;
 }
 

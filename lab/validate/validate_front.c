@@ -48,7 +48,7 @@ SingeResult validate_front(Lab *lab, SingeError *error) {
                     "One grammage of one material is calibrated; the others are predictions. The "
                     "sources' ranges "
                     "are in docs/materials.md%s.",
-                    lab->quick ? "; strips with gas are left out here" : "");
+                    lab->quick ? "; this quick run has no strips with gas" : "");
 
         for (int row = 0; row < table.row_count; row++) {
             const char *direction = cell(&table, row, "direction")->text, *basis = cell(&table, row, "basis")->text;
@@ -67,8 +67,8 @@ SingeResult validate_front(Lab *lab, SingeError *error) {
             double down = cell(&table, row - 1, "speed_mm_s")->number[0];
             report_measure(lab->report, name, what, speed->number[0] / down, 4, 60);
         }
-        report_measure(lab->report, "change", "% by which half the cells or half the step change the speed, at most",
-                       worst, 0, 6);
+        report_measure(lab->report, "change", "largest change of speed with half the cell or half the step, %", worst,
+                       0, 6);
     }
     table_free(&table);
     bench_materials_close(&materials);
@@ -135,15 +135,15 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
     report_plot(lab->report, &plot);
     const double measured = slope(bass_um, bass_mm_s, SHEETS), here = slope(bass_um, ours, SHEETS);
     report_text(lab->report,
-                "A prediction: density, specific heat, temperature of vaporising (670 K) and heat of combustion are "
-                "those of PMMA, and what stands for the flame is what office paper was calibrated with. Measured, the "
+                "A prediction: density, specific heat, vaporisation temperature (670 K) and heat of combustion are "
+                "those of PMMA, and the parameters of the flame are the calibrated ones of office paper. Measured, the "
                 "speed goes with the thickness to the power %.2f; theory and this model have -1, and so are too fast "
                 "where it is thick. de Ris with gas of %.2g W/(m K), air at 670 K, and a flame of %.0f K.",
                 measured, gas_k, pmma_flame);
-    report_measure(lab->report, "power", "speed goes with the thickness to the power; by theory -1", here, -1.05,
-                   -0.95);
-    report_measure(lab->report, "power_measured", "the same, less what was measured", here - measured, -0.25, 0.25);
-    report_measure(lab->report, "mean", "geometric mean of here over BASS-II", exp(ratio), 0.5, 2);
-    report_measure(lab->report, "worst", "the same at the worst thickness, up or down", exp(spread), 1, 2.5);
+    report_measure(lab->report, "power", "exponent of the speed over the thickness; -1 by theory", here, -1.05, -0.95);
+    report_measure(lab->report, "power_measured", "the same exponent, minus the measured one", here - measured, -0.25,
+                   0.25);
+    report_measure(lab->report, "mean", "geometric mean of the ratio to BASS-II", exp(ratio), 0.5, 2);
+    report_measure(lab->report, "worst", "the same ratio at the worst thickness", exp(spread), 1, 2.5);
     return SINGE_OK;
 }

@@ -85,7 +85,7 @@ SingeResult validate_beam(Lab *lab, SingeError *error) {
     report_text(lab->report,
                 "A strip of 10 by 4 cm, 80 g/m2, clamped over 1 cm. The first three have one stiffness, D = t²/c, by "
                 "three thicknesses; the fifth is soft in transverse shear.");
-    report_measure(lab->report, "sag", "largest difference of the sag from plate theory, as a share", worst, 0, 0.15);
+    report_measure(lab->report, "sag", "largest relative difference of the sag from plate theory", worst, 0, 0.15);
     return SINGE_OK;
 }
 
