@@ -93,7 +93,7 @@ static void orientation_is_exact_near_a_plane(void **state) {
     }
 }
 
-/// What doubles cannot tell: the least of floats decides beside the largest.
+/// Signs that doubles cannot decide: the smallest of floats next to the largest.
 static void orientation_is_exact_far_apart(void **state) {
     (void)state;
     const float huge = 0x1p126f, min = 0x1p-149f;
@@ -308,7 +308,7 @@ static void hinges_are_no_crossings(void **state) {
         }
 }
 
-/// A stack of eight sheets: the pairs that are looked at grow with the triangles, not with their square.
+/// A stack of eight sheets: the number of tested pairs grows with the triangles, not with their square.
 static void cost_grows_with_the_triangles(void **state) {
     (void)state;
     enum { SHEETS = 8, LARGE = 80 };

@@ -18,7 +18,7 @@ typedef struct Sheet {
     double curl;   ///< degrees over 10 mm, of what lies within 20 mm of the left edge
     double shrunk; ///< length along that edge over that at rest, within 8 mm of it
     bool burnt;    ///< that edge
-    bool seam;     ///< the vertices 5 mm from that edge are there twice
+    bool seam;     ///< the vertices 5 mm from that edge are doubled
     bool second;   ///< a smaller piece beside it, whose burnt edge stands upright
 } Sheet;
 

@@ -79,7 +79,7 @@ static void no_vertex_is_too_far_from_a_pin(void **unused) {
     }
 }
 
-/// What is in reach already stays to the bit.
+/// Vertices within reach keep their position to the bit.
 static void slack_is_left_alone(void **unused) {
     (void)unused;
     const uint32_t corner = vertex(0, 0);
@@ -123,7 +123,7 @@ static void a_loose_piece_is_free(void **unused) {
     bench_close(&bench);
 }
 
-/// Nothing is held by what is not held itself: by a pin that was removed, or by a vertex that is gone.
+/// Neither a pin that was removed nor a vertex that is gone holds anything.
 static void nothing_is_held_by_what_is_gone(void **unused) {
     (void)unused;
     const uint32_t corner = vertex(0, 0);
@@ -178,7 +178,7 @@ static void end_step(Bench *bench, uint64_t step) {
     attach_update(&bench->plan->attachments, &bench->shell, STATE_INPUT(&bench->state), false);
 }
 
-/// A fire that eats a disc from the middle: ways round it are longer at once, and none is shorter.
+/// A fire eats a disc from its middle: distances around the hole grow at once, and none becomes shorter.
 static void lengths_grow_at_once(void **unused) {
     (void)unused;
     const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0)};
@@ -208,7 +208,7 @@ static void lengths_grow_at_once(void **unused) {
     bench_close(&bench);
 }
 
-/// What shrinks to eight tenths arrives there when the next measurement is due, in equal steps.
+/// Lengths that shrink to 0.8 get there in equal steps by the time of the next measurement.
 static void lengths_shorten_in_steps(void **unused) {
     (void)unused;
     const uint32_t corner = vertex(0, 0), far = vertex(SIDE, SIDE);
@@ -237,8 +237,8 @@ static double farthest_moved(const Bench *bench, float (*before)[4]) {
     return max;
 }
 
-/// A tight sheet that may tear is left to its springs. What has gone too far meanwhile is not thrown back when a held
-/// vertex burns and the sheet is tight no more, but fetched by and by.
+/// A taut sheet that may tear is left to its springs. When a held vertex burns and the sheet becomes slack, vertices
+/// that are too far away return gradually, without a jerk.
 static void rest_ends_without_a_jerk(void **unused) {
     (void)unused;
     const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0), vertex(0, SIDE)};

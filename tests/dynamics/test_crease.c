@@ -236,7 +236,7 @@ static void a_single_edge_keeps_less(void **unused) {
     rig_close(&rig);
 }
 
-/// Of what is bent beyond the limit of curvature nothing more stays than at the limit; below it the limit is not seen.
+/// Bending beyond the limit of curvature leaves no more than bending to the limit; below it, the limit has no effect.
 static void no_crease_is_sharper_than_the_limit(void **unused) {
     (void)unused;
     SingeMaterialDef material = singe_default_material();
@@ -268,7 +268,7 @@ static void trembling_leaves_no_crease(void **unused) {
     rig_close(&rig);
 }
 
-/// Folded on itself a sheet may look folded to the other side: it stays on the side where it came from.
+/// A sheet folded flat may look folded to the other side; its crease stays on the side it came from.
 static void a_flat_fold_stays_on_its_side(void **unused) {
     (void)unused;
     for (int side = -1; side <= 1; side += 2) {
@@ -284,7 +284,7 @@ static void a_flat_fold_stays_on_its_side(void **unused) {
     }
 }
 
-/// What burns forgets: half burnt half of its crease counts, ash has none and takes none.
+/// Burnt paper forgets creases: half burnt, half of a crease counts; ash has none and takes none.
 static void char_forgets_creases(void **unused) {
     (void)unused;
     const double dx = 0.004;
@@ -305,7 +305,7 @@ static void char_forgets_creases(void **unused) {
     }
 }
 
-/// A sheet that curls because its layers shrink differently is not bent: nothing of it stays.
+/// Curling by unequal shrinkage of the layers is no bending: no crease stays.
 static void curl_leaves_no_crease(void **unused) {
     (void)unused;
     const double dx = 0.003, angle = -0.6; // 200 1/m

@@ -138,7 +138,7 @@ static void distances_go_around_a_hole(void **unused) {
     distances_close(&d);
 }
 
-/// Nothing leads over what is gone.
+/// No path leads across cells that are gone.
 static void nothing_leads_across_gone_cells(void **unused) {
     (void)unused;
     Distances d;
@@ -150,7 +150,7 @@ static void nothing_leads_across_gone_cells(void **unused) {
     distances_close(&d);
 }
 
-/// What has shrunk to eight tenths is eight tenths as far.
+/// A sheet that has shrunk to 0.8 has distances of 0.8.
 static void distances_follow_target_lengths(void **unused) {
     (void)unused;
     Distances d;
@@ -164,7 +164,7 @@ static void distances_follow_target_lengths(void **unused) {
     distances_close(&d);
 }
 
-/// What is held stays where it is, whatever its targets: the way through it is no shorter than it lies.
+/// Held vertices stay where they are, whatever their target lengths: distances between them do not shrink.
 static void held_vertices_do_not_shrink_distances(void **unused) {
     (void)unused;
     Distances d;

@@ -54,7 +54,7 @@ static double wave_left(float cell, float wavelength, int steps) {
     return dot / square;
 }
 
-/// What friction takes from a wave goes by its length in metres, hardly by the mesh.
+/// Friction damps a wave by its length in metres; the mesh hardly matters.
 static void waves_decay_by_their_length(void **unused) {
     (void)unused;
     double fine = wave_left(0.0025f, 0.1f, 5), coarse = wave_left(0.005f, 0.1f, 5);
@@ -90,7 +90,7 @@ static void friction_keeps_momentum(void **unused) {
     bench_close(&bench);
 }
 
-/// Nothing passes a spring that is gone.
+/// Friction does not act across a spring that is gone.
 static void friction_stops_at_cuts(void **unused) {
     (void)unused;
     Bench bench;
@@ -150,8 +150,8 @@ static double longest_side(const Bench *bench) {
     return max;
 }
 
-/// What has been torn away by three cells comes back to a quarter more than a side, and flies off no more, with the
-/// momentum that was there.
+/// A vertex that was pulled away by three cells returns to a quarter more than a side and flies off no further;
+/// momentum is conserved.
 static void sides_have_a_max(void **unused) {
     (void)unused;
     SingeMaterialDef material = plain();
@@ -178,7 +178,8 @@ static void sides_have_a_max(void **unused) {
     bench_close(&bench);
 }
 
-/// What has burnt, what may stretch, what is held at both ends and a sheet that is held too far apart have no most.
+/// Sides that have burnt, may stretch or are held at both ends have no maximum length, nor has a sheet held too far
+/// apart.
 static void some_sides_have_no_max(void **unused) {
     (void)unused;
     for (int kind = 0; kind < 5; kind++) {
@@ -248,7 +249,7 @@ static void compliance_does_not_depend_on_substeps(void **unused) {
     assert_true(stretch[0] > 1e-4 && fabs(stretch[0] / stretch[1] - 1) < 0.02);
 }
 
-/// What is burnt to ash keeps its place's share of its weight: here from 0.2 at the left to 0.8 at the right.
+/// Springs burnt to ash keep a share of their weight that varies: here from 0.2 at the left to 0.8 at the right.
 static void char_weight_follows_an_attribute(void **unused) {
     (void)unused;
     Bench bench;
@@ -268,7 +269,7 @@ static void char_weight_follows_an_attribute(void **unused) {
     bench_close(&bench);
 }
 
-/// Damping and drag slow each particle by its own; without weight no spring makes them equal.
+/// Each particle is slowed by its own damping and drag; springs without weight do not even them out.
 static void damping_and_drag_follow_a_texture(void **unused) {
     (void)unused;
     static const float halves[] = {0, 1};

@@ -176,9 +176,9 @@ static double spin_left(int axis, float smoothing, bool bent) {
     return after[axis] / before[axis];
 }
 
-/// What a free sheet loses of its spin w is the projection's own, w^2 h t: x~ runs ahead on the tangent and is drawn
-/// back. Internal friction takes less than 1e-3 from a flat sheet, and from a bent one where it turns out of its
-/// strands' lines: up to a fifth in a second.
+/// A free sheet loses w^2 h t of its spin w to the projection: x~ runs ahead on the tangent and is drawn back. Internal
+/// friction takes less than 1e-3 from a flat sheet, and from a bent one where it turns out of its strands' lines: up to
+/// a fifth in a second.
 static void spin_decays_as_predicted(void **unused) {
     (void)unused;
     const float smoothing = singe_default_solver().smoothing;

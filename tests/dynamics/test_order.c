@@ -136,7 +136,7 @@ static void a_sheet_pressed_on_the_ground_stays_ordered(void **unused) {
     }
 }
 
-/// What burns without being removed shrinks to half of its size within half a second, held at one side.
+/// A sheet that burns without ablation, held at one side, shrinks to half its size within half a second.
 static void a_shrinking_sheet_stays_ordered(void **unused) {
     (void)unused;
     SingeMaterialDef material = singe_default_material();

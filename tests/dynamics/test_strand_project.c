@@ -38,7 +38,7 @@ static void dense_solve(double a[N_MAX][N_MAX], double *b, int n) {
     }
 }
 
-/// What a spring gives without any compliance, m/N: (a + r) h^2/m.
+/// The compliance of a spring whose own compliance is zero, m/N: (a + r) h^2/m.
 static double own_softness(const Bench *bench, SingeColour colour) {
     const double h = (double)bench->settings.time_step / bench->settings.solver.substeps;
     double s = (double)bench->shell.sheets[0].cell_size, area = 0, mass = 0;

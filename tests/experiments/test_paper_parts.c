@@ -1,5 +1,5 @@
-// What `singe paper` rests on: singular values against known ones, the ranks of section 7.1, and the errors of Fig 8 on
-// its two states.
+// The foundations of `singe paper`: singular values against known ones, the ranks of section 7.1, and the errors of Fig
+// 8 on its two states.
 #include <math.h>
 #include <setjmp.h>
 #include <stdbool.h>

@@ -59,7 +59,7 @@ static void a_lens_blurs_what_is_out_of_focus(void **state) {
     assert_true(far < 0.3f * pinhole);
 }
 
-/// What the lens spreads must be drawn wherever it is spread to.
+/// Blur of the lens is drawn wherever it reaches.
 static void blur_is_drawn_wherever_it_reaches(void **state) {
     (void)state;
     static uint8_t wide[BYTES], none[BYTES];
@@ -100,7 +100,7 @@ static void a_shutter_blurs_motion(void **state) {
     draw(&def, &q.surface, 0, moving); // along the stripes
     assert_true(sharpness(moving, 1, 0) > 0.9f * sharpness(still, 1, 0));
     for (int i = 0; i < 4; i++) velocity[i][0] = NAN, velocity[i][1] = 1e30f;
-    draw(&def, &q.surface, 0, moving); // as if it stood still
+    draw(&def, &q.surface, 0, moving); // without the ball's velocity
     assert_true(sharpness(moving, 1, 0) > 0.9f * sharpness(still, 1, 0));
 }
 

@@ -7,33 +7,6 @@
 
 #include <math.h>
 
-enum { SIDE = 12, CELLS = SIDE * SIDE * SIDE };
-
-/// A cube of gas of 12 cells of 8 mm about (x, y, z), in which a ball of `radius` m burns or smokes.
-typedef struct Ball {
-    float temperature[CELLS], smoke[CELLS], flame[CELLS], velocity[CELLS][3];
-    SingeGas gas;
-} Ball;
-
-static void ball_make(Ball *b, float x, float y, float z, float radius, float flame, float smoke) {
-    const float cell = 0.008f, half = 0.5f * SIDE * cell;
-    memset(b, 0, sizeof *b);
-    b->gas = (SingeGas){.size = {SIDE, SIDE, SIDE},
-                        .origin = {x - half, y - half, z - half},
-                        .cell = cell,
-                        .temperature = b->temperature,
-                        .smoke = b->smoke,
-                        .flame = b->flame,
-                        .velocity = (const float(*)[3])b->velocity};
-    for (int i = 0; i < CELLS; i++) {
-        float at[3] = {(float)(i % SIDE), (float)(i / SIDE % SIDE), (float)(i / SIDE / SIDE)}, r2 = 0;
-        for (int c = 0; c < 3; c++) r2 += (at[c] + 0.5f - 0.5f * SIDE) * (at[c] + 0.5f - 0.5f * SIDE);
-        bool in = r2 * cell * cell < radius * radius;
-        b->temperature[i] = in && flame > 0 ? 1400 : 293, b->flame[i] = in ? flame : 0, b->smoke[i] = in ? smoke : 0;
-        b->velocity[i][2] = 1;
-    }
-}
-
 static void draw_gas(const PreviewDef *def, const SingeSurface *surface, const SingeGas *gas, double time,
                      uint8_t *rgb) {
     Preview *preview = NULL;
@@ -66,7 +39,7 @@ static float middle(const uint8_t *rgb, int channel) {
 
 static float corner(const uint8_t *rgb, int channel) { return area(rgb, 0, 0, 8, 8, channel); }
 
-/// No gas, a gas of size 0, and still air: the same picture, bit by bit, as if gas had never been asked about.
+/// No gas, a gas of size 0 and still air give the same picture, bit by bit.
 static void still_air_changes_no_pixel(void **state) {
     (void)state;
     static uint8_t plain[BYTES], rgb[BYTES];
@@ -86,7 +59,7 @@ static void still_air_changes_no_pixel(void **state) {
     synthetic_free(&surface);
 }
 
-/// Before dark and before bright: a flame glows orange to yellow, and not as a white blob, and hides next to nothing.
+/// In front of dark and of bright, a flame glows orange to yellow, not white, and hides almost nothing.
 static void a_flame_glows_orange(void **state) {
     (void)state;
     static uint8_t rgb[BYTES], plain[BYTES];
@@ -218,8 +191,8 @@ static void a_flame_has_a_blue_base_and_tongues(void **state) {
     assert_in_range(dark, W / 8, W / 2);
 }
 
-/// What burns is seen through the base of its flames. The bar, a tenth of white paper's light and a twentieth hidden,
-/// is passed where the paper is where it burns, and broken where its flames begin two centimetres below it.
+/// The burning rim is visible through the base of its flames. The bar, a tenth of white paper's light and a twentieth
+/// hidden, is passed where the paper is where it burns, and broken where its flames begin two centimetres below it.
 static void the_rim_is_seen_through_the_flames(void **state) {
     (void)state;
     static float fire[W * H][4], mean[H][4];
@@ -240,7 +213,7 @@ static void the_rim_is_seen_through_the_flames(void **state) {
     }
 }
 
-/// What flickers goes on in time, and stays where the gas is.
+/// Flicker continues over time and stays where the gas is.
 static void flicker_goes_on_in_time(void **state) {
     (void)state;
     static uint8_t a[BYTES], b[BYTES];
@@ -256,7 +229,7 @@ static void flicker_goes_on_in_time(void **state) {
     assert_memory_equal(a, b, BYTES);
 }
 
-/// A sheet hides the flame behind it, and not that before it.
+/// A sheet hides a flame behind it, not one in front of it.
 static void a_sheet_hides_the_flame_behind_it(void **state) {
     (void)state;
     static uint8_t before[BYTES], behind[BYTES], plain[BYTES];
@@ -294,7 +267,7 @@ static void flames_light_the_paper_beside_them(void **state) {
     assert_true(more[0] > 10 && more[0] > more[1] && more[1] > more[2]);
 }
 
-/// Smoke dims what is bright and shows before what is dark.
+/// Smoke dims a bright background and is visible against a dark one.
 static void smoke_dims_what_is_bright(void **state) {
     (void)state;
     static uint8_t rgb[BYTES], plain[BYTES];
@@ -357,7 +330,7 @@ static void rays_end_far_away_and_inside_the_flame(void **state) {
     }
 }
 
-/// Neither threads nor what was drawn before show.
+/// Neither the number of threads nor earlier pictures matter.
 static void pictures_do_not_depend_on_threads_or_order(void **state) {
     (void)state;
     enum { BIG_W = 200, BIG_H = 150, BIG = BIG_W * BIG_H * 3 };

@@ -56,14 +56,14 @@ static void a_glow_has_its_width(void **state) {
         }
 }
 
-/// What leans away is measured along itself: 10 pixels across are 14 mm at 45 degrees.
+/// A tilted glow is measured along the sheet: 10 pixels across are 14 mm at 45 degrees.
 static void a_leaning_glow_is_measured_along_itself(void **state) {
     (void)state;
     draw_line(&frame, 1.5707963f, 5, 1);
     assert_true(fabs(measured(&frame) - 11.6e-3 * sqrt(2)) < 2e-3);
 }
 
-/// What is no sheet, a hot ball, does not count.
+/// A hot ball, which is no sheet, does not count.
 static void only_sheets_count(void **state) {
     (void)state;
     draw_line(&frame, 0.4f, 5, 0);

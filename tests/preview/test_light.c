@@ -1,33 +1,8 @@
-// Light and shadow: what flames light, what keeps it off, what comes through sheets, and how grainy shadows are.
+// Light and shadow: light of flames, shadows of sheets, light through sheets, and the grain of shadows.
 
 #include "fixture.h"
 
 #include <math.h>
-
-enum { SIDE = 12, CELLS = SIDE * SIDE * SIDE };
-
-/// A ball of flame of 3 cm about (x, 0, z), in cells of 8 mm.
-typedef struct Ball {
-    float temperature[CELLS], smoke[CELLS], flame[CELLS], velocity[CELLS][3];
-    SingeGas gas;
-} Ball;
-
-static void ball_make(Ball *b, float x, float z) {
-    const float cell = 0.008f, half = 0.5f * SIDE * cell;
-    memset(b, 0, sizeof *b);
-    b->gas = (SingeGas){.size = {SIDE, SIDE, SIDE},
-                        .origin = {x - half, -half, z - half},
-                        .cell = cell,
-                        .temperature = b->temperature,
-                        .smoke = b->smoke,
-                        .flame = b->flame,
-                        .velocity = (const float(*)[3])b->velocity};
-    for (int i = 0; i < CELLS; i++) {
-        float at[3] = {(float)(i % SIDE), (float)(i / SIDE % SIDE), (float)(i / SIDE / SIDE)}, r2 = 0;
-        for (int c = 0; c < 3; c++) r2 += (at[c] + 0.5f - 0.5f * SIDE) * (at[c] + 0.5f - 0.5f * SIDE);
-        b->flame[i] = r2 * cell * cell < 9e-4f ? 4e6f : 0, b->temperature[i] = 1400, b->velocity[i][2] = 1;
-    }
-}
 
 /// A sheet that stands on the table in the plane x = 0, 24 cm wide and high, printed with what is given.
 static void wall_make(Float4 *q) {
@@ -57,11 +32,11 @@ static float box(float (*beauty)[3], int x, int y) {
     return sum;
 }
 
-/// What a flame adds to a point.
+/// The light that a flame adds to a point.
 static float added(const PreviewDef *def, const SingeSurface *surface, int x, int y) {
     static float dark[W * H][3], lit[W * H][3];
     static Ball ball;
-    ball_make(&ball, -0.07f, 0.1f);
+    ball_make(&ball, -0.07f, 0, 0.1f, 0.03f, 4e6f, 0);
     see(def, surface, NULL, dark), see(def, surface, &ball.gas, lit);
     return box(lit, x, y) - box(dark, x, y);
 }
@@ -93,7 +68,7 @@ static void a_sheet_shadows_the_light_of_a_flame(void **state) {
     assert_true(added(&def, &q.surface, W / 2 - 16, y) > 0.8f * open); // behind it nothing is hidden
 }
 
-/// Seen from the other side, a sheet before a flame shines by what it lets through, and its print shows.
+/// Seen from the other side, a sheet in front of a flame glows by transmitted light, and its print shows.
 static void a_sheet_before_a_flame_shines_through(void **state) {
     (void)state;
     Float4 q;

@@ -66,7 +66,7 @@ static void states_of_burning_differ(void **state) {
     assert_true(fresh > brown + 30 && brown > black + 40 && black < 80);
 }
 
-/// Paper that was hot stays brown when it is cold again, and what burnt out is grey: paler than char, not white.
+/// Paper that was hot stays brown when it is cold again, and ash is grey: paler than char, but not white.
 static void cold_remains_stay_brown_and_grey(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
@@ -110,7 +110,7 @@ static void only_hot_and_burning_char_glows(void **state) {
     assert_true(burning > burning_blue);
 }
 
-/// What burnt out pales with time.
+/// Ash pales with time.
 static void ash_pales_with_time(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
@@ -130,7 +130,7 @@ static void ash_pales_with_time(void **state) {
     assert_float_equal(middle(rgb, 1), pale, 6);
 }
 
-/// Whatever the sky, what faces up gets the same of it; what faces aside does not.
+/// Surfaces that face up get the same light from any sky; those that face sideways do not.
 static void what_faces_up_does_not_depend_on_the_sky(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
@@ -191,8 +191,8 @@ static void each_ground_has_its_look(void **state) {
     }
 }
 
-/// What pyrolysis leaves is a black leaf, whatever little mass it has, and it greys as it glows away. It shines where
-/// char burns: neither where a hot leaf burns no more, nor where it still has fuel, which burns in the flame.
+/// Pyrolysis leaves a black leaf, however little its mass, which greys as it glows away. It glows where char burns: not
+/// where a hot leaf no longer burns, nor where it still has fuel, which burns in the flame.
 static void char_is_black_and_greys(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];

@@ -49,7 +49,7 @@ static void frames_between_leave_no_trace(void **state) {
     synthetic_free(&burning), synthetic_free(&cold);
 }
 
-/// What a preview keeps between frames (the table, the mask, the shapes) must not show in the next.
+/// State that a preview keeps between frames (the table, the mask, the shapes) does not affect the next frame.
 static void what_is_kept_does_not_show(void **state) {
     (void)state;
     SingeSurface burning, hanging, nothing = {0};

@@ -15,7 +15,7 @@ static void turn(const float q[4], const double v[3], double out[3]) {
     out[2] = v[2] + w * t[2] + (x * t[1] - y * t[0]);
 }
 
-// About x, then y, then z: a quarter about x takes y to z, then one about z leaves it; and matrix = quaternion.
+// About x, then y, then z: a quarter turn about x takes y to z, and one about z leaves z. Matrix and quaternion agree.
 static void rotations_turn_about_x_then_y_then_z(void **state) {
     (void)state;
     const float quarter = 1.57079633f, angles[3] = {quarter, 0, quarter}, any[3] = {0.3f, -1.2f, 2.5f};
@@ -67,7 +67,7 @@ static void a_simulation_has_what_the_scene_says(void **state) {
     scene_free(scene);
 }
 
-// What the library refuses is reported at the object that it is about.
+// A refusal of the library is reported at the object it concerns.
 static void refused_objects_are_named(void **state) {
     (void)state;
     Scene *scene = good_scene(SHEET "pins:\n  - {vertices: [0]}\n  - {vertices: [99999]}\n", NULL, 0);
@@ -85,7 +85,7 @@ static void refused_objects_are_named(void **state) {
     scene_free(scene);
 }
 
-// Files that are there but are not what they should be: every one is reported, at the line of its name.
+// Files of the wrong kind are all reported, each at the line of its name.
 static void bad_files_are_reported(void **state) {
     (void)state;
     char folder[] = "/tmp/singe-scene-XXXXXX", path[64];
@@ -144,7 +144,7 @@ static SceneMessages refused(const char *text, const char *folder) {
     return messages;
 }
 
-// Meshes that can be read but not burnt: all of them at once, each with its file, line or face, at its name.
+// Meshes that can be read but not burnt are all reported, each with its file and line or face.
 static void bad_meshes_are_reported(void **state) {
     (void)state;
     static const struct {
@@ -202,7 +202,7 @@ static void keep_line(void *context, SingeLogLevel level, const char *line) {
     if (level == SINGE_LOG_WARNING) strcat(strcat(lines, line), "\n");
 }
 
-/// What can be simulated and has no effect is warned of, with its location.
+/// Values without effect cause warnings with their location.
 static void values_without_effect_are_warned_of(void **state) {
     (void)state;
     static const struct {
@@ -254,7 +254,7 @@ static const char nut[] = "v -2 -2 0\nv 2 -2 0\nv 2 0 0\nv 1 0 0\nv 1 -1 0\nv -1
                           "f 8 7 6 5 4 3 2 1\nf 9 10 11 12 13 14 15 16\nf 1 2 10\nf 1 10 9\nf 2 3 11 10\nf 3 4 12 11\n"
                           "f 4 5 13 12\nf 5 6 14 13\nf 6 7 15 14\nf 7 8 16 15\nf 8 1 9 16\n";
 
-/// Meshes and pictures of heights become colliders and shapes; what is not closed is reported at its collider.
+/// Meshes and height fields become colliders and shapes; an open mesh is reported at its collider.
 static void solids_become_colliders_and_shapes(void **state) {
     (void)state;
     char folder[] = "/tmp/singe-scene-XXXXXX", text[600], path[100];
@@ -397,7 +397,7 @@ static double reach_in_picture(const Scene *scene, const SceneAssets *assets) {
     return max;
 }
 
-// A file in millimetres whose y is up, of triangles; a pin takes the file's numbers of vertices, also of a welded one.
+// A file of triangles, in millimetres and y up. A pin takes the file's vertex numbers, also that of a welded vertex.
 static void mesh_files_are_scaled_and_welded(void **state) {
     (void)state;
     char folder[] = "/tmp/singe-scene-XXXXXX", path[100];

@@ -1,5 +1,5 @@
-// docs/scene.md and the reader: a default that the page has is what an object gets of which nothing is said, and a
-// range that it has is the row's. The page is read as its readers do; objects come from a scene as short as may be.
+// docs/scene.md and the reader agree: a default on the page is the value that an object gets if a scene gives none, and
+// a range that it has is the row's. The page is parsed as text; the objects come from the shortest scene.
 #include "parsing.h"
 
 #include "scene/dump.h"

@@ -123,7 +123,7 @@ static void every_prefix_of_the_examples_has_its_line(void **state) {
     globfree(&files);
 }
 
-/// Texts that libfyaml refuses without a word of where.
+/// Texts that libfyaml refuses without a position.
 static void odd_texts_have_their_line(void **state) {
     (void)state;
     // clang-format off

@@ -63,7 +63,7 @@ static void expect_same_def(const SingeMaterialDef *a, const SingeMaterialDef *b
                 one.reference_grammage == two.reference_grammage && one.ablate == two.ablate);
 }
 
-/// Each is good, has its name, and knows what sources say; the first of them, calibrated, is the program's default.
+/// Each is valid and has its name and its sources. The first one, which is calibrated, is the program's default.
 static void built_in_materials_are_good(void **state) {
     (void)state;
     static const char *const names[] = {"cotton", "newsprint", "office-paper", "one-reaction", "tissue"};
@@ -87,7 +87,7 @@ static void built_in_materials_are_good(void **state) {
     assert_null(scene_material_name(400));
 }
 
-/// A base, and keys that change it. What was measured of the base is not said of what is changed.
+/// A material with a base and changed keys does not claim the measurements of its base.
 static void a_base_can_be_changed(void **state) {
     (void)state;
     Scene *scene = good_scene(SHEET "    material: {thickness: 2 mm, base: newsprint, name: mine}\n", NULL, 0);
@@ -132,8 +132,8 @@ static void set_changes_materials(void **state) {
     scene_free(scene);
 }
 
-/// Files of one's own: in the scene's folder or below it, one begun as another; names in them are looked for beside
-/// them. The resolved scene needs none of them.
+/// Material files in the scene's folder or below it, one based on another. Names in them are relative to them. The
+/// resolved scene does not need them.
 static void material_files_are_found(void **state) {
     (void)state;
     Folder folder = folder_make();
@@ -170,7 +170,7 @@ static void material_files_are_found(void **state) {
     scene_free(scene);
 }
 
-/// Files that are none of whoever sees the messages: not a word of them is repeated, whatever is wrong with them.
+/// A material file may be one that the reader of the messages must not see: no message repeats any of its text.
 static void messages_repeat_nothing_of_other_files(void **state) {
     (void)state;
     static const char *const secrets[] = {

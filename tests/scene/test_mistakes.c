@@ -22,7 +22,7 @@ static void expect_message(const SceneMessages *messages, uint32_t index, const 
     assert_non_null(strstr(message->text, part));
 }
 
-// SHEET with one more line (line 3), which is wrong in one way.
+// SHEET with one more line (line 3) that has one mistake.
 static void one(const char *line, const char *origin, const char *part) {
     char text[2000];
     snprintf(text, sizeof text, "%s%s\n", SHEET, line);
@@ -73,7 +73,7 @@ static void wrong_values_are_reported(void **state) {
     one("preview: {light: {direction: [0, 0, 0]}}", "bad.yaml:3:30", "must be longer than 1e-9");
 }
 
-/// Whole messages: both bounds, the unit of bare numbers, no blank at the end.
+/// Messages state both bounds and the unit of bare numbers, and end without a blank.
 static void messages_name_both_bounds(void **state) {
     (void)state;
     static const struct {
@@ -109,7 +109,7 @@ static void messages_name_both_bounds(void **state) {
     }
 }
 
-/// What the library alone used to refuse, one at a time and without a location: now all at once.
+/// Values that the library would refuse one at a time and without a location are all reported at once.
 static void all_ranges_are_reported_at_once(void **state) {
     (void)state;
     static const char text[] = SHEET "pace: 1e9\ngravity: [0, 0, -1e5]\nambient_temperature: 1e9\nair_density: 1e9\n"
@@ -254,7 +254,7 @@ static char *printed(const SceneMessages *messages) {
     return text;
 }
 
-/// What a terminal would act on, and what nobody sees, is escaped, wherever a scene says it.
+/// Characters that control a terminal or are invisible are escaped wherever they stand in a scene.
 static void unprintable_characters_are_escaped(void **state) {
     (void)state;
     static const struct {
@@ -295,7 +295,7 @@ static void unprintable_characters_are_escaped(void **state) {
         }
 }
 
-/// Texts without end are cut, between characters.
+/// Very long texts are cut between characters.
 static void long_texts_are_cut(void **state) {
     (void)state;
     static const char *const lines[] = {"%s: 1",
@@ -331,7 +331,7 @@ static void long_texts_are_cut(void **state) {
     free(word), free(text);
 }
 
-/// A name has characters, and bytes enough for them in the names of files.
+/// A name is not empty, and short enough for the names of files.
 static void impossible_names_are_reported(void **state) {
     (void)state;
     static const struct {

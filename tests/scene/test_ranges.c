@@ -54,7 +54,7 @@ static bool allows(const SchemaRow *row, float value) {
            (row->flags & ROW_OPEN_MAX ? value < (float)row->max : value <= (float)row->max);
 }
 
-/// What a run writes of its start, and draws then and later.
+/// A run writes its first frame, and draws that one and a later one.
 static SingeResult try_first_frame(const Scene *scene, const SceneAssets *assets, SingeSim *sim) {
     SingeError error = {0};
     SingeGas gas = singe_sim_gas(sim);

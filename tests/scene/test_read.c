@@ -214,7 +214,7 @@ static void json_is_read(void **state) {
     scene_free(scene);
 }
 
-/// What is in quotes, in every style of YAML; read as an attribute's name, which may be any text.
+/// Quoted texts in every style of YAML, read as the name of an attribute, which may be any text.
 static void quoted_texts_are_read(void **state) {
     (void)state;
     static const struct {
@@ -285,7 +285,7 @@ static void set_overrides_values(void **state) {
     scene_free(scene);
 }
 
-// The gas is there unless a scene says no, alone or in its map.
+// A scene has gas unless it switches it off, by `gas: no` or inside the map.
 static void gas_is_there_unless_switched_off(void **state) {
     (void)state;
     const struct {
@@ -312,7 +312,7 @@ static void gas_is_there_unless_switched_off(void **state) {
     assert_false(singe_default_sim().gas.enabled);
 }
 
-// The solver's method, alone or with keys: what is not given suits the method, in any order of the keys.
+// The solver's method, alone or with keys in any order: the defaults of missing keys suit the method.
 static void defaults_suit_the_method(void **state) {
     (void)state;
     static const char sheet[] = "sheets: [{grid: {size: [1, 1], cells: [1, 1]}}]\n";
@@ -349,7 +349,7 @@ static void keep_line(void *context, SingeLogLevel level, const char *line) {
     if (level == SINGE_LOG_WARNING) strcat(strcat(lines, line), "\n");
 }
 
-/// Names of the release before are read as their new ones, and each is reported with its line.
+/// Names of the previous release are read as the new ones, and each is reported with its line.
 static void renamed_keys_are_reported(void **state) {
     (void)state;
     static const char before[] = "sheets:\n"

@@ -8,7 +8,7 @@
 
 #include "sample_shells.h"
 
-/// What a shell must have, by colour in the order red, green, blue, yellow; 0 families is any number.
+/// Expected numbers by colour: red, green, blue, yellow. 0 families stands for any number.
 typedef struct Expected {
     uint32_t springs[4], strands[4], rings[4], families[4], cell_families;
 } Expected;
