@@ -84,14 +84,6 @@ static bool read_word(const Parser *parser, const char *text, const char *const 
     return bench_args_refuse(parser, expected, text);
 }
 
-static bool read_outline(const Parser *parser, const char *text, BenchOutline *outline) {
-    static const char *const words[] = {"square", "disc"};
-    int value;
-    if (!read_word(parser, text, words, 2, "square or disc", &value)) return false;
-    *outline = value ? BENCH_DISC : BENCH_SQUARE;
-    return true;
-}
-
 static bool read_option(Parser *parser, const char *text, BenchRequest *request) {
     BenchOptions *o = &request->options;
     const ArgReader *reader = &parser->reader;
@@ -142,7 +134,13 @@ static bool read_option(Parser *parser, const char *text, BenchRequest *request)
         return read_list(parser, text, 0, 1e6, false, 1, "numbers from 0 to 1e6 as in 0,390", &o->curvature);
     case BENCH_OPT_SEEDS:
         return read_list(parser, text, 1, 1e6, true, 1, "whole numbers from 1 to 1000000 as in 1,2", &o->seeds);
-    case BENCH_OPT_OUTLINE: return read_outline(parser, text, &o->outline);
+    case BENCH_OPT_OUTLINE: {
+        static const char *const words[] = {"square", "disc"};
+        int value;
+        if (!read_word(parser, text, words, 2, "square or disc", &value)) return false;
+        o->outline = value ? BENCH_DISC : BENCH_SQUARE;
+        return true;
+    }
     case BENCH_OPT_CREASES: o->creases = true; return true;
     case BENCH_OPT_JSON: request->json = true; return true;
     case BENCH_OPT_CSV: request->csv = text; return true;

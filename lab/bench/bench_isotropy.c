@@ -10,7 +10,7 @@
 //
 // Seeds are those of the material's noise: where it burns, shrinks and remains. Both grids of a pair have the same
 // seed.
-#include "bench/bench_isotropy.h"
+#include "bench/bench.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 // singe bench output: the cost of a frame's file in each format, for a synthetic sheet that has burnt halfway. Files go
 // to a folder in memory if the system has one, so that the writer and its system calls are measured, not the disk. As
 // in a run, each frame is written in a thread of its own.
-#include "bench/bench_output.h"
+#include "bench/bench.h"
 
 #include <math.h>
 #include <pthread.h>

@@ -4,7 +4,7 @@
 
 #include "bench/curves.h"
 #include "cli/args.h"
-#include "bench/bench_plot.h"
+#include "bench/bench.h"
 #include "cli/cli.h"
 #include "cli/console.h"
 

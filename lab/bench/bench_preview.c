@@ -1,5 +1,5 @@
 // singe bench preview: the cost of a picture of a synthetic burning sheet of about 100,000 triangles.
-#include "bench/bench_preview.h"
+#include "bench/bench.h"
 
 #include <math.h>
 #include <stdlib.h>

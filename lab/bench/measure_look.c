@@ -69,42 +69,6 @@ static double prepare_line(double *line) {
     return power;
 }
 
-static void read_wrinkles(Look *look, const SingeView *view, int cells, double length) {
-    double power[SAMPLES / 4 + 2] = {0}, line[SAMPLES], square = 0, total = 0, moment = 0;
-    for (int row = 0; row < LINES; row++) {
-        for (int i = 0; i < SAMPLES; i++) {
-            double point[3];
-            geometry_point(view, cells, (i + 0.5) / SAMPLES, 0.1 + 0.8 * row / (LINES - 1.0), point);
-            line[i] = point[1];
-        }
-        square += prepare_line(line) / LINES;
-
-        // adds a line's power at k = 1 to SAMPLES/4 waves over its length
-        const double pi = acos(-1);
-        for (int k = 1; k <= SAMPLES / 4; k++) {
-            double re = 0, im = 0;
-            for (int i = 0; i < SAMPLES; i++) {
-                double angle = 2 * pi * (double)k * i / SAMPLES;
-                re += line[i] * cos(angle);
-                im += line[i] * sin(angle);
-            }
-            power[k] += re * re + im * im;
-        }
-    }
-    for (int k = 2; k <= SAMPLES / 4; k++) total += power[k], moment += k * power[k];
-
-    // waves over the length at the peak, between whole numbers by the parabola through it and its neighbours
-    int best = 2;
-    for (int k = 2; k < SAMPLES / 4; k++)
-        if (power[k] > power[best]) best = k;
-    double before = power[best - 1], at = power[best], after = power[best + 1], bend = before - 2 * at + after;
-    double shift = bend < 0 ? 0.5 * (before - after) / bend : 0;
-    const double waves = best + fmax(-0.5, fmin(0.5, shift));
-    look->wavelength = length / waves;
-    look->mean_wave = length * total / moment;
-    look->height = sqrt(square);
-}
-
 static SingeResult look_observe(const BenchOptions *options, BenchSetup setup, BenchState state, Look *look,
                                 SingeError *error) {
     SingeSim *sim = NULL;
@@ -133,7 +97,43 @@ static SingeResult look_observe(const BenchOptions *options, BenchSetup setup, B
             geometry_point(&view, cells, 0.5, 1, centre);
             look->sag = 0.5 * (left[2] + right[2]) - centre[2];
             look->drop = height_start - geometry_height(&view);
-        } else read_wrinkles(look, &view, setup.cells, (double)setup.shrink);
+        } else {
+            const int cells = setup.cells;
+            const double length = (double)setup.shrink;
+            double power[SAMPLES / 4 + 2] = {0}, line[SAMPLES], square = 0, total = 0, moment = 0;
+            for (int row = 0; row < LINES; row++) {
+                for (int i = 0; i < SAMPLES; i++) {
+                    double point[3];
+                    geometry_point(&view, cells, (i + 0.5) / SAMPLES, 0.1 + 0.8 * row / (LINES - 1.0), point);
+                    line[i] = point[1];
+                }
+                square += prepare_line(line) / LINES;
+
+                // adds a line's power at k = 1 to SAMPLES/4 waves over its length
+                const double pi = acos(-1);
+                for (int k = 1; k <= SAMPLES / 4; k++) {
+                    double re = 0, im = 0;
+                    for (int i = 0; i < SAMPLES; i++) {
+                        double angle = 2 * pi * (double)k * i / SAMPLES;
+                        re += line[i] * cos(angle);
+                        im += line[i] * sin(angle);
+                    }
+                    power[k] += re * re + im * im;
+                }
+            }
+            for (int k = 2; k <= SAMPLES / 4; k++) total += power[k], moment += k * power[k];
+
+            // waves over the length at the peak, between whole numbers by the parabola through it and its neighbours
+            int best = 2;
+            for (int k = 2; k < SAMPLES / 4; k++)
+                if (power[k] > power[best]) best = k;
+            double before = power[best - 1], at = power[best], after = power[best + 1], bend = before - 2 * at + after;
+            double shift = bend < 0 ? 0.5 * (before - after) / bend : 0;
+            const double waves = best + fmax(-0.5, fmin(0.5, shift));
+            look->wavelength = length / waves;
+            look->mean_wave = length * total / moment;
+            look->height = sqrt(square);
+        }
     }
     singe_sim_destroy(sim);
     return result;

@@ -316,18 +316,6 @@ static void rival_draw(FILE *file, const double (*profile)[RIVAL_POINTS][2], con
     fprintf(file, "</svg>\n");
 }
 
-/// The centre line relative to its own centre, for rival_draw.
-static void rival_profile(const SingeView *view, double profile[RIVAL_POINTS][2]) {
-    double mean[2] = {0};
-    for (int i = 0; i < RIVAL_POINTS; i++)
-        for (int k = 0; k < 2; k++) {
-            profile[i][k] = (double)view->position[RIVAL_POINTS + i][2 * k];
-            mean[k] += profile[i][k] / RIVAL_POINTS;
-        }
-    for (int i = 0; i < RIVAL_POINTS; i++)
-        for (int k = 0; k < 2; k++) profile[i][k] -= mean[k];
-}
-
 SingeResult paper_rival(Lab *lab, SingeError *error) {
     double time[RIVAL_LOOKS], difference[RIVAL_LOOKS], curvature[RIVAL_LOOKS];
     double profiles[RIVAL_SHOTS][RIVAL_POINTS][2] = {{{0}}}, bend[RIVAL_SHOTS];
@@ -357,7 +345,17 @@ SingeResult paper_rival(Lab *lab, SingeError *error) {
         curvature[k] = angle / length;
 
         for (int s = 0; s < RIVAL_SHOTS; s++)
-            if (k == rival_shots[s]) rival_profile(&view, profiles[s]);
+            if (k == rival_shots[s]) {
+                // the centre line relative to its own centre, for rival_draw
+                double mean[2] = {0};
+                for (int i = 0; i < RIVAL_POINTS; i++)
+                    for (int n = 0; n < 2; n++) {
+                        profiles[s][i][n] = (double)view.position[RIVAL_POINTS + i][2 * n];
+                        mean[n] += profiles[s][i][n] / RIVAL_POINTS;
+                    }
+                for (int i = 0; i < RIVAL_POINTS; i++)
+                    for (int n = 0; n < 2; n++) profiles[s][i][n] -= mean[n];
+            }
     }
     play_close(&play);
     if (result) return result;
