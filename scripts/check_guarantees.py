@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Checks that each promise of docs/guarantees.md and docs/SECURITY.md names tests, and that these exist.
+"""Checks that each promise of docs/guarantees.md and docs/SECURITY.md names tests that exist.
 
 usage: check_guarantees.py ROOT BUILD FILE...
 
-A promise is an item of a list. It ends with its tests in brackets: [sim_threads: any_number_of_threads;
-cli_resume: kill_and_resume]. Before the colon stands a test of ctest, or a make target of the Makefile, behind it the
-case in that test's sources: a C function, or a Python method with "test_" before it. A promise that no test can show
-ends with [not tested: REASON]; what is only described has no place in a list.
+A promise is an item of a list and ends with its tests in brackets: [sim_threads: any_number_of_threads; cli_resume:
+kill_and_resume]. Before the colon is the name of a test of ctest, or a target of the Makefile ("make gate"). After it
+are cases of that test: C functions, or Python methods without their "test_". A promise that no test can show ends with
+[not tested: REASON]. Descriptions do not belong in a list.
 """
 
 import json
@@ -17,7 +17,7 @@ import sys
 
 
 def ctest_names(build):
-    """The tests of a build, without those whose tools are missing on this machine."""
+    """The tests of a build, without those whose tools this machine lacks."""
     shown = subprocess.run(["ctest", "--show-only=json-v1"], cwd=build, capture_output=True, text=True, check=True)
     return {test["name"] for test in json.loads(shown.stdout)["tests"]}
 
@@ -28,7 +28,7 @@ def make_targets(root):
 
 
 def cases(root):
-    """Every function of the tests' sources."""
+    """The functions in the sources of the tests."""
     found = set()
     for folder, _, files in os.walk(os.path.join(root, "tests")):
         for name in files:
@@ -66,11 +66,11 @@ def complaints(root, build, files):
     for file in files:
         found = promises(os.path.join(root, file))
         if not found:
-            yield f"{file}: no promise"
+            yield f"{file}: no promises"
         for line, text in found:
             last = re.search(r"\[([^\[\]]+)\]$", text)
             if not last:
-                yield f"{file}:{line}: no test is named at the end of this promise"
+                yield f"{file}:{line}: this promise does not end with its tests"
             elif not re.match(r"not tested: \S", last.group(1)):
                 for name in last.group(1).split(";"):
                     test, _, case = (part.strip() for part in name.partition(":"))
@@ -85,7 +85,7 @@ def main():
     if len(sys.argv) < 4:
         sys.exit(__doc__)
     found = list(complaints(sys.argv[1], sys.argv[2], sys.argv[3:]))
-    print("\n".join(found) or "every promise has its tests")
+    print("\n".join(found) or "every promise names tests that exist")
     sys.exit(bool(found))
 
 

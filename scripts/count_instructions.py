@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Counts the instructions of each stage of a step under valgrind and holds them against lab/bench/instructions.csv.
+"""Counts the instructions of each stage of a step under valgrind and compares them with lab/bench/instructions.csv.
 
-Counts do not depend on what else the machine does, so a stage that got slower shows where times are too noisy. A stage
-may be up to 10 % off its baseline, either way: one that got faster must not get slower again unseen, so the baseline
-has to follow. --update writes it anew.
+Counts do not depend on the load of the machine, so they show a slower stage where times are too noisy. A stage may be
+up to 10 % above or below its baseline. A stage that has become faster fails too, so that its baseline follows and it
+cannot become slower again unnoticed. --update writes the baseline.
 
-Exit status: 0 within the bound, 1 outside, 77 where it cannot be measured: valgrind is missing, or the baseline is of
+Exit status: 0 within the bound, 1 outside, 77 if it cannot be measured: valgrind is missing, or the baseline is for
 another compiler, processor or build.
 """
 import argparse
@@ -19,7 +19,7 @@ import tempfile
 STAGES = ["heat", "burn", "ablate", "dynamics"]
 BOUND = 0.10
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-BASELINE = os.path.join(ROOT, "bench", "instructions.csv")
+BASELINE = os.path.join(ROOT, "lab", "bench", "instructions.csv")
 
 
 def skip(reason):
@@ -29,8 +29,8 @@ def skip(reason):
 
 def inclusive(path, functions):
     """Instructions spent in calls of the named functions, from callgrind's file: each call is a line `calls=` under
-    the callee's name, and the last number of the line after it is what the call cost. Names are written once, as
-    `(id) name`, and then as `(id)`."""
+    the callee's name, and the last number of the next line is the cost of the call. A name is written as `(id) name`
+    the first time and as `(id)` afterwards."""
     names, callee, called, costs = {}, None, False, dict.fromkeys(functions, 0)
     with open(path, encoding="utf-8", errors="replace") as file:
         for line in file:
@@ -48,7 +48,7 @@ def inclusive(path, functions):
 
 
 def measure(program):
-    """Instructions a step, by stage."""
+    """Instructions per step, by stage."""
     with tempfile.TemporaryDirectory() as folder:
         counts = os.path.join(folder, "counts")
         run = subprocess.run(
@@ -86,14 +86,14 @@ def compare(counts, baseline):
         print(f"{stage:10} {counts[stage]:14,} {baseline[stage]:14,} {change:+8.1%}")
         out += abs(change) > BOUND
     if out:
-        print("More than 10 % off. If that is meant, write the new baseline:\n"
+        print("A stage is more than 10 % off its baseline. If that is intended, write the new baseline:\n"
               "    python3 scripts/count_instructions.py --update")
     return out
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", default=os.path.join(ROOT, "build", "bench", "singe_bench_instructions"))
+    parser.add_argument("--program", default=os.path.join(ROOT, "build", "lab", "bench", "singe_bench_instructions"))
     parser.add_argument("--kind", default="GNU 12, x86_64, Release",
                         help="compiler, processor and build of the program")
     parser.add_argument("--update", action="store_true", help="write the baseline")
@@ -106,7 +106,7 @@ def main():
         return 0
     kind, baseline = read_baseline()
     if kind != options.kind:
-        skip(f"the baseline is of {kind}, this is {options.kind}")
+        skip(f"the baseline is for {kind}, this is {options.kind}")
     return 1 if compare(measure(options.program), baseline) else 0
 
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Prints how much of src, program/formats and program/scene the tests reach, by gcov's counts.
+"""Prints how much of src, program/formats and program/scene the tests reach, as gcov counts it.
 
 coverage.py BUILD [--no-bars | --missing FILE...]
 
-A line counts when it was run. A branch is one way out of a condition, as gcc sees it: `a && b` has four. A line that
-several files compile (a header's, a kernel's for several instruction sets) is reached when any of them reaches it.
-Not counted: branches of assert, which no test may take, and those that gcov marks as exceptions.
+A branch is one way out of a condition as gcc sees it: `a && b` has four. Some lines are compiled several times: those
+of headers, and of kernels for several instruction sets. They are reached if any of these copies is. Branches of
+assertions, which no test may take, and of exceptions do not count.
 """
 
 import argparse
@@ -17,27 +17,27 @@ import subprocess
 import sys
 
 FOLDERS = ("src", "program/formats", "program/scene")
-LINES, BRANCHES = 95.0, 85.0  # %, the bars
+LINES, BRANCHES = 95.0, 85.0  # bars, in %
 
 
 def objects(build):
-    """Counts that tests have left, of the folders' own files."""
+    """The object files of the folders."""
     for folder in FOLDERS:
         for path, _, names in os.walk(os.path.join(build, folder)):
             yield from (os.path.join(path, name) for name in sorted(names) if name.endswith(".gcno"))
 
 
 def read_counts(note):
-    """What gcov says of one object file."""
+    """The counts of one object file."""
     done = subprocess.run(["gcov", "--json-format", "--stdout", "--branch-probabilities", os.path.abspath(note)],
                           capture_output=True, text=True)
     if done.returncode != 0:
-        raise SystemExit(f"gcov fails on {note}: {done.stderr.strip()}")
+        raise SystemExit(f"gcov failed on {note}: {done.stderr.strip()}")
     return [file for text in done.stdout.splitlines() if text.strip() for file in json.loads(text)["files"]]
 
 
 class File:
-    """Counts of a source file, over all objects made of it."""
+    """The counts of a source file over all of its objects."""
 
     def __init__(self, root, name):
         self.name, self.lines, self.branches = name, {}, {}
@@ -45,7 +45,7 @@ class File:
             self.text = file.read().split("\n")
 
     def source(self, number):
-        return self.text[number - 1].strip() if number <= len(self.text) else "(changed since it was built)"
+        return self.text[number - 1].strip() if number <= len(self.text) else "(changed since the build)"
 
     def add(self, line):
         number = line["line_number"]
@@ -125,9 +125,9 @@ def show(files):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("build", help="folder of the build, with what the tests left")
-    parser.add_argument("--missing", nargs="+", metavar="FILE", help="what of these files or folders is not reached")
-    parser.add_argument("--no-bars", action="store_true", help="print alone: what ran were not all tests")
+    parser.add_argument("build", help="folder of the build in which the tests have run")
+    parser.add_argument("--missing", nargs="+", metavar="FILE", help="list the lines of these files and folders that the tests do not reach")
+    parser.add_argument("--no-bars", action="store_true", help="do not fail below the bars")
     options = parser.parse_args()
     root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     files = collect(root, os.path.abspath(options.build))

@@ -1,7 +1,7 @@
 #!/bin/bash
-# Draws docs/gallery: burns every example, keeps its best frame and a contact sheet, prints how long it took, and writes
-# down what `singe measure` says, in the table of docs/gallery/README.md too.
-# Usage: scripts/draw_gallery.sh [EXAMPLE...], after a build in build/.
+# Draws docs/gallery with the command in build/: burns every example, draws its best frame and a contact sheet, prints
+# how long it took, and stores the output of `singe measure`, also in the table of docs/gallery/README.md.
+# Usage: scripts/draw_gallery.sh [EXAMPLE...]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 declare -A best=([letter]=0078 [letter-hanging]=0125 [hot-sphere]=0068 [page-hot]=0064 [newspaper]=0110

@@ -1,8 +1,8 @@
 #!/bin/bash
-# Formats the C sources as .clang-format says.
+# Formats the C sources by .clang-format.
 #   format.sh [--check]
-# --check: changes nothing, names the files that would change and fails if there are any; exits with 77 where this
-# version of the formatter is not installed, as others break lines elsewhere.
+# --check changes nothing, and fails with the names of files that are not formatted. Exits with 77 if clang-format 14 is
+# not installed: other versions break lines differently.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 version=14

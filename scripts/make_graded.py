@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Makes paper/graded.obj: a sheet of 108 by 36 mm whose cells are 1.5 mm on the left and 4.5 mm on the right, all of
-four corners, for section 8.2 in `singe paper adaptive`. Between the two lies a row in which one side of each large cell is cut in
-three. Only for changing the experiment: the file is in the repository.
+"""Makes lab/paper/scenes/graded.obj, which the repository contains: the sheet of `singe paper adaptive` (section 8.2).
+
+It measures 108 by 36 mm. Its cells are quads, of 1.5 mm on the left and 4.5 mm on the right. Between them lies a row of
+large cells one of whose sides is cut in three.
 
     scripts/make_graded.py [FILE]
 """
@@ -10,7 +11,7 @@ import argparse
 import pathlib
 import random
 
-FILE = pathlib.Path(__file__).resolve().parent.parent / "paper" / "graded.obj"
+FILE = pathlib.Path(__file__).resolve().parent.parent / "lab" / "paper" / "scenes" / "graded.obj"
 FINE, COARSE = 1.5e-3, 4.5e-3  # cells, m
 FINE_COLUMNS, COARSE_COLUMNS, COARSE_ROWS = 45, 8, 8
 JITTER = 0.15  # of a cell, as grids of scenes have it

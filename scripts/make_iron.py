@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes examples/hot-iron/iron.obj and handle.obj: a flat iron of cast metal and its wooden grip, closed meshes of
-quads in millimetres, the middle of the sole at the origin, the tip towards +x, z up. Only for changing the example:
-both files are in the repository.
+"""Makes examples/hot-iron/iron.obj and handle.obj, which the repository contains: a cast flat iron and its wooden grip.
+
+Both are closed meshes of quads, in millimetres and z up. The middle of the sole is at the origin; the tip points to +x.
 """
 
 import math

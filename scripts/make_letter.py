@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes examples/letter/letter.png and letter.obj. Only for changing the example: both files are in the repository.
+"""Makes examples/letter/letter.png and letter.obj, which the repository contains.
 
 Needs Pillow, numpy and the Debian packages fonts-ebgaramond and fonts-dancingscript.
 Usage: python3 scripts/make_letter.py [picture] [mesh]   (default: both)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Makes meshes of every class that users bring, and their broken twins, as OBJ, PLY and GLB files.
+"""Makes meshes of every kind that users bring, and their broken twins, as OBJ, PLY and GLB files.
 
-    scripts/make_meshes.py DIR [NAME...]     all of them, or those named
-    scripts/make_meshes.py --list            names, classes and what they are
+    scripts/make_meshes.py DIR [NAME...]     all of them, or the named ones
+    scripts/make_meshes.py --list            names, classes and descriptions
 
-Every mesh is about 20 cm large, lies around the origin with z up, in metres, unless its text says otherwise, and comes
-out the same each time. tests/meshes runs a scene with each (docs/meshes.md).
+A mesh is about 20 cm large, around the origin, in metres and z up, unless its description says otherwise. The files are
+the same each time. tests/meshes runs a scene with each of them (docs/meshes.md).
 """
 
 import argparse

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the pictures of examples/newspaper, curtain, shirt and page-hot. Only for changing them: they are in the
-repository.
+"""Makes the pictures of examples/newspaper, curtain, shirt and page-hot, which the repository contains.
 
 Needs Pillow, numpy and the Debian package fonts-ebgaramond.
 Usage: python3 scripts/make_pictures.py [newspaper] [curtain] [shirt] [page]   (default: all)

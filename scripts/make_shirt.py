@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Makes examples/shirt/shirt.obj: a T-shirt of triangles, as garments come out of other programs.
+"""Makes examples/shirt/shirt.obj, which the repository contains: a T-shirt of triangles, as other programs export them.
 
     scripts/make_shirt.py [FILE]
 
-Front and back are a grid each, sewn along the sides and the shoulders; the sleeves are tubes sewn to them. What is sewn
-shares its vertices; the uv do not: front, back and the sleeves are charts of their own, so seams of the uv run along
-the sides, the shoulders, around the arms and under the sleeves. Neck, hem and cuffs are open. Diagonals lie at random.
+Front and back are grids, sewn together along the sides and the shoulders. The sleeves are tubes sewn to both. Parts
+that are sewn share vertices, but each part is a chart of its own, so seams of the uv run along the sides and the
+shoulders, around the arms and under the sleeves. Neck, hem and cuffs are open. The diagonals are random.
 
 Metres, z up, x to the left hand, the front towards -y. It hangs free around a body within |x| < 0.22, |y| < 0.10 at the
 chest; shoulders are at z = 1.45, the hem at z = 0.85.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes examples/burning-torus/torus.obj: a torus of quads in metres around the z axis, with two charts of uv, one for
-each half of the ring: v goes around the hole, u around the tube from a cut on the inside. Only for changing the
-example: the file is in the repository.
+"""Makes examples/burning-torus/torus.obj, which the repository contains: a torus of quads around the z axis, in metres.
+
+Each half of the ring has its own chart of uv: v goes around the hole, u around the tube from a cut on the inside.
 
     scripts/make_torus.py [--around N] [--across M] [FILE]
 """

@@ -1,18 +1,23 @@
 #!/usr/bin/env python3
-"""The form of the C sources, by folder: lines, blank lines, static functions that are named once, assignments joined by
-commas, and assertions.
+"""Prints the form of the C sources by folder: lines, blank lines, static functions that are named once, assignments
+that are joined by commas, and assertions.
 
-usage: measure_form.py [--list statics|commas] [FOLDER...]          (default: src program lab)
+usage: measure_form.py [--bars] [--list statics|commas] [FOLDER...]          (default: src program lab)
 
-A static function is named once if its file mentions it in one place besides its definition and declarations. An
-assignment is joined by a comma if it shares its statement with another one: `a = 1, b = 2;`. Declarations and the
-heads of loops do not count.
+A static function is named once if its file mentions it in one place besides its definition and declarations. Many of
+them mean that readers have to put together what was one thought. An assignment is joined by a comma if it shares its
+statement with another one: `a = 1, b = 2;`. Declarations and the heads of loops do not count.
+
+With --bars, exits with 1 if more static functions are named once, or more assignments are joined, than the bars allow.
 """
 
 import argparse
 import pathlib
 import re
 import sys
+
+# the bars: static functions that are named once, in % of all, and assignments that are joined by commas
+ONCE, JOINED = 40.0, 30
 
 DEFINITION = re.compile(r"^static (?!inline\b)(?:[\w]+[ *]+)+?\**(\w+)\(", re.MULTILINE)
 WORD = r"[\w\]\[.>)(*-]"
@@ -65,6 +70,7 @@ def commas(text):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--list", choices=("statics", "commas"))
+    parser.add_argument("--bars", action="store_true")
     parser.add_argument("folders", nargs="*", default=["src", "program", "lab"])
     options = parser.parse_args()
     print(f"{'folder':20} {'files':>6} {'lines':>7} {'blank':>6} {'statics':>8} {'once':>6} {'commas':>7} {'asserts':>8}")
@@ -90,6 +96,10 @@ def main():
             total = [a + b for a, b in zip(total, row)]
             show(str(folder), row)
     show("all", total)
+    once, joined = 100 * total[4] / max(total[3], 1), total[5]
+    if options.bars and (once > ONCE or joined > JOINED):
+        return f"more than the bars of {ONCE:.0f} % of static functions named once and {JOINED} joined assignments"
+    return 0
 
 
 def show(name, row):

@@ -1,10 +1,11 @@
 #!/bin/bash
-# Measures again what docs/performance.md says, into lab/bench/results/NAME-*.csv: scripts/measure_performance.sh NAME, after
-# a build in build/, on a machine that does nothing else. Takes ten minutes on two cores.
+# Measures the numbers of docs/performance.md with the command in build/, into lab/bench/results/NAME-*.csv. The machine
+# should be idle. Takes ten minutes on two cores.
+# Usage: scripts/measure_performance.sh NAME
 set -euo pipefail
 cd "$(dirname "$0")/.."
 name=${1:?usage: measure_performance.sh NAME}
-bench() { # what is measured, and the end of its file's name where it differs
+bench() { # BENCHMARK SUFFIX OPTION...: the suffix of the file's name is the benchmark's unless it is given
     local file=lab/bench/results/$name-${2:-$1}.csv begun=$SECONDS
     build/singe bench "$1" "${@:3}" --csv "$file" > /dev/null
     echo "$file: $((SECONDS - begun)) s"

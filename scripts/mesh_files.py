@@ -1,4 +1,4 @@
-"""A mesh of polygons, and the OBJ, PLY and GLB files of it."""
+"""A mesh of polygons, and its OBJ, PLY and GLB files."""
 
 import json
 import random
@@ -6,22 +6,22 @@ import struct
 
 
 class Mesh:
-    """Points, faces of any number of corners and, where there are any, uv: one a vertex, or one a corner."""
+    """Points, faces with any number of corners, and optionally uv per vertex or per corner."""
 
     def __init__(self, points=(), faces=(), uv=None, corner_uv=None):
         self.points = [tuple(p) for p in points]
         self.faces = [tuple(f) for f in faces]
-        self.uv = uv  # of each vertex
-        self.corner_uv = corner_uv  # (uv, faces of their numbers)
+        self.uv = uv  # per vertex
+        self.corner_uv = corner_uv  # (uv, faces that index them)
 
     def joined(self, other):
-        """Both in one, as separate components."""
+        """Both meshes in one, as separate components."""
         base = len(self.points)
         uv = self.uv + other.uv if self.uv and other.uv else None
         return Mesh(self.points + other.points, self.faces + [tuple(v + base for v in f) for f in other.faces], uv)
 
     def merged(self, same):
-        """Vertices left out, for others that take their place: same[vertex] is the other. Without uv."""
+        """The mesh, with same[vertex] in the place of each vertex that is in `same`. Without uv."""
         kept = [v for v in range(len(self.points)) if v not in same]
         number = {v: i for i, v in enumerate(kept)}
         number.update({v: number[w] for v, w in same.items()})
@@ -31,7 +31,7 @@ class Mesh:
         return Mesh([(scale * a + x, scale * b + y, scale * c + z) for a, b, c in self.points], self.faces, self.uv)
 
     def triangles(self, seed=None):
-        """Quads cut along alternating diagonals, or along random ones."""
+        """The mesh with its quads cut along alternating diagonals, or along random ones if there is a seed."""
         generator = random.Random(seed)
         faces = []
         for i, f in enumerate(self.faces):
@@ -71,7 +71,7 @@ def ply_bytes(mesh, binary):
 
 
 def glb_bytes(mesh):
-    """Positions, uv, whose v runs down, and triangles in one buffer (glTF 2.0, binary)."""
+    """glTF 2.0, binary: positions, uv with v pointing down, and triangles in one buffer."""
     parts = [b"".join(struct.pack("<3f", *p) for p in mesh.points),
              b"".join(struct.pack("<2f", s, 1 - t) for s, t in mesh.uv),
              b"".join(struct.pack("<3I", *f) for f in mesh.faces)]

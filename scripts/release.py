@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""Makes the files of a release from a commit, the same bytes every time.
+"""Builds the files of a release from a commit, with the same bytes every time.
 
     release.py [--out FOLDER] [--commit COMMIT] [--twice] [--wheels]
 
     singe-VERSION.tar.gz                  the sources
-    singe-VERSION-linux-ARCH.tar.gz       the command, static: runs on any Linux, without preview, EXR, assimp and fit
-    singe_VERSION_ARCH.deb, libsinge-dev_VERSION_ARCH.deb    for the Debian or Ubuntu that this runs on
-    *.whl                                 with --wheels (bindings/python/build_wheels.py says what that needs)
-    singe-VERSION.spdx.json               what is inside, with versions and licences (SPDX 2.3)
+    singe-VERSION-linux-ARCH.tar.gz       the static command for any Linux, without preview, EXR, assimp and fit
+    singe_VERSION_ARCH.deb, libsinge-dev_VERSION_ARCH.deb    for the Debian or Ubuntu on which this runs
+    *.whl                                 with --wheels; bindings/python/build_wheels.py states its needs
+    singe-VERSION.spdx.json               the contents with versions and licences (SPDX 2.3)
     SHA256SUMS
 
---twice builds everything once more in another folder and compares the bytes. Needs the packages of setup.sh, dpkg-dev,
-and the static libraries that the -dev packages of libfyaml, libpng, zlib and libjpeg have.
+--twice builds everything again in another folder and compares the bytes. Needs the packages of setup.sh, dpkg-dev, and
+the static libraries in the -dev packages of libfyaml, libpng, zlib and libjpeg.
 """
 
 import argparse
@@ -29,7 +29,7 @@ import tarfile
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-# Debian's packages whose code is in the static command, with their licences as SPDX names them
+# Debian's packages whose code the static command contains, and the SPDX names of their licences
 LINKED = {"libc6-dev": "LGPL-2.1-or-later", "libfyaml-dev": "MIT", "libpng-dev": "Libpng", "zlib1g-dev": "Zlib",
           "libjpeg62-turbo-dev": "IJG AND BSD-3-Clause AND Zlib"}
 
@@ -44,7 +44,7 @@ def ask(*command, **options):
 
 
 def sources(commit, prefix, epoch, target):
-    """git archive gives the same bytes for a commit; gzip without name and time."""
+    """git archive gives the same bytes for a commit, and gzip stores neither a name nor a time."""
     tar = subprocess.run(["git", "-C", str(ROOT), "archive", f"--prefix={prefix}/", commit], check=True,
                          capture_output=True).stdout
     with open(target, "wb") as file, gzip.GzipFile("", "wb", 9, file, mtime=epoch) as packed:
@@ -52,7 +52,7 @@ def sources(commit, prefix, epoch, target):
 
 
 def pack(folder, prefix, epoch, target):
-    """A tar whose entries are sorted and have one time and no owner."""
+    """A tar with sorted entries of one time, owned by root."""
     memory = io.BytesIO()
     with tarfile.open(fileobj=memory, mode="w", format=tarfile.PAX_FORMAT) as tar:
         for path in sorted(folder.rglob("*")):
@@ -68,7 +68,7 @@ def pack(folder, prefix, epoch, target):
 
 
 def configure(source, build, *more):
-    # no path of this machine in what is built
+    # no path of this machine in the binaries
     flags = f"-ffile-prefix-map={source}=. -ffile-prefix-map={build}=build"
     run("cmake", "-S", source, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_INSTALL_PREFIX=/usr",
         f"-DCMAKE_C_FLAGS={flags}", "-DSINGE_TESTS=OFF", "-DSINGE_PYTHON=OFF", *more)
@@ -84,17 +84,17 @@ def debian_packages(source, work, out):
 
 
 def static_command(source, work, out, name, epoch):
-    """One file and what one needs to try it."""
+    """The command, its licences, and what a first try needs."""
     build, folder = work / "static", work / "portable"
     configure(source, build, "-DSINGE_PREVIEW=OFF", "-DSINGE_EXR=OFF", "-DSINGE_ASSIMP=OFF",
               "-DSINGE_NLOPT=OFF", "-DSINGE_STATIC=ON")
     (folder / "examples").mkdir(parents=True)
-    shutil.copy(build / "cli" / "singe", folder)
+    shutil.copy(build / "singe", folder)
     run("strip", folder / "singe")
     for file in ("LICENSE", "README.md", "CHANGELOG.md"):
         shutil.copy(source / file, folder)
-    for part in ("docs", "materials", "examples/letter"):
-        shutil.copytree(source / part, folder / part, ignore=shutil.ignore_patterns("gallery"))
+    for part, place in ("docs", "docs"), ("src/materials", "materials"), ("examples/letter", "examples/letter"):
+        shutil.copytree(source / part, folder / place, ignore=shutil.ignore_patterns("gallery", "*.[ch]"))
     licences = folder / "licences"
     licences.mkdir()
     for package in LINKED:
@@ -103,7 +103,7 @@ def static_command(source, work, out, name, epoch):
 
 
 def bill_of_materials(version, commit, created, out):
-    """SPDX 2.3: the artefacts, and the libraries inside the static command."""
+    """SPDX 2.3: the files of the release, and the libraries inside the static command."""
     def package(key, name, version, licence, **more):
         return {"SPDXID": f"SPDXRef-{key}", "name": name, "versionInfo": version, "downloadLocation": "NOASSERTION",
                 "filesAnalyzed": False, "licenseConcluded": licence, "licenseDeclared": licence,
@@ -149,7 +149,7 @@ def release(commit, out, wheels):
         static_command(source, work, out, f"singe-{version}-linux-{os.uname().machine}", epoch)
         debian_packages(source, work, out)
         if wheels:
-            run(sys.executable, source / "python" / "build_wheels.py", "--out", out, "--work", work / "wheels")
+            run(sys.executable, source / "bindings" / "python" / "build_wheels.py", "--out", out, "--work", work / "wheels")
     bill_of_materials(version, commit, created, out)
     sums = "".join(f"{hashlib.sha256(p.read_bytes()).hexdigest()}  {p.name}\n" for p in sorted(out.iterdir()))
     (out / "SHA256SUMS").write_text(sums)
@@ -163,7 +163,7 @@ def main():
     parser.add_argument("--twice", action="store_true")
     parser.add_argument("--wheels", action="store_true")
     options = parser.parse_args()
-    options.commit = ask("git", "-C", ROOT, "rev-parse", options.commit)  # others may commit meanwhile
+    options.commit = ask("git", "-C", ROOT, "rev-parse", options.commit)  # HEAD may move meanwhile
     sums = release(options.commit, options.out.resolve(), options.wheels)
     print(sums, end="")
     if options.twice:
@@ -171,7 +171,7 @@ def main():
             other = release(options.commit, pathlib.Path(again) / "again", options.wheels)
         differ = [a for a, b in zip(sums.splitlines(), other.splitlines()) if a != b]
         if differ or len(sums) != len(other):
-            sys.exit("release.py: not the same bytes the second time:\n" + "\n".join(differ))
+            sys.exit("release.py: the second build has other bytes:\n" + "\n".join(differ))
         print(f"built twice: {len(sums.splitlines())} files have the same bytes")
 
 

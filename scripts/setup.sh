@@ -1,19 +1,19 @@
 #!/bin/bash
-# Installs the packages that building, testing and running need, on Debian and Ubuntu. Does nothing when all are there.
+# Installs the packages needed to build, test and run Singe on Debian and Ubuntu, if any is missing.
 #   setup.sh [--check] [--list]
-# --check: also what fuzzing and all of make check need. --list: prints the names and installs nothing.
+# --check adds the packages for fuzzing and for all of make check. --list prints the names and installs nothing.
 set -euo pipefail
 
-# a|b: the first that the system's package lists have. No name has a version in it, but for the formatter's, as each
-# breaks lines elsewhere: compilers and their libraries are the system's own.
+# a|b is the first of both that the system's package lists contain. Compilers and libraries have the system's own
+# versions. Only the formatter's version is fixed, because each one breaks lines differently.
 needed=(build-essential cmake ninja-build pkg-config libfyaml-dev libpng-dev 'libjpeg-dev|libjpeg62-turbo-dev'
         'libembree-dev|libembree4-dev|libembree3-dev' libopenexr-dev libassimp-dev libnlopt-dev libcmocka-dev python3)
-# without these a run leaves no video and tests are skipped
+# optional: without these, runs make no video and some tests are skipped
 useful=(ffmpeg python3-numpy python3-openvdb valgrind locales libsdl2-dev)
 only_list=false
 for argument in "$@"; do
     case $argument in
-    --check) needed+=(clang libclang-rt-dev) useful+=(assimp-testmodels 'clang-format-14|clang-format') ;; # fuzz targets; models to burn
+    --check) needed+=(clang libclang-rt-dev) useful+=(assimp-testmodels 'clang-format-14|clang-format') ;; # for fuzzing; models to burn
     --list) only_list=true ;;
     *) echo "usage: setup.sh [--check] [--list]" >&2; exit 2 ;;
     esac
@@ -31,7 +31,7 @@ first() {
     return 1
 }
 
-# names that are not installed
+# prints the names that are not installed
 missing() {
     local name
     for name in "$@"; do first installed "$name" >/dev/null || echo "$name"; done
@@ -50,11 +50,11 @@ fi
 
 names=()
 for entry in "${must[@]}"; do
-    name=$(first known "$entry") || { echo "setup.sh: no package ${entry//|/ or } in this system's lists" >&2; exit 1; }
+    name=$(first known "$entry") || { echo "setup.sh: this system has no package ${entry//|/ or }" >&2; exit 1; }
     names+=("$name")
 done
 for entry in "${may[@]}"; do
-    if name=$(first known "$entry"); then names+=("$name"); else echo "not in this system's lists: $entry" >&2; fi
+    if name=$(first known "$entry"); then names+=("$name"); else echo "setup.sh: this system has no package ${entry//|/ or }; it is optional" >&2; fi
 done
 if $only_list; then printf '%s\n' "${names[@]}"; exit 0; fi
 [ ${#names[@]} -gt 0 ] || exit 0

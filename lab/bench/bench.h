@@ -33,6 +33,11 @@ BenchFn bench_collapse;
 /// Bytes per spring.
 BenchFn bench_memory;
 
+/// Frames of 25,000 vertices in every format: milliseconds of the program and of the system, bytes.
+BenchFn bench_output;
+/// Pictures of a burning sheet at 1280 x 720 with 16 samples: seconds of processor time for each.
+BenchFn bench_preview;
+
 /// The burning front of options->materials on strips, compared with sources.
 BenchFn bench_front;
 /// The speed of fire that spreads level, down and up in its own rising gas.
@@ -48,7 +53,12 @@ BenchFn bench_stability;
 BenchFn bench_look;
 /// The angle that remains after a strip was folded and released.
 BenchFn bench_fold;
+/// How much the folds of a burning sheet follow the mesh: the same burn on a grid and on the grid turned by 45 degrees.
+BenchFn bench_isotropy;
 /// The spectrum of the wrinkles of a burning edge, and the dependence of its peak on time step and resolution.
 BenchFn bench_spectrum;
+
+/// Draws tables of costs; takes the arguments after "bench plot" and returns an exit code.
+int bench_plot(int argc, char **argv);
 
 #endif

@@ -7,29 +7,29 @@
 #include <string.h>
 
 static const ArgOption all_options[BENCH_OPT_COUNT] = {
-    [BENCH_OPT_CELLS] = {"cells", 0, "N,N,...", "cells a side of the sheet, 2 to 2000"},
-    [BENCH_OPT_THICKNESS] = {"thickness", 0, "MM,MM,...", "distance of the two layers, 0.01 to 100 mm"},
-    [BENCH_OPT_PINS] = {"pins", 0, "1|2", "corners that are held [2]"},
+    [BENCH_OPT_CELLS] = {"cells", 0, "N,N,...", "cells per side of the sheet, 2 to 2000"},
+    [BENCH_OPT_THICKNESS] = {"thickness", 0, "MM,MM,...", "distance between the two layers, 0.01 to 100 mm"},
+    [BENCH_OPT_PINS] = {"pins", 0, "1|2", "number of corners that are held [2]"},
     [BENCH_OPT_TIME] = {"time", 0, "S", "seconds of motion, 0.01 to 60"},
-    [BENCH_OPT_SUBSTEPS] = {"substeps", 0, "N", "substeps a step, 1 to 1000 [the solver's]"},
-    [BENCH_OPT_STEPS] = {"steps", 0, "N", "steps a frame of 1/24 s, 1 to 1000 [20; swing: 1 of 60 or 240 substeps]"},
+    [BENCH_OPT_SUBSTEPS] = {"substeps", 0, "N", "substeps per step, 1 to 1000 [the solver's]"},
+    [BENCH_OPT_STEPS] = {"steps", 0, "N", "steps per frame of 1/24 s, 1 to 1000 [20; swing: 1 of 60 or 240 substeps]"},
     [BENCH_OPT_SMOOTHING] = {"smoothing", 0, "RATE", "internal friction, 0 to 1e6 per second"},
     [BENCH_OPT_THREADS] = {"threads", 0, "N", "threads [1]"},
     [BENCH_OPT_SOLVER] = {"solver", 0, "METHOD", "strand, paper, paper-literal, all-at-once or mass-spring [strand]"},
     [BENCH_OPT_INSTRUCTIONS] = {"instructions", 0, "SET", "best, plain, v2, v3, v4 or neon [best]"},
-    [BENCH_OPT_PROJECTIONS] = {"projections", 0, "N", "projections a substep, 1 to 1000 [the solver's]"},
+    [BENCH_OPT_PROJECTIONS] = {"projections", 0, "N", "projections per substep, 1 to 1000 [the solver's]"},
     [BENCH_OPT_SPRINGS] = {"springs", 0, "N,N,...", "sizes, 40 to 40000000 springs"},
-    [BENCH_OPT_STATE] = {"state", 0, "swing|shrink", "what the sheet does [swing]"},
-    [BENCH_OPT_LIMIT] = {"limit-ms", 0, "MS", "fails where a step takes longer at the reference machine's pace"},
+    [BENCH_OPT_STATE] = {"state", 0, "swing|shrink", "motion of the sheet [swing]"},
+    [BENCH_OPT_LIMIT] = {"limit-ms", 0, "MS", "fails if a step takes longer, at the pace of the reference machine"},
     [BENCH_OPT_QUICK] = {"quick", 0, NULL, "a short run"},
     [BENCH_OPT_TIMED] = {"steps", 0, "N", "steps to time, 1 to 100000 [by size]"},
-    [BENCH_OPT_MATERIAL] = {"material", 0, "NAME,NAME,...", "materials or material files [all that are built in]"},
+    [BENCH_OPT_MATERIAL] = {"material", 0, "NAME,NAME,...", "materials or material files [all built-in ones]"},
     [BENCH_OPT_CURVATURE] = {"curvature", 0, "1/M,1/M,...", "curvature_max, 0 (none) to 1e6 [the material's]"},
     [BENCH_OPT_SEEDS] = {"seeds", 0, "N,N,...", "seeds of the noise, 1 to 1000000 [1,2,3,4]"},
-    [BENCH_OPT_OUTLINE] = {"outline", 0, "square|disc", "one of the two alone [both]"},
-    [BENCH_OPT_CREASES] = {"creases", 0, NULL, "sharp bends are plastic, by the material's crease_radius"},
+    [BENCH_OPT_OUTLINE] = {"outline", 0, "square|disc", "only this outline [both]"},
+    [BENCH_OPT_CREASES] = {"creases", 0, NULL, "sharp bends leave creases, by the material's crease_radius"},
     [BENCH_OPT_JSON] = {"json", 0, NULL, "prints JSON"},
-    [BENCH_OPT_CSV] = {"csv", 0, "FILE", "writes the table to FILE, too"},
+    [BENCH_OPT_CSV] = {"csv", 0, "FILE", "also writes the table to FILE"},
 };
 
 /// A command with only the accepted options, and the index of each among all options.
@@ -84,39 +84,6 @@ static bool read_word(const Parser *parser, const char *text, const char *const 
     return bench_args_refuse(parser, expected, text);
 }
 
-static bool read_solver(const Parser *parser, const char *text, SingeSolverMethod *method) {
-    static const char *const words[] = {"strand", "paper", "paper-literal", "all-at-once", "mass-spring"};
-    int value;
-    if (!read_word(parser, text, words, 5, "strand, paper, paper-literal, all-at-once or mass-spring", &value))
-        return false;
-    *method = (SingeSolverMethod)value;
-    return true;
-}
-
-static bool read_instructions(const Parser *parser, const char *text, SingeInstructions *instructions) {
-    static const char *const words[] = {"best", "plain", "v2", "v3", "v4", "neon"};
-    int value;
-    if (!read_word(parser, text, words, 6, "best, plain, v2, v3, v4 or neon", &value)) return false;
-    *instructions = (SingeInstructions)value;
-    return true;
-}
-
-static bool read_state(const Parser *parser, const char *text, BenchState *state) {
-    static const char *const words[] = {"swing", "shrink"};
-    int value;
-    if (!read_word(parser, text, words, 2, "swing or shrink", &value)) return false;
-    *state = (BenchState)value;
-    return true;
-}
-
-static bool read_outline(const Parser *parser, const char *text, BenchOutline *outline) {
-    static const char *const words[] = {"square", "disc"};
-    int value;
-    if (!read_word(parser, text, words, 2, "square or disc", &value)) return false;
-    *outline = value ? BENCH_DISC : BENCH_SQUARE;
-    return true;
-}
-
 static bool read_option(Parser *parser, const char *text, BenchRequest *request) {
     BenchOptions *o = &request->options;
     const ArgReader *reader = &parser->reader;
@@ -133,13 +100,32 @@ static bool read_option(Parser *parser, const char *text, BenchRequest *request)
     case BENCH_OPT_STEPS: return args_int(reader, option, text, 1, 1000, &o->steps);
     case BENCH_OPT_SMOOTHING: return read_one(parser, text, 0, 1e6, "a number from 0 to 1e6", &o->smoothing);
     case BENCH_OPT_THREADS: return args_int(reader, option, text, 1, 64, &o->threads);
-    case BENCH_OPT_SOLVER: return read_solver(parser, text, &o->solver);
-    case BENCH_OPT_INSTRUCTIONS: return read_instructions(parser, text, &o->instructions);
+    case BENCH_OPT_SOLVER: {
+        static const char *const words[] = {"strand", "paper", "paper-literal", "all-at-once", "mass-spring"};
+        int value;
+        if (!read_word(parser, text, words, 5, "strand, paper, paper-literal, all-at-once or mass-spring", &value))
+            return false;
+        o->solver = (SingeSolverMethod)value;
+        return true;
+    }
+    case BENCH_OPT_INSTRUCTIONS: {
+        static const char *const words[] = {"best", "plain", "v2", "v3", "v4", "neon"};
+        int value;
+        if (!read_word(parser, text, words, 6, "best, plain, v2, v3, v4 or neon", &value)) return false;
+        o->instructions = (SingeInstructions)value;
+        return true;
+    }
     case BENCH_OPT_PROJECTIONS: return args_int(reader, option, text, 1, 1000, &o->projections);
     case BENCH_OPT_SPRINGS:
         return read_list(parser, text, 40, 4e7, true, 1, "whole numbers from 40 to 40000000 as in 1000,16000",
                          &o->springs);
-    case BENCH_OPT_STATE: return read_state(parser, text, &o->state);
+    case BENCH_OPT_STATE: {
+        static const char *const words[] = {"swing", "shrink"};
+        int value;
+        if (!read_word(parser, text, words, 2, "swing or shrink", &value)) return false;
+        o->state = (BenchState)value;
+        return true;
+    }
     case BENCH_OPT_LIMIT: return read_one(parser, text, 1e-3, 1e6, "milliseconds from 0.001 to 1e6", &o->limit_ms);
     case BENCH_OPT_QUICK: o->quick = true; return true;
     case BENCH_OPT_TIMED: return args_int(reader, option, text, 1, 100000, &o->steps);
@@ -148,7 +134,13 @@ static bool read_option(Parser *parser, const char *text, BenchRequest *request)
         return read_list(parser, text, 0, 1e6, false, 1, "numbers from 0 to 1e6 as in 0,390", &o->curvature);
     case BENCH_OPT_SEEDS:
         return read_list(parser, text, 1, 1e6, true, 1, "whole numbers from 1 to 1000000 as in 1,2", &o->seeds);
-    case BENCH_OPT_OUTLINE: return read_outline(parser, text, &o->outline);
+    case BENCH_OPT_OUTLINE: {
+        static const char *const words[] = {"square", "disc"};
+        int value;
+        if (!read_word(parser, text, words, 2, "square or disc", &value)) return false;
+        o->outline = value ? BENCH_DISC : BENCH_SQUARE;
+        return true;
+    }
     case BENCH_OPT_CREASES: o->creases = true; return true;
     case BENCH_OPT_JSON: request->json = true; return true;
     case BENCH_OPT_CSV: request->csv = text; return true;

@@ -5,11 +5,7 @@
 #include "bench/bench.h"
 #include "cli/args.h"
 #include "bench/bench_args.h"
-#include "bench/bench_isotropy.h"
 #include "bench/bench_materials.h"
-#include "bench/bench_output.h"
-#include "bench/bench_plot.h"
-#include "bench/bench_preview.h"
 #include "cli/cli.h"
 #include "cli/console.h"
 #include "common/printable.h"
@@ -28,77 +24,67 @@ static const struct {
     const char *summary;
 } measurements[] = {
     {"swing", "bench swing", bench_swing, TRAJECTORY,
-     "A sheet of 1 m x 1 m falls from the horizontal, held at corners: cost of a frame, strain, motion."},
+     "A sheet of 1 m x 1 m, held at corners, falls from the horizontal: time per frame, strain, motion."},
     {"mesh", "bench mesh", bench_mesh, TRAJECTORY | BENCH_BIT(QUICK),
-     "The swinging sheet made of triangles, which become quads: cells, strands, strain, motion."},
+     "The same sheet from a mesh of triangles that become quads: cells, strands, strain, motion."},
     {"hang-and-shrink", "bench hang-and-shrink", bench_hang_and_shrink, TRAJECTORY,
-     "A sheet that hangs from two corner patches shrinks to 0.8 of its size: the same numbers."},
+     "A sheet that hangs from two corner patches shrinks to 0.8 of its size: the numbers of swing."},
     {"tear", "bench tear", bench_tear, BENCH_BIT(THREADS) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(SUBSTEPS) | OUTPUT,
      "A strip with a weak line is pulled apart: the load at which it breaks, by cell size and time step."},
     {"dynamics", "bench dynamics", bench_dynamics, SIZES | SOLVER | BENCH_BIT(STATE) | BENCH_BIT(QUICK),
-     "The stage dynamics and its projection of springs by size, against the machine's peaks."},
+     "The dynamics and its projection of springs at several sizes, compared with the machine's peaks."},
     {"step", "bench step", bench_step, SIZES | SOLVER | BENCH_BIT(LIMIT) | BENCH_BIT(CURVATURE),
-     "Whole steps of a burning sheet with a sphere and the ground: milliseconds of each stage."},
-    {"heat", "bench heat", bench_heat, SIZES, "The stage heat of burning steps."},
-    {"ablate", "bench ablate", bench_ablate, SIZES, "The stage ablate of burning steps."},
+     "Whole steps of a burning sheet with a sphere and the ground: milliseconds per stage."},
+    {"heat", "bench heat", bench_heat, SIZES, "The heat stage of a burning sheet."},
+    {"ablate", "bench ablate", bench_ablate, SIZES, "The ablation stage of a burning sheet."},
     {"surface", "bench surface", bench_surface, SIZES,
-     "The drawn surface of a burning sheet, by how finely it is drawn: triangles and milliseconds."},
+     "The drawn surface of a burning sheet at several refinements: triangles and milliseconds."},
     {"heap", "bench heap", bench_heap,
      BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SUBSTEPS) | OUTPUT,
-     "A cloth that falls over a sphere in folds: milliseconds of a frame by stage, contact with itself, strain."},
+     "A cloth falls over a sphere and folds: milliseconds per frame and stage, self-contact, strain."},
     {"collapse", "bench collapse", bench_collapse,
      BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SUBSTEPS) | OUTPUT,
-     "A ball, a closed mesh of six squares, that collapses into self-contact under its weight: the same numbers."},
+     "A hollow ball collapses into self-contact under its weight: the numbers of heap."},
     {"memory", "bench memory", bench_memory, BENCH_BIT(SPRINGS) | BENCH_BIT(THREADS) | OUTPUT,
-     "Bytes a spring: what a simulation holds, and its drawn mesh."},
+     "Bytes per spring of a simulation and of its drawn mesh."},
     {"front", "bench front", bench_front, BENCH_BIT(MATERIAL) | BENCH_BIT(QUICK) | BENCH_BIT(THREADS) | OUTPUT,
-     "The burning front of materials: speed, temperature and residue, and published values; level, down and up."},
+     "The burning front of materials, level, down and up: speed, temperature, residue, and published values."},
     {"spread", "bench spread", bench_spread, BENCH_BIT(QUICK) | BENCH_BIT(THREADS) | OUTPUT,
-     "How fast fire runs level, down and up in the gas that rises from it."},
+     "Speed of a fire with gas: level, down and up."},
     {"output", "bench output", bench_output, OUTPUT,
-     "Frames of 25,000 vertices in every format: milliseconds of the program and of the system, bytes."},
+     "Frames of 25,000 vertices in every format: bytes, and milliseconds of the program and of the system."},
     {"preview", "bench preview", bench_preview, BENCH_BIT(THREADS) | OUTPUT,
-     "Pictures of 1280 x 720, 16 samples, of a burning sheet of 100,000 triangles: seconds of processor time."},
+     "Pictures of 100,000 triangles at 1280 x 720 with 16 samples: seconds of processor time."},
     {"compare", "bench compare", bench_compare,
      BENCH_BIT(SPRINGS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(QUICK) | OUTPUT,
-     "The paper's solver and ours on the same trajectories: error, cost, and the ratio at no more error."},
+     "The paper's solver and ours on the same trajectories: error, cost, and cost at equal error."},
     {"width", "bench width", bench_width, SIZES | BENCH_BIT(SUBSTEPS) | BENCH_BIT(PROJECTIONS) | BENCH_BIT(STATE),
-     "The same run with each set of instructions: cost, and whether the bytes are the same."},
+     "The same run with each instruction set: cost, and whether the bytes are the same."},
     {"stability", "bench stability", bench_stability,
      BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) | BENCH_BIT(QUICK) | SOLVER |
          OUTPUT,
-     "Swing and strong shrinkage over thickness, resolution and time step: is the solver stable?"},
+     "Whether swinging and strongly shrinking sheets are stable at any thickness, resolution and time step."},
     {"look", "bench look", bench_look,
      BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) |
          BENCH_BIT(QUICK) | SOLVER | OUTPUT,
-     "Rest shape, sag and wrinkles at other time steps, substeps and resolutions."},
+     "Rest shape, sag and wrinkles at several time steps, substeps and resolutions."},
     {"fold", "bench fold", bench_fold,
      BENCH_BIT(SUBSTEPS) | BENCH_BIT(THREADS) | BENCH_BIT(QUICK) | BENCH_BIT(INSTRUCTIONS) | OUTPUT,
-     "A strip is folded by 180 degrees and let go: the angle that stays, at other resolutions and time steps."},
+     "A strip is folded by 180 degrees and released: the angle that remains, by resolution and time step."},
     {"isotropy", "bench isotropy", bench_isotropy,
      BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(CURVATURE) | BENCH_BIT(CREASES) | BENCH_BIT(OUTLINE) |
          BENCH_BIT(SEEDS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SUBSTEPS) | BENCH_BIT(INSTRUCTIONS) |
          BENCH_BIT(QUICK) | OUTPUT,
-     "The same burn on a grid and on one turned by 45 degrees: whether folds follow the mesh."},
+     "The same burn on a grid and on one turned by 45 degrees: whether its folds follow the mesh."},
     {"spectrum", "bench spectrum", bench_spectrum,
      BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(QUICK) | BENCH_BIT(INSTRUCTIONS) |
          BENCH_BIT(SUBSTEPS) | OUTPUT,
-     "Wrinkles of a burning edge by wavelength, and their peak at other time steps, resolutions and thickness."},
+     "Wrinkles of a burning edge by wavelength, and their peak by time step, resolution and thickness."},
 };
 
 enum { MEASUREMENTS = sizeof measurements / sizeof *measurements };
 
-static void bench_help(void) {
-    printf("usage: singe bench MEASUREMENT [options]\n\nmeasurements:\n");
-    for (int i = 0; i < MEASUREMENTS; i++) printf("  %-16s %s\n", measurements[i].name, measurements[i].summary);
-    printf("  %-16s %s\n", "plot", "Draws cost against springs of tables written with --csv.");
-    printf("\n  singe bench MEASUREMENT --help   its options\n");
-}
-
 static void print_csv(FILE *file, const void *context) { table_write_csv(context, file); }
-
-/// A refused argument is the user's error; everything else is a failure.
-static ExitCode exit_code(SingeResult result) { return result == SINGE_ERROR_ARGUMENT ? EXIT_INPUT : EXIT_FAILED; }
 
 static ExitCode bench_measure(int m, const BenchRequest *request) {
     Console console = console_make(false);
@@ -110,7 +96,9 @@ static ExitCode bench_measure(int m, const BenchRequest *request) {
         fflush(stdout);
         error.code = result;
         console_result(&console, &error);
-        code = exit_code(result);
+
+        // a refused argument is the user's error; everything else is a failure
+        code = result == SINGE_ERROR_ARGUMENT ? EXIT_INPUT : EXIT_FAILED;
     }
     if (!result && request->json) table_write_json(&table, stdout);
     if (!result && request->csv) code = console_write_table(&console, request->csv, print_csv, &table);
@@ -131,11 +119,15 @@ static int bench_find(const char *word) {
 
 int command_bench(int argc, char **argv) {
     if (argc < 1) {
-        fputs("singe bench: error: needs a measurement\nsee: singe bench --help\n", stderr);
+        fputs("singe bench: error: a measurement is missing\nsee: singe bench --help\n", stderr);
         return EXIT_INPUT;
     }
     if (strcmp(argv[0], "--help") == 0 || strcmp(argv[0], "-h") == 0) {
-        bench_help();
+        printf("usage: singe bench MEASUREMENT [options]\n\nmeasurements:\n");
+        for (int i = 0; i < MEASUREMENTS; i++) printf("  %-16s %s\n", measurements[i].name, measurements[i].summary);
+        printf("  %-16s %s\n", "plot", "Draws cost over the number of springs, from tables written with --csv.");
+        printf("\n  singe bench MEASUREMENT --help   shows its options\n");
+
         return EXIT_GOOD;
     }
     if (strcmp(argv[0], "plot") == 0) return bench_plot(argc - 1, argv + 1);

@@ -10,7 +10,7 @@
 //
 // Seeds are those of the material's noise: where it burns, shrinks and remains. Both grids of a pair have the same
 // seed.
-#include "bench/bench_isotropy.h"
+#include "bench/bench.h"
 
 #include <math.h>
 
@@ -90,24 +90,6 @@ static SingeResult isotropy_sheet(SingeSim *sim, const Burn *burn, double angle,
     return result;
 }
 
-static SingeResult add_world(SingeSim *sim, SingeError *error) {
-    const SingePoseKey centre = {0, {0, 0, 0}, {0, 0, 0, 1}};
-    SingeColliderDef ground = singe_default_collider();
-    SingeSourceDef spot = singe_default_source();
-    SingeColliderId collider;
-    SingeSourceId source;
-    ground.path_count = spot.path_count = 1;
-    ground.path = spot.path = &centre;
-    spot.radius = 0.01f;
-    spot.falloff = 0.015f;
-    spot.temperature = 1123.15f;
-    spot.end = 1.5f;
-    SingeResult result = singe_sim_add_collider(sim, &ground, &collider);
-    if (!result) result = singe_sim_add_source(sim, &spot, &source);
-    if (result) *error = *singe_sim_error(sim);
-    return result;
-}
-
 static SingeResult isotropy_build(const Burn *burn, double angle, SingeSim **sim, SingeError *error) {
     SingeSimDef def = singe_default_sim();
     const BenchOptions *options = burn->options;
@@ -121,7 +103,22 @@ static SingeResult isotropy_build(const Burn *burn, double angle, SingeSim **sim
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
     result = isotropy_sheet(*sim, burn, angle, error);
-    if (!result) result = add_world(*sim, error);
+    if (!result) {
+        const SingePoseKey centre = {0, {0, 0, 0}, {0, 0, 0, 1}};
+        SingeColliderDef ground = singe_default_collider();
+        SingeSourceDef spot = singe_default_source();
+        SingeColliderId collider;
+        SingeSourceId source;
+        ground.path_count = spot.path_count = 1;
+        ground.path = spot.path = &centre;
+        spot.radius = 0.01f;
+        spot.falloff = 0.015f;
+        spot.temperature = 1123.15f;
+        spot.end = 1.5f;
+        result = singe_sim_add_collider(*sim, &ground, &collider);
+        if (!result) result = singe_sim_add_source(*sim, &spot, &source);
+        if (result) *error = *singe_sim_error(*sim);
+    }
     if (result) singe_sim_destroy(*sim), *sim = NULL;
     return result;
 }
@@ -176,28 +173,6 @@ static SingeResult isotropy_compare(const Burn *burn, int index, BenchTable *tab
     return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
 }
 
-/// The same burn over the seeds.
-static SingeResult compare_seeds(Burn *burn, BenchTable *table, SingeError *error) {
-    static const double four[] = {1, 2, 3, 4};
-    const BenchList seeds = bench_list(&burn->options->seeds, burn->options->quick ? 2 : 4, four);
-    double sum = 0;
-    SingeResult result = SINGE_OK;
-    for (int i = 0; i < seeds.count && !result; i++) {
-        burn->seed = (uint32_t)seeds.values[i];
-        result = isotropy_compare(burn, i, table, &sum, error);
-    }
-    return result;
-}
-
-static SingeResult compare_outlines(Burn *burn, BenchTable *table, SingeError *error) {
-    SingeResult result = SINGE_OK;
-    for (int disc = 0; disc < 2 && !result; disc++) {
-        burn->disc = disc;
-        if (burn->options->outline != (disc ? BENCH_SQUARE : BENCH_DISC)) result = compare_seeds(burn, table, error);
-    }
-    return result;
-}
-
 SingeResult bench_isotropy(const BenchOptions *options, BenchTable *table, SingeError *error) {
     const double cell = 2e-3, sheet = 1e-3, limit = (double)singe_default_material().curvature_max.value;
     const double along = round(size / cell);
@@ -213,7 +188,22 @@ SingeResult bench_isotropy(const BenchOptions *options, BenchTable *table, Singe
                 burn.cells = (int)cells.values[c];
                 burn.thickness = thickness.values[t];
                 burn.limit = limits.values[l];
-                result = compare_outlines(&burn, table, error);
+
+                result = SINGE_OK;
+                for (int disc = 0; disc < 2 && !result; disc++) {
+                    burn.disc = disc;
+                    if (burn.options->outline != (disc ? BENCH_SQUARE : BENCH_DISC)) {
+                        // the same burn over the seeds
+                        static const double four[] = {1, 2, 3, 4};
+                        const BenchList seeds = bench_list(&burn.options->seeds, burn.options->quick ? 2 : 4, four);
+                        double sum = 0;
+                        result = SINGE_OK;
+                        for (int i = 0; i < seeds.count && !result; i++) {
+                            burn.seed = (uint32_t)seeds.values[i];
+                            result = isotropy_compare(&burn, i, table, &sum, error);
+                        }
+                    }
+                }
             }
     return result;
 }

@@ -1,7 +1,7 @@
 // singe bench output: the cost of a frame's file in each format, for a synthetic sheet that has burnt halfway. Files go
 // to a folder in memory if the system has one, so that the writer and its system calls are measured, not the disk. As
 // in a run, each frame is written in a thread of its own.
-#include "bench/bench_output.h"
+#include "bench/bench.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -46,26 +46,25 @@ static float output_noise(uint32_t *seed) {
     return (float)(*seed >> 8) * 0x1p-24f;
 }
 
-static void output_vertex(OutputBench *b, uint32_t v, uint32_t *seed) {
-    const float x = (float)(v % SIDE), y = (float)(v / SIDE), hot = y > 0.5f * SIDE ? y / SIDE : 0;
-    const float flat[3] = {1e-3f * x, 1e-3f * y, 0}, noise = output_noise(seed);
-    for (int c = 0; c < 3; c++) {
-        b->rest[v][c] = flat[c], b->position[v][c] = flat[c] + 1e-4f * output_noise(seed);
-        b->velocity[v][c] = output_noise(seed) - 0.5f, b->normal[v][c] = (float)(c == 2) + 0.01f * output_noise(seed);
-    }
-    b->uv[v][0] = x / (SIDE - 1), b->uv[v][1] = y / (SIDE - 1);
-    b->temperature[v] = hot > 0 ? 400 + 800 * noise * hot : 293.15f, b->peak[v] = b->temperature[v] + hot;
-    b->mass[v] = 1 - 0.5f * hot * noise;
-    b->rate[v] = hot * noise;
-    b->coal[v] = 0.3f * hot;
-    b->ash[v] = 0.1f * hot * noise;
-    b->burn[v] = 1 - b->mass[v], b->ignited[v] = hot > 0 ? 0.5f + noise : -1;
-    b->piece[v] = hot > 0.9f ? 1 + (int32_t)(v % 7) : 0, b->source[v] = v % 5 ? (int32_t)v : -1, b->sheet[v] = 0;
-}
-
 static void output_fill(OutputBench *b) {
     uint32_t seed = 1, t = 0;
-    for (uint32_t v = 0; v < COUNT; v++) output_vertex(b, v, &seed);
+    for (uint32_t v = 0; v < COUNT; v++) {
+        const float x = (float)(v % SIDE), y = (float)(v / SIDE), hot = y > 0.5f * SIDE ? y / SIDE : 0;
+        const float flat[3] = {1e-3f * x, 1e-3f * y, 0}, noise = output_noise(&seed);
+        for (int c = 0; c < 3; c++) {
+            b->rest[v][c] = flat[c], b->position[v][c] = flat[c] + 1e-4f * output_noise(&seed);
+            b->velocity[v][c] = output_noise(&seed) - 0.5f,
+            b->normal[v][c] = (float)(c == 2) + 0.01f * output_noise(&seed);
+        }
+        b->uv[v][0] = x / (SIDE - 1), b->uv[v][1] = y / (SIDE - 1);
+        b->temperature[v] = hot > 0 ? 400 + 800 * noise * hot : 293.15f, b->peak[v] = b->temperature[v] + hot;
+        b->mass[v] = 1 - 0.5f * hot * noise;
+        b->rate[v] = hot * noise;
+        b->coal[v] = 0.3f * hot;
+        b->ash[v] = 0.1f * hot * noise;
+        b->burn[v] = 1 - b->mass[v], b->ignited[v] = hot > 0 ? 0.5f + noise : -1;
+        b->piece[v] = hot > 0.9f ? 1 + (int32_t)(v % 7) : 0, b->source[v] = v % 5 ? (int32_t)v : -1, b->sheet[v] = 0;
+    }
     for (uint32_t y = 0; y + 1 < SIDE; y++)
         for (uint32_t x = 0; x + 1 < SIDE; x++, t += 2) {
             const uint32_t a = y * SIDE + x, two[2][3] = {{a, a + 1, a + SIDE + 1}, {a, a + SIDE + 1, a + SIDE}};
@@ -101,8 +100,11 @@ static void *output_write(void *argument) {
 
 static double seconds_of(struct timeval t) { return (double)t.tv_sec + 1e-6 * (double)t.tv_usec; }
 
-/// Seconds per frame: of the program, of the system and by the clock; the fastest of several repetitions.
-static void output_measure(OutputBench *b, double min[3]) {
+static SingeResult output_row(OutputBench *b, BenchTable *table, double *ply, SingeError *error) {
+    double min[3];
+    Bytes bytes = {0};
+
+    // seconds per frame: of the program, of the system and by the clock; the fastest of several repetitions
     const int frames = b->format == OUTPUT_textures ? 1 : FRAMES; // textures take a hundred times as long
     for (int k = 0; k < 3; k++) min[k] = INFINITY;
     for (int times = 0; times < REPEATS && !b->result; times++) {
@@ -122,12 +124,7 @@ static void output_measure(OutputBench *b, double min[3]) {
         min[1] = system;
         min[2] = (machine_clock() - clock) / frames;
     }
-}
 
-static SingeResult output_row(OutputBench *b, BenchTable *table, double *ply, SingeError *error) {
-    double min[3];
-    Bytes bytes = {0};
-    output_measure(b, min);
     if (!b->result) b->result = file_read(b->path, (SingeAllocator){0}, &bytes, &b->error);
     const double size = (double)bytes.size;
     bytes_free(&bytes);

@@ -4,7 +4,7 @@
 
 #include "bench/curves.h"
 #include "cli/args.h"
-#include "bench/bench_plot.h"
+#include "bench/bench.h"
 #include "cli/cli.h"
 #include "cli/console.h"
 
@@ -17,8 +17,8 @@ static const ArgOption plot_options[OPT_COUNT] = {
 static const ArgCommand plot_command = {
     .name = "bench plot",
     .operand = "FILE.csv...",
-    .summary = "Draws the milliseconds a step of tables written with --csv (columns springs and step_ms) against the "
-               "number of\nsprings, with the paper's Table 2 beside them.",
+    .summary = "Draws the milliseconds per step over the number of springs, with the paper's Table 2, from tables\n"
+               "written with --csv (columns springs and step_ms).",
     .options = plot_options,
     .option_count = OPT_COUNT,
 };

@@ -1,5 +1,5 @@
 // singe bench preview: the cost of a picture of a synthetic burning sheet of about 100,000 triangles.
-#include "bench/bench_preview.h"
+#include "bench/bench.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -39,30 +39,6 @@ static float height_at(float x, float y) {
     return 0.0015f + fmaxf(curl, 0) + 0.0125f * preview_bench_smooth(0.12f, 0.19f, fabsf(x + 0.35f * y));
 }
 
-static void fill_vertex(SingeSurface *s, uint32_t i, float x, float y) {
-    const float e = 1e-4f;
-    float z = height_at(x, y), zx = (height_at(x + e, y) - z) / e, zy = (height_at(x, y + e) - z) / e;
-    float length = sqrtf(1 + zx * zx + zy * zy), edge = from_edge(x, y);
-    float burn = 0.95f * (1 - preview_bench_smooth(-0.25f * front, front, edge)),
-          ahead = fmaxf(edge - 0.0035f, 0) / 0.0042f;
-    s->position[i][0] = s->rest_position[i][0] = x;
-    s->position[i][1] = s->rest_position[i][1] = y;
-    s->position[i][2] = z;
-    s->rest_position[i][2] = 0;
-    s->normal[i][0] = -zx / length;
-    s->normal[i][1] = -zy / length;
-    s->normal[i][2] = 1 / length;
-    s->uv[i][0] = x / sheet_width + 0.5f;
-    s->uv[i][1] = y / sheet_length + 0.5f;
-    s->velocity[i][0] = 0;
-    s->velocity[i][1] = 0.1f * z / 0.01f;
-    s->velocity[i][2] = 0;
-    s->temperature[i] = s->temperature_peak[i] = 293 + 830 * expf(-ahead);
-    s->burn[i] = burn, s->burn_rate[i] = 0.9f * expf(-powf((edge - 0.001f) / 0.005f, 2));
-    s->time_ignited[i] = burn > 0 ? fmaxf(0, 1 - 40 * (front - edge)) : -1;
-    s->piece[i] = s->sheet[i] = 0;
-}
-
 /// All arrays of a surface in one block, which is returned; NULL when out of memory.
 static void *preview_bench_reserve(SingeSurface *s, uint32_t vertices, uint32_t triangles) {
     const size_t floats = 3 + 3 + 2 + 3 + 3 + 5, ints = 2;
@@ -92,9 +68,31 @@ static void *preview_bench_reserve(SingeSurface *s, uint32_t vertices, uint32_t 
 static void *make_surface(SingeSurface *s) {
     void *block = preview_bench_reserve(s, ACROSS * (CELLS_Y + 1), 2 * CELLS_X * CELLS_Y);
     if (!block) return NULL;
-    for (uint32_t i = 0; i < s->vertex_count; i++)
-        fill_vertex(s, i, sheet_width * ((float)(i % ACROSS) / CELLS_X - 0.5f),
-                    sheet_length * ((float)(i / ACROSS) / CELLS_Y - 0.5f));
+    for (uint32_t i = 0; i < s->vertex_count; i++) {
+        const float x = sheet_width * ((float)(i % ACROSS) / CELLS_X - 0.5f);
+        const float y = sheet_length * ((float)(i / ACROSS) / CELLS_Y - 0.5f);
+        const float e = 1e-4f;
+        float z = height_at(x, y), zx = (height_at(x + e, y) - z) / e, zy = (height_at(x, y + e) - z) / e;
+        float length = sqrtf(1 + zx * zx + zy * zy), edge = from_edge(x, y);
+        float burn = 0.95f * (1 - preview_bench_smooth(-0.25f * front, front, edge)),
+              ahead = fmaxf(edge - 0.0035f, 0) / 0.0042f;
+        s->position[i][0] = s->rest_position[i][0] = x;
+        s->position[i][1] = s->rest_position[i][1] = y;
+        s->position[i][2] = z;
+        s->rest_position[i][2] = 0;
+        s->normal[i][0] = -zx / length;
+        s->normal[i][1] = -zy / length;
+        s->normal[i][2] = 1 / length;
+        s->uv[i][0] = x / sheet_width + 0.5f;
+        s->uv[i][1] = y / sheet_length + 0.5f;
+        s->velocity[i][0] = 0;
+        s->velocity[i][1] = 0.1f * z / 0.01f;
+        s->velocity[i][2] = 0;
+        s->temperature[i] = s->temperature_peak[i] = 293 + 830 * expf(-ahead);
+        s->burn[i] = burn, s->burn_rate[i] = 0.9f * expf(-powf((edge - 0.001f) / 0.005f, 2));
+        s->time_ignited[i] = burn > 0 ? fmaxf(0, 1 - 40 * (front - edge)) : -1;
+        s->piece[i] = s->sheet[i] = 0;
+    }
     for (uint32_t k = 0; k < CELLS_X * CELLS_Y; k++) {
         uint32_t a = k / CELLS_X * ACROSS + k % CELLS_X, b = a + 1, c = b + ACROSS, d = a + ACROSS;
         if (fmaxf(fmaxf(s->burn[a], s->burn[b]), fmaxf(s->burn[c], s->burn[d])) > 0.949f) continue;

@@ -8,21 +8,6 @@
         if (result_) return result_;  \
     } while (0)
 
-static SingeResult add_colliders(SingeSim *sim) {
-    const SingePoseKey ground = {0, {0, 0, 0.005f}, {0, 0, 0, 1}}; // the sheet's lower edge lies on it
-    const SingePoseKey centre = {0, {0.15f, 0.048f, 0.12f}, {0, 0, 0, 1}};
-    SingeColliderDef plane = singe_default_collider(), sphere = singe_default_collider();
-    SingeColliderId id;
-    plane.path_count = 1;
-    plane.path = &ground;
-    TRY(singe_sim_add_collider(sim, &plane, &id));
-    sphere.kind = SINGE_COLLIDER_SPHERE;
-    sphere.radius = 0.05f;
-    sphere.path_count = 1;
-    sphere.path = &centre;
-    return singe_sim_add_collider(sim, &sphere, &id);
-}
-
 static SingeResult burning_fill(SingeSim *sim, const BenchOptions *options, double springs) {
     SingeSheetDef sheet = singe_default_sheet();
     SingeSheetId sheet_id;
@@ -52,7 +37,19 @@ static SingeResult burning_fill(SingeSim *sim, const BenchOptions *options, doub
     ball.path = across;
     ball.conductance = 1000;
     TRY(singe_sim_add_source(sim, &ball, &source_id));
-    return add_colliders(sim);
+
+    const SingePoseKey ground = {0, {0, 0, 0.005f}, {0, 0, 0, 1}}; // the sheet's lower edge lies on it
+    const SingePoseKey centre = {0, {0.15f, 0.048f, 0.12f}, {0, 0, 0, 1}};
+    SingeColliderDef plane = singe_default_collider(), sphere = singe_default_collider();
+    SingeColliderId id;
+    plane.path_count = 1;
+    plane.path = &ground;
+    TRY(singe_sim_add_collider(sim, &plane, &id));
+    sphere.kind = SINGE_COLLIDER_SPHERE;
+    sphere.radius = 0.05f;
+    sphere.path_count = 1;
+    sphere.path = &centre;
+    return singe_sim_add_collider(sim, &sphere, &id);
 }
 
 SingeResult burning_build(const BenchOptions *options, const SingeAllocator *allocator, double springs, float pace,

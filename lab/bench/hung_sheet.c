@@ -72,21 +72,6 @@ void sheet_inert(SingeMaterialDef *material) {
     material->ablate = false;
 }
 
-/// The sheet is hot from the start and loses one hundredth of its mass within a second; by eq 5 and 6 the ratio of
-/// lengths becomes m_min/ash_density = `ratio`. It never burns through, as mass_loss is below m_min.
-static void material_shrinks(SingeMaterialDef *material, float ratio) {
-    const float min = 0.99f, excess = 100; // excess in K
-    material->ignition_temperature = singe_param(500);
-    material->temperature = singe_param(500 + excess);
-    material->rate_ceiling = singe_param(excess);
-    material->mass_rate = singe_param((1 - min) / excess);
-    material->ash_exponent = singe_param(0);
-    material->mass_min = singe_param(min);
-    material->mass_loss = singe_param(0);
-    material->ash_density = singe_param(min / ratio);
-    material->shrink_front = material->shrink_back = material->fibre_shrink = singe_param(1);
-}
-
 /// Only a corner's vertex if the sheet swings, else a patch.
 static SingeResult pins_add(SingeSim *sim, const BenchSetup *setup, SingeSheetId sheet) {
     const bool upright = setup->state != BENCH_SWING;
@@ -115,7 +100,21 @@ static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
     SingeSheetId id;
     sheet_inert(&sheet.material);
     sheet.material.thickness = singe_param(setup->thickness);
-    if (setup->state == BENCH_SHRINK) material_shrinks(&sheet.material, setup->shrink);
+    if (setup->state == BENCH_SHRINK) {
+        // The sheet is hot from the start and loses one hundredth of its mass within a second; by eq 5 and 6 the ratio
+        // of lengths becomes m_min/ash_density = `ratio`. It never burns through, as mass_loss is below m_min.
+        const float ratio = setup->shrink;
+        const float min = 0.99f, excess = 100; // excess in K
+        sheet.material.ignition_temperature = singe_param(500);
+        sheet.material.temperature = singe_param(500 + excess);
+        sheet.material.rate_ceiling = singe_param(excess);
+        sheet.material.mass_rate = singe_param((1 - min) / excess);
+        sheet.material.ash_exponent = singe_param(0);
+        sheet.material.mass_min = singe_param(min);
+        sheet.material.mass_loss = singe_param(0);
+        sheet.material.ash_density = singe_param(min / ratio);
+        sheet.material.shrink_front = sheet.material.shrink_back = sheet.material.fibre_shrink = singe_param(1);
+    }
     sheet.material.damping = singe_param(setup->damping);
     for (int c = 0; setup->rigid && c < SINGE_COLOUR_COUNT; c++) sheet.material.compliance[c] = singe_param(0);
     SingeResult result;

@@ -13,7 +13,7 @@ enum { CELLS = 32, ROW = CELLS + 1, WARM_UP = 60, MEASURED = 20 };
         if (result_) return result_;  \
     } while (0)
 
-static SingeResult instructions_sheet(SingeSim *sim, SingeSheetId *id) {
+static SingeResult instructions_build(SingeSim *sim) {
     static float positions[ROW * ROW][3];
     static uint32_t cells[CELLS * CELLS][4];
     for (uint32_t v = 0; v < ROW * ROW; v++) {
@@ -35,12 +35,8 @@ static SingeResult instructions_sheet(SingeSim *sim, SingeSheetId *id) {
     const SingeField noise = {.kind = SINGE_FIELD_NOISE, .noise = {0.02f, 4, 1}};
     const float rate = def.material.mass_rate.value;
     def.material.mass_rate = singe_param_field(rate, 2 * rate, &noise);
-    return singe_sim_add_sheet(sim, &def, id);
-}
-
-static SingeResult instructions_build(SingeSim *sim) {
     SingeSheetId sheet;
-    TRY(instructions_sheet(sim, &sheet));
+    TRY(singe_sim_add_sheet(sim, &def, &sheet));
     TRY(singe_sim_commit(sim));
 
     SingePinDef pin = singe_default_pin();

@@ -122,7 +122,7 @@ static SingeResult trajectories(const Comparison *c, BenchState state, double sp
     }
     if (!result && c->table->text)
         fprintf(c->table->text,
-                "%s, %.0f springs: %.1f times as fast at no more error of edges, %.1f at no more of all"
+                "%s, %.0f springs: %.1f times as fast at equal error of edges, %.1f times at equal error of all springs"
                 " springs (0: never)\n",
                 state_name(state), springs, best_edges, best_all);
     return result;

@@ -39,17 +39,6 @@ typedef struct Fold {
 
 enum { KEYS = 65 };
 
-/// The pose of the moving half's start as it rolls.
-static void fill_path(double angle, SingePoseKey *path) {
-    for (int k = 0; k < KEYS; k++) {
-        double share = k / (KEYS - 1.0), turn = angle * share, curvature = turn / arc;
-        double x = k ? sin(turn) / curvature : arc, z = k ? (1 - cos(turn)) / curvature : 0;
-        path[k] = (SingePoseKey){(float)(fold_time * share),
-                                 {(float)((length - arc) / 2 + x), 0, (float)z},
-                                 {0, (float)-sin(turn / 2), 0, (float)cos(turn / 2)}};
-    }
-}
-
 static SingeResult hold(SingeSim *sim, SingeSheetId sheet, const SingeView *view, bool right, const SingePoseKey *path,
                         SingePinId *id) {
     SingePinDef pin = singe_default_pin();
@@ -107,7 +96,17 @@ static SingeResult fold_fill(SingeSim *sim, Fold *fold) {
     SingeResult result = sheet_add_strip(sim, &sheet, cells, size, false, &id);
     if (!result) result = singe_sim_commit(sim);
     SingeView view = singe_sim_view(sim);
-    fill_path(fold->angle, path);
+
+    // the pose of the moving half's start as it rolls
+    const double angle = fold->angle;
+    for (int k = 0; k < KEYS; k++) {
+        double share = k / (KEYS - 1.0), turn = angle * share, curvature = turn / arc;
+        double x = k ? sin(turn) / curvature : arc, z = k ? (1 - cos(turn)) / curvature : 0;
+        path[k] = (SingePoseKey){(float)(fold_time * share),
+                                 {(float)((length - arc) / 2 + x), 0, (float)z},
+                                 {0, (float)-sin(turn / 2), 0, (float)cos(turn / 2)}};
+    }
+
     if (!result) result = hold(sim, id, &view, false, NULL, &left);
     if (!result) result = hold(sim, id, &view, true, path, &right);
     if (!result) result = run_steps(sim, fold, fold_time + hold_time);

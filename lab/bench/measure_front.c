@@ -99,26 +99,6 @@ static const char *finding(const BenchMaterial *material, FrontDirection directi
     return material->speed[1] > 0 ? "as sources say" : "no source";
 }
 
-static void fill_row(BenchValue *row, const BenchMaterial *material, FrontDirection direction, const StripSetup *setup,
-                     const StripResult *result, const FrontKnown *known) {
-    static const float nothing[2] = {0};
-    const bool level = direction == FRONT_STILL || direction == FRONT_LEVEL;
-    row[MATERIAL] = bench_text(material->name);
-    row[GRAMMAGE] = bench_number(1e3 * (double)material->def.grammage.value);
-    row[DIRECTION] = bench_text(direction_names[direction]);
-    row[CELL] = bench_number(1e3 * (double)setup->cell);
-    row[STEP] = bench_number(1e3 * (double)setup->time_step);
-    row[THICKENING] = bench_number(result->thickening);
-    row[SPEED] = beside(result->speed, level ? material->speed : nothing, 1e3, 0);
-    row[CHANGE] = bench_number(known->usual > 0 ? 100 * (result->speed / known->usual - 1) : NAN);
-    // the front that has climbed to the end has not burnt through yet
-    const bool burnt = direction != FRONT_UP;
-    row[HOTTEST] = beside(burnt ? result->hottest : (double)NAN, level ? material->temperature : nothing, 1, 273.15);
-    row[RESIDUE] = beside(burnt ? result->residue : (double)NAN, level ? material->residue : nothing, 100, 0);
-    row[BASIS] = bench_text(material->calibrated && level ? "calibrated" : "predicted");
-    row[FINDING] = bench_text(finding(material, direction, result, known));
-}
-
 static SingeResult front_material(const BenchOptions *options, const BenchMaterial *material, BenchTable *table,
                                   SingeError *error) {
     FrontKnown known = {0};
@@ -130,7 +110,24 @@ static SingeResult front_material(const BenchOptions *options, const BenchMateri
         BenchValue row[FRONT_COLUMNS];
         SingeResult code = strip_burn(&setup, &result, error);
         if (code) return code;
-        fill_row(row, material, direction, &setup, &result, &known);
+
+        static const float nothing[2] = {0};
+        const bool level = direction == FRONT_STILL || direction == FRONT_LEVEL;
+        row[MATERIAL] = bench_text(material->name);
+        row[GRAMMAGE] = bench_number(1e3 * (double)material->def.grammage.value);
+        row[DIRECTION] = bench_text(direction_names[direction]);
+        row[CELL] = bench_number(1e3 * (double)setup.cell);
+        row[STEP] = bench_number(1e3 * (double)setup.time_step);
+        row[THICKENING] = bench_number(result.thickening);
+        row[SPEED] = beside(result.speed, level ? material->speed : nothing, 1e3, 0);
+        row[CHANGE] = bench_number(known.usual > 0 ? 100 * (result.speed / known.usual - 1) : NAN);
+        // the front that has climbed to the end has not burnt through yet
+        const bool burnt = direction != FRONT_UP;
+        row[HOTTEST] = beside(burnt ? result.hottest : (double)NAN, level ? material->temperature : nothing, 1, 273.15);
+        row[RESIDUE] = beside(burnt ? result.residue : (double)NAN, level ? material->residue : nothing, 100, 0);
+        row[BASIS] = bench_text(material->calibrated && level ? "calibrated" : "predicted");
+        row[FINDING] = bench_text(finding(material, direction, &result, &known));
+
         if (i == 0) known.usual = result.speed;
         if (direction == FRONT_LEVEL) known.level = result.speed;
         if (direction == FRONT_DOWN) known.down = result.speed;

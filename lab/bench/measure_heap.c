@@ -103,25 +103,6 @@ static uint32_t ball_vertex(const uint32_t at[3], uint32_t n) {
     return 2 * row * row + (k - 1) * 4 * n + ring;
 }
 
-/// The six faces of a cube of n x n cells each, projected to a sphere that lies on the ground.
-static void fill_ball(uint32_t n, float *x, uint32_t *cells) {
-    for (uint32_t c = 0; c < 6 * n * n; c++) {
-        uint32_t axis = c / (2 * n * n), upper = c / (n * n) % 2, i = c / n % n, j = c % n;
-        for (uint32_t k = 0; k < 4; k++) {
-            uint32_t at[3], turn = upper ? k : 3 - k;
-            at[axis] = upper * n;
-            at[(axis + 1) % 3] = i + (turn == 1 || turn == 2), at[(axis + 2) % 3] = j + turn / 2;
-            uint32_t v = cells[4 * c + k] = ball_vertex(at, n);
-            float square = 0, *p = x + 3 * (size_t)v;
-            for (int d = 0; d < 3; d++) {
-                p[d] = tanf(0.785398f * (2 * (float)at[d] / (float)n - 1));
-                square += p[d] * p[d];
-            }
-            for (int d = 0; d < 3; d++) p[d] = ball / sqrtf(square) * p[d] + (d == 2 ? ball + 2e-3f : 0);
-        }
-    }
-}
-
 static SingeResult add_ball(SingeSim *sim, int cells_a_side) {
     uint32_t n = (uint32_t)cells_a_side;
     SingeSheetDef def = singe_default_sheet();
@@ -132,7 +113,23 @@ static SingeResult add_ball(SingeSim *sim, int cells_a_side) {
     uint32_t *cells = malloc(4 * (size_t)def.cell_count * sizeof *cells);
     SingeResult result = x && cells ? SINGE_OK : SINGE_ERROR_MEMORY;
     if (!result) {
-        fill_ball(n, x, cells);
+        // the six faces of a cube of n x n cells each, projected to a sphere that lies on the ground
+        for (uint32_t c = 0; c < 6 * n * n; c++) {
+            uint32_t axis = c / (2 * n * n), upper = c / (n * n) % 2, i = c / n % n, j = c % n;
+            for (uint32_t k = 0; k < 4; k++) {
+                uint32_t at[3], turn = upper ? k : 3 - k;
+                at[axis] = upper * n;
+                at[(axis + 1) % 3] = i + (turn == 1 || turn == 2), at[(axis + 2) % 3] = j + turn / 2;
+                uint32_t v = cells[4 * c + k] = ball_vertex(at, n);
+                float square = 0, *p = x + 3 * (size_t)v;
+                for (int d = 0; d < 3; d++) {
+                    p[d] = tanf(0.785398f * (2 * (float)at[d] / (float)n - 1));
+                    square += p[d] * p[d];
+                }
+                for (int d = 0; d < 3; d++) p[d] = ball / sqrtf(square) * p[d] + (d == 2 ? ball + 2e-3f : 0);
+            }
+        }
+
         def.positions = x;
         def.cells = cells;
         result = singe_sim_add_sheet(sim, &def, &id);
@@ -174,37 +171,6 @@ static SingeResult heap_build(const BenchOptions *options, int cells, bool close
     return result;
 }
 
-static void heap_fill(BenchValue *row, const BenchOptions *options, const SingeSim *sim, int cells, double *frame_ms,
-                      int frames) {
-    SingeTimers t = singe_sim_timers(sim);
-    SingeCounts counts = singe_sim_counts(sim);
-    SingeStats stats = singe_sim_stats(sim);
-    double springs = 0, a_frame = 1e3 / frames, steps = (double)t.steps;
-    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += counts.springs[c];
-    double mean = numbers_mean(frame_ms, frames), median = numbers_median(frame_ms, frames);
-    row[CELLS] = bench_number(cells);
-    row[SPRINGS] = bench_number(springs);
-    row[THREADS] = bench_number(options->threads);
-    row[FRAME_MEDIAN] = bench_number(median);
-    row[FRAME_MAX] = bench_number(frame_ms[frames - 1]);
-    row[STEP_MEAN] = bench_number(mean * frames / steps);
-    row[HEAT] = bench_number(a_frame * t.seconds[SINGE_STAGE_HEAT]);
-    row[BURN] = bench_number(a_frame * t.seconds[SINGE_STAGE_BURN]);
-    row[ABLATE] = bench_number(a_frame * t.seconds[SINGE_STAGE_ABLATE]);
-    row[DYNAMICS] = bench_number(a_frame * t.seconds[SINGE_STAGE_DYNAMICS]);
-    row[PROJECTION] = bench_number(a_frame * t.projection_seconds);
-    row[CONTACT] = bench_number(a_frame * t.contact_seconds);
-    row[CONTACT_STEP] = bench_number(1e3 * t.contact_seconds / steps * 1e5 / springs);
-    row[SEARCHES] = bench_number((double)t.contact_searches / steps);
-    row[PAIRS] = bench_number((double)t.contact_pairs / steps);
-    row[PUSHES] = bench_number((double)t.contact_repulsions / steps / (options->substeps ? options->substeps : 3));
-    row[STOPS] = bench_number((double)t.contact_stops / steps);
-    row[UNRESOLVED] = bench_number((double)(t.contact_unresolved + t.contact_dropped));
-    row[STRAIN] = (BenchValue){.number = {100 * stats.strain_max, 100 * stats.strain_p99, 100 * stats.strain_mean}};
-    row[INVERTED] = bench_number(stats.inverted_cells);
-    row[SPEED] = bench_number(stats.speed_rms_unburnt);
-}
-
 static SingeResult heap_measure(const BenchOptions *options, int cells, bool closed, BenchTable *table,
                                 SingeError *error) {
     SingeSim *sim;
@@ -220,7 +186,35 @@ static SingeResult heap_measure(const BenchOptions *options, int cells, bool clo
     }
     BenchValue row[COLUMNS] = {0};
     if (result) *error = *singe_sim_error(sim);
-    else heap_fill(row, options, sim, cells, frame_ms, frames);
+    else {
+        SingeTimers t = singe_sim_timers(sim);
+        SingeCounts counts = singe_sim_counts(sim);
+        SingeStats stats = singe_sim_stats(sim);
+        double springs = 0, a_frame = 1e3 / frames, steps = (double)t.steps;
+        for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += counts.springs[c];
+        double mean = numbers_mean(frame_ms, frames), median = numbers_median(frame_ms, frames);
+        row[CELLS] = bench_number(cells);
+        row[SPRINGS] = bench_number(springs);
+        row[THREADS] = bench_number(options->threads);
+        row[FRAME_MEDIAN] = bench_number(median);
+        row[FRAME_MAX] = bench_number(frame_ms[frames - 1]);
+        row[STEP_MEAN] = bench_number(mean * frames / steps);
+        row[HEAT] = bench_number(a_frame * t.seconds[SINGE_STAGE_HEAT]);
+        row[BURN] = bench_number(a_frame * t.seconds[SINGE_STAGE_BURN]);
+        row[ABLATE] = bench_number(a_frame * t.seconds[SINGE_STAGE_ABLATE]);
+        row[DYNAMICS] = bench_number(a_frame * t.seconds[SINGE_STAGE_DYNAMICS]);
+        row[PROJECTION] = bench_number(a_frame * t.projection_seconds);
+        row[CONTACT] = bench_number(a_frame * t.contact_seconds);
+        row[CONTACT_STEP] = bench_number(1e3 * t.contact_seconds / steps * 1e5 / springs);
+        row[SEARCHES] = bench_number((double)t.contact_searches / steps);
+        row[PAIRS] = bench_number((double)t.contact_pairs / steps);
+        row[PUSHES] = bench_number((double)t.contact_repulsions / steps / (options->substeps ? options->substeps : 3));
+        row[STOPS] = bench_number((double)t.contact_stops / steps);
+        row[UNRESOLVED] = bench_number((double)(t.contact_unresolved + t.contact_dropped));
+        row[STRAIN] = (BenchValue){.number = {100 * stats.strain_max, 100 * stats.strain_p99, 100 * stats.strain_mean}};
+        row[INVERTED] = bench_number(stats.inverted_cells);
+        row[SPEED] = bench_number(stats.speed_rms_unburnt);
+    }
     if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
     singe_sim_destroy(sim);
     return result;

@@ -52,26 +52,6 @@ static const Setting settings[] = {
     {"base", 1, 1, 1}, {"h x 2", 2, 1, 1}, {"h / 2", 0.5, 1, 1}, {"substeps x 2", 1, 2, 1}, {"s / 2", 1, 1, 2},
 };
 
-static SingeResult look_settle(const BenchSetup *setup, double seconds, SingeSim **sim, SingeError *error) {
-    SingeResult result = sheet_build(setup, sim, error);
-    for (double t = 0; !result && t < seconds; t += (double)setup->time_step) {
-        result = singe_sim_step(*sim);
-        if (result) *error = *singe_sim_error(*sim);
-    }
-    return result;
-}
-
-static void read_rest(Look *look, const SingeView *view, int cells, double height_start) {
-    double left[3], right[3], centre[3];
-    for (int p = 0; p < POINTS * POINTS; p++)
-        geometry_point(view, cells, (p % POINTS) / (POINTS - 1.0), (p / POINTS) / (POINTS - 1.0), look->shape[p]);
-    geometry_point(view, cells, 0, 1, left);
-    geometry_point(view, cells, 1, 1, right);
-    geometry_point(view, cells, 0.5, 1, centre);
-    look->sag = 0.5 * (left[2] + right[2]) - centre[2];
-    look->drop = height_start - geometry_height(view);
-}
-
 /// Removes mean and slope and applies a Hann window. Returns the mean square before the window.
 static double prepare_line(double *line) {
     const double centre = 0.5 * (SAMPLES - 1), pi = acos(-1);
@@ -89,58 +69,71 @@ static double prepare_line(double *line) {
     return power;
 }
 
-/// Adds a line's power at k = 1 to SAMPLES/4 waves over its length.
-static void add_power(const double *line, double *power) {
-    const double pi = acos(-1);
-    for (int k = 1; k <= SAMPLES / 4; k++) {
-        double re = 0, im = 0;
-        for (int i = 0; i < SAMPLES; i++) {
-            double angle = 2 * pi * (double)k * i / SAMPLES;
-            re += line[i] * cos(angle);
-            im += line[i] * sin(angle);
-        }
-        power[k] += re * re + im * im;
-    }
-}
-
-/// Waves over the length at the peak, between whole numbers by the parabola through it and its neighbours.
-static double peak_waves(const double *power) {
-    int best = 2;
-    for (int k = 2; k < SAMPLES / 4; k++)
-        if (power[k] > power[best]) best = k;
-    double before = power[best - 1], at = power[best], after = power[best + 1], bend = before - 2 * at + after;
-    double shift = bend < 0 ? 0.5 * (before - after) / bend : 0;
-    return best + fmax(-0.5, fmin(0.5, shift));
-}
-
-static void read_wrinkles(Look *look, const SingeView *view, int cells, double length) {
-    double power[SAMPLES / 4 + 2] = {0}, line[SAMPLES], square = 0, total = 0, moment = 0;
-    for (int row = 0; row < LINES; row++) {
-        for (int i = 0; i < SAMPLES; i++) {
-            double point[3];
-            geometry_point(view, cells, (i + 0.5) / SAMPLES, 0.1 + 0.8 * row / (LINES - 1.0), point);
-            line[i] = point[1];
-        }
-        square += prepare_line(line) / LINES;
-        add_power(line, power);
-    }
-    for (int k = 2; k <= SAMPLES / 4; k++) total += power[k], moment += k * power[k];
-    look->wavelength = length / peak_waves(power);
-    look->mean_wave = length * total / moment;
-    look->height = sqrt(square);
-}
-
 static SingeResult look_observe(const BenchOptions *options, BenchSetup setup, BenchState state, Look *look,
                                 SingeError *error) {
     SingeSim *sim = NULL;
     double seconds = options->time > 0 ? options->time : options->quick ? 0.5 : 3;
     setup.state = state;
     setup.approach = state == BENCH_HANG ? 0.1f : 0;
-    SingeResult result = look_settle(&setup, seconds, &sim, error);
+
+    SingeResult result = sheet_build(&setup, &sim, error);
+    for (double t = 0; !result && t < seconds; t += (double)setup.time_step) {
+        result = singe_sim_step(sim);
+        if (result) *error = *singe_sim_error(sim);
+    }
+
     if (!result) {
         SingeView view = singe_sim_view(sim);
-        if (state == BENCH_HANG) read_rest(look, &view, setup.cells, 0.5); // an upright sheet of 1 m
-        else read_wrinkles(look, &view, setup.cells, (double)setup.shrink);
+        if (state == BENCH_HANG) {
+            // an upright sheet of 1 m
+            const int cells = setup.cells;
+            const double height_start = 0.5;
+            double left[3], right[3], centre[3];
+            for (int p = 0; p < POINTS * POINTS; p++)
+                geometry_point(&view, cells, (p % POINTS) / (POINTS - 1.0), (p / POINTS) / (POINTS - 1.0),
+                               look->shape[p]);
+            geometry_point(&view, cells, 0, 1, left);
+            geometry_point(&view, cells, 1, 1, right);
+            geometry_point(&view, cells, 0.5, 1, centre);
+            look->sag = 0.5 * (left[2] + right[2]) - centre[2];
+            look->drop = height_start - geometry_height(&view);
+        } else {
+            const int cells = setup.cells;
+            const double length = (double)setup.shrink;
+            double power[SAMPLES / 4 + 2] = {0}, line[SAMPLES], square = 0, total = 0, moment = 0;
+            for (int row = 0; row < LINES; row++) {
+                for (int i = 0; i < SAMPLES; i++) {
+                    double point[3];
+                    geometry_point(&view, cells, (i + 0.5) / SAMPLES, 0.1 + 0.8 * row / (LINES - 1.0), point);
+                    line[i] = point[1];
+                }
+                square += prepare_line(line) / LINES;
+
+                // adds a line's power at k = 1 to SAMPLES/4 waves over its length
+                const double pi = acos(-1);
+                for (int k = 1; k <= SAMPLES / 4; k++) {
+                    double re = 0, im = 0;
+                    for (int i = 0; i < SAMPLES; i++) {
+                        double angle = 2 * pi * (double)k * i / SAMPLES;
+                        re += line[i] * cos(angle);
+                        im += line[i] * sin(angle);
+                    }
+                    power[k] += re * re + im * im;
+                }
+            }
+            for (int k = 2; k <= SAMPLES / 4; k++) total += power[k], moment += k * power[k];
+
+            // waves over the length at the peak, between whole numbers by the parabola through it and its neighbours
+            int best = 2;
+            for (int k = 2; k < SAMPLES / 4; k++)
+                if (power[k] > power[best]) best = k;
+            double before = power[best - 1], at = power[best], after = power[best + 1], bend = before - 2 * at + after;
+            double shift = bend < 0 ? 0.5 * (before - after) / bend : 0;
+            const double waves = best + fmax(-0.5, fmin(0.5, shift));
+            look->wavelength = length / waves;
+            look->mean_wave = length * total / moment;
+            look->height = sqrt(square);
+        }
     }
     singe_sim_destroy(sim);
     return result;

@@ -51,38 +51,6 @@ static uint32_t random_next(uint32_t *state) {
 }
 static float random_share(uint32_t *state) { return (float)random_next(state) / 16777216.0f * 2 - 1; }
 
-static void plane_free(Plane *plane) {
-    free(plane->position);
-    free(plane->corner);
-    free(plane->twin);
-}
-
-static void plane_vertices(Plane *plane, Triangles kind, uint32_t n, uint32_t *state) {
-    for (uint32_t j = 0; j <= n; j++)
-        for (uint32_t i = 0; i <= n; i++) {
-            float x = (float)i, y = (float)j, *p = plane->position[j * (n + 1) + i];
-            float dx = random_share(state) / 3, dy = random_share(state) / 3;
-            bool moved = kind == DELAUNAY || kind == MOVED;
-            if (moved && i > 0 && i < n) x += dx;
-            if (moved && j > 0 && j < n) y += dy;
-            if (kind == EQUILATERAL && i > 0 && i < n) x += j & 1 ? 0.25f : -0.25f;
-            p[0] = x / (float)n, p[1] = y / (float)n, p[2] = 0;
-        }
-}
-
-static void plane_triangles(Plane *plane, Triangles kind, uint32_t n, uint32_t *state) {
-    for (uint32_t c = 0; c < n * n; c++) {
-        uint32_t i = c % n, j = c / n,
-                 at[4] = {j * (n + 1) + i, j * (n + 1) + i + 1, (j + 1) * (n + 1) + i + 1, (j + 1) * (n + 1) + i};
-        bool other = kind == TURNS ? (i + j) & 1 : kind == EQUILATERAL ? !(j & 1) : random_next(state) & 1;
-        uint32_t turn = kind != ORDERED && other;
-        const uint32_t first[3] = {at[turn], at[turn + 1], at[turn + 2]};
-        const uint32_t second[3] = {at[turn], at[turn + 2], at[(turn + 3) & 3]};
-        memcpy(plane->corner[2 * c], first, sizeof first);
-        memcpy(plane->corner[2 * c + 1], second, sizeof second);
-    }
-}
-
 // ---- Delaunay triangles by flips (Lawson 1977)
 
 static uint32_t mesh_next3(uint32_t h) { return h - h % 3 + (h + 1) % 3; }
@@ -155,32 +123,6 @@ static bool make_delaunay(Plane *plane) {
     return true;
 }
 
-/// Numbers vertices and triangles at random.
-static bool shuffle(Plane *plane, uint32_t *state) {
-    uint32_t *to = malloc(plane->vertex_count * sizeof *to);
-    float(*position)[3] = malloc(plane->vertex_count * sizeof *position);
-    if (to && position) {
-        for (uint32_t v = 0; v < plane->vertex_count; v++) {
-            uint32_t other = random_next(state) % (v + 1);
-            to[v] = to[other], to[other] = v;
-        }
-        for (uint32_t v = 0; v < plane->vertex_count; v++)
-            memcpy(position[to[v]], plane->position[v], sizeof *position);
-        memcpy(plane->position, position, plane->vertex_count * sizeof *position);
-        for (uint32_t t = 0; t < plane->triangle_count; t++) {
-            uint32_t other = random_next(state) % (t + 1), corner[3];
-            for (int k = 0; k < 3; k++) plane->corner[t][k] = to[plane->corner[t][k]];
-            memcpy(corner, plane->corner[t], sizeof corner);
-            memcpy(plane->corner[t], plane->corner[other], sizeof corner);
-            memcpy(plane->corner[other], corner, sizeof corner);
-        }
-    }
-    bool good = to && position;
-    free(to);
-    free(position);
-    return good;
-}
-
 static bool plane_make(Triangles kind, uint32_t n, Plane *plane) {
     uint32_t state = 7;
     *plane = (Plane){.vertex_count = (n + 1) * (n + 1), .triangle_count = 2 * n * n};
@@ -188,9 +130,54 @@ static bool plane_make(Triangles kind, uint32_t n, Plane *plane) {
     plane->corner = malloc(plane->triangle_count * sizeof *plane->corner);
     plane->twin = malloc(3 * (size_t)plane->triangle_count * sizeof *plane->twin);
     if (!plane->position || !plane->corner || !plane->twin) return false;
-    plane_vertices(plane, kind, n, &state);
-    plane_triangles(plane, kind, n, &state);
-    if (kind == SHUFFLED) return shuffle(plane, &state);
+
+    for (uint32_t j = 0; j <= n; j++)
+        for (uint32_t i = 0; i <= n; i++) {
+            float x = (float)i, y = (float)j, *p = plane->position[j * (n + 1) + i];
+            float dx = random_share(&state) / 3, dy = random_share(&state) / 3;
+            bool moved = kind == DELAUNAY || kind == MOVED;
+            if (moved && i > 0 && i < n) x += dx;
+            if (moved && j > 0 && j < n) y += dy;
+            if (kind == EQUILATERAL && i > 0 && i < n) x += j & 1 ? 0.25f : -0.25f;
+            p[0] = x / (float)n, p[1] = y / (float)n, p[2] = 0;
+        }
+
+    for (uint32_t c = 0; c < n * n; c++) {
+        uint32_t i = c % n, j = c / n,
+                 at[4] = {j * (n + 1) + i, j * (n + 1) + i + 1, (j + 1) * (n + 1) + i + 1, (j + 1) * (n + 1) + i};
+        bool other = kind == TURNS ? (i + j) & 1 : kind == EQUILATERAL ? !(j & 1) : random_next(&state) & 1;
+        uint32_t turn = kind != ORDERED && other;
+        const uint32_t first[3] = {at[turn], at[turn + 1], at[turn + 2]};
+        const uint32_t second[3] = {at[turn], at[turn + 2], at[(turn + 3) & 3]};
+        memcpy(plane->corner[2 * c], first, sizeof first);
+        memcpy(plane->corner[2 * c + 1], second, sizeof second);
+    }
+
+    if (kind == SHUFFLED) {
+        // numbers vertices and triangles at random
+        uint32_t *to = malloc(plane->vertex_count * sizeof *to);
+        float(*position)[3] = malloc(plane->vertex_count * sizeof *position);
+        if (to && position) {
+            for (uint32_t v = 0; v < plane->vertex_count; v++) {
+                uint32_t other = random_next(&state) % (v + 1);
+                to[v] = to[other], to[other] = v;
+            }
+            for (uint32_t v = 0; v < plane->vertex_count; v++)
+                memcpy(position[to[v]], plane->position[v], sizeof *position);
+            memcpy(plane->position, position, plane->vertex_count * sizeof *position);
+            for (uint32_t t = 0; t < plane->triangle_count; t++) {
+                uint32_t other = random_next(&state) % (t + 1), corner[3];
+                for (int k = 0; k < 3; k++) plane->corner[t][k] = to[plane->corner[t][k]];
+                memcpy(corner, plane->corner[t], sizeof corner);
+                memcpy(plane->corner[t], plane->corner[other], sizeof corner);
+                memcpy(plane->corner[other], corner, sizeof corner);
+            }
+        }
+        bool good = to && position;
+        free(to);
+        free(position);
+        return good;
+    }
     return kind != DELAUNAY || make_delaunay(plane);
 }
 
@@ -210,13 +197,6 @@ static SingeResult make_quads(const Plane *plane, MeshQuads quads, Mesh *mesh, M
     options.quads = quads;
     SingeResult result = mesh_make("bench", &polygons, &options, (SingeAllocator){0}, mesh, report, error);
     free(first);
-    return result;
-}
-
-/// The grid's quads on the plane's vertices.
-static SingeResult make_grid(const Plane *plane, uint32_t n, Mesh *mesh, SingeError *error) {
-    SingeResult result = mesh_grid(1, 1, n, n, (SingeAllocator){0}, mesh, error);
-    if (!result) memcpy(mesh->positions, plane->position, plane->vertex_count * sizeof *plane->position);
     return result;
 }
 
@@ -264,9 +244,17 @@ static SingeResult mesh_measure(BenchSetup setup, Triangles kind, MeshQuads quad
     SingeResult result = SINGE_OK;
     bool made = plane_make(kind, (uint32_t)setup.cells, &plane);
     if (!made) result = SINGE_ERROR_MEMORY;
-    else if (kind <= MOVED) result = make_grid(&plane, (uint32_t)setup.cells, &mesh, error);
-    else result = make_quads(&plane, quads, &mesh, &report, error);
-    plane_free(&plane);
+    else if (kind <= MOVED) {
+        // the grid's quads on the plane's vertices
+        const uint32_t n = (uint32_t)setup.cells;
+        result = mesh_grid(1, 1, n, n, (SingeAllocator){0}, &mesh, error);
+        if (!result) memcpy(mesh.positions, plane.position, plane.vertex_count * sizeof *plane.position);
+    } else result = make_quads(&plane, quads, &mesh, &report, error);
+
+    free(plane.position);
+    free(plane.corner);
+    free(plane.twin);
+
     shape.vertex_count = mesh.vertex_count;
     shape.positions = mesh.positions;
     shape.cell_count = mesh.cell_count;

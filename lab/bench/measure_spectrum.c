@@ -50,54 +50,12 @@ static double band_wave(int band) { return shortest * pow(2, (band + 0.5) / 2); 
 
 static int wave_band(double wave) { return (int)floor(2 * log2(wave / shortest) + 1e-9); }
 
-/// The number of integer wave counts in a band.
-static int band_waves(int band) {
-    int count = 0;
-    for (int k = 1; k <= SAMPLES / 2; k++) count += wave_band(width / k) == band;
-    return count;
-}
-
 // ---- the sheet
 
 typedef struct Strip {
     int across, up; ///< cells
     double cell;    ///< m
 } Strip;
-
-static SingeResult strip_add(SingeSim *sim, const Strip *strip, SingeSheetDef *def, SingeSheetId *id) {
-    const uint32_t row = (uint32_t)strip->across + 1, rows = (uint32_t)strip->up + 1;
-    float *positions = malloc((size_t)3 * row * rows * sizeof *positions), *hot = malloc(row * rows * sizeof *hot);
-    uint32_t *cells = malloc((size_t)4 * row * rows * sizeof *cells), count = 0;
-    SingeResult result = SINGE_ERROR_MEMORY;
-    if (positions && hot && cells) {
-        for (uint32_t v = 0; v < row * rows; v++) {
-            double z = v / row * strip->cell;
-            positions[3 * v] = (float)(v % row * strip->cell), positions[3 * v + 1] = 0;
-            positions[3 * v + 2] = (float)z;
-            hot[v] = (float)fmax(0, 1 - z / 0.004); // K above ignition at the edge, falling to 0 within 4 mm
-        }
-        for (uint32_t v = 0; v + row < row * rows; v++) {
-            if (v % row + 1 == row) continue;
-            uint32_t *cell = cells + (size_t)4 * count++;
-            cell[0] = v;
-            cell[1] = v + 1;
-            cell[2] = v + row + 1;
-            cell[3] = v + row;
-        }
-        const SingeAttribute attribute = {"hot", hot};
-        def->vertex_count = row * rows;
-        def->positions = positions;
-        def->cell_count = count;
-        def->cells = cells;
-        def->attribute_count = 1;
-        def->attributes = &attribute;
-        result = singe_sim_add_sheet(sim, def, id);
-    }
-    free(positions);
-    free(hot);
-    free(cells);
-    return result;
-}
 
 static SingeResult strip_hold(SingeSim *sim, const Strip *strip, SingeSheetId id) {
     const uint32_t row = (uint32_t)strip->across + 1;
@@ -134,7 +92,39 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
     if (thickness > 0) sheet.material.thickness = singe_param((float)thickness);
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
-    result = strip_add(*sim, strip, &sheet, &id);
+
+    const uint32_t row = (uint32_t)strip->across + 1, rows = (uint32_t)strip->up + 1;
+    float *positions = malloc((size_t)3 * row * rows * sizeof *positions), *hot = malloc(row * rows * sizeof *hot);
+    uint32_t *cells = malloc((size_t)4 * row * rows * sizeof *cells), count = 0;
+    result = SINGE_ERROR_MEMORY;
+    if (positions && hot && cells) {
+        for (uint32_t v = 0; v < row * rows; v++) {
+            double z = v / row * strip->cell;
+            positions[3 * v] = (float)(v % row * strip->cell), positions[3 * v + 1] = 0;
+            positions[3 * v + 2] = (float)z;
+            hot[v] = (float)fmax(0, 1 - z / 0.004); // K above ignition at the edge, falling to 0 within 4 mm
+        }
+        for (uint32_t v = 0; v + row < row * rows; v++) {
+            if (v % row + 1 == row) continue;
+            uint32_t *cell = cells + (size_t)4 * count++;
+            cell[0] = v;
+            cell[1] = v + 1;
+            cell[2] = v + row + 1;
+            cell[3] = v + row;
+        }
+        const SingeAttribute attribute = {"hot", hot};
+        sheet.vertex_count = row * rows;
+        sheet.positions = positions;
+        sheet.cell_count = count;
+        sheet.cells = cells;
+        sheet.attribute_count = 1;
+        sheet.attributes = &attribute;
+        result = singe_sim_add_sheet(*sim, &sheet, &id);
+    }
+    free(positions);
+    free(hot);
+    free(cells);
+
     if (!result) result = singe_sim_commit(*sim);
     if (!result) result = strip_hold(*sim, strip, id);
     if (!result) return SINGE_OK;
@@ -171,45 +161,6 @@ static bool read_line(const SingeView *view, const Strip *strip, double z, doubl
     return true;
 }
 
-/// Removes mean and slope of a line, applies a Hann window and adds its power to the bands.
-static void add_line(Spectrum *spectrum, double *line) {
-    const double centre = 0.5 * (SAMPLES - 1), pi = acos(-1);
-    double mean = 0, slope = 0, squares = 0;
-    for (int i = 0; i < SAMPLES; i++) {
-        mean += line[i] / SAMPLES;
-        slope += line[i] * (i - centre);
-        squares += (i - centre) * (i - centre);
-    }
-    for (int i = 0; i < SAMPLES; i++) {
-        line[i] -= mean + slope / squares * (i - centre);
-        spectrum->square += line[i] * line[i] / SAMPLES;
-        line[i] *= 0.5 - 0.5 * cos(2 * pi * (i + 0.5) / SAMPLES);
-    }
-    spectrum->lines++;
-    for (int k = 1; k <= SAMPLES / 2; k++) {
-        int band = wave_band(width / k);
-        double re = 0, im = 0;
-        if (band < 0 || band >= BANDS) continue;
-        for (int i = 0; i < SAMPLES; i++)
-            re += line[i] * cos(2 * pi * k * i / SAMPLES), im += line[i] * sin(2 * pi * k * i / SAMPLES);
-        spectrum->band[band] += k * (re * re + im * im) / band_waves(band);
-    }
-}
-
-/// The rest height up to which the sheet's centre line has lost mass.
-static double burnt_height(const SingeView *view, const Strip *strip) {
-    const int row = strip->across + 1;
-    int j = 0;
-    while (j < strip->up && view->mass[j * row + strip->across / 2] < 0.99f) j++;
-    return j * strip->cell;
-}
-
-static void read_lines(const SingeView *view, const Strip *strip, Spectrum *spectrum) {
-    double line[SAMPLES], top = fmin(burnt_height(view, strip) + 0.012, (strip->up - 2) * strip->cell);
-    for (double z = 0.001; z < top; z += 0.002)
-        if (read_line(view, strip, z, line)) add_line(spectrum, line);
-}
-
 static SingeResult spectrum_observe(const BenchOptions *options, int setting, uint32_t seed, Spectrum *spectrum,
                                     SingeError *error) {
     const double cells = settings[setting].cells, step = settings[setting].step;
@@ -226,7 +177,44 @@ static SingeResult spectrum_observe(const BenchOptions *options, int setting, ui
         while (!result && singe_sim_view(sim).time < until) result = singe_sim_step(sim);
         if (result) *error = *singe_sim_error(sim);
         SingeView view = singe_sim_view(sim);
-        if (!result) read_lines(&view, &strip, spectrum);
+        if (!result) {
+            // the rest height up to which the sheet's centre line has lost mass
+            const int row = strip.across + 1;
+            int j = 0;
+            while (j < strip.up && view.mass[j * row + strip.across / 2] < 0.99f) j++;
+            const double height = j * strip.cell;
+            double line[SAMPLES], top = fmin(height + 0.012, (strip.up - 2) * strip.cell);
+            for (double z = 0.001; z < top; z += 0.002)
+                if (read_line(&view, &strip, z, line)) {
+                    // removes mean and slope of a line, applies a Hann window and adds its power to the bands
+                    const double centre = 0.5 * (SAMPLES - 1), pi = acos(-1);
+                    double mean = 0, slope = 0, squares = 0;
+                    for (int i = 0; i < SAMPLES; i++) {
+                        mean += line[i] / SAMPLES;
+                        slope += line[i] * (i - centre);
+                        squares += (i - centre) * (i - centre);
+                    }
+                    for (int i = 0; i < SAMPLES; i++) {
+                        line[i] -= mean + slope / squares * (i - centre);
+                        spectrum->square += line[i] * line[i] / SAMPLES;
+                        line[i] *= 0.5 - 0.5 * cos(2 * pi * (i + 0.5) / SAMPLES);
+                    }
+                    spectrum->lines++;
+                    for (int k = 1; k <= SAMPLES / 2; k++) {
+                        int band = wave_band(width / k);
+                        double re = 0, im = 0;
+                        if (band < 0 || band >= BANDS) continue;
+                        for (int i = 0; i < SAMPLES; i++)
+                            re += line[i] * cos(2 * pi * k * i / SAMPLES),
+                                im += line[i] * sin(2 * pi * k * i / SAMPLES);
+
+                        // the number of integer wave counts in a band
+                        int count = 0;
+                        for (int wave = 1; wave <= SAMPLES / 2; wave++) count += wave_band(width / wave) == band;
+                        spectrum->band[band] += k * (re * re + im * im) / count;
+                    }
+                }
+        }
     }
     singe_sim_destroy(sim);
     return result;
@@ -247,7 +235,16 @@ static double centre(const Spectrum *spectrum, double exponent) {
 
 static double peak(const Spectrum *spectrum) { return centre(spectrum, 2); }
 
-static void spectrum_tell(BenchTable *table, const Spectrum *spectra) {
+SingeResult bench_spectrum(const BenchOptions *options, BenchTable *table, SingeError *error) {
+    Spectrum spectra[SETTINGS] = {0};
+    const uint32_t seeds = options->quick ? 1 : 4;
+    SingeResult result = SINGE_OK;
+    *table = table_begin("spectrum", columns, COLUMNS, table->text);
+    for (int i = 0; i < SETTINGS && !result; i++)
+        for (uint32_t seed = 0; seed < seeds && !result; seed++)
+            result = spectrum_observe(options, i, seed, &spectra[i], error);
+    if (result) return result;
+
     const double base = peak(&spectra[0]), degrees = 180 / acos(-1);
     for (int i = 0; i < SETTINGS; i++) {
         table_fact(table, settings[i].peak, 1e3 * peak(&spectra[i]));
@@ -255,9 +252,7 @@ static void spectrum_tell(BenchTable *table, const Spectrum *spectra) {
         table_fact(table, settings[i].mean, 1e3 * centre(&spectra[i], 1));
         table_fact(table, settings[i].rms, degrees * sqrt(spectra[i].square / spectra[i].lines));
     }
-}
 
-static SingeResult spectrum_fill(BenchTable *table, const Spectrum *spectra) {
     for (int band = 0; band < BANDS; band++) {
         BenchValue row[COLUMNS] = {[WAVE] = bench_number(1e3 * band_wave(band))};
         for (int i = 0; i < SETTINGS; i++) {
@@ -268,17 +263,4 @@ static SingeResult spectrum_fill(BenchTable *table, const Spectrum *spectra) {
         if (!table_add(table, row)) return SINGE_ERROR_MEMORY;
     }
     return SINGE_OK;
-}
-
-SingeResult bench_spectrum(const BenchOptions *options, BenchTable *table, SingeError *error) {
-    Spectrum spectra[SETTINGS] = {0};
-    const uint32_t seeds = options->quick ? 1 : 4;
-    SingeResult result = SINGE_OK;
-    *table = table_begin("spectrum", columns, COLUMNS, table->text);
-    for (int i = 0; i < SETTINGS && !result; i++)
-        for (uint32_t seed = 0; seed < seeds && !result; seed++)
-            result = spectrum_observe(options, i, seed, &spectra[i], error);
-    if (result) return result;
-    spectrum_tell(table, spectra);
-    return spectrum_fill(table, spectra);
 }

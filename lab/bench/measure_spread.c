@@ -26,23 +26,6 @@ static const SpreadCase cases[] = {
 };
 enum { CASES = sizeof cases / sizeof *cases, CASES_QUICK = 7 };
 
-static SingeResult spread_case(const SpreadCase *it, int threads, double *speed, SingeError *error) {
-    const SingeMaterialDef paper = singe_default_material();
-    StripSetup setup = strip_setup(&paper);
-    StripResult result = {0};
-    setup.cell = it->cell;
-    setup.threads = threads;
-    setup.length = 0.15f;
-    setup.width = 0.05f;
-    setup.pace = 4;
-    setup.gas = it->gas_cell > 0;
-    setup.gas_cell = it->gas_cell;
-    if (it->direction[0] != 'l') setup.gravity[0] = it->direction[0] == 'u' ? -9.81f : 9.81f, setup.gravity[2] = 0;
-    SingeResult code = strip_burn(&setup, &result, error);
-    *speed = result.speed;
-    return code;
-}
-
 SingeResult bench_spread(const BenchOptions *options, BenchTable *table, SingeError *error) {
     double level = NAN, down = NAN;
     *table = table_begin("spread", spread_columns, SPREAD_COLUMNS, table->text);
@@ -50,7 +33,22 @@ SingeResult bench_spread(const BenchOptions *options, BenchTable *table, SingeEr
         const SpreadCase *it = &cases[i];
         BenchValue row[SPREAD_COLUMNS];
         double speed;
-        SingeResult code = spread_case(it, options->threads, &speed, error);
+
+        const int threads = options->threads;
+        const SingeMaterialDef paper = singe_default_material();
+        StripSetup setup = strip_setup(&paper);
+        StripResult result = {0};
+        setup.cell = it->cell;
+        setup.threads = threads;
+        setup.length = 0.15f;
+        setup.width = 0.05f;
+        setup.pace = 4;
+        setup.gas = it->gas_cell > 0;
+        setup.gas_cell = it->gas_cell;
+        if (it->direction[0] != 'l') setup.gravity[0] = it->direction[0] == 'u' ? -9.81f : 9.81f, setup.gravity[2] = 0;
+        SingeResult code = strip_burn(&setup, &result, error);
+        speed = result.speed;
+
         if (code) return code;
         if (i == 1) level = speed;
         if (i == 2) down = speed;

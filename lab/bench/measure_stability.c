@@ -67,24 +67,6 @@ static void stability_sample(Case *c, const SingeSim *sim, double energy_start, 
     c->finite = c->finite && strain->finite && isfinite(c->speed) && isfinite(c->reach);
 }
 
-static void stability_follow(Case *c, SingeSim *sim, Strain *strain) {
-    const double h = (double)c->setup.time_step;
-    const int steps = (int)ceil(c->seconds / h), every = h < 0.015 ? (int)(0.015 / h) : 1;
-    SingeView view = singe_sim_view(sim);
-    double energy = geometry_energy(&view, gravity);
-    c->finite = true;
-    for (int step = 1; step <= steps && c->finite; step++) {
-        if (singe_sim_step(sim)) c->finite = false;
-        else c->inverted = larger(c->inverted, geometry_inverted(&view));
-        if (c->finite && (step % every == 0 || step == steps)) stability_sample(c, sim, energy, strain);
-    }
-    view = singe_sim_view(sim);
-    double shrunk = c->setup.state == BENCH_SHRINK ? (double)c->setup.shrink : 1;
-    c->gyration = geometry_gyration(&view) / (sqrt(1.0 / 6) * shrunk);
-    c->folded = geometry_folded(&view, c->setup.cells);
-    c->strain = strain_percent(strain);
-}
-
 static void stability_run(void *context, int i) {
     Case *c = &((Cases *)context)->list[i];
     SingeSim *sim = NULL;
@@ -92,7 +74,22 @@ static void stability_run(void *context, int i) {
     c->failed = strain ? sheet_build(&c->setup, &sim, &c->error) : SINGE_ERROR_MEMORY;
     if (!c->failed) {
         strain_clear(strain);
-        stability_follow(c, sim, strain);
+
+        const double h = (double)c->setup.time_step;
+        const int steps = (int)ceil(c->seconds / h), every = h < 0.015 ? (int)(0.015 / h) : 1;
+        SingeView view = singe_sim_view(sim);
+        double energy = geometry_energy(&view, gravity);
+        c->finite = true;
+        for (int step = 1; step <= steps && c->finite; step++) {
+            if (singe_sim_step(sim)) c->finite = false;
+            else c->inverted = larger(c->inverted, geometry_inverted(&view));
+            if (c->finite && (step % every == 0 || step == steps)) stability_sample(c, sim, energy, strain);
+        }
+        view = singe_sim_view(sim);
+        double shrunk = c->setup.state == BENCH_SHRINK ? (double)c->setup.shrink : 1;
+        c->gyration = geometry_gyration(&view) / (sqrt(1.0 / 6) * shrunk);
+        c->folded = geometry_folded(&view, c->setup.cells);
+        c->strain = strain_percent(strain);
     }
     singe_sim_destroy(sim);
     free(strain);
@@ -130,29 +127,6 @@ static void done(void *context, int i) {
 
 enum { CELLS_MAX = BENCH_LIST_MAX, RATIOS_MAX = 6, STEPS_MAX = 5 };
 
-static void stability_fill(Cases *cases, const BenchOptions *options) {
-    static const double all_cells[] = {20, 50, 100, 200}, all_ratios[] = {0.05, 0.2, 0.5, 0.7, 1, 2.5};
-    static const double all_steps[] = {1, 2, 4, 8, 16}, few_ratios[] = {0.05, 0.7, 2.5}, few_steps[] = {4, 16};
-    const bool quick = options->quick;
-    BenchList cells = bench_list(&options->cells, quick ? 1 : 4, all_cells);
-    const double *ratios = quick ? few_ratios : all_ratios, *steps = quick ? few_steps : all_steps;
-    for (int state = 0; state < 2; state++)
-        for (int n = 0; n < cells.count; n++)
-            for (int r = 0; r < (quick ? 3 : RATIOS_MAX); r++)
-                for (int s = 0; s < (quick ? 2 : STEPS_MAX); s++) {
-                    Case *c = &cases->list[cases->count++];
-                    c->setup = sheet_setup(options, state ? BENCH_SHRINK : BENCH_SWING, 20);
-                    c->setup.cells = (int)cells.values[n];
-                    c->setup.pins = state ? 1 : 2;
-                    c->setup.shrink = 0.5f;
-                    c->setup.threads = 1;
-                    c->setup.thickness = (float)(ratios[r] / cells.values[n]);
-                    c->setup.time_step = (float)(1e-3 * steps[s]);
-                    c->t_over_s = ratios[r];
-                    c->seconds = options->time > 0 ? options->time : quick ? 0.5 : state ? 1.5 : 1;
-                }
-}
-
 SingeResult bench_stability(const BenchOptions *options, BenchTable *table, SingeError *error) {
     Cases cases = {.table = table, .list = calloc(2 * CELLS_MAX * RATIOS_MAX * STEPS_MAX, sizeof *cases.list)};
     SingeResult result = SINGE_OK;
@@ -163,7 +137,28 @@ SingeResult bench_stability(const BenchOptions *options, BenchTable *table, Sing
               "speed > 100 m/s. stretched: reach > 1.5. crumpled: gyration < 0.35 of a flat sheet's, or folded > 0.25\n"
               "of the edges.\n",
               table->text);
-    stability_fill(&cases, options);
+
+    static const double all_cells[] = {20, 50, 100, 200}, all_ratios[] = {0.05, 0.2, 0.5, 0.7, 1, 2.5};
+    static const double all_steps[] = {1, 2, 4, 8, 16}, few_ratios[] = {0.05, 0.7, 2.5}, few_steps[] = {4, 16};
+    const bool quick = options->quick;
+    BenchList cells = bench_list(&options->cells, quick ? 1 : 4, all_cells);
+    const double *ratios = quick ? few_ratios : all_ratios, *steps = quick ? few_steps : all_steps;
+    for (int state = 0; state < 2; state++)
+        for (int n = 0; n < cells.count; n++)
+            for (int r = 0; r < (quick ? 3 : RATIOS_MAX); r++)
+                for (int s = 0; s < (quick ? 2 : STEPS_MAX); s++) {
+                    Case *c = &cases.list[cases.count++];
+                    c->setup = sheet_setup(options, state ? BENCH_SHRINK : BENCH_SWING, 20);
+                    c->setup.cells = (int)cells.values[n];
+                    c->setup.pins = state ? 1 : 2;
+                    c->setup.shrink = 0.5f;
+                    c->setup.threads = 1;
+                    c->setup.thickness = (float)(ratios[r] / cells.values[n]);
+                    c->setup.time_step = (float)(1e-3 * steps[s]);
+                    c->t_over_s = ratios[r];
+                    c->seconds = options->time > 0 ? options->time : quick ? 0.5 : state ? 1.5 : 1;
+                }
+
     workers_run(cases.count, options->threads > 1 ? options->threads : machine_processors(), stability_run, done,
                 &cases);
     for (int i = 0; i < cases.count && !result; i++)

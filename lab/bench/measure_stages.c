@@ -41,28 +41,6 @@ static const BenchColumn step_columns[STEP_COLUMNS] = {
     [MEMORY] = {"bytes_spring", "%.1f", 12, NULL}, [YARDSTICK] = {"yardstick_ms", "%.2f", 12, NULL},
 };
 
-static void fill_step(BenchValue *row, const BenchOptions *options, const SingeSim *sim, const Timing *timing) {
-    double springs = timing_springs(sim), step = timing_median(timing, TIMED_STEP);
-    row[SPRINGS] = bench_number(springs);
-    row[SOLVER] = bench_text(words_SingeSolverMethod[options->solver]);
-    row[LIMIT] = bench_number(options->curvature.values[0]);
-    row[THREADS] = bench_number(options->threads);
-    row[STEP_MEDIAN] = bench_number(step);
-    row[STEP_MIN] = bench_number(timing_min(timing, TIMED_STEP));
-    row[HEAT] = bench_number(timing_median(timing, SINGE_STAGE_HEAT));
-    row[BURN] = bench_number(timing_median(timing, SINGE_STAGE_BURN));
-    row[ABLATE] = bench_number(timing_median(timing, SINGE_STAGE_ABLATE));
-    row[DYNAMICS] = bench_number(timing_median(timing, SINGE_STAGE_DYNAMICS));
-    row[GAS] = bench_number(timing_median(timing, SINGE_STAGE_GAS));
-    row[PROJECTION] = bench_number(timing_median(timing, TIMED_PROJECTION));
-    row[NS] = bench_number(1e6 * step / springs);
-    row[ITERATIONS] = bench_number((double)timing->total.heat_iterations / timing->steps);
-    row[CONTACTS] = bench_number((double)timing->total.contacts / timing->steps);
-    row[BURNT] = bench_number(100 * singe_sim_stats(sim).burnt_fraction);
-    row[MEMORY] = bench_number((double)singe_sim_counts(sim).memory / springs);
-    row[YARDSTICK] = bench_number(timing_median(timing, TIMED_YARDSTICK));
-}
-
 enum { STAGE_SPRINGS, STAGE_THREADS, STAGE_MEDIAN, STAGE_MIN, STAGE_NS, STAGE_ITERATIONS, STAGE_GONE, STAGE_COLUMNS };
 
 static const BenchColumn stage_columns[STAGE_COLUMNS] = {
@@ -72,18 +50,6 @@ static const BenchColumn stage_columns[STAGE_COLUMNS] = {
     [STAGE_GONE] = {"springs_gone", "%.0f", 12, NULL},
 };
 
-static void fill_stage(BenchValue *row, int stage, const BenchOptions *options, const SingeSim *sim,
-                       const Timing *timing) {
-    double springs = timing_springs(sim), median = timing_median(timing, stage);
-    row[STAGE_SPRINGS] = bench_number(springs);
-    row[STAGE_THREADS] = bench_number(options->threads);
-    row[STAGE_MEDIAN] = bench_number(median);
-    row[STAGE_MIN] = bench_number(timing_min(timing, stage));
-    row[STAGE_NS] = bench_number(1e6 * median / springs);
-    row[STAGE_ITERATIONS] = bench_number((double)timing->total.heat_iterations / timing->steps);
-    row[STAGE_GONE] = bench_number(springs - singe_sim_stats(sim).springs);
-}
-
 /// Compares the step with the limit of the reference machine, scaled by the yardstick's time on this machine.
 static SingeResult stages_judge(const BenchOptions *options, const Timing *timing, BenchTable *table,
                                 SingeError *error) {
@@ -92,13 +58,13 @@ static SingeResult stages_judge(const BenchOptions *options, const Timing *timin
     if (limit <= 0) return SINGE_OK;
     if (table->text)
         fprintf(table->text,
-                "%.2f ms at the reference machine's pace (this one is %.2f times slower); "
+                "%.2f ms at the pace of the reference machine (this one is %.2f times slower); "
                 "limit %.4g ms\n",
                 step, slowness, limit);
     if (step <= limit) return SINGE_OK;
     *error = (SingeError){.code = SINGE_ERROR_LIMIT, .element = -1};
     snprintf(error->message, sizeof error->message,
-             "%.2f ms a step at the reference machine's pace, above the limit of %.4g ms", step, limit);
+             "%.2f ms per step at the pace of the reference machine, above the limit of %.4g ms", step, limit);
     return SINGE_ERROR_LIMIT;
 }
 
@@ -115,8 +81,36 @@ static SingeResult stages_measure(const BenchOptions *options, int stage, double
     if (result) {
         *error = *singe_sim_error(sim);
     } else {
-        if (stage == TIMED_STEP) fill_step(row, options, sim, &timing);
-        else fill_stage(row, stage, options, sim, &timing);
+        if (stage == TIMED_STEP) {
+            double actual = timing_springs(sim), step = timing_median(&timing, TIMED_STEP);
+            row[SPRINGS] = bench_number(actual);
+            row[SOLVER] = bench_text(words_SingeSolverMethod[options->solver]);
+            row[LIMIT] = bench_number(options->curvature.values[0]);
+            row[THREADS] = bench_number(options->threads);
+            row[STEP_MEDIAN] = bench_number(step);
+            row[STEP_MIN] = bench_number(timing_min(&timing, TIMED_STEP));
+            row[HEAT] = bench_number(timing_median(&timing, SINGE_STAGE_HEAT));
+            row[BURN] = bench_number(timing_median(&timing, SINGE_STAGE_BURN));
+            row[ABLATE] = bench_number(timing_median(&timing, SINGE_STAGE_ABLATE));
+            row[DYNAMICS] = bench_number(timing_median(&timing, SINGE_STAGE_DYNAMICS));
+            row[GAS] = bench_number(timing_median(&timing, SINGE_STAGE_GAS));
+            row[PROJECTION] = bench_number(timing_median(&timing, TIMED_PROJECTION));
+            row[NS] = bench_number(1e6 * step / actual);
+            row[ITERATIONS] = bench_number((double)timing.total.heat_iterations / timing.steps);
+            row[CONTACTS] = bench_number((double)timing.total.contacts / timing.steps);
+            row[BURNT] = bench_number(100 * singe_sim_stats(sim).burnt_fraction);
+            row[MEMORY] = bench_number((double)singe_sim_counts(sim).memory / actual);
+            row[YARDSTICK] = bench_number(timing_median(&timing, TIMED_YARDSTICK));
+        } else {
+            double actual = timing_springs(sim), median = timing_median(&timing, stage);
+            row[STAGE_SPRINGS] = bench_number(actual);
+            row[STAGE_THREADS] = bench_number(options->threads);
+            row[STAGE_MEDIAN] = bench_number(median);
+            row[STAGE_MIN] = bench_number(timing_min(&timing, stage));
+            row[STAGE_NS] = bench_number(1e6 * median / actual);
+            row[STAGE_ITERATIONS] = bench_number((double)timing.total.heat_iterations / timing.steps);
+            row[STAGE_GONE] = bench_number(actual - singe_sim_stats(sim).springs);
+        }
         result = table_add(table, row) ? stages_judge(options, &timing, table, error) : SINGE_ERROR_MEMORY;
     }
     timing_free(&timing);

@@ -93,17 +93,6 @@ static SingeResult add_grip(SingeSim *sim, uint32_t nx, uint32_t ny, bool last, 
     return result;
 }
 
-/// The mean line force along the strip, of the cells between the grips.
-static double load_now(const SingeView *view, uint32_t nx) {
-    double sum = 0, count = 0;
-    for (uint32_t c = 0; c < view->cell_count; c++) {
-        if (c % nx < GRIP_CELLS || c % nx >= nx - GRIP_CELLS) continue;
-        sum += (double)view->line_force[c][0];
-        count++;
-    }
-    return sum / count;
-}
-
 /// Vertices from `first` on were created by tears.
 static int torn_aside(const SingeView *view, uint32_t first, float cell) {
     int aside = 0;
@@ -133,7 +122,16 @@ static SingeResult pull(const BenchOptions *options, uint32_t nx, uint32_t ny, i
     for (int k = 0; k < (int)(seconds * (float)rate) && !result; k++) {
         result = singe_sim_step(sim);
         const SingeView view = singe_sim_view(sim);
-        double load = load_now(&view, nx);
+
+        // the mean line force along the strip, of the cells between the grips
+        double sum = 0, count = 0;
+        for (uint32_t c = 0; c < view.cell_count; c++) {
+            if (c % nx < GRIP_CELLS || c % nx >= nx - GRIP_CELLS) continue;
+            sum += (double)view.line_force[c][0];
+            count++;
+        }
+        double load = sum / count;
+
         if (load > pulled->load) {
             pulled->load = load;
             pulled->stretch = (double)speed * view.time / (double)length;

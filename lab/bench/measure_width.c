@@ -21,56 +21,48 @@ typedef struct Reference {
     double projection_ms;
 } Reference;
 
-/// FNV-1a over the bytes of all positions.
-static uint64_t positions_hash(const SingeSim *sim) {
-    SingeView view = singe_sim_view(sim);
-    uint64_t hash = 14695981039346656037u;
-    for (uint32_t i = 0; i < view.particle_count; i++) {
-        const unsigned char *bytes = (const unsigned char *)view.position[i];
-        for (size_t b = 0; b < 3 * sizeof(float); b++) hash = (hash ^ bytes[b]) * 1099511628211u;
-    }
-    return hash;
-}
-
-static SingeResult width_add_row(BenchTable *table, const BenchSetup *setup, const SingeSim *sim, const Timing *timing,
-                                 Reference *plain) {
-    double springs = timing_springs(sim), sweeps = (double)setup->solver.substeps * setup->solver.projections;
-    double projection = timing_median(timing, TIMED_PROJECTION);
-    uint64_t hash = positions_hash(sim);
-    if (setup->instructions == SINGE_INSTRUCTIONS_PLAIN) *plain = (Reference){hash, projection};
-    BenchValue row[COLUMNS] = {
-        [INSTRUCTIONS] = bench_text(words_SingeInstructions[setup->instructions]),
-        [SPRINGS] = bench_number(springs),
-        [STEP_MEDIAN] = bench_number(timing_median(timing, SINGE_STAGE_DYNAMICS)),
-        [STEP_MIN] = bench_number(timing_min(timing, SINGE_STAGE_DYNAMICS)),
-        [PROJECTION] = bench_number(projection),
-        [NS] = bench_number(1e6 * projection / (springs * sweeps)),
-        [RATIO] = bench_number(plain->projection_ms / projection),
-        [BYTES] = bench_text(hash == plain->hash ? "same" : "other"),
-    };
-    return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
-}
-
-static SingeResult add_absent(BenchTable *table, const BenchSetup *setup) {
-    BenchValue row[COLUMNS];
-    for (int c = 0; c < COLUMNS; c++) row[c] = bench_number(NAN);
-    row[INSTRUCTIONS] = bench_text(words_SingeInstructions[setup->instructions]);
-    row[BYTES] = bench_text("not here");
-    return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
-}
-
 static SingeResult width_measure(const BenchOptions *options, const BenchSetup *setup, BenchTable *table,
                                  Reference *plain, SingeError *error) {
     SingeSim *sim;
     Timing timing = {0};
     SingeResult result = sheet_build(setup, &sim, error);
-    if (result == SINGE_ERROR_LIMIT && setup->instructions != SINGE_INSTRUCTIONS_PLAIN)
-        return add_absent(table, setup); // refused: this processor lacks them
+    if (result == SINGE_ERROR_LIMIT && setup->instructions != SINGE_INSTRUCTIONS_PLAIN) {
+        // refused: this processor lacks them
+        BenchValue row[COLUMNS];
+        for (int c = 0; c < COLUMNS; c++) row[c] = bench_number(NAN);
+        row[INSTRUCTIONS] = bench_text(words_SingeInstructions[setup->instructions]);
+        row[BYTES] = bench_text("not here");
+        return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
+    }
     if (result) return result;
     int steps = options->steps ? options->steps : timing_steps(timing_springs(sim), 5, 200);
     result = timing_measure(&timing, sim, NULL, steps, steps);
     if (result) *error = *singe_sim_error(sim);
-    else result = width_add_row(table, setup, sim, &timing, plain);
+    else {
+        double springs = timing_springs(sim), sweeps = (double)setup->solver.substeps * setup->solver.projections;
+        double projection = timing_median(&timing, TIMED_PROJECTION);
+
+        // FNV-1a over the bytes of all positions
+        SingeView view = singe_sim_view(sim);
+        uint64_t hash = 14695981039346656037u;
+        for (uint32_t i = 0; i < view.particle_count; i++) {
+            const unsigned char *bytes = (const unsigned char *)view.position[i];
+            for (size_t b = 0; b < 3 * sizeof(float); b++) hash = (hash ^ bytes[b]) * 1099511628211u;
+        }
+
+        if (setup->instructions == SINGE_INSTRUCTIONS_PLAIN) *plain = (Reference){hash, projection};
+        BenchValue row[COLUMNS] = {
+            [INSTRUCTIONS] = bench_text(words_SingeInstructions[setup->instructions]),
+            [SPRINGS] = bench_number(springs),
+            [STEP_MEDIAN] = bench_number(timing_median(&timing, SINGE_STAGE_DYNAMICS)),
+            [STEP_MIN] = bench_number(timing_min(&timing, SINGE_STAGE_DYNAMICS)),
+            [PROJECTION] = bench_number(projection),
+            [NS] = bench_number(1e6 * projection / (springs * sweeps)),
+            [RATIO] = bench_number(plain->projection_ms / projection),
+            [BYTES] = bench_text(hash == plain->hash ? "same" : "other"),
+        };
+        result = table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
+    }
     timing_free(&timing);
     singe_sim_destroy(sim);
     return result;

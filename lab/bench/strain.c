@@ -8,17 +8,17 @@ void strain_clear(Strain *strain) {
     strain->finite = true;
 }
 
-static double strain_distance(const float *a, const float *b) {
-    double x = (double)b[0] - (double)a[0], y = (double)b[1] - (double)a[1], z = (double)b[2] - (double)a[2];
-    return sqrt(x * x + y * y + z * z);
-}
-
 void strain_add(Strain *strain, const SingeView *view, SingeColour colour) {
     for (uint32_t s = 0; s < view->spring_count[colour]; s++) {
         const uint32_t *ends = view->springs[colour][s];
         if (!(view->spring_flags[colour][s] & SINGE_ALIVE)) continue;
         if (view->particle_flags[ends[0]] & view->particle_flags[ends[1]] & SINGE_PINNED) continue;
-        double length = strain_distance(view->position[ends[0]], view->position[ends[1]]);
+
+        double x = (double)view->position[ends[1]][0] - (double)view->position[ends[0]][0],
+               y = (double)view->position[ends[1]][1] - (double)view->position[ends[0]][1],
+               z = (double)view->position[ends[1]][2] - (double)view->position[ends[0]][2];
+        double length = sqrt(x * x + y * y + z * z);
+
         double value = fabs(length / (double)view->spring_length[colour][s] - 1);
         strain->count++;
         if (!isfinite(value)) {

@@ -10,34 +10,6 @@ BenchTable table_begin(const char *command, const BenchColumn *columns, int colu
     return (BenchTable){.command = command, .columns = columns, .column_count = column_count, .text = text};
 }
 
-static void print_headings(const BenchTable *table) {
-    for (int c = 0; c < table->column_count; c++)
-        fprintf(table->text, "%s%*s", c ? "  " : "", table->columns[c].width, table->columns[c].name);
-    fputc('\n', table->text);
-}
-
-static void print_value(FILE *file, const BenchColumn *column, const BenchValue *value) {
-    char shown[96];
-    int length = 0;
-    if (value->text) length = snprintf(shown, sizeof shown, "%s", value->text);
-    for (int part = 0; !value->text && part < (column->parts ? 3 : 1); part++) {
-        size_t left = sizeof shown - (size_t)length;
-        if (part) length += snprintf(shown + length, left, "/"), left--;
-        if (isnan(value->number[part])) length += snprintf(shown + length, left, "-");
-        else length += snprintf(shown + length, left, column->format, value->number[part]);
-    }
-    fprintf(file, "%*s", column->width, shown);
-}
-
-static void print_row(const BenchTable *table, const BenchValue *row) {
-    for (int c = 0; c < table->column_count; c++) {
-        if (c) fputs("  ", table->text);
-        print_value(table->text, &table->columns[c], &row[c]);
-    }
-    fputc('\n', table->text);
-    fflush(table->text);
-}
-
 void table_fact(BenchTable *table, const char *name, double number) {
     if (table->fact_count == BENCH_FACTS_MAX) return;
     table->facts[table->fact_count++] = (BenchFact){name, number};
@@ -54,8 +26,29 @@ bool table_add(BenchTable *table, const BenchValue *row) {
         table->capacity = capacity;
     }
     memcpy(table->values + (size_t)table->row_count * width, row, width * sizeof *row);
-    if (table->text && table->row_count == 0) print_headings(table);
-    if (table->text) print_row(table, row);
+    if (table->text && table->row_count == 0) {
+        for (int c = 0; c < table->column_count; c++)
+            fprintf(table->text, "%s%*s", c ? "  " : "", table->columns[c].width, table->columns[c].name);
+        fputc('\n', table->text);
+    }
+    if (table->text) {
+        for (int c = 0; c < table->column_count; c++) {
+            if (c) fputs("  ", table->text);
+
+            char shown[96];
+            int length = 0;
+            if (row[c].text) length = snprintf(shown, sizeof shown, "%s", row[c].text);
+            for (int part = 0; !row[c].text && part < (table->columns[c].parts ? 3 : 1); part++) {
+                size_t left = sizeof shown - (size_t)length;
+                if (part) length += snprintf(shown + length, left, "/"), left--;
+                if (isnan(row[c].number[part])) length += snprintf(shown + length, left, "-");
+                else length += snprintf(shown + length, left, table->columns[c].format, row[c].number[part]);
+            }
+            fprintf(table->text, "%*s", table->columns[c].width, shown);
+        }
+        fputc('\n', table->text);
+        fflush(table->text);
+    }
     table->row_count++;
     return true;
 }
@@ -66,19 +59,19 @@ void table_free(BenchTable *table) {
     table->row_count = table->capacity = 0;
 }
 
-/// The p-th word of "max/p99/mean"; its length in *length.
-static const char *part_name(const char *parts, int p, int *length) {
-    while (p--) parts = strchr(parts, '/') + 1;
-    const char *end = strchr(parts, '/');
-    *length = (int)(end ? (size_t)(end - parts) : strlen(parts));
-    return parts;
-}
-
 static void write_key(FILE *file, const BenchColumn *column, int part) {
     fputs(column->name, file);
     if (!column->parts) return;
     int length;
-    const char *name = part_name(column->parts, part, &length);
+
+    // the p-th word of "max/p99/mean"; its length in *length
+    const char *parts = column->parts;
+    int p = part;
+    while (p--) parts = strchr(parts, '/') + 1;
+    const char *end = strchr(parts, '/');
+    length = (int)(end ? (size_t)(end - parts) : strlen(parts));
+    const char *name = parts;
+
     fprintf(file, "_%.*s", length, name);
 }
 
@@ -97,19 +90,6 @@ static void write_json_text(FILE *file, const char *text) {
     fputc('"', file);
 }
 
-static void write_json_row(const BenchTable *table, const BenchValue *row, FILE *file) {
-    const char *comma = "";
-    for (int c = 0; c < table->column_count; c++)
-        for (int part = 0; part < (table->columns[c].parts ? 3 : 1); part++) {
-            fprintf(file, "%s\"", comma);
-            write_key(file, &table->columns[c], part);
-            fputs("\": ", file);
-            if (row[c].text) write_json_text(file, row[c].text);
-            else write_number(file, row[c].number[part], "null");
-            comma = ", ";
-        }
-}
-
 void table_write_json(const BenchTable *table, FILE *file) {
     fputs("{\"command\": ", file);
     write_json_text(file, table->command);
@@ -124,7 +104,19 @@ void table_write_json(const BenchTable *table, FILE *file) {
     fputs(", \"rows\": [", file);
     for (int r = 0; r < table->row_count; r++) {
         fputs(r ? ",\n  {" : "\n  {", file);
-        write_json_row(table, table->values + (size_t)r * (size_t)table->column_count, file);
+
+        const BenchValue *row = table->values + (size_t)r * (size_t)table->column_count;
+        const char *comma = "";
+        for (int c = 0; c < table->column_count; c++)
+            for (int part = 0; part < (table->columns[c].parts ? 3 : 1); part++) {
+                fprintf(file, "%s\"", comma);
+                write_key(file, &table->columns[c], part);
+                fputs("\": ", file);
+                if (row[c].text) write_json_text(file, row[c].text);
+                else write_number(file, row[c].number[part], "null");
+                comma = ", ";
+            }
+
         fputc('}', file);
     }
     fputs("\n]}\n", file);

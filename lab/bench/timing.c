@@ -22,30 +22,6 @@ double timing_springs(const SingeSim *sim) {
     return springs;
 }
 
-static bool timing_allocate(Timing *timing, int steps) {
-    bool good = true;
-    *timing = (Timing){.steps = steps};
-    for (int what = 0; what < TIMED_COUNT; what++) {
-        timing->ms[what] = calloc((size_t)steps, sizeof *timing->ms[what]);
-        good = good && timing->ms[what];
-    }
-    return good;
-}
-
-static void timing_note(Timing *timing, int step, const SingeTimers *before, const SingeTimers *after,
-                        double yardstick_ms) {
-    double total = 0;
-    for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++) {
-        timing->ms[stage][step] = 1e3 * (after->seconds[stage] - before->seconds[stage]);
-        total += timing->ms[stage][step];
-    }
-    timing->ms[TIMED_STEP][step] = total;
-    timing->ms[TIMED_PROJECTION][step] = 1e3 * (after->projection_seconds - before->projection_seconds);
-    timing->ms[TIMED_YARDSTICK][step] = yardstick_ms;
-    // scaled by the yardstick just before it: a temporarily slow machine slows both
-    timing->ms[TIMED_SCALED][step] = total / fmax(1, yardstick_ms / yardstick_reference_ms);
-}
-
 static SingeTimers difference(SingeTimers after, const SingeTimers *before) {
     for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++) after.seconds[stage] -= before->seconds[stage];
     after.steps -= before->steps;
@@ -61,7 +37,13 @@ static SingeTimers difference(SingeTimers after, const SingeTimers *before) {
 }
 
 SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, int warm_up, int steps) {
-    if (!timing_allocate(timing, steps)) return SINGE_ERROR_MEMORY;
+    bool good = true;
+    *timing = (Timing){.steps = steps};
+    for (int what = 0; what < TIMED_COUNT; what++) {
+        timing->ms[what] = calloc((size_t)steps, sizeof *timing->ms[what]);
+        good = good && timing->ms[what];
+    }
+    if (!good) return SINGE_ERROR_MEMORY;
     SingeTimers first = singe_sim_timers(sim);
     for (int step = -warm_up; step < steps; step++) {
         double yardstick_ms = yardstick ? yardstick_run(yardstick) : 0;
@@ -70,7 +52,18 @@ SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, 
         SingeResult result = singe_sim_step(sim);
         if (result) return result;
         SingeTimers after = singe_sim_timers(sim);
-        if (step >= 0) timing_note(timing, step, &before, &after, yardstick_ms);
+        if (step >= 0) {
+            double total = 0;
+            for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++) {
+                timing->ms[stage][step] = 1e3 * (after.seconds[stage] - before.seconds[stage]);
+                total += timing->ms[stage][step];
+            }
+            timing->ms[TIMED_STEP][step] = total;
+            timing->ms[TIMED_PROJECTION][step] = 1e3 * (after.projection_seconds - before.projection_seconds);
+            timing->ms[TIMED_YARDSTICK][step] = yardstick_ms;
+            // scaled by the yardstick just before it: a temporarily slow machine slows both
+            timing->ms[TIMED_SCALED][step] = total / fmax(1, yardstick_ms / yardstick_reference_ms);
+        }
     }
     timing->total = difference(singe_sim_timers(sim), &first);
     for (int what = 0; what < TIMED_COUNT; what++) numbers_median(timing->ms[what], steps); // sorts

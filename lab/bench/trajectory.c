@@ -9,43 +9,6 @@
 
 static const int marks[TRAJECTORY_MARKS] = {8, 12, 16}; // frames
 
-static void trajectory_sample(Trajectory *trajectory, const SingeSim *sim, double height_start) {
-    SingeView view = singe_sim_view(sim);
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
-        strain_add(&trajectory->strain[colour], &view, (SingeColour)colour);
-        if (!trajectory->strain[colour].finite) trajectory->diverged = true;
-    }
-    double speed = geometry_speed(&view);
-    if (!(speed <= trajectory->speed_max)) trajectory->speed_max = speed;
-    if (!isfinite(speed)) trajectory->diverged = true;
-    trajectory->fall_end = geometry_height(&view) - height_start;
-    for (int m = 0; m < TRAJECTORY_MARKS; m++)
-        if (trajectory->frames == marks[m]) trajectory->fall[m] = trajectory->fall_end;
-}
-
-/// Runs the frames until one fails or time runs out.
-static void trajectory_follow(Trajectory *trajectory, SingeSim *sim, int frames, int steps, double budget) {
-    const double until = machine_clock() + budget;
-    SingeView start = singe_sim_view(sim);
-    double height = geometry_height(&start);
-    while (trajectory->frames < frames && !trajectory->diverged && machine_clock() < until) {
-        double begun = machine_cpu_clock();
-        double looked = 0; // time that is not the simulation's
-        for (int step = 0; step < steps && !trajectory->diverged; step++) {
-            trajectory->diverged = singe_sim_step(sim);
-            double look = machine_cpu_clock();
-            trajectory->inverted = fmax(trajectory->inverted, geometry_inverted(&start));
-            looked += machine_cpu_clock() - look;
-        }
-        trajectory->cpu_ms[trajectory->frames++] = 1e3 * (machine_cpu_clock() - begun - looked);
-        if (!trajectory->diverged) trajectory_sample(trajectory, sim, height);
-    }
-    SingeTimers timers = singe_sim_timers(sim);
-    trajectory->dynamics_ms = 1e3 * timers.seconds[SINGE_STAGE_DYNAMICS] / trajectory->frames;
-    trajectory->cpu_mean = numbers_mean(trajectory->cpu_ms, trajectory->frames);
-    trajectory->cpu_median = numbers_median(trajectory->cpu_ms, trajectory->frames);
-}
-
 Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, double budget, SingeError *error) {
     SingeSim *sim;
     if (sheet_build(setup, &sim, error)) return NULL;
@@ -59,7 +22,39 @@ Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, doubl
         for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) strain_clear(&trajectory->strain[colour]);
         for (int m = 0; m < TRAJECTORY_MARKS; m++) trajectory->fall[m] = NAN;
         trajectory->strand_length = singe_sim_counts(sim).mean_strand_length;
-        trajectory_follow(trajectory, sim, frames, steps, budget);
+
+        // runs the frames until one fails or time runs out
+        const double until = machine_clock() + budget;
+        SingeView start = singe_sim_view(sim);
+        double height = geometry_height(&start);
+        while (trajectory->frames < frames && !trajectory->diverged && machine_clock() < until) {
+            double begun = machine_cpu_clock();
+            double looked = 0; // time that is not the simulation's
+            for (int step = 0; step < steps && !trajectory->diverged; step++) {
+                trajectory->diverged = singe_sim_step(sim);
+                double look = machine_cpu_clock();
+                trajectory->inverted = fmax(trajectory->inverted, geometry_inverted(&start));
+                looked += machine_cpu_clock() - look;
+            }
+            trajectory->cpu_ms[trajectory->frames++] = 1e3 * (machine_cpu_clock() - begun - looked);
+            if (!trajectory->diverged) {
+                SingeView view = singe_sim_view(sim);
+                for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+                    strain_add(&trajectory->strain[colour], &view, (SingeColour)colour);
+                    if (!trajectory->strain[colour].finite) trajectory->diverged = true;
+                }
+                double speed = geometry_speed(&view);
+                if (!(speed <= trajectory->speed_max)) trajectory->speed_max = speed;
+                if (!isfinite(speed)) trajectory->diverged = true;
+                trajectory->fall_end = geometry_height(&view) - height;
+                for (int m = 0; m < TRAJECTORY_MARKS; m++)
+                    if (trajectory->frames == marks[m]) trajectory->fall[m] = trajectory->fall_end;
+            }
+        }
+        SingeTimers timers = singe_sim_timers(sim);
+        trajectory->dynamics_ms = 1e3 * timers.seconds[SINGE_STAGE_DYNAMICS] / trajectory->frames;
+        trajectory->cpu_mean = numbers_mean(trajectory->cpu_ms, trajectory->frames);
+        trajectory->cpu_median = numbers_median(trajectory->cpu_ms, trajectory->frames);
     }
     singe_sim_destroy(sim);
     return trajectory;

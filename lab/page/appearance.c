@@ -5,18 +5,6 @@
 
 enum { RIM_NEAR = 3 }; ///< bands: 4 mm
 
-/// Drops the triangles with at most this mean mass.
-static void cut_surface(SingeSurface *surface, double cut) {
-    uint32_t kept = 0;
-    for (uint32_t t = 0; t < surface->triangle_count; t++) {
-        const uint32_t *c = surface->triangles[t];
-        const double mass =
-            ((double)surface->mass[c[0]] + (double)surface->mass[c[1]] + (double)surface->mass[c[2]]) / 3;
-        if (mass > cut) memmove(surface->triangles[kept++], c, sizeof *surface->triangles);
-    }
-    surface->triangle_count = kept;
-}
-
 SingeResult look_take(Play *play, double cut, Look *look, SingeError *error) {
     SingeResult result = play_surface(play, error);
     if (result) return result;
@@ -36,7 +24,18 @@ SingeResult look_take(Play *play, double cut, Look *look, SingeError *error) {
     look->left = shape_left(&view);
     look->pieces = shape_pieces(&view, 0.05);
     look->border = shape_border(&play->surface);
-    if (cut > 0) cut_surface(&play->surface, cut);
+    if (cut > 0) {
+        // drops the triangles with at most this mean mass
+        uint32_t kept = 0;
+        for (uint32_t t = 0; t < play->surface.triangle_count; t++) {
+            const uint32_t *c = play->surface.triangles[t];
+            const double mass = ((double)play->surface.mass[c[0]] + (double)play->surface.mass[c[1]] +
+                                 (double)play->surface.mass[c[2]]) /
+                                3;
+            if (mass > cut) memmove(play->surface.triangles[kept++], c, sizeof *play->surface.triangles);
+        }
+        play->surface.triangle_count = kept;
+    }
     if (rim_add(&play->surface, &look->rim) && wrinkles_add(&play->surface, &look->wrinkles)) return SINGE_OK;
     *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
     return SINGE_ERROR_MEMORY;

@@ -45,25 +45,23 @@ SingeResult play_surface(Play *play, SingeError *error) {
     return result;
 }
 
-/// In a scene about shapes, burning only stands for shrinkage and should not look like char.
-static void make_plain(SingeSurface *surface) {
-    for (uint32_t v = 0; v < surface->vertex_count; v++) {
-        surface->temperature[v] = surface->temperature_peak[v] = 293;
-        surface->mass[v] = 1;
-        surface->burn[v] = surface->burn_rate[v] = 0;
-        surface->time_ignited[v] = -1;
-    }
-}
-
-static void dim(SingeSurface *surface, float glow) {
-    for (uint32_t v = 0; v < surface->vertex_count; v++) surface->temperature[v] = fminf(surface->temperature[v], glow);
-}
-
 static const uint8_t *draw(Play *play, int size[2], SingeError *error) {
     if (!play->pictures && pictures_open(&play->job, &play->pictures, error)) return NULL;
     if (play_surface(play, error)) return NULL;
-    if (play->plain) make_plain(&play->surface);
-    if (play->glow > 0) dim(&play->surface, play->glow);
+    if (play->plain) {
+        // in a scene about shapes, burning only stands for shrinkage and should not look like char
+        for (uint32_t v = 0; v < play->surface.vertex_count; v++) {
+            play->surface.temperature[v] = play->surface.temperature_peak[v] = 293;
+            play->surface.mass[v] = 1;
+            play->surface.burn[v] = play->surface.burn_rate[v] = 0;
+            play->surface.time_ignited[v] = -1;
+        }
+    }
+    if (play->glow > 0) {
+        const float glow = play->glow;
+        for (uint32_t v = 0; v < play->surface.vertex_count; v++)
+            play->surface.temperature[v] = fminf(play->surface.temperature[v], glow);
+    }
     SingeGas gas = singe_sim_gas(play->sim);
     pictures_size(play->pictures, &size[0], &size[1]);
     double time = singe_sim_view(play->sim).time;

@@ -19,24 +19,22 @@ typedef struct Request {
     int threads;
 } Request;
 
-/// Whether there is an item of that name; otherwise prints a message.
-static bool take_item(const Page *page, const ArgReader *reader, int option, const char *word, Request *request) {
-    request->name = word;
-    for (int i = 0; i < page->count; i++)
-        if (strcmp(word, page->items[i].name) == 0) return true;
-    if (option != ARG_OPERAND) return args_complain(reader, "--only: there is no '%s'", shown(word).text), false;
-    request->name = NULL;
-    if (strcmp(word, "all") == 0) return true;
-    const char *near = args_nearest(word, page->items, page->count, sizeof *page->items);
-    if (near) args_complain(reader, "unknown WHAT '%s'; did you mean '%s'?", shown(word).text, near);
-    else args_complain(reader, "unknown WHAT '%s': expected all, or one of the experiments", shown(word).text);
-    return false;
-}
-
 /// False if the value is invalid; a message has been printed.
 static bool take(const Page *page, const ArgReader *reader, int option, const char *value, Request *request) {
     const char *name = option == ARG_OPERAND ? "only" : reader->command->options[option].name;
-    if (strcmp(name, "only") == 0) return take_item(page, reader, option, value, request);
+    if (strcmp(name, "only") == 0) {
+        // whether there is an item of that name; otherwise prints a message
+        request->name = value;
+        for (int i = 0; i < page->count; i++)
+            if (strcmp(value, page->items[i].name) == 0) return true;
+        if (option != ARG_OPERAND) return args_complain(reader, "--only: there is no '%s'", shown(value).text), false;
+        request->name = NULL;
+        if (strcmp(value, "all") == 0) return true;
+        const char *near = args_nearest(value, page->items, page->count, sizeof *page->items);
+        if (near) args_complain(reader, "unknown WHAT '%s'; did you mean '%s'?", shown(value).text, near);
+        else args_complain(reader, "unknown WHAT '%s': expected all, or one of the experiments", shown(value).text);
+        return false;
+    }
     if (strcmp(name, "quick") == 0) return request->quick = true;
     if (strcmp(name, "threads") == 0) return args_int(reader, option, value, 1, JOB_THREADS_MAX, &request->threads);
     request->folder = value;
@@ -128,20 +126,6 @@ static void *run_together(void *context) {
     return NULL;
 }
 
-/// Runs a page's items, each with one thread, and then those that run alone with all threads.
-static void run_items(Queue *queue) {
-    const int threads = queue->request->threads;
-    pthread_t others[JOB_THREADS_MAX];
-    int started = 0;
-    if (!queue->request->name) {
-        while (started < threads - 1 && !pthread_create(&others[started], NULL, run_together, queue)) started++;
-        run_together(queue);
-        for (int i = 0; i < started; i++) pthread_join(others[i], NULL);
-    }
-    for (int i = 0; i < queue->page->count && !queue->result; i++)
-        if (is_wanted(queue, i) && (queue->request->name || is_alone(queue, i))) run_item(queue, i, threads, true);
-}
-
 /// Prints the error.
 static ExitCode fail(const SingeError *error) {
     Console console = console_make(false);
@@ -153,7 +137,19 @@ static ExitCode fail(const SingeError *error) {
 static ExitCode fill(Queue *queue) {
     ExitCode code = EXIT_GOOD;
     pthread_mutex_init(&queue->lock, NULL);
-    run_items(queue);
+
+    // runs a page's items, each with one thread, and then those that run alone with all threads
+    const int threads = queue->request->threads;
+    pthread_t others[JOB_THREADS_MAX];
+    int started = 0;
+    if (!queue->request->name) {
+        while (started < threads - 1 && !pthread_create(&others[started], NULL, run_together, queue)) started++;
+        run_together(queue);
+        for (int i = 0; i < started; i++) pthread_join(others[i], NULL);
+    }
+    for (int i = 0; i < queue->page->count && !queue->result; i++)
+        if (is_wanted(queue, i) && (queue->request->name || is_alone(queue, i))) run_item(queue, i, threads, true);
+
     pthread_mutex_destroy(&queue->lock);
     if (queue->result) code = fail(&queue->error);
     for (int i = 0; i < queue->page->count; i++)

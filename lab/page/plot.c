@@ -79,27 +79,6 @@ static void draw_ticks(FILE *file, const Axis *axis, bool vertical) {
     }
 }
 
-static void draw_line(FILE *file, const Axis *x, const Axis *y, const PlotLine *line, int index) {
-    bool pen = false;
-    fprintf(file, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"%s\"%s d=\"", line->colour, line->dots ? "0" : "2",
-            line->dashed ? " stroke-dasharray=\"6 4\"" : "");
-    for (int i = 0; i < line->count; i++) {
-        if (!shown(x, line_x(line, i)) || !shown(y, line->y[i])) {
-            pen = false;
-            continue;
-        }
-        fprintf(file, "%c%.1f,%.1f ", pen ? 'L' : 'M', pixel(x, line_x(line, i)), pixel(y, line->y[i]));
-        pen = true;
-    }
-    fprintf(file, "\"/>\n");
-    for (int i = 0; i < line->count && line->dots; i++)
-        if (shown(x, line_x(line, i)) && shown(y, line->y[i]))
-            fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\"/>\n", pixel(x, line_x(line, i)),
-                    pixel(y, line->y[i]), line->colour);
-    fprintf(file, "<text x=\"%d\" y=\"%d\" fill=\"%s\">%s</text>\n", WIDTH - RIGHT + 12, TOP + 18 * index + 10,
-            line->colour, line->name);
-}
-
 void plot_add(Plot *plot, PlotLine line) {
     if (plot->line_count < PLOT_LINES_MAX) plot->lines[plot->line_count++] = line;
 }
@@ -115,7 +94,27 @@ void plot_draw(const Plot *plot, FILE *file) {
             TOP - 12, plot->y_label);
     draw_ticks(file, &x, false);
     draw_ticks(file, &y, true);
-    for (int l = 0; l < plot->line_count; l++) draw_line(file, &x, &y, &plot->lines[l], l);
+    for (int l = 0; l < plot->line_count; l++) {
+        bool pen = false;
+        fprintf(file, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"%s\"%s d=\"", plot->lines[l].colour,
+                plot->lines[l].dots ? "0" : "2", plot->lines[l].dashed ? " stroke-dasharray=\"6 4\"" : "");
+        for (int i = 0; i < plot->lines[l].count; i++) {
+            if (!shown(&x, line_x(&plot->lines[l], i)) || !shown(&y, plot->lines[l].y[i])) {
+                pen = false;
+                continue;
+            }
+            fprintf(file, "%c%.1f,%.1f ", pen ? 'L' : 'M', pixel(&x, line_x(&plot->lines[l], i)),
+                    pixel(&y, plot->lines[l].y[i]));
+            pen = true;
+        }
+        fprintf(file, "\"/>\n");
+        for (int i = 0; i < plot->lines[l].count && plot->lines[l].dots; i++)
+            if (shown(&x, line_x(&plot->lines[l], i)) && shown(&y, plot->lines[l].y[i]))
+                fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\"/>\n",
+                        pixel(&x, line_x(&plot->lines[l], i)), pixel(&y, plot->lines[l].y[i]), plot->lines[l].colour);
+        fprintf(file, "<text x=\"%d\" y=\"%d\" fill=\"%s\">%s</text>\n", WIDTH - RIGHT + 12, TOP + 18 * l + 10,
+                plot->lines[l].colour, plot->lines[l].name);
+    }
     fprintf(file, "</svg>\n");
 }
 

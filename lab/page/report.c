@@ -217,47 +217,6 @@ static void print_bar(FILE *file, double low, double high, const char *min, cons
     else fprintf(file, max, high);
 }
 
-static void measure_json(Report *report, const ReportBar *bar, bool holds) {
-    FILE *file = report->json.file;
-    fprintf(file, "%s\n  {\"item\": \"%s\", \"measure\": \"%s\", \"value\": ", report->measures ? "," : "",
-            report->name, bar->name);
-    text_json_number(file, bar->value);
-    fprintf(file, ", \"low\": ");
-    text_json_number(file, bar->low);
-    fprintf(file, ", \"high\": ");
-    text_json_number(file, bar->high);
-    fprintf(file, ", \"holds\": %s, \"what\": ", holds ? "true" : "false");
-    text_json_string(file, bar->what);
-    if (bar->bad_what) {
-        fprintf(file, ", \"bad\": ");
-        text_json_number(file, bar->bad);
-        fprintf(file, ", \"bad_what\": ");
-        text_json_string(file, bar->bad_what);
-    }
-    fputc('}', file);
-}
-
-static void measure_csv(Report *report, const ReportBar *bar, bool holds) {
-    FILE *file = report->csv.file;
-    fprintf(file, "%s,%s,%.9g,%.9g,%.9g,%s,\"%s\",", report->name, bar->name, bar->value, bar->low, bar->high,
-            holds ? "holds" : "fails", bar->what);
-    if (bar->bad_what) fprintf(file, "%.9g,\"%s\"\n", bar->bad, bar->bad_what);
-    else fprintf(file, ",\n");
-}
-
-static void keep(Report *report, const ReportBar *bar, bool holds) {
-    Taken *larger = realloc(report->taken, ((size_t)report->measures + 1) * sizeof *larger);
-    if (larger) {
-        report->taken = larger;
-        larger[report->measures] =
-            (Taken){text_format("%s", report->name), text_format("%s", bar->name), bar->value, holds};
-        report->measures++;
-    } else {
-        report->result = SINGE_ERROR_MEMORY;
-    }
-    if (!holds) report->failed++;
-}
-
 static bool within(double value, double low, double high) { return value >= low && value <= high; }
 
 void report_bar(Report *report, const ReportBar *bar) {
@@ -281,9 +240,41 @@ void report_bar(Report *report, const ReportBar *bar) {
     if (bar->bad_what) fprintf(echo, "; not %.4g (%s)", bar->bad, bar->bad_what);
     fprintf(echo, "\n");
     fflush(echo);
-    measure_csv(report, bar, holds);
-    measure_json(report, bar, holds);
-    keep(report, bar, holds);
+
+    FILE *csv = report->csv.file;
+    fprintf(csv, "%s,%s,%.9g,%.9g,%.9g,%s,\"%s\",", report->name, bar->name, bar->value, bar->low, bar->high,
+            holds ? "holds" : "fails", bar->what);
+    if (bar->bad_what) fprintf(csv, "%.9g,\"%s\"\n", bar->bad, bar->bad_what);
+    else fprintf(csv, ",\n");
+
+    FILE *json = report->json.file;
+    fprintf(json, "%s\n  {\"item\": \"%s\", \"measure\": \"%s\", \"value\": ", report->measures ? "," : "",
+            report->name, bar->name);
+    text_json_number(json, bar->value);
+    fprintf(json, ", \"low\": ");
+    text_json_number(json, bar->low);
+    fprintf(json, ", \"high\": ");
+    text_json_number(json, bar->high);
+    fprintf(json, ", \"holds\": %s, \"what\": ", holds ? "true" : "false");
+    text_json_string(json, bar->what);
+    if (bar->bad_what) {
+        fprintf(json, ", \"bad\": ");
+        text_json_number(json, bar->bad);
+        fprintf(json, ", \"bad_what\": ");
+        text_json_string(json, bar->bad_what);
+    }
+    fputc('}', json);
+
+    Taken *larger = realloc(report->taken, ((size_t)report->measures + 1) * sizeof *larger);
+    if (larger) {
+        report->taken = larger;
+        larger[report->measures] =
+            (Taken){text_format("%s", report->name), text_format("%s", bar->name), bar->value, holds};
+        report->measures++;
+    } else {
+        report->result = SINGE_ERROR_MEMORY;
+    }
+    if (!holds) report->failed++;
 }
 
 void report_measure(Report *report, const char *name, const char *what, double value, double low, double high) {
@@ -298,23 +289,6 @@ ReportVerdict report_find(const Report *report, const char *item, const char *na
         return taken->holds ? REPORT_HOLDS : REPORT_FAILS;
     }
     return REPORT_UNKNOWN;
-}
-
-/// Moves a report's measures to the page's.
-static void take_measures(ReportPage *page, Report *report) {
-    const size_t count = (size_t)page->measures + (size_t)report->measures;
-    Taken *larger = realloc(page->taken, (count + 1) * sizeof *larger);
-    if (larger) page->taken = larger;
-    else page->result = SINGE_ERROR_MEMORY;
-    for (int i = 0; i < report->measures; i++) {
-        if (larger) larger[page->measures++] = report->taken[i];
-        else free(report->taken[i].item), free(report->taken[i].name);
-    }
-    page->failed += report->failed;
-    if (report->result && !page->result) {
-        page->result = report->result;
-        page->error = report->error;
-    }
 }
 
 void report_end(ReportPage *page, Report *report) {
@@ -338,7 +312,22 @@ void report_end(ReportPage *page, Report *report) {
     } else {
         page->result = SINGE_ERROR_MEMORY;
     }
-    take_measures(page, report);
+
+    // moves a report's measures to the page's
+    const size_t count = (size_t)page->measures + (size_t)report->measures;
+    Taken *larger = realloc(page->taken, (count + 1) * sizeof *larger);
+    if (larger) page->taken = larger;
+    else page->result = SINGE_ERROR_MEMORY;
+    for (int i = 0; i < report->measures; i++) {
+        if (larger) larger[page->measures++] = report->taken[i];
+        else free(report->taken[i].item), free(report->taken[i].name);
+    }
+    page->failed += report->failed;
+    if (report->result && !page->result) {
+        page->result = report->result;
+        page->error = report->error;
+    }
+
     report_free(report);
 }
 

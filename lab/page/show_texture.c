@@ -18,19 +18,16 @@ double texture_mean(const SingeTexture *picture) {
     return sum / count;
 }
 
-static double picture_at(const SingeTexture *picture, const float uv[2]) {
-    int x = (int)(uv[0] * (float)picture->width), y = (int)((1 - uv[1]) * (float)picture->height);
-    x = x < 0 ? 0 : x >= picture->width ? picture->width - 1 : x;
-    y = y < 0 ? 0 : y >= picture->height ? picture->height - 1 : y;
-    return (double)picture->values[y * picture->width + x];
-}
-
 double texture_correlation(const SingeView *view, const SingeTexture *picture, bool mirrored, const float *field) {
     double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
     for (uint32_t v = 0; v < view->vertex_count; v++) {
         if (view->source_vertex[v] < 0) continue; // in reserve for tears
         const float uv[2] = {mirrored ? 1 - view->uv[v][0] : view->uv[v][0], view->uv[v][1]};
-        double a = picture_at(picture, uv), b = (double)field[v];
+
+        int column = (int)(uv[0] * (float)picture->width), row = (int)((1 - uv[1]) * (float)picture->height);
+        column = column < 0 ? 0 : column >= picture->width ? picture->width - 1 : column;
+        row = row < 0 ? 0 : row >= picture->height ? picture->height - 1 : row;
+        double a = (double)picture->values[row * picture->width + column], b = (double)field[v];
         n++;
         x += a;
         y += b;

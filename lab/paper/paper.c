@@ -4,45 +4,46 @@
 /// In the order of the page.
 static const PageItem items[] = {
     {"fig1", "Fig 1, 12: burning paper",
-     "Paper that starts above its ignition point and loses mass at a rate weighted by the texture shown: burnt regions "
-     "bend, and interior regions wrinkle with them.",
+     "Paper starts above its ignition temperature and loses mass at a rate weighted by the texture shown. Burnt "
+     "regions bend, and interior regions wrinkle with them.",
      paper_fig1},
     {"fig2", "Fig 2: one layer shrinks, and the shell curls",
-     "A linear beam and the BCS shell in 2D; when one layer shrinks both curve.", paper_fig2},
+     "A linear beam and the BCS shell in 2D: both curve when one layer shrinks.", paper_fig2},
     {"fig3", "Fig 3: the body-centred square",
-     "Cells with a lattice point each, offset from the plane, and springs of four colours: 4, 2, 2 and 2 a cell.",
+     "Each cell has a lattice point, offset from the plane, and springs of four colours: 4, 2, 2 and 2 per cell.",
      paper_fig3},
     {"fig4", "Fig 4: a hot sphere crosses a sheet",
      "A sheet held at two corners: (a) boundary change only; (b) shrinkage; (c) both; (d) with a texture for the rate "
      "of mass loss. It separates into two parts, with more detail from column to column.",
      paper_fig4},
     {"fig5", "Fig 5: states of a spring",
-     "Springs shrunk to 87.5 %, 62.5 %, 57.5 % and 50 % of their length, of which the latter two are partly burnt, and "
-     "one that is burnt out.",
+     "Springs shrunk to 87.5 %, 62.5 %, 57.5 % and 50 % of their length, the last two partly burnt, and one that is "
+     "burnt out.",
      paper_fig5},
-    {"fig6", "Fig 6: marching triangles", "Four cases of a triangle, by how many of its corners are left.", paper_fig6},
+    {"fig6", "Fig 6: marching triangles", "The four cases of a triangle, by the number of corners that remain.",
+     paper_fig6},
     {"fig7ab", "Fig 7 a, b: a torus on a sphere",
      "A torus falls on a sphere of 1.2 times the radius of its hole. With the paper's method (a) it stays there; with "
      "a mass-spring model (b) it stretches, passes the sphere and meets the ground.",
      paper_fig7ab},
     {"fig7cd", "Fig 7 c, d: uniform shrinkage",
-     "The blue springs of a whole shell shrink alike. With the paper's method (c) it makes complicated wrinkles; with "
-     "a mass-spring model (d) it loses them.",
+     "The blue springs of a whole shell shrink equally. With the paper's method (c), it forms complicated wrinkles; "
+     "with a mass-spring model (d), it loses them.",
      paper_fig7cd},
     {"fig10", "Fig 10: thickness and weights",
-     "Thickness to side 1:20, 1:80, 1:400 with weights of 1, and 1:400 with a weight of 0.1 for blue and yellow "
-     "springs: from a stiff plate to a limp cloth.",
+     "Ratios of thickness to side of 1:20, 1:80 and 1:400 with weights of 1, and 1:400 with a weight of 0.1 for blue "
+     "and yellow springs: from a stiff plate to a limp cloth.",
      paper_fig10},
     {"weights", "Section 7.2: inhomogeneous weights",
      "\"It is also possible to obtain a shell which has inhomogeneous bending stiffness by assigning different weights "
      "to the springs in each subset.\"",
      paper_weights},
     {"fig8", "Fig 8: errors over projection steps",
-     "The error of one colour may rise while others are projected; the sum of all \"always decreases\".", paper_fig8},
-    {"fig11", "Fig 11: a burning torus", "Any quad mesh makes a shell: a torus burns, lit by a hot ball.", paper_fig11},
+     "The error of one colour may rise while others are projected; the sum over all \"always decreases\".", paper_fig8},
+    {"fig11", "Fig 11: a burning torus", "Any quad mesh can be a shell: a hot ball ignites a torus.", paper_fig11},
     {"whole", "Figs 1, 4, 11: the paper as one system",
-     "Umbrella operator, linear loss of mass, shortening by eq 6, successive fast projection of red, green, blue and "
-     "yellow with its end: all together, in the scenes of fire.",
+     "Umbrella operator, linear loss of mass, shortening by eq 6, and fast projection of red, green, blue and yellow "
+     "in turn: all together in the scenes with fire.",
      paper_whole},
     {"heat", "Sections 5, 8: a heat texture",
      "\"We use simpler external heat sources, such as heat balls and heat textures.\"", paper_heat},
@@ -59,8 +60,7 @@ static const PageItem items[] = {
      "al.), but by shrinkage.\"",
      paper_rival},
     {"table1", "Fig 9, Table 1: two springs that exclude each other",
-     "A particle between two fixed points settles where the two springs compete to a draw: ten positions.",
-     paper_table1},
+     "A particle between two fixed points settles where its two springs balance: ten positions.", paper_table1},
     {"all-at-once", "Section 7.1: all colours at once",
      "More constraints than degrees of freedom, 10 to 6, and gradients that depend on each other: fast projection of "
      "all springs in one system diverges.",
@@ -81,14 +81,14 @@ static const PageItem items[] = {
      "choices.",
      paper_readings},
     {"statements", "Sections 5 to 8, statement by statement",
-     "What the paper says of its method and its results, and what came of it here.", paper_statements},
+     "What the paper says about its method and its results, and what this program finds.", paper_statements},
 };
 
 enum { OPT_OUTPUT, OPT_QUICK, OPT_THREADS, OPT_COUNT };
 
 static const ArgOption paper_options[OPT_COUNT] = {
-    [OPT_OUTPUT] = {"output", 'o', "DIR", "folder of the page [out/paper]"},
-    [OPT_QUICK] = {"quick", 0, NULL, "small sizes, for a check of the measures"},
+    [OPT_OUTPUT] = {"output", 'o', "DIR", "folder for the page [out/paper]"},
+    [OPT_QUICK] = {"quick", 0, NULL, "small sizes, for a quick check"},
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
 };
 
@@ -100,10 +100,10 @@ static const ArgCommand paper_command = {
     OPT_COUNT,
     "WHAT is all, or one of\n"
     "  fig1 fig2 fig3 fig4 fig5 fig6 fig7ab fig7cd fig8 fig10 fig11 table1 table2 whole\n"
-    "  heat alpha all-at-once mass-loss weights rival crossing adaptive readings statements   (docs/cli.md says what "
-    "they are)\n"
+    "  heat alpha all-at-once mass-loss weights rival crossing adaptive readings statements   (docs/cli.md "
+    "describes them)\n"
     "\n"
-    "Exit codes: 0 good, 1 failed or a measure does not hold, 2 bad usage."};
+    "Exit codes: 0 good, 1 an error, or a measure outside its bars, 2 bad usage."};
 
 static const char *const alone[] = {"table2", "adaptive", "statements", NULL};
 
@@ -112,9 +112,9 @@ static const Page page = {
     sizeof items / sizeof *items,
     "out/paper",
     "The paper, figure by figure",
-    "<i>Shrinkage, wrinkling and ablation of burning cloth and paper</i>, its experiments as this program runs them. "
-    "Each item says what the paper shows, then what came out here, and holds measures of it against stated bars. The "
-    "scenes are in <code>scenes/</code> beside this page; <code>singe run</code> plays them.",
+    "The experiments of <i>Shrinkage, wrinkling and ablation of burning cloth and paper</i>, as this program runs "
+    "them. Each item shows what the paper reports and what the program computes, and compares measures of it with "
+    "bars. The scenes are in <code>scenes/</code> next to this page; <code>singe run</code> runs them.",
     alone};
 
 int command_paper(int argc, char **argv) { return page_run(&page, &paper_command, argc, argv); }

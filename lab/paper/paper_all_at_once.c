@@ -84,66 +84,6 @@ enum { CONTENDERS = 4 };
 static const char *const names[CONTENDERS] = {"all at once", "colour after colour", "all at once, floor",
                                               "colour after colour, floor"};
 
-static void contenders_run(Lab *lab, const Contender *contenders, double floor) {
-    static const char *const inks[CONTENDERS] = {"#b2182b", "#2166ac", "#e08214", "#5aae61"};
-    double errors[CONTENDERS][STEPS + 1], ends[CONTENDERS];
-    uint32_t iterations[CONTENDERS] = {0};
-    bool broken[CONTENDERS] = {false};
-    report_text(
-        lab->report,
-        "Error |C| of all springs in m after each projection step, with nothing on the diagonal and with a floor "
-        "of %g, as <code>solver: paper</code> has.",
-        floor);
-    report_heads(lab->report, "step|all at once|colour after colour|all at once, floor|colour after colour, floor");
-    for (int step = 0; step <= STEPS; step++) {
-        for (int i = 0; i < CONTENDERS; i++)
-            errors[i][step] = contender_step(&contenders[i], step, &iterations[i], &broken[i]);
-        report_row(lab->report, "%d|%.3g|%.3g|%.3g|%.3g", step, errors[0][step], errors[1][step], errors[2][step],
-                   errors[3][step]);
-    }
-    report_row(lab->report, "iterations|%u%s|%u%s|%u%s|%u%s", iterations[0], broken[0] ? ", broke down" : "",
-               iterations[1], broken[1] ? ", broke down" : "", iterations[2], broken[2] ? ", broke down" : "",
-               iterations[3], broken[3] ? ", broke down" : "");
-    Plot plot = {.title = "All colours in one system, and one after another",
-                 .x_label = "projection step",
-                 .y_label = "|C|, m",
-                 .log_y = true};
-    for (int i = 0; i < CONTENDERS; i++) {
-        plot_add(&plot, (PlotLine){.name = names[i], .colour = inks[i], .y = errors[i], .count = STEPS + 1});
-        ends[i] = broken[i] ? 1e9 : errors[i][STEPS] / errors[i][0];
-    }
-    report_plot(lab->report, &plot);
-    report_text(
-        lab->report,
-        "So the paper's reason holds as it stands: with nothing on the diagonal all at once diverges and colour "
-        "after colour does not. But it is the rank that is at fault, and not the number of constraints: a floor "
-        "mends it, and all at once then ends at %.2g of the error that colour after colour ends at with the same "
-        "floor, for %.1f times the iterations.",
-        ends[2] / ends[3], (double)iterations[2] / iterations[3]);
-    report_bar(lab->report, &(ReportBar){"all_diverges", "no floor: error after 7 steps over that before, all at once",
-                                         ends[0], 1, INFINITY, ends[1], names[1]});
-    report_bar(lab->report, &(ReportBar){"colours_converge", "no floor: the same, colour after colour", ends[1], 0, 0.9,
-                                         ends[0], names[0]});
-    report_bar(lab->report, &(ReportBar){"floor_converges", "with a floor: the same, all at once", ends[2], 0, 0.5,
-                                         ends[0], "all at once without"});
-    report_bar(lab->report, &(ReportBar){"floor_colours", "with a floor: the same, colour after colour", ends[3], 0,
-                                         0.9, ends[0], "all at once without"});
-}
-
-static SingeResult all_at_once_run(Lab *lab, const SingeSim *sim, SingeError *error) {
-    const double floor = singe_default_network().regularisation;
-    Contender contenders[CONTENDERS] = {
-        {.sets = 1}, {.sets = SINGE_COLOUR_COUNT}, {.sets = 1}, {.sets = SINGE_COLOUR_COUNT}};
-    SingeResult result = SINGE_OK;
-    for (int i = 0; i < CONTENDERS && !result; i++)
-        result =
-            paper_network(sim, PAPER_SWING, contenders[i].sets == 1, i < 2 ? 0 : floor, &contenders[i].network, error);
-    if (!result) result = ranks_print(lab, sim, contenders[0].network, contenders[1].network);
-    if (!result) contenders_run(lab, contenders, floor);
-    for (int i = 0; i < CONTENDERS; i++) singe_network_destroy(contenders[i].network);
-    return result;
-}
-
 SingeResult paper_all_at_once(Lab *lab, SingeError *error) {
     SingeSolverDef solver = singe_default_solver();
     singe_init_solver_method(&solver, sizeof solver, SINGE_SOLVER_PAPER);
@@ -151,7 +91,64 @@ SingeResult paper_all_at_once(Lab *lab, SingeError *error) {
     SingeResult result = paper_sim(PAPER_SWING, CELLS, &solver, 1, &sim, error);
     if (result) return result;
     result = lab_steps(sim, WARM_STEPS, error);
-    if (!result) result = all_at_once_run(lab, sim, error);
+    if (!result) {
+        const double floor = singe_default_network().regularisation;
+        Contender contenders[CONTENDERS] = {
+            {.sets = 1}, {.sets = SINGE_COLOUR_COUNT}, {.sets = 1}, {.sets = SINGE_COLOUR_COUNT}};
+        result = SINGE_OK;
+        for (int i = 0; i < CONTENDERS && !result; i++)
+            result = paper_network(sim, PAPER_SWING, contenders[i].sets == 1, i < 2 ? 0 : floor, &contenders[i].network,
+                                   error);
+        if (!result) result = ranks_print(lab, sim, contenders[0].network, contenders[1].network);
+        if (!result) {
+            static const char *const inks[CONTENDERS] = {"#b2182b", "#2166ac", "#e08214", "#5aae61"};
+            double errors[CONTENDERS][STEPS + 1], ends[CONTENDERS];
+            uint32_t iterations[CONTENDERS] = {0};
+            bool broken[CONTENDERS] = {false};
+            report_text(
+                lab->report,
+                "Error |C| of all springs in m after each projection step, with nothing on the diagonal and with a floor "
+                "of %g, as <code>solver: paper</code> has.",
+                floor);
+            report_heads(lab->report,
+                         "step|all at once|colour after colour|all at once, floor|colour after colour, floor");
+            for (int step = 0; step <= STEPS; step++) {
+                for (int i = 0; i < CONTENDERS; i++)
+                    errors[i][step] = contender_step(&contenders[i], step, &iterations[i], &broken[i]);
+                report_row(lab->report, "%d|%.3g|%.3g|%.3g|%.3g", step, errors[0][step], errors[1][step],
+                           errors[2][step], errors[3][step]);
+            }
+            report_row(lab->report, "iterations|%u%s|%u%s|%u%s|%u%s", iterations[0], broken[0] ? ", broke down" : "",
+                       iterations[1], broken[1] ? ", broke down" : "", iterations[2], broken[2] ? ", broke down" : "",
+                       iterations[3], broken[3] ? ", broke down" : "");
+            Plot plot = {.title = "All colours in one system, and one after another",
+                         .x_label = "projection step",
+                         .y_label = "|C|, m",
+                         .log_y = true};
+            for (int i = 0; i < CONTENDERS; i++) {
+                plot_add(&plot, (PlotLine){.name = names[i], .colour = inks[i], .y = errors[i], .count = STEPS + 1});
+                ends[i] = broken[i] ? 1e9 : errors[i][STEPS] / errors[i][0];
+            }
+            report_plot(lab->report, &plot);
+            report_text(
+                lab->report,
+                "So the paper's reason holds as it stands: with nothing on the diagonal all at once diverges and colour "
+                "after colour does not. But it is the rank that is at fault, and not the number of constraints: a floor "
+                "mends it, and all at once then ends at %.2g of the error that colour after colour ends at with the same "
+                "floor, for %.1f times the iterations.",
+                ends[2] / ends[3], (double)iterations[2] / iterations[3]);
+            report_bar(lab->report,
+                       &(ReportBar){"all_diverges", "no floor: error after 7 steps over that before, all at once",
+                                    ends[0], 1, INFINITY, ends[1], names[1]});
+            report_bar(lab->report, &(ReportBar){"colours_converge", "no floor: the same, colour after colour", ends[1],
+                                                 0, 0.9, ends[0], names[0]});
+            report_bar(lab->report, &(ReportBar){"floor_converges", "with a floor: the same, all at once", ends[2], 0,
+                                                 0.5, ends[0], "all at once without"});
+            report_bar(lab->report, &(ReportBar){"floor_colours", "with a floor: the same, colour after colour",
+                                                 ends[3], 0, 0.9, ends[0], "all at once without"});
+        }
+        for (int i = 0; i < CONTENDERS; i++) singe_network_destroy(contenders[i].network);
+    }
     singe_sim_destroy(sim);
     return result;
 }

@@ -33,34 +33,32 @@ typedef struct Fig1 {
     Look look;                    ///< from 2.2 s on
 } Fig1;
 
-static SingeResult fig1_run(Lab *lab, bool plain, Fig1 *fig, SingeError *error) {
-    static const double times[FIG1_SHOTS] = {0.1, 0.5, 1, 1.6, 2.2, 3};
-    Play play;
-    const char *sets[] = {plain ? "sheets.0.material.shrink_front=0" : "",
-                          plain ? "sheets.0.material.shrink_back=0" : "", lab->quick ? small_grid : "", NULL};
-    SingeResult result = play_open(&play, lab, "fig1.yaml", sets, error);
-    const SingeTexture *picture = &play.job.assets.fields[0][SCENE_PARAM_SLOT(mass_rate)].texture;
-    if (!result && !plain) report_pictures(lab->report, 4), texture_show(lab, picture);
-    for (int i = 0; i < FIG1_SHOTS && !result; i++) {
-        result = plain ? play_until(&play, times[i], error) : play_shoot_at(&play, times[i], error);
-        if (result) break;
-        SingeView view = singe_sim_view(play.sim);
-        if (i == 0) {
-            fig->correlation = -texture_correlation(&view, picture, false, view.mass);
-            fig->mirrored = -texture_correlation(&view, picture, true, view.mass);
-            fig->gone = 1 - shape_left(&view);
-        }
-        fig->inner = fmax(fig->inner, bend_of_unburnt(&view, 0.7f));
-        if (times[i] > 2) result = look_take(&play, 0, &fig->look, error);
-    }
-    play_close(&play);
-    return result;
-}
-
 SingeResult paper_fig1(Lab *lab, SingeError *error) {
     Fig1 runs[FIG1_RUNS] = {{0}};
     SingeResult result = SINGE_OK;
-    for (int i = 0; i < FIG1_RUNS && !result; i++) result = fig1_run(lab, i == 1, &runs[i], error);
+    for (int i = 0; i < FIG1_RUNS && !result; i++) {
+        const bool plain = i == 1; // without shrinkage
+        static const double times[FIG1_SHOTS] = {0.1, 0.5, 1, 1.6, 2.2, 3};
+        Play play;
+        const char *sets[] = {plain ? "sheets.0.material.shrink_front=0" : "",
+                              plain ? "sheets.0.material.shrink_back=0" : "", lab->quick ? small_grid : "", NULL};
+        result = play_open(&play, lab, "fig1.yaml", sets, error);
+        const SingeTexture *picture = &play.job.assets.fields[0][SCENE_PARAM_SLOT(mass_rate)].texture;
+        if (!result && !plain) report_pictures(lab->report, 4), texture_show(lab, picture);
+        for (int shot = 0; shot < FIG1_SHOTS && !result; shot++) {
+            result = plain ? play_until(&play, times[shot], error) : play_shoot_at(&play, times[shot], error);
+            if (result) break;
+            SingeView view = singe_sim_view(play.sim);
+            if (shot == 0) {
+                runs[i].correlation = -texture_correlation(&view, picture, false, view.mass);
+                runs[i].mirrored = -texture_correlation(&view, picture, true, view.mass);
+                runs[i].gone = 1 - shape_left(&view);
+            }
+            runs[i].inner = fmax(runs[i].inner, bend_of_unburnt(&view, 0.7f));
+            if (times[shot] > 2) result = look_take(&play, 0, &runs[i].look, error);
+        }
+        play_close(&play);
+    }
     if (result) return result;
     const Fig1 *fig = &runs[0], *flat = &runs[1];
     static const char *const without = "the same sheet without shrinkage";
@@ -86,41 +84,6 @@ SingeResult paper_fig1(Lab *lab, SingeError *error) {
 enum { COLUMNS = 4, ROWS = 4 };
 
 enum { FIG4_MEAN = COLUMNS }; ///< a fifth run, not drawn: the mean of (d)'s texture everywhere
-
-/// *rate: the mean of (d)'s rate, which the next run uses.
-static SingeResult fig4_column(Lab *lab, int i, Look *look, double *rate, uint8_t **rgb, int size[2],
-                               SingeError *error) {
-    static const double times[ROWS] = {0.9, 1.6, 2.3, 2.7};
-    static const char *const variants[FIG4_MEAN + 1][3] = {
-        {"sheets.0.material.shrink_front=0", "sheets.0.material.shrink_back=0", "tearing=no"},
-        {"sheets.0.material.ablate=no", "tearing=no", ""},
-        {"", "", ""},
-        {"sheets.0.material.mass_rate={from: 1e-3, to: 20e-3, texture: rate.png}", "", ""},
-        {"", "", ""}};
-    char mean[60] = "";
-    if (i == FIG4_MEAN) snprintf(mean, sizeof mean, "sheets.0.material.mass_rate=%g", *rate);
-    const double cut = i == 1 ? 0.2 : 0; // the scene's mass_loss: where the edge of (b) would be
-    Play play;
-    const char *sets[] = {variants[i][0],
-                          variants[i][1],
-                          variants[i][2],
-                          mean,
-                          lab->quick ? small_grid : "",
-                          lab->quick ? "preview.size=[320, 384]" : "",
-                          NULL};
-    SingeResult result = play_open(&play, lab, "fig4.yaml", sets, error);
-    if (!result && i == FIG4_MEAN - 1)
-        *rate = 1e-3 + 19e-3 * texture_mean(&play.job.assets.fields[0][SCENE_PARAM_SLOT(mass_rate)].texture);
-    for (int k = 0; k < ROWS && !result; k++) {
-        result = play_until(&play, times[k], error);
-        if (!result && i < COLUMNS) result = play_draw(&play, &rgb[k], size, error);
-        if (!result && times[k] > 2) result = look_take(&play, cut, look, error);
-    }
-    if (!result) result = play_until(&play, 3.6, error);
-    if (!result) result = look_take(&play, cut, look, error);
-    play_close(&play);
-    return result;
-}
 
 static void fig4_report(Report *report, const Look *look) {
     static const char *const same = "(a) over itself", *const whole = "(b), which stays whole";
@@ -159,7 +122,38 @@ SingeResult paper_fig4(Lab *lab, SingeError *error) {
     uint8_t *rgb[COLUMNS + 1][ROWS] = {{NULL}};
     int size[2] = {0};
     SingeResult result = SINGE_OK;
-    for (int i = 0; i <= FIG4_MEAN && !result; i++) result = fig4_column(lab, i, &look[i], &rate, rgb[i], size, error);
+    for (int i = 0; i <= FIG4_MEAN && !result; i++) {
+        // *rate: the mean of (d)'s rate, which the next run uses
+        static const double times[ROWS] = {0.9, 1.6, 2.3, 2.7};
+        static const char *const variants[FIG4_MEAN + 1][3] = {
+            {"sheets.0.material.shrink_front=0", "sheets.0.material.shrink_back=0", "tearing=no"},
+            {"sheets.0.material.ablate=no", "tearing=no", ""},
+            {"", "", ""},
+            {"sheets.0.material.mass_rate={from: 1e-3, to: 20e-3, texture: rate.png}", "", ""},
+            {"", "", ""}};
+        char mean[60] = "";
+        if (i == FIG4_MEAN) snprintf(mean, sizeof mean, "sheets.0.material.mass_rate=%g", rate);
+        const double cut = i == 1 ? 0.2 : 0; // the scene's mass_loss: where the edge of (b) would be
+        Play play;
+        const char *sets[] = {variants[i][0],
+                              variants[i][1],
+                              variants[i][2],
+                              mean,
+                              lab->quick ? small_grid : "",
+                              lab->quick ? "preview.size=[320, 384]" : "",
+                              NULL};
+        result = play_open(&play, lab, "fig4.yaml", sets, error);
+        if (!result && i == FIG4_MEAN - 1)
+            rate = 1e-3 + 19e-3 * texture_mean(&play.job.assets.fields[0][SCENE_PARAM_SLOT(mass_rate)].texture);
+        for (int k = 0; k < ROWS && !result; k++) {
+            result = play_until(&play, times[k], error);
+            if (!result && i < COLUMNS) result = play_draw(&play, &rgb[i][k], size, error);
+            if (!result && times[k] > 2) result = look_take(&play, cut, &look[i], error);
+        }
+        if (!result) result = play_until(&play, 3.6, error);
+        if (!result) result = look_take(&play, cut, &look[i], error);
+        play_close(&play);
+    }
     if (!result) report_pictures(lab->report, COLUMNS);
     for (int k = 0; k < ROWS; k++)
         for (int i = 0; i < COLUMNS; i++) {
@@ -173,19 +167,6 @@ SingeResult paper_fig4(Lab *lab, SingeError *error) {
 }
 
 // ---- Fig 11: the torus burns
-
-/// The number of sectors, of 12 around the hole, in which a fifth of the vertices have ignited.
-static int sectors_lit(const SingeView *view) {
-    double lit[12] = {0}, all[12] = {0};
-    int count = 0;
-    for (uint32_t v = 0; v < view->vertex_count; v++) {
-        if (view->source_vertex[v] < 0) continue; // in reserve for tears
-        int k = (int)(6 + 6 * atan2((double)view->rest_position[v][1], (double)view->rest_position[v][0]) / acos(-1));
-        all[k % 12]++, lit[k % 12] += view->time_ignited[v] >= 0;
-    }
-    for (int k = 0; k < 12; k++) count += lit[k] >= 0.2 * all[k];
-    return count;
-}
 
 /// The largest error of the heat ledger if losses to the air were omitted from it.
 static double ledger_without_losses(const SingeStats *stats) {
@@ -216,7 +197,20 @@ SingeResult paper_fig11(Lab *lab, SingeError *error) {
             if (!result && times[i] > 2 && times[i] < 7) result = look_take(&play, 0, &looks[plain], error);
             if (result || plain) continue;
             SingeView view = singe_sim_view(play.sim);
-            lit[i] = sectors_lit(&view), stats = singe_sim_stats(play.sim);
+
+            // the number of sectors, of 12 around the hole, in which a fifth of the vertices have ignited
+            double ignited[12] = {0}, all[12] = {0};
+            int count = 0;
+            for (uint32_t v = 0; v < view.vertex_count; v++) {
+                if (view.source_vertex[v] < 0) continue; // in reserve for tears
+                int k =
+                    (int)(6 + 6 * atan2((double)view.rest_position[v][1], (double)view.rest_position[v][0]) / acos(-1));
+                all[k % 12]++;
+                ignited[k % 12] += view.time_ignited[v] >= 0;
+            }
+            for (int k = 0; k < 12; k++) count += ignited[k] >= 0.2 * all[k];
+            lit[i] = count;
+            stats = singe_sim_stats(play.sim);
             if (i == 0) first = shape_left(&view);
             looks[0].left = shape_left(&view);
         }
@@ -288,26 +282,6 @@ SingeResult paper_mass_loss(Lab *lab, SingeError *error) {
 
 enum { RIVAL_LOOKS = 145 };
 
-/// K, temperature of the front minus that of the back; 1/m, curvature along the strip's centre line, positive towards
-/// the back.
-static void rival_look(const SingeView *view, double *difference, double *curvature) {
-    enum { ALONG = 30 };
-    double front = 0, back = 0, angle = 0, length = 0;
-    const uint32_t row = ALONG + 1;
-    for (uint32_t i = 0; i < view->cell_count; i++)
-        front += (double)view->temperature[view->vertex_count + i] / view->cell_count;
-    for (uint32_t v = 0; v < view->vertex_count; v++) back += (double)view->temperature[v] / view->vertex_count;
-    for (uint32_t i = 2; i + 3 < row; i++) {
-        const float *p = view->position[row + i], *q = view->position[row + i + 1], *r = view->position[row + i + 2];
-        double a[2] = {(double)q[0] - (double)p[0], (double)q[2] - (double)p[2]};
-        double b[2] = {(double)r[0] - (double)q[0], (double)r[2] - (double)q[2]};
-        angle += atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
-        length += hypot(a[0], a[1]);
-    }
-    *difference = front - back;
-    *curvature = angle / length;
-}
-
 static void scale_to_one(double *values, int count) {
     double max = 0;
     for (int i = 0; i < count; i++) max = fmax(max, fabs(values[i]));
@@ -342,18 +316,6 @@ static void rival_draw(FILE *file, const double (*profile)[RIVAL_POINTS][2], con
     fprintf(file, "</svg>\n");
 }
 
-/// The centre line relative to its own centre, for rival_draw.
-static void rival_profile(const SingeView *view, double profile[RIVAL_POINTS][2]) {
-    double mean[2] = {0};
-    for (int i = 0; i < RIVAL_POINTS; i++)
-        for (int k = 0; k < 2; k++) {
-            profile[i][k] = (double)view->position[RIVAL_POINTS + i][2 * k];
-            mean[k] += profile[i][k] / RIVAL_POINTS;
-        }
-    for (int i = 0; i < RIVAL_POINTS; i++)
-        for (int k = 0; k < 2; k++) profile[i][k] -= mean[k];
-}
-
 SingeResult paper_rival(Lab *lab, SingeError *error) {
     double time[RIVAL_LOOKS], difference[RIVAL_LOOKS], curvature[RIVAL_LOOKS];
     double profiles[RIVAL_SHOTS][RIVAL_POINTS][2] = {{{0}}}, bend[RIVAL_SHOTS];
@@ -363,9 +325,37 @@ SingeResult paper_rival(Lab *lab, SingeError *error) {
         time[k] = k / 24.0;
         result = play_until(&play, time[k], error);
         SingeView view = singe_sim_view(play.sim);
-        rival_look(&view, &difference[k], &curvature[k]);
+
+        // K, temperature of the front minus that of the back; 1/m, curvature along the strip's centre line, positive
+        // towards the back
+        enum { ALONG = 30 };
+        double front = 0, back = 0, angle = 0, length = 0;
+        const uint32_t row = ALONG + 1;
+        for (uint32_t i = 0; i < view.cell_count; i++)
+            front += (double)view.temperature[view.vertex_count + i] / view.cell_count;
+        for (uint32_t v = 0; v < view.vertex_count; v++) back += (double)view.temperature[v] / view.vertex_count;
+        for (uint32_t i = 2; i + 3 < row; i++) {
+            const float *p = view.position[row + i], *q = view.position[row + i + 1], *r = view.position[row + i + 2];
+            double a[2] = {(double)q[0] - (double)p[0], (double)q[2] - (double)p[2]};
+            double b[2] = {(double)r[0] - (double)q[0], (double)r[2] - (double)q[2]};
+            angle += atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+            length += hypot(a[0], a[1]);
+        }
+        difference[k] = front - back;
+        curvature[k] = angle / length;
+
         for (int s = 0; s < RIVAL_SHOTS; s++)
-            if (k == rival_shots[s]) rival_profile(&view, profiles[s]);
+            if (k == rival_shots[s]) {
+                // the centre line relative to its own centre, for rival_draw
+                double mean[2] = {0};
+                for (int i = 0; i < RIVAL_POINTS; i++)
+                    for (int n = 0; n < 2; n++) {
+                        profiles[s][i][n] = (double)view.position[RIVAL_POINTS + i][2 * n];
+                        mean[n] += profiles[s][i][n] / RIVAL_POINTS;
+                    }
+                for (int i = 0; i < RIVAL_POINTS; i++)
+                    for (int n = 0; n < 2; n++) profiles[s][i][n] -= mean[n];
+            }
     }
     play_close(&play);
     if (result) return result;

@@ -163,27 +163,6 @@ SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
 
 enum { SHELLS = 4 };
 
-/// m, height of the sheet's centre above the mean of its border; degrees, bending of the sheet from there: the mean
-/// slope of the border's cells, across the border.
-static void shell_measure(const SingeView *view, int n, double *sag, double *bend) {
-    const uint32_t row = (uint32_t)n + 1, last = (uint32_t)n;
-    double border = 0, slope = 0, count = 0;
-    for (uint32_t i = 1; i < last; i++) {
-        const uint32_t pairs[4][2] = {{i, i + row},
-                                      {i + row * last, i + row * (last - 1)},
-                                      {i * row, i * row + 1},
-                                      {i * row + last, i * row + last - 1}};
-        for (int k = 0; k < 4; k++, count++) {
-            const float *p = view->position[pairs[k][0]], *q = view->position[pairs[k][1]];
-            double across = hypot((double)p[0] - (double)q[0], (double)p[1] - (double)q[1]);
-            border += (double)p[2];
-            slope += atan2((double)q[2] - (double)p[2], across) * 180 / acos(-1);
-        }
-    }
-    *sag = (double)view->position[row * (last / 2) + last / 2][2] - border / count;
-    *bend = slope / count;
-}
-
 typedef struct Shell10 {
     const char *name, *thickness, *weight;
 } Shell10;
@@ -227,7 +206,26 @@ static SingeResult shell_run(Lab *lab, const Shell10 *shell, int n, bool papers,
         result = play_shoot(&play, caption, error);
     const SingeView view = play.sim ? singe_sim_view(play.sim) : (SingeView){0};
     double down = 0, slope = 0;
-    if (!result) shell_measure(&view, n, &down, &slope);
+    if (!result) {
+        // m, height of the sheet's centre above the mean of its border; degrees, bending of the sheet from there: the
+        // mean slope of the border's cells, across the border
+        const uint32_t row = (uint32_t)n + 1, last = (uint32_t)n;
+        double border = 0, border_slope = 0, count = 0;
+        for (uint32_t i = 1; i < last; i++) {
+            const uint32_t pairs[4][2] = {{i, i + row},
+                                          {i + row * last, i + row * (last - 1)},
+                                          {i * row, i * row + 1},
+                                          {i * row + last, i * row + last - 1}};
+            for (int k = 0; k < 4; k++, count++) {
+                const float *p = view.position[pairs[k][0]], *q = view.position[pairs[k][1]];
+                double across = hypot((double)p[0] - (double)q[0], (double)p[1] - (double)q[1]);
+                border += (double)p[2];
+                border_slope += atan2((double)q[2] - (double)p[2], across) * 180 / acos(-1);
+            }
+        }
+        down = (double)view.position[row * (last / 2) + last / 2][2] - border / count;
+        slope = border_slope / count;
+    }
     *sag += papers ? down : down / FIG10_MESHES;
     *bend += papers ? slope : slope / FIG10_MESHES;
     play_close(&play);
@@ -241,27 +239,6 @@ static SingeResult shell_runs(Lab *lab, const Shell10 *shell, double *sag, doubl
     return result;
 }
 
-static void fig10_report(Report *report, double (*sag)[SHELLS], double (*bend)[SHELLS], const double *more) {
-    report_heads(report, "thickness, weight|sag, mm|bend, degrees|paper's solver, mm|degrees");
-    for (int i = 0; i < SHELLS; i++)
-        report_row(report, "%s|%.1f|%.2f|%.1f|%.2f", shells[i].name, 1e3 * sag[0][i], bend[0][i], 1e3 * sag[1][i],
-                   bend[1][i]);
-    report_text(
-        report,
-        "Sag: height of the centre over the mean of the border. Bend: the mean slope of the border's cells, "
-        "across the border. By strands both are means over sheets of 24, 28, 32 and 36 cells a side, which fold "
-        "in different ways; by the paper's solver the sheet has 16.");
-    const double near = more[0] / bend[0][SHELL_B], weak = more[1] / bend[0][SHELL_C];
-    report_bar(report, &(ReportBar){"sag_b_a", "sag, (b) over (a)", sag[0][SHELL_B] / sag[0][SHELL_A], 1.5, INFINITY,
-                                    sag[0][SHELL_C] / sag[0][SHELL_B], "(c) over (b)"});
-    report_bar(report, &(ReportBar){"bend_b_a", "bend, (b) over (a)", bend[0][SHELL_B] / bend[0][SHELL_A], 1.5,
-                                    INFINITY, bend[0][SHELL_C] / bend[0][SHELL_B], "(c) over (b)"});
-    report_bar(report, &(ReportBar){"bend_c_b", "bend, (c) over (b)", bend[0][SHELL_C] / bend[0][SHELL_B], 1.05,
-                                    INFINITY, near, "(b) with weights of 0.9 over (b)"});
-    report_bar(report, &(ReportBar){"bend_d_c", "bend, (d) over (c)", bend[0][SHELL_D] / bend[0][SHELL_C], 1.1,
-                                    INFINITY, weak, "(c) with weights of 0.9 over (c)"});
-}
-
 SingeResult paper_fig10(Lab *lab, SingeError *error) {
     double sag[2][SHELLS] = {{0}}, bend[2][SHELLS] = {{0}}, more[2] = {0}, unused = 0;
     SingeResult result = SINGE_OK;
@@ -271,23 +248,30 @@ SingeResult paper_fig10(Lab *lab, SingeError *error) {
         result = shell_run(lab, &shells[i], FIG10_PAPERS, true, &sag[1][i], &bend[1][i], error);
     for (int i = 0; i < 2 && !result; i++)
         result = shell_runs(lab, &shells[SHELL_B_NEAR + i], &unused, &more[i], error);
-    if (!result) fig10_report(lab->report, sag, bend, more);
+    if (!result) {
+        report_heads(lab->report, "thickness, weight|sag, mm|bend, degrees|paper's solver, mm|degrees");
+        for (int i = 0; i < SHELLS; i++)
+            report_row(lab->report, "%s|%.1f|%.2f|%.1f|%.2f", shells[i].name, 1e3 * sag[0][i], bend[0][i],
+                       1e3 * sag[1][i], bend[1][i]);
+        report_text(
+            lab->report,
+            "Sag: height of the centre over the mean of the border. Bend: the mean slope of the border's cells, "
+            "across the border. By strands both are means over sheets of 24, 28, 32 and 36 cells a side, which fold "
+            "in different ways; by the paper's solver the sheet has 16.");
+        const double near = more[0] / bend[0][SHELL_B], weak = more[1] / bend[0][SHELL_C];
+        report_bar(lab->report, &(ReportBar){"sag_b_a", "sag, (b) over (a)", sag[0][SHELL_B] / sag[0][SHELL_A], 1.5,
+                                             INFINITY, sag[0][SHELL_C] / sag[0][SHELL_B], "(c) over (b)"});
+        report_bar(lab->report, &(ReportBar){"bend_b_a", "bend, (b) over (a)", bend[0][SHELL_B] / bend[0][SHELL_A], 1.5,
+                                             INFINITY, bend[0][SHELL_C] / bend[0][SHELL_B], "(c) over (b)"});
+        report_bar(lab->report, &(ReportBar){"bend_c_b", "bend, (c) over (b)", bend[0][SHELL_C] / bend[0][SHELL_B],
+                                             1.05, INFINITY, near, "(b) with weights of 0.9 over (b)"});
+        report_bar(lab->report, &(ReportBar){"bend_d_c", "bend, (d) over (c)", bend[0][SHELL_D] / bend[0][SHELL_C], 1.1,
+                                             INFINITY, weak, "(c) with weights of 0.9 over (c)"});
+    }
     return result;
 }
 
 // ---- section 7.2: weights that vary over one sheet
-
-/// m, sag of the outer 2 cm, of the stiff half and of the soft one.
-static void weights_fall(const SingeView *view, double fall[2]) {
-    double count[2] = {0};
-    fall[0] = fall[1] = 0;
-    for (uint32_t v = 0; v < view->vertex_count; v++) {
-        double x = (double)view->rest_position[v][0];
-        if (fabs(x) < 0.1) continue;
-        fall[x < 0] += 0.12 - (double)view->position[v][2], count[x < 0]++;
-    }
-    for (int k = 0; k < 2; k++) fall[k] /= count[k];
-}
 
 SingeResult paper_weights(Lab *lab, SingeError *error) {
     double fall[2][2] = {{0}}; // of the scene, and with the soft weight everywhere
@@ -304,7 +288,17 @@ SingeResult paper_weights(Lab *lab, SingeError *error) {
         if (!result) result = play_until(&play, 2, error);
         if (!result && !even) result = play_shoot(&play, "2 s", error);
         SingeView view = play.sim ? singe_sim_view(play.sim) : (SingeView){0};
-        if (!result) weights_fall(&view, fall[even]);
+        if (!result) {
+            // m, sag of the outer 2 cm, of the stiff half and of the soft one
+            double count[2] = {0};
+            fall[even][0] = fall[even][1] = 0;
+            for (uint32_t v = 0; v < view.vertex_count; v++) {
+                double x = (double)view.rest_position[v][0];
+                if (fabs(x) < 0.1) continue;
+                fall[even][x < 0] += 0.12 - (double)view.position[v][2], count[x < 0]++;
+            }
+            for (int k = 0; k < 2; k++) fall[even][k] /= count[k];
+        }
         play_close(&play);
     }
     if (result) return result;

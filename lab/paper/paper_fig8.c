@@ -55,14 +55,6 @@ static bool fig8_rises(const Fig8 *fig, int steps) {
     return false;
 }
 
-static void fig8_count(const Fig8 *fig, Fig8Count *count) {
-    const double *sum = fig->error[SINGE_COLOUR_COUNT];
-    count->states++;
-    count->rises += fig8_rises(fig, COUNTED);
-    count->lower += sum[COUNTED] < sum[0];
-    if (sum[0] > 0 && sum[COUNTED] / sum[0] > count->worst) count->worst = sum[COUNTED] / sum[0];
-}
-
 static SingeResult fig8_write(Lab *lab, const char *state, const Fig8 *fig, SingeError *error) {
     static const char *const names[] = {"red", "green", "blue", "yellow", "sum"};
     static const char *const inks[] = {"#d62728", "#2ca02c", "#1f77b4", "#d0a000", "#777777"};
@@ -102,7 +94,13 @@ static SingeResult fig8_run(Lab *lab, const Fig8Run *run, Fig8Count *count, Sing
         if (step == run->shown) result = fig8_project(sim, run->state, STEPS, &shown, error);
         if (!result) {
             result = fig8_project(sim, run->state, COUNTED, &counted, error);
-            if (!result) fig8_count(&counted, count);
+            if (!result) {
+                const double *sum = counted.error[SINGE_COLOUR_COUNT];
+                count->states++;
+                count->rises += fig8_rises(&counted, COUNTED);
+                count->lower += sum[COUNTED] < sum[0];
+                if (sum[0] > 0 && sum[COUNTED] / sum[0] > count->worst) count->worst = sum[COUNTED] / sum[0];
+            }
         }
         if (!result && (result = singe_sim_step(sim))) *error = *singe_sim_error(sim);
     }

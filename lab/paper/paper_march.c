@@ -20,26 +20,6 @@ static double march_share(const double *level, int *inside) {
     return NAN;
 }
 
-static void march_draw(FILE *file, const SingeSurface *surface, double cell, const double (*centroids)[3], int count) {
-    static const char *const fills[] = {"#fff", "#fdd0a2", "#fdae6b", "#c9dcf0"};
-    const double scale = 56 / cell;
-    fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"360\" height=\"360\">\n");
-    for (int i = 0; i < count; i++) // which case each triangle is
-        fprintf(file,
-                "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"7\" fill=\"%s\" "
-                "stroke=\"#bbb\"/>\n",
-                12 + scale * centroids[i][0], 348 - scale * centroids[i][1], fills[(int)centroids[i][2]]);
-    for (uint32_t t = 0; t < surface->triangle_count; t++) {
-        fprintf(file, "<polygon fill=\"#9ab\" fill-opacity=\".35\" stroke=\"#234\" stroke-width=\".8\" points=\"");
-        for (int k = 0; k < 3; k++) {
-            const float *p = surface->rest_position[surface->triangles[t][k]];
-            fprintf(file, "%.1f,%.1f ", 12 + scale * (double)p[0], 348 - scale * (double)p[1]);
-        }
-        fprintf(file, "\"/>\n");
-    }
-    fprintf(file, "</svg>\n");
-}
-
 typedef struct March {
     int cases[4];    ///< triangles by how many of their corners are left
     double expected; ///< m2 that eq 7 leaves
@@ -95,23 +75,6 @@ static int march_fewest(const March *march) {
     return fewest;
 }
 
-/// `fresh`: of the same sheet before it burns.
-static void march_report(Lab *lab, const SingeSurface *surface, const March *march, const March *fresh, double side) {
-    static const char *const shapes[] = {"nothing", "a triangle", "a quadrilateral", "the whole"};
-    march_draw(report_drawing(lab->report), surface, side, march->centroids, march->count);
-    report_text(lab->report,
-                "%d x %d cells whose masses are given, each cell four triangles around its virtual centre; the dots "
-                "tell the case of each triangle.",
-                MARCH_CELLS, MARCH_CELLS);
-    report_heads(lab->report, "corners left|drawn as|triangles");
-    for (int k = 3; k >= 0; k--) report_row(lab->report, "%d|%s|%d", k, shapes[k], march->cases[k]);
-    report_bar(lab->report, &(ReportBar){"cases", "triangles of the rarest case", march_fewest(march), 1, INFINITY,
-                                         march_fewest(fresh), "the sheet before it burns"});
-    report_bar(lab->report,
-               &(ReportBar){"area", "drawn area over that of eq 7", drawn_area(surface) / march->expected, 0.999, 1.001,
-                            march_whole(march, side) / march->expected, "whole triangles wherever a corner is left"});
-}
-
 SingeResult paper_fig6(Lab *lab, SingeError *error) {
     enum { ROW = MARCH_CELLS + 1 };
     const double cell = 0.01;
@@ -133,7 +96,44 @@ SingeResult paper_fig6(Lab *lab, SingeError *error) {
             march_cell(&march, &view, mass, c, cell);
             march_cell(&fresh, &view, ones, c, cell);
         }
-        march_report(lab, &surface, &march, &fresh, cell);
+
+        // `fresh`: of the same sheet before it burns
+        static const char *const shapes[] = {"nothing", "a triangle", "a quadrilateral", "the whole"};
+
+        FILE *file = report_drawing(lab->report);
+        const int count = march.count;
+        static const char *const fills[] = {"#fff", "#fdd0a2", "#fdae6b", "#c9dcf0"};
+        const double scale = 56 / cell;
+        fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"360\" height=\"360\">\n");
+        for (int i = 0; i < count; i++) // which case each triangle is
+            fprintf(file,
+                    "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"7\" fill=\"%s\" "
+                    "stroke=\"#bbb\"/>\n",
+                    12 + scale * march.centroids[i][0], 348 - scale * march.centroids[i][1],
+                    fills[(int)march.centroids[i][2]]);
+        for (uint32_t t = 0; t < surface.triangle_count; t++) {
+            fprintf(file, "<polygon fill=\"#9ab\" fill-opacity=\".35\" stroke=\"#234\" stroke-width=\".8\" points=\"");
+            for (int k = 0; k < 3; k++) {
+                const float *p = surface.rest_position[surface.triangles[t][k]];
+                fprintf(file, "%.1f,%.1f ", 12 + scale * (double)p[0], 348 - scale * (double)p[1]);
+            }
+            fprintf(file, "\"/>\n");
+        }
+        fprintf(file, "</svg>\n");
+
+        report_text(
+            lab->report,
+            "%d x %d cells whose masses are given, each cell four triangles around its virtual centre; the dots "
+            "tell the case of each triangle.",
+            MARCH_CELLS, MARCH_CELLS);
+        report_heads(lab->report, "corners left|drawn as|triangles");
+        for (int k = 3; k >= 0; k--) report_row(lab->report, "%d|%s|%d", k, shapes[k], march.cases[k]);
+        report_bar(lab->report, &(ReportBar){"cases", "triangles of the rarest case", march_fewest(&march), 1, INFINITY,
+                                             march_fewest(&fresh), "the sheet before it burns"});
+        report_bar(lab->report,
+                   &(ReportBar){"area", "drawn area over that of eq 7", drawn_area(&surface) / march.expected, 0.999,
+                                1.001, march_whole(&march, cell) / march.expected,
+                                "whole triangles wherever a corner is left"});
     }
     singe_surface_free(&surface);
     singe_sim_destroy(sim);

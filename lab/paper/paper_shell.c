@@ -235,30 +235,6 @@ static double state_cut(const SingeSurface *surface, int i, double cell) {
     return -1;
 }
 
-static void state_draw(FILE *file, const double *ratio, const double *cut) {
-    fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"560\" height=\"150\" font-family=\"sans-serif\" "
-                  "font-size=\"12\">\n");
-    for (int i = 0; i < STATES; i++) {
-        double x = 60 + 110 * i, length = ratio[i] < 0 ? 0 : 100 * ratio[i], end = cut[i] < 0 ? 1 : cut[i];
-        fprintf(file, "<line x1=\"%g\" x2=\"%g\" y1=\"120\" y2=\"20\" stroke=\"#ddd\" stroke-width=\"6\"/>\n", x, x);
-        if (ratio[i] >= 0)
-            fprintf(file,
-                    "<line x1=\"%g\" x2=\"%g\" y1=\"120\" y2=\"%.1f\" stroke=\"#bbb\" stroke-width=\"2\" "
-                    "stroke-dasharray=\"3 3\"/><line x1=\"%g\" x2=\"%g\" y1=\"120\" y2=\"%.1f\" stroke=\"#1f77b4\" "
-                    "stroke-width=\"4\"/>\n",
-                    x, x, 120 - length, x, x, 120 - length * end);
-        for (int k = 0; k < 2; k++)
-            fprintf(file,
-                    "<circle cx=\"%g\" cy=\"%.1f\" r=\"6\" fill=\"%s\" stroke=\"#333\"/><text x=\"%g\" "
-                    "y=\"%.1f\">"
-                    "%.2f</text>\n",
-                    x, 120 - k * (ratio[i] < 0 ? 100 : length), state_mass[i][k] >= state_loss ? "#d8a05a" : "#fff",
-                    x + 11, 124 - k * (ratio[i] < 0 ? 100 : length), state_mass[i][k]);
-        fprintf(file, "<text x=\"%g\" y=\"146\" text-anchor=\"middle\">(%c)</text>\n", x, 'a' + i);
-    }
-    fprintf(file, "</svg>\n");
-}
-
 static const double state_length[STATES] = {0.875, 0.625, 0.575, 0.5, -1}; ///< the paper's
 
 /// A row of the table for each spring. *worst and *worst_cut are the largest differences from the paper.
@@ -300,7 +276,32 @@ SingeResult paper_fig5(Lab *lab, SingeError *error) {
             if (state_is_cut(i)) worst_centre = fmax(worst_centre, fabs(0.5 - cut[i]));
         }
         state_table(lab, ratio, cut, &worst, &worst_cut);
-        state_draw(report_drawing(lab->report), ratio, cut);
+
+        FILE *file = report_drawing(lab->report);
+        fprintf(file,
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"560\" height=\"150\" font-family=\"sans-serif\" "
+                "font-size=\"12\">\n");
+        for (int i = 0; i < STATES; i++) {
+            double x = 60 + 110 * i, length = ratio[i] < 0 ? 0 : 100 * ratio[i], end = cut[i] < 0 ? 1 : cut[i];
+            fprintf(file, "<line x1=\"%g\" x2=\"%g\" y1=\"120\" y2=\"20\" stroke=\"#ddd\" stroke-width=\"6\"/>\n", x,
+                    x);
+            if (ratio[i] >= 0)
+                fprintf(file,
+                        "<line x1=\"%g\" x2=\"%g\" y1=\"120\" y2=\"%.1f\" stroke=\"#bbb\" stroke-width=\"2\" "
+                        "stroke-dasharray=\"3 3\"/><line x1=\"%g\" x2=\"%g\" y1=\"120\" y2=\"%.1f\" stroke=\"#1f77b4\" "
+                        "stroke-width=\"4\"/>\n",
+                        x, x, 120 - length, x, x, 120 - length * end);
+            for (int k = 0; k < 2; k++)
+                fprintf(file,
+                        "<circle cx=\"%g\" cy=\"%.1f\" r=\"6\" fill=\"%s\" stroke=\"#333\"/><text x=\"%g\" "
+                        "y=\"%.1f\">"
+                        "%.2f</text>\n",
+                        x, 120 - k * (ratio[i] < 0 ? 100 : length), state_mass[i][k] >= state_loss ? "#d8a05a" : "#fff",
+                        x + 11, 124 - k * (ratio[i] < 0 ? 100 : length), state_mass[i][k]);
+            fprintf(file, "<text x=\"%g\" y=\"146\" text-anchor=\"middle\">(%c)</text>\n", x, 'a' + i);
+        }
+        fprintf(file, "</svg>\n");
+
         report_bar(lab->report, &(ReportBar){"lengths", "largest difference of the lengths, removed counting as -1",
                                              worst, 0, 1e-4, one_end, "v of the first end alone in eq 6"});
         report_bar(lab->report, &(ReportBar){"cuts", "largest difference of the cuts of c and d from eq 7", worst_cut,

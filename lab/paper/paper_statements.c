@@ -93,23 +93,6 @@ static const Statement statements[] = {
 };
 enum { COUNT = sizeof statements / sizeof *statements };
 
-static SingeResult write_csv(Report *report, SingeError *error) {
-    char *csv = NULL, *path = text_format("%s/statements.csv", report_folder(report));
-    size_t size = 0;
-    FILE *file = open_memstream(&csv, &size);
-    SingeResult result = SINGE_ERROR_MEMORY;
-    if (file) {
-        fprintf(file, "section,statement,verdict,item,measure,found\n");
-        for (const Statement *s = statements; s < statements + COUNT; s++)
-            fprintf(file, "%s,\"%s\",%s,%s,%s,\"%s\"\n", s->section, s->statement, verdicts[s->verdict], s->item,
-                    s->measure, s->found);
-        if (text_stream_end(file, &csv)) result = file_write(path, csv, size, error);
-    }
-    if (result && error->code != result) *error = (SingeError){.code = result, .element = -1};
-    free(csv), free(path);
-    return result;
-}
-
 SingeResult paper_statements(Lab *lab, SingeError *error) {
     int counts[3] = {0}, taken = 0, holding = 0;
     report_heads(lab->report, "section|the paper states|verdict|measure|is|found");
@@ -132,5 +115,19 @@ SingeResult paper_statements(Lab *lab, SingeError *error) {
         report_bar(lab->report,
                    &(ReportBar){"measures", "share of these measures that hold, of those taken",
                                 (double)holding / taken, 1, 1, (double)(holding - 1) / taken, "one that does not"});
-    return write_csv(lab->report, error);
+
+    char *csv = NULL, *path = text_format("%s/statements.csv", report_folder(lab->report));
+    size_t size = 0;
+    FILE *file = open_memstream(&csv, &size);
+    SingeResult result = SINGE_ERROR_MEMORY;
+    if (file) {
+        fprintf(file, "section,statement,verdict,item,measure,found\n");
+        for (const Statement *s = statements; s < statements + COUNT; s++)
+            fprintf(file, "%s,\"%s\",%s,%s,%s,\"%s\"\n", s->section, s->statement, verdicts[s->verdict], s->item,
+                    s->measure, s->found);
+        if (text_stream_end(file, &csv)) result = file_write(path, csv, size, error);
+    }
+    if (result && error->code != result) *error = (SingeError){.code = result, .element = -1};
+    free(csv), free(path);
+    return result;
 }

@@ -6,61 +6,57 @@ const char *const paper_state_names[PAPER_STATE_COUNT] = {[PAPER_SWING] = "swing
 
 static const float grammage = 0.1f; // kg/m2
 
-/// Burns at one rate, down to 0.8 of its mass in half a second; lengths follow the mass, and nothing is removed.
-static void shrink_material(SingeMaterialDef *material) {
-    const float rate = 4e-3f; // 1/(K s), at 100 K above ignition
-    material->temperature = singe_param(600);
-    material->ignition_temperature = singe_param(500);
-    material->mass_rate = singe_param(rate);
-    material->rate_ceiling = singe_param(1e6f);
-    material->ash_exponent = singe_param(0);
-    material->heat_share = singe_param(0);
-    material->mass_min = singe_param(0.8f);
-    material->mass_loss = singe_param(0.1f);
-    material->char_yield = singe_param(0);
-    material->ash_density = singe_param(1);
-    material->char_weight = singe_param(1);
-    material->shrink_front = material->shrink_back = material->fibre_shrink = singe_param(1);
-    material->convection = material->emissivity = singe_param(0);
-    material->thickening = 1;
-}
-
-static SingeSheetDef state_sheet(PaperState state, float *positions, uint32_t *cells, uint32_t n) {
-    SingeSheetDef def = singe_default_sheet();
-    for (uint32_t j = 0, v = 0; j <= n; j++)
-        for (uint32_t i = 0; i <= n; i++) {
-            positions[v++] = (float)i / (float)n;
-            positions[v++] = (float)j / (float)n;
-            positions[v++] = 0;
-        }
-    for (uint32_t j = 0; j < n; j++)
-        for (uint32_t i = 0; i < n; i++) {
-            uint32_t *c = cells + 4 * (j * n + i), corner = j * (n + 1) + i;
-            c[0] = corner;
-            c[1] = corner + 1;
-            c[2] = corner + n + 2;
-            c[3] = corner + n + 1;
-        }
-    def.vertex_count = (n + 1) * (n + 1);
-    def.positions = positions;
-    def.cell_count = n * n;
-    def.cells = cells;
-    def.material.grammage = singe_param(grammage);
-    def.material.reference_grammage = 0; // rates are those of eq 4
-    def.material.thickness = singe_param(1e-3f);
-    def.material.drag = def.material.damping = singe_param(0);
-    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) def.material.compliance[c] = singe_param(0); // eq 16 has none
-    if (state == PAPER_SHRINK) shrink_material(&def.material);
-    return def;
-}
-
 static SingeResult state_build(SingeSim *sim, PaperState state, int n) {
     SingeSheetId sheet;
     SingeResult result = SINGE_ERROR_MEMORY;
     float *positions = malloc(3 * sizeof *positions * (size_t)(n + 1) * (size_t)(n + 1));
     uint32_t *cells = malloc(4 * sizeof *cells * (size_t)n * (size_t)n);
     if (positions && cells) {
-        SingeSheetDef def = state_sheet(state, positions, cells, (uint32_t)n);
+        const uint32_t side = (uint32_t)n;
+        SingeSheetDef def = singe_default_sheet();
+        for (uint32_t j = 0, v = 0; j <= side; j++)
+            for (uint32_t i = 0; i <= side; i++) {
+                positions[v++] = (float)i / (float)side;
+                positions[v++] = (float)j / (float)side;
+                positions[v++] = 0;
+            }
+        for (uint32_t j = 0; j < side; j++)
+            for (uint32_t i = 0; i < side; i++) {
+                uint32_t *c = cells + 4 * (j * side + i), corner = j * (side + 1) + i;
+                c[0] = corner;
+                c[1] = corner + 1;
+                c[2] = corner + side + 2;
+                c[3] = corner + side + 1;
+            }
+        def.vertex_count = (side + 1) * (side + 1);
+        def.positions = positions;
+        def.cell_count = side * side;
+        def.cells = cells;
+        def.material.grammage = singe_param(grammage);
+        def.material.reference_grammage = 0; // rates are those of eq 4
+        def.material.thickness = singe_param(1e-3f);
+        def.material.drag = def.material.damping = singe_param(0);
+        for (int c = 0; c < SINGE_COLOUR_COUNT; c++) def.material.compliance[c] = singe_param(0); // eq 16 has none
+        if (state == PAPER_SHRINK) {
+            // burns at one rate, down to 0.8 of its mass in half a second; lengths follow the mass, and nothing is
+            // removed
+            const float rate = 4e-3f; // 1/(K s), at 100 K above ignition
+            def.material.temperature = singe_param(600);
+            def.material.ignition_temperature = singe_param(500);
+            def.material.mass_rate = singe_param(rate);
+            def.material.rate_ceiling = singe_param(1e6f);
+            def.material.ash_exponent = singe_param(0);
+            def.material.heat_share = singe_param(0);
+            def.material.mass_min = singe_param(0.8f);
+            def.material.mass_loss = singe_param(0.1f);
+            def.material.char_yield = singe_param(0);
+            def.material.ash_density = singe_param(1);
+            def.material.char_weight = singe_param(1);
+            def.material.shrink_front = def.material.shrink_back = def.material.fibre_shrink = singe_param(1);
+            def.material.convection = def.material.emissivity = singe_param(0);
+            def.material.thickening = 1;
+        }
+
         result = singe_sim_add_sheet(sim, &def, &sheet);
         if (!result) result = singe_sim_commit(sim);
     }
@@ -95,19 +91,6 @@ SingeResult paper_sim(PaperState state, int cells, const SingeSolverDef *solver,
     return result;
 }
 
-/// The particles' positions and masses after eq 8 and 9.
-static void network_particles(const SingeView *view, PaperState state, double *positions, double *inverse_masses) {
-    double h = (double)PAPER_TIME_STEP, g = state == PAPER_SWING ? -9.81 : 0;
-    for (uint32_t i = 0; i < view->particle_count; i++) {
-        bool held = view->particle_flags[i] & SINGE_PINNED;
-        inverse_masses[i] = held ? 0 : 2 / ((double)grammage * (double)view->area[i] * (double)view->mass[i]);
-        for (int c = 0; c < 3; c++) {
-            double v = held ? 0 : (double)view->velocity[i][c] + (c == 2 ? h * g : 0);
-            positions[3 * i + (uint32_t)c] = (double)view->position[i][c] + h * v;
-        }
-    }
-}
-
 SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, double regularisation,
                           SingeNetwork **network, SingeError *error) {
     SingeView view = singe_sim_view(sim);
@@ -121,7 +104,17 @@ SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, d
     SingeResult result = SINGE_ERROR_MEMORY;
     *network = NULL;
     if (positions && inverse_masses && lengths && ends && sets) {
-        network_particles(&view, state, positions, inverse_masses);
+        // the particles' positions and masses after eq 8 and 9
+        double h = (double)PAPER_TIME_STEP, g = state == PAPER_SWING ? -9.81 : 0;
+        for (uint32_t i = 0; i < view.particle_count; i++) {
+            bool held = view.particle_flags[i] & SINGE_PINNED;
+            inverse_masses[i] = held ? 0 : 2 / ((double)grammage * (double)view.area[i] * (double)view.mass[i]);
+            for (int c = 0; c < 3; c++) {
+                double v = held ? 0 : (double)view.velocity[i][c] + (c == 2 ? h * g : 0);
+                positions[3 * i + (uint32_t)c] = (double)view.position[i][c] + h * v;
+            }
+        }
+
         for (uint32_t c = 0, k = 0; c < SINGE_COLOUR_COUNT; c++)
             for (uint32_t i = 0; i < view.spring_count[c]; i++, k++) {
                 ends[k][0] = view.springs[c][i][0], ends[k][1] = view.springs[c][i][1];

@@ -11,8 +11,11 @@ enum { STEPS = 5 };
 static const double table1[STEPS][2] = {
     {0.4306, 0.4401}, {0.5527, 0.4954}, {0.5767, 0.5038}, {0.5804, 0.5050}, {0.5810, 0.5052}};
 
-/// `swapped`: blue before green.
-static SingeResult table1_network(bool swapped, SingeNetwork **network, SingeError *error) {
+/// Five projection steps; the positions after each set in *ours, and their largest difference from the paper's.
+static SingeResult table1_run(bool swapped, double ours[2][STEPS + 1], double *end, double *worst, SingeError *error) {
+    SingeNetwork *network;
+
+    // `swapped`: blue before green
     SingeNetworkDef def = singe_default_network();
     def.particle_count = 3;
     def.positions = (const double[]){-1, 0, 0, 0, 0, 0, 1, 0, 0};
@@ -23,29 +26,8 @@ static SingeResult table1_network(bool swapped, SingeNetwork **network, SingeErr
     def.set_count = 2;
     def.sets = swapped ? (const uint32_t[]){1, 0} : (const uint32_t[]){0, 1};
     def.regularisation = 0;
-    return singe_network_create(&def, network, error);
-}
+    SingeResult result = singe_network_create(&def, &network, error);
 
-/// Fig 9: the two springs before and after.
-static void table1_draw(FILE *file, double x) {
-    const double at[2] = {0, x};
-    fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"420\" height=\"90\" font-size=\"12\" "
-                  "font-family=\"sans-serif\">\n");
-    for (int k = 0; k < 2; k++) {
-        double y = 25 + 40 * k, p = 210 + 150 * at[k];
-        fprintf(file,
-                "<line x1=\"60\" x2=\"%.1f\" y1=\"%g\" y2=\"%g\" stroke=\"#2ca02c\" stroke-width=\"3\"/>"
-                "<line x1=\"%.1f\" x2=\"360\" y1=\"%g\" y2=\"%g\" stroke=\"#1f77b4\" stroke-width=\"3\"/>"
-                "<circle cx=\"%.1f\" cy=\"%g\" r=\"5\"/><text x=\"372\" y=\"%g\">%s</text>\n",
-                p, y, y, p, y, y, p, y, y + 4, k ? "after" : "before");
-    }
-    fprintf(file, "</svg>\n");
-}
-
-/// Five projection steps; the positions after each set in *ours, and their largest difference from the paper's.
-static SingeResult table1_run(bool swapped, double ours[2][STEPS + 1], double *end, double *worst, SingeError *error) {
-    SingeNetwork *network;
-    SingeResult result = table1_network(swapped, &network, error);
     if (result) return result;
     const double *x = singe_network_positions(network) + 3;
     *worst = 0;
@@ -71,7 +53,23 @@ SingeResult paper_table1(Lab *lab, SingeError *error) {
     for (int step = 0; step <= STEPS; step++)
         report_row(lab->report, "%d|%.4f|%.4f|%.4f|%.4f", step, ours[0][step], paper[0][step], ours[1][step],
                    paper[1][step]);
-    table1_draw(report_drawing(lab->report), end);
+
+    // fig 9: the two springs before and after
+    FILE *file = report_drawing(lab->report);
+    const double x = end;
+    const double at[2] = {0, x};
+    fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"420\" height=\"90\" font-size=\"12\" "
+                  "font-family=\"sans-serif\">\n");
+    for (int k = 0; k < 2; k++) {
+        double y = 25 + 40 * k, p = 210 + 150 * at[k];
+        fprintf(file,
+                "<line x1=\"60\" x2=\"%.1f\" y1=\"%g\" y2=\"%g\" stroke=\"#2ca02c\" stroke-width=\"3\"/>"
+                "<line x1=\"%.1f\" x2=\"360\" y1=\"%g\" y2=\"%g\" stroke=\"#1f77b4\" stroke-width=\"3\"/>"
+                "<circle cx=\"%.1f\" cy=\"%g\" r=\"5\"/><text x=\"372\" y=\"%g\">%s</text>\n",
+                p, y, y, p, y, y, p, y, y + 4, k ? "after" : "before");
+    }
+    fprintf(file, "</svg>\n");
+
     Plot plot = {.title = "Position of the free particle", .x_label = "projection step", .y_label = "x"};
     plot_add(&plot, (PlotLine){"after green", "#2ca02c", NULL, ours[0], STEPS + 1, false, false});
     plot_add(&plot, (PlotLine){"after blue", "#1f77b4", NULL, ours[1], STEPS + 1, false, false});

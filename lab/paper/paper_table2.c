@@ -91,16 +91,6 @@ static SingeResult table2_row(Lab *lab, const Table2Row *row, Table2 *table, Sin
     return SINGE_OK;
 }
 
-static void table2_plot(Lab *lab, const Table2 *table) {
-    Plot plot = {.title = "Time of a step", .x_label = "springs", .y_label = "ms", .log_x = true, .log_y = true};
-    plot_add(&plot, (PlotLine){"paper (b)", "#999", table->springs, table->paper[0], table->count, false, true});
-    plot_add(&plot, (PlotLine){"paper (c)", "#555", table->springs, table->paper[1], table->count, false, true});
-    plot_add(&plot, (PlotLine){"here (b)", "#e08214", table->springs, table->early, table->count, false, false});
-    plot_add(&plot, (PlotLine){"here (c)", "#b2182b", table->springs, table->full, table->count, false, false});
-    plot_add(&plot, (PlotLine){"strand", "#2166ac", table->springs, table->strand, table->count, false, false});
-    report_plot(lab->report, &plot);
-}
-
 SingeResult paper_table2(Lab *lab, SingeError *error) {
     Table2 table = {0};
     SingeResult result = SINGE_OK;
@@ -114,7 +104,15 @@ SingeResult paper_table2(Lab *lab, SingeError *error) {
     for (int i = 0; i < (lab->quick ? QUICK_COUNT : ROW_COUNT) && !result; i++)
         result = table2_row(lab, &table2[i], &table, error);
     if (result) return result;
-    table2_plot(lab, &table);
+
+    Plot plot = {.title = "Time of a step", .x_label = "springs", .y_label = "ms", .log_x = true, .log_y = true};
+    plot_add(&plot, (PlotLine){"paper (b)", "#999", table.springs, table.paper[0], table.count, false, true});
+    plot_add(&plot, (PlotLine){"paper (c)", "#555", table.springs, table.paper[1], table.count, false, true});
+    plot_add(&plot, (PlotLine){"here (b)", "#e08214", table.springs, table.early, table.count, false, false});
+    plot_add(&plot, (PlotLine){"here (c)", "#b2182b", table.springs, table.full, table.count, false, false});
+    plot_add(&plot, (PlotLine){"strand", "#2166ac", table.springs, table.strand, table.count, false, false});
+    report_plot(lab->report, &plot);
+
     const int last = table.count - 1;
     const double decades = log(table.springs[last] / table.springs[0]);
     const double iterations = log(table.iterations[last] / table.iterations[0]) / decades;

@@ -108,21 +108,6 @@ static SingeResult whole_run(Lab *lab, const Figure *figure, int system, const c
     return result;
 }
 
-static void whole_rows(Report *report, Run (*runs)[SYSTEMS]) {
-    report_heads(report, "|marks|s at the last|hottest K|curl, median|90 of 100|slope, median|area|strain, mean %|p99 "
-                         "%|cells turned over %|ms a step");
-    for (int f = 0; f < FIGURES; f++)
-        for (int s = 0; s < SYSTEMS; s++) {
-            const Run *run = &runs[f][s];
-            const Look *look = &run->look;
-            report_row(report, "%s, %s|%d of %d|%.2f|%.0f|%.1f|%.1f|%.1f|%.2f|%.2f|%.1f|%.1f|%.2f", figures[f].name,
-                       s ? "ours" : "the paper", run->reached, MARKS, run->reached ? run->times[run->reached - 1] : NAN,
-                       look->hottest, look_curl(look, 0.5), look_curl(look, 0.9), look_slope(look, 0.5),
-                       look_area(look), 100 * look->strain_mean, 100 * look->strain_p99, 100 * look->inverted,
-                       look->step_ms);
-        }
-}
-
 /// The smallest of a system's numbers over the figures, or the largest.
 static double over_figures(Run (*runs)[SYSTEMS], int system, double (*number)(const Look *look), bool largest) {
     double out = number(&runs[0][system].look);
@@ -151,7 +136,21 @@ SingeResult paper_whole(Lab *lab, SingeError *error) {
     if (!result) result = whole_run(lab, &figures[1], PAPERS, to_the_letter, &literal, error);
     if (!result) result = whole_run(lab, &figures[0], PAPERS, no_shrinkage, &plain, error);
     if (result) return result;
-    whole_rows(lab->report, runs);
+
+    report_heads(lab->report,
+                 "|marks|s at the last|hottest K|curl, median|90 of 100|slope, median|area|strain, mean %|p99 "
+                 "%|cells turned over %|ms a step");
+    for (int f = 0; f < FIGURES; f++)
+        for (int s = 0; s < SYSTEMS; s++) {
+            const Run *run = &runs[f][s];
+            const Look *look = &run->look;
+            report_row(lab->report, "%s, %s|%d of %d|%.2f|%.0f|%.1f|%.1f|%.1f|%.2f|%.2f|%.1f|%.1f|%.2f",
+                       figures[f].name, s ? "ours" : "the paper", run->reached, MARKS,
+                       run->reached ? run->times[run->reached - 1] : NAN, look->hottest, look_curl(look, 0.5),
+                       look_curl(look, 0.9), look_slope(look, 0.5), look_area(look), 100 * look->strain_mean,
+                       100 * look->strain_p99, 100 * look->inverted, look->step_ms);
+        }
+
     int reached = 0;
     for (int f = 0; f < FIGURES; f++) reached += runs[f][PAPERS].reached;
     report_text(

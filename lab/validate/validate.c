@@ -7,8 +7,8 @@ static const PageItem items[] = {
     {"umbrella", "The umbrella's factor, eq 3", "A hot spot's variance grows by 2 alpha t in every direction.",
      validate_umbrella},
     {"front", "Speed of the front",
-     "Office paper of 80 g/m² 4.4 to 7.0 mm/s, speed in proportion to 1/grammage (Thomas &amp; Law, Fire Research Note "
-     "584); fire climbs many times as fast as it creeps.",
+     "Office paper of 80 g/m²: 4.4 to 7.0 mm/s; speed in proportion to 1/grammage (Thomas &amp; Law, Fire Research "
+     "Note 584); fire climbs many times as fast as it creeps.",
      validate_front},
     {"pmma", "Sheets of PMMA, downward",
      "8.96 mm/s at 25 um to 0.435 mm/s at 402 um (BASS-II); de Ris (1969): V = sqrt 2 k_g (T_f - T_v)/(T_v - T_a)/(rho "
@@ -16,40 +16,39 @@ static const PageItem items[] = {
      validate_pmma},
     {"beam", "A clamped strip", "Plate theory: w = rho g l&#8308;/(8 D) + rho g l²/(2 S).", validate_beam},
     {"disc", "A bilayer disc",
-     "Bent far, a disc of two layers is a cylinder of (1 + nu)/2 of its natural mean curvature, 3/4 at nu = 1/2 (arXiv "
-     "1509.05259).",
+     "A strongly bent disc of two layers is a cylinder whose curvature is (1 + nu)/2 times its natural one, 3/4 at nu "
+     "= 1/2 (arXiv 1509.05259).",
      validate_disc},
     {"kinetics", "Kinetics of cellulose",
      "Kashiwagi &amp; Nambu (1992), as in FDS: pyrolysis, oxidation and glow of cellulose in air at 1, 3 and 5 K/min.",
      validate_kinetics},
-    {"ledgers", "Ledgers of heat and mass", "Energy and mass are kept.", validate_ledgers},
+    {"ledgers", "Ledgers of heat and mass", "Energy and mass are conserved.", validate_ledgers},
 };
 
 enum { OPT_OUTPUT, OPT_ONLY, OPT_QUICK, OPT_THREADS, OPT_COUNT };
 
 static const ArgOption validate_options[OPT_COUNT] = {
-    [OPT_OUTPUT] = {"output", 'o', "DIR", "folder of the page [out/validate]"},
+    [OPT_OUTPUT] = {"output", 'o', "DIR", "folder for the page [out/validate]"},
     [OPT_ONLY] = {"only", 0, "NAME", "one of heat, umbrella, front, pmma, beam, disc, kinetics, ledgers"},
-    [OPT_QUICK] = {"quick", 0, NULL, "small sizes, for a check of the measures"},
+    [OPT_QUICK] = {"quick", 0, NULL, "small sizes, for a quick check"},
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
 };
 
 static const ArgCommand validate_command = {
     "validate",
     NULL,
-    "Holds the physics against sources outside the project and writes a page about it, "
-    "DIR/index.html.",
+    "Compares the physics with independent sources and writes a page about it, DIR/index.html.",
     validate_options,
     OPT_COUNT,
-    "Exit codes: 0 good, 1 failed or a measure does not hold, 2 bad usage."};
+    "Exit codes: 0 good, 1 an error, or a measure outside its bars, 2 bad usage."};
 
 static const Page page = {
     items,
     sizeof items / sizeof *items,
     "out/validate",
-    "The physics against outside truth",
-    "What this program computes beside solutions, formulas and measurements that come from elsewhere. Each item says "
-    "what the source has, what came out here, and whether stated measures hold.",
+    "The physics, compared with independent sources",
+    "This program's results beside solutions, formulas and measurements from elsewhere. Each item shows what the "
+    "source says, what the program computes, and whether the measures are within their bars.",
     (const char *const[]){NULL}};
 
 int command_validate(int argc, char **argv) { return page_run(&page, &validate_command, argc, argv); }

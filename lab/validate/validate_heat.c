@@ -87,9 +87,9 @@ SingeResult validate_heat(Lab *lab, SingeError *error) {
     plot_add(&plot, (PlotLine){"second order", "#999", size[0], second, count, false, true});
     plot_add(&plot, (PlotLine){"surface", "#2166ac", size[0], off[0], count, true, false});
     report_plot(lab->report, &plot);
-    report_measure(lab->report, "order_space", "least order in the cells, steps going with their square", min[0], 1.9,
-                   2.2);
-    report_measure(lab->report, "order_time", "least order in the time step, on cells of 1.25 mm", min[1], 0.9, 1.2);
+    report_measure(lab->report, "order_space", "lowest order in the cell size, with steps in proportion to its square",
+                   min[0], 1.9, 2.2);
+    report_measure(lab->report, "order_time", "lowest order in the time step, on cells of 1.25 mm", min[1], 0.9, 1.2);
     report_measure(lab->report, "error", "error on the finest cells", off[0][count - 1], 0, 5e-3);
     return SINGE_OK;
 }
@@ -170,8 +170,8 @@ SingeResult validate_umbrella(Lab *lab, SingeError *error) {
     }
     if (result) return result;
     report_text(lab->report,
-                "Diffusivity by which a hot spot spreads, over the alpha that was asked for. On squares the umbrella "
-                "has half of it, and on long cells it is not the same along x and y.");
+                "The diffusivity at which a hot spot spreads, over the specified alpha. On squares the umbrella has "
+                "half of it, and on long cells it differs along x and y.");
     report_measure(lab->report, "surface", "surface operator: largest error of the diffusivity on these meshes", off, 0,
                    0.02);
     report_measure(lab->report, "umbrella_squares", "umbrella on squares", umbrella[0][0], 0.47, 0.53);

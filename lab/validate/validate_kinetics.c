@@ -167,7 +167,7 @@ SingeResult validate_kinetics(Lab *lab, SingeError *error) {
         if (i == 0) first = sim.peak;
         else rising = fmin(rising, sim.peak - first);
     }
-    Plot plot = {.title = "Cellulose in air, mass lost a kelvin, three reactions", .x_label = "C", .y_label = "1/K"};
+    Plot plot = {.title = "Cellulose in air: mass lost per kelvin, three reactions", .x_label = "C", .y_label = "1/K"};
     for (int i = 0; i < RATES; i++)
         plot_add(&plot, (PlotLine){names[i], inks[i], temperature, loss[i], LOOKS, false, false});
     report_plot(lab->report, &plot);
@@ -178,11 +178,13 @@ SingeResult validate_kinetics(Lab *lab, SingeError *error) {
                 "of the material (<code>pre_exponential</code>, <code>activation_energy</code>); by default it burns "
                 "by eq 4, from %.0f C on.",
                 ignition - 273.15);
-    report_measure(lab->report, "peak", "simulated, a kelvin a step: K of the peak from the fine reference", off, 0, 2);
-    report_measure(lab->report, "residue", "the same: difference of the residue", residue, 0, 1e-3);
-    report_measure(lab->report, "three", "simulated: K of the peak from that of the three reactions", apart, 0, 10);
-    report_measure(lab->report, "shift", "simulated: least shift of the peak at 3 and 5 K/min from that at 1, K",
-                   rising, 10, 40);
+    report_measure(lab->report, "peak",
+                   "simulated at one kelvin per step: distance of the peak from the fine reference, K", off, 0, 2);
+    report_measure(lab->report, "residue", "the same: difference in the residue", residue, 0, 1e-3);
+    report_measure(lab->report, "three", "simulated: distance of the peak from that of the three reactions, K", apart,
+                   0, 10);
+    report_measure(lab->report, "shift", "simulated: smallest shift of the peak from 1 to 3 and 5 K/min, K", rising, 10,
+                   40);
     report_measure(lab->report, "threshold", "peak at 1 K/min less eq 4's ignition temperature, K", first - ignition, 0,
                    80);
     return SINGE_OK;

@@ -85,7 +85,7 @@ SingeResult validate_beam(Lab *lab, SingeError *error) {
     report_text(lab->report,
                 "A strip of 10 by 4 cm, 80 g/m2, clamped over 1 cm. The first three have one stiffness, D = t²/c, by "
                 "three thicknesses; the fifth is soft in transverse shear.");
-    report_measure(lab->report, "sag", "largest difference of the sag from plate theory, as a share", worst, 0, 0.15);
+    report_measure(lab->report, "sag", "largest relative difference of the sag from plate theory", worst, 0, 0.15);
     return SINGE_OK;
 }
 
@@ -94,27 +94,6 @@ SingeResult validate_beam(Lab *lab, SingeError *error) {
 static const double disc_radius = 0.03, disc_thickness = 1e-3;
 
 static bool in_disc(double x, double y) { return hypot(x - disc_radius, y - disc_radius) < disc_radius; }
-
-/// Solves the normal equations of z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 over the inner half of the disc.
-static void fit_paraboloid(const SingeView *view, double c[6]) {
-    double m[6][7] = {{0}};
-    for (uint32_t v = 0; v < view->vertex_count; v++) {
-        double x = (double)view->position[v][0], y = (double)view->position[v][1];
-        if (hypot((double)view->rest_position[v][0] - disc_radius, (double)view->rest_position[v][1] - disc_radius) >
-            0.6 * disc_radius)
-            continue;
-        const double f[7] = {1, x, y, x * x, x * y, y * y, (double)view->position[v][2]};
-        for (int i = 0; i < 6; i++)
-            for (int j = 0; j < 7; j++) m[i][j] += f[i] * f[j];
-    }
-    for (int i = 0; i < 6; i++)
-        for (int k = 0; k < 6; k++) {
-            if (k == i) continue;
-            double factor = m[k][i] / m[i][i];
-            for (int j = i; j < 7; j++) m[k][j] -= factor * m[i][j];
-        }
-    for (int i = 0; i < 6; i++) c[i] = m[i][6] / m[i][i];
-}
 
 static SingeResult disc_bend(Lab *lab, double shrink, int cells, double principal[2], double *angle,
                              SingeError *error) {
@@ -134,7 +113,27 @@ static SingeResult disc_bend(Lab *lab, double shrink, int cells, double principa
     if (!result) {
         SingeView view = singe_sim_view(sim);
         double c[6];
-        fit_paraboloid(&view, c);
+
+        // solves the normal equations of z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 over the inner half of the
+        // disc
+        double m[6][7] = {{0}};
+        for (uint32_t v = 0; v < view.vertex_count; v++) {
+            double x = (double)view.position[v][0], y = (double)view.position[v][1];
+            if (hypot((double)view.rest_position[v][0] - disc_radius, (double)view.rest_position[v][1] - disc_radius) >
+                0.6 * disc_radius)
+                continue;
+            const double f[7] = {1, x, y, x * x, x * y, y * y, (double)view.position[v][2]};
+            for (int i = 0; i < 6; i++)
+                for (int j = 0; j < 7; j++) m[i][j] += f[i] * f[j];
+        }
+        for (int i = 0; i < 6; i++)
+            for (int k = 0; k < 6; k++) {
+                if (k == i) continue;
+                double factor = m[k][i] / m[i][i];
+                for (int j = i; j < 7; j++) m[k][j] -= factor * m[i][j];
+            }
+        for (int i = 0; i < 6; i++) c[i] = m[i][6] / m[i][i];
+
         double mean = c[3] + c[5], half = hypot(c[3] - c[5], c[4]);
         principal[0] = fabs(mean) + half, principal[1] = fabs(mean) - half;
         *angle = fmod(fabs(0.5 * atan2(c[4], c[3] - c[5])) * 180 / acos(-1), 90);
@@ -148,11 +147,6 @@ static SingeResult disc_bend(Lab *lab, double shrink, int cells, double principa
 typedef struct Stiffness {
     double along, coupled, shear;
 } Stiffness;
-
-/// nu of a pull along the diagonal of a square lattice.
-static double diagonal_poisson(const Stiffness *c) {
-    return (c->along + c->coupled - 2 * c->shear) / (c->along + c->coupled + 2 * c->shear);
-}
 
 /// Pulls a strip by its ends, or shears it. Only its layer of centres has stiffness, as only that layer is strained
 /// when the sheet bends. Reads strain and line force in the centre.
@@ -209,7 +203,10 @@ SingeResult validate_disc(Lab *lab, SingeError *error) {
     SingeResult result = pull_test(lab, false, &c, error);
     if (!result) result = pull_test(lab, true, &c, error);
     if (result) return result;
-    const double diagonal = diagonal_poisson(&c);
+
+    // nu of a pull along the diagonal of a square lattice
+    const double diagonal = (c.along + c.coupled - 2 * c.shear) / (c.along + c.coupled + 2 * c.shear);
+
     report_heads(lab->report, "shrunk by %|natural k 1/m|k R²/t|largest 1/m|least 1/m|mean over k|bends at");
     for (int i = 0; i < CASES && !result; i++) {
         double p[2], natural = shrinks[i] / (1 - shrinks[i]) / disc_thickness;

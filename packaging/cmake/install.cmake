@@ -1,7 +1,7 @@
 # Installs the library with its headers, find_package and pkg-config files, and the program.
 include(CMakePackageConfigHelpers)
 
-# components: `program`, and `development`, which has the library too
+# Components: `program`, the command, and `development`, the libraries with their headers.
 install(TARGETS singe singe_input EXPORT singeTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
@@ -27,7 +27,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/singeConfigVersion.cmake 
 install(FILES ${PROJECT_BINARY_DIR}/singeConfig.cmake ${PROJECT_BINARY_DIR}/singeConfigVersion.cmake
         DESTINATION ${singe_package_dir} COMPONENT development)
 
-# a static library needs its own libraries named at every link
+# whoever links a static library has to name its own libraries
 set(singe_pc_private "-lm -pthread")
 if(WIN32)
   set(singe_pc_private "-lm")
@@ -45,11 +45,12 @@ install(FILES ${PROJECT_BINARY_DIR}/singe.pc ${PROJECT_BINARY_DIR}/singe-input.p
         COMPONENT development)
 
 if(SINGE_PROGRAM)
-  if(BUILD_SHARED_LIBS) # the program finds the library beside it wherever both are moved
+  if(BUILD_SHARED_LIBS) # the command finds the library after both have been moved
     file(RELATIVE_PATH singe_bin_to_lib /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_INSTALL_LIBDIR})
     set_target_properties(singe_program PROPERTIES INSTALL_RPATH "$ORIGIN/${singe_bin_to_lib}")
   endif()
+  add_dependencies(singe_program singe singe_input) # who has built the command can install everything
   install(TARGETS singe_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
-  # the program has these inside; here they are to be read and copied
+  # the command contains the materials; these are for reading and copying
   install(DIRECTORY src/materials DESTINATION ${CMAKE_INSTALL_DATADIR}/singe COMPONENT program FILES_MATCHING PATTERN "*.yaml")
 endif()

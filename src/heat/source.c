@@ -254,7 +254,6 @@ static void source_callback(HeatPass *pass, const Source *source, const SingeVie
                              plan->source_temperature);
 }
 
-
 /// A particle is in contact within contact_distance if its side of the sheet faces the collider. The particle behind it
 /// is a thickness farther; it counts if both sides do. A sheet that stands on its edge is in contact with both sides.
 static void source_contact_task(void *context, int begin, int end) {

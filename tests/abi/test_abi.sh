@@ -1,5 +1,5 @@
 #!/bin/bash
-# abi.py lets the interface pass that there is, and none with a name, a size or a symbol changed:
+# abi.py accepts the present interface, and none in which a name, a size or a symbol has changed:
 # test_abi.sh ABI.PY CC INCLUDE FILE ARCHIVE...
 set -euo pipefail
 abi=$1 cc=$2 include=$3 file=$4

@@ -160,7 +160,7 @@ static void yellow_and_green_go_with_the_cell(void **unused) {
     b->state.burn.mass[centre] = 0.125f, b->state.heat.temperature[centre] = 900;
     for (int k = 0; k < 4; k++) b->state.burn.mass[b->shell.cells[4][k]] = 0.125f;
     sheet_ablate(b, plan);
-    expect_springs(b, 32, 8, 24, 16); // blue: the triangles around are there
+    expect_springs(b, 32, 8, 24, 16); // blue: the surrounding triangles remain
     expect_consistent(b);
     assert_int_equal(b->state.ablate.cell_flags[4] & SINGE_ALIVE, 0);
     assert_int_equal(b->state.ablate.particle_flags[centre] & SINGE_ALIVE, 0);

@@ -51,7 +51,7 @@ static void random_points(int max, int64_t p[4][3]) {
     for (int k = 0; k < 3; k++) p[3][k] = p[0][k] + s * (p[1][k] - p[0][k]) + t * (p[2][k] - p[0][k]);
 }
 
-static void test_orientation(void **state) {
+static void orientation_has_the_exact_sign(void **state) {
     (void)state;
     int flat = 0;
     for (int trial = 0; trial < 200000; trial++) {
@@ -73,7 +73,7 @@ static void test_orientation(void **state) {
 }
 
 /// A point a little off the plane of 0, p, q and p + q, whose differences no double holds: d (q x p) has the sign.
-static void test_orientation_near_a_plane(void **state) {
+static void orientation_is_exact_near_a_plane(void **state) {
     (void)state;
     for (int trial = 0; trial < 100000; trial++) {
         int64_t p[4][3];
@@ -91,8 +91,8 @@ static void test_orientation_near_a_plane(void **state) {
     }
 }
 
-/// What doubles cannot tell: the least of floats decides beside the largest.
-static void test_orientation_far_apart(void **state) {
+/// Signs that doubles cannot decide: the smallest of floats next to the largest.
+static void orientation_is_exact_far_apart(void **state) {
     (void)state;
     const float huge = 0x1p126f, min = 0x1p-149f;
     const float a[3] = {huge, 0, 0}, b[3] = {0, huge, 0}, c[3] = {-huge, -huge, 0};
@@ -162,7 +162,7 @@ static void check_case(const Case *one, int turn) {
     }
 }
 
-static void test_pairs(void **state) {
+static void pairs_match_a_plain_search(void **state) {
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         for (int turn = 0; turn < 3; turn++) check_case(&cases[i], turn);
@@ -229,7 +229,7 @@ static void check_soup(Soup *soup) {
     free(soup);
 }
 
-static void test_tree(void **state) {
+static void the_tree_finds_what_a_plain_search_finds(void **state) {
     (void)state;
     for (uint32_t count = 0; count < 10; count++) check_soup(soup_make(count, 1, 0));
     check_soup(soup_make(300, 1, 0));
@@ -284,7 +284,7 @@ static void add_lines(const float *const lines[3], uint32_t first, float (*posit
     }
 }
 
-static void test_hinges(void **state) {
+static void hinges_are_no_crossings(void **state) {
     (void)state;
     static const float left[3] = {-1, 0, 0}, middle[3] = {0, 0, 0}, right[3] = {1, 0, 0};
     for (size_t i = 0; i < sizeof meetings / sizeof *meetings; i++)
@@ -306,8 +306,8 @@ static void test_hinges(void **state) {
         }
 }
 
-/// A stack of eight sheets: the pairs that are looked at grow with the triangles, not with their square.
-static void test_linear(void **state) {
+/// A stack of eight sheets: the number of tested pairs grows with the triangles, not with their square.
+static void cost_grows_with_the_triangles(void **state) {
     (void)state;
     enum { SHEETS = 8, LARGE = 80 };
     float(*position)[3] = calloc(SHEETS * (LARGE + 1) * (LARGE + 1), sizeof *position);
@@ -329,13 +329,13 @@ static void test_linear(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_orientation),
-        cmocka_unit_test(test_orientation_near_a_plane),
-        cmocka_unit_test(test_orientation_far_apart),
-        cmocka_unit_test(test_pairs),
-        cmocka_unit_test(test_tree),
-        cmocka_unit_test(test_hinges),
-        cmocka_unit_test(test_linear),
+        cmocka_unit_test(orientation_has_the_exact_sign),
+        cmocka_unit_test(orientation_is_exact_near_a_plane),
+        cmocka_unit_test(orientation_is_exact_far_apart),
+        cmocka_unit_test(pairs_match_a_plain_search),
+        cmocka_unit_test(the_tree_finds_what_a_plain_search_finds),
+        cmocka_unit_test(hinges_are_no_crossings),
+        cmocka_unit_test(cost_grows_with_the_triangles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

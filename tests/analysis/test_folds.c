@@ -1,4 +1,4 @@
-// What is drawn along folds that run slantwise to the rows of cells: on the smooth surface, and on flat cells.
+// The drawn surface along folds that run at an angle to the rows of cells: smooth, and of flat cells.
 #include "analysis/wrinkles.h"
 #include "surface/drawing.h"
 #include "common/random.h"

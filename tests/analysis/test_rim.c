@@ -18,7 +18,7 @@ typedef struct Sheet {
     double curl;   ///< degrees over 10 mm, of what lies within 20 mm of the left edge
     double shrunk; ///< length along that edge over that at rest, within 8 mm of it
     bool burnt;    ///< that edge
-    bool seam;     ///< the vertices 5 mm from that edge are there twice
+    bool seam;     ///< the vertices 5 mm from that edge are doubled
     bool second;   ///< a smaller piece beside it, whose burnt edge stands upright
 } Sheet;
 
@@ -101,7 +101,7 @@ static double ratio(const Rim *rim, int band) { return rim->band[band].area / ri
 
 static double height(const Rim *rim, int band) { return rim->band[band].height / rim->band[band].rest_area; }
 
-static void test_flat_rim_has_no_curl(void **state) {
+static void a_flat_rim_has_no_curl(void **state) {
     (void)state;
     Rim rim = look((Sheet){.shrunk = 1, .burnt = true});
     near_to(rim_percentile(rim.curl, 0.9), 0, 0.5);
@@ -116,7 +116,7 @@ static void test_flat_rim_has_no_curl(void **state) {
     near_to(rim.band[2].mass / rim.band[2].rest_area, 0.25 + 0.75 * 3 / 12, 0.02);
 }
 
-static void test_rolled_rim_curls(void **state) {
+static void a_rolled_rim_curls(void **state) {
     (void)state;
     static const double curls[] = {8, 30, 60};
     for (int i = 0; i < 3; i++) {
@@ -130,7 +130,7 @@ static void test_rolled_rim_curls(void **state) {
     }
 }
 
-static void test_shrunk_rim_is_smaller(void **state) {
+static void a_shrunk_rim_is_smaller(void **state) {
     (void)state;
     Rim rim = look((Sheet){.shrunk = 0.6, .burnt = true});
     near_to(ratio(&rim, 0), 0.6, 0.001);
@@ -139,28 +139,28 @@ static void test_shrunk_rim_is_smaller(void **state) {
     near_to(rim_percentile(rim.band[0].slope, 0.9), 0, 0.5);
 }
 
-static void test_only_burnt_edges_are_rims(void **state) {
+static void only_burnt_edges_are_rims(void **state) {
     (void)state;
     Rim rim = look((Sheet){.curl = 30, .shrunk = 1, .burnt = false});
     assert_true(isnan(rim_percentile(rim.curl, 0.5)));
     for (int b = 0; b < RIM_BANDS; b++) assert_true(rim.band[b].rest_area == 0);
 }
 
-static void test_seams_are_no_rims(void **state) {
+static void seams_are_no_rims(void **state) {
     (void)state;
     Rim whole = look((Sheet){.curl = 30, .shrunk = 1, .burnt = true});
     Rim seamed = look((Sheet){.curl = 30, .shrunk = 1, .burnt = true, .seam = true});
     assert_memory_equal(&whole, &seamed, sizeof whole);
 }
 
-static void test_only_the_largest_piece_counts(void **state) {
+static void only_the_largest_piece_counts(void **state) {
     (void)state;
     Rim alone = look((Sheet){.curl = 30, .shrunk = 1, .burnt = true});
     Rim both = look((Sheet){.curl = 30, .shrunk = 1, .burnt = true, .second = true});
     assert_memory_equal(&alone, &both, sizeof alone);
 }
 
-static void test_sums_are_of_areas(void **state) {
+static void sums_are_weighted_by_area(void **state) {
     (void)state;
     Rim small = look((Sheet){.curl = 8, .shrunk = 1, .burnt = true});
     Rim large = look((Sheet){.curl = 60, .shrunk = 1, .burnt = true}), sum = small;
@@ -171,7 +171,7 @@ static void test_sums_are_of_areas(void **state) {
     assert_true(median > rim_percentile(small.curl, 0.4) && median < rim_percentile(large.curl, 0.6));
 }
 
-static void test_nothing_left(void **state) {
+static void an_empty_surface_has_no_rim(void **state) {
     (void)state;
     SingeSurface none = {0};
     Rim rim = {0};
@@ -181,10 +181,10 @@ static void test_nothing_left(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_flat_rim_has_no_curl),  cmocka_unit_test(test_rolled_rim_curls),
-        cmocka_unit_test(test_shrunk_rim_is_smaller), cmocka_unit_test(test_only_burnt_edges_are_rims),
-        cmocka_unit_test(test_seams_are_no_rims),     cmocka_unit_test(test_only_the_largest_piece_counts),
-        cmocka_unit_test(test_sums_are_of_areas),     cmocka_unit_test(test_nothing_left),
+        cmocka_unit_test(a_flat_rim_has_no_curl),    cmocka_unit_test(a_rolled_rim_curls),
+        cmocka_unit_test(a_shrunk_rim_is_smaller),   cmocka_unit_test(only_burnt_edges_are_rims),
+        cmocka_unit_test(seams_are_no_rims),         cmocka_unit_test(only_the_largest_piece_counts),
+        cmocka_unit_test(sums_are_weighted_by_area), cmocka_unit_test(an_empty_surface_has_no_rim),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -25,7 +25,7 @@ class Isotropy(unittest.TestCase):
         self.assertTrue(0.87 <= mean <= 1.15)
 
     def test_nor_do_creases(self):
-        """Which hold on to what there is, so that seeds differ more: four of them have .93 on squares, 1.09 on discs.
+        """Creases keep early folds, so seeds differ more: four of them have .93 on squares, 1.09 on discs.
         Without a limit these two have 1.82."""
         mean = self.effect("--creases", "--curvature", "390")
         self.assertTrue(0.8 <= mean <= 1.2)

@@ -1,4 +1,4 @@
-"""What a run from the start does to what lies in its folder: nothing before its own first frame stands."""
+"""A run from the start leaves the files in its folder alone until its own first frame is written."""
 
 import hashlib
 import os
@@ -99,7 +99,7 @@ class Begin(Case):
         return run.returncode
 
     def test_links_in_the_folder_are_not_followed(self):
-        """What they point at is not ours. The folder itself may be one."""
+        """Their targets belong to somebody else. The folder itself may be a link."""
         os.makedirs(self.path("theirs", "frames"))
         for name in "stats.csv", "run.json", "checkpoint.singe", "preview.mp4", "frames/tiny.0001.png":
             with open(self.path("theirs", name), "w") as file:

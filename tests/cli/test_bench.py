@@ -170,7 +170,7 @@ class Bench(Case):
 
     def test_bad_usage(self):
         for args, hint in (
-            ([], "needs a measurement"),
+            ([], "a measurement is missing"),
             (["swin"], "did you mean 'swing'?"),
             (["--swing"], "unknown measurement"),
             (["swing", "x"], "one argument too many"),

@@ -1,4 +1,4 @@
-"""What the pages say of numbers and options is what the program has."""
+"""Numbers and options on the pages are those of the program."""
 
 import json
 import os

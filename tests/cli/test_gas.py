@@ -41,7 +41,7 @@ class Gas(Case):
 
     @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_same_pictures_from_files(self):
-        """What the run drew from memory is what is drawn from its files; without them flames are missing."""
+        """Pictures drawn from files equal those of the run; without the gas files, flames are missing."""
         self.run_scene("o", "--quiet", preview=True)
         png = self.path("o", "frames", "tiny.0006.png")
         drawn = self.read(png)

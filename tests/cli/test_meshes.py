@@ -103,7 +103,7 @@ class Meshes(Case):
 
 
     def numbers(self, name):
-        """What `check` says of one file: its report and its cells and springs."""
+        """The output of `check` for one file: its report, and its cells and springs."""
         code, text, _, _ = self.check(name)
         self.assertEqual(code, 0, text)
         report = text[text.index(f"{name}: ") + len(name) + 2 :].split("\n", 1)[0]

@@ -1,4 +1,4 @@
-"""What a run leaves, and that it does not depend on threads."""
+"""The files of a run, which do not depend on threads."""
 
 import json
 import os

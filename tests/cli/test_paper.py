@@ -14,7 +14,7 @@ TABLE1 = "0.4306 0.4401 0.5527 0.4954 0.5767 0.5038 0.5804 0.5050 0.5810 0.5052"
 
 class Paper(Case):
     def check_page(self, folder, items, failed=0, bad_cases=True):
-        """The page and its data tell the same, and pictures are there."""
+        """The page and its data agree, and all pictures exist."""
         with open(self.path(folder, "measures.json")) as file:
             data = json.load(file)
         with open(self.path(folder, "measures.csv"), newline="") as file:

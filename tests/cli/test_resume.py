@@ -70,7 +70,7 @@ class Resume(Case):
         self.same_as_whole("k")
 
     def test_debris_of_a_killed_run(self):
-        """What a kill can leave at its worst: a line cut in two, later frames, a temporary file."""
+        """The worst debris of a kill: a truncated line, later frames, a temporary file."""
         self.run_scene("whole", "--quiet")
         self.run_scene("k", "--frames", "9", "--quiet")
         with open(self.path("k", "stats.csv"), "a") as file:

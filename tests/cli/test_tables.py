@@ -124,7 +124,7 @@ class Tables(Case):
         self.assertEqual(self.plys("whole"), self.plys("r"))
 
     def test_lost_lines(self):
-        """What a checkpoint stands for must be there."""
+        """The lines that a checkpoint relies on must exist."""
         self.run_scene("o", "--quiet", "--frames", "8")
         for name, lines in (("events.csv", "events up to frame 8"), ("probes.csv", "frames 1 to 8")):
             with open(self.path("o", name), "rb") as file:

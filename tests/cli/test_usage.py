@@ -131,7 +131,7 @@ class Usage(Case):
         self.assertEqual(sorted(os.listdir(self.dir)), ["tiny.yaml"], "check writes no files")
 
     def test_memory_is_said_first(self):
-        """What a scene needs is known from it alone; what the machine has not is refused before anything is made."""
+        """The memory of a scene is known in advance; one that needs more than the machine has is refused at once."""
         def limited():
             resource.setrlimit(resource.RLIMIT_AS, (1 << 32, 1 << 32))
 

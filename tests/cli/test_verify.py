@@ -222,7 +222,7 @@ class Verify(Case):
         surface.write(self.frame(number))
 
     def finds(self, kind, change, *messages, others=()):
-        """That a change makes a fault of this kind in frame 3, and none of any but `others`."""
+        """Checks that a change causes a fault of this kind in frame 3, and no others except `others`."""
         with open(self.frame(), "rb") as file:
             whole = file.read()
         with self.subTest(kind, change=change.__name__):
@@ -307,7 +307,7 @@ class Verify(Case):
         self.finds("winding", turned, "run the same way along edge")
 
     def test_what_crosses_from_the_start(self):
-        """What crosses in frame 1 is reported and is no fault, there and later; what comes to cross elsewhere is one."""
+        """Triangles that cross in frame 1 are reported and are no fault; ones that cross later elsewhere are."""
         def pierce(first):
             def change(s):
                 def place(t): return [s.vertices[t[0]]["rest_" + axis] for axis in "xyz"]

@@ -1,4 +1,4 @@
-"""A burn by Singe as Alembic, by the Python package and PyPI's alembic3d: every value that there is, of all frames, and
+"""A burn by Singe as Alembic, by the Python package and PyPI's alembic3d: every value of all frames, and
 sheets that are gone. blender_alembic.py reads the same files.
 
 usage: alembic_client.py SINGE FOLDER    FOLDER is emptied; burn.abc and gone.abc are in it

@@ -27,7 +27,7 @@ def export(name):
 
 
 def check(name):
-    """What Singe says of it: the report, and numbers of particles and cells."""
+    """Singe's report about it, and its numbers of particles and cells."""
     scene = os.path.join(FOLDER, "scene.yaml")
     with open(scene, "w") as file:
         file.write("sheets: [{mesh: %s, up: %s}]\ngas: no\n" % (name, "y" if name.endswith(".glb") else "z"))

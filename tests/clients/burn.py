@@ -1,4 +1,4 @@
-"""What the clients of tests/clients share: a small burn, and frames of its cache as numpy arrays."""
+"""Shared by the clients: a small burn, and the frames of its cache as numpy arrays."""
 
 import os
 import re
@@ -66,6 +66,7 @@ output: {}
 """
 
 VECTORS = {"points": "x y z", "velocities": "vx vy vz", "normals": "nx ny nz", "st": "s t", "rest": "rest_x rest_y rest_z"}
+VTK_VECTORS = {"normal": "nx ny nz", "uv": "s t", "velocity": "vx vy vz", "rest": "rest_x rest_y rest_z"}
 SCALARS = ("temperature temperature_peak mass burn_rate char_fraction ash_fraction burnt time_ignited piece_id vertex_id "
            "sheet").split()
 
@@ -161,3 +162,24 @@ def same(a, b, what):
     assert a.dtype.itemsize == b.dtype.itemsize, (what, a.dtype, b.dtype)
     assert a.size == b.size and a.tobytes() == b.tobytes(), "%s: %d values of %d differ" % (
         what, (a.ravel() != b.ravel()).sum() if a.size == b.size else -1, b.size)
+
+
+def same_points(mesh, cache, to_numpy):
+    """The points of a mesh of VTK and their arrays, bit for bit."""
+    same(to_numpy(mesh.GetPoints().GetData()), cache.stack("x y z"), "points")
+    arrays = mesh.GetPointData()
+    for name, columns in VTK_VECTORS.items():
+        same(to_numpy(arrays.GetArray(name)), cache.stack(columns), name)
+    for name in SCALARS:
+        same(to_numpy(arrays.GetArray(name)), cache.column(name), name)
+
+
+def check_burns_away(bpy):
+    """In Blender: a sheet that is burnt at the end has no vertices in the last frames."""
+    counts = []
+    for frame in range(1, 13):
+        bpy.context.scene.frame_set(frame)
+        graph = bpy.context.evaluated_depsgraph_get()
+        counts.append(len(bpy.data.objects["leaf"].evaluated_get(graph).data.vertices))
+    print("vertices of a sheet that burns away:", counts)
+    assert counts[0] > 0 and counts[-1] == 0

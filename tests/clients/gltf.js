@@ -88,7 +88,7 @@ async function checkSingle() {
     return remarks;
 }
 
-// What gltf-transform's meshopt keeps: every attribute, what lies within -1 to 1 rounded to 12 bits.
+// gltf-transform's meshopt keeps every attribute; values within -1 to 1 are rounded to 12 bits.
 async function checkMeshopt() {
     const {Logger, NodeIO} = require('@gltf-transform/core'), {ALL_EXTENSIONS} = require('@gltf-transform/extensions');
     const {meshopt} = require('@gltf-transform/functions');

@@ -15,9 +15,7 @@ from paraview.simple import (ColorBy, CreateView, GetColorTransferFunction, GetD
                              PVDReader, Render, SaveScreenshot, Show)
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from burn import CHECKED, FRAMES, SCALARS, Frame, same
-
-VECTORS = {"normal": "nx ny nz", "uv": "s t", "velocity": "vx vy vz", "rest": "rest_x rest_y rest_z"}
+from burn import CHECKED, FRAMES, Frame, same_points
 
 
 def check(reader, out):
@@ -31,12 +29,7 @@ def check(reader, out):
         assert mesh.GetNumberOfPoints() == len(cache.rows) and mesh.GetNumberOfCells() == len(cache.triangles), frame
         if frame not in CHECKED:
             continue
-        same(vtk_to_numpy(mesh.GetPoints().GetData()), cache.stack("x y z"), "points")
-        arrays = mesh.GetPointData()
-        for name, columns in VECTORS.items():
-            same(vtk_to_numpy(arrays.GetArray(name)), cache.stack(columns), name)
-        for name in SCALARS:
-            same(vtk_to_numpy(arrays.GetArray(name)), cache.column(name), name)
+        same_points(mesh, cache, vtk_to_numpy)
 
 
 def draw(reader, folder, time):

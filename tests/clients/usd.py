@@ -103,7 +103,7 @@ def validate(path):
 
 
 def check_interrupted(singe, folder):
-    """Killed on its way: the root that there is names frames that are there, all whole."""
+    """After a run was killed, the root file names frames that exist and are complete."""
     out = os.path.join(folder, "killed")
     scene = os.path.join(folder, "burn.yaml")
     run = subprocess.Popen([singe, "run", scene, "-o", out, "--quiet", "--no-preview"], stdout=subprocess.DEVNULL)

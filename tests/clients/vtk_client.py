@@ -12,9 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkVersion
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
-from burn import CHECKED, FRAMES, SCALARS, Frame, make, make_gone, same
-
-VECTORS = {"normal": "nx ny nz", "uv": "s t", "velocity": "vx vy vz", "rest": "rest_x rest_y rest_z"}
+from burn import CHECKED, FRAMES, Frame, make, make_gone, same_points
 
 
 def main():
@@ -33,12 +31,8 @@ def main():
         assert mesh.GetNumberOfPoints() == len(cache.rows) and mesh.GetNumberOfPolys() == len(cache.triangles)
         if frame not in CHECKED:
             continue
-        same(vtk_to_numpy(mesh.GetPoints().GetData()), cache.stack("x y z"), "points")
+        same_points(mesh, cache, vtk_to_numpy)
         arrays = mesh.GetPointData()
-        for name, columns in VECTORS.items():
-            same(vtk_to_numpy(arrays.GetArray(name)), cache.stack(columns), name)
-        for name in SCALARS:
-            same(vtk_to_numpy(arrays.GetArray(name)), cache.column(name), name)
         corners = vtk_to_numpy(mesh.GetPolys().GetConnectivityArray())
         assert (corners == cache.triangles.ravel()).all()
         assert arrays.GetScalars().GetName() == "temperature" and arrays.GetVectors().GetName() == "velocity"

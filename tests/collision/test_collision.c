@@ -381,7 +381,7 @@ static void the_search_finds_all(void **unused) {
             assert_true(listed[a * n + b] || listed[b * n + a]);
         }
     assert_true(near > 4 * n);
-    // no listed pair is said to be farther apart than it is; those that are near are measured
+    // no bound exceeds the true distance of its pair, and pairs that are near are measured
     uint32_t measured = 0;
     for (uint32_t k = 0; k < plan->listed_count; k++) {
         const CollisionPair *pair = &plan->pairs[k];

@@ -34,7 +34,7 @@ static void read_item(void *context, const void *item, uint32_t number) {
     memcpy((uint32_t *)context + number, item, sizeof(uint32_t));
 }
 
-/// Writes the list, and makes it larger where that is reported; checks that the first items are there, and no others.
+/// Writes the list and grows it when it reports that it is full; checks that it has the first items and no others.
 static void check_list(uint32_t capacity, uint32_t grown, Pool *pool) {
     Memory memory = memory_make((SingeAllocator){0});
     BlockList list;

@@ -116,7 +116,7 @@ static void what_is_near_may_only_part(void **unused) {
     assert_true(feature_sweep(&sweep, 1e-3f, 1e-6f) > 1);
 }
 
-/// What has come from far and ends a few gaps away, where impacts leave it, is free; so is what slides by.
+/// A point that came from afar and stops a few gaps away, where impacts leave it, is free; so is one that slides past.
 static void fast_displacements_are_free(void **unused) {
     (void)unused;
     const float gap = 1e-3f;
@@ -155,8 +155,8 @@ static bool cells_pierce(const Float4 a[5], const Float4 b[5], const unsigned sh
     return false;
 }
 
-/// What is shown not to cross does not: two cells at a side, and two at a corner with one between that shares a side
-/// with each, bent and sheared at random.
+/// Cells that are proven apart do not cross: two cells at a side, and two at a corner with one between that shares a
+/// side with each, bent and sheared at random.
 static void what_is_parted_does_not_cross(void **unused) {
     (void)unused;
     int level[2] = {0}, parted[2] = {0}, crossed[2] = {0};

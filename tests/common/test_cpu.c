@@ -1,4 +1,4 @@
-// What a processor is found to run, against the compiler's own answer.
+// The instruction sets found, compared with the compiler's own answer.
 #include "support/support.h"
 
 #include "common/cpu.h"

@@ -1,4 +1,4 @@
-// What the library's own printf gives: as the C library's, but for its decimal point.
+// The library's own printf gives what the C library's does, but always with a decimal point.
 #include "support/support.h"
 
 #include "common/format.h"

@@ -40,7 +40,7 @@ static void round_trip(void **state) {
     assert_memory_equal(in.list, out.list, 5);
 }
 
-/// Whatever is cut off, the rest reads as zero and the failure sticks.
+/// After a truncation, wherever it is, reads give zero and the failure remains.
 static void truncated(void **state) {
     (void)state;
     for (size_t size = 0; size < 17; size++) {

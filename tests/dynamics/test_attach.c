@@ -54,7 +54,7 @@ static double far_from_start(const Bench *bench, uint32_t i) {
         float3_sub(float3_load(bench->state.dynamics.position[i]), float3_load(bench->shell.rest_position[i])));
 }
 
-static void test_none_is_too_far(void **unused) {
+static void no_vertex_is_too_far_from_a_pin(void **unused) {
     (void)unused;
     const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0)};
     for (int count = 1; count <= 2; count++) {
@@ -79,8 +79,8 @@ static void test_none_is_too_far(void **unused) {
     }
 }
 
-/// What is in reach already stays to the bit.
-static void test_slack_is_left_alone(void **unused) {
+/// Vertices within reach keep their position to the bit.
+static void slack_is_left_alone(void **unused) {
     (void)unused;
     const uint32_t corner = vertex(0, 0);
     Bench bench;
@@ -98,7 +98,7 @@ static void test_slack_is_left_alone(void **unused) {
     bench_close(&bench);
 }
 
-static void test_loose_piece_is_free(void **unused) {
+static void a_loose_piece_is_free(void **unused) {
     (void)unused;
     const uint32_t corner = vertex(0, 0);
     Bench bench;
@@ -123,8 +123,8 @@ static void test_loose_piece_is_free(void **unused) {
     bench_close(&bench);
 }
 
-/// Nothing is held by what is not held itself: by a pin that was removed, or by a vertex that is gone.
-static void test_let_go(void **unused) {
+/// Neither a pin that was removed nor a vertex that is gone holds anything.
+static void nothing_is_held_by_what_is_gone(void **unused) {
     (void)unused;
     const uint32_t corner = vertex(0, 0);
     for (int burnt = 0; burnt < 2; burnt++) {
@@ -149,7 +149,7 @@ static void test_let_go(void **unused) {
 }
 
 /// Up to four sources, far apart; none where the sheet may stretch.
-static void test_sources(void **unused) {
+static void up_to_four_sources_are_far_apart(void **unused) {
     (void)unused;
     uint32_t edge[ROW];
     for (uint32_t i = 0; i < ROW; i++) edge[i] = vertex(i, SIDE);
@@ -178,8 +178,8 @@ static void end_step(Bench *bench, uint64_t step) {
     attach_update(&bench->plan->attachments, &bench->shell, STATE_INPUT(&bench->state), false);
 }
 
-/// A fire that eats a disc from the middle: ways round it are longer at once, and none is shorter.
-static void test_lengths_grow_at_once(void **unused) {
+/// A fire eats a disc from its middle: distances around the hole grow at once, and none becomes shorter.
+static void lengths_grow_at_once(void **unused) {
     (void)unused;
     const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0)};
     Bench bench;
@@ -208,8 +208,8 @@ static void test_lengths_grow_at_once(void **unused) {
     bench_close(&bench);
 }
 
-/// What shrinks to eight tenths arrives there when the next measurement is due, in equal steps.
-static void test_lengths_shorten_by_and_by(void **unused) {
+/// Lengths that shrink to 0.8 get there in equal steps by the time of the next measurement.
+static void lengths_shorten_in_steps(void **unused) {
     (void)unused;
     const uint32_t corner = vertex(0, 0), far = vertex(SIDE, SIDE);
     Bench bench;
@@ -237,9 +237,9 @@ static double farthest_moved(const Bench *bench, float (*before)[4]) {
     return max;
 }
 
-/// A tight sheet that may tear is left to its springs. What has gone too far meanwhile is not thrown back when a held
-/// vertex burns and the sheet is tight no more, but fetched by and by.
-static void test_rest_ends_without_a_jerk(void **unused) {
+/// A taut sheet that may tear is left to its springs. When a held vertex burns and the sheet becomes slack, vertices
+/// that are too far away return gradually, without a jerk.
+static void rest_ends_without_a_jerk(void **unused) {
     (void)unused;
     const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0), vertex(0, SIDE)};
     Bench bench;
@@ -284,7 +284,7 @@ static SingeSim *hung(const SingeSimDef *def, uint32_t cells, const SingeMateria
 }
 
 /// The sheet cannot follow: it stretches between the pins and trembles a little.
-static void test_pulled_apart(void **unused) {
+static void a_sheet_pulled_apart_trembles_little(void **unused) {
     (void)unused;
     const float side = 0.2f, aways[] = {0.02f, 0.05f, 0.1f};
     for (int run = 0; run < 3; run++) {
@@ -322,7 +322,7 @@ static SingeSim *burning(int threads) {
     return sim;
 }
 
-static void test_same_for_any_thread_count(void **unused) {
+static void bytes_do_not_depend_on_the_thread_count(void **unused) {
     (void)unused;
     SingeSim *one = burning(1);
     test_steps(one, 70);
@@ -337,7 +337,7 @@ static void test_same_for_any_thread_count(void **unused) {
 }
 
 /// Lengths are those of an earlier step: a snapshot must have them.
-static void test_resumes_between_measurements(void **unused) {
+static void a_run_resumes_between_measurements(void **unused) {
     (void)unused;
     SingeSim *sim = burning(1);
     test_steps(sim, 45);
@@ -357,7 +357,7 @@ static void test_resumes_between_measurements(void **unused) {
 }
 
 /// In the step after a pin is removed the sheet falls freely.
-static void test_removed_pin_lets_go(void **unused) {
+static void a_removed_pin_lets_go(void **unused) {
     (void)unused;
     SingeMaterialDef material = singe_default_material();
     material.drag = material.damping = singe_param(0);
@@ -386,18 +386,18 @@ static void test_removed_pin_lets_go(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_none_is_too_far),
-        cmocka_unit_test(test_slack_is_left_alone),
-        cmocka_unit_test(test_loose_piece_is_free),
-        cmocka_unit_test(test_let_go),
-        cmocka_unit_test(test_sources),
-        cmocka_unit_test(test_lengths_grow_at_once),
-        cmocka_unit_test(test_lengths_shorten_by_and_by),
-        cmocka_unit_test(test_rest_ends_without_a_jerk),
-        cmocka_unit_test(test_pulled_apart),
-        cmocka_unit_test(test_same_for_any_thread_count),
-        cmocka_unit_test(test_resumes_between_measurements),
-        cmocka_unit_test(test_removed_pin_lets_go),
+        cmocka_unit_test(no_vertex_is_too_far_from_a_pin),
+        cmocka_unit_test(slack_is_left_alone),
+        cmocka_unit_test(a_loose_piece_is_free),
+        cmocka_unit_test(nothing_is_held_by_what_is_gone),
+        cmocka_unit_test(up_to_four_sources_are_far_apart),
+        cmocka_unit_test(lengths_grow_at_once),
+        cmocka_unit_test(lengths_shorten_in_steps),
+        cmocka_unit_test(rest_ends_without_a_jerk),
+        cmocka_unit_test(a_sheet_pulled_apart_trembles_little),
+        cmocka_unit_test(bytes_do_not_depend_on_the_thread_count),
+        cmocka_unit_test(a_run_resumes_between_measurements),
+        cmocka_unit_test(a_removed_pin_lets_go),
     };
     return cmocka_run_group_tests_name("attach", tests, NULL, NULL);
 }

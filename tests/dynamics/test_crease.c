@@ -89,7 +89,7 @@ static double distance(const float *a, const float *b) {
 }
 
 /// A rolled sheet has the length that the crease's formula gives: on it every spring of every colour is at rest.
-static void test_lengths_of_a_fold(void **unused) {
+static void lengths_fit_a_rolled_sheet(void **unused) {
     (void)unused;
     const double dx = 0.004, angles[] = {0.5, 0.2, -0.3, -0.9};
     Rig rig;
@@ -109,7 +109,7 @@ static void test_lengths_of_a_fold(void **unused) {
 }
 
 /// From wherever it is seen, a creased spring bends as a flat sheet does: moment 4 t^2 a rad of alpha.
-static void test_moment_of_a_fold(void **unused) {
+static void a_creased_spring_bends_as_a_flat_one(void **unused) {
     (void)unused;
     Rig rig;
     rig_open(&rig, test_grid(4, 4, 0.003f, 0.003f), NULL, 1);
@@ -131,7 +131,7 @@ static void test_moment_of_a_fold(void **unused) {
 }
 
 /// The mesh holds no more than its greatest length, and at no crease a ratio of exactly 1, however it lies at rest.
-static void test_what_a_mesh_holds(void **unused) {
+static void a_mesh_bounds_its_creases(void **unused) {
     (void)unused;
     const TestMesh meshes[] = {test_grid(6, 6, 0.004f, 0.004f), test_cylinder(24, 6, 0.02f, 0.03f),
                                test_torus(24, 12, 0.05f, 0.015f)};
@@ -154,7 +154,7 @@ static void test_what_a_mesh_holds(void **unused) {
 }
 
 /// Bent to the curvature k, share (k - 1/radius) stays, to both sides and on every mesh; bent less, nothing does.
-static void test_share_stays(void **unused) {
+static void a_share_of_the_curvature_stays(void **unused) {
     (void)unused;
     SingeMaterialDef material = singe_default_material();
     material.curvature_max = singe_param(0); // no limit on bends
@@ -188,7 +188,7 @@ static void test_share_stays(void **unused) {
 /// A sheet that is rolled aslant keeps the same share of the curvature as one that is rolled along its mesh. Where k_y
 /// counted in full at every edge, a roll of 150/m along the diagonals would leave 6.7/m there, not 33. Edges that the
 /// fold bends by less than 2/5 of its curvature keep no more than that.
-static void test_share_stays_aslant(void **unused) {
+static void the_share_does_not_depend_on_direction(void **unused) {
     (void)unused;
     const SingeMaterialDef material = singe_default_material();
     const double yield = 1 / (double)material.crease_radius.value, share = (double)material.crease_share.value;
@@ -212,7 +212,7 @@ static void test_share_stays_aslant(void **unused) {
 }
 
 /// A single edge that is bent keeps a third less than it would in an arc: 2/3 of 150/m count.
-static void test_single_edge(void **unused) {
+static void a_single_edge_keeps_less(void **unused) {
     (void)unused;
     const SingeMaterialDef material = singe_default_material();
     const double yield = 1 / (double)material.crease_radius.value, share = (double)material.crease_share.value;
@@ -236,8 +236,8 @@ static void test_single_edge(void **unused) {
     rig_close(&rig);
 }
 
-/// Of what is bent beyond the limit of curvature nothing more stays than at the limit; below it the limit is not seen.
-static void test_no_sharper_than_the_limit(void **unused) {
+/// Bending beyond the limit of curvature leaves no more than bending to the limit; below it, the limit has no effect.
+static void no_crease_is_sharper_than_the_limit(void **unused) {
     (void)unused;
     SingeMaterialDef material = singe_default_material();
     const double yield = 1 / (double)material.crease_radius.value, share = (double)material.crease_share.value;
@@ -256,7 +256,7 @@ static void test_no_sharper_than_the_limit(void **unused) {
 }
 
 /// Sharp bends that last a step or two leave nothing.
-static void test_trembling_leaves_nothing(void **unused) {
+static void trembling_leaves_no_crease(void **unused) {
     (void)unused;
     Rig rig;
     rig_open(&rig, test_grid(8, 4, 0.004f, 0.003f), NULL, 1);
@@ -268,8 +268,8 @@ static void test_trembling_leaves_nothing(void **unused) {
     rig_close(&rig);
 }
 
-/// Folded on itself a sheet may look folded to the other side: it stays on the side where it came from.
-static void test_folded_flat(void **unused) {
+/// A sheet folded flat may look folded to the other side; its crease stays on the side it came from.
+static void a_flat_fold_stays_on_its_side(void **unused) {
     (void)unused;
     for (int side = -1; side <= 1; side += 2) {
         Rig rig;
@@ -284,8 +284,8 @@ static void test_folded_flat(void **unused) {
     }
 }
 
-/// What burns forgets: half burnt half of its crease counts, ash has none and takes none.
-static void test_char_forgets(void **unused) {
+/// Burnt paper forgets creases: half burnt, half of a crease counts; ash has none and takes none.
+static void char_forgets_creases(void **unused) {
     (void)unused;
     const double dx = 0.004;
     for (int ash = 0; ash < 2; ash++) {
@@ -305,8 +305,8 @@ static void test_char_forgets(void **unused) {
     }
 }
 
-/// A sheet that curls because its layers shrink differently is not bent: nothing of it stays.
-static void test_curl_is_no_bend(void **unused) {
+/// Curling by unequal shrinkage of the layers is no bending: no crease stays.
+static void curl_leaves_no_crease(void **unused) {
     (void)unused;
     const double dx = 0.003, angle = -0.6; // 200 1/m
     Rig rig;
@@ -344,7 +344,7 @@ static SingeSim *folding(int threads, bool creases, SingePinId *right) {
     return sim;
 }
 
-static void test_same_for_any_threads_and_after_loading(void **unused) {
+static void bytes_are_the_same_for_any_threads_and_after_loading(void **unused) {
     (void)unused;
     SingePinId right, other;
     SingeSim *one = folding(1, true, &right), *three = folding(3, true, &other), *elastic = folding(1, false, &other);
@@ -362,7 +362,7 @@ static void test_same_for_any_threads_and_after_loading(void **unused) {
 }
 
 /// A step that fails leaves creases and lengths as they were.
-static void test_failed_step(void **unused) {
+static void a_failed_step_changes_no_crease(void **unused) {
     (void)unused;
     SingePinId right;
     SingeSim *sim = folding(1, true, &right), *twin;
@@ -384,19 +384,19 @@ static void test_failed_step(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_lengths_of_a_fold),
-        cmocka_unit_test(test_moment_of_a_fold),
-        cmocka_unit_test(test_what_a_mesh_holds),
-        cmocka_unit_test(test_share_stays),
-        cmocka_unit_test(test_share_stays_aslant),
-        cmocka_unit_test(test_single_edge),
-        cmocka_unit_test(test_no_sharper_than_the_limit),
-        cmocka_unit_test(test_trembling_leaves_nothing),
-        cmocka_unit_test(test_folded_flat),
-        cmocka_unit_test(test_char_forgets),
-        cmocka_unit_test(test_curl_is_no_bend),
-        cmocka_unit_test(test_same_for_any_threads_and_after_loading),
-        cmocka_unit_test(test_failed_step),
+        cmocka_unit_test(lengths_fit_a_rolled_sheet),
+        cmocka_unit_test(a_creased_spring_bends_as_a_flat_one),
+        cmocka_unit_test(a_mesh_bounds_its_creases),
+        cmocka_unit_test(a_share_of_the_curvature_stays),
+        cmocka_unit_test(the_share_does_not_depend_on_direction),
+        cmocka_unit_test(a_single_edge_keeps_less),
+        cmocka_unit_test(no_crease_is_sharper_than_the_limit),
+        cmocka_unit_test(trembling_leaves_no_crease),
+        cmocka_unit_test(a_flat_fold_stays_on_its_side),
+        cmocka_unit_test(char_forgets_creases),
+        cmocka_unit_test(curl_leaves_no_crease),
+        cmocka_unit_test(bytes_are_the_same_for_any_threads_and_after_loading),
+        cmocka_unit_test(a_failed_step_changes_no_crease),
     };
     return cmocka_run_group_tests_name("crease", tests, NULL, NULL);
 }

@@ -57,7 +57,7 @@ static double straight_error(Quads quads) {
     return worst;
 }
 
-static void test_straight_lines(void **unused) {
+static void flat_distances_are_straight_lines(void **unused) {
     (void)unused;
     Quads sheared = quads_grid(24, 16, 0.01f, 0.01f, false);
     for (uint32_t v = 0; v < sheared.vertex_count; v++) sheared.positions[3 * v] += 0.4f * sheared.positions[3 * v + 1];
@@ -68,7 +68,7 @@ static void test_straight_lines(void **unused) {
 }
 
 /// A bent sheet is as far across as a flat one: here a cylinder, unrolled in chords as its springs are.
-static void test_cylinder(void **unused) {
+static void a_cylinder_is_as_far_across_as_flat(void **unused) {
     (void)unused;
     enum { AROUND = 40, ALONG = 24 };
     const float side = 0.01f;
@@ -109,7 +109,7 @@ static void assert_displacement(const Distances *d, uint32_t to, double expected
     if (fabs(error) > 0.01) fail_msg("vertex %u: %g m, not %g", to, (double)d->distance[to], expected);
 }
 
-static void test_around_a_slit(void **unused) {
+static void distances_go_around_a_slit(void **unused) {
     (void)unused;
     Distances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
@@ -125,7 +125,7 @@ static void test_around_a_slit(void **unused) {
     distances_close(&d);
 }
 
-static void test_around_a_hole(void **unused) {
+static void distances_go_around_a_hole(void **unused) {
     (void)unused;
     Distances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
@@ -138,8 +138,8 @@ static void test_around_a_hole(void **unused) {
     distances_close(&d);
 }
 
-/// Nothing leads over what is gone.
-static void test_no_way_across(void **unused) {
+/// No path leads across cells that are gone.
+static void nothing_leads_across_gone_cells(void **unused) {
     (void)unused;
     Distances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
@@ -150,8 +150,8 @@ static void test_no_way_across(void **unused) {
     distances_close(&d);
 }
 
-/// What has shrunk to eight tenths is eight tenths as far.
-static void test_follows_targets(void **unused) {
+/// A sheet that has shrunk to 0.8 has distances of 0.8.
+static void distances_follow_target_lengths(void **unused) {
     (void)unused;
     Distances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
@@ -164,8 +164,8 @@ static void test_follows_targets(void **unused) {
     distances_close(&d);
 }
 
-/// What is held stays where it is, whatever its targets: the way through it is no shorter than it lies.
-static void test_held_does_not_shrink(void **unused) {
+/// Held vertices stay where they are, whatever their target lengths: distances between them do not shrink.
+static void held_vertices_do_not_shrink_distances(void **unused) {
     (void)unused;
     Distances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
@@ -180,7 +180,7 @@ static void test_held_does_not_shrink(void **unused) {
     distances_close(&d);
 }
 
-static void test_symmetric(void **unused) {
+static void distances_are_symmetric(void **unused) {
     (void)unused;
     Distances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
@@ -203,10 +203,10 @@ static void test_symmetric(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_straight_lines), cmocka_unit_test(test_cylinder),
-        cmocka_unit_test(test_around_a_slit),  cmocka_unit_test(test_around_a_hole),
-        cmocka_unit_test(test_no_way_across),  cmocka_unit_test(test_follows_targets),
-        cmocka_unit_test(test_symmetric),      cmocka_unit_test(test_held_does_not_shrink),
+        cmocka_unit_test(flat_distances_are_straight_lines), cmocka_unit_test(a_cylinder_is_as_far_across_as_flat),
+        cmocka_unit_test(distances_go_around_a_slit),        cmocka_unit_test(distances_go_around_a_hole),
+        cmocka_unit_test(nothing_leads_across_gone_cells),   cmocka_unit_test(distances_follow_target_lengths),
+        cmocka_unit_test(distances_are_symmetric),           cmocka_unit_test(held_vertices_do_not_shrink_distances),
     };
     return cmocka_run_group_tests_name("geodesic", tests, NULL, NULL);
 }

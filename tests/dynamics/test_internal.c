@@ -54,8 +54,8 @@ static double wave_left(float cell, float wavelength, int steps) {
     return dot / square;
 }
 
-/// What friction takes from a wave goes by its length in metres, hardly by the mesh.
-static void test_waves_decay(void **unused) {
+/// Friction damps a wave by its length in metres; the mesh hardly matters.
+static void waves_decay_by_their_length(void **unused) {
     (void)unused;
     double fine = wave_left(0.0025f, 0.1f, 5), coarse = wave_left(0.005f, 0.1f, 5);
     assert_true(fine > 0.2 && fine < 0.9);
@@ -65,7 +65,7 @@ static void test_waves_decay(void **unused) {
     assert_true(fabs(wave_left(0.0025f, 0.005f, 20)) < 0.1);
 }
 
-static void test_friction_keeps_momentum(void **unused) {
+static void friction_keeps_momentum(void **unused) {
     (void)unused;
     Bench bench;
     SingeMaterialDef material = plain();
@@ -90,8 +90,8 @@ static void test_friction_keeps_momentum(void **unused) {
     bench_close(&bench);
 }
 
-/// Nothing passes a spring that is gone.
-static void test_friction_stops_at_cuts(void **unused) {
+/// Friction does not act across a spring that is gone.
+static void friction_stops_at_cuts(void **unused) {
     (void)unused;
     Bench bench;
     SingeMaterialDef material = plain();
@@ -113,7 +113,7 @@ static void test_friction_stops_at_cuts(void **unused) {
     bench_close(&bench);
 }
 
-static void test_inverted_cells_are_mended(void **unused) {
+static void inverted_cells_are_mended(void **unused) {
     (void)unused;
     Bench bench;
     SingeMaterialDef material = plain();
@@ -150,9 +150,9 @@ static double longest_side(const Bench *bench) {
     return max;
 }
 
-/// What has been torn away by three cells comes back to a quarter more than a side, and flies off no more, with the
-/// momentum that was there.
-static void test_sides_have_a_max(void **unused) {
+/// A vertex that was pulled away by three cells returns to a quarter more than a side and flies off no further;
+/// momentum is conserved.
+static void sides_have_a_max(void **unused) {
     (void)unused;
     SingeMaterialDef material = plain();
     Bench bench;
@@ -178,8 +178,9 @@ static void test_sides_have_a_max(void **unused) {
     bench_close(&bench);
 }
 
-/// What has burnt, what may stretch, what is held at both ends and a sheet that is held too far apart have no most.
-static void test_some_sides_have_no_max(void **unused) {
+/// Sides that have burnt, may stretch or are held at both ends have no maximum length, nor has a sheet held too far
+/// apart.
+static void some_sides_have_no_max(void **unused) {
     (void)unused;
     for (int kind = 0; kind < 5; kind++) {
         SingeMaterialDef material = plain();
@@ -205,7 +206,7 @@ static void test_some_sides_have_no_max(void **unused) {
 }
 
 /// Eq 19 by hand: the mean of the ends' weights, softened by how far they are burnt; none where a spring is gone.
-static void test_weights(void **unused) {
+static void weights_follow_eq_19(void **unused) {
     (void)unused;
     Bench bench;
     SingeMaterialDef material = plain();
@@ -223,7 +224,7 @@ static void test_weights(void **unused) {
 }
 
 /// A ribbon of compliant springs hangs as long whatever the number of substeps.
-static void test_compliance_is_physical(void **unused) {
+static void compliance_does_not_depend_on_substeps(void **unused) {
     (void)unused;
     double stretch[2];
     for (int run = 0; run < 2; run++) {
@@ -248,8 +249,8 @@ static void test_compliance_is_physical(void **unused) {
     assert_true(stretch[0] > 1e-4 && fabs(stretch[0] / stretch[1] - 1) < 0.02);
 }
 
-/// What is burnt to ash keeps its place's share of its weight: here from 0.2 at the left to 0.8 at the right.
-static void test_char_weight_by_attribute(void **unused) {
+/// Springs burnt to ash keep a share of their weight that varies: here from 0.2 at the left to 0.8 at the right.
+static void char_weight_follows_an_attribute(void **unused) {
     (void)unused;
     Bench bench;
     SingeMaterialDef material = plain();
@@ -268,8 +269,8 @@ static void test_char_weight_by_attribute(void **unused) {
     bench_close(&bench);
 }
 
-/// Damping and drag slow each particle by its own; without weight no spring makes them equal.
-static void test_damping_and_drag_by_texture(void **unused) {
+/// Each particle is slowed by its own damping and drag; springs without weight do not even them out.
+static void damping_and_drag_follow_a_texture(void **unused) {
     (void)unused;
     static const float halves[] = {0, 1};
     for (int drag = 0; drag < 2; drag++) {
@@ -317,7 +318,7 @@ static void hang(SingeParam compliance, double stretch[2]) {
     bench_close(&bench);
 }
 
-static void test_compliance_by_texture(void **unused) {
+static void compliance_follows_a_texture(void **unused) {
     (void)unused;
     static const float halves[] = {0, 1}; // white at the bottom
     double all[2], half[2];
@@ -330,17 +331,17 @@ static void test_compliance_by_texture(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_waves_decay),
-        cmocka_unit_test(test_friction_keeps_momentum),
-        cmocka_unit_test(test_friction_stops_at_cuts),
-        cmocka_unit_test(test_inverted_cells_are_mended),
-        cmocka_unit_test(test_sides_have_a_max),
-        cmocka_unit_test(test_some_sides_have_no_max),
-        cmocka_unit_test(test_weights),
-        cmocka_unit_test(test_compliance_is_physical),
-        cmocka_unit_test(test_char_weight_by_attribute),
-        cmocka_unit_test(test_damping_and_drag_by_texture),
-        cmocka_unit_test(test_compliance_by_texture),
+        cmocka_unit_test(waves_decay_by_their_length),
+        cmocka_unit_test(friction_keeps_momentum),
+        cmocka_unit_test(friction_stops_at_cuts),
+        cmocka_unit_test(inverted_cells_are_mended),
+        cmocka_unit_test(sides_have_a_max),
+        cmocka_unit_test(some_sides_have_no_max),
+        cmocka_unit_test(weights_follow_eq_19),
+        cmocka_unit_test(compliance_does_not_depend_on_substeps),
+        cmocka_unit_test(char_weight_follows_an_attribute),
+        cmocka_unit_test(damping_and_drag_follow_a_texture),
+        cmocka_unit_test(compliance_follows_a_texture),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,7 +54,7 @@ static void drop_collider(Bench *bench) {
     free(bench->colliders.items);
 }
 
-static void test_free_fall(void **unused) {
+static void a_sheet_falls_freely(void **unused) {
     (void)unused;
     Bench bench;
     SingeMaterialDef material = plain();
@@ -68,7 +68,7 @@ static void test_free_fall(void **unused) {
     bench_close(&bench);
 }
 
-static void test_terminal_speed(void **unused) {
+static void drag_gives_a_terminal_speed(void **unused) {
     (void)unused;
     Bench bench;
     SingeMaterialDef material = plain();
@@ -83,7 +83,7 @@ static void test_terminal_speed(void **unused) {
 }
 
 /// A thrown, spinning sheet: lengths kept, momentum kept.
-static void test_free_flight(void **unused) {
+static void free_flight_keeps_lengths_and_momentum(void **unused) {
     (void)unused;
     Bench bench;
     SingeMaterialDef material = plain();
@@ -106,7 +106,7 @@ static void test_free_flight(void **unused) {
 }
 
 /// Damping takes exp(-d t) of a free motion, by (1 + h d)^-1 in every substep.
-static void test_damping_law(void **unused) {
+static void damping_decays_exponentially(void **unused) {
     (void)unused;
     Bench bench;
     SingeMaterialDef material = plain();
@@ -176,10 +176,10 @@ static double spin_left(int axis, float smoothing, bool bent) {
     return after[axis] / before[axis];
 }
 
-/// What a free sheet loses of its spin w is the projection's own, w^2 h t: x~ runs ahead on the tangent and is drawn
-/// back. Internal friction takes less than 1e-3 from a flat sheet, and from a bent one where it turns out of its
-/// strands' lines: up to a fifth in a second.
-static void test_spin(void **unused) {
+/// A free sheet loses w^2 h t of its spin w to the projection: x~ runs ahead on the tangent and is drawn back. Internal
+/// friction takes less than 1e-3 from a flat sheet, and from a bent one where it turns out of its strands' lines: up to
+/// a fifth in a second.
+static void spin_decays_as_predicted(void **unused) {
     (void)unused;
     const float smoothing = singe_default_solver().smoothing;
     double expected = exp(-6.2832 * 6.2832 / 480 / singe_default_solver().substeps);
@@ -221,7 +221,7 @@ static double open_crushed(uint32_t seed) {
 
 /// Springs crushed to nearly nothing push back no harder than their length: the sheet opens and stays together.
 /// How much stays crumpled depends on chance: 4 to 25 %, 14 % in the mean of 48.
-static void test_crushed_sheet_opens(void **unused) {
+static void a_crushed_sheet_opens(void **unused) {
     (void)unused;
     double mean = 0;
     for (uint32_t seed = 1; seed <= 16; seed++) mean += open_crushed(seed) / 16;
@@ -250,7 +250,7 @@ static double slide(float slope, float friction) {
     return displacement;
 }
 
-static void test_block_on_slope(void **unused) {
+static void friction_holds_a_block_on_a_slope(void **unused) {
     (void)unused;
     float friction = 0.4f, angle = atanf(friction); // 21.8 degrees
     assert_true(slide(angle - 0.02f, friction) < 1e-3);
@@ -262,7 +262,7 @@ static void test_block_on_slope(void **unused) {
     assert_true(fabs(slide(0.3f, 0) / (0.5 * 9.81 * sin(0.3) * 0.25) - 1) < 0.02);
 }
 
-static void test_carried_by_moving_plane(void **unused) {
+static void a_moving_plane_carries_the_sheet(void **unused) {
     (void)unused;
     Bench bench;
     SingeMaterialDef material = plain();
@@ -279,7 +279,7 @@ static void test_carried_by_moving_plane(void **unused) {
     bench_close(&bench);
 }
 
-static void test_never_inside_a_collider(void **unused) {
+static void no_vertex_is_inside_a_collider(void **unused) {
     (void)unused;
     for (SingeColliderKind kind = SINGE_COLLIDER_SPHERE; kind <= SINGE_COLLIDER_CAPSULE; kind++) {
         Bench bench;
@@ -302,7 +302,7 @@ static void test_never_inside_a_collider(void **unused) {
     }
 }
 
-static void test_same_for_any_thread_count(void **unused) {
+static void bytes_do_not_depend_on_the_thread_count(void **unused) {
     (void)unused;
     Bench one, more;
     bench_open(&one, quads_grid(60, 50, 0.01f, 0.01f, false), NULL, 1);
@@ -325,7 +325,7 @@ static void test_same_for_any_thread_count(void **unused) {
 }
 
 /// A sheet held along its upper edge comes to rest with little strain, no crossed layer, no jitter.
-static void test_hangs_still(void **unused) {
+static void a_hung_sheet_comes_to_rest(void **unused) {
     (void)unused;
     Bench bench;
     SingeMaterialDef material = singe_default_material();
@@ -351,17 +351,17 @@ static void test_hangs_still(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_free_fall),
-        cmocka_unit_test(test_terminal_speed),
-        cmocka_unit_test(test_free_flight),
-        cmocka_unit_test(test_damping_law),
-        cmocka_unit_test(test_spin),
-        cmocka_unit_test(test_crushed_sheet_opens),
-        cmocka_unit_test(test_block_on_slope),
-        cmocka_unit_test(test_carried_by_moving_plane),
-        cmocka_unit_test(test_never_inside_a_collider),
-        cmocka_unit_test(test_same_for_any_thread_count),
-        cmocka_unit_test(test_hangs_still),
+        cmocka_unit_test(a_sheet_falls_freely),
+        cmocka_unit_test(drag_gives_a_terminal_speed),
+        cmocka_unit_test(free_flight_keeps_lengths_and_momentum),
+        cmocka_unit_test(damping_decays_exponentially),
+        cmocka_unit_test(spin_decays_as_predicted),
+        cmocka_unit_test(a_crushed_sheet_opens),
+        cmocka_unit_test(friction_holds_a_block_on_a_slope),
+        cmocka_unit_test(a_moving_plane_carries_the_sheet),
+        cmocka_unit_test(no_vertex_is_inside_a_collider),
+        cmocka_unit_test(bytes_do_not_depend_on_the_thread_count),
+        cmocka_unit_test(a_hung_sheet_comes_to_rest),
     };
     return cmocka_run_group_tests_name("motion", tests, NULL, NULL);
 }

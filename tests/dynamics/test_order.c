@@ -40,7 +40,7 @@ static double parting(const Bench *bench, uint32_t c) {
     return (double)float3_dot(away, normal);
 }
 
-static void test_moves_centres_alone(void **unused) {
+static void only_centres_move(void **unused) {
     (void)unused;
     Bench bench;
     open_jumble(&bench, 1);
@@ -67,7 +67,7 @@ static void test_moves_centres_alone(void **unused) {
     bench_close(&bench);
 }
 
-static void test_threads(void **unused) {
+static void bytes_do_not_depend_on_threads(void **unused) {
     (void)unused;
     Bench one, three;
     open_jumble(&one, 1), open_jumble(&three, 3);
@@ -77,7 +77,7 @@ static void test_threads(void **unused) {
 }
 
 /// A pinned centre gives way as well. A cell crushed to a line has no front: its centre stays where it is.
-static void test_pinned_and_crushed(void **unused) {
+static void pinned_and_crushed_cells_stay_ordered(void **unused) {
     (void)unused;
     Bench bench;
     bench_open(&bench, quads_grid(3, 3, 0.005f, 0.005f, false), NULL, 1);
@@ -106,7 +106,7 @@ static uint32_t step_and_count(SingeSim *sim, int steps) {
 }
 
 /// A box comes down on a rumpled sheet on the ground, front up or down, and shoves it aside.
-static void test_pressed_on_the_ground(void **unused) {
+static void a_sheet_pressed_on_the_ground_stays_ordered(void **unused) {
     (void)unused;
     for (int down = 0; down < 2; down++) {
         TestMesh mesh = test_grid(30, 30, 0.004f, 0.004f);
@@ -136,8 +136,8 @@ static void test_pressed_on_the_ground(void **unused) {
     }
 }
 
-/// What burns without being removed shrinks to half of its size within half a second, held at one side.
-static void test_shrinks(void **unused) {
+/// A sheet that burns without ablation, held at one side, shrinks to half its size within half a second.
+static void a_shrinking_sheet_stays_ordered(void **unused) {
     (void)unused;
     SingeMaterialDef material = singe_default_material();
     material.ablate = false, material.temperature = singe_param(600), material.mass_rate = singe_param(0.04f);
@@ -162,11 +162,11 @@ static void test_shrinks(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_moves_centres_alone),
-        cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_pinned_and_crushed),
-        cmocka_unit_test(test_pressed_on_the_ground),
-        cmocka_unit_test(test_shrinks),
+        cmocka_unit_test(only_centres_move),
+        cmocka_unit_test(bytes_do_not_depend_on_threads),
+        cmocka_unit_test(pinned_and_crushed_cells_stay_ordered),
+        cmocka_unit_test(a_sheet_pressed_on_the_ground_stays_ordered),
+        cmocka_unit_test(a_shrinking_sheet_stays_ordered),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -139,7 +139,7 @@ static void compare_kernels(Quads quads, bool vary) {
     bench_close(&bench);
 }
 
-static void test_kernels_agree(void **unused) {
+static void kernels_agree(void **unused) {
     (void)unused;
     for (int vary = 0; vary < 2; vary++) {
         compare_kernels(quads_grid(37, 23, 0.01f, 0.01f, false), vary);
@@ -195,7 +195,7 @@ static Density measure_lanes(const char *name, Quads quads) {
     return density;
 }
 
-static void test_lanes_are_full(void **unused) {
+static void lanes_are_full(void **unused) {
     (void)unused;
     Density grid = measure_lanes("grid", quads_grid(100, 60, 0.01f, 0.01f, false));
     assert_true((double)grid.springs > 0.93 * (double)grid.slots);
@@ -214,8 +214,8 @@ static void test_lanes_are_full(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_kernels_agree),
-        cmocka_unit_test(test_lanes_are_full),
+        cmocka_unit_test(kernels_agree),
+        cmocka_unit_test(lanes_are_full),
     };
     return cmocka_run_group_tests_name("strand_lanes", tests, NULL, NULL);
 }

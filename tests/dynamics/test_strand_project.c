@@ -38,7 +38,7 @@ static void dense_solve(double a[N_MAX][N_MAX], double *b, int n) {
     }
 }
 
-/// What a spring gives without any compliance, m/N: (a + r) h^2/m.
+/// The compliance of a spring whose own compliance is zero, m/N: (a + r) h^2/m.
 static double own_softness(const Bench *bench, SingeColour colour) {
     const double h = (double)bench->settings.time_step / bench->settings.solver.substeps;
     double s = (double)bench->shell.sheets[0].cell_size, area = 0, mass = 0;
@@ -128,19 +128,19 @@ static void compare(Quads quads, bool pin_some) {
     bench_close(&bench);
 }
 
-static void test_chains_match_dense(void **unused) {
+static void chains_match_a_dense_solver(void **unused) {
     (void)unused;
     compare(quads_grid(7, 9, 0.01f, 0.012f, false), false);
     compare(quads_grid(12, 5, 0.01f, 0.008f, false), true);
 }
 
-static void test_rings_match_dense(void **unused) {
+static void rings_match_a_dense_solver(void **unused) {
     (void)unused;
     compare(quads_grid(14, 4, 0.01f, 0.012f, true), false);
     compare(quads_grid(15, 4, 0.01f, 0.012f, true), true);
 }
 
-static void test_gone_springs_decouple(void **unused) {
+static void gone_springs_decouple(void **unused) {
     (void)unused;
     Bench bench;
     DynamicsCounters counters = {0};
@@ -156,7 +156,7 @@ static void test_gone_springs_decouple(void **unused) {
     bench_close(&bench);
 }
 
-static void test_pinned_at_both_ends(void **unused) {
+static void springs_pinned_at_both_ends_do_not_move(void **unused) {
     (void)unused;
     Bench bench;
     bench_open(&bench, quads_grid(6, 2, 0.01f, 0.01f, false), NULL, 1);
@@ -169,10 +169,10 @@ static void test_pinned_at_both_ends(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_chains_match_dense),
-        cmocka_unit_test(test_rings_match_dense),
-        cmocka_unit_test(test_gone_springs_decouple),
-        cmocka_unit_test(test_pinned_at_both_ends),
+        cmocka_unit_test(chains_match_a_dense_solver),
+        cmocka_unit_test(rings_match_a_dense_solver),
+        cmocka_unit_test(gone_springs_decouple),
+        cmocka_unit_test(springs_pinned_at_both_ends_do_not_move),
     };
     return cmocka_run_group_tests_name("strand", tests, NULL, NULL);
 }

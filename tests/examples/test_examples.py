@@ -42,7 +42,7 @@ class Example(Case):
         return [row[name] for row in self.rows]
 
     def common(self):
-        """Whatever burns: numbers are finite, nothing is created or lost."""
+        """In every example numbers are finite, and nothing is created or lost."""
         for row in self.rows:
             for name, value in row.items():
                 self.assertTrue(math.isfinite(value), f"{name} of frame {row['frame']}")
@@ -56,7 +56,7 @@ class Example(Case):
         self.say["ledgers"] = f"{max(self.column('ledger_error')):.1e}, {max(self.column('mass_ledger_error')):.1e}"
 
     def verified(self):
-        """What `singe verify` counts in the cache: nothing, but for what is known."""
+        """`singe verify` finds no faults in the cache, except known ones."""
         path = self.path("faults.csv")
         run = self.start("verify", self.path("whole"), "--csv", path)
         err = run.communicate(timeout=800)[1]
@@ -78,7 +78,7 @@ class Example(Case):
         self.assertLessEqual(max(row["strain_mean"] for row in rows), 0.01)
 
     def vertices(self, frame):
-        """What a frame's file says of each vertex, by name."""
+        """The values of a frame's vertices, by name."""
         name = f"{self.NAME}.{frame:04d}.ply"
         with open(self.path("whole", "ply", name), "rb") as file:
             header, _, data = file.read().partition(b"end_header\n")

@@ -1,5 +1,5 @@
-// What `singe paper` rests on: singular values against known ones, the ranks of section 7.1, and the errors of Fig 8 on
-// its two states.
+// The foundations of `singe paper`: singular values against known ones, the ranks of section 7.1, and the errors of Fig
+// 8 on its two states.
 #include <math.h>
 #include <setjmp.h>
 #include <stdbool.h>
@@ -13,7 +13,7 @@
 #include "paper/paper_states.h"
 #include "analysis/singular.h"
 
-static void test_singular_values(void **unused) {
+static void singular_values_match_known_ones(void **unused) {
     (void)unused;
     // a product of two rotations with diag(3, 2, 1e-9) between them, and a row that is twice another
     const double c = cos(0.7), s = sin(0.7);
@@ -52,7 +52,7 @@ static void sums(SingeSim *sim, PaperState state, int steps, double *sum) {
 }
 
 /// Fig 8 in the states that `singe paper fig8` draws: the sum falls in each of 20 steps.
-static void test_sum_falls_where_drawn(void **unused) {
+static void the_sum_falls_where_drawn(void **unused) {
     (void)unused;
     const int steps[] = {[PAPER_SWING] = 200, [PAPER_SHRINK] = 50};
     for (int state = 0; state < PAPER_STATE_COUNT; state++) {
@@ -68,7 +68,7 @@ static void test_sum_falls_where_drawn(void **unused) {
 
 /// But not in all states, as the paper has it: in some of a swing it rises in one of 7 steps, and in nearly all it is
 /// lower after them.
-static void test_sum_rises_in_some_states(void **unused) {
+static void the_sum_rises_in_some_states(void **unused) {
     (void)unused;
     enum { STATES = 120, STEPS = 7 };
     SingeSim *sim = sheet(PAPER_SWING, 20, 0);
@@ -98,7 +98,7 @@ static size_t rank(SingeNetwork *network, uint32_t set, size_t columns) {
 }
 
 /// Section 7.1: all springs in one system have more constraints than rank; every colour has full rank.
-static void test_ranks(void **unused) {
+static void every_colour_has_full_rank(void **unused) {
     (void)unused;
     SingeSim *sim = sheet(PAPER_SWING, 5, 100);
     SingeNetwork *all, *colours;
@@ -133,7 +133,7 @@ static double left_after(SingeSim *sim, bool one, double floor) {
 
 /// With the same floor on the diagonal on both sides: without one all springs at once diverge where the colours in turn
 /// converge; with one both converge, so that it is the rank that is at fault.
-static void test_all_at_once_diverges(void **unused) {
+static void all_at_once_diverges_without_a_floor(void **unused) {
     (void)unused;
     SingeSim *sim = sheet(PAPER_SWING, 8, 200);
     const double floors[] = {0, 1e-4};
@@ -153,9 +153,9 @@ static void test_all_at_once_diverges(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_singular_values),          cmocka_unit_test(test_sum_falls_where_drawn),
-        cmocka_unit_test(test_sum_rises_in_some_states), cmocka_unit_test(test_ranks),
-        cmocka_unit_test(test_all_at_once_diverges),
+        cmocka_unit_test(singular_values_match_known_ones),     cmocka_unit_test(the_sum_falls_where_drawn),
+        cmocka_unit_test(the_sum_rises_in_some_states),         cmocka_unit_test(every_colour_has_full_rank),
+        cmocka_unit_test(all_at_once_diverges_without_a_floor),
     };
     return cmocka_run_group_tests_name("paper parts", tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What a farm's rows cost on this machine: rows an hour by rows at a time, the time that preemption costs, and the size
-of a row's files.
+"""Measures the rows of a farm on this machine: rows per hour, one or several at a time; the cost of preemption; and the
+size of a row's files.
 
     tests/farm/measure_farm.py PROGRAM [--repeat N]
 

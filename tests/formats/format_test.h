@@ -1,4 +1,4 @@
-// What the tests of the formats share: a folder for files, looks at messages.
+// Helpers for the tests of formats: a temporary folder, and checks of messages.
 #ifndef TESTS_FORMATS_FORMAT_TEST_H
 #define TESTS_FORMATS_FORMAT_TEST_H
 

@@ -230,23 +230,12 @@ static void allocation_failure_is_clean(void **state) {
     Sample sample;
     make_sample(&sample);
     Bytes bytes = written(&sample.surface, 3);
-    for (long n = 1;; n++) {
-        TestAllocator counter = {.fail_at = n, .once = true};
-        SingeSurface read;
-        SingeError error;
-        SingeResult result =
-            ply_read_surface("a.ply", bytes.data, bytes.size, test_allocator(&counter), &read, NULL, &error);
-        if (result) assert_int_equal(result, SINGE_ERROR_MEMORY);
-        singe_surface_free(&read);
-        test_allocator_check(&counter);
-        if (result == SINGE_OK) {
-            assert_true(n > 14);
-            break;
-        }
-    }
+    SingeSurface read;
+    SingeError error;
+    test_allocations_fail(14, ply_read_surface("a.ply", bytes.data, bytes.size, allocator, &read, NULL, &error),
+                          singe_surface_free(&read));
     bytes_free(&bytes);
     TestAllocator counter = {.fail_at = 1, .once = true};
-    SingeError error;
     sample.surface.allocator = test_allocator(&counter);
     assert_int_equal(ply_write_surface(path, &sample.surface, 3, &error), SINGE_ERROR_MEMORY);
     test_allocator_check(&counter);

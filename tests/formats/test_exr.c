@@ -51,7 +51,7 @@ static void read_channel(const char *name, exr_pixel_type_t kept, void *values) 
     exr_finish(&file);
 }
 
-static void test_read_back(void **state) {
+static void layers_read_back(void **state) {
     (void)state;
     static float colour[COUNT][3], depth[COUNT], got[COUNT];
     static uint32_t id[COUNT], got_id[COUNT];
@@ -79,7 +79,7 @@ static void test_read_back(void **state) {
     assert_memory_equal(got_id, id, sizeof id);
 }
 
-static void test_bad_layers(void **state) {
+static void bad_layers_are_refused(void **state) {
     (void)state;
     static float values[COUNT];
     const ExrChannel twice[] = {{"R", EXR_KIND_HALF, values, 1}, {"R", EXR_KIND_HALF, values, 1}};
@@ -98,7 +98,7 @@ static void test_bad_layers(void **state) {
 int main(void) {
     folder = test_folder();
     snprintf(path, sizeof path, "%s/a.exr", folder);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_read_back), cmocka_unit_test(test_bad_layers)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(layers_read_back), cmocka_unit_test(bad_layers_are_refused)};
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     unlink(path);
     rmdir(folder);

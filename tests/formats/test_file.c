@@ -107,7 +107,7 @@ static void writing_says_why(void **state) {
     assert_int_equal(files_in_folder(), 0);
 }
 
-// What a link points at is not ours.
+// The target of a link belongs to somebody else.
 static void links_are_replaced(void **state) {
     (void)state;
     SingeError error;

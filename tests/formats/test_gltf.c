@@ -300,14 +300,7 @@ static void every_cut_and_failure_of_memory_is_clean(void **state) {
     for (size_t cut = 0; cut < sizeof json - 1; cut++) // as text, without data
         assert_int_not_equal(polygons_read("a.gltf", (const uint8_t *)json, cut, (SingeAllocator){0}, &mesh, &error),
                              SINGE_OK);
-    for (long at = 1;; at++) {
-        TestAllocator counts = {.fail_at = at};
-        SingeResult result = parse(json, &d, test_allocator(&counts), &mesh, &error);
-        if (!result) polygons_free(&mesh);
-        else assert_int_equal(result, SINGE_ERROR_MEMORY);
-        test_allocator_check(&counts);
-        if (!result) break;
-    }
+    test_allocations_fail(0, parse(json, &d, allocator, &mesh, &error), polygons_free(&mesh));
 }
 
 int main(void) {

@@ -93,16 +93,10 @@ static void errors_come_as_they_were(void **state) {
 static void failing_memory_of_the_parent_is_reported(void **state) {
     (void)state;
     uint8_t *bytes = many();
-    for (long at = 1;; at++) {
-        TestAllocator counts = {.fail_at = at};
-        Bytes answer;
-        SingeError error;
-        SingeResult result = isolate_run("a.mesh", put_many, bytes, few, test_allocator(&counts), &answer, &error);
-        if (!result) bytes_free(&answer);
-        else assert_int_equal(result, SINGE_ERROR_MEMORY);
-        test_allocator_check(&counts);
-        if (!result) break;
-    }
+    Bytes answer;
+    SingeError error;
+    test_allocations_fail(0, isolate_run("a.mesh", put_many, bytes, few, allocator, &answer, &error),
+                          bytes_free(&answer));
     free(bytes);
 }
 

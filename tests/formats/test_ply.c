@@ -296,19 +296,10 @@ static void truncated_ascii(void **state) {
 static void allocation_failure_is_clean(void **state) {
     (void)state;
     Maker maker = make_binary(false);
-    for (long n = 1;; n++) {
-        TestAllocator counter = {.fail_at = n, .once = true};
-        Polygons mesh;
-        SingeError error;
-        SingeResult result = ply_read("a.ply", maker.bytes, maker.size, test_allocator(&counter), &mesh, &error);
-        if (result == SINGE_OK) polygons_free(&mesh);
-        else assert_int_equal(result, SINGE_ERROR_MEMORY);
-        test_allocator_check(&counter);
-        if (result == SINGE_OK) {
-            assert_true(n > 15);
-            break;
-        }
-    }
+    Polygons mesh;
+    SingeError error;
+    test_allocations_fail(15, ply_read("a.ply", maker.bytes, maker.size, allocator, &mesh, &error),
+                          polygons_free(&mesh));
 }
 
 /// Their names are compared with each other: many of them would take minutes.

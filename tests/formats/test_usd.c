@@ -198,7 +198,7 @@ static void nothing_left_is_a_frame_too(void **state) {
     bytes_free(&bytes);
 }
 
-/// What lz4_pack makes, unpacked by the tests' reader; repeats are short.
+/// The tests' reader unpacks the output of lz4_pack; repeats are short.
 static void packed_bytes_come_back(void **state) {
     (void)state;
     static const size_t sizes[] = {0, 1, 12, 13, 14, 15, 16, 255, 270, 271, 5000, 70000, 300000};

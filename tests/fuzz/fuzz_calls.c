@@ -26,7 +26,7 @@ static SingePoseKey input_pose(Input *input, float time) {
     return pose;
 }
 
-/// One of a kind's handles, now and then one that is none.
+/// One of the handles of a kind, or sometimes an invalid one.
 #define INPUT_HANDLE(input, sim, Id, list)                             \
     do {                                                               \
         Id ids[256];                                                   \

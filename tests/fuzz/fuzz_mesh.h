@@ -1,4 +1,4 @@
-// What must hold of every mesh that a reader accepts.
+// Properties of every mesh that a reader accepts.
 #ifndef TESTS_FUZZ_MESH_H
 #define TESTS_FUZZ_MESH_H
 
@@ -21,7 +21,7 @@ static inline void demand_mesh(const Polygons *mesh) {
     }
 }
 
-/// What mesh_make makes of it is a mesh of quads.
+/// mesh_make turns it into a mesh of quads.
 static inline void demand_quads(const Polygons *polygons) {
     Mesh mesh;
     SingeError error;

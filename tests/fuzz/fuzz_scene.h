@@ -1,4 +1,4 @@
-// What scenes must do whatever they are made of.
+// Properties of every scene that is read, whatever its bytes.
 #ifndef TESTS_FUZZ_SCENE_H
 #define TESTS_FUZZ_SCENE_H
 
@@ -18,7 +18,7 @@ static inline void expect_reported(const SceneMessages *messages, const Scene *s
     }
 }
 
-/// What is accepted reads back from its own dump.
+/// An accepted scene reads back from its own dump.
 static inline void expect_back(const Scene *scene, SceneSyntax syntax) {
     Scene *again = NULL;
     SceneMessages messages = {0};

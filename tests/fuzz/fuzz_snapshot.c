@@ -11,7 +11,7 @@
 
 enum { SNAPSHOTS = 4, MESHED = 3, HEADER = 56, SIZE_AT = 16, CHECKSUM_AT = 24, CHANGES = 24, STEPS = 2 };
 
-/// What a load or step may hold, so that a count that lies is noticed.
+/// The memory that a load or step may hold, so that a forged count is noticed.
 static const size_t memory_max = (size_t)1 << 29;
 
 typedef struct Saved {

@@ -30,7 +30,7 @@ static inline uint32_t input_word(Input *input) {
 /// From -1 to 1.
 static inline float input_share(Input *input) { return (float)((int)input_byte(input) - 128) / 128; }
 
-/// What must hold.
+/// Ends the fuzzer if a condition does not hold.
 static inline void demand(bool holds) {
     if (!holds) abort();
 }

@@ -1,4 +1,4 @@
-// What a caller sees of a simulation, for fuzz targets: it must be finite, and two simulations must have the same.
+// The visible state of a simulation, for fuzz targets: it must be finite, and two simulations must agree.
 #ifndef TESTS_FUZZ_SIM_STATE_H
 #define TESTS_FUZZ_SIM_STATE_H
 

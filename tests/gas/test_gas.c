@@ -79,7 +79,7 @@ static double air_max(const Air *air, GasField field) {
     return max;
 }
 
-/// What burnt is in the gas, as fuel or as heat, until it reaches the border.
+/// Burnt mass is in the gas, as fuel or as heat, until it reaches the border.
 static void heat_is_kept(void **unused) {
     (void)unused;
     GasSettings settings = settings_default();

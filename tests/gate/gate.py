@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""Real models, burnt: every model of some packages is run until it is eaten away, and what comes of it is reported.
+"""Burns the models of some packages until nothing is left of them, and reports the outcome of each.
 
-Each model is scaled to 30 cm, hangs in a hot ball that is larger than it, and is run on one thread and on two, with the
-same bytes in every file of the two caches; then `singe verify` looks for faults. What comes of a model is one of
+A model is scaled to 30 cm, hangs inside a larger hot ball, and runs on one thread and on two. Both caches must have the
+same bytes; then `singe verify` looks for faults. The outcome of a model is one of
 
-  clean      it runs, and no fault is found
-  crossed    it crosses itself in the file, which `run` says; nothing else is found, and nothing comes to cross anew
-  strained   the only faults are drawn edges of more than twice their length at rest
-  refused    exit code 2 and a message: why it can be no sheet
-  large      a file of more than 4 MB, or more drawn triangles than --largest at the start: not run
-  failed     anything else: another exit code, another byte, a fault, a limit of time or memory that is passed
+  clean      it runs, and verify finds no fault
+  crossed    it intersects itself in the file, as `run` reports; there are no other faults and no new intersections
+  strained   the only faults are drawn edges longer than twice their rest length
+  refused    exit code 2 and a message why it cannot be a sheet
+  large      not run: a file above 4 MB, or more drawn triangles than --largest at the start
+  failed     another exit code, different bytes, another fault, or too much time or memory
 
-Exit code 0 when no more failed than are known (--failed) and enough are clean or crossed (--least). Nothing is written
-but into the folder given.
+Exit code 0 if at most --failed models fail and at least --least are clean or crossed. Only the given folder is written
+to.
 """
 
 import argparse
@@ -164,7 +164,7 @@ def write_scene(path, mesh, scale=1.0, shift=(0.0, 0.0, 0.0), frames=1):
 
 
 def reason(said):
-    """What an error says, without where the file lies."""
+    """An error message without the path of the file."""
     lines = [re.sub(r"\x1b\[[0-9;]*m", "", line) for line in said.splitlines()]
     for line in lines:
         if "error:" in line:
@@ -205,7 +205,7 @@ def faults(options, folder):
 
 
 def judge(options, folder):
-    """Outcome and what is said of a model that runs."""
+    """The outcome of a model that runs, and the message about it."""
     for name, threads in (("one", "1"), ("two", "2")):
         code, said = singe(options, "run", os.path.join(folder, "scene.yaml"), "-o", os.path.join(folder, name),
                            "--no-preview", "--quiet", "--threads", threads)

@@ -1,4 +1,4 @@
-// What particles exchange with the air, and the failures of the step.
+// Exchange of heat between particles and the air, and failures of the step.
 #include "rig.h"
 #include "support/support.h"
 
@@ -161,7 +161,7 @@ static void even_flux(void *context, const struct SingeView *view, float *flux, 
     for (uint32_t i = 0; i < view->particle_count; i++) flux[i] += *(float *)context;
 }
 
-/// Under the same flux, what is heavier or of more specific heat warms less, to the formula of eq 1.
+/// Under the same flux, a heavier sheet or one of more specific heat warms less, by eq 1.
 static void heavier_halves_heat_slower(void **unused) {
     (void)unused;
     for (int which = 0; which < 2; which++) {
@@ -244,7 +244,7 @@ static void a_bad_temperature_is_named_and_kept_out(void **unused) {
     }
 }
 
-/// From any temperature that a float has, in any step: what is left is between the ambient one and what it was.
+/// From any temperature, in any step: the result lies between the ambient temperature and the previous one.
 static void any_heat_ends_finite(void **unused) {
     (void)unused;
     static const float starts[] = {1e-30f, 1e-3f, 1, 292, 294, 1e4f, 1e6f, 1e12f, 1e20f, 1e38f};

@@ -267,7 +267,7 @@ static void a_sink_stops_at_1_kelvin(void **unused) {
     }
 }
 
-/// What gas gives and gives back never brings a particle beyond it, however long the step and thick the front.
+/// Exchange with the gas never takes a particle past the gas's temperature, however long the step and thick the front.
 static void hot_gas_heats_up_to_itself(void **unused) {
     (void)unused;
     static const float starts[] = {250, 300, 500, 999}, convections[] = {14, 1e3f, 1e7f};

@@ -23,13 +23,7 @@ static void grid_is_exact(void **state) {
     assert_int_equal(mesh_grid(1, INFINITY, 2, 1, (SingeAllocator){0}, &mesh, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(mesh_grid(1, 1, 0, 1, (SingeAllocator){0}, &mesh, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(mesh_grid(1, 1, 4294967295u, 4294967295u, (SingeAllocator){0}, &mesh, &error), SINGE_ERROR_LIMIT);
-    for (long n = 1; n <= 4; n++) {
-        TestAllocator counter = {.fail_at = n, .once = true};
-        SingeResult result = mesh_grid(1, 1, 3, 3, test_allocator(&counter), &mesh, &error);
-        assert_int_equal(result, n <= 3 ? SINGE_ERROR_MEMORY : SINGE_OK);
-        if (!result) mesh_free(&mesh);
-        test_allocator_check(&counter);
-    }
+    test_allocations_fail(3, mesh_grid(1, 1, 3, 3, allocator, &mesh, &error), mesh_free(&mesh));
 }
 
 static double cell_area(const Mesh *mesh, uint32_t cell, int corner) {

@@ -1,4 +1,4 @@
-// Whatever polygons there are, they become a sheet that the library takes, or are refused with a reason.
+// Random polygons become a sheet that the library accepts, or are refused with a reason.
 #include "sample_meshes.h"
 
 #include "singe/singe.h"

@@ -1,4 +1,4 @@
-// What is welded, repaired, shrunk or refused.
+// Welding, repairs, collapsed sides, and meshes that are refused.
 #include "sample_meshes.h"
 
 static Text text;

@@ -1,7 +1,7 @@
 """Meshes of every class that users bring (scripts/make_meshes.py): two seconds of each, and what `singe verify` says.
 
 A good mesh runs without a warning and without a fault, and its first frame has all of it: every vertex at its position
-with its uv. A broken one either runs, and then what was repaired is said
+with its uv. A broken one either runs, and then its repairs are reported
 with the file's name and a number, or it is refused with exit code 2, the file's name and the element's number.
 """
 
@@ -46,7 +46,7 @@ FRAMES = 3 if SANITIZED else 25
 SCALE = {"millimetres": 0.001}
 TURN = {"y-up": 110}
 
-# What comes of the broken ones: RUNS, and says what it repaired; REFUSED, in words with the element's number; or
+# The outcome of broken meshes: RUNS, and reports its repairs; REFUSED, with the number of the element; or
 # EITHER. The words of a refusal follow the file's name, and so do those of a repair, of `run` or of `check`.
 RUNS, REFUSED, EITHER = "runs", "refused", "either"
 NUMBER = r"\D*\d"
@@ -71,7 +71,7 @@ BROKEN = {
     "empty-ply": (REFUSED, r":10\b.*no vertices", None),
 }
 
-# What does not hold yet. It is run all the same, and what has come to hold is reported, so that it can be taken out.
+# Checks that still fail. They run anyway, and one that passes is reported, so that it can be removed from here.
 PENDING = set()
 
 
@@ -125,7 +125,7 @@ class MeshZoo(Case):
         return f"verify: {faults}" if faults else None
 
     def lost(self, name):
-        """What the first frame does not have of the input: each vertex at its position, under its number, with its uv."""
+        """The vertices of the input that the first frame lacks: each vertex at its position, under its number, with its uv."""
         mesh = make_meshes.MESHES[name][2]()
         angle, scale = math.radians(TURN.get(name, 20)), SCALE.get(name, 1)
         values, uv_faces = mesh.corner_uv or (mesh.uv, mesh.faces)

@@ -70,7 +70,7 @@ def install(systems, build):
 
 
 def missing(system, build):
-    """What keeps a system from being tried; None: nothing."""
+    """What a system lacks, or None if it can be tried."""
     if system == "macos":
         return None if zig(build) else "PyPI's ziglang"
     _, compilers, emulators = SYSTEMS[system]

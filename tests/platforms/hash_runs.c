@@ -33,7 +33,7 @@ static SingeSheetDef sheet_make(float side, float z) {
     return sheet;
 }
 
-/// What a run puts around its sheet.
+/// The surroundings of the sheet in a run.
 typedef struct Run {
     const char *name;
     int steps;

@@ -1,4 +1,4 @@
-// What the tests of the preview share: a small picture from above, and a quad of paper.
+// Shared by the tests of the preview: a small picture from above, a quad of paper, and a ball of gas.
 #ifndef TESTS_PREVIEW_FIXTURE_H
 #define TESTS_PREVIEW_FIXTURE_H
 
@@ -72,6 +72,33 @@ static inline void quad_make(Float4 *q, float half, float z) {
                                 .burn_rate = q->rate,
                                 .sheet = q->sheet,
                                 .triangles = q->triangles};
+}
+
+enum { GAS_SIDE = 12, GAS_CELLS = GAS_SIDE * GAS_SIDE * GAS_SIDE };
+
+/// A cube of gas of 12 cells of 8 mm about (x, y, z), in which a ball of `radius` m burns or smokes.
+typedef struct Ball {
+    float temperature[GAS_CELLS], smoke[GAS_CELLS], flame[GAS_CELLS], velocity[GAS_CELLS][3];
+    SingeGas gas;
+} Ball;
+
+static inline void ball_make(Ball *b, float x, float y, float z, float radius, float flame, float smoke) {
+    const float cell = 0.008f, half = 0.5f * GAS_SIDE * cell;
+    memset(b, 0, sizeof *b);
+    b->gas = (SingeGas){.size = {GAS_SIDE, GAS_SIDE, GAS_SIDE},
+                        .origin = {x - half, y - half, z - half},
+                        .cell = cell,
+                        .temperature = b->temperature,
+                        .smoke = b->smoke,
+                        .flame = b->flame,
+                        .velocity = (const float(*)[3])b->velocity};
+    for (int i = 0; i < GAS_CELLS; i++) {
+        float at[3] = {(float)(i % GAS_SIDE), (float)(i / GAS_SIDE % GAS_SIDE), (float)(i / GAS_SIDE / GAS_SIDE)}, r2 = 0;
+        for (int c = 0; c < 3; c++) r2 += (at[c] + 0.5f - 0.5f * GAS_SIDE) * (at[c] + 0.5f - 0.5f * GAS_SIDE);
+        bool in = r2 * cell * cell < radius * radius;
+        b->temperature[i] = in && flame > 0 ? 1400 : 293, b->flame[i] = in ? flame : 0, b->smoke[i] = in ? smoke : 0;
+        b->velocity[i][2] = 1;
+    }
 }
 
 #endif

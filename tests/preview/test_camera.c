@@ -27,7 +27,7 @@ static float sharpness(const uint8_t *rgb, int dx, int dy) {
     return sum / (float)count;
 }
 
-static void test_lens(void **state) {
+static void a_lens_blurs_what_is_out_of_focus(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     uint8_t texels[3 * STRIPES];
@@ -59,8 +59,8 @@ static void test_lens(void **state) {
     assert_true(far < 0.3f * pinhole);
 }
 
-/// What the lens spreads must be drawn wherever it is spread to.
-static void test_lens_reaches(void **state) {
+/// Blur of the lens is drawn wherever it reaches.
+static void blur_is_drawn_wherever_it_reaches(void **state) {
     (void)state;
     static uint8_t wide[BYTES], none[BYTES];
     Float4 q;
@@ -78,7 +78,7 @@ static void test_lens_reaches(void **state) {
     assert_true(pixel(wide, W / 2 + beyond, H / 2)[1] > 12);
 }
 
-static void test_shutter(void **state) {
+static void a_shutter_blurs_motion(void **state) {
     (void)state;
     static uint8_t still[BYTES], moving[BYTES];
     static float velocity[4][3];
@@ -100,11 +100,11 @@ static void test_shutter(void **state) {
     draw(&def, &q.surface, 0, moving); // along the stripes
     assert_true(sharpness(moving, 1, 0) > 0.9f * sharpness(still, 1, 0));
     for (int i = 0; i < 4; i++) velocity[i][0] = NAN, velocity[i][1] = 1e30f;
-    draw(&def, &q.surface, 0, moving); // as if it stood still
+    draw(&def, &q.surface, 0, moving); // without the ball's velocity
     assert_true(sharpness(moving, 1, 0) > 0.9f * sharpness(still, 1, 0));
 }
 
-static void test_moving_ball(void **state) {
+static void a_moving_ball_is_blurred(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     SingeSurface nothing = {0};
@@ -118,7 +118,7 @@ static void test_moving_ball(void **state) {
     assert_true(pixel(rgb, W / 2, H / 2 + off)[0] < 140);
 }
 
-static void test_threads(void **state) {
+static void pictures_do_not_depend_on_threads(void **state) {
     (void)state;
     enum { BIG_W = 200, BIG_H = 150, BIG = BIG_W * BIG_H * 3 };
     static uint8_t pictures[3][BIG];
@@ -144,8 +144,11 @@ static void test_threads(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_lens),        cmocka_unit_test(test_lens_reaches), cmocka_unit_test(test_shutter),
-        cmocka_unit_test(test_moving_ball), cmocka_unit_test(test_threads),
+        cmocka_unit_test(a_lens_blurs_what_is_out_of_focus),
+        cmocka_unit_test(blur_is_drawn_wherever_it_reaches),
+        cmocka_unit_test(a_shutter_blurs_motion),
+        cmocka_unit_test(a_moving_ball_is_blurred),
+        cmocka_unit_test(pictures_do_not_depend_on_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,33 +7,6 @@
 
 #include <math.h>
 
-enum { SIDE = 12, CELLS = SIDE * SIDE * SIDE };
-
-/// A cube of gas of 12 cells of 8 mm about (x, y, z), in which a ball of `radius` m burns or smokes.
-typedef struct Ball {
-    float temperature[CELLS], smoke[CELLS], flame[CELLS], velocity[CELLS][3];
-    SingeGas gas;
-} Ball;
-
-static void ball_make(Ball *b, float x, float y, float z, float radius, float flame, float smoke) {
-    const float cell = 0.008f, half = 0.5f * SIDE * cell;
-    memset(b, 0, sizeof *b);
-    b->gas = (SingeGas){.size = {SIDE, SIDE, SIDE},
-                        .origin = {x - half, y - half, z - half},
-                        .cell = cell,
-                        .temperature = b->temperature,
-                        .smoke = b->smoke,
-                        .flame = b->flame,
-                        .velocity = (const float(*)[3])b->velocity};
-    for (int i = 0; i < CELLS; i++) {
-        float at[3] = {(float)(i % SIDE), (float)(i / SIDE % SIDE), (float)(i / SIDE / SIDE)}, r2 = 0;
-        for (int c = 0; c < 3; c++) r2 += (at[c] + 0.5f - 0.5f * SIDE) * (at[c] + 0.5f - 0.5f * SIDE);
-        bool in = r2 * cell * cell < radius * radius;
-        b->temperature[i] = in && flame > 0 ? 1400 : 293, b->flame[i] = in ? flame : 0, b->smoke[i] = in ? smoke : 0;
-        b->velocity[i][2] = 1;
-    }
-}
-
 static void draw_gas(const PreviewDef *def, const SingeSurface *surface, const SingeGas *gas, double time,
                      uint8_t *rgb) {
     Preview *preview = NULL;
@@ -66,8 +39,8 @@ static float middle(const uint8_t *rgb, int channel) {
 
 static float corner(const uint8_t *rgb, int channel) { return area(rgb, 0, 0, 8, 8, channel); }
 
-/// No gas, a gas of size 0, and still air: the same picture, bit by bit, as if gas had never been asked about.
-static void test_nothing_burns(void **state) {
+/// No gas, a gas of size 0 and still air give the same picture, bit by bit.
+static void still_air_changes_no_pixel(void **state) {
     (void)state;
     static uint8_t plain[BYTES], rgb[BYTES];
     static Ball air;
@@ -86,8 +59,8 @@ static void test_nothing_burns(void **state) {
     synthetic_free(&surface);
 }
 
-/// Before dark and before bright: a flame glows orange to yellow, and not as a white blob, and hides next to nothing.
-static void test_flame(void **state) {
+/// In front of dark and of bright, a flame glows orange to yellow, not white, and hides almost nothing.
+static void a_flame_glows_orange(void **state) {
     (void)state;
     static uint8_t rgb[BYTES], plain[BYTES];
     static Ball ball;
@@ -200,7 +173,7 @@ static void see_line(const SingeSurface *surface, const SingeGas *gas, float (*f
 }
 
 /// A flame stands off the paper, is blue at its base and yellow above, and has gaps between its tongues.
-static void test_base_and_tongues(void **state) {
+static void a_flame_has_a_blue_base_and_tongues(void **state) {
     (void)state;
     static float fire[W * H][4], mean[H][4];
     static Line line;
@@ -218,9 +191,9 @@ static void test_base_and_tongues(void **state) {
     assert_in_range(dark, W / 8, W / 2);
 }
 
-/// What burns is seen through the base of its flames. The bar, a tenth of white paper's light and a twentieth hidden,
-/// is passed where the paper is where it burns, and broken where its flames begin two centimetres below it.
-static void test_clear_over_rim(void **state) {
+/// The burning rim is visible through the base of its flames. The bar, a tenth of white paper's light and a twentieth
+/// hidden, is passed where the paper is where it burns, and broken where its flames begin two centimetres below it.
+static void the_rim_is_seen_through_the_flames(void **state) {
     (void)state;
     static float fire[W * H][4], mean[H][4];
     static Line line;
@@ -240,8 +213,8 @@ static void test_clear_over_rim(void **state) {
     }
 }
 
-/// What flickers goes on in time, and stays where the gas is.
-static void test_flicker(void **state) {
+/// Flicker continues over time and stays where the gas is.
+static void flicker_goes_on_in_time(void **state) {
     (void)state;
     static uint8_t a[BYTES], b[BYTES];
     static Ball ball;
@@ -256,8 +229,8 @@ static void test_flicker(void **state) {
     assert_memory_equal(a, b, BYTES);
 }
 
-/// A sheet hides the flame behind it, and not that before it.
-static void test_hidden(void **state) {
+/// A sheet hides a flame behind it, not one in front of it.
+static void a_sheet_hides_the_flame_behind_it(void **state) {
     (void)state;
     static uint8_t before[BYTES], behind[BYTES], plain[BYTES];
     static Ball ball;
@@ -278,7 +251,7 @@ static void test_hidden(void **state) {
 }
 
 /// Flames light the paper beside them, warmly.
-static void test_light(void **state) {
+static void flames_light_the_paper_beside_them(void **state) {
     (void)state;
     static uint8_t dark[BYTES], lit[BYTES];
     static Ball ball;
@@ -294,8 +267,8 @@ static void test_light(void **state) {
     assert_true(more[0] > 10 && more[0] > more[1] && more[1] > more[2]);
 }
 
-/// Smoke dims what is bright and shows before what is dark.
-static void test_smoke(void **state) {
+/// Smoke dims a bright background and is visible against a dark one.
+static void smoke_dims_what_is_bright(void **state) {
     (void)state;
     static uint8_t rgb[BYTES], plain[BYTES];
     static Ball ball;
@@ -312,7 +285,7 @@ static void test_smoke(void **state) {
 }
 
 /// The layer of the fire is what it adds to the picture and what it hides of it.
-static void test_layer(void **state) {
+static void the_fire_layer_is_what_fire_adds(void **state) {
     (void)state;
     static float with[W * H][3], without[W * H][3], fire[W * H][4];
     static Ball ball;
@@ -341,7 +314,7 @@ static void test_layer(void **state) {
 }
 
 /// From kilometres away, and from inside of the flame: rays come to an end.
-static void test_far_and_near(void **state) {
+static void rays_end_far_away_and_inside_the_flame(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     static Ball ball;
@@ -357,8 +330,8 @@ static void test_far_and_near(void **state) {
     }
 }
 
-/// Neither threads nor what was drawn before show.
-static void test_same_bytes(void **state) {
+/// Neither the number of threads nor earlier pictures matter.
+static void pictures_do_not_depend_on_threads_or_order(void **state) {
     (void)state;
     enum { BIG_W = 200, BIG_H = 150, BIG = BIG_W * BIG_H * 3 };
     static uint8_t first[BIG], again[BIG];
@@ -384,7 +357,7 @@ static void test_same_bytes(void **state) {
     synthetic_gas_free(&gas), synthetic_gas_free(&other), synthetic_free(&surface);
 }
 
-static void test_bad_gas(void **state) {
+static void bad_gas_is_refused(void **state) {
     (void)state;
     static Ball ball;
     SingeError error;
@@ -416,18 +389,18 @@ static void test_bad_gas(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nothing_burns),
-        cmocka_unit_test(test_flame),
-        cmocka_unit_test(test_base_and_tongues),
-        cmocka_unit_test(test_clear_over_rim),
-        cmocka_unit_test(test_flicker),
-        cmocka_unit_test(test_hidden),
-        cmocka_unit_test(test_far_and_near),
-        cmocka_unit_test(test_layer),
-        cmocka_unit_test(test_light),
-        cmocka_unit_test(test_smoke),
-        cmocka_unit_test(test_same_bytes),
-        cmocka_unit_test(test_bad_gas),
+        cmocka_unit_test(still_air_changes_no_pixel),
+        cmocka_unit_test(a_flame_glows_orange),
+        cmocka_unit_test(a_flame_has_a_blue_base_and_tongues),
+        cmocka_unit_test(the_rim_is_seen_through_the_flames),
+        cmocka_unit_test(flicker_goes_on_in_time),
+        cmocka_unit_test(a_sheet_hides_the_flame_behind_it),
+        cmocka_unit_test(rays_end_far_away_and_inside_the_flame),
+        cmocka_unit_test(the_fire_layer_is_what_fire_adds),
+        cmocka_unit_test(flames_light_the_paper_beside_them),
+        cmocka_unit_test(smoke_dims_what_is_bright),
+        cmocka_unit_test(pictures_do_not_depend_on_threads_or_order),
+        cmocka_unit_test(bad_gas_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,7 +45,7 @@ static double measured(Frame *frame) {
 
 static Frame frame;
 
-static void test_widths(void **state) {
+static void a_glow_has_its_width(void **state) {
     (void)state;
     static const float half[] = {2, 4, 10};
     for (int w = 0; w < 3; w++)
@@ -56,15 +56,15 @@ static void test_widths(void **state) {
         }
 }
 
-/// What leans away is measured along itself: 10 pixels across are 14 mm at 45 degrees.
-static void test_slope(void **state) {
+/// A tilted glow is measured along the sheet: 10 pixels across are 14 mm at 45 degrees.
+static void a_leaning_glow_is_measured_along_itself(void **state) {
     (void)state;
     draw_line(&frame, 1.5707963f, 5, 1);
     assert_true(fabs(measured(&frame) - 11.6e-3 * sqrt(2)) < 2e-3);
 }
 
-/// What is no sheet, a hot ball, does not count.
-static void test_nothing(void **state) {
+/// A hot ball, which is no sheet, does not count.
+static void only_sheets_count(void **state) {
     (void)state;
     draw_line(&frame, 0.4f, 5, 0);
     for (int i = 0; i < WIDE * HIGH; i++) frame.sheet[i] = -1;
@@ -74,7 +74,8 @@ static void test_nothing(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_widths), cmocka_unit_test(test_slope),
-                                       cmocka_unit_test(test_nothing)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_glow_has_its_width),
+                                       cmocka_unit_test(a_leaning_glow_is_measured_along_itself),
+                                       cmocka_unit_test(only_sheets_count)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -23,7 +23,7 @@ static void draw_layers(const PreviewDef *def, const SingeSurface *surface, uint
 
 enum { ON = H / 2 * W + W / 2 + 5, OFF = 4 * W + 4 };
 
-static void test_values(void **state) {
+static void layers_have_the_surfaces_values(void **state) {
     (void)state;
     static Kept kept;
     static int32_t piece[4] = {7, 7, 7, 7};
@@ -55,7 +55,7 @@ static void test_values(void **state) {
 }
 
 /// A fresh sheet that leans: its normal, to the eye from both sides.
-static void test_normal(void **state) {
+static void normals_face_the_eye(void **state) {
     (void)state;
     static Kept kept;
     Float4 q;
@@ -71,7 +71,7 @@ static void test_normal(void **state) {
     assert_float_equal(kept.normal[ON][2], 1 / sqrtf(1.25f), 1e-4);
 }
 
-static void test_glow(void **state) {
+static void glow_has_its_own_layer(void **state) {
     (void)state;
     static Kept kept;
     Float4 q;
@@ -89,7 +89,7 @@ static void test_glow(void **state) {
 }
 
 /// The ember line of a burning sheet seen from straight above: thin, broken, and elsewhere a moment later.
-static void test_ember_line(void **state) {
+static void the_ember_line_is_thin_and_broken(void **state) {
     (void)state;
     enum { SIDE = 400, COUNT = SIDE * SIDE, SECTORS = 90 };
     static float glow[2][COUNT][3];
@@ -129,7 +129,7 @@ static void test_ember_line(void **state) {
 }
 
 /// The picture is the same with layers and without, and so are the layers with and without the picture, whoever draws.
-static void test_same(void **state) {
+static void layers_change_no_picture(void **state) {
     (void)state;
     static Kept one, two;
     static uint8_t alone[BYTES], beside[BYTES];
@@ -147,8 +147,11 @@ static void test_same(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_values), cmocka_unit_test(test_normal),     cmocka_unit_test(test_glow),
-        cmocka_unit_test(test_same),   cmocka_unit_test(test_ember_line),
+        cmocka_unit_test(layers_have_the_surfaces_values),
+        cmocka_unit_test(normals_face_the_eye),
+        cmocka_unit_test(glow_has_its_own_layer),
+        cmocka_unit_test(layers_change_no_picture),
+        cmocka_unit_test(the_ember_line_is_thin_and_broken),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

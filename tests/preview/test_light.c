@@ -1,33 +1,8 @@
-// Light and shadow: what flames light, what keeps it off, what comes through sheets, and how grainy shadows are.
+// Light and shadow: light of flames, shadows of sheets, light through sheets, and the grain of shadows.
 
 #include "fixture.h"
 
 #include <math.h>
-
-enum { SIDE = 12, CELLS = SIDE * SIDE * SIDE };
-
-/// A ball of flame of 3 cm about (x, 0, z), in cells of 8 mm.
-typedef struct Ball {
-    float temperature[CELLS], smoke[CELLS], flame[CELLS], velocity[CELLS][3];
-    SingeGas gas;
-} Ball;
-
-static void ball_make(Ball *b, float x, float z) {
-    const float cell = 0.008f, half = 0.5f * SIDE * cell;
-    memset(b, 0, sizeof *b);
-    b->gas = (SingeGas){.size = {SIDE, SIDE, SIDE},
-                        .origin = {x - half, -half, z - half},
-                        .cell = cell,
-                        .temperature = b->temperature,
-                        .smoke = b->smoke,
-                        .flame = b->flame,
-                        .velocity = (const float(*)[3])b->velocity};
-    for (int i = 0; i < CELLS; i++) {
-        float at[3] = {(float)(i % SIDE), (float)(i / SIDE % SIDE), (float)(i / SIDE / SIDE)}, r2 = 0;
-        for (int c = 0; c < 3; c++) r2 += (at[c] + 0.5f - 0.5f * SIDE) * (at[c] + 0.5f - 0.5f * SIDE);
-        b->flame[i] = r2 * cell * cell < 9e-4f ? 4e6f : 0, b->temperature[i] = 1400, b->velocity[i][2] = 1;
-    }
-}
 
 /// A sheet that stands on the table in the plane x = 0, 24 cm wide and high, printed with what is given.
 static void wall_make(Float4 *q) {
@@ -57,11 +32,11 @@ static float box(float (*beauty)[3], int x, int y) {
     return sum;
 }
 
-/// What a flame adds to a point.
+/// The light that a flame adds to a point.
 static float added(const PreviewDef *def, const SingeSurface *surface, int x, int y) {
     static float dark[W * H][3], lit[W * H][3];
     static Ball ball;
-    ball_make(&ball, -0.07f, 0.1f);
+    ball_make(&ball, -0.07f, 0, 0.1f, 0.03f, 4e6f, 0);
     see(def, surface, NULL, dark), see(def, surface, &ball.gas, lit);
     return box(lit, x, y) - box(dark, x, y);
 }
@@ -75,7 +50,7 @@ static PreviewDef at_night(void) {
 
 /// A sheet between the flame and the table: the table's light is that of the open times what comes through. An eighth
 /// of it is the bar for an opaque sheet, and a sheet that lets half through breaks it.
-static void test_shadow_of_flame(void **state) {
+static void a_sheet_shadows_the_light_of_a_flame(void **state) {
     (void)state;
     Float4 q;
     SingeSurface nothing = {0};
@@ -93,8 +68,8 @@ static void test_shadow_of_flame(void **state) {
     assert_true(added(&def, &q.surface, W / 2 - 16, y) > 0.8f * open); // behind it nothing is hidden
 }
 
-/// Seen from the other side, a sheet before a flame shines by what it lets through, and its print shows.
-static void test_lit_through(void **state) {
+/// Seen from the other side, a sheet in front of a flame glows by transmitted light, and its print shows.
+static void a_sheet_before_a_flame_shines_through(void **state) {
     (void)state;
     Float4 q;
     uint8_t texels[2 * 1 * 3] = {255, 255, 255, 60, 60, 60};
@@ -128,7 +103,7 @@ static void see_shadow(int samples, float (*beauty)[3]) {
 
 /// The rim of a shadow is smooth: the default's sixteen samples differ from very many by less than 1 % of the sun's
 /// light in the root mean square; four break that bar.
-static void test_rim_of_shadow(void **state) {
+static void the_rim_of_a_shadow_is_smooth(void **state) {
     (void)state;
     static float exact[W * H][3], picture[W * H][3];
     see_shadow(1024, exact);
@@ -150,7 +125,7 @@ static void test_rim_of_shadow(void **state) {
     }
 }
 
-static void test_bad_transmittance(void **state) {
+static void bad_transmittance_is_refused(void **state) {
     (void)state;
     const float bad[] = {-0.1f, 1.1f, NAN};
     for (int k = 0; k < 3; k++) {
@@ -165,10 +140,10 @@ static void test_bad_transmittance(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_shadow_of_flame),
-        cmocka_unit_test(test_lit_through),
-        cmocka_unit_test(test_rim_of_shadow),
-        cmocka_unit_test(test_bad_transmittance),
+        cmocka_unit_test(a_sheet_shadows_the_light_of_a_flame),
+        cmocka_unit_test(a_sheet_before_a_flame_shines_through),
+        cmocka_unit_test(the_rim_of_a_shadow_is_smooth),
+        cmocka_unit_test(bad_transmittance_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,7 +13,7 @@ static float middle(const uint8_t *rgb, int channel) {
     return sum / (4 * HALF * HALF);
 }
 
-static void test_white_paper(void **state) {
+static void fresh_paper_is_white(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     Float4 q;
@@ -30,7 +30,7 @@ static void test_white_paper(void **state) {
 }
 
 /// White in the sun keeps below the film's end, so that print and creases show.
-static void test_print_and_white(void **state) {
+static void white_in_the_sun_is_not_clipped(void **state) {
     (void)state;
     uint8_t texels[2 * 1 * 3] = {255, 255, 255, 20, 20, 20};
     Image image = {.width = 2, .height = 1, .rgb = texels};
@@ -46,7 +46,7 @@ static void test_print_and_white(void **state) {
     assert_true(ink[0] < 70);
 }
 
-static void test_states(void **state) {
+static void states_of_burning_differ(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     Float4 q;
@@ -66,8 +66,8 @@ static void test_states(void **state) {
     assert_true(fresh > brown + 30 && brown > black + 40 && black < 80);
 }
 
-/// Paper that was hot stays brown when it is cold again, and what burnt out is grey: paler than char, not white.
-static void test_cold_remains(void **state) {
+/// Paper that was hot stays brown when it is cold again, and ash is grey: paler than char, but not white.
+static void cold_remains_stay_brown_and_grey(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     Float4 q;
@@ -90,7 +90,7 @@ static void test_cold_remains(void **state) {
 }
 
 /// Only where it is hot *and* burning does the char glow.
-static void test_ember(void **state) {
+static void only_hot_and_burning_char_glows(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     Float4 q;
@@ -110,8 +110,8 @@ static void test_ember(void **state) {
     assert_true(burning > burning_blue);
 }
 
-/// What burnt out pales with time.
-static void test_ash_pales(void **state) {
+/// Ash pales with time.
+static void ash_pales_with_time(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     static float ignited[4] = {1, 1, 1, 1};
@@ -130,8 +130,8 @@ static void test_ash_pales(void **state) {
     assert_float_equal(middle(rgb, 1), pale, 6);
 }
 
-/// Whatever the sky, what faces up gets the same of it; what faces aside does not.
-static void test_skies(void **state) {
+/// Surfaces that face up get the same light from any sky; those that face sideways do not.
+static void what_faces_up_does_not_depend_on_the_sky(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     enum { PW = 16, PH = 8 };
@@ -171,7 +171,7 @@ static void test_skies(void **state) {
 }
 
 /// Each ground has its own look and about the brightness of its colour.
-static void test_grounds(void **state) {
+static void each_ground_has_its_look(void **state) {
     (void)state;
     static uint8_t rgb[3][BYTES];
     SingeSurface nothing = {0};
@@ -191,9 +191,9 @@ static void test_grounds(void **state) {
     }
 }
 
-/// What pyrolysis leaves is a black leaf, whatever little mass it has, and it greys as it glows away. It shines where
-/// char burns: neither where a hot leaf burns no more, nor where it still has fuel, which burns in the flame.
-static void test_char_leaf(void **state) {
+/// Pyrolysis leaves a black leaf, however little its mass, which greys as it glows away. It glows where char burns: not
+/// where a hot leaf no longer burns, nor where it still has fuel, which burns in the flame.
+static void char_is_black_and_greys(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     float mass[4], charred[4], ash[4], green[3], red[4];
@@ -229,9 +229,15 @@ static void test_char_leaf(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_white_paper),  cmocka_unit_test(test_print_and_white), cmocka_unit_test(test_states),
-        cmocka_unit_test(test_cold_remains), cmocka_unit_test(test_ember),           cmocka_unit_test(test_ash_pales),
-        cmocka_unit_test(test_skies),        cmocka_unit_test(test_char_leaf),       cmocka_unit_test(test_grounds),
+        cmocka_unit_test(fresh_paper_is_white),
+        cmocka_unit_test(white_in_the_sun_is_not_clipped),
+        cmocka_unit_test(states_of_burning_differ),
+        cmocka_unit_test(cold_remains_stay_brown_and_grey),
+        cmocka_unit_test(only_hot_and_burning_char_glows),
+        cmocka_unit_test(ash_pales_with_time),
+        cmocka_unit_test(what_faces_up_does_not_depend_on_the_sky),
+        cmocka_unit_test(char_is_black_and_greys),
+        cmocka_unit_test(each_ground_has_its_look),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void test_threads(void **state) {
+static void pictures_do_not_depend_on_threads(void **state) {
     (void)state;
     SingeSurface surface;
     assert_true(synthetic_make(SYNTHETIC_FLAT, 30, 0.05f, &surface));
@@ -29,7 +29,7 @@ static void test_threads(void **state) {
 }
 
 /// Drawing another frame between must leave no trace.
-static void test_repeatable(void **state) {
+static void frames_between_leave_no_trace(void **state) {
     (void)state;
     SingeSurface burning, cold;
     assert_true(synthetic_make(SYNTHETIC_FLAT, 20, 0.05f, &burning));
@@ -49,8 +49,8 @@ static void test_repeatable(void **state) {
     synthetic_free(&burning), synthetic_free(&cold);
 }
 
-/// What a preview keeps between frames (the table, the mask, the shapes) must not show in the next.
-static void test_same_after_others(void **state) {
+/// State that a preview keeps between frames (the table, the mask, the shapes) does not affect the next frame.
+static void what_is_kept_does_not_show(void **state) {
     (void)state;
     SingeSurface burning, hanging, nothing = {0};
     assert_true(synthetic_make(SYNTHETIC_FLAT, 20, 0.05f, &burning));
@@ -73,7 +73,7 @@ static void test_same_after_others(void **state) {
     synthetic_free(&burning), synthetic_free(&hanging);
 }
 
-static void test_empty_surface(void **state) {
+static void an_empty_surface_is_drawn(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     SingeSurface nothing = {0};
@@ -90,7 +90,7 @@ static void test_empty_surface(void **state) {
 }
 
 /// Left half red, right half blue, top row darker: uv and rows must be the right way round.
-static void test_picture(void **state) {
+static void uv_and_rows_are_the_right_way_round(void **state) {
     (void)state;
     uint8_t texels[2 * 2 * 3] = {255, 0, 0, 0, 0, 255, 60, 0, 0, 0, 0, 60};
     Image image = {.width = 2, .height = 2, .rgb = texels};
@@ -115,7 +115,7 @@ static void test_picture(void **state) {
     assert_in_range(pixel(rgb, W / 2 - 14, H / 2 - 14)[1], 210, 252);
 }
 
-static void test_shapes(void **state) {
+static void shapes_are_drawn(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     SingeSurface nothing = {0};
@@ -145,7 +145,7 @@ static void test_shapes(void **state) {
 }
 
 /// A mesh of a box is drawn as the box, turned, hot or blurred; one that is built again as before.
-static void test_solids(void **state) {
+static void a_box_of_a_mesh_is_drawn_as_the_box(void **state) {
     (void)state;
     static uint8_t box[BYTES], mesh[BYTES], again[BYTES];
     SingeSurface nothing = {0};
@@ -186,7 +186,7 @@ static void test_solids(void **state) {
     assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_ERROR_ARGUMENT);
 }
 
-static void test_hot_ball(void **state) {
+static void a_hot_ball_glows(void **state) {
     (void)state;
     static uint8_t hot[BYTES], cold[BYTES];
     SingeSurface nothing = {0};
@@ -214,7 +214,7 @@ static void test_hot_ball(void **state) {
 }
 
 /// A sheet over the table darkens it, softly.
-static void test_shadow(void **state) {
+static void a_sheet_darkens_the_table(void **state) {
     (void)state;
     static uint8_t with[BYTES], without[BYTES];
     SingeSurface nothing = {0};
@@ -229,7 +229,7 @@ static void test_shadow(void **state) {
     assert_true(abs(pixel(with, 4, 4)[0] - pixel(without, 4, 4)[0]) <= 4);
 }
 
-static void test_bad_vertices(void **state) {
+static void bad_vertices_are_refused(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     PreviewDef def = above();
@@ -264,7 +264,7 @@ static SingeResult draw_result(const SingeSurface *surface, double time, SingeEr
     return result;
 }
 
-static void test_bad_surface(void **state) {
+static void bad_surfaces_are_refused(void **state) {
     (void)state;
     Float4 q;
     SingeError error = {0};
@@ -300,7 +300,7 @@ static void refused(PreviewDef def, const char *word) {
         refused(def, word);       \
     } while (0)
 
-static void test_bad_defs(void **state) {
+static void bad_defs_are_refused(void **state) {
     (void)state;
     REFUSED(def.width = 0, "width");
     REFUSED(def.height = -3, "height");
@@ -353,7 +353,7 @@ static void test_bad_defs(void **state) {
 }
 
 /// Sizes that are no multiple of anything, one sample, straight down with `up` along the view.
-static void test_odd_sizes(void **state) {
+static void odd_sizes_are_drawn(void **state) {
     (void)state;
     SingeSurface surface;
     assert_true(synthetic_make(SYNTHETIC_HANGING, 12, 0.05f, &surface));
@@ -372,7 +372,7 @@ static void test_odd_sizes(void **state) {
 }
 
 /// Every allocation fails once: the right result, nothing left behind, and a failed frame can be drawn again.
-static void test_out_of_memory(void **state) {
+static void every_allocation_fails_once(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     uint8_t texels[4 * 4 * 3] = {0};
@@ -404,7 +404,7 @@ static void test_out_of_memory(void **state) {
     assert_true(succeeded);
 }
 
-static void test_set_shapes(void **state) {
+static void shapes_can_be_set_anew(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     SingeSurface nothing = {0};
@@ -433,14 +433,21 @@ static void test_set_shapes(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_threads),       cmocka_unit_test(test_repeatable),
-        cmocka_unit_test(test_empty_surface), cmocka_unit_test(test_same_after_others),
-        cmocka_unit_test(test_picture),       cmocka_unit_test(test_shapes),
-        cmocka_unit_test(test_solids),        cmocka_unit_test(test_hot_ball),
-        cmocka_unit_test(test_shadow),        cmocka_unit_test(test_bad_vertices),
-        cmocka_unit_test(test_bad_surface),   cmocka_unit_test(test_bad_defs),
-        cmocka_unit_test(test_odd_sizes),     cmocka_unit_test(test_out_of_memory),
-        cmocka_unit_test(test_set_shapes),
+        cmocka_unit_test(pictures_do_not_depend_on_threads),
+        cmocka_unit_test(frames_between_leave_no_trace),
+        cmocka_unit_test(an_empty_surface_is_drawn),
+        cmocka_unit_test(what_is_kept_does_not_show),
+        cmocka_unit_test(uv_and_rows_are_the_right_way_round),
+        cmocka_unit_test(shapes_are_drawn),
+        cmocka_unit_test(a_box_of_a_mesh_is_drawn_as_the_box),
+        cmocka_unit_test(a_hot_ball_glows),
+        cmocka_unit_test(a_sheet_darkens_the_table),
+        cmocka_unit_test(bad_vertices_are_refused),
+        cmocka_unit_test(bad_surfaces_are_refused),
+        cmocka_unit_test(bad_defs_are_refused),
+        cmocka_unit_test(odd_sizes_are_drawn),
+        cmocka_unit_test(every_allocation_fails_once),
+        cmocka_unit_test(shapes_can_be_set_anew),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-"""A small sheet that burns, and a folder of one's own."""
+"""A small sheet that burns, and a temporary folder for each test."""
 
 import os
 import pathlib

@@ -129,7 +129,7 @@ static void check_dense(Random *random) {
     free(g), free(a), free(matrix), free(jacobian), free(right), free(soft);
 }
 
-static void test_projection_matches_dense(void **unused) {
+static void projection_matches_a_dense_solver(void **unused) {
     (void)unused;
     Random random;
     random_make(&random);
@@ -139,7 +139,7 @@ static void test_projection_matches_dense(void **unused) {
 }
 
 /// Fig 9 and Table 1, whose digits are cut.
-static void test_table1(void **unused) {
+static void table_1_is_reproduced(void **unused) {
     (void)unused;
     static const double table[] = {0.4306, 0.4401, 0.5527, 0.4954, 0.5767, 0.5038, 0.5804, 0.5050, 0.5810, 0.5052};
     SingeNetworkDef def = singe_default_network();
@@ -161,7 +161,7 @@ static void test_table1(void **unused) {
     }
 }
 
-static void test_bad_networks(void **unused) {
+static void bad_networks_are_refused(void **unused) {
     (void)unused;
     Random random;
     SingeNetwork *network;
@@ -217,7 +217,7 @@ static SingeSimDef method_def(SingeSolverMethod method) {
     return def;
 }
 
-static void test_same_bytes(void **unused) {
+static void bytes_do_not_depend_on_threads(void **unused) {
     (void)unused;
     const SingeSolverMethod methods[] = {SINGE_SOLVER_PAPER, SINGE_SOLVER_MASS_SPRING};
     for (int m = 0; m < 2; m++) {
@@ -240,7 +240,7 @@ static void test_same_bytes(void **unused) {
     }
 }
 
-static void test_early_exit(void **unused) {
+static void projections_end_early(void **unused) {
     (void)unused;
     SingeSimDef def = method_def(SINGE_SOLVER_PAPER);
     uint64_t iterations[2];
@@ -269,7 +269,7 @@ static void test_early_exit(void **unused) {
 }
 
 /// To the letter it blows up, since eq 9 lacks its h; that is an error like any other, and takes the step back.
-static void test_literal_fails(void **unused) {
+static void the_literal_method_diverges(void **unused) {
     (void)unused;
     SingeSimDef def = method_def(SINGE_SOLVER_PAPER_LITERAL);
     SingeSim *sim = swing(&def, 8, 1);
@@ -285,7 +285,7 @@ static void test_literal_fails(void **unused) {
     singe_sim_destroy(sim);
 }
 
-static void test_all_methods_run_or_say_why(void **unused) {
+static void all_methods_run_or_give_a_reason(void **unused) {
     (void)unused;
     for (int method = SINGE_SOLVER_STRAND; method <= SINGE_SOLVER_MASS_SPRING; method++) {
         SingeSimDef def = method_def((SingeSolverMethod)method);
@@ -299,7 +299,7 @@ static void test_all_methods_run_or_say_why(void **unused) {
     }
 }
 
-static void test_touches_inside_projections(void **unused) {
+static void contact_is_inside_projections(void **unused) {
     (void)unused;
     SingeSimDef def = method_def(SINGE_SOLVER_PAPER);
     SingeSim *sim = swing(&def, 8, 0.2f);
@@ -320,7 +320,7 @@ static void test_touches_inside_projections(void **unused) {
 }
 
 /// Both end where the sheet hangs at rest.
-static void test_paper_and_strand_agree(void **unused) {
+static void paper_and_strand_end_alike(void **unused) {
     (void)unused;
     float last[2][200][3];
     uint32_t count = 0;
@@ -346,7 +346,7 @@ static void test_paper_and_strand_agree(void **unused) {
     assert_true(worst < 3e-4);
 }
 
-static void test_commits_without_memory(void **unused) {
+static void commits_fail_cleanly_without_memory(void **unused) {
     (void)unused;
     const SingeSolverMethod methods[] = {SINGE_SOLVER_PAPER, SINGE_SOLVER_ALL_AT_ONCE};
     for (int m = 0; m < 2; m++)
@@ -378,7 +378,7 @@ static void test_commits_without_memory(void **unused) {
 // ---- mass-spring
 
 /// Two masses and a spring: omega^2 = k (w_a + w_b) (1 - zeta^2), zeta = 0.1.
-static void test_period(void **unused) {
+static void a_spring_has_its_period(void **unused) {
     (void)unused;
     Memory memory = memory_make((SingeAllocator){0});
     const uint32_t ends[1][2] = {{0, 1}};
@@ -413,7 +413,7 @@ static void test_period(void **unused) {
     assert_int_equal(memory.held, 0);
 }
 
-static void test_too_long_a_step_is_an_error(void **unused) {
+static void too_long_a_step_is_an_error(void **unused) {
     (void)unused;
     SingeSimDef def = method_def(SINGE_SOLVER_MASS_SPRING);
     def.solver.substeps = 1, def.solver.stiffness = 1e5f;
@@ -427,18 +427,18 @@ static void test_too_long_a_step_is_an_error(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_projection_matches_dense),
-        cmocka_unit_test(test_table1),
-        cmocka_unit_test(test_bad_networks),
-        cmocka_unit_test(test_same_bytes),
-        cmocka_unit_test(test_early_exit),
-        cmocka_unit_test(test_literal_fails),
-        cmocka_unit_test(test_all_methods_run_or_say_why),
-        cmocka_unit_test(test_touches_inside_projections),
-        cmocka_unit_test(test_paper_and_strand_agree),
-        cmocka_unit_test(test_commits_without_memory),
-        cmocka_unit_test(test_period),
-        cmocka_unit_test(test_too_long_a_step_is_an_error),
+        cmocka_unit_test(projection_matches_a_dense_solver),
+        cmocka_unit_test(table_1_is_reproduced),
+        cmocka_unit_test(bad_networks_are_refused),
+        cmocka_unit_test(bytes_do_not_depend_on_threads),
+        cmocka_unit_test(projections_end_early),
+        cmocka_unit_test(the_literal_method_diverges),
+        cmocka_unit_test(all_methods_run_or_give_a_reason),
+        cmocka_unit_test(contact_is_inside_projections),
+        cmocka_unit_test(paper_and_strand_end_alike),
+        cmocka_unit_test(commits_fail_cleanly_without_memory),
+        cmocka_unit_test(a_spring_has_its_period),
+        cmocka_unit_test(too_long_a_step_is_an_error),
     };
     return cmocka_run_group_tests_name("paper", tests, NULL, NULL);
 }

@@ -15,8 +15,8 @@ static void turn(const float q[4], const double v[3], double out[3]) {
     out[2] = v[2] + w * t[2] + (x * t[1] - y * t[0]);
 }
 
-// About x, then y, then z: a quarter about x takes y to z, then one about z leaves it; and matrix = quaternion.
-static void test_rotation(void **state) {
+// About x, then y, then z: a quarter turn about x takes y to z, and one about z leaves z. Matrix and quaternion agree.
+static void rotations_turn_about_x_then_y_then_z(void **state) {
     (void)state;
     const float quarter = 1.57079633f, angles[3] = {quarter, 0, quarter}, any[3] = {0.3f, -1.2f, 2.5f};
     const double y[3] = {0, 1, 0}, x[3] = {1, 0, 0}, v[3] = {0.2, -0.7, 1.1};
@@ -34,7 +34,7 @@ static void test_rotation(void **state) {
         assert_true(fabs(out[i] - (m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2])) < 1e-6);
 }
 
-static void test_sim(void **state) {
+static void a_simulation_has_what_the_scene_says(void **state) {
     (void)state;
     Scene *scene = good_scene("sheets:\n  - grid: {size: [0.2, 0.1], cells: [4, 2]}\n    rotate: [90, 0, 0]\n"
                               "    translate: [0, 0, 1]\n    scale: 2\n"
@@ -67,8 +67,8 @@ static void test_sim(void **state) {
     scene_free(scene);
 }
 
-// What the library refuses is reported at the object that it is about.
-static void test_refused(void **state) {
+// A refusal of the library is reported at the object it concerns.
+static void refused_objects_are_named(void **state) {
     (void)state;
     Scene *scene = good_scene(SHEET "pins:\n  - {vertices: [0]}\n  - {vertices: [99999]}\n", NULL, 0);
     SceneAssets assets;
@@ -85,8 +85,8 @@ static void test_refused(void **state) {
     scene_free(scene);
 }
 
-// Files that are there but are not what they should be: every one is reported, at the line of its name.
-static void test_bad_files(void **state) {
+// Files of the wrong kind are all reported, each at the line of its name.
+static void bad_files_are_reported(void **state) {
     (void)state;
     char folder[] = "/tmp/singe-scene-XXXXXX", path[64];
     assert_non_null(mkdtemp(folder));
@@ -144,8 +144,8 @@ static SceneMessages refused(const char *text, const char *folder) {
     return messages;
 }
 
-// Meshes that can be read but not burnt: all of them at once, each with its file, line or face, at its name.
-static void test_bad_meshes(void **state) {
+// Meshes that can be read but not burnt are all reported, each with its file and line or face.
+static void bad_meshes_are_reported(void **state) {
     (void)state;
     static const struct {
         const char *name, *text, *origin, *fault;
@@ -202,8 +202,8 @@ static void keep_line(void *context, SingeLogLevel level, const char *line) {
     if (level == SINGE_LOG_WARNING) strcat(strcat(lines, line), "\n");
 }
 
-/// What can be simulated and has no effect is warned of, with its location.
-static void test_warnings(void **state) {
+/// Values without effect cause warnings with their location.
+static void values_without_effect_are_warned_of(void **state) {
     (void)state;
     static const struct {
         const char *more, *warning;
@@ -254,8 +254,8 @@ static const char nut[] = "v -2 -2 0\nv 2 -2 0\nv 2 0 0\nv 1 0 0\nv 1 -1 0\nv -1
                           "f 8 7 6 5 4 3 2 1\nf 9 10 11 12 13 14 15 16\nf 1 2 10\nf 1 10 9\nf 2 3 11 10\nf 3 4 12 11\n"
                           "f 4 5 13 12\nf 5 6 14 13\nf 6 7 15 14\nf 7 8 16 15\nf 8 1 9 16\n";
 
-/// Meshes and pictures of heights become colliders and shapes; what is not closed is reported at its collider.
-static void test_solids(void **state) {
+/// Meshes and height fields become colliders and shapes; an open mesh is reported at its collider.
+static void solids_become_colliders_and_shapes(void **state) {
     (void)state;
     char folder[] = "/tmp/singe-scene-XXXXXX", text[600], path[100];
     const char *const names[] = {"cube.obj", "open.obj", "heights.png", "nut.obj"};
@@ -314,7 +314,7 @@ static void test_solids(void **state) {
     rmdir(folder);
 }
 
-static void test_preview(void **state) {
+static void the_preview_has_what_the_scene_says(void **state) {
     (void)state;
     Scene *scene = good_scene(
         SHEET "    colour: [0.5, 0.25, 1]\n"
@@ -344,7 +344,7 @@ static void test_preview(void **state) {
     scene_free(scene);
 }
 
-static void test_examples(void **state) {
+static void the_examples_build(void **state) {
     (void)state;
     static const char *const paths[] = {"examples/letter/letter.yaml", "examples/letter-hanging/letter-hanging.yaml",
                                         "examples/hot-sphere/hot-sphere.yaml"};
@@ -397,8 +397,8 @@ static double reach_in_picture(const Scene *scene, const SceneAssets *assets) {
     return max;
 }
 
-// A file in millimetres whose y is up, of triangles; a pin takes the file's numbers of vertices, also of a welded one.
-static void test_mesh_files(void **state) {
+// A file of triangles, in millimetres and y up. A pin takes the file's vertex numbers, also that of a welded vertex.
+static void mesh_files_are_scaled_and_welded(void **state) {
     (void)state;
     char folder[] = "/tmp/singe-scene-XXXXXX", path[100];
     assert_non_null(mkdtemp(folder));
@@ -442,7 +442,7 @@ static void test_mesh_files(void **state) {
     rmdir(folder);
 }
 
-static void test_camera_finds_the_sheets(void **state) {
+static void the_camera_finds_the_sheets(void **state) {
     (void)state;
     static const char *const scenes[] = {
         "sheets: [{grid: {size: [0.2, 0.3], cells: [4, 6]}}]",
@@ -484,17 +484,17 @@ static void test_camera_finds_the_sheets(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rotation),
-        cmocka_unit_test(test_sim),
-        cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_bad_files),
-        cmocka_unit_test(test_bad_meshes),
-        cmocka_unit_test(test_warnings),
-        cmocka_unit_test(test_solids),
-        cmocka_unit_test(test_preview),
-        cmocka_unit_test(test_mesh_files),
-        cmocka_unit_test(test_examples),
-        cmocka_unit_test(test_camera_finds_the_sheets),
+        cmocka_unit_test(rotations_turn_about_x_then_y_then_z),
+        cmocka_unit_test(a_simulation_has_what_the_scene_says),
+        cmocka_unit_test(refused_objects_are_named),
+        cmocka_unit_test(bad_files_are_reported),
+        cmocka_unit_test(bad_meshes_are_reported),
+        cmocka_unit_test(values_without_effect_are_warned_of),
+        cmocka_unit_test(solids_become_colliders_and_shapes),
+        cmocka_unit_test(the_preview_has_what_the_scene_says),
+        cmocka_unit_test(mesh_files_are_scaled_and_welded),
+        cmocka_unit_test(the_examples_build),
+        cmocka_unit_test(the_camera_finds_the_sheets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

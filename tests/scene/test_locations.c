@@ -101,7 +101,7 @@ static void sweep_words(Sweep *sweep, const char *text) {
     }
 }
 
-static void test_examples(void **state) {
+static void every_prefix_of_the_examples_has_its_line(void **state) {
     (void)state;
     glob_t files;
     assert_int_equal(glob("examples/*/*.yaml", 0, NULL, &files), 0);
@@ -123,8 +123,8 @@ static void test_examples(void **state) {
     globfree(&files);
 }
 
-/// Texts that libfyaml refuses without a word of where.
-static void test_odd(void **state) {
+/// Texts that libfyaml refuses without a position.
+static void odd_texts_have_their_line(void **state) {
     (void)state;
     // clang-format off
     static const char *const texts[] = {
@@ -144,6 +144,7 @@ static void test_odd(void **state) {
 
 int main(int argc, char **argv) {
     all = argc > 1 && strcmp(argv[1], "all") == 0;
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_examples), cmocka_unit_test(test_odd)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_prefix_of_the_examples_has_its_line),
+                                       cmocka_unit_test(odd_texts_have_their_line)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

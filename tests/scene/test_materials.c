@@ -63,8 +63,8 @@ static void expect_same_def(const SingeMaterialDef *a, const SingeMaterialDef *b
                 one.reference_grammage == two.reference_grammage && one.ablate == two.ablate);
 }
 
-/// Each is good, has its name, and knows what sources say; the first of them, calibrated, is the program's default.
-static void test_built_in(void **state) {
+/// Each is valid and has its name and its sources. The first one, which is calibrated, is the program's default.
+static void built_in_materials_are_good(void **state) {
     (void)state;
     static const char *const names[] = {"cotton", "newsprint", "office-paper", "one-reaction", "tissue"};
     static const float grammage[] = {0.120f, 0.045f, 0.080f, 0.080f, 0.020f};
@@ -87,8 +87,8 @@ static void test_built_in(void **state) {
     assert_null(scene_material_name(400));
 }
 
-/// A base, and keys that change it. What was measured of the base is not said of what is changed.
-static void test_changed(void **state) {
+/// A material with a base and changed keys does not claim the measurements of its base.
+static void a_base_can_be_changed(void **state) {
     (void)state;
     Scene *scene = good_scene(SHEET "    material: {thickness: 2 mm, base: newsprint, name: mine}\n", NULL, 0);
     const SceneMaterial *material = material_of(scene);
@@ -106,7 +106,7 @@ static void test_changed(void **state) {
     scene_free(scene);
 }
 
-static void test_set(void **state) {
+static void set_changes_materials(void **state) {
     (void)state;
     static const char *const texts[] = {SHEET, SHEET "    material: office-paper\n",
                                         SHEET "    material: {base: newsprint}\n", SHEET "    material: {}\n"};
@@ -132,9 +132,9 @@ static void test_set(void **state) {
     scene_free(scene);
 }
 
-/// Files of one's own: in the scene's folder or below it, one begun as another; names in them are looked for beside
-/// them. The resolved scene needs none of them.
-static void test_files(void **state) {
+/// Material files in the scene's folder or below it, one based on another. Names in them are relative to them. The
+/// resolved scene does not need them.
+static void material_files_are_found(void **state) {
     (void)state;
     Folder folder = folder_make();
     char below[100];
@@ -170,8 +170,8 @@ static void test_files(void **state) {
     scene_free(scene);
 }
 
-/// Files that are none of whoever sees the messages: not a word of them is repeated, whatever is wrong with them.
-static void test_secrets(void **state) {
+/// A material file may be one that the reader of the messages must not see: no message repeats any of its text.
+static void messages_repeat_nothing_of_other_files(void **state) {
     (void)state;
     static const char *const secrets[] = {
         "SECRET:$6$SECRET:19000:0:99999:7:::\n",
@@ -240,7 +240,7 @@ static void expect_mistake(const Folder *folder, const char *line, const char *o
     scene_free(scene);
 }
 
-static void test_mistakes(void **state) {
+static void wrong_materials_are_reported(void **state) {
     (void)state;
     Folder folder = folder_make();
     const Folder *in = &folder;
@@ -310,8 +310,9 @@ static void test_mistakes(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_built_in), cmocka_unit_test(test_changed),  cmocka_unit_test(test_set),
-        cmocka_unit_test(test_files),    cmocka_unit_test(test_mistakes), cmocka_unit_test(test_secrets),
+        cmocka_unit_test(built_in_materials_are_good),  cmocka_unit_test(a_base_can_be_changed),
+        cmocka_unit_test(set_changes_materials),        cmocka_unit_test(material_files_are_found),
+        cmocka_unit_test(wrong_materials_are_reported), cmocka_unit_test(messages_repeat_nothing_of_other_files),
     };
     return cmocka_run_group_tests_name("scene_materials", tests, NULL, NULL);
 }

@@ -22,7 +22,7 @@ static void expect_message(const SceneMessages *messages, uint32_t index, const 
     assert_non_null(strstr(message->text, part));
 }
 
-// SHEET with one more line (line 3), which is wrong in one way.
+// SHEET with one more line (line 3) that has one mistake.
 static void one(const char *line, const char *origin, const char *part) {
     char text[2000];
     snprintf(text, sizeof text, "%s%s\n", SHEET, line);
@@ -33,7 +33,7 @@ static void one(const char *line, const char *origin, const char *part) {
     scene_messages_free(&messages);
 }
 
-static void test_values(void **state) {
+static void wrong_values_are_reported(void **state) {
     (void)state;
     one("fps: fast", "bad.yaml:3:6", "fps must be a frame rate (1/s, fps, Hz), not 'fast'");
     one("fps: [1]", "bad.yaml:3:6", "not a list");
@@ -73,8 +73,8 @@ static void test_values(void **state) {
     one("preview: {light: {direction: [0, 0, 0]}}", "bad.yaml:3:30", "must be longer than 1e-9");
 }
 
-/// Whole messages: both bounds, the unit of bare numbers, no blank at the end.
-static void test_range_words(void **state) {
+/// Messages state both bounds and the unit of bare numbers, and end without a blank.
+static void messages_name_both_bounds(void **state) {
     (void)state;
     static const struct {
         const char *line, *text;
@@ -109,8 +109,8 @@ static void test_range_words(void **state) {
     }
 }
 
-/// What the library alone used to refuse, one at a time and without a location: now all at once.
-static void test_ranges_at_once(void **state) {
+/// Values that the library would refuse one at a time and without a location are all reported at once.
+static void all_ranges_are_reported_at_once(void **state) {
     (void)state;
     static const char text[] = SHEET "pace: 1e9\ngravity: [0, 0, -1e5]\nambient_temperature: 1e9\nair_density: 1e9\n"
                                      "heat_tolerance: 1e-30\nsolver: {substeps: 10001, regularisation: {red: 1e9}}\n"
@@ -125,7 +125,7 @@ static void test_ranges_at_once(void **state) {
     scene_messages_free(&messages);
 }
 
-static void test_step(void **state) {
+static void steps_that_cannot_be_are_reported(void **state) {
     (void)state;
     static const char words[] = "steps a second, which must be 0.1 to 1e9";
     one("fps: 0.001", "bad.yaml:3:6", "0.001 frames a second of 20 steps each are 0.02 steps a second");
@@ -146,7 +146,7 @@ static void test_step(void **state) {
     }
 }
 
-static void test_keys(void **state) {
+static void unknown_keys_are_reported(void **state) {
     (void)state;
     one("frame: 3", "bad.yaml:3:1", "unknown key 'frame' in the scene; did you mean 'frames'?");
     one("Sources: []", "bad.yaml:3:1", "did you mean 'sources'?");
@@ -156,7 +156,7 @@ static void test_keys(void **state) {
     one("preview: {light: {colour: [1, 1, 1], color: [1, 1, 1]}}", "bad.yaml:3:38", "did you mean 'colour'?");
 }
 
-static void test_objects(void **state) {
+static void wrong_objects_are_reported(void **state) {
     (void)state;
     one("sources: [{}]", "bad.yaml:3:11", "needs 'kind'");
     one("sources: [3]", "bad.yaml:3:11", "must be a map, not '3'");
@@ -189,7 +189,7 @@ static void test_objects(void **state) {
         "two probes are called 'a'");
 }
 
-static void test_sheets(void **state) {
+static void wrong_sheets_are_reported(void **state) {
     (void)state;
     one("    mesh: x.obj", "bad.yaml:2:5", "exclude each other");
     one("  - name: x", "bad.yaml:3:5", "needs 'mesh' (a file) or 'grid'");
@@ -219,7 +219,7 @@ static void whole(const char *text, const char *origin, const char *part) {
     scene_messages_free(&messages);
 }
 
-static void test_syntax(void **state) {
+static void wrong_syntax_is_reported(void **state) {
     (void)state;
     whole("", "bad.yaml:1:1", "empty");
     whole("# nothing\n", "bad.yaml:1:1", "empty");
@@ -254,8 +254,8 @@ static char *printed(const SceneMessages *messages) {
     return text;
 }
 
-/// What a terminal would act on, and what nobody sees, is escaped, wherever a scene says it.
-static void test_unprintable(void **state) {
+/// Characters that control a terminal or are invisible are escaped wherever they stand in a scene.
+static void unprintable_characters_are_escaped(void **state) {
     (void)state;
     static const struct {
         const char *bytes, *escaped;
@@ -295,8 +295,8 @@ static void test_unprintable(void **state) {
         }
 }
 
-/// Texts without end are cut, between characters.
-static void test_cut(void **state) {
+/// Very long texts are cut between characters.
+static void long_texts_are_cut(void **state) {
     (void)state;
     static const char *const lines[] = {"%s: 1",
                                         "fps: %s",
@@ -331,8 +331,8 @@ static void test_cut(void **state) {
     free(word), free(text);
 }
 
-/// A name has characters, and bytes enough for them in the names of files.
-static void test_names(void **state) {
+/// A name is not empty, and short enough for the names of files.
+static void impossible_names_are_reported(void **state) {
     (void)state;
     static const struct {
         const char *piece;
@@ -359,7 +359,7 @@ static void expect_origin_prefix(const SceneMessages *messages, const char *pref
     assert_memory_equal(messages->items[0].origin, prefix, strlen(prefix));
 }
 
-static void test_limits(void **state) {
+static void large_texts_are_refused(void **state) {
     (void)state;
     size_t size = (1 << 20) + 1;
     char *text = malloc(size + 1);
@@ -381,7 +381,7 @@ static void test_limits(void **state) {
     free(text);
 }
 
-static void test_all_at_once(void **state) {
+static void all_mistakes_are_reported_at_once(void **state) {
     (void)state;
     static const char text[] = "frames: x\n"
                                "sheets:\n"
@@ -412,7 +412,7 @@ static void test_all_at_once(void **state) {
     scene_messages_free(&messages);
 }
 
-static void test_print(void **state) {
+static void messages_print_with_their_line(void **state) {
     (void)state;
     static const char bad[] = SHEET "\tx: 1\nfps: \u00e9\u00e9 9\nname: [\u00e9, 1]\n";
     Scene *scene;
@@ -433,7 +433,7 @@ static void test_print(void **state) {
     scene_messages_free(&messages);
 }
 
-static void test_files(void **state) {
+static void missing_files_are_reported(void **state) {
     (void)state;
     static const char text[] = "sheets:\n  - {mesh: missing.obj, picture: src}\n";
     SceneMessages messages = failing(text, strlen(text), ".", NULL, 0, SINGE_ERROR_FORMAT);
@@ -450,7 +450,7 @@ static void test_files(void **state) {
 }
 
 // Every prefix of a scene in flow style is incomplete and must be refused.
-static void test_truncated(void **state) {
+static void truncated_flow_scenes_are_refused(void **state) {
     (void)state;
     static const char text[] =
         "{frames: 20, 'name': \"a\\u00e9\", sheets: [{grid: {size: [20 cm, 0.3], cells: [2, 3]}, material: {mass_rate:"
@@ -472,7 +472,7 @@ static void test_truncated(void **state) {
 }
 
 // Prefixes in block style may be scenes of their own; then they must read back from their dump.
-static void test_truncated_block(void **state) {
+static void truncated_block_scenes_read_back(void **state) {
     (void)state;
     static const char text[] =
         SHEET "    material:\n      grammage: 80 g/m2\n      mass_rate:\n        from: 1\n        to: 2\n"
@@ -504,15 +504,15 @@ static void test_truncated_block(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_values),         cmocka_unit_test(test_keys),
-        cmocka_unit_test(test_objects),        cmocka_unit_test(test_sheets),
-        cmocka_unit_test(test_syntax),         cmocka_unit_test(test_limits),
-        cmocka_unit_test(test_all_at_once),    cmocka_unit_test(test_print),
-        cmocka_unit_test(test_files),          cmocka_unit_test(test_range_words),
-        cmocka_unit_test(test_ranges_at_once), cmocka_unit_test(test_step),
-        cmocka_unit_test(test_truncated),      cmocka_unit_test(test_truncated_block),
-        cmocka_unit_test(test_unprintable),    cmocka_unit_test(test_cut),
-        cmocka_unit_test(test_names),
+        cmocka_unit_test(wrong_values_are_reported),          cmocka_unit_test(unknown_keys_are_reported),
+        cmocka_unit_test(wrong_objects_are_reported),         cmocka_unit_test(wrong_sheets_are_reported),
+        cmocka_unit_test(wrong_syntax_is_reported),           cmocka_unit_test(large_texts_are_refused),
+        cmocka_unit_test(all_mistakes_are_reported_at_once),  cmocka_unit_test(messages_print_with_their_line),
+        cmocka_unit_test(missing_files_are_reported),         cmocka_unit_test(messages_name_both_bounds),
+        cmocka_unit_test(all_ranges_are_reported_at_once),    cmocka_unit_test(steps_that_cannot_be_are_reported),
+        cmocka_unit_test(truncated_flow_scenes_are_refused),  cmocka_unit_test(truncated_block_scenes_read_back),
+        cmocka_unit_test(unprintable_characters_are_escaped), cmocka_unit_test(long_texts_are_cut),
+        cmocka_unit_test(impossible_names_are_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -102,7 +102,7 @@ static void check_objects(const Scene *scene) {
     assert_true(scene->preview.ground_height == -0.5f && scene->preview.light_colour[0] == 3);
 }
 
-static void test_values(void **state) {
+static void values_are_read(void **state) {
     (void)state;
     Scene *scene = good_scene(full, NULL, 0);
     check_full(scene);
@@ -112,7 +112,7 @@ static void test_values(void **state) {
 
 /// Each parameter of a material that may vary is written under its key, fills its own slot and no other, keeps its
 /// texture in a slot of its own, and reads back from a dump.
-static void test_all_vary(void **state) {
+static void every_parameter_that_may_vary_does(void **state) {
     (void)state;
     static const char *const fields[] = {"texture: p.png", "attribute: burn", "noise: {scale: 2 mm, seed: 9}"};
     SingeMaterialDef standard = singe_default_material();
@@ -160,7 +160,7 @@ static void test_all_vary(void **state) {
     assert_false(scene_param(count, &row));
 }
 
-static void test_defaults(void **state) {
+static void missing_keys_take_defaults(void **state) {
     (void)state;
     Scene *scene = good_scene(SHEET, NULL, 0);
     assert_string_equal(scene->name, "test");
@@ -191,17 +191,17 @@ static void round_trip(SceneSyntax syntax) {
     scene_free(scene);
 }
 
-static void test_dump_yaml(void **state) {
+static void a_yaml_dump_reads_back(void **state) {
     (void)state;
     round_trip(SCENE_YAML);
 }
 
-static void test_dump_json(void **state) {
+static void a_json_dump_reads_back(void **state) {
     (void)state;
     round_trip(SCENE_JSON);
 }
 
-static void test_json(void **state) {
+static void json_is_read(void **state) {
     (void)state;
     Scene *scene =
         good_scene("{\"sheets\": [{\"grid\": {\"size\": [\"20 cm\", 0.3], \"cells\": [2, 3]},\n"
@@ -213,8 +213,8 @@ static void test_json(void **state) {
     scene_free(scene);
 }
 
-/// What is in quotes, in every style of YAML; read as an attribute's name, which may be any text.
-static void test_texts(void **state) {
+/// Quoted texts in every style of YAML, read as the name of an attribute, which may be any text.
+static void quoted_texts_are_read(void **state) {
     (void)state;
     static const struct {
         const char *written, *read;
@@ -254,7 +254,7 @@ static void test_texts(void **state) {
     scene_free(scene);
 }
 
-static void test_set(void **state) {
+static void set_overrides_values(void **state) {
     (void)state;
     static const char *const sets[] = {
         "sheets.0.material.grammage=60 g/m2",
@@ -284,8 +284,8 @@ static void test_set(void **state) {
     scene_free(scene);
 }
 
-// The gas is there unless a scene says no, alone or in its map.
-static void test_gas(void **state) {
+// A scene has gas unless it switches it off, by `gas: no` or inside the map.
+static void gas_is_there_unless_switched_off(void **state) {
     (void)state;
     const struct {
         const char *text, *set;
@@ -311,8 +311,8 @@ static void test_gas(void **state) {
     assert_false(singe_default_sim().gas.enabled);
 }
 
-// The solver's method, alone or with keys: what is not given suits the method, in any order of the keys.
-static void test_solver_method(void **state) {
+// The solver's method, alone or with keys in any order: the defaults of missing keys suit the method.
+static void defaults_suit_the_method(void **state) {
     (void)state;
     static const char sheet[] = "sheets: [{grid: {size: [1, 1], cells: [1, 1]}}]\n";
     static const struct {
@@ -345,10 +345,16 @@ static void test_solver_method(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_gas),      cmocka_unit_test(test_solver_method), cmocka_unit_test(test_values),
-        cmocka_unit_test(test_defaults), cmocka_unit_test(test_dump_yaml),     cmocka_unit_test(test_dump_json),
-        cmocka_unit_test(test_json),     cmocka_unit_test(test_texts),         cmocka_unit_test(test_set),
-        cmocka_unit_test(test_all_vary),
+        cmocka_unit_test(gas_is_there_unless_switched_off),
+        cmocka_unit_test(defaults_suit_the_method),
+        cmocka_unit_test(values_are_read),
+        cmocka_unit_test(missing_keys_take_defaults),
+        cmocka_unit_test(a_yaml_dump_reads_back),
+        cmocka_unit_test(a_json_dump_reads_back),
+        cmocka_unit_test(json_is_read),
+        cmocka_unit_test(quoted_texts_are_read),
+        cmocka_unit_test(set_overrides_values),
+        cmocka_unit_test(every_parameter_that_may_vary_does),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

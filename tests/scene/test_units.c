@@ -14,7 +14,7 @@ static double read_good(const char *text, Dimension dimension) {
 
 static void near(double value, double expected) { assert_true(fabs(value - expected) <= 1e-12 * (1 + fabs(expected))); }
 
-static void test_units(void **state) {
+static void units_are_converted(void **state) {
     (void)state;
     near(read_good("293", DIM_TEMPERATURE), 293);
     near(read_good("240 C", DIM_TEMPERATURE), 513.15);
@@ -49,7 +49,7 @@ static void test_units(void **state) {
     near(read_good("+.5", DIM_NONE), 0.5);
 }
 
-static void test_strict(void **state) {
+static void odd_quantities_are_refused(void **state) {
     (void)state;
     static const char *const not_numbers[] = {"",      " ",   "x",   "nan", "inf",  "-inf",    "0x10 ",
                                               "--1",   ".",   "+",   "e5",  "1,5",  "C 12",    "- 1",
@@ -104,7 +104,7 @@ static void back(float value, Dimension dimension, const char *expected) {
     assert_memory_equal(&narrow, &value, sizeof value);
 }
 
-static void test_print(void **state) {
+static void numbers_print_with_their_unit(void **state) {
     (void)state;
     back(0, DIM_NONE, "0");
     back(1200, DIM_TEMPERATURE, "1200");
@@ -127,7 +127,7 @@ static void test_print(void **state) {
 }
 
 // A decimal comma must change nothing. Skipped where no such locale is installed.
-static void test_locale(void **state) {
+static void a_decimal_comma_changes_nothing(void **state) {
     (void)state;
     static const char *const locales[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE", "fr_FR"};
     bool found = false;
@@ -140,10 +140,10 @@ static void test_locale(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_units),
-        cmocka_unit_test(test_strict),
-        cmocka_unit_test(test_print),
-        cmocka_unit_test(test_locale),
+        cmocka_unit_test(units_are_converted),
+        cmocka_unit_test(odd_quantities_are_refused),
+        cmocka_unit_test(numbers_print_with_their_unit),
+        cmocka_unit_test(a_decimal_comma_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

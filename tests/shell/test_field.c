@@ -9,7 +9,7 @@ static const float *centre_uv(const Square *square, uint32_t cell, float uv[2]) 
 }
 
 // The top row of the file is at v = 1; between pixel centres the value is linear, beyond them held.
-static void test_sample(void **state) {
+static void textures_are_sampled_linearly(void **state) {
     (void)state;
     static const float values[] = {0, 1, 2, 3, 4, 5};
     SingeTexture picture = {3, 2, values};
@@ -34,7 +34,7 @@ static void test_sample(void **state) {
 }
 
 // A picture that is linear in u between its two pixels.
-static void test_picture(void **state) {
+static void pictures_are_sampled_by_uv(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(8);
@@ -61,7 +61,7 @@ static void test_picture(void **state) {
 }
 
 // Attributes are taken as they are, beyond [0, 1] too; centres take the mean of their corners.
-static void test_attribute(void **state) {
+static void attributes_are_taken_as_they_are(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(3);
@@ -94,7 +94,7 @@ static void test_attribute(void **state) {
 }
 
 // Noise lies between the two values, varies, and depends on the seed and on the position alone.
-static void test_noise(void **state) {
+static void noise_depends_on_seed_and_position(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(24);
@@ -128,10 +128,10 @@ static void test_noise(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sample),
-        cmocka_unit_test(test_picture),
-        cmocka_unit_test(test_attribute),
-        cmocka_unit_test(test_noise),
+        cmocka_unit_test(textures_are_sampled_linearly),
+        cmocka_unit_test(pictures_are_sampled_by_uv),
+        cmocka_unit_test(attributes_are_taken_as_they_are),
+        cmocka_unit_test(noise_depends_on_seed_and_position),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

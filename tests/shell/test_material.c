@@ -27,7 +27,7 @@ enum { VARYING = sizeof varying / sizeof varying[0] };
 
 // Every parameter goes to its own slot, front and back of shrinkage each to its layer, and through the
 // shell into Matter.
-static void test_numbers(void **state) {
+static void every_number_goes_to_its_slot(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(2);
@@ -94,7 +94,7 @@ static void test_numbers(void **state) {
 
 /// Every parameter follows a texture, an attribute and noise, each in its own slot: the same field gives every one
 /// the values that it gives the thickness, and leaves the others alone.
-static void test_all_vary(void **state) {
+static void every_parameter_can_vary(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(6);
@@ -143,7 +143,7 @@ static void test_all_vary(void **state) {
 }
 
 /// Mass and capacity where both factors vary, and where their product leaves what a float can hold.
-static void test_mass_varies(void **state) {
+static void mass_and_capacity_vary(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(4);
@@ -186,7 +186,7 @@ static void test_mass_varies(void **state) {
 
 /// Diffusivity, layer exchange and mass rate are stated for one grammage and are larger where the sheet is lighter; the
 /// product of conductance and capacity, a flux per area, is the same everywhere. Heat is stated by its share.
-static void test_stated_for_a_grammage(void **state) {
+static void rates_are_stated_for_a_grammage(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(4);
@@ -225,7 +225,7 @@ static void test_stated_for_a_grammage(void **state) {
 }
 
 // The ends of every range, as its row states them: the last number that is allowed and the first that is not.
-static void test_ranges(void **state) {
+static void ranges_end_where_stated(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(1);
@@ -237,7 +237,10 @@ static void test_ranges(void **state) {
             float value;
             bool good;
         } cases[] = {
-            {isinf(low) ? -1e6f : range->low_open ? fmaxf(nextafterf(low, INFINITY), 1e-6f) : low, true},
+            {isinf(low)        ? -1e6f
+             : range->low_open ? fmaxf(nextafterf(low, INFINITY), 1e-6f)
+                               : low,
+             true},
             {endless            ? 1e6f
              : range->high_open ? nextafterf(high, -INFINITY)
                                 : high,
@@ -279,7 +282,7 @@ static void test_ranges(void **state) {
 
 // A caller's header had fewer fields in the material and in the sheet: the rest take their defaults, and
 // the sheet's fields after the material are found where that caller has them.
-static void test_old_def(void **state) {
+static void older_defs_take_defaults(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(1);
@@ -319,7 +322,7 @@ static void test_old_def(void **state) {
 }
 
 // Long names are cut at a character, and the sheet keeps a copy.
-static void test_name(void **state) {
+static void long_names_are_cut(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(1);
@@ -339,9 +342,13 @@ static void test_name(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_numbers),     cmocka_unit_test(test_ranges), cmocka_unit_test(test_stated_for_a_grammage),
-        cmocka_unit_test(test_old_def),     cmocka_unit_test(test_name),   cmocka_unit_test(test_all_vary),
-        cmocka_unit_test(test_mass_varies),
+        cmocka_unit_test(every_number_goes_to_its_slot),
+        cmocka_unit_test(ranges_end_where_stated),
+        cmocka_unit_test(rates_are_stated_for_a_grammage),
+        cmocka_unit_test(older_defs_take_defaults),
+        cmocka_unit_test(long_names_are_cut),
+        cmocka_unit_test(every_parameter_can_vary),
+        cmocka_unit_test(mass_and_capacity_vary),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

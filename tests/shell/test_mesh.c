@@ -36,13 +36,13 @@ static void refuse(QuadMesh *mesh, SingeResult code, int64_t element, const char
     mesh_release(mesh);
 }
 
-static void test_moebius(void **state) {
+static void a_moebius_strip_is_refused(void **state) {
     (void)state;
     QuadMesh mesh = mesh_moebius(12);
     refuse(&mesh, SINGE_ERROR_MESH, 11, "is flipped");
 }
 
-static void test_turned_cell(void **state) {
+static void a_turned_cell_is_refused(void **state) {
     (void)state;
     QuadMesh mesh = mesh_grid(3, 3, 1, 1);
     uint32_t *cell = mesh.cells[4], swap = cell[1];
@@ -51,7 +51,7 @@ static void test_turned_cell(void **state) {
 }
 
 // Three pages bound at the edge 0-1.
-static void test_three_cells(void **state) {
+static void three_cells_at_an_edge_are_refused(void **state) {
     (void)state;
     QuadMesh mesh = {0};
     for (int k = 0; k < 2; k++) mesh_add_vertex(&mesh, 0, (float)k, 0);
@@ -65,7 +65,7 @@ static void test_three_cells(void **state) {
 }
 
 // Two cells that share only vertex 4.
-static void test_bow_tie(void **state) {
+static void a_bow_tie_is_refused(void **state) {
     (void)state;
     QuadMesh mesh = mesh_grid(2, 2, 1, 1);
     memcpy(mesh.cells[1], mesh.cells[3], sizeof mesh.cells[1]);
@@ -74,7 +74,7 @@ static void test_bow_tie(void **state) {
 }
 
 // Two closed surfaces that touch in a vertex have no boundary to betray them.
-static void test_touching_spheres(void **state) {
+static void touching_spheres_are_refused(void **state) {
     (void)state;
     QuadMesh mesh = mesh_sphere(2), other = mesh_sphere(2);
     uint32_t first = mesh.vertex_count, touch = 3;
@@ -90,7 +90,7 @@ static void test_touching_spheres(void **state) {
 }
 
 // The element is the second sheet's own, not the shell's.
-static void test_second_sheet(void **state) {
+static void the_element_is_the_sheets_own(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh good = mesh_grid(3, 3, 1, 1), bad = mesh_grid(2, 2, 1, 1);
@@ -111,7 +111,7 @@ static void test_second_sheet(void **state) {
     mesh_release(&bad);
 }
 
-static void test_bad_numbers(void **state) {
+static void bad_numbers_are_refused(void **state) {
     (void)state;
     static const float bad[] = {NAN, INFINITY, -INFINITY, 1e30f};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -137,7 +137,7 @@ static void test_bad_numbers(void **state) {
     refuse(&mesh, SINGE_ERROR_MESH, 3, "twice");
 }
 
-static void test_degenerate(void **state) {
+static void degenerate_cells_are_refused(void **state) {
     (void)state;
     QuadMesh mesh = mesh_grid(1, 1, 1, 1);
     memcpy(mesh.position[1], mesh.position[0], sizeof mesh.position[0]);
@@ -165,7 +165,7 @@ static void test_degenerate(void **state) {
 }
 
 // A tube as thick as its radius: the centre layer would be a line.
-static void test_too_thick(void **state) {
+static void a_tube_as_thick_as_its_radius_is_refused(void **state) {
     (void)state;
     QuadMesh mesh = mesh_cylinder(4, 3, 1, 1);
     for (uint32_t c = 0; c < mesh.cell_count; c++) {
@@ -182,7 +182,7 @@ static void test_too_thick(void **state) {
     mesh_release(&mesh);
 }
 
-static void test_bad_defs(void **state) {
+static void bad_defs_are_refused(void **state) {
     (void)state;
     QuadMesh mesh = mesh_grid(1, 1, 1, 1);
     SingeSheetDef def = mesh_sheet(&mesh);
@@ -217,7 +217,7 @@ static void test_bad_defs(void **state) {
 }
 
 // More cells around a vertex than a particle's count of springs can hold.
-static void test_hub_limit(void **state) {
+static void too_many_cells_at_a_vertex_are_refused(void **state) {
     (void)state;
     QuadMesh mesh = {0};
     const uint32_t sides = 21845;
@@ -261,7 +261,7 @@ static SingeResult build_all(Memory *memory, const SingeSheetDef *def, SingeErro
 }
 
 // The n-th allocation fails, for every n: the right code, nothing leaked.
-static void test_no_memory(void **state) {
+static void every_allocation_fails_once(void **state) {
     (void)state;
     QuadMesh mesh = mesh_sphere(3);
     SingeSheetDef def = mesh_sheet(&mesh);
@@ -284,12 +284,18 @@ static void test_no_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_moebius),          cmocka_unit_test(test_turned_cell),
-        cmocka_unit_test(test_three_cells),      cmocka_unit_test(test_bow_tie),
-        cmocka_unit_test(test_touching_spheres), cmocka_unit_test(test_second_sheet),
-        cmocka_unit_test(test_bad_numbers),      cmocka_unit_test(test_degenerate),
-        cmocka_unit_test(test_too_thick),        cmocka_unit_test(test_bad_defs),
-        cmocka_unit_test(test_hub_limit),        cmocka_unit_test(test_no_memory),
+        cmocka_unit_test(a_moebius_strip_is_refused),
+        cmocka_unit_test(a_turned_cell_is_refused),
+        cmocka_unit_test(three_cells_at_an_edge_are_refused),
+        cmocka_unit_test(a_bow_tie_is_refused),
+        cmocka_unit_test(touching_spheres_are_refused),
+        cmocka_unit_test(the_element_is_the_sheets_own),
+        cmocka_unit_test(bad_numbers_are_refused),
+        cmocka_unit_test(degenerate_cells_are_refused),
+        cmocka_unit_test(a_tube_as_thick_as_its_radius_is_refused),
+        cmocka_unit_test(bad_defs_are_refused),
+        cmocka_unit_test(too_many_cells_at_a_vertex_are_refused),
+        cmocka_unit_test(every_allocation_fails_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

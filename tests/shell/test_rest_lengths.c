@@ -33,7 +33,7 @@ static void check_layers(const Shell *shell, double area, double tolerance) {
 }
 
 // Rectangles: quarters at the corner, halves at the side; every length by hand.
-static void test_rectangles(void **state) {
+static void rectangles_match_lengths_by_hand(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     const float dx = 0.02f, dy = 0.01f, t = 0.003f;
@@ -80,7 +80,7 @@ static int compare(const void *a, const void *b) {
 }
 
 // The median by histograms is the median by sorting.
-static void test_cell_size(void **state) {
+static void the_median_cell_size_is_exact(void **state) {
     (void)state;
     for (uint32_t seed = 1; seed < 6; seed++) {
         Memory memory = memory_make((SingeAllocator){0});
@@ -100,7 +100,7 @@ static void test_cell_size(void **state) {
 }
 
 // Any planar mesh: the parts sum to the whole. The polygon of k patches: k/2 sin(2 pi/k) of its outline.
-static void test_planar_sums(void **state) {
+static void parts_of_a_planar_mesh_sum_to_the_whole(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh mesh = mesh_random(7, 3);
@@ -117,7 +117,7 @@ static void test_planar_sums(void **state) {
 }
 
 // A dart: the triangle (0,0) (2,0) (1,2) without (0,0) (2,0) (1,1), its corners equal for want of better.
-static void test_concave(void **state) {
+static void a_concave_cell_has_equal_corners(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh mesh = {0};
@@ -132,7 +132,7 @@ static void test_concave(void **state) {
 }
 
 // A curved shell: the centre layer of a cylinder is longer outside, at the radius of its own prism.
-static void test_curved(void **state) {
+static void the_centre_layer_of_a_cylinder_is_longer_outside(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     const uint32_t n = 16;
@@ -161,8 +161,11 @@ static void test_curved(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rectangles), cmocka_unit_test(test_cell_size), cmocka_unit_test(test_planar_sums),
-        cmocka_unit_test(test_concave),    cmocka_unit_test(test_curved),
+        cmocka_unit_test(rectangles_match_lengths_by_hand),
+        cmocka_unit_test(the_median_cell_size_is_exact),
+        cmocka_unit_test(parts_of_a_planar_mesh_sum_to_the_whole),
+        cmocka_unit_test(a_concave_cell_has_equal_corners),
+        cmocka_unit_test(the_centre_layer_of_a_cylinder_is_longer_outside),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,7 +30,7 @@ static Shell start_shell(Memory *memory) {
     return shell;
 }
 
-static void test_start(void **context) {
+static void a_state_starts_at_rest(void **context) {
     (void)context;
     Memory memory = memory_make((SingeAllocator){0});
     Shell shell = start_shell(&memory);
@@ -77,7 +77,7 @@ static void check_slice(const State *state, const void *slice, size_t size) {
     assert_true(offset + size <= state->arena_size);
 }
 
-static void test_arena(void **context) {
+static void the_arena_holds_the_whole_state(void **context) {
     (void)context;
     Memory memory = memory_make((SingeAllocator){0});
     Shell shell = start_shell(&memory);
@@ -118,7 +118,7 @@ static void test_arena(void **context) {
 }
 
 // No two arrays of a State overlap: bytes set through one pointer are not seen through another.
-static void test_apart(void **context) {
+static void arrays_do_not_overlap(void **context) {
     (void)context;
     Memory memory = memory_make((SingeAllocator){0});
     Shell shell = start_shell(&memory);
@@ -160,9 +160,9 @@ static void test_apart(void **context) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_start),
-        cmocka_unit_test(test_arena),
-        cmocka_unit_test(test_apart),
+        cmocka_unit_test(a_state_starts_at_rest),
+        cmocka_unit_test(the_arena_holds_the_whole_state),
+        cmocka_unit_test(arrays_do_not_overlap),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,7 +8,7 @@
 
 #include "sample_shells.h"
 
-/// What a shell must have, by colour in the order red, green, blue, yellow; 0 families is any number.
+/// Expected numbers by colour: red, green, blue, yellow. 0 families stands for any number.
 typedef struct Expected {
     uint32_t springs[4], strands[4], rings[4], families[4], cell_families;
 } Expected;
@@ -44,7 +44,7 @@ static Expected grid_expected(uint32_t n, uint32_t m) {
                                                       : 1};
 }
 
-static void test_grid(void **state) {
+static void a_grid_has_straight_strands(void **state) {
     (void)state;
     static const uint32_t sizes[][2] = {{1, 1}, {2, 2}, {3, 2}, {7, 5}, {5, 7}, {20, 20}, {31, 8}, {1, 9}, {9, 1}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
@@ -55,7 +55,7 @@ static void test_grid(void **state) {
 }
 
 // The families do not depend on how vertices and cells are numbered.
-static void test_shuffled_grid(void **state) {
+static void families_do_not_depend_on_numbering(void **state) {
     (void)state;
     for (uint32_t seed = 1; seed < 4; seed++) {
         QuadMesh mesh = mesh_grid(14, 11, 0.01f, 0.01f);
@@ -69,7 +69,7 @@ static void test_shuffled_grid(void **state) {
 static uint32_t gcd(uint32_t a, uint32_t b) { return b ? gcd(b, a % b) : a; }
 
 // All strands are rings: n + m lines, and gcd(n, m) diagonals each way.
-static void test_torus(void **state) {
+static void strands_of_a_torus_are_rings(void **state) {
     (void)state;
     static const uint32_t sizes[][2] = {{12, 8}, {9, 9}, {13, 7}, {3, 3}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
@@ -84,7 +84,7 @@ static void test_torus(void **state) {
 }
 
 // Two cells around: green rings of two springs between the same centres are cut open into two strands.
-static void test_two_around(void **state) {
+static void rings_of_two_springs_are_cut(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh mesh = {0};
@@ -104,7 +104,7 @@ static void test_two_around(void **state) {
     mesh_release(&mesh);
 }
 
-static void test_cylinder(void **state) {
+static void strands_go_around_a_cylinder(void **state) {
     (void)state;
     QuadMesh mesh = mesh_cylinder(12, 5, 0.1f, 0.2f);
     // a diagonal climbs one row a cell, so each starts at one of 12 places and goes once up
@@ -122,7 +122,7 @@ static void test_cylinder(void **state) {
 }
 
 // Eight vertices of valence three: the cube's 12 edges are chains, the other lines go round.
-static void test_sphere(void **state) {
+static void strands_of_a_cube_sphere_end_at_its_corners(void **state) {
     (void)state;
     for (uint32_t n = 1; n <= 8; n++) {
         QuadMesh mesh = mesh_sphere(n);
@@ -149,7 +149,7 @@ static void test_sphere(void **state) {
 }
 
 // Around a vertex of odd valence all ends; of even valence lines go through.
-static void test_polygon(void **state) {
+static void strands_end_at_vertices_of_odd_valence(void **state) {
     (void)state;
     const uint32_t n = 6;
     QuadMesh mesh = mesh_polygon(5, n);
@@ -175,7 +175,7 @@ static void test_polygon(void **state) {
 }
 
 // The inner corner has three cells: both boundary lines run on into the mesh.
-static void test_ell(void **state) {
+static void strands_run_on_from_an_inner_corner(void **state) {
     (void)state;
     const uint32_t n = 4;
     QuadMesh mesh = mesh_ell(n);
@@ -196,7 +196,7 @@ static void test_ell(void **state) {
     mesh_release(&mesh);
 }
 
-static void test_components(void **state) {
+static void components_are_separate(void **state) {
     (void)state;
     QuadMesh mesh = mesh_grid(5, 4, 0.01f, 0.01f);
     mesh_append_grid(&mesh, 3, 6, 1, 1);
@@ -209,7 +209,7 @@ static void test_components(void **state) {
 }
 
 // Two sheets are numbered as one shell: all vertices, then all cells.
-static void test_sheets(void **state) {
+static void sheets_are_numbered_as_one_shell(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh a = mesh_grid(4, 3, 0.01f, 0.01f), b = mesh_grid(2, 5, 0.03f, 0.03f);
@@ -240,7 +240,7 @@ static void test_sheets(void **state) {
 }
 
 // General meshes: valences from 3 to 8 or so, strands that cross themselves.
-static void test_random(void **state) {
+static void random_meshes_have_valid_strands(void **state) {
     (void)state;
     for (uint32_t seed = 1; seed <= 12; seed++) {
         Memory memory = memory_make((SingeAllocator){0});
@@ -261,7 +261,7 @@ static void test_random(void **state) {
 }
 
 // A hub of 201 cells: more strands meet than one word of families holds.
-static void test_hub(void **state) {
+static void a_hub_has_many_families(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh mesh = mesh_polygon(201, 1);
@@ -276,10 +276,18 @@ static void test_hub(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_grid),       cmocka_unit_test(test_shuffled_grid), cmocka_unit_test(test_torus),
-        cmocka_unit_test(test_two_around), cmocka_unit_test(test_cylinder),      cmocka_unit_test(test_sphere),
-        cmocka_unit_test(test_polygon),    cmocka_unit_test(test_ell),           cmocka_unit_test(test_components),
-        cmocka_unit_test(test_sheets),     cmocka_unit_test(test_random),        cmocka_unit_test(test_hub),
+        cmocka_unit_test(a_grid_has_straight_strands),
+        cmocka_unit_test(families_do_not_depend_on_numbering),
+        cmocka_unit_test(strands_of_a_torus_are_rings),
+        cmocka_unit_test(rings_of_two_springs_are_cut),
+        cmocka_unit_test(strands_go_around_a_cylinder),
+        cmocka_unit_test(strands_of_a_cube_sphere_end_at_its_corners),
+        cmocka_unit_test(strands_end_at_vertices_of_odd_valence),
+        cmocka_unit_test(strands_run_on_from_an_inner_corner),
+        cmocka_unit_test(components_are_separate),
+        cmocka_unit_test(sheets_are_numbered_as_one_shell),
+        cmocka_unit_test(random_meshes_have_valid_strands),
+        cmocka_unit_test(a_hub_has_many_families),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-// Objects before the commit, what stands still, handles of what there is, and the caller's own data.
+// Objects added before the commit, objects without a path, lists of handles, and the caller's own data.
 #include "scenes.h"
 
 #include <stdlib.h>
@@ -26,7 +26,7 @@ static void the_order_does_not_matter(void **state) {
     singe_sim_destroy(early.sim);
 }
 
-/// What fails at the commit fails there as it would after it, and the commit can be tried again.
+/// An object that is invalid fails at the commit as it would after it, and the commit can be repeated.
 static void what_waits_can_be_refused(void **state) {
     (void)state;
     SingeSimDef def = singe_default_sim();
@@ -122,7 +122,7 @@ static void without_a_path_it_stands_still(void **state) {
     singe_sim_destroy(sims[1]);
 }
 
-/// Handles that the caller has no use for may be left out; the objects are there all the same.
+/// Callers may omit handles that they do not need; the objects exist nevertheless.
 static void handles_may_be_left_out(void **state) {
     (void)state;
     SingeSim *sims[2];

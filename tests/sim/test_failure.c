@@ -39,7 +39,7 @@ static void a_failed_step_changes_nothing(void **state) {
     assert_int_equal(singe_sim_timers(sim).steps, timers.steps);
     assert_int_equal(singe_sim_timers(sim).contacts, timers.contacts);
     free(before.data), free(after.data);
-    // usable again without the source, and as if nothing had been
+    // without the source it continues as if nothing had happened
     test_ok(sim, singe_sim_remove_source(sim, id));
     test_ok(twin.sim, singe_sim_add_source(twin.sim, &def, &id)); // keeps the lists and generations alike
     test_ok(twin.sim, singe_sim_remove_source(twin.sim, id));
@@ -50,8 +50,8 @@ static void a_failed_step_changes_nothing(void **state) {
     singe_sim_destroy(twin.sim);
 }
 
-/// A pin that drags a particle out of the world: the dynamics fails after the other stages are done, and
-/// what they did is undone.
+/// A pin drags a particle out of the world: the dynamics fails after other stages have run, and their changes are
+/// undone.
 static void a_failure_late_in_the_step(void **state) {
     (void)state;
     Scene scene = scene_make(NULL, 10);
@@ -174,7 +174,7 @@ static void every_allocation_fails_once(void **state) {
     }
 }
 
-/// What failed for want of memory can be tried again on the same simulation.
+/// A call that failed for lack of memory can be repeated on the same simulation.
 static void failed_calls_can_be_repeated(void **state) {
     (void)state;
     TestAllocator hook = {0};

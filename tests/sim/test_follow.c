@@ -73,7 +73,7 @@ static double mean_of(SingeSim *sim, int axis) {
     return sum / view.vertex_count;
 }
 
-/// Where nothing moves it is a mesh; moved as a whole, it is a mesh on a path: sheets ride on it alike.
+/// Unmoved, a deforming collider acts as a mesh; moved as a whole, as a mesh on a path: sheets ride on both alike.
 static void moved_as_a_whole_it_is_a_mesh_on_a_path(void **state) {
     (void)state;
     const float half[3] = {0.08f, 0.08f, 0.02f}, centre[3] = {0, 0, TOP - 0.02f};

@@ -196,7 +196,7 @@ static void the_log_has_no_locale(void **state) {
     assert_non_null(strstr(heard.last[SINGE_LOG_WARNING], "33.3 ms"));
 }
 
-/// What was made is reported at the commit; a step too long for the cells is warned of.
+/// The commit reports what was built; a step too long for the cells causes a warning.
 static void the_log_hears_of_the_commit(void **state) {
     (void)state;
     for (int slow = 0; slow < 2; slow++) {
@@ -215,7 +215,8 @@ static void the_log_hears_of_the_commit(void **state) {
     }
 }
 
-/// A sheet that begins farther than a cell behind a plane is warned of in the first step, and one that lies on it not.
+/// A sheet that begins more than a cell behind a plane causes a warning in the first step; one that lies on it does
+/// not.
 static void the_log_hears_of_what_begins_inside(void **state) {
     (void)state;
     for (int deep = 0; deep < 2; deep++) {

@@ -22,7 +22,7 @@ static Scene quiet_scene(uint32_t cells) {
     return scene;
 }
 
-/// What was set is in the snapshot: a load of it steps the same.
+/// A snapshot has the values that were set: a loaded simulation makes the same steps.
 static void assert_loads_the_same(SingeSim *sim) {
     SingeSim *loaded = reload(sim);
     test_assert_same(sim, loaded);
@@ -34,7 +34,7 @@ static void assert_loads_the_same(SingeSim *sim) {
 
 // ---- gravity, pace, ambient temperature
 
-/// Set before the first step, it is as if the Def had had it.
+/// A value set before the first step has the effect of one in the Def.
 static void set_at_once_is_set_in_the_def(void **state) {
     (void)state;
     const float gravity[3] = {1, 0, -3};
@@ -231,7 +231,7 @@ static void any_material_at_any_time(void **state) {
     singe_sim_destroy(scene.sim);
 }
 
-/// Without memory for it the simulation is as it was.
+/// If memory runs out, the simulation is unchanged.
 static void without_memory_nothing_changes(void **state) {
     (void)state;
     TestAllocator hook = {0};
@@ -271,7 +271,7 @@ static void without_memory_nothing_changes(void **state) {
 
 // ---- frames
 
-/// Frames of any length give the steps that fit in them; what is left is neither lost nor made twice.
+/// A frame of any length has the steps that fit into it; its remainder is neither lost nor simulated twice.
 static void frames_of_any_length(void **state) {
     (void)state;
     Scene advanced = quiet_scene(8), stepped = quiet_scene(8);

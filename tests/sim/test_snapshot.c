@@ -1,4 +1,4 @@
-// Save, load and clone: a resumed run is bitwise the run that was not interrupted, and damage is noticed.
+// Save, load and clone: a resumed run has the bytes of an uninterrupted one, and damage is noticed.
 #include "scenes.h"
 
 #include "common/stream.h"
@@ -48,7 +48,7 @@ static void resumed_runs_are_the_same(void **state) {
     }
 }
 
-/// The bytes depend on the simulation alone, not on rubbish between fields or on where things lie.
+/// The bytes depend on the simulation alone, not on padding or addresses.
 static void bytes_are_the_same(void **state) {
     (void)state;
     Scene a = scene_make(NULL, 9);
@@ -135,7 +135,7 @@ static void clones_are_independent(void **state) {
     free(before.data), free(after.data);
 }
 
-/// A load of damaged bytes is refused; what it took is given back.
+/// Damaged bytes are refused, and nothing leaks.
 static void refuse(uint8_t *bytes, size_t size, const char *what) {
     TestAllocator hook = {0};
     SingeSimDef hooks = singe_default_sim();
@@ -202,8 +202,7 @@ static void forge(TestBytes *bytes, size_t at, uint32_t word) {
     memcpy(bytes->data + CHECKSUM_AT, &sum, sizeof sum);
 }
 
-/// Bytes that lie about the body but carry its right checksum: whatever the load says, it neither crashes nor leaks,
-/// and what it lets pass can be stepped.
+/// Forged bodies with correct checksums: loading them neither crashes nor leaks, and a simulation that loads can step.
 static void forged_snapshots(void **state) {
     (void)state;
     enum { HEADER = 56 };
@@ -341,7 +340,7 @@ POKE(initial_cell, one_crossing(&sim->memory, sim->dynamics->collision))
 POKE(gas_field, sim->gas->turn[sim->state.gas.turn].field[GAS_LIGHTNESS][99] = NAN)
 POKE(gas_air, sim->gas->turn[sim->state.gas.turn].air[VERTEX][1] = INFINITY)
 
-/// A simulation whose numbers are not what steps leave can be saved, but not loaded.
+/// A simulation with numbers that no step produces can be saved but not loaded.
 static void impossible_numbers(void **state) {
     (void)state;
 // clang-format off

@@ -53,7 +53,7 @@ static void bad_cells_burn_and_stay_above_the_air(void **state) {
     }
 }
 
-/// Steps so short that a float hardly notices what they bring: said, not hidden.
+/// Steps so short that their changes vanish in a float are reported.
 static void ledgers_that_do_not_close_are_reported(void **state) {
     (void)state;
     SingeSimDef def = scene_def();

@@ -28,7 +28,8 @@ static double share(Draw *draw) {
 
 static int pick(Draw *draw, int count) { return (int)(share(draw) * count); }
 
-/// What scenes would take too long or too much memory by, or be nothing without; in held units.
+/// Keys whose random values would make a scene empty, too slow or too large. Values are in the units that a scene
+/// stores.
 typedef struct Limit {
     const char *schema, *key;
     double low, high;

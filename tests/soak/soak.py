@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Random scenes through the whole command, of a build with sanitizers if that is the one given.
+"""Runs random scenes through a command, which may be built with sanitizers.
 
 soak.py SINGE DRAW_SCENE [--minutes M | --scenes N] [--seed S] [--jobs J] [--work FOLDER]
 
-Each scene is drawn by DRAW_SCENE from its seed, looked at by `check`, run with one thread and with two, whose caches must
-be the same bytes, verified, and run again in two parts by --resume, which must give the same bytes as well. A scene that
-`check` calls good must run, or fail with a reason after it has begun; nothing may crash, hang or grow without bound.
-Scenes that fail are kept in FOLDER/findings/SEED with what was said; exit code 1 tells that there are some.
+DRAW_SCENE makes a scene from its seed. The scene is checked, run with one thread and with two, verified, and run again in
+two parts by --resume; all caches must have the same bytes. A scene that `check` accepts must run, or fail later with a
+reason. Nothing may crash, hang or grow without bound.
+Scenes that fail are kept with their messages in FOLDER/findings/SEED, and the exit code is 1.
 """
 
 import argparse
@@ -28,7 +28,7 @@ SANITIZER = 99
 
 
 class Finding(Exception):
-    """What is wrong with a scene."""
+    """A fault that a scene has shown."""
 
 
 def limit_time():
@@ -49,7 +49,7 @@ class Soak:
         self.counts = {"refused": 0, "stopped": 0, "clean": 0, "faulty": 0, "found": 0}
 
     def call(self, folder, name, *arguments, codes):
-        """Runs a command; what it said is kept in folder/name.txt."""
+        """Runs a command; its output is kept in folder/name.txt."""
         with open(os.path.join(folder, name + ".txt"), "w", encoding="utf-8", errors="replace") as said:
             try:
                 code = subprocess.run([self.singe, *arguments], stdin=subprocess.DEVNULL, stdout=said, stderr=said,
@@ -91,7 +91,7 @@ class Soak:
             raise Finding("one thread and two end with different codes")
         self.same(outs[0], outs[1], "one thread and two")
         if runs[0][0] == FAILED:
-            return "stopped"  # a step failed, and said why
+            return "stopped"  # a step failed and reported why
         code, _ = self.call(folder, "verify", "verify", outs[0], codes=(GOOD, FAILED))
         self.call(folder, "first", "run", scene, "-o", outs[2], "--no-preview", "--frames", "1", codes=(GOOD,))
         self.call(folder, "rest", "run", scene, "-o", outs[2], "--no-preview", "--resume", codes=(GOOD,))

@@ -100,4 +100,21 @@ SingeAllocator test_allocator(TestAllocator *allocator);
 /// Fails the test unless every block came back, with its true size.
 void test_allocator_check(const TestAllocator *allocator);
 
+/// Lets each allocation of a call fail in turn, until the call succeeds after at least `least` failures. It takes its
+/// memory from `allocator`. A failed call returns SINGE_ERROR_MEMORY and leaves nothing behind; `release` frees what a
+/// successful one has made.
+#define test_allocations_fail(least, call, release)                 \
+    for (long at_ = 1;; at_++) {                                    \
+        TestAllocator counter_ = {.fail_at = at_, .once = true};    \
+        const SingeAllocator allocator = test_allocator(&counter_); \
+        const SingeResult result_ = (call);                         \
+        if (result_ == SINGE_OK) release;                           \
+        else assert_int_equal(result_, SINGE_ERROR_MEMORY);         \
+        test_allocator_check(&counter_);                            \
+        if (result_ == SINGE_OK) {                                  \
+            assert_true(at_ > (least));                             \
+            break;                                                  \
+        }                                                           \
+    }
+
 #endif

@@ -82,7 +82,7 @@ static inline void set_linear_fields(Drawing *d, Linear level) {
     }
 }
 
-/// What is drawn of a sheet of nx x ny cells of 1 m has the fields of set_linear_fields.
+/// The drawn surface of a sheet of nx x ny cells of 1 m has the fields of set_linear_fields.
 static inline void expect_linear_fields(const Drawing *d, Linear level, double normal_tolerance) {
     const SingeSurface *s = &d->surface;
     const double nx = d->sheet->nx, ny = d->sheet->ny;

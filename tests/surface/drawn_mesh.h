@@ -1,4 +1,4 @@
-// What tests ask of a drawn mesh that lies in the plane z = 0.
+// Checks of a drawn mesh that lies in the plane z = 0.
 #ifndef TESTS_SURFACE_DRAWN_MESH_H
 #define TESTS_SURFACE_DRAWN_MESH_H
 

@@ -1,4 +1,4 @@
-"""What is tortured: commands on a tiny scene with everything in it, and what they leave when nothing fails."""
+"""The commands that torture.py runs, on a tiny scene that has everything, and their results if nothing fails."""
 
 import csv
 import dataclasses
@@ -173,5 +173,5 @@ def contents(folder):
 
 
 def printed(text):
-    """What a command printed without what a clock measured."""
+    """The output of a command without measured times."""
     return re.sub(r"^(time|memory) .*$", "", text, flags=re.M)

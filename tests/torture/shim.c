@@ -54,7 +54,7 @@ static const char *const kinds[KIND_COUNT] = {"memory",  "open",   "read",   "wr
                                               "rename",  "remove", "folder", "list",  "cut",  "stat",
                                               "process", "thread", "lock",   "map"};
 
-/// What the driver reads.
+/// The results, for torture.py.
 typedef struct State {
     _Atomic uint64_t failed;            ///< calls that were made to fail
     _Atomic uint64_t calls[KIND_COUNT]; ///< in the order of `kinds`

@@ -59,7 +59,7 @@ class Trial:
 
 
 class Expected:
-    """What a scenario finds and leaves when nothing fails."""
+    """The input of a scenario and its result if nothing fails."""
 
     def __init__(self, bench, scenario):
         with bench.place() as place:
@@ -166,7 +166,7 @@ def same(name, data, expected):
 
 
 def difference(name, data, expected):
-    """What differs, in words."""
+    """A description of the differences."""
     if name == "run.json":
         try:
             found, wanted = comparable(name, data), expected.comparable[name]
@@ -276,7 +276,7 @@ def made_up_faults(bench, place, trial, left, expected):
 
 
 def attempt(bench, trial, expected):
-    """What is wrong after one failure: (whether the call was reached, sentences, the command's errors)."""
+    """The faults after one failure: (whether the call was reached, sentences, the command's errors)."""
     with bench.place() as place:
         place.fill(expected.template)
         try:
