@@ -3,9 +3,11 @@
 
 usage: write_types.py [--check]
 
-Everything else of types.h is written by hand. --check: changes nothing, and fails where the header differs.
+Everything else of types.h is written by hand. --check: changes nothing, and fails where the header differs. A range of
+scenes that is wider than the library's is refused.
 """
 
+import math
 import pathlib
 import re
 import sys
@@ -63,13 +65,37 @@ def in_words(found):
             "ANY": ""}[name].format(*bounds)
 
 
+def bounds(found):
+    """(low, high) of a range that has numbers; infinite where it ends nowhere."""
+    name, inside = re.match(r"(\w+)(?:\((.*)\))?$", found, re.DOTALL).groups()
+    numbers = [eval(part, {"__builtins__": {}}, {"DEGREE": math.pi / 180}) for part in arguments(inside)] if inside else []
+    if name in ("WITHIN", "BELOW", "OVER_UP_TO"):
+        return tuple(numbers)
+    return (numbers[0] if numbers else -math.inf, math.inf)
+
+
+def wide_scenes(text):
+    """Ranges of scenes in a table that reach beyond those of the library."""
+    for match in re.finditer(r"IN_SCENES(?:_OR_INF)?\(", text):
+        depth, i = 1, match.end()
+        while depth:
+            depth += (text[i] == "(") - (text[i] == ")")
+            i += 1
+        found, low, high = arguments(text[match.end():i - 1])
+        if found == "range":
+            continue  # the definition of the macro
+        inside, outside = bounds(f"WITHIN({low}, {high})"), bounds(found)
+        if inside[0] < outside[0] or inside[1] > outside[1]:
+            yield f"IN_SCENES({found}, {low}, {high})"
+
+
 def plain(text):
     """A text without Markdown's links."""
     return re.sub(r"\s*\(\[[^\]]*\]\([^)]*\)\)", "", text).replace("`", "")
 
 
 def kinds_in_words(kinds):
-    return "" if kinds == "ALWAYS" else " and ".join(kind.split("_", 1)[1].lower() for kind in kinds.split(" | "))
+    return " and ".join(name.lower() for name in re.findall(r"BIT\(SINGE_[A-Z]+?_(\w+)\)", kinds))
 
 
 def comment(line, text):
@@ -131,6 +157,9 @@ def main():
     header = FOLDER / "types.h"
     before = text = header.read_text(encoding="utf-8")
     units = {"DIM_" + row[0]: row[2] for _, row in rows((FOLDER / "dimensions.def").read_text(encoding="utf-8"))}
+    for file in sorted(FOLDER.glob("*.def")):
+        for fault in wide_scenes(re.sub(r"//[^\n]*", "", file.read_text(encoding="utf-8"))):
+            sys.exit(f"{file.name}: {fault}: scenes accept what the library refuses")
     for part in DEFS:
         table = list(rows((FOLDER / f"{part}.def").read_text(encoding="utf-8")))
         name = f"Singe{part.capitalize()}Def"

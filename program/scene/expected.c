@@ -56,12 +56,15 @@ static size_t expected_add(char *buffer, size_t size, const char *text) {
 }
 
 static void add_names(char *buffer, size_t size, const char *const *names) {
-    int count = 0; // of the words that scenes have; values without one come last
-    while (names[count] && names[count][0]) count++;
-    for (int i = 0; i < count; i++) {
-        if (i) expected_add(buffer, size, i + 1 < count ? ", " : " or ");
-        expected_add(buffer, size, names[i]);
+    const char *last = NULL; // the one before is added when it is known whether another follows
+    for (int i = 0, added = 0; names[i]; i++) {
+        if (!names[i][0]) continue; // scenes have no word for it
+        if (last) expected_add(buffer, size, added++ ? ", " : "");
+        if (last) expected_add(buffer, size, last);
+        last = names[i];
     }
+    expected_add(buffer, size, names[0] == last ? "" : " or ");
+    expected_add(buffer, size, last);
 }
 
 static void add_base(char *buffer, size_t size) {

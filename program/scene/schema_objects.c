@@ -1,7 +1,9 @@
 // The objects of a scene: sheets, sources, colliders, pins and probes.
 #include "scene/schema_rows.h"
 
-enum { COLLIDER_DRAWN = COLLIDER_SPHERE | COLLIDER_BOX | COLLIDER_CAPSULE | COLLIDER_HEIGHTFIELD | COLLIDER_MESH };
+#define DRAWN                                                                             \
+    (BIT(SINGE_COLLIDER_SPHERE) | BIT(SINGE_COLLIDER_BOX) | BIT(SINGE_COLLIDER_CAPSULE) | \
+     BIT(SINGE_COLLIDER_HEIGHTFIELD) | BIT(SINGE_COLLIDER_MESH))
 
 static const char *const units_names[] = {[SCENE_UNITS_M] = "m",   [SCENE_UNITS_CM] = "cm", [SCENE_UNITS_MM] = "mm",
                                           [SCENE_UNITS_IN] = "in", [SCENE_UNITS_FT] = "ft", NULL};
@@ -129,17 +131,19 @@ static SceneLocation *source_location(void *object) { return &((SceneSource *)ob
 static const SchemaRow source_rows[] = {
 #include "singe/source.def"
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
-     .kinds = SOURCE_SPOT, .flags = ROW_REQUIRED, SPACE, .doc = "its centre"},
+     .kinds = BIT(SINGE_SOURCE_SPOT), .flags = ROW_REQUIRED, SPACE, .doc = "its centre"},
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
-     .kinds = SOURCE_BALL, .flags = ROW_SHORT, LOCATION, .doc = "its centre, when it does not move; this or `path`"},
-    {"path", ROW_LIST, DIM_NONE, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .kinds = SOURCE_BALL,
+     .kinds = BIT(SINGE_SOURCE_BALL), .flags = ROW_SHORT, LOCATION,
+     .doc = "its centre, when it does not move; this or `path`"},
+    {"path", ROW_LIST, DIM_NONE, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .kinds = BIT(SINGE_SOURCE_BALL),
      .sub = &schema_key, .doc = "its trajectory; this or `position`"},
-    {"texture", ROW_FILE, DIM_NONE, AT(SceneSource, texture), .kinds = SOURCE_TEXTURE, .flags = ROW_REQUIRED,
+    {"texture", ROW_FILE, DIM_NONE, AT(SceneSource, texture), .kinds = BIT(SINGE_SOURCE_TEXTURE), .flags = ROW_REQUIRED,
      .doc = "PNG or JPEG over the sheets' uv: white is the full flux, black none"},
     {"strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count),
-     .kinds = SOURCE_TEXTURE, .min = 0, .max = 1e6, .sub = &schema_strength,
+     .kinds = BIT(SINGE_SOURCE_TEXTURE), .min = 0, .max = 1e6, .sub = &schema_strength,
      .doc = "multiplies the flux over time; 1 when not given"},
-    {"visible", ROW_BOOL, DIM_NONE, AT(SceneSource, visible), .kinds = SOURCE_BALL, .doc = "drawn in the preview"},
+    {"visible", ROW_BOOL, DIM_NONE, AT(SceneSource, visible), .kinds = BIT(SINGE_SOURCE_BALL),
+     .doc = "drawn in the preview"},
 };
 #undef OF
 const Schema schema_source = {.title = "a source",
@@ -157,33 +161,35 @@ static SceneLocation *collider_location(void *object) { return &((SceneCollider 
     AS_ROW_AT(#name, TYPE, def.name, length, dimension, kinds, text, range)
 static const SchemaRow collider_rows[] = {
 #include "singe/collider.def"
-    {"mesh", ROW_FILE, DIM_NONE, AT(SceneCollider, mesh), .kinds = COLLIDER_MESH,
+    {"mesh", ROW_FILE, DIM_NONE, AT(SceneCollider, mesh), .kinds = BIT(SINGE_COLLIDER_MESH),
      .doc = "a closed mesh of triangles or polygons: OBJ, PLY, glTF and others, whose faces turn "
             "counter-clockwise seen from outside and do not pass through each other; one that is inside out is "
             "turned; this or `motion`"},
-    {"motion", ROW_MAP, DIM_NONE, AT(SceneCollider, motion), EXTRA(SceneCollider, motion.given), .kinds = COLLIDER_MESH,
-     .sub = &schema_motion,
+    {"motion", ROW_MAP, DIM_NONE, AT(SceneCollider, motion), EXTRA(SceneCollider, motion.given),
+     .kinds = BIT(SINGE_COLLIDER_MESH), .sub = &schema_motion,
      .doc =
          "a mesh that deforms, such as a character, in the collider's own frame; sheets are pushed and carried along "
          "by it"},
-    {"scale", ROW_FLOAT, DIM_NONE, AT(SceneCollider, scale), .kinds = COLLIDER_MESH, WITHIN(1e-6, 1e4),
+    {"scale", ROW_FLOAT, DIM_NONE, AT(SceneCollider, scale), .kinds = BIT(SINGE_COLLIDER_MESH), WITHIN(1e-6, 1e4),
      .doc = "times `units`: how large the mesh file is made"},
-    {"units", ROW_ENUM, DIM_NONE, AT(SceneCollider, units), .kinds = COLLIDER_MESH, .names = units_names,
+    {"units", ROW_ENUM, DIM_NONE, AT(SceneCollider, units), .kinds = BIT(SINGE_COLLIDER_MESH), .names = units_names,
      .doc = "what the numbers of the mesh file are: `m`, `cm`, `mm`, `in` or `ft`"},
-    {"picture", ROW_FILE, DIM_NONE, AT(SceneCollider, picture), .kinds = COLLIDER_HEIGHTFIELD, .flags = ROW_REQUIRED,
+    {"picture", ROW_FILE, DIM_NONE, AT(SceneCollider, picture), .kinds = BIT(SINGE_COLLIDER_HEIGHTFIELD),
+     .flags = ROW_REQUIRED,
      .doc = "PNG or JPEG of the heights seen from above, x to the right and y up: a height at each pixel's centre, "
             "straight between"},
-    {"heights", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, heights), .length = 2, .kinds = COLLIDER_HEIGHTFIELD,
-     WITHIN(-1e3, 1e3), .doc = "own z where the picture is black, and where it is white"},
+    {"heights", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, heights), .length = 2,
+     .kinds = BIT(SINGE_COLLIDER_HEIGHTFIELD), WITHIN(-1e3, 1e3),
+     .doc = "own z where the picture is black, and where it is white"},
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
      .flags = ROW_SHORT, LOCATION, .doc = "of its centre, when it does not move; instead of `path`"},
     {"rotation", ROW_ROTATION, DIM_ANGLE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
      .flags = ROW_SHORT, TURN, .doc = "about x, then y, then z, when it does not move; instead of `path`"},
     {"path", ROW_LIST, DIM_NONE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .sub = &schema_key,
      .doc = "its trajectory"},
-    {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneCollider, colour), .length = 3, .kinds = COLLIDER_DRAWN, WITHIN(0, 1),
+    {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneCollider, colour), .length = 3, .kinds = DRAWN, WITHIN(0, 1),
      .doc = "linear red, green, blue in the preview"},
-    {"visible", ROW_BOOL, DIM_NONE, AT(SceneCollider, visible), .kinds = COLLIDER_DRAWN, .doc = "drawn in the preview"},
+    {"visible", ROW_BOOL, DIM_NONE, AT(SceneCollider, visible), .kinds = DRAWN, .doc = "drawn in the preview"},
 };
 #undef OF
 const Schema schema_collider = {

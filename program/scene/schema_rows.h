@@ -28,18 +28,9 @@
 #define IN_SCENES_OR_INF(range, low, high) .flags = ROW_INF, WITHIN(low, high)
 #define BELOW(low, high) .flags = ROW_OPEN_MAX, .min = (low), .max = (high)
 
-// bits of the kinds, as the library's tables name them
-enum {
-    ALWAYS = 0,
-    SOURCE_BALL = 1 << SINGE_SOURCE_BALL,
-    SOURCE_TEXTURE = 1 << SINGE_SOURCE_TEXTURE,
-    SOURCE_SPOT = 1 << SINGE_SOURCE_SPOT,
-    COLLIDER_SPHERE = 1 << SINGE_COLLIDER_SPHERE,
-    COLLIDER_BOX = 1 << SINGE_COLLIDER_BOX,
-    COLLIDER_CAPSULE = 1 << SINGE_COLLIDER_CAPSULE,
-    COLLIDER_HEIGHTFIELD = 1 << SINGE_COLLIDER_HEIGHTFIELD,
-    COLLIDER_MESH = 1 << SINGE_COLLIDER_MESH,
-};
+// the kinds that have a row
+#define ALWAYS 0
+#define BIT(KIND) (1u << (KIND))
 
 // Rows of the library's tables (singe/*.def), for an object of type OF that holds the Def at HELD, "def." or nothing.
 #define ROW_OF_FLOAT ROW_FLOAT

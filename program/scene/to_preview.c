@@ -177,7 +177,8 @@ bool scene_shape(const Scene *scene, const SceneAssets *assets, uint32_t slot, d
 
     const SceneCollider *collider = &scene->colliders[slot];
     const SingeColliderDef *def = &collider->def;
-    if (def->kind == SINGE_COLLIDER_PLANE || !collider->visible || !collider->key_count) return false;
+    const bool has_shape = def->kind >= SINGE_COLLIDER_SPHERE && def->kind <= SINGE_COLLIDER_MESH;
+    if (!has_shape || !collider->visible || !collider->key_count) return false;
 
     *shape = (PreviewShape){.kind = def->kind,
                             .radius = def->radius,

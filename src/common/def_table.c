@@ -33,16 +33,8 @@ bool def_has_value(const char *of, int value) {
 
 // ---- tables
 
-enum {
-    ALWAYS = 0,
-    SOURCE_BALL = 1 << SINGE_SOURCE_BALL,
-    SOURCE_TEXTURE = 1 << SINGE_SOURCE_TEXTURE,
-    SOURCE_SPOT = 1 << SINGE_SOURCE_SPOT,
-    COLLIDER_SPHERE = 1 << SINGE_COLLIDER_SPHERE,
-    COLLIDER_BOX = 1 << SINGE_COLLIDER_BOX,
-    COLLIDER_CAPSULE = 1 << SINGE_COLLIDER_CAPSULE,
-    COLLIDER_HEIGHTFIELD = 1 << SINGE_COLLIDER_HEIGHTFIELD,
-};
+#define ALWAYS 0
+#define BIT(KIND) (1u << (KIND))
 
 enum {
 #define SINGE_DIMENSION(NAME, name, unit) DIM_##NAME,

@@ -93,7 +93,8 @@ static inline void ball_make(Ball *b, float x, float y, float z, float radius, f
                         .flame = b->flame,
                         .velocity = (const float(*)[3])b->velocity};
     for (int i = 0; i < GAS_CELLS; i++) {
-        float at[3] = {(float)(i % GAS_SIDE), (float)(i / GAS_SIDE % GAS_SIDE), (float)(i / GAS_SIDE / GAS_SIDE)}, r2 = 0;
+        float at[3] = {(float)(i % GAS_SIDE), (float)(i / GAS_SIDE % GAS_SIDE), (float)(i / GAS_SIDE / GAS_SIDE)},
+              r2 = 0;
         for (int c = 0; c < 3; c++) r2 += (at[c] + 0.5f - 0.5f * GAS_SIDE) * (at[c] + 0.5f - 0.5f * GAS_SIDE);
         bool in = r2 * cell * cell < radius * radius;
         b->temperature[i] = in && flame > 0 ? 1400 : 293, b->flame[i] = in ? flame : 0, b->smoke[i] = in ? smoke : 0;

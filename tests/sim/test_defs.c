@@ -59,7 +59,7 @@ static void bad_simulations(void **state) {
     SIM_BAD(gas.cell_size, NAN, "gas.cell_size");
     SIM_BAD(gas.height, 0, "gas.height");
     SIM_BAD(gas.conductance, -1, "gas.conductance");
-    SIM_BAD(gas.radiated, 0.96f, "gas.radiated"); // 0.95 is what scenes may say (scene_ranges)
+    SIM_BAD(gas.radiated, 0.96f, "gas.radiated");
     SIM_BAD(gas.soot, NAN, "gas.soot");
 }
 

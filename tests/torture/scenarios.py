@@ -158,7 +158,7 @@ def comparable(name, data):
     if name == "run.json":
         return record_fields(data)
     if name in CHECKPOINTS:
-        return None  # holds seconds; that it can be gone on from is looked at otherwise
+        return None  # it holds times, so its bytes differ; that a run resumes from it is checked elsewhere
     return zlib.crc32(data), len(data)
 
 
