@@ -157,7 +157,7 @@ def main():
     header = FOLDER / "types.h"
     before = text = header.read_text(encoding="utf-8")
     units = {"DIM_" + row[0]: row[2] for _, row in rows((FOLDER / "dimensions.def").read_text(encoding="utf-8"))}
-    for file in sorted(FOLDER.glob("*.def")):
+    for file in [*sorted(FOLDER.glob("*.def")), FOLDER.parents[1] / "program/preview/preview.def"]:
         for fault in wide_scenes(re.sub(r"//[^\n]*", "", file.read_text(encoding="utf-8"))):
             sys.exit(f"{file.name}: {fault}: scenes accept what the library refuses")
     for part in DEFS:

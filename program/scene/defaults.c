@@ -2,6 +2,7 @@
 #include "scene/schema.h"
 
 #include <math.h>
+#include <string.h>
 
 #define DEGREE (3.14159265358979323846f / 180)
 
@@ -11,23 +12,24 @@ static void set3(float v[3], float x, float y, float z) {
     v[2] = z;
 }
 
+#define BRACED(...) \
+    { __VA_ARGS__ }
+#define SET_FLOAT(place, standard) place = standard;
+#define SET_INT SET_FLOAT
+#define SET_VECTOR(place, ...) memcpy(place, (const float[])__VA_ARGS__, sizeof place);
 static void default_preview(ScenePreview *preview) {
     preview->size[0] = 960;
     preview->size[1] = 540;
-    preview->samples = 16;
-    set3(preview->camera.eye, 0, -0.5f, 0.4f);
-    set3(preview->camera.target, 0, 0, 0);
-    set3(preview->camera.up, 0, 0, 1);
-    preview->camera.fov = 35 * DEGREE;
-    set3(preview->light_direction, -0.5f, -0.7f, 1);
-    preview->light_angle = 3 * DEGREE;
-    set3(preview->light_colour, 2.05f, 1.70f, 1.32f);
-    set3(preview->sky, 0.18f, 0.21f, 0.27f);
     preview->environment = PREVIEW_SKY_STUDIO;
     preview->ground_height = -INFINITY;
-    set3(preview->ground_colour, 0.20f, 0.105f, 0.052f);
-    set3(preview->background, 0.016f, 0.018f, 0.024f);
-    preview->exposure = 1;
+#define PREVIEW_CAMERA(TYPE, key, member, target, length, dimension, standard, range, text) \
+    SET_##TYPE(preview->camera.member, standard)
+#define PREVIEW_LIGHT(TYPE, key, member, target, length, dimension, standard, range, text) \
+    SET_##TYPE(preview->member, standard)
+#define PREVIEW_ENVIRONMENT PREVIEW_LIGHT
+#define PREVIEW_GROUND PREVIEW_LIGHT
+#define PREVIEW_MAIN PREVIEW_LIGHT
+#include "preview/preview.def"
 }
 
 bool default_scene(SceneArena *arena, void *object) {

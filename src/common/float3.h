@@ -32,17 +32,6 @@ static inline Float3 float3_unit(Float3 a) {
     return l > 0 ? float3_scale(a, 1 / l) : a;
 }
 
-// three doubles, in arrays
-static inline double double3_dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-static inline void double3_cross(const double a[3], const double b[3], double c[3]) {
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
-static inline double double3_length(const double a[3]) { return sqrt(double3_dot(a, a)); }
-
 /// Rotates by the unit quaternion q = (x, y, z, w): v + 2 q × (q × v + w v).
 static inline Float3 quat_rotate(const float q[4], Float3 v) {
     Float3 u = {q[0], q[1], q[2]};

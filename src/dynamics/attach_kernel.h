@@ -23,7 +23,7 @@ void ATTACH_HOLD(const AttachSpread *spread, const float *length, float *positio
     for (int i = 0; i + LANES <= count; i += LANES) {
         Float4s point = float4s_load_contiguous(position + 4 * i, LANES),
                 lengths = float4s_load_contiguous(length + 4 * i, LANES);
-        Node node = float4s_node(&point), by_source = float4s_node(&lengths);
+        LaneNode node = float4s_node(&point), by_source = float4s_node(&lengths);
         Lanes max[ATTACH_SOURCES] = {by_source.x, by_source.y, by_source.z, by_source.w};
         bool moved = false;
         if (spread->tight) attach_stretch(spread, max);

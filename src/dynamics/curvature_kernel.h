@@ -8,7 +8,7 @@ typedef struct Bend {
 
 /// Straightens bends that are too sharp by their share BEND_GAIN; false if there are none.
 static inline bool bend_straighten(Bend *bend, Lanes max) {
-    Node a = float4s_node(&bend->a), b = float4s_node(&bend->b), c = float4s_node(&bend->c);
+    LaneNode a = float4s_node(&bend->a), b = float4s_node(&bend->b), c = float4s_node(&bend->c);
     Lanes two = lanes_all(2), x = a.x - two * b.x + c.x, y = a.y - two * b.y + c.y, z = a.z - two * b.z + c.z;
     Lanes square = x * x + y * y + z * z, limit = max * max, zero = lanes_all(0);
     if (__builtin_expect(!lanes_any_less(limit, square), 1)) return false;

@@ -1,5 +1,5 @@
 // The projection of one group of strands, with one strand per lane. One file per instruction set defines LANES, the
-// vector type Lanes, Float4s (a particle of every lane: its position and its inverse mass), Node (the same, with x of
+// vector type Lanes, Float4s (a particle of every lane: its position and its inverse mass), LaneNode (the same, with x of
 // all lanes contiguous, then y) and the operations on them, and includes this. Every operation rounds according to IEEE
 // 754 and lanes never mix, so all instruction sets give the same bytes.
 //
@@ -69,12 +69,12 @@ static inline void group_put(const Group *group, uint32_t k, const Float4s *floa
     else float4s_scatter(group->position, group->node + (size_t)k * STRAND_LANES, float4s);
 }
 
-static inline Node group_node(const Group *group, uint32_t k) {
+static inline LaneNode group_node(const Group *group, uint32_t k) {
     Float4s float4s = group_float4s(group, k);
     return float4s_node(&float4s);
 }
 
-static inline Row group_row(const Group *restrict group, uint32_t k, const Node *a, const Node *b) {
+static inline Row group_row(const Group *restrict group, uint32_t k, const LaneNode *a, const LaneNode *b) {
     size_t slot = (size_t)k * STRAND_LANES;
     Lanes l = lanes_load(group->length + slot), weight = lanes_load(group->weight + slot);
     Lanes dx = b->x - a->x, dy = b->y - a->y, dz = b->z - a->z;
@@ -99,9 +99,9 @@ static inline Lanes group_pivot(Lanes pivot) { return lanes_max(pivot, lanes_all
 static inline void chains_eliminate(const Group *group) {
     Lanes zero = lanes_all(0), endless = lanes_all(INFINITY);
     Lanes before_x = zero, before_y = zero, before_z = zero, inverse = zero, right = zero;
-    Node a = group_node(group, 0);
+    LaneNode a = group_node(group, 0);
     for (uint32_t k = 0; k < group->rows; k++) {
-        Node b = group_node(group, k + 1);
+        LaneNode b = group_node(group, k + 1);
         Row row = group_row(group, k, &a, &b);
         // a spring that is gone is infinitely stiff: its mu is 0, whatever its neighbours do
         Lanes weight = lanes_load(group->weight + (size_t)k * STRAND_LANES);
@@ -145,7 +145,7 @@ static inline void chains_substitute(const Group *group, const bool pulls) {
 }
 
 /// A row of a ring: a spring that is gone has the equation mu = 0.
-static inline Row ring_row(const Group *group, uint32_t k, const Node *a, const Node *b) {
+static inline Row ring_row(const Group *group, uint32_t k, const LaneNode *a, const LaneNode *b) {
     Row row = group_row(group, k, a, b);
     Lanes weight = lanes_load(group->weight + (size_t)k * STRAND_LANES), zero = lanes_all(0);
     row.dx = lanes_where_less(zero, weight, row.dx, zero);
@@ -163,7 +163,7 @@ typedef struct Corner {
 
 static inline Corner rings_corner(const Group *group) {
     uint32_t end = group->rows - 1;
-    Node a = group_node(group, 0), second = group_node(group, 1), last = group_node(group, end);
+    LaneNode a = group_node(group, 0), second = group_node(group, 1), last = group_node(group, end);
     Row first = ring_row(group, 0, &a, &second), row = ring_row(group, end, &last, &a);
     Lanes entry = -a.w * (first.dx * row.dx + first.dy * row.dy + first.dz * row.dz);
     Lanes g = -group_pivot(first.diagonal);
@@ -174,9 +174,9 @@ static inline void rings_eliminate(const Group *group, const Corner *corner) {
     uint32_t end = group->rows - 1;
     Lanes zero = lanes_all(0), before_x = zero, before_y = zero, before_z = zero;
     Lanes inverse = zero, right = zero, cyclic = zero;
-    Node a = group_node(group, 0);
+    LaneNode a = group_node(group, 0);
     for (uint32_t k = 0; k <= end; k++) {
-        Node b = group_node(group, k + 1);
+        LaneNode b = group_node(group, k + 1);
         Row row = ring_row(group, k, &a, &b);
         if (k == 0) row.diagonal = -corner->g - corner->g;
         if (k == end) row.diagonal = row.diagonal - corner->entry * corner->ratio;

@@ -39,7 +39,7 @@ static uint32_t strand_length(const SpringSet *springs, uint32_t s) {
     return springs->strand_first[s + 1] - springs->strand_first[s];
 }
 
-/// Node k of a chain.
+/// LaneNode k of a chain.
 static uint32_t strand_node(const SpringSet *springs, uint32_t s, uint32_t k) {
     uint32_t first = springs->strand_first[s];
     return k ? springs->ends[first + k - 1][1] : springs->ends[first][0];

@@ -8,9 +8,9 @@
 
 enum { LANES = 4 };
 typedef Float4 Lanes;
-typedef struct Node {
+typedef struct LaneNode {
     Lanes x, y, z, w;
-} Node;
+} LaneNode;
 /// Quadruples of a particle each, a lane each.
 typedef struct Float4s {
     Float4 at[4];
@@ -42,10 +42,10 @@ static inline void float4s_scatter(float *position, const uint32_t *node, const 
     for (int e = 0; e < 4; e++) float4_store(position + node[e], float4s->at[e]);
 }
 
-static inline Node float4s_node(const Float4s *float4s) {
+static inline LaneNode float4s_node(const Float4s *float4s) {
     Float4 q[4] = {float4s->at[0], float4s->at[1], float4s->at[2], float4s->at[3]};
     float4_transpose(q);
-    return (Node){q[0], q[1], q[2], q[3]};
+    return (LaneNode){q[0], q[1], q[2], q[3]};
 }
 
 static inline Float4s float4s_correction(const Float4s *a, const Float4s *b, Lanes factor) {

@@ -6,10 +6,10 @@
 
 enum { LANES = 1 };
 typedef float Lanes;
-typedef struct Node {
+typedef struct LaneNode {
     Lanes x, y, z, w;
-} Node;
-typedef Node Float4s;
+} LaneNode;
+typedef LaneNode Float4s;
 
 static inline Lanes lanes_all(float a) { return a; }
 static inline Lanes lanes_load(const float *p) { return *p; }
@@ -39,7 +39,7 @@ static inline void float4s_scatter(float *position, const uint32_t *node, const 
     float4s_store_contiguous(position + *node, 0, float4s);
 }
 
-static inline Node float4s_node(const Float4s *float4s) { return *float4s; }
+static inline LaneNode float4s_node(const Float4s *float4s) { return *float4s; }
 
 static inline Float4s float4s_correction(const Float4s *a, const Float4s *b, Lanes factor) {
     return (Float4s){(b->x - a->x) * factor, (b->y - a->y) * factor, (b->z - a->z) * factor, 0};

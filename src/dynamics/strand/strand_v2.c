@@ -7,9 +7,9 @@
 
 enum { LANES = 4 };
 typedef float Lanes __attribute__((vector_size(16)));
-typedef struct Node {
+typedef struct LaneNode {
     Lanes x, y, z, w;
-} Node;
+} LaneNode;
 /// Quadruples of a particle each, a lane each.
 typedef struct Float4s {
     __m128 at[4];
@@ -43,12 +43,12 @@ static inline void float4s_scatter(float *position, const uint32_t *node, const 
     for (int e = 0; e < 4; e++) _mm_storeu_ps(position + node[e], float4s->at[e]);
 }
 
-static inline Node float4s_node(const Float4s *float4s) {
+static inline LaneNode float4s_node(const Float4s *float4s) {
     const __m128 *q = float4s->at;
     __m128 xy01 = _mm_unpacklo_ps(q[0], q[1]), zw01 = _mm_unpackhi_ps(q[0], q[1]);
     __m128 xy23 = _mm_unpacklo_ps(q[2], q[3]), zw23 = _mm_unpackhi_ps(q[2], q[3]);
-    return (Node){(Lanes)_mm_shuffle_ps(xy01, xy23, 0x44), (Lanes)_mm_shuffle_ps(xy01, xy23, 0xEE),
-                  (Lanes)_mm_shuffle_ps(zw01, zw23, 0x44), (Lanes)_mm_shuffle_ps(zw01, zw23, 0xEE)};
+    return (LaneNode){(Lanes)_mm_shuffle_ps(xy01, xy23, 0x44), (Lanes)_mm_shuffle_ps(xy01, xy23, 0xEE),
+                      (Lanes)_mm_shuffle_ps(zw01, zw23, 0x44), (Lanes)_mm_shuffle_ps(zw01, zw23, 0xEE)};
 }
 
 #define FLOAT4_CORRECTION(e) \

@@ -7,9 +7,9 @@
 
 enum { LANES = 16 };
 typedef float Lanes __attribute__((vector_size(64)));
-typedef struct Node {
+typedef struct LaneNode {
     Lanes x, y, z, w;
-} Node;
+} LaneNode;
 /// Quadruples of a particle each: [e] those of lanes e, e + 4, e + 8 and e + 12.
 typedef struct Float4s {
     __m512 at[4];
@@ -58,12 +58,12 @@ static inline void float4s_scatter(float *position, const uint32_t *node, const 
     }
 }
 
-static inline Node float4s_node(const Float4s *float4s) {
+static inline LaneNode float4s_node(const Float4s *float4s) {
     const __m512 *q = float4s->at;
     __m512 xy01 = _mm512_unpacklo_ps(q[0], q[1]), zw01 = _mm512_unpackhi_ps(q[0], q[1]);
     __m512 xy23 = _mm512_unpacklo_ps(q[2], q[3]), zw23 = _mm512_unpackhi_ps(q[2], q[3]);
-    return (Node){(Lanes)_mm512_shuffle_ps(xy01, xy23, 0x44), (Lanes)_mm512_shuffle_ps(xy01, xy23, 0xEE),
-                  (Lanes)_mm512_shuffle_ps(zw01, zw23, 0x44), (Lanes)_mm512_shuffle_ps(zw01, zw23, 0xEE)};
+    return (LaneNode){(Lanes)_mm512_shuffle_ps(xy01, xy23, 0x44), (Lanes)_mm512_shuffle_ps(xy01, xy23, 0xEE),
+                      (Lanes)_mm512_shuffle_ps(zw01, zw23, 0x44), (Lanes)_mm512_shuffle_ps(zw01, zw23, 0xEE)};
 }
 
 #define FLOAT4_CORRECTION(e) \
