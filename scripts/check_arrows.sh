@@ -28,7 +28,7 @@ src/mesh         common materials
 src/materials    common
 program/formats  $files
 program/preview  $files
-program/scene    $files mesh/to_quads.h preview/preview.h
+program/scene    $files mesh/to_quads.h preview/preview.h preview/preview.def
 program/analysis $files common/double3.h common/float3.h mesh/to_quads.h
 program/cli      $program
 program/sweep    $program cli
@@ -48,7 +48,7 @@ while read -r folder allowed; do
     [ -e "$folder" ] || continue
     pattern="singe/.*|${folder#*/}/.*"
     for name in $allowed; do
-        case $name in *.h) pattern+="|${name//./\\.}" ;; *) pattern+="|$name/.*" ;; esac
+        case $name in *.h | *.def) pattern+="|${name//./\\.}" ;; *) pattern+="|$name/.*" ;; esac
     done
     # a name without a folder is a file next to the one that includes it
     while IFS=: read -r file line; do
