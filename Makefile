@@ -44,7 +44,8 @@ build-tsan:
 	cmake --preset tsan
 	cmake --build --preset tsan --target threaded_tests
 
-# Without the lens and the shutter, which take two thirds of a picture's time; `singe render out/letter` adds them.
+# Without lens and shutter, which take two thirds of the time of a picture. `singe render out/letter --set
+# preview.camera.aperture=0.003 --set preview.shutter=0.5` draws with them.
 DEMO_LOOK = --set preview.camera.aperture=0 --set preview.shutter=0
 
 demo:
