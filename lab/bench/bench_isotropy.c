@@ -47,26 +47,6 @@ typedef struct Burn {
 
 enum { NOISES = 4 };
 
-/// Office paper that shrinks strongly. It points to `noises`.
-static SingeMaterialDef isotropy_material(const Burn *burn, SingeField noises[NOISES]) {
-    SingeMaterialDef def = singe_default_material();
-    const uint32_t seed = 16 * burn->seed;
-    const SingeNoise noise[NOISES] = {
-        {0.03f, 5, seed + 1}, {0.025f, 5, seed + 7}, {0.015f, 4, seed + 3}, {0.05f, 2, seed + 2}};
-    for (int k = 0; k < NOISES; k++) noises[k] = (SingeField){.kind = SINGE_FIELD_NOISE, .noise = noise[k]};
-    def.thickness = singe_param((float)burn->thickness);
-    def.curvature_max = singe_param((float)burn->limit);
-    def.mass_rate = singe_param_field(4e-3f, 10e-3f, &noises[0]);
-    def.mass_loss = singe_param_field(0, 0.3f, &noises[1]);
-    def.char_strength = singe_param_field(1, 10, &noises[2]);
-    def.shrink_front = singe_param_field(0.5f, 1.3f, &noises[3]);
-    def.shrink_back = singe_param(0.65f);
-    def.char_yield = singe_param(0);
-    def.heat_share = singe_param(0.2f);
-    def.ash_density = singe_param(0.3f); // eq 4
-    return def;
-}
-
 static SingeResult isotropy_sheet(SingeSim *sim, const Burn *burn, double angle, SingeError *error) {
     SingeSheetDef def = singe_default_sheet();
     SingeSheetId id;
@@ -81,7 +61,25 @@ static SingeResult isotropy_sheet(SingeSim *sim, const Burn *burn, double angle,
     def.uv = mesh.uv;
     def.cell_count = mesh.cell_count;
     def.cells = mesh.cells;
-    def.material = isotropy_material(burn, noises);
+
+    // office paper that shrinks strongly; it points to `noises`
+    SingeMaterialDef *paper = &def.material;
+    *paper = singe_default_material();
+    const uint32_t seed = 16 * burn->seed;
+    const SingeNoise noise[NOISES] = {
+        {0.03f, 5, seed + 1}, {0.025f, 5, seed + 7}, {0.015f, 4, seed + 3}, {0.05f, 2, seed + 2}};
+    for (int k = 0; k < NOISES; k++) noises[k] = (SingeField){.kind = SINGE_FIELD_NOISE, .noise = noise[k]};
+    paper->thickness = singe_param((float)burn->thickness);
+    paper->curvature_max = singe_param((float)burn->limit);
+    paper->mass_rate = singe_param_field(4e-3f, 10e-3f, &noises[0]);
+    paper->mass_loss = singe_param_field(0, 0.3f, &noises[1]);
+    paper->char_strength = singe_param_field(1, 10, &noises[2]);
+    paper->shrink_front = singe_param_field(0.5f, 1.3f, &noises[3]);
+    paper->shrink_back = singe_param(0.65f);
+    paper->char_yield = singe_param(0);
+    paper->heat_share = singe_param(0.2f);
+    paper->ash_density = singe_param(0.3f); // eq 4
+
     def.drop_pieces_below = 4e-6f;
     result = singe_sim_add_sheet(sim, &def, &id);
     if (!result) result = singe_sim_commit(sim);

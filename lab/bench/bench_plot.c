@@ -23,17 +23,6 @@ static const ArgCommand plot_command = {
     .option_count = OPT_COUNT,
 };
 
-static ExitCode plot(Curves *curves, const char *out) {
-    Console console = console_make(false);
-    SingeError error = {.element = -1};
-    if (curves_draw(curves, out, &error) == SINGE_OK) {
-        printf("%s\n", out);
-        return EXIT_GOOD;
-    }
-    console_result(&console, &error);
-    return EXIT_FAILED;
-}
-
 /// Reads all named curves, and `*out`.
 static ExitCode read_all(ArgReader *reader, Curves *curves, const char **out, bool *help) {
     Console console = console_make(false);
@@ -65,7 +54,13 @@ int bench_plot(int argc, char **argv) {
     }
     curves_add_paper(curves);
     ExitCode code = read_all(&reader, curves, &out, &help);
-    if (code == EXIT_GOOD && !help) code = plot(curves, out);
+    if (code == EXIT_GOOD && !help) {
+        Console console = console_make(false);
+        SingeError error = {.element = -1};
+        code = curves_draw(curves, out, &error) == SINGE_OK ? EXIT_GOOD : EXIT_FAILED;
+        if (code == EXIT_GOOD) printf("%s\n", out);
+        else console_result(&console, &error);
+    }
     free(curves);
     return code;
 }

@@ -22,19 +22,6 @@ void curves_add_paper(Curves *curves) {
 
 enum { COLUMNS_MAX = 64, LINE_MAX_LENGTH = 4096 };
 
-/// Splits a line at its commas, in place. Quotes are not supported: the tables need none.
-static int curves_read_split(char *line, char **fields) {
-    int count = 0;
-    line[strcspn(line, "\r\n")] = 0;
-    while (count < COLUMNS_MAX) {
-        fields[count++] = line;
-        line = strchr(line, ',');
-        if (!line) break;
-        *line++ = 0;
-    }
-    return count;
-}
-
 static int curves_read_find(char **fields, int count, const char *name) {
     for (int i = 0; i < count; i++)
         if (strcmp(fields[i], name) == 0) return i;
@@ -69,7 +56,16 @@ static SingeResult read_lines(Curves *curves, FILE *file, const char *path, Sing
     const int first = curves->count;
     for (int line = 1; fgets(text, sizeof text, file); line++) {
         if (text[0] == '#' || text[0] == '\n') continue;
-        int count = curves_read_split(text, fields);
+
+        // split the line at its commas, in place; quotes are not supported: the tables need none
+        int count = 0;
+        text[strcspn(text, "\r\n")] = 0;
+        for (char *at = text; at && count < COLUMNS_MAX;) {
+            fields[count++] = at;
+            at = strchr(at, ',');
+            if (at) *at++ = 0;
+        }
+
         if (columns.springs >= 0) {
             char *springs_end, *ms_end, name[80];
             if (columns.springs >= count || columns.ms >= count || columns.solver >= count || columns.threads >= count)

@@ -31,8 +31,14 @@ FMA_KERNEL(fma_512, "avx512f", __m512, _mm512_set1_ps, _mm512_fmadd_ps, _mm512_s
 FMA_KERNEL(fma_256, "avx2,fma", __m256, _mm256_set1_ps, _mm256_fmadd_ps, _mm256_storeu_ps, 8)
 #endif
 
-/// Lanes that any compiler maps to the target's vectors.
-static double fma_plain(long rounds) {
+double fma_run(long rounds) {
+#if defined(__x86_64__) && defined(__GNUC__)
+    __builtin_cpu_init();
+    if (__builtin_cpu_supports("avx512f")) return fma_512(rounds);
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return fma_256(rounds);
+#endif
+
+    // lanes that any compiler maps to the target's vectors
     enum { LANES = 4 };
     float x[CHAINS][LANES], sum = 0;
     for (int c = 0; c < CHAINS; c++)
@@ -44,13 +50,4 @@ static double fma_plain(long rounds) {
         for (int lane = 0; lane < LANES; lane++) sum += x[c][lane];
     kept = sum;
     return 2.0 * CHAINS * LANES * (double)rounds;
-}
-
-double fma_run(long rounds) {
-#if defined(__x86_64__) && defined(__GNUC__)
-    __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx512f")) return fma_512(rounds);
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return fma_256(rounds);
-#endif
-    return fma_plain(rounds);
 }

@@ -72,29 +72,6 @@ void sheet_inert(SingeMaterialDef *material) {
     material->ablate = false;
 }
 
-/// Only a corner's vertex if the sheet swings, else a patch.
-static SingeResult pins_add(SingeSim *sim, const BenchSetup *setup, SingeSheetId sheet) {
-    const bool upright = setup->state != BENCH_SWING;
-    const float high = upright ? size : 0, corners[2][3] = {{0, 0, high}, {size, 0, high}};
-    const SingePoseKey path[2] = {{0, {size, 0, high}, {0, 0, 0, 1}},
-                                  {0.5f, {size - setup->approach, 0, high}, {0, 0, 0, 1}}};
-    SingePinDef pin = singe_default_pin();
-    SingePinId id;
-    pin.sheet = sheet;
-    pin.point_count = 1;
-    pin.radius = upright ? 0.05f * size : 0;
-    for (int p = 0; p < setup->pins; p++) {
-        pin.points = corners[p];
-        if (p == 1 && setup->approach > 0) {
-            pin.path_count = 2;
-            pin.path = path;
-        }
-        SingeResult result = singe_sim_add_pin(sim, &pin, &id);
-        if (result) return result;
-    }
-    return SINGE_OK;
-}
-
 static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
     SingeSheetDef sheet = singe_default_sheet();
     SingeSheetId id;
@@ -128,7 +105,28 @@ static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
         result = sheet_add(sim, &sheet, setup->cells, size, setup->state != BENCH_SWING, &id);
     }
     if (!result) result = singe_sim_commit(sim);
-    return result ? result : pins_add(sim, setup, id);
+    if (result) return result;
+
+    // pins: only a corner's vertex if the sheet swings, else a patch
+    const bool upright = setup->state != BENCH_SWING;
+    const float high = upright ? size : 0, corners[2][3] = {{0, 0, high}, {size, 0, high}};
+    const SingePoseKey path[2] = {{0, {size, 0, high}, {0, 0, 0, 1}},
+                                  {0.5f, {size - setup->approach, 0, high}, {0, 0, 0, 1}}};
+    SingePinDef pin = singe_default_pin();
+    SingePinId pin_id;
+    pin.sheet = id;
+    pin.point_count = 1;
+    pin.radius = upright ? 0.05f * size : 0;
+    for (int p = 0; p < setup->pins; p++) {
+        pin.points = corners[p];
+        if (p == 1 && setup->approach > 0) {
+            pin.path_count = 2;
+            pin.path = path;
+        }
+        result = singe_sim_add_pin(sim, &pin, &pin_id);
+        if (result) return result;
+    }
+    return SINGE_OK;
 }
 
 SingeResult sheet_build(const BenchSetup *setup, SingeSim **sim, SingeError *error) {

@@ -19,8 +19,11 @@ int machine_processors(void) {
     return count < 1 ? 1 : (int)count;
 }
 
-/// Reads "model name : NAME" of Linux.
-static int read_model(char *name, int size) {
+const char *machine_name(void) {
+    static char name[128];
+    if (name[0]) return name;
+
+    // "model name : NAME" of Linux
     FILE *file = fopen("/proc/cpuinfo", "r");
     char line[256];
     int found = 0;
@@ -28,15 +31,11 @@ static int read_model(char *name, int size) {
         const char *colon = strchr(line, ':');
         if (strncmp(line, "model name", 10) != 0 || !colon) continue;
         line[strcspn(line, "\n")] = 0;
-        found = snprintf(name, (size_t)size, "%s", colon + 1 + strspn(colon + 1, " ")) > 0;
+        found = snprintf(name, sizeof name, "%s", colon + 1 + strspn(colon + 1, " ")) > 0;
     }
     if (file) fclose(file);
-    return found;
-}
+    if (found) return name;
 
-const char *machine_name(void) {
-    static char name[128];
-    if (name[0] || read_model(name, sizeof name)) return name;
 #if defined(__x86_64__)
     return "x86-64";
 #elif defined(__aarch64__)

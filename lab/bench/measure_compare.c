@@ -68,15 +68,13 @@ static bool no_more(const BenchValue *ours, const BenchValue *theirs) {
     return less && !isnan(ours->number[0]);
 }
 
-/// "edges" and "all": whether p99 and mean are at most the paper's.
-static const char *verdict(const Outcome *ours, const Outcome *paper) {
-    bool edges = no_more(&ours->blue, &paper->blue), all = no_more(&ours->all, &paper->all);
-    return edges && all ? "edges and all" : edges ? "edges" : all ? "all" : "no";
-}
-
 static SingeResult compare_add(const Comparison *c, const BenchSetup *setup, double springs, const Outcome *outcome,
                                const Outcome *paper) {
     const SingeSolverDef *solver = &setup->solver;
+
+    // whether p99 and mean are at most the paper's
+    bool edges = no_more(&outcome->blue, &paper->blue), all = no_more(&outcome->all, &paper->all);
+    const char *less = outcome == paper ? "-" : edges && all ? "edges and all" : edges ? "edges" : all ? "all" : "no";
     BenchValue row[COLUMNS] = {
         [KIND] = bench_text("trajectory"),
         [STATE] = bench_text(state_name(setup->state)),
@@ -90,7 +88,7 @@ static SingeResult compare_add(const Comparison *c, const BenchSetup *setup, dou
         [ALL] = outcome->all,
         [FALL] = bench_number(outcome->fall),
         [RATIO] = bench_number(paper->step_ms / outcome->step_ms),
-        [LESS] = bench_text(outcome == paper ? "-" : verdict(outcome, paper)),
+        [LESS] = bench_text(less),
     };
     return table_add(c->table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
 }

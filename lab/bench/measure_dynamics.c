@@ -87,22 +87,6 @@ static SingeResult dynamics_add_row(BenchTable *table, const BenchSetup *setup, 
     return added ? SINGE_OK : SINGE_ERROR_MEMORY;
 }
 
-static SingeResult dynamics_measure(const BenchOptions *options, BenchSetup *setup, double springs, const Peaks *peaks,
-                                    BenchTable *table, SingeError *error) {
-    SingeSim *sim;
-    Timing timing = {0};
-    setup->cells = options_cells(springs);
-    if (sheet_build(setup, &sim, error)) return error->code;
-    springs = timing_springs(sim);
-    int steps = options->steps ? options->steps : timing_steps(springs, 5, 200);
-    SingeResult result = timing_measure(&timing, sim, NULL, timing_steps(springs, 5, 240), steps);
-    if (result) *error = *singe_sim_error(sim);
-    else result = dynamics_add_row(table, setup, peaks, sim, &timing);
-    timing_free(&timing);
-    singe_sim_destroy(sim);
-    return result;
-}
-
 SingeResult bench_dynamics(const BenchOptions *options, BenchTable *table, SingeError *error) {
     BenchList springs = bench_list(&options->springs, 5, (const double[]){1e3, 4e3, 16e3, 1e5, 1e6});
     BenchSetup setup = sheet_setup(options, options->state, 20);
@@ -111,7 +95,18 @@ SingeResult bench_dynamics(const BenchOptions *options, BenchTable *table, Singe
     if (!peaks_measure(&peaks, options->threads, options->quick ? 0.1 : 1)) return SINGE_ERROR_MEMORY;
     peaks_tell(&peaks, table);
     SingeResult result = SINGE_OK;
-    for (int i = 0; i < springs.count && !result; i++)
-        result = dynamics_measure(options, &setup, springs.values[i], &peaks, table, error);
+    for (int i = 0; i < springs.count && !result; i++) {
+        SingeSim *sim;
+        Timing timing = {0};
+        setup.cells = options_cells(springs.values[i]);
+        if (sheet_build(&setup, &sim, error)) return error->code;
+        double count = timing_springs(sim);
+        int steps = options->steps ? options->steps : timing_steps(count, 5, 200);
+        result = timing_measure(&timing, sim, NULL, timing_steps(count, 5, 240), steps);
+        if (result) *error = *singe_sim_error(sim);
+        else result = dynamics_add_row(table, &setup, &peaks, sim, &timing);
+        timing_free(&timing);
+        singe_sim_destroy(sim);
+    }
     return result;
 }

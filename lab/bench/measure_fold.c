@@ -59,18 +59,6 @@ static SingeResult hold(SingeSim *sim, SingeSheetId sheet, const SingeView *view
     return result;
 }
 
-/// The angle between the free half and the held one, about the strip's width, within a right angle of `near`.
-static double turned(const SingeView *view, double near) {
-    double along[2] = {0, 0};
-    for (uint32_t v = 0; v < view->vertex_count; v++) {
-        double x = (double)view->rest_position[v][0] - 0.75 * length;
-        if (fabs(x) > 0.2 * length) continue;
-        along[0] += x * (double)view->position[v][0], along[1] += x * (double)view->position[v][2];
-    }
-    double angle = atan2(along[1], along[0]);
-    return angle - 2 * pi * round((angle - near / 2) / (2 * pi));
-}
-
 static SingeResult run_steps(SingeSim *sim, Fold *fold, double seconds) {
     SingeView view = singe_sim_view(sim);
     SingeResult result = SINGE_OK;
@@ -113,7 +101,17 @@ static SingeResult fold_fill(SingeSim *sim, Fold *fold) {
     if (!result) result = singe_sim_remove_pin(sim, right);
     if (!result) result = run_steps(sim, fold, free_time);
     if (result) return result;
-    fold->left = 180 / pi * turned(&view, fold->angle) * (fold->angle > 0 ? 1 : -1);
+
+    // the angle between the halves, about the strip's width, within a right angle of that of the fold
+    double along[2] = {0, 0};
+    for (uint32_t v = 0; v < view.vertex_count; v++) {
+        double x = (double)view.rest_position[v][0] - 0.75 * length;
+        if (fabs(x) > 0.2 * length) continue;
+        along[0] += x * (double)view.position[v][0], along[1] += x * (double)view.position[v][2];
+    }
+    double turned = atan2(along[1], along[0]);
+    turned -= 2 * pi * round((turned - angle / 2) / (2 * pi));
+    fold->left = 180 / pi * turned * (angle > 0 ? 1 : -1);
     return SINGE_OK;
 }
 
@@ -138,15 +136,11 @@ static SingeResult fold_run(const BenchOptions *options, Fold *fold, bool crease
     return result;
 }
 
-static double expected(double angle) {
-    const SingeMaterialDef material = singe_default_material();
-    double share = (double)material.crease_share.value, radius = (double)material.crease_radius.value;
-    return 180 / pi * fmax(0, share * (fabs(angle) - arc / radius));
-}
-
 SingeResult bench_fold(const BenchOptions *options, BenchTable *table, SingeError *error) {
     static const double bends[] = {180, 45}, cells[] = {2.5e-3, 1.25e-3, 2.5e-3, 1.25e-3};
     static const double steps[] = {480, 480, 960, 960};
+    const SingeMaterialDef material = singe_default_material();
+    const double share = (double)material.crease_share.value, radius = (double)material.crease_radius.value;
     SingeResult result = SINGE_OK;
     *table = table_begin("fold", columns, COLUMNS, table->text);
     for (int i = 0; i < 2 * 2 * 4 && !result; i++) {
@@ -163,7 +157,7 @@ SingeResult bench_fold(const BenchOptions *options, BenchTable *table, SingeErro
             [CELL] = bench_number(1e3 * fold.cell),
             [STEP] = bench_number(1e3 * fold.step),
             [LEFT] = bench_number(fold.left),
-            [EXPECTED] = bench_number(expected(fold.angle)),
+            [EXPECTED] = bench_number(180 / pi * fmax(0, share * (fabs(fold.angle) - arc / radius))),
             [ELASTIC] = bench_number(elastic),
             [INVERTED] = bench_number(fold.inverted),
         };

@@ -66,21 +66,6 @@ static const FrontCase cases[] = {{FRONT_STILL, 1e-3f, 1},   {FRONT_STILL, 0.5e-
                                   {FRONT_LEVEL, 2.5e-3f, 1}, {FRONT_DOWN, 2.5e-3f, 1},  {FRONT_UP, 2.5e-3f, 1}};
 enum { CASES = sizeof cases / sizeof *cases, CASES_STILL = 3 };
 
-static StripSetup front_setup(const BenchOptions *options, const BenchMaterial *material, const FrontCase *front) {
-    StripSetup setup = strip_setup(&material->def);
-    setup.cell = front->cell;
-    setup.time_step *= front->step;
-    setup.threads = options->threads;
-    if (front->direction == FRONT_STILL) return setup;
-    setup.gas = true;
-    setup.gas_cell = 6e-3f;
-    setup.length = 0.15f;
-    setup.width = 0.05f;
-    if (front->direction == FRONT_UP) setup.gravity[0] = setup.gravity[2], setup.gravity[2] = 0;
-    if (front->direction == FRONT_DOWN) setup.gravity[0] = -setup.gravity[2], setup.gravity[2] = 0;
-    return setup;
-}
-
 /// Values shared by the strips of a material.
 typedef struct FrontKnown {
     double usual, level, down; ///< m/s: of the first strip; with gas, level and down
@@ -105,7 +90,19 @@ static SingeResult front_material(const BenchOptions *options, const BenchMateri
     const int count = options->quick ? CASES_STILL : CASES;
     for (int i = 0; i < count; i++) {
         const FrontDirection direction = cases[i].direction;
-        StripSetup setup = front_setup(options, material, &cases[i]);
+        StripSetup setup = strip_setup(&material->def);
+        setup.cell = cases[i].cell;
+        setup.time_step *= cases[i].step;
+        setup.threads = options->threads;
+        if (direction != FRONT_STILL) {
+            setup.gas = true;
+            setup.gas_cell = 6e-3f;
+            setup.length = 0.15f;
+            setup.width = 0.05f;
+            if (direction == FRONT_UP) setup.gravity[0] = setup.gravity[2], setup.gravity[2] = 0;
+            if (direction == FRONT_DOWN) setup.gravity[0] = -setup.gravity[2], setup.gravity[2] = 0;
+        }
+
         StripResult result = {0};
         BenchValue row[FRONT_COLUMNS];
         SingeResult code = strip_burn(&setup, &result, error);

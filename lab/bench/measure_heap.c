@@ -138,22 +138,6 @@ static SingeResult add_ball(SingeSim *sim, int cells_a_side) {
     return result;
 }
 
-static SingeResult add_solids(SingeSim *sim, bool closed) {
-    SingeColliderDef def = singe_default_collider();
-    SingePoseKey key = {.rotation = {0, 0, 0, 1}};
-    SingeColliderId id;
-    def.path_count = 1;
-    def.path = &key;
-    def.friction = 0.4f;
-    def.offset = 1e-3f;
-    SingeResult result = singe_sim_add_collider(sim, &def, &id);
-    if (closed) return result;
-    def.kind = SINGE_COLLIDER_SPHERE;
-    def.radius = sphere;
-    key.position[2] = sphere;
-    return result ? result : singe_sim_add_collider(sim, &def, &id);
-}
-
 static SingeResult heap_build(const BenchOptions *options, int cells, bool closed, SingeSim **sim, SingeError *error) {
     SingeSimDef def = singe_default_sim();
     def.thread_count = options->threads;
@@ -164,7 +148,20 @@ static SingeResult heap_build(const BenchOptions *options, int cells, bool close
     if (result) return result;
     result = closed ? add_ball(*sim, cells) : add_cloth(*sim, cells);
     if (!result) result = singe_sim_commit(*sim);
-    if (!result) result = add_solids(*sim, closed);
+
+    // the ground, and a sphere
+    SingeColliderDef solid = singe_default_collider();
+    SingePoseKey key = {.rotation = {0, 0, 0, 1}};
+    SingeColliderId id;
+    solid.path_count = 1;
+    solid.path = &key;
+    solid.friction = 0.4f;
+    solid.offset = 1e-3f;
+    if (!result) result = singe_sim_add_collider(*sim, &solid, &id);
+    solid.kind = SINGE_COLLIDER_SPHERE;
+    solid.radius = sphere;
+    key.position[2] = sphere;
+    if (!result && !closed) result = singe_sim_add_collider(*sim, &solid, &id);
     if (!result) return SINGE_OK;
     *error = *singe_sim_error(*sim);
     singe_sim_destroy(*sim);

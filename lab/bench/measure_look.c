@@ -139,31 +139,7 @@ static SingeResult look_observe(const BenchOptions *options, BenchSetup setup, B
     return result;
 }
 
-static double shape_distance(const Look *a, const Look *b) {
-    double sum = 0;
-    for (int p = 0; p < POINTS * POINTS; p++)
-        for (int axis = 0; axis < 3; axis++) sum += pow(a->shape[p][axis] - b->shape[p][axis], 2);
-    return sqrt(sum / (POINTS * POINTS));
-}
-
 static double change(double value, double base) { return 100 * (value / base - 1); }
-
-static bool look_add_row(BenchTable *table, const char *name, const Look *look, const Look *base) {
-    BenchValue row[COLUMNS] = {
-        [SETTING] = bench_text(name),
-        [SAG] = bench_number(look->sag),
-        [SAG_CHANGE] = bench_number(change(look->sag, base->sag)),
-        [DROP] = bench_number(look->drop),
-        [DROP_CHANGE] = bench_number(change(look->drop, base->drop)),
-        [SHAPE] = bench_number(1e3 * shape_distance(look, base)),
-        [WAVE] = bench_number(1e3 * look->wavelength),
-        [WAVE_CHANGE] = bench_number(change(look->wavelength, base->wavelength)),
-        [MEAN_WAVE] = bench_number(1e3 * look->mean_wave),
-        [MEAN_CHANGE] = bench_number(change(look->mean_wave, base->mean_wave)),
-        [HEIGHT] = bench_number(1e3 * look->height),
-    };
-    return table_add(table, row);
-}
 
 SingeResult bench_look(const BenchOptions *options, BenchTable *table, SingeError *error) {
     enum { SETTINGS = sizeof settings / sizeof *settings };
@@ -183,7 +159,26 @@ SingeResult bench_look(const BenchOptions *options, BenchTable *table, SingeErro
         setup.solver.substeps = (int)fmax(1, setup.solver.substeps * setting->substeps);
         result = look_observe(options, setup, BENCH_HANG, &looks[i], error);
         if (!result) result = look_observe(options, setup, BENCH_SHRINK, &looks[i], error);
-        if (!result && !look_add_row(table, setting->name, &looks[i], &looks[0])) result = SINGE_ERROR_MEMORY;
+
+        // differences from the base
+        const Look *look = &looks[i], *base = &looks[0];
+        double sum = 0;
+        for (int p = 0; p < POINTS * POINTS; p++)
+            for (int axis = 0; axis < 3; axis++) sum += pow(look->shape[p][axis] - base->shape[p][axis], 2);
+        BenchValue row[COLUMNS] = {
+            [SETTING] = bench_text(setting->name),
+            [SAG] = bench_number(look->sag),
+            [SAG_CHANGE] = bench_number(change(look->sag, base->sag)),
+            [DROP] = bench_number(look->drop),
+            [DROP_CHANGE] = bench_number(change(look->drop, base->drop)),
+            [SHAPE] = bench_number(1e3 * sqrt(sum / (POINTS * POINTS))),
+            [WAVE] = bench_number(1e3 * look->wavelength),
+            [WAVE_CHANGE] = bench_number(change(look->wavelength, base->wavelength)),
+            [MEAN_WAVE] = bench_number(1e3 * look->mean_wave),
+            [MEAN_CHANGE] = bench_number(change(look->mean_wave, base->mean_wave)),
+            [HEIGHT] = bench_number(1e3 * look->height),
+        };
+        if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
     }
     free(looks);
     return result;

@@ -50,40 +50,36 @@ static SingeResult measure_contact(const BenchOptions *options, double springs, 
     return result;
 }
 
-static SingeResult memory_measure(const BenchOptions *options, double springs, BenchTable *table, SingeError *error) {
-    Held held = {0};
-    const SingeAllocator counting = {resize, &held};
-    SingeSim *sim;
-    SingeSurface surface = {.allocator = counting};
-    size_t with_contact = 0;
-    if (measure_contact(options, springs, &with_contact, error)) return error->code;
-    if (burning_build(options, &counting, springs, 1, &sim, error)) return error->code;
-    size_t building = held.max;
-    SingeResult result = singe_sim_step(sim);
-    size_t simulation = held.now;
-    if (!result) result = singe_sim_surface(sim, &surface);
-    if (result) *error = *singe_sim_error(sim);
-    springs = timing_springs(sim);
-    BenchValue row[COLUMNS] = {
-        [SPRINGS] = bench_number(springs),
-        [SIMULATION] = bench_number((double)simulation / springs),
-        [CONTACT] = bench_number(((double)with_contact - (double)simulation) / springs),
-        [BUILDING] = bench_number((double)building / springs),
-        [SURFACE] = bench_number((double)(held.now - simulation) / springs),
-        [TOGETHER] = bench_number((double)held.now / springs),
-        [MEGABYTES] = bench_number(1e-6 * (double)held.now),
-    };
-    if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
-    singe_surface_free(&surface);
-    singe_sim_destroy(sim);
-    return result;
-}
-
 SingeResult bench_memory(const BenchOptions *options, BenchTable *table, SingeError *error) {
     BenchList springs = bench_list(&options->springs, 5, (const double[]){1e3, 4e3, 16e3, 1e5, 1e6});
     SingeResult result = SINGE_OK;
     *table = table_begin("memory", columns, COLUMNS, table->text);
-    for (int i = 0; i < springs.count && !result; i++)
-        result = memory_measure(options, springs.values[i], table, error);
+    for (int i = 0; i < springs.count && !result; i++) {
+        Held held = {0};
+        const SingeAllocator counting = {resize, &held};
+        SingeSim *sim;
+        SingeSurface surface = {.allocator = counting};
+        size_t with_contact = 0;
+        if (measure_contact(options, springs.values[i], &with_contact, error)) return error->code;
+        if (burning_build(options, &counting, springs.values[i], 1, &sim, error)) return error->code;
+        size_t building = held.max;
+        result = singe_sim_step(sim);
+        size_t simulation = held.now;
+        if (!result) result = singe_sim_surface(sim, &surface);
+        if (result) *error = *singe_sim_error(sim);
+        double count = timing_springs(sim);
+        BenchValue row[COLUMNS] = {
+            [SPRINGS] = bench_number(count),
+            [SIMULATION] = bench_number((double)simulation / count),
+            [CONTACT] = bench_number(((double)with_contact - (double)simulation) / count),
+            [BUILDING] = bench_number((double)building / count),
+            [SURFACE] = bench_number((double)(held.now - simulation) / count),
+            [TOGETHER] = bench_number((double)held.now / count),
+            [MEGABYTES] = bench_number(1e-6 * (double)held.now),
+        };
+        if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
+        singe_surface_free(&surface);
+        singe_sim_destroy(sim);
+    }
     return result;
 }

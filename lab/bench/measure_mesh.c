@@ -59,7 +59,43 @@ static uint32_t *corner_of(Plane *plane, uint32_t h) { return &plane->corner[h /
 
 static int compare_sides(const void *a, const void *b) { return memcmp(a, b, 2 * sizeof(uint32_t)); }
 
-static bool find_twins(Plane *plane) {
+static void mesh_join_halves(Plane *plane, uint32_t h, uint32_t twin) {
+    plane->twin[h] = twin;
+    if (twin != UINT32_MAX) plane->twin[twin] = h;
+}
+
+static bool flip(Plane *plane, uint32_t h) {
+    uint32_t g = plane->twin[h];
+    if (g == UINT32_MAX || g < h) return false;
+    uint32_t a = *corner_of(plane, h), b = *corner_of(plane, mesh_next3(h)), c = *corner_of(plane, mesh_last3(h));
+    uint32_t d = *corner_of(plane, mesh_last3(g)), t = 3 * (h / 3), s = 3 * (g / 3);
+
+    // whether d lies within the circle through a, b and c
+    double m[3][3];
+    const float *last = plane->position[d], *corner[3] = {plane->position[a], plane->position[b], plane->position[c]};
+    for (int i = 0; i < 3; i++) {
+        m[i][0] = (double)corner[i][0] - (double)last[0], m[i][1] = (double)corner[i][1] - (double)last[1];
+        m[i][2] = m[i][0] * m[i][0] + m[i][1] * m[i][1];
+    }
+    bool inside = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                      m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                      m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) >
+                  1e-18;
+    if (!inside) return false;
+
+    const uint32_t outer[4] = {plane->twin[mesh_last3(h)], plane->twin[mesh_next3(g)], plane->twin[mesh_last3(g)],
+                               plane->twin[mesh_next3(h)]};
+    const uint32_t first[3] = {c, a, d}, second[3] = {d, b, c};
+    memcpy(plane->corner[t / 3], first, sizeof first);
+    memcpy(plane->corner[s / 3], second, sizeof second);
+    mesh_join_halves(plane, t, outer[0]), mesh_join_halves(plane, t + 1, outer[1]),
+        mesh_join_halves(plane, s, outer[2]), mesh_join_halves(plane, s + 1, outer[3]);
+    mesh_join_halves(plane, t + 2, s + 2);
+    return true;
+}
+
+static bool make_delaunay(Plane *plane) {
+    // the half-edges on the other side
     const uint32_t sides = 3 * plane->triangle_count;
     uint32_t(*side)[3] = malloc(sides * sizeof *side);
     if (!side) return false;
@@ -75,46 +111,8 @@ static bool find_twins(Plane *plane) {
         if (compare_sides(side[k], side[k + 1]) == 0)
             plane->twin[side[k][2]] = side[k + 1][2], plane->twin[side[k + 1][2]] = side[k][2];
     free(side);
-    return true;
-}
 
-/// Whether d lies within the circle through a, b and c.
-static bool in_circle(const float *a, const float *b, const float *c, const float *d) {
-    double m[3][3];
-    const float *corner[3] = {a, b, c};
-    for (int i = 0; i < 3; i++) {
-        m[i][0] = (double)corner[i][0] - (double)d[0], m[i][1] = (double)corner[i][1] - (double)d[1];
-        m[i][2] = m[i][0] * m[i][0] + m[i][1] * m[i][1];
-    }
-    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-               m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) >
-           1e-18;
-}
-
-static void mesh_join_halves(Plane *plane, uint32_t h, uint32_t twin) {
-    plane->twin[h] = twin;
-    if (twin != UINT32_MAX) plane->twin[twin] = h;
-}
-
-static bool flip(Plane *plane, uint32_t h) {
-    uint32_t g = plane->twin[h];
-    if (g == UINT32_MAX || g < h) return false;
-    uint32_t a = *corner_of(plane, h), b = *corner_of(plane, mesh_next3(h)), c = *corner_of(plane, mesh_last3(h));
-    uint32_t d = *corner_of(plane, mesh_last3(g)), t = 3 * (h / 3), s = 3 * (g / 3);
-    if (!in_circle(plane->position[a], plane->position[b], plane->position[c], plane->position[d])) return false;
-    const uint32_t outer[4] = {plane->twin[mesh_last3(h)], plane->twin[mesh_next3(g)], plane->twin[mesh_last3(g)],
-                               plane->twin[mesh_next3(h)]};
-    const uint32_t first[3] = {c, a, d}, second[3] = {d, b, c};
-    memcpy(plane->corner[t / 3], first, sizeof first);
-    memcpy(plane->corner[s / 3], second, sizeof second);
-    mesh_join_halves(plane, t, outer[0]), mesh_join_halves(plane, t + 1, outer[1]),
-        mesh_join_halves(plane, s, outer[2]), mesh_join_halves(plane, s + 1, outer[3]);
-    mesh_join_halves(plane, t + 2, s + 2);
-    return true;
-}
-
-static bool make_delaunay(Plane *plane) {
-    if (!find_twins(plane)) return false;
+    // flip until none is left
     bool flipped = true;
     for (int sweep = 0; flipped && sweep < 100; sweep++) {
         flipped = false;
@@ -200,8 +198,9 @@ static SingeResult make_quads(const Plane *plane, MeshQuads quads, Mesh *mesh, M
     return result;
 }
 
-/// Share of the vertices inside the square whose number of cells is not four.
-static double irregular_percent(const Mesh *mesh) {
+static bool mesh_add_row(BenchTable *table, const BenchSetup *setup, Triangles kind, MeshQuads quads, const Mesh *mesh,
+                         const MeshReport *report, const Trajectory *t) {
+    // vertices inside the square, and those of them whose number of cells is not four
     uint32_t *cells = calloc(mesh->vertex_count, sizeof *cells), inside = 0, irregular = 0;
     for (size_t i = 0; cells && i < 4 * (size_t)mesh->cell_count; i++) cells[mesh->cells[i]]++;
     for (uint32_t v = 0; cells && v < mesh->vertex_count; v++) {
@@ -210,11 +209,7 @@ static double irregular_percent(const Mesh *mesh) {
         inside++, irregular += cells[v] != 4;
     }
     free(cells);
-    return inside ? 100.0 * irregular / inside : 0;
-}
 
-static bool mesh_add_row(BenchTable *table, const BenchSetup *setup, Triangles kind, MeshQuads quads, const Mesh *mesh,
-                         const MeshReport *report, const Trajectory *t) {
     BenchValue row[COLUMNS] = {
         [NAME] = bench_text(names[kind]),
         [BECOME] = bench_text(kind <= MOVED               ? "-"
@@ -223,7 +218,7 @@ static bool mesh_add_row(BenchTable *table, const BenchSetup *setup, Triangles k
         [TRI] = bench_number(report->triangles),
         [CELLS] = bench_number(mesh->cell_count),
         [HALVED] = bench_number(report->count[MESH_HALVED]),
-        [IRREGULAR] = bench_number(irregular_percent(mesh)),
+        [IRREGULAR] = bench_number(inside ? 100.0 * irregular / inside : 0),
         [STRAND] = bench_number(t->strand_length),
         [CPU] = bench_number(t->cpu_median),
         [BLUE] = strain_percent(&t->strain[SINGE_BLUE]),

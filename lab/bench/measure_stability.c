@@ -57,16 +57,6 @@ typedef struct Cases {
 
 static double larger(double max, double value) { return value <= max ? max : value; } // NaN stays
 
-static void stability_sample(Case *c, const SingeSim *sim, double energy_start, Strain *strain) {
-    SingeView view = singe_sim_view(sim);
-    const float corners[2][3] = {{0, 0, 1}, {0, 0, 0}};
-    strain_add(strain, &view, SINGE_BLUE);
-    c->speed = larger(c->speed, geometry_speed(&view));
-    c->energy_gain = larger(c->energy_gain, geometry_energy(&view, gravity) - energy_start);
-    c->reach = larger(c->reach, geometry_reach(&view, corners[c->setup.state == BENCH_SWING]));
-    c->finite = c->finite && strain->finite && isfinite(c->speed) && isfinite(c->reach);
-}
-
 static void stability_run(void *context, int i) {
     Case *c = &((Cases *)context)->list[i];
     SingeSim *sim = NULL;
@@ -75,6 +65,7 @@ static void stability_run(void *context, int i) {
     if (!c->failed) {
         strain_clear(strain);
 
+        const float corners[2][3] = {{0, 0, 1}, {0, 0, 0}};
         const double h = (double)c->setup.time_step;
         const int steps = (int)ceil(c->seconds / h), every = h < 0.015 ? (int)(0.015 / h) : 1;
         SingeView view = singe_sim_view(sim);
@@ -83,7 +74,14 @@ static void stability_run(void *context, int i) {
         for (int step = 1; step <= steps && c->finite; step++) {
             if (singe_sim_step(sim)) c->finite = false;
             else c->inverted = larger(c->inverted, geometry_inverted(&view));
-            if (c->finite && (step % every == 0 || step == steps)) stability_sample(c, sim, energy, strain);
+            if (!c->finite || (step % every != 0 && step != steps)) continue;
+
+            view = singe_sim_view(sim);
+            strain_add(strain, &view, SINGE_BLUE);
+            c->speed = larger(c->speed, geometry_speed(&view));
+            c->energy_gain = larger(c->energy_gain, geometry_energy(&view, gravity) - energy);
+            c->reach = larger(c->reach, geometry_reach(&view, corners[c->setup.state == BENCH_SWING]));
+            c->finite = c->finite && strain->finite && isfinite(c->speed) && isfinite(c->reach);
         }
         view = singe_sim_view(sim);
         double shrunk = c->setup.state == BENCH_SHRINK ? (double)c->setup.shrink : 1;
@@ -95,24 +93,23 @@ static void stability_run(void *context, int i) {
     free(strain);
 }
 
-static const char *stability_judge(const Case *c) {
-    double energy_limit = c->setup.state == BENCH_SWING ? 0.5 : 10;
-    if (!c->finite) return "NaN";
-    if (c->energy_gain > energy_limit || c->speed > speed_limit) return "exploded";
-    if (c->reach > reach_limit) return "stretched";
-    return c->gyration < gyration_limit || c->folded > folded_limit ? "crumpled" : "ok";
-}
-
 static void done(void *context, int i) {
     Cases *cases = context;
     const Case *c = &cases->list[i];
     if (c->failed) return;
+    const double energy_limit = c->setup.state == BENCH_SWING ? 0.5 : 10;
+    const char *verdict = "ok";
+    if (!c->finite) verdict = "NaN";
+    else if (c->energy_gain > energy_limit || c->speed > speed_limit) verdict = "exploded";
+    else if (c->reach > reach_limit) verdict = "stretched";
+    else if (c->gyration < gyration_limit || c->folded > folded_limit) verdict = "crumpled";
+
     BenchValue row[COLUMNS] = {
         [STATE] = bench_text(c->setup.state == BENCH_SWING ? "swing" : "shrink"),
         [CELLS] = bench_number(c->setup.cells),
         [RATIO] = bench_number(c->t_over_s),
         [STEP] = bench_number(1e3 * (double)c->setup.time_step),
-        [RESULT] = bench_text(stability_judge(c)),
+        [RESULT] = bench_text(verdict),
         [STRAIN] = bench_number(c->strain.number[0]),
         [P99] = bench_number(c->strain.number[1]),
         [SPEED] = bench_number(c->speed),

@@ -18,29 +18,23 @@ static const BenchColumn columns[COLUMNS] = {
     [CACHE] = {"cache_mb", "%.2f", 8, NULL},
 };
 
-/// Draws the current state several times; medians of wall and processor time.
-static SingeResult time_drawings(SingeSim *sim, SingeSurface *surface, double *wall, double *cpu) {
-    double walls[DRAWINGS], cpus[DRAWINGS];
-    for (int i = 0; i < DRAWINGS; i++) {
-        double begun = machine_clock(), cpu_begun = machine_cpu_clock();
-        SingeResult result = singe_sim_surface(sim, surface);
-        if (result) return result;
-        walls[i] = 1e3 * (machine_clock() - begun), cpus[i] = 1e3 * (machine_cpu_clock() - cpu_begun);
-    }
-    *wall = numbers_median(walls, DRAWINGS);
-    *cpu = numbers_median(cpus, DRAWINGS);
-    return SINGE_OK;
-}
-
 static SingeResult surface_measure(const BenchOptions *options, double springs, BenchTable *table, SingeError *error) {
     SingeSim *sim;
     SingeSurface surface = {0};
-    double wall = 0, cpu = 0;
     if (burning_build(options, NULL, springs, fire_pace, &sim, error)) return error->code;
     SingeResult result = SINGE_OK;
     int steps = options->steps ? options->steps : BURNING_STEPS;
     for (int step = 0; step < steps && !result; step++) result = singe_sim_step(sim);
-    if (!result) result = time_drawings(sim, &surface, &wall, &cpu);
+
+    // draw the current state several times; medians of wall and processor time
+    double walls[DRAWINGS] = {0}, cpus[DRAWINGS] = {0};
+    for (int i = 0; i < DRAWINGS && !result; i++) {
+        double begun = machine_clock(), cpu_begun = machine_cpu_clock();
+        result = singe_sim_surface(sim, &surface);
+        walls[i] = 1e3 * (machine_clock() - begun);
+        cpus[i] = 1e3 * (machine_cpu_clock() - cpu_begun);
+    }
+    const double wall = numbers_median(walls, DRAWINGS), cpu = numbers_median(cpus, DRAWINGS);
     if (result) *error = *singe_sim_error(sim);
     double triangles = surface.triangle_count;
     BenchValue row[COLUMNS] = {

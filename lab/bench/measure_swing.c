@@ -62,34 +62,6 @@ static const char *bars_held(const BenchSetup *setup, const Trajectory *t, doubl
     return blue.number[0] <= max && blue.number[1] <= p99 && !(off > off_max) ? "held" : "missed";
 }
 
-static bool swing_add_row(BenchTable *table, const BenchSetup *setup, int steps, const Trajectory *t) {
-    const double off = trajectory_off(setup, t);
-    BenchValue row[COLUMNS] = {
-        [CELLS] = bench_number(setup->cells),
-        [THICKNESS] = bench_number(1e3 * (double)setup->thickness),
-        [SUBSTEPS] = bench_number(steps * setup->solver.substeps),
-        [CPU_MEDIAN] = bench_number(t->cpu_median),
-        [CPU_MEAN] = bench_number(t->cpu_mean),
-        [DYNAMICS] = bench_number(t->dynamics_ms),
-        [BLUE] = strain_percent(&t->strain[SINGE_BLUE]),
-        [RED] = strain_percent(&t->strain[SINGE_RED]),
-        [GREEN] = strain_percent(&t->strain[SINGE_GREEN]),
-        [YELLOW] = strain_percent(&t->strain[SINGE_YELLOW]),
-        [FALL] = {.number = {t->fall[0], t->fall[1], t->fall[2]}},
-        [OFF] = bench_number(off),
-        [SPEED] = bench_number(t->speed_max),
-        [INVERTED] = bench_number(t->inverted),
-        [BARS] = bench_text(bars_held(setup, t, off)),
-        [RESULT] = bench_text(t->diverged ? "diverged" : "ok"),
-    };
-    return table_add(table, row);
-}
-
-static int swing_substeps(const BenchSetup *setup) {
-    if (setup->pins != 1) return SWING_SUBSTEPS;
-    return setup->cells <= ONE_CORNER_CELLS ? ONE_CORNER_SUBSTEPS : 3 * setup->cells;
-}
-
 static SingeResult run_all(const BenchOptions *options, BenchSetup *setup, int steps, double seconds,
                            const BenchList *cells, const BenchList *thickness, BenchTable *table, SingeError *error) {
     if (options->steps) steps = options->steps;
@@ -100,11 +72,34 @@ static SingeResult run_all(const BenchOptions *options, BenchSetup *setup, int s
         for (int t = 0; t < thickness->count; t++) {
             setup->cells = (int)cells->values[c];
             setup->thickness = (float)thickness->values[t];
-            if (steps == 1 && !options->substeps && !options->steps) setup->solver.substeps = swing_substeps(setup);
+            if (steps == 1 && !options->substeps && !options->steps) {
+                const int whip = setup->cells <= ONE_CORNER_CELLS ? ONE_CORNER_SUBSTEPS : 3 * setup->cells;
+                setup->solver.substeps = setup->pins == 1 ? whip : SWING_SUBSTEPS;
+            }
             Trajectory *trajectory = trajectory_run(setup, frames, steps, INFINITY, error);
-            bool added = trajectory && swing_add_row(table, setup, steps, trajectory);
-            trajectory_free(trajectory);
             if (!trajectory) return error->code;
+
+            const double off = trajectory_off(setup, trajectory);
+            BenchValue row[COLUMNS] = {
+                [CELLS] = bench_number(setup->cells),
+                [THICKNESS] = bench_number(1e3 * (double)setup->thickness),
+                [SUBSTEPS] = bench_number(steps * setup->solver.substeps),
+                [CPU_MEDIAN] = bench_number(trajectory->cpu_median),
+                [CPU_MEAN] = bench_number(trajectory->cpu_mean),
+                [DYNAMICS] = bench_number(trajectory->dynamics_ms),
+                [BLUE] = strain_percent(&trajectory->strain[SINGE_BLUE]),
+                [RED] = strain_percent(&trajectory->strain[SINGE_RED]),
+                [GREEN] = strain_percent(&trajectory->strain[SINGE_GREEN]),
+                [YELLOW] = strain_percent(&trajectory->strain[SINGE_YELLOW]),
+                [FALL] = {.number = {trajectory->fall[0], trajectory->fall[1], trajectory->fall[2]}},
+                [OFF] = bench_number(off),
+                [SPEED] = bench_number(trajectory->speed_max),
+                [INVERTED] = bench_number(trajectory->inverted),
+                [BARS] = bench_text(bars_held(setup, trajectory, off)),
+                [RESULT] = bench_text(trajectory->diverged ? "diverged" : "ok"),
+            };
+            bool added = table_add(table, row);
+            trajectory_free(trajectory);
             if (!added) return SINGE_ERROR_MEMORY;
         }
     return SINGE_OK;

@@ -93,14 +93,6 @@ static SingeResult add_grip(SingeSim *sim, uint32_t nx, uint32_t ny, bool last, 
     return result;
 }
 
-/// Vertices from `first` on were created by tears.
-static int torn_aside(const SingeView *view, uint32_t first, float cell) {
-    int aside = 0;
-    for (uint32_t v = first; v < view->vertex_count; v++)
-        aside += view->particle_flags[v] & SINGE_ALIVE && fabsf(view->rest_position[v][0] - line) > 0.6f * cell;
-    return aside;
-}
-
 static SingeResult pull(const BenchOptions *options, uint32_t nx, uint32_t ny, int rate, Pulled *pulled,
                         SingeError *error) {
     SingeSimDef def = singe_default_sim();
@@ -141,7 +133,11 @@ static SingeResult pull(const BenchOptions *options, uint32_t nx, uint32_t ny, i
     const SingeView view = singe_sim_view(sim);
     pulled->tears = (int)stats.tears;
     pulled->pieces = stats.pieces;
-    pulled->aside = torn_aside(&view, (nx + 1) * (ny + 1), length / (float)nx);
+
+    // vertices that were created by tears, away from the line
+    const float cell = length / (float)nx;
+    for (uint32_t v = (nx + 1) * (ny + 1); v < view.vertex_count; v++)
+        pulled->aside += view.particle_flags[v] & SINGE_ALIVE && fabsf(view.rest_position[v][0] - line) > 0.6f * cell;
     if (result) *error = *singe_sim_error(sim);
     singe_sim_destroy(sim);
     return result;

@@ -33,19 +33,16 @@ triad(float *restrict a, const float *restrict b, const float *restrict c, size_
     for (size_t i = 0; i < count; i++) a[i] = b[i] + 0.5f * c[i];
 }
 
-static double peaks_work(const Worker *worker, long rounds) {
-    if (!worker->elements) return fma_run(1000 * rounds);
-    const size_t n = worker->elements;
-    for (long round = 0; round < rounds; round++) triad(worker->arrays, worker->arrays + n, worker->arrays + 2 * n, n);
-    return 12.0 * (double)n * (double)rounds;
-}
-
 static void *worker_run(void *context) {
     Worker *worker = context;
     long rounds = 1;
     for (size_t i = 0; i < 3 * worker->elements; i++) worker->arrays[i] = 1;
     for (int trial = 0; trial < TRIALS;) {
-        double begun = machine_clock(), done = peaks_work(worker, rounds), taken = machine_clock() - begun;
+        const size_t n = worker->elements;
+        double begun = machine_clock(), done = n ? 12.0 * (double)n * (double)rounds : fma_run(1000 * rounds);
+        for (long round = 0; n && round < rounds; round++)
+            triad(worker->arrays, worker->arrays + n, worker->arrays + 2 * n, n);
+        double taken = machine_clock() - begun;
         if (taken < worker->seconds && rounds < 1L << 30) {
             rounds *= 2; // too short to be measured
             continue;

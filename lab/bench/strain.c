@@ -42,22 +42,20 @@ void strain_merge(Strain *strain, const Strain *other) {
     strain->finite = strain->finite && other->finite;
 }
 
-/// The centre of the bin up to which 99 of 100 samples lie.
-static double percentile(const Strain *strain) {
+BenchValue strain_percent(const Strain *strain) {
+    if (!strain->finite || strain->count == 0) return (BenchValue){.number = {NAN, NAN, NAN}};
+
+    // the centre of the bin up to which 99 of 100 samples lie
     uint64_t below = 0, wanted = strain->count - strain->count / 100;
+    double p99 = NAN;
     for (uint32_t bin = 0; bin < STRAIN_BINS; bin++) {
         below += strain->bins[bin];
         if (below < wanted) continue;
         uint32_t bits = bin << 16 | 0x8000;
         float value;
         memcpy(&value, &bits, sizeof value);
-        return fmin((double)value, strain->max);
+        p99 = fmin((double)value, strain->max);
+        break;
     }
-    return NAN;
-}
-
-BenchValue strain_percent(const Strain *strain) {
-    if (!strain->finite || strain->count == 0) return (BenchValue){.number = {NAN, NAN, NAN}};
-    return (BenchValue){
-        .number = {100 * strain->max, 100 * percentile(strain), 100 * strain->sum / (double)strain->count}};
+    return (BenchValue){.number = {100 * strain->max, 100 * p99, 100 * strain->sum / (double)strain->count}};
 }

@@ -22,20 +22,6 @@ double timing_springs(const SingeSim *sim) {
     return springs;
 }
 
-static SingeTimers difference(SingeTimers after, const SingeTimers *before) {
-    for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++) after.seconds[stage] -= before->seconds[stage];
-    after.steps -= before->steps;
-    after.heat_iterations -= before->heat_iterations;
-    after.strands_projected -= before->strands_projected;
-    after.contacts -= before->contacts;
-    after.projection_seconds -= before->projection_seconds;
-    after.springs_projected -= before->springs_projected;
-    after.projection_iterations -= before->projection_iterations;
-    after.projection_flops -= before->projection_flops;
-    after.projection_bytes -= before->projection_bytes;
-    return after;
-}
-
 SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, int warm_up, int steps) {
     bool good = true;
     *timing = (Timing){.steps = steps};
@@ -65,7 +51,20 @@ SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, 
             timing->ms[TIMED_SCALED][step] = total / fmax(1, yardstick_ms / yardstick_reference_ms);
         }
     }
-    timing->total = difference(singe_sim_timers(sim), &first);
+
+    // what was added since the first step
+    SingeTimers after = singe_sim_timers(sim);
+    for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++) after.seconds[stage] -= first.seconds[stage];
+    after.steps -= first.steps;
+    after.heat_iterations -= first.heat_iterations;
+    after.strands_projected -= first.strands_projected;
+    after.contacts -= first.contacts;
+    after.projection_seconds -= first.projection_seconds;
+    after.springs_projected -= first.springs_projected;
+    after.projection_iterations -= first.projection_iterations;
+    after.projection_flops -= first.projection_flops;
+    after.projection_bytes -= first.projection_bytes;
+    timing->total = after;
     for (int what = 0; what < TIMED_COUNT; what++) numbers_median(timing->ms[what], steps); // sorts
     return SINGE_OK;
 }

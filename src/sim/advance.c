@@ -7,22 +7,6 @@
 /// 6e-8 of itself in each step.
 static const double ADVANCE_SLACK = 0.01;
 
-/// Room for the events of all steps of an advance: as many as a simulation can have.
-static bool advance_reserve(SingeSim *sim) {
-    EventList *list = &sim->gathered;
-    if (list->items) return true;
-    if (!NEW(&sim->memory, list->items, sim->events.capacity)) return false;
-    list->capacity = sim->events.capacity;
-    return true;
-}
-
-static void advance_gather(SingeSim *sim) {
-    EventList *list = &sim->gathered;
-    size_t room = list->capacity - list->count, count = sim->events.count < room ? sim->events.count : room;
-    if (count) memcpy(list->items + list->count, sim->events.items, count * sizeof *list->items);
-    list->count += count;
-}
-
 SingeResult singe_sim_advance(SingeSim *sim, double seconds, uint32_t steps_max, uint32_t *steps) {
     const double h = (double)sim->def.time_step;
     uint32_t done = 0;
@@ -31,10 +15,17 @@ SingeResult singe_sim_advance(SingeSim *sim, double seconds, uint32_t steps_max,
         return sim_fail(sim, SINGE_ERROR_STATE, "advance", -1, "singe_sim_commit must come before the first step");
     if (!(seconds >= 0 && seconds <= 1e6))
         return sim_fail(sim, SINGE_ERROR_ARGUMENT, "advance", -1, "seconds must be between 0 and 1e6");
-    if (!advance_reserve(sim)) return sim_fail(sim, SINGE_ERROR_MEMORY, "advance", -1, "out of memory for events");
+
+    // room for the events of all steps: as many as a simulation can have
+    EventList *list = &sim->gathered;
+    if (!list->items) {
+        if (!NEW(&sim->memory, list->items, sim->events.capacity))
+            return sim_fail(sim, SINGE_ERROR_MEMORY, "advance", -1, "out of memory for events");
+        list->capacity = sim->events.capacity;
+    }
 
     // steps that fit in the remainder
-    sim->gathered.count = 0;
+    list->count = 0;
     sim->gathers = true;
     sim->remainder += seconds;
     while (sim->remainder >= h * (1 - ADVANCE_SLACK)) {
@@ -43,7 +34,9 @@ SingeResult singe_sim_advance(SingeSim *sim, double seconds, uint32_t steps_max,
             break;
         }
         TRY(sim_step(sim));
-        advance_gather(sim);
+        size_t room = list->capacity - list->count, count = sim->events.count < room ? sim->events.count : room;
+        if (count) memcpy(list->items + list->count, sim->events.items, count * sizeof *list->items);
+        list->count += count;
         sim->remainder -= h;
         done++;
         if (steps) *steps = done;

@@ -17,23 +17,6 @@ static void sim_log(const SingeSim *sim, SingeLogLevel level, const char *format
 /// A sheet that falls farther than this within a substep, over its cells' size, stretches visibly where it is held.
 static const float fall_max = 0.02f;
 
-static void sim_log_sheet(const SingeSim *sim, uint32_t index) {
-    const SingeSimDef *def = &sim->def;
-    const Sheet *sheet = &sim->shell.sheets[index];
-    sim_log(sim, SINGE_LOG_INFO, "sheet %u: cells of %.3g mm, its front %.3g times as thick as a real one", index,
-            1e3 * (double)sheet->cell_size, (double)sim->thickening[index]);
-    float h = def->time_step / (float)dynamics_plan_substeps(sim->dynamics);
-    if (sim->tear)
-        sim_log(sim, SINGE_LOG_INFO, "sheet %u: tears at line forces up to %.3g N/m; substeps of %.3g ms carry no more",
-                index, (double)tear_carried(&sim->shell, index, h), 1e3 * (double)h);
-    float gravity = float3_length(float3_load(def->gravity));
-    if (gravity * h * h > fall_max * sheet->cell_size)
-        sim_log(sim, SINGE_LOG_WARNING,
-                "sheet %u: a substep of %.3g ms is long for cells of %.3g mm: the sheet will stretch; "
-                "use more substeps or a smaller time step",
-                index, 1e3 * (double)h, 1e3 * (double)sheet->cell_size);
-}
-
 /// The stopping rules of the methods that iterate (docs/equations/paper-solver.md).
 static void sim_log_solver(const SingeSim *sim) {
     const SingeSolverDef *solver = &sim->def.solver;
@@ -65,7 +48,25 @@ void sim_log_commit(const SingeSim *sim) {
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += counts.springs[c], strands += counts.strands[c];
     sim_log(sim, SINGE_LOG_INFO, "%u particles, %u springs in %u strands, %.3g MB", counts.particles, springs, strands,
             1e-6 * (double)counts.memory);
-    for (uint32_t s = 0; s < sim->shell.sheet_count; s++) sim_log_sheet(sim, s);
+
+    // each sheet
+    float h = sim->def.time_step / (float)dynamics_plan_substeps(sim->dynamics);
+    float gravity = float3_length(float3_load(sim->def.gravity));
+    for (uint32_t s = 0; s < sim->shell.sheet_count; s++) {
+        const Sheet *sheet = &sim->shell.sheets[s];
+        sim_log(sim, SINGE_LOG_INFO, "sheet %u: cells of %.3g mm, its front %.3g times as thick as a real one", s,
+                1e3 * (double)sheet->cell_size, (double)sim->thickening[s]);
+        if (sim->tear)
+            sim_log(sim, SINGE_LOG_INFO,
+                    "sheet %u: tears at line forces up to %.3g N/m; substeps of %.3g ms carry no more", s,
+                    (double)tear_carried(&sim->shell, s, h), 1e3 * (double)h);
+        if (gravity * h * h > fall_max * sheet->cell_size)
+            sim_log(sim, SINGE_LOG_WARNING,
+                    "sheet %u: a substep of %.3g ms is long for cells of %.3g mm: the sheet will stretch; "
+                    "use more substeps or a smaller time step",
+                    s, 1e3 * (double)h, 1e3 * (double)sheet->cell_size);
+    }
+
     sim_log_solver(sim);
     if (sim->def.solver.tearing && !sim->tear)
         sim_log(sim, SINGE_LOG_WARNING, "tearing needs the solver's method `strand`: these sheets stay whole");

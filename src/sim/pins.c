@@ -15,21 +15,6 @@ static void pin_stop_waiting(SingeSim *sim, Pin *pin) {
     pin->waiting = (SingePinDef){0};
 }
 
-/// Keeps a pin's Def until the commit; false when out of memory.
-static bool pin_wait(SingeSim *sim, const SingePinDef *def, Pin *pin) {
-    float *points = NULL;
-    uint32_t *vertices = NULL;
-    bool ok = NEW(&sim->memory, points, 3 * (size_t)def->point_count) && NEW(&sim->memory, vertices, def->vertex_count);
-    if (ok && def->point_count) memcpy(points, def->points, 3 * (size_t)def->point_count * sizeof *points);
-    if (ok && def->vertex_count) memcpy(vertices, def->vertices, def->vertex_count * sizeof *vertices);
-    pin->waiting = *def;
-    pin->waiting.points = points;
-    pin->waiting.vertices = vertices;
-    pin->waiting.path_count = 0;
-    pin->waiting.path = NULL;
-    return ok;
-}
-
 static void pin_count(SingeSim *sim, const Pin *pin, int change) {
     for (uint32_t k = 0; k < pin->count; k++) {
         uint32_t particle = pin->particles[k];
@@ -53,20 +38,6 @@ static float pin_distance2(const Shell *shell, uint32_t particle, const float *p
     SINGE_ASSERT(particle < shell->particle_count);
     Float3 d = float3_sub(float3_load(shell->rest_position[particle]), float3_load(point));
     return float3_dot(d, d);
-}
-
-/// Nearest vertex of the sheet to a point; the first of equals. Vertices without cells are skipped.
-static uint32_t pin_nearest(const Shell *shell, const Sheet *sheet, const float *point) {
-    uint32_t best = sheet->vertex_first;
-    float min = INFINITY;
-    for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
-        float d = pin_distance2(shell, v, point);
-        if (d < min && shell->matter.area[v] > 0) {
-            min = d;
-            best = v;
-        }
-    }
-    return best;
 }
 
 /// Whether a pin holds a particle; `nearest` are the points' nearest vertices.
@@ -119,10 +90,21 @@ static bool pin_gather(SingeSim *sim, const SingePinDef *def, Pin *pin) {
     uint8_t *listed = NULL;
     bool ok = NEW(memory, nearest, def->point_count) && NEW(memory, listed, shell->particle_count);
 
-    // which particles are held
     if (ok) {
-        for (uint32_t k = 0; k < def->point_count; k++)
-            nearest[k] = pin_nearest(shell, sheet, def->points + 3 * (size_t)k);
+        // the nearest vertex with cells to each point; the first of equals
+        for (uint32_t k = 0; k < def->point_count; k++) {
+            nearest[k] = sheet->vertex_first;
+            float min = INFINITY;
+            for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
+                float d = pin_distance2(shell, v, def->points + 3 * (size_t)k);
+                if (d < min && shell->matter.area[v] > 0) {
+                    min = d;
+                    nearest[k] = v;
+                }
+            }
+        }
+
+        // which particles are held
         for (uint32_t k = 0; k < def->vertex_count; k++) listed[sheet->vertex_first + def->vertices[k]] = 1;
         uint32_t count = 0;
         for (uint32_t i = 0; i < shell->particle_count; i++) {
@@ -172,8 +154,22 @@ SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *given, SingePinI
 
     // find particles now, or at the commit
     SingeResult result = SINGE_OK;
-    if (sim->committed) result = pin_hold(sim, &def, pin);
-    else if (!pin_wait(sim, &def, pin)) result = sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
+    if (sim->committed) {
+        result = pin_hold(sim, &def, pin);
+    } else {
+        float *points = NULL;
+        uint32_t *vertices = NULL;
+        bool ok =
+            NEW(&sim->memory, points, 3 * (size_t)def.point_count) && NEW(&sim->memory, vertices, def.vertex_count);
+        if (ok && def.point_count) memcpy(points, def.points, 3 * (size_t)def.point_count * sizeof *points);
+        if (ok && def.vertex_count) memcpy(vertices, def.vertices, def.vertex_count * sizeof *vertices);
+        pin->waiting = def;
+        pin->waiting.points = points;
+        pin->waiting.vertices = vertices;
+        pin->waiting.path_count = 0;
+        pin->waiting.path = NULL;
+        if (!ok) result = sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
+    }
     if (result) {
         sim_free_pin(sim, pin);
         return result;
@@ -215,19 +211,6 @@ const uint32_t *singe_sim_pin_particles(const SingeSim *sim, SingePinId id, uint
     return pin && pin->count ? pin->particles : NULL;
 }
 
-/// A motion that begins at the particles' present positions on the path.
-static bool pin_set_out(SingeSim *sim, Pin *pin) {
-    if (pin->motion.to) return true;
-    float(*now)[3] = NULL;
-    bool ok = NEW(&sim->memory, now, pin->count) != NULL;
-    const Pose pose = path_pose(&pin->path, sim->state.time);
-    for (uint32_t k = 0; ok && k < pin->count; k++)
-        float3_store(now[k], pose_apply(&pose, float3_load(pin->anchors[k])));
-    ok = ok && motion_create(&sim->memory, pin->count, now[0], &pin->motion);
-    FREE(&sim->memory, now, pin->count);
-    return ok;
-}
-
 SingeResult singe_sim_set_pin_positions(SingeSim *sim, SingePinId id, const float *positions, double time) {
     Pin *pin = OBJECT_FIND(sim->pins, id);
     if (!pin) return object_stale(sim, "pin", id.index);
@@ -236,24 +219,23 @@ SingeResult singe_sim_set_pin_positions(SingeSim *sim, SingePinId id, const floa
     if (!isfinite(time)) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "the time is not finite");
     TRY(motion_check(pin->count, positions, pin_position_max, "pin", &sim->error));
     if (pin->count == 0) return SINGE_OK;
-    if (!pin_set_out(sim, pin)) return sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
+
+    // a motion that begins at the particles' present positions on the path
+    if (!pin->motion.to) {
+        float(*now)[3] = NULL;
+        bool ok = NEW(&sim->memory, now, pin->count) != NULL;
+        const Pose pose = path_pose(&pin->path, sim->state.time);
+        for (uint32_t k = 0; ok && k < pin->count; k++)
+            float3_store(now[k], pose_apply(&pose, float3_load(pin->anchors[k])));
+        ok = ok && motion_create(&sim->memory, pin->count, now[0], &pin->motion);
+        FREE(&sim->memory, now, pin->count);
+        if (!ok) return sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
+    }
     motion_set(&pin->motion, positions, sim->state.time, time);
     return SINGE_OK;
 }
 
 // ---- the commit
-
-/// All objects wait again; the State is about to be freed.
-static void sim_unsettle_objects(SingeSim *sim) {
-    for (uint32_t i = 0; i < sim->sources.count; i++)
-        source_unsettle(&sim->memory, &sim->shell, &sim->sources.items[i]);
-    for (uint32_t i = 0; i < sim->pins.count; i++) {
-        Pin *pin = &sim->pins.items[i];
-        FREE(&sim->memory, pin->particles, pin->count);
-        FREE(&sim->memory, pin->anchors, pin->count);
-        pin->count = 0;
-    }
-}
 
 SingeResult sim_settle_objects(SingeSim *sim) {
     SingeResult result = SINGE_OK;
@@ -261,8 +243,17 @@ SingeResult sim_settle_objects(SingeSim *sim) {
         result = source_settle(&sim->memory, &sim->shell, &sim->sources.items[i], &sim->error);
     for (uint32_t i = 0; i < sim->pins.count && !result; i++)
         if (sim->pins.items[i].generation) result = pin_hold(sim, &sim->pins.items[i].waiting, &sim->pins.items[i]);
+
+    // all objects wait again if one fails: the State is about to be freed
     if (result) {
-        sim_unsettle_objects(sim);
+        for (uint32_t i = 0; i < sim->sources.count; i++)
+            source_unsettle(&sim->memory, &sim->shell, &sim->sources.items[i]);
+        for (uint32_t i = 0; i < sim->pins.count; i++) {
+            Pin *pin = &sim->pins.items[i];
+            FREE(&sim->memory, pin->particles, pin->count);
+            FREE(&sim->memory, pin->anchors, pin->count);
+            pin->count = 0;
+        }
         return result;
     }
     for (uint32_t i = 0; i < sim->sources.count; i++) source_settled(&sim->memory, &sim->sources.items[i]);

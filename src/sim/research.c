@@ -40,7 +40,7 @@ static SingeResult network_refuse(SingeError *error, int64_t element, const char
     return error_set(error, SINGE_ERROR_ARGUMENT, "network", element, "%s", what);
 }
 
-static SingeResult network_check_numbers(const SingeNetworkDef *def, SingeError *error) {
+static SingeResult network_check(const SingeNetworkDef *def, SingeError *error) {
     if (!(def->thread_count >= 1 && def->thread_count <= 64))
         return network_refuse(error, -1, "thread_count must be between 1 and 64");
     if (def->tasks.enqueue && !def->tasks.finish) return network_refuse(error, -1, "tasks.enqueue needs tasks.finish");
@@ -58,12 +58,9 @@ static SingeResult network_check_numbers(const SingeNetworkDef *def, SingeError 
         return network_refuse(error, -1, "tolerance must be above 0 and at most 1");
     if (!(def->iterations >= 1 && def->iterations <= 1000000))
         return network_refuse(error, -1, "iterations must be between 1 and 1000000");
-    return SINGE_OK;
-}
 
-static SingeResult network_check(const SingeNetworkDef *def, SingeError *error) {
+    // arrays
     size_t bad;
-    TRY(network_check_numbers(def, error));
     if (!all_within(def->positions, 3 * (size_t)def->particle_count, -1e9, 1e9, &bad))
         return network_refuse(error, (int64_t)(bad / 3), "positions must be finite, within 1e9 m");
     if (!all_within(def->inverse_masses, def->particle_count, 0, 1e30, &bad))
@@ -90,31 +87,6 @@ static SingeResult network_check(const SingeNetworkDef *def, SingeError *error) 
 
 static uint32_t set_of(const SingeNetworkDef *def, uint32_t spring) { return def->sets ? def->sets[spring] : 0; }
 
-static void network_fill(const SingeNetworkDef *def, Network *network, uint32_t *rows) {
-    for (uint32_t i = 0; i < def->particle_count; i++) {
-        for (int c = 0; c < 3; c++) network->position[i][c] = def->positions[3 * (size_t)i + (size_t)c];
-        network->inverse_mass[i] = def->inverse_masses ? def->inverse_masses[i] : 1;
-        network->held[i] = def->held && def->held[i];
-    }
-    for (uint32_t s = 0; s < def->set_count; s++) {
-        rows[s] = 0;
-        network->groups[s].regularisation = def->regularisation;
-    }
-
-    // springs, in the rows of their sets
-    for (uint32_t k = 0; k < def->spring_count; k++) {
-        SpringGroup *group = &network->groups[set_of(def, k)];
-        uint32_t row = rows[set_of(def, k)]++;
-        group->length[row] = def->lengths[k];
-        group->weight[row] = def->weights ? def->weights[k] : 1;
-        group->compliance[row] = def->compliances ? def->compliances[k] : 0;
-    }
-    network->rules = (ProjectionRules){.literal = def->literal,
-                                       .tolerance = def->tolerance,
-                                       .iterations = (uint32_t)def->iterations,
-                                       .inverse_h2 = 1 / (def->time_step * def->time_step)};
-}
-
 /// Sorts the springs by set, keeping their order within each.
 static SingeResult network_build(const SingeNetworkDef *def, SingeNetwork *network) {
     Memory *memory = &network->memory;
@@ -136,8 +108,32 @@ static SingeResult network_build(const SingeNetworkDef *def, SingeNetwork *netwo
         result = network_create(memory, def->particle_count, def->set_count, sets, true, &network->network);
     }
 
-    // numbers, then free the scratch
-    if (!result) network_fill(def, &network->network, rows);
+    // numbers
+    if (!result) {
+        Network *filled = &network->network;
+        for (uint32_t i = 0; i < def->particle_count; i++) {
+            for (int c = 0; c < 3; c++) filled->position[i][c] = def->positions[3 * (size_t)i + (size_t)c];
+            filled->inverse_mass[i] = def->inverse_masses ? def->inverse_masses[i] : 1;
+            filled->held[i] = def->held && def->held[i];
+        }
+        for (uint32_t s = 0; s < def->set_count; s++) {
+            rows[s] = 0;
+            filled->groups[s].regularisation = def->regularisation;
+        }
+
+        // springs, in the rows of their sets
+        for (uint32_t k = 0; k < def->spring_count; k++) {
+            SpringGroup *group = &filled->groups[set_of(def, k)];
+            uint32_t row = rows[set_of(def, k)]++;
+            group->length[row] = def->lengths[k];
+            group->weight[row] = def->weights ? def->weights[k] : 1;
+            group->compliance[row] = def->compliances ? def->compliances[k] : 0;
+        }
+        filled->rules = (ProjectionRules){.literal = def->literal,
+                                          .tolerance = def->tolerance,
+                                          .iterations = (uint32_t)def->iterations,
+                                          .inverse_h2 = 1 / (def->time_step * def->time_step)};
+    }
     FREE(memory, sets, def->set_count);
     FREE(memory, rows, def->set_count);
     FREE(memory, ends, def->spring_count);

@@ -11,10 +11,6 @@
 
 #include <string.h>
 
-static SingeResult setter_bad(SingeSim *sim, const char *stage, const char *what) {
-    return sim_fail(sim, SINGE_ERROR_ARGUMENT, stage, -1, what);
-}
-
 // ---- read in every step
 
 /// The axis along which gravity is largest, 1 to 3, with the sign of gravity: the gas has room at one end of it.
@@ -44,8 +40,8 @@ SingeResult singe_sim_set_pace(SingeSim *sim, float pace) {
     return SINGE_OK;
 }
 
-static SingeResult velocity_check(SingeSim *sim, SingeSheetId id, uint32_t first, uint32_t count,
-                                  const float *velocity) {
+SingeResult singe_sim_set_velocity(SingeSim *sim, SingeSheetId id, uint32_t first, uint32_t count,
+                                   const float *velocity) {
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "velocity", -1,
                         "singe_sim_commit must come first; a sheet's Def has the velocity at the start");
@@ -54,18 +50,12 @@ static SingeResult velocity_check(SingeSim *sim, SingeSheetId id, uint32_t first
     if (count > sheet->vertex_count || first > sheet->vertex_count - count)
         return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "velocity", first,
                          "sheet '%s' has %u vertices with those in reserve", sheet->name, sheet->vertex_count);
-    if (count && !velocity) return setter_bad(sim, "velocity", "velocity is NULL");
+    if (count && !velocity) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "velocity", -1, "velocity is NULL");
     for (size_t k = 0; k < 3 * (size_t)count; k++)
         if (!float_within(velocity[k], -1e4f, 1e4f))
             return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "velocity", (int64_t)(first + k / 3),
                              "the velocity of vertex %zu must be between -10000 and 10000 m/s", first + k / 3);
-    return SINGE_OK;
-}
 
-SingeResult singe_sim_set_velocity(SingeSim *sim, SingeSheetId id, uint32_t first, uint32_t count,
-                                   const float *velocity) {
-    TRY(velocity_check(sim, id, first, count, velocity));
-    const Sheet *sheet = &sim->shell.sheets[id.index];
     float(*now)[4] = sim->state.dynamics.velocity;
     const uint32_t begin = sheet->vertex_first + first;
 
@@ -124,59 +114,36 @@ static bool material_stays(int param) {
            param == PARAM_TEMPERATURE;
 }
 
-/// The share of a new material at a particle of a sheet.
-static float material_share(const SheetSource *source, const float *share, uint32_t i) {
-    const uint32_t vertices = source->sheet.vertex_count;
-    if (!share) return 1;
-    if (i < vertices) return share[i];
-    float sum = 0;
-    for (int k = 0; k < 4; k++) sum += share[source->cells[i - vertices][k]];
-    return 0.25f * sum;
-}
-
 /// A sheet's parameters, as SheetSource has them.
 typedef struct MaterialValues {
     float value[PARAM_COUNT];
     float *values[PARAM_COUNT];
 } MaterialValues;
 
-/// Keeps a single value if all are equal bit by bit.
-static void material_keep(SingeSim *sim, MaterialValues *mixed, int p, uint32_t total) {
-    float *values = mixed->values[p];
-    mixed->value[p] = values[0];
-    if (memcmp(values, values + 1, (total - 1) * sizeof *values) == 0) FREE(&sim->memory, mixed->values[p], total);
-}
-
 /// Interpolates between two sheets' parameters; false when out of memory.
 static bool material_mix(SingeSim *sim, const SheetSource *old, const SheetSource *other, const float *share,
                          MaterialValues *mixed) {
-    const uint32_t total = old->sheet.vertex_count + old->sheet.cell_count;
+    const uint32_t vertices = old->sheet.vertex_count, total = vertices + old->sheet.cell_count;
     for (int p = 0; p < PARAM_COUNT; p++) {
         if (material_stays(p)) continue;
         float *values = NEW(&sim->memory, mixed->values[p], total);
         if (!values) return false;
         for (uint32_t i = 0; i < total; i++) {
             const float from = sheet_param(old, p, i), to = sheet_param(other, p, i);
-            const float s = material_share(old, share, i);
+            float s = share && i < vertices ? share[i] : 1;
+            if (share && i >= vertices) { // a centre has the mean of its corners
+                float sum = 0;
+                for (int k = 0; k < 4; k++) sum += share[old->cells[i - vertices][k]];
+                s = 0.25f * sum;
+            }
             values[i] = s <= 0 ? from : s >= 1 || from == to ? to : from + s * (to - from);
         }
-        material_keep(sim, mixed, p, total);
+
+        // keep a single value if all are equal bit by bit
+        mixed->value[p] = values[0];
+        if (memcmp(values, values + 1, (total - 1) * sizeof *values) == 0) FREE(&sim->memory, mixed->values[p], total);
     }
     return true;
-}
-
-/// A Def of the present sheet, to evaluate another material.
-static SingeSheetDef material_sheet(const SheetSource *source, const SingeMaterialDef *material) {
-    SingeSheetDef def = singe_default_sheet();
-    def.name = source->sheet.name;
-    def.vertex_count = source->sheet.vertex_count;
-    def.positions = (const float *)source->position;
-    def.cell_count = source->sheet.cell_count;
-    def.cells = (const uint32_t *)source->cells;
-    def.uv = (const float *)source->uv;
-    def.corner_uv = (const float *)source->corner_uv;
-    def.material = *material;
-    return def;
 }
 
 static void material_swap(SheetSource *source, MaterialValues *with) {
@@ -190,15 +157,6 @@ static void material_swap(SheetSource *source, MaterialValues *with) {
     }
 }
 
-/// Rebuilds the simulation with other parameters of a sheet; *values then holds those to free.
-static SingeResult material_take(SingeSim *sim, SheetSource *source, MaterialValues *values) {
-    material_swap(source, values);
-    SingeResult result = sheet_source_check(source, &sim->error);
-    if (!result) result = sim_rebuild(sim);
-    if (result) material_swap(source, values);
-    return result;
-}
-
 SingeResult singe_sim_set_material(SingeSim *sim, SingeSheetId id, const SingeMaterialDef *given, const float *share) {
     if (id.generation != 1 || id.index >= sim->sheet_count) return object_stale(sim, "material", id.index);
     SingeMaterialDef material;
@@ -210,8 +168,16 @@ SingeResult singe_sim_set_material(SingeSim *sim, SingeSheetId id, const SingeMa
             return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "material", v,
                              "the share of vertex %u must be between 0 and 1", v);
 
-    // evaluate the new material, and mix it with the old
-    const SingeSheetDef def = material_sheet(source, &material);
+    // evaluate the new material on the present sheet, and mix it with the old
+    SingeSheetDef def = singe_default_sheet();
+    def.name = source->sheet.name;
+    def.vertex_count = source->sheet.vertex_count;
+    def.positions = (const float *)source->position;
+    def.cell_count = source->sheet.cell_count;
+    def.cells = (const uint32_t *)source->cells;
+    def.uv = (const float *)source->uv;
+    def.corner_uv = (const float *)source->corner_uv;
+    def.material = material;
     TRY(sheet_source_create(&sim->memory, &def, &other, &sim->error));
     MaterialValues values = {0};
     Memory before = sim->memory; // a rebuilt simulation counts its own
@@ -220,8 +186,13 @@ SingeResult singe_sim_set_material(SingeSim *sim, SingeSheetId id, const SingeMa
         result = sim_fail(sim, SINGE_ERROR_MEMORY, "material", -1, "out of memory");
     sheet_source_free(&sim->memory, &other);
 
-    // take the values over
-    if (!result) result = material_take(sim, source, &values);
+    // rebuild with the values, which then are those to free
+    if (!result) {
+        material_swap(source, &values);
+        result = sheet_source_check(source, &sim->error);
+        if (!result) result = sim_rebuild(sim);
+        if (result) material_swap(source, &values);
+    }
     Memory *memory = !result && sim->committed ? &before : &sim->memory;
     for (int p = 0; p < PARAM_COUNT; p++) FREE(memory, values.values[p], total);
     return result;

@@ -179,18 +179,16 @@ SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSh
     return SINGE_OK;
 }
 
-/// Vertices that a sheet has in reserve for tears: half as many as its own, and some more for small sheets.
-static uint32_t sim_spares(const SingeSim *sim, const Sheet *sheet) {
-    const SingeSolverDef *solver = &sim->def.solver;
-    return solver->tearing && solver->method == SINGE_SOLVER_STRAND ? sheet->vertex_count / 2 + 16 : 0;
-}
-
 SingeResult sim_build(SingeSim *sim) {
     const SingeSimDef *def = &sim->def;
     Memory *memory = &sim->memory;
     Shell *shell = &sim->shell;
-    for (uint32_t s = 0; s < sim->sheet_count; s++)
-        sim->sheets[s].sheet.spare_count = sim_spares(sim, &sim->sheets[s].sheet);
+    // vertices in reserve for tears: half as many as a sheet's own, and some more for small sheets
+    const bool tears = def->solver.tearing && def->solver.method == SINGE_SOLVER_STRAND;
+    for (uint32_t s = 0; s < sim->sheet_count; s++) {
+        Sheet *sheet = &sim->sheets[s].sheet;
+        sheet->spare_count = tears ? sheet->vertex_count / 2 + 16 : 0;
+    }
     TRY(shell_create(memory, sim->sheets, sim->sheet_count, shell, &sim->error));
     shell->creases = def->solver.creases && def->solver.method == SINGE_SOLVER_STRAND;
 

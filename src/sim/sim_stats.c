@@ -67,17 +67,6 @@ static void stats_strain(const SingeSim *sim, SingeStats *stats) {
     stats->strain_p99 = (double)stats_select(sim->sample, n, (size_t)(0.99 * (double)(n - 1)));
 }
 
-/// |grad t|^2, s2/m2, at the centre of a cell, of a time that is bilinear over its rest shape.
-static float stats_slope2(const SingeSim *sim, const uint32_t *corner, const float *time) {
-    Float3 p[4];
-    for (int i = 0; i < 4; i++) p[i] = float3_load(sim->shell.rest_position[corner[i]]);
-    Float3 a = float3_scale(float3_sub(float3_add(p[1], p[2]), float3_add(p[0], p[3])), 0.5f);
-    Float3 b = float3_scale(float3_sub(float3_add(p[2], p[3]), float3_add(p[0], p[1])), 0.5f);
-    float ta = 0.5f * (time[1] + time[2] - time[0] - time[3]), tb = 0.5f * (time[2] + time[3] - time[0] - time[1]);
-    float aa = float3_dot(a, a), ab = float3_dot(a, b), bb = float3_dot(b, b), area2 = aa * bb - ab * ab;
-    return area2 > 0 ? (bb * ta * ta - 2 * ab * ta * tb + aa * tb * tb) / area2 : 0;
-}
-
 /// A front that passes at speed v ignites points a distance d apart d/v after each other.
 static double stats_front_speed(const SingeSim *sim) {
     size_t n = 0;
@@ -86,7 +75,16 @@ static double stats_front_speed(const SingeSim *sim) {
         float time[4];
         bool ignited = true;
         for (int i = 0; i < 4; i++) ignited &= (time[i] = sim->state.burn.time_ignited[corner[i]]) >= 0;
-        float slope2 = ignited ? stats_slope2(sim, corner, time) : 0;
+        if (!ignited) continue;
+
+        // |grad t|^2, s2/m2, at the centre of a cell, of a time that is bilinear over its rest shape
+        Float3 p[4];
+        for (int i = 0; i < 4; i++) p[i] = float3_load(sim->shell.rest_position[corner[i]]);
+        Float3 a = float3_scale(float3_sub(float3_add(p[1], p[2]), float3_add(p[0], p[3])), 0.5f);
+        Float3 b = float3_scale(float3_sub(float3_add(p[2], p[3]), float3_add(p[0], p[1])), 0.5f);
+        float ta = 0.5f * (time[1] + time[2] - time[0] - time[3]), tb = 0.5f * (time[2] + time[3] - time[0] - time[1]);
+        float aa = float3_dot(a, a), ab = float3_dot(a, b), bb = float3_dot(b, b), area2 = aa * bb - ab * ab;
+        float slope2 = area2 > 0 ? (bb * ta * ta - 2 * ab * ta * tb + aa * tb * tb) / area2 : 0;
         if (slope2 > 0) sim->sample[n++] = 1 / (sqrtf(slope2) * sim->def.pace);
     }
     return n ? (double)stats_select(sim->sample, n, n / 2) : 0;
@@ -106,24 +104,6 @@ static uint32_t stats_inverted(const SingeSim *sim) {
         inverted += !(above > 0) && !(float3_dot(normal, normal) == 0);
     }
     return inverted;
-}
-
-static void stats_particles(const SingeSim *sim, SingeStats *stats) {
-    const State *state = &sim->state;
-    const Matter *matter = &sim->shell.matter;
-    double square = 0, moving = 0;
-    for (uint32_t i = 0; i < sim->shell.particle_count; i++) {
-        stats->mass_initial += (double)matter->mass[i];
-        if (!(state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
-        stats->particles++;
-        stats->mass += (double)matter->mass[i] * (double)state->burn.mass[i];
-        stats->temperature_max = fmaxf(stats->temperature_max, state->heat.temperature[i]);
-        if (state->burn.time_ignited[i] >= 0 || state->dynamics.pinned[i]) continue;
-        Float3 v = float3_load(state->dynamics.velocity[i]);
-        square += (double)float3_dot(v, v);
-        moving++;
-    }
-    stats->speed_rms_unburnt = moving > 0 ? sqrt(square / moving) : 0;
 }
 
 static void stats_ledgers(const SingeSim *sim, SingeStats *stats) {
@@ -146,26 +126,43 @@ static void stats_ledgers(const SingeSim *sim, SingeStats *stats) {
     stats->ledgers_close = stats->ledger_error <= SINGE_LEDGER_BOUND && stats->mass_ledger_error <= SINGE_LEDGER_BOUND;
 }
 
-static SingeStats stats_now(const SingeSim *sim) {
+void singe_sim_read_stats(const SingeSim *sim, SingeStats *out, size_t struct_size) {
     const Shell *shell = &sim->shell;
-    SingeStats stats = {.time = sim->state.time, .pieces = sim->state.ablate.piece_count};
-    if (!sim->committed) return stats;
+    const State *state = &sim->state;
+    const Matter *matter = &shell->matter;
+    SingeStats stats = {.time = state->time, .pieces = state->ablate.piece_count};
+    if (!sim->committed) {
+        sim_write_result(out, struct_size, &stats, sizeof stats);
+        return;
+    }
+
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         for (uint32_t k = 0; k < shell->springs[colour].count; k++)
-            stats.springs += sim->state.ablate.spring_flags[colour][k] & SINGE_ALIVE;
-    for (uint32_t c = 0; c < shell->cell_count; c++) stats.cells += sim->state.ablate.cell_flags[c] & SINGE_ALIVE;
-    stats_particles(sim, &stats);
+            stats.springs += state->ablate.spring_flags[colour][k] & SINGE_ALIVE;
+    for (uint32_t c = 0; c < shell->cell_count; c++) stats.cells += state->ablate.cell_flags[c] & SINGE_ALIVE;
+
+    // particles
+    double square = 0, moving = 0;
+    for (uint32_t i = 0; i < sim->shell.particle_count; i++) {
+        stats.mass_initial += (double)matter->mass[i];
+        if (!(state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
+        stats.particles++;
+        stats.mass += (double)matter->mass[i] * (double)state->burn.mass[i];
+        stats.temperature_max = fmaxf(stats.temperature_max, state->heat.temperature[i]);
+        if (state->burn.time_ignited[i] >= 0 || state->dynamics.pinned[i]) continue;
+        Float3 v = float3_load(state->dynamics.velocity[i]);
+        square += (double)float3_dot(v, v);
+        moving++;
+    }
+    stats.speed_rms_unburnt = moving > 0 ? sqrt(square / moving) : 0;
+
+    // what is summed over the run or the springs
     stats_ledgers(sim, &stats);
     stats_strain(sim, &stats);
     stats.inverted_cells = stats_inverted(sim);
     stats.intersecting_cells = dynamics_plan_contacts(sim->dynamics).intersecting;
-    stats.tears = sim->state.tear.split_count;
+    stats.tears = state->tear.split_count;
     stats.front_speed = stats_front_speed(sim);
     for (uint32_t s = 0; s < shell->sheet_count; s++) stats.thickening = fmaxf(stats.thickening, sim->thickening[s]);
-    return stats;
-}
-
-void singe_sim_read_stats(const SingeSim *sim, SingeStats *stats, size_t struct_size) {
-    const SingeStats ours = stats_now(sim);
-    sim_write_result(stats, struct_size, &ours, sizeof ours);
+    sim_write_result(out, struct_size, &stats, sizeof stats);
 }

@@ -93,22 +93,20 @@ void singe_sim_read_counts(const SingeSim *sim, SingeCounts *out, size_t struct_
     sim_write_result(out, struct_size, &counts, sizeof counts);
 }
 
-/// Less than half of the distance that contact keeps between surfaces, where it does not report them as near.
-static float bulge_max(const SingeSim *sim) {
-    float cell = INFINITY;
-    if (!sim->def.contact.enabled) return 0;
-    for (uint32_t s = 0; s < sim->shell.sheet_count; s++) cell = fminf(cell, sim->shell.sheets[s].cell_size);
-    return 0.45f * fminf(sim->def.contact.thickness, 0.4f * cell);
-}
-
 SingeResult singe_sim_draw(SingeSim *sim, SingeSurface *surface, size_t struct_size) {
     if (struct_size < sizeof *surface)
         return sim_fail(sim, SINGE_ERROR_ARGUMENT, "surface", -1, "struct_size is smaller than a SingeSurface");
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "surface", -1, "singe_sim_commit must come before the surface");
+
+    // bulges: less than half of the distance that contact keeps between surfaces, where it does not report them as near
+    float cell = INFINITY;
+    for (uint32_t s = 0; s < sim->shell.sheet_count; s++) cell = fminf(cell, sim->shell.sheets[s].cell_size);
+    float bulge_max = sim->def.contact.enabled ? 0.45f * fminf(sim->def.contact.thickness, 0.4f * cell) : 0;
     SurfaceDetail detail = {sim->def.surface_detail, sim->def.surface_raggedness, (uint32_t)sim->def.seed, NULL,
-                            bulge_max(sim)};
+                            bulge_max};
     if (!(detail.size > 0)) return surface_draw(sim->ablate, &sim->shell, &sim->state, surface, &sim->error);
+
     float *room;
     if (!NEW(&sim->memory, room, sim->shell.vertex_count))
         return sim_fail(sim, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface");

@@ -69,8 +69,20 @@ static SingeResult snapshot_state(Stream *stream, SingeSim *sim) {
     return result;
 }
 
-/// For each pin, whether it follows positions, and these positions.
-static bool snapshot_pin_motions(Stream *stream, SingeSim *sim) {
+/// Parts that most simulations do not have come last, and only if there are any: a word of flags, then the parts.
+static bool snapshot_more(Stream *stream, SingeSim *sim) {
+    enum { MORE_REMAINDER = 1, MORE_PINS = 2, MORE_ALL = 3 };
+    bool followed = false;
+    for (uint32_t i = 0; i < sim->pins.count; i++) followed |= sim->pins.items[i].motion.to != NULL;
+    uint32_t more = (sim->remainder != 0 ? MORE_REMAINDER : 0) | (followed ? MORE_PINS : 0);
+    if (stream->mode == STREAM_READ ? stream->offset == stream->size : !more) return true;
+    STREAM(stream, more);
+    if (!snapshot_held(stream, more != 0 && (more & ~(uint32_t)MORE_ALL) == 0)) return false;
+    if (more & MORE_REMAINDER) STREAM(stream, sim->remainder);
+    if (!snapshot_held(stream, !(more & MORE_REMAINDER) || snapshot_remainder_fits(sim))) return false;
+
+    // for each pin, whether it follows positions, and these positions
+    if (!(more & MORE_PINS)) return true;
     for (uint32_t i = 0; i < sim->pins.count; i++) {
         Pin *pin = &sim->pins.items[i];
         uint8_t follows = pin->motion.to != NULL;
@@ -79,24 +91,6 @@ static bool snapshot_pin_motions(Stream *stream, SingeSim *sim) {
         if (follows && !snapshot_motion(stream, &sim->memory, pin->count, &pin->motion)) return false;
     }
     return true;
-}
-
-static bool snapshot_follows(const SingeSim *sim) {
-    for (uint32_t i = 0; i < sim->pins.count; i++)
-        if (sim->pins.items[i].motion.to) return true;
-    return false;
-}
-
-/// Parts that most simulations do not have come last, and only if there are any: a word of flags, then the parts.
-static bool snapshot_more(Stream *stream, SingeSim *sim) {
-    enum { MORE_REMAINDER = 1, MORE_PINS = 2, MORE_ALL = 3 };
-    uint32_t more = (sim->remainder != 0 ? MORE_REMAINDER : 0) | (snapshot_follows(sim) ? MORE_PINS : 0);
-    if (stream->mode == STREAM_READ ? stream->offset == stream->size : !more) return true;
-    STREAM(stream, more);
-    if (!snapshot_held(stream, more != 0 && (more & ~(uint32_t)MORE_ALL) == 0)) return false;
-    if (more & MORE_REMAINDER) STREAM(stream, sim->remainder);
-    if (!snapshot_held(stream, !(more & MORE_REMAINDER) || snapshot_remainder_fits(sim))) return false;
-    return !(more & MORE_PINS) || snapshot_pin_motions(stream, sim);
 }
 
 /// Walks the whole body. When reading, builds the shell once the sheets are there.
@@ -148,7 +142,9 @@ void singe_sim_free_bytes(SingeSim *sim, uint8_t *bytes, size_t size) {
     memory_free(&sim->memory, (void *)&bytes, size, 1);
 }
 
-static SingeResult snapshot_check(const uint8_t *bytes, size_t size, SingeError *error) {
+SingeResult singe_sim_load(const SingeSimDef *hooks, const uint8_t *bytes, size_t size, SingeSim **out,
+                           SingeError *error) {
+    *out = NULL;
     SnapshotHeader header;
     if (size < sizeof header) return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "too short for a snapshot");
     memcpy(&header, bytes, sizeof header);
@@ -163,15 +159,10 @@ static SingeResult snapshot_check(const uint8_t *bytes, size_t size, SingeError 
         return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "the snapshot is cut short");
     if (header.checksum != expected.checksum)
         return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "the snapshot is damaged: wrong checksum");
-    return SINGE_OK;
-}
 
-SingeResult singe_sim_load(const SingeSimDef *hooks, const uint8_t *bytes, size_t size, SingeSim **out,
-                           SingeError *error) {
-    *out = NULL;
-    TRY(snapshot_check(bytes, size, error));
     SingeSim *sim;
     TRY(singe_sim_create(hooks, &sim, error));
+
     // the stream only reads: the cast does not drop constness in effect
     Stream read = {.mode = STREAM_READ,
                    .bytes = (uint8_t *)(uintptr_t)(bytes + sizeof(SnapshotHeader)),

@@ -46,35 +46,6 @@ static bool moment_fits(float moment, double now) {
     return moment == -1 || double_within((double)moment, 0, (float)now);
 }
 
-static bool burn_fits(const SingeSim *sim) {
-    const State *state = &sim->state;
-    for (uint32_t i = 0; i < sim->shell.particle_count; i++) {
-        float temperature = state->heat.temperature[i], peak = state->heat.temperature_peak[i];
-        if (!(temperature >= 0 && isfinite(temperature) && peak >= 0 && isfinite(peak))) return false;
-        if (!double_within((double)state->burn.mass[i], 0, 1)) return false;
-        if (!double_within((double)state->burn.fuel[i], 0, 1)) return false;
-        if (!(state->burn.release[i] >= 0 && isfinite(state->burn.release[i]))) return false;
-        if (!(state->burn.burn_rate[i] >= 0 && isfinite(state->burn.burn_rate[i]))) return false;
-        if (!moment_fits(state->burn.time_ignited[i], state->time)) return false;
-        if (!moment_fits(state->burn.time_burnt[i], state->time)) return false;
-    }
-    return true;
-}
-
-static bool dynamics_fits(const SingeSim *sim) {
-    const Shell *shell = &sim->shell;
-    const DynamicsState *dynamics = &sim->state.dynamics;
-    for (uint32_t i = 0; i < shell->particle_count; i++) {
-        const float *x = dynamics->position[i], *v = dynamics->velocity[i];
-        if (!position_fits(x) || !position_fits(v) || !(x[3] >= 0 && isfinite(x[3])) || !isfinite(v[3])) return false;
-    }
-    for (uint32_t s = 0; dynamics->bend && s < shell->springs[SINGE_GREEN].count; s++)
-        if (!isfinite(dynamics->bend[s]) || !isfinite(dynamics->crease[s])) return false;
-    for (size_t k = 0; shell->spare_count && k < 6 * (size_t)shell->cell_count; k++)
-        if (!isfinite(sim->state.tear.line_force[k / 6][k % 6])) return false;
-    return true;
-}
-
 /// Every particle is held by as many pins as its count tells.
 static bool pins_fit(SingeSim *sim) {
     uint8_t *held = sim->state.dynamics.pinned;
@@ -93,30 +64,51 @@ static bool pins_fit(SingeSim *sim) {
     return fits;
 }
 
-static bool sums_fit(const SingeSim *sim) {
-    const State *state = &sim->state;
+bool snapshot_state_fits(SingeSim *sim) {
+    State *state = &sim->state;
+    const Shell *shell = &sim->shell;
+
+    // sums
     const double sums[] = {state->heat.heat_in,    state->heat.heat_lost,      state->heat.heat_of_combustion,
                            state->burn.mass_burnt, state->ablate.heat_removed, state->ablate.mass_removed,
                            sim->heat_start};
     for (size_t k = 0; k < sizeof sums / sizeof *sums; k++)
         if (!isfinite(sums[k])) return false;
-    return state->burn.mass_burnt >= 0 && state->ablate.mass_removed >= 0 &&
-           state->time == (double)state->step * (double)sim->def.time_step;
-}
+    if (!(state->burn.mass_burnt >= 0 && state->ablate.mass_removed >= 0 &&
+          state->time == (double)state->step * (double)sim->def.time_step))
+        return false;
 
-static bool lengths_fit(const SingeSim *sim) {
+    // heat and burning
+    for (uint32_t i = 0; i < shell->particle_count; i++) {
+        float temperature = state->heat.temperature[i], peak = state->heat.temperature_peak[i];
+        if (!(temperature >= 0 && isfinite(temperature) && peak >= 0 && isfinite(peak))) return false;
+        if (!double_within((double)state->burn.mass[i], 0, 1)) return false;
+        if (!double_within((double)state->burn.fuel[i], 0, 1)) return false;
+        if (!(state->burn.release[i] >= 0 && isfinite(state->burn.release[i]))) return false;
+        if (!(state->burn.burn_rate[i] >= 0 && isfinite(state->burn.burn_rate[i]))) return false;
+        if (!moment_fits(state->burn.time_ignited[i], state->time)) return false;
+        if (!moment_fits(state->burn.time_burnt[i], state->time)) return false;
+    }
+
+    // dynamics
+    const DynamicsState *dynamics = &state->dynamics;
+    for (uint32_t i = 0; i < shell->particle_count; i++) {
+        const float *x = dynamics->position[i], *v = dynamics->velocity[i];
+        if (!position_fits(x) || !position_fits(v) || !(x[3] >= 0 && isfinite(x[3])) || !isfinite(v[3])) return false;
+    }
+    for (uint32_t s = 0; dynamics->bend && s < shell->springs[SINGE_GREEN].count; s++)
+        if (!isfinite(dynamics->bend[s]) || !isfinite(dynamics->crease[s])) return false;
+    for (size_t k = 0; shell->spare_count && k < 6 * (size_t)shell->cell_count; k++)
+        if (!isfinite(state->tear.line_force[k / 6][k % 6])) return false;
+
+    // pins and pieces, then lengths, which follow
+    if (!pins_fit(sim)) return false;
+    if (!ablate_fits(sim->ablate, shell, &state->ablate)) return false;
+    burn_restore_lengths(shell, &state->ablate, &state->burn);
+    memset(state->dynamics.position + shell->particle_count, 0,
+           shell_nowhere_count(shell) * sizeof *state->dynamics.position);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
-        for (uint32_t s = 0; s < sim->shell.springs[colour].count; s++)
-            if (!isfinite(sim->state.burn.spring_length[colour][s])) return false;
+        for (uint32_t s = 0; s < shell->springs[colour].count; s++)
+            if (!isfinite(state->burn.spring_length[colour][s])) return false;
     return true;
-}
-
-bool snapshot_state_fits(SingeSim *sim) {
-    State *state = &sim->state;
-    if (!sums_fit(sim) || !burn_fits(sim) || !dynamics_fits(sim) || !pins_fit(sim)) return false;
-    if (!ablate_fits(sim->ablate, &sim->shell, &state->ablate)) return false;
-    burn_restore_lengths(&sim->shell, &state->ablate, &state->burn);
-    memset(state->dynamics.position + sim->shell.particle_count, 0,
-           shell_nowhere_count(&sim->shell) * sizeof *state->dynamics.position);
-    return lengths_fit(sim);
 }

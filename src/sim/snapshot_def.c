@@ -21,15 +21,6 @@ void snapshot_sim_def(Stream *stream, SingeSimDef *def) {
     def_whole(stream, &contact_table, &def->contact, sizeof def->contact);
 }
 
-static void def_material(Stream *stream, SheetMaterial *material) {
-    STREAM(stream, material->heat_operator);
-    STREAM(stream, material->thickening);
-    STREAM(stream, material->reference_grammage);
-    uint8_t ablate = material->ablate;
-    STREAM(stream, ablate);
-    if (stream->mode == STREAM_READ) material->ablate = ablate != 0;
-}
-
 void snapshot_sheet_def(Stream *stream, Sheet *sheet) {
     STREAM(stream, sheet->name);
     sheet->name[sizeof sheet->name - 1] = 0;
@@ -38,7 +29,15 @@ void snapshot_sheet_def(Stream *stream, Sheet *sheet) {
     STREAM(stream, sheet->velocity);
     STREAM(stream, sheet->drop_pieces_below);
     STREAM(stream, sheet->source_count);
-    def_material(stream, &sheet->material);
+
+    // its material
+    SheetMaterial *material = &sheet->material;
+    STREAM(stream, material->heat_operator);
+    STREAM(stream, material->thickening);
+    STREAM(stream, material->reference_grammage);
+    uint8_t ablate = material->ablate;
+    STREAM(stream, ablate);
+    if (stream->mode == STREAM_READ) material->ablate = ablate != 0;
 }
 
 void snapshot_source_def(Stream *stream, SingeSourceDef *def) { def_whole(stream, &source_table, def, sizeof *def); }

@@ -36,47 +36,48 @@ static bool snapshot_path(Stream *stream, Memory *memory, Path *path) {
            snapshot_held(stream, path_check(path->count, path->keys, "load", NULL) == SINGE_OK && path_is_normal(path));
 }
 
-static bool snapshot_sheet(Stream *stream, Memory *memory, SheetSource *source) {
-    snapshot_sheet_def(stream, &source->sheet);
-    uint32_t vertices = source->sheet.vertex_count, cells = source->sheet.cell_count;
-    if (!snapshot_array(stream, memory, &source->position, vertices, sizeof *source->position) ||
-        !snapshot_array(stream, memory, &source->cells, cells, sizeof *source->cells) ||
-        !snapshot_array(stream, memory, &source->uv, vertices, sizeof *source->uv))
-        return false;
-
-    // arrays that may be absent
-    uint8_t seams = source->corner_uv != NULL, numbered = source->source_vertex != NULL;
-    uint8_t corners = source->corner_source != NULL;
-    STREAM(stream, corners);
-    STREAM(stream, seams);
-    STREAM(stream, numbered);
-    if ((seams && !snapshot_array(stream, memory, &source->corner_uv, cells, sizeof *source->corner_uv)) ||
-        (corners && !snapshot_array(stream, memory, &source->corner_source, cells, sizeof *source->corner_source)) ||
-        (numbered && !snapshot_array(stream, memory, &source->source_vertex, vertices, sizeof *source->source_vertex)))
-        return false;
-
-    // parameters
-    for (int p = 0; p < PARAM_COUNT; p++) {
-        uint8_t varies = source->values[p] != NULL;
-        STREAM(stream, source->value[p]);
-        STREAM(stream, varies);
-        if (varies && !snapshot_array(stream, memory, &source->values[p], (size_t)vertices + cells, sizeof(float)))
-            return false;
-    }
-    return snapshot_held(stream, sheet_source_check(source, NULL) == SINGE_OK);
-}
-
 bool snapshot_sheets(Stream *stream, SingeSim *sim) {
+    Memory *memory = &sim->memory;
     uint32_t count = sim->sheet_count;
     STREAM(stream, count);
     if (stream->mode == STREAM_READ) {
         size_t max = snapshot_left(stream) / sizeof sim->sheets->sheet.name;
         stream->failed |= count == 0 || count > UINT16_MAX || count > max;
-        if (stream->failed || !NEW(&sim->memory, sim->sheets, count)) return false;
+        if (stream->failed || !NEW(memory, sim->sheets, count)) return false;
         sim->sheet_count = sim->sheet_capacity = count;
     }
-    for (uint32_t i = 0; i < count; i++)
-        if (!snapshot_sheet(stream, &sim->memory, &sim->sheets[i])) return false;
+    for (uint32_t i = 0; i < count; i++) {
+        SheetSource *source = &sim->sheets[i];
+        snapshot_sheet_def(stream, &source->sheet);
+        uint32_t vertices = source->sheet.vertex_count, cells = source->sheet.cell_count;
+        if (!snapshot_array(stream, memory, &source->position, vertices, sizeof *source->position) ||
+            !snapshot_array(stream, memory, &source->cells, cells, sizeof *source->cells) ||
+            !snapshot_array(stream, memory, &source->uv, vertices, sizeof *source->uv))
+            return false;
+
+        // arrays that may be absent
+        uint8_t seams = source->corner_uv != NULL, numbered = source->source_vertex != NULL;
+        uint8_t corners = source->corner_source != NULL;
+        STREAM(stream, corners);
+        STREAM(stream, seams);
+        STREAM(stream, numbered);
+        if ((seams && !snapshot_array(stream, memory, &source->corner_uv, cells, sizeof *source->corner_uv)) ||
+            (corners &&
+             !snapshot_array(stream, memory, &source->corner_source, cells, sizeof *source->corner_source)) ||
+            (numbered &&
+             !snapshot_array(stream, memory, &source->source_vertex, vertices, sizeof *source->source_vertex)))
+            return false;
+
+        // parameters
+        for (int p = 0; p < PARAM_COUNT; p++) {
+            uint8_t varies = source->values[p] != NULL;
+            STREAM(stream, source->value[p]);
+            STREAM(stream, varies);
+            if (varies && !snapshot_array(stream, memory, &source->values[p], (size_t)vertices + cells, sizeof(float)))
+                return false;
+        }
+        if (!snapshot_held(stream, sheet_source_check(source, NULL) == SINGE_OK)) return false;
+    }
     return true;
 }
 
@@ -95,20 +96,6 @@ static bool snapshot_list(Stream *stream, Memory *memory, uint32_t *count, uint3
     if (!items) *count = 0;
     *capacity = *count;
     return items != NULL;
-}
-
-static bool snapshot_source(Stream *stream, SingeSim *sim, Source *source) {
-    uint8_t has_texture = source->texture != NULL;
-    STREAM(stream, source->generation);
-    if (source->generation == 0) return !stream->failed; // a free slot holds nothing
-    snapshot_source_def(stream, &source->def);
-    STREAM(stream, has_texture);
-    STREAM(stream, source->strength_count);
-    return snapshot_path(stream, &sim->memory, &source->path) &&
-           snapshot_array(stream, &sim->memory, &source->strength, source->strength_count, sizeof *source->strength) &&
-           (!has_texture || snapshot_array(stream, &sim->memory, &source->texture, sim->shell.particle_count,
-                                           sizeof *source->texture)) &&
-           snapshot_held(stream, source_check_read(&sim->shell, source, NULL) == SINGE_OK);
 }
 
 /// A mesh as its solid stores it; the rest follows from that.
@@ -165,17 +152,6 @@ static bool snapshot_deform(Stream *stream, Memory *memory, Deform *deform) {
     return ok && !result;
 }
 
-static bool snapshot_heights(Stream *stream, Memory *memory, const SingeColliderDef *def, HeightSolid *heights) {
-    float *saved = heights->heights;
-    size_t count = (size_t)def->columns * def->rows;
-    bool ok = snapshot_array(stream, memory, &saved, count, sizeof *saved);
-    if (stream->mode != STREAM_READ || !ok) return ok;
-    SingeResult result = height_solid_create(memory, def->columns, def->rows, saved, def->size, heights, NULL);
-    FREE(memory, saved, count);
-    stream->failed |= result != SINGE_OK && result != SINGE_ERROR_MEMORY;
-    return result == SINGE_OK;
-}
-
 static bool snapshot_collider(Stream *stream, SingeSim *sim, Collider *collider) {
     STREAM(stream, collider->generation);
     if (collider->generation == 0) return !stream->failed;
@@ -186,20 +162,18 @@ static bool snapshot_collider(Stream *stream, SingeSim *sim, Collider *collider)
     if (!snapshot_held(stream, def.path_count > 0 && def_check(&collider_table, &def, NULL) == SINGE_OK)) return false;
     if (collider->def.kind == SINGE_COLLIDER_MESH) return snapshot_mesh(stream, &sim->memory, &collider->mesh);
     if (collider->def.kind == SINGE_COLLIDER_DEFORMING) return snapshot_deform(stream, &sim->memory, &collider->deform);
-    if (collider->def.kind == SINGE_COLLIDER_HEIGHTFIELD)
-        return snapshot_heights(stream, &sim->memory, &collider->def, &collider->heights);
-    return true;
-}
+    if (collider->def.kind != SINGE_COLLIDER_HEIGHTFIELD) return true;
 
-static bool snapshot_pin(Stream *stream, SingeSim *sim, Pin *pin) {
-    STREAM(stream, pin->generation);
-    if (pin->generation == 0) return !stream->failed;
-    STREAM(stream, pin->count);
-    if (!snapshot_array(stream, &sim->memory, &pin->particles, pin->count, sizeof *pin->particles) ||
-        !snapshot_array(stream, &sim->memory, &pin->anchors, pin->count, sizeof *pin->anchors) ||
-        !snapshot_path(stream, &sim->memory, &pin->path))
-        return false;
-    return snapshot_held(stream, snapshot_pin_fits(&sim->shell, pin));
+    // a height field
+    float *saved = collider->heights.heights;
+    size_t count = (size_t)def.columns * def.rows;
+    bool ok = snapshot_array(stream, &sim->memory, &saved, count, sizeof *saved);
+    if (stream->mode != STREAM_READ || !ok) return ok;
+    SingeResult result =
+        height_solid_create(&sim->memory, def.columns, def.rows, saved, def.size, &collider->heights, NULL);
+    FREE(&sim->memory, saved, count);
+    stream->failed |= result != SINGE_OK && result != SINGE_ERROR_MEMORY;
+    return result == SINGE_OK;
 }
 
 bool snapshot_objects(Stream *stream, SingeSim *sim) {
@@ -208,17 +182,43 @@ bool snapshot_objects(Stream *stream, SingeSim *sim) {
     if (!snapshot_list(stream, memory, &sim->sources.count, &sim->sources.capacity, &sim->sources.items,
                        sizeof *sim->sources.items))
         return false;
-    for (uint32_t i = 0; i < sim->sources.count; i++)
-        if (!snapshot_source(stream, sim, &sim->sources.items[i])) return false;
+    for (uint32_t i = 0; i < sim->sources.count; i++) {
+        Source *source = &sim->sources.items[i];
+        uint8_t has_texture = source->texture != NULL;
+        STREAM(stream, source->generation);
+        if (stream->failed) return false;
+        if (source->generation == 0) continue; // a free slot holds nothing
+        snapshot_source_def(stream, &source->def);
+        STREAM(stream, has_texture);
+        STREAM(stream, source->strength_count);
+        bool ok = snapshot_path(stream, memory, &source->path) &&
+                  snapshot_array(stream, memory, &source->strength, source->strength_count, sizeof *source->strength) &&
+                  (!has_texture || snapshot_array(stream, memory, &source->texture, sim->shell.particle_count,
+                                                  sizeof *source->texture)) &&
+                  snapshot_held(stream, source_check_read(&sim->shell, source, NULL) == SINGE_OK);
+        if (!ok) return false;
+    }
+
     if (!snapshot_list(stream, memory, &sim->colliders.count, &sim->colliders.capacity, &sim->colliders.items,
                        sizeof *sim->colliders.items))
         return false;
     for (uint32_t i = 0; i < sim->colliders.count; i++)
         if (!snapshot_collider(stream, sim, &sim->colliders.items[i])) return false;
+
     if (!snapshot_list(stream, memory, &sim->pins.count, &sim->pins.capacity, &sim->pins.items,
                        sizeof *sim->pins.items))
         return false;
-    for (uint32_t i = 0; i < sim->pins.count; i++)
-        if (!snapshot_pin(stream, sim, &sim->pins.items[i])) return false;
+    for (uint32_t i = 0; i < sim->pins.count; i++) {
+        Pin *pin = &sim->pins.items[i];
+        STREAM(stream, pin->generation);
+        if (stream->failed) return false;
+        if (pin->generation == 0) continue;
+        STREAM(stream, pin->count);
+        if (!snapshot_array(stream, memory, &pin->particles, pin->count, sizeof *pin->particles) ||
+            !snapshot_array(stream, memory, &pin->anchors, pin->count, sizeof *pin->anchors) ||
+            !snapshot_path(stream, memory, &pin->path))
+            return false;
+        if (!snapshot_held(stream, snapshot_pin_fits(&sim->shell, pin))) return false;
+    }
     return snapshot_held(stream, snapshot_generations_fit(sim));
 }

@@ -13,27 +13,6 @@ static void step_lap(SingeSim *sim, SingeStage stage, double *start) {
     *start = now;
 }
 
-static void step_note_contacts(SingeSim *sim) {
-    CollisionCounters found = dynamics_plan_contacts(sim->dynamics);
-    SingeTimers *timers = &sim->timers;
-    timers->contact_seconds = found.seconds;
-    timers->contact_searches = found.searches;
-    timers->contact_pairs = found.pairs;
-    timers->contact_repulsions = found.repulsions;
-    timers->contact_stops = found.stops;
-    timers->contact_unresolved = found.unresolved;
-    timers->contact_dropped = found.dropped;
-    sim_log_contacts(sim, &found);
-}
-
-/// Copies what is stored for a vertex outside the State to its new half.
-static void step_share(SingeSim *sim, uint32_t vertex, uint32_t spare) {
-    dynamics_plan_torn(sim->dynamics, vertex, spare);
-    if (sim->gas) gas_plan_torn(sim->gas, vertex, spare);
-    for (uint32_t i = 0; i < sim->sources.count; i++)
-        if (sim->sources.items[i].texture) sim->sources.items[i].texture[spare] = sim->sources.items[i].texture[vertex];
-}
-
 /// Tears, and updates after them.
 static void step_tear(SingeSim *sim, StepContext context) {
     State *state = &sim->state;
@@ -46,8 +25,17 @@ static void step_tear(SingeSim *sim, StepContext context) {
     uint32_t tears = tear_step(sim->tear, &sim->shell, state, pull, sim->pool, context.h, &short_of_spares);
     if (short_of_spares) sim_log_short_of_spares(sim);
     if (tears == 0) return;
-    for (uint32_t k = state->tear.split_count - tears; k < state->tear.split_count; k++)
-        step_share(sim, state->tear.splits[k].vertex, state->tear.splits[k].spare);
+
+    // copy what is stored for a vertex outside the State to its new half
+    for (uint32_t k = state->tear.split_count - tears; k < state->tear.split_count; k++) {
+        const uint32_t vertex = state->tear.splits[k].vertex, spare = state->tear.splits[k].spare;
+        dynamics_plan_torn(sim->dynamics, vertex, spare);
+        if (sim->gas) gas_plan_torn(sim->gas, vertex, spare);
+        for (uint32_t i = 0; i < sim->sources.count; i++)
+            if (sim->sources.items[i].texture)
+                sim->sources.items[i].texture[spare] = sim->sources.items[i].texture[vertex];
+    }
+
     context.state.ablate = NULL;
     ablate_torn(sim->ablate, &context, &state->ablate);
 }
@@ -78,7 +66,17 @@ static void step_note(SingeSim *sim, const HeatCounters *heat, const DynamicsCou
     timers->projection_iterations += dynamics->iterations;
     timers->projection_flops += dynamics->flops;
     timers->projection_bytes += dynamics->bytes;
-    step_note_contacts(sim);
+
+    // contacts
+    CollisionCounters found = dynamics_plan_contacts(sim->dynamics);
+    timers->contact_seconds = found.seconds;
+    timers->contact_searches = found.searches;
+    timers->contact_pairs = found.pairs;
+    timers->contact_repulsions = found.repulsions;
+    timers->contact_stops = found.stops;
+    timers->contact_unresolved = found.unresolved;
+    timers->contact_dropped = found.dropped;
+    sim_log_contacts(sim, &found);
 }
 
 /// A stage's context lacks the part of the State that the stage writes.
@@ -130,13 +128,6 @@ static SingeResult step_stages(SingeSim *sim) {
     return SINGE_OK;
 }
 
-/// With assertions: checks everything that a step may have changed.
-static void step_validate(const SingeSim *sim) {
-    shell_assert(&sim->shell, &sim->state);
-    SINGE_ASSERT(dynamics_plan_validate(sim->dynamics) == NULL);
-    (void)sim;
-}
-
 SingeResult sim_step(SingeSim *sim) {
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "step", -1, "singe_sim_commit must come before the first step");
@@ -166,7 +157,10 @@ SingeResult sim_step(SingeSim *sim) {
     sim->state.step++;
     sim->state.time = (double)sim->state.step * (double)sim->def.time_step;
     sim->timers.steps++;
-    step_validate(sim);
+
+    // with assertions: checks everything that a step may have changed
+    shell_assert(&sim->shell, &sim->state);
+    SINGE_ASSERT(dynamics_plan_validate(sim->dynamics) == NULL);
     return SINGE_OK;
 }
 
