@@ -86,23 +86,6 @@ static void note_refused(Source *source, const char *why) {
     if (!source->refused) source->refused = why;
 }
 
-static bool open_beside(Source *source, const char *path, Opened *opened) {
-    if (!path_is_inside(source->name, path)) {
-        note_refused(source, "; it refers to something that is not a file in its folder or below");
-        return false;
-    }
-
-    if (file_read(path, (SingeAllocator){0}, &opened->own, NULL)) {
-        note_refused(source, "; it refers to a file that cannot be read");
-        return false;
-    }
-
-    opened->bytes = opened->own.data;
-    opened->size = opened->own.size;
-    source->beside_size += opened->size;
-    return true;
-}
-
 // ---- assimp's callbacks
 
 static struct aiFile *source_open(struct aiFileIO *io, const char *name, const char *mode) {
@@ -115,7 +98,17 @@ static struct aiFile *source_open(struct aiFileIO *io, const char *name, const c
     if (good && strcmp(name, source->name) == 0) {
         opened->bytes = source->bytes;
         opened->size = source->size;
-    } else good = good && open_beside(source, name, opened);
+    } else if (good && !path_is_inside(source->name, name)) {
+        note_refused(source, "; it refers to something that is not a file in its folder or below");
+        good = false;
+    } else if (good && file_read(name, (SingeAllocator){0}, &opened->own, NULL)) {
+        note_refused(source, "; it refers to a file that cannot be read");
+        good = false;
+    } else if (good) {
+        opened->bytes = opened->own.data;
+        opened->size = opened->own.size;
+        source->beside_size += opened->size;
+    }
 
     if (!good) {
         free(file);

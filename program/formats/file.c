@@ -100,18 +100,6 @@ void bytes_free(Bytes *bytes) {
 
 // ---- writing
 
-static int write_bytes(int file, const uint8_t *data, size_t size) {
-    while (size) {
-        ssize_t count = write(file, data, size < FILE_LIMIT ? size : FILE_LIMIT);
-        if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) return count < 0 ? errno : EIO;
-        data += count;
-        size -= (size_t)count;
-    }
-    // EINVAL: the file system cannot flush
-    return fsync(file) && errno != EINVAL && errno != ENOTSUP ? errno : 0;
-}
-
 // Opens a new file next to `target`.
 static int temporary_open(const char *target, char *temporary, size_t length, int *file) {
     for (int attempt = 0; attempt < 100; attempt++) {
@@ -161,7 +149,18 @@ SingeResult file_write_backup(const char *path, const char *backup, const void *
 
     int reason = temporary_open(path, temporary, sizeof temporary, &file);
     if (!reason) {
-        reason = write_bytes(file, data, size);
+        const uint8_t *at = data;
+        while (size && !reason) {
+            ssize_t count = write(file, at, size < FILE_LIMIT ? size : FILE_LIMIT);
+            if (count < 0 && errno == EINTR) continue;
+            if (count <= 0) reason = count < 0 ? errno : EIO;
+            if (count <= 0) break;
+            at += count;
+            size -= (size_t)count;
+        }
+
+        // EINVAL: the file system cannot flush
+        if (!reason) reason = fsync(file) && errno != EINVAL && errno != ENOTSUP ? errno : 0;
         if (close(file) && !reason) reason = errno;
         if (!reason) reason = backup && rename(path, backup) && errno != ENOENT ? errno : 0;
         if (!reason) reason = put_in_place(temporary, path);

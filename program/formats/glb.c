@@ -294,44 +294,6 @@ SingeResult glb_write_frame(const char *path, const OutputScene *scene, const Ou
 
 // ---- animated
 
-static SingeResult put_frame(GlbFile *f, const OutputFrame *frame, int frames, const char *path, SingeError *error) {
-    GlbMeshes meshes = {.file = f, .surface = frame->surface, .lean = true};
-    SingeResult result = sheet_parts_make(&meshes.parts, frame->surface, f->scene->sheet_count, path, error);
-    for (uint32_t i = 0; i < f->scene->sheet_count && !result; i++) {
-        if (!put_mesh(&meshes, i)) continue;
-
-        // keys of a node's scale: 1 while its frame lasts, 0 otherwise; frames begin at (number - 1)/fps
-        float times[3], scales[3][3];
-        uint32_t count = 0;
-        for (int k = -1; k < 2; k++) {
-            const int at = frame->number + k;
-            if (at > frames || (k < 0 && frame->number == 1)) continue;
-            times[count] = k < 0 ? 0 : (float)((double)(at - 1) / (double)f->scene->fps);
-            for (int c = 0; c < 3; c++) scales[count][c] = k == 0;
-            count++;
-        }
-        size_t begin = f->data.size;
-        sink_words(&f->data, times, count);
-        const float box[2] = {times[0], times[count - 1]};
-        const uint32_t input = glb_put_accessor(f, begin, count, 1, GLB_OF_ANIMATION, box);
-        begin = f->data.size;
-        sink_words(&f->data, scales, 3 * (size_t)count);
-        const uint32_t output = glb_put_accessor(f, begin, count, 3, GLB_OF_ANIMATION, NULL);
-        sink_text(&f->animations, "%s{\"input\":%u,\"output\":%u,\"interpolation\":\"STEP\"}", f->node_count ? "," : "",
-                  input, output);
-
-        sink_text(&f->nodes, "%s{\"mesh\":%u,\"name\":", f->node_count ? "," : "", f->node_count);
-        glb_put_string(&f->nodes, f->scene->sheets[i].name);
-        sink_text(&f->nodes, frame->number > 1 ? ",\"scale\":[0,0,0]}" : "}");
-        f->node_count++;
-    }
-    sheet_parts_free(&meshes.parts);
-    if (!result && f->data.size > UINT32_MAX / 2)
-        result = refuse(error, SINGE_ERROR_LIMIT, "glb", frame->number, "%s: frame %d is too large for a GLB",
-                        short_name(path), frame->number);
-    return result;
-}
-
 SingeResult glb_write_single(const char *path, const OutputScene *scene, const OutputCache *cache, SingeError *error) {
     GlbFile file;
     SingeResult result = SINGE_OK;
@@ -341,7 +303,42 @@ SingeResult glb_write_single(const char *path, const OutputScene *scene, const O
     for (int i = 1; i <= cache->frames && !result; i++) {
         OutputFrame frame;
         result = cache->read(cache->context, i, &frame, error);
-        if (!result) result = put_frame(&file, &frame, cache->frames, path, error);
+        if (result) break;
+
+        GlbMeshes meshes = {.file = &file, .surface = frame.surface, .lean = true};
+        result = sheet_parts_make(&meshes.parts, frame.surface, scene->sheet_count, path, error);
+        for (uint32_t sheet = 0; sheet < scene->sheet_count && !result; sheet++) {
+            if (!put_mesh(&meshes, sheet)) continue;
+
+            // keys of a node's scale: 1 while its frame lasts, 0 otherwise; frames begin at (number - 1)/fps
+            float times[3], scales[3][3];
+            uint32_t count = 0;
+            for (int k = -1; k < 2; k++) {
+                const int at = frame.number + k;
+                if (at > cache->frames || (k < 0 && frame.number == 1)) continue;
+                times[count] = k < 0 ? 0 : (float)((double)(at - 1) / (double)scene->fps);
+                for (int c = 0; c < 3; c++) scales[count][c] = k == 0;
+                count++;
+            }
+            size_t begin = file.data.size;
+            sink_words(&file.data, times, count);
+            const float box[2] = {times[0], times[count - 1]};
+            const uint32_t input = glb_put_accessor(&file, begin, count, 1, GLB_OF_ANIMATION, box);
+            begin = file.data.size;
+            sink_words(&file.data, scales, 3 * (size_t)count);
+            const uint32_t output = glb_put_accessor(&file, begin, count, 3, GLB_OF_ANIMATION, NULL);
+            sink_text(&file.animations, "%s{\"input\":%u,\"output\":%u,\"interpolation\":\"STEP\"}",
+                      file.node_count ? "," : "", input, output);
+
+            sink_text(&file.nodes, "%s{\"mesh\":%u,\"name\":", file.node_count ? "," : "", file.node_count);
+            glb_put_string(&file.nodes, scene->sheets[sheet].name);
+            sink_text(&file.nodes, frame.number > 1 ? ",\"scale\":[0,0,0]}" : "}");
+            file.node_count++;
+        }
+        sheet_parts_free(&meshes.parts);
+        if (!result && file.data.size > UINT32_MAX / 2)
+            result = refuse(error, SINGE_ERROR_LIMIT, "glb", frame.number, "%s: frame %d is too large for a GLB",
+                            short_name(path), frame.number);
     }
 
     sink_text(&file.animations, "],\"channels\":[");

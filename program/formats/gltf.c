@@ -55,60 +55,32 @@ static SingeResult list_items(Gltf *gltf, const char *key, uint32_t **items, uin
 
 // ---- buffers
 
-static SingeResult decode_base64(Gltf *gltf, uint32_t number, const uint8_t *at, const uint8_t *end, Bytes *bytes) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    while (end > at && end[-1] == '=') end--;
-    *bytes = (Bytes){.size = (size_t)(end - at) * 3 / 4, .allocator = gltf->allocator};
-    bytes->data = store_new(gltf->allocator, bytes->size + 1, 1);
-    if (!bytes->data) return refuse_memory(gltf->error, "gltf", gltf->name);
-
-    uint32_t bits = 0;
-    size_t done = 0;
-
-    for (int held = 0; at < end; at++) {
-        const char *place = *at ? strchr(digits, *at) : NULL;
-        int digit = place ? (int)(place - digits) : *at == '-' ? 62 : *at == '_' ? 63 : -1;
-        if (digit < 0 && *at == '\\' && at + 1 < end && at[1] == '/') continue; // an escaped / of JSON
-        if (digit < 0) return gltf_bad(gltf, "buffers", number, "its data are not base64");
-        bits = bits << 6 | (uint32_t)digit;
-        held += 6;
-        if (held >= 8) held -= 8, bytes->data[done++] = (uint8_t)(bits >> held);
-    }
-
-    bytes->size = done;
-    return SINGE_OK;
-}
-
 static int hex_digit(uint8_t c) {
     if (c >= '0' && c <= '9') return c - '0';
     if (c >= 'a' && c <= 'f') return c - 'a' + 10;
     return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
-/// The path of a URI, relative to the folder of the file. False if it is too long or no path.
-static bool make_path(const Gltf *gltf, const uint8_t *at, const uint8_t *end, char path[PATH_LIMIT]) {
+static SingeResult load_file(Gltf *gltf, uint32_t number, const uint8_t *at, const uint8_t *end, Bytes *bytes) {
+    // the path of the URI, relative to the folder of the file
+    char path[PATH_LIMIT];
     const char *slash = strrchr(gltf->name, '/');
     size_t length = slash ? (size_t)(slash - gltf->name) + 1 : 0;
-    if (length >= PATH_LIMIT) return false;
-    memcpy(path, gltf->name, length);
+    bool good = length < PATH_LIMIT;
+    if (good) memcpy(path, gltf->name, length);
 
-    for (; at < end; at++) {
+    for (; good && at < end; at++) {
         int c = *at;
         if (c == '%' && end - at > 2 && hex_digit(at[1]) >= 0 && hex_digit(at[2]) >= 0) {
             c = hex_digit(at[1]) << 4 | hex_digit(at[2]);
             at += 2;
-        } else if (c == '\\' && (++at == end || !strchr("/\\\"", c = *at))) return false; // names in \u are not read
-        if (c == 0 || length + 1 >= PATH_LIMIT) return false;
-        path[length++] = (char)c;
+        } else if (c == '\\' && (++at == end || !strchr("/\\\"", c = *at))) c = 0; // names in \u are not read
+        good = c != 0 && length + 1 < PATH_LIMIT;
+        if (good) path[length++] = (char)c;
     }
 
-    path[length] = 0;
-    return true;
-}
-
-static SingeResult load_file(Gltf *gltf, uint32_t number, const uint8_t *at, const uint8_t *end, Bytes *bytes) {
-    char path[PATH_LIMIT];
-    if (!make_path(gltf, at, end, path) || !path_is_inside(gltf->name, path))
+    if (good) path[length] = 0;
+    if (!good || !path_is_inside(gltf->name, path))
         return gltf_bad(gltf, "buffers", number, "it refers to something that is not a file in its folder or below");
     SingeError error = {0};
     SingeResult result = file_read_max(path, BUFFERS_LIMIT - gltf->loaded_size, gltf->allocator, bytes, &error);
@@ -134,7 +106,32 @@ static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **byte
         bool inside = end - at > 5 && memcmp(at, "data:", 5) == 0;
         if (inside && (!comma || comma - at < 7 || memcmp(comma - 7, ";base64", 7) != 0))
             return gltf_bad(gltf, "buffers", number, "its data are not base64");
-        TRY(inside ? decode_base64(gltf, number, comma + 1, end, loaded) : load_file(gltf, number, at, end, loaded));
+        if (inside) {
+            at = comma + 1;
+            static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+            while (end > at && end[-1] == '=') end--;
+            *loaded = (Bytes){.size = (size_t)(end - at) * 3 / 4, .allocator = gltf->allocator};
+            loaded->data = store_new(gltf->allocator, loaded->size + 1, 1);
+            if (!loaded->data) return refuse_memory(gltf->error, "gltf", gltf->name);
+
+            uint32_t bits = 0;
+            size_t done = 0;
+
+            for (int held = 0; at < end; at++) {
+                const char *place = *at ? strchr(digits, *at) : NULL;
+                int digit = place ? (int)(place - digits) : *at == '-' ? 62 : *at == '_' ? 63 : -1;
+                if (digit < 0 && *at == '\\' && at + 1 < end && at[1] == '/') continue; // an escaped / of JSON
+                if (digit < 0) return gltf_bad(gltf, "buffers", number, "its data are not base64");
+                bits = bits << 6 | (uint32_t)digit;
+                held += 6;
+                if (held >= 8) {
+                    held -= 8;
+                    loaded->data[done++] = (uint8_t)(bits >> held);
+                }
+            }
+
+            loaded->size = done;
+        } else TRY(load_file(gltf, number, at, end, loaded));
         gltf->loaded_size += loaded->size;
         if (!inside) gltf->beside_size += loaded->size;
     }

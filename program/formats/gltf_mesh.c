@@ -261,23 +261,6 @@ static SingeResult fill_primitive(Fill *fill, const GltfPrimitive *primitive, co
     return SINGE_OK;
 }
 
-static SingeResult fill_all(const Walk *walk, Fill *fill) {
-    const Gltf *gltf = walk->gltf;
-    Polygons *mesh = fill->mesh;
-
-    for (size_t n = 0; n < walk->count; n++) {
-        const GltfMesh *range = &gltf->ranges[walk->instances[n].mesh];
-        for (uint32_t i = 0; i < range->count; i++)
-            TRY(fill_primitive(fill, &gltf->primitives[range->first + i], &walk->instances[n].at));
-    }
-
-    for (size_t i = 0; i < 3 * (size_t)mesh->vertex_count; i++)
-        if (!isfinite(mesh->positions[i]))
-            return gltf_refuse(gltf, SINGE_ERROR_MESH, "vertex %llu (from 0) has a position that is not finite",
-                               (unsigned long long)(i / 3));
-    return SINGE_OK;
-}
-
 static SingeResult make_polygons(const Walk *walk, Polygons *polygons) {
     const Gltf *gltf = walk->gltf;
     SingeAllocator a = gltf->allocator;
@@ -295,7 +278,18 @@ static SingeResult make_polygons(const Walk *walk, Polygons *polygons) {
 
     bool room = made.positions && made.first && made.corners && (!walk->uv || (made.uv && fill.uv));
     if (room) made.first[0] = 0;
-    SingeResult result = room ? fill_all(walk, &fill) : refuse_memory(gltf->error, "gltf", gltf->name);
+    SingeResult result = room ? SINGE_OK : refuse_memory(gltf->error, "gltf", gltf->name);
+
+    for (size_t n = 0; n < walk->count && !result; n++) {
+        const GltfMesh *range = &gltf->ranges[walk->instances[n].mesh];
+        for (uint32_t i = 0; i < range->count && !result; i++)
+            result = fill_primitive(&fill, &gltf->primitives[range->first + i], &walk->instances[n].at);
+    }
+
+    for (size_t i = 0; i < 3 * (size_t)made.vertex_count && !result; i++)
+        if (!isfinite(made.positions[i]))
+            result = gltf_refuse(gltf, SINGE_ERROR_MESH, "vertex %llu (from 0) has a position that is not finite",
+                                 (unsigned long long)(i / 3));
     store_free(a, fill.uv, walk->vertices, 2 * sizeof *fill.uv);
 
     // the allocated counts, for polygons_free

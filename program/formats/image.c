@@ -75,7 +75,16 @@ static void png_pull(png_structp png, png_bytep data, size_t length) {
     job->at += length;
 }
 
-static void png_set_up(PngJob *job) {
+static bool png_decode(PngJob *job) {
+    if (setjmp(job->jump)) return false;
+    job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, png_fail, png_ignore, job, png_take, png_supply);
+    if (job->png) job->info = png_create_info_struct(job->png);
+
+    if (!job->info) {
+        job->out_of_memory = true;
+        return false;
+    }
+
     png_structp png = job->png;
     png_set_read_fn(png, job, png_pull);
     png_set_user_limits(png, IMAGE_SIDE_LIMIT, IMAGE_SIDE_LIMIT);
@@ -95,21 +104,7 @@ static void png_set_up(PngJob *job) {
     job->channels = clear ? 4 : 3;
     job->width = (int)png_get_image_width(png, job->info);
     job->height = (int)png_get_image_height(png, job->info);
-}
 
-static bool png_decode(PngJob *job) {
-    if (setjmp(job->jump)) return false;
-    job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, png_fail, png_ignore, job, png_take, png_supply);
-    if (job->png) job->info = png_create_info_struct(job->png);
-
-    if (!job->info) {
-        job->out_of_memory = true;
-        return false;
-    }
-
-    png_set_up(job);
-
-    png_structp png = job->png;
     int passes = png_set_interlace_handling(png);
     png_read_update_info(png, job->info);
     size_t row = (size_t)job->width * (size_t)job->channels;

@@ -236,18 +236,6 @@ static SingeResult take_answer(Child *child, Bytes *answer, size_t *capacity) {
     }
 }
 
-/// Waits for the end of a child whose pipe is closed. Without a status (a parent that ignores SIGCHLD) it is 0.
-static SingeResult reap(Child *child, int *status) {
-    pid_t ended;
-    while ((ended = waitpid(child->process, status, WNOHANG)) == 0 || (ended < 0 && errno == EINTR)) {
-        TRY(isolate_look(child));
-        nanosleep(&(struct timespec){.tv_nsec = 200000}, NULL);
-    }
-    child->process = 0;
-    if (ended < 0) *status = 0;
-    return SINGE_OK;
-}
-
 /// Removes the ending from the answer and interprets it.
 static SingeResult isolate_judge(const Child *child, Bytes *answer, int status) {
     const int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
@@ -284,7 +272,19 @@ static SingeResult wait_for(Child *child, Bytes *answer) {
     child->memory_before = memory_of(getpid());
 
     SingeResult result = take_answer(child, answer, &capacity);
-    if (!result) result = reap(child, &status);
+
+    // the end of the child, whose pipe is closed; without a status (a parent that ignores SIGCHLD) it is 0
+    while (!result && child->process) {
+        const pid_t ended = waitpid(child->process, &status, WNOHANG);
+        if (ended == 0 || (ended < 0 && errno == EINTR)) {
+            result = isolate_look(child);
+            if (!result) nanosleep(&(struct timespec){.tv_nsec = 200000}, NULL);
+        } else {
+            child->process = 0;
+            if (ended < 0) status = 0;
+        }
+    }
+
     if (!result) result = isolate_judge(child, answer, status);
 
     if (child->process) {

@@ -28,56 +28,54 @@ typedef struct Decimal {
 
 static inline bool is_digit(uint8_t c) { return (uint8_t)(c - '0') < 10; }
 
-// The digits before and after the point.
-static const uint8_t *decimal_digits(const uint8_t *at, const uint8_t *end, Decimal *number) {
+static NumberStatus decimal_read(const uint8_t **at, const uint8_t *end, Decimal *number) {
+    const uint8_t *p = *at;
+    number->negative = p < end && *p == '-';
+    if (p < end && (*p == '-' || *p == '+')) p++;
+
+    // the digits before and after the point
+    const uint8_t *start = p;
     bool point = false, any = false;
     int64_t behind = 0, count = 0, kept = 0;
     uint64_t leading = 0;
     number->digits = NULL;
 
-    for (; at < end; at++) {
-        uint8_t digit = (uint8_t)(*at - '0');
+    for (; p < end; p++) {
+        uint8_t digit = (uint8_t)(*p - '0');
         if (digit > 9) {
-            if (*at != '.' || point) break;
+            if (*p != '.' || point) break;
             point = true;
             continue;
         }
         any = true;
         behind += point;
         if (digit == 0 && !number->digits) continue;
-        if (!number->digits) number->digits = at;
+        if (!number->digits) number->digits = p;
         count++;
-        if (kept < FAST_DIGITS) leading = 10 * leading + digit, kept++;
+        if (kept < FAST_DIGITS) {
+            leading = 10 * leading + digit;
+            kept++;
+        }
     }
 
-    if (!any) return NULL;
-    if (behind > EXPONENT_LIMIT) behind = EXPONENT_LIMIT;
-    if (count > EXPONENT_LIMIT) count = EXPONENT_LIMIT;
-    number->digits_end = at;
-    number->leading = leading;
-    number->digit_count = (int)count;
-    number->exponent = -(int)behind;
-    number->leading_exponent = number->exponent + (int)(count - kept);
-    return at;
-}
-
-static NumberStatus decimal_read(const uint8_t **at, const uint8_t *end, Decimal *number) {
-    const uint8_t *p = *at;
-    number->negative = p < end && *p == '-';
-    if (p < end && (*p == '-' || *p == '+')) p++;
-    const uint8_t *behind = decimal_digits(p, end, number);
-
-    if (!behind) {
+    if (!any) {
         static const char *const words[] = {"nan", "inf"};
         for (int w = 0; w < 2; w++) {
             int i = 0;
-            while (i < 3 && p + i < end && (p[i] | 32) == words[w][i]) i++;
+            while (i < 3 && start + i < end && (start[i] | 32) == words[w][i]) i++;
             if (i == 3) return NUMBER_NOT_FINITE;
         }
         return NUMBER_JUNK;
     }
 
-    p = behind;
+    if (behind > EXPONENT_LIMIT) behind = EXPONENT_LIMIT;
+    if (count > EXPONENT_LIMIT) count = EXPONENT_LIMIT;
+    number->digits_end = p;
+    number->leading = leading;
+    number->digit_count = (int)count;
+    number->exponent = -(int)behind;
+    number->leading_exponent = number->exponent + (int)(count - kept);
+
     if (p < end && (*p | 32) == 'e') {
         bool negative = ++p < end && *p == '-';
         if (p < end && (*p == '-' || *p == '+')) p++;
@@ -205,35 +203,30 @@ static double decimal_round(const Decimal *number, int bits, int lowest) {
     return ldexp((double)kept, drop - shift);
 }
 
-static bool round_fast(const Decimal *number, float *value) {
-    static const double power[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                   1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-    int e = number->leading_exponent;
-
-    if (number->leading == 0) {
-        *value = 0;
-        return true;
-    }
-
-    if (e < -22 || e > 22) return false;
-    double d = e < 0 ? (double)number->leading / power[-e] : (double)number->leading * power[e];
-    uint64_t image;
-    memcpy(&image, &d, sizeof image);
-
-    int32_t from_tie = (int32_t)(image & 0x1fffffff) - 0x10000000;
-    if (d < 1.2e-38 || d > 3.4e38 || (from_tie > -16 && from_tie < 16)) return false;
-    *value = (float)d;
-    return true;
-}
-
 NumberStatus number_float(const uint8_t **at, const uint8_t *end, float *value) {
     Decimal number;
     const uint8_t *p = *at;
     NumberStatus status = decimal_read(&p, end, &number);
     if (status) return status;
 
-    float result;
-    if (!round_fast(&number, &result)) {
+    // a quotient or product of two exact doubles, unless it is close to a tie of floats
+    static const double power[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                   1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+    const int e = number.leading_exponent;
+    float result = 0;
+    bool fast = number.leading == 0;
+
+    if (!fast && e >= -22 && e <= 22) {
+        double d = e < 0 ? (double)number.leading / power[-e] : (double)number.leading * power[e];
+        uint64_t image;
+        memcpy(&image, &d, sizeof image);
+
+        int32_t from_tie = (int32_t)(image & 0x1fffffff) - 0x10000000;
+        fast = !(d < 1.2e-38 || d > 3.4e38 || (from_tie > -16 && from_tie < 16));
+        if (fast) result = (float)d;
+    }
+
+    if (!fast) {
         double exact = decimal_round(&number, 24, -149);
         if (exact > 3.4028234663852886e38) return NUMBER_RANGE;
         result = (float)exact;

@@ -106,37 +106,13 @@ static SingeResult obj_index(Obj *obj, size_t so_far, const char *what, int32_t 
     return SINGE_OK;
 }
 
-// v, v/vt, v//vn or v/vt/vn; normals are checked for their form only
-static SingeResult obj_corner(Obj *obj, int32_t *vertex, int32_t *uv) {
-    Text *text = &obj->text;
-    *uv = -1;
-    TRY(obj_index(obj, obj->position_count, "vertex", vertex));
-    if (obj_word_ended(obj)) return SINGE_OK;
-    text->at++;
-
-    if (text->at < text->end && *text->at != '/') {
-        TRY(obj_index(obj, obj->uv_count, "texture coordinate", uv));
-        if (obj_word_ended(obj)) return SINGE_OK;
-    }
-
-    if (text->at == text->end || *text->at != '/') return obj_refuse_word(obj, "is not an index");
-    text->at++;
-    int64_t normal;
-    const uint8_t *word = text->at;
-
-    if (number_integer(&text->at, text->end, &normal) || normal == 0 || !obj_word_ended(obj)) {
-        text->at = word;
-        return obj_refuse_word(obj, "is not an index");
-    }
-    return SINGE_OK;
-}
-
 static SingeResult obj_face(Obj *obj) {
     if (obj->face_count >= MESH_COUNT_LIMIT) return obj_refuse(obj, SINGE_ERROR_LIMIT, "too many faces");
     if (!store_grow(obj->allocator, &obj->faces, &obj->face_capacity, obj->face_count + 1, sizeof *obj->faces))
         return refuse_memory(obj->error, "obj", obj->name);
     size_t first = obj->corner_count;
-    int64_t line = obj->text.line;
+    Text *text = &obj->text;
+    int64_t line = text->line;
 
     for (obj_skip_blanks(obj); !obj_at_end(obj); obj_skip_blanks(obj), obj->corner_count++) {
         if (obj->corner_count >= MESH_COUNT_LIMIT) return obj_refuse(obj, SINGE_ERROR_LIMIT, "too many corners");
@@ -144,7 +120,27 @@ static SingeResult obj_face(Obj *obj) {
                         sizeof *obj->corners))
             return refuse_memory(obj->error, "obj", obj->name);
         ObjCorner *corner = &obj->corners[obj->corner_count];
-        TRY(obj_corner(obj, &corner->vertex, &corner->uv));
+
+        // v, v/vt, v//vn or v/vt/vn; normals are checked for their form only
+        corner->uv = -1;
+        TRY(obj_index(obj, obj->position_count, "vertex", &corner->vertex));
+        if (obj_word_ended(obj)) continue;
+        text->at++;
+
+        if (text->at < text->end && *text->at != '/') {
+            TRY(obj_index(obj, obj->uv_count, "texture coordinate", &corner->uv));
+            if (obj_word_ended(obj)) continue;
+        }
+
+        if (text->at == text->end || *text->at != '/') return obj_refuse_word(obj, "is not an index");
+        text->at++;
+        int64_t normal;
+        const uint8_t *word = text->at;
+
+        if (number_integer(&text->at, text->end, &normal) || normal == 0 || !obj_word_ended(obj)) {
+            text->at = word;
+            return obj_refuse_word(obj, "is not an index");
+        }
     }
 
     size_t corners = obj->corner_count - first;

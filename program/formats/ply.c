@@ -211,16 +211,6 @@ static SingeResult ply_read_vertex(Ply *ply, const PlyElement *element, const Pl
     return ply_end_row(ply);
 }
 
-static SingeResult ply_read_vertices(Ply *ply, const PlyElement *element, Polygons *mesh, float **uv) {
-    PlyTarget *targets = store_new(ply->allocator, element->property_count, sizeof *targets);
-    if (!targets) return refuse_memory(ply->error, "ply", ply->name);
-    for (size_t i = 0; i < element->property_count; i++) targets[i] = (PlyTarget){0};
-    SingeResult result = ply_plan_vertices(ply, element, mesh, uv, targets);
-    for (uint32_t v = 0; !result && v < mesh->vertex_count; v++) result = ply_read_vertex(ply, element, targets, v);
-    store_free(ply->allocator, targets, element->property_count, sizeof *targets);
-    return result;
-}
-
 // ---- faces
 
 /// The faces being read.
@@ -330,8 +320,16 @@ static SingeResult ply_read_body(Ply *ply, Polygons *mesh, float **uv) {
 
     for (size_t i = 0; i < ply->header.element_count; i++) {
         const PlyElement *element = &ply->header.elements[i];
-        if (element == vertices) TRY(ply_read_vertices(ply, element, mesh, uv));
-        else if (element == faces) TRY(ply_read_faces(ply, element, mesh));
+        if (element == vertices) {
+            PlyTarget *targets = store_new(ply->allocator, element->property_count, sizeof *targets);
+            if (!targets) return refuse_memory(ply->error, "ply", ply->name);
+            for (size_t k = 0; k < element->property_count; k++) targets[k] = (PlyTarget){0};
+            SingeResult result = ply_plan_vertices(ply, element, mesh, uv, targets);
+            for (uint32_t v = 0; !result && v < mesh->vertex_count; v++)
+                result = ply_read_vertex(ply, element, targets, v);
+            store_free(ply->allocator, targets, element->property_count, sizeof *targets);
+            if (result) return result;
+        } else if (element == faces) TRY(ply_read_faces(ply, element, mesh));
         for (uint32_t row = 0; element != vertices && element != faces && row < element->count; row++) {
             if (element->property_count == 0) break;
             TRY(ply_begin_row(ply));

@@ -102,25 +102,6 @@ static SingeResult stl_expect(Stl *stl, const char *first, const char *second) {
     return stl_refuse(stl, "\"%s%s%s\" is missing", first, second ? " " : "", second ? second : "");
 }
 
-/// Reads a number from this line. Messages give the position of a word that is none, not the word: whoever sees them
-/// may not be allowed to read the file.
-static SingeResult stl_float(Stl *stl, float *value) {
-    text_skip_blanks(&stl->text);
-    const uint8_t *at = stl->text.at, *end = text_word_end(&stl->text);
-    NumberStatus status = number_float(&at, end, value);
-
-    if (!status && at == end) {
-        stl->text.at = at;
-        return SINGE_OK;
-    }
-
-    if (stl->text.at == end) return stl_refuse(stl, "the line has too few values");
-    return stl_refuse(stl, "the value in column %lld is %s", (long long)text_column(&stl->text, stl->begin),
-                      status == NUMBER_NOT_FINITE ? "not a finite number"
-                      : status == NUMBER_RANGE    ? "out of range"
-                                                  : "not a number");
-}
-
 static SingeResult stl_solids(Stl *stl, Polygons *mesh, size_t *vertices, size_t *capacity) {
     while (stl_to_word(stl)) {
         TRY(stl_expect(stl, "solid", NULL));
@@ -134,7 +115,22 @@ static SingeResult stl_solids(Stl *stl, Polygons *mesh, size_t *vertices, size_t
             TRY(stl_expect(stl, "outer", "loop"));
             for (size_t v = 0; v < 3; v++) {
                 TRY(stl_expect(stl, "vertex", NULL));
-                for (size_t i = 0; i < 3; i++) TRY(stl_float(stl, &(mesh->positions + 3 * *vertices)[3 * v + i]));
+                for (size_t i = 0; i < 3; i++) {
+                    text_skip_blanks(&stl->text);
+                    const uint8_t *at = stl->text.at, *end = text_word_end(&stl->text);
+                    NumberStatus status = number_float(&at, end, &(mesh->positions + 3 * *vertices)[3 * v + i]);
+
+                    // messages give the position of a word that is no number, not the word: whoever sees them may
+                    // not be allowed to read the file
+                    if (stl->text.at == end) return stl_refuse(stl, "the line has too few values");
+                    if (status || at != end)
+                        return stl_refuse(stl, "the value in column %lld is %s",
+                                          (long long)text_column(&stl->text, stl->begin),
+                                          status == NUMBER_NOT_FINITE ? "not a finite number"
+                                          : status == NUMBER_RANGE    ? "out of range"
+                                                                      : "not a number");
+                    stl->text.at = at;
+                }
             }
             TRY(stl_expect(stl, "endloop", NULL));
             TRY(stl_expect(stl, "endfacet", NULL));

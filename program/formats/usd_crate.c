@@ -146,31 +146,6 @@ CrateValue crate_ints(Crate *crate, const int32_t *values, size_t count) {
     return value | flag_packed;
 }
 
-/// Numbers the values that occur, in their order. Returns their count, or 0 if a table would not be shorter or there is
-/// no memory for one.
-static size_t number_values(Crate *crate, const uint32_t *bits, size_t count, int32_t *numbers, uint32_t *values) {
-    const size_t max = count - count / 3;
-    int log = 5;
-    while ((size_t)1 << log < 2 * max) log++;
-    const size_t size = (size_t)1 << log;
-    if (log > 31 || !store_grow(crate->sink.allocator, &crate->table, &crate->table_capacity, size, 4)) return 0;
-    memset(crate->table, 0, size * sizeof *crate->table);
-
-    size_t found = 0;
-    for (size_t i = 0; i < count; i++) {
-        size_t at = bits[i] * 2654435761u >> (32 - log);
-        while (crate->table[at] && values[crate->table[at] - 1] != bits[i]) at = (at + 1) & (size - 1);
-        if (!crate->table[at]) {
-            if (found == max) return 0;
-            values[found++] = bits[i];
-            crate->table[at] = (uint32_t)found;
-        }
-        numbers[i] = (int32_t)crate->table[at] - 1;
-    }
-
-    return found;
-}
-
 /// Floats as indices into a table: 't', the table's size, the table, the indices. False if that is not shorter.
 static bool put_table(Crate *crate, const float *values, size_t count) {
     Sink *packed = &crate->packed;
@@ -181,8 +156,26 @@ static bool put_table(Crate *crate, const float *values, size_t count) {
     uint32_t *bits = room, *table = room + count;
     int32_t *numbers = (int32_t *)(room + 2 * count);
     memcpy(bits, values, 4 * count);
-    const size_t found = number_values(crate, bits, count, numbers, table);
-    if (!found) return false;
+
+    // numbers the values that occur, in their order
+    const size_t max = count - count / 3;
+    int log = 5;
+    while ((size_t)1 << log < 2 * max) log++;
+    const size_t size = (size_t)1 << log;
+    if (log > 31 || !store_grow(crate->sink.allocator, &crate->table, &crate->table_capacity, size, 4)) return false;
+    memset(crate->table, 0, size * sizeof *crate->table);
+
+    size_t found = 0;
+    for (size_t i = 0; i < count; i++) {
+        size_t at = bits[i] * 2654435761u >> (32 - log);
+        while (crate->table[at] && table[crate->table[at] - 1] != bits[i]) at = (at + 1) & (size - 1);
+        if (!crate->table[at]) {
+            if (found == max) return false;
+            table[found++] = bits[i];
+            crate->table[at] = (uint32_t)found;
+        }
+        numbers[i] = (int32_t)crate->table[at] - 1;
+    }
 
     const size_t before = crate->sink.size;
     sink_bytes(&crate->sink, "t", 1);

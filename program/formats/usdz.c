@@ -71,27 +71,6 @@ static void zip_add(Zip *zip, const char *name, const void *bytes, size_t size) 
     zip->count++;
 }
 
-/// Writes the archive, whole or not at all, and frees it.
-static SingeResult zip_write(Zip *zip, const char *path, SingeError *error) {
-    Sink *sink = &zip->sink;
-    const size_t offset = sink->size, size = zip->directory.size;
-
-    if (zip->too_large) {
-        zip_free(zip);
-        return refuse(error, SINGE_ERROR_LIMIT, "zip", -1, "%s: more than 4 GiB, or 65535 files", short_name(path));
-    }
-
-    sink_bytes(sink, zip->directory.bytes, size);
-    sink_bytes(sink, "PK\5\6", 4);
-    sink_zeros(sink, 4);
-    put_u16(sink, zip->count), put_u16(sink, zip->count);
-    sink_u32(sink, (uint32_t)size), sink_u32(sink, (uint32_t)offset);
-    put_u16(sink, 0);
-    sink->failed = sink->failed || zip->directory.failed;
-    sink_free(&zip->directory);
-    return sink_write(sink, path, error);
-}
-
 // ---- its files
 
 typedef char PictureName[32];
@@ -157,8 +136,25 @@ SingeResult usdz_write(const char *path, const OutputScene *scene, const OutputC
     SingeResult result = sheets && names ? SINGE_OK : refuse_memory(error, "usdz", path);
 
     if (!result) result = add_files(&zip, path, scene, cache, sheets, names, error);
-    if (!result) result = zip_write(&zip, path, error);
-    else zip_free(&zip);
     free(sheets), free(names);
-    return result;
+    if (!result && zip.too_large)
+        result = refuse(error, SINGE_ERROR_LIMIT, "zip", -1, "%s: more than 4 GiB, or 65535 files", short_name(path));
+
+    if (result) {
+        zip_free(&zip);
+        return result;
+    }
+
+    // the directory and its end; the archive is written whole or not at all
+    Sink *sink = &zip.sink;
+    const size_t offset = sink->size, size = zip.directory.size;
+    sink_bytes(sink, zip.directory.bytes, size);
+    sink_bytes(sink, "PK\5\6", 4);
+    sink_zeros(sink, 4);
+    put_u16(sink, zip.count), put_u16(sink, zip.count);
+    sink_u32(sink, (uint32_t)size), sink_u32(sink, (uint32_t)offset);
+    put_u16(sink, 0);
+    sink->failed = sink->failed || zip.directory.failed;
+    sink_free(&zip.directory);
+    return sink_write(sink, path, error);
 }

@@ -96,17 +96,6 @@ static uint32_t *vat_slot(const Vat *vat, uint32_t sheet, const float rest[3]) {
     return &vat->table[hash * 2654435761u >> (32 - vat->log)];
 }
 
-/// Whether a vertex of the cache with that number may be vertex v of a sheet's mesh. On a seam, where several vertices
-/// of the file are one, the cache has the numbers of all of them.
-static bool vat_numbers_fit(const Vat *vat, uint32_t sheet, uint32_t v, int32_t number) {
-    const OutputMesh *mesh = &vat->scene->sheets[sheet].mesh;
-    const int32_t own = mesh->source ? mesh->source[v] : (int32_t)v;
-    if (own < 0 || number < 0) return own < 0 && number < 0;
-    const uint32_t of_file = (uint32_t)number - vat->source_first[sheet];
-    if (of_file == (uint32_t)own) return true;
-    return mesh->became && of_file < mesh->source_count && mesh->became[of_file] == v;
-}
-
 /// The mesh's vertex, or UINT32_MAX if a cut or a tear created it.
 static uint32_t vat_find(const Vat *vat, const SingeSurface *s, uint32_t i) {
     const uint32_t sheet = (uint32_t)s->sheet[i];
@@ -117,9 +106,16 @@ static uint32_t vat_find(const Vat *vat, const SingeSurface *s, uint32_t i) {
         if (at - 1 < vat->first[sheet] || at - 1 >= vat->first[sheet + 1]) continue;
         const uint32_t v = at - 1 - vat->first[sheet];
         const float *rest = mesh->positions + 3 * (size_t)v, *have = s->rest_position[i];
-        if (rest[0] == have[0] && rest[1] == have[1] && rest[2] == have[2] &&
-            vat_numbers_fit(vat, sheet, v, s->source_vertex[i]))
-            return at - 1;
+        if (rest[0] != have[0] || rest[1] != have[1] || rest[2] != have[2]) continue;
+
+        // on a seam, where several vertices of the file are one, the cache has the numbers of all of them
+        const int32_t own = mesh->source ? mesh->source[v] : (int32_t)v, number = s->source_vertex[i];
+        const uint32_t of_file = (uint32_t)number - vat->source_first[sheet];
+        const bool fits = own < 0 || number < 0
+                              ? own < 0 && number < 0
+                              : of_file == (uint32_t)own ||
+                                    (mesh->became && of_file < mesh->source_count && mesh->became[of_file] == v);
+        if (fits) return at - 1;
     }
 
     return UINT32_MAX;
@@ -286,17 +282,6 @@ static bool put_sheet(GlbFile *f, const Vat *vat, uint32_t sheet) {
     return count > 0;
 }
 
-static SingeResult write_mesh(const char *path, const Vat *vat, SingeError *error) {
-    GlbFile file;
-    char name[4096];
-    bool all = snprintf(name, sizeof name, "%s.glb", path) < (int)sizeof name;
-    glb_begin(&file, vat->scene, (SingeAllocator){0});
-    for (uint32_t i = 0; i < vat->scene->sheet_count && all; i++) all = put_sheet(&file, vat, i);
-    SingeResult result = all ? glb_finish(&file, "../", "{}", name, error) : refuse_memory(error, "vat", path);
-    glb_free(&file);
-    return result;
-}
-
 static void put_triple(Sink *sink, const char *name, const float value[3]) {
     sink_text(sink, "  \"%s\": [", name);
     for (int c = 0; c < 3; c++) {
@@ -304,32 +289,6 @@ static void put_triple(Sink *sink, const char *name, const float value[3]) {
         sink_float(sink, value[c]);
     }
     sink_text(sink, "],\n");
-}
-
-static SingeResult write_numbers(const char *path, const Vat *vat, SingeError *error) {
-    Sink sink = {0};
-    char name[4096];
-    float box[2][3];
-    for (int c = 0; c < 3; c++) box[0][c] = box[1][c] = vat->position[0][c];
-
-    for (int f = 0; f < vat->cache->frames; f++)
-        for (uint32_t v = 0; v < vat->count; v++) {
-            const float *at = vat->position[(size_t)f * (size_t)vat->rows * (size_t)vat->width + v];
-            for (int c = 0; c < 3; c++) {
-                box[0][c] = at[c] < box[0][c] ? at[c] : box[0][c];
-                box[1][c] = at[c] > box[1][c] ? at[c] : box[1][c];
-            }
-        }
-
-    sink_text(&sink,
-              "{\n  \"generator\": \"Singe " SINGE_VERSION "\",\n  \"frames\": %d,\n  \"fps\": ", vat->cache->frames);
-    sink_float(&sink, vat->scene->fps);
-    sink_text(&sink, ",\n  \"vertices\": %u,\n  \"width\": %d,\n  \"height\": %d,\n  \"rows_per_frame\": %d,\n",
-              vat->count, vat->width, vat->height, vat->rows);
-    put_triple(&sink, "bounds_min", box[0]), put_triple(&sink, "bounds_max", box[1]);
-    sink_text(&sink, "  \"up\": \"y\",\n  \"unit\": \"m\"\n}\n");
-    if (snprintf(name, sizeof name, "%s.json", path) >= (int)sizeof name) sink.failed = true;
-    return sink_write(&sink, name, error);
 }
 
 SingeResult vat_write(const char *path, const OutputScene *scene, const OutputCache *cache, SingeError *error) {
@@ -350,8 +309,42 @@ SingeResult vat_write(const char *path, const OutputScene *scene, const OutputCa
     for (int i = 1; i <= cache->frames && !result; i++) result = take_frame(&vat, i, path, error);
     if (!result) result = write_texture(path, ".position.exr", &vat, vat.position, "RGBA", EXR_KIND_FLOAT, error);
     if (!result) result = write_texture(path, ".normal.exr", &vat, vat.normal, "RGB", EXR_KIND_HALF, error);
-    if (!result) result = write_mesh(path, &vat, error);
-    if (!result) result = write_numbers(path, &vat, error);
+
+    if (!result) {
+        GlbFile file;
+        char name[4096];
+        bool all = snprintf(name, sizeof name, "%s.glb", path) < (int)sizeof name;
+        glb_begin(&file, scene, (SingeAllocator){0});
+        for (uint32_t i = 0; i < scene->sheet_count && all; i++) all = put_sheet(&file, &vat, i);
+        result = all ? glb_finish(&file, "../", "{}", name, error) : refuse_memory(error, "vat", path);
+        glb_free(&file);
+    }
+
+    if (!result) {
+        char name[4096];
+        Sink sink = {0};
+        float box[2][3];
+        for (int c = 0; c < 3; c++) box[0][c] = box[1][c] = vat.position[0][c];
+
+        for (int f = 0; f < vat.cache->frames; f++)
+            for (uint32_t v = 0; v < vat.count; v++) {
+                const float *at = vat.position[(size_t)f * (size_t)vat.rows * (size_t)vat.width + v];
+                for (int c = 0; c < 3; c++) {
+                    box[0][c] = at[c] < box[0][c] ? at[c] : box[0][c];
+                    box[1][c] = at[c] > box[1][c] ? at[c] : box[1][c];
+                }
+            }
+
+        sink_text(&sink, "{\n  \"generator\": \"Singe " SINGE_VERSION "\",\n  \"frames\": %d,\n  \"fps\": ",
+                  vat.cache->frames);
+        sink_float(&sink, vat.scene->fps);
+        sink_text(&sink, ",\n  \"vertices\": %u,\n  \"width\": %d,\n  \"height\": %d,\n  \"rows_per_frame\": %d,\n",
+                  vat.count, vat.width, vat.height, vat.rows);
+        put_triple(&sink, "bounds_min", box[0]), put_triple(&sink, "bounds_max", box[1]);
+        sink_text(&sink, "  \"up\": \"y\",\n  \"unit\": \"m\"\n}\n");
+        if (snprintf(name, sizeof name, "%s.json", path) >= (int)sizeof name) sink.failed = true;
+        result = sink_write(&sink, name, error);
+    }
 
     free(vat.position), free(vat.normal), free(vat.at), free(vat.facing), free(vat.moved), free(vat.found);
     free(vat.table), free(vat.next), free(vat.first), free(vat.source_first);

@@ -124,12 +124,6 @@ static uint16_t to_half(float value) {
     return sign | (uint16_t)((bits - 0x38000000u) >> 13);
 }
 
-static float from_half(uint16_t half) {
-    const int exponent = half >> 10 & 31, fraction = half & 1023;
-    const float magnitude = exponent ? ldexpf((float)(1024 + fraction), exponent - 25) : ldexpf((float)fraction, -24);
-    return half & 0x8000 ? -magnitude : magnitude;
-}
-
 static void put_double(Writer *w, double value) {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
@@ -187,8 +181,15 @@ static uint8_t *put_node(Writer *w, size_t mask_bytes) {
 }
 
 static void put_topology(Writer *w, const VdbFieldInfo *field) {
-    put_u32(w, 1);                                                             // buffers a leaf
-    const float still = w->half ? from_half(to_half(w->coolest)) : w->coolest; // the background, a whole float anyway
+    put_u32(w, 1);            // buffers a leaf
+    float still = w->coolest; // the background, a whole float anyway
+    if (w->half) {
+        const uint16_t half = to_half(w->coolest);
+        const int exponent = half >> 10 & 31, fraction = half & 1023;
+        still = exponent ? ldexpf((float)(1024 + fraction), exponent - 25) : ldexpf((float)fraction, -24);
+        if (half & 0x8000) still = -still;
+    }
+
     for (uint32_t k = 0; k < field->width; k++) put_float(w, field == &vdb_fields[VDB_TEMPERATURE] ? still : 0);
     put_u32(w, 0); // tiles
     put_u32(w, w->leaf_count > 0);

@@ -13,16 +13,6 @@ static void push_loop(Work *work, const Loops *loops, uint32_t loop, uint32_t or
     push_ring(work, loops->corner + loops->end[loop], loops->end[loop + 1] - loops->end[loop], origin, out);
 }
 
-static bool same_corners(const Faces *faces, uint32_t a, uint32_t b) {
-    if (faces->first[a + 1] - faces->first[a] != faces->first[b + 1] - faces->first[b]) return false;
-    for (uint32_t h = faces->first[a]; h < faces->first[a + 1]; h++) {
-        uint32_t k = faces->first[b];
-        while (k < faces->first[b + 1] && faces->corner[k] != faces->corner[h]) k++;
-        if (k == faces->first[b + 1]) return false;
-    }
-    return true;
-}
-
 void mesh_leave_out_copies(Work *work) {
     const Faces *old = &work->faces;
     uint8_t *gone = work_new(work, old->count, 1);
@@ -38,7 +28,16 @@ void mesh_leave_out_copies(Work *work) {
         for (uint32_t h = old->first[f]; h < old->first[f + 1]; h++)
             if (old->corner[h] < min) min = old->corner[h];
         uint32_t g = head[min];
-        while (g != MESH_NONE && !same_corners(old, f, g)) g = next[g];
+        for (; g != MESH_NONE; g = next[g]) {
+            bool same = old->first[g + 1] - old->first[g] == old->first[f + 1] - old->first[f];
+            for (uint32_t h = old->first[f]; same && h < old->first[f + 1]; h++) {
+                uint32_t k = old->first[g];
+                while (k < old->first[g + 1] && old->corner[k] != old->corner[h]) k++;
+                same = k < old->first[g + 1];
+            }
+            if (same) break;
+        }
+
         if (g != MESH_NONE) {
             gone[f] = 1;
             found++;

@@ -63,30 +63,6 @@ static bool has_repeats(const Loops *loops, const uint32_t *ring, uint32_t n) {
     return false;
 }
 
-// ---- corners on the face's own sides
-
-/// The corner of the ring nearest to `a` on the side from there to `b`; MESH_NONE if there is none.
-static uint32_t corner_on(const Loops *loops, uint32_t n, uint32_t a, uint32_t b) {
-    double d[3], nearest = 1;
-    uint32_t found = MESH_NONE;
-    sub3(position_of(loops, b), position_of(loops, a), d);
-    const double square = dot3(d, d);
-
-    for (uint32_t i = 0; i < n; i++) {
-        const uint32_t half = loops->ring[i];
-        double e[3], off[3];
-        sub3(position_of(loops, half), position_of(loops, a), e);
-        double t = dot3(e, d) / square;
-        if (!(t > beside && t < 1 - beside && t < nearest)) continue;
-        for (int k = 0; k < 3; k++) off[k] = e[k] - t * d[k];
-        if (dot3(off, off) <= beside * beside * square) {
-            nearest = t;
-            found = half;
-        }
-    }
-    return found;
-}
-
 // ---- loops
 
 static void end_loop(Loops *loops, const uint32_t *ring, uint32_t n) {
@@ -127,17 +103,6 @@ static void fall_apart(Loops *loops, uint32_t n, bool all) {
     end_loop(loops, loops->stack, depth);
 }
 
-static bool same_loop(const Loops *loops, uint32_t a, uint32_t b) {
-    const uint32_t n = loops->end[a + 1] - loops->end[a];
-    if (loops->end[b + 1] - loops->end[b] != n) return false;
-    for (uint32_t i = 0; i < n; i++) {
-        uint32_t k = 0, own = vertex_of(loops, loops->corner[loops->end[a] + i]);
-        while (k < n && vertex_of(loops, loops->corner[loops->end[b] + k]) != own) k++;
-        if (k == n) return false;
-    }
-    return true;
-}
-
 bool loops_is_flat(const Loops *loops, const uint32_t *ring, uint32_t n) {
     double longest = 0, area = 0;
     for (uint32_t i = 0; i < n; i++) {
@@ -162,7 +127,14 @@ static bool cut_loops(Loops *loops) {
         loops->triangles[k] = loops->cut.count;
         polygon_normal(&loops->cut, ring, n, normal);
         bool idle = loops_is_flat(loops, ring, n);
-        for (uint32_t other = 0; other < k && !idle; other++) idle = same_loop(loops, k, other);
+        for (uint32_t other = 0; other < k && !idle; other++) {
+            idle = loops->end[other + 1] - loops->end[other] == n;
+            for (uint32_t i = 0; i < n && idle; i++) {
+                uint32_t j = 0, own = vertex_of(loops, ring[i]);
+                while (j < n && vertex_of(loops, loops->corner[loops->end[other] + j]) != own) j++;
+                idle = j < n;
+            }
+        }
         if (idle) continue;
         if (!polygon_cut(&loops->cut, ring, n)) return false;
         if (dot3(normal, normal) > dot3(largest, largest)) memcpy(largest, normal, sizeof largest);
@@ -194,7 +166,24 @@ FaceKind loops_find(Loops *loops, uint32_t face) {
 
     // corners that lie on a side of the ring become corners of that side, too
     for (uint32_t i = 0; i < n && n < loops->cut.capacity; i++) {
-        uint32_t on = corner_on(loops, n, loops->ring[i], loops->ring[(i + 1) % n]);
+        const uint32_t a = loops->ring[i], b = loops->ring[(i + 1) % n];
+        double d[3], nearest = 1;
+        uint32_t on = MESH_NONE; // the one nearest to a
+        sub3(position_of(loops, b), position_of(loops, a), d);
+        const double square = dot3(d, d);
+        for (uint32_t other = 0; other < n; other++) {
+            const uint32_t half = loops->ring[other];
+            double e[3], off[3];
+            sub3(position_of(loops, half), position_of(loops, a), e);
+            double t = dot3(e, d) / square;
+            if (!(t > beside && t < 1 - beside && t < nearest)) continue;
+            for (int k = 0; k < 3; k++) off[k] = e[k] - t * d[k];
+            if (dot3(off, off) <= beside * beside * square) {
+                nearest = t;
+                on = half;
+            }
+        }
+
         if (on == MESH_NONE) continue;
         memmove(loops->ring + i + 2, loops->ring + i + 1, (n - 1 - i) * sizeof *loops->ring);
         loops->ring[i + 1] = on;

@@ -45,38 +45,9 @@ typedef struct Pairs {
     PairHeap heap;
 } Pairs;
 
-// ---- the heap
-
+/// The order of the heap.
 static bool is_before(const PairItem *a, const PairItem *b) {
     return a->cost < b->cost || (a->cost == b->cost && a->half < b->half);
-}
-
-static void heap_push(Work *work, PairHeap *heap, PairItem item) {
-    if (heap->count == heap->capacity) {
-        uint32_t capacity = 2 * heap->capacity + 64;
-        PairItem *items = work_new(work, capacity, sizeof *items);
-        if (!items) return;
-        if (heap->count) memcpy(items, heap->items, heap->count * sizeof *items);
-        heap->items = items;
-        heap->capacity = capacity;
-    }
-
-    uint32_t i = heap->count++;
-    for (; i > 0 && is_before(&item, &heap->items[(i - 1) / 2]); i = (i - 1) / 2)
-        heap->items[i] = heap->items[(i - 1) / 2];
-    heap->items[i] = item;
-}
-
-static PairItem heap_pop(PairHeap *heap) {
-    PairItem top = heap->items[0], item = heap->items[--heap->count];
-    uint32_t i = 0, count = heap->count;
-    for (uint32_t child; (child = 2 * i + 1) < count; i = child) {
-        if (child + 1 < count && is_before(&heap->items[child + 1], &heap->items[child])) child++;
-        if (!is_before(&heap->items[child], &item)) break;
-        heap->items[i] = heap->items[child];
-    }
-    heap->items[i] = item;
-    return top;
 }
 
 // ---- faces cut into triangles
@@ -172,38 +143,6 @@ static bool cut_faces(Pairs *pairs) {
     return true;
 }
 
-/// Finds the twins of the triangles' sides: those of the faces in `before`, and for a diagonal its other side. By
-/// half-edges and not by vertices, since a diagonal may have the same ends as another side.
-static void find_twins(Pairs *pairs) {
-    Work *work = pairs->work;
-    const uint32_t count = work->faces.corner_count, *from = pairs->from;
-    uint32_t *side = work_new(work, pairs->before.corner_count, sizeof *side);
-    work->face = work_new(work, count, sizeof *work->face);
-    work->twin = work_new(work, count, sizeof *work->twin);
-    if (work->no_memory) return;
-
-    for (uint32_t h = 0; h < count; h++) {
-        work->face[h] = h / 3;
-        if (faces_next(&pairs->before, pairs->before_face, from[h]) == from[pair_next3(h)]) side[from[h]] = h;
-    }
-
-    for (uint32_t h = 0; h < count; h++) {
-        const uint32_t a = from[h], b = from[pair_next3(h)], face = pairs->before_face[a];
-        work->twin[h] = MESH_NONE;
-        if (faces_next(&pairs->before, pairs->before_face, a) == b) {
-            if (pairs->before_twin[a] != MESH_NONE) work->twin[h] = side[pairs->before_twin[a]];
-            continue;
-        }
-
-        // the same diagonal in the other triangle of its face
-        uint32_t low = h - h % 3, high = low + 3;
-        while (low > 0 && pairs->before_face[from[low - 1]] == face) low -= 3;
-        while (high < count && pairs->before_face[from[high]] == face) high += 3;
-        for (uint32_t g = low; g < high && work->twin[h] == MESH_NONE; g++)
-            if (from[g] == b && from[pair_next3(g)] == a) work->twin[h] = g;
-    }
-}
-
 // ---- what a pair costs
 
 static uint32_t pair_name(const Pairs *pairs, uint32_t half) {
@@ -290,7 +229,22 @@ static void offer(Pairs *pairs, uint32_t triangle) {
             double to = quad_angle(pairs, pair_next3(side), inner, other) + quad_angle(pairs, across, shared, beyond);
             gain += fmax(0, straight_within - 0.5 * (fabs(from - 180) + fabs(to - 180)));
         }
-        heap_push(pairs->work, &pairs->heap, (PairItem){pairs->cost[name] - straight_gain * gain, name});
+
+        PairHeap *heap = &pairs->heap;
+        const PairItem item = {pairs->cost[name] - straight_gain * gain, name};
+        if (heap->count == heap->capacity) {
+            uint32_t capacity = 2 * heap->capacity + 64;
+            PairItem *items = work_new(pairs->work, capacity, sizeof *items);
+            if (!items) return;
+            if (heap->count) memcpy(items, heap->items, heap->count * sizeof *items);
+            heap->items = items;
+            heap->capacity = capacity;
+        }
+
+        uint32_t at = heap->count++;
+        for (; at > 0 && is_before(&item, &heap->items[(at - 1) / 2]); at = (at - 1) / 2)
+            heap->items[at] = heap->items[(at - 1) / 2];
+        heap->items[at] = item;
     }
 }
 
@@ -336,7 +290,17 @@ static bool find_mates(Pairs *pairs) {
     for (uint32_t t = 0; t < count; t++)
         if (pairs->mate[t] == MESH_NONE) offer(pairs, t);
     while (pairs->heap.count && !work->no_memory) {
-        uint32_t half = heap_pop(&pairs->heap).half, a = half / 3, b = work->twin[half] / 3;
+        PairHeap *heap = &pairs->heap;
+        PairItem top = heap->items[0], item = heap->items[--heap->count];
+        uint32_t i = 0;
+        for (uint32_t child; (child = 2 * i + 1) < heap->count; i = child) {
+            if (child + 1 < heap->count && is_before(&heap->items[child + 1], &heap->items[child])) child++;
+            if (!is_before(&heap->items[child], &item)) break;
+            heap->items[i] = heap->items[child];
+        }
+        heap->items[i] = item;
+
+        const uint32_t half = top.half, a = half / 3, b = work->twin[half] / 3;
         if (pairs->mate[a] != MESH_NONE || pairs->mate[b] != MESH_NONE) continue;
         pairs->mate[a] = b;
         pairs->mate[b] = a;
@@ -421,19 +385,47 @@ bool mesh_pair(Work *work) {
     if (!pairs) return true;
     pairs->work = work;
     if (!cut_faces(pairs)) return false;
-    if (!work->no_memory) find_twins(pairs);
     if (work->no_memory) return true;
 
     const Faces *faces = &work->faces;
-    pairs->cost = work_new(work, faces->corner_count, sizeof *pairs->cost);
-    pairs->good = work_new(work, faces->corner_count, 1);
+    const uint32_t count = faces->corner_count, *from = pairs->from;
+    uint32_t *side = work_new(work, pairs->before.corner_count, sizeof *side);
+    work->face = work_new(work, count, sizeof *work->face);
+    work->twin = work_new(work, count, sizeof *work->twin);
+    if (work->no_memory) return true;
+
+    // the twins of the triangles' sides: those of the faces in `before`, and for a diagonal its other side; by
+    // half-edges and not by vertices, since a diagonal may have the same ends as another side
+    for (uint32_t h = 0; h < count; h++) {
+        work->face[h] = h / 3;
+        if (faces_next(&pairs->before, pairs->before_face, from[h]) == from[pair_next3(h)]) side[from[h]] = h;
+    }
+
+    for (uint32_t h = 0; h < count; h++) {
+        const uint32_t a = from[h], b = from[pair_next3(h)], face = pairs->before_face[a];
+        work->twin[h] = MESH_NONE;
+        if (faces_next(&pairs->before, pairs->before_face, a) == b) {
+            if (pairs->before_twin[a] != MESH_NONE) work->twin[h] = side[pairs->before_twin[a]];
+            continue;
+        }
+
+        // the same diagonal in the other triangle of its face
+        uint32_t low = h - h % 3, high = low + 3;
+        while (low > 0 && pairs->before_face[from[low - 1]] == face) low -= 3;
+        while (high < count && pairs->before_face[from[high]] == face) high += 3;
+        for (uint32_t g = low; g < high && work->twin[h] == MESH_NONE; g++)
+            if (from[g] == b && from[pair_next3(g)] == a) work->twin[h] = g;
+    }
+
+    pairs->cost = work_new(work, count, sizeof *pairs->cost);
+    pairs->good = work_new(work, count, 1);
     pairs->degree = work_new(work, work->vertex_count, sizeof *pairs->degree);
     pairs->rim = work_new(work, work->vertex_count, 1);
     if (work->no_memory) return true;
 
     work_mark_open(work, pairs->rim);
-    for (uint32_t h = 0; h < faces->corner_count; h++) pairs->degree[faces->corner[h]]++;
-    for (uint32_t h = 0; h < faces->corner_count; h++)
+    for (uint32_t h = 0; h < count; h++) pairs->degree[faces->corner[h]]++;
+    for (uint32_t h = 0; h < count; h++)
         if (work->twin[h] != MESH_NONE && h < work->twin[h]) cost_pair(pairs, h, work->twin[h]);
 
     const bool found = find_mates(pairs);

@@ -183,31 +183,6 @@ static double ear_worth(PolygonCut *cut, uint32_t n, uint32_t k) {
     return worth >= 0 ? worth * worth_by_diagonal(cut, a, c) : worth;
 }
 
-/// Cuts off corners until `max` are left. Returns how many there are.
-static uint32_t cut_ears(PolygonCut *cut, uint32_t n, uint32_t max) {
-    enum { LOOKS_MAX = 16 }; // an ear may come free when another is gone
-    for (uint32_t looks = 0; looks < LOOKS_MAX && n > max; looks++) {
-        for (uint32_t k = 0; k < n; k++) cut->worth[k] = ear_worth(cut, n, k);
-        while (n > max) {
-            uint32_t best = 0;
-            for (uint32_t k = 1; k < n; k++)
-                if (cut->worth[k] > cut->worth[best]) best = k;
-            if (cut->worth[best] < 0) break;
-
-            const uint32_t after = n - 1 - best;
-            add_triangle(cut, (best + n - 1) % n, best, (best + 1) % n);
-            memmove(cut->ring + best, cut->ring + best + 1, after * sizeof *cut->ring);
-            memmove(cut->at + best, cut->at + best + 1, after * sizeof *cut->at);
-            memmove(cut->worth + best, cut->worth + best + 1, after * sizeof *cut->worth);
-            n--;
-
-            const uint32_t beside[2] = {(best + n - 1) % n, best % n};
-            for (int i = 0; i < 2; i++) cut->worth[beside[i]] = ear_worth(cut, n, beside[i]);
-        }
-    }
-    return n;
-}
-
 // ---- small polygons
 
 enum { BEST_CUT_MAX = 40 };
@@ -253,7 +228,30 @@ bool polygon_cut(PolygonCut *cut, const uint32_t *ring, uint32_t n) {
     polygon_normal(cut, ring, n, normal);
     project(cut, ring, n, normal);
     memcpy(cut->ring, ring, n * sizeof *ring);
-    uint32_t left = cut_ears(cut, n, BEST_CUT_MAX);
+
+    // ears, until few enough corners are left for the best cut
+    uint32_t left = n;
+    enum { LOOKS_MAX = 16 }; // an ear may come free when another is gone
+    for (uint32_t looks = 0; looks < LOOKS_MAX && left > BEST_CUT_MAX; looks++) {
+        for (uint32_t k = 0; k < left; k++) cut->worth[k] = ear_worth(cut, left, k);
+        while (left > BEST_CUT_MAX) {
+            uint32_t best = 0;
+            for (uint32_t k = 1; k < left; k++)
+                if (cut->worth[k] > cut->worth[best]) best = k;
+            if (cut->worth[best] < 0) break;
+
+            const uint32_t after = left - 1 - best;
+            add_triangle(cut, (best + left - 1) % left, best, (best + 1) % left);
+            memmove(cut->ring + best, cut->ring + best + 1, after * sizeof *cut->ring);
+            memmove(cut->at + best, cut->at + best + 1, after * sizeof *cut->at);
+            memmove(cut->worth + best, cut->worth + best + 1, after * sizeof *cut->worth);
+            left--;
+
+            const uint32_t beside[2] = {(best + left - 1) % left, best % left};
+            for (int i = 0; i < 2; i++) cut->worth[beside[i]] = ear_worth(cut, left, beside[i]);
+        }
+    }
+
     if (left > BEST_CUT_MAX) return false;
     if (cut_best(cut, left)) return true;
     if (n != 4) return false;

@@ -49,36 +49,6 @@ static SingeResult bad(SingeError *error, const char *what) {
     return refuse(error, SINGE_ERROR_ARGUMENT, "mesh", -1, "%s", what);
 }
 
-/// Checks what mesh_make assumes, and counts the corners.
-static SingeResult check_def(const SingeMeshDef *def, const char *name, uint32_t *corners, SingeError *error) {
-    uint64_t total = 0;
-    if (!def->positions || !def->corners) return bad(error, "positions or corners are NULL");
-    if (def->face_count == 0) return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: has no faces", short_name(name));
-    if (def->attribute_count && !def->attributes) return bad(error, "attributes are NULL");
-
-    for (uint32_t i = 0; i < def->attribute_count; i++)
-        if (!def->attributes[i].name || !def->attributes[i].values)
-            return bad(error, "an attribute has no name or no values");
-    if (def->quads != SINGE_MESH_PAIR && def->quads != SINGE_MESH_SPLIT)
-        return bad(error, "quads is not a known choice");
-    if (!(def->weld >= 0 && isfinite(def->weld))) return bad(error, "weld must be 0 or more");
-    if (!(def->smallest >= 0 && def->smallest <= 1)) return bad(error, "smallest must be between 0 and 1");
-
-    for (uint32_t f = 0; f < def->face_count; f++) {
-        uint32_t size = def->face_sizes ? def->face_sizes[f] : 3;
-        if (size < 3)
-            return refuse(error, SINGE_ERROR_MESH, "mesh", f, "%s: face %u (from 0) has %u corners", short_name(name),
-                          f, size);
-        total += size;
-    }
-
-    if (total > INT32_MAX || def->vertex_count > INT32_MAX || def->face_count > INT32_MAX)
-        return refuse(error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: more vertices or corners than 2147483647",
-                      short_name(name));
-    *corners = (uint32_t)total;
-    return SINGE_OK;
-}
-
 /// Converts the Def for mesh_make, which does not write to its arrays. False when out of memory.
 static bool take(const SingeMeshDef *def, uint32_t corners, Polygons *polygons) {
     *polygons = (Polygons){.vertex_count = def->vertex_count,
@@ -118,8 +88,32 @@ SingeResult singe_mesh_create(const SingeMeshDef *given, SingeMesh **mesh, Singe
     if (!read_def(&def, sizeof def, given))
         return bad(error, "struct_size is not set; start from singe_default_mesh()");
     const char *name = def.name ? def.name : "mesh";
-    uint32_t corners = 0;
-    TRY(check_def(&def, name, &corners, error));
+
+    // what mesh_make assumes
+    uint64_t total = 0;
+    if (!def.positions || !def.corners) return bad(error, "positions or corners are NULL");
+    if (def.face_count == 0) return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: has no faces", short_name(name));
+    if (def.attribute_count && !def.attributes) return bad(error, "attributes are NULL");
+
+    for (uint32_t i = 0; i < def.attribute_count; i++)
+        if (!def.attributes[i].name || !def.attributes[i].values)
+            return bad(error, "an attribute has no name or no values");
+    if (def.quads != SINGE_MESH_PAIR && def.quads != SINGE_MESH_SPLIT) return bad(error, "quads is not a known choice");
+    if (!(def.weld >= 0 && isfinite(def.weld))) return bad(error, "weld must be 0 or more");
+    if (!(def.smallest >= 0 && def.smallest <= 1)) return bad(error, "smallest must be between 0 and 1");
+
+    for (uint32_t f = 0; f < def.face_count; f++) {
+        uint32_t size = def.face_sizes ? def.face_sizes[f] : 3;
+        if (size < 3)
+            return refuse(error, SINGE_ERROR_MESH, "mesh", f, "%s: face %u (from 0) has %u corners", short_name(name),
+                          f, size);
+        total += size;
+    }
+
+    if (total > INT32_MAX || def.vertex_count > INT32_MAX || def.face_count > INT32_MAX)
+        return refuse(error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: more vertices or corners than 2147483647",
+                      short_name(name));
+    const uint32_t corners = (uint32_t)total;
 
     Polygons polygons;
     MeshReport report = {0};

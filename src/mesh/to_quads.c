@@ -239,21 +239,6 @@ static uint32_t unsound_quad(const Work *work) {
     return MESH_NONE;
 }
 
-/// Joins triangles to quads. False, with the old faces restored, if that gives no valid sheet.
-static bool pair_faces(Work *work) {
-    const Faces before = work->faces;
-    if (mesh_pair(work) && !work->no_memory) {
-        // pairing across polygons may leave a side with more than two quads
-        uint32_t *order = work_sorted_edges(work), most = 0;
-        for (uint32_t k = 0, size; order && k < work->faces.corner_count && most <= 2; k += size)
-            most = size = work_edge_size(work, order, k);
-        if (most <= 2 && unsound_quad(work) == MESH_NONE) return true;
-    }
-    work->faces = before;
-    work->report->count[MESH_PAIRED] = work->report->count[MESH_HALVED] = 0;
-    return work->no_memory;
-}
-
 /// Every face of n corners becomes n quads: from a corner to the midpoint of its side, the face's centroid and the
 /// midpoint of the side before (Catmull and Clark, 1978, without their smoothing). Strands still run straight through
 /// what was a quad.
@@ -327,7 +312,20 @@ static SingeResult run_steps(Work *work, const MeshOptions *options) {
     bool all_quads = true, pair = options->quads == MESH_QUADS_PAIR;
     for (uint32_t f = 0; f < work->faces.count; f++)
         all_quads = all_quads && work->faces.first[f + 1] - work->faces.first[f] == 4;
-    if (pair && !all_quads) pair = pair_faces(work);
+    if (pair && !all_quads) {
+        const Faces before = work->faces;
+        uint32_t most = mesh_pair(work) && !work->no_memory ? 0 : UINT32_MAX;
+
+        // pairing across polygons may leave a side with more than two quads
+        uint32_t *order = most ? NULL : work_sorted_edges(work);
+        for (uint32_t k = 0, size; order && k < work->faces.corner_count && most <= 2; k += size)
+            most = size = work_edge_size(work, order, k);
+        if (most > 2 || unsound_quad(work) != MESH_NONE) { // splits the old faces instead
+            work->faces = before;
+            work->report->count[MESH_PAIRED] = work->report->count[MESH_HALVED] = 0;
+            pair = work->no_memory;
+        }
+    }
     if (!pair && !work->no_memory) split_faces(work);
     if (!work->no_memory) mesh_leave_out_copies(work); // two triangles on top of a quad become a copy of it
     if (work->no_memory) return SINGE_OK;
