@@ -76,29 +76,6 @@ static void against_boxes(const OutsideSearch *job, uint32_t a, const OutsideBox
 
 // ---- cells out of bounds among each other: a grid of the same cubes, buckets as chains
 
-static void chain_outside(OutsideSearch *job) {
-    CollisionPlan *plan = job->plan;
-    float inverse = 1 / plan->edge;
-    memset(plan->outside_chain, 0xff, plan->bucket_count * sizeof *plan->outside_chain);
-
-    for (uint32_t k = job->count; k-- > 0;) {
-        const OutsideBox *box = &plan->outside_boxes[k];
-        Cube first = collision_cube(box->low, inverse), last = collision_cube(box->high, inverse), at = first;
-        uint64_t cubes = collision_cubes(first, last, plan->sizes.entries);
-        job->crowded |= cubes > plan->sizes.entries - job->entry_count;
-        if (job->crowded) return;
-
-        for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
-            for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
-                for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
-                    uint32_t key = collision_key(at), *chain = &plan->outside_chain[collision_bucket(plan, key)];
-                    plan->outside_entries[job->entry_count] =
-                        (OutsideEntry){k, key | (float4_bits(at == first) & 7) << 29, *chain};
-                    *chain = job->entry_count++;
-                }
-    }
-}
-
 static void add_outside_pair(const OutsideSearch *job, uint32_t k, uint32_t l, BlockWriter *writer) {
     const OutsideBox *box = &job->plan->outside_boxes[k], *other = &job->plan->outside_boxes[l];
     if (quads_meet(box->low, box->high, other->low, other->high))
@@ -156,7 +133,28 @@ SingeResult broad_search_outside(Memory *memory, CollisionPlan *plan, const Shel
 
     int blocks = (int)((outside_count + COLLISION_OUTSIDE - 1) / COLLISION_OUTSIDE);
     pool_for(pool, (int)outside_count, COLLISION_OUTSIDE, box_range, &job);
-    chain_outside(&job);
+
+    // cells out of bounds among each other: a grid of the same cubes, buckets as chains
+    float inverse = 1 / plan->edge;
+    memset(plan->outside_chain, 0xff, plan->bucket_count * sizeof *plan->outside_chain);
+
+    for (uint32_t k = job.count; k-- > 0;) {
+        const OutsideBox *box = &plan->outside_boxes[k];
+        Cube first = collision_cube(box->low, inverse), last = collision_cube(box->high, inverse), at = first;
+        uint64_t cubes = collision_cubes(first, last, plan->sizes.entries);
+        job.crowded |= cubes > plan->sizes.entries - job.entry_count;
+        if (job.crowded) break;
+
+        for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
+            for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
+                for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
+                    uint32_t key = collision_key(at), *chain = &plan->outside_chain[collision_bucket(plan, key)];
+                    plan->outside_entries[job.entry_count] =
+                        (OutsideEntry){k, key | (float4_bits(at == first) & 7) << 29, *chain};
+                    *chain = job.entry_count++;
+                }
+    }
+
     BlockList *list = &plan->found_pairs;
     uint64_t count = block_list_write(list, pool, blocks, plan->sizes.pair_max, outside_block, &job);
     if (!collision_grow_pairs(memory, plan, plan->listed_count + count)) return SINGE_ERROR_MEMORY;

@@ -100,14 +100,6 @@ static SingeResult source_set_texture(Memory *memory, const Shell *shell, const 
     return SINGE_OK;
 }
 
-static SingeResult source_copy_texture(Memory *memory, const SingeTexture *texture, Source *source, SingeError *error) {
-    float *values;
-    if (!NEW(memory, values, texture_size(texture))) return source_no_memory(error);
-    memcpy(values, texture->values, texture_size(texture) * sizeof *values);
-    source->waiting = (SingeTexture){texture->width, texture->height, values};
-    return SINGE_OK;
-}
-
 static SingeResult source_copy_arrays(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source,
                                       SingeError *error) {
     if (source_has_path(def)) return path_set(&source->path, memory, def->path_count, def->path, "source", error);
@@ -115,8 +107,15 @@ static SingeResult source_copy_arrays(Memory *memory, const Shell *shell, const 
     if (!NEW(memory, source->strength, def->strength_count)) return source_no_memory(error);
     source->strength_count = def->strength_count;
     if (def->strength_count) memcpy(source->strength, def->strength, def->strength_count * sizeof *def->strength);
-    return shell->particle_count ? source_set_texture(memory, shell, &def->texture, source, error)
-                                 : source_copy_texture(memory, &def->texture, source, error);
+    if (shell->particle_count) return source_set_texture(memory, shell, &def->texture, source, error);
+
+    // a copy that waits for the particles
+    const SingeTexture *texture = &def->texture;
+    float *values;
+    if (!NEW(memory, values, texture_size(texture))) return source_no_memory(error);
+    memcpy(values, texture->values, texture_size(texture) * sizeof *values);
+    source->waiting = (SingeTexture){texture->width, texture->height, values};
+    return SINGE_OK;
 }
 
 SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceDef *given, Source *source,
