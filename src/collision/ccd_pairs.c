@@ -149,27 +149,6 @@ static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
     return free;
 }
 
-/// Whether a plane separates two connected cells at both ends of the step, and has not turned over: then they have not
-/// passed through each other around what they share.
-static bool plane_parts(const Ccd *ccd, const CollisionPair *pair) {
-    const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
-    const float(*positions[2])[4] = {(const float(*)[4])ccd->plan->start, (const float(*)[4])ccd->dynamics->position};
-    unsigned shared[2] = {0, 0};
-    for (int i = 0; i < 16; i++)
-        if (a[i >> 2] == b[i & 3]) shared[0] |= 1u << (i >> 2), shared[1] |= 1u << (i & 3);
-    if (!shared[0] || pair->a == pair->b) return false;
-
-    Float4 p[5], q[5], normal[2];
-    for (int k = 0; k < 2; k++) {
-        Float4 origin = float4_load(positions[k][a[0]]);
-        collision_nodes(a, positions[k], origin, p);
-        collision_nodes(b, positions[k], origin, q);
-        if (!feature_is_separated(p, q, shared, ccd->plan->gap, &normal[k])) return false;
-    }
-
-    return float4_dot(normal[0], normal[1]) > 0;
-}
-
 typedef struct Look {
     const Ccd *ccd;
     uint32_t first;         ///< pair
@@ -195,7 +174,25 @@ static double look_range(void *task, int begin, int end) {
             CollisionPair *pair = &pairs[number[__builtin_ctz(left)]];
             if (!ccd_is_alive(ccd, pair->a) || !ccd_is_alive(ccd, pair->b)) continue;
             if (initial_is_crossing(ccd->plan, pair)) continue;
-            if (!plane_parts(ccd, pair)) sweep_pair(ccd, pair);
+
+            // where a plane separates two connected cells at both ends of the step, and has not turned over, they have
+            // not passed through each other around what they share
+            const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
+            const float(*positions[2])[4] = {(const float(*)[4])ccd->plan->start,
+                                             (const float(*)[4])ccd->dynamics->position};
+            unsigned shared[2] = {0, 0};
+            for (int i = 0; i < 16; i++)
+                if (a[i >> 2] == b[i & 3]) shared[0] |= 1u << (i >> 2), shared[1] |= 1u << (i & 3);
+            bool parted = shared[0] && pair->a != pair->b;
+            Float4 p[5], q[5], normal[2] = {{0}, {0}};
+            for (int t = 0; t < 2 && parted; t++) {
+                Float4 origin = float4_load(positions[t][a[0]]);
+                collision_nodes(a, positions[t], origin, p);
+                collision_nodes(b, positions[t], origin, q);
+                parted = feature_is_separated(p, q, shared, ccd->plan->gap, &normal[t]);
+            }
+
+            if (!parted || !(float4_dot(normal[0], normal[1]) > 0)) sweep_pair(ccd, pair);
             hits += pair->hit < 2;
         }
     }

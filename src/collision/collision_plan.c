@@ -169,8 +169,16 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     return SINGE_OK;
 }
 
-/// The pairs that have intersected since the start: the count of each cell, then their other cells.
-static SingeResult stream_initial(Memory *memory, CollisionPlan *plan, Stream *stream) {
+SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags,
+                                  Stream *stream) {
+    STREAM(stream, plan->searched);
+    STREAM(stream, plan->restless);
+    STREAM(stream, plan->step);
+    stream_data(stream, plan->position, plan->vertex_count * sizeof *plan->position);
+    stream_data(stream, plan->speed, plan->vertex_count * sizeof *plan->speed);
+    stream_data(stream, plan->alive, plan->cell_count);
+
+    // pairs that have intersected since the start: the count of each cell, then their other cells
     uint32_t *first = plan->initial_first, count = first[plan->cell_count];
     STREAM(stream, count);
     stream_data(stream, first, ((size_t)plan->cell_count + 1) * sizeof *first);
@@ -181,25 +189,12 @@ static SingeResult stream_initial(Memory *memory, CollisionPlan *plan, Stream *s
         if (!fits || count > (stream->size - stream->offset) / sizeof *first) {
             memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
             stream->failed = true;
-            return SINGE_OK;
-        }
-
-        if (!initial_reserve(memory, plan, count)) return SINGE_ERROR_MEMORY;
+            count = 0;
+        } else if (!initial_reserve(memory, plan, count)) return SINGE_ERROR_MEMORY;
     }
 
     stream_data(stream, plan->initial_other, count * sizeof *plan->initial_other);
-    return SINGE_OK;
-}
 
-SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags,
-                                  Stream *stream) {
-    STREAM(stream, plan->searched);
-    STREAM(stream, plan->restless);
-    STREAM(stream, plan->step);
-    stream_data(stream, plan->position, plan->vertex_count * sizeof *plan->position);
-    stream_data(stream, plan->speed, plan->vertex_count * sizeof *plan->speed);
-    stream_data(stream, plan->alive, plan->cell_count);
-    TRY(stream_initial(memory, plan, stream));
     if (stream->mode != STREAM_READ) return SINGE_OK;
 
     // whether the data read back may be that of a search; cells that are alive now were alive then

@@ -158,9 +158,9 @@ float feature_sweep(const FeatureSweep *sweep, float gap, float noise) {
     for (int round = 0; round < ROUNDS; round++) {
         float next = time + 0.9f * (distance - keep) / approach;
 
-        // features that slide past each other, fast for their distance, make small steps
-        // only: then two planes across the shortest segment between them, each moving with the nearest of its points,
-        // tell how long these stay apart
+        // features that slide past each other, fast for their distance, make small steps only. Then two planes
+        // across the shortest segment between the two, each moving with the nearest of its points, tell from `time` on
+        // how long these keep them `keep` apart
         if (round >= SIMPLE_ROUNDS) {
             Float4 x[4], normal = sweep_separation(sweep, time, x);
             int own = sweep->edges ? 2 : 1;

@@ -46,8 +46,8 @@ static bool paper_create(Memory *memory, const Shell *shell, DynamicsPlan *plan)
     for (uint32_t c = 0, first = 0; ok && c < SINGE_COLOUR_COUNT; first += springs[c++].count) {
         springs[c] = (NetworkSprings){shell->springs[c].count, (const uint32_t(*)[2])(ends + first)};
 
-        // number them slot by slot, and within a slot cell by cell. Then the neighbours of springs in a row are in a row
-        // themselves, along the lines of a grid, and the matrix is read in runs
+        // number them slot by slot, and within a slot cell by cell. Then the neighbours of springs in a row are in a
+        // row themselves, along the lines of a grid, and the matrix is read in runs
         const SpringSet *set = &shell->springs[c];
         uint8_t *seen = NULL;
         paper->spring_count[c] = set->count;

@@ -119,7 +119,7 @@ static float operator_side(const HeatPlan *plan, const Shell *shell, uint32_t ce
     return (float)operator_less(weight, lean * area, diffusivity);
 }
 
-/// The geometry of one cell of the surface operator, without diffusivity and F.
+/// The springs of one cell of the surface operator, without diffusivity and F.
 static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
     const CellSprings *springs = &shell->cell_springs[cell];
     const uint32_t *first = plan->spring_first;
@@ -159,11 +159,10 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
         conductance[first[SINGE_GREEN] + springs->green[k]] = (float)operator_less(flux, leak, diffusivity);
     }
 
-    // red springs, which do not depend on the diffusivity. A corner's share is half of the two triangles at it that meet
-    // in the cell's centre, which are negative if they face away; or a quarter of the cell if a corner is concave
+    // red springs, which do not depend on the diffusivity. A corner's share is half of the two triangles at it that
+    // meet in the cell's centre, which are negative if they face away; or a quarter of the cell if a corner is concave
     const float own = shell->matter.area[centre];
     Float3 normal = float3_unit(float3_cross(float3_sub(x[2], x[0]), float3_sub(x[3], x[1])));
-
     double triangle[4];
     bool even = false;
     for (int k = 0; k < 4; k++) {
@@ -196,9 +195,8 @@ void heat_operator(HeatPlan *plan, const Shell *shell) {
         if (sheet->material.heat_operator == SINGE_HEAT_UMBRELLA) continue;
         for (uint32_t i = 0; i < shell->particle_count; i++)
             if (matter->sheet[i] == s) plan->measure[i] = matter->area[i] * field_at(matter->capacity_ratio, i);
-        for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
+        for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++)
             operator_cell(plan, shell, c);
-        }
     }
 
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {

@@ -15,17 +15,6 @@ static bool points_alive(const Fine *fine, uint32_t cell) { return fine->state->
 
 // ---- numbering
 
-static bool negative_around(const Fine *fine, uint32_t cell) {
-    const Shell *shell = fine->shell;
-    for (int i = 0; i < 4; i++) {
-        uint32_t v = shell->cells[cell][i];
-        for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++)
-            if (fine->low[shell->fan[k]] < 0) return true;
-    }
-
-    return false;
-}
-
 static uint32_t side_of_cell(const Fine *fine, uint32_t cell, int side) {
     return fine->shell->cell_springs[cell].blue[side];
 }
@@ -42,7 +31,16 @@ static SingeResult points_number(Fine *fine, SingeError *error) {
     for (uint32_t c = 0; c < shell->cell_count && point <= INT32_MAX; c++) {
         const int splits = fine_splits(fine, c);
         if (!(fine->flags[c] & FINE_NEAR)) continue;
-        if (splits == 1 || !(fine->flags[c] & FINE_TEAR_EDGE || negative_around(fine, c))) {
+
+        // negative in it or in one around it
+        bool near = (fine->flags[c] & FINE_TEAR_EDGE) != 0;
+        for (int i = 0; i < 4 && !near; i++) {
+            uint32_t v = shell->cells[c][i];
+            for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++)
+                near |= fine->low[shell->fan[k]] < 0;
+        }
+
+        if (splits == 1 || !near) {
             fine->flags[c] &= (uint8_t)~FINE_NEAR;
             continue;
         }
