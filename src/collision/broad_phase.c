@@ -35,20 +35,6 @@ static uint8_t owned(const CollisionPlan *plan, const Shell *shell, uint32_t c) 
 
 // ---- boxes
 
-static CollisionBox moving_box(const Float4 position[4], const Float4 displacement[4]) {
-    CollisionBox box = {.displacement = collision_mean(displacement)};
-    for (int i = 0; i < 4; i++) {
-        Float4 end = position[i] + (displacement[i] - box.displacement);
-        Float4 low = float4_min(position[i], end), high = float4_max(position[i], end);
-        box.low = i ? float4_min(box.low, low) : low;
-        box.high = i ? float4_max(box.high, high) : high;
-    }
-
-    box.low = float4_flat(box.low);
-    box.high = float4_flat(box.high);
-    return box;
-}
-
 static CollisionSlab slab(const Float4 position[4]) {
     Float4 corner[4] = {position[0], position[1], position[2], position[3]},
            normal = float4_cross(position[2] - position[0], position[3] - position[1]);
@@ -82,7 +68,18 @@ static void box_range(void *task, int begin, int end) {
             displacement[i] = time * float4_load(plan->speed[corner[i]]);
         }
 
-        plan->boxes[c] = moving_box(position, displacement);
+        // the box of its displacements without their mean
+        CollisionBox box = {.displacement = collision_mean(displacement)};
+        for (int i = 0; i < 4; i++) {
+            Float4 last = position[i] + (displacement[i] - box.displacement);
+            Float4 low = float4_min(position[i], last), high = float4_max(position[i], last);
+            box.low = i ? float4_min(box.low, low) : low;
+            box.high = i ? float4_max(box.high, high) : high;
+        }
+
+        box.low = float4_flat(box.low);
+        box.high = float4_flat(box.high);
+        plan->boxes[c] = box;
         plan->slabs[c] = slab(position);
         plan->owned[c] = owned(plan, find->shell, c);
     }
@@ -102,34 +99,31 @@ static void sweep_boxes(void *task, int begin, int end) {
 
 // ---- the search
 
-/// Fewer steps where corners move fast relative to each other: on average by at most a third of a cell.
-static void choose_steps(CollisionPlan *plan, const Shell *shell) {
+SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool) {
+    enum { TRIALS = 5 };
+    Find find = {plan, shell};
+    plan->listed_count = plan->pair_count = 0;
+    plan->restless = 0;
+
+    // fewer steps where corners move fast relative to each other: on average by at most a third of a cell
     Float4 mean = {0};
-    double sum = 0, count = 0;
+    double sum = 0, cells = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++)
         if (plan->alive[c]) {
             mean += float4_load(plan->speed[shell->cells[c][0]]);
-            count++;
+            cells++;
         }
-    mean = mean / (float)fmax(count, 1);
+    mean = mean / (float)fmax(cells, 1);
 
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         Float4 off = float4_load(plan->speed[shell->cells[c][0]]) - mean;
         if (plan->alive[c]) sum += (double)sqrtf(float4_dot(off, off));
     }
 
-    double step = sum / fmax(count, 1) * (double)plan->time_step, max = (double)plan->cell_size / 2;
+    double step = sum / fmax(cells, 1) * (double)plan->time_step, max = (double)plan->cell_size / 2;
 
     // a step that is not finite, as with positions that overflow, gets the fewest
     plan->steps = step * COLLISION_STEPS < max ? COLLISION_STEPS : step * 2 <= max ? (uint32_t)(max / step) : 2;
-}
-
-SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool) {
-    enum { TRIALS = 5 };
-    Find find = {plan, shell};
-    plan->listed_count = plan->pair_count = 0;
-    plan->restless = 0;
-    choose_steps(plan, shell);
 
     // boxes; a vertex is owned by its lowest cell
     for (uint32_t c = plan->cell_count; c-- > 0;)

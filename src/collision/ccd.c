@@ -126,12 +126,24 @@ static uint32_t list_out_of_bounds(CollisionPlan *plan) {
     return count;
 }
 
-/// Lists the pairs that cells outside their boxes may have met; searches all again if these are many. *first is the
-/// first new pair.
-static SingeResult follow_out_of_bounds(Ccd *ccd, const StateInput *state, Pool *pool, float h, uint32_t *first) {
+/// Checks all pairs that may have met, or those that the last round has changed; *hits is the number that have.
+static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float h, bool changed, uint32_t *hits) {
+    uint32_t first;
+    if (changed) {
+        pool_for(pool, (int)ccd->plan->changed_count, 512, measure_changed, ccd);
+        uint32_t count = list_changed(ccd->plan);
+        ccd->looked += count;
+        *hits = ccd_meet_active(ccd, pool, count);
+    } else {
+        ccd_measure(ccd, pool);
+        *hits = ccd_meet(ccd, pool, 0);
+    }
+
+    if (*hits > 0) return SINGE_OK;
+
+    // pairs that cells outside their boxes may have met; if these are many, all are searched again
     CollisionPlan *plan = ccd->plan;
     uint32_t count = list_out_of_bounds(plan);
-    *first = plan->pair_count;
     if (count == 0) return SINGE_OK;
 
     bool all = count > plan->cell_count / OUTSIDE_MAX || plan->edge <= 0;
@@ -153,25 +165,7 @@ static SingeResult follow_out_of_bounds(Ccd *ccd, const StateInput *state, Pool 
 
     TRY(broad_search_outside(ccd->memory, plan, ccd->shell, pool, count, (const float(*)[4])ccd->dynamics->position));
     plan->restless = plan->step < state->step && count > plan->cell_count / OUTSIDE_PART;
-    *first = all ? 0 : plan->listed_count;
-    return SINGE_OK;
-}
-
-/// Checks all pairs that may have met, or those that the last round has changed; *hits is the number that have.
-static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float h, bool changed, uint32_t *hits) {
-    uint32_t first;
-    if (changed) {
-        pool_for(pool, (int)ccd->plan->changed_count, 512, measure_changed, ccd);
-        uint32_t count = list_changed(ccd->plan);
-        ccd->looked += count;
-        *hits = ccd_meet_active(ccd, pool, count);
-    } else {
-        ccd_measure(ccd, pool);
-        *hits = ccd_meet(ccd, pool, 0);
-    }
-
-    if (*hits > 0) return SINGE_OK;
-    TRY(follow_out_of_bounds(ccd, state, pool, h, &first));
+    first = all ? 0 : plan->listed_count;
     *hits = ccd_meet(ccd, pool, first);
     return SINGE_OK;
 }

@@ -65,35 +65,6 @@ static void sweep_all_nodes(const Ccd *ccd, CollisionPair *pair, uint32_t c, con
     }
 }
 
-static void sweep_all_edges(const Ccd *ccd, CollisionPair *pair, const Swept *p, const Swept *q,
-                            const unsigned same[4]) {
-    const CollisionPlan *plan = ccd->plan;
-    for (int i = 0; i < 8; i++) {
-        if (!collision_owns_edge(plan, pair->a, i)) continue;
-
-        const uint8_t *k = collision_edge[i];
-        unsigned corners = same[k[0]] | (k[1] < 4 ? same[k[1]] : 0);
-        Float4 low = float4_min(p->low[k[0]], p->low[k[1]]) - plan->gap;
-        Float4 high = float4_max(p->high[k[0]], p->high[k[1]]) + plan->gap;
-        unsigned sides = four_meet(&q->boxes.sides, low, high) & plan->owned[pair->b] >> 4 & ~narrow_around(corners);
-        unsigned spokes = four_meet(&q->boxes.spokes, low, high) & ~corners;
-        if (pair->a == pair->b) { // each pair once
-            sides &= 14u << i;
-            spokes = i < 4 ? spokes : 0;
-        }
-
-        for (unsigned meet = sides | spokes << 4; meet; meet &= meet - 1) {
-            int j = __builtin_ctz(meet);
-            const uint8_t *l = collision_edge[j];
-            FeatureSweep sweep = {
-                {p->position[k[0]], p->position[k[1]], q->position[l[0]], q->position[l[1]]},
-                {p->displacement[k[0]], p->displacement[k[1]], q->displacement[l[0]], q->displacement[l[1]]},
-                true};
-            note_hit(pair, feature_sweep(&sweep, plan->gap, plan->noise), COLLISION_EDGES, i, j);
-        }
-    }
-}
-
 /// Finds the share of the step's displacement after which two cells collide, and the features that do.
 static void sweep_pair(const Ccd *ccd, CollisionPair *pair) {
     const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
@@ -104,23 +75,33 @@ static void sweep_pair(const Ccd *ccd, CollisionPair *pair) {
     collision_same(b, a, of_a);
     sweep_all_nodes(ccd, pair, pair->a, &p, &q, of_b, COLLISION_NODE_OF_A);
     if (pair->a != pair->b) sweep_all_nodes(ccd, pair, pair->b, &q, &p, of_a, COLLISION_NODE_OF_B);
-    sweep_all_edges(ccd, pair, &p, &q, of_b);
-}
 
-/// Whether a cell has not passed through itself: it is unfolded and in shape at the end of the step, and its corners
-/// have moved relative to each other by less than an eighth of its width. An unfolded cell may have passed through
-/// itself during the step: then it is on the wrong side of a cell that shares two sides with it, though it met no
-/// feature of that cell.
-static bool own_is_free(const Ccd *ccd, uint32_t cell) {
-    const Float4 *motion = ccd->plan->motion[cell];
-    const float(*x)[4] = (const float(*)[4])ccd->dynamics->position;
-    const uint32_t *corner = ccd->shell->cells[cell];
-    if (!(motion[COLLISION_NORMAL][3] < FEATURE_CONE)) return false;
+    // edges against edges
+    const CollisionPlan *plan = ccd->plan;
+    for (int i = 0; i < 8; i++) {
+        if (!collision_owns_edge(plan, pair->a, i)) continue;
 
-    Float4 one = float4_flat(float4_load(x[corner[2]]) - float4_load(x[corner[0]]));
-    Float4 two = float4_flat(float4_load(x[corner[3]]) - float4_load(x[corner[1]])), area = float4_cross(one, two);
-    float displacement = 8 * motion[COLLISION_DISPLACEMENT][3];
-    return displacement * displacement * (float4_dot(one, one) + float4_dot(two, two)) < float4_dot(area, area);
+        const uint8_t *k = collision_edge[i];
+        unsigned corners = of_b[k[0]] | (k[1] < 4 ? of_b[k[1]] : 0);
+        Float4 low = float4_min(p.low[k[0]], p.low[k[1]]) - plan->gap;
+        Float4 high = float4_max(p.high[k[0]], p.high[k[1]]) + plan->gap;
+        unsigned sides = four_meet(&q.boxes.sides, low, high) & plan->owned[pair->b] >> 4 & ~narrow_around(corners);
+        unsigned spokes = four_meet(&q.boxes.spokes, low, high) & ~corners;
+        if (pair->a == pair->b) { // each pair once
+            sides &= 14u << i;
+            spokes = i < 4 ? spokes : 0;
+        }
+
+        for (unsigned meet = sides | spokes << 4; meet; meet &= meet - 1) {
+            int j = __builtin_ctz(meet);
+            const uint8_t *l = collision_edge[j];
+            FeatureSweep sweep = {
+                {p.position[k[0]], p.position[k[1]], q.position[l[0]], q.position[l[1]]},
+                {p.displacement[k[0]], p.displacement[k[1]], q.displacement[l[0]], q.displacement[l[1]]},
+                true};
+            note_hit(pair, feature_sweep(&sweep, plan->gap, plan->noise), COLLISION_EDGES, i, j);
+        }
+    }
 }
 
 /// Bits of those of four pairs that are free: by their distance or, if connected, by their normals (proof in
@@ -142,34 +123,30 @@ static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
 
     for (unsigned i = 0; i < 4; i++) {
         if (!(bridged >> i & 1) || !ccd_is_alive(ccd, four.bridge[i])) continue;
-        bool part = four.a[i] == four.b[i]        ? own_is_free(ccd, four.a[i])
-                    : four.bridge[i] == four.a[i] ? sides[i] != 0
-                                                  : corners[i] != 0;
-        free |= (unsigned)part << i;
+        if (four.a[i] != four.b[i]) {
+            free |= (unsigned)(four.bridge[i] == four.a[i] ? sides[i] != 0 : corners[i] != 0) << i;
+            continue;
+        }
+
+        // a cell has not passed through itself if it is unfolded and in shape at the end of the step, and its corners
+        // have moved relative to each other by less than an eighth of its width. An unfolded cell may have passed
+        // through itself during the step: then it is on the wrong side of a cell that shares two sides with it, though
+        // it met no feature of that cell
+        const uint32_t cell = four.a[i];
+        const Float4 *motion = plan->motion[cell];
+        const float(*x)[4] = (const float(*)[4])ccd->dynamics->position;
+        const uint32_t *corner = ccd->shell->cells[cell];
+        if (!(motion[COLLISION_NORMAL][3] < FEATURE_CONE)) continue;
+
+        Float4 one = float4_flat(float4_load(x[corner[2]]) - float4_load(x[corner[0]]));
+        Float4 two = float4_flat(float4_load(x[corner[3]]) - float4_load(x[corner[1]])), area = float4_cross(one, two);
+        float displacement = 8 * motion[COLLISION_DISPLACEMENT][3];
+        bool still =
+            displacement * displacement * (float4_dot(one, one) + float4_dot(two, two)) < float4_dot(area, area);
+        free |= (unsigned)still << i;
     }
 
     return free;
-}
-
-/// Whether a plane separates two connected cells at both ends of the step, and has not turned over: then they have not
-/// passed through each other around what they share.
-static bool plane_parts(const Ccd *ccd, const CollisionPair *pair) {
-    const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
-    const float(*positions[2])[4] = {(const float(*)[4])ccd->plan->start, (const float(*)[4])ccd->dynamics->position};
-    unsigned shared[2] = {0, 0};
-    for (int i = 0; i < 16; i++)
-        if (a[i >> 2] == b[i & 3]) shared[0] |= 1u << (i >> 2), shared[1] |= 1u << (i & 3);
-    if (!shared[0] || pair->a == pair->b) return false;
-
-    Float4 p[5], q[5], normal[2];
-    for (int k = 0; k < 2; k++) {
-        Float4 origin = float4_load(positions[k][a[0]]);
-        collision_nodes(a, positions[k], origin, p);
-        collision_nodes(b, positions[k], origin, q);
-        if (!feature_is_separated(p, q, shared, ccd->plan->gap, &normal[k])) return false;
-    }
-
-    return float4_dot(normal[0], normal[1]) > 0;
 }
 
 typedef struct Look {
@@ -197,7 +174,25 @@ static double look_range(void *task, int begin, int end) {
             CollisionPair *pair = &pairs[number[__builtin_ctz(left)]];
             if (!ccd_is_alive(ccd, pair->a) || !ccd_is_alive(ccd, pair->b)) continue;
             if (initial_is_crossing(ccd->plan, pair)) continue;
-            if (!plane_parts(ccd, pair)) sweep_pair(ccd, pair);
+
+            // where a plane separates two connected cells at both ends of the step, and has not turned over, they have
+            // not passed through each other around what they share
+            const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
+            const float(*positions[2])[4] = {(const float(*)[4])ccd->plan->start,
+                                             (const float(*)[4])ccd->dynamics->position};
+            unsigned shared[2] = {0, 0};
+            for (int i = 0; i < 16; i++)
+                if (a[i >> 2] == b[i & 3]) shared[0] |= 1u << (i >> 2), shared[1] |= 1u << (i & 3);
+            bool parted = shared[0] && pair->a != pair->b;
+            Float4 p[5], q[5], normal[2] = {{0}, {0}};
+            for (int t = 0; t < 2 && parted; t++) {
+                Float4 origin = float4_load(positions[t][a[0]]);
+                collision_nodes(a, positions[t], origin, p);
+                collision_nodes(b, positions[t], origin, q);
+                parted = feature_is_separated(p, q, shared, ccd->plan->gap, &normal[t]);
+            }
+
+            if (!parted || !(float4_dot(normal[0], normal[1]) > 0)) sweep_pair(ccd, pair);
             hits += pair->hit < 2;
         }
     }

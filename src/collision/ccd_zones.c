@@ -26,40 +26,6 @@ static void zones_spread(float corner[4], int node, float weight) {
     for (int i = 0; i < 4; i++) corner[i] += node == i ? weight : node == 4 ? 0.25f * weight : 0;
 }
 
-/// Points of the first collision: weights of the corners of a and b. Returns the vector from the second point to the
-/// first.
-static Float4 impact_points(const CollisionPair *pair, const Swept *p, const Swept *q, float wa[4], float wb[4]) {
-    const Swept *one = pair->kind == COLLISION_NODE_OF_B ? q : p, *two = pair->kind == COLLISION_NODE_OF_B ? p : q;
-    float *w1 = pair->kind == COLLISION_NODE_OF_B ? wb : wa, *w2 = pair->kind == COLLISION_NODE_OF_B ? wa : wb;
-    Float4 x[5], y[5], separation;
-
-    // nodes at the time of impact
-    for (int i = 0; i < 5; i++) {
-        x[i] = one->position[i] + pair->hit * one->displacement[i];
-        y[i] = two->position[i] + pair->hit * two->displacement[i];
-    }
-
-    // two edges
-    if (pair->kind == COLLISION_EDGES) {
-        const uint8_t *k = collision_edge[pair->first[0]], *l = collision_edge[pair->first[1]];
-        float s, t;
-        separation = feature_from_segment(x[k[0]], x[k[1]], y[l[0]], y[l[1]], &s, &t);
-        zones_spread(w1, k[0], 1 - s);
-        zones_spread(w1, k[1], s);
-        zones_spread(w2, l[0], 1 - t);
-        zones_spread(w2, l[1], t);
-        return separation;
-    }
-
-    // a node and a triangle
-    const uint8_t *k = collision_triangle[pair->first[1]];
-    float weight[3];
-    separation = feature_from_triangle(x[pair->first[0]], y[k[0]], y[k[1]], y[k[2]], weight);
-    zones_spread(w1, pair->first[0], 1);
-    for (int i = 0; i < 3; i++) zones_spread(w2, k[i], weight[i]);
-    return pair->kind == COLLISION_NODE_OF_B ? -separation : separation;
-}
-
 /// Share of each corner in a shift of its point: by its weight and inverse mass, but no corner counts as lighter than a
 /// quarter of the heaviest. Otherwise a light corner, far from the point, would be thrown far to move it. Returns the
 /// point's own inverse mass.
@@ -97,7 +63,34 @@ static void impact(const Ccd *ccd, const CollisionPair *pair) {
     Swept p, q;
     float wa[4] = {0}, wb[4] = {0};
     ccd_sweep_cells(ccd, pair, &p, &q);
-    Float4 normal = impact_points(pair, &p, &q, wa, wb);
+
+    // weights of the corners at the points that collide, and the vector from that of b to that of a
+    const bool turned = pair->kind == COLLISION_NODE_OF_B;
+    const Swept *one = turned ? &q : &p, *two = turned ? &p : &q;
+    float *w1 = turned ? wb : wa, *w2 = turned ? wa : wb;
+    Float4 here[5], there[5], normal;
+    for (int i = 0; i < 5; i++) {
+        here[i] = one->position[i] + pair->hit * one->displacement[i];
+        there[i] = two->position[i] + pair->hit * two->displacement[i];
+    }
+
+    if (pair->kind == COLLISION_EDGES) {
+        const uint8_t *k = collision_edge[pair->first[0]], *l = collision_edge[pair->first[1]];
+        float s, t;
+        normal = feature_from_segment(here[k[0]], here[k[1]], there[l[0]], there[l[1]], &s, &t);
+        zones_spread(w1, k[0], 1 - s);
+        zones_spread(w1, k[1], s);
+        zones_spread(w2, l[0], 1 - t);
+        zones_spread(w2, l[1], t);
+    } else {
+        const uint8_t *k = collision_triangle[pair->first[1]];
+        float weight[3];
+        normal = feature_from_triangle(here[pair->first[0]], there[k[0]], there[k[1]], there[k[2]], weight);
+        zones_spread(w1, pair->first[0], 1);
+        for (int i = 0; i < 3; i++) zones_spread(w2, k[i], weight[i]);
+        if (turned) normal = -normal;
+    }
+
     float distance = sqrtf(float4_dot(normal, normal));
     if (!(distance > 0)) return;
 
@@ -144,38 +137,37 @@ static uint32_t zone_root(CollisionPlan *plan, uint32_t v) {
     return v;
 }
 
-/// Joins the corners of a colliding pair, and reduces their share of the displacement.
-static void zone_join(const Ccd *ccd, const CollisionPair *pair, int round) {
-    CollisionPlan *plan = ccd->plan;
-    const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
-    uint32_t root = SHELL_NONE;
-    float share = 1;
-    for (int i = 0; i < 8; i++) {
-        uint32_t v = i < 4 ? a[i] : b[i - 4];
-        if (plan->zone[v] == SHELL_NONE) { // into a zone of its own, with all of its displacement
-            plan->zone[v] = v;
-            plan->share[v] = 1;
-            plan->stopped[plan->stopped_count++] = v;
-            memcpy(plan->goal[v], ccd->dynamics->position[v], sizeof *plan->goal);
-        }
-
-        uint32_t other = zone_root(plan, v);
-        share = fminf(share, plan->share[other]);
-        if (root == SHELL_NONE) root = other;
-        if (other < root) {
-            plan->zone[root] = other;
-            root = other;
-        } else plan->zone[other] = root;
-    }
-
-    // in the first round the share is the free one; later the displacements of the zone itself have changed
-    float less = round == 0 ? 0.9f * pair->hit : round < ZONE_PATIENCE ? 0.5f * share : 0;
-    plan->share[root] = fminf(share, less);
-}
-
 void ccd_zones(const Ccd *ccd, int round) {
     CollisionPlan *plan = ccd->plan;
-    for (uint32_t k = 0; k < plan->hit_count; k++) zone_join(ccd, &plan->pairs[plan->active[k]], round);
+
+    // join the corners of colliding pairs, and reduce their share of the displacement
+    for (uint32_t k = 0; k < plan->hit_count; k++) {
+        const CollisionPair *pair = &plan->pairs[plan->active[k]];
+        const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
+        uint32_t root = SHELL_NONE;
+        float share = 1;
+        for (int i = 0; i < 8; i++) {
+            uint32_t v = i < 4 ? a[i] : b[i - 4];
+            if (plan->zone[v] == SHELL_NONE) { // into a zone of its own, with all of its displacement
+                plan->zone[v] = v;
+                plan->share[v] = 1;
+                plan->stopped[plan->stopped_count++] = v;
+                memcpy(plan->goal[v], ccd->dynamics->position[v], sizeof *plan->goal);
+            }
+
+            uint32_t other = zone_root(plan, v);
+            share = fminf(share, plan->share[other]);
+            if (root == SHELL_NONE) root = other;
+            if (other < root) {
+                plan->zone[root] = other;
+                root = other;
+            } else plan->zone[other] = root;
+        }
+
+        // in the first round the share is the free one; later the displacements of the zone itself have changed
+        float less = round == 0 ? 0.9f * pair->hit : round < ZONE_PATIENCE ? 0.5f * share : 0;
+        plan->share[root] = fminf(share, less);
+    }
 
     // mean displacements by mass; if there are held corners, only theirs count
     for (uint32_t k = 0; k < plan->stopped_count; k++) plan->drift[plan->stopped[k]] = (Float4){0};

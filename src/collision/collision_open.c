@@ -97,25 +97,6 @@ static void point_weights(int kind, int first, int second, float u, float v, flo
     add_node(other, k[2], v);
 }
 
-/// Whether two points of one sheet are nearer at rest than `far`.
-static bool near_at_rest(const Opening *job, const CollisionPair *pair, const NearFeatures *near, float far) {
-    const Shell *shell = job->shell;
-    Float4 separation = job->plan->rest[pair->a] - job->plan->rest[pair->b];
-    float max = far + job->plan->rest[pair->a][3] + job->plan->rest[pair->b][3];
-    if (float4_dot(separation, separation) > max * max) return false;
-
-    const uint16_t *sheet = shell->matter.sheet;
-    if (sheet[shell_centre(shell, pair->a)] != sheet[shell_centre(shell, pair->b)]) return false;
-
-    float wa[4] = {0}, wb[4] = {0};
-    point_weights(near->kind, near->first, near->second, near->u, near->v, wa, wb);
-    separation = (Float4){0};
-    for (int i = 0; i < 4; i++)
-        separation += wa[i] * float4_load(shell->rest_position[shell->cells[pair->a][i]]) -
-                      wb[i] * float4_load(shell->rest_position[shell->cells[pair->b][i]]);
-    return float4_dot(separation, separation) < far * far;
-}
-
 /// Distance that two features must keep in this step; 0 if they need no repulsion.
 static float target(const Opening *job, const CollisionPair *pair, const Look *look, const NearFeatures *near) {
     const CollisionPlan *plan = job->plan;
@@ -139,9 +120,25 @@ static float target(const Opening *job, const CollisionPair *pair, const Look *l
     // contact is due where they may be too near at the step's end
     float toward = -float4_dot(speed, near->separation) / distance;
     if (distance > due(plan->thickness, plan, toward)) return 0;
-    if (near_at_rest(job, pair, near, 2 * thickness)) {
-        thickness = open_min(thickness, 4 * plan->gap);
-        if (distance > due(thickness, plan, toward)) return 0;
+
+    // points of one sheet that are near at rest need less
+    const Shell *shell = job->shell;
+    Float4 apart = plan->rest[pair->a] - plan->rest[pair->b];
+    const float far = 2 * thickness, max = far + plan->rest[pair->a][3] + plan->rest[pair->b][3];
+    const uint16_t *sheet = shell->matter.sheet;
+    if (!(float4_dot(apart, apart) > max * max) &&
+        sheet[shell_centre(shell, pair->a)] == sheet[shell_centre(shell, pair->b)]) {
+        float wa[4] = {0}, wb[4] = {0};
+        point_weights(near->kind, near->first, near->second, near->u, near->v, wa, wb);
+        apart = (Float4){0};
+        for (int i = 0; i < 4; i++)
+            apart += wa[i] * float4_load(shell->rest_position[shell->cells[pair->a][i]]) -
+                     wb[i] * float4_load(shell->rest_position[shell->cells[pair->b][i]]);
+
+        if (float4_dot(apart, apart) < far * far) {
+            thickness = open_min(thickness, 4 * plan->gap);
+            if (distance > due(thickness, plan, toward)) return 0;
+        }
     }
 
     float parted = distance + COLLISION_PART * plan->time_step;

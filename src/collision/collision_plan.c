@@ -169,25 +169,16 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     return SINGE_OK;
 }
 
-/// Whether the data read back may be that of a search; cells that are alive now were alive then.
-static bool collision_fits(const CollisionPlan *plan, const uint8_t *cell_flags) {
-    if (plan->searched > 1 || plan->restless > 1) return false;
-    for (uint32_t v = 0; v < plan->vertex_count; v++)
-        for (int k = 0; k < 3; k++)
-            if (!isfinite(plan->position[v][k]) || !isfinite(plan->speed[v][k])) return false;
-    for (uint32_t c = 0; c < plan->cell_count; c++) {
-        if (plan->alive[c] > 1) return false;
+SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags,
+                                  Stream *stream) {
+    STREAM(stream, plan->searched);
+    STREAM(stream, plan->restless);
+    STREAM(stream, plan->step);
+    stream_data(stream, plan->position, plan->vertex_count * sizeof *plan->position);
+    stream_data(stream, plan->speed, plan->vertex_count * sizeof *plan->speed);
+    stream_data(stream, plan->alive, plan->cell_count);
 
-        for (uint32_t k = plan->initial_first[c]; k < plan->initial_first[c + 1]; k++)
-            if (plan->initial_other[k] < c || plan->initial_other[k] >= plan->cell_count) return false;
-        if (plan->searched && (cell_flags[c] & SINGE_ALIVE) && !plan->alive[c]) return false;
-    }
-
-    return true;
-}
-
-/// The pairs that have intersected since the start: the count of each cell, then their other cells.
-static SingeResult stream_initial(Memory *memory, CollisionPlan *plan, Stream *stream) {
+    // pairs that have intersected since the start: the count of each cell, then their other cells
     uint32_t *first = plan->initial_first, count = first[plan->cell_count];
     STREAM(stream, count);
     stream_data(stream, first, ((size_t)plan->cell_count + 1) * sizeof *first);
@@ -198,27 +189,28 @@ static SingeResult stream_initial(Memory *memory, CollisionPlan *plan, Stream *s
         if (!fits || count > (stream->size - stream->offset) / sizeof *first) {
             memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
             stream->failed = true;
-            return SINGE_OK;
-        }
-
-        if (!initial_reserve(memory, plan, count)) return SINGE_ERROR_MEMORY;
+            count = 0;
+        } else if (!initial_reserve(memory, plan, count)) return SINGE_ERROR_MEMORY;
     }
 
     stream_data(stream, plan->initial_other, count * sizeof *plan->initial_other);
-    return SINGE_OK;
-}
 
-SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags,
-                                  Stream *stream) {
-    STREAM(stream, plan->searched);
-    STREAM(stream, plan->restless);
-    STREAM(stream, plan->step);
-    stream_data(stream, plan->position, plan->vertex_count * sizeof *plan->position);
-    stream_data(stream, plan->speed, plan->vertex_count * sizeof *plan->speed);
-    stream_data(stream, plan->alive, plan->cell_count);
-    TRY(stream_initial(memory, plan, stream));
-    if (stream->mode == STREAM_READ && !collision_fits(plan, cell_flags)) stream->failed = true;
-    if (stream->mode != STREAM_READ || stream->failed || !plan->searched) return SINGE_OK;
+    if (stream->mode != STREAM_READ) return SINGE_OK;
+
+    // whether the data read back may be that of a search; cells that are alive now were alive then
+    if (plan->searched > 1 || plan->restless > 1) stream->failed = true;
+    for (uint32_t v = 0; v < plan->vertex_count; v++)
+        for (int k = 0; k < 3; k++)
+            if (!isfinite(plan->position[v][k]) || !isfinite(plan->speed[v][k])) stream->failed = true;
+    for (uint32_t c = 0; c < plan->cell_count; c++) {
+        if (plan->alive[c] > 1) stream->failed = true;
+
+        for (uint32_t k = plan->initial_first[c]; k < plan->initial_first[c + 1]; k++)
+            if (plan->initial_other[k] < c || plan->initial_other[k] >= plan->cell_count) stream->failed = true;
+        if (plan->searched && (cell_flags[c] & SINGE_ALIVE) && !plan->alive[c]) stream->failed = true;
+    }
+
+    if (stream->failed || !plan->searched) return SINGE_OK;
 
     initial_mark(plan);
     plan->closed = false;

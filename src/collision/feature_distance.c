@@ -51,17 +51,6 @@ Float4 feature_from_triangle(Float4 p, Float4 a, Float4 b, Float4 c, float w[3])
 // on either side of the line through a shared side. At 20 degrees it is below 120: three cells around a corner, two of
 // which share a side each with the third, take less than a full turn, and convex ones stay within their angles.
 
-/// Whether a cell's corners have angles of 30 to 115 degrees, seen along the unit `normal`.
-static bool is_in_shape(FourVectors corner, FourVectors normal) {
-    FourVectors next = four_minus(four_turned(corner), corner);
-    next = four_along(next, -four_dot(next, normal), normal);
-    FourVectors last = {-FLOAT4_SHUFFLE(next.x, next.x, 3, 0, 1, 2), -FLOAT4_SHUFFLE(next.y, next.y, 3, 0, 1, 2),
-                        -FLOAT4_SHUFFLE(next.z, next.z, 3, 0, 1, 2)};
-    Float4 dot = four_dot(next, last), square = four_dot(next, next) * four_dot(last, last);
-    Float4 max = float4_select(dot > 0, float4_all(0.75f), float4_all(0.1786f)) * square;
-    return float4_bits((four_dot(four_cross(next, last), normal) > 0) & (dot * dot <= max)) == 15;
-}
-
 Float4 feature_normals(const Float4 node[5]) {
     const Float4 none = {0, 0, 0, 8};
     FourVectors corner = four_minus(four_of(node), four_all(node[4]));
@@ -78,7 +67,16 @@ Float4 feature_normals(const Float4 node[5]) {
     mean = mean / size;
     FourVectors along = four_all(mean), off = four_minus(normal, along);
     float spread = sqrtf(float4_largest(four_dot(off, off)));
-    return float4_with(mean, is_in_shape(corner, along) ? spread : 2 + spread);
+
+    // whether the cell's corners have angles of 30 to 115 degrees, seen along the mean
+    FourVectors next = four_minus(four_turned(corner), corner);
+    next = four_along(next, -four_dot(next, along), along);
+    FourVectors last = {-FLOAT4_SHUFFLE(next.x, next.x, 3, 0, 1, 2), -FLOAT4_SHUFFLE(next.y, next.y, 3, 0, 1, 2),
+                        -FLOAT4_SHUFFLE(next.z, next.z, 3, 0, 1, 2)};
+    Float4 dot = four_dot(next, last), square = four_dot(next, next) * four_dot(last, last);
+    Float4 max = float4_select(dot > 0, float4_all(0.75f), float4_all(0.1786f)) * square;
+    bool in_shape = float4_bits((four_dot(four_cross(next, last), along) > 0) & (dot * dot <= max)) == 15;
+    return float4_with(mean, in_shape ? spread : 2 + spread);
 }
 
 /// Whether the corners that are not shared lie beyond the plane.
@@ -138,42 +136,18 @@ static float sweep_distance(const FeatureSweep *sweep, float time) {
     return sqrtf(float4_dot(separation, separation));
 }
 
-/// Max speed at which the two approach each other: their longest displacements, without the mean of all.
-static float sweep_approach(const FeatureSweep *sweep) {
+float feature_sweep(const FeatureSweep *sweep, float gap, float noise) {
+    enum { ROUNDS = 64, SIMPLE_ROUNDS = 12 };
+
+    // max speed at which the two approach each other: their longest displacements, without the mean of all
     Float4 mean =
         0.25f * ((sweep->displacement[0] + sweep->displacement[1]) + (sweep->displacement[2] + sweep->displacement[3]));
     float length[4];
     for (int i = 0; i < 4; i++)
         length[i] = sqrtf(float4_dot(sweep->displacement[i] - mean, sweep->displacement[i] - mean));
     float late = fmaxf(length[2], length[3]);
-    return sweep->edges ? fmaxf(length[0], length[1]) + late : length[0] + fmaxf(length[1], late);
-}
-
-/// How long from `time` on two planes across the shortest segment between the two, each moving with the nearest of its
-/// points, keep them `keep` apart.
-static float sweep_planes(const FeatureSweep *sweep, float time, float keep) {
-    Float4 x[4], normal = sweep_separation(sweep, time, x);
-    int own = sweep->edges ? 2 : 1;
-    float longest = 2, height[4], speed[4];
-    normal = normal / sqrtf(float4_dot(normal, normal));
-
-    for (int i = 0; i < 4; i++) {
-        height[i] = float4_dot(x[i] - x[0], normal);
-        speed[i] = float4_dot(sweep->displacement[i], normal);
-    }
-
-    for (int i = 0; i < own; i++)
-        for (int j = own; j < 4; j++) {
-            float left = height[i] - height[j] - keep, nearing = speed[j] - speed[i];
-            if (!(left > 0)) return 0;
-            if (nearing > 0) longest = fminf(longest, left / nearing);
-        }
-    return longest;
-}
-
-float feature_sweep(const FeatureSweep *sweep, float gap, float noise) {
-    enum { ROUNDS = 64, SIMPLE_ROUNDS = 12 };
-    float approach = sweep_approach(sweep), distance = sweep_distance(sweep, 0), time = 0;
+    float approach = sweep->edges ? fmaxf(length[0], length[1]) + late : length[0] + fmaxf(length[1], late);
+    float distance = sweep_distance(sweep, 0), time = 0;
     bool close = distance <= 2 * gap; // then the distance may only grow
     if (close && sweep_distance(sweep, 1) < distance - noise) return 0;
 
@@ -184,8 +158,29 @@ float feature_sweep(const FeatureSweep *sweep, float gap, float noise) {
     for (int round = 0; round < ROUNDS; round++) {
         float next = time + 0.9f * (distance - keep) / approach;
 
-        // features that slide past each other, fast for their distance, make small steps only
-        if (round >= SIMPLE_ROUNDS) next = fmaxf(next, time + 0.9f * sweep_planes(sweep, time, keep));
+        // features that slide past each other, fast for their distance, make small steps only. Then two planes
+        // across the shortest segment between the two, each moving with the nearest of its points, tell from `time` on
+        // how long these keep them `keep` apart
+        if (round >= SIMPLE_ROUNDS) {
+            Float4 x[4], normal = sweep_separation(sweep, time, x);
+            int own = sweep->edges ? 2 : 1;
+            float longest = 2, height[4], speed[4];
+            normal = normal / sqrtf(float4_dot(normal, normal));
+
+            for (int i = 0; i < 4; i++) {
+                height[i] = float4_dot(x[i] - x[0], normal);
+                speed[i] = float4_dot(sweep->displacement[i], normal);
+            }
+
+            for (int i = 0; i < own; i++)
+                for (int j = own; j < 4; j++) {
+                    float left = height[i] - height[j] - keep, nearing = speed[j] - speed[i];
+                    if (!(left > 0)) longest = 0;
+                    else if (nearing > 0) longest = fminf(longest, left / nearing);
+                }
+            next = fmaxf(next, time + 0.9f * longest);
+        }
+
         if (next > 1) return 2;
 
         distance = sweep_distance(sweep, next);

@@ -59,59 +59,55 @@ bool initial_reserve(Memory *memory, CollisionPlan *plan, uint32_t count) {
     return true;
 }
 
-/// The first search: lists all pairs that intersect. plan->active is free until CCD, and marks them.
-static SingeResult list_all(Memory *memory, CollisionPlan *plan, const Shell *shell) {
-    uint32_t *first = plan->initial_first, count = 0;
-
-    // find them, and count those of each cell
-    memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
-    for (uint32_t k = 0; k < plan->pair_count; k++) {
-        const CollisionPair *pair = &plan->pairs[k];
-        plan->active[k] = pair_intersects(plan, shell, pair);
-        if (!plan->active[k]) continue;
-
-        first[pair->a + 2]++;
-        count++;
-    }
-
-    if (!initial_reserve(memory, plan, count)) {
-        memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
-        return SINGE_ERROR_MEMORY;
-    }
-
-    // sort them by their first cell; first[a + 1] is where the next of cell a goes
-    for (uint32_t c = 0; c < plan->cell_count; c++) first[c + 2] += first[c + 1];
-    for (uint32_t k = 0; k < plan->pair_count; k++)
-        if (plan->active[k]) plan->initial_other[first[plan->pairs[k].a + 1]++] = plan->pairs[k].b;
-    return SINGE_OK;
-}
-
-/// A later search: keeps the pairs that still intersect, in their order. Pairs that the search has not listed have
-/// separated.
-static void keep_crossing(CollisionPlan *plan, const Shell *shell) {
-    uint32_t *first = plan->initial_first, kept = 0, begin = 0;
-
-    // mark the pairs that have not separated
-    for (uint32_t k = 0; k < plan->pair_count; k++) {
-        const CollisionPair *pair = &plan->pairs[k];
-        const uint32_t at = initial_index(plan, pair->a, pair->b);
-        if (at != SHELL_NONE && pair_intersects(plan, shell, pair)) plan->initial_other[at] |= KEPT;
-    }
-
-    // close the gaps
-    for (uint32_t a = 0; a < plan->cell_count; a++) {
-        const uint32_t end = first[a + 1];
-        for (uint32_t k = begin; k < end; k++)
-            if (plan->initial_other[k] & KEPT) plan->initial_other[kept++] = plan->initial_other[k] & ~KEPT;
-        begin = end;
-        first[a + 1] = kept;
-    }
-}
-
 SingeResult initial_find(Memory *memory, CollisionPlan *plan, const Shell *shell, bool first) {
     if (!first && plan->counters.intersecting == 0) return SINGE_OK;
-    if (first) TRY(list_all(memory, plan, shell));
-    else keep_crossing(plan, shell);
+    uint32_t *cell_first = plan->initial_first;
+
+    // the first search lists all pairs that intersect. plan->active is free until CCD, and marks them
+    if (first) {
+        uint32_t count = 0;
+
+        // find them, and count those of each cell
+        memset(cell_first, 0, ((size_t)plan->cell_count + 2) * sizeof *cell_first);
+        for (uint32_t k = 0; k < plan->pair_count; k++) {
+            const CollisionPair *pair = &plan->pairs[k];
+            plan->active[k] = pair_intersects(plan, shell, pair);
+            if (!plan->active[k]) continue;
+
+            cell_first[pair->a + 2]++;
+            count++;
+        }
+
+        if (!initial_reserve(memory, plan, count)) {
+            memset(cell_first, 0, ((size_t)plan->cell_count + 2) * sizeof *cell_first);
+            return SINGE_ERROR_MEMORY;
+        }
+
+        // sort them by their first cell; cell_first[a + 1] is where the next of cell a goes
+        for (uint32_t c = 0; c < plan->cell_count; c++) cell_first[c + 2] += cell_first[c + 1];
+        for (uint32_t k = 0; k < plan->pair_count; k++)
+            if (plan->active[k]) plan->initial_other[cell_first[plan->pairs[k].a + 1]++] = plan->pairs[k].b;
+    } else {
+        uint32_t kept = 0, begin = 0;
+
+        // a later one keeps those that still intersect, in their order. Pairs that the search has not listed have
+        // separated
+        for (uint32_t k = 0; k < plan->pair_count; k++) {
+            const CollisionPair *pair = &plan->pairs[k];
+            const uint32_t at = initial_index(plan, pair->a, pair->b);
+            if (at != SHELL_NONE && pair_intersects(plan, shell, pair)) plan->initial_other[at] |= KEPT;
+        }
+
+        // close the gaps
+        for (uint32_t a = 0; a < plan->cell_count; a++) {
+            const uint32_t end = cell_first[a + 1];
+            for (uint32_t k = begin; k < end; k++)
+                if (plan->initial_other[k] & KEPT) plan->initial_other[kept++] = plan->initial_other[k] & ~KEPT;
+            begin = end;
+            cell_first[a + 1] = kept;
+        }
+    }
+
     initial_mark(plan);
     return SINGE_OK;
 }

@@ -177,29 +177,6 @@ static void find_nodes(Search *search, const NarrowCell *p, const NarrowCell *q,
     }
 }
 
-static void find_edges(Search *search, const NarrowCell *p, const NarrowCell *q, const unsigned same[4]) {
-    FourVectors centroid = four_all(q->node[4]);
-    for (int i = 0; i < 8; i++) {
-        if (!(p->owned >> (8 + i) & 1)) continue;
-
-        const uint8_t *k = collision_edge[i];
-        unsigned corners = same[k[0]] | (k[1] < 4 ? same[k[1]] : 0);
-        Float4 a = p->node[k[0]], b = p->node[k[1]];
-        Float4 low = float4_min(a, b) - search->far, high = float4_max(a, b) + search->far;
-        unsigned sides = four_meet(&q->boxes.sides, low, high) & q->owned >> 8 & ~narrow_around(corners);
-        unsigned spokes = four_meet(&q->boxes.spokes, low, high) & ~corners;
-        if (sides) {
-            FourNear four = from_segments(four_all(a), four_all(b), q->corner, q->turned);
-            narrow_note(search, &four, sides, COLLISION_EDGES, i, 0, 1);
-        }
-
-        if (spokes) {
-            FourNear four = from_segments(four_all(a), four_all(b), q->corner, centroid);
-            narrow_note(search, &four, spokes, COLLISION_EDGES, i, 4, 1);
-        }
-    }
-}
-
 int narrow_features(const Shell *shell, const CollisionPair *pair, NarrowCell *a, NarrowCell *b,
                     const FeatureRange *far, NearFeatures *near, float *nearest) {
     const uint32_t *p = shell->cells[pair->a], *q = shell->cells[pair->b];
@@ -214,7 +191,29 @@ int narrow_features(const Shell *shell, const CollisionPair *pair, NarrowCell *a
     cell_boxes(a), cell_boxes(b);
     find_nodes(&search, a, b, of_b, COLLISION_NODE_OF_A);
     find_nodes(&search, b, a, of_a, COLLISION_NODE_OF_B);
-    if (far->edges) find_edges(&search, a, b, of_b);
+
+    // edges that a owns against edges of b
+    FourVectors centroid = four_all(b->node[4]);
+    for (int i = 0; far->edges && i < 8; i++) {
+        if (!(a->owned >> (8 + i) & 1)) continue;
+
+        const uint8_t *k = collision_edge[i];
+        unsigned corners = of_b[k[0]] | (k[1] < 4 ? of_b[k[1]] : 0);
+        Float4 start = a->node[k[0]], end = a->node[k[1]];
+        Float4 low = float4_min(start, end) - search.far, high = float4_max(start, end) + search.far;
+        unsigned sides = four_meet(&b->boxes.sides, low, high) & b->owned >> 8 & ~narrow_around(corners);
+        unsigned spokes = four_meet(&b->boxes.spokes, low, high) & ~corners;
+        if (sides) {
+            FourNear four = from_segments(four_all(start), four_all(end), b->corner, b->turned);
+            narrow_note(&search, &four, sides, COLLISION_EDGES, i, 0, 1);
+        }
+
+        if (spokes) {
+            FourNear four = from_segments(four_all(start), four_all(end), b->corner, centroid);
+            narrow_note(&search, &four, spokes, COLLISION_EDGES, i, 4, 1);
+        }
+    }
+
     *nearest = sqrtf(float4_smallest(search.square));
     return search.count;
 }

@@ -49,95 +49,58 @@ static void against_box(const OutsideSearch *job, uint32_t a, const OutsideBox *
         add_pair(job, a, b, writer);
 }
 
-/// Cells in their boxes that one out of bounds may have met.
-static void against_boxes(const OutsideSearch *job, uint32_t a, const OutsideBox *box, BlockWriter *writer) {
-    const CollisionPlan *plan = job->plan;
-    float inverse = 1 / plan->edge;
-    Cube first = collision_cube(box->low, inverse), last = collision_cube(box->high, inverse), at = first;
-    if (collision_cubes(first, last, plan->sizes.entries) > plan->sizes.entries) { // thrown far: more cubes than cells
-        for (uint32_t b = 0; b < plan->cell_count; b++)
-            if (plan->alive[b]) against_box(job, a, box, b, writer);
-        return;
-    }
-
-    // entries of the search's grid
-    for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
-        for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
-            for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
-                uint32_t key = collision_key(at), bucket = collision_bucket(plan, key),
-                         begun = float4_bits(at == first) & 7;
-                for (uint32_t k = plan->bucket_first[bucket]; k < plan->bucket_first[bucket + 1]; k++) {
-                    const CollisionEntry *entry = &plan->entries[k];
-                    if ((entry->key & COLLISION_KEY) != key || (begun | entry->key >> 29) != 7) continue;
-                    against_box(job, a, box, entry->cell, writer);
-                }
-            }
-}
-
-// ---- cells out of bounds among each other: a grid of the same cubes, buckets as chains
-
-static void chain_outside(OutsideSearch *job) {
-    CollisionPlan *plan = job->plan;
-    float inverse = 1 / plan->edge;
-    memset(plan->outside_chain, 0xff, plan->bucket_count * sizeof *plan->outside_chain);
-
-    for (uint32_t k = job->count; k-- > 0;) {
-        const OutsideBox *box = &plan->outside_boxes[k];
-        Cube first = collision_cube(box->low, inverse), last = collision_cube(box->high, inverse), at = first;
-        uint64_t cubes = collision_cubes(first, last, plan->sizes.entries);
-        job->crowded |= cubes > plan->sizes.entries - job->entry_count;
-        if (job->crowded) return;
-
-        for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
-            for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
-                for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
-                    uint32_t key = collision_key(at), *chain = &plan->outside_chain[collision_bucket(plan, key)];
-                    plan->outside_entries[job->entry_count] =
-                        (OutsideEntry){k, key | (float4_bits(at == first) & 7) << 29, *chain};
-                    *chain = job->entry_count++;
-                }
-    }
-}
-
 static void add_outside_pair(const OutsideSearch *job, uint32_t k, uint32_t l, BlockWriter *writer) {
     const OutsideBox *box = &job->plan->outside_boxes[k], *other = &job->plan->outside_boxes[l];
     if (quads_meet(box->low, box->high, other->low, other->high))
         add_pair(job, job->plan->outside[k], job->plan->outside[l], writer);
 }
 
-static void against_outside(const OutsideSearch *job, uint32_t k, BlockWriter *writer) {
-    const CollisionPlan *plan = job->plan;
-    if (job->crowded) {
-        for (uint32_t l = k + 1; l < job->count; l++) add_outside_pair(job, k, l, writer);
-        return;
-    }
-
-    const OutsideBox *box = &plan->outside_boxes[k];
-    float inverse = 1 / plan->edge;
-    Cube first = collision_cube(box->low, inverse), last = collision_cube(box->high, inverse), at = first;
-
-    // entries of the grid of cells out of bounds
-    for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
-        for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
-            for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
-                uint32_t key = collision_key(at), begun = float4_bits(at == first) & 7, e;
-                for (e = plan->outside_chain[collision_bucket(plan, key)]; e != SHELL_NONE;
-                     e = plan->outside_entries[e].next) {
-                    const OutsideEntry *entry = &plan->outside_entries[e];
-                    if (entry->outside > k && (entry->key & COLLISION_KEY) == key && (begun | entry->key >> 29) == 7)
-                        add_outside_pair(job, k, entry->outside, writer);
-                }
-            }
-}
-
+/// Pairs of cells out of bounds, each with the cells in their boxes that it may have met and the later ones out of
+/// bounds.
 static void outside_block(void *context, BlockList *list, int block) {
     const OutsideSearch *job = context;
+    const CollisionPlan *plan = job->plan;
+    const float inverse = 1 / plan->edge;
     BlockWriter writer = block_list_begin(list, block);
     uint32_t first = (uint32_t)block * COLLISION_OUTSIDE, last = first + COLLISION_OUTSIDE;
 
     for (uint32_t k = first; k < last && k < job->count && !block_list_is_full(&writer); k++) {
-        against_boxes(job, job->plan->outside[k], &job->plan->outside_boxes[k], &writer);
-        against_outside(job, k, &writer);
+        const OutsideBox *box = &plan->outside_boxes[k];
+        const uint32_t a = plan->outside[k];
+        Cube low = collision_cube(box->low, inverse), high = collision_cube(box->high, inverse), at = low;
+
+        // thrown far: more cubes than cells
+        const bool far = collision_cubes(low, high, plan->sizes.entries) > plan->sizes.entries;
+        for (uint32_t b = 0; far && b < plan->cell_count; b++)
+            if (plan->alive[b]) against_box(job, a, box, b, &writer);
+
+        // else entries of the search's grid
+        for (at[0] = low[0]; !far && at[0] <= high[0]; at[0]++)
+            for (at[1] = low[1]; at[1] <= high[1]; at[1]++)
+                for (at[2] = low[2]; at[2] <= high[2]; at[2]++) {
+                    uint32_t key = collision_key(at), bucket = collision_bucket(plan, key),
+                             begun = float4_bits(at == low) & 7;
+                    for (uint32_t e = plan->bucket_first[bucket]; e < plan->bucket_first[bucket + 1]; e++) {
+                        const CollisionEntry *entry = &plan->entries[e];
+                        if ((entry->key & COLLISION_KEY) != key || (begun | entry->key >> 29) != 7) continue;
+                        against_box(job, a, box, entry->cell, &writer);
+                    }
+                }
+
+        // all others out of bounds, or those in the entries of their grid
+        for (uint32_t l = k + 1; job->crowded && l < job->count; l++) add_outside_pair(job, k, l, &writer);
+        for (at[0] = low[0]; !job->crowded && at[0] <= high[0]; at[0]++)
+            for (at[1] = low[1]; at[1] <= high[1]; at[1]++)
+                for (at[2] = low[2]; at[2] <= high[2]; at[2]++) {
+                    uint32_t key = collision_key(at), begun = float4_bits(at == low) & 7, e;
+                    for (e = plan->outside_chain[collision_bucket(plan, key)]; e != SHELL_NONE;
+                         e = plan->outside_entries[e].next) {
+                        const OutsideEntry *entry = &plan->outside_entries[e];
+                        if (entry->outside > k && (entry->key & COLLISION_KEY) == key &&
+                            (begun | entry->key >> 29) == 7)
+                            add_outside_pair(job, k, entry->outside, &writer);
+                    }
+                }
     }
 
     block_list_end(&writer);
@@ -156,7 +119,28 @@ SingeResult broad_search_outside(Memory *memory, CollisionPlan *plan, const Shel
 
     int blocks = (int)((outside_count + COLLISION_OUTSIDE - 1) / COLLISION_OUTSIDE);
     pool_for(pool, (int)outside_count, COLLISION_OUTSIDE, box_range, &job);
-    chain_outside(&job);
+
+    // cells out of bounds among each other: a grid of the same cubes, buckets as chains
+    float inverse = 1 / plan->edge;
+    memset(plan->outside_chain, 0xff, plan->bucket_count * sizeof *plan->outside_chain);
+
+    for (uint32_t k = job.count; k-- > 0;) {
+        const OutsideBox *box = &plan->outside_boxes[k];
+        Cube first = collision_cube(box->low, inverse), last = collision_cube(box->high, inverse), at = first;
+        uint64_t cubes = collision_cubes(first, last, plan->sizes.entries);
+        job.crowded |= cubes > plan->sizes.entries - job.entry_count;
+        if (job.crowded) break;
+
+        for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
+            for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
+                for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
+                    uint32_t key = collision_key(at), *chain = &plan->outside_chain[collision_bucket(plan, key)];
+                    plan->outside_entries[job.entry_count] =
+                        (OutsideEntry){k, key | (float4_bits(at == first) & 7) << 29, *chain};
+                    *chain = job.entry_count++;
+                }
+    }
+
     BlockList *list = &plan->found_pairs;
     uint64_t count = block_list_write(list, pool, blocks, plan->sizes.pair_max, outside_block, &job);
     if (!collision_grow_pairs(memory, plan, plan->listed_count + count)) return SINGE_ERROR_MEMORY;

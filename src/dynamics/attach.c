@@ -172,22 +172,6 @@ void attach_split(Attachments *attachments, uint32_t vertex, uint32_t spare) {
     }
 }
 
-/// Whether the data read back is what attach_measure may have left.
-static bool attach_fits(const Attachments *attachments, const Shell *shell) {
-    for (uint32_t s = 0; s < shell->sheet_count; s++)
-        for (int k = 0; k < ATTACH_SOURCES; k++) {
-            const Sheet *sheet = &shell->sheets[s];
-            uint32_t source = attachments->source[s][k];
-            if (source == SHELL_NONE) continue;
-            if (source < sheet->vertex_first || source - sheet->vertex_first >= sheet->vertex_count) return false;
-            if (k > 0 && attachments->source[s][k - 1] == SHELL_NONE) return false;
-        }
-    for (uint32_t v = 0; v < shell->vertex_count; v++) // infinity is out of reach
-        for (int k = 0; k < ATTACH_SOURCES; k++)
-            if (!(attachments->length[v][k] >= 0) || !(attachments->goal[v][k] >= 0)) return false;
-    return isfinite(attachments->mass_burnt) && attachments->split_count <= shell->split_count;
-}
-
 void attach_stream(Attachments *attachments, const Shell *shell, Stream *stream) {
     STREAM(stream, attachments->topology);
     STREAM(stream, attachments->mass_burnt);
@@ -195,7 +179,22 @@ void attach_stream(Attachments *attachments, const Shell *shell, Stream *stream)
     stream_data(stream, attachments->source, shell->sheet_count * sizeof *attachments->source);
     stream_data(stream, attachments->length, shell->vertex_count * sizeof *attachments->length);
     stream_data(stream, attachments->goal, shell->vertex_count * sizeof *attachments->goal);
-    if (stream->mode == STREAM_READ && !attach_fits(attachments, shell)) stream->failed = true;
+    if (stream->mode != STREAM_READ) return;
+
+    // the data read back must be what attach_measure may have left
+    for (uint32_t s = 0; s < shell->sheet_count; s++)
+        for (int k = 0; k < ATTACH_SOURCES; k++) {
+            const Sheet *sheet = &shell->sheets[s];
+            uint32_t source = attachments->source[s][k];
+            if (source == SHELL_NONE) continue;
+            if (source < sheet->vertex_first || source - sheet->vertex_first >= sheet->vertex_count)
+                stream->failed = true;
+            if (k > 0 && attachments->source[s][k - 1] == SHELL_NONE) stream->failed = true;
+        }
+    for (uint32_t v = 0; v < shell->vertex_count; v++) // infinity is out of reach
+        for (int k = 0; k < ATTACH_SOURCES; k++)
+            if (!(attachments->length[v][k] >= 0) || !(attachments->goal[v][k] >= 0)) stream->failed = true;
+    if (!isfinite(attachments->mass_burnt) || attachments->split_count > shell->split_count) stream->failed = true;
 }
 
 void attach_position(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics) {

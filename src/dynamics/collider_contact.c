@@ -235,18 +235,6 @@ typedef struct Centroid {
     float h;
 } Centroid;
 
-/// Whether a point is nearer to a collider than `limit`.
-static bool centroid_is_near(const MovingCollider *moving, float limit, Float3 point) {
-    const Collider *collider = moving->collider;
-    Float3 from = float3_sub(point, moving->after.position), normal;
-    for (int i = 2; i >= 0; i--) {
-        float along = float3_dot(from, moving->axis[i]);
-        if (!(along < moving->high[i] && along > moving->low[i])) return false;
-    }
-
-    return collider_distance(collider, quat_unrotate(moving->after.rotation, from), limit, &normal) < limit;
-}
-
 static void centroid_cells(void *task, int begin, int end) {
     const Centroid *job = task;
     float(*position)[4] = job->dynamics->position;
@@ -265,7 +253,18 @@ static void centroid_cells(void *task, int begin, int end) {
             // no part of a plane lies between points outside it
             if (collider->collider->def.kind == SINGE_COLLIDER_PLANE) continue;
             float offset = CENTROID_SHARE * collider->collider->def.offset;
-            if (!centroid_is_near(collider, offset, float3_load(point))) continue;
+
+            // only a collider that is nearer to the centroid than its offset
+            Float3 from = float3_sub(float3_load(point), collider->after.position), normal;
+            bool near = true;
+            for (int i = 2; i >= 0 && near; i--) {
+                float along = float3_dot(from, collider->axis[i]);
+                near = along < collider->high[i] && along > collider->low[i];
+            }
+
+            if (!near || !(collider_distance(collider->collider, quat_unrotate(collider->after.rotation, from), offset,
+                                             &normal) < offset))
+                continue;
 
             // from where the centroid was when the substep began
             Float3 before = {0, 0, 0};

@@ -220,20 +220,6 @@ static float crease_turned(const Crease *job, uint32_t k, float last) {
     return angle - hinge->angle - curl;
 }
 
-/// cos^2 omega. The bend is the larger of the present and the filtered one: no edge seems oblique while its fold opens.
-static float crease_slant(const Crease *job, uint32_t k) {
-    const uint32_t *ends = job->shell->springs[SINGE_GREEN].ends[k];
-    const Hinge *hinge = &job->plan->hinges[k];
-    uint32_t first = ends[0] - job->shell->vertex_count, second = ends[1] - job->shell->vertex_count;
-    const float(*normal)[4] = (const float(*)[4])job->plan->cell_normal;
-    const float lasting = job->dynamics->bend[k] * hinge->arc, now = crease_turned(job, k, lasting);
-    float bend = fmaxf(fabsf(lasting), fabsf(now)); // also where now is NAN
-    float twist = hinge_twist(float3_load(normal[first]), float3_load(normal[second]), crease_edge(job, ends, hinge));
-    twist -= hinge->twist;
-    float slant = bend * bend / fmaxf(bend * bend + twist * twist, 1e-20f);
-    return fmaxf(slant, CREASE_SLANT);
-}
-
 /// Filters the bends of green springs, without the curl of their layers.
 static void crease_bends(void *task, int begin, int end) {
     const Crease *job = task;
@@ -280,7 +266,18 @@ static double crease_springs(void *task, int begin, int end) {
         float share = 0.5f * (field_at(matter->crease_share, ends[0]) + field_at(matter->crease_share, ends[1]));
         if (radius > 0 && share > 0 && kept > 0) {
             // growth of |k_p|, with the sign of the bend that causes it
-            const float slant = crease_slant(job, k), held = kept * *crease;
+            // cos^2 omega. The bend is the larger of the present and the filtered one: no edge seems oblique while its
+            // fold opens
+            const Hinge *hinge = &job->plan->hinges[k];
+            uint32_t first = ends[0] - job->shell->vertex_count, second = ends[1] - job->shell->vertex_count;
+            const float(*normal)[4] = (const float(*)[4])job->plan->cell_normal;
+            const float lasting = job->dynamics->bend[k] * hinge->arc, now = crease_turned(job, k, lasting);
+            const float turn = fmaxf(fabsf(lasting), fabsf(now)); // also where now is NAN
+            float twist =
+                hinge_twist(float3_load(normal[first]), float3_load(normal[second]), crease_edge(job, ends, hinge));
+            twist -= hinge->twist;
+            const float slant = fmaxf(turn * turn / fmaxf(turn * turn + twist * twist, 1e-20f), CREASE_SLANT);
+            const float held = kept * *crease;
             const float max = slant * job->plan->hinges[k].limit, elastic = fmaxf(-max, fminf(bend, max)) - held;
             const float excess = fabsf(elastic) - slant / radius - (1 / share - 1) * fabsf(held);
             *crease += kept * (excess > 0 ? copysignf(share * excess, elastic) : 0);

@@ -94,41 +94,9 @@ static double limit_count(void *task, int begin, int end) {
     return over;
 }
 
-/// Shortens springs that are too long, one after another, in blocks with a count above 0. Returns whether there were
-/// any.
-static bool limit_sweep(const Limit *job, const double *over) {
-    float(*x)[4] = job->dynamics->position, (*v)[4] = job->dynamics->velocity;
-    bool some = false;
-    for (uint32_t block = 0; block < job->end; block += POOL_BLOCK) {
-        if (over[block / POOL_BLOCK] == 0) continue;
-
-        const uint32_t end = job->end - block < POOL_BLOCK ? job->end : block + POOL_BLOCK;
-        const LimitRange range = limit_range(job, block, end);
-        for (uint32_t s = range.first; s < range.end; s++) {
-            if (!limit_is_over(job, range.colour, s)) continue;
-            const uint32_t *ends = job->shell->springs[range.colour].ends[s], a = ends[0], b = ends[1];
-            const float max = limit_factor(range.colour) * job->state->burn->spring_length[range.colour][s];
-            float wa = x[a][3], wb = x[b][3];
-            Float4 displacement = limit_displacement(job, range.colour, s);
-            Float4 relative = float4_load(v[b]) - float4_load(v[a]);
-            displacement[3] = 0;
-            float length = sqrtf(float4_dot(displacement, displacement));
-            float opens = float4_dot(relative, displacement) / length;
-            Float4 unit = displacement / length, shift = (length - max) / (wa + wb) * unit;
-            Float4 slow = (opens > 0 ? opens : 0) / (wa + wb) * unit;
-            float4_store(x[a], float4_load(x[a]) + wa * shift);
-            float4_store(x[b], float4_load(x[b]) - wb * shift);
-            float4_store(v[a], float4_load(v[a]) + wa * slow);
-            float4_store(v[b], float4_load(v[b]) - wb * slow);
-            some = true;
-        }
-    }
-
-    return some;
-}
-
 bool dynamics_limit(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
                     DynamicsState *dynamics) {
+    float(*x)[4] = dynamics->position, (*v)[4] = dynamics->velocity;
     Limit job = {.shell = shell, .state = state, .dynamics = dynamics, .spread = plan->attachments.spread};
     job.sides = shell->springs[SINGE_BLUE].count - shell->edge_spare_count + shell->edge_spare_used;
     job.first_diagonal = (uint32_t)pool_blocks((int)job.sides) * POOL_BLOCK;
@@ -136,7 +104,35 @@ bool dynamics_limit(DynamicsPlan *plan, const Shell *shell, const StateInput *st
 
     for (int round = 0; round < LIMIT_ROUNDS; round++) {
         if (pool_sum(pool, (int)job.end, limit_count, &job, plan->partial) == 0) return round > 0;
-        for (int sweep = 0; sweep < LIMIT_SWEEPS && limit_sweep(&job, plan->partial); sweep++) {
+
+        // shorten springs that are too long, one after another, in blocks that have any
+        bool some = true;
+        for (int sweep = 0; sweep < LIMIT_SWEEPS && some; sweep++) {
+            some = false;
+            for (uint32_t block = 0; block < job.end; block += POOL_BLOCK) {
+                if (plan->partial[block / POOL_BLOCK] == 0) continue;
+
+                const uint32_t end = job.end - block < POOL_BLOCK ? job.end : block + POOL_BLOCK;
+                const LimitRange range = limit_range(&job, block, end);
+                for (uint32_t s = range.first; s < range.end; s++) {
+                    if (!limit_is_over(&job, range.colour, s)) continue;
+                    const uint32_t *ends = job.shell->springs[range.colour].ends[s], a = ends[0], b = ends[1];
+                    const float max = limit_factor(range.colour) * job.state->burn->spring_length[range.colour][s];
+                    float wa = x[a][3], wb = x[b][3];
+                    Float4 displacement = limit_displacement(&job, range.colour, s);
+                    Float4 relative = float4_load(v[b]) - float4_load(v[a]);
+                    displacement[3] = 0;
+                    float length = sqrtf(float4_dot(displacement, displacement));
+                    float opens = float4_dot(relative, displacement) / length;
+                    Float4 unit = displacement / length, shift = (length - max) / (wa + wb) * unit;
+                    Float4 slow = (opens > 0 ? opens : 0) / (wa + wb) * unit;
+                    float4_store(x[a], float4_load(x[a]) + wa * shift);
+                    float4_store(x[b], float4_load(x[b]) - wb * shift);
+                    float4_store(v[a], float4_load(v[a]) + wa * slow);
+                    float4_store(v[b], float4_load(v[b]) - wb * slow);
+                    some = true;
+                }
+            }
         }
     }
 

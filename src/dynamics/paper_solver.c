@@ -27,36 +27,8 @@ static bool paper_one_system(SingeSolverMethod method) {
     return method == SINGE_SOLVER_ALL_AT_ONCE || method == SINGE_SOLVER_MASS_SPRING;
 }
 
-/// Numbers a colour's springs slot by slot, and within a slot cell by cell. Then the neighbours of springs in a row are
-/// in a row themselves, along the lines of a grid, and the matrix is read in runs. `ends`: of the springs, by row.
-static bool paper_number(Memory *memory, const Shell *shell, SingeColour colour, Paper *paper, uint32_t (*ends)[2]) {
-    static const uint32_t sides[] = {0, 3, 1, 2}; // on a grid the first two sides of all cells are nearly all edges
-    const SpringSet *set = &shell->springs[colour];
-    uint8_t *seen;
-    paper->spring_count[colour] = set->count;
-    if (!NEW(memory, paper->order[colour], set->count) || !NEW(memory, seen, set->count)) return false;
-
-    uint32_t row = 0;
-    for (uint32_t slot = 0; slot < 4; slot++)
-        for (uint32_t cell = 0; cell < shell->cell_count; cell++) {
-            const CellSprings *springs = &shell->cell_springs[cell];
-            uint32_t k = colour == SINGE_RED     ? springs->red[slot]
-                         : colour == SINGE_GREEN ? springs->green[sides[slot]]
-                         : colour == SINGE_BLUE  ? springs->blue[sides[slot]]
-                         : slot < 2              ? springs->yellow[slot]
-                                                 : SHELL_NONE;
-            if (k == SHELL_NONE || seen[k]) continue;
-            seen[k] = 1;
-            uint32_t a = set->ends[k][0], b = set->ends[k][1];
-            ends[row][0] = a < b ? a : b;
-            ends[row][1] = a < b ? b : a;
-            paper->order[colour][row++] = k;
-        }
-    FREE(memory, seen, set->count);
-    return true;
-}
-
 static bool paper_create(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
+    static const uint32_t sides[] = {0, 3, 1, 2}; // on a grid the first two sides of all cells are nearly all edges
     Paper *paper;
     if (!NEW(memory, plan->paper, 1)) return false;
 
@@ -73,7 +45,30 @@ static bool paper_create(Memory *memory, const Shell *shell, DynamicsPlan *plan)
 
     for (uint32_t c = 0, first = 0; ok && c < SINGE_COLOUR_COUNT; first += springs[c++].count) {
         springs[c] = (NetworkSprings){shell->springs[c].count, (const uint32_t(*)[2])(ends + first)};
-        ok = paper_number(memory, shell, (SingeColour)c, paper, ends + first);
+
+        // number them slot by slot, and within a slot cell by cell. Then the neighbours of springs in a row are in a
+        // row themselves, along the lines of a grid, and the matrix is read in runs
+        const SpringSet *set = &shell->springs[c];
+        uint8_t *seen = NULL;
+        paper->spring_count[c] = set->count;
+        ok = NEW(memory, paper->order[c], set->count) && NEW(memory, seen, set->count);
+
+        for (uint32_t slot = 0, row = first; ok && slot < 4; slot++)
+            for (uint32_t cell = 0; cell < shell->cell_count; cell++) {
+                const CellSprings *around = &shell->cell_springs[cell];
+                uint32_t k = c == SINGE_RED     ? around->red[slot]
+                             : c == SINGE_GREEN ? around->green[sides[slot]]
+                             : c == SINGE_BLUE  ? around->blue[sides[slot]]
+                             : slot < 2         ? around->yellow[slot]
+                                                : SHELL_NONE;
+                if (k == SHELL_NONE || seen[k]) continue;
+                seen[k] = 1;
+                uint32_t a = set->ends[k][0], b = set->ends[k][1];
+                ends[row][0] = a < b ? a : b;
+                ends[row][1] = a < b ? b : a;
+                paper->order[c][row++] = k;
+            }
+        FREE(memory, seen, set->count);
     }
 
     bool one = paper_one_system(paper->solver.method), matrix = paper->solver.method != SINGE_SOLVER_MASS_SPRING;

@@ -82,44 +82,6 @@ static void advect_field(GasPass *pass, int f, const GasBox *box, int parts) {
     }
 }
 
-/// The largest speed in a row, and the columns where there is something to carry.
-static float advect_row(const GasPass *pass, size_t c, int count, int busy[GAS_BOXES][2]) {
-    const GasPlan *plan = pass->plan;
-    const float *const *through = (const float *const *)&pass->from->field[GAS_THROUGH];
-    const float *L = pass->from->field[GAS_LIGHTNESS] + c, *fuel = pass->from->field[GAS_FUEL] + c;
-    const float *smoke = pass->from->field[GAS_SMOKE] + c;
-    float speed[SWEEP_RUN], max = 0;
-
-    for (int i = 0; i < count; i++) speed[i] = 0;
-
-    // max speed through the cells' faces
-    for (int d = 0; d < 3; d++) {
-        const float *restrict lower = through[d] + c, *restrict upper = lower + plan->grid.stride[d];
-        float wind = pass->wind[d];
-        for (int i = 0; i < count; i++) {
-            float a = fabsf(lower[i] + wind), b = fabsf(upper[i] + wind);
-            float both = a > b ? a : b;
-            speed[i] = both > speed[i] ? both : speed[i];
-        }
-    }
-
-    // ranges of cells that have something to carry
-    float calm = ADVECT_CALM;
-    for (int d = 0; d < 3; d++) calm = fmaxf(calm, fabsf(pass->wind[d]) + ADVECT_CALM);
-    for (int i = 0; i < count; i++) {
-        const bool something[GAS_BOXES] = {L[i] > 0 || fuel[i] > 0, smoke[i] > 0,
-                                           speed[i] > calm || L[i] > ADVECT_LIGHT};
-        max = speed[i] > max ? speed[i] : max;
-        for (int b = 0; b < GAS_BOXES; b++)
-            if (something[b]) {
-                busy[b][0] = i < busy[b][0] ? i : busy[b][0];
-                busy[b][1] = i;
-            }
-    }
-
-    return max;
-}
-
 static void advect_look(void *context, int begin, int end) {
     const GasPass *pass = context;
     const GasGrid *grid = &pass->plan->grid;
@@ -134,8 +96,39 @@ static void advect_look(void *context, int begin, int end) {
             for (int first = 0; first < grid->n[0]; first += SWEEP_RUN) {
                 int count = grid->n[0] - first, busy[GAS_BOXES][2] = {{INT_MAX, -1}, {INT_MAX, -1}, {INT_MAX, -1}};
                 count = count < SWEEP_RUN ? count : SWEEP_RUN;
-                float fastest = advect_row(pass, gas_at(grid, first, j, k), count, busy);
-                max = fastest > max ? fastest : max;
+                const size_t c = gas_at(grid, first, j, k);
+                const float *const *through = (const float *const *)&pass->from->field[GAS_THROUGH];
+                const float *L = pass->from->field[GAS_LIGHTNESS] + c, *fuel = pass->from->field[GAS_FUEL] + c;
+                const float *smoke = pass->from->field[GAS_SMOKE] + c;
+                float speed[SWEEP_RUN];
+
+                for (int i = 0; i < count; i++) speed[i] = 0;
+
+                // max speed through the cells' faces
+                for (int d = 0; d < 3; d++) {
+                    const float *restrict lower = through[d] + c, *restrict upper = lower + grid->stride[d];
+                    float wind = pass->wind[d];
+                    for (int i = 0; i < count; i++) {
+                        float a = fabsf(lower[i] + wind), b = fabsf(upper[i] + wind);
+                        float both = a > b ? a : b;
+                        speed[i] = both > speed[i] ? both : speed[i];
+                    }
+                }
+
+                // ranges of cells that have something to carry
+                float calm = ADVECT_CALM;
+                for (int d = 0; d < 3; d++) calm = fmaxf(calm, fabsf(pass->wind[d]) + ADVECT_CALM);
+                for (int i = 0; i < count; i++) {
+                    const bool something[GAS_BOXES] = {L[i] > 0 || fuel[i] > 0, smoke[i] > 0,
+                                                       speed[i] > calm || L[i] > ADVECT_LIGHT};
+                    max = speed[i] > max ? speed[i] : max;
+                    for (int b = 0; b < GAS_BOXES; b++)
+                        if (something[b]) {
+                            busy[b][0] = i < busy[b][0] ? i : busy[b][0];
+                            busy[b][1] = i;
+                        }
+                }
+
                 for (int b = 0; b < GAS_BOXES; b++)
                     if (busy[b][1] >= 0)
                         gas_box_add(&box[b],

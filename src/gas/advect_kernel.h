@@ -34,21 +34,6 @@ static void sweep_update(const Sweep *sweep, size_t c, int count, const float *r
     for (int i = 0; i < count; i++) to[i] = from[i] - (upper[i] - lower[i]) + start[i] * courant * (v[i] - u[i]);
 }
 
-/// Subtracts q0 sum(c_upper - c_lower).
-static void sweep_spread(const Sweep *sweep, size_t c, int count) {
-    const GasPass *pass = sweep->pass;
-    const float *restrict start = sweep->start + c;
-    const size_t *s = pass->plan->grid.stride;
-    const float *restrict x = pass->from->field[GAS_THROUGH] + c, *restrict x1 = x + 1;
-    const float *restrict y = pass->from->field[GAS_THROUGH + 1] + c, *restrict y1 = y + s[1];
-    const float *restrict z = pass->from->field[GAS_THROUGH + 2] + c, *restrict z1 = z + s[2];
-    float *restrict to = sweep->to + c, courant = pass->courant;
-    for (int i = 0; i < count; i++) {
-        float spread = (x1[i] - x[i]) + (y1[i] - y[i]) + (z1[i] - z[i]);
-        to[i] -= start[i] * courant * spread;
-    }
-}
-
 void SWEEP_ROWS(const Sweep *sweep, int task, int first, int count) {
     const GasGrid *grid = &sweep->pass->plan->grid;
     const GasBox *box = sweep->box;
@@ -66,6 +51,20 @@ void SWEEP_ROWS(const Sweep *sweep, int task, int first, int count) {
             sweep_faces(sweep, c + grid->stride[sweep->axis], count, flux[(r + 1) % 2]);
             sweep_update(sweep, c, count, flux[r % 2], flux[(r + 1) % 2]);
         }
-        if (sweep->last) sweep_spread(sweep, c, count);
+
+        // subtract q0 sum(c_upper - c_lower)
+        if (sweep->last) {
+            const GasPass *pass = sweep->pass;
+            const float *restrict start = sweep->start + c;
+            const size_t *s = pass->plan->grid.stride;
+            const float *restrict x = pass->from->field[GAS_THROUGH] + c, *restrict x1 = x + 1;
+            const float *restrict y = pass->from->field[GAS_THROUGH + 1] + c, *restrict y1 = y + s[1];
+            const float *restrict z = pass->from->field[GAS_THROUGH + 2] + c, *restrict z1 = z + s[2];
+            float *restrict to = sweep->to + c, courant = pass->courant;
+            for (int i = 0; i < count; i++) {
+                float spread = (x1[i] - x[i]) + (y1[i] - y[i]) + (z1[i] - z[i]);
+                to[i] -= start[i] * courant * spread;
+            }
+        }
     }
 }

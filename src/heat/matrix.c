@@ -164,10 +164,10 @@ static uint32_t matrix_insert(uint32_t *list, uint32_t count, uint32_t number) {
     return count + 1;
 }
 
-/// Lists the springs of a particle, in the numbering of all colours, in order. Returns how many.
-static uint32_t matrix_springs(const HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list) {
+bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list) {
+    HeatMatrix *matrix = &plan->matrix;
     const uint32_t *first = plan->spring_first;
-    uint32_t count = 0;
+    uint32_t count = 0, width = heat_row_width(matrix, row), filled = 0;
 
     // a centre: red and green springs of its cell
     if (row >= shell->vertex_count) {
@@ -177,28 +177,20 @@ static uint32_t matrix_springs(const HeatPlan *plan, const Shell *shell, uint32_
             if (springs->green[k] != SHELL_NONE)
                 count = matrix_insert(list, count, first[SINGE_GREEN] + springs->green[k]);
         }
-
-        return count;
+    } else {
+        // a vertex: the springs at its corner in each cell of its fan
+        for (uint32_t f = shell->fan_first[row]; f < shell->fan_first[row + 1]; f++) {
+            const CellSprings *springs = &shell->cell_springs[shell->fan[f]];
+            int i = 0;
+            while (shell->cells[shell->fan[f]][i] != row) i++;
+            count = matrix_insert(list, count, first[SINGE_RED] + springs->red[i]);
+            count = matrix_insert(list, count, first[SINGE_YELLOW] + springs->yellow[i & 1]);
+            count = matrix_insert(list, count, first[SINGE_BLUE] + springs->blue[i]);
+            count = matrix_insert(list, count, first[SINGE_BLUE] + springs->blue[(i + 3) & 3]);
+        }
     }
 
-    // a vertex: the springs at its corner in each cell of its fan
-    for (uint32_t f = shell->fan_first[row]; f < shell->fan_first[row + 1]; f++) {
-        const CellSprings *springs = &shell->cell_springs[shell->fan[f]];
-        int i = 0;
-        while (shell->cells[shell->fan[f]][i] != row) i++;
-        count = matrix_insert(list, count, first[SINGE_RED] + springs->red[i]);
-        count = matrix_insert(list, count, first[SINGE_YELLOW] + springs->yellow[i & 1]);
-        count = matrix_insert(list, count, first[SINGE_BLUE] + springs->blue[i]);
-        count = matrix_insert(list, count, first[SINGE_BLUE] + springs->blue[(i + 3) & 3]);
-    }
-
-    return count;
-}
-
-bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list) {
-    HeatMatrix *matrix = &plan->matrix;
-    uint32_t count = matrix_springs(plan, shell, row, list), width = heat_row_width(matrix, row), filled = 0;
-
+    // their conductances
     for (uint32_t k = 0; k < count; k++) {
         float conductance = plan->conductance[list[k]];
         if (conductance == 0) continue;
@@ -230,22 +222,6 @@ void heat_matrix_free(Memory *memory, HeatPlan *plan) {
     FREE(memory, matrix->column, matrix->entries);
     FREE(memory, matrix->value, matrix->entries);
     FREE(memory, matrix->twins, matrix->twin_capacity);
-}
-
-/// Clears all remaining entries of a dead particle.
-static void matrix_lose_particle(HeatPlan *plan, uint32_t row) {
-    HeatMatrix *matrix = &plan->matrix;
-    for (uint32_t k = 0; k < heat_row_width(matrix, row); k++) {
-        uint32_t entry = heat_entry(matrix, row, k), other = matrix->column[entry];
-        matrix->value[entry] = 0;
-        for (uint32_t j = 0; j < heat_row_width(matrix, other); j++) {
-            uint32_t back = heat_entry(matrix, other, j);
-            if (matrix->column[back] == row) matrix->value[back] = 0;
-        }
-        matrix_invert(plan, other);
-    }
-
-    matrix_invert(plan, row);
 }
 
 /// Clears the two entries of a spring that is gone. Twins are distinguished by their values; equal ones need not be.
@@ -287,10 +263,11 @@ static bool matrix_lost_any(const uint8_t *known, const uint8_t *flags, uint32_t
 
 void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate, float dt) {
     enum { LOOK = 1024 }; // compared at once, as a loss is rare
+    HeatMatrix *matrix = &plan->matrix;
     uint32_t count = plan->particles, last;
 
-    if (plan->matrix.dt != dt) { // the first step, or a step of another length
-        plan->matrix.dt = dt;
+    if (matrix->dt != dt) { // the first step, or a step of another length
+        matrix->dt = dt;
         for (uint32_t i = 0; i < count; i++) matrix_invert(plan, i);
     }
 
@@ -301,7 +278,19 @@ void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *a
         for (uint32_t i = first; i < last; i++) {
             if (!plan->alive[i] || ablate->particle_flags[i] & SINGE_ALIVE) continue;
             plan->alive[i] = 0;
-            matrix_lose_particle(plan, i);
+
+            // clear all its remaining entries
+            for (uint32_t k = 0; k < heat_row_width(matrix, i); k++) {
+                uint32_t entry = heat_entry(matrix, i, k), other = matrix->column[entry];
+                matrix->value[entry] = 0;
+                for (uint32_t j = 0; j < heat_row_width(matrix, other); j++) {
+                    uint32_t back = heat_entry(matrix, other, j);
+                    if (matrix->column[back] == i) matrix->value[back] = 0;
+                }
+                matrix_invert(plan, other);
+            }
+
+            matrix_invert(plan, i);
         }
     }
 

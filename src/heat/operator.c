@@ -119,7 +119,7 @@ static float operator_side(const HeatPlan *plan, const Shell *shell, uint32_t ce
     return (float)operator_less(weight, lean * area, diffusivity);
 }
 
-/// The geometry of one cell of the surface operator, without diffusivity and F.
+/// The springs of one cell of the surface operator, without diffusivity and F.
 static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
     const CellSprings *springs = &shell->cell_springs[cell];
     const uint32_t *first = plan->spring_first;
@@ -134,16 +134,18 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
         conductance[first[SINGE_BLUE] + springs->blue[k]] += operator_side(plan, shell, cell, k, w[k]);
     for (int k = 0; k < 2; k++) conductance[first[SINGE_YELLOW] + springs->yellow[k]] = (float)w[4 + k];
 
+    Float3 x[4];
+    int scale = operator_scale(shell, cell);
+    operator_corners(shell, cell, scale, x);
+    Float3 centroid = float3_scale(float3_add(float3_add(x[0], x[1]), float3_add(x[2], x[3])), 0.25f);
+
     for (int k = 0; k < 4; k++) {
         uint32_t other = shell_neighbour(shell, cell, k);
         if (other == SHELL_NONE || springs->green[k] == SHELL_NONE) continue;
 
         // two-point flux through the side that two cells share
-        Float3 x[4], y[4];
-        int scale = operator_scale(shell, cell);
-        operator_corners(shell, cell, scale, x);
+        Float3 y[4];
         operator_corners(shell, other, scale, y);
-        Float3 centroid = float3_scale(float3_add(float3_add(x[0], x[1]), float3_add(x[2], x[3])), 0.25f);
         Float3 d = float3_scale(float3_add(float3_add(y[0], y[1]), float3_add(y[2], y[3])), 0.25f);
         d = float3_sub(d, centroid);
         float square = float3_dot(d, d);
@@ -156,20 +158,11 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
         float diffusivity = operator_spring(plan, shell, SINGE_GREEN, springs->green[k]);
         conductance[first[SINGE_GREEN] + springs->green[k]] = (float)operator_less(flux, leak, diffusivity);
     }
-}
 
-/// The red springs of a cell, which do not depend on the diffusivity. A corner's share is half of the two triangles at
-/// it that meet in the cell's centre, or a quarter of the cell if a corner is concave.
-static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell) {
-    uint32_t centre = shell_centre(shell, cell);
-    float area = shell->matter.area[centre];
-    Float3 x[4];
-    int scale = operator_scale(shell, cell);
-    operator_corners(shell, cell, scale, x);
+    // red springs, which do not depend on the diffusivity. A corner's share is half of the two triangles at it that
+    // meet in the cell's centre, which are negative if they face away; or a quarter of the cell if a corner is concave
+    const float own = shell->matter.area[centre];
     Float3 normal = float3_unit(float3_cross(float3_sub(x[2], x[0]), float3_sub(x[3], x[1])));
-    Float3 centroid = float3_scale(float3_add(float3_add(x[0], x[1]), float3_add(x[2], x[3])), 0.25f);
-
-    // the triangle at each side, negative if it faces away
     double triangle[4];
     bool even = false;
     for (int k = 0; k < 4; k++) {
@@ -178,9 +171,9 @@ static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell)
         triangle[k] = ldexp(twice / 2, 2 * scale);
     }
 
-    for (int k = 0; k < 4; k++) even |= !(triangle[k] + triangle[(k + 3) % 4] > area / 16);
+    for (int k = 0; k < 4; k++) even |= !(triangle[k] + triangle[(k + 3) % 4] > own / 16);
     for (int k = 0; k < 4; k++) {
-        double share = even ? area / 4 : (triangle[k] + triangle[(k + 3) % 4]) / 2;
+        double share = even ? own / 4 : (triangle[k] + triangle[(k + 3) % 4]) / 2;
         float rate = operator_rate(plan, shell, centre, shell->cells[cell][k]);
         plan->conductance[plan->spring_first[SINGE_RED] + shell->cell_springs[cell].red[k]] = (float)(rate * share / 2);
     }
@@ -202,10 +195,8 @@ void heat_operator(HeatPlan *plan, const Shell *shell) {
         if (sheet->material.heat_operator == SINGE_HEAT_UMBRELLA) continue;
         for (uint32_t i = 0; i < shell->particle_count; i++)
             if (matter->sheet[i] == s) plan->measure[i] = matter->area[i] * field_at(matter->capacity_ratio, i);
-        for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
+        for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++)
             operator_cell(plan, shell, c);
-            operator_exchange(plan, shell, c);
-        }
     }
 
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {

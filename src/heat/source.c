@@ -100,25 +100,6 @@ static SingeResult source_set_texture(Memory *memory, const Shell *shell, const 
     return SINGE_OK;
 }
 
-static SingeResult source_copy_texture(Memory *memory, const SingeTexture *texture, Source *source, SingeError *error) {
-    float *values;
-    if (!NEW(memory, values, texture_size(texture))) return source_no_memory(error);
-    memcpy(values, texture->values, texture_size(texture) * sizeof *values);
-    source->waiting = (SingeTexture){texture->width, texture->height, values};
-    return SINGE_OK;
-}
-
-static SingeResult source_copy_arrays(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source,
-                                      SingeError *error) {
-    if (source_has_path(def)) return path_set(&source->path, memory, def->path_count, def->path, "source", error);
-    if (def->kind != SINGE_SOURCE_TEXTURE) return SINGE_OK;
-    if (!NEW(memory, source->strength, def->strength_count)) return source_no_memory(error);
-    source->strength_count = def->strength_count;
-    if (def->strength_count) memcpy(source->strength, def->strength, def->strength_count * sizeof *def->strength);
-    return shell->particle_count ? source_set_texture(memory, shell, &def->texture, source, error)
-                                 : source_copy_texture(memory, &def->texture, source, error);
-}
-
 SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceDef *given, Source *source,
                           SingeError *error) {
     SingeSourceDef def = *given;
@@ -134,7 +115,27 @@ SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceD
     source->def.path = NULL;
     source->def.strength = NULL;
     source->def.texture.values = NULL;
-    SingeResult result = source_copy_arrays(memory, shell, &def, source, error);
+
+    // copies of its arrays; a texture waits until there are particles
+    SingeResult result = SINGE_OK;
+    if (source_has_path(&def)) {
+        result = path_set(&source->path, memory, def.path_count, def.path, "source", error);
+    } else if (def.kind == SINGE_SOURCE_TEXTURE) {
+        const SingeTexture *texture = &def.texture;
+        float *values;
+        bool ok = NEW(memory, source->strength, def.strength_count);
+        if (ok) source->strength_count = def.strength_count;
+        if (ok && def.strength_count) memcpy(source->strength, def.strength, def.strength_count * sizeof *def.strength);
+        if (ok && shell->particle_count) {
+            result = source_set_texture(memory, shell, texture, source, error);
+        } else if (ok && NEW(memory, values, texture_size(texture))) {
+            memcpy(values, texture->values, texture_size(texture) * sizeof *values);
+            source->waiting = (SingeTexture){texture->width, texture->height, values};
+        } else {
+            result = source_no_memory(error);
+        }
+    }
+
     if (result) source_free(memory, shell, source);
     return result;
 }

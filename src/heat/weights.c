@@ -172,35 +172,36 @@ static double weights_length(double u, double v) {
     return length - miss / (2 * length);
 }
 
-/// k of max entropy, with a sum of 1. Returns sqrt(1 - r^2).
-static double weights_entropy(const WeightSpring s[SPRINGS], double k[SPRINGS]) {
-    double lambda[2] = {0}, mean[2], slope[3], moved = 1;
-    weights_mean(s, lambda, k, mean, slope);
-    for (int n = 0; n < ITERATIONS && moved > 1e-9 && weights_length(mean[0], mean[1]) > 1e-12; n++) {
-        double before[2] = {lambda[0], lambda[1]};
-        // Newton step, of length 1 at most: the mean is the gradient of a convex function of lambda
-        double a = slope[0] + 1e-9, b = slope[1], c = slope[2] + 1e-9, determinant = a * c - b * b;
-        double u = (b * mean[1] - c * mean[0]) / determinant, v = (b * mean[0] - a * mean[1]) / determinant;
-        double shorter = fmax(weights_length(u, v), 1);
-        lambda[0] += u / shorter;
-        lambda[1] += v / shorter;
-        double steep = fmax(weights_length(lambda[0], lambda[1]) / STEEPEST, 1);
-        lambda[0] /= steep;
-        lambda[1] /= steep;
-        moved = weights_length(lambda[0] - before[0], lambda[1] - before[1]);
-        weights_mean(s, lambda, k, mean, slope);
-    }
-
-    return sqrt(fmax(1 - mean[0] * mean[0] - mean[1] * mean[1], DBL_EPSILON));
-}
-
 void heat_cell_weights(const Float3 x[4], const double across[4], double w[6]) {
     double positive[SPRINGS] = {0}, k[SPRINGS], mix = 0;
     bool linear = heat_cell_linear(x, w);
 
     // c2 of (1), or the closest to it
     WeightSpring springs[SPRINGS] = {{0}};
-    double twice = weights_plane(x, springs), even = twice > 0 ? weights_entropy(springs, k) : 1;
+    double twice = weights_plane(x, springs), even = 1;
+
+    // those of max entropy, with a sum of 1; even is sqrt(1 - r^2)
+    if (twice > 0) {
+        double lambda[2] = {0}, mean[2], slope[3], moved = 1;
+        weights_mean(springs, lambda, k, mean, slope);
+        for (int n = 0; n < ITERATIONS && moved > 1e-9 && weights_length(mean[0], mean[1]) > 1e-12; n++) {
+            double before[2] = {lambda[0], lambda[1]};
+            // Newton step, of length 1 at most: the mean is the gradient of a convex function of lambda
+            double a = slope[0] + 1e-9, b = slope[1], c = slope[2] + 1e-9, determinant = a * c - b * b;
+            double u = (b * mean[1] - c * mean[0]) / determinant, v = (b * mean[0] - a * mean[1]) / determinant;
+            double shorter = fmax(weights_length(u, v), 1);
+            lambda[0] += u / shorter;
+            lambda[1] += v / shorter;
+            double steep = fmax(weights_length(lambda[0], lambda[1]) / STEEPEST, 1);
+            lambda[0] /= steep;
+            lambda[1] /= steep;
+            moved = weights_length(lambda[0] - before[0], lambda[1] - before[1]);
+            weights_mean(springs, lambda, k, mean, slope);
+        }
+
+        even = sqrt(fmax(1 - mean[0] * mean[0] - mean[1] * mean[1], DBL_EPSILON));
+    }
+
     for (int e = 0; e < SPRINGS; e++)
         if (twice > 0 && springs[e].square > 0) positive[e] = twice * k[e] / (even * springs[e].square);
 

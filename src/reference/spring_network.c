@@ -1,39 +1,36 @@
 // The network's memory, and the springs around each particle.
 #include "reference/spring_network.h"
 
-static bool group_create(Memory *memory, SpringGroup *group, const NetworkSprings *springs, uint32_t particle_count,
-                         bool matrix) {
-    group->count = springs->count;
-    group->padded = (springs->count + NETWORK_LANES - 1) / NETWORK_LANES * NETWORK_LANES;
-    if (!NEW(memory, group->ends, group->padded) || !NEW(memory, group->length, group->padded) ||
-        !NEW(memory, group->weight, group->padded) || !NEW(memory, group->compliance, group->padded) ||
-        !NEW(memory, group->first, (size_t)particle_count + 1) ||
-        !NEW(memory, group->incident, 2 * (size_t)group->count))
-        return false;
-    for (uint32_t k = 0; k < group->count; k++)
-        for (int end = 0; end < 2; end++) group->ends[k][end] = springs->ends[k][end];
-
-    // the springs around each particle
-    for (uint32_t k = 0; k < group->count; k++)
-        for (int end = 0; end < 2; end++) group->first[group->ends[k][end] + 1]++;
-    for (uint32_t i = 0; i < particle_count; i++) group->first[i + 1] += group->first[i];
-
-    // fills from each particle's last entry down; afterwards first[i] is the first entry again
-    for (uint32_t k = group->count; k-- > 0;)
-        for (uint32_t end = 2; end-- > 0;) group->incident[--group->first[group->ends[k][end] + 1]] = 2 * k + end;
-    for (uint32_t i = 0; i < particle_count; i++) group->first[i] = group->first[i + 1];
-    group->first[particle_count] = 2 * group->count;
-    return !matrix || ellpack_create(memory, group);
-}
-
 SingeResult network_create(Memory *memory, uint32_t particle_count, uint32_t group_count, const NetworkSprings *springs,
                            bool matrix, Network *network) {
     *network = (Network){.particle_count = particle_count, .group_count = group_count, .matrix = matrix};
     network->kernel = conjugate_choose(SINGE_INSTRUCTIONS_BEST);
     bool ok = NEW(memory, network->position, particle_count) && NEW(memory, network->inverse_mass, particle_count) &&
               NEW(memory, network->held, particle_count) && NEW(memory, network->groups, group_count);
-    for (uint32_t g = 0; ok && g < group_count; g++)
-        ok = group_create(memory, &network->groups[g], &springs[g], particle_count, matrix);
+    for (uint32_t g = 0; ok && g < group_count; g++) {
+        SpringGroup *group = &network->groups[g];
+        group->count = springs[g].count;
+        group->padded = (springs[g].count + NETWORK_LANES - 1) / NETWORK_LANES * NETWORK_LANES;
+        ok = NEW(memory, group->ends, group->padded) && NEW(memory, group->length, group->padded) &&
+             NEW(memory, group->weight, group->padded) && NEW(memory, group->compliance, group->padded) &&
+             NEW(memory, group->first, (size_t)particle_count + 1) &&
+             NEW(memory, group->incident, 2 * (size_t)group->count);
+        if (!ok) break;
+        for (uint32_t k = 0; k < group->count; k++)
+            for (int end = 0; end < 2; end++) group->ends[k][end] = springs[g].ends[k][end];
+
+        // the springs around each particle
+        for (uint32_t k = 0; k < group->count; k++)
+            for (int end = 0; end < 2; end++) group->first[group->ends[k][end] + 1]++;
+        for (uint32_t i = 0; i < particle_count; i++) group->first[i + 1] += group->first[i];
+
+        // fills from each particle's last entry down; afterwards first[i] is the first entry again
+        for (uint32_t k = group->count; k-- > 0;)
+            for (uint32_t end = 2; end-- > 0;) group->incident[--group->first[group->ends[k][end] + 1]] = 2 * k + end;
+        for (uint32_t i = 0; i < particle_count; i++) group->first[i] = group->first[i + 1];
+        group->first[particle_count] = 2 * group->count;
+        ok = !matrix || ellpack_create(memory, group);
+    }
 
     // scratch, as long as the largest group needs
     for (uint32_t g = 0; ok && g < group_count; g++) {

@@ -67,23 +67,6 @@ static Float3 fine_askew(Float3 p) {
                   -0.2121f * p.x + 0.3680f * p.y + 0.9053f * p.z);
 }
 
-/// The noise at a position: the depth of erosion, m, and the direction, as an angle.
-static float eaten(const Fine *fine, FineLocation location, const FineSheet *sheet, float *angle) {
-    Float3 p = float3_scale(fine_askew(fine_rest(fine->shell, location)), 1 / NOISE_SIZE);
-    float sum = 0, strength = NOISE_GAIN;
-    for (int octave = 0; octave < sheet->octaves; octave++) {
-        float noise = random_noise(p.x, p.y, p.z, sheet->seed + (uint32_t)octave);
-        if (octave <= 1) *angle = 3 * (2 * PI) * noise;
-        sum += strength * (noise - 0.5f);
-        strength *= NOISE_STRENGTH;
-        p = float3_add(float3_scale(p, 2), float3(17.31f, 5.77f, 11.83f));
-    }
-
-    float depth = fabsf(NOISE_MEAN + sum); // reflected into 0 to 1, so that no edge is smooth
-    if (depth > 1) depth = fmaxf(2 - depth, 0);
-    return sheet->reach * depth;
-}
-
 /// A length in cells, at most a half.
 static float half_max(float length, float axis) { return length < 0.5f * axis ? length / axis : length > 0 ? 0.5f : 0; }
 
@@ -147,23 +130,6 @@ void fine_tear_edges(Fine *fine) {
         }
 }
 
-/// D at a position, m, at most `reach` long.
-static Float3 wander(const FineSheet *sheet, Float3 location, float size, float reach) {
-    Float3 p = float3_scale(location, 1 / (TEAR_EDGE_WAVE * size)), sum = {0, 0, 0};
-    float strength = TEAR_EDGE_GAIN;
-    for (int octave = 0; octave < sheet->octaves; octave++) {
-        const uint32_t seed = sheet->seed + 3 * (uint32_t)octave + 101;
-        Float3 noise = float3(random_noise(p.x, p.y, p.z, seed), random_noise(p.x, p.y, p.z, seed + 1),
-                              random_noise(p.x, p.y, p.z, seed + 2));
-        sum = float3_mad(sum, float3_sub(noise, float3(0.5f, 0.5f, 0.5f)), strength);
-        strength *= TEAR_EDGE_STRENGTH;
-        p = float3_add(float3_scale(p, 2), float3(11.83f, 17.31f, 5.77f));
-    }
-
-    float length = float3_length(sum);
-    return float3_scale(sum, length > 1 ? reach / length : reach);
-}
-
 static float fine_tear_level(const Fine *fine, FineLocation location) {
     const Shell *shell = fine->shell;
     uint32_t index = shell->matter.sheet[shell_centre(shell, location.cell)];
@@ -171,7 +137,23 @@ static float fine_tear_level(const Fine *fine, FineLocation location) {
     const uint32_t *at = shell->cells[location.cell];
     float size = shell->sheets[index].cell_size, reach = fminf(sheet->reach, TEAR_EDGE_WANDERS * size);
     if (reach > 0) {
-        Float3 corner[4], displacement = wander(sheet, fine_askew(fine_rest(shell, location)), size, reach);
+        // D, at most `reach` long
+        Float3 p = float3_scale(fine_askew(fine_rest(shell, location)), 1 / (TEAR_EDGE_WAVE * size)), sum = {0, 0, 0};
+        float strength = TEAR_EDGE_GAIN;
+        for (int octave = 0; octave < sheet->octaves; octave++) {
+            const uint32_t seed = sheet->seed + 3 * (uint32_t)octave + 101;
+            Float3 noise = float3(random_noise(p.x, p.y, p.z, seed), random_noise(p.x, p.y, p.z, seed + 1),
+                                  random_noise(p.x, p.y, p.z, seed + 2));
+            sum = float3_mad(sum, float3_sub(noise, float3(0.5f, 0.5f, 0.5f)), strength);
+            strength *= TEAR_EDGE_STRENGTH;
+            p = float3_add(float3_scale(p, 2), float3(11.83f, 17.31f, 5.77f));
+        }
+
+        float length = float3_length(sum);
+        const Float3 displacement = float3_scale(sum, length > 1 ? reach / length : reach);
+
+        // the position there
+        Float3 corner[4];
         for (int i = 0; i < 4; i++) corner[i] = float3_load(shell->rest_position[at[i]]);
         Float3 along =
             float3_scale(float3_sub(float3_add(corner[1], corner[2]), float3_add(corner[0], corner[3])), 0.5f);
@@ -192,7 +174,21 @@ FineValue fine_value(const Fine *fine, FineLocation location) {
     FineLocation min_location = location;
     float min = smooth_level(fine, location), angle = 0, x, y;
     if (fine->sheets[sheet].reach > 0) {
-        float depth = eaten(fine, location, &fine->sheets[sheet], &angle);
+        // the noise: the depth of erosion, m, and the direction, as an angle
+        const FineSheet *own = &fine->sheets[sheet];
+        Float3 p = float3_scale(fine_askew(fine_rest(shell, location)), 1 / NOISE_SIZE);
+        float sum = 0, strength = NOISE_GAIN;
+        for (int octave = 0; octave < own->octaves; octave++) {
+            float noise = random_noise(p.x, p.y, p.z, own->seed + (uint32_t)octave);
+            if (octave <= 1) angle = 3 * (2 * PI) * noise;
+            sum += strength * (noise - 0.5f);
+            strength *= NOISE_STRENGTH;
+            p = float3_add(float3_scale(p, 2), float3(17.31f, 5.77f, 11.83f));
+        }
+
+        float depth = fabsf(NOISE_MEAN + sum); // reflected into 0 to 1, so that no edge is smooth
+        if (depth > 1) depth = fmaxf(2 - depth, 0);
+        depth *= own->reach;
         x = half_max(depth, fine->axes[location.cell][0]);
         y = half_max(depth, fine->axes[location.cell][1]);
 

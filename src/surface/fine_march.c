@@ -48,24 +48,6 @@ static uint32_t point_vertex(Fine *fine, const Piece *piece, int corner) {
     return fine->drawn[point];
 }
 
-/// The vertex that cuts edge `edge`, which has one end inside.
-static uint32_t cut_vertex(Fine *fine, const Piece *piece, int edge) {
-    int inside = edge, outside = edge == 2 ? 0 : edge + 1;
-    if (fine->values[piece->point[inside]].level < 0) {
-        inside = outside;
-        outside = edge;
-    }
-
-    const FineValue *in = &fine->values[piece->point[inside]], *out = &fine->values[piece->point[outside]];
-    float t = surface_cut(in->level, out->level, NEAREST);
-    if (!(t > 0)) return point_vertex(fine, piece, inside);
-    if (*piece->cut[edge]) return *piece->cut[edge];
-
-    FineLocation location = piece->location[inside];
-    for (int i = 0; i < 3; i++) location.weight[i] += t * (piece->location[outside].weight[i] - location.weight[i]);
-    return *piece->cut[edge] = add_vertex(fine, location, in->mass + t * (out->mass - in->mass), SHELL_NONE);
-}
-
 static void march_draw(Fine *fine, const Piece *piece) {
     const float level[3] = {fine->values[piece->point[0]].level, fine->values[piece->point[1]].level,
                             fine->values[piece->point[2]].level};
@@ -80,7 +62,21 @@ static void march_draw(Fine *fine, const Piece *piece) {
         uint32_t vertex[2];
         int made = 0;
         if (in) vertex[made++] = point_vertex(fine, piece, a);
-        if (in != next) vertex[made++] = cut_vertex(fine, piece, a);
+
+        // the cut of the edge from a to b
+        if (in != next) {
+            const int inside = level[a] < 0 ? b : a, outside = level[a] < 0 ? a : b;
+            const FineValue *from = &fine->values[piece->point[inside]], *to = &fine->values[piece->point[outside]];
+            float t = surface_cut(from->level, to->level, NEAREST);
+            if (t > 0 && !*piece->cut[a]) {
+                FineLocation location = piece->location[inside];
+                for (int k = 0; k < 3; k++)
+                    location.weight[k] += t * (piece->location[outside].weight[k] - location.weight[k]);
+                *piece->cut[a] = add_vertex(fine, location, from->mass + t * (to->mass - from->mass), SHELL_NONE);
+            }
+            vertex[made++] = t > 0 ? *piece->cut[a] : point_vertex(fine, piece, inside);
+        }
+
         for (int m = 0; m < made; m++)
             if (!count || polygon[count - 1] != vertex[m]) polygon[count++] = vertex[m];
     }
@@ -158,43 +154,9 @@ static float along_row(const Row *row, bool upper, int i) {
     return parts == 0 ? 0.5f : inset + (1 - 2 * inset) * (float)i / (float)parts;
 }
 
-static void march_row(Marching *march, const Row *row) {
-    Fine *fine = march->fine;
-    uint32_t rung[2 * FINE_SPLITS_MAX + 1]; // cuts of the sides between the lines
-    int low = 0, high = 0, steps = row->lower + row->upper;
-    memset(rung, 0, ((size_t)steps + 1) * sizeof *rung);
-
-    for (int step = 0; step < steps; step++) {
-        Piece piece;
-
-        // the next triangle has its base on the lower line if that leaves the ends of the lines closer to each other
-        bool on_lower = low < row->lower;
-        if (low < row->lower && high < row->upper)
-            on_lower = along_row(row, false, low + 1) - along_row(row, true, high) <=
-                       along_row(row, true, high + 1) - along_row(row, false, low);
-        row_point(fine, row, false, low, &piece.point[0], &piece.location[0]);
-        row_point(fine, row, !on_lower, on_lower ? low + 1 : high + 1, &piece.point[1], &piece.location[1]);
-        row_point(fine, row, true, high, &piece.point[2], &piece.location[2]);
-        uint32_t *back = step == 0 ? row->first : &rung[step], *on = step + 1 == steps ? row->last : &rung[step + 1];
-        piece.cut[0] = on_lower ? row->lower_cut[low] : on;
-        piece.cut[1] = on_lower ? on : row->upper_cut[high];
-        piece.cut[2] = back;
-        int inside = 0;
-        for (int i = 0; i < 3; i++) inside += fine->values[piece.point[i]].level >= 0;
-        if (march->drawing && inside > 0) march_draw(fine, &piece);
-        if (!march->drawing) {
-            march->triangles += inside == 2 ? 2 : inside > 0;
-            march->crossed += inside == 1 || inside == 2;
-        }
-
-        if (on_lower) low++;
-        else high++;
-    }
-}
-
 /// The rows of one of a cell's four triangles. `first` and `last` are the cuts of its two sides to the centre.
 static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *first, uint32_t *last) {
-    const Fine *fine = march->fine;
+    Fine *fine = march->fine;
     int splits = fine->splits[cell];
     uint32_t line[2][FINE_SPLITS_MAX]; // cuts of the lines between rows
     for (int j = 0; j < splits; j++) {
@@ -212,7 +174,38 @@ static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *f
         for (int i = 0; i < row.lower; i++)
             row.lower_cut[i] = j == 0 ? side_cut(fine, cell, side, row.lower, i) : &line[(j + 1) & 1][i];
         for (int i = 0; i < row.upper; i++) row.upper_cut[i] = &line[j & 1][i];
-        march_row(march, &row);
+
+        // its triangles
+        uint32_t rung[2 * FINE_SPLITS_MAX + 1]; // cuts of the sides between the lines
+        int low = 0, high = 0, steps = row.lower + row.upper;
+        memset(rung, 0, ((size_t)steps + 1) * sizeof *rung);
+
+        for (int step = 0; step < steps; step++) {
+            Piece piece;
+
+            // the next triangle has its base on the lower line if that leaves the ends of the lines closer to each other
+            bool on_lower = low < row.lower;
+            if (low < row.lower && high < row.upper)
+                on_lower = along_row(&row, false, low + 1) - along_row(&row, true, high) <=
+                           along_row(&row, true, high + 1) - along_row(&row, false, low);
+            row_point(fine, &row, false, low, &piece.point[0], &piece.location[0]);
+            row_point(fine, &row, !on_lower, on_lower ? low + 1 : high + 1, &piece.point[1], &piece.location[1]);
+            row_point(fine, &row, true, high, &piece.point[2], &piece.location[2]);
+            uint32_t *back = step == 0 ? row.first : &rung[step], *on = step + 1 == steps ? row.last : &rung[step + 1];
+            piece.cut[0] = on_lower ? row.lower_cut[low] : on;
+            piece.cut[1] = on_lower ? on : row.upper_cut[high];
+            piece.cut[2] = back;
+            int inside = 0;
+            for (int i = 0; i < 3; i++) inside += fine->values[piece.point[i]].level >= 0;
+            if (march->drawing && inside > 0) march_draw(fine, &piece);
+            if (!march->drawing) {
+                march->triangles += inside == 2 ? 2 : inside > 0;
+                march->crossed += inside == 1 || inside == 2;
+            }
+
+            if (on_lower) low++;
+            else high++;
+        }
     }
 }
 

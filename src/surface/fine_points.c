@@ -15,41 +15,6 @@ static bool points_alive(const Fine *fine, uint32_t cell) { return fine->state->
 
 // ---- numbering
 
-/// Sets the cells' flags from the bounds of their splines, and their axes.
-static void bound_cells(Fine *fine) {
-    for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
-        float low, high, whole, wholest, lightest, heaviest;
-        fine_spline_bounds(fine->shell, &fine->splines[SPLINE_LEVEL], c, &low, &high);
-        fine_spline_bounds(fine->shell, &fine->splines[SPLINE_WHOLE], c, &whole, &wholest);
-        fine_spline_bounds(fine->shell, &fine->splines[SPLINE_MASS], c, &lightest, &heaviest);
-        low = fminf(low, fine_whole_level(whole));
-        fine->low[c] = low;
-        fine->flags[c] = low >= 0 && heaviest - lightest < 1e-5f ? FINE_EVEN : 0;
-        if (whole == 1) fine->flags[c] |= FINE_WHOLE;
-        if (points_alive(fine, c) && high >= 0) fine->flags[c] |= FINE_NEAR; // until its neighbours are checked
-
-        // lengths of the cell's two axes at rest
-        const uint32_t *at = fine->shell->cells[c];
-        Float3 p[4];
-        for (int i = 0; i < 4; i++) p[i] = float3_load(fine->shell->rest_position[at[i]]);
-        Float3 along = float3_sub(float3_add(p[1], p[2]), float3_add(p[0], p[3]));
-        Float3 up = float3_sub(float3_add(p[3], p[2]), float3_add(p[0], p[1]));
-        fine->axes[c][0] = 0.5f * float3_length(along);
-        fine->axes[c][1] = 0.5f * float3_length(up);
-    }
-}
-
-static bool negative_around(const Fine *fine, uint32_t cell) {
-    const Shell *shell = fine->shell;
-    for (int i = 0; i < 4; i++) {
-        uint32_t v = shell->cells[cell][i];
-        for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++)
-            if (fine->low[shell->fan[k]] < 0) return true;
-    }
-
-    return false;
-}
-
 static uint32_t side_of_cell(const Fine *fine, uint32_t cell, int side) {
     return fine->shell->cell_springs[cell].blue[side];
 }
@@ -66,7 +31,16 @@ static SingeResult points_number(Fine *fine, SingeError *error) {
     for (uint32_t c = 0; c < shell->cell_count && point <= INT32_MAX; c++) {
         const int splits = fine_splits(fine, c);
         if (!(fine->flags[c] & FINE_NEAR)) continue;
-        if (splits == 1 || !(fine->flags[c] & FINE_TEAR_EDGE || negative_around(fine, c))) {
+
+        // negative in it or in one around it
+        bool near = (fine->flags[c] & FINE_TEAR_EDGE) != 0;
+        for (int i = 0; i < 4 && !near; i++) {
+            uint32_t v = shell->cells[c][i];
+            for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++)
+                near |= fine->low[shell->fan[k]] < 0;
+        }
+
+        if (splits == 1 || !near) {
             fine->flags[c] &= (uint8_t)~FINE_NEAR;
             continue;
         }
@@ -237,31 +211,6 @@ static void mark_split(void *context, int begin, int end) {
 
 // ---- bent cells that are not split
 
-/// Decides how cells and their sides are drawn.
-static void points_settle(Fine *fine) {
-    const Shell *shell = fine->shell;
-    uint32_t *split_side = fine->bent_side; // swapped; sides of split cells get theirs back below
-    fine->bent_side = fine->side_point;
-    fine->side_point = split_side;
-
-    for (uint32_t c = 0; c < shell->cell_count; c++) {
-        fine->splits[c] = fine->bent[c];
-        if (!fine_is_split(fine, c)) fine->cell_point[c] = fine->bent_point[c];
-    }
-
-    for (uint32_t n = 0; n < fine->near_count; n++) {
-        uint32_t c = fine->near[n];
-        if (!fine_is_split(fine, c)) continue;
-
-        fine->splits[c] = (uint8_t)fine_splits(fine, c);
-        for (int i = 0; i < 4; i++) {
-            uint32_t blue = side_of_cell(fine, c, i);
-            fine->parts[blue] = fine->splits[c];
-            fine->side_point[blue] = fine->bent_side[blue];
-        }
-    }
-}
-
 /// The value at a position of a cell that is not split. Its level has the sign of that at `particle`.
 static FineValue bent_value(const Fine *fine, uint32_t particle, FineLocation location) {
     const FineValue *there = &fine->values[particle];
@@ -299,7 +248,29 @@ static void evaluate_bent(void *context, int begin, int end) {
 
 SingeResult fine_points(Fine *fine, SingeError *error) {
     const Shell *shell = fine->shell;
-    bound_cells(fine);
+
+    // cells' flags, from the bounds of their splines, and their axes
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        float low, high, whole, wholest, lightest, heaviest;
+        fine_spline_bounds(shell, &fine->splines[SPLINE_LEVEL], c, &low, &high);
+        fine_spline_bounds(shell, &fine->splines[SPLINE_WHOLE], c, &whole, &wholest);
+        fine_spline_bounds(shell, &fine->splines[SPLINE_MASS], c, &lightest, &heaviest);
+        low = fminf(low, fine_whole_level(whole));
+        fine->low[c] = low;
+        fine->flags[c] = low >= 0 && heaviest - lightest < 1e-5f ? FINE_EVEN : 0;
+        if (whole == 1) fine->flags[c] |= FINE_WHOLE;
+        if (points_alive(fine, c) && high >= 0) fine->flags[c] |= FINE_NEAR; // until its neighbours are checked
+
+        // lengths of the cell's two axes at rest
+        const uint32_t *at = shell->cells[c];
+        Float3 p[4];
+        for (int i = 0; i < 4; i++) p[i] = float3_load(shell->rest_position[at[i]]);
+        Float3 along = float3_sub(float3_add(p[1], p[2]), float3_add(p[0], p[3]));
+        Float3 up = float3_sub(float3_add(p[3], p[2]), float3_add(p[0], p[1]));
+        fine->axes[c][0] = 0.5f * float3_length(along);
+        fine->axes[c][1] = 0.5f * float3_length(up);
+    }
+
     fine_tear_edges(fine);
     TRY(points_number(fine, error));
     if (!NEW(fine->memory, fine->values, fine->point_count))
@@ -309,7 +280,29 @@ SingeResult fine_points(Fine *fine, SingeError *error) {
     pool_for(fine->pool, (int)fine->side_count, 64, evaluate_sides, fine);
     pool_for(fine->pool, (int)fine->near_count, 8, evaluate_cells, fine);
     pool_for(fine->pool, (int)fine->near_count, 64, mark_split, fine);
-    points_settle(fine);
+
+    // how cells and their sides are drawn
+    uint32_t *split_side = fine->bent_side; // swapped; sides of split cells get theirs back below
+    fine->bent_side = fine->side_point;
+    fine->side_point = split_side;
+
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        fine->splits[c] = fine->bent[c];
+        if (!fine_is_split(fine, c)) fine->cell_point[c] = fine->bent_point[c];
+    }
+
+    for (uint32_t n = 0; n < fine->near_count; n++) {
+        uint32_t c = fine->near[n];
+        if (!fine_is_split(fine, c)) continue;
+
+        fine->splits[c] = (uint8_t)fine_splits(fine, c);
+        for (int i = 0; i < 4; i++) {
+            uint32_t blue = side_of_cell(fine, c, i);
+            fine->parts[blue] = fine->splits[c];
+            fine->side_point[blue] = fine->bent_side[blue];
+        }
+    }
+
     pool_for(fine->pool, (int)shell->cell_count, 256, evaluate_bent, fine);
     return SINGE_OK;
 }

@@ -83,29 +83,6 @@ static void part_side(Fine *fine, const uint32_t one[2], const uint32_t other[2]
     }
 }
 
-/// Unit normals of corners and virtual centres: those of the triangles around them, weighted by area.
-static void gather_normals(Fine *fine) {
-    const Shell *shell = fine->shell;
-    const float(*position)[4] = (const float(*)[4])fine->corner;
-    for (uint32_t c = 0; c < shell->cell_count; c++) {
-        if (!is_alive(fine, c)) continue;
-
-        const uint32_t *at = shell->cells[c];
-        Float3 centre = centre_of(at, position);
-        for (int i = 0; i < 4; i++) {
-            const uint32_t corner[3] = {at[i], at[(i + 1) & 3], shell_centre(shell, c)};
-            Float3 a = float3_sub(float3_load(position[corner[0]]), centre),
-                   b = float3_sub(float3_load(position[corner[1]]), centre);
-            Float3 doubled = float3_cross(a, b);
-            for (int k = 0; k < 3; k++)
-                float3_store(fine->normal[corner[k]], float3_add(float3_load(fine->normal[corner[k]]), doubled));
-        }
-    }
-
-    for (uint32_t i = 0; i < shell->particle_count; i++)
-        float3_store(fine->normal[i], float3_unit(float3_load(fine->normal[i])));
-}
-
 /// The share that a triangle allows, from its normal 2 A n and the square of its longest edge.
 static float allowed(Float3 doubled, float longest, Float3 normal) {
     float area = float3_length(doubled);
@@ -157,7 +134,27 @@ void fine_position(Fine *fine) {
 
     for (uint32_t k = 0; k < shell->edge_spare_used; k++)
         part_side(fine, blue->ends[spare + k], blue->ends[shell->edge_origin[k]]);
-    gather_normals(fine);
+
+    // unit normals of corners and virtual centres: those of the triangles around them, weighted by area
+    const float(*position)[4] = (const float(*)[4])fine->corner;
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        if (!is_alive(fine, c)) continue;
+
+        const uint32_t *at = shell->cells[c];
+        Float3 centre = centre_of(at, position);
+        for (int i = 0; i < 4; i++) {
+            const uint32_t corner[3] = {at[i], at[(i + 1) & 3], shell_centre(shell, c)};
+            Float3 a = float3_sub(float3_load(position[corner[0]]), centre),
+                   b = float3_sub(float3_load(position[corner[1]]), centre);
+            Float3 doubled = float3_cross(a, b);
+            for (int k = 0; k < 3; k++)
+                float3_store(fine->normal[corner[k]], float3_add(float3_load(fine->normal[corner[k]]), doubled));
+        }
+    }
+
+    for (uint32_t i = 0; i < shell->particle_count; i++)
+        float3_store(fine->normal[i], float3_unit(float3_load(fine->normal[i])));
+
     fine_find_sound(fine);
     gather_shares(fine);
     fine_patches(fine);

@@ -60,39 +60,6 @@ int surface_fan(const float level[3], float nearest) {
     return 0;
 }
 
-/// Triangle `side` of a cell, clipped: it walks along the cell's side, to the virtual centre and back. Returns the
-/// number of corners.
-static int clip(const Drawing *drawing, uint32_t cell, int side, uint32_t polygon[4]) {
-    const CellSprings *springs = &drawing->shell->cell_springs[cell];
-    const uint32_t *at = drawing->shell->cells[cell];
-    const SurfaceKeys *keys = &drawing->keys;
-    const int next = (side + 1) & 3;
-    const uint32_t corner[3] = {at[side], at[next], shell_centre(drawing->shell, cell)};
-    const uint32_t edge[3] = {keys->blue + springs->blue[side], keys->red + springs->red[next],
-                              keys->red + springs->red[side]};
-    const float level[3] = {drawing->level[corner[0]], drawing->level[corner[1]], drawing->level[corner[2]]};
-    const int first = surface_fan(level, SURFACE_NEAREST);
-    int count = 0;
-
-    // corners inside and cuts, without repetitions
-    for (int i = 0; i < 3; i++) {
-        const int a = (first + i) % 3, b = (a + 1) % 3;
-        const bool inside = level[a] >= 0;
-        uint32_t vertex[2];
-        int made = 0;
-        if (inside) vertex[made++] = corner[a];
-        if (inside != (level[b] >= 0)) {
-            const int in = inside ? a : b, out = inside ? b : a;
-            vertex[made++] = surface_cut(level[in], level[out], SURFACE_NEAREST) > 0 ? edge[a] : corner[in];
-        }
-
-        for (int m = 0; m < made; m++)
-            if (!count || polygon[count - 1] != vertex[m]) polygon[count++] = vertex[m];
-    }
-
-    return count > 1 && polygon[count - 1] == polygon[0] ? count - 1 : count;
-}
-
 /// Draws the cells with keys as vertices, and marks these keys.
 static void draw_cells(const Drawing *drawing) {
     const Shell *shell = drawing->shell;
@@ -102,7 +69,37 @@ static void draw_cells(const Drawing *drawing) {
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         for (int side = 0; side < 4 && drawing->state->ablate.cell_flags[c] & SINGE_ALIVE; side++) {
             uint32_t polygon[4];
-            const int count = clip(drawing, c, side, polygon);
+
+            // a triangle, clipped: along the cell's side, to the virtual centre and back
+            const CellSprings *springs = &shell->cell_springs[c];
+            const uint32_t *at = shell->cells[c];
+            const SurfaceKeys *keys = &drawing->keys;
+            const int next = (side + 1) & 3;
+            const uint32_t corner[3] = {at[side], at[next], shell_centre(shell, c)};
+            const uint32_t edge[3] = {keys->blue + springs->blue[side], keys->red + springs->red[next],
+                                      keys->red + springs->red[side]};
+            const float level[3] = {drawing->level[corner[0]], drawing->level[corner[1]], drawing->level[corner[2]]};
+            const int first = surface_fan(level, SURFACE_NEAREST);
+            int count = 0;
+
+            // corners inside and cuts, without repetitions
+            for (int i = 0; i < 3; i++) {
+                const int a = (first + i) % 3, b = (a + 1) % 3;
+                const bool inside = level[a] >= 0;
+                uint32_t vertex[2];
+                int made = 0;
+                if (inside) vertex[made++] = corner[a];
+                if (inside != (level[b] >= 0)) {
+                    const int in = inside ? a : b, out = inside ? b : a;
+                    vertex[made++] = surface_cut(level[in], level[out], SURFACE_NEAREST) > 0 ? edge[a] : corner[in];
+                }
+
+                for (int m = 0; m < made; m++)
+                    if (!count || polygon[count - 1] != vertex[m]) polygon[count++] = vertex[m];
+            }
+
+            if (count > 1 && polygon[count - 1] == polygon[0]) count--;
+
             for (int k = 2; k < count; k++) {
                 uint32_t *triangle = surface->triangles[surface->triangle_count++];
                 triangle[0] = polygon[0];
@@ -199,32 +196,6 @@ static Sample sample_cut(const Drawing *drawing, const uint32_t ends[2]) {
     };
 }
 
-/// Fills the vertex of a key at `index`, all but its normal.
-static void put_vertex(const Drawing *drawing, uint32_t key, uint32_t index) {
-    const Shell *shell = drawing->shell;
-    const SurfaceKeys *keys = &drawing->keys;
-    SingeSurface *surface = drawing->surface;
-    const Sample sample = key < keys->blue  ? sample_particle(shell, drawing->state, key)
-                          : key < keys->red ? sample_cut(drawing, shell->springs[SINGE_BLUE].ends[key - keys->blue])
-                                            : sample_cut(drawing, shell->springs[SINGE_RED].ends[key - keys->red]);
-    float3_store(surface->position[index], sample.position);
-    float3_store(surface->velocity[index], sample.velocity);
-    float3_store(surface->rest_position[index], sample.rest);
-    surface->uv[index][0] = sample.u;
-    surface->uv[index][1] = sample.v;
-    surface->temperature[index] = sample.temperature;
-    surface->temperature_peak[index] = sample.temperature_peak;
-    surface->mass[index] = sample.mass;
-    surface->burn_rate[index] = sample.burn_rate;
-    surface->char_fraction[index] = sample.coal;
-    surface->ash_fraction[index] = sample.ash;
-    surface->burn[index] = sample.burn;
-    surface->time_ignited[index] = sample.time_ignited;
-    surface->piece[index] = sample.piece;
-    surface->sheet[index] = sample.sheet;
-    surface->source_vertex[index] = key < keys->centre ? shell->source_vertex[key] : -1;
-}
-
 /// The normalised sum of 2 A n over the triangles around each vertex; +z where they cancel.
 void surface_normals(SingeSurface *surface) {
     memset(surface->normal, 0, surface->vertex_count * sizeof *surface->normal);
@@ -274,7 +245,29 @@ static SingeResult draw(Drawing *drawing, SingeError *error) {
     for (uint32_t key = 0; key < drawing->keys.count; key++) {
         if (!drawing->output[key]) continue;
         drawing->output[key] = surface->vertex_count++;
-        put_vertex(drawing, key, drawing->output[key]);
+
+        // all but its normal
+        const uint32_t v = drawing->output[key];
+        const SurfaceKeys *keys = &drawing->keys;
+        const Sample sample = key < keys->blue  ? sample_particle(shell, drawing->state, key)
+                              : key < keys->red ? sample_cut(drawing, shell->springs[SINGE_BLUE].ends[key - keys->blue])
+                                                : sample_cut(drawing, shell->springs[SINGE_RED].ends[key - keys->red]);
+        float3_store(surface->position[v], sample.position);
+        float3_store(surface->velocity[v], sample.velocity);
+        float3_store(surface->rest_position[v], sample.rest);
+        surface->uv[v][0] = sample.u;
+        surface->uv[v][1] = sample.v;
+        surface->temperature[v] = sample.temperature;
+        surface->temperature_peak[v] = sample.temperature_peak;
+        surface->mass[v] = sample.mass;
+        surface->burn_rate[v] = sample.burn_rate;
+        surface->char_fraction[v] = sample.coal;
+        surface->ash_fraction[v] = sample.ash;
+        surface->burn[v] = sample.burn;
+        surface->time_ignited[v] = sample.time_ignited;
+        surface->piece[v] = sample.piece;
+        surface->sheet[v] = sample.sheet;
+        surface->source_vertex[v] = key < keys->centre ? shell->source_vertex[key] : -1;
     }
 
     for (uint32_t t = 0; t < surface->triangle_count; t++)

@@ -40,23 +40,6 @@ static int list_arrays(const Fine *fine, FineArray arrays[]) {
 
 enum { FINE_ARRAYS_MAX = 32 };
 
-static void fine_release(Fine *fine) {
-    FineArray arrays[FINE_ARRAYS_MAX];
-    int count = list_arrays(fine, arrays);
-    for (int i = 0; i < count; i++)
-        memory_free(fine->memory, (char *)fine + arrays[i].offset, arrays[i].count, arrays[i].size);
-
-    for (int f = 0; f < SPLINE_COUNT; f++) {
-        FREE(fine->memory, fine->splines[f].edge, fine->shell->springs[SINGE_BLUE].count);
-        FREE(fine->memory, fine->splines[f].corner, fine->shell->vertex_count);
-    }
-
-    FREE(fine->memory, fine->values, fine->point_count);
-    FREE(fine->memory, fine->drawn, fine->point_count);
-    FREE(fine->memory, fine->cuts, fine->cut_count);
-    FREE(fine->memory, fine->vertices, fine->vertex_capacity);
-}
-
 /// The level that is smoothed. The mass of a removed particle keeps its value from when it was removed, just below
 /// m_loss. There the level keeps falling at its previous rate, so that the edge moves evenly and does not stick to
 /// particles:
@@ -224,7 +207,23 @@ SingeResult surface_draw_fine(AblatePlan *plan, const Shell *shell, const State 
     fine.rim = ablate_rim(plan);
     surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
     SingeResult result = fine_draw(&fine, detail, error);
-    fine_release(&fine);
+
+    // release the arrays
+    FineArray arrays[FINE_ARRAYS_MAX];
+    int count = list_arrays(&fine, arrays);
+    for (int i = 0; i < count; i++)
+        memory_free(fine.memory, (char *)&fine + arrays[i].offset, arrays[i].count, arrays[i].size);
+
+    for (int f = 0; f < SPLINE_COUNT; f++) {
+        FREE(fine.memory, fine.splines[f].edge, fine.shell->springs[SINGE_BLUE].count);
+        FREE(fine.memory, fine.splines[f].corner, fine.shell->vertex_count);
+    }
+
+    FREE(fine.memory, fine.values, fine.point_count);
+    FREE(fine.memory, fine.drawn, fine.point_count);
+    FREE(fine.memory, fine.cuts, fine.cut_count);
+    FREE(fine.memory, fine.vertices, fine.vertex_capacity);
+
     if (result) surface_clear(surface);
     return result;
 }

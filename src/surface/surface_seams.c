@@ -50,41 +50,6 @@ static void weights_at(const Shell *shell, uint32_t cell, int side, Float3 point
     weight[2] = 1 - weight[0] - weight[1];
 }
 
-/// The side in whose triangle a drawn triangle lies: where the smallest weight of its centroid is largest.
-static int side_of(const Seams *seams, uint32_t cell, const uint32_t triangle[3]) {
-    Float3 centroid = {0, 0, 0};
-    for (int k = 0; k < 3; k++)
-        centroid = float3_add(centroid, float3_load(seams->surface->rest_position[triangle[k]]));
-    centroid = float3_scale(centroid, 1 / 3.0f);
-    int best = 0;
-    float max = -INFINITY;
-    for (int side = 0; side < 4; side++) {
-        float weight[3];
-        weights_at(seams->shell, cell, side, centroid, weight);
-        float min = fminf(weight[0], fminf(weight[1], weight[2]));
-        if (min > max) {
-            max = min;
-            best = side;
-        }
-    }
-
-    return best;
-}
-
-/// uv of a point, and its source vertex if it is a corner that has one.
-static void cell_uv(const Shell *shell, uint32_t cell, int side, Float3 point, float uv[2], int32_t *source) {
-    const float(*corner)[2] = (const float(*)[2])shell->corner_uv[cell];
-    const int next = (side + 1) & 3;
-    float weight[3];
-    weights_at(shell, cell, side, point, weight);
-    if (*source >= 0) *source = shell->corner_source[cell][weight[0] > weight[1] ? side : next];
-    for (int k = 0; k < 2; k++) {
-        float centre = 0.25f * (corner[0][k] + corner[1][k] + corner[2][k] + corner[3][k]);
-        float mixed = weight[0] * corner[side][k] + weight[1] * corner[next][k] + weight[2] * centre;
-        uv[k] = weight[0] > 1 - SEAM_SAME ? corner[side][k] : weight[1] > 1 - SEAM_SAME ? corner[next][k] : mixed;
-    }
-}
-
 /// The copy of a vertex that has this uv and source vertex; created if there is none.
 static uint32_t copy_with(Seams *seams, uint32_t vertex, const float uv[2], float same, int32_t source) {
     SingeSurface *surface = seams->surface;
@@ -121,11 +86,41 @@ static void part_cell(Seams *seams, uint32_t cell, uint32_t begin, uint32_t end)
 
     for (uint32_t t = begin; t < end; t++) {
         uint32_t *triangle = seams->surface->triangles[t], parted[3];
-        int side = side_of(seams, cell, triangle);
+
+        // the side in whose triangle it lies: where the smallest weight of its centroid is largest
+        Float3 centroid = {0, 0, 0};
+        for (int k = 0; k < 3; k++)
+            centroid = float3_add(centroid, float3_load(seams->surface->rest_position[triangle[k]]));
+        centroid = float3_scale(centroid, 1 / 3.0f);
+        int side = 0;
+        float max = -INFINITY;
+        for (int s = 0; s < 4; s++) {
+            float weight[3];
+            weights_at(seams->shell, cell, s, centroid, weight);
+            float min = fminf(weight[0], fminf(weight[1], weight[2]));
+            if (min > max) {
+                max = min;
+                side = s;
+            }
+        }
+
         for (int k = 0; k < 3; k++) {
             float uv[2];
             int32_t source = seams->surface->source_vertex[triangle[k]];
-            cell_uv(seams->shell, cell, side, float3_load(seams->surface->rest_position[triangle[k]]), uv, &source);
+
+            // uv there, and the source vertex of a corner that has one
+            const float(*corner)[2] = (const float(*)[2])seams->shell->corner_uv[cell];
+            const int next = (side + 1) & 3;
+            float weight[3];
+            weights_at(seams->shell, cell, side, float3_load(seams->surface->rest_position[triangle[k]]), weight);
+            if (source >= 0) source = seams->shell->corner_source[cell][weight[0] > weight[1] ? side : next];
+            for (int d = 0; d < 2; d++) {
+                float centre = 0.25f * (corner[0][d] + corner[1][d] + corner[2][d] + corner[3][d]);
+                float mixed = weight[0] * corner[side][d] + weight[1] * corner[next][d] + weight[2] * centre;
+                uv[d] = weight[0] > 1 - SEAM_SAME   ? corner[side][d]
+                        : weight[1] > 1 - SEAM_SAME ? corner[next][d]
+                                                    : mixed;
+            }
             parted[k] = copy_with(seams, triangle[k], uv, same, source);
         }
 

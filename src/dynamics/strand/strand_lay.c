@@ -149,26 +149,6 @@ static void lay_put_right(Lay *lay, uint32_t s, uint32_t column, uint32_t row) {
     lay_put(lay, s, lay->set->group_count - 1, column, row);
 }
 
-/// Fills the lane on the right with strands next to those of the lane on the left. Returns how many particles have
-/// p + 1 next to them.
-static uint32_t lay_right(Lay *lay, uint32_t column) {
-    uint32_t contiguous = 0;
-    lay->lane_serial++;
-    for (uint32_t k = 0; k < lay->frame; k++) lay->right[k] = SHELL_NONE;
-    for (uint32_t k = 0; k < lay->frame; k++) {
-        if (lay->left[k] == SHELL_NONE || lay->left[k] + 1 >= lay->particle_count) continue;
-
-        uint32_t p = lay->left[k] + 1, s = lay->owner[p];
-        if (s == SHELL_NONE || lay_is_laid(lay, s) || lay->tried[s] == lay->lane_serial || lay->index[p] > k) continue;
-        lay->tried[s] = lay->lane_serial;
-        lay_put_right(lay, s, column, k - lay->index[p]);
-    }
-
-    for (uint32_t k = 0; k < lay->frame; k++)
-        contiguous += lay->left[k] != SHELL_NONE && lay->right[k] == lay->left[k] + 1;
-    return contiguous;
-}
-
 /// Lays the run that begins with `s`, and takes it back when it has few lanes.
 static bool lay_run(Lay *lay, uint32_t s) {
     uint32_t length = strand_length(lay->springs, s), margin = LAY_MARGIN + length / 32, contiguous = length, lanes = 0;
@@ -193,7 +173,24 @@ static bool lay_run(Lay *lay, uint32_t s) {
         }
 
         before = lay->laid_count;
-        contiguous = lay_right(lay, group->columns);
+
+        // fill it with strands next to those of the lane on its left; count the particles that have p + 1 next to them
+        contiguous = 0;
+        lay->lane_serial++;
+        for (uint32_t k = 0; k < lay->frame; k++) lay->right[k] = SHELL_NONE;
+        for (uint32_t k = 0; k < lay->frame; k++) {
+            if (lay->left[k] == SHELL_NONE || lay->left[k] + 1 >= lay->particle_count) continue;
+
+            uint32_t p = lay->left[k] + 1, next = lay->owner[p];
+            if (next == SHELL_NONE || lay_is_laid(lay, next) || lay->tried[next] == lay->lane_serial ||
+                lay->index[p] > k)
+                continue;
+            lay->tried[next] = lay->lane_serial;
+            lay_put_right(lay, next, group->columns, k - lay->index[p]);
+        }
+
+        for (uint32_t k = 0; k < lay->frame; k++)
+            contiguous += lay->left[k] != SHELL_NONE && lay->right[k] == lay->left[k] + 1;
     }
 
     // keep the run if it is long enough
@@ -277,42 +274,6 @@ static void lay_rest(Lay *lay, uint32_t family, uint32_t first) {
     }
 }
 
-static void lay_rings(Lay *lay, uint32_t family) {
-    if (!lay_list(lay, family, true)) return;
-    StrandGroup *group = NULL;
-    for (uint32_t length = lay->springs->longest; (length = lay_longest(lay, length)) > 0;) {
-        if (!group || group->columns == STRAND_LANES || group->rows != length) group = lay_open_group(lay, true);
-        group->rows = length;
-        lay_put(lay, lay_take(lay, length), lay->set->group_count - 1, group->columns++, 0);
-    }
-}
-
-static void lay_family(Lay *lay, uint32_t family) {
-    const uint32_t first = lay->laid_count;
-    StrandSet *set = lay->set;
-    set->family_first[family] = set->group_count;
-    lay_runs(lay, family);
-    lay_rest(lay, family, first);
-    lay_rings(lay, family);
-
-    // widths and rows of its groups, and the slots of its strands
-    for (uint32_t g = set->family_first[family]; g < set->group_count; g++) {
-        StrandGroup *group = &set->groups[g];
-        group->width = group->columns <= 4 ? 4 : group->columns <= 8 ? 8 : STRAND_LANES;
-        group->row = set->row_count;
-        set->row_count += group->rows + 1; // one more for the last node
-    }
-
-    for (uint32_t i = first; i < lay->laid_count; i++) {
-        const Laid *laid = &lay->laid[i];
-        const StrandGroup *group = &set->groups[laid->group];
-        uint32_t lane = strand_lane(group->width, laid->column);
-        set->strand_slot[laid->strand] = (group->row + laid->row) * STRAND_LANES + lane;
-    }
-
-    set->family_first[family + 1] = set->group_count;
-}
-
 /// Gives every strand its slot, and writes groups, families and rows. False when out of memory.
 static bool lay_strands(Memory *memory, const SpringSet *springs, uint32_t particle_count, StrandSet *set) {
     const size_t lengths = (size_t)springs->longest + 1;
@@ -324,7 +285,40 @@ static bool lay_strands(Memory *memory, const SpringSet *springs, uint32_t parti
                 NEW(memory, lay.index, particle_count) && NEW(memory, lay.left, frame) && NEW(memory, lay.right, frame);
     for (uint32_t p = 0; p < particle_count && done; p++) lay.owner[p] = SHELL_NONE;
     for (uint32_t s = 0; s < springs->strand_count && done; s++) set->strand_slot[s] = SHELL_NONE;
-    for (uint32_t f = 0; f < springs->family_count && done; f++) lay_family(&lay, f);
+
+    for (uint32_t f = 0; f < springs->family_count && done; f++) {
+        const uint32_t first = lay.laid_count;
+        set->family_first[f] = set->group_count;
+        lay_runs(&lay, f);
+        lay_rest(&lay, f, first);
+
+        // rings, in groups of equal lengths
+        StrandGroup *open = NULL;
+        const bool rings = lay_list(&lay, f, true);
+        for (uint32_t length = springs->longest; rings && (length = lay_longest(&lay, length)) > 0;) {
+            if (!open || open->columns == STRAND_LANES || open->rows != length) open = lay_open_group(&lay, true);
+            open->rows = length;
+            lay_put(&lay, lay_take(&lay, length), set->group_count - 1, open->columns++, 0);
+        }
+
+        // widths and rows of its groups, and the slots of its strands
+        for (uint32_t g = set->family_first[f]; g < set->group_count; g++) {
+            StrandGroup *group = &set->groups[g];
+            group->width = group->columns <= 4 ? 4 : group->columns <= 8 ? 8 : STRAND_LANES;
+            group->row = set->row_count;
+            set->row_count += group->rows + 1; // one more for the last node
+        }
+
+        for (uint32_t i = first; i < lay.laid_count; i++) {
+            const Laid *laid = &lay.laid[i];
+            const StrandGroup *group = &set->groups[laid->group];
+            uint32_t lane = strand_lane(group->width, laid->column);
+            set->strand_slot[laid->strand] = (group->row + laid->row) * STRAND_LANES + lane;
+        }
+
+        set->family_first[f + 1] = set->group_count;
+    }
+
     SINGE_ASSERT(!done || lay.laid_count == springs->strand_count); // in runs, gaps, empty columns or rings
     FREE(memory, lay.head, lengths);
     FREE(memory, lay.below, lengths);
