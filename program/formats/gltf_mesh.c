@@ -142,19 +142,6 @@ static SingeResult walk_nodes(Walk *walk, int64_t list, const Transform *parent,
     return SINGE_OK;
 }
 
-static SingeResult walk_scene(Walk *walk) {
-    static const Transform unit = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-    const Gltf *gltf = walk->gltf;
-    int64_t scenes = json_member(&gltf->json, 0, "scenes"), wanted, at = scenes + 1;
-    TRY(gltf_index(gltf, 0, "scene", json_items(&gltf->json, scenes), &wanted));
-    if (!json_items(&gltf->json, scenes)) return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "it has no scene");
-    for (; wanted > 0; wanted--) at = gltf->json.values[at].after;
-    walk->seen = store_new(gltf->allocator, gltf->node_count, 1);
-    if (!walk->seen) return refuse_memory(gltf->error, "gltf", gltf->name);
-    memset(walk->seen, 0, gltf->node_count);
-    return walk_nodes(walk, json_member(&gltf->json, at, "nodes"), &unit, 1);
-}
-
 // ---- values
 
 static uint32_t load_index(const uint8_t *p, uint32_t type) {
@@ -303,7 +290,16 @@ static SingeResult make_polygons(const Walk *walk, Polygons *polygons) {
 
 SingeResult gltf_make(Gltf *gltf, uint64_t max, Polygons *polygons) {
     Walk walk = {.gltf = gltf, .max = max};
-    SingeResult result = walk_scene(&walk);
+    static const Transform unit = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    int64_t scenes = json_member(&gltf->json, 0, "scenes"), wanted, at = scenes + 1;
+    TRY(gltf_index(gltf, 0, "scene", json_items(&gltf->json, scenes), &wanted));
+    if (!json_items(&gltf->json, scenes)) return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "it has no scene");
+    for (; wanted > 0; wanted--) at = gltf->json.values[at].after;
+    walk.seen = store_new(gltf->allocator, gltf->node_count, 1);
+    if (!walk.seen) return refuse_memory(gltf->error, "gltf", gltf->name);
+    memset(walk.seen, 0, gltf->node_count);
+
+    SingeResult result = walk_nodes(&walk, json_member(&gltf->json, at, "nodes"), &unit, 1);
     if (!result) result = make_polygons(&walk, polygons);
     store_free(gltf->allocator, walk.seen, gltf->node_count, 1);
     store_free(gltf->allocator, walk.instances, walk.capacity, sizeof *walk.instances);
