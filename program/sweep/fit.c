@@ -260,34 +260,28 @@ static bool fit_error(const FitTarget *target, const Sweep *sweep, uint32_t row,
 
 static char *table_path(const Fit *fit) { return text_format("%s/fit.csv", fit->sweep->folder); }
 
-static char *table_line(const Fit *fit, uint32_t row) {
-    const Plan *plan = &fit->sweep->plan;
-    char *text = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
-    if (file) {
-        fprintf(file, "%u", row + 1);
-        for (uint32_t p = 0; p < plan->parameter_count; p++) {
-            fputc(',', file);
-            text_csv_cell(file, plan_value(plan, row, p));
-        }
-        fputc(',', file);
-    }
-
-    if (text_stream_end(file, &text)) return text;
-
-    free(text);
-    return NULL;
-}
-
 // ---- an evaluation
 
 /// The error of a row whose values are set: from fit.csv, or after running it.
 static ExitCode row_error(Fit *fit, uint32_t row, double *value) {
-    char *line = table_line(fit, row);
-    if (!line) return EXIT_FAILED;
+    // the row's line in fit.csv, up to its error
+    const Plan *plan = &fit->sweep->plan;
+    char *line = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&line, &size);
+    if (file) fprintf(file, "%u", row + 1);
+    for (uint32_t p = 0; file && p < plan->parameter_count; p++) {
+        fputc(',', file);
+        text_csv_cell(file, plan_value(plan, row, p));
+    }
+    if (file) fputc(',', file);
 
-    // its line in fit.csv, after the header and the earlier rows
+    if (!text_stream_end(file, &line)) {
+        free(line);
+        return EXIT_FAILED;
+    }
+
+    // the line that is there, after the header and the earlier rows
     const char *at = fit->noted;
     for (uint32_t i = 0; i <= row && at; i++) {
         at = strchr(at, '\n');
