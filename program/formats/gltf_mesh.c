@@ -109,8 +109,8 @@ static SingeResult walk_nodes(Walk *walk, int64_t list, const Transform *parent,
 
         if (mesh >= 0) {
             const GltfMesh *range = &gltf->ranges[mesh];
-            for (uint32_t i = 0; i < range->count; i++) {
-                const GltfPrimitive *primitive = &gltf->primitives[range->first + i];
+            for (uint32_t k = 0; k < range->count; k++) {
+                const GltfPrimitive *primitive = &gltf->primitives[range->first + k];
                 uint64_t vertices = gltf->read[primitive->position].count, faces = 0;
                 uint64_t corners = primitive->indices < 0 ? vertices : gltf->read[primitive->indices].count;
                 if (primitive->mode == 4 && corners % 3)
