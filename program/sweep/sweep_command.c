@@ -182,7 +182,8 @@ int command_sweep(int argc, char **argv) {
         code = EXIT_INPUT;
     }
 
-    if (!code && !options.jobs) options.jobs = job_threads() / options.threads > 1 ? job_threads() / options.threads : 1;
+    if (!code && !options.jobs)
+        options.jobs = job_threads() / options.threads > 1 ? job_threads() / options.threads : 1;
 
     if (!code && !done) {
         interrupt_shield();
