@@ -27,18 +27,6 @@ typedef struct Strip {
     double cells, first;   ///< share of the fine cells that refinement needs: mean over the burn, and at its start
 } Strip;
 
-/// The share of the strip that needs refined cells: everything that has ignited, and 10 mm in front of it.
-static double needed_share(const SingeView *view) {
-    double front = -INFINITY, low = INFINITY, high = -INFINITY;
-    for (uint32_t v = 0; v < view->vertex_count; v++) {
-        const double x = (double)view->rest_position[v][0];
-        low = fmin(low, x);
-        high = fmax(high, x);
-        if (view->time_ignited[v] >= 0) front = fmax(front, x);
-    }
-    return front < low ? 0.01 / (high - low) : fmin(1, (front + 0.01 - low) / (high - low));
-}
-
 static SingeResult strip_run(Lab *lab, int i, Strip *strip, SingeError *error) {
     enum { LOOKS = 34 };
     Play play;
@@ -47,7 +35,17 @@ static SingeResult strip_run(Lab *lab, int i, Strip *strip, SingeError *error) {
         result = play_until(&play, 0.1 * k, error);
         if (result) break;
         const SingeView view = singe_sim_view(play.sim);
-        const double share = needed_share(&view), cells = share + (1 - share) / 9; // elsewhere one in place of 3 x 3
+
+        // the share of the strip that needs refined cells: everything that has ignited, and 10 mm in front of it
+        double front = -INFINITY, low = INFINITY, high = -INFINITY;
+        for (uint32_t v = 0; v < view.vertex_count; v++) {
+            const double x = (double)view.rest_position[v][0];
+            low = fmin(low, x);
+            high = fmax(high, x);
+            if (view.time_ignited[v] >= 0) front = fmax(front, x);
+        }
+        const double share = front < low ? 0.01 / (high - low) : fmin(1, (front + 0.01 - low) / (high - low));
+        const double cells = share + (1 - share) / 9; // elsewhere one in place of 3 x 3
         strip->cells += cells / LOOKS;
         if (k == 2) strip->first = cells;
         if (k == 10 || k == 13 || k == 16) result = look_take(&play, 0, &strip->look, error);

@@ -48,13 +48,6 @@ typedef struct Fig8Count {
     double worst; ///< sum after 7 steps over that before, max
 } Fig8Count;
 
-static bool fig8_rises(const Fig8 *fig, int steps) {
-    const double *sum = fig->error[SINGE_COLOUR_COUNT];
-    for (int step = 0; step < steps; step++)
-        if (sum[step + 1] > sum[step]) return true;
-    return false;
-}
-
 static SingeResult fig8_write(Lab *lab, const char *state, const Fig8 *fig, SingeError *error) {
     static const char *const names[] = {"red", "green", "blue", "yellow", "sum"};
     static const char *const inks[] = {"#d62728", "#2ca02c", "#1f77b4", "#d0a000", "#777777"};
@@ -83,48 +76,48 @@ static SingeResult fig8_write(Lab *lab, const char *state, const Fig8 *fig, Sing
     return plot_write(&plot, path, error);
 }
 
-static SingeResult fig8_run(Lab *lab, const Fig8Run *run, Fig8Count *count, SingeError *error) {
-    SingeSolverDef solver = singe_default_solver();
-    singe_init_solver_method(&solver, sizeof solver, SINGE_SOLVER_PAPER);
-    SingeSim *sim;
-    Fig8 shown = {0}, counted;
-    SingeResult result = paper_sim(run->state, CELLS, &solver, 1, &sim, error);
-    if (result) return result;
-    for (int step = 0; step <= run->last && !result; step++) {
-        if (step == run->shown) result = fig8_project(sim, run->state, STEPS, &shown, error);
-        if (!result) {
-            result = fig8_project(sim, run->state, COUNTED, &counted, error);
-            if (!result) {
-                const double *sum = counted.error[SINGE_COLOUR_COUNT];
-                count->states++;
-                count->rises += fig8_rises(&counted, COUNTED);
-                count->lower += sum[COUNTED] < sum[0];
-                if (sum[0] > 0 && sum[COUNTED] / sum[0] > count->worst) count->worst = sum[COUNTED] / sum[0];
-            }
-        }
-        if (!result && (result = singe_sim_step(sim))) *error = *singe_sim_error(sim);
-    }
-    singe_sim_destroy(sim);
-    if (result) return result;
-    const char *name = paper_state_names[run->state];
-    const double *sum = shown.error[SINGE_COLOUR_COUNT];
-    result = fig8_write(lab, name, &shown, error);
-    report_text(
-        lab->report,
-        "%s at %g s: the sum falls from %.3g to %.3g m in %d projection steps, to %.3g in %d. Of %d states up to "
-        "%g s it rises in one of the first %d steps in %d, and is lower after them in %d; in the worst it is %.2f "
-        "times what it was.",
-        name, run->shown * (double)PAPER_TIME_STEP, sum[0], sum[COUNTED], COUNTED, sum[STEPS], STEPS, count->states,
-        run->last * (double)PAPER_TIME_STEP, COUNTED, count->rises, count->lower, count->worst);
-    return result;
-}
-
 SingeResult paper_fig8(Lab *lab, SingeError *error) {
     enum { RUNS = sizeof runs / sizeof *runs };
     Fig8Count count[RUNS] = {{0}}, all = {0};
     SingeResult result = SINGE_OK;
     for (int i = 0; i < RUNS && !result; i++) {
-        result = fig8_run(lab, &runs[i], &count[i], error);
+        const Fig8Run *run = &runs[i];
+        Fig8Count *own = &count[i];
+        SingeSolverDef solver = singe_default_solver();
+        singe_init_solver_method(&solver, sizeof solver, SINGE_SOLVER_PAPER);
+        SingeSim *sim;
+        Fig8 shown = {0}, counted;
+        result = paper_sim(run->state, CELLS, &solver, 1, &sim, error);
+        if (result) break;
+        for (int step = 0; step <= run->last && !result; step++) {
+            if (step == run->shown) result = fig8_project(sim, run->state, STEPS, &shown, error);
+            if (!result) {
+                result = fig8_project(sim, run->state, COUNTED, &counted, error);
+                if (!result) {
+                    const double *sum = counted.error[SINGE_COLOUR_COUNT];
+                    own->states++;
+                    bool rises = false;
+                    for (int k = 0; k < COUNTED; k++) rises = rises || sum[k + 1] > sum[k];
+                    own->rises += rises;
+                    own->lower += sum[COUNTED] < sum[0];
+                    if (sum[0] > 0 && sum[COUNTED] / sum[0] > own->worst) own->worst = sum[COUNTED] / sum[0];
+                }
+            }
+            if (!result && (result = singe_sim_step(sim))) *error = *singe_sim_error(sim);
+        }
+        singe_sim_destroy(sim);
+        if (result) break;
+        const char *name = paper_state_names[run->state];
+        const double *sum = shown.error[SINGE_COLOUR_COUNT];
+        result = fig8_write(lab, name, &shown, error);
+        report_text(
+            lab->report,
+            "%s at %g s: the sum falls from %.3g to %.3g m in %d projection steps, to %.3g in %d. Of %d states up to "
+            "%g s it rises in one of the first %d steps in %d, and is lower after them in %d; in the worst it is %.2f "
+            "times what it was.",
+            name, run->shown * (double)PAPER_TIME_STEP, sum[0], sum[COUNTED], COUNTED, sum[STEPS], STEPS, own->states,
+            run->last * (double)PAPER_TIME_STEP, COUNTED, own->rises, own->lower, own->worst);
+
         all.states += count[i].states;
         all.rises += count[i].rises;
         all.lower += count[i].lower;

@@ -7,19 +7,6 @@
 enum { MARCH_CELLS = 6 };
 static const double march_loss = 0.5;
 
-/// The remaining share of a triangle with three levels, by eq 7; *inside is the number of corners inside.
-static double march_share(const double *level, int *inside) {
-    *inside = (level[0] >= 0) + (level[1] >= 0) + (level[2] >= 0);
-    if (*inside == 0 || *inside == 3) return *inside / 3;
-    for (int k = 0; k < 3; k++) {
-        double a = level[k], b = level[(k + 1) % 3], c = level[(k + 2) % 3];
-        if ((a >= 0) == (b >= 0) || (a >= 0) == (c >= 0)) continue; // the corner with a different sign
-        double corner = a / (a - b) * (a / (a - c));
-        return *inside == 1 ? corner : 1 - corner;
-    }
-    return NAN;
-}
-
 typedef struct March {
     int cases[4];    ///< triangles by how many of their corners are left
     double expected; ///< m2 that eq 7 leaves
@@ -35,8 +22,17 @@ static void march_cell(March *march, const SingeView *view, const float *mass, u
         double level[3] = {(double)mass[a] - march_loss, (double)mass[b] - march_loss, 0};
         for (int i = 0; i < 4; i++) level[2] += (double)mass[corner[i]] / 4;
         level[2] -= march_loss;
-        int inside;
-        march->expected += march_share(level, &inside) * side * side / 4;
+
+        // the remaining share of the triangle, by eq 7, from the corner with a different sign
+        const int inside = (level[0] >= 0) + (level[1] >= 0) + (level[2] >= 0);
+        double share = inside == 3;
+        for (int i = 0; i < 3; i++) {
+            double p = level[i], q = level[(i + 1) % 3], r = level[(i + 2) % 3];
+            if ((p >= 0) == (q >= 0) || (p >= 0) == (r >= 0)) continue;
+            double cut = p / (p - q) * (p / (p - r));
+            share = inside == 1 ? cut : 1 - cut;
+        }
+        march->expected += share * side * side / 4;
         march->cases[inside]++;
         double *centroid = march->centroids[march->count++];
         for (int d = 0; d < 2; d++)

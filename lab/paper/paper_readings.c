@@ -79,49 +79,6 @@ static SingeResult burn_strip(const SingeMaterialDef *material, StripResult *out
     return strip_burn(&setup, out, error);
 }
 
-static SingeResult readings_of_heat(Lab *lab, SingeError *error) {
-    SingeMaterialDef usual = singe_default_material(), lossless, still;
-    StripResult ours, hot, radiating;
-    usual.char_yield = singe_param(0);
-    usual.mass_loss = singe_param(0.25f);
-    usual.heat_share = singe_param(0.2f);
-    lossless = usual;
-    lossless.convection = lossless.emissivity = singe_param(0);
-    SingeResult result = burn_strip(&usual, &ours, error);
-    if (!result) result = burn_strip(&lossless, &hot, error);
-    still = usual;
-    still.convection = singe_param(0);
-    if (!result) result = burn_strip(&still, &radiating, error);
-    if (result) return result;
-    const double printed = mass_left(-1), read = mass_left(1);
-    report_row(lab->report,
-               "eq 1|+ eta dm, where dm is negative|- eta dm: burning heats|as printed a fire puts itself out with "
-               "%.0f %% of its mass left; ours goes to m_min, %.0f %%",
-               100 * printed, 100 * read);
-    report_row(lab->report, "eq 1, text|\"the ratio of heat to mass, mu\"|eta; mu is eq 4's rate|-");
-    report_row(lab->report,
-               "eq 1|no losses|convection and radiation|without them the front is at %.0f C, with them at %.0f C",
-               hot.hottest - 273.15, ours.hottest - 273.15);
-    report_row(lab->report, "eq 2|alpha nabla^2|alpha nabla^2 T|a misprint");
-    report_row(lab->report,
-               "eq 3|lengths of the moment|initial lengths|weights go with 1/d^2: a spring at half its length conducts "
-               "4 times as much, at the least length of 5 %% 400 times");
-    report_row(lab->report,
-               "eq 3|taken for nabla^2|used only where asked for|on squares it is half of nabla^2 (singe validate)");
-    report_row(lab->report,
-               "eq 4|a straight line to m_min|slower near the end, p = 0.5|the last tenth above m_min takes 10 %% of "
-               "the time by the line, %.0f %% by ours: ash is seen before it goes",
-               100 * sqrt(0.1));
-    report_bar(lab->report, &(ReportBar){"eq1_printed", "eq 1 as printed: share of mass at which fire puts itself out",
-                                         printed, 0.9, 1, read, "as read"});
-    report_bar(lab->report,
-               &(ReportBar){"eq1_read", "eq 1 as read: share of mass left", read, 0.149, 0.151, printed, "as printed"});
-    report_bar(lab->report,
-               &(ReportBar){"losses", "K of the hottest without losses over that with them", hot.hottest / ours.hottest,
-                            1.1, INFINITY, radiating.hottest / ours.hottest, "without convection alone"});
-    return SINGE_OK;
-}
-
 static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
     double with_mass = NAN, without = NAN;
     int literal = 0, ours = 0, row;
@@ -186,6 +143,44 @@ static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
 
 SingeResult paper_readings(Lab *lab, SingeError *error) {
     report_heads(lab->report, "where|the paper|our reading|the other reading");
-    SingeResult result = readings_of_heat(lab, error);
-    return result ? result : readings_of_motion(lab, error);
+    SingeMaterialDef usual = singe_default_material(), lossless, still;
+    StripResult ours, hot, radiating;
+    usual.char_yield = singe_param(0);
+    usual.mass_loss = singe_param(0.25f);
+    usual.heat_share = singe_param(0.2f);
+    lossless = usual;
+    lossless.convection = lossless.emissivity = singe_param(0);
+    SingeResult result = burn_strip(&usual, &ours, error);
+    if (!result) result = burn_strip(&lossless, &hot, error);
+    still = usual;
+    still.convection = singe_param(0);
+    if (!result) result = burn_strip(&still, &radiating, error);
+    if (result) return result;
+    const double printed = mass_left(-1), read = mass_left(1);
+    report_row(lab->report,
+               "eq 1|+ eta dm, where dm is negative|- eta dm: burning heats|as printed a fire puts itself out with "
+               "%.0f %% of its mass left; ours goes to m_min, %.0f %%",
+               100 * printed, 100 * read);
+    report_row(lab->report, "eq 1, text|\"the ratio of heat to mass, mu\"|eta; mu is eq 4's rate|-");
+    report_row(lab->report,
+               "eq 1|no losses|convection and radiation|without them the front is at %.0f C, with them at %.0f C",
+               hot.hottest - 273.15, ours.hottest - 273.15);
+    report_row(lab->report, "eq 2|alpha nabla^2|alpha nabla^2 T|a misprint");
+    report_row(lab->report,
+               "eq 3|lengths of the moment|initial lengths|weights go with 1/d^2: a spring at half its length conducts "
+               "4 times as much, at the least length of 5 %% 400 times");
+    report_row(lab->report,
+               "eq 3|taken for nabla^2|used only where asked for|on squares it is half of nabla^2 (singe validate)");
+    report_row(lab->report,
+               "eq 4|a straight line to m_min|slower near the end, p = 0.5|the last tenth above m_min takes 10 %% of "
+               "the time by the line, %.0f %% by ours: ash is seen before it goes",
+               100 * sqrt(0.1));
+    report_bar(lab->report, &(ReportBar){"eq1_printed", "eq 1 as printed: share of mass at which fire puts itself out",
+                                         printed, 0.9, 1, read, "as read"});
+    report_bar(lab->report,
+               &(ReportBar){"eq1_read", "eq 1 as read: share of mass left", read, 0.149, 0.151, printed, "as printed"});
+    report_bar(lab->report,
+               &(ReportBar){"losses", "K of the hottest without losses over that with them", hot.hottest / ours.hottest,
+                            1.1, INFINITY, radiating.hottest / ours.hottest, "without convection alone"});
+    return readings_of_motion(lab, error);
 }

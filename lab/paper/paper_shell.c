@@ -226,15 +226,6 @@ static double state_ratio(const SingeView *view, uint32_t i) {
     return -1;
 }
 
-/// The end of the drawn surface on column i, as a share of its height; -1 if it is not cut.
-static double state_cut(const SingeSurface *surface, int i, double cell) {
-    for (uint32_t v = 0; v < surface->vertex_count; v++) {
-        double x = (double)surface->rest_position[v][0], y = (double)surface->rest_position[v][1];
-        if (fabs(x - i * cell) < 1e-6 && y > 1e-4 * cell && y < (1 - 1e-4) * cell) return y / cell;
-    }
-    return -1;
-}
-
 static const double state_length[STATES] = {0.875, 0.625, 0.575, 0.5, -1}; ///< the paper's
 
 /// A row of the table for each spring. *worst and *worst_cut are the largest differences from the paper.
@@ -271,7 +262,11 @@ SingeResult paper_fig5(Lab *lab, SingeError *error) {
         double worst, worst_cut, ratio[STATES], cut[STATES], worst_centre = 0, one_end = 0;
         for (int i = 0; i < STATES; i++) {
             ratio[i] = state_ratio(&view, (uint32_t)i);
-            cut[i] = state_is_cut(i) ? state_cut(&surface, i, cell) : -1;
+            cut[i] = -1; // or the end of the drawn surface on the column, as a share of its height
+            for (uint32_t v = 0; v < surface.vertex_count && state_is_cut(i) && cut[i] < 0; v++) {
+                double x = (double)surface.rest_position[v][0], y = (double)surface.rest_position[v][1];
+                if (fabs(x - i * cell) < 1e-6 && y > 1e-4 * cell && y < (1 - 1e-4) * cell) cut[i] = y / cell;
+            }
             if (ratio[i] >= 0) one_end = fmax(one_end, fabs(state_mass[i][0] - state_length[i]));
             if (state_is_cut(i)) worst_centre = fmax(worst_centre, fabs(0.5 - cut[i]));
         }

@@ -46,18 +46,6 @@ SingeResult paper_heat(Lab *lab, SingeError *error) {
 
 // ---- diffusivity by a texture
 
-/// The distance of the fire to the left of the centre over that to the right.
-static double lopsided(const SingeView *view) {
-    double left = 0, right = 0;
-    for (uint32_t v = 0; v < view->vertex_count; v++) {
-        const double x = (double)view->rest_position[v][0], y = (double)view->rest_position[v][1];
-        if (view->time_ignited[v] < 0 || fabs(y) > 0.01) continue;
-        left = fmax(left, -x);
-        right = fmax(right, x);
-    }
-    return right > 0 ? left / right : (double)NAN;
-}
-
 SingeResult paper_alpha(Lab *lab, SingeError *error) {
     static const double times[] = {0.5, 1, 1.5};
     double ratio[2] = {0};
@@ -72,7 +60,16 @@ SingeResult paper_alpha(Lab *lab, SingeError *error) {
         for (int i = 0; i < 3 && !result; i++)
             result = even ? play_until(&play, times[i], error) : play_shoot_at(&play, times[i], error);
         const SingeView view = play.sim ? singe_sim_view(play.sim) : (SingeView){0};
-        if (!result) ratio[even] = lopsided(&view);
+
+        // the distance of the fire to the left of the centre over that to the right
+        double left = 0, right = 0;
+        for (uint32_t v = 0; v < view.vertex_count; v++) {
+            const double x = (double)view.rest_position[v][0], y = (double)view.rest_position[v][1];
+            if (view.time_ignited[v] < 0 || fabs(y) > 0.01) continue;
+            left = fmax(left, -x);
+            right = fmax(right, x);
+        }
+        if (!result) ratio[even] = right > 0 ? left / right : (double)NAN;
         play_close(&play);
     }
     if (result) return result;

@@ -72,28 +72,10 @@ typedef struct Run {
     double times[MARKS];
 } Run;
 
-/// Runs until the marks are reached. The failure of a system is a result, not an error.
-static SingeResult run_marks(Play *play, const Figure *figure, int system, bool drawn, Run *run, SingeError *error) {
-    static const char *const names[SYSTEMS] = {"the paper's system", "ours"};
-    SingeResult result = SINGE_OK;
-    for (double time = 0; run->reached < MARKS && time < figure->ends[system] && !result;) {
-        if (play_until(play, time += 0.05, error)) return SINGE_OK;
-        const SingeStats stats = singe_sim_stats(play->sim);
-        if (!(stats.burnt_fraction >= figure->marks[run->reached])) continue;
-        run->times[run->reached++] = time;
-        result = look_take(play, 0, &run->look, error);
-        if (result || !drawn || run->reached == 1) continue;
-        char caption[100];
-        snprintf(caption, sizeof caption, "%s, %s, %.0f %% burnt, %.1f s", figure->name, names[system],
-                 100 * stats.burnt_fraction, time);
-        result = play_shoot(play, caption, error);
-    }
-    return result;
-}
-
 /// `more` (ends with NULL; NULL for none) overrides settings of a system. Such runs are not drawn.
 static SingeResult whole_run(Lab *lab, const Figure *figure, int system, const char *const *more, Run *run,
                              SingeError *error) {
+    static const char *const names[SYSTEMS] = {"the paper's system", "ours"};
     const char *sets[PAPERS_COUNT + 8] = {lab->quick || more ? figure->small : figure->size};
     int count = 1;
     for (int i = 0; i < PAPERS_COUNT && system == PAPERS; i++) sets[count++] = papers[i];
@@ -103,7 +85,21 @@ static SingeResult whole_run(Lab *lab, const Figure *figure, int system, const c
     Play play;
     SingeResult result = play_open(&play, lab, figure->scene, sets, error);
     play.glow = 1050; // without losses it gets so hot that nothing else would be visible
-    if (!result) result = run_marks(&play, figure, system, drawn, run, error);
+
+    // runs until the marks are reached; the failure of a system is a result, not an error
+    for (double time = 0; run->reached < MARKS && time < figure->ends[system] && !result;) {
+        if (play_until(&play, time += 0.05, error)) break;
+        const SingeStats stats = singe_sim_stats(play.sim);
+        if (!(stats.burnt_fraction >= figure->marks[run->reached])) continue;
+        run->times[run->reached++] = time;
+        result = look_take(&play, 0, &run->look, error);
+        if (result || !drawn || run->reached == 1) continue;
+        char caption[100];
+        snprintf(caption, sizeof caption, "%s, %s, %.0f %% burnt, %.1f s", figure->name, names[system],
+                 100 * stats.burnt_fraction, time);
+        result = play_shoot(&play, caption, error);
+    }
+
     play_close(&play);
     return result;
 }

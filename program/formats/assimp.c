@@ -326,8 +326,13 @@ static SingeResult read_in_child(void *context, IsolateAnswer *answer, SingeErro
 
 // ---- in the parent
 
-/// assimp detects the format from the contents, whatever the name, so it may read other formats, too.
-static SingeResult check_kind(const char *name, const uint8_t *bytes, size_t size, SingeError *error) {
+SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                        Polygons *polygons, SingeError *error) {
+    *polygons = (Polygons){.allocator = allocator};
+    if (size == 0) return refuse(error, SINGE_ERROR_FORMAT, "mesh", 0, "%s: is empty", short_name(name));
+
+    // assimp detects the format from the contents, whatever the name, so it may read other formats, too
+    bool matches = false;
     static const struct {
         const char *ending, *begins;
     } kinds[] = {{".gltf", "{"},  {".glb", "glTF"}, {".fbx", "Kaydara FBX"}, {".fbx", ";"},
@@ -342,17 +347,12 @@ static SingeResult check_kind(const char *name, const uint8_t *bytes, size_t siz
         size_t length = strlen(kinds[i].begins);
         if (mesh_name_ends(name, kinds[i].ending) && (size_t)(end - at) >= length &&
             memcmp(at, kinds[i].begins, length) == 0)
-            return SINGE_OK;
+            matches = true;
     }
-    return refuse(error, SINGE_ERROR_FORMAT, "mesh", 0, "%s: the contents do not match the extension",
-                  short_name(name));
-}
+    if (!matches)
+        return refuse(error, SINGE_ERROR_FORMAT, "mesh", 0, "%s: the contents do not match the extension",
+                      short_name(name));
 
-SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
-                        Polygons *polygons, SingeError *error) {
-    *polygons = (Polygons){.allocator = allocator};
-    if (size == 0) return refuse(error, SINGE_ERROR_FORMAT, "mesh", 0, "%s: is empty", short_name(name));
-    TRY(check_kind(name, bytes, size, error));
     Source source = {.name = name, .bytes = bytes, .size = size};
     IsolateLimits limits = {(512u << 20) + 32 * size, 10 + 5e-7 * (double)size};
     Bytes answer;

@@ -329,16 +329,6 @@ static SingeResult find_chunks(Gltf *gltf, const uint8_t *bytes, size_t size, co
     return SINGE_OK;
 }
 
-/// Whether this is glTF 1, which has objects in place of arrays, or compressed by Draco; assimp can read both.
-static bool is_for_assimp(const Json *json) {
-    int64_t accessors = json_member(json, 0, "accessors"), used = json_member(json, 0, "extensionsRequired");
-    if (accessors != JSON_NONE && json->values[accessors].kind == JSON_OBJECT) return true;
-    int64_t at = used + 1;
-    for (uint32_t i = 0; i < json_items(json, used); i++, at = json->values[at].after)
-        if (json_is(json, at, "KHR_draco_mesh_compression")) return true;
-    return false;
-}
-
 SingeResult gltf_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator, Polygons *polygons,
                       SingeError *error) {
     *polygons = (Polygons){.allocator = allocator};
@@ -358,7 +348,18 @@ SingeResult gltf_read(const char *name, const uint8_t *bytes, size_t size, Singe
     if (!result) result = json_read(name, json, json_size, allocator, &gltf.json, error);
     if (!result && gltf.json.values[0].kind != JSON_OBJECT)
         result = gltf_refuse(&gltf, SINGE_ERROR_FORMAT, "not glTF: its JSON is not an object");
-    bool other = !result && is_for_assimp(&gltf.json);
+
+    // glTF 1, which has objects in place of arrays, or compressed by Draco: assimp can read both
+    bool other = false;
+    if (!result) {
+        const Json *text = &gltf.json;
+        int64_t accessors = json_member(text, 0, "accessors"), used = json_member(text, 0, "extensionsRequired");
+        int64_t at = used + 1;
+        other = accessors != JSON_NONE && text->values[accessors].kind == JSON_OBJECT;
+        for (uint32_t i = 0; i < json_items(text, used) && !other; i++, at = text->values[at].after)
+            other = json_is(text, at, "KHR_draco_mesh_compression");
+    }
+
     if (!result && !other) result = read_meshes(&gltf);
 
     uint64_t max = MESH_ANSWER_BASE + MESH_ANSWER_TIMES * ((uint64_t)size + gltf.beside_size);

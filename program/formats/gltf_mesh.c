@@ -82,77 +82,61 @@ static SingeResult node_transform(const Gltf *gltf, uint32_t node, Transform *at
 
 // ---- the walk
 
-static SingeResult walk_nodes(Walk *walk, int64_t list, const Transform *parent, int depth);
-
-static SingeResult walk_node(Walk *walk, uint32_t node, const Transform *parent, int depth) {
-    const Gltf *gltf = walk->gltf;
-    int64_t object = gltf->nodes[node], mesh, extensions = json_member(&gltf->json, object, "extensions");
-    if (walk->seen[node])
-        return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: it contains itself, or has two parents", node);
-    if (depth > NODE_DEPTH)
-        return gltf_refuse(gltf, SINGE_ERROR_LIMIT, "nodes[%u]: nodes are nested more than %d deep", node, NODE_DEPTH);
-    if (json_member(&gltf->json, extensions, "EXT_mesh_gpu_instancing") != JSON_NONE)
-        return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: EXT_mesh_gpu_instancing is not supported", node);
-    walk->seen[node] = 1;
-
-    Transform own, at;
-    TRY(node_transform(gltf, node, &own));
-    at = chain(parent, &own);
-    TRY(gltf_index(gltf, object, "mesh", gltf->mesh_count, &mesh));
-
-    if (mesh >= 0) {
-        const GltfMesh *range = &gltf->ranges[mesh];
-        for (uint32_t i = 0; i < range->count; i++) {
-            const GltfPrimitive *primitive = &gltf->primitives[range->first + i];
-            uint64_t vertices = gltf->read[primitive->position].count, faces = 0;
-            uint64_t corners = primitive->indices < 0 ? vertices : gltf->read[primitive->indices].count;
-            if (primitive->mode == 4 && corners % 3)
-                return gltf_refuse(gltf, SINGE_ERROR_MESH, "meshes[%u]: primitive %u: triangles have %llu corners",
-                                   primitive->mesh, primitive->number, (unsigned long long)corners);
-            if (primitive->mode == 4) faces = corners / 3;
-            else if (primitive->mode > 4) faces = corners > 2 ? corners - 2 : 0;
-            walk->vertices += vertices;
-            walk->faces += faces;
-            walk->corners += 3 * faces;
-            walk->uv = walk->uv || primitive->uv >= 0;
-            walk->primitives++;
-            if (12 * walk->vertices + 12 * walk->corners + 100 * walk->primitives > walk->max)
-                return gltf_refuse(gltf, SINGE_ERROR_LIMIT,
-                                   "too large: its nodes repeat meshes, which come to more than %llu MB",
-                                   (unsigned long long)walk->max / 1000000);
-        }
-        if (!store_grow(gltf->allocator, &walk->instances, &walk->capacity, walk->count + 1, sizeof *walk->instances))
-            return refuse_memory(gltf->error, "gltf", gltf->name);
-        walk->instances[walk->count++] = (Instance){(uint32_t)mesh, at};
-    }
-
-    return walk_nodes(walk, json_member(&gltf->json, object, "children"), &at, depth + 1);
-}
-
 static SingeResult walk_nodes(Walk *walk, int64_t list, const Transform *parent, int depth) {
     const Gltf *gltf = walk->gltf;
     uint32_t count = json_items(&gltf->json, list);
     for (int64_t i = 0, at = list + 1; i < count; i++, at = gltf->json.values[at].after) {
-        uint64_t node;
-        if (!json_count(&gltf->json, at, &node) || node >= gltf->node_count)
+        uint64_t number;
+        if (!json_count(&gltf->json, at, &number) || number >= gltf->node_count)
             return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "byte %u of its JSON: there are only %u nodes",
                                gltf->json.values[at].begin, gltf->node_count);
-        TRY(walk_node(walk, (uint32_t)node, parent, depth));
+
+        const uint32_t node = (uint32_t)number;
+        int64_t object = gltf->nodes[node], mesh, extensions = json_member(&gltf->json, object, "extensions");
+        if (walk->seen[node])
+            return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: it contains itself, or has two parents", node);
+        if (depth > NODE_DEPTH)
+            return gltf_refuse(gltf, SINGE_ERROR_LIMIT, "nodes[%u]: nodes are nested more than %d deep", node,
+                               NODE_DEPTH);
+        if (json_member(&gltf->json, extensions, "EXT_mesh_gpu_instancing") != JSON_NONE)
+            return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: EXT_mesh_gpu_instancing is not supported", node);
+        walk->seen[node] = 1;
+
+        Transform own, here;
+        TRY(node_transform(gltf, node, &own));
+        here = chain(parent, &own);
+        TRY(gltf_index(gltf, object, "mesh", gltf->mesh_count, &mesh));
+
+        if (mesh >= 0) {
+            const GltfMesh *range = &gltf->ranges[mesh];
+            for (uint32_t k = 0; k < range->count; k++) {
+                const GltfPrimitive *primitive = &gltf->primitives[range->first + k];
+                uint64_t vertices = gltf->read[primitive->position].count, faces = 0;
+                uint64_t corners = primitive->indices < 0 ? vertices : gltf->read[primitive->indices].count;
+                if (primitive->mode == 4 && corners % 3)
+                    return gltf_refuse(gltf, SINGE_ERROR_MESH, "meshes[%u]: primitive %u: triangles have %llu corners",
+                                       primitive->mesh, primitive->number, (unsigned long long)corners);
+                if (primitive->mode == 4) faces = corners / 3;
+                else if (primitive->mode > 4) faces = corners > 2 ? corners - 2 : 0;
+                walk->vertices += vertices;
+                walk->faces += faces;
+                walk->corners += 3 * faces;
+                walk->uv = walk->uv || primitive->uv >= 0;
+                walk->primitives++;
+                if (12 * walk->vertices + 12 * walk->corners + 100 * walk->primitives > walk->max)
+                    return gltf_refuse(gltf, SINGE_ERROR_LIMIT,
+                                       "too large: its nodes repeat meshes, which come to more than %llu MB",
+                                       (unsigned long long)walk->max / 1000000);
+            }
+            if (!store_grow(gltf->allocator, &walk->instances, &walk->capacity, walk->count + 1,
+                            sizeof *walk->instances))
+                return refuse_memory(gltf->error, "gltf", gltf->name);
+            walk->instances[walk->count++] = (Instance){(uint32_t)mesh, here};
+        }
+
+        TRY(walk_nodes(walk, json_member(&gltf->json, object, "children"), &here, depth + 1));
     }
     return SINGE_OK;
-}
-
-static SingeResult walk_scene(Walk *walk) {
-    static const Transform unit = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-    const Gltf *gltf = walk->gltf;
-    int64_t scenes = json_member(&gltf->json, 0, "scenes"), wanted, at = scenes + 1;
-    TRY(gltf_index(gltf, 0, "scene", json_items(&gltf->json, scenes), &wanted));
-    if (!json_items(&gltf->json, scenes)) return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "it has no scene");
-    for (; wanted > 0; wanted--) at = gltf->json.values[at].after;
-    walk->seen = store_new(gltf->allocator, gltf->node_count, 1);
-    if (!walk->seen) return refuse_memory(gltf->error, "gltf", gltf->name);
-    memset(walk->seen, 0, gltf->node_count);
-    return walk_nodes(walk, json_member(&gltf->json, at, "nodes"), &unit, 1);
 }
 
 // ---- values
@@ -303,7 +287,16 @@ static SingeResult make_polygons(const Walk *walk, Polygons *polygons) {
 
 SingeResult gltf_make(Gltf *gltf, uint64_t max, Polygons *polygons) {
     Walk walk = {.gltf = gltf, .max = max};
-    SingeResult result = walk_scene(&walk);
+    static const Transform unit = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    int64_t scenes = json_member(&gltf->json, 0, "scenes"), wanted, at = scenes + 1;
+    TRY(gltf_index(gltf, 0, "scene", json_items(&gltf->json, scenes), &wanted));
+    if (!json_items(&gltf->json, scenes)) return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "it has no scene");
+    for (; wanted > 0; wanted--) at = gltf->json.values[at].after;
+    walk.seen = store_new(gltf->allocator, gltf->node_count, 1);
+    if (!walk.seen) return refuse_memory(gltf->error, "gltf", gltf->name);
+    memset(walk.seen, 0, gltf->node_count);
+
+    SingeResult result = walk_nodes(&walk, json_member(&gltf->json, at, "nodes"), &unit, 1);
     if (!result) result = make_polygons(&walk, polygons);
     store_free(gltf->allocator, walk.seen, gltf->node_count, 1);
     store_free(gltf->allocator, walk.instances, walk.capacity, sizeof *walk.instances);

@@ -126,24 +126,6 @@ static bool png_decode(PngJob *job) {
     return true;
 }
 
-// Blends the picture with white, in place, and reduces the array to three bytes a pixel.
-static bool png_flatten(PngJob *job) {
-    if (job->channels == 3) return true;
-    const uint8_t *in = job->pixels;
-    uint8_t *out = job->pixels;
-
-    for (size_t i = 0; i < job->pixel_count; i++, in += 4, out += 3) {
-        unsigned alpha = in[3], white = 255 * (255 - alpha);
-        for (int k = 0; k < 3; k++) out[k] = (uint8_t)((in[k] * alpha + white + 127) / 255);
-    }
-
-    uint8_t *cut = allocator_resize(job->allocator, job->pixels, 4 * job->pixel_count, 3 * job->pixel_count);
-    if (!cut) return false;
-    job->pixels = cut;
-    job->channels = 3;
-    return true;
-}
-
 static SingeResult png_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator, Image *image,
                             SingeError *error) {
     PngJob job;
@@ -155,9 +137,22 @@ static SingeResult png_read(const char *name, const uint8_t *bytes, size_t size,
     bool done = png_decode(&job);
     png_destroy_read_struct(&job.png, &job.info, NULL);
 
-    if (done && !png_flatten(&job)) {
-        done = false;
-        job.out_of_memory = true;
+    // blends the picture with white, in place, and reduces the array to three bytes a pixel
+    if (done && job.channels != 3) {
+        const uint8_t *in = job.pixels;
+        uint8_t *out = job.pixels;
+        for (size_t i = 0; i < job.pixel_count; i++, in += 4, out += 3) {
+            unsigned alpha = in[3], white = 255 * (255 - alpha);
+            for (int k = 0; k < 3; k++) out[k] = (uint8_t)((in[k] * alpha + white + 127) / 255);
+        }
+
+        uint8_t *cut = allocator_resize(allocator, job.pixels, 4 * job.pixel_count, 3 * job.pixel_count);
+        done = cut != NULL;
+        job.out_of_memory = !done;
+        if (done) {
+            job.pixels = cut;
+            job.channels = 3;
+        }
     }
 
     if (!done) {

@@ -214,28 +214,6 @@ static SingeResult isolate_look(Child *child) {
     return memory > child->memory_before && memory - child->memory_before > room ? refuse_size(child) : SINGE_OK;
 }
 
-/// Reads all that the child writes.
-static SingeResult take_answer(Child *child, Bytes *answer, size_t *capacity) {
-    for (;;) {
-        struct pollfd ready = {.fd = child->pipe, .events = POLLIN};
-        int count = poll(&ready, 1, LOOK_MS);
-        if (count < 0 && errno != EINTR && errno != EAGAIN)
-            return refuse(child->error, SINGE_ERROR_FILE, "file", -1, "%s: its reader cannot be waited for",
-                          short_name(child->name));
-        TRY(isolate_look(child));
-        if (count <= 0) continue;
-        if (answer->size > child->limits.memory) return refuse_size(child);
-        if (!store_grow(answer->allocator, &answer->data, capacity, answer->size + (1u << 16) + 1, 1))
-            return refuse_memory(child->error, "file", child->name);
-        ssize_t got = read(child->pipe, answer->data + answer->size, *capacity - answer->size - 1);
-        if (got == 0) return SINGE_OK;
-        if (got < 0 && errno != EINTR && errno != EAGAIN)
-            return refuse(child->error, SINGE_ERROR_FILE, "file", -1, "%s: its reader's answer cannot be read",
-                          short_name(child->name));
-        if (got > 0) answer->size += (size_t)got;
-    }
-}
-
 /// Removes the ending from the answer and interprets it.
 static SingeResult isolate_judge(const Child *child, Bytes *answer, int status) {
     const int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
@@ -271,7 +249,28 @@ static SingeResult wait_for(Child *child, Bytes *answer) {
     child->looked = clock_now();
     child->memory_before = memory_of(getpid());
 
-    SingeResult result = take_answer(child, answer, &capacity);
+    // all that the child writes
+    SingeResult result = SINGE_OK;
+    for (bool open = true; open && !result;) {
+        struct pollfd ready = {.fd = child->pipe, .events = POLLIN};
+        int count = poll(&ready, 1, LOOK_MS);
+        if (count < 0 && errno != EINTR && errno != EAGAIN)
+            result = refuse(child->error, SINGE_ERROR_FILE, "file", -1, "%s: its reader cannot be waited for",
+                            short_name(child->name));
+        else result = isolate_look(child);
+        if (result || count <= 0) continue;
+        if (answer->size > child->limits.memory) result = refuse_size(child);
+        else if (!store_grow(answer->allocator, &answer->data, &capacity, answer->size + (1u << 16) + 1, 1))
+            result = refuse_memory(child->error, "file", child->name);
+        if (result) break;
+
+        ssize_t got = read(child->pipe, answer->data + answer->size, capacity - answer->size - 1);
+        open = got != 0;
+        if (got < 0 && errno != EINTR && errno != EAGAIN)
+            result = refuse(child->error, SINGE_ERROR_FILE, "file", -1, "%s: its reader's answer cannot be read",
+                            short_name(child->name));
+        if (got > 0) answer->size += (size_t)got;
+    }
 
     // the end of the child, whose pipe is closed; without a status (a parent that ignores SIGCHLD) it is 0
     while (!result && child->process) {

@@ -70,35 +70,6 @@ static SingeResult take_value(Parser *parser) {
     return SINGE_OK;
 }
 
-/// Continues in the innermost open value: to its end, or to its next value.
-static SingeResult go_on(Parser *parser) {
-    JsonValue *open = &parser->json->values[parser->open[parser->depth - 1]];
-    bool object = open->kind == JSON_OBJECT;
-    skip_blanks(parser);
-
-    if (parser->at < parser->end && *parser->at == (object ? '}' : ']')) {
-        parser->at++, parser->depth--;
-        open->end = (uint32_t)(parser->at - parser->json->text);
-        open->after = (uint32_t)parser->json->count;
-        return SINGE_OK;
-    }
-
-    if (open->count) {
-        if (parser->at == parser->end || *parser->at != ',') return json_bad(parser, "a comma or an end is missing");
-        parser->at++;
-        skip_blanks(parser);
-    }
-
-    open->count++;
-    if (object) {
-        TRY(take_string(parser));
-        skip_blanks(parser);
-        if (parser->at == parser->end || *parser->at != ':') return json_bad(parser, "a colon is missing");
-        parser->at++;
-    }
-    return take_value(parser);
-}
-
 SingeResult json_read(const char *name, const uint8_t *text, size_t size, SingeAllocator allocator, Json *json,
                       SingeError *error) {
     *json = (Json){.text = text, .allocator = allocator};
@@ -106,7 +77,35 @@ SingeResult json_read(const char *name, const uint8_t *text, size_t size, SingeA
     if (size >= UINT32_MAX) return json_bad(&parser, "the text is too long");
     if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) parser.at += 3;
     TRY(take_value(&parser));
-    while (parser.depth) TRY(go_on(&parser));
+
+    while (parser.depth) { // in the innermost open value: to its end, or to its next value
+        JsonValue *open = &parser.json->values[parser.open[parser.depth - 1]];
+        bool object = open->kind == JSON_OBJECT;
+        skip_blanks(&parser);
+
+        if (parser.at < parser.end && *parser.at == (object ? '}' : ']')) {
+            parser.at++, parser.depth--;
+            open->end = (uint32_t)(parser.at - parser.json->text);
+            open->after = (uint32_t)parser.json->count;
+            continue;
+        }
+
+        if (open->count) {
+            if (parser.at == parser.end || *parser.at != ',') return json_bad(&parser, "a comma or an end is missing");
+            parser.at++;
+            skip_blanks(&parser);
+        }
+
+        open->count++;
+        if (object) {
+            TRY(take_string(&parser));
+            skip_blanks(&parser);
+            if (parser.at == parser.end || *parser.at != ':') return json_bad(&parser, "a colon is missing");
+            parser.at++;
+        }
+        TRY(take_value(&parser));
+    }
+
     for (skip_blanks(&parser); parser.at < parser.end && *parser.at == 0; parser.at++) {
     } // padding of some chunks
     return parser.at < parser.end ? json_bad(&parser, "there is data after the end") : SINGE_OK;

@@ -139,16 +139,6 @@ static bool big_less(const Big *a, const Big *b) {
     return false;
 }
 
-static void big_subtract(Big *a, const Big *b) {
-    int64_t borrow = 0;
-    for (int i = 0; i < a->count; i++) {
-        borrow += (int64_t)a->words[i] - (i < b->count ? b->words[i] : 0);
-        a->words[i] = (uint32_t)borrow;
-        borrow >>= 32;
-    }
-    while (a->count && a->words[a->count - 1] == 0) a->count--;
-}
-
 // ---- rounding
 
 // The magnitude of the number, exactly rounded to `bits` bits.
@@ -186,7 +176,16 @@ static double decimal_round(const Decimal *number, int bits, int lowest) {
     uint64_t quotient = 0;
     for (int i = 0; i < bits + 2; i++) {
         quotient <<= 1;
-        if (!big_less(&over, &under)) big_subtract(&over, &under), quotient |= 1;
+        if (!big_less(&over, &under)) {
+            int64_t borrow = 0;
+            for (int k = 0; k < over.count; k++) {
+                borrow += (int64_t)over.words[k] - (k < under.count ? under.words[k] : 0);
+                over.words[k] = (uint32_t)borrow;
+                borrow >>= 32;
+            }
+            while (over.count && over.words[over.count - 1] == 0) over.count--;
+            quotient |= 1;
+        }
         big_shift_left(&over, 1);
     }
 

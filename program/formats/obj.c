@@ -201,20 +201,6 @@ static SingeResult obj_line(Obj *obj) {
     return obj_face(obj);
 }
 
-static SingeResult obj_parse(Obj *obj) {
-    Text *text = &obj->text;
-    if (text->end - text->at >= 3 && memcmp(text->at, "\xef\xbb\xbf", 3) == 0) text->at += 3;
-    while (text->at < text->end) {
-        if (text->line >= UINT32_MAX) return obj_refuse(obj, SINGE_ERROR_LIMIT, "too many lines");
-        obj_skip_blanks(obj);
-        if (!obj_at_end(obj)) TRY(obj_line(obj));
-        text_next_line(text);
-    }
-    if (obj->face_count == 0)
-        return refuse(obj->error, SINGE_ERROR_FORMAT, "obj", text->line, "%s: has no faces", short_name(obj->name));
-    return SINGE_OK;
-}
-
 // ---- from the file's lists to the mesh
 
 static SingeResult obj_finish(Obj *obj, Polygons *polygons) {
@@ -266,7 +252,21 @@ SingeResult obj_read(const char *name, const uint8_t *bytes, size_t size, SingeA
     memset(polygons, 0, sizeof *polygons);
     if (size == 0) return refuse(error, SINGE_ERROR_FORMAT, "obj", 1, "%s: is empty", short_name(name));
     Obj obj = {.text = {bytes, bytes + size, 1}, .begin = bytes, .name = name, .allocator = allocator, .error = error};
-    SingeResult result = obj_parse(&obj);
+    SingeResult result = SINGE_OK;
+    Text *text = &obj.text;
+    if (size >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0) text->at += 3;
+    while (text->at < text->end && !result) {
+        if (text->line >= UINT32_MAX) {
+            result = obj_refuse(&obj, SINGE_ERROR_LIMIT, "too many lines");
+            break;
+        }
+        obj_skip_blanks(&obj);
+        if (!obj_at_end(&obj)) result = obj_line(&obj);
+        if (!result) text_next_line(text);
+    }
+
+    if (!result && obj.face_count == 0)
+        result = refuse(error, SINGE_ERROR_FORMAT, "obj", text->line, "%s: has no faces", short_name(name));
     if (!result) result = obj_finish(&obj, polygons);
     store_free(allocator, obj.positions, obj.position_capacity, sizeof *obj.positions);
     store_free(allocator, obj.uvs, obj.uv_capacity, sizeof *obj.uvs);

@@ -155,24 +155,6 @@ static SingeResult surface_check_header(const Ply *ply, SingeSurface *surface, d
     return SINGE_OK;
 }
 
-static SingeResult surface_allocate(Ply *ply, SingeSurface *surface) {
-    surface->allocator = ply->allocator;
-    uint32_t vertices = surface->vertex_count ? surface->vertex_count : 1;
-    uint32_t triangles = surface->triangle_count ? surface->triangle_count : 1;
-    surface->vertex_capacity = vertices;
-    surface->triangle_capacity = triangles;
-
-    for (size_t i = 0; i < COLUMNS; i++) {
-        if (columns[i].index) continue;
-        void *array = store_new(ply->allocator, vertices, 4 * (size_t)columns[i].width);
-        if (!array) return refuse_memory(ply->error, "ply", ply->name);
-        memcpy((uint8_t *)surface + columns[i].array, &array, sizeof array);
-    }
-
-    surface->triangles = store_new(ply->allocator, triangles, sizeof *surface->triangles);
-    return surface->triangles ? SINGE_OK : refuse_memory(ply->error, "ply", ply->name);
-}
-
 static SingeResult surface_unpack(Ply *ply, SingeSurface *surface) {
     uint8_t *target[COLUMNS];
     for (size_t i = 0; i < COLUMNS; i++) target[i] = column_array(surface, &columns[i]) + 4 * columns[i].index;
@@ -210,7 +192,21 @@ SingeResult ply_read_surface(const char *name, const uint8_t *bytes, size_t size
     double seconds = 0;
     SingeResult result = ply_read_header(&ply);
     if (!result) result = surface_check_header(&ply, surface, &seconds);
-    if (!result) result = surface_allocate(&ply, surface);
+
+    if (!result) {
+        surface->allocator = allocator;
+        surface->vertex_capacity = surface->vertex_count ? surface->vertex_count : 1;
+        surface->triangle_capacity = surface->triangle_count ? surface->triangle_count : 1;
+        for (size_t i = 0; i < COLUMNS && !result; i++) {
+            if (columns[i].index) continue;
+            void *array = store_new(allocator, surface->vertex_capacity, 4 * (size_t)columns[i].width);
+            if (!array) result = refuse_memory(error, "ply", name);
+            memcpy((uint8_t *)surface + columns[i].array, &array, sizeof array);
+        }
+        if (!result) surface->triangles = store_new(allocator, surface->triangle_capacity, sizeof *surface->triangles);
+        if (!result && !surface->triangles) result = refuse_memory(error, "ply", name);
+    }
+
     if (!result) result = surface_unpack(&ply, surface);
     ply_header_free(&ply);
     if (result) singe_surface_free(surface);

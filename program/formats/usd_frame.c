@@ -94,26 +94,6 @@ static void put_colours(UsdWriter *w, const SheetPart *part, CrateValue *palette
     *indices = crate_ints(&w->crate, w->numbers, part->count);
 }
 
-/// The palette of glow: dark and the steps that occur.
-static void put_embers(UsdWriter *w, const SheetPart *part, CrateValue *palette, CrateValue *indices) {
-    float colours[EMBER_STEPS][3];
-    int32_t entries[EMBER_STEPS], found = 0;
-    memset(entries, 0xff, sizeof entries);
-
-    for (uint32_t i = 0; i < part->count; i++) {
-        const uint32_t v = part->vertices[i];
-        const uint8_t step = w->surface->burn[v] > EMBER_BURNT ? ember_step(w->surface->temperature[v]) : 0;
-        if (entries[step] < 0) {
-            ember_colour(step, colours[found]);
-            entries[step] = found++;
-        }
-        w->numbers[i] = entries[step];
-    }
-
-    *palette = crate_floats(&w->crate, 3, colours[0], (size_t)found);
-    *indices = crate_ints(&w->crate, w->numbers, part->count);
-}
-
 // ---- prims
 
 /// The samples of a slot of a sheet: `value` for one frame, otherwise the kept values.
@@ -185,7 +165,24 @@ static void put_own(UsdWriter *w, const SheetPart *part, CrateValue values[USD_O
     values[USD_EXTENT] = crate_floats(&w->crate, 3, box[0], 2);
 
     put_colours(w, part, &values[USD_COLOUR], &values[USD_COLOUR_INDICES]);
-    put_embers(w, part, &values[USD_EMBER], &values[USD_EMBER_INDICES]);
+
+    // the palette of glow: dark and the steps that occur
+    float colours[EMBER_STEPS][3];
+    int32_t entries[EMBER_STEPS], found = 0;
+    memset(entries, 0xff, sizeof entries);
+
+    for (uint32_t i = 0; i < part->count; i++) {
+        const uint32_t v = part->vertices[i];
+        const uint8_t step = s->burn[v] > EMBER_BURNT ? ember_step(s->temperature[v]) : 0;
+        if (entries[step] < 0) {
+            ember_colour(step, colours[found]);
+            entries[step] = found++;
+        }
+        w->numbers[i] = entries[step];
+    }
+
+    values[USD_EMBER] = crate_floats(&w->crate, 3, colours[0], (size_t)found);
+    values[USD_EMBER_INDICES] = crate_ints(&w->crate, w->numbers, part->count);
 
     for (uint32_t i = 0; i < part->triangle_count; i++) w->numbers[i] = 3;
     values[USD_COUNTS] = crate_ints(&w->crate, w->numbers, part->triangle_count);
@@ -330,26 +327,6 @@ SingeResult usd_frame_bytes(const char *path, const OutputScene *scene, const Ou
 
 // ---- all frames in one
 
-/// The values of a frame.
-static SingeResult keep_frame(UsdWriter *w, const OutputFrame *frame, CrateValue *kept, const char *path,
-                              SingeError *error) {
-    UsdWriter one = {.crate = w->crate, .scene = w->scene, .surface = frame->surface};
-    SingeResult result = sheet_parts_make(&one.parts, frame->surface, w->scene->sheet_count, path, error);
-    if (!result && !writer_make(&one)) result = refuse_memory(error, "usd", path);
-
-    for (uint32_t i = 0; i < w->scene->sheet_count && !result; i++, kept += SLOTS) {
-        const SheetPart part = sheet_part(&one.parts, i);
-        put_own(&one, &part, kept);
-        for (int k = 0; k < SURFACE_FIELDS; k++) kept[SLOT_FIELDS + k] = put_field(&one, &part, &surface_fields[k]);
-        for (int k = 0; k < 2; k++) kept[SLOT_SUBSETS + k] = put_subset_faces(&one, &part, k);
-    }
-
-    w->crate = one.crate; // keep everything written so far
-    one.crate = (Crate){.sink = {.allocator = frame->surface->allocator}};
-    writer_free(&one);
-    return result;
-}
-
 SingeResult usd_write_single(const char *path, const OutputScene *scene, const OutputCache *cache, SingeError *error) {
     const size_t frames = (size_t)cache->frames, each = (size_t)scene->sheet_count * SLOTS;
     const SingeAllocator a = {0};
@@ -364,7 +341,23 @@ SingeResult usd_write_single(const char *path, const OutputScene *scene, const O
     for (int i = 1; i <= cache->frames && !result; i++) {
         OutputFrame frame;
         result = cache->read(cache->context, i, &frame, error);
-        if (!result) result = keep_frame(&writer, &frame, kept + (size_t)(i - 1) * each, path, error);
+        if (result) break;
+
+        // the values of the frame
+        CrateValue *own = kept + (size_t)(i - 1) * each;
+        UsdWriter one = {.crate = writer.crate, .scene = scene, .surface = frame.surface};
+        result = sheet_parts_make(&one.parts, frame.surface, scene->sheet_count, path, error);
+        if (!result && !writer_make(&one)) result = refuse_memory(error, "usd", path);
+        for (uint32_t sheet = 0; sheet < scene->sheet_count && !result; sheet++, own += SLOTS) {
+            const SheetPart part = sheet_part(&one.parts, sheet);
+            put_own(&one, &part, own);
+            for (int k = 0; k < SURFACE_FIELDS; k++) own[SLOT_FIELDS + k] = put_field(&one, &part, &surface_fields[k]);
+            for (int k = 0; k < 2; k++) own[SLOT_SUBSETS + k] = put_subset_faces(&one, &part, k);
+        }
+
+        writer.crate = one.crate; // keep everything written so far
+        one.crate = (Crate){.sink = {.allocator = frame.surface->allocator}};
+        writer_free(&one);
     }
 
     writer.kept = kept;

@@ -195,30 +195,6 @@ typedef struct VatCorner {
     float uv[2];
 } VatCorner;
 
-/// Merges equal corners of a mesh's cells to vertices: `number` [4 * cell_count], and returns their count, or 0 when
-/// out of memory.
-static uint32_t number_corners(const OutputMesh *mesh, VatCorner *corners, uint32_t *number) {
-    const size_t count = 4 * (size_t)mesh->cell_count;
-    uint32_t *first = calloc(mesh->vertex_count, 4), *next = calloc(count, 4), made = 0;
-
-    for (size_t i = 0; first && next && i < count; i++) {
-        VatCorner corner = {.vertex = mesh->cells[i]};
-        if (output_mesh_has_uv(mesh)) output_mesh_uv(mesh, (uint32_t)(i / 4), (int)(i & 3), corner.uv);
-        uint32_t at = first[corner.vertex];
-        while (at && memcmp(corners[at - 1].uv, corner.uv, sizeof corner.uv) != 0) at = next[at - 1];
-        if (!at) {
-            corners[made++] = corner;
-            next[made - 1] = first[corner.vertex];
-            at = first[corner.vertex] = made;
-        }
-        number[i] = at - 1;
-    }
-
-    if (!first || !next) made = 0;
-    free(first), free(next);
-    return made;
-}
-
 static void put_attribute(GlbFile *f, const char *name, size_t begin, uint32_t count, int width, const float *box) {
     sink_text(&f->meshes, "\"%s\":%u,", name, glb_put_accessor(f, begin, count, width, GLB_OF_VERTICES, box));
 }
@@ -241,9 +217,24 @@ static void put_values(GlbFile *f, const char *name, const VatCorner *corners, u
 
 static bool put_sheet(GlbFile *f, const Vat *vat, uint32_t sheet) {
     const OutputMesh *mesh = &vat->scene->sheets[sheet].mesh;
-    VatCorner *corners = calloc(4 * (size_t)mesh->cell_count, sizeof *corners);
-    uint32_t *number = calloc(4 * (size_t)mesh->cell_count, sizeof *number);
-    const uint32_t count = corners && number ? number_corners(mesh, corners, number) : 0;
+    const size_t all = 4 * (size_t)mesh->cell_count;
+    VatCorner *corners = calloc(all, sizeof *corners);
+    uint32_t *number = calloc(all, 4), *first = calloc(mesh->vertex_count, 4), *next = calloc(all, 4), count = 0;
+    const bool room = corners && number && first && next;
+
+    // equal corners of the cells become one vertex
+    for (size_t i = 0; room && i < all; i++) {
+        VatCorner corner = {.vertex = mesh->cells[i]};
+        if (output_mesh_has_uv(mesh)) output_mesh_uv(mesh, (uint32_t)(i / 4), (int)(i & 3), corner.uv);
+        uint32_t at = first[corner.vertex];
+        while (at && memcmp(corners[at - 1].uv, corner.uv, sizeof corner.uv) != 0) at = next[at - 1];
+        if (!at) {
+            corners[count++] = corner;
+            next[count - 1] = first[corner.vertex];
+            at = first[corner.vertex] = count;
+        }
+        number[i] = at - 1;
+    }
 
     if (count) {
         sink_text(&f->meshes, "%s{\"name\":", f->mesh_count ? "," : "");
@@ -278,7 +269,7 @@ static bool put_sheet(GlbFile *f, const Vat *vat, uint32_t sheet) {
         sink_text(&f->nodes, "%s{\"mesh\":%u}", f->node_count ? "," : "", f->node_count);
         f->mesh_count++, f->node_count++;
     }
-    free(corners), free(number);
+    free(corners), free(number), free(first), free(next);
     return count > 0;
 }
 

@@ -102,45 +102,6 @@ static ExitCode read_target(FitTarget *target, const PlanTarget *plan, Console *
     return why ? EXIT_INPUT : EXIT_GOOD;
 }
 
-static bool curve_error(const FitTarget *target, const Sweep *sweep, uint32_t row, double *error) {
-    char *folder = sweep_row_folder(sweep, row, true), *path = text_format("%s/probes.csv", folder);
-    const FitCurve *measured = &target->curve;
-    Csv csv = {0};
-    uint32_t count = 0, times_count = 0;
-    bool good = !csv_read(&csv, path, sweep->console);
-    const CsvLines lines = {"probe", target->plan->probe, "temperature"}; // none once the paper is gone
-    double *values = csv_numbers(&csv, csv_column(&csv, "temperature"), lines, &count);
-    double *times = csv_numbers(&csv, csv_column(&csv, "time"), lines, &times_count);
-    if (good && (count == 0 || times_count != count)) {
-        console_error(sweep->console, "%s has no temperatures of probe '%s'", path, target->plan->probe);
-        good = false;
-    }
-
-    double sum = 0, low = INFINITY, high = -INFINITY;
-    for (uint32_t i = 0; good && i < measured->count; i++) {
-        // linear between the points of the simulated curve; once the paper is gone the last temperature remains
-        const double time = measured->times[i];
-        uint32_t k = 0;
-        while (k < count && times[k] < time) k++;
-        double simulated = values[k < count ? k : count - 1];
-        if (k > 0 && k < count) {
-            const double share = (time - times[k - 1]) / (times[k] - times[k - 1]);
-            simulated = values[k - 1] + share * (values[k] - values[k - 1]);
-        }
-        sum += pow(simulated - measured->temperatures[i], 2);
-        low = fmin(low, measured->temperatures[i]);
-        high = fmax(high, measured->temperatures[i]);
-    }
-
-    if (good) *error += sum / measured->count / pow(high - low, 2);
-    csv_free(&csv);
-    free(values);
-    free(times);
-    free(path);
-    free(folder);
-    return good;
-}
-
 enum { MASK_SIZE = 256 };
 
 typedef struct MaskDrawing {
@@ -254,7 +215,44 @@ static bool fit_error(const FitTarget *target, const Sweep *sweep, uint32_t row,
         free(folder);
     }
 
-    if (good && target->plan->curve) good = curve_error(target, sweep, row, error);
+    if (good && target->plan->curve) {
+        char *folder = sweep_row_folder(sweep, row, true), *path = text_format("%s/probes.csv", folder);
+        const FitCurve *measured = &target->curve;
+        Csv csv = {0};
+        uint32_t count = 0, times_count = 0;
+        good = !csv_read(&csv, path, sweep->console);
+        const CsvLines lines = {"probe", target->plan->probe, "temperature"}; // none once the paper is gone
+        double *values = csv_numbers(&csv, csv_column(&csv, "temperature"), lines, &count);
+        double *times = csv_numbers(&csv, csv_column(&csv, "time"), lines, &times_count);
+        if (good && (count == 0 || times_count != count)) {
+            console_error(sweep->console, "%s has no temperatures of probe '%s'", path, target->plan->probe);
+            good = false;
+        }
+
+        double sum = 0, low = INFINITY, high = -INFINITY;
+        for (uint32_t i = 0; good && i < measured->count; i++) {
+            // linear between the points of the simulated curve; once the paper is gone the last temperature remains
+            const double time = measured->times[i];
+            uint32_t k = 0;
+            while (k < count && times[k] < time) k++;
+            double simulated = values[k < count ? k : count - 1];
+            if (k > 0 && k < count) {
+                const double share = (time - times[k - 1]) / (times[k] - times[k - 1]);
+                simulated = values[k - 1] + share * (values[k] - values[k - 1]);
+            }
+            sum += pow(simulated - measured->temperatures[i], 2);
+            low = fmin(low, measured->temperatures[i]);
+            high = fmax(high, measured->temperatures[i]);
+        }
+
+        if (good) *error += sum / measured->count / pow(high - low, 2);
+        csv_free(&csv);
+        free(values);
+        free(times);
+        free(path);
+        free(folder);
+    }
+
     return good && target->plan->masks ? masks_error(target, sweep, row, error) : good;
 }
 
@@ -262,34 +260,28 @@ static bool fit_error(const FitTarget *target, const Sweep *sweep, uint32_t row,
 
 static char *table_path(const Fit *fit) { return text_format("%s/fit.csv", fit->sweep->folder); }
 
-static char *table_line(const Fit *fit, uint32_t row) {
-    const Plan *plan = &fit->sweep->plan;
-    char *text = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
-    if (file) {
-        fprintf(file, "%u", row + 1);
-        for (uint32_t p = 0; p < plan->parameter_count; p++) {
-            fputc(',', file);
-            text_csv_cell(file, plan_value(plan, row, p));
-        }
-        fputc(',', file);
-    }
-
-    if (text_stream_end(file, &text)) return text;
-
-    free(text);
-    return NULL;
-}
-
 // ---- an evaluation
 
 /// The error of a row whose values are set: from fit.csv, or after running it.
 static ExitCode row_error(Fit *fit, uint32_t row, double *value) {
-    char *line = table_line(fit, row);
-    if (!line) return EXIT_FAILED;
+    // the row's line in fit.csv, up to its error
+    const Plan *plan = &fit->sweep->plan;
+    char *line = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&line, &size);
+    if (file) fprintf(file, "%u", row + 1);
+    for (uint32_t p = 0; file && p < plan->parameter_count; p++) {
+        fputc(',', file);
+        text_csv_cell(file, plan_value(plan, row, p));
+    }
+    if (file) fputc(',', file);
 
-    // its line in fit.csv, after the header and the earlier rows
+    if (!text_stream_end(file, &line)) {
+        free(line);
+        return EXIT_FAILED;
+    }
+
+    // the line that is there, after the header and the earlier rows
     const char *at = fit->noted;
     for (uint32_t i = 0; i <= row && at; i++) {
         at = strchr(at, '\n');

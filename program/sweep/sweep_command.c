@@ -51,45 +51,6 @@ static const ArgCommand sweep_command = {
     "docs/sweep.md describes plans. The same command continues a sweep that was stopped.\n"
     "Exit codes: 0 all rows are complete, 1 a row failed or the sweep was interrupted, 2 bad input."};
 
-static ExitCode sweep_parse(int argc, char **argv, SweepOptions *o, bool *done) {
-    ArgReader reader = args_begin(&sweep_command, argc, argv);
-    const char *value;
-
-    *o = (SweepOptions){.threads = 1, .frames = 24};
-    *done = false;
-
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        bool good = true;
-        switch (option) {
-        case OPT_OUTPUT: o->output = value; break;
-        case OPT_JOBS: good = args_int(&reader, option, value, 1, 1024, &o->jobs); break;
-        case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &o->threads); break;
-        case OPT_RETRY: o->retry = true; break;
-        case OPT_NO_PREVIEW: o->no_preview = true; break;
-        case OPT_PRINT: o->print = true; break;
-        case OPT_ROW: good = args_int(&reader, option, value, 1, PLAN_ROWS_MAX, &o->row); break;
-        case OPT_REPORT: o->report = true; break;
-        case OPT_SLURM: o->submit = true; break;
-        case OPT_MAX_RUNNING: good = args_int(&reader, option, value, 1, PLAN_ROWS_MAX, &o->max_running); break;
-        case OPT_SLURM_OPTION: set_add(&o->slurm, value); break;
-        case OPT_RENDER_FRAMES: good = args_int(&reader, option, value, 1, 1000000, &o->frames); break;
-        case OPT_QUIET: o->quiet = true; break;
-        case ARG_OPERAND: o->plan = value; break;
-        case ARG_HELP: *done = true; return EXIT_GOOD;
-        default: good = false;
-        }
-        if (!good) return EXIT_INPUT;
-    }
-
-    if (o->print + o->report + o->submit + (o->row > 0) > 1) {
-        args_complain(&reader, "--print, --report, --row and --slurm exclude each other");
-        return EXIT_INPUT;
-    }
-
-    if (!o->jobs) o->jobs = job_threads() / o->threads > 1 ? job_threads() / o->threads : 1;
-    return EXIT_GOOD;
-}
-
 /// Absolute, so that jobs may start in any folder.
 static char *absolute(const char *path) {
     char *whole = realpath(path, NULL);
@@ -187,9 +148,43 @@ static ExitCode sweep_rows(Sweep *sweep) {
 }
 
 int command_sweep(int argc, char **argv) {
-    SweepOptions options;
-    bool done;
-    ExitCode code = sweep_parse(argc, argv, &options, &done);
+    ArgReader reader = args_begin(&sweep_command, argc, argv);
+    SweepOptions options = {.threads = 1, .frames = 24};
+    ExitCode code = EXIT_GOOD;
+    const char *value;
+    bool done = false;
+
+    for (int option; !code && !done && (option = args_next(&reader, &value)) != ARG_END;) {
+        bool good = true;
+        switch (option) {
+        case OPT_OUTPUT: options.output = value; break;
+        case OPT_JOBS: good = args_int(&reader, option, value, 1, 1024, &options.jobs); break;
+        case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &options.threads); break;
+        case OPT_RETRY: options.retry = true; break;
+        case OPT_NO_PREVIEW: options.no_preview = true; break;
+        case OPT_PRINT: options.print = true; break;
+        case OPT_ROW: good = args_int(&reader, option, value, 1, PLAN_ROWS_MAX, &options.row); break;
+        case OPT_REPORT: options.report = true; break;
+        case OPT_SLURM: options.submit = true; break;
+        case OPT_MAX_RUNNING: good = args_int(&reader, option, value, 1, PLAN_ROWS_MAX, &options.max_running); break;
+        case OPT_SLURM_OPTION: set_add(&options.slurm, value); break;
+        case OPT_RENDER_FRAMES: good = args_int(&reader, option, value, 1, 1000000, &options.frames); break;
+        case OPT_QUIET: options.quiet = true; break;
+        case ARG_OPERAND: options.plan = value; break;
+        case ARG_HELP: done = true; break;
+        default: good = false;
+        }
+        if (!good) code = EXIT_INPUT;
+    }
+
+    if (!code && !done && options.print + options.report + options.submit + (options.row > 0) > 1) {
+        args_complain(&reader, "--print, --report, --row and --slurm exclude each other");
+        code = EXIT_INPUT;
+    }
+
+    if (!code && !options.jobs)
+        options.jobs = job_threads() / options.threads > 1 ? job_threads() / options.threads : 1;
+
     if (!code && !done) {
         interrupt_shield();
         Console console = console_make(options.quiet);

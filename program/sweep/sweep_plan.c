@@ -168,33 +168,6 @@ static void read_range(PlanReader *reader, const YamlNode *map, PlanParameter *p
         message_add(&reader->messages, &reader->text, map->location, "a logarithmic range must be above 0");
 }
 
-static void read_parameters(PlanReader *reader, const YamlNode *map) {
-    Plan *plan = reader->plan;
-    if (map->kind != NODE_MAP || !map->count || map->count > PLAN_PARAMETERS_MAX) {
-        plan_complain(reader, map, "parameters", "a map of 1 to 64 keys of the scene");
-        return;
-    }
-
-    plan->parameters = arena_new(plan->arena, map->count, sizeof *plan->parameters);
-
-    for (const YamlNode *node = map->first; node && plan->parameters; node = node->next) {
-        PlanParameter *parameter = &plan->parameters[plan->parameter_count++];
-        parameter->key = node->key;
-        parameter->location = node->location;
-        if (strcmp(node->key, "name") == 0)
-            message_add(&reader->messages, &reader->text, node->key_location, "all rows have the scene's name");
-        if (node->kind == NODE_MAP) {
-            read_range(reader, node, parameter);
-        } else if (node->kind == NODE_LIST && node->count) {
-            parameter->values = arena_new(plan->arena, node->count, sizeof *parameter->values);
-            for (const YamlNode *value = node->first; value && parameter->values; value = value->next)
-                parameter->values[parameter->count++] = flow_text(plan, value, "");
-        } else {
-            plan_complain(reader, node, node->key, "a list of values, or a range {from: A, to: B, steps: N}");
-        }
-    }
-}
-
 /// The target of a fit.
 static void read_target(PlanReader *reader, const YamlNode *map) {
     PlanTarget *target = &reader->plan->target;
@@ -380,8 +353,28 @@ static void read_key(PlanReader *reader, const YamlNode *node) {
             sprintf(prefix, "%s=", child->key);
             plan->sets[plan->set_count++] = flow_text(plan, child, prefix);
         }
+    } else if (strcmp(key, "parameters") == 0 &&
+               (node->kind != NODE_MAP || !node->count || node->count > PLAN_PARAMETERS_MAX)) {
+        plan_complain(reader, node, "parameters", "a map of 1 to 64 keys of the scene");
     } else if (strcmp(key, "parameters") == 0) {
-        read_parameters(reader, node);
+        plan->parameters = arena_new(plan->arena, node->count, sizeof *plan->parameters);
+
+        for (const YamlNode *child = node->first; child && plan->parameters; child = child->next) {
+            PlanParameter *parameter = &plan->parameters[plan->parameter_count++];
+            parameter->key = child->key;
+            parameter->location = child->location;
+            if (strcmp(child->key, "name") == 0)
+                message_add(&reader->messages, &reader->text, child->key_location, "all rows have the scene's name");
+            if (child->kind == NODE_MAP) {
+                read_range(reader, child, parameter);
+            } else if (child->kind == NODE_LIST && child->count) {
+                parameter->values = arena_new(plan->arena, child->count, sizeof *parameter->values);
+                for (const YamlNode *value = child->first; value && parameter->values; value = value->next)
+                    parameter->values[parameter->count++] = flow_text(plan, value, "");
+            } else {
+                plan_complain(reader, child, child->key, "a list of values, or a range {from: A, to: B, steps: N}");
+            }
+        }
     } else if (strcmp(key, "target") == 0) {
         read_target(reader, node);
     } else if (strcmp(key, "search") == 0) {

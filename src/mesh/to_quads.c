@@ -186,38 +186,6 @@ static bool hand_over(Work *work, Mesh *mesh) {
     return true;
 }
 
-/// Leaves out redundant arrays: the uv of corners if there is no seam, and numbers that equal those of the file.
-static void simplify(const Work *work, Mesh *mesh) {
-    bool same = mesh->vertex_count == mesh->source_count, faces = true;
-    for (uint32_t v = 0; v < mesh->vertex_count && same; v++) same = mesh->source[v] == (int32_t)v;
-    for (uint32_t c = 0; c < mesh->cell_count && faces; c++) faces = mesh->cell_faces[c] == c;
-
-    bool several = false; // some vertex of the sheet was several in the file
-    for (size_t i = 0; mesh->corner_source && i < 4 * (size_t)mesh->cell_count; i++)
-        several = several || mesh->corner_source[i] != mesh->source[mesh->cells[i]];
-    if (mesh->corner_source && !(several && work->report->seam_vertices)) {
-        store_free(mesh->allocator, mesh->corner_source, mesh->cell_count, 4 * sizeof *mesh->corner_source);
-        mesh->corner_source = NULL;
-    }
-
-    if (same && !mesh->corner_source) {
-        store_free(mesh->allocator, mesh->source, mesh->vertex_count, sizeof *mesh->source);
-        mesh->source = NULL;
-        store_free(mesh->allocator, mesh->became, mesh->source_count, sizeof *mesh->became);
-        mesh->became = NULL;
-    }
-
-    if (faces) {
-        store_free(mesh->allocator, mesh->cell_faces, mesh->cell_count, sizeof *mesh->cell_faces);
-        mesh->cell_faces = NULL;
-    }
-
-    if (mesh->corner_uv && !work->report->seam_vertices) {
-        store_free(mesh->allocator, mesh->corner_uv, mesh->cell_count, 8 * sizeof *mesh->corner_uv);
-        mesh->corner_uv = NULL;
-    }
-}
-
 // ---- the steps
 
 /// A quad with a repeated corner or without area; MESH_NONE if there is none.
@@ -355,7 +323,38 @@ SingeResult mesh_make(const char *name, const Polygons *polygons, const MeshOpti
     }
 
     if (!result && (work.no_memory || !hand_over(&work, mesh))) result = refuse_memory(error, "mesh", name);
-    if (!result) simplify(&work, mesh);
+
+    if (!result) { // leaves out redundant arrays: uv of corners without a seam, numbers that equal those of the file
+        bool same = mesh->vertex_count == mesh->source_count, faces = true;
+        for (uint32_t v = 0; v < mesh->vertex_count && same; v++) same = mesh->source[v] == (int32_t)v;
+        for (uint32_t c = 0; c < mesh->cell_count && faces; c++) faces = mesh->cell_faces[c] == c;
+
+        bool several = false; // some vertex of the sheet was several in the file
+        for (size_t i = 0; mesh->corner_source && i < 4 * (size_t)mesh->cell_count; i++)
+            several = several || mesh->corner_source[i] != mesh->source[mesh->cells[i]];
+        if (mesh->corner_source && !(several && work.report->seam_vertices)) {
+            store_free(mesh->allocator, mesh->corner_source, mesh->cell_count, 4 * sizeof *mesh->corner_source);
+            mesh->corner_source = NULL;
+        }
+
+        if (same && !mesh->corner_source) {
+            store_free(mesh->allocator, mesh->source, mesh->vertex_count, sizeof *mesh->source);
+            mesh->source = NULL;
+            store_free(mesh->allocator, mesh->became, mesh->source_count, sizeof *mesh->became);
+            mesh->became = NULL;
+        }
+
+        if (faces) {
+            store_free(mesh->allocator, mesh->cell_faces, mesh->cell_count, sizeof *mesh->cell_faces);
+            mesh->cell_faces = NULL;
+        }
+
+        if (mesh->corner_uv && !work.report->seam_vertices) {
+            store_free(mesh->allocator, mesh->corner_uv, mesh->cell_count, 8 * sizeof *mesh->corner_uv);
+            mesh->corner_uv = NULL;
+        }
+    }
+
     work_free(&work);
     if (result) mesh_free(mesh);
     return result;
