@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -76,11 +77,15 @@ static bool read_list(const Parser *parser, const char *text, double low, double
     }
 }
 
-/// Finds a word among `count`; its index is the value.
-static bool read_word(const Parser *parser, const char *text, const char *const *words, int count, const char *expected,
-                      int *value) {
-    for (*value = 0; *value < count; ++*value)
+/// One of the words, which end with NULL. The message lists them.
+static bool read_word(const Parser *parser, const char *text, const char *const *words, int *value) {
+    char expected[160] = "";
+    for (*value = 0; words[*value]; ++*value) {
         if (strcmp(words[*value], text) == 0) return true;
+        const char *before = *value == 0 ? "" : words[*value + 1] ? ", " : " or ";
+        const size_t length = strlen(expected);
+        snprintf(expected + length, sizeof expected - length, "%s%s", before, words[*value]);
+    }
     return bench_args_refuse(parser, expected, text);
 }
 
@@ -101,17 +106,14 @@ static bool read_option(Parser *parser, const char *text, BenchRequest *request)
     case BENCH_OPT_SMOOTHING: return read_one(parser, text, 0, 1e6, "a number from 0 to 1e6", &o->smoothing);
     case BENCH_OPT_THREADS: return args_int(reader, option, text, 1, 64, &o->threads);
     case BENCH_OPT_SOLVER: {
-        static const char *const words[] = {"strand", "paper", "paper-literal", "all-at-once", "mass-spring"};
         int value;
-        if (!read_word(parser, text, words, 5, "strand, paper, paper-literal, all-at-once or mass-spring", &value))
-            return false;
+        if (!read_word(parser, text, words_SingeSolverMethod, &value)) return false;
         o->solver = (SingeSolverMethod)value;
         return true;
     }
     case BENCH_OPT_INSTRUCTIONS: {
-        static const char *const words[] = {"best", "plain", "v2", "v3", "v4", "neon"};
         int value;
-        if (!read_word(parser, text, words, 6, "best, plain, v2, v3, v4 or neon", &value)) return false;
+        if (!read_word(parser, text, words_SingeInstructions, &value)) return false;
         o->instructions = (SingeInstructions)value;
         return true;
     }
@@ -120,9 +122,9 @@ static bool read_option(Parser *parser, const char *text, BenchRequest *request)
         return read_list(parser, text, 40, 4e7, true, 1, "whole numbers from 40 to 40000000 as in 1000,16000",
                          &o->springs);
     case BENCH_OPT_STATE: {
-        static const char *const words[] = {"swing", "shrink"};
+        static const char *const words[] = {"swing", "shrink", NULL};
         int value;
-        if (!read_word(parser, text, words, 2, "swing or shrink", &value)) return false;
+        if (!read_word(parser, text, words, &value)) return false;
         o->state = (BenchState)value;
         return true;
     }
@@ -135,9 +137,9 @@ static bool read_option(Parser *parser, const char *text, BenchRequest *request)
     case BENCH_OPT_SEEDS:
         return read_list(parser, text, 1, 1e6, true, 1, "whole numbers from 1 to 1000000 as in 1,2", &o->seeds);
     case BENCH_OPT_OUTLINE: {
-        static const char *const words[] = {"square", "disc"};
+        static const char *const words[] = {"square", "disc", NULL};
         int value;
-        if (!read_word(parser, text, words, 2, "square or disc", &value)) return false;
+        if (!read_word(parser, text, words, &value)) return false;
         o->outline = value ? BENCH_DISC : BENCH_SQUARE;
         return true;
     }
