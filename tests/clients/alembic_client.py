@@ -44,7 +44,7 @@ def read(path, sheet_names, frames):
 def main():
     singe, folder = (os.path.abspath(path) for path in sys.argv[1:3])
     shutil.rmtree(folder, ignore_errors=True)
-    os.environ["SINGE_LIBRARY"] = os.path.join(os.path.dirname(singe), "..", "python", "singe", "libsinge.so")
+    os.environ["SINGE_LIBRARY"] = os.path.join(os.path.dirname(singe), "python", "singe", "libsinge.so")
     sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "bindings", "python"))
     import singe as package
     out = make(singe, folder, [], "--no-preview", "--set", "gas=no")
