@@ -53,7 +53,8 @@ static bool paper_create(Memory *memory, const Shell *shell, DynamicsPlan *plan)
         paper->spring_count[c] = set->count;
         ok = NEW(memory, paper->order[c], set->count) && NEW(memory, seen, set->count);
 
-        for (uint32_t slot = 0, row = first; ok && slot < 4; slot++)
+        uint32_t(*const rows)[2] = ends + first;
+        for (uint32_t slot = 0, row = 0; ok && slot < 4; slot++)
             for (uint32_t cell = 0; cell < shell->cell_count; cell++) {
                 const CellSprings *around = &shell->cell_springs[cell];
                 uint32_t k = c == SINGE_RED     ? around->red[slot]
@@ -64,8 +65,8 @@ static bool paper_create(Memory *memory, const Shell *shell, DynamicsPlan *plan)
                 if (k == SHELL_NONE || seen[k]) continue;
                 seen[k] = 1;
                 uint32_t a = set->ends[k][0], b = set->ends[k][1];
-                ends[row][0] = a < b ? a : b;
-                ends[row][1] = a < b ? b : a;
+                rows[row][0] = a < b ? a : b;
+                rows[row][1] = a < b ? b : a;
                 paper->order[c][row++] = k;
             }
         FREE(memory, seen, set->count);
