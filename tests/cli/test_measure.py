@@ -6,7 +6,7 @@ import os
 import struct
 import unittest
 
-from support import HAS_PREVIEW, Case
+from support import HAS_PREVIEW, SANITIZED, Case
 
 
 def read_ply(path):
@@ -85,7 +85,8 @@ class Measure(Case):
     def test_embers_are_drawn_unless_asked_otherwise(self):
         root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
         letter = os.path.join(root, "examples", "letter", "letter.yaml")
-        sets = ("pace=16", "gas=no", "preview.size=[160, 120]", "sheets.0.grid.cells=[21, 30]")
+        sets = ("pace=16", "gas=no", "preview.size=[160, 120]",
+                f"sheets.0.grid.cells={[14, 20] if SANITIZED else [21, 30]}")
         self.singe("run", letter, "-o", self.path("o"), "--no-preview", "--frames", "14",
                    *(word for value in sets for word in ("--set", value)))
         drawn, without = self.rows()[1], self.rows("--no-preview")[1]

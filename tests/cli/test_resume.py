@@ -331,7 +331,10 @@ class Resume(Case):
         self.run_scene("a", "--frames", "9", "--resume", "--quiet")
         with open(self.path("a", "checkpoint.singe"), "rb") as file:
             good = file.read()
-        for name, data in {**self.damage(good), "missing": None}.items():
+        cases = list({**self.damage(good), "missing": None}.items())
+        if SANITIZED:  # each takes five seconds there
+            cases = cases[::4] + cases[-1:]
+        for name, data in cases:
             with self.subTest(name):
                 shutil.rmtree(self.path("o"), ignore_errors=True)
                 shutil.copytree(self.path("a"), self.path("o"))

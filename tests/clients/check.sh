@@ -1,13 +1,18 @@
 #!/bin/bash
 # make check-clients: other programs, installed by name into a folder of their own, on what a fresh burn leaves.
 #
-# usage: check.sh SINGE FOLDER     FOLDER/NAME is the environment of a client, FOLDER/work/NAME what it made
+# usage: check.sh SINGE FOLDER [GROUP...]     FOLDER/NAME is the environment of a client, FOLDER/work/NAME what it made
+#
+# The groups are usd, vtk, paraview, alembic, gltf, vat and blender; all of them without one. gltf and vat read images with
+# vtk's Python.
 #
 # Exit codes: 0 all is good; 1 a client found a fault; 3 none did, but some could not be installed.
 set -euo pipefail
 singe=$(realpath "$1")
 mkdir -p "$2"
 folder=$(realpath "$2")
+shift 2
+groups=" ${*:-usd vtk paraview alembic gltf vat blender} "
 here=$(cd "$(dirname "$0")" && pwd)
 python=${PYTHON:-python3}
 failed=0
@@ -53,58 +58,83 @@ client() {
 }
 
 mkdir -p "$folder/work"
-if environment usd usd-core numpy; then client usd usd.py; else lacking usd "PyPI's usd-core"; fi
-if environment vtk vtk numpy; then client vtk vtk_client.py; else lacking vtk "PyPI's vtk"; fi
-echo "== paraview"
-# Debian's packages: only root installs them
-if [ "$(id -u)" -eq 0 ] && command -v apt-get > /dev/null && ! command -v pvpython > /dev/null; then
-    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends paraview python3-paraview \
-        python3-numpy xvfb xauth > "$folder/paraview.log" 2>&1 || true
-fi
-if ! command -v pvpython > /dev/null || ! command -v xvfb-run > /dev/null; then
-    lacking paraview "pvpython and xvfb-run (packages paraview, python3-paraview, xvfb)"
-elif PYTHONDONTWRITEBYTECODE=1 xvfb-run -a pvpython "$here/paraview_client.py" "$singe" "$folder/work/paraview" \
-    > "$folder/paraview.log" 2>&1 && grep '^ParaView' "$folder/paraview.log"; then :
-else
-    failed=1
-    tail -30 "$folder/paraview.log"
-fi
-if environment alembic alembic3d numpy; then client alembic alembic_client.py; else lacking alembic "PyPI's alembic3d"; fi
-echo "== gltf"
-mkdir -p "$folder/gltf"
-if ! npm install --prefix "$folder/gltf" --no-audit --no-fund --silent gltf-validator @gltf-transform/core \
-    @gltf-transform/extensions @gltf-transform/functions meshoptimizer > "$folder/gltf.log" 2>&1; then
-    lacking gltf "npm's gltf-validator and @gltf-transform"
-elif NODE_PATH="$folder/gltf/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
-        node "$here/gltf.js" "$singe" "$folder/work/gltf" >> "$folder/gltf.log" 2>&1; then cat "$folder/gltf.log"
-else
-    failed=1
-    tail -30 "$folder/gltf.log"
-fi
-echo "== vat"
-browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
-if [ -z "$browser" ]; then lacking vat chromium
-elif ! npm install --prefix "$folder/three" --no-audit --no-fund --silent three > "$folder/vat.log" 2>&1; then
-    lacking vat "npm's three"
-elif NODE_PATH="$folder/three/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
-        node "$here/vat.js" "$singe" "$folder/work/vat" "$browser" >> "$folder/vat.log" 2>&1; then cat "$folder/vat.log"
-else
-    failed=1
-    tail -30 "$folder/vat.log"
-fi
-# each bpy is for one Python
-for version in 3.11:4.5 3.13:5.2; do
-    if ! python=$(find_python "${version%:*}"); then
-        lacking "Blender ${version#*:}" "python${version%:*}"
-        continue
+usd_client() {
+    if environment usd usd-core numpy; then client usd usd.py; else lacking usd "PyPI's usd-core"; fi
+}
+
+vtk_client() {
+    if environment vtk vtk numpy; then client vtk vtk_client.py; else lacking vtk "PyPI's vtk"; fi
+}
+
+paraview_client() {
+    echo "== paraview"
+    # Debian's packages: only root installs them
+    if [ "$(id -u)" -eq 0 ] && command -v apt-get > /dev/null && ! command -v pvpython > /dev/null; then
+        DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends paraview python3-paraview \
+            python3-numpy xvfb xauth > "$folder/paraview.log" 2>&1 || true
     fi
-    if environment "blender-${version#*:}" "bpy==${version#*:}.*" numpy; then
-        client "blender-${version#*:}" blender.py
-        client "blender-${version#*:}" blender_meshes.py "meshes-${version#*:}"
-        client "blender-${version#*:}" blender_alembic.py "alembic-${version#*:}"
+    if ! command -v pvpython > /dev/null || ! command -v xvfb-run > /dev/null; then
+        lacking paraview "pvpython and xvfb-run (packages paraview, python3-paraview, xvfb)"
+    elif PYTHONDONTWRITEBYTECODE=1 xvfb-run -a pvpython "$here/paraview_client.py" "$singe" "$folder/work/paraview" \
+        > "$folder/paraview.log" 2>&1 && grep '^ParaView' "$folder/paraview.log"; then :
     else
-        lacking "Blender ${version#*:}" "PyPI's bpy"
+        failed=1
+        tail -30 "$folder/paraview.log"
     fi
+}
+
+alembic_client() {
+    if environment alembic alembic3d numpy; then client alembic alembic_client.py; else lacking alembic "PyPI's alembic3d"; fi
+}
+
+gltf_client() {
+    echo "== gltf"
+    mkdir -p "$folder/gltf"
+    if ! npm install --prefix "$folder/gltf" --no-audit --no-fund --silent gltf-validator @gltf-transform/core \
+        @gltf-transform/extensions @gltf-transform/functions meshoptimizer > "$folder/gltf.log" 2>&1; then
+        lacking gltf "npm's gltf-validator and @gltf-transform"
+    elif NODE_PATH="$folder/gltf/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
+            node "$here/gltf.js" "$singe" "$folder/work/gltf" >> "$folder/gltf.log" 2>&1; then cat "$folder/gltf.log"
+    else
+        failed=1
+        tail -30 "$folder/gltf.log"
+    fi
+}
+
+vat_client() {
+    echo "== vat"
+    browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
+    if [ -z "$browser" ]; then lacking vat chromium
+    elif ! npm install --prefix "$folder/three" --no-audit --no-fund --silent three > "$folder/vat.log" 2>&1; then
+        lacking vat "npm's three"
+    elif NODE_PATH="$folder/three/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
+            node "$here/vat.js" "$singe" "$folder/work/vat" "$browser" >> "$folder/vat.log" 2>&1; then cat "$folder/vat.log"
+    else
+        failed=1
+        tail -30 "$folder/vat.log"
+    fi
+}
+
+# each bpy is for one Python
+blender_client() {
+    local version
+    for version in 3.11:4.5 3.13:5.2; do
+        if ! python=$(find_python "${version%:*}"); then
+            lacking "Blender ${version#*:}" "python${version%:*}"
+            continue
+        fi
+        if environment "blender-${version#*:}" "bpy==${version#*:}.*" numpy; then
+            client "blender-${version#*:}" blender.py
+            client "blender-${version#*:}" blender_meshes.py "meshes-${version#*:}"
+            client "blender-${version#*:}" blender_alembic.py "alembic-${version#*:}"
+        else
+            lacking "Blender ${version#*:}" "PyPI's bpy"
+        fi
+    done
+}
+
+for group in usd vtk paraview alembic gltf vat blender; do
+    if [[ $groups == *" $group "* ]]; then "${group}_client"; fi
 done
 [ $failed -eq 0 ] || exit 1
 [ $absent -eq 0 ] || exit 3
