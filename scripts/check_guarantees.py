@@ -5,8 +5,8 @@ usage: check_guarantees.py ROOT BUILD FILE...
 
 A promise is an item of a list and ends with its tests in brackets: [sim_threads: any_number_of_threads; cli_resume:
 kill_and_resume]. Before the colon is the name of a test of ctest, or a target of the Makefile ("make gate"). After it
-are cases of that test: C functions, or Python methods without their "test_". A promise that no test can show ends with
-[not tested: REASON]. Descriptions do not belong in a list.
+are cases of that test: TEST(name) in C, or Python methods without their "test_". A promise that no test can show ends
+with [not tested: REASON]. Descriptions do not belong in a list.
 """
 
 import json
@@ -28,20 +28,20 @@ def make_targets(root):
 
 
 def cases(root):
-    """The functions in the sources of the tests."""
+    """The cases in the sources of the tests."""
     found = set()
     for folder, _, files in os.walk(os.path.join(root, "tests")):
         for name in files:
             path = os.path.join(folder, name)
             if name.endswith((".c", ".h")):
-                pattern = r"\b(?:void|int) (\w+)\("
+                pattern = r"^TEST\((\w+)\)"
             elif name.endswith(".py"):
                 pattern = r"\bdef (?:test_)?(\w+)\("
             else:
                 continue
             with open(path) as file:
                 text = file.read()
-            names = re.findall(pattern, text)
+            names = re.findall(pattern, text, re.M)
             found.update(n.removeprefix("test_") for n in names)
     return found
 

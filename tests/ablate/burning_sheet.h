@@ -2,12 +2,7 @@
 #ifndef TESTS_ABLATE_BURNING_SHEET_H
 #define TESTS_ABLATE_BURNING_SHEET_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "ablate/ablate.h"
 #include "burn/burn.h"

@@ -72,8 +72,7 @@ static void expect_consistent(const BurningSheet *b) {
     free(degree);
 }
 
-static void level_is_mass_above_loss(void **unused) {
-    (void)unused;
+TEST(level_is_mass_above_loss) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(1, 1, 0.01f, &material);
     assert_float_equal(ablate_level(&b->shell, &b->state, 0), 0.75, 0);
@@ -94,8 +93,7 @@ static BurningSheet *three_by_three(void) {
     return b;
 }
 
-static void burnt_centre_removes_nothing(void **unused) {
-    (void)unused;
+TEST(burnt_centre_removes_nothing) {
     BurningSheet *b = three_by_three();
     AblatePlan *plan = plan_for(b);
     burn_out(b, centre_at(b, 1, 1));
@@ -109,8 +107,7 @@ static void burnt_centre_removes_nothing(void **unused) {
     finish(b, plan);
 }
 
-static void blue_goes_with_both_triangles(void **unused) {
-    (void)unused;
+TEST(blue_goes_with_both_triangles) {
     BurningSheet *b = three_by_three();
     AblatePlan *plan = plan_for(b);
     uint32_t spring = b->shell.cell_springs[cell_at(b, 1, 1)].blue[0];
@@ -128,8 +125,7 @@ static void blue_goes_with_both_triangles(void **unused) {
     finish(b, plan);
 }
 
-static void blue_goes_at_the_boundary(void **unused) {
-    (void)unused;
+TEST(blue_goes_at_the_boundary) {
     BurningSheet *b = three_by_three();
     AblatePlan *plan = plan_for(b);
     burn_out(b, corner_at(b, 1, 0)), burn_out(b, corner_at(b, 2, 0)), burn_out(b, centre_at(b, 1, 0));
@@ -139,8 +135,7 @@ static void blue_goes_at_the_boundary(void **unused) {
     finish(b, plan);
 }
 
-static void red_goes_with_both_triangles(void **unused) {
-    (void)unused;
+TEST(red_goes_with_both_triangles) {
     BurningSheet *b = three_by_three();
     AblatePlan *plan = plan_for(b);
     burn_out(b, corner_at(b, 1, 1)), burn_out(b, corner_at(b, 2, 1)), burn_out(b, corner_at(b, 1, 2));
@@ -152,8 +147,7 @@ static void red_goes_with_both_triangles(void **unused) {
     finish(b, plan);
 }
 
-static void yellow_and_green_go_with_the_cell(void **unused) {
-    (void)unused;
+TEST(yellow_and_green_go_with_the_cell) {
     BurningSheet *b = three_by_three();
     AblatePlan *plan = plan_for(b);
     uint32_t centre = centre_at(b, 1, 1);
@@ -171,8 +165,7 @@ static void yellow_and_green_go_with_the_cell(void **unused) {
     finish(b, plan);
 }
 
-static void all_can_go(void **unused) {
-    (void)unused;
+TEST(all_can_go) {
     BurningSheet *b = three_by_three();
     AblatePlan *plan = plan_for(b);
     for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.burn.mass[i] = 0.2f;
@@ -188,8 +181,7 @@ static void all_can_go(void **unused) {
     finish(b, plan);
 }
 
-static void nothing_goes_without_ablation(void **unused) {
-    (void)unused;
+TEST(nothing_goes_without_ablation) {
     SingeMaterialDef material = plain_material();
     material.ablate = false;
     BurningSheet *b = burning_sheet(3, 3, 0.01f, &material);
@@ -203,8 +195,7 @@ static void nothing_goes_without_ablation(void **unused) {
 }
 
 /// Where m_loss lies under m_min the sheet burns to ash and stays whole.
-static void ash_stays_where_loss_is_below_min(void **unused) {
-    (void)unused;
+TEST(ash_stays_where_loss_is_below_min) {
     SingeMaterialDef material = plain_material();
     material.mass_min = singe_param(0.3f), material.mass_loss = singe_param(0.2f);
     BurningSheet *b = burning_sheet(3, 3, 0.01f, &material);
@@ -237,8 +228,7 @@ static void count_freed(const BurningSheet *b, size_t expected) {
     assert_int_equal(freed, expected);
 }
 
-static void pieces_split_and_keep_ids(void **unused) {
-    (void)unused;
+TEST(pieces_split_and_keep_ids) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheets(2, 9, 3, 0.01f, &material, 0);
     AblatePlan *plan = plan_for(b);
@@ -282,8 +272,7 @@ static void pieces_split_and_keep_ids(void **unused) {
     finish(b, plan);
 }
 
-static void equal_parts_keep_by_smallest_particle(void **unused) {
-    (void)unused;
+TEST(equal_parts_keep_by_smallest_particle) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(7, 3, 0.01f, &material);
     AblatePlan *plan = plan_for(b);
@@ -308,8 +297,7 @@ static BurningSheet *cut_off(float drop_below_cells, bool pinned, AblatePlan **p
     return b;
 }
 
-static void small_loose_pieces_are_dropped(void **unused) {
-    (void)unused;
+TEST(small_loose_pieces_are_dropped) {
     const struct {
         float below;
         bool pinned;
@@ -347,8 +335,7 @@ static void expect_hole(BurningSheet *b, AblatePlan *plan, int64_t particle) {
     assert_memory_equal(b->events.items[0].position, b->state.dynamics.position[particle], 12);
 }
 
-static void holes_open_once(void **unused) {
-    (void)unused;
+TEST(holes_open_once) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(8, 8, 0.01f, &material);
     AblatePlan *plan = plan_for(b);
@@ -370,8 +357,7 @@ static void holes_open_once(void **unused) {
 }
 
 /// A flame front with noise crosses the sheet: many pieces, everything checked at every step.
-static void ledger_and_pieces_of_a_burning_sheet(void **unused) {
-    (void)unused;
+TEST(ledger_and_pieces_of_a_burning_sheet) {
     SingeMaterialDef material = plain_material();
     material.ash_exponent = singe_param(1);
     material.mass_rate = singe_param(1e-3f);
@@ -434,8 +420,7 @@ static void ledger_and_pieces_of_a_burning_sheet(void **unused) {
     finish(b, plan);
 }
 
-static void plan_survives_lack_of_memory(void **unused) {
-    (void)unused;
+TEST(plan_survives_lack_of_memory) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(3, 3, 0.01f, &material);
     TestAllocator allocator = {0};
@@ -454,25 +439,4 @@ static void plan_survives_lack_of_memory(void **unused) {
     test_allocator_check(&allocator);
     ablate_plan_free(&memory, NULL);
     burning_sheet_free(b);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(level_is_mass_above_loss),
-        cmocka_unit_test(burnt_centre_removes_nothing),
-        cmocka_unit_test(blue_goes_with_both_triangles),
-        cmocka_unit_test(blue_goes_at_the_boundary),
-        cmocka_unit_test(red_goes_with_both_triangles),
-        cmocka_unit_test(yellow_and_green_go_with_the_cell),
-        cmocka_unit_test(all_can_go),
-        cmocka_unit_test(nothing_goes_without_ablation),
-        cmocka_unit_test(ash_stays_where_loss_is_below_min),
-        cmocka_unit_test(pieces_split_and_keep_ids),
-        cmocka_unit_test(equal_parts_keep_by_smallest_particle),
-        cmocka_unit_test(small_loose_pieces_are_dropped),
-        cmocka_unit_test(holes_open_once),
-        cmocka_unit_test(ledger_and_pieces_of_a_burning_sheet),
-        cmocka_unit_test(plan_survives_lack_of_memory),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

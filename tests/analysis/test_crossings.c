@@ -1,13 +1,9 @@
 // The exact predicates against integers, pairs of triangles against known cases, the tree against all pairs.
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "analysis/crossings.h"
 #include "analysis/exact.h"
@@ -51,8 +47,7 @@ static void random_points(int max, int64_t p[4][3]) {
     for (int k = 0; k < 3; k++) p[3][k] = p[0][k] + s * (p[1][k] - p[0][k]) + t * (p[2][k] - p[0][k]);
 }
 
-static void orientation_has_the_exact_sign(void **state) {
-    (void)state;
+TEST(orientation_has_the_exact_sign) {
     int flat = 0;
     for (int trial = 0; trial < 200000; trial++) {
         const int max = trial % 2 ? 3 : 1 << 20, shift = random_integer(90);
@@ -73,8 +68,7 @@ static void orientation_has_the_exact_sign(void **state) {
 }
 
 /// A point a little off the plane of 0, p, q and p + q, whose differences no double holds: d (q x p) has the sign.
-static void orientation_is_exact_near_a_plane(void **state) {
-    (void)state;
+TEST(orientation_is_exact_near_a_plane) {
     for (int trial = 0; trial < 100000; trial++) {
         int64_t p[4][3];
         float at[4][3];
@@ -92,8 +86,7 @@ static void orientation_is_exact_near_a_plane(void **state) {
 }
 
 /// Signs that doubles cannot decide: the smallest of floats next to the largest.
-static void orientation_is_exact_far_apart(void **state) {
-    (void)state;
+TEST(orientation_is_exact_far_apart) {
     const float huge = 0x1p126f, min = 0x1p-149f;
     const float a[3] = {huge, 0, 0}, b[3] = {0, huge, 0}, c[3] = {-huge, -huge, 0};
     const float d[3] = {1, 2, 0}, below[3] = {1, 2, -min}, above[3] = {1, 2, min};
@@ -162,8 +155,7 @@ static void check_case(const Case *one, int turn) {
     }
 }
 
-static void pairs_match_a_plain_search(void **state) {
-    (void)state;
+TEST(pairs_match_a_plain_search) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         for (int turn = 0; turn < 3; turn++) check_case(&cases[i], turn);
 }
@@ -229,8 +221,7 @@ static void check_soup(Soup *soup) {
     free(soup);
 }
 
-static void the_tree_finds_what_a_plain_search_finds(void **state) {
-    (void)state;
+TEST(the_tree_finds_what_a_plain_search_finds) {
     for (uint32_t count = 0; count < 10; count++) check_soup(soup_make(count, 1, 0));
     check_soup(soup_make(300, 1, 0));
     check_soup(soup_make(2000, 0.2f, 0));
@@ -284,8 +275,7 @@ static void add_lines(const float *const lines[3], uint32_t first, float (*posit
     }
 }
 
-static void hinges_are_no_crossings(void **state) {
-    (void)state;
+TEST(hinges_are_no_crossings) {
     static const float left[3] = {-1, 0, 0}, middle[3] = {0, 0, 0}, right[3] = {1, 0, 0};
     for (size_t i = 0; i < sizeof meetings / sizeof *meetings; i++)
         for (int apart = 0; apart < 4; apart++) { // lines at the same positions, or not; the sheets' order
@@ -307,8 +297,7 @@ static void hinges_are_no_crossings(void **state) {
 }
 
 /// A stack of eight sheets: the number of tested pairs grows with the triangles, not with their square.
-static void cost_grows_with_the_triangles(void **state) {
-    (void)state;
+TEST(cost_grows_with_the_triangles) {
     enum { SHEETS = 8, LARGE = 80 };
     float(*position)[3] = calloc(SHEETS * (LARGE + 1) * (LARGE + 1), sizeof *position);
     uint32_t(*triangles)[3] = calloc(2 * SHEETS * LARGE * LARGE, sizeof *triangles);
@@ -325,17 +314,4 @@ static void cost_grows_with_the_triangles(void **state) {
     assert_true(each[1] < 1.5 * each[0]);
     free(position);
     free(triangles);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(orientation_has_the_exact_sign),
-        cmocka_unit_test(orientation_is_exact_near_a_plane),
-        cmocka_unit_test(orientation_is_exact_far_apart),
-        cmocka_unit_test(pairs_match_a_plain_search),
-        cmocka_unit_test(the_tree_finds_what_a_plain_search_finds),
-        cmocka_unit_test(hinges_are_no_crossings),
-        cmocka_unit_test(cost_grows_with_the_triangles),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

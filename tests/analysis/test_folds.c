@@ -39,8 +39,7 @@ static double drawn_angle(float degrees, const float *room) {
 
 /// 0.48 to 0.60 degrees on the smooth surface, 1.15 to 1.18 on flat cells, as they are drawn where another surface lies
 /// at once beside them: the bar of 1 degree is between.
-static void slanting_folds_are_smooth(void **unused) {
-    (void)unused;
+TEST(slanting_folds_are_smooth) {
     float room[(CELLS + 1) * (CELLS + 1)] = {0};
     for (float degrees = 4; degrees < 16; degrees += 4) {
         double smooth = drawn_angle(degrees, NULL), flat = drawn_angle(degrees, room);
@@ -50,8 +49,7 @@ static void slanting_folds_are_smooth(void **unused) {
     }
 }
 
-static void flat_sheets_have_no_folds(void **unused) {
-    (void)unused;
+TEST(flat_sheets_have_no_folds) {
     Folds folds = {0};
     Drawing *d = fine_drawing(CELLS, CELLS, cell, 4e-4f, 2e-3f);
     draw_fine(d);
@@ -59,12 +57,4 @@ static void flat_sheets_have_no_folds(void **unused) {
     assert_float_equal(folds.count, 0, 0);
     assert_true(isnan(folds_angle(&folds)));
     drawing_free(d);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slanting_folds_are_smooth),
-        cmocka_unit_test(flat_sheets_have_no_folds),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

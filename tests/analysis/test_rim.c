@@ -1,13 +1,9 @@
 // Rims whose curl, slope and shrinkage are known: a sheet whose left edge has burnt, rolled, shrunk, seamed or whole.
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "analysis/rim.h"
 
@@ -101,8 +97,7 @@ static double ratio(const Rim *rim, int band) { return rim->band[band].area / ri
 
 static double height(const Rim *rim, int band) { return rim->band[band].height / rim->band[band].rest_area; }
 
-static void a_flat_rim_has_no_curl(void **state) {
-    (void)state;
+TEST(a_flat_rim_has_no_curl) {
     Rim rim = look((Sheet){.shrunk = 1, .burnt = true});
     near_to(rim_percentile(rim.curl, 0.9), 0, 0.5);
     near_to(rim.curl_max, 0, 0.1);
@@ -116,8 +111,7 @@ static void a_flat_rim_has_no_curl(void **state) {
     near_to(rim.band[2].mass / rim.band[2].rest_area, 0.25 + 0.75 * 3 / 12, 0.02);
 }
 
-static void a_rolled_rim_curls(void **state) {
-    (void)state;
+TEST(a_rolled_rim_curls) {
     static const double curls[] = {8, 30, 60};
     for (int i = 0; i < 3; i++) {
         Rim rim = look((Sheet){.curl = curls[i], .shrunk = 1, .burnt = true});
@@ -130,8 +124,7 @@ static void a_rolled_rim_curls(void **state) {
     }
 }
 
-static void a_shrunk_rim_is_smaller(void **state) {
-    (void)state;
+TEST(a_shrunk_rim_is_smaller) {
     Rim rim = look((Sheet){.shrunk = 0.6, .burnt = true});
     near_to(ratio(&rim, 0), 0.6, 0.001);
     near_to(ratio(&rim, 2), 0.6, 0.001);
@@ -139,29 +132,25 @@ static void a_shrunk_rim_is_smaller(void **state) {
     near_to(rim_percentile(rim.band[0].slope, 0.9), 0, 0.5);
 }
 
-static void only_burnt_edges_are_rims(void **state) {
-    (void)state;
+TEST(only_burnt_edges_are_rims) {
     Rim rim = look((Sheet){.curl = 30, .shrunk = 1, .burnt = false});
     assert_true(isnan(rim_percentile(rim.curl, 0.5)));
     for (int b = 0; b < RIM_BANDS; b++) assert_true(rim.band[b].rest_area == 0);
 }
 
-static void seams_are_no_rims(void **state) {
-    (void)state;
+TEST(seams_are_no_rims) {
     Rim whole = look((Sheet){.curl = 30, .shrunk = 1, .burnt = true});
     Rim seamed = look((Sheet){.curl = 30, .shrunk = 1, .burnt = true, .seam = true});
     assert_memory_equal(&whole, &seamed, sizeof whole);
 }
 
-static void only_the_largest_piece_counts(void **state) {
-    (void)state;
+TEST(only_the_largest_piece_counts) {
     Rim alone = look((Sheet){.curl = 30, .shrunk = 1, .burnt = true});
     Rim both = look((Sheet){.curl = 30, .shrunk = 1, .burnt = true, .second = true});
     assert_memory_equal(&alone, &both, sizeof alone);
 }
 
-static void sums_are_weighted_by_area(void **state) {
-    (void)state;
+TEST(sums_are_weighted_by_area) {
     Rim small = look((Sheet){.curl = 8, .shrunk = 1, .burnt = true});
     Rim large = look((Sheet){.curl = 60, .shrunk = 1, .burnt = true}), sum = small;
     rim_sum(&large, &sum);
@@ -171,20 +160,9 @@ static void sums_are_weighted_by_area(void **state) {
     assert_true(median > rim_percentile(small.curl, 0.4) && median < rim_percentile(large.curl, 0.6));
 }
 
-static void an_empty_surface_has_no_rim(void **state) {
-    (void)state;
+TEST(an_empty_surface_has_no_rim) {
     SingeSurface none = {0};
     Rim rim = {0};
     assert_true(rim_add(&none, &rim));
     assert_true(isnan(rim_percentile(rim.curl, 0.5)));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_flat_rim_has_no_curl),    cmocka_unit_test(a_rolled_rim_curls),
-        cmocka_unit_test(a_shrunk_rim_is_smaller),   cmocka_unit_test(only_burnt_edges_are_rims),
-        cmocka_unit_test(seams_are_no_rims),         cmocka_unit_test(only_the_largest_piece_counts),
-        cmocka_unit_test(sums_are_weighted_by_area), cmocka_unit_test(an_empty_surface_has_no_rim),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,11 @@
 // Sheets whose creases and wrinkles are known, drawn as the program draws them: four triangles a cell, normals from
 // the facets.
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "analysis/wrinkles.h"
 
@@ -98,8 +94,7 @@ static double share_near(const Wrinkles *w, double degrees, double within) {
     return near / total;
 }
 
-static void folds_run_where_they_run(void **unused) {
-    (void)unused;
+TEST(folds_run_where_they_run) {
     const double angles[] = {0, 30, 45, 68, 90, 117, 135, 150};
     for (size_t k = 0; k < sizeof angles / sizeof *angles; k++) {
         Wrinkles w = look(48, fold, angles[k]);
@@ -124,8 +119,7 @@ static double waves(double x, double y, double length) {
 }
 
 /// However fine the mesh is, of three cells a wave or more: shorter ones it cannot draw alike in all directions.
-static void even_waves_have_no_direction(void **unused) {
-    (void)unused;
+TEST(even_waves_have_no_direction) {
     const int cells[] = {32, 48, 96};
     const double lengths[] = {0.012, 0.016, 0.024};
     for (int k = 0; k < 3; k++)
@@ -144,8 +138,7 @@ static double ripple(double x, double y, double length) {
     return (x < side / 3 + 0.011 ? 0.1 : 0.01) * length / (2 * pi) * sin(2 * pi * x / length);
 }
 
-static void power_is_that_of_its_waves(void **unused) {
-    (void)unused;
+TEST(power_is_that_of_its_waves) {
     const double lengths[] = {0.006, 0.008, 0.012, 0.06};
     for (int k = 0; k < 4; k++) {
         Wrinkles w = look(192, ripple, lengths[k]);
@@ -168,22 +161,11 @@ static double flat(double x, double y, double unused) {
     return 0;
 }
 
-static void flat_sheets_and_none(void **unused) {
-    (void)unused;
+TEST(flat_sheets_and_none) {
     Wrinkles w = look(24, flat, 0), none = {0};
     assert_true(w.axis + w.diagonal < 1e-9);
     assert_true(wrinkles_burnt(&w) < 1e-12 && w.unburnt_area > 0);
     SingeSurface empty = {0};
     assert_true(wrinkles_add(&empty, &none));
     assert_true(isnan(wrinkles_bias(&none)) && isnan(wrinkles_burnt(&none)));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(folds_run_where_they_run),
-        cmocka_unit_test(even_waves_have_no_direction),
-        cmocka_unit_test(power_is_that_of_its_waves),
-        cmocka_unit_test(flat_sheets_and_none),
-    };
-    return cmocka_run_group_tests_name("wrinkles", tests, NULL, NULL);
 }

@@ -16,8 +16,7 @@ static void heat_all(BurningSheet *b, float temperature) {
     for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.heat.temperature[i] = temperature;
 }
 
-static void volume_ratio_follows_eq_5(void **unused) {
-    (void)unused;
+TEST(volume_ratio_follows_eq_5) {
     // constant density: the volume is the mass
     assert_float_equal(burn_volume_ratio(1, 1, 0, 1, 1), 1, 1e-7);
     assert_float_equal(burn_volume_ratio(0.4f, 0.3f, 0.7f, 1, 1), 0.4f, 1e-7);
@@ -31,8 +30,7 @@ static void volume_ratio_follows_eq_5(void **unused) {
     assert_float_equal(shell_burn_progress(0.1f, 0.2f), 1, 0);
 }
 
-static void no_exponent_is_a_straight_line(void **unused) {
-    (void)unused;
+TEST(no_exponent_is_a_straight_line) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(2, 2, 0.01f, &material);
     heat_all(b, 600); // mu (T - T_ign) = 0.1 1/s
@@ -46,8 +44,7 @@ static void no_exponent_is_a_straight_line(void **unused) {
     burning_sheet_free(b);
 }
 
-static void rate_stops_growing_at_its_ceiling(void **unused) {
-    (void)unused;
+TEST(rate_stops_growing_at_its_ceiling) {
     SingeMaterialDef material = plain_material();
     material.rate_ceiling = singe_param(50);
     BurningSheet *b = burning_sheet(2, 2, 0.01f, &material);
@@ -59,8 +56,7 @@ static void rate_stops_growing_at_its_ceiling(void **unused) {
     burning_sheet_free(b);
 }
 
-static void ceilings_may_vary(void **unused) {
-    (void)unused;
+TEST(ceilings_may_vary) {
     static const float halves[] = {0, 1};
     SingeMaterialDef material = plain_material();
     material.rate_ceiling =
@@ -82,8 +78,7 @@ static double exact(double k, double t, double p) {
     return y <= 0 ? 0 : pow(y, 1 / (1 - p));
 }
 
-static void exponents_follow_their_solutions(void **unused) {
-    (void)unused;
+TEST(exponents_follow_their_solutions) {
     const float exponents[] = {0, 0.25f, 0.5f, 0.999f, 1, 1.5f, 2, 3};
     for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++) {
         SingeMaterialDef material = plain_material();
@@ -100,8 +95,7 @@ static void exponents_follow_their_solutions(void **unused) {
 }
 
 /// However fast and whatever the exponent: what is left is a number from m_min on.
-static void any_rate_leaves_a_mass(void **unused) {
-    (void)unused;
+TEST(any_rate_leaves_a_mass) {
     const float exponents[] = {0, 0.01f, 0.5f, 1, 2, 3, 30, 300};
     for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++)
         for (int k = 0; k < 2; k++) {
@@ -119,8 +113,7 @@ static void any_rate_leaves_a_mass(void **unused) {
 }
 
 /// dx/dt = -A exp(-E/(R T)) x^p at a T of each particle's own, as hot as the ceiling lets it count.
-static void kinetics_follow_arrhenius(void **unused) {
-    (void)unused;
+TEST(kinetics_follow_arrhenius) {
     const float exponents[] = {0, 0.5f, 1, 1.3f};
     for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++) {
         SingeMaterialDef material = plain_material();
@@ -142,8 +135,7 @@ static void kinetics_follow_arrhenius(void **unused) {
     }
 }
 
-static void no_step_passes_the_least_mass(void **unused) {
-    (void)unused;
+TEST(no_step_passes_the_least_mass) {
     const float exponents[] = {0, 0.3f, 0.5f, 1, 1.7f, 2, 5}, steps[] = {1, 50, 1e4f, 1e30f};
     for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++)
         for (size_t s = 0; s < sizeof steps / sizeof *steps; s++) {
@@ -163,8 +155,7 @@ static void no_step_passes_the_least_mass(void **unused) {
         }
 }
 
-static void ignites_once_and_in_order(void **unused) {
-    (void)unused;
+TEST(ignites_once_and_in_order) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(60, 40, 0.01f, &material);
     const BurnState *burn = &b->state.burn;
@@ -195,8 +186,7 @@ static void ignites_once_and_in_order(void **unused) {
     burning_sheet_free(b);
 }
 
-static void burnt_when_mass_is_below_loss(void **unused) {
-    (void)unused;
+TEST(burnt_when_mass_is_below_loss) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(1, 1, 0.01f, &material);
     heat_all(b, 600); // 0.1 of the mass a second
@@ -245,8 +235,7 @@ static double shrunk_ratio(float mass_a, float mass_b, float shrink_a, float shr
     return ratio;
 }
 
-static void springs_shrink_by_eq_6(void **unused) {
-    (void)unused;
+TEST(springs_shrink_by_eq_6) {
     // Fig 5 a to d: 87.5, 62.5, 57.5 and 50 %
     assert_float_equal(shrunk_ratio(1, 0.75f, 1, 1), 0.875, 1e-6);
     assert_float_equal(shrunk_ratio(0.75f, 0.5f, 1, 1), 0.625, 1e-6);
@@ -259,8 +248,7 @@ static void springs_shrink_by_eq_6(void **unused) {
     assert_float_equal(shrunk_ratio(0.15f, 0.15f, 2, 2), 0.05, 1e-6);
 }
 
-static void all_colours_shrink_and_do_not_compound(void **unused) {
-    (void)unused;
+TEST(all_colours_shrink_and_do_not_compound) {
     SingeMaterialDef material = plain_material();
     material.ash_density = singe_param(0.3f);
     material.shrink_front = singe_param(0.5f);
@@ -291,8 +279,7 @@ static double stretched_length(const double *d, double angle, double l_along, do
 }
 
 /// Across fibres a sheet shrinks q times as much as along them, and all springs of all colours measure one plane.
-static void fibres_turn_shrinkage(void **unused) {
-    (void)unused;
+TEST(fibres_turn_shrinkage) {
     const double q = 2.5, angles[] = {0, 0.3, 1.2, -0.7};
     for (int k = 0; k < 4; k++) {
         SingeMaterialDef material = plain_material();
@@ -321,8 +308,7 @@ static void fibres_turn_shrinkage(void **unused) {
     burning_sheet_free(b);
 }
 
-static void bad_mass_is_named(void **unused) {
-    (void)unused;
+TEST(bad_mass_is_named) {
     const float exponents[] = {0, 0.3f, 0.5f, 1, 1.7f, 2};
     for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++) {
         SingeMaterialDef material = plain_material();
@@ -357,8 +343,7 @@ static BurningSheet *crossed_by_stripe(Pool *pool) {
     return b;
 }
 
-static void mass_ledger_closes(void **unused) {
-    (void)unused;
+TEST(mass_ledger_closes) {
     BurningSheet *b = crossed_by_stripe(NULL);
     double initial = 0;
     for (uint32_t i = 0; i < b->shell.particle_count; i++) initial += (double)b->shell.matter.mass[i];
@@ -368,8 +353,7 @@ static void mass_ledger_closes(void **unused) {
     burning_sheet_free(b);
 }
 
-static void threads_change_nothing(void **unused) {
-    (void)unused;
+TEST(threads_change_nothing) {
     BurningSheet *one = crossed_by_stripe(NULL);
     for (int threads = 1; threads <= 4; threads += threads) {
         Memory memory = memory_make((SingeAllocator){0});
@@ -386,26 +370,4 @@ static void threads_change_nothing(void **unused) {
         burning_sheet_free(many);
     }
     burning_sheet_free(one);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(volume_ratio_follows_eq_5),
-        cmocka_unit_test(no_exponent_is_a_straight_line),
-        cmocka_unit_test(rate_stops_growing_at_its_ceiling),
-        cmocka_unit_test(ceilings_may_vary),
-        cmocka_unit_test(exponents_follow_their_solutions),
-        cmocka_unit_test(any_rate_leaves_a_mass),
-        cmocka_unit_test(kinetics_follow_arrhenius),
-        cmocka_unit_test(no_step_passes_the_least_mass),
-        cmocka_unit_test(ignites_once_and_in_order),
-        cmocka_unit_test(burnt_when_mass_is_below_loss),
-        cmocka_unit_test(springs_shrink_by_eq_6),
-        cmocka_unit_test(all_colours_shrink_and_do_not_compound),
-        cmocka_unit_test(fibres_turn_shrinkage),
-        cmocka_unit_test(bad_mass_is_named),
-        cmocka_unit_test(mass_ledger_closes),
-        cmocka_unit_test(threads_change_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

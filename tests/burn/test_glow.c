@@ -43,8 +43,7 @@ static double kinetics(double temperature) { return 5.667e9 * exp(-160e3 / (8.31
 
 /// At an edge z^(1/2) falls evenly, at half the rate of supply and kinetics in series; F, the slowing and pace scale
 /// the time.
-static void edges_glow_at_two_resistances_in_series(void **unused) {
-    (void)unused;
+TEST(edges_glow_at_two_resistances_in_series) {
     const double temperatures[] = {700, 850, 1000, 1500};
     for (int t = 0; t < 4; t++) {
         SingeMaterialDef material = charring();
@@ -60,8 +59,7 @@ static void edges_glow_at_two_resistances_in_series(void **unused) {
 }
 
 /// Within a leaf little air comes, until the char has begun to go; fuel keeps it away; what is cold does not glow.
-static void leaves_glow_slower_than_edges(void **unused) {
-    (void)unused;
+TEST(leaves_glow_slower_than_edges) {
     SingeMaterialDef material = charring();
     BurningSheet *b = leaf(6, &material, HOT);
     uint32_t inner = 3 * 7 + 3, fuelled = 2 * 7 + 3, cold = 3 * 7 + 4;
@@ -95,8 +93,7 @@ static void leaves_glow_slower_than_edges(void **unused) {
 }
 
 /// Fuel leaves char, char leaves ash, no step passes either, and mass, gas and heat add up.
-static void ledgers_close_from_fuel_to_ash(void **unused) {
-    (void)unused;
+TEST(ledgers_close_from_fuel_to_ash) {
     const float steps[] = {0.02f, 1, 1e4f, 1e30f};
     for (int s = 0; s < 4; s++) {
         SingeMaterialDef material = charring();
@@ -127,8 +124,7 @@ static void ledgers_close_from_fuel_to_ash(void **unused) {
 }
 
 /// A yield of m_min or less is the paper's one reaction, to the bit.
-static void no_char_is_the_papers_eq_4(void **unused) {
-    (void)unused;
+TEST(no_char_is_the_papers_eq_4) {
     BurningSheet *b[2];
     for (int k = 0; k < 2; k++) {
         SingeMaterialDef material = charring();
@@ -142,8 +138,7 @@ static void no_char_is_the_papers_eq_4(void **unused) {
 }
 
 /// Eq 5 with two densities: char, then ash.
-static void char_and_ash_have_densities_of_their_own(void **unused) {
-    (void)unused;
+TEST(char_and_ash_have_densities_of_their_own) {
     SingeMaterialDef material = charring();
     material.char_density = singe_param(0.45f), material.ash_density = singe_param(0.22f);
     material.shrink_back = singe_param(1), material.mass_rate = singe_param(1);
@@ -161,13 +156,4 @@ static void char_and_ash_have_densities_of_their_own(void **unused) {
     assert_float_equal(ratio[0], YIELD / 0.45, 1e-5);
     assert_float_equal(ratio[1], MIN / 0.22, 1e-5);
     burning_sheet_free(b);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(edges_glow_at_two_resistances_in_series),  cmocka_unit_test(leaves_glow_slower_than_edges),
-        cmocka_unit_test(ledgers_close_from_fuel_to_ash),           cmocka_unit_test(no_char_is_the_papers_eq_4),
-        cmocka_unit_test(char_and_ash_have_densities_of_their_own),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

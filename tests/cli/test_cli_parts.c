@@ -1,10 +1,6 @@
 // The pieces of the command that a run alone would not corner.
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,8 +26,7 @@ static void expect_member(const char *json, const char *name, const char *expect
     assert_memory_equal(value, expected, size);
 }
 
-static void finds_json_members(void **state) {
-    (void)state;
+TEST(finds_json_members) {
     const char *json = " {\"a\": 1, \"b\": {\"scene\": [1, \"}\\\"\"]} ,"
                        " \"scene\": {\"x\": [1,2]}, \"s\":\"q\\\"},\", \"z\":null}";
     expect_member(json, "a", "1");
@@ -44,8 +39,7 @@ static void finds_json_members(void **state) {
     expect_member("", "a", NULL);
 }
 
-static void refuses_cut_json(void **state) {
-    (void)state;
+TEST(refuses_cut_json) {
     const char *json = "{\"a\": [1, {\"b\": \"c\"}], \"scene\": {\"x\": 1}";
     const char *value;
     size_t size;
@@ -53,8 +47,7 @@ static void refuses_cut_json(void **state) {
     for (size_t cut = 0; cut < strlen(json); cut++) assert_false(text_json_member(json, cut, "scene", &value, &size));
 }
 
-static void unquotes_what_it_quotes(void **state) {
-    (void)state;
+TEST(unquotes_what_it_quotes) {
     const char *texts[] = {"", "plain", "a \"b\" \\ c", "tab\tnewline\n\x01", "\xc3\xa4/\xe2\x82\xac",
                            // no UTF-8: a stray byte, one cut short, too long a form, a surrogate, beyond Unicode
                            "\xff", "a\xe2\x82", "\xc0\xaf", "\xed\xb2\x80", "\xf4\x90\x80\x80", "\x80 \xc3\xa4\xc3"};
@@ -82,8 +75,7 @@ static void unquotes_what_it_quotes(void **state) {
     assert_null(text_json_unquote("\"", 1));
 }
 
-static void finds_the_nearest_word(void **state) {
-    (void)state;
+TEST(finds_the_nearest_word) {
     const char *words[] = {"frames", "threads", "resume", "set"};
     assert_string_equal(args_nearest("frame", words, 4, sizeof *words), "frames");
     assert_string_equal(args_nearest("thraeds", words, 4, sizeof *words), "threads");
@@ -91,8 +83,7 @@ static void finds_the_nearest_word(void **state) {
     assert_null(args_nearest("something-else", words, 4, sizeof *words));
 }
 
-static void reads_arguments(void **state) {
-    (void)state;
+TEST(reads_arguments) {
     static const ArgOption options[] = {{"out", 'o', "DIR", ""}, {"quiet", 'q', NULL, ""}, {"all", 'a', NULL, ""}};
     const ArgCommand command = {"test", "SCENE", "", options, 3, NULL};
     char *argv[] = {"-qa", "-oX", "--out=Y", "--out", "Z", "-qo", "W", "--", "--quiet"};
@@ -106,8 +97,7 @@ static void reads_arguments(void **state) {
     }
 }
 
-static void averages_tiles(void **state) {
-    (void)state;
+TEST(averages_tiles) {
     enum { W = 1000, H = 4 };
     uint8_t *rgb = malloc(W * H * 3);
     for (int i = 0; i < W * H; i++) {
@@ -130,16 +120,14 @@ static void averages_tiles(void **state) {
     free(rgb);
 }
 
-static void spreads_frames(void **state) {
-    (void)state;
+TEST(spreads_frames) {
     const int expected[] = {1, 29, 58, 86, 115, 143, 172, 200};
     for (int tile = 0; tile < 8; tile++) assert_int_equal(contact_sheet_frame(tile, 8, 1, 200), expected[tile]);
     assert_int_equal(contact_sheet_frame(0, 1, 5, 9), 5);
     assert_int_equal(contact_sheet_frame(3, 4, 2, 2), 2);
 }
 
-static void writes_durations(void **state) {
-    (void)state;
+TEST(writes_durations) {
     char text[32];
     console_duration(3.6, text);
     assert_string_equal(text, "4 s");
@@ -171,8 +159,7 @@ static int ends_by(bool within) {
     return status;
 }
 
-static void an_abort_of_a_library_is_an_error(void **state) {
-    (void)state;
+TEST(an_abort_of_a_library_is_an_error) {
     char *const drafts[] = {mine, kept};
     for (int i = 0; i < 2; i++) {
         snprintf(drafts[i], sizeof mine, "/tmp/singe-draft-XXXXXX");
@@ -188,17 +175,4 @@ static void an_abort_of_a_library_is_an_error(void **state) {
     status = ends_by(false);
     assert_true(WIFSIGNALED(status));
     assert_int_equal(WTERMSIG(status), SIGABRT);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(finds_json_members),
-                                       cmocka_unit_test(refuses_cut_json),
-                                       cmocka_unit_test(unquotes_what_it_quotes),
-                                       cmocka_unit_test(finds_the_nearest_word),
-                                       cmocka_unit_test(reads_arguments),
-                                       cmocka_unit_test(averages_tiles),
-                                       cmocka_unit_test(spreads_frames),
-                                       cmocka_unit_test(writes_durations),
-                                       cmocka_unit_test(an_abort_of_a_library_is_an_error)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

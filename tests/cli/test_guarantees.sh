@@ -5,7 +5,7 @@ script=$1 build=$2
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
 mkdir "$tree/tests"
-echo 'static void a_case(void **state) {' >"$tree/tests/test_a.c"
+echo 'TEST(a_case) {' >"$tree/tests/test_a.c"
 echo '    def test_other(self):' >"$tree/tests/test_b.py"
 echo 'torture:' >"$tree/Makefile"
 

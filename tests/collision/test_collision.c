@@ -1,9 +1,5 @@
 // Sheets that fall on themselves and each other.
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "support/test.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -91,8 +87,7 @@ static SingeSim *heap(int threads, bool contact) {
     return sim;
 }
 
-static void a_heap_does_not_cross(void **unused) {
-    (void)unused;
+TEST(a_heap_does_not_cross) {
     SingeSim *sim = heap(2, true), *without = heap(2, false);
     long crossed = 0;
     for (int frame = 0; frame < 24; frame++) {
@@ -111,8 +106,7 @@ static void a_heap_does_not_cross(void **unused) {
     singe_sim_destroy(sim), singe_sim_destroy(without);
 }
 
-static void thrown_sheets_do_not_cross(void **unused) {
-    (void)unused;
+TEST(thrown_sheets_do_not_cross) {
     SingeSim *sim = new_sim(1, true);
     // two that fly into each other on edge, at 12 m/s: some ten thicknesses a substep
     add_flat(sim, &(Flat){14, {-0.05f, -0.03f, 1}, {0.1f, 0, 0.01f}, {0, 0.02f, 0.1f}}, 0.6f, 2e-3f,
@@ -127,8 +121,7 @@ static void thrown_sheets_do_not_cross(void **unused) {
     singe_sim_destroy(sim);
 }
 
-static void layers_keep_their_thickness(void **unused) {
-    (void)unused;
+TEST(layers_keep_their_thickness) {
     SingeSim *sim = new_sim(1, true);
     for (int k = 0; k < 3; k++)
         add_flat(
@@ -169,8 +162,7 @@ static double slide(float friction) {
     return after - before;
 }
 
-static void friction_slows_sheets(void **unused) {
-    (void)unused;
+TEST(friction_slows_sheets) {
     double slippery = slide(0), rough = slide(0.3f);
     print_message("slid %.4f m without friction, %.4f m with 0.3\n", slippery, rough);
     // free but for damping: 38 mm, as without gravity; at 0.3 g it stops after 68 ms and 6.8 mm
@@ -178,8 +170,7 @@ static void friction_slows_sheets(void **unused) {
     assert_true(fabs(rough - 0.0068) < 0.0015);
 }
 
-static void crossing_input_is_left_alone(void **unused) {
-    (void)unused;
+TEST(crossing_input_is_left_alone) {
     SingeSim *sim = new_sim(1, true);
     add_flat(sim, &(Flat){10, {0, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
     add_flat(sim, &(Flat){10, {0.0112f, 0.0253f, 0.98f}, {0.04f, 0, 0}, {0, 0, 0.05f}}, 0.6f, 0, NULL);
@@ -193,8 +184,7 @@ static void crossing_input_is_left_alone(void **unused) {
 }
 
 /// Two cells that approach, each crossed by a cell of its own: what crosses one is nothing to the other.
-static void cells_of_other_crossings_are_kept_apart(void **unused) {
-    (void)unused;
+TEST(cells_of_other_crossings_are_kept_apart) {
     const float side = 0.02f, speed = 0.5f;
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
@@ -220,8 +210,7 @@ static void cells_of_other_crossings_are_kept_apart(void **unused) {
 }
 
 /// Two cells that approach, both crossed by a third: each is left alone by it, not by the other.
-static void cells_that_one_crosses_are_kept_apart(void **unused) {
-    (void)unused;
+TEST(cells_that_one_crosses_are_kept_apart) {
     const float side = 0.02f, speed = 0.5f;
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
@@ -244,8 +233,7 @@ static void cells_that_one_crosses_are_kept_apart(void **unused) {
     singe_sim_destroy(sim);
 }
 
-static void coincident_sheets_are_left_alone(void **unused) {
-    (void)unused;
+TEST(coincident_sheets_are_left_alone) {
     SingeSim *sim = new_sim(1, true);
     for (int sheet = 0; sheet < 3; sheet++)
         add_flat(sim, &(Flat){10, {0, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
@@ -260,8 +248,7 @@ static void coincident_sheets_are_left_alone(void **unused) {
     singe_sim_destroy(sim);
 }
 
-static void any_number_of_threads(void **unused) {
-    (void)unused;
+TEST(any_number_of_threads) {
     SingeSim *one = heap(1, true), *three = heap(3, true), *again;
     uint8_t *a, *b;
     size_t na, nb;
@@ -362,8 +349,7 @@ static float cell_distance(const Searched *s, uint32_t a, uint32_t b, bool owned
     return min;
 }
 
-static void the_search_finds_all(void **unused) {
-    (void)unused;
+TEST(the_search_finds_all) {
     Searched *s = searched(30);
     const CollisionPlan *plan = s->plan;
     uint32_t n = plan->cell_count, near = 0;
@@ -396,8 +382,7 @@ static void the_search_finds_all(void **unused) {
 }
 
 /// All features of listed pairs at once against one after another.
-static void features_are_measured(void **unused) {
-    (void)unused;
+TEST(features_are_measured) {
     Searched *s = searched(20);
     const CollisionPlan *plan = s->plan;
     const float(*x)[4] = (const float(*)[4])plan->position;
@@ -487,15 +472,13 @@ static void check_outside(float far) {
     searched_free(s);
 }
 
-static void cells_out_of_bounds_are_found(void **unused) {
-    (void)unused;
+TEST(cells_out_of_bounds_are_found) {
     check_outside(0);
     check_outside(1e4f); // through more cubes than can be counted
 }
 
 /// Cells of which some are thousands of cubes long, and what has no position at all.
-static void the_grid_has_bounds(void **unused) {
-    (void)unused;
+TEST(the_grid_has_bounds) {
     Searched *s = searched(30);
     CollisionPlan *plan = s->plan;
     uint32_t n = plan->cell_count, listed = plan->listed_count;
@@ -516,8 +499,7 @@ static void the_grid_has_bounds(void **unused) {
     searched_free(s);
 }
 
-static void the_search_is_linear(void **unused) {
-    (void)unused;
+TEST(the_search_is_linear) {
     Searched *small = searched(40), *large = searched(80);
     double pairs = (double)large->plan->listed_count / small->plan->listed_count;
     double entries = (double)large->plan->entry_count / small->plan->entry_count;
@@ -526,8 +508,7 @@ static void the_search_is_linear(void **unused) {
     searched_free(small), searched_free(large);
 }
 
-static void bad_values_are_refused(void **unused) {
-    (void)unused;
+TEST(bad_values_are_refused) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
     SingeError error;
@@ -537,25 +518,4 @@ static void bad_values_are_refused(void **unused) {
     def = singe_default_sim(), def.contact.friction = NAN;
     assert_int_equal(singe_sim_create(&def, &sim, &error), SINGE_ERROR_ARGUMENT);
     assert_non_null(strstr(error.message, "friction"));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_heap_does_not_cross),
-        cmocka_unit_test(thrown_sheets_do_not_cross),
-        cmocka_unit_test(layers_keep_their_thickness),
-        cmocka_unit_test(friction_slows_sheets),
-        cmocka_unit_test(crossing_input_is_left_alone),
-        cmocka_unit_test(cells_of_other_crossings_are_kept_apart),
-        cmocka_unit_test(cells_that_one_crosses_are_kept_apart),
-        cmocka_unit_test(coincident_sheets_are_left_alone),
-        cmocka_unit_test(any_number_of_threads),
-        cmocka_unit_test(the_search_finds_all),
-        cmocka_unit_test(features_are_measured),
-        cmocka_unit_test(cells_out_of_bounds_are_found),
-        cmocka_unit_test(the_search_is_linear),
-        cmocka_unit_test(the_grid_has_bounds),
-        cmocka_unit_test(bad_values_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

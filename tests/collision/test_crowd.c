@@ -59,8 +59,7 @@ static void check_list(uint32_t capacity, uint32_t grown, Pool *pool) {
     assert_int_equal(memory.held, 0);
 }
 
-static void a_list_keeps_what_comes_first(void **state) {
-    (void)state;
+TEST(a_list_keeps_what_comes_first) {
     Memory memory = memory_make((SingeAllocator){0});
     for (int threads = 1; threads <= 4; threads++) {
         Pool *pool;
@@ -76,8 +75,7 @@ static void a_list_keeps_what_comes_first(void **state) {
 }
 
 /// A block stops counting where no list could have room: what crowds without bounds is given up early.
-static void a_block_counts_up_to_the_most(void **state) {
-    (void)state;
+TEST(a_block_counts_up_to_the_most) {
     Memory memory = memory_make((SingeAllocator){0});
     BlockList list;
     assert_true(block_list_create(&memory, &list, sizeof(uint32_t), 100, BLOCKS));
@@ -191,14 +189,12 @@ static void check_growth(const Crowd *scene, bool pairs) {
     singe_sim_destroy(one), singe_sim_destroy(three), singe_sim_destroy(resumed);
 }
 
-static void crowds_grow_the_lists(void **state) {
-    (void)state;
+TEST(crowds_grow_the_lists) {
     check_growth(&stack, false);
     check_growth(&soup, true);
 }
 
-static void what_lists_grow_to_decides_nothing(void **state) {
-    (void)state;
+TEST(what_lists_grow_to_decides_nothing) {
     const Crowd *scenes[] = {&stack, &soup};
     for (int k = 0; k < 2; k++) {
         SingeSim *usual = crowd(scenes[k], 1, NULL), *small = crowd(scenes[k], 1, NULL);
@@ -216,8 +212,7 @@ static void what_lists_grow_to_decides_nothing(void **state) {
 }
 
 /// Where a list may not grow, what is lost is counted, and is the same for any number of threads.
-static void what_is_dropped_is_counted(void **state) {
-    (void)state;
+TEST(what_is_dropped_is_counted) {
     const struct {
         const Crowd *scene;
         bool pairs, repulsions;
@@ -245,8 +240,7 @@ static void what_is_dropped_is_counted(void **state) {
 }
 
 /// A step that has no memory to grow fails and can be repeated.
-static void no_memory_to_grow(void **state) {
-    (void)state;
+TEST(no_memory_to_grow) {
     int failures = 0;
     for (long fail = 1; fail < 40; fail++) {
         TestAllocator hook = {0};
@@ -279,8 +273,7 @@ static void no_memory_to_grow(void **state) {
 }
 
 /// A simulation that was rebuilt counts the memory by which its lists grow.
-static void a_rebuilt_crowd_counts_its_memory(void **state) {
-    (void)state;
+TEST(a_rebuilt_crowd_counts_its_memory) {
     TestAllocator hook = {0};
     SingeAllocator allocator = test_allocator(&hook);
     SingeSim *sim = crowd(&stack, 1, &allocator);
@@ -293,17 +286,4 @@ static void a_rebuilt_crowd_counts_its_memory(void **state) {
 
     singe_sim_destroy(sim);
     test_allocator_check(&hook);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_list_keeps_what_comes_first),
-        cmocka_unit_test(a_block_counts_up_to_the_most),
-        cmocka_unit_test(crowds_grow_the_lists),
-        cmocka_unit_test(what_lists_grow_to_decides_nothing),
-        cmocka_unit_test(what_is_dropped_is_counted),
-        cmocka_unit_test(no_memory_to_grow),
-        cmocka_unit_test(a_rebuilt_crowd_counts_its_memory),
-    };
-    return cmocka_run_group_tests_name("collision_crowd", tests, NULL, NULL);
 }

@@ -1,10 +1,6 @@
 // Two cells that share two sides, with a corner in between that no other cell has (a side halved by mesh/pair.c): such
 // a corner may pass through its own cell, and leave both cells sound by themselves, but crossing each other.
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "support/test.h"
 
 #include <math.h>
 
@@ -77,8 +73,7 @@ static void step_all(SingeSim *const sims[3], long *with, long *without) {
     for (int i = 0; i < 3; i++) singe_surface_free(&surface[i]);
 }
 
-static void hinges_do_not_cross(void **unused) {
-    (void)unused;
+TEST(hinges_do_not_cross) {
     long crossed = 0, with = 0;
     for (uint32_t seed = 1; seed <= SCENES; seed++) {
         SingeSim *one = hinges(seed, 1, true), *two = hinges(seed, 2, true), *without = hinges(seed, 1, false);
@@ -119,8 +114,7 @@ static SingeSim *pages(int count) {
 
 /// Each page meets many others, and each impact makes others: there impacts soon give way to zones. Pairs are looked at
 /// again 5.5 times a step, and 31 times with as many rounds of impacts as are made elsewhere.
-static void a_book_is_soon_parted(void **unused) {
-    (void)unused;
+TEST(a_book_is_soon_parted) {
     for (int count = 50; count <= 100; count += 50) {
         SingeSim *sim = pages(count);
         for (int step = 0; step < 4; step++) assert_int_equal(singe_sim_step(sim), SINGE_OK);
@@ -131,9 +125,4 @@ static void a_book_is_soon_parted(void **unused) {
         assert_true(looks > 1 && looks < 20);
         singe_sim_destroy(sim);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(hinges_do_not_cross), cmocka_unit_test(a_book_is_soon_parted)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

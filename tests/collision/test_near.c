@@ -1,9 +1,5 @@
 // Distances against dense sampling, and sweeps against small steps.
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "common/random.h"
 #include "collision/feature_distance.h"
@@ -20,8 +16,7 @@ static Float4 point(float size) { return (Float4){size * uniform(), size * unifo
 
 static float length(Float4 a) { return sqrtf(float4_dot(a, a)); }
 
-static void triangle_distance(void **unused) {
-    (void)unused;
+TEST(triangle_distance) {
     enum { SPLITS = 60 };
     for (int trial = 0; trial < 2000; trial++) {
         Float4 p = point(1), a = point(1), b = point(1), c = point(1);
@@ -37,8 +32,7 @@ static void triangle_distance(void **unused) {
     }
 }
 
-static void segment_distance(void **unused) {
-    (void)unused;
+TEST(segment_distance) {
     enum { SPLITS = 100 };
     for (int trial = 0; trial < 2000; trial++) {
         Float4 a = point(1), b = point(1), c = point(1), d = point(1);
@@ -54,8 +48,7 @@ static void segment_distance(void **unused) {
 
 /// Over a triangle that is 50 to 5,000 times as long as high, and edges that cross at 1 rad to 1e-4 rad, at a known
 /// distance: found to 1e-6 of the length. With weights in float they are off by .24 and 2.5e-4.
-static void distance_to_slivers(void **unused) {
-    (void)unused;
+TEST(distance_to_slivers) {
     float triangles = 0, edges = 0;
     for (int trial = 0; trial < 20000; trial++) {
         const float slim = powf(10, -2.7f + uniform()), far = 1e-3f * (1.1f + uniform()), u = 0.5f + 0.4f * uniform();
@@ -87,8 +80,7 @@ static float stepped(const FeatureSweep *sweep, float near) {
     return 2;
 }
 
-static void sweeps_stop_in_time(void **unused) {
-    (void)unused;
+TEST(sweeps_stop_in_time) {
     int met = 0, free_displacements = 0;
     for (int trial = 0; trial < 3000; trial++) {
         FeatureSweep sweep = {.edges = trial & 1};
@@ -103,8 +95,7 @@ static void sweeps_stop_in_time(void **unused) {
     assert_true(met > 100 && free_displacements > 1000);
 }
 
-static void what_is_near_may_only_part(void **unused) {
-    (void)unused;
+TEST(what_is_near_may_only_part) {
     FeatureSweep sweep = {.position = {{0, 0, 1e-3f, 0}, {-1, -1, 0, 0}, {1, -1, 0, 0}, {0, 1, 0, 0}}};
     sweep.displacement[0] = (Float4){0, 0, 1e-2f, 0};
     assert_true(feature_sweep(&sweep, 1e-3f, 0) > 1);
@@ -117,8 +108,7 @@ static void what_is_near_may_only_part(void **unused) {
 }
 
 /// A point that came from afar and stops a few gaps away, where impacts leave it, is free; so is one that slides past.
-static void fast_displacements_are_free(void **unused) {
-    (void)unused;
+TEST(fast_displacements_are_free) {
     const float gap = 1e-3f;
     FeatureSweep fall = {.position = {{0, 0, 0.3f, 0}, {-1, -1, 0, 0}, {1, -1, 0, 0}, {0, 1, 0, 0}}};
     fall.displacement[0] = (Float4){0, 0, -0.295f, 0};
@@ -157,8 +147,7 @@ static bool cells_pierce(const Float4 a[5], const Float4 b[5], const unsigned sh
 
 /// Cells that are proven apart do not cross: two cells at a side, and two at a corner with one between that shares a
 /// side with each, bent and sheared at random.
-static void what_is_parted_does_not_cross(void **unused) {
-    (void)unused;
+TEST(what_is_parted_does_not_cross) {
     int level[2] = {0}, parted[2] = {0}, crossed[2] = {0};
     for (int trial = 0; trial < 200000; trial++) {
         Float4 grid[3][3], cell[3][5];
@@ -190,17 +179,4 @@ static void what_is_parted_does_not_cross(void **unused) {
                   crossed[0], crossed[1]);
     assert_true(level[0] > 1000 && level[1] > 100 && parted[0] > 10000 && parted[1] > 10000);
     assert_true(crossed[0] > 10000 && crossed[1] > 10000);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(triangle_distance),
-        cmocka_unit_test(segment_distance),
-        cmocka_unit_test(distance_to_slivers),
-        cmocka_unit_test(sweeps_stop_in_time),
-        cmocka_unit_test(what_is_near_may_only_part),
-        cmocka_unit_test(fast_displacements_are_free),
-        cmocka_unit_test(what_is_parted_does_not_cross),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,8 +15,7 @@ static bool look(bool answer) {
     return answer;
 }
 
-static void a_broken_invariant_ends_the_program(void **state) {
-    (void)state;
+TEST(a_broken_invariant_ends_the_program) {
     pid_t child = fork();
     if (child == 0) {
         if (!freopen("/dev/null", "w", stderr)) _exit(2);
@@ -32,8 +31,7 @@ static void a_broken_invariant_ends_the_program(void **state) {
 #endif
 }
 
-static void what_holds_goes_on(void **state) {
-    (void)state;
+TEST(what_holds_goes_on) {
     evaluated = 0;
     SINGE_ASSERT(look(true));
 #ifdef SINGE_ASSERTIONS
@@ -41,10 +39,4 @@ static void what_holds_goes_on(void **state) {
 #else
     assert_int_equal(evaluated, 0);
 #endif
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_broken_invariant_ends_the_program),
-                                       cmocka_unit_test(what_holds_goes_on)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,8 +3,7 @@
 
 #include "common/cpu.h"
 
-static void levels_are_as_the_compiler_says(void **state) {
-    (void)state;
+TEST(levels_are_as_the_compiler_says) {
     assert_true(cpu_has(SINGE_INSTRUCTIONS_PLAIN));
     assert_false(cpu_has(SINGE_INSTRUCTIONS_BEST)); // no set
 #ifdef __x86_64__
@@ -16,9 +15,4 @@ static void levels_are_as_the_compiler_says(void **state) {
                      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
                          __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512cd"));
 #endif
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(levels_are_as_the_compiler_says)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,8 +26,7 @@ static void print(char *out, size_t size, const char *format, ...) {
         assert_string_equal(ours, theirs);                              \
     } while (0)
 
-static void prints_as_the_c_library(void **state) {
-    (void)state;
+TEST(prints_as_the_c_library) {
     same("%d %u %x", -7, 4000000000u, 48879u);
     same("%ld %lld %llu %zu", -5L, -9000000000LL, 18446744073709551615ULL, (size_t)77);
     same("%5d|%-5d|%05d|%+d", 42, 42, 42, 42);
@@ -39,8 +38,7 @@ static void prints_as_the_c_library(void **state) {
     same("100 %% of %d", 3);
 }
 
-static void cuts_what_is_too_long(void **state) {
-    (void)state;
+TEST(cuts_what_is_too_long) {
     for (size_t size = 1; size < 40; size++) {
         char ours[40], theirs[40];
         memset(ours, 'x', sizeof ours);
@@ -51,8 +49,7 @@ static void cuts_what_is_too_long(void **state) {
     }
 }
 
-static void ends_where_it_knows_no_more(void **state) {
-    (void)state;
+TEST(ends_where_it_knows_no_more) {
     static const char *const formats[] = {"one %", "one %q two", "one %l", "one %0000000000000000000000000000000d"};
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
         char text[40];
@@ -64,8 +61,7 @@ static void ends_where_it_knows_no_more(void **state) {
     }
 }
 
-static void a_comma_locale_changes_nothing(void **state) {
-    (void)state;
+TEST(a_comma_locale_changes_nothing) {
     if (!test_comma_locale()) skip();
     char ours[80], theirs[80];
     print(ours, sizeof ours, "%.3g mm, %g, %.2f", 0.125, 1e-5, 2.5);
@@ -73,14 +69,4 @@ static void a_comma_locale_changes_nothing(void **state) {
     setlocale(LC_ALL, "C");
     assert_string_equal(ours, "0.125 mm, 1e-05, 2.50");
     assert_string_equal(theirs, "0,125 mm, 1e-05, 2,50"); // or this test shows nothing
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(prints_as_the_c_library),
-        cmocka_unit_test(cuts_what_is_too_long),
-        cmocka_unit_test(ends_where_it_knows_no_more),
-        cmocka_unit_test(a_comma_locale_changes_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

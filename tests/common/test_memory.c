@@ -3,8 +3,7 @@
 
 #include "common/memory.h"
 
-static void counts_what_is_held(void **state) {
-    (void)state;
+TEST(counts_what_is_held) {
     TestAllocator hook = {0};
     Memory memory = memory_make(test_allocator(&hook));
     double *array;
@@ -27,8 +26,7 @@ static void counts_what_is_held(void **state) {
     assert_int_equal(hook.faults, 0);
 }
 
-static void nothing_can_be_freed(void **state) {
-    (void)state;
+TEST(nothing_can_be_freed) {
     TestAllocator hook = {0};
     Memory memory = memory_make(test_allocator(&hook));
     int *array;
@@ -44,8 +42,7 @@ static void nothing_can_be_freed(void **state) {
     assert_int_equal(hook.faults, 0);
 }
 
-static void overflow_is_refused(void **state) {
-    (void)state;
+TEST(overflow_is_refused) {
     TestAllocator hook = {0};
     Memory memory = memory_make(test_allocator(&hook));
     assert_null(memory_new(&memory, SIZE_MAX / 8 + 1, 8)); // wraps to 0
@@ -63,8 +60,7 @@ static void overflow_is_refused(void **state) {
     FREE(&memory, array, 2);
 }
 
-static void failure_changes_nothing(void **state) {
-    (void)state;
+TEST(failure_changes_nothing) {
     TestAllocator hook = {.fail_at = 2};
     Memory memory = memory_make(test_allocator(&hook));
     int *array, *other;
@@ -79,8 +75,7 @@ static void failure_changes_nothing(void **state) {
     assert_int_equal(memory.held, 0);
 }
 
-static void libc_serves_without_a_hook(void **state) {
-    (void)state;
+TEST(libc_serves_without_a_hook) {
     Memory memory = memory_make((SingeAllocator){0});
     int *array;
     assert_non_null(NEW(&memory, array, 1000));
@@ -89,13 +84,4 @@ static void libc_serves_without_a_hook(void **state) {
     assert_int_equal(memory.held, 8000);
     FREE(&memory, array, 2000);
     assert_int_equal(memory.held, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(counts_what_is_held),        cmocka_unit_test(nothing_can_be_freed),
-        cmocka_unit_test(overflow_is_refused),        cmocka_unit_test(failure_changes_nothing),
-        cmocka_unit_test(libc_serves_without_a_hook),
-    };
-    return cmocka_run_group_tests_name("common_memory", tests, NULL, NULL);
 }

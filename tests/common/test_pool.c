@@ -39,8 +39,7 @@ static void check_once(Pool *pool, int count, int grain) {
     assert_false(tally.small);
 }
 
-static void every_item_once(void **state) {
-    (void)state;
+TEST(every_item_once) {
     static const int counts[] = {-3, 0, 1, 2, 3, 7, 64, 65, 1000, 1024, 4097, ITEMS_MAX};
     static const int grains[] = {1, 2, 7, 64, 1024, 20000};
     Memory memory = memory_make((SingeAllocator){0});
@@ -60,8 +59,7 @@ static void bump(void *task, int begin, int end) {
 }
 
 /// Many short jobs in a row: a job that began before the last one ended, or a wake-up that got lost, shows.
-static void jobs_follow_each_other(void **state) {
-    (void)state;
+TEST(jobs_follow_each_other) {
     Memory memory = memory_make((SingeAllocator){0});
     static int values[97];
     for (int threads = 2; threads <= 5; threads++) {
@@ -87,8 +85,7 @@ static void slow_item(void *task, int begin, int end) {
 }
 
 /// Threads that are still at work when the others have nothing left to do.
-static void slow_ranges_are_waited_for(void **state) {
-    (void)state;
+TEST(slow_ranges_are_waited_for) {
     Memory memory = memory_make((SingeAllocator){0});
     for (int threads = 2; threads <= 5; threads++) {
         Pool *pool = make_pool(&memory, threads);
@@ -102,8 +99,7 @@ static void slow_ranges_are_waited_for(void **state) {
 }
 
 /// A pool that never gets a job, and one that is destroyed right after it.
-static void idle_pools_end(void **state) {
-    (void)state;
+TEST(idle_pools_end) {
     Memory memory = memory_make((SingeAllocator){0});
     for (int i = 0; i < 50; i++) {
         Pool *pool = make_pool(&memory, 4);
@@ -122,8 +118,7 @@ static double sum_range(void *context, int begin, int end) {
     return sum;
 }
 
-static void sums_are_bitwise_equal(void **state) {
-    (void)state;
+TEST(sums_are_bitwise_equal) {
     enum { COUNT = 123457 };
     Memory memory = memory_make((SingeAllocator){0});
     double *values = malloc(COUNT * sizeof *values), *partial = malloc((size_t)pool_blocks(COUNT) * sizeof *partial);
@@ -149,8 +144,7 @@ static void sums_are_bitwise_equal(void **state) {
     free(partial);
 }
 
-static void block_counts(void **state) {
-    (void)state;
+TEST(block_counts) {
     assert_int_equal(pool_blocks(0), 0);
     assert_int_equal(pool_blocks(1), 1);
     assert_int_equal(pool_blocks(POOL_BLOCK), 1);
@@ -164,8 +158,7 @@ static void ranges_end(void *task, int begin, int end) {
 }
 
 /// Counters must not run over at the end of the index type.
-static void the_largest_count(void **state) {
-    (void)state;
+TEST(the_largest_count) {
     Memory memory = memory_make((SingeAllocator){0});
     Pool *pool = make_pool(&memory, 3);
     atomic_bool bad = false;
@@ -199,8 +192,7 @@ static void host_finish(void *context, void *token) {
     host->finished++;
 }
 
-static void the_hosts_tasks(void **state) {
-    (void)state;
+TEST(the_hosts_tasks) {
     Memory memory = memory_make((SingeAllocator){0});
     Host host = {0};
     Pool *pool;
@@ -213,26 +205,10 @@ static void the_hosts_tasks(void **state) {
     pool_destroy(&memory, pool);
 }
 
-static void pools_need_memory(void **state) {
-    (void)state;
+TEST(pools_need_memory) {
     TestAllocator hook = {.fail_at = 1};
     Memory memory = memory_make(test_allocator(&hook));
     Pool *pool;
     assert_int_equal(pool_create(&memory, (SingeTasks){0}, 4, &pool), SINGE_ERROR_MEMORY);
     assert_null(pool);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_item_once),
-        cmocka_unit_test(jobs_follow_each_other),
-        cmocka_unit_test(slow_ranges_are_waited_for),
-        cmocka_unit_test(idle_pools_end),
-        cmocka_unit_test(sums_are_bitwise_equal),
-        cmocka_unit_test(block_counts),
-        cmocka_unit_test(the_largest_count),
-        cmocka_unit_test(the_hosts_tasks),
-        cmocka_unit_test(pools_need_memory),
-    };
-    return cmocka_run_group_tests_name("common_pool", tests, NULL, NULL);
 }

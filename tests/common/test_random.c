@@ -10,8 +10,7 @@ static float coordinate(uint32_t *random) {
     return ((float)(*random >> 8) / 16777216.0f - 0.5f) * 200;
 }
 
-static void range_and_spread(void **state) {
-    (void)state;
+TEST(range_and_spread) {
     uint32_t random = 3;
     double mean = 0;
     float min = 1, max = 0;
@@ -26,8 +25,7 @@ static void range_and_spread(void **state) {
     assert_true(min < 0.05f && max > 0.95f);
 }
 
-static void fractal_range(void **state) {
-    (void)state;
+TEST(fractal_range) {
     uint32_t random = 5;
     for (int octaves = 1; octaves <= 8; octaves++) {
         SingeNoise noise = {0.5f, octaves, 11};
@@ -42,8 +40,7 @@ static void fractal_range(void **state) {
 }
 
 /// |n(x + e) - n(x)| <= e max|dn/dx|; the blend's slope is at most 15/8, corner values differ by at most 1.
-static void continuity(void **state) {
-    (void)state;
+TEST(continuity) {
     uint32_t random = 9;
     const float e = 1.0f / 1024;
     for (int i = 0; i < 50000; i++) {
@@ -56,8 +53,7 @@ static void continuity(void **state) {
     }
 }
 
-static void lattice_values(void **state) {
-    (void)state;
+TEST(lattice_values) {
     for (int x = -3; x < 3; x++)
         for (int y = -3; y < 3; y++)
             assert_true(random_noise((float)x, (float)y, -2, 5) ==
@@ -65,40 +61,24 @@ static void lattice_values(void **state) {
 }
 
 /// Numbers noted once: they may not change, or saved scenes would.
-static void noted_values(void **state) {
-    (void)state;
+TEST(noted_values) {
     assert_int_equal(random_hash(0, 0, 0, 0), 2456602052u);
     assert_int_equal(random_hash(1, 2, 3, 4), 2523784609u);
     assert_true(random_unit(UINT32_MAX) < 1);
     assert_true(random_unit(0) == 0);
 }
 
-static void seeds_differ(void **state) {
-    (void)state;
+TEST(seeds_differ) {
     int equal = 0;
     for (uint32_t seed = 0; seed < 1000; seed++)
         equal += random_noise(0.3f, 0.4f, 0.5f, seed) == random_noise(0.3f, 0.4f, 0.5f, seed + 1);
     assert_true(equal < 3);
 }
 
-static void any_coordinate_is_defined(void **state) {
-    (void)state;
+TEST(any_coordinate_is_defined) {
     static const float coordinates[] = {1e9f, -1e9f, 3e9f, -3e9f, 1e20f, -1e38f, INFINITY, -INFINITY, NAN};
     for (size_t i = 0; i < sizeof coordinates / sizeof *coordinates; i++) {
         float n = random_noise(coordinates[i], 0.5f, coordinates[i], 1);
         assert_true(n >= 0 && n <= 1);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(range_and_spread),
-        cmocka_unit_test(fractal_range),
-        cmocka_unit_test(continuity),
-        cmocka_unit_test(lattice_values),
-        cmocka_unit_test(noted_values),
-        cmocka_unit_test(seeds_differ),
-        cmocka_unit_test(any_coordinate_is_defined),
-    };
-    return cmocka_run_group_tests_name("common_random", tests, NULL, NULL);
 }

@@ -20,8 +20,7 @@ static void walk(Stream *stream, Things *things) {
     stream_data(stream, things->list, sizeof things->list);
 }
 
-static void round_trip(void **state) {
-    (void)state;
+TEST(round_trip) {
     Things out = {12345, 6.5, {1, 2, 3, 4, 5}}, in;
     Stream measure = {.mode = STREAM_MEASURE};
     walk(&measure, &out);
@@ -41,8 +40,7 @@ static void round_trip(void **state) {
 }
 
 /// After a truncation, wherever it is, reads give zero and the failure remains.
-static void truncated(void **state) {
-    (void)state;
+TEST(truncated) {
     for (size_t size = 0; size < 17; size++) {
         uint8_t *bytes = malloc(size + 1); // its own block, so that reading past it is noticed
         assert_non_null(bytes);
@@ -63,8 +61,7 @@ static void truncated(void **state) {
     }
 }
 
-static void checksum_sees_every_bit(void **state) {
-    (void)state;
+TEST(checksum_sees_every_bit) {
     uint8_t bytes[43];
     for (size_t i = 0; i < sizeof bytes; i++) bytes[i] = (uint8_t)(i * 37);
     uint64_t good = stream_checksum(bytes, sizeof bytes);
@@ -80,8 +77,7 @@ static void checksum_sees_every_bit(void **state) {
     assert_true(stream_checksum(swapped, sizeof swapped) != good);
 }
 
-static void errors_are_cut_and_ended(void **state) {
-    (void)state;
+TEST(errors_are_cut_and_ended) {
     char word[600];
     memset(word, 'x', sizeof word - 1);
     word[sizeof word - 1] = 0;
@@ -102,16 +98,14 @@ static SingeResult fails_then_counts(int *count) {
     return SINGE_OK;
 }
 
-static void failures_are_passed_up(void **state) {
-    (void)state;
+TEST(failures_are_passed_up) {
     int count = 0;
     assert_int_equal(fails_then_counts(&count), SINGE_OK);
     assert_int_equal(fails_then_counts(&count), SINGE_ERROR_LIMIT);
     assert_int_equal(count, 1);
 }
 
-static void results_have_names(void **state) {
-    (void)state;
+TEST(results_have_names) {
     for (int i = 0; i <= SINGE_ERROR_LIMIT; i++) {
         assert_string_not_equal(singe_result_name((SingeResult)i), "unknown result");
         for (int j = 0; j < i; j++)
@@ -119,16 +113,4 @@ static void results_have_names(void **state) {
     }
     assert_string_equal(singe_result_name((SingeResult)99), "unknown result");
     assert_string_equal(singe_version(), SINGE_VERSION);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(round_trip),
-        cmocka_unit_test(truncated),
-        cmocka_unit_test(checksum_sees_every_bit),
-        cmocka_unit_test(errors_are_cut_and_ended),
-        cmocka_unit_test(failures_are_passed_up),
-        cmocka_unit_test(results_have_names),
-    };
-    return cmocka_run_group_tests_name("common_stream", tests, NULL, NULL);
 }

@@ -3,12 +3,10 @@
 #include "dynamics/dynamics_plan.h"
 
 #include <assert.h>
-#include <stdarg.h>
-#include <setjmp.h>
 #include <math.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 Quads quads_grid(uint32_t nx, uint32_t ny, float sx, float sy, bool wrap_x) {
     uint32_t columns = wrap_x ? nx : nx + 1;

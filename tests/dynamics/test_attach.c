@@ -54,8 +54,7 @@ static double far_from_start(const Bench *bench, uint32_t i) {
         float3_sub(float3_load(bench->state.dynamics.position[i]), float3_load(bench->shell.rest_position[i])));
 }
 
-static void no_vertex_is_too_far_from_a_pin(void **unused) {
-    (void)unused;
+TEST(no_vertex_is_too_far_from_a_pin) {
     const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0)};
     for (int count = 1; count <= 2; count++) {
         Bench bench;
@@ -80,8 +79,7 @@ static void no_vertex_is_too_far_from_a_pin(void **unused) {
 }
 
 /// Vertices within reach keep their position to the bit.
-static void slack_is_left_alone(void **unused) {
-    (void)unused;
+TEST(slack_is_left_alone) {
     const uint32_t corner = vertex(0, 0);
     Bench bench;
     hold(&bench, NULL, 1, &corner);
@@ -98,8 +96,7 @@ static void slack_is_left_alone(void **unused) {
     bench_close(&bench);
 }
 
-static void a_loose_piece_is_free(void **unused) {
-    (void)unused;
+TEST(a_loose_piece_is_free) {
     const uint32_t corner = vertex(0, 0);
     Bench bench;
     hold(&bench, NULL, 1, &corner);
@@ -124,8 +121,7 @@ static void a_loose_piece_is_free(void **unused) {
 }
 
 /// Neither a pin that was removed nor a vertex that is gone holds anything.
-static void nothing_is_held_by_what_is_gone(void **unused) {
-    (void)unused;
+TEST(nothing_is_held_by_what_is_gone) {
     const uint32_t corner = vertex(0, 0);
     for (int burnt = 0; burnt < 2; burnt++) {
         Bench bench;
@@ -149,8 +145,7 @@ static void nothing_is_held_by_what_is_gone(void **unused) {
 }
 
 /// Up to four sources, far apart; none where the sheet may stretch.
-static void up_to_four_sources_are_far_apart(void **unused) {
-    (void)unused;
+TEST(up_to_four_sources_are_far_apart) {
     uint32_t edge[ROW];
     for (uint32_t i = 0; i < ROW; i++) edge[i] = vertex(i, SIDE);
     Bench bench;
@@ -179,8 +174,7 @@ static void end_step(Bench *bench, uint64_t step) {
 }
 
 /// A fire eats a disc from its middle: distances around the hole grow at once, and none becomes shorter.
-static void lengths_grow_at_once(void **unused) {
-    (void)unused;
+TEST(lengths_grow_at_once) {
     const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0)};
     Bench bench;
     hold(&bench, NULL, 2, corners);
@@ -209,8 +203,7 @@ static void lengths_grow_at_once(void **unused) {
 }
 
 /// Lengths that shrink to 0.8 get there in equal steps by the time of the next measurement.
-static void lengths_shorten_in_steps(void **unused) {
-    (void)unused;
+TEST(lengths_shorten_in_steps) {
     const uint32_t corner = vertex(0, 0), far = vertex(SIDE, SIDE);
     Bench bench;
     hold(&bench, NULL, 1, &corner);
@@ -239,8 +232,7 @@ static double farthest_moved(const Bench *bench, float (*before)[4]) {
 
 /// A taut sheet that may tear is left to its springs. When a held vertex burns and the sheet becomes slack, vertices
 /// that are too far away return gradually, without a jerk.
-static void rest_ends_without_a_jerk(void **unused) {
-    (void)unused;
+TEST(rest_ends_without_a_jerk) {
     const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0), vertex(0, SIDE)};
     Bench bench;
     static float before[ROW * ROW][4];
@@ -284,8 +276,7 @@ static SingeSim *hung(const SingeSimDef *def, uint32_t cells, const SingeMateria
 }
 
 /// The sheet cannot follow: it stretches between the pins and trembles a little.
-static void a_sheet_pulled_apart_trembles_little(void **unused) {
-    (void)unused;
+TEST(a_sheet_pulled_apart_trembles_little) {
     const float side = 0.2f, aways[] = {0.02f, 0.05f, 0.1f};
     for (int run = 0; run < 3; run++) {
         SingeSim *sim = hung(NULL, 24, NULL, aways[run]);
@@ -322,8 +313,7 @@ static SingeSim *burning(int threads) {
     return sim;
 }
 
-static void bytes_do_not_depend_on_the_thread_count(void **unused) {
-    (void)unused;
+TEST(bytes_do_not_depend_on_the_thread_count) {
     SingeSim *one = burning(1);
     test_steps(one, 70);
     assert_true(singe_sim_stats(one).mass_removed > 0);
@@ -337,8 +327,7 @@ static void bytes_do_not_depend_on_the_thread_count(void **unused) {
 }
 
 /// Lengths are those of an earlier step: a snapshot must have them.
-static void a_run_resumes_between_measurements(void **unused) {
-    (void)unused;
+TEST(a_run_resumes_between_measurements) {
     SingeSim *sim = burning(1);
     test_steps(sim, 45);
     TestBytes bytes = test_save(sim);
@@ -357,8 +346,7 @@ static void a_run_resumes_between_measurements(void **unused) {
 }
 
 /// In the step after a pin is removed the sheet falls freely.
-static void a_removed_pin_lets_go(void **unused) {
-    (void)unused;
+TEST(a_removed_pin_lets_go) {
     SingeMaterialDef material = singe_default_material();
     material.drag = material.damping = singe_param(0);
     SingeSim *sim = test_sim(NULL, test_grid(SIDE, SIDE, cell, cell), &material);
@@ -382,22 +370,4 @@ static void a_removed_pin_lets_go(void **unused) {
     for (int step = 1; step < 3; step++)
         assert_true(fabs((momentum[step] - momentum[step - 1]) * 480 / -9.81 - 1) < 1e-2);
     singe_sim_destroy(sim);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_vertex_is_too_far_from_a_pin),
-        cmocka_unit_test(slack_is_left_alone),
-        cmocka_unit_test(a_loose_piece_is_free),
-        cmocka_unit_test(nothing_is_held_by_what_is_gone),
-        cmocka_unit_test(up_to_four_sources_are_far_apart),
-        cmocka_unit_test(lengths_grow_at_once),
-        cmocka_unit_test(lengths_shorten_in_steps),
-        cmocka_unit_test(rest_ends_without_a_jerk),
-        cmocka_unit_test(a_sheet_pulled_apart_trembles_little),
-        cmocka_unit_test(bytes_do_not_depend_on_the_thread_count),
-        cmocka_unit_test(a_run_resumes_between_measurements),
-        cmocka_unit_test(a_removed_pin_lets_go),
-    };
-    return cmocka_run_group_tests_name("attach", tests, NULL, NULL);
 }

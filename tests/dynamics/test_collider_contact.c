@@ -6,14 +6,12 @@
 #include "world/solids.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 static const float STEP = 1.0f / 480;
 
@@ -76,8 +74,7 @@ static int passed(SingeColliderDef plate, float sheet_speed, float plate_speed, 
     return count;
 }
 
-static void nothing_passes_thin_plates(void **unused) {
-    (void)unused;
+TEST(nothing_passes_thin_plates) {
     const float level[4] = {0, 0, 0, 1}, aslant[4] = {0.1f, 0.15f, 0, 0.9837f};
     for (float thickness = 1e-3f; thickness > 0.2e-3f; thickness /= 2) {
         SingeColliderDef box = singe_default_collider();
@@ -130,8 +127,7 @@ static double slide(SingeColliderDef def, float slope, double *late) {
     return displacement;
 }
 
-static void sheets_slip_above_the_angle_of_friction(void **unused) {
-    (void)unused;
+TEST(sheets_slip_above_the_angle_of_friction) {
     Triangles triangles = triangles_box(2, 2, 2, 0.1f);
     const float heights[25] = {0};
     const float angle = atanf(0.4f);
@@ -149,8 +145,7 @@ static void sheets_slip_above_the_angle_of_friction(void **unused) {
     triangles_free(&triangles);
 }
 
-static void what_lies_still_does_not_creep(void **unused) {
-    (void)unused;
+TEST(what_lies_still_does_not_creep) {
     Triangles triangles = triangles_box(2, 2, 2, 0.1f);
     const float heights[25] = {0};
     for (int kind = SINGE_COLLIDER_PLANE; kind <= SINGE_COLLIDER_MESH; kind++) {
@@ -184,8 +179,7 @@ static double behind_belt(SingeColliderDef def, float acceleration) {
     return belt - displacement;
 }
 
-static void a_belt_carries_what_friction_allows(void **unused) {
-    (void)unused;
+TEST(a_belt_carries_what_friction_allows) {
     Triangles triangles = triangles_box(2, 2, 2, 0.1f);
     SingeColliderDef def = slab(SINGE_COLLIDER_MESH, &triangles, NULL);
     double held = behind_belt(def, 0.9f * 0.4f * 9.81f), left = behind_belt(def, 1.5f * 0.4f * 9.81f);
@@ -240,8 +234,7 @@ static double rests(SingeColliderDef def, const char *name, float height) {
     return worst / (double)cell;
 }
 
-static void sheets_rest_on_meshes_and_heights(void **unused) {
-    (void)unused;
+TEST(sheets_rest_on_meshes_and_heights) {
     Triangles torus = triangles_torus(64, 32, 0.03f, 0.012f);
     SingeColliderDef def = triangles_def(&torus);
     assert_true(rests(def, "torus", 0.016f) < 0.05);
@@ -257,8 +250,7 @@ static void sheets_rest_on_meshes_and_heights(void **unused) {
 }
 
 /// Spheres of several sizes under a sheet: how deep the smallest that still hold reach in.
-static void small_spheres_hold(void **unused) {
-    (void)unused;
+TEST(small_spheres_hold) {
     for (float radius = 8e-3f; radius > 0.4e-3f; radius /= 2) {
         Bench bench;
         SingeMaterialDef material = singe_default_material();
@@ -292,8 +284,7 @@ static double fastest(const Bench *bench, int *under) {
 }
 
 /// A block comes down on a sheet that lies on a plate, nearer than sheet and offsets are thick, and is lifted again.
-static void what_is_pressed_stays_and_rests(void **unused) {
-    (void)unused;
+TEST(what_is_pressed_stays_and_rests) {
     for (float gap = 2e-3f; gap > 0.2e-3f; gap /= 2) {
         Bench bench;
         SingeMaterialDef material = singe_default_material();
@@ -336,8 +327,7 @@ static void what_is_pressed_stays_and_rests(void **unused) {
 }
 
 /// A plate that turns about its edge hits a sheet in flight: nothing gets through.
-static void a_swat_passes_nothing(void **unused) {
-    (void)unused;
+TEST(a_swat_passes_nothing) {
     Bench bench;
     SingeMaterialDef material = plain();
     bench_open(&bench, quads_grid(16, 16, 0.002f, 0.002f, false), &material, 1);
@@ -394,8 +384,7 @@ static double look(Bench *bench, Float3 at, uint64_t *contacts) {
 }
 
 /// A mesh of 10,000 triangles: a sheet that is far from it, above it, and one of which all particles touch it.
-static void what_is_far_costs_next_to_nothing(void **unused) {
-    (void)unused;
+TEST(what_is_far_costs_next_to_nothing) {
     Bench bench;
     SingeMaterialDef material = plain();
     material.thickness = singe_param(0.0004f); // both layers in reach
@@ -412,15 +401,4 @@ static void what_is_far_costs_next_to_nothing(void **unused) {
     assert_true(far < touching / 20);
     triangles_free(&triangles);
     close_all(&bench);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_passes_thin_plates),        cmocka_unit_test(sheets_slip_above_the_angle_of_friction),
-        cmocka_unit_test(what_lies_still_does_not_creep),    cmocka_unit_test(a_belt_carries_what_friction_allows),
-        cmocka_unit_test(sheets_rest_on_meshes_and_heights), cmocka_unit_test(small_spheres_hold),
-        cmocka_unit_test(what_is_pressed_stays_and_rests),   cmocka_unit_test(a_swat_passes_nothing),
-        cmocka_unit_test(what_is_far_costs_next_to_nothing),
-    };
-    return cmocka_run_group_tests_name("collider_contact", tests, NULL, NULL);
 }

@@ -89,8 +89,7 @@ static double distance(const float *a, const float *b) {
 }
 
 /// A rolled sheet has the length that the crease's formula gives: on it every spring of every colour is at rest.
-static void lengths_fit_a_rolled_sheet(void **unused) {
-    (void)unused;
+TEST(lengths_fit_a_rolled_sheet) {
     const double dx = 0.004, angles[] = {0.5, 0.2, -0.3, -0.9};
     Rig rig;
     rig_open(&rig, test_grid(12, 4, (float)dx, 0.003f), NULL, 1);
@@ -109,8 +108,7 @@ static void lengths_fit_a_rolled_sheet(void **unused) {
 }
 
 /// From wherever it is seen, a creased spring bends as a flat sheet does: moment 4 t^2 a rad of alpha.
-static void a_creased_spring_bends_as_a_flat_one(void **unused) {
-    (void)unused;
+TEST(a_creased_spring_bends_as_a_flat_one) {
     Rig rig;
     rig_open(&rig, test_grid(4, 4, 0.003f, 0.003f), NULL, 1);
     const Hinge *hinge = &rig.plan->hinges[0];
@@ -131,8 +129,7 @@ static void a_creased_spring_bends_as_a_flat_one(void **unused) {
 }
 
 /// The mesh holds no more than its greatest length, and at no crease a ratio of exactly 1, however it lies at rest.
-static void a_mesh_bounds_its_creases(void **unused) {
-    (void)unused;
+TEST(a_mesh_bounds_its_creases) {
     const TestMesh meshes[] = {test_grid(6, 6, 0.004f, 0.004f), test_cylinder(24, 6, 0.02f, 0.03f),
                                test_torus(24, 12, 0.05f, 0.015f)};
     for (int m = 0; m < 3; m++) {
@@ -154,8 +151,7 @@ static void a_mesh_bounds_its_creases(void **unused) {
 }
 
 /// Bent to the curvature k, share (k - 1/radius) stays, to both sides and on every mesh; bent less, nothing does.
-static void a_share_of_the_curvature_stays(void **unused) {
-    (void)unused;
+TEST(a_share_of_the_curvature_stays) {
     SingeMaterialDef material = singe_default_material();
     material.curvature_max = singe_param(0); // no limit on bends
     const double yield = 1 / (double)material.crease_radius.value, share = (double)material.crease_share.value;
@@ -188,8 +184,7 @@ static void a_share_of_the_curvature_stays(void **unused) {
 /// A sheet that is rolled aslant keeps the same share of the curvature as one that is rolled along its mesh. Where k_y
 /// counted in full at every edge, a roll of 150/m along the diagonals would leave 6.7/m there, not 33. Edges that the
 /// fold bends by less than 2/5 of its curvature keep no more than that.
-static void the_share_does_not_depend_on_direction(void **unused) {
-    (void)unused;
+TEST(the_share_does_not_depend_on_direction) {
     const SingeMaterialDef material = singe_default_material();
     const double yield = 1 / (double)material.crease_radius.value, share = (double)material.crease_share.value;
     const double turns[] = {0, 15, 30, 45, 60}, bends[] = {150, -150, 0.95 * yield};
@@ -212,8 +207,7 @@ static void the_share_does_not_depend_on_direction(void **unused) {
 }
 
 /// A single edge that is bent keeps a third less than it would in an arc: 2/3 of 150/m count.
-static void a_single_edge_keeps_less(void **unused) {
-    (void)unused;
+TEST(a_single_edge_keeps_less) {
     const SingeMaterialDef material = singe_default_material();
     const double yield = 1 / (double)material.crease_radius.value, share = (double)material.crease_share.value;
     const float dx = 0.004f, middle = 4 * dx, c = cosf(150 * dx), s = sinf(150 * dx);
@@ -237,8 +231,7 @@ static void a_single_edge_keeps_less(void **unused) {
 }
 
 /// Bending beyond the limit of curvature leaves no more than bending to the limit; below it, the limit has no effect.
-static void no_crease_is_sharper_than_the_limit(void **unused) {
-    (void)unused;
+TEST(no_crease_is_sharper_than_the_limit) {
     SingeMaterialDef material = singe_default_material();
     const double yield = 1 / (double)material.crease_radius.value, share = (double)material.crease_share.value;
     const double bends[] = {150, -150, 90}, dx = 0.004;
@@ -256,8 +249,7 @@ static void no_crease_is_sharper_than_the_limit(void **unused) {
 }
 
 /// Sharp bends that last a step or two leave nothing.
-static void trembling_leaves_no_crease(void **unused) {
-    (void)unused;
+TEST(trembling_leaves_no_crease) {
     Rig rig;
     rig_open(&rig, test_grid(8, 4, 0.004f, 0.003f), NULL, 1);
     for (int s = 0; s < 400; s++) {
@@ -269,8 +261,7 @@ static void trembling_leaves_no_crease(void **unused) {
 }
 
 /// A sheet folded flat may look folded to the other side; its crease stays on the side it came from.
-static void a_flat_fold_stays_on_its_side(void **unused) {
-    (void)unused;
+TEST(a_flat_fold_stays_on_its_side) {
     for (int side = -1; side <= 1; side += 2) {
         Rig rig;
         rig_open(&rig, test_grid(2, 1, 0.004f, 0.004f), NULL, 1);
@@ -285,8 +276,7 @@ static void a_flat_fold_stays_on_its_side(void **unused) {
 }
 
 /// Burnt paper forgets creases: half burnt, half of a crease counts; ash has none and takes none.
-static void char_forgets_creases(void **unused) {
-    (void)unused;
+TEST(char_forgets_creases) {
     const double dx = 0.004;
     for (int ash = 0; ash < 2; ash++) {
         Rig rig;
@@ -306,8 +296,7 @@ static void char_forgets_creases(void **unused) {
 }
 
 /// Curling by unequal shrinkage of the layers is no bending: no crease stays.
-static void curl_leaves_no_crease(void **unused) {
-    (void)unused;
+TEST(curl_leaves_no_crease) {
     const double dx = 0.003, angle = -0.6; // 200 1/m
     Rig rig;
     rig_open(&rig, test_grid(8, 4, (float)dx, 0.003f), NULL, 1);
@@ -344,8 +333,7 @@ static SingeSim *folding(int threads, bool creases, SingePinId *right) {
     return sim;
 }
 
-static void bytes_are_the_same_for_any_threads_and_after_loading(void **unused) {
-    (void)unused;
+TEST(bytes_are_the_same_for_any_threads_and_after_loading) {
     SingePinId right, other;
     SingeSim *one = folding(1, true, &right), *three = folding(3, true, &other), *elastic = folding(1, false, &other);
     test_steps(one, 90), test_steps(three, 90), test_steps(elastic, 90);
@@ -362,8 +350,7 @@ static void bytes_are_the_same_for_any_threads_and_after_loading(void **unused) 
 }
 
 /// A step that fails leaves creases and lengths as they were.
-static void a_failed_step_changes_no_crease(void **unused) {
-    (void)unused;
+TEST(a_failed_step_changes_no_crease) {
     SingePinId right;
     SingeSim *sim = folding(1, true, &right), *twin;
     test_steps(sim, 90);
@@ -380,23 +367,4 @@ static void a_failed_step_changes_no_crease(void **unused) {
     test_steps(sim, 40), test_steps(twin, 40);
     test_assert_same(sim, twin);
     singe_sim_destroy(sim), singe_sim_destroy(twin);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lengths_fit_a_rolled_sheet),
-        cmocka_unit_test(a_creased_spring_bends_as_a_flat_one),
-        cmocka_unit_test(a_mesh_bounds_its_creases),
-        cmocka_unit_test(a_share_of_the_curvature_stays),
-        cmocka_unit_test(the_share_does_not_depend_on_direction),
-        cmocka_unit_test(a_single_edge_keeps_less),
-        cmocka_unit_test(no_crease_is_sharper_than_the_limit),
-        cmocka_unit_test(trembling_leaves_no_crease),
-        cmocka_unit_test(a_flat_fold_stays_on_its_side),
-        cmocka_unit_test(char_forgets_creases),
-        cmocka_unit_test(curl_leaves_no_crease),
-        cmocka_unit_test(bytes_are_the_same_for_any_threads_and_after_loading),
-        cmocka_unit_test(a_failed_step_changes_no_crease),
-    };
-    return cmocka_run_group_tests_name("crease", tests, NULL, NULL);
 }

@@ -4,12 +4,10 @@
 #include "dynamics/dynamics_plan.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 enum { NX = 24, NY = 6 };
 static const float cell = 2e-3f, curvature = 350; // about 40 degrees a cell
@@ -85,8 +83,7 @@ static bool is_touched(Bench *bench) {
     return touched;
 }
 
-static void sharp_folds_are_rounded(void **unused) {
-    (void)unused;
+TEST(sharp_folds_are_rounded) {
     Bench bench;
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 2, 1);
@@ -97,8 +94,7 @@ static void sharp_folds_are_rounded(void **unused) {
     bench_close(&bench);
 }
 
-static void momenta_are_kept(void **unused) {
-    (void)unused;
+TEST(momenta_are_kept) {
     Bench bench;
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 2, 1);
@@ -118,8 +114,7 @@ static void momenta_are_kept(void **unused) {
     bench_close(&bench);
 }
 
-static void gentle_bends_are_not_touched(void **unused) {
-    (void)unused;
+TEST(gentle_bends_are_not_touched) {
     Bench bench;
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 0.9f * curvature * cell * 8, 8);
@@ -130,8 +125,7 @@ static void gentle_bends_are_not_touched(void **unused) {
 }
 
 /// A limit beyond what cells of this size bear is that of the cells: beta, 45 degrees for these.
-static void coarse_cells_have_their_own(void **unused) {
-    (void)unused;
+TEST(coarse_cells_have_their_own) {
     Bench bench;
     const float beta = atanf(2 * singe_default_material().thickness.value / cell);
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), 1e5f);
@@ -142,8 +136,7 @@ static void coarse_cells_have_their_own(void **unused) {
     bench_close(&bench);
 }
 
-static void without_a_limit_nothing_is_touched(void **unused) {
-    (void)unused;
+TEST(without_a_limit_nothing_is_touched) {
     Bench bench;
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), 0);
     fold(&bench, 2.5f, 1);
@@ -151,8 +144,7 @@ static void without_a_limit_nothing_is_touched(void **unused) {
     bench_close(&bench);
 }
 
-static void char_folds_as_it_likes(void **unused) {
-    (void)unused;
+TEST(char_folds_as_it_likes) {
     Bench bench;
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 2, 1);
@@ -161,8 +153,7 @@ static void char_folds_as_it_likes(void **unused) {
     bench_close(&bench);
 }
 
-static void what_is_gone_does_not_bend(void **unused) {
-    (void)unused;
+TEST(what_is_gone_does_not_bend) {
     Bench bench;
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 2, 1);
@@ -173,8 +164,7 @@ static void what_is_gone_does_not_bend(void **unused) {
 }
 
 /// A tube that is rounder at rest than the limit, and a flat sheet whose vertices lie off their rows.
-static void rest_shapes_are_kept(void **unused) {
-    (void)unused;
+TEST(rest_shapes_are_kept) {
     Bench bench;
     open_sheet(&bench, quads_grid(8, NY, cell, cell, true), 100);
     assert_false(is_touched(&bench));
@@ -191,8 +181,7 @@ static void rest_shapes_are_kept(void **unused) {
 }
 
 /// Around a tube that is pressed flat there are folds at every ring's first vertex or elsewhere: all are rounded.
-static void rings_are_limited_all_around(void **unused) {
-    (void)unused;
+TEST(rings_are_limited_all_around) {
     Bench bench;
     open_sheet(&bench, quads_grid(32, 2, cell, cell, true), curvature);
     for (uint32_t turn = 0; turn < 32; turn++) {
@@ -211,19 +200,4 @@ static void rings_are_limited_all_around(void **unused) {
         }
     }
     bench_close(&bench);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sharp_folds_are_rounded),
-        cmocka_unit_test(momenta_are_kept),
-        cmocka_unit_test(gentle_bends_are_not_touched),
-        cmocka_unit_test(coarse_cells_have_their_own),
-        cmocka_unit_test(without_a_limit_nothing_is_touched),
-        cmocka_unit_test(char_folds_as_it_likes),
-        cmocka_unit_test(what_is_gone_does_not_bend),
-        cmocka_unit_test(rest_shapes_are_kept),
-        cmocka_unit_test(rings_are_limited_all_around),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

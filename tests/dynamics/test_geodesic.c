@@ -2,11 +2,9 @@
 #include "sample_sheets.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "dynamics/geodesic.h"
 
@@ -57,8 +55,7 @@ static double straight_error(Quads quads) {
     return worst;
 }
 
-static void flat_distances_are_straight_lines(void **unused) {
-    (void)unused;
+TEST(flat_distances_are_straight_lines) {
     Quads sheared = quads_grid(24, 16, 0.01f, 0.01f, false);
     for (uint32_t v = 0; v < sheared.vertex_count; v++) sheared.positions[3 * v] += 0.4f * sheared.positions[3 * v + 1];
     double square = straight_error(quads_grid(24, 16, 0.01f, 0.01f, false));
@@ -68,8 +65,7 @@ static void flat_distances_are_straight_lines(void **unused) {
 }
 
 /// A bent sheet is as far across as a flat one: here a cylinder, unrolled in chords as its springs are.
-static void a_cylinder_is_as_far_across_as_flat(void **unused) {
-    (void)unused;
+TEST(a_cylinder_is_as_far_across_as_flat) {
     enum { AROUND = 40, ALONG = 24 };
     const float side = 0.01f;
     Distances d;
@@ -109,8 +105,7 @@ static void assert_displacement(const Distances *d, uint32_t to, double expected
     if (fabs(error) > 0.01) fail_msg("vertex %u: %g m, not %g", to, (double)d->distance[to], expected);
 }
 
-static void distances_go_around_a_slit(void **unused) {
-    (void)unused;
+TEST(distances_go_around_a_slit) {
     Distances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
     remove_cells(&d, 0, 20, 20, 21);
@@ -125,8 +120,7 @@ static void distances_go_around_a_slit(void **unused) {
     distances_close(&d);
 }
 
-static void distances_go_around_a_hole(void **unused) {
-    (void)unused;
+TEST(distances_go_around_a_hole) {
     Distances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
     remove_cells(&d, 12, 28, 14, 26);
@@ -139,8 +133,7 @@ static void distances_go_around_a_hole(void **unused) {
 }
 
 /// No path leads across cells that are gone.
-static void nothing_leads_across_gone_cells(void **unused) {
-    (void)unused;
+TEST(nothing_leads_across_gone_cells) {
     Distances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
     remove_cells(&d, 0, SIDE, 20, 21);
@@ -151,8 +144,7 @@ static void nothing_leads_across_gone_cells(void **unused) {
 }
 
 /// A sheet that has shrunk to 0.8 has distances of 0.8.
-static void distances_follow_target_lengths(void **unused) {
-    (void)unused;
+TEST(distances_follow_target_lengths) {
     Distances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
@@ -165,8 +157,7 @@ static void distances_follow_target_lengths(void **unused) {
 }
 
 /// Held vertices stay where they are, whatever their target lengths: distances between them do not shrink.
-static void held_vertices_do_not_shrink_distances(void **unused) {
-    (void)unused;
+TEST(held_vertices_do_not_shrink_distances) {
     Distances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
@@ -180,8 +171,7 @@ static void held_vertices_do_not_shrink_distances(void **unused) {
     distances_close(&d);
 }
 
-static void distances_are_symmetric(void **unused) {
-    (void)unused;
+TEST(distances_are_symmetric) {
     Distances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
     remove_cells(&d, 10, 30, 15, 17);
@@ -199,14 +189,4 @@ static void distances_are_symmetric(void **unused) {
     print_message("worst difference between there and back: %.1e\n", worst);
     assert_true(worst < 0.01);
     distances_close(&d);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(flat_distances_are_straight_lines), cmocka_unit_test(a_cylinder_is_as_far_across_as_flat),
-        cmocka_unit_test(distances_go_around_a_slit),        cmocka_unit_test(distances_go_around_a_hole),
-        cmocka_unit_test(nothing_leads_across_gone_cells),   cmocka_unit_test(distances_follow_target_lengths),
-        cmocka_unit_test(distances_are_symmetric),           cmocka_unit_test(held_vertices_do_not_shrink_distances),
-    };
-    return cmocka_run_group_tests_name("geodesic", tests, NULL, NULL);
 }

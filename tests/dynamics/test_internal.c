@@ -2,11 +2,9 @@
 #include "sample_sheets.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "dynamics/dynamics_plan.h"
 
@@ -55,8 +53,7 @@ static double wave_left(float cell, float wavelength, int steps) {
 }
 
 /// Friction damps a wave by its length in metres; the mesh hardly matters.
-static void waves_decay_by_their_length(void **unused) {
-    (void)unused;
+TEST(waves_decay_by_their_length) {
     double fine = wave_left(0.0025f, 0.1f, 5), coarse = wave_left(0.005f, 0.1f, 5);
     assert_true(fine > 0.2 && fine < 0.9);
     assert_true(fabs(fine - coarse) < 0.05);
@@ -65,8 +62,7 @@ static void waves_decay_by_their_length(void **unused) {
     assert_true(fabs(wave_left(0.0025f, 0.005f, 20)) < 0.1);
 }
 
-static void friction_keeps_momentum(void **unused) {
-    (void)unused;
+TEST(friction_keeps_momentum) {
     Bench bench;
     SingeMaterialDef material = plain();
     bench_open(&bench, quads_grid(20, 16, 0.004f, 0.004f, false), &material, 1);
@@ -91,8 +87,7 @@ static void friction_keeps_momentum(void **unused) {
 }
 
 /// Friction does not act across a spring that is gone.
-static void friction_stops_at_cuts(void **unused) {
-    (void)unused;
+TEST(friction_stops_at_cuts) {
     Bench bench;
     SingeMaterialDef material = plain();
     bench_open(&bench, quads_grid(20, 1, 0.01f, 0.01f, false), &material, 1);
@@ -113,8 +108,7 @@ static void friction_stops_at_cuts(void **unused) {
     bench_close(&bench);
 }
 
-static void inverted_cells_are_mended(void **unused) {
-    (void)unused;
+TEST(inverted_cells_are_mended) {
     Bench bench;
     SingeMaterialDef material = plain();
     bench_open(&bench, quads_grid(8, 8, 0.005f, 0.005f, false), &material, 1);
@@ -152,8 +146,7 @@ static double longest_side(const Bench *bench) {
 
 /// A vertex that was pulled away by three cells returns to a quarter more than a side and flies off no further;
 /// momentum is conserved.
-static void sides_have_a_max(void **unused) {
-    (void)unused;
+TEST(sides_have_a_max) {
     SingeMaterialDef material = plain();
     Bench bench;
     bench_open(&bench, quads_grid(12, 12, 0.01f, 0.01f, false), &material, 1);
@@ -180,8 +173,7 @@ static void sides_have_a_max(void **unused) {
 
 /// Sides that have burnt, may stretch or are held at both ends have no maximum length, nor has a sheet held too far
 /// apart.
-static void some_sides_have_no_max(void **unused) {
-    (void)unused;
+TEST(some_sides_have_no_max) {
     for (int kind = 0; kind < 5; kind++) {
         SingeMaterialDef material = plain();
         if (kind == 1) material.compliance[SINGE_BLUE].value = 1e-3f;
@@ -206,8 +198,7 @@ static void some_sides_have_no_max(void **unused) {
 }
 
 /// Eq 19 by hand: the mean of the ends' weights, softened by how far they are burnt; none where a spring is gone.
-static void weights_follow_eq_19(void **unused) {
-    (void)unused;
+TEST(weights_follow_eq_19) {
     Bench bench;
     SingeMaterialDef material = plain();
     material.weight[SINGE_BLUE].value = 0.8f, material.char_weight.value = 0.4f, material.mass_min.value = 0.2f;
@@ -224,8 +215,7 @@ static void weights_follow_eq_19(void **unused) {
 }
 
 /// A ribbon of compliant springs hangs as long whatever the number of substeps.
-static void compliance_does_not_depend_on_substeps(void **unused) {
-    (void)unused;
+TEST(compliance_does_not_depend_on_substeps) {
     double stretch[2];
     for (int run = 0; run < 2; run++) {
         Bench bench;
@@ -250,8 +240,7 @@ static void compliance_does_not_depend_on_substeps(void **unused) {
 }
 
 /// Springs burnt to ash keep a share of their weight that varies: here from 0.2 at the left to 0.8 at the right.
-static void char_weight_follows_an_attribute(void **unused) {
-    (void)unused;
+TEST(char_weight_follows_an_attribute) {
     Bench bench;
     SingeMaterialDef material = plain();
     material.char_weight =
@@ -270,8 +259,7 @@ static void char_weight_follows_an_attribute(void **unused) {
 }
 
 /// Each particle is slowed by its own damping and drag; springs without weight do not even them out.
-static void damping_and_drag_follow_a_texture(void **unused) {
-    (void)unused;
+TEST(damping_and_drag_follow_a_texture) {
     static const float halves[] = {0, 1};
     for (int drag = 0; drag < 2; drag++) {
         Bench bench;
@@ -318,8 +306,7 @@ static void hang(SingeParam compliance, double stretch[2]) {
     bench_close(&bench);
 }
 
-static void compliance_follows_a_texture(void **unused) {
-    (void)unused;
+TEST(compliance_follows_a_texture) {
     static const float halves[] = {0, 1}; // white at the bottom
     double all[2], half[2];
     hang(singe_param(5), all);
@@ -327,21 +314,4 @@ static void compliance_follows_a_texture(void **unused) {
     assert_true(all[0] > 1e-5 && all[1] > 3 * all[0]); // the upper end bears more
     assert_true(fabs(half[0] / all[0] - 1) < 0.05);
     assert_true(fabs(half[1]) < 0.02 * all[1]);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(waves_decay_by_their_length),
-        cmocka_unit_test(friction_keeps_momentum),
-        cmocka_unit_test(friction_stops_at_cuts),
-        cmocka_unit_test(inverted_cells_are_mended),
-        cmocka_unit_test(sides_have_a_max),
-        cmocka_unit_test(some_sides_have_no_max),
-        cmocka_unit_test(weights_follow_eq_19),
-        cmocka_unit_test(compliance_does_not_depend_on_substeps),
-        cmocka_unit_test(char_weight_follows_an_attribute),
-        cmocka_unit_test(damping_and_drag_follow_a_texture),
-        cmocka_unit_test(compliance_follows_a_texture),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,12 +5,10 @@
 #include "dynamics/dynamics_plan.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 static SingeMaterialDef plain(void) {
     SingeMaterialDef material = singe_default_material();
@@ -54,8 +52,7 @@ static void drop_collider(Bench *bench) {
     free(bench->colliders.items);
 }
 
-static void a_sheet_falls_freely(void **unused) {
-    (void)unused;
+TEST(a_sheet_falls_freely) {
     Bench bench;
     SingeMaterialDef material = plain();
     bench_open(&bench, quads_grid(10, 10, 0.02f, 0.02f, false), &material, 1);
@@ -68,8 +65,7 @@ static void a_sheet_falls_freely(void **unused) {
     bench_close(&bench);
 }
 
-static void drag_gives_a_terminal_speed(void **unused) {
-    (void)unused;
+TEST(drag_gives_a_terminal_speed) {
     Bench bench;
     SingeMaterialDef material = plain();
     material.drag = singe_param(1.3f);
@@ -83,8 +79,7 @@ static void drag_gives_a_terminal_speed(void **unused) {
 }
 
 /// A thrown, spinning sheet: lengths kept, momentum kept.
-static void free_flight_keeps_lengths_and_momentum(void **unused) {
-    (void)unused;
+TEST(free_flight_keeps_lengths_and_momentum) {
     Bench bench;
     SingeMaterialDef material = plain();
     bench_open(&bench, quads_grid(20, 20, 0.01f, 0.01f, false), &material, 1);
@@ -106,8 +101,7 @@ static void free_flight_keeps_lengths_and_momentum(void **unused) {
 }
 
 /// Damping takes exp(-d t) of a free motion, by (1 + h d)^-1 in every substep.
-static void damping_decays_exponentially(void **unused) {
-    (void)unused;
+TEST(damping_decays_exponentially) {
     Bench bench;
     SingeMaterialDef material = plain();
     material.damping = singe_param(2);
@@ -179,8 +173,7 @@ static double spin_left(int axis, float smoothing, bool bent) {
 /// A free sheet loses w^2 h t of its spin w to the projection: x~ runs ahead on the tangent and is drawn back. Internal
 /// friction takes less than 1e-3 from a flat sheet, and from a bent one where it turns out of its strands' lines: up to
 /// a fifth in a second.
-static void spin_decays_as_predicted(void **unused) {
-    (void)unused;
+TEST(spin_decays_as_predicted) {
     const float smoothing = singe_default_solver().smoothing;
     double expected = exp(-6.2832 * 6.2832 / 480 / singe_default_solver().substeps);
     for (int bent = 0; bent < 2; bent++)
@@ -221,8 +214,7 @@ static double open_crushed(uint32_t seed) {
 
 /// Springs crushed to nearly nothing push back no harder than their length: the sheet opens and stays together.
 /// How much stays crumpled depends on chance: 4 to 25 %, 14 % in the mean of 48.
-static void a_crushed_sheet_opens(void **unused) {
-    (void)unused;
+TEST(a_crushed_sheet_opens) {
     double mean = 0;
     for (uint32_t seed = 1; seed <= 16; seed++) mean += open_crushed(seed) / 16;
     assert_true(mean < 0.17);
@@ -250,8 +242,7 @@ static double slide(float slope, float friction) {
     return displacement;
 }
 
-static void friction_holds_a_block_on_a_slope(void **unused) {
-    (void)unused;
+TEST(friction_holds_a_block_on_a_slope) {
     float friction = 0.4f, angle = atanf(friction); // 21.8 degrees
     assert_true(slide(angle - 0.02f, friction) < 1e-3);
     assert_true(slide(angle + 0.02f, friction) > 5e-3);
@@ -262,8 +253,7 @@ static void friction_holds_a_block_on_a_slope(void **unused) {
     assert_true(fabs(slide(0.3f, 0) / (0.5 * 9.81 * sin(0.3) * 0.25) - 1) < 0.02);
 }
 
-static void a_moving_plane_carries_the_sheet(void **unused) {
-    (void)unused;
+TEST(a_moving_plane_carries_the_sheet) {
     Bench bench;
     SingeMaterialDef material = plain();
     bench_open(&bench, quads_grid(4, 4, 0.01f, 0.01f, false), &material, 1);
@@ -279,8 +269,7 @@ static void a_moving_plane_carries_the_sheet(void **unused) {
     bench_close(&bench);
 }
 
-static void no_vertex_is_inside_a_collider(void **unused) {
-    (void)unused;
+TEST(no_vertex_is_inside_a_collider) {
     for (SingeColliderKind kind = SINGE_COLLIDER_SPHERE; kind <= SINGE_COLLIDER_CAPSULE; kind++) {
         Bench bench;
         SingeMaterialDef material = plain();
@@ -302,8 +291,7 @@ static void no_vertex_is_inside_a_collider(void **unused) {
     }
 }
 
-static void bytes_do_not_depend_on_the_thread_count(void **unused) {
-    (void)unused;
+TEST(bytes_do_not_depend_on_the_thread_count) {
     Bench one, more;
     bench_open(&one, quads_grid(60, 50, 0.01f, 0.01f, false), NULL, 1);
     for (int threads = 2; threads <= 4; threads++) {
@@ -325,8 +313,7 @@ static void bytes_do_not_depend_on_the_thread_count(void **unused) {
 }
 
 /// A sheet held along its upper edge comes to rest with little strain, no crossed layer, no jitter.
-static void a_hung_sheet_comes_to_rest(void **unused) {
-    (void)unused;
+TEST(a_hung_sheet_comes_to_rest) {
     Bench bench;
     SingeMaterialDef material = singe_default_material();
     material.damping = singe_param(2); // else it swings for seconds: centres lie to one side of the held edge
@@ -347,21 +334,4 @@ static void a_hung_sheet_comes_to_rest(void **unused) {
     assert_true(blue_strain(&bench) < 2e-3);
     for (uint32_t c = 0; c < bench.shell.cell_count; c++) assert_true(bench_height(&bench, c) > 0);
     bench_close(&bench);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sheet_falls_freely),
-        cmocka_unit_test(drag_gives_a_terminal_speed),
-        cmocka_unit_test(free_flight_keeps_lengths_and_momentum),
-        cmocka_unit_test(damping_decays_exponentially),
-        cmocka_unit_test(spin_decays_as_predicted),
-        cmocka_unit_test(a_crushed_sheet_opens),
-        cmocka_unit_test(friction_holds_a_block_on_a_slope),
-        cmocka_unit_test(a_moving_plane_carries_the_sheet),
-        cmocka_unit_test(no_vertex_is_inside_a_collider),
-        cmocka_unit_test(bytes_do_not_depend_on_the_thread_count),
-        cmocka_unit_test(a_hung_sheet_comes_to_rest),
-    };
-    return cmocka_run_group_tests_name("motion", tests, NULL, NULL);
 }

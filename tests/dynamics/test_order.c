@@ -40,8 +40,7 @@ static double parting(const Bench *bench, uint32_t c) {
     return (double)float3_dot(away, normal);
 }
 
-static void only_centres_move(void **unused) {
-    (void)unused;
+TEST(only_centres_move) {
     Bench bench;
     open_jumble(&bench, 1);
     const uint32_t vertices = bench.shell.vertex_count, cells = bench.shell.cell_count;
@@ -67,8 +66,7 @@ static void only_centres_move(void **unused) {
     bench_close(&bench);
 }
 
-static void bytes_do_not_depend_on_threads(void **unused) {
-    (void)unused;
+TEST(bytes_do_not_depend_on_threads) {
     Bench one, three;
     open_jumble(&one, 1), open_jumble(&three, 3);
     order(&one), order(&three);
@@ -77,8 +75,7 @@ static void bytes_do_not_depend_on_threads(void **unused) {
 }
 
 /// A pinned centre gives way as well. A cell crushed to a line has no front: its centre stays where it is.
-static void pinned_and_crushed_cells_stay_ordered(void **unused) {
-    (void)unused;
+TEST(pinned_and_crushed_cells_stay_ordered) {
     Bench bench;
     bench_open(&bench, quads_grid(3, 3, 0.005f, 0.005f, false), NULL, 1);
     float(*x)[4] = bench.state.dynamics.position, *pinned = x[shell_centre(&bench.shell, 0)];
@@ -106,8 +103,7 @@ static uint32_t step_and_count(SingeSim *sim, int steps) {
 }
 
 /// A box comes down on a rumpled sheet on the ground, front up or down, and shoves it aside.
-static void a_sheet_pressed_on_the_ground_stays_ordered(void **unused) {
-    (void)unused;
+TEST(a_sheet_pressed_on_the_ground_stays_ordered) {
     for (int down = 0; down < 2; down++) {
         TestMesh mesh = test_grid(30, 30, 0.004f, 0.004f);
         for (uint32_t v = 0; v < mesh.vertex_count; v++) {
@@ -137,8 +133,7 @@ static void a_sheet_pressed_on_the_ground_stays_ordered(void **unused) {
 }
 
 /// A sheet that burns without ablation, held at one side, shrinks to half its size within half a second.
-static void a_shrinking_sheet_stays_ordered(void **unused) {
-    (void)unused;
+TEST(a_shrinking_sheet_stays_ordered) {
     SingeMaterialDef material = singe_default_material();
     material.ablate = false, material.temperature = singe_param(600), material.mass_rate = singe_param(0.04f);
     material.ash_exponent = material.convection = material.emissivity = material.heat_share = singe_param(0);
@@ -158,15 +153,4 @@ static void a_shrinking_sheet_stays_ordered(void **unused) {
     SingeView view = singe_sim_view(sim); // yellow, the first of the middle's cells
     assert_true(view.spring_length[SINGE_YELLOW][view.spring_count[SINGE_YELLOW] / 2] < 0.6f * 0.01414f);
     singe_sim_destroy(sim);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(only_centres_move),
-        cmocka_unit_test(bytes_do_not_depend_on_threads),
-        cmocka_unit_test(pinned_and_crushed_cells_stay_ordered),
-        cmocka_unit_test(a_sheet_pressed_on_the_ground_stays_ordered),
-        cmocka_unit_test(a_shrinking_sheet_stays_ordered),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,13 +5,11 @@
 #include "dynamics/dynamics_plan.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 /// A grid without the cells of a rectangle inside it.
 static Quads quads_with_hole(uint32_t nx, uint32_t ny) {
@@ -139,8 +137,7 @@ static void compare_kernels(Quads quads, bool vary) {
     bench_close(&bench);
 }
 
-static void kernels_agree(void **unused) {
-    (void)unused;
+TEST(kernels_agree) {
     for (int vary = 0; vary < 2; vary++) {
         compare_kernels(quads_grid(37, 23, 0.01f, 0.01f, false), vary);
         compare_kernels(quads_grid(3, 2, 0.01f, 0.01f, false), vary);
@@ -195,8 +192,7 @@ static Density measure_lanes(const char *name, Quads quads) {
     return density;
 }
 
-static void lanes_are_full(void **unused) {
-    (void)unused;
+TEST(lanes_are_full) {
     Density grid = measure_lanes("grid", quads_grid(100, 60, 0.01f, 0.01f, false));
     assert_true((double)grid.springs > 0.93 * (double)grid.slots);
     assert_true((double)grid.beside > 0.6 * (double)grid.rows);
@@ -210,12 +206,4 @@ static void lanes_are_full(void **unused) {
     assert_true((double)shuffled.springs > 0.9 * (double)shuffled.slots);
     Density valence = measure_lanes("random valence", quads_random_valence(30));
     assert_true((double)valence.springs > 0.6 * (double)valence.slots);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(kernels_agree),
-        cmocka_unit_test(lanes_are_full),
-    };
-    return cmocka_run_group_tests_name("strand_lanes", tests, NULL, NULL);
 }

@@ -5,12 +5,10 @@
 #include "dynamics/dynamics_plan.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 enum { N_MAX = 64 };
 
@@ -128,20 +126,17 @@ static void compare(Quads quads, bool pin_some) {
     bench_close(&bench);
 }
 
-static void chains_match_a_dense_solver(void **unused) {
-    (void)unused;
+TEST(chains_match_a_dense_solver) {
     compare(quads_grid(7, 9, 0.01f, 0.012f, false), false);
     compare(quads_grid(12, 5, 0.01f, 0.008f, false), true);
 }
 
-static void rings_match_a_dense_solver(void **unused) {
-    (void)unused;
+TEST(rings_match_a_dense_solver) {
     compare(quads_grid(14, 4, 0.01f, 0.012f, true), false);
     compare(quads_grid(15, 4, 0.01f, 0.012f, true), true);
 }
 
-static void gone_springs_decouple(void **unused) {
-    (void)unused;
+TEST(gone_springs_decouple) {
     Bench bench;
     DynamicsCounters counters = {0};
     bench_open(&bench, quads_grid(6, 1, 0.01f, 0.01f, false), NULL, 1);
@@ -156,8 +151,7 @@ static void gone_springs_decouple(void **unused) {
     bench_close(&bench);
 }
 
-static void springs_pinned_at_both_ends_do_not_move(void **unused) {
-    (void)unused;
+TEST(springs_pinned_at_both_ends_do_not_move) {
     Bench bench;
     bench_open(&bench, quads_grid(6, 2, 0.01f, 0.01f, false), NULL, 1);
     memset(bench.state.dynamics.pinned, 1, bench.shell.particle_count);
@@ -165,14 +159,4 @@ static void springs_pinned_at_both_ends_do_not_move(void **unused) {
     for (int step = 0; step < 100; step++) bench_step(&bench, 0.002f);
     assert_true(fabsf(bench.state.dynamics.position[9][2]) < 0.001f);
     bench_close(&bench);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(chains_match_a_dense_solver),
-        cmocka_unit_test(rings_match_a_dense_solver),
-        cmocka_unit_test(gone_springs_decouple),
-        cmocka_unit_test(springs_pinned_at_both_ends_do_not_move),
-    };
-    return cmocka_run_group_tests_name("strand", tests, NULL, NULL);
 }

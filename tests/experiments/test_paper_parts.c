@@ -1,20 +1,14 @@
 // The foundations of `singe paper`: singular values against known ones, the ranks of section 7.1, and the errors of Fig
 // 8 on its two states.
 #include <math.h>
-#include <setjmp.h>
-#include <stdbool.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "paper/paper_states.h"
 #include "analysis/singular.h"
 
-static void singular_values_match_known_ones(void **unused) {
-    (void)unused;
+TEST(singular_values_match_known_ones) {
     // a product of two rotations with diag(3, 2, 1e-9) between them, and a row that is twice another
     const double c = cos(0.7), s = sin(0.7);
     const double matrix[] = {3 * c, -2 * s, 0, 3 * s, 2 * c, 0, 0, 0, 1e-9}, twice[] = {1, 2, 3, 4, 2, 4, 6, 8};
@@ -52,8 +46,7 @@ static void sums(SingeSim *sim, PaperState state, int steps, double *sum) {
 }
 
 /// Fig 8 in the states that `singe paper fig8` draws: the sum falls in each of 20 steps.
-static void the_sum_falls_where_drawn(void **unused) {
-    (void)unused;
+TEST(the_sum_falls_where_drawn) {
     const int steps[] = {[PAPER_SWING] = 200, [PAPER_SHRINK] = 50};
     for (int state = 0; state < PAPER_STATE_COUNT; state++) {
         SingeSim *sim = sheet((PaperState)state, 20, steps[state]);
@@ -68,8 +61,7 @@ static void the_sum_falls_where_drawn(void **unused) {
 
 /// But not in all states, as the paper has it: in some of a swing it rises in one of 7 steps, and in nearly all it is
 /// lower after them.
-static void the_sum_rises_in_some_states(void **unused) {
-    (void)unused;
+TEST(the_sum_rises_in_some_states) {
     enum { STATES = 120, STEPS = 7 };
     SingeSim *sim = sheet(PAPER_SWING, 20, 0);
     int rises = 0, lower = 0;
@@ -98,8 +90,7 @@ static size_t rank(SingeNetwork *network, uint32_t set, size_t columns) {
 }
 
 /// Section 7.1: all springs in one system have more constraints than rank; every colour has full rank.
-static void every_colour_has_full_rank(void **unused) {
-    (void)unused;
+TEST(every_colour_has_full_rank) {
     SingeSim *sim = sheet(PAPER_SWING, 5, 100);
     SingeNetwork *all, *colours;
     SingeError error;
@@ -133,8 +124,7 @@ static double left_after(SingeSim *sim, bool one, double floor) {
 
 /// With the same floor on the diagonal on both sides: without one all springs at once diverge where the colours in turn
 /// converge; with one both converge, so that it is the rank that is at fault.
-static void all_at_once_diverges_without_a_floor(void **unused) {
-    (void)unused;
+TEST(all_at_once_diverges_without_a_floor) {
     SingeSim *sim = sheet(PAPER_SWING, 8, 200);
     const double floors[] = {0, 1e-4};
     double left[2][2];
@@ -149,13 +139,4 @@ static void all_at_once_diverges_without_a_floor(void **unused) {
     assert_true(left[1][0] < 0.95);
     assert_true(left[1][1] < 0.5);
     singe_sim_destroy(sim);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(singular_values_match_known_ones),     cmocka_unit_test(the_sum_falls_where_drawn),
-        cmocka_unit_test(the_sum_rises_in_some_states),         cmocka_unit_test(every_colour_has_full_rank),
-        cmocka_unit_test(all_at_once_diverges_without_a_floor),
-    };
-    return cmocka_run_group_tests_name("paper parts", tests, NULL, NULL);
 }

@@ -67,8 +67,7 @@ static Bytes written(const SingeSurface *surface, double time) {
     return bytes;
 }
 
-static void round_trip_is_bitwise(void **state) {
-    (void)state;
+TEST(round_trip_is_bitwise) {
     Sample sample;
     make_sample(&sample);
     Bytes bytes = written(&sample.surface, 1 / 24.0 + 7);
@@ -107,8 +106,7 @@ static void round_trip_is_bitwise(void **state) {
     singe_surface_free(&read);
 }
 
-static void header_is_as_documented(void **state) {
-    (void)state;
+TEST(header_is_as_documented) {
     Sample sample;
     make_sample(&sample);
     Bytes bytes = written(&sample.surface, 0.5);
@@ -135,8 +133,7 @@ static void header_is_as_documented(void **state) {
     bytes_free(&bytes);
 }
 
-static void the_old_name_of_burnt_is_read(void **state) {
-    (void)state;
+TEST(the_old_name_of_burnt_is_read) {
     Sample sample;
     make_sample(&sample);
     Bytes bytes = written(&sample.surface, 0.5);
@@ -158,8 +155,7 @@ static void the_old_name_of_burnt_is_read(void **state) {
     bytes_free(&bytes);
 }
 
-static void nothing_left_is_a_surface_too(void **state) {
-    (void)state;
+TEST(nothing_left_is_a_surface_too) {
     SingeSurface empty = {0}, read;
     Bytes bytes = written(&empty, 12);
     SingeError error;
@@ -182,8 +178,7 @@ static SingeResult read_copy(const uint8_t *data, size_t size, SingeError *error
     return result;
 }
 
-static void damage_is_noticed(void **state) {
-    (void)state;
+TEST(damage_is_noticed) {
     Sample sample;
     make_sample(&sample);
     Bytes bytes = written(&sample.surface, 3);
@@ -215,8 +210,7 @@ static void damage_is_noticed(void **state) {
     assert_message(&error, "not a cache of this version");
 }
 
-static void refuses_to_write_nonsense(void **state) {
-    (void)state;
+TEST(refuses_to_write_nonsense) {
     Sample sample;
     make_sample(&sample);
     SingeError error;
@@ -225,8 +219,7 @@ static void refuses_to_write_nonsense(void **state) {
     assert_int_equal(access(path, F_OK), -1);
 }
 
-static void allocation_failure_is_clean(void **state) {
-    (void)state;
+TEST(allocation_failure_is_clean) {
     Sample sample;
     make_sample(&sample);
     Bytes bytes = written(&sample.surface, 3);
@@ -241,19 +234,13 @@ static void allocation_failure_is_clean(void **state) {
     test_allocator_check(&counter);
 }
 
-int main(void) {
+static void make_folder(int argc, char **argv) {
+    (void)argc;
+    (void)argv;
     folder = test_folder();
     snprintf(path, sizeof path, "%s/a.0001.ply", folder);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(round_trip_is_bitwise),
-        cmocka_unit_test(header_is_as_documented),
-        cmocka_unit_test(the_old_name_of_burnt_is_read),
-        cmocka_unit_test(nothing_left_is_a_surface_too),
-        cmocka_unit_test(damage_is_noticed),
-        cmocka_unit_test(refuses_to_write_nonsense),
-        cmocka_unit_test(allocation_failure_is_clean),
-    };
-    int failures = cmocka_run_group_tests(tests, NULL, NULL);
-    rmdir(folder);
-    return failures;
 }
+
+static int remove_folder(void) { return rmdir(folder) != 0; }
+
+TEST_AROUND(make_folder, remove_folder)

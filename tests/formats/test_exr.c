@@ -51,8 +51,7 @@ static void read_channel(const char *name, exr_pixel_type_t kept, void *values) 
     exr_finish(&file);
 }
 
-static void layers_read_back(void **state) {
-    (void)state;
+TEST(layers_read_back) {
     static float colour[COUNT][3], depth[COUNT], got[COUNT];
     static uint32_t id[COUNT], got_id[COUNT];
     for (int i = 0; i < COUNT; i++) {
@@ -79,8 +78,7 @@ static void layers_read_back(void **state) {
     assert_memory_equal(got_id, id, sizeof id);
 }
 
-static void bad_layers_are_refused(void **state) {
-    (void)state;
+TEST(bad_layers_are_refused) {
     static float values[COUNT];
     const ExrChannel twice[] = {{"R", EXR_KIND_HALF, values, 1}, {"R", EXR_KIND_HALF, values, 1}};
     SingeError error = {0};
@@ -95,12 +93,13 @@ static void bad_layers_are_refused(void **state) {
     assert_int_equal(exr_write(nowhere, WIDTH, HEIGHT, twice, 1, NULL), SINGE_ERROR_FILE);
 }
 
-int main(void) {
+static void make_folder(int argc, char **argv) {
+    (void)argc;
+    (void)argv;
     folder = test_folder();
     snprintf(path, sizeof path, "%s/a.exr", folder);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(layers_read_back), cmocka_unit_test(bad_layers_are_refused)};
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    unlink(path);
-    rmdir(folder);
-    return failed;
 }
+
+static int remove_folder(void) { return unlink(path) || rmdir(folder) != 0; }
+
+TEST_AROUND(make_folder, remove_folder)

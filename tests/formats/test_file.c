@@ -33,8 +33,7 @@ static void assert_contents(const char *path, const char *expected) {
     bytes_free(&bytes);
 }
 
-static void writes_and_reads(void **state) {
-    (void)state;
+TEST(writes_and_reads) {
     SingeError error;
     const char *path = inside("a.txt");
     assert_int_equal(file_write(path, "hello", 5, &error), SINGE_OK);
@@ -55,8 +54,7 @@ static void writes_and_reads(void **state) {
     assert_int_equal(unlink(path), 0);
 }
 
-static void reading_says_why(void **state) {
-    (void)state;
+TEST(reading_says_why) {
     SingeError error;
     Bytes bytes;
     assert_int_equal(file_read(inside("missing"), libc_allocator, &bytes, &error), SINGE_ERROR_FILE);
@@ -78,8 +76,7 @@ static void reading_says_why(void **state) {
     unlink(inside("large"));
 }
 
-static void writing_says_why(void **state) {
-    (void)state;
+TEST(writing_says_why) {
     SingeError error;
     assert_int_equal(file_write(inside("no/where"), "x", 1, &error), SINGE_ERROR_FILE);
     assert_message(&error, "No such file");
@@ -108,8 +105,7 @@ static void writing_says_why(void **state) {
 }
 
 // The target of a link belongs to somebody else.
-static void links_are_replaced(void **state) {
-    (void)state;
+TEST(links_are_replaced) {
     SingeError error;
     struct stat about;
     assert_int_equal(file_write(inside("theirs"), "theirs", 6, &error), SINGE_OK);
@@ -127,8 +123,7 @@ static void links_are_replaced(void **state) {
     assert_int_equal(files_in_folder(), 0);
 }
 
-static void drafts_take_the_place_later(void **state) {
-    (void)state;
+TEST(drafts_take_the_place_later) {
     SingeError error;
     const char *path = inside("film");
     char *first, *second;
@@ -156,8 +151,7 @@ static void drafts_take_the_place_later(void **state) {
 }
 
 // The limit on a file's size makes the write fail in the middle, as a full disk does.
-static void failed_write_keeps_the_old_file(void **state) {
-    (void)state;
+TEST(failed_write_keeps_the_old_file) {
     SingeError error;
     const char *path = inside("old.txt");
     enum { LARGE = 1 << 20 };
@@ -179,8 +173,7 @@ static void failed_write_keeps_the_old_file(void **state) {
     unlink(path);
 }
 
-static void allocation_failure_is_clean(void **state) {
-    (void)state;
+TEST(allocation_failure_is_clean) {
     SingeError error;
     assert_int_equal(file_write(inside("a"), "abc", 3, &error), SINGE_OK);
     TestAllocator counter = {.fail_at = 1, .once = true};
@@ -193,18 +186,12 @@ static void allocation_failure_is_clean(void **state) {
     unlink(inside("a"));
 }
 
-int main(void) {
+static void make_folder(int argc, char **argv) {
+    (void)argc;
+    (void)argv;
     folder = test_folder();
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(writes_and_reads),
-        cmocka_unit_test(reading_says_why),
-        cmocka_unit_test(writing_says_why),
-        cmocka_unit_test(links_are_replaced),
-        cmocka_unit_test(drafts_take_the_place_later),
-        cmocka_unit_test(failed_write_keeps_the_old_file),
-        cmocka_unit_test(allocation_failure_is_clean),
-    };
-    int failures = cmocka_run_group_tests(tests, NULL, NULL);
-    rmdir(folder);
-    return failures;
 }
+
+static int remove_folder(void) { return rmdir(folder) != 0; }
+
+TEST_AROUND(make_folder, remove_folder)

@@ -83,8 +83,7 @@ static void expect_positions(Polygons *mesh, const float *positions, uint32_t co
     polygons_free(mesh);
 }
 
-static void kinds_of_numbers_are_read(void **state) {
-    (void)state;
+TEST(kinds_of_numbers_are_read) {
     static const float fours[] = {0, 0, 0, 4, 0, 0, 4, 4, 0, 0, 4, 0}, moved[] = {0, 0, 0, 5, 0, 0, 1, 1, 0, 0, 5, 0};
     Polygons mesh = expect(SCENE NODE MESH("{\"attributes\":{\"POSITION\":0},\"indices\":2}"), two, 6);
     assert_null(mesh.uv);
@@ -107,8 +106,7 @@ static void kinds_of_numbers_are_read(void **state) {
     polygons_free(&mesh);
 }
 
-static void transforms_are_applied(void **state) {
-    (void)state;
+TEST(transforms_are_applied) {
     static const float turned[] = {1, 2, 3, 1, 4, 3, -1, 4, 3, -1, 2, 3};
     Polygons mesh = expect(SCENE ",\"nodes\":[{\"children\":[1],\"translation\":[1,2,3]},"
                                  "{\"mesh\":0,\"rotation\":[0,0,0.70710678,0.70710678],\"scale\":[2,2,2]}]" MESH(
@@ -124,8 +122,7 @@ static void transforms_are_applied(void **state) {
 
 #define PRIMITIVE "{\"attributes\":{\"POSITION\":0},\"indices\":2}"
 
-static void bad_files_are_refused(void **state) {
-    (void)state;
+TEST(bad_files_are_refused) {
     static const struct {
         const char *json;
         SingeResult code;
@@ -185,8 +182,7 @@ static void bad_files_are_refused(void **state) {
 #define SPARSE(count, index, indices) \
     POSITIONS ",\"sparse\":{\"count\":" count ",\"indices\":{" index "},\"values\":{" indices "}}"
 
-static void bad_buffers_are_refused(void **state) {
-    (void)state;
+TEST(bad_buffers_are_refused) {
     static const struct {
         const char *json, *part; // NULL: it is read
     } cases[] = {
@@ -229,8 +225,7 @@ static void bad_buffers_are_refused(void **state) {
 }
 
 /// Normalized and plain numbers of every width are what the format says.
-static void widths_of_numbers_are_read(void **state) {
-    (void)state;
+TEST(widths_of_numbers_are_read) {
     static const struct {
         const char *accessor;
         float x; // of the second vertex: the bytes at 12, or behind the width
@@ -255,8 +250,7 @@ static void widths_of_numbers_are_read(void **state) {
 }
 
 /// A small file of many nodes, or primitives, that use one mesh comes to much more than its size.
-static void copies_are_limited(void **state) {
-    (void)state;
+TEST(copies_are_limited) {
     enum { COPIES = 700, VERTICES = 3000 };
     size_t size = 100000 + VERTICES * 16 + COPIES * 100, length;
     char *text = malloc(size);
@@ -283,8 +277,7 @@ static void copies_are_limited(void **state) {
     free(text);
 }
 
-static void every_cut_and_failure_of_memory_is_clean(void **state) {
-    (void)state;
+TEST(every_cut_and_failure_of_memory_is_clean) {
     static uint8_t file[8000];
     static const char json[] = SCENE NODE MESH("{\"attributes\":{\"POSITION\":4,\"TEXCOORD_0\":5},\"indices\":2}");
     Data d = data();
@@ -301,17 +294,4 @@ static void every_cut_and_failure_of_memory_is_clean(void **state) {
         assert_int_not_equal(polygons_read("a.gltf", (const uint8_t *)json, cut, (SingeAllocator){0}, &mesh, &error),
                              SINGE_OK);
     test_allocations_fail(0, parse(json, &d, allocator, &mesh, &error), polygons_free(&mesh));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(kinds_of_numbers_are_read),
-        cmocka_unit_test(transforms_are_applied),
-        cmocka_unit_test(bad_files_are_refused),
-        cmocka_unit_test(bad_buffers_are_refused),
-        cmocka_unit_test(widths_of_numbers_are_read),
-        cmocka_unit_test(copies_are_limited),
-        cmocka_unit_test(every_cut_and_failure_of_memory_is_clean),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -70,8 +70,7 @@ static void expect_pixels(const Encoded *encoded, int width, int height, const u
     assert_null(image.rgb);
 }
 
-static void reads_every_kind_of_png(void **state) {
-    (void)state;
+TEST(reads_every_kind_of_png) {
     static Encoded encoded;
     static const uint8_t rgb[] = {1, 2, 3, 4, 5, 6, 250, 251, 252, 0, 0, 255};
     encode_png(&encoded, (PngKind){2, 2, 8, PNG_COLOR_TYPE_RGB, 0, 0}, rgb, 6);
@@ -119,8 +118,7 @@ static void reads_every_kind_of_png(void **state) {
     expect_pixels(&encoded, 20, 20, ramp);
 }
 
-static void png_write_reads_back(void **state) {
-    (void)state;
+TEST(png_write_reads_back) {
     enum { WIDTH = 33, HEIGHT = 17 };
     uint8_t rgb[WIDTH * HEIGHT * 3];
     for (size_t i = 0; i < sizeof rgb; i++) rgb[i] = (uint8_t)(i * i >> 3);
@@ -175,8 +173,7 @@ static void encode_jpeg(Encoded *encoded, int width, int height, int components,
     free(out);
 }
 
-static void reads_jpeg(void **state) {
-    (void)state;
+TEST(reads_jpeg) {
     static Encoded encoded;
     enum { WIDTH = 24, HEIGHT = 16 };
     uint8_t rgb[WIDTH * HEIGHT * 3];
@@ -195,8 +192,7 @@ static void reads_jpeg(void **state) {
     }
 }
 
-static void reads_grey_and_ink(void **state) {
-    (void)state;
+TEST(reads_grey_and_ink) {
     static Encoded encoded;
     uint8_t grey[8 * 8], ink[8 * 8 * 4];
     memset(grey, 77, sizeof grey);
@@ -242,8 +238,7 @@ static void claim_png(Encoded *encoded, uint32_t width, uint32_t height) {
     put_big(encoded->bytes + 29, crc_of(encoded->bytes + 12, 17));
 }
 
-static void refuses_what_is_no_picture(void **state) {
-    (void)state;
+TEST(refuses_what_is_no_picture) {
     static Encoded encoded;
     Image image;
     SingeError error;
@@ -288,8 +283,7 @@ static void expect_size(const char *file, const void *bytes, size_t size, bool k
 }
 
 /// From a file's first bytes, without reading it; each of its beginnings is handled.
-static void a_size_is_known_beforehand(void **state) {
-    (void)state;
+TEST(a_size_is_known_beforehand) {
     char file[64];
     static const uint8_t rgb[3 * 48] = {0};
     static Encoded encoded;
@@ -310,8 +304,7 @@ static void a_size_is_known_beforehand(void **state) {
     expect_size(file, "no picture, but some text that goes on", 38, false, 0, 0);
 }
 
-static void luminance_is_exact_at_the_ends(void **state) {
-    (void)state;
+TEST(luminance_is_exact_at_the_ends) {
     uint8_t rgb[] = {0, 0, 0, 255, 255, 255, 255, 0, 0, 0, 255, 0, 0, 0, 255, 51, 51, 51};
     Image image = {.width = 3, .height = 2, .rgb = rgb};
     SingeTexture picture;
@@ -329,8 +322,7 @@ static void luminance_is_exact_at_the_ends(void **state) {
     assert_int_equal(image_luminance(&image, test_allocator(&failing), &picture, &error), SINGE_ERROR_MEMORY);
 }
 
-static void allocation_failure_is_clean(void **state) {
-    (void)state;
+TEST(allocation_failure_is_clean) {
     static Encoded encoded[2];
     static const uint8_t rgba[16] = {1, 2, 3, 4}, ink[8 * 8 * 4] = {0};
     encode_png(&encoded[0], (PngKind){2, 2, 8, PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_ADAM7, 0}, rgba, 8);
@@ -342,20 +334,13 @@ static void allocation_failure_is_clean(void **state) {
                               image_free(&image));
 }
 
-int main(void) {
+static void make_folder(int argc, char **argv) {
+    (void)argc;
+    (void)argv;
     folder = test_folder();
     snprintf(path, sizeof path, "%s/a.png", folder);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_every_kind_of_png),
-        cmocka_unit_test(png_write_reads_back),
-        cmocka_unit_test(reads_jpeg),
-        cmocka_unit_test(reads_grey_and_ink),
-        cmocka_unit_test(refuses_what_is_no_picture),
-        cmocka_unit_test(luminance_is_exact_at_the_ends),
-        cmocka_unit_test(allocation_failure_is_clean),
-        cmocka_unit_test(a_size_is_known_beforehand),
-    };
-    int failures = cmocka_run_group_tests(tests, NULL, NULL);
-    rmdir(folder);
-    return failures;
 }
+
+static int remove_folder(void) { return rmdir(folder) != 0; }
+
+TEST_AROUND(make_folder, remove_folder)

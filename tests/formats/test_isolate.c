@@ -53,8 +53,7 @@ static uint8_t *many(void) {
     return bytes;
 }
 
-static void answers_come_whole(void **state) {
-    (void)state;
+TEST(answers_come_whole) {
     uint8_t *bytes = many();
     Bytes answer;
     SingeError error;
@@ -78,8 +77,7 @@ static SingeResult refuse_work(void *context, IsolateAnswer *answer, SingeError 
     return SINGE_ERROR_MESH;
 }
 
-static void errors_come_as_they_were(void **state) {
-    (void)state;
+TEST(errors_come_as_they_were) {
     Bytes answer;
     SingeError error;
     assert_int_equal(run(refuse_work, NULL, &answer, &error), SINGE_ERROR_MESH);
@@ -90,8 +88,7 @@ static void errors_come_as_they_were(void **state) {
                      SINGE_ERROR_MESH);
 }
 
-static void failing_memory_of_the_parent_is_reported(void **state) {
-    (void)state;
+TEST(failing_memory_of_the_parent_is_reported) {
     uint8_t *bytes = many();
     Bytes answer;
     SingeError error;
@@ -114,8 +111,7 @@ static SingeResult stop(void *context, IsolateAnswer *answer, SingeError *error)
     exit(*(int *)context);
 }
 
-static void crashes_are_reported(void **state) {
-    (void)state;
+TEST(crashes_are_reported) {
     static const int signals[] = {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGKILL};
     Bytes answer;
     SingeError error;
@@ -135,8 +131,7 @@ static void crashes_are_reported(void **state) {
 static volatile sig_atomic_t noted;
 static void note(int number) { noted = number; }
 
-static void interrupts_stop_the_child(void **state) {
-    (void)state;
+TEST(interrupts_stop_the_child) {
     struct sigaction before, own = {.sa_handler = note};
     int number = SIGINT;
     Bytes answer;
@@ -163,8 +158,7 @@ static SingeResult wait_long(void *context, IsolateAnswer *answer, SingeError *e
     return SINGE_OK;
 }
 
-static void time_is_limited(void **state) {
-    (void)state;
+TEST(time_is_limited) {
     Bytes answer;
     SingeError error;
     double start = seconds();
@@ -201,8 +195,7 @@ static SingeResult answer_too_much(void *context, IsolateAnswer *answer, SingeEr
     return SINGE_OK;
 }
 
-static void memory_is_limited(void **state) {
-    (void)state;
+TEST(memory_is_limited) {
     Bytes answer;
     SingeError error;
     IsolateLimits slow = {64 << 20, 20};
@@ -231,8 +224,7 @@ static SingeResult print(void *context, IsolateAnswer *answer, SingeError *error
     return SINGE_OK;
 }
 
-static void files_of_the_parent_stay_as_they_are(void **state) {
-    (void)state;
+TEST(files_of_the_parent_stay_as_they_are) {
     FILE *file = tmpfile();
     assert_non_null(file);
     fputs("once", file); // still in the buffer, of which the child has a copy
@@ -255,8 +247,7 @@ static int without_descriptors(void) {
     return result == SINGE_OK && answer.size == MANY ? 0 : 1;
 }
 
-static void closed_descriptors_do_no_harm(void **state) {
-    (void)state;
+TEST(closed_descriptors_do_no_harm) {
     int status;
     pid_t child = fork();
     if (child == 0) _exit(without_descriptors());
@@ -264,8 +255,7 @@ static void closed_descriptors_do_no_harm(void **state) {
     assert_int_equal(status, 0);
 }
 
-static void signals_do_not_cut_the_wait(void **state) {
-    (void)state;
+TEST(signals_do_not_cut_the_wait) {
     struct sigaction before, own = {.sa_handler = note}; // without SA_RESTART
     struct itimerval often = {{0, 500}, {0, 500}}, never = {{0, 0}, {0, 0}};
     uint8_t *bytes = many();
@@ -284,8 +274,7 @@ static void signals_do_not_cut_the_wait(void **state) {
     free(bytes);
 }
 
-static void a_parent_that_ignores_its_children_gets_answers(void **state) {
-    (void)state;
+TEST(a_parent_that_ignores_its_children_gets_answers) {
     uint8_t *bytes = many();
     Bytes answer;
     SingeError error;
@@ -305,8 +294,7 @@ static SingeResult say_and_wait(void *context, IsolateAnswer *answer, SingeError
 }
 
 // The pipe tells: its end is held by the child of the child alone.
-static void the_child_ends_with_its_parent(void **state) {
-    (void)state;
+TEST(the_child_ends_with_its_parent) {
     int ends[2];
     char byte;
     assert_int_equal(pipe(ends), 0);
@@ -331,8 +319,7 @@ static void *sleep_on(void *context) {
     return NULL;
 }
 
-static void other_threads_are_refused(void **state) {
-    (void)state;
+TEST(other_threads_are_refused) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     skip(); // they have threads of their own
 #endif
@@ -349,24 +336,3 @@ static void other_threads_are_refused(void **state) {
     close(ends[0]);
 }
 #endif
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(answers_come_whole),
-        cmocka_unit_test(errors_come_as_they_were),
-        cmocka_unit_test(failing_memory_of_the_parent_is_reported),
-        cmocka_unit_test(crashes_are_reported),
-        cmocka_unit_test(interrupts_stop_the_child),
-        cmocka_unit_test(time_is_limited),
-        cmocka_unit_test(memory_is_limited),
-        cmocka_unit_test(files_of_the_parent_stay_as_they_are),
-        cmocka_unit_test(closed_descriptors_do_no_harm),
-        cmocka_unit_test(signals_do_not_cut_the_wait),
-        cmocka_unit_test(a_parent_that_ignores_its_children_gets_answers),
-#ifdef __linux__
-        cmocka_unit_test(the_child_ends_with_its_parent),
-        cmocka_unit_test(other_threads_are_refused),
-#endif
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}

@@ -30,8 +30,7 @@ static SingeResult take(const Answer *answer, size_t size, Polygons *polygons, S
     return result;
 }
 
-static void good_answers_are_taken(void **state) {
-    (void)state;
+TEST(good_answers_are_taken) {
     Polygons polygons;
     SingeError error;
     Answer answer = good();
@@ -51,8 +50,7 @@ static void good_answers_are_taken(void **state) {
     polygons_free(&polygons);
 }
 
-static void damaged_answers_are_refused(void **state) {
-    (void)state;
+TEST(damaged_answers_are_refused) {
     Polygons polygons;
     SingeError error;
     Answer answer = good();
@@ -84,20 +82,10 @@ static void damaged_answers_are_refused(void **state) {
     assert_message(&error, "no faces");
 }
 
-static void failing_memory_is_reported(void **state) {
-    (void)state;
+TEST(failing_memory_is_reported) {
     Answer answer = good();
     Polygons polygons;
     SingeError error;
     test_allocations_fail(0, mesh_answer_take("a.glb", (const uint8_t *)&answer, WHOLE, allocator, &polygons, &error),
                           polygons_free(&polygons));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(good_answers_are_taken),
-        cmocka_unit_test(damaged_answers_are_refused),
-        cmocka_unit_test(failing_memory_is_reported),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

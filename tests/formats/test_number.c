@@ -20,8 +20,7 @@ static void expect_float(const char *text, float expected) {
     if (memcmp(&value, &expected, sizeof value)) fail_msg("%s gives %a, not %a", text, (double)value, (double)expected);
 }
 
-static void reads_plain_numbers(void **state) {
-    (void)state;
+TEST(reads_plain_numbers) {
     expect_float("0", 0.0f);
     expect_float("-0", -0.0f);
     expect_float("1.", 1.0f);
@@ -39,8 +38,7 @@ static void reads_plain_numbers(void **state) {
 }
 
 // Ties and limits, where a double in between would round twice.
-static void rounds_exactly(void **state) {
-    (void)state;
+TEST(rounds_exactly) {
     expect_float("16777217", 16777216.0f);
     expect_float("16777217.0000000000000000000000000000001", 16777218.0f);
     expect_float("16777219", 16777220.0f);
@@ -58,8 +56,7 @@ static void rounds_exactly(void **state) {
     expect_float("1e-999999999999", 0.0f);
 }
 
-static void agrees_with_libc(void **state) {
-    (void)state;
+TEST(agrees_with_libc) {
     uint64_t seed = 88172645463325252u;
     char text[64];
     for (int i = 0; i < 200000; i++) {
@@ -81,8 +78,7 @@ static void agrees_with_libc(void **state) {
     }
 }
 
-static void refuses_what_is_no_number(void **state) {
-    (void)state;
+TEST(refuses_what_is_no_number) {
     static const char *const junk[] = {"",  "-",   "+",   ".",   "-.", "e5", "1e", "1e+",
                                        "x", "--1", "+-1", "abc", " 1", ",5", "#"};
     float value;
@@ -106,8 +102,7 @@ static void refuses_what_is_no_number(void **state) {
     assert_int_equal(used, 3);
 }
 
-static void reads_integers(void **state) {
-    (void)state;
+TEST(reads_integers) {
     static const struct {
         const char *text;
         NumberStatus status;
@@ -124,8 +119,7 @@ static void reads_integers(void **state) {
     }
 }
 
-static void doubles_survive_printing(void **state) {
-    (void)state;
+TEST(doubles_survive_printing) {
     static const double values[] = {
         0, -0.0, 1 / 24.0, 0.1, 1e22, 1e23, 123456789.123456789, 5e-324, 1.7976931348623157e308, -2.5e-10};
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
@@ -140,8 +134,7 @@ static void doubles_survive_printing(void **state) {
 }
 
 // Comma locales may not be installed; then only the C locale is seen here.
-static void ignores_the_locale(void **state) {
-    (void)state;
+TEST(ignores_the_locale) {
     static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE", "ps_AF.utf8"};
     bool found = false;
     for (size_t i = 0; !found && i < sizeof names / sizeof *names; i++) found = setlocale(LC_ALL, names[i]) != NULL;
@@ -151,14 +144,4 @@ static void ignores_the_locale(void **state) {
     assert_string_equal(text, "0.25");
     setlocale(LC_ALL, "C");
     if (!found) print_message("no locale with a decimal comma is installed\n");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_plain_numbers), cmocka_unit_test(rounds_exactly),
-        cmocka_unit_test(agrees_with_libc),    cmocka_unit_test(refuses_what_is_no_number),
-        cmocka_unit_test(reads_integers),      cmocka_unit_test(doubles_survive_printing),
-        cmocka_unit_test(ignores_the_locale),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

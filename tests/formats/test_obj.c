@@ -39,8 +39,7 @@ static void expect_error(const char *text, SingeResult code, int64_t line, const
     assert_null(mesh.corners);
 }
 
-static void keeps_order_and_positions(void **state) {
-    (void)state;
+TEST(keeps_order_and_positions) {
     Polygons mesh;
     SingeError error;
     const char *text = "# a comment\n"
@@ -63,8 +62,7 @@ static void keeps_order_and_positions(void **state) {
     polygons_free(&mesh);
 }
 
-static void reads_every_form(void **state) {
-    (void)state;
+TEST(reads_every_form) {
     static const uint32_t one[] = {0, 1, 2, 3}, two[] = {0, 1, 2, 3, 1, 4, 5, 2};
     expect_mesh(SQUARE "f 1 2 3 4", 4, one, 1);
     expect_mesh(SQUARE "f 1 2 3 4\n", 4, one, 1);
@@ -84,8 +82,7 @@ static void reads_every_form(void **state) {
     expect_mesh("# ends in a backslash \\\n" SQUARE "f 1 2 3 4\n", 4, one, 1);
 }
 
-static void refuses_bad_syntax(void **state) {
-    (void)state;
+TEST(refuses_bad_syntax) {
     expect_error("", SINGE_ERROR_FORMAT, 1, "empty");
     expect_error("\n\n", SINGE_ERROR_FORMAT, 3, "no faces");
     expect_error(SQUARE, SINGE_ERROR_FORMAT, 5, "no faces");
@@ -112,8 +109,7 @@ static void refuses_bad_syntax(void **state) {
     expect_error(SQUARE "f 0 1 2 3\n", SINGE_ERROR_FORMAT, 5, "counts from 1");
 }
 
-static void refuses_bad_meshes(void **state) {
-    (void)state;
+TEST(refuses_bad_meshes) {
     expect_error(SQUARE "f 1 2\n", SINGE_ERROR_MESH, 5, "a.obj:5: face has 2 corners; it needs three");
     expect_error(SQUARE "f 1\n", SINGE_ERROR_MESH, 5, "face has 1 corner;");
     expect_error(SQUARE "f\n", SINGE_ERROR_MESH, 5, "face has 0 corners");
@@ -126,8 +122,7 @@ static void refuses_bad_meshes(void **state) {
     expect_error(SQUARE "vt 0 0\nf 1/1 2/1 3 4/1\n", SINGE_ERROR_MESH, 6, "no texture coordinate");
 }
 
-static void faces_have_any_number_of_corners(void **state) {
-    (void)state;
+TEST(faces_have_any_number_of_corners) {
     Polygons mesh;
     SingeError error;
     assert_int_equal(parse(SQUARE "v 2 0 0\nf 1 2 3\nf 1 3 4\nf 2 5 3\nf 1 2 5 3 4\nf 1 1 2\n", &mesh, &error),
@@ -144,8 +139,7 @@ static void faces_have_any_number_of_corners(void **state) {
 }
 
 // A vertex may have another uv in each face: a seam.
-static void corners_keep_their_uv(void **state) {
-    (void)state;
+TEST(corners_keep_their_uv) {
     Polygons mesh;
     SingeError error;
     assert_int_equal(parse(SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\nf 1/2 3/1 4/3\n", &mesh, &error), SINGE_OK);
@@ -154,8 +148,7 @@ static void corners_keep_their_uv(void **state) {
     polygons_free(&mesh);
 }
 
-static void registry_goes_by_the_ending(void **state) {
-    (void)state;
+TEST(registry_goes_by_the_ending) {
     Polygons mesh;
     SingeError error;
     static const char text[] = SQUARE "f 1 2 3 4\n";
@@ -175,8 +168,7 @@ static const char sample[] = SQUARE "v 2 0 0\nv 2 1 0\nvt 0 0\nvt .5 0\nvt .5 1\
                                     "f 1/1 2/2 3/3 4/4\nf 2/2 5/5 6/6 3/3\n";
 
 // A cut file may only be read where the cut leaves whole faces.
-static void truncated_at_every_byte(void **state) {
-    (void)state;
+TEST(truncated_at_every_byte) {
     Polygons whole, mesh;
     SingeError error;
     assert_int_equal(parse(sample, &whole, &error), SINGE_OK);
@@ -202,8 +194,7 @@ static void truncated_at_every_byte(void **state) {
     polygons_free(&whole);
 }
 
-static void allocation_failure_is_clean(void **state) {
-    (void)state;
+TEST(allocation_failure_is_clean) {
     Polygons mesh;
     SingeError error;
     test_allocations_fail(5, obj_read("a.obj", (const uint8_t *)sample, sizeof sample - 1, allocator, &mesh, &error),
@@ -212,8 +203,7 @@ static void allocation_failure_is_clean(void **state) {
 
 // The example's sheet: A4, in low waves over the table, borders straight from above, at most 30,000 springs
 // (4 + 2 + 2 + 2 a cell, fewer at the border).
-static void the_letter_is_a4(void **state) {
-    (void)state;
+TEST(the_letter_is_a4) {
     Bytes bytes;
     Polygons mesh;
     SingeError error;
@@ -246,20 +236,4 @@ static void the_letter_is_a4(void **state) {
     assert_int_equal(on_border, 2 * (46 + 65));
     polygons_free(&mesh);
     bytes_free(&bytes);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keeps_order_and_positions),
-        cmocka_unit_test(reads_every_form),
-        cmocka_unit_test(refuses_bad_syntax),
-        cmocka_unit_test(refuses_bad_meshes),
-        cmocka_unit_test(faces_have_any_number_of_corners),
-        cmocka_unit_test(corners_keep_their_uv),
-        cmocka_unit_test(registry_goes_by_the_ending),
-        cmocka_unit_test(truncated_at_every_byte),
-        cmocka_unit_test(allocation_failure_is_clean),
-        cmocka_unit_test(the_letter_is_a4),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,8 +30,7 @@ static void expect_error(const char *text, SingeResult code, int64_t line, const
 #define SQUARE "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
 #define GOOD_HEADER HEADER "element vertex 4\n" XYZ "element face 1\n" FACES "end_header\n"
 
-static void reads_ascii(void **state) {
-    (void)state;
+TEST(reads_ascii) {
     static const char text[] = "ply\r\nformat ascii 1.0\r\ncomment made by hand\r\nobj_info x\r\n"
                                "element extra 2\r\nproperty list uchar float things\r\nproperty int k\r\n"
                                "element vertex 4\r\nproperty double z\r\nproperty float32 nx\r\nproperty float x\r\n"
@@ -124,8 +123,7 @@ static Maker make_binary(bool big) {
     return maker;
 }
 
-static void reads_binary_of_both_orders(void **state) {
-    (void)state;
+TEST(reads_binary_of_both_orders) {
     for (int big = 0; big < 2; big++) {
         Maker maker = make_binary(big);
         Polygons mesh;
@@ -152,8 +150,7 @@ static void reads_binary_of_both_orders(void **state) {
     }
 }
 
-static void refuses_bad_headers(void **state) {
-    (void)state;
+TEST(refuses_bad_headers) {
     expect_error("", SINGE_ERROR_FORMAT, 1, "empty");
     expect_error("plx\nformat ascii 1.0\n", SINGE_ERROR_FORMAT, 1, "not a PLY file");
     expect_error("ply", SINGE_ERROR_FORMAT, 1, "not a PLY file");
@@ -181,8 +178,7 @@ static void refuses_bad_headers(void **state) {
                  "cut off");
 }
 
-static void refuses_bad_bodies(void **state) {
-    (void)state;
+TEST(refuses_bad_bodies) {
     expect_error(HEADER "element face 1\n" FACES "end_header\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, -1, "no vertices");
     expect_error(HEADER "element vertex 4\n" XYZ "end_header\n" SQUARE, SINGE_ERROR_FORMAT, -1, "no faces");
     expect_error(HEADER "element vertex 0\n" XYZ "element face 0\n" FACES "end_header\n", SINGE_ERROR_FORMAT, -1,
@@ -215,8 +211,7 @@ static void refuses_bad_bodies(void **state) {
     expect_error(GOOD_HEADER "0 0 0\n1 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, 11, "too few values");
 }
 
-static void refuses_bad_binary_values(void **state) {
-    (void)state;
+TEST(refuses_bad_binary_values) {
     static const double bad[] = {NAN, INFINITY, 1e300, -3.5e38};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         Maker maker = {0};
@@ -234,8 +229,7 @@ static void refuses_bad_binary_values(void **state) {
 }
 
 // Counts and list lengths that the file cannot hold are refused before memory is taken for them.
-static void large_claims_take_no_memory(void **state) {
-    (void)state;
+TEST(large_claims_take_no_memory) {
     static const char *const claims[] = {
         "ply\nformat binary_little_endian 1.0\nelement vertex 2147483647\n" XYZ "element face 1\n" FACES "end_header\n"
         "0123456789",
@@ -261,8 +255,7 @@ static void large_claims_take_no_memory(void **state) {
 }
 
 // Triangles and polygons, and uv of each face's own (MeshLab), which may come before its corners.
-static void faces_have_uv_of_their_own(void **state) {
-    (void)state;
+TEST(faces_have_uv_of_their_own) {
     static const char text[] =
         HEADER "element vertex 4\n" XYZ "element face 2\nproperty list uchar float texcoord\n" FACES
                "end_header\n" SQUARE "6 0 0 1 0 1 1 3 0 1 2\n8 0 0 1 1 0 1 .5 .5 4 0 2 3 1\n";
@@ -281,8 +274,7 @@ static void faces_have_uv_of_their_own(void **state) {
                  SINGE_ERROR_MESH, -1, "u and v for each");
 }
 
-static void truncated_ascii(void **state) {
-    (void)state;
+TEST(truncated_ascii) {
     static const char text[] = GOOD_HEADER SQUARE "4 0 1 2 3\n";
     Polygons mesh;
     SingeError error;
@@ -293,8 +285,7 @@ static void truncated_ascii(void **state) {
     polygons_free(&mesh);
 }
 
-static void allocation_failure_is_clean(void **state) {
-    (void)state;
+TEST(allocation_failure_is_clean) {
     Maker maker = make_binary(false);
     Polygons mesh;
     SingeError error;
@@ -303,8 +294,7 @@ static void allocation_failure_is_clean(void **state) {
 }
 
 /// Their names are compared with each other: many of them would take minutes.
-static void kinds_of_elements_and_properties_are_limited(void **state) {
-    (void)state;
+TEST(kinds_of_elements_and_properties_are_limited) {
     enum { LINE = 24, MAX = 1001 };
     static char text[MAX * LINE + 400];
     for (int kinds = 0; kinds < 2; kinds++) {
@@ -319,8 +309,7 @@ static void kinds_of_elements_and_properties_are_limited(void **state) {
 }
 
 /// A count of elements without properties needs no bytes in the file, and must get none in memory.
-static void counts_without_bytes_take_no_memory(void **state) {
-    (void)state;
+TEST(counts_without_bytes_take_no_memory) {
     static const char text[] =
         "ply\nformat binary_little_endian 1.0\nelement vertex 2147483647\nelement face 1\n" FACES "end_header\n\3";
     TestAllocator counts = {0};
@@ -331,21 +320,4 @@ static void counts_without_bytes_take_no_memory(void **state) {
     assert_message(&error, "no property \"x\"");
     assert_true(counts.largest < 10000);
     test_allocator_check(&counts);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_ascii),
-        cmocka_unit_test(reads_binary_of_both_orders),
-        cmocka_unit_test(refuses_bad_headers),
-        cmocka_unit_test(refuses_bad_bodies),
-        cmocka_unit_test(refuses_bad_binary_values),
-        cmocka_unit_test(large_claims_take_no_memory),
-        cmocka_unit_test(faces_have_uv_of_their_own),
-        cmocka_unit_test(truncated_ascii),
-        cmocka_unit_test(allocation_failure_is_clean),
-        cmocka_unit_test(kinds_of_elements_and_properties_are_limited),
-        cmocka_unit_test(counts_without_bytes_take_no_memory),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,8 +13,7 @@ static void expect_shown(const char *text, const char *expected) {
     assert_int_equal(printable_is(text), strcmp(text, expected) == 0);
 }
 
-static void escapes(void **state) {
-    (void)state;
+TEST(escapes) {
     expect_shown("", "");
     expect_shown("letter.yaml", "letter.yaml");
     expect_shown("\xc3\xa9\xe2\x82\xac\xf0\x9f\x94\xa5 \\", "\xc3\xa9\xe2\x82\xac\xf0\x9f\x94\xa5 \\");
@@ -34,8 +33,7 @@ static void escapes(void **state) {
 }
 
 /// Every code point and every pair of bytes: the result prints as it is, and has room.
-static void all_characters(void **state) {
-    (void)state;
+TEST(all_characters) {
     for (unsigned code = 1; code < 0x110000; code++) {
         char text[5] = {0};
         if (code < 0x80) text[0] = (char)code;
@@ -58,8 +56,7 @@ static void all_characters(void **state) {
     }
 }
 
-static void cuts(void **state) {
-    (void)state;
+TEST(cuts) {
     static const char *const pieces[] = {"x",   "\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x94\xa5", "\xf3\xa0\x80\x81",
                                          "\xff"};
     for (size_t p = 0; p < sizeof pieces / sizeof *pieces; p++)
@@ -74,8 +71,7 @@ static void cuts(void **state) {
         }
 }
 
-static void trims(void **state) {
-    (void)state;
+TEST(trims) {
     static const char *const cases[][2] = {{"", ""},
                                            {"a", "a"},
                                            {"a\xc3", "a"},
@@ -89,10 +85,4 @@ static void trims(void **state) {
         printable_trim(text);
         assert_string_equal(text, cases[i][1] ? cases[i][1] : cases[i][0]);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(escapes), cmocka_unit_test(all_characters),
-                                       cmocka_unit_test(cuts), cmocka_unit_test(trims)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

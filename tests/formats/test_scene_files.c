@@ -78,8 +78,7 @@ static void expect_in(const char *text, const char *prim, const char *line) {
     if (!at || !to || at > to) fail_msg("%s has no \"%s\"", prim, line);
 }
 
-static void shapes_stand_where_they_are(void **state) {
-    (void)state;
+TEST(shapes_stand_where_they_are) {
     Sink sink;
     const OutputScene scene = scene_of(&plain);
     const char *text = root_text(&sink, &scene);
@@ -110,8 +109,7 @@ static void shapes_stand_where_they_are(void **state) {
     sink_free(&sink);
 }
 
-static void without_a_ground_there_is_none(void **state) {
-    (void)state;
+TEST(without_a_ground_there_is_none) {
     Sink sink;
     OutputScene scene = scene_of(&plain);
     scene.ground_height = -INFINITY, scene.shape_count = 0;
@@ -175,8 +173,7 @@ static uint64_t series_value(const CrateFile *file, const char *attribute, uint6
     return crate_number(file, at + 32 + 8 * index, 8) & 0xffffffffffff;
 }
 
-static void all_frames_in_one_file(void **state) {
-    (void)state;
+TEST(all_frames_in_one_file) {
     Leaf leaf;
     make_leaf(&leaf);
     OutputScene scene = scene_of(&plain);
@@ -206,8 +203,7 @@ static SingeResult fail_frame(void *context, int number, OutputFrame *frame, Sin
 }
 
 /// A frame that cannot be read leaves no file of any kind.
-static void a_bad_frame_leaves_no_file(void **state) {
-    (void)state;
+TEST(a_bad_frame_leaves_no_file) {
     Leaf leaf;
     make_leaf(&leaf);
     OutputScene scene = scene_of(&plain);
@@ -222,18 +218,10 @@ static void a_bad_frame_leaves_no_file(void **state) {
     }
 }
 
-static int make_path(void **state) {
-    (void)state;
+static void make_path(int argc, char **argv) {
+    (void)argc;
+    (void)argv;
     snprintf(path, sizeof path, "/tmp/singe-scene-files-%ld", (long)getpid());
-    return 0;
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shapes_stand_where_they_are),
-        cmocka_unit_test(without_a_ground_there_is_none),
-        cmocka_unit_test(all_frames_in_one_file),
-        cmocka_unit_test(a_bad_frame_leaves_no_file),
-    };
-    return cmocka_run_group_tests(tests, make_path, NULL);
-}
+TEST_AROUND(make_path, NULL)

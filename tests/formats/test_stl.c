@@ -47,8 +47,7 @@ static const uint32_t in_order[] = {0, 1, 2, 3, 4, 5};
 #define FACET(a, b, c) \
     " facet normal 0 0 1\n  outer loop\n   vertex " a "\n   vertex " b "\n   vertex " c "\n  endloop\n endfacet\n"
 
-static void stl_text_is_read(void **state) {
-    (void)state;
+TEST(stl_text_is_read) {
     static const char *const texts[] = {
         "solid a b\n" FACET("0 0 0", "1 0 0", "1 1 0") FACET("0 0 0", "1 1 0", "0 1 .5") "endsolid a b\n",
         "solid\n" FACET("0 0 0", "1 0 0", "1 1 0") "endsolid\nsolid two\nendsolid\nsolid 3\n" FACET(
@@ -71,8 +70,7 @@ static size_t binary(uint8_t *bytes, const char *head, uint32_t count) {
     return 184;
 }
 
-static void stl_bytes_are_read(void **state) {
-    (void)state;
+TEST(stl_bytes_are_read) {
     uint8_t bytes[184];
     Polygons mesh;
     SingeError error;
@@ -87,8 +85,7 @@ static void stl_bytes_are_read(void **state) {
     }
 }
 
-static void stl_bytes_are_refused(void **state) {
-    (void)state;
+TEST(stl_bytes_are_refused) {
     char bytes[185] = "";
     size_t size = binary((uint8_t *)bytes, "a", 2);
     expect_error("a.stl", bytes, 0, SINGE_ERROR_FORMAT, 1, "empty");
@@ -105,8 +102,7 @@ static void stl_bytes_are_refused(void **state) {
     expect_error("a.stl", bytes, size, SINGE_ERROR_FORMAT, 150, "byte 150: a position is not finite");
 }
 
-static void stl_text_is_refused(void **state) {
-    (void)state;
+TEST(stl_text_is_refused) {
     static const struct {
         const char *text;
         int line;
@@ -130,8 +126,7 @@ static void stl_text_is_refused(void **state) {
 static const char good_stl[] =
     "solid a\n" FACET("0 0 0", "1 0 0", "1 1 0") FACET("0 0 0", "1 1 0", "0 1 .5") "endsolid";
 
-static void every_cut_is_refused(void **state) {
-    (void)state;
+TEST(every_cut_is_refused) {
     uint8_t bytes[184];
     Polygons mesh;
     SingeError error;
@@ -141,8 +136,7 @@ static void every_cut_is_refused(void **state) {
         assert_int_equal(parse_bytes("a.stl", bytes, size, &mesh, &error), SINGE_ERROR_FORMAT);
 }
 
-static void failing_memory_is_reported(void **state) {
-    (void)state;
+TEST(failing_memory_is_reported) {
     uint8_t bytes[184];
     binary(bytes, "a", 2);
     const struct {
@@ -155,13 +149,4 @@ static void failing_memory_is_reported(void **state) {
     for (int i = 0; i < 2; i++)
         test_allocations_fail(0, polygons_read(files[i].name, files[i].data, files[i].size, allocator, &mesh, &error),
                               polygons_free(&mesh));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stl_text_is_read),      cmocka_unit_test(stl_bytes_are_read),
-        cmocka_unit_test(stl_bytes_are_refused), cmocka_unit_test(stl_text_is_refused),
-        cmocka_unit_test(every_cut_is_refused),  cmocka_unit_test(failing_memory_is_reported),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -126,8 +126,7 @@ static void check_triangles(const CrateFile *file, const SingeSurface *s, const 
     free(read);
 }
 
-static void every_value_comes_back(void **state) {
-    (void)state;
+TEST(every_value_comes_back) {
     SingeSurface s;
     CrateFile file;
     make_sheet(&s, 40, 1);
@@ -143,8 +142,7 @@ static void every_value_comes_back(void **state) {
 }
 
 /// Two sheets whose vertices take turns, with names that become one.
-static void sheets_are_meshes_of_their_own(void **state) {
-    (void)state;
+TEST(sheets_are_meshes_of_their_own) {
     SingeSurface s;
     CrateFile file;
     SingeError error;
@@ -166,8 +164,7 @@ static void sheets_are_meshes_of_their_own(void **state) {
 }
 
 /// With a picture every face is in one of two subsets: those that look as at the start, and the others.
-static void pictured_sheets_have_subsets(void **state) {
-    (void)state;
+TEST(pictured_sheets_have_subsets) {
     SingeSurface s;
     CrateFile file;
     double time;
@@ -186,8 +183,7 @@ static void pictured_sheets_have_subsets(void **state) {
     singe_surface_free(&s);
 }
 
-static void nothing_left_is_a_frame_too(void **state) {
-    (void)state;
+TEST(nothing_left_is_a_frame_too) {
     const SingeSurface none = {0};
     CrateFile file;
     Bytes bytes = written(&none, 1, "a.png");
@@ -199,8 +195,7 @@ static void nothing_left_is_a_frame_too(void **state) {
 }
 
 /// The tests' reader unpacks the output of lz4_pack; repeats are short.
-static void packed_bytes_come_back(void **state) {
-    (void)state;
+TEST(packed_bytes_come_back) {
     static const size_t sizes[] = {0, 1, 12, 13, 14, 15, 16, 255, 270, 271, 5000, 70000, 300000};
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
         for (int kind = 0; kind < 4; kind++) {
@@ -257,15 +252,13 @@ static void check_memory(int format) {
     singe_surface_free(&s);
 }
 
-static void without_memory_there_is_no_file(void **state) {
-    (void)state;
+TEST(without_memory_there_is_no_file) {
     for (int format = 0; format < OUTPUT_COUNT; format++)
         if (format != OUTPUT_textures || exr_available()) check_memory(format);
 }
 
 /// Sheets of which nothing is left are a file in every format.
-static void every_format_has_empty_frames(void **state) {
-    (void)state;
+TEST(every_format_has_empty_frames) {
     const SingeSurface none = {0};
     SingeError error;
     for (int format = 0; format < OUTPUT_COUNT; format++) {
@@ -296,8 +289,7 @@ static double yardstick(void) {
 }
 
 /// At 25,000 vertices a frame takes at most 5 ms of the program's time and 75 % of the bytes of the PLY.
-static void is_fast_and_small(void **state) {
-    (void)state;
+TEST(is_fast_and_small) {
     SingeSurface s;
     SingeError error;
     Bytes ply;
@@ -334,20 +326,12 @@ static void is_fast_and_small(void **state) {
     singe_surface_free(&s);
 }
 
-static int make_path(void **state) {
-    (void)state;
+static void make_path(int argc, char **argv) {
+    (void)argc;
+    (void)argv;
     // in memory where that can be: what is timed is the writer, not the disk
     snprintf(path, sizeof path, "%s/singe-usd-%ld.usdc", access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm",
              (long)getpid());
-    return 0;
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(packed_bytes_come_back),         cmocka_unit_test(every_value_comes_back),
-        cmocka_unit_test(sheets_are_meshes_of_their_own), cmocka_unit_test(pictured_sheets_have_subsets),
-        cmocka_unit_test(nothing_left_is_a_frame_too),    cmocka_unit_test(without_memory_there_is_no_file),
-        cmocka_unit_test(every_format_has_empty_frames),  cmocka_unit_test(is_fast_and_small),
-    };
-    return cmocka_run_group_tests(tests, make_path, NULL);
-}
+TEST_AROUND(make_path, NULL)

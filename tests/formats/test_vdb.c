@@ -37,8 +37,7 @@ static void assert_same(const SingeGas *a, const SingeGas *b) {
     assert_memory_equal(a->velocity, b->velocity, count * sizeof(float[3]));
 }
 
-static void round_trip_is_bitwise(void **state) {
-    (void)state;
+TEST(round_trip_is_bitwise) {
     static const uint32_t sizes[][3] = {{1, 1, 1}, {8, 8, 8}, {37, 21, 60}, {9, 140, 17}, {130, 3, 129}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         Gas gas, read;
@@ -59,8 +58,7 @@ static void round_trip_is_bitwise(void **state) {
 }
 
 /// Still air costs nothing but the root.
-static void empty_is_small(void **state) {
-    (void)state;
+TEST(empty_is_small) {
     enum { SIDE = 64 };
     GasSample sample;
     Gas gas, read;
@@ -85,8 +83,7 @@ static void empty_is_small(void **state) {
     gas_sample_free(&sample);
 }
 
-static void bad_gas_is_refused(void **state) {
-    (void)state;
+TEST(bad_gas_is_refused) {
     GasSample sample;
     Gas gas, none = {0};
     SingeError error;
@@ -107,8 +104,7 @@ static void bad_gas_is_refused(void **state) {
 }
 
 /// Cut off anywhere, and with any byte of the head changed: refused or read, and nothing is leaked.
-static void bad_bytes_are_refused(void **state) {
-    (void)state;
+TEST(bad_bytes_are_refused) {
     Gas gas, read;
     SingeError error;
     make(12, 9, 20, &gas);
@@ -144,8 +140,7 @@ static void bad_bytes_are_refused(void **state) {
     bytes_free(&bytes), gas_free(&gas);
 }
 
-static void no_memory_is_reported(void **state) {
-    (void)state;
+TEST(no_memory_is_reported) {
     GasSample sample;
     SingeError error;
     Gas gas, read;
@@ -170,23 +165,13 @@ static void no_memory_is_reported(void **state) {
     gas_sample_free(&sample);
 }
 
-static int make_folder(void **state) {
-    (void)state;
+static void make_folder(int argc, char **argv) {
+    (void)argc;
+    (void)argv;
     folder = test_folder();
     snprintf(path, sizeof path, "%s/a.vdb", folder);
-    return 0;
 }
 
-static int remove_folder(void **state) {
-    (void)state;
-    return rmdir(folder);
-}
+static int remove_folder(void) { return rmdir(folder) != 0; }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(round_trip_is_bitwise), cmocka_unit_test(empty_is_small),
-        cmocka_unit_test(bad_gas_is_refused),    cmocka_unit_test(bad_bytes_are_refused),
-        cmocka_unit_test(no_memory_is_reported),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
-}
+TEST_AROUND(make_folder, remove_folder)

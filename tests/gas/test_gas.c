@@ -80,8 +80,7 @@ static double air_max(const Air *air, GasField field) {
 }
 
 /// Burnt mass is in the gas, as fuel or as heat, until it reaches the border.
-static void heat_is_kept(void **unused) {
-    (void)unused;
+TEST(heat_is_kept) {
     GasSettings settings = settings_default();
     Air air;
     air_open(&air, &settings);
@@ -97,8 +96,7 @@ static void heat_is_kept(void **unused) {
 }
 
 /// The part that is radiated is not in the gas, and a fire shown `pace` times as fast has the power of the real one.
-static void power_is_the_real_fires(void **unused) {
-    (void)unused;
+TEST(power_is_the_real_fires) {
     double heat[3];
     for (int k = 0; k < 3; k++) {
         GasSettings settings = settings_default();
@@ -137,8 +135,7 @@ static double plume_speed(double power, double height) {
 
 /// On the axis of a plume w = 3.4 (B/z)^(1/3) with B = g Q/(rho cp Ta) (Morton, Taylor & Turner 1956 with the constants
 /// of Rouse, Yih & Humphreys 1952).
-static void plumes_rise_by_their_law(void **unused) {
-    (void)unused;
+TEST(plumes_rise_by_their_law) {
     const double z = 0.4, low = 12.5, high = 100;
     double a = plume_speed(low, z), b = plume_speed(high, z);
     double law = 3.4 * cbrt(9.81 * low / (double)GAS_HEAT / z);
@@ -149,8 +146,7 @@ static void plumes_rise_by_their_law(void **unused) {
 }
 
 /// A mesh and heights shut the cells that a box of the same shape shuts.
-static void solids_shut_cells(void **unused) {
-    (void)unused;
+TEST(solids_shut_cells) {
     static float vertices[24];
     static const uint32_t triangles[] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
                                          2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
@@ -195,8 +191,7 @@ static void solids_shut_cells(void **unused) {
 
 /// The flow's divergence is that of the expansion, nothing passes where the sheet is whole, and nothing enters a
 /// collider.
-static void flow_goes_around(void **unused) {
-    (void)unused;
+TEST(flow_goes_around) {
     GasSettings settings = settings_default();
     Air air;
     air_open(&air, &settings);
@@ -238,8 +233,7 @@ static void flow_goes_around(void **unused) {
 
 /// A sheet that stands over the fire is heated from where the gas comes, by no more than the gas is hot, and takes that
 /// heat from it.
-static void gas_heats_what_it_flows_by(void **unused) {
-    (void)unused;
+TEST(gas_heats_what_it_flows_by) {
     double left[2];
     for (int k = 0; k < 2; k++) {
         GasSettings settings = settings_default();
@@ -271,8 +265,7 @@ static void gas_heats_what_it_flows_by(void **unused) {
 }
 
 /// When all is over it rests, and wakes when something burns again.
-static void it_comes_to_rest(void **unused) {
-    (void)unused;
+TEST(it_comes_to_rest) {
     GasSettings settings = settings_default();
     Air air;
     air_open(&air, &settings);
@@ -294,8 +287,7 @@ static void it_comes_to_rest(void **unused) {
 }
 
 /// Positions far away, at the border and not finite, and powers that no fire has.
-static void copes_with_anything(void **unused) {
-    (void)unused;
+TEST(copes_with_anything) {
     GasSettings settings = settings_default();
     settings.def.conductance = 20;
     Air air;
@@ -319,8 +311,7 @@ static void copes_with_anything(void **unused) {
 }
 
 /// The grid holds the sheets with room above, and keeps to its budget.
-static void grid_suits_the_sheets(void **unused) {
-    (void)unused;
+TEST(grid_suits_the_sheets) {
     const float cells[] = {0, 0.005f, 1e-5f, 0.2f};
     for (int k = 0; k < 4; k++) {
         GasSettings settings = settings_default();
@@ -338,19 +329,4 @@ static void grid_suits_the_sheets(void **unused) {
         if (k == 1) assert_true(gas.cell == 0.005f);
         air_close(&air);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(heat_is_kept),
-        cmocka_unit_test(power_is_the_real_fires),
-        cmocka_unit_test(plumes_rise_by_their_law),
-        cmocka_unit_test(solids_shut_cells),
-        cmocka_unit_test(flow_goes_around),
-        cmocka_unit_test(gas_heats_what_it_flows_by),
-        cmocka_unit_test(it_comes_to_rest),
-        cmocka_unit_test(copes_with_anything),
-        cmocka_unit_test(grid_suits_the_sheets),
-    };
-    return cmocka_run_group_tests_name("gas", tests, NULL, NULL);
 }

@@ -2,12 +2,7 @@
 #ifndef TESTS_HEAT_RIG_H
 #define TESTS_HEAT_RIG_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "heat/heat.h"
 

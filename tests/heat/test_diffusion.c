@@ -43,8 +43,7 @@ static double mode_error(int n, float aspect, bool centres, float exchange) {
     return fabs(amplitude / (300 * exp(-decay * seconds)) - 1);
 }
 
-static void slab_mode_decays_with_second_order(void **unused) {
-    (void)unused;
+TEST(slab_mode_decays_with_second_order) {
     for (int centres = 0; centres < 2; centres++)
         for (int k = 0; k < 2; k++) {
             float aspect = k ? 0.5f : 1, exchange = k ? 2 : 0;
@@ -109,8 +108,7 @@ static Moments gaussian(const RigDef *def, int layer, double deviation) {
                      after.sum / before.sum};
 }
 
-static void gaussian_spreads_at_the_right_rate(void **unused) {
-    (void)unused;
+TEST(gaussian_spreads_at_the_right_rate) {
     for (int layer = 0; layer < 3; layer++) {
         RigDef def = rig_default(60, 60, 0.002f, 0.002f);
         Moments m = gaussian(&def, layer, 0.008);
@@ -120,8 +118,7 @@ static void gaussian_spreads_at_the_right_rate(void **unused) {
     }
 }
 
-static void surface_is_isotropic_on_long_cells(void **unused) {
-    (void)unused;
+TEST(surface_is_isotropic_on_long_cells) {
     for (int layer = 0; layer < 2; layer++) {
         RigDef def = rig_default(36, 72, 0.004f, 0.002f);
         Moments m = gaussian(&def, layer, 0.008);
@@ -135,8 +132,7 @@ static void shear(float position[3], int column, int row) {
     position[0] += 0.5f * position[1];
 }
 
-static void surface_on_skewed_cells(void **unused) {
-    (void)unused;
+TEST(surface_on_skewed_cells) {
     RigDef def = rig_default(70, 60, 0.002f, 0.002f);
     def.shape = shear;
     def.material.layer_exchange = singe_param(0);
@@ -157,8 +153,7 @@ static double umbrella_factor(double dx, double dy, double t) {
     return (2 * dx + 2 * dx * dx / q + dx * dx / r) / (2 * dx + 2 * dy + 2 * q + 4 * r);
 }
 
-static void umbrella_has_its_derived_diffusivity(void **unused) {
-    (void)unused;
+TEST(umbrella_has_its_derived_diffusivity) {
     CHECK_NEAR(umbrella_factor(1, 1, 0), 0.5, 1e-12);
     const struct {
         float dx, dy, t;
@@ -175,8 +170,7 @@ static void umbrella_has_its_derived_diffusivity(void **unused) {
     }
 }
 
-static void umbrella_slab_mode_decays(void **unused) {
-    (void)unused;
+TEST(umbrella_slab_mode_decays) {
     // thin strip, many cells: the boundary corners' wrong capacity matters less and less; first order remains
     double length = 0.08, error[3];
     for (int k = 0; k < 3; k++) {
@@ -208,8 +202,7 @@ static void jitter(float position[3], int column, int row) {
     for (int k = 0; k < 2; k++) position[k] += 0.0012f * (rig_random((uint32_t)column, (uint32_t)(2 * row + k)) - 0.5f);
 }
 
-static void insulated_sheet_keeps_its_heat(void **unused) {
-    (void)unused;
+TEST(insulated_sheet_keeps_its_heat) {
     RigDef def = rig_default(20, 20, 0.002f, 0.002f);
     def.shape = jitter;
     def.settings.tolerance = 1e-2f; // conserved however badly it is solved
@@ -228,8 +221,7 @@ static void insulated_sheet_keeps_its_heat(void **unused) {
     rig_close(&rig);
 }
 
-static void uniform_temperature_stays_to_the_bit(void **unused) {
-    (void)unused;
+TEST(uniform_temperature_stays_to_the_bit) {
     for (int k = 0; k < 2; k++) {
         RigDef def = rig_default(9, 7, 0.002f, 0.002f);
         def.shape = jitter;
@@ -243,8 +235,7 @@ static void uniform_temperature_stays_to_the_bit(void **unused) {
     }
 }
 
-static void linear_temperature_is_steady_on_skewed_quads(void **unused) {
-    (void)unused;
+TEST(linear_temperature_is_steady_on_skewed_quads) {
     RigDef def = rig_default(16, 16, 0.002f, 0.002f);
     def.shape = jitter;
     def.material.layer_exchange = singe_param(0);
@@ -268,8 +259,7 @@ static void linear_temperature_is_steady_on_skewed_quads(void **unused) {
 }
 
 /// A long strip and a step of 20 s: the solver stops at its cap, says so, and loses no heat.
-static void iterations_have_an_end(void **unused) {
-    (void)unused;
+TEST(iterations_have_an_end) {
     RigDef def = rig_default(600, 1, 0.002f, 0.002f);
     def.settings.tolerance = 1e-6f;
     Rig rig;
@@ -289,8 +279,7 @@ static void iterations_have_an_end(void **unused) {
     rig_close(&rig);
 }
 
-static void layers_even_out_at_their_rate(void **unused) {
-    (void)unused;
+TEST(layers_even_out_at_their_rate) {
     RigDef def = rig_default(8, 6, 0.002f, 0.003f);
     def.shape = jitter;
     def.material.thickening = 2;
@@ -307,8 +296,7 @@ static void layers_even_out_at_their_rate(void **unused) {
     rig_close(&rig);
 }
 
-static void what_is_gone_conducts_nothing(void **unused) {
-    (void)unused;
+TEST(what_is_gone_conducts_nothing) {
     RigDef def = rig_default(8, 2, 0.002f, 0.002f);
     def.shape = shear;
     Rig rig;
@@ -341,8 +329,7 @@ static void what_is_gone_conducts_nothing(void **unused) {
 
 /// Conduction moves heat, not temperature: where the sheet is heavier or of more specific heat, as much heat warms it
 /// less. The total is kept on the way, and the end is the mean by capacity.
-static void heat_is_kept_where_capacity_varies(void **unused) {
-    (void)unused;
+TEST(heat_is_kept_where_capacity_varies) {
     static const float halves[] = {0, 1};
     RigDef def = rig_default(12, 3, 0.002f, 0.003f);
     def.material.grammage =
@@ -370,8 +357,7 @@ static void heat_is_kept_where_capacity_varies(void **unused) {
 }
 
 /// Where the exchange varies, the layers even out at the local rate, and no heat is lost.
-static void layers_even_out_at_their_own_rates(void **unused) {
-    (void)unused;
+TEST(layers_even_out_at_their_own_rates) {
     static const float halves[] = {0, 1};
     RigDef def = rig_default(40, 2, 0.002f, 0.002f);
     def.material.diffusivity = singe_param(0);
@@ -390,24 +376,4 @@ static void layers_even_out_at_their_own_rates(void **unused) {
     CHECK_NEAR(right / 200, pow(1 + 40 * 0.002, -25), 1e-3);
     CHECK_NEAR(rig_content(&rig, 1), before, 1e-6 * before);
     rig_close(&rig);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slab_mode_decays_with_second_order),
-        cmocka_unit_test(gaussian_spreads_at_the_right_rate),
-        cmocka_unit_test(surface_is_isotropic_on_long_cells),
-        cmocka_unit_test(surface_on_skewed_cells),
-        cmocka_unit_test(umbrella_has_its_derived_diffusivity),
-        cmocka_unit_test(umbrella_slab_mode_decays),
-        cmocka_unit_test(insulated_sheet_keeps_its_heat),
-        cmocka_unit_test(uniform_temperature_stays_to_the_bit),
-        cmocka_unit_test(linear_temperature_is_steady_on_skewed_quads),
-        cmocka_unit_test(iterations_have_an_end),
-        cmocka_unit_test(layers_even_out_at_their_rate),
-        cmocka_unit_test(layers_even_out_at_their_own_rates),
-        cmocka_unit_test(heat_is_kept_where_capacity_varies),
-        cmocka_unit_test(what_is_gone_conducts_nothing),
-    };
-    return cmocka_run_group_tests_name("heat_diffusion", tests, NULL, NULL);
 }

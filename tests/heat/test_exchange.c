@@ -50,8 +50,7 @@ static double cool(float h, float mass, float thickening) {
     return T;
 }
 
-static void cooling_follows_radiation_and_convection(void **unused) {
-    (void)unused;
+TEST(cooling_follows_radiation_and_convection) {
     const struct {
         float mass, thickening;
         double effective;
@@ -65,8 +64,7 @@ static void cooling_follows_radiation_and_convection(void **unused) {
     }
 }
 
-static void one_step_of_losses_is_the_formula(void **unused) {
-    (void)unused;
+TEST(one_step_of_losses_is_the_formula) {
     RigDef def = lossy();
     Rig rig;
     rig_open(&rig, &def);
@@ -82,8 +80,7 @@ static void one_step_of_losses_is_the_formula(void **unused) {
     rig_close(&rig);
 }
 
-static void combustion_is_eta_times_burnt_mass(void **unused) {
-    (void)unused;
+TEST(combustion_is_eta_times_burnt_mass) {
     RigDef def = rig_default(3, 2, 0.002f, 0.002f);
     def.material.heat_of_combustion = singe_param(2400 * 1400), def.material.heat_share = singe_param(1);
     def.settings.pace = 4; // burn_rate is per second of scene time already
@@ -98,8 +95,7 @@ static void combustion_is_eta_times_burnt_mass(void **unused) {
     rig_close(&rig);
 }
 
-static void pace_is_fire_time(void **unused) {
-    (void)unused;
+TEST(pace_is_fire_time) {
     double T[2];
     for (int k = 0; k < 2; k++) {
         RigDef def = lossy();
@@ -116,8 +112,7 @@ static void pace_is_fire_time(void **unused) {
 }
 
 /// Heated by combustion, then cooling: the peak is the hottest state, and stays.
-static void the_peak_is_the_hottest_so_far(void **unused) {
-    (void)unused;
+TEST(the_peak_is_the_hottest_so_far) {
     RigDef def = lossy();
     def.material.heat_of_combustion = singe_param(2400 * 1400), def.material.heat_share = singe_param(1);
     Rig rig;
@@ -162,8 +157,7 @@ static void even_flux(void *context, const struct SingeView *view, float *flux, 
 }
 
 /// Under the same flux, a heavier sheet or one of more specific heat warms less, by eq 1.
-static void heavier_halves_heat_slower(void **unused) {
-    (void)unused;
+TEST(heavier_halves_heat_slower) {
     for (int which = 0; which < 2; which++) {
         RigDef def = rig_default(8, 2, 0.002f, 0.002f);
         def.material.diffusivity = def.material.layer_exchange = singe_param(0);
@@ -192,8 +186,7 @@ static void heavier_halves_heat_slower(void **unused) {
 }
 
 /// The losses of each particle are those of a sheet that is all of its material.
-static void losses_are_each_particles_own(void **unused) {
-    (void)unused;
+TEST(losses_are_each_particles_own) {
     float T[3][2]; // varying, all left, all right
     for (int run = 0; run < 3; run++) {
         RigDef def = rig_default(8, 2, 0.002f, 0.002f);
@@ -222,8 +215,7 @@ static void poison(void *context, const struct SingeView *view, float *flux, flo
     flux[7] = *(float *)context;
 }
 
-static void a_bad_temperature_is_named_and_kept_out(void **unused) {
-    (void)unused;
+TEST(a_bad_temperature_is_named_and_kept_out) {
     float values[] = {NAN, INFINITY, -INFINITY};
     for (int k = 0; k < 3; k++) {
         RigDef def = rig_default(3, 2, 0.002f, 0.002f);
@@ -245,8 +237,7 @@ static void a_bad_temperature_is_named_and_kept_out(void **unused) {
 }
 
 /// From any temperature, in any step: the result lies between the ambient temperature and the previous one.
-static void any_heat_ends_finite(void **unused) {
-    (void)unused;
+TEST(any_heat_ends_finite) {
     static const float starts[] = {1e-30f, 1e-3f, 1, 292, 294, 1e4f, 1e6f, 1e12f, 1e20f, 1e38f};
     static const float steps[] = {1e-9f, 1e-3f, 10, 1e7f};
     for (size_t k = 0; k < sizeof starts / sizeof *starts; k++)
@@ -271,8 +262,7 @@ static void any_heat_ends_finite(void **unused) {
 }
 
 /// Refused with the sheet's name, and not found in a step.
-static void what_conducts_beyond_floats_is_refused(void **unused) {
-    (void)unused;
+TEST(what_conducts_beyond_floats_is_refused) {
     for (int k = 0; k < 4; k++) {
         RigDef def = rig_default(3, 2, 0.002f, 0.002f);
         Rig rig;
@@ -289,8 +279,7 @@ static void what_conducts_beyond_floats_is_refused(void **unused) {
     }
 }
 
-static void running_out_of_memory_is_clean(void **unused) {
-    (void)unused;
+TEST(running_out_of_memory_is_clean) {
     RigDef def = rig_default(3, 2, 0.002f, 0.002f);
     Rig rig;
     rig_open(&rig, &def);
@@ -322,21 +311,4 @@ static void running_out_of_memory_is_clean(void **unused) {
             assert_int_equal(memory.held, 0);
         }
     rig_close(&rig);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cooling_follows_radiation_and_convection),
-        cmocka_unit_test(one_step_of_losses_is_the_formula),
-        cmocka_unit_test(combustion_is_eta_times_burnt_mass),
-        cmocka_unit_test(the_peak_is_the_hottest_so_far),
-        cmocka_unit_test(pace_is_fire_time),
-        cmocka_unit_test(heavier_halves_heat_slower),
-        cmocka_unit_test(losses_are_each_particles_own),
-        cmocka_unit_test(a_bad_temperature_is_named_and_kept_out),
-        cmocka_unit_test(any_heat_ends_finite),
-        cmocka_unit_test(what_conducts_beyond_floats_is_refused),
-        cmocka_unit_test(running_out_of_memory_is_clean),
-    };
-    return cmocka_run_group_tests_name("heat_exchange", tests, NULL, NULL);
 }

@@ -30,8 +30,7 @@ static void compare(const SingeMaterialDef *material, double slowest, double fas
 }
 
 /// Eq 4 as the paper has it, without a ceiling, and a straight ash exponent.
-static void front_speed_does_not_depend_on_cells(void **unused) {
-    (void)unused;
+TEST(front_speed_does_not_depend_on_cells) {
     SingeMaterialDef material = singe_default_material();
     material.diffusivity = singe_param(2.7e-6f), material.mass_rate = singe_param(8e-3f);
     material.heat_of_combustion = singe_param(2400 * 1400), material.heat_share = singe_param(1);
@@ -41,8 +40,7 @@ static void front_speed_does_not_depend_on_cells(void **unused) {
 }
 
 /// The default material: 80 g/m2 office paper, 4.4 to 7.0 mm/s (Thomas & Law, FRN 584), 750 to 950 C.
-static void calibrated_paper_burns_at_its_real_pace(void **unused) {
-    (void)unused;
+TEST(calibrated_paper_burns_at_its_real_pace) {
     SingeMaterialDef material = singe_default_material();
     compare(&material, 4.4e-3, 7.0e-3);
 }
@@ -50,8 +48,7 @@ static void calibrated_paper_burns_at_its_real_pace(void **unused) {
 /// The same material at other grammages, all of it derived from fluxes per area: a lighter sheet's front is faster in
 /// proportion, as thick and as hot, to the rounding where its steps are shorter in proportion too. The ranges at 45 and
 /// 20 g/m2 (Thomas & Law again) are predictions.
-static void speed_is_in_proportion_to_one_over_grammage(void **unused) {
-    (void)unused;
+TEST(speed_is_in_proportion_to_one_over_grammage) {
     static const struct {
         float grammage;
         double slowest, fastest;
@@ -106,8 +103,7 @@ static void narrow(float x[3], uint32_t column, uint32_t row, float cell) {
 }
 
 /// Bad cells burn at the pace of good ones, about.
-static void bad_cells_do_not_hold_a_front_up(void **unused) {
-    (void)unused;
+TEST(bad_cells_do_not_hold_a_front_up) {
     static const struct {
         const char *name;
         void (*shape)(float x[3], uint32_t column, uint32_t row, float cell);
@@ -135,8 +131,7 @@ static void bad_cells_do_not_hold_a_front_up(void **unused) {
 
 /// A strip ends where its front is through, where its fire is out, or where it has cost too much, as conduction that
 /// takes many iterations does.
-static void a_strip_takes_so_much_work(void **unused) {
-    (void)unused;
+TEST(a_strip_takes_so_much_work) {
     SingeMaterialDef material = singe_default_material();
     StripSetup setup = strip_setup(&material);
     SingeError error = {0};
@@ -155,8 +150,7 @@ static void a_strip_takes_so_much_work(void **unused) {
     assert_true(result.end == STRIP_CUT && result.speed == 0 && result.work < 20000 + 1000);
 }
 
-static void thickening_by_hand_and_its_limits(void **unused) {
-    (void)unused;
+TEST(thickening_by_hand_and_its_limits) {
     FrontMatter front = {
         .diffusivity = 1e-5f, .mass_rate = 9e-3f, .heating = 2400, .ignition_temperature = 513, .rate_ceiling = 260};
     assert_true(heat_thickening_for(3.5f, &front, 293, 0.01f) == 3.5f);
@@ -176,8 +170,7 @@ static void thickening_by_hand_and_its_limits(void **unused) {
 }
 
 /// One F for a sheet whose parameters vary: that of their means.
-static void thickening_goes_by_the_means(void **unused) {
-    (void)unused;
+TEST(thickening_goes_by_the_means) {
     static const float halves[] = {0, 1};
     RigDef def = rig_default(16, 4, 0.01f, 0.01f);
     SingeParam *params[] = {&def.material.rate_ceiling, &def.material.mass_rate};
@@ -195,17 +188,4 @@ static void thickening_goes_by_the_means(void **unused) {
     assert_true(expected > 1.5);
     CHECK_NEAR(heat_thickening(rig.plan, 0), expected, 1e-5 * expected);
     rig_close(&rig);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(front_speed_does_not_depend_on_cells),
-        cmocka_unit_test(calibrated_paper_burns_at_its_real_pace),
-        cmocka_unit_test(speed_is_in_proportion_to_one_over_grammage),
-        cmocka_unit_test(bad_cells_do_not_hold_a_front_up),
-        cmocka_unit_test(a_strip_takes_so_much_work),
-        cmocka_unit_test(thickening_by_hand_and_its_limits),
-        cmocka_unit_test(thickening_goes_by_the_means),
-    };
-    return cmocka_run_group_tests_name("heat_front", tests, NULL, NULL);
 }

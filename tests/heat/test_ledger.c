@@ -36,8 +36,7 @@ static void burn(Rig *rig, bool remove) {
     }
 }
 
-static void ledger_closes(void **unused) {
-    (void)unused;
+TEST(ledger_closes) {
     for (int k = 0; k < 4; k++) {
         RigDef def = paper(k % 2 ? SINGE_HEAT_UMBRELLA : SINGE_HEAT_SURFACE);
         def.settings.pace = k < 2 ? 1 : 3;
@@ -64,8 +63,7 @@ static void ledger_closes(void **unused) {
 }
 
 /// Warmth far below a float's last digit must not leak away while nothing else happens.
-static void small_changes_are_not_lost(void **unused) {
-    (void)unused;
+TEST(small_changes_are_not_lost) {
     RigDef def = paper(SINGE_HEAT_SURFACE);
     def.settings.ambient_temperature = 293;
     def.material.thickening = 1;
@@ -80,8 +78,7 @@ static void small_changes_are_not_lost(void **unused) {
     rig_close(&rig);
 }
 
-static void threads_do_not_matter(void **unused) {
-    (void)unused;
+TEST(threads_do_not_matter) {
     Rig one;
     for (int threads = 0; threads <= 3; threads++) {
         RigDef def = paper(SINGE_HEAT_SURFACE);
@@ -108,8 +105,7 @@ static void threads_do_not_matter(void **unused) {
 }
 
 /// A plan made in the middle of a run (after a load) gives what the old one gives.
-static void a_new_plan_goes_on_to_the_bit(void **unused) {
-    (void)unused;
+TEST(a_new_plan_goes_on_to_the_bit) {
     Rig rigs[2];
     for (int k = 0; k < 2; k++) {
         RigDef def = paper(SINGE_HEAT_SURFACE);
@@ -130,14 +126,4 @@ static void a_new_plan_goes_on_to_the_bit(void **unused) {
     assert_memory_equal(rigs[0].state.heat.temperature, rigs[1].state.heat.temperature,
                         rigs[0].shell.particle_count * sizeof(float));
     for (int k = 0; k < 2; k++) rig_close(&rigs[k]);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ledger_closes),
-        cmocka_unit_test(small_changes_are_not_lost),
-        cmocka_unit_test(threads_do_not_matter),
-        cmocka_unit_test(a_new_plan_goes_on_to_the_bit),
-    };
-    return cmocka_run_group_tests_name("heat_ledger", tests, NULL, NULL);
 }

@@ -20,8 +20,7 @@ static int entries(const HeatMatrix *matrix, uint32_t row, uint32_t column, floa
     return count;
 }
 
-static void twins_go_one_by_one(void **unused) {
-    (void)unused;
+TEST(twins_go_one_by_one) {
     enum { A, X, B, Y, Z };
     const float positions[] = {0, 0, 0, 0.5f, -1.2f, 0, 1, 0, 0, 0.5f, 0.1f, 0.9f, 0.5f, 1.5f, -0.2f};
     const uint32_t cells[] = {A, X, B, Y, A, Y, B, Z};
@@ -63,9 +62,4 @@ static void twins_go_one_by_one(void **unused) {
         sheet_source_free(&memory, &source);
         assert_int_equal(memory.held, 0);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(twins_go_one_by_one)};
-    return cmocka_run_group_tests_name("heat_matrix", tests, NULL, NULL);
 }

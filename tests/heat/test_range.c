@@ -156,8 +156,7 @@ static uint64_t check_range(const Bad *mesh, const SingeMaterialDef *material, f
     return forced;
 }
 
-static void conduction_keeps_to_its_range(void **unused) {
-    (void)unused;
+TEST(conduction_keeps_to_its_range) {
     static const float steps[] = {1e-4f, 1e-2f, 1, 100};
     for (size_t m = 0; m < MESHES; m++)
         for (int k = 0; k < 4; k++) {
@@ -169,8 +168,7 @@ static void conduction_keeps_to_its_range(void **unused) {
         }
 }
 
-static void so_does_the_umbrella(void **unused) {
-    (void)unused;
+TEST(so_does_the_umbrella) {
     SingeMaterialDef material = rig_default(1, 1, 1, 1).material;
     material.heat_operator = SINGE_HEAT_UMBRELLA;
     for (size_t m = 0; m < MESHES; m++)
@@ -178,8 +176,7 @@ static void so_does_the_umbrella(void **unused) {
 }
 
 /// Steps that end within their range by force are the same for any number of threads.
-static void threads_do_not_matter(void **unused) {
-    (void)unused;
+TEST(threads_do_not_matter) {
     enum { THREADS = 3 };
     RigDef def = rig_default(120, 90, 0.002f, 0.002f);
     def.shape = slivers;
@@ -214,8 +211,7 @@ static void tensor(const Float3 x[4], const double w[6], double t[3]) {
 
 /// Any cell that is not turned over: weights are 0 or more, and exact where springs in these directions can be. Where
 /// not, what the cell conducts along and across has a geometric mean of no less than half of what it should.
-static void cells_conduct_nothing_negative(void **unused) {
-    (void)unused;
+TEST(cells_conduct_nothing_negative) {
     static const double alone[4] = {0};
     uint32_t exact = 0, mixed = 0, poor = 0;
     for (uint32_t n = 0; n < 20000; n++) {
@@ -249,8 +245,7 @@ static void cells_conduct_nothing_negative(void **unused) {
 }
 
 /// The neighbour's share counts: a side that the two make 0 or more leaves the cell as it is.
-static void neighbours_make_up_for_a_side(void **unused) {
-    (void)unused;
+TEST(neighbours_make_up_for_a_side) {
     // obtuse at corner 1 in both ways to split it
     const Float3 x[4] = {float3(0, 0, 0), float3(0.9f, -0.1f, 0), float3(2, 0, 0), float3(1, 0.6f, 0)};
     double linear[6], alone[6], beside[6], none[4] = {0}, across[4] = {0};
@@ -264,13 +259,4 @@ static void neighbours_make_up_for_a_side(void **unused) {
     across[lacking] = -linear[lacking];
     heat_cell_weights(x, across, beside);
     for (int k = 0; k < 6; k++) CHECK_NEAR(beside[k], linear[k], 1e-12);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(conduction_keeps_to_its_range), cmocka_unit_test(so_does_the_umbrella),
-        cmocka_unit_test(threads_do_not_matter),         cmocka_unit_test(cells_conduct_nothing_negative),
-        cmocka_unit_test(neighbours_make_up_for_a_side),
-    };
-    return cmocka_run_group_tests_name("heat_range", tests, NULL, NULL);
 }

@@ -25,8 +25,7 @@ static SingeSourceDef ball(const SingePoseKey *path, uint32_t count, float condu
 
 static const SingePoseKey MIDDLE = {.position = {0.01f, 0.01f, 0}, .rotation = {0, 0, 0, 1}};
 
-static void relaxes_to_the_source_by_the_formula(void **unused) {
-    (void)unused;
+TEST(relaxes_to_the_source_by_the_formula) {
     RigDef def = inert(10, 10);
     Rig rig;
     rig_open(&rig, &def);
@@ -39,8 +38,7 @@ static void relaxes_to_the_source_by_the_formula(void **unused) {
     rig_close(&rig);
 }
 
-static void never_overshoots(void **unused) {
-    (void)unused;
+TEST(never_overshoots) {
     RigDef def = inert(4, 4);
     Rig rig;
     rig_open(&rig, &def);
@@ -54,8 +52,7 @@ static void never_overshoots(void **unused) {
     rig_close(&rig);
 }
 
-static void falls_off_smoothly_and_moves(void **unused) {
-    (void)unused;
+TEST(falls_off_smoothly_and_moves) {
     const SingePoseKey path[] = {{0, {0, 0.01f, 0}, {0, 0, 0, 1}}, {1, {0.02f, 0.01f, 0}, {0, 0, 0, 1}}};
     RigDef def = inert(10, 10);
     Rig rig;
@@ -81,8 +78,7 @@ static void falls_off_smoothly_and_moves(void **unused) {
     rig_close(&rig);
 }
 
-static void contact_heats_the_near_layer(void **unused) {
-    (void)unused;
+TEST(contact_heats_the_near_layer) {
     RigDef def = inert(4, 4);
     def.material.thickness = singe_param(0.002f);
     Rig rig;
@@ -130,8 +126,7 @@ static void slab(Rig *rig, SingeColliderKind kind, bool below, SingeContactSides
 }
 
 /// Every kind, from either side, hot and cold: the layer that faces it or both, and nothing beside it.
-static void contact_heats_the_given_sides(void **unused) {
-    (void)unused;
+TEST(contact_heats_the_given_sides) {
     static const SingeColliderKind kinds[] = {SINGE_COLLIDER_BOX, SINGE_COLLIDER_HEIGHTFIELD, SINGE_COLLIDER_MESH};
     for (int k = 0; k < 24; k++) {
         bool below = k & 1, both = k & 2, cold = k & 4;
@@ -162,8 +157,7 @@ static void contact_heats_the_given_sides(void **unused) {
 }
 
 /// The layer behind warms by what comes through the sheet, and tends to the same temperature.
-static void contact_heat_goes_through_the_sheet(void **unused) {
-    (void)unused;
+TEST(contact_heat_goes_through_the_sheet) {
     RigDef def = inert(20, 20);
     def.material.thickness = singe_param(0.002f);
     def.material.layer_exchange = singe_param(4); // the difference of the two falls as e^-4t
@@ -184,8 +178,7 @@ static void contact_heat_goes_through_the_sheet(void **unused) {
     rig_close(&rig);
 }
 
-static void texture_and_key_frames(void **unused) {
-    (void)unused;
+TEST(texture_and_key_frames) {
     const float pixels[] = {0, 1, 0.5f, 0.25f}; // top row 0 1, bottom row .5 .25
     const SingeValueKey keys[] = {{1, 0}, {3, 2}};
     RigDef def = inert(8, 8);
@@ -219,8 +212,7 @@ static void my_flux(void *context, const struct SingeView *view, float *flux, fl
     for (uint32_t i = 0; i < view->particle_count; i++) conductance[i] += 10, conductance_temperature[i] += 10 * 500;
 }
 
-static void callback_adds_to_the_rest(void **unused) {
-    (void)unused;
+TEST(callback_adds_to_the_rest) {
     RigDef def = inert(3, 3);
     Rig rig;
     rig_open(&rig, &def);
@@ -246,8 +238,7 @@ static void callback_adds_to_the_rest(void **unused) {
 }
 
 /// A flux below 0 cools, as fast as it says, and to 1 K; the ledger has what it took.
-static void a_sink_stops_at_1_kelvin(void **unused) {
-    (void)unused;
+TEST(a_sink_stops_at_1_kelvin) {
     static const float fluxes[] = {-1e3f, -1e6f, -1e15f};
     const float white = 1;
     for (int k = 0; k < 3; k++) {
@@ -268,8 +259,7 @@ static void a_sink_stops_at_1_kelvin(void **unused) {
 }
 
 /// Exchange with the gas never takes a particle past the gas's temperature, however long the step and thick the front.
-static void hot_gas_heats_up_to_itself(void **unused) {
-    (void)unused;
+TEST(hot_gas_heats_up_to_itself) {
     static const float starts[] = {250, 300, 500, 999}, convections[] = {14, 1e3f, 1e7f};
     for (int k = 0; k < 4; k++)
         for (int c = 0; c < 3; c++) {
@@ -300,8 +290,7 @@ static void hot_gas_heats_up_to_itself(void **unused) {
 
 // --- refusals ------------------------------------------------------------------------------------------------
 
-static void bad_defs_are_refused(void **unused) {
-    (void)unused;
+TEST(bad_defs_are_refused) {
     RigDef def = inert(2, 2);
     Rig rig;
     rig_open(&rig, &def);
@@ -342,21 +331,4 @@ static void bad_defs_are_refused(void **unused) {
     assert_int_equal(source_create(&rig.memory, &rig.shell, &picture, &rig.source[0], &rig.error),
                      SINGE_ERROR_ARGUMENT);
     rig_close(&rig);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(relaxes_to_the_source_by_the_formula),
-        cmocka_unit_test(never_overshoots),
-        cmocka_unit_test(falls_off_smoothly_and_moves),
-        cmocka_unit_test(contact_heats_the_near_layer),
-        cmocka_unit_test(contact_heats_the_given_sides),
-        cmocka_unit_test(contact_heat_goes_through_the_sheet),
-        cmocka_unit_test(texture_and_key_frames),
-        cmocka_unit_test(callback_adds_to_the_rest),
-        cmocka_unit_test(a_sink_stops_at_1_kelvin),
-        cmocka_unit_test(hot_gas_heats_up_to_itself),
-        cmocka_unit_test(bad_defs_are_refused),
-    };
-    return cmocka_run_group_tests_name("heat_source", tests, NULL, NULL);
 }

@@ -86,8 +86,7 @@ static void check_alike(const HeatPlan *a, const HeatPlan *b) {
         assert_memory_equal(a->rest.near[g], b->rest.near[g], a->rest.near_count[g] * sizeof a->rest.near[g][0]);
 }
 
-static void rows_are_as_if_built_anew(void **unused) {
-    (void)unused;
+TEST(rows_are_as_if_built_anew) {
     uint32_t by_rows = 0;
     for (uint32_t seed = 1; seed <= 20; seed++) {
         Torn t = {.random = seed};
@@ -115,9 +114,4 @@ static void rows_are_as_if_built_anew(void **unused) {
     }
     // not by rows where one had no room
     assert_true(by_rows > 150);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(rows_are_as_if_built_anew)};
-    return cmocka_run_group_tests_name("heat_torn", tests, NULL, NULL);
 }

@@ -3,15 +3,11 @@
 #define TESTS_MESH_SAMPLE_MESHES_H
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "formats/formats.h"
 #include "mesh/to_quads.h"

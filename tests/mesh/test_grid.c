@@ -4,8 +4,7 @@
 #include "mesh/to_quads.h"
 #include "support/support.h"
 
-static void grid_is_exact(void **state) {
-    (void)state;
+TEST(grid_is_exact) {
     Mesh mesh;
     SingeError error;
     assert_int_equal(mesh_grid(2, 1, 2, 1, (SingeAllocator){0}, &mesh, &error), SINGE_OK);
@@ -32,8 +31,7 @@ static double cell_area(const Mesh *mesh, uint32_t cell, int corner) {
     return (double)((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]));
 }
 
-static void worn_grid_keeps_its_outline(void **state) {
-    (void)state;
+TEST(worn_grid_keeps_its_outline) {
     enum { NX = 40, NY = 60 };
     Mesh mesh, plain;
     SingeError error;
@@ -57,9 +55,4 @@ static void worn_grid_keeps_its_outline(void **state) {
     for (uint32_t c = 0; c < mesh.cell_count; c++)
         for (int k = 0; k < 4; k++) assert_true(cell_area(&mesh, c, k) > 0.2 * 0.5 * 0.005 * 0.005);
     mesh_free(&mesh), mesh_free(&plain);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(grid_is_exact), cmocka_unit_test(worn_grid_keeps_its_outline)};
-    return cmocka_run_group_tests_name("mesh_grid", tests, NULL, NULL);
 }

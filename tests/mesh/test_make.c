@@ -3,8 +3,7 @@
 
 static Text text;
 
-static void quads_stay_as_they_are(void **state) {
-    (void)state;
+TEST(quads_stay_as_they_are) {
     text.size = 0;
     text_grid(&text, 4, 3), text_cells(&text, 4, 3, WHOLE);
     Made made = make(&text);
@@ -20,8 +19,7 @@ static void quads_stay_as_they_are(void **state) {
     mesh_free(&made.mesh);
 }
 
-static void triangulated_grids_give_back_their_quads(void **state) {
-    (void)state;
+TEST(triangulated_grids_give_back_their_quads) {
     for (Diagonals d = REGULAR; d <= RANDOM; d++) {
         text.size = 0;
         text_grid(&text, 17, 12), text_cells(&text, 17, 12, d);
@@ -51,8 +49,7 @@ static int irregular(const Mesh *mesh) {
 }
 
 // Where all pairs are as good, as in a mesh of equilateral triangles, quads go on each other's rows.
-static void rows_go_on(void **state) {
-    (void)state;
+TEST(rows_go_on) {
     text.size = 0;
     const int n = 20;
     for (int j = 0; j <= n; j++)
@@ -76,8 +73,7 @@ static void rows_go_on(void **state) {
     mesh_free(&made.mesh);
 }
 
-static void lone_triangles_are_halved(void **state) {
-    (void)state;
+TEST(lone_triangles_are_halved) {
     text.size = 0;
     text_add(&text, "v 0 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\n");
     Made made = make(&text);
@@ -97,8 +93,7 @@ static void lone_triangles_are_halved(void **state) {
     mesh_free(&made.mesh);
 }
 
-static void polygons_become_quads(void **state) {
-    (void)state;
+TEST(polygons_become_quads) {
     for (int n = 5; n <= 90; n += 17) {
         text.size = 0;
         for (int i = 0; i < n; i++) text_add(&text, "v %.7g %.7g 0\n", cos(6.2831853 * i / n), sin(6.2831853 * i / n));
@@ -116,8 +111,7 @@ static void polygons_become_quads(void **state) {
     }
 }
 
-static void split_makes_n_quads_of_n_corners(void **state) {
-    (void)state;
+TEST(split_makes_n_quads_of_n_corners) {
     text.size = 0;
     text_add(&text, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nf 1 2 3 4\nf 2 5 3\n");
     MeshOptions options = mesh_default_options();
@@ -131,8 +125,7 @@ static void split_makes_n_quads_of_n_corners(void **state) {
     mesh_free(&made.mesh);
 }
 
-static void attributes_and_ids_follow_their_vertices(void **state) {
-    (void)state;
+TEST(attributes_and_ids_follow_their_vertices) {
     static const char ply[] =
         "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
         "property float wet\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
@@ -155,8 +148,7 @@ static void attributes_and_ids_follow_their_vertices(void **state) {
 }
 
 // A mesh numbered at random is numbered row by row, and keeps the file's numbers beside.
-static void shuffled_meshes_are_put_in_order(void **state) {
-    (void)state;
+TEST(shuffled_meshes_are_put_in_order) {
     enum { N = 24, VERTICES = (N + 1) * (N + 1) };
     static int to[VERTICES], from[VERTICES];
     uint32_t random = 99;
@@ -194,8 +186,7 @@ static void shuffled_meshes_are_put_in_order(void **state) {
     mesh_free(&made.mesh);
 }
 
-static void other_formats_are_made_too(void **state) {
-    (void)state;
+TEST(other_formats_are_made_too) {
     static const char stl[] =
         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\n"
         "endfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\n"
@@ -224,19 +215,4 @@ static void other_formats_are_made_too(void **state) {
         polygons_read("a.glb", (const uint8_t *)obj, sizeof obj - 1, (SingeAllocator){0}, &polygons, &error),
         SINGE_ERROR_FORMAT);
     assert_non_null(strstr(error.message, "a.glb"));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(quads_stay_as_they_are),
-        cmocka_unit_test(triangulated_grids_give_back_their_quads),
-        cmocka_unit_test(rows_go_on),
-        cmocka_unit_test(lone_triangles_are_halved),
-        cmocka_unit_test(polygons_become_quads),
-        cmocka_unit_test(split_makes_n_quads_of_n_corners),
-        cmocka_unit_test(attributes_and_ids_follow_their_vertices),
-        cmocka_unit_test(shuffled_meshes_are_put_in_order),
-        cmocka_unit_test(other_formats_are_made_too),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

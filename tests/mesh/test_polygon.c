@@ -145,8 +145,7 @@ static void assert_refused(const Shape *shape, const char *name) {
 static const double holes[][2] = {{0, 0}, {8, 0}, {8, 8}, {0, 8}, {1, 1}, {3, 1},  {3, 3},
                                   {1, 3}, {5, 5}, {7, 5}, {7, 7}, {5, 7}, {10, 2}, {4, 2}};
 
-static void holes_stay_open(void **state) {
-    (void)state;
+TEST(holes_stay_open) {
     Shape shape = SHAPE(holes, 0, 1, 2, 3, 0, 4, 7, 6, 5, 4);
     assert_covers(&shape, 60, "a keyhole");
     shape = SHAPE(holes, 5, 4, 0, 1, 2, 3, 0, 4, 7, 6);
@@ -166,8 +165,7 @@ static void holes_stay_open(void **state) {
 }
 
 /// A hole's vertices may be others at the same positions, as where each loop is drawn for itself.
-static void bridges_of_two_vertices_are_one(void **state) {
-    (void)state;
+TEST(bridges_of_two_vertices_are_one) {
     Shape shape = SHAPE(holes, 0, 1, 2, 3);
     shape_corner(&shape, shape_position(&shape, 0, 0));
     shape_corner(&shape, 4), shape_corner(&shape, 7), shape_corner(&shape, 6), shape_corner(&shape, 5);
@@ -182,8 +180,7 @@ static void ring_around(Shape *shape, int n, double radius, int way) {
     for (int i = 0; i <= n; i++) shape_corner(shape, first + (way * i + n) % n);
 }
 
-static void large_rings_keep_their_hole(void **state) {
-    (void)state;
+TEST(large_rings_keep_their_hole) {
     for (int n = 6; n <= 150; n += 36) {
         Shape shape = {0};
         ring_around(&shape, n, 3, 1);
@@ -195,8 +192,7 @@ static void large_rings_keep_their_hole(void **state) {
 
 // ---- bays
 
-static void bays_stay_open(void **state) {
-    (void)state;
+TEST(bays_stay_open) {
     static const double arrow[][2] = {{0, 0}, {4, -3}, {1, 0}, {4, 3}};
     static const double letter_u[][2] = {{0, 0}, {5, 0}, {5, 6}, {4, 6}, {4, 1}, {1, 1}, {1, 6}, {0, 6}};
     Shape shape = SHAPE(arrow, 0, 1, 2, 3);
@@ -222,8 +218,7 @@ static void bays_stay_open(void **state) {
     assert_covers(&shape, fabs(area_of(&shape)), "a spiral");
 }
 
-static void random_stars_are_covered(void **state) {
-    (void)state;
+TEST(random_stars_are_covered) {
     uint32_t random = 7;
     for (int turn = 0; turn < 60; turn += 2) {
         Shape shape = {0};
@@ -242,8 +237,7 @@ static void random_stars_are_covered(void **state) {
 static const double few[][2] = {{0, 0},  {4, 0}, {4, 4},   {0, 4},  {2, 0}, {6, 6},
                                 {-2, 2}, {2, 2}, {-2, -2}, {4, -2}, {6, 0}, {2, 5}};
 
-static void faces_in_contact_with_themselves_are_split(void **state) {
-    (void)state;
+TEST(faces_in_contact_with_themselves_are_split) {
     Shape shape = SHAPE(few, 0, 9, 1, 0, 3, 6);
     assert_covers_but(&shape, 8, 0.02, "two triangles that meet in a corner");
     shape = SHAPE(few, 0, 9, 1, 0, 6, 3);
@@ -267,8 +261,7 @@ static void faces_in_contact_with_themselves_are_split(void **state) {
     assert_covers_but(&shape, 56, 0.02, "a hole that touches a side");
 }
 
-static void what_crosses_itself_is_refused(void **state) {
-    (void)state;
+TEST(what_crosses_itself_is_refused) {
     static const double star[][2] = {{1, 0}, {0.309, 0.951}, {-0.809, 0.588}, {-0.809, -0.588}, {0.309, -0.951}};
     Shape shape = SHAPE(few, 0, 2, 1, 3);
     assert_refused(&shape, "a bow tie");
@@ -285,8 +278,7 @@ static void what_crosses_itself_is_refused(void **state) {
 }
 
 /// Bent polygons keep the area of a surface between their corners, and a folded quad is cut along its fold.
-static void bent_polygons_are_covered(void **state) {
-    (void)state;
+TEST(bent_polygons_are_covered) {
     text.size = 0;
     text_add(&text, "v 0 0 0\nv 5 0 .3\nv 5 6 0\nv 4 6 .2\nv 4 1 0\nv 1 1 .4\nv 1 6 0\nv 0 6 .3\nf 1 2 3 4 5 6 7 8\n");
     Made made = make(&text);
@@ -308,18 +300,4 @@ static void bent_polygons_are_covered(void **state) {
     made = make(&text);
     assert_int_not_equal(made.mesh.cell_count, 0);
     mesh_free(&made.mesh);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(holes_stay_open),
-        cmocka_unit_test(bridges_of_two_vertices_are_one),
-        cmocka_unit_test(large_rings_keep_their_hole),
-        cmocka_unit_test(bays_stay_open),
-        cmocka_unit_test(random_stars_are_covered),
-        cmocka_unit_test(faces_in_contact_with_themselves_are_split),
-        cmocka_unit_test(what_crosses_itself_is_refused),
-        cmocka_unit_test(bent_polygons_are_covered),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -46,8 +46,7 @@ static void burn(const SingeMesh *mesh, uint32_t held) {
     singe_sim_destroy(sim);
 }
 
-static void polygons_become_a_sheet(void **state) {
-    (void)state;
+TEST(polygons_become_a_sheet) {
     static const SingeMeshQuads ways[] = {SINGE_MESH_PAIR, SINGE_MESH_SPLIT};
     for (int k = 0; k < 2; k++) {
         SingeMeshDef def = house();
@@ -72,8 +71,7 @@ static void polygons_become_a_sheet(void **state) {
 }
 
 /// Quads without faults come out as they went in.
-static void quads_stay(void **state) {
-    (void)state;
+TEST(quads_stay) {
     const uint32_t four[] = {4}, quad[] = {0, 1, 2, 3};
     SingeMeshDef def = house();
     SingeMesh *mesh;
@@ -102,8 +100,7 @@ static void refused(const SingeMeshDef *def, SingeResult expected, int64_t eleme
     assert_int_equal(singe_mesh_create(def, &mesh, NULL), expected);
 }
 
-static void bad_meshes_are_refused(void **state) {
-    (void)state;
+TEST(bad_meshes_are_refused) {
     float broken[24];
     const uint32_t thin[] = {3, 2, 5}, far[] = {0, 1, 2, 0, 2, 30, 1, 4, 5, 6, 2};
     SingeMeshDef def = house();
@@ -136,8 +133,7 @@ static void bad_meshes_are_refused(void **state) {
     refused(&def, SINGE_ERROR_ARGUMENT, -1, "attributes");
 }
 
-static void grids_are_meshes(void **state) {
-    (void)state;
+TEST(grids_are_meshes) {
     SingeGridDef def = singe_default_grid();
     SingeMesh *mesh;
     SingeError error;
@@ -158,8 +154,7 @@ static void grids_are_meshes(void **state) {
     assert_int_equal(singe_mesh_create_grid(&def, &mesh, &error), SINGE_ERROR_ARGUMENT);
 }
 
-static void every_allocation_fails_once(void **state) {
-    (void)state;
+TEST(every_allocation_fails_once) {
     for (long n = 1;; n++) {
         TestAllocator hook = {.fail_at = n, .once = true};
         SingeMeshDef def = house();
@@ -178,8 +173,7 @@ static void every_allocation_fails_once(void **state) {
 }
 
 /// An older header has a shorter Def, a newer one a longer.
-static void defs_of_other_versions(void **state) {
-    (void)state;
+TEST(defs_of_other_versions) {
     struct {
         SingeMeshDef def;
         char more[64];
@@ -212,8 +206,7 @@ static void collect(void *context, SingeLogLevel level, const char *line) {
     strcat(strcat(text, line), "\n");
 }
 
-static void repairs_are_logged(void **state) {
-    (void)state;
+TEST(repairs_are_logged) {
     char text[512] = "";
     SingeMeshDef def = house();
     SingeMesh *mesh;
@@ -224,8 +217,7 @@ static void repairs_are_logged(void **state) {
     singe_mesh_destroy(mesh);
 }
 
-static void materials_have_names(void **state) {
-    (void)state;
+TEST(materials_have_names) {
     SingeMaterialDef def = singe_default_material();
     SingeError error = {0};
     uint32_t count = 0;
@@ -244,14 +236,4 @@ static void materials_have_names(void **state) {
     assert_int_equal(singe_material_preset(NULL, &def, &error), SINGE_ERROR_ARGUMENT);
     def.struct_size = 0;
     assert_int_equal(singe_material_preset("cotton", &def, &error), SINGE_ERROR_ARGUMENT);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(polygons_become_a_sheet),     cmocka_unit_test(quads_stay),
-        cmocka_unit_test(bad_meshes_are_refused),      cmocka_unit_test(grids_are_meshes),
-        cmocka_unit_test(every_allocation_fails_once), cmocka_unit_test(defs_of_other_versions),
-        cmocka_unit_test(repairs_are_logged),          cmocka_unit_test(materials_have_names),
-    };
-    return cmocka_run_group_tests_name("mesh_public", tests, NULL, NULL);
 }

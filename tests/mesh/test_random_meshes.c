@@ -72,8 +72,7 @@ static bool library_takes(const Made *made) {
     return taken;
 }
 
-static void random_meshes(void **state) {
-    (void)state;
+TEST(random_meshes) {
     static Text text;
     int refused = 0, made_sheets = 0;
     for (uint32_t seed = 0; seed < 2000; seed++) {
@@ -96,9 +95,4 @@ static void random_meshes(void **state) {
     }
     print_message("%d made, %d refused\n", made_sheets, refused);
     assert_true(made_sheets > 1000);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(random_meshes)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

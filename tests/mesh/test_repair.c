@@ -3,8 +3,7 @@
 
 static Text text;
 
-static void soup_is_welded(void **state) {
-    (void)state;
+TEST(soup_is_welded) {
     text.size = 0;
     for (int j = 0; j < 5; j++)
         for (int i = 0; i < 6; i++) {
@@ -23,8 +22,7 @@ static void soup_is_welded(void **state) {
 }
 
 // Layers that touch inside stay two; a seam farther apart than the tolerance stays open until that is raised.
-static void weld_keeps_layers_apart(void **state) {
-    (void)state;
+TEST(weld_keeps_layers_apart) {
     text.size = 0;
     for (int layer = 0; layer < 2; layer++)
         for (int j = 0; j < 3; j++)
@@ -55,8 +53,7 @@ static void weld_keeps_layers_apart(void **state) {
     mesh_free(&made.mesh);
 }
 
-static void t_junctions_are_closed(void **state) {
-    (void)state;
+TEST(t_junctions_are_closed) {
     text.size = 0;
     text_add(&text, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 .5 0\nv 2 0 0\nv 2 .5 0\nv 2 1 0\n"
                     "f 1 2 3 4\nf 2 6 7 5\nf 5 7 8 3\n");
@@ -68,8 +65,7 @@ static void t_junctions_are_closed(void **state) {
     mesh_free(&made.mesh);
 }
 
-static void faults_are_repaired_and_said(void **state) {
-    (void)state;
+TEST(faults_are_repaired_and_said) {
     text.size = 0;
     text_grid(&text, 3, 3); // lines 1 to 16
     text_add(&text, "v 9 9 9\n");
@@ -91,8 +87,7 @@ static void faults_are_repaired_and_said(void **state) {
     mesh_free(&made.mesh);
 }
 
-static void faces_are_turned_one_way(void **state) {
-    (void)state;
+TEST(faces_are_turned_one_way) {
     text.size = 0;
     text_grid(&text, 3, 1);
     text_add(&text, "f 1 2 6 5\nf 2 6 7 3\nf 3 4 8 7\n");
@@ -128,8 +123,7 @@ static double volume(const Mesh *mesh) {
     return sum;
 }
 
-static void closed_surfaces_have_their_front_outside(void **state) {
-    (void)state;
+TEST(closed_surfaces_have_their_front_outside) {
     for (int inside_out = 0; inside_out < 2; inside_out++) {
         text.size = 0;
         add_cube(0, inside_out, 0);
@@ -141,8 +135,7 @@ static void closed_surfaces_have_their_front_outside(void **state) {
 }
 
 // Two cubes that share an edge come apart; so does a fin from the sheet that it stands on, which stays whole.
-static void edges_of_many_faces_are_cut(void **state) {
-    (void)state;
+TEST(edges_of_many_faces_are_cut) {
     text.size = 0;
     add_cube(0, false, 0);
     for (int i = 0; i < 8; i++)
@@ -178,8 +171,7 @@ static void edges_of_many_faces_are_cut(void **state) {
     mesh_free(&made.mesh);
 }
 
-static void bow_ties_are_parted(void **state) {
-    (void)state;
+TEST(bow_ties_are_parted) {
     text.size = 0;
     text_add(&text, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 1 0\nv 2 2 0\nv 1 2 0\nf 1 2 3 4\nf 3 5 6 7\n");
     Made made = make(&text);
@@ -222,8 +214,7 @@ static uint32_t assert_manifold(const Mesh *mesh) {
 }
 
 // A surface that comes back to itself the other way round is cut across, once.
-static void one_sided_surfaces_are_cut(void **state) {
-    (void)state;
+TEST(one_sided_surfaces_are_cut) {
     enum { AROUND = 40 };
     text.size = 0;
     for (int i = 0; i < AROUND; i++)
@@ -252,8 +243,7 @@ static void one_sided_surfaces_are_cut(void **state) {
 }
 
 // Sides of three faces and more of one sheet, which are connected elsewhere as well.
-static void sheets_that_meet_themselves_are_cut(void **state) {
-    (void)state;
+TEST(sheets_that_meet_themselves_are_cut) {
     text.size = 0; // a tent on a sheet, whose feet are two of the sheet's rows: each row has three faces
     text_grid(&text, 4, 4);
     for (int j = 0; j <= 4; j++) text_add(&text, "v .02 %.6g .01\n", 0.01 * j);
@@ -285,8 +275,7 @@ static void sheets_that_meet_themselves_are_cut(void **state) {
 }
 
 // Two sheets that lie between the same two vertices, each with its own side there, which no vertex tells apart.
-static void sides_between_the_same_vertices_are_parted(void **state) {
-    (void)state;
+TEST(sides_between_the_same_vertices_are_parted) {
     text.size = 0; // six triangles at a side, three sheets that join in its two ends
     text_add(&text, "v 0 0 0\nv 0 0 1\n");
     for (int i = 0; i < 6; i++) text_add(&text, "v %.9g %.9g .5\n", cos(1.0471975512 * i), sin(1.0471975512 * i));
@@ -299,8 +288,7 @@ static void sides_between_the_same_vertices_are_parted(void **state) {
 }
 
 // A quad and the two triangles that it could be cut into lie on each other, and so do cells.
-static void quads_on_their_triangles_are_left_out(void **state) {
-    (void)state;
+TEST(quads_on_their_triangles_are_left_out) {
     text.size = 0;
     text_add(&text, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 2 3\nf 1 3 4\n");
     Made made = make(&text);
@@ -310,8 +298,7 @@ static void quads_on_their_triangles_are_left_out(void **state) {
     mesh_free(&made.mesh);
 }
 
-static void what_cannot_be_repaired_is_refused(void **state) {
-    (void)state;
+TEST(what_cannot_be_repaired_is_refused) {
     text.size = 0;
     text_add(&text, "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
     Made made = make_with(&text, mesh_default_options());
@@ -320,8 +307,7 @@ static void what_cannot_be_repaired_is_refused(void **state) {
 }
 
 // Sides below a fiftieth of the median go: a tiny face with its point, a column too narrow, whose border stays.
-static void short_sides_shrink(void **state) {
-    (void)state;
+TEST(short_sides_shrink) {
     text.size = 0;
     text_grid(&text, 4, 4);
     text_cells(&text, 4, 4, REGULAR);
@@ -349,24 +335,4 @@ static void short_sides_shrink(void **state) {
     assert_int_not_equal(vertex_at(&made.mesh, 0.04f, 0.02f, 0), UINT32_MAX);
     assert_int_equal(vertex_at(&made.mesh, 0.03999f, 0.02f, 0), UINT32_MAX);
     mesh_free(&made.mesh);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(soup_is_welded),
-        cmocka_unit_test(weld_keeps_layers_apart),
-        cmocka_unit_test(t_junctions_are_closed),
-        cmocka_unit_test(faults_are_repaired_and_said),
-        cmocka_unit_test(faces_are_turned_one_way),
-        cmocka_unit_test(closed_surfaces_have_their_front_outside),
-        cmocka_unit_test(edges_of_many_faces_are_cut),
-        cmocka_unit_test(bow_ties_are_parted),
-        cmocka_unit_test(one_sided_surfaces_are_cut),
-        cmocka_unit_test(sheets_that_meet_themselves_are_cut),
-        cmocka_unit_test(sides_between_the_same_vertices_are_parted),
-        cmocka_unit_test(quads_on_their_triangles_are_left_out),
-        cmocka_unit_test(what_cannot_be_repaired_is_refused),
-        cmocka_unit_test(short_sides_shrink),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -130,8 +130,7 @@ static int open_edges(const SingeSurface *surface) {
     return open;
 }
 
-static void seams_open_no_cracks(void **state) {
-    (void)state;
+TEST(seams_open_no_cracks) {
     for (int fine = 0; fine < 2; fine++) {
         SingeSim *sim = tube_sim(fine ? 0.0008f : 0, true), *plain = tube_sim(fine ? 0.0008f : 0, false);
         SingeSurface surface = {0}, whole = {0};
@@ -165,8 +164,7 @@ static void seams_open_no_cracks(void **state) {
 }
 
 // A file that has two vertices at each position of a seam gets both numbers back, each with its uv.
-static void seams_keep_their_vertices(void **state) {
-    (void)state;
+TEST(seams_keep_their_vertices) {
     text.size = 0;
     text_add(&text, "v 0 0 0\nv .01 0 0\nv .01 .01 0\nv 0 .01 0\nv .01 0 0\nv .02 0 0\nv .02 .01 0\nv .01 .01 0\n"
                     "vt 0 0\nvt .4 0\nvt .4 1\nvt 0 1\nvt .6 0\nvt 1 0\nvt 1 1\nvt .6 1\n"
@@ -201,10 +199,4 @@ static void seams_keep_their_vertices(void **state) {
     assert_int_equal(seen, 0xffff);
     singe_surface_free(&surface);
     singe_sim_destroy(sim);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(seams_open_no_cracks),
-                                       cmocka_unit_test(seams_keep_their_vertices)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

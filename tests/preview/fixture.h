@@ -4,12 +4,10 @@
 
 #include "preview/preview.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 enum { W = 96, H = 64, BYTES = W * H * 3 };
 

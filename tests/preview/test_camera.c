@@ -27,8 +27,7 @@ static float sharpness(const uint8_t *rgb, int dx, int dy) {
     return sum / (float)count;
 }
 
-static void a_lens_blurs_what_is_out_of_focus(void **state) {
-    (void)state;
+TEST(a_lens_blurs_what_is_out_of_focus) {
     static uint8_t rgb[BYTES];
     uint8_t texels[3 * STRIPES];
     Image image;
@@ -60,8 +59,7 @@ static void a_lens_blurs_what_is_out_of_focus(void **state) {
 }
 
 /// Blur of the lens is drawn wherever it reaches.
-static void blur_is_drawn_wherever_it_reaches(void **state) {
-    (void)state;
+TEST(blur_is_drawn_wherever_it_reaches) {
     static uint8_t wide[BYTES], none[BYTES];
     Float4 q;
     quad_make(&q, 0.02f, 0.3f);
@@ -78,8 +76,7 @@ static void blur_is_drawn_wherever_it_reaches(void **state) {
     assert_true(pixel(wide, W / 2 + beyond, H / 2)[1] > 12);
 }
 
-static void a_shutter_blurs_motion(void **state) {
-    (void)state;
+TEST(a_shutter_blurs_motion) {
     static uint8_t still[BYTES], moving[BYTES];
     static float velocity[4][3];
     uint8_t texels[3 * STRIPES];
@@ -104,8 +101,7 @@ static void a_shutter_blurs_motion(void **state) {
     assert_true(sharpness(moving, 1, 0) > 0.9f * sharpness(still, 1, 0));
 }
 
-static void a_moving_ball_is_blurred(void **state) {
-    (void)state;
+TEST(a_moving_ball_is_blurred) {
     static uint8_t rgb[BYTES];
     SingeSurface nothing = {0};
     PreviewDef def = above();
@@ -118,8 +114,7 @@ static void a_moving_ball_is_blurred(void **state) {
     assert_true(pixel(rgb, W / 2, H / 2 + off)[0] < 140);
 }
 
-static void pictures_do_not_depend_on_threads(void **state) {
-    (void)state;
+TEST(pictures_do_not_depend_on_threads) {
     enum { BIG_W = 200, BIG_H = 150, BIG = BIG_W * BIG_H * 3 };
     static uint8_t pictures[3][BIG];
     SingeSurface surface;
@@ -140,15 +135,4 @@ static void pictures_do_not_depend_on_threads(void **state) {
     assert_memory_equal(pictures[0], pictures[1], BIG);
     assert_memory_equal(pictures[0], pictures[2], BIG);
     synthetic_free(&surface);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_lens_blurs_what_is_out_of_focus),
-        cmocka_unit_test(blur_is_drawn_wherever_it_reaches),
-        cmocka_unit_test(a_shutter_blurs_motion),
-        cmocka_unit_test(a_moving_ball_is_blurred),
-        cmocka_unit_test(pictures_do_not_depend_on_threads),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,8 +40,7 @@ static float middle(const uint8_t *rgb, int channel) {
 static float corner(const uint8_t *rgb, int channel) { return area(rgb, 0, 0, 8, 8, channel); }
 
 /// No gas, a gas of size 0 and still air give the same picture, bit by bit.
-static void still_air_changes_no_pixel(void **state) {
-    (void)state;
+TEST(still_air_changes_no_pixel) {
     static uint8_t plain[BYTES], rgb[BYTES];
     static Ball air;
     SingeSurface surface;
@@ -60,8 +59,7 @@ static void still_air_changes_no_pixel(void **state) {
 }
 
 /// In front of dark and of bright, a flame glows orange to yellow, not white, and hides almost nothing.
-static void a_flame_glows_orange(void **state) {
-    (void)state;
+TEST(a_flame_glows_orange) {
     static uint8_t rgb[BYTES], plain[BYTES];
     static Ball ball;
     SingeSurface nothing = {0};
@@ -173,8 +171,7 @@ static void see_line(const SingeSurface *surface, const SingeGas *gas, float (*f
 }
 
 /// A flame stands off the paper, is blue at its base and yellow above, and has gaps between its tongues.
-static void a_flame_has_a_blue_base_and_tongues(void **state) {
-    (void)state;
+TEST(a_flame_has_a_blue_base_and_tongues) {
     static float fire[W * H][4], mean[H][4];
     static Line line;
     static Burning paper;
@@ -193,8 +190,7 @@ static void a_flame_has_a_blue_base_and_tongues(void **state) {
 
 /// The burning rim is visible through the base of its flames. The bar, a tenth of white paper's light and a twentieth
 /// hidden, is passed where the paper is where it burns, and broken where its flames begin two centimetres below it.
-static void the_rim_is_seen_through_the_flames(void **state) {
-    (void)state;
+TEST(the_rim_is_seen_through_the_flames) {
     static float fire[W * H][4], mean[H][4];
     static Line line;
     static Burning paper;
@@ -214,8 +210,7 @@ static void the_rim_is_seen_through_the_flames(void **state) {
 }
 
 /// Flicker continues over time and stays where the gas is.
-static void flicker_goes_on_in_time(void **state) {
-    (void)state;
+TEST(flicker_goes_on_in_time) {
     static uint8_t a[BYTES], b[BYTES];
     static Ball ball;
     SingeSurface nothing = {0};
@@ -230,8 +225,7 @@ static void flicker_goes_on_in_time(void **state) {
 }
 
 /// A sheet hides a flame behind it, not one in front of it.
-static void a_sheet_hides_the_flame_behind_it(void **state) {
-    (void)state;
+TEST(a_sheet_hides_the_flame_behind_it) {
     static uint8_t before[BYTES], behind[BYTES], plain[BYTES];
     static Ball ball;
     Float4 q;
@@ -251,8 +245,7 @@ static void a_sheet_hides_the_flame_behind_it(void **state) {
 }
 
 /// Flames light the paper beside them, warmly.
-static void flames_light_the_paper_beside_them(void **state) {
-    (void)state;
+TEST(flames_light_the_paper_beside_them) {
     static uint8_t dark[BYTES], lit[BYTES];
     static Ball ball;
     Float4 q;
@@ -268,8 +261,7 @@ static void flames_light_the_paper_beside_them(void **state) {
 }
 
 /// Smoke dims a bright background and is visible against a dark one.
-static void smoke_dims_what_is_bright(void **state) {
-    (void)state;
+TEST(smoke_dims_what_is_bright) {
     static uint8_t rgb[BYTES], plain[BYTES];
     static Ball ball;
     SingeSurface nothing = {0};
@@ -285,8 +277,7 @@ static void smoke_dims_what_is_bright(void **state) {
 }
 
 /// The layer of the fire is what it adds to the picture and what it hides of it.
-static void the_fire_layer_is_what_fire_adds(void **state) {
-    (void)state;
+TEST(the_fire_layer_is_what_fire_adds) {
     static float with[W * H][3], without[W * H][3], fire[W * H][4];
     static Ball ball;
     SingeSurface nothing = {0};
@@ -314,8 +305,7 @@ static void the_fire_layer_is_what_fire_adds(void **state) {
 }
 
 /// From kilometres away, and from inside of the flame: rays come to an end.
-static void rays_end_far_away_and_inside_the_flame(void **state) {
-    (void)state;
+TEST(rays_end_far_away_and_inside_the_flame) {
     static uint8_t rgb[BYTES];
     static Ball ball;
     SingeSurface nothing = {0};
@@ -331,8 +321,7 @@ static void rays_end_far_away_and_inside_the_flame(void **state) {
 }
 
 /// Neither the number of threads nor earlier pictures matter.
-static void pictures_do_not_depend_on_threads_or_order(void **state) {
-    (void)state;
+TEST(pictures_do_not_depend_on_threads_or_order) {
     enum { BIG_W = 200, BIG_H = 150, BIG = BIG_W * BIG_H * 3 };
     static uint8_t first[BIG], again[BIG];
     SingeSurface surface;
@@ -357,8 +346,7 @@ static void pictures_do_not_depend_on_threads_or_order(void **state) {
     synthetic_gas_free(&gas), synthetic_gas_free(&other), synthetic_free(&surface);
 }
 
-static void bad_gas_is_refused(void **state) {
-    (void)state;
+TEST(bad_gas_is_refused) {
     static Ball ball;
     SingeError error;
     PreviewDef def = small();
@@ -385,22 +373,4 @@ static void bad_gas_is_refused(void **state) {
     assert_in_range(needed, 1, 7);
     preview_destroy(preview);
     test_allocator_check(&allocator);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(still_air_changes_no_pixel),
-        cmocka_unit_test(a_flame_glows_orange),
-        cmocka_unit_test(a_flame_has_a_blue_base_and_tongues),
-        cmocka_unit_test(the_rim_is_seen_through_the_flames),
-        cmocka_unit_test(flicker_goes_on_in_time),
-        cmocka_unit_test(a_sheet_hides_the_flame_behind_it),
-        cmocka_unit_test(rays_end_far_away_and_inside_the_flame),
-        cmocka_unit_test(the_fire_layer_is_what_fire_adds),
-        cmocka_unit_test(flames_light_the_paper_beside_them),
-        cmocka_unit_test(smoke_dims_what_is_bright),
-        cmocka_unit_test(pictures_do_not_depend_on_threads_or_order),
-        cmocka_unit_test(bad_gas_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

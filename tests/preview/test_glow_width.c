@@ -45,8 +45,7 @@ static double measured(Frame *frame) {
 
 static Frame frame;
 
-static void a_glow_has_its_width(void **state) {
-    (void)state;
+TEST(a_glow_has_its_width) {
     static const float half[] = {2, 4, 10};
     for (int w = 0; w < 3; w++)
         for (float angle = 0; angle < 3.2f; angle += 0.13f) {
@@ -57,25 +56,16 @@ static void a_glow_has_its_width(void **state) {
 }
 
 /// A tilted glow is measured along the sheet: 10 pixels across are 14 mm at 45 degrees.
-static void a_leaning_glow_is_measured_along_itself(void **state) {
-    (void)state;
+TEST(a_leaning_glow_is_measured_along_itself) {
     draw_line(&frame, 1.5707963f, 5, 1);
     assert_true(fabs(measured(&frame) - 11.6e-3 * sqrt(2)) < 2e-3);
 }
 
 /// A hot ball, which is no sheet, does not count.
-static void only_sheets_count(void **state) {
-    (void)state;
+TEST(only_sheets_count) {
     draw_line(&frame, 0.4f, 5, 0);
     for (int i = 0; i < WIDE * HIGH; i++) frame.sheet[i] = -1;
     assert_true(isnan(measured(&frame)));
     memset(frame.glow, 0, sizeof frame.glow), memset(frame.sheet, 0, sizeof frame.sheet);
     assert_true(isnan(measured(&frame)));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_glow_has_its_width),
-                                       cmocka_unit_test(a_leaning_glow_is_measured_along_itself),
-                                       cmocka_unit_test(only_sheets_count)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -23,8 +23,7 @@ static void draw_layers(const PreviewDef *def, const SingeSurface *surface, uint
 
 enum { ON = H / 2 * W + W / 2 + 5, OFF = 4 * W + 4 };
 
-static void layers_have_the_surfaces_values(void **state) {
-    (void)state;
+TEST(layers_have_the_surfaces_values) {
     static Kept kept;
     static int32_t piece[4] = {7, 7, 7, 7};
     Float4 q;
@@ -55,8 +54,7 @@ static void layers_have_the_surfaces_values(void **state) {
 }
 
 /// A fresh sheet that leans: its normal, to the eye from both sides.
-static void normals_face_the_eye(void **state) {
-    (void)state;
+TEST(normals_face_the_eye) {
     static Kept kept;
     Float4 q;
     quad_make(&q, 0.08f, 0.1f);
@@ -71,8 +69,7 @@ static void normals_face_the_eye(void **state) {
     assert_float_equal(kept.normal[ON][2], 1 / sqrtf(1.25f), 1e-4);
 }
 
-static void glow_has_its_own_layer(void **state) {
-    (void)state;
+TEST(glow_has_its_own_layer) {
     static Kept kept;
     Float4 q;
     quad_make(&q, 0.08f, 0.1f);
@@ -89,8 +86,7 @@ static void glow_has_its_own_layer(void **state) {
 }
 
 /// The ember line of a burning sheet seen from straight above: thin, broken, and elsewhere a moment later.
-static void the_ember_line_is_thin_and_broken(void **state) {
-    (void)state;
+TEST(the_ember_line_is_thin_and_broken) {
     enum { SIDE = 400, COUNT = SIDE * SIDE, SECTORS = 90 };
     static float glow[2][COUNT][3];
     SingeSurface surface;
@@ -129,8 +125,7 @@ static void the_ember_line_is_thin_and_broken(void **state) {
 }
 
 /// The picture is the same with layers and without, and so are the layers with and without the picture, whoever draws.
-static void layers_change_no_picture(void **state) {
-    (void)state;
+TEST(layers_change_no_picture) {
     static Kept one, two;
     static uint8_t alone[BYTES], beside[BYTES];
     SingeSurface surface;
@@ -143,15 +138,4 @@ static void layers_change_no_picture(void **state) {
     draw_layers(&def, &surface, NULL, &two);
     assert_memory_equal(&one, &two, sizeof one);
     synthetic_free(&surface);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(layers_have_the_surfaces_values),
-        cmocka_unit_test(normals_face_the_eye),
-        cmocka_unit_test(glow_has_its_own_layer),
-        cmocka_unit_test(layers_change_no_picture),
-        cmocka_unit_test(the_ember_line_is_thin_and_broken),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -50,8 +50,7 @@ static PreviewDef at_night(void) {
 
 /// A sheet between the flame and the table: the table's light is that of the open times what comes through. An eighth
 /// of it is the bar for an opaque sheet, and a sheet that lets half through breaks it.
-static void a_sheet_shadows_the_light_of_a_flame(void **state) {
-    (void)state;
+TEST(a_sheet_shadows_the_light_of_a_flame) {
     Float4 q;
     SingeSurface nothing = {0};
     PreviewDef def = at_night();
@@ -69,8 +68,7 @@ static void a_sheet_shadows_the_light_of_a_flame(void **state) {
 }
 
 /// Seen from the other side, a sheet in front of a flame glows by transmitted light, and its print shows.
-static void a_sheet_before_a_flame_shines_through(void **state) {
-    (void)state;
+TEST(a_sheet_before_a_flame_shines_through) {
     Float4 q;
     uint8_t texels[2 * 1 * 3] = {255, 255, 255, 60, 60, 60};
     Image image = {.width = 2, .height = 1, .rgb = texels};
@@ -103,8 +101,7 @@ static void see_shadow(int samples, float (*beauty)[3]) {
 
 /// The rim of a shadow is smooth: the default's sixteen samples differ from very many by less than 1 % of the sun's
 /// light in the root mean square; four break that bar.
-static void the_rim_of_a_shadow_is_smooth(void **state) {
-    (void)state;
+TEST(the_rim_of_a_shadow_is_smooth) {
     static float exact[W * H][3], picture[W * H][3];
     see_shadow(1024, exact);
     for (int few = 0; few < 2; few++) {
@@ -125,8 +122,7 @@ static void the_rim_of_a_shadow_is_smooth(void **state) {
     }
 }
 
-static void bad_transmittance_is_refused(void **state) {
-    (void)state;
+TEST(bad_transmittance_is_refused) {
     const float bad[] = {-0.1f, 1.1f, NAN};
     for (int k = 0; k < 3; k++) {
         PreviewDef def = above();
@@ -136,14 +132,4 @@ static void bad_transmittance_is_refused(void **state) {
         assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_ERROR_ARGUMENT);
         assert_non_null(strstr(error.message, "transmittance"));
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sheet_shadows_the_light_of_a_flame),
-        cmocka_unit_test(a_sheet_before_a_flame_shines_through),
-        cmocka_unit_test(the_rim_of_a_shadow_is_smooth),
-        cmocka_unit_test(bad_transmittance_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

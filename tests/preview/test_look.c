@@ -13,8 +13,7 @@ static float middle(const uint8_t *rgb, int channel) {
     return sum / (4 * HALF * HALF);
 }
 
-static void fresh_paper_is_white(void **state) {
-    (void)state;
+TEST(fresh_paper_is_white) {
     static uint8_t rgb[BYTES];
     Float4 q;
     quad_make(&q, 0.1f, 0.01f);
@@ -30,8 +29,7 @@ static void fresh_paper_is_white(void **state) {
 }
 
 /// White in the sun keeps below the film's end, so that print and creases show.
-static void white_in_the_sun_is_not_clipped(void **state) {
-    (void)state;
+TEST(white_in_the_sun_is_not_clipped) {
     uint8_t texels[2 * 1 * 3] = {255, 255, 255, 20, 20, 20};
     Image image = {.width = 2, .height = 1, .rgb = texels};
     const Image *pictures[1] = {&image};
@@ -46,8 +44,7 @@ static void white_in_the_sun_is_not_clipped(void **state) {
     assert_true(ink[0] < 70);
 }
 
-static void states_of_burning_differ(void **state) {
-    (void)state;
+TEST(states_of_burning_differ) {
     static uint8_t rgb[BYTES];
     Float4 q;
     PreviewDef def = above();
@@ -67,8 +64,7 @@ static void states_of_burning_differ(void **state) {
 }
 
 /// Paper that was hot stays brown when it is cold again, and ash is grey: paler than char, but not white.
-static void cold_remains_stay_brown_and_grey(void **state) {
-    (void)state;
+TEST(cold_remains_stay_brown_and_grey) {
     static uint8_t rgb[BYTES];
     Float4 q;
     PreviewDef def = above();
@@ -90,8 +86,7 @@ static void cold_remains_stay_brown_and_grey(void **state) {
 }
 
 /// Only where it is hot *and* burning does the char glow.
-static void only_hot_and_burning_char_glows(void **state) {
-    (void)state;
+TEST(only_hot_and_burning_char_glows) {
     static uint8_t rgb[BYTES];
     Float4 q;
     PreviewDef def = above();
@@ -111,8 +106,7 @@ static void only_hot_and_burning_char_glows(void **state) {
 }
 
 /// Ash pales with time.
-static void ash_pales_with_time(void **state) {
-    (void)state;
+TEST(ash_pales_with_time) {
     static uint8_t rgb[BYTES];
     static float ignited[4] = {1, 1, 1, 1};
     Float4 q;
@@ -131,8 +125,7 @@ static void ash_pales_with_time(void **state) {
 }
 
 /// Surfaces that face up get the same light from any sky; those that face sideways do not.
-static void what_faces_up_does_not_depend_on_the_sky(void **state) {
-    (void)state;
+TEST(what_faces_up_does_not_depend_on_the_sky) {
     static uint8_t rgb[BYTES];
     enum { PW = 16, PH = 8 };
     uint8_t texels[PW * PH * 3];
@@ -171,8 +164,7 @@ static void what_faces_up_does_not_depend_on_the_sky(void **state) {
 }
 
 /// Each ground has its own look and about the brightness of its colour.
-static void each_ground_has_its_look(void **state) {
-    (void)state;
+TEST(each_ground_has_its_look) {
     static uint8_t rgb[3][BYTES];
     SingeSurface nothing = {0};
     PreviewDef def = above();
@@ -193,8 +185,7 @@ static void each_ground_has_its_look(void **state) {
 
 /// Pyrolysis leaves a black leaf, however little its mass, which greys as it glows away. It glows where char burns: not
 /// where a hot leaf no longer burns, nor where it still has fuel, which burns in the flame.
-static void char_is_black_and_greys(void **state) {
-    (void)state;
+TEST(char_is_black_and_greys) {
     static uint8_t rgb[BYTES];
     float mass[4], charred[4], ash[4], green[3], red[4];
     Float4 q;
@@ -225,19 +216,4 @@ static void char_is_black_and_greys(void **state) {
     print_message("red of a hot leaf that is idle %.1f, has fuel %.1f, glows %.1f; of a line %.1f\n", (double)red[0],
                   (double)red[1], (double)red[2], (double)red[3]);
     assert_true(red[2] > red[0] + 1.5f && red[2] > red[1] + 1.5f && red[3] > red[0] + 1.5f);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fresh_paper_is_white),
-        cmocka_unit_test(white_in_the_sun_is_not_clipped),
-        cmocka_unit_test(states_of_burning_differ),
-        cmocka_unit_test(cold_remains_stay_brown_and_grey),
-        cmocka_unit_test(only_hot_and_burning_char_glows),
-        cmocka_unit_test(ash_pales_with_time),
-        cmocka_unit_test(what_faces_up_does_not_depend_on_the_sky),
-        cmocka_unit_test(char_is_black_and_greys),
-        cmocka_unit_test(each_ground_has_its_look),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,8 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void pictures_do_not_depend_on_threads(void **state) {
-    (void)state;
+TEST(pictures_do_not_depend_on_threads) {
     SingeSurface surface;
     assert_true(synthetic_make(SYNTHETIC_FLAT, 30, 0.05f, &surface));
     // enough tiles that every thread gets some
@@ -29,8 +28,7 @@ static void pictures_do_not_depend_on_threads(void **state) {
 }
 
 /// Drawing another frame between must leave no trace.
-static void frames_between_leave_no_trace(void **state) {
-    (void)state;
+TEST(frames_between_leave_no_trace) {
     SingeSurface burning, cold;
     assert_true(synthetic_make(SYNTHETIC_FLAT, 20, 0.05f, &burning));
     assert_true(synthetic_make(SYNTHETIC_COLD, 30, 0.07f, &cold));
@@ -50,8 +48,7 @@ static void frames_between_leave_no_trace(void **state) {
 }
 
 /// State that a preview keeps between frames (the table, the mask, the shapes) does not affect the next frame.
-static void what_is_kept_does_not_show(void **state) {
-    (void)state;
+TEST(what_is_kept_does_not_show) {
     SingeSurface burning, hanging, nothing = {0};
     assert_true(synthetic_make(SYNTHETIC_FLAT, 20, 0.05f, &burning));
     assert_true(synthetic_make(SYNTHETIC_HANGING, 20, 0.05f, &hanging));
@@ -73,8 +70,7 @@ static void what_is_kept_does_not_show(void **state) {
     synthetic_free(&burning), synthetic_free(&hanging);
 }
 
-static void an_empty_surface_is_drawn(void **state) {
-    (void)state;
+TEST(an_empty_surface_is_drawn) {
     static uint8_t rgb[BYTES];
     SingeSurface nothing = {0};
     PreviewDef def = above();
@@ -90,8 +86,7 @@ static void an_empty_surface_is_drawn(void **state) {
 }
 
 /// Left half red, right half blue, top row darker: uv and rows must be the right way round.
-static void uv_and_rows_are_the_right_way_round(void **state) {
-    (void)state;
+TEST(uv_and_rows_are_the_right_way_round) {
     uint8_t texels[2 * 2 * 3] = {255, 0, 0, 0, 0, 255, 60, 0, 0, 0, 0, 60};
     Image image = {.width = 2, .height = 2, .rgb = texels};
     const Image *pictures[2] = {&image, NULL};
@@ -115,8 +110,7 @@ static void uv_and_rows_are_the_right_way_round(void **state) {
     assert_in_range(pixel(rgb, W / 2 - 14, H / 2 - 14)[1], 210, 252);
 }
 
-static void shapes_are_drawn(void **state) {
-    (void)state;
+TEST(shapes_are_drawn) {
     static uint8_t rgb[BYTES];
     SingeSurface nothing = {0};
     PreviewDef def = above();
@@ -145,8 +139,7 @@ static void shapes_are_drawn(void **state) {
 }
 
 /// A mesh of a box is drawn as the box, turned, hot or blurred; one that is built again as before.
-static void a_box_of_a_mesh_is_drawn_as_the_box(void **state) {
-    (void)state;
+TEST(a_box_of_a_mesh_is_drawn_as_the_box) {
     static uint8_t box[BYTES], mesh[BYTES], again[BYTES];
     SingeSurface nothing = {0};
     PreviewDef def = above();
@@ -186,8 +179,7 @@ static void a_box_of_a_mesh_is_drawn_as_the_box(void **state) {
     assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_ERROR_ARGUMENT);
 }
 
-static void a_hot_ball_glows(void **state) {
-    (void)state;
+TEST(a_hot_ball_glows) {
     static uint8_t hot[BYTES], cold[BYTES];
     SingeSurface nothing = {0};
     PreviewDef def = above();
@@ -214,8 +206,7 @@ static void a_hot_ball_glows(void **state) {
 }
 
 /// A sheet over the table darkens it, softly.
-static void a_sheet_darkens_the_table(void **state) {
-    (void)state;
+TEST(a_sheet_darkens_the_table) {
     static uint8_t with[BYTES], without[BYTES];
     SingeSurface nothing = {0};
     Float4 q;
@@ -229,8 +220,7 @@ static void a_sheet_darkens_the_table(void **state) {
     assert_true(abs(pixel(with, 4, 4)[0] - pixel(without, 4, 4)[0]) <= 4);
 }
 
-static void bad_vertices_are_refused(void **state) {
-    (void)state;
+TEST(bad_vertices_are_refused) {
     static uint8_t rgb[BYTES];
     PreviewDef def = above();
     const float bad[] = {NAN, INFINITY, -INFINITY, 1e30f};
@@ -264,8 +254,7 @@ static SingeResult draw_result(const SingeSurface *surface, double time, SingeEr
     return result;
 }
 
-static void bad_surfaces_are_refused(void **state) {
-    (void)state;
+TEST(bad_surfaces_are_refused) {
     Float4 q;
     SingeError error = {0};
     quad_make(&q, 0.1f, 0.01f);
@@ -300,8 +289,7 @@ static void refused(PreviewDef def, const char *word) {
         refused(def, word);       \
     } while (0)
 
-static void bad_defs_are_refused(void **state) {
-    (void)state;
+TEST(bad_defs_are_refused) {
     REFUSED(def.width = 0, "width");
     REFUSED(def.height = -3, "height");
     REFUSED(def.width = 1 << 20, "width");
@@ -353,8 +341,7 @@ static void bad_defs_are_refused(void **state) {
 }
 
 /// Sizes that are no multiple of anything, one sample, straight down with `up` along the view.
-static void odd_sizes_are_drawn(void **state) {
-    (void)state;
+TEST(odd_sizes_are_drawn) {
     SingeSurface surface;
     assert_true(synthetic_make(SYNTHETIC_HANGING, 12, 0.05f, &surface));
     const int sizes[][3] = {{1, 1, 1}, {3, 5, 2}, {17, 33, 5}, {70, 2, 7}, {33, 9, 12}};
@@ -372,8 +359,7 @@ static void odd_sizes_are_drawn(void **state) {
 }
 
 /// Every allocation fails once: the right result, nothing left behind, and a failed frame can be drawn again.
-static void every_allocation_fails_once(void **state) {
-    (void)state;
+TEST(every_allocation_fails_once) {
     static uint8_t rgb[BYTES];
     uint8_t texels[4 * 4 * 3] = {0};
     Image image = {.width = 4, .height = 4, .rgb = texels};
@@ -404,8 +390,7 @@ static void every_allocation_fails_once(void **state) {
     assert_true(succeeded);
 }
 
-static void shapes_can_be_set_anew(void **state) {
-    (void)state;
+TEST(shapes_can_be_set_anew) {
     static uint8_t rgb[BYTES];
     SingeSurface nothing = {0};
     PreviewDef def = above();
@@ -429,25 +414,4 @@ static void shapes_can_be_set_anew(void **state) {
     assert_int_equal(preview_draw(preview, &nothing, 0, rgb, &error), SINGE_OK);
     assert_true(pixel(rgb, W / 2, H / 2)[0] > pixel(rgb, W / 2, H / 2)[2]);
     preview_destroy(preview);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pictures_do_not_depend_on_threads),
-        cmocka_unit_test(frames_between_leave_no_trace),
-        cmocka_unit_test(an_empty_surface_is_drawn),
-        cmocka_unit_test(what_is_kept_does_not_show),
-        cmocka_unit_test(uv_and_rows_are_the_right_way_round),
-        cmocka_unit_test(shapes_are_drawn),
-        cmocka_unit_test(a_box_of_a_mesh_is_drawn_as_the_box),
-        cmocka_unit_test(a_hot_ball_glows),
-        cmocka_unit_test(a_sheet_darkens_the_table),
-        cmocka_unit_test(bad_vertices_are_refused),
-        cmocka_unit_test(bad_surfaces_are_refused),
-        cmocka_unit_test(bad_defs_are_refused),
-        cmocka_unit_test(odd_sizes_are_drawn),
-        cmocka_unit_test(every_allocation_fails_once),
-        cmocka_unit_test(shapes_can_be_set_anew),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

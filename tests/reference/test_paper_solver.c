@@ -129,8 +129,7 @@ static void check_dense(Random *random) {
     free(g), free(a), free(matrix), free(jacobian), free(right), free(soft);
 }
 
-static void projection_matches_a_dense_solver(void **unused) {
-    (void)unused;
+TEST(projection_matches_a_dense_solver) {
     Random random;
     random_make(&random);
     check_dense(&random);
@@ -139,8 +138,7 @@ static void projection_matches_a_dense_solver(void **unused) {
 }
 
 /// Fig 9 and Table 1, whose digits are cut.
-static void table_1_is_reproduced(void **unused) {
-    (void)unused;
+TEST(table_1_is_reproduced) {
     static const double table[] = {0.4306, 0.4401, 0.5527, 0.4954, 0.5767, 0.5038, 0.5804, 0.5050, 0.5810, 0.5052};
     SingeNetworkDef def = singe_default_network();
     const double positions[] = {-1, 0, 0, 0, 0, 0, 1, 0, 0}, lengths[] = {1.65, 0.55};
@@ -161,8 +159,7 @@ static void table_1_is_reproduced(void **unused) {
     }
 }
 
-static void bad_networks_are_refused(void **unused) {
-    (void)unused;
+TEST(bad_networks_are_refused) {
     Random random;
     SingeNetwork *network;
     SingeError error;
@@ -217,8 +214,7 @@ static SingeSimDef method_def(SingeSolverMethod method) {
     return def;
 }
 
-static void bytes_do_not_depend_on_threads(void **unused) {
-    (void)unused;
+TEST(bytes_do_not_depend_on_threads) {
     const SingeSolverMethod methods[] = {SINGE_SOLVER_PAPER, SINGE_SOLVER_MASS_SPRING};
     for (int m = 0; m < 2; m++) {
         SingeSimDef def = method_def(methods[m]);
@@ -240,8 +236,7 @@ static void bytes_do_not_depend_on_threads(void **unused) {
     }
 }
 
-static void projections_end_early(void **unused) {
-    (void)unused;
+TEST(projections_end_early) {
     SingeSimDef def = method_def(SINGE_SOLVER_PAPER);
     uint64_t iterations[2];
     double height[2] = {0, 0};
@@ -269,8 +264,7 @@ static void projections_end_early(void **unused) {
 }
 
 /// To the letter it blows up, since eq 9 lacks its h; that is an error like any other, and takes the step back.
-static void the_literal_method_diverges(void **unused) {
-    (void)unused;
+TEST(the_literal_method_diverges) {
     SingeSimDef def = method_def(SINGE_SOLVER_PAPER_LITERAL);
     SingeSim *sim = swing(&def, 8, 1);
     SingeResult result = SINGE_OK;
@@ -285,8 +279,7 @@ static void the_literal_method_diverges(void **unused) {
     singe_sim_destroy(sim);
 }
 
-static void all_methods_run_or_give_a_reason(void **unused) {
-    (void)unused;
+TEST(all_methods_run_or_give_a_reason) {
     for (int method = SINGE_SOLVER_STRAND; method <= SINGE_SOLVER_MASS_SPRING; method++) {
         SingeSimDef def = method_def((SingeSolverMethod)method);
         if (method == SINGE_SOLVER_ALL_AT_ONCE) def.solver.projections = 1;
@@ -299,8 +292,7 @@ static void all_methods_run_or_give_a_reason(void **unused) {
     }
 }
 
-static void contact_is_inside_projections(void **unused) {
-    (void)unused;
+TEST(contact_is_inside_projections) {
     SingeSimDef def = method_def(SINGE_SOLVER_PAPER);
     SingeSim *sim = swing(&def, 8, 0.2f);
     SingeColliderDef plane = singe_default_collider();
@@ -320,8 +312,7 @@ static void contact_is_inside_projections(void **unused) {
 }
 
 /// Both end where the sheet hangs at rest.
-static void paper_and_strand_end_alike(void **unused) {
-    (void)unused;
+TEST(paper_and_strand_end_alike) {
     float last[2][200][3];
     uint32_t count = 0;
     for (int method = SINGE_SOLVER_STRAND; method <= SINGE_SOLVER_PAPER; method++) {
@@ -346,8 +337,7 @@ static void paper_and_strand_end_alike(void **unused) {
     assert_true(worst < 3e-4);
 }
 
-static void commits_fail_cleanly_without_memory(void **unused) {
-    (void)unused;
+TEST(commits_fail_cleanly_without_memory) {
     const SingeSolverMethod methods[] = {SINGE_SOLVER_PAPER, SINGE_SOLVER_ALL_AT_ONCE};
     for (int m = 0; m < 2; m++)
         for (long at = 40;; at++) { // earlier ones are those of the other stages
@@ -378,8 +368,7 @@ static void commits_fail_cleanly_without_memory(void **unused) {
 // ---- mass-spring
 
 /// Two masses and a spring: omega^2 = k (w_a + w_b) (1 - zeta^2), zeta = 0.1.
-static void a_spring_has_its_period(void **unused) {
-    (void)unused;
+TEST(a_spring_has_its_period) {
     Memory memory = memory_make((SingeAllocator){0});
     const uint32_t ends[1][2] = {{0, 1}};
     NetworkSprings springs = {1, ends};
@@ -413,8 +402,7 @@ static void a_spring_has_its_period(void **unused) {
     assert_int_equal(memory.held, 0);
 }
 
-static void too_long_a_step_is_an_error(void **unused) {
-    (void)unused;
+TEST(too_long_a_step_is_an_error) {
     SingeSimDef def = method_def(SINGE_SOLVER_MASS_SPRING);
     def.solver.substeps = 1, def.solver.stiffness = 1e5f;
     SingeSim *sim = swing(&def, 8, 0.2f);
@@ -423,22 +411,4 @@ static void too_long_a_step_is_an_error(void **unused) {
     assert_int_equal(result, SINGE_ERROR_DIVERGED);
     assert_string_equal(singe_sim_error(sim)->stage, "dynamics");
     singe_sim_destroy(sim);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(projection_matches_a_dense_solver),
-        cmocka_unit_test(table_1_is_reproduced),
-        cmocka_unit_test(bad_networks_are_refused),
-        cmocka_unit_test(bytes_do_not_depend_on_threads),
-        cmocka_unit_test(projections_end_early),
-        cmocka_unit_test(the_literal_method_diverges),
-        cmocka_unit_test(all_methods_run_or_give_a_reason),
-        cmocka_unit_test(contact_is_inside_projections),
-        cmocka_unit_test(paper_and_strand_end_alike),
-        cmocka_unit_test(commits_fail_cleanly_without_memory),
-        cmocka_unit_test(a_spring_has_its_period),
-        cmocka_unit_test(too_long_a_step_is_an_error),
-    };
-    return cmocka_run_group_tests_name("paper", tests, NULL, NULL);
 }

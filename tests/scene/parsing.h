@@ -2,15 +2,11 @@
 #ifndef TESTS_SCENE_PARSING_H
 #define TESTS_SCENE_PARSING_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "scene/scene.h"
 

@@ -16,8 +16,7 @@ static void turn(const float q[4], const double v[3], double out[3]) {
 }
 
 // About x, then y, then z: a quarter turn about x takes y to z, and one about z leaves z. Matrix and quaternion agree.
-static void rotations_turn_about_x_then_y_then_z(void **state) {
-    (void)state;
+TEST(rotations_turn_about_x_then_y_then_z) {
     const float quarter = 1.57079633f, angles[3] = {quarter, 0, quarter}, any[3] = {0.3f, -1.2f, 2.5f};
     const double y[3] = {0, 1, 0}, x[3] = {1, 0, 0}, v[3] = {0.2, -0.7, 1.1};
     float q[4];
@@ -34,8 +33,7 @@ static void rotations_turn_about_x_then_y_then_z(void **state) {
         assert_true(fabs(out[i] - (m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2])) < 1e-6);
 }
 
-static void a_simulation_has_what_the_scene_says(void **state) {
-    (void)state;
+TEST(a_simulation_has_what_the_scene_says) {
     Scene *scene = good_scene("sheets:\n  - grid: {size: [0.2, 0.1], cells: [4, 2]}\n    rotate: [90, 0, 0]\n"
                               "    translate: [0, 0, 1]\n    scale: 2\n"
                               "    material: {mass_rate: {from: 1e-3, to: 2e-3, noise: {seed: 1}}}\n"
@@ -68,8 +66,7 @@ static void a_simulation_has_what_the_scene_says(void **state) {
 }
 
 // A refusal of the library is reported at the object it concerns.
-static void refused_objects_are_named(void **state) {
-    (void)state;
+TEST(refused_objects_are_named) {
     Scene *scene = good_scene(SHEET "pins:\n  - {vertices: [0]}\n  - {vertices: [99999]}\n", NULL, 0);
     SceneAssets assets;
     SceneMessages messages = {0};
@@ -86,8 +83,7 @@ static void refused_objects_are_named(void **state) {
 }
 
 // Files of the wrong kind are all reported, each at the line of its name.
-static void bad_files_are_reported(void **state) {
-    (void)state;
+TEST(bad_files_are_reported) {
     char folder[] = "/tmp/singe-scene-XXXXXX", path[64];
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/bad.obj", folder);
@@ -145,8 +141,7 @@ static SceneMessages refused(const char *text, const char *folder) {
 }
 
 // Meshes that can be read but not burnt are all reported, each with its file and line or face.
-static void bad_meshes_are_reported(void **state) {
-    (void)state;
+TEST(bad_meshes_are_reported) {
     static const struct {
         const char *name, *text, *origin, *fault;
     } meshes[] = {
@@ -203,8 +198,7 @@ static void keep_line(void *context, SingeLogLevel level, const char *line) {
 }
 
 /// Values without effect cause warnings with their location.
-static void values_without_effect_are_warned_of(void **state) {
-    (void)state;
+TEST(values_without_effect_are_warned_of) {
     static const struct {
         const char *more, *warning;
     } cases[] = {
@@ -255,8 +249,7 @@ static const char nut[] = "v -2 -2 0\nv 2 -2 0\nv 2 0 0\nv 1 0 0\nv 1 -1 0\nv -1
                           "f 4 5 13 12\nf 5 6 14 13\nf 6 7 15 14\nf 7 8 16 15\nf 8 1 9 16\n";
 
 /// Meshes and height fields become colliders and shapes; an open mesh is reported at its collider.
-static void solids_become_colliders_and_shapes(void **state) {
-    (void)state;
+TEST(solids_become_colliders_and_shapes) {
     char folder[] = "/tmp/singe-scene-XXXXXX", text[600], path[100];
     const char *const names[] = {"cube.obj", "open.obj", "heights.png", "nut.obj"};
     SingeError error = {0};
@@ -314,8 +307,7 @@ static void solids_become_colliders_and_shapes(void **state) {
     rmdir(folder);
 }
 
-static void the_preview_has_what_the_scene_says(void **state) {
-    (void)state;
+TEST(the_preview_has_what_the_scene_says) {
     Scene *scene = good_scene(
         SHEET "    colour: [0.5, 0.25, 1]\n"
               "sources:\n"
@@ -344,8 +336,7 @@ static void the_preview_has_what_the_scene_says(void **state) {
     scene_free(scene);
 }
 
-static void the_examples_build(void **state) {
-    (void)state;
+TEST(the_examples_build) {
     static const char *const paths[] = {"examples/letter/letter.yaml", "examples/letter-hanging/letter-hanging.yaml",
                                         "examples/hot-sphere/hot-sphere.yaml"};
     for (int i = 0; i < 3; i++) {
@@ -398,8 +389,7 @@ static double reach_in_picture(const Scene *scene, const SceneAssets *assets) {
 }
 
 // A file of triangles, in millimetres and y up. A pin takes the file's vertex numbers, also that of a welded vertex.
-static void mesh_files_are_scaled_and_welded(void **state) {
-    (void)state;
+TEST(mesh_files_are_scaled_and_welded) {
     char folder[] = "/tmp/singe-scene-XXXXXX", path[100];
     assert_non_null(mkdtemp(folder));
     write_text(folder, "a.obj",
@@ -442,8 +432,7 @@ static void mesh_files_are_scaled_and_welded(void **state) {
     rmdir(folder);
 }
 
-static void the_camera_finds_the_sheets(void **state) {
-    (void)state;
+TEST(the_camera_finds_the_sheets) {
     static const char *const scenes[] = {
         "sheets: [{grid: {size: [0.2, 0.3], cells: [4, 6]}}]",
         "sheets: [{grid: {size: [0.2, 0.3], cells: [4, 6]}, rotate: [90, 0, 0], translate: [3, 0, 1]}]",
@@ -480,21 +469,4 @@ static void the_camera_finds_the_sheets(void **state) {
     scene_free(scene);
     // an up along the default line of sight is good where that is not used
     scene_free(good_scene(SHEET "preview: {camera: {up: [0, 0.5, -0.4]}}\n", NULL, 0));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rotations_turn_about_x_then_y_then_z),
-        cmocka_unit_test(a_simulation_has_what_the_scene_says),
-        cmocka_unit_test(refused_objects_are_named),
-        cmocka_unit_test(bad_files_are_reported),
-        cmocka_unit_test(bad_meshes_are_reported),
-        cmocka_unit_test(values_without_effect_are_warned_of),
-        cmocka_unit_test(solids_become_colliders_and_shapes),
-        cmocka_unit_test(the_preview_has_what_the_scene_says),
-        cmocka_unit_test(mesh_files_are_scaled_and_welded),
-        cmocka_unit_test(the_examples_build),
-        cmocka_unit_test(the_camera_finds_the_sheets),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

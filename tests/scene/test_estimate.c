@@ -90,8 +90,7 @@ static void sweep(const char *scene_text, bool once, SingeResult expected) {
     assert_true(n > 180);
 }
 
-static void the_estimate_covers_every_allocation(void **state) {
-    (void)state;
+TEST(the_estimate_covers_every_allocation) {
     uint32_t reported;
     assert_int_equal(attempt(text, 0, false, &reported), SINGE_OK);
     sweep(text, false, SINGE_OK);
@@ -101,13 +100,5 @@ static void the_estimate_covers_every_allocation(void **state) {
     free(undisturbed);
 }
 #else
-static void the_estimate_covers_every_allocation(void **state) {
-    (void)state;
-    skip();
-}
+TEST(the_estimate_covers_every_allocation) { skip(); }
 #endif
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_estimate_covers_every_allocation)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}

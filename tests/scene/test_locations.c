@@ -101,8 +101,7 @@ static void sweep_words(Sweep *sweep, const char *text) {
     }
 }
 
-static void every_prefix_of_the_examples_has_its_line(void **state) {
-    (void)state;
+TEST(every_prefix_of_the_examples_has_its_line) {
     glob_t files;
     assert_int_equal(glob("examples/*/*.yaml", 0, NULL, &files), 0);
     int words = 0;
@@ -124,8 +123,7 @@ static void every_prefix_of_the_examples_has_its_line(void **state) {
 }
 
 /// Texts that libfyaml refuses without a position.
-static void odd_texts_have_their_line(void **state) {
-    (void)state;
+TEST(odd_texts_have_their_line) {
     // clang-format off
     static const char *const texts[] = {
         "",      "\n",      "#",         "a: |0\n  x\n", "a: |00\n", "|0",       "a: >0",  "a: |-0",   "a: 1\n...\nb\n",
@@ -142,9 +140,6 @@ static void odd_texts_have_their_line(void **state) {
     assert_int_equal(sweep.refused, sizeof texts / sizeof *texts);
 }
 
-int main(int argc, char **argv) {
-    all = argc > 1 && strcmp(argv[1], "all") == 0;
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_prefix_of_the_examples_has_its_line),
-                                       cmocka_unit_test(odd_texts_have_their_line)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+static void read_arguments(int argc, char **argv) { all = argc > 1 && strcmp(argv[1], "all") == 0; }
+
+TEST_AROUND(read_arguments, NULL)

@@ -64,8 +64,7 @@ static void expect_same_def(const SingeMaterialDef *a, const SingeMaterialDef *b
 }
 
 /// Each is valid and has its name and its sources. The first one, which is calibrated, is the program's default.
-static void built_in_materials_are_good(void **state) {
-    (void)state;
+TEST(built_in_materials_are_good) {
     static const char *const names[] = {"cotton", "newsprint", "office-paper", "one-reaction", "tissue"};
     static const float grammage[] = {0.120f, 0.045f, 0.080f, 0.080f, 0.020f};
     const SingeMaterialDef standard = singe_default_material();
@@ -88,8 +87,7 @@ static void built_in_materials_are_good(void **state) {
 }
 
 /// A material with a base and changed keys does not claim the measurements of its base.
-static void a_base_can_be_changed(void **state) {
-    (void)state;
+TEST(a_base_can_be_changed) {
     Scene *scene = good_scene(SHEET "    material: {thickness: 2 mm, base: newsprint, name: mine}\n", NULL, 0);
     const SceneMaterial *material = material_of(scene);
     assert_string_equal(material->name, "mine");
@@ -106,8 +104,7 @@ static void a_base_can_be_changed(void **state) {
     scene_free(scene);
 }
 
-static void set_changes_materials(void **state) {
-    (void)state;
+TEST(set_changes_materials) {
     static const char *const texts[] = {SHEET, SHEET "    material: office-paper\n",
                                         SHEET "    material: {base: newsprint}\n", SHEET "    material: {}\n"};
     for (int i = 0; i < 4; i++) {
@@ -134,8 +131,7 @@ static void set_changes_materials(void **state) {
 
 /// Material files in the scene's folder or below it, one based on another. Names in them are relative to them. The
 /// resolved scene does not need them.
-static void material_files_are_found(void **state) {
-    (void)state;
+TEST(material_files_are_found) {
     Folder folder = folder_make();
     char below[100];
     snprintf(below, sizeof below, "%s/below", folder.path);
@@ -171,8 +167,7 @@ static void material_files_are_found(void **state) {
 }
 
 /// A material file may be one that the reader of the messages must not see: no message repeats any of its text.
-static void messages_repeat_nothing_of_other_files(void **state) {
-    (void)state;
+TEST(messages_repeat_nothing_of_other_files) {
     static const char *const secrets[] = {
         "SECRET:$6$SECRET:19000:0:99999:7:::\n",
         "SECRET\nSECRET\n",
@@ -240,8 +235,7 @@ static void expect_mistake(const Folder *folder, const char *line, const char *o
     scene_free(scene);
 }
 
-static void wrong_materials_are_reported(void **state) {
-    (void)state;
+TEST(wrong_materials_are_reported) {
     Folder folder = folder_make();
     const Folder *in = &folder;
     char long_file[100];
@@ -306,13 +300,4 @@ static void wrong_materials_are_reported(void **state) {
     Scene *scene = folder_scene(NULL, SHEET "    material: gone.yaml\n", NULL, 0);
     scene_free(scene);
     expect_mistake(NULL, "    material: silk\n", "scene.yaml:3:15", "the built-in ones are", 1);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(built_in_materials_are_good),  cmocka_unit_test(a_base_can_be_changed),
-        cmocka_unit_test(set_changes_materials),        cmocka_unit_test(material_files_are_found),
-        cmocka_unit_test(wrong_materials_are_reported), cmocka_unit_test(messages_repeat_nothing_of_other_files),
-    };
-    return cmocka_run_group_tests_name("scene_materials", tests, NULL, NULL);
 }

@@ -33,8 +33,7 @@ static void one(const char *line, const char *origin, const char *part) {
     scene_messages_free(&messages);
 }
 
-static void wrong_values_are_reported(void **state) {
-    (void)state;
+TEST(wrong_values_are_reported) {
     one("fps: fast", "bad.yaml:3:6", "fps must be a frame rate (1/s, fps, Hz), not 'fast'");
     one("fps: [1]", "bad.yaml:3:6", "not a list");
     one("fps: {}", "bad.yaml:3:6", "not a map");
@@ -74,8 +73,7 @@ static void wrong_values_are_reported(void **state) {
 }
 
 /// Messages state both bounds and the unit of bare numbers, and end without a blank.
-static void messages_name_both_bounds(void **state) {
-    (void)state;
+TEST(messages_name_both_bounds) {
     static const struct {
         const char *line, *text;
     } rows[] = {
@@ -110,8 +108,7 @@ static void messages_name_both_bounds(void **state) {
 }
 
 /// Values that the library would refuse one at a time and without a location are all reported at once.
-static void all_ranges_are_reported_at_once(void **state) {
-    (void)state;
+TEST(all_ranges_are_reported_at_once) {
     static const char text[] = SHEET "pace: 1e9\ngravity: [0, 0, -1e5]\nambient_temperature: 1e9\nair_density: 1e9\n"
                                      "heat_tolerance: 1e-30\nsolver: {substeps: 10001, regularisation: {red: 1e9}}\n"
                                      "wind: {velocity: [1e5, 0, 0]}\nfps: 0.001\n";
@@ -125,8 +122,7 @@ static void all_ranges_are_reported_at_once(void **state) {
     scene_messages_free(&messages);
 }
 
-static void steps_that_cannot_be_are_reported(void **state) {
-    (void)state;
+TEST(steps_that_cannot_be_are_reported) {
     static const char words[] = "steps a second, which must be 0.1 to 1e9";
     one("fps: 0.001", "bad.yaml:3:6", "0.001 frames a second of 20 steps each are 0.02 steps a second");
     one("steps: 100000\nfps: 1e5", "bad.yaml:4:6", words);
@@ -146,8 +142,7 @@ static void steps_that_cannot_be_are_reported(void **state) {
     }
 }
 
-static void unknown_keys_are_reported(void **state) {
-    (void)state;
+TEST(unknown_keys_are_reported) {
     one("frame: 3", "bad.yaml:3:1", "unknown key 'frame' in the scene; did you mean 'frames'?");
     one("Sources: []", "bad.yaml:3:1", "did you mean 'sources'?");
     one("zzzzzzzz: 3", "bad.yaml:3:1", "unknown key 'zzzzzzzz' in the scene");
@@ -156,8 +151,7 @@ static void unknown_keys_are_reported(void **state) {
     one("preview: {light: {colour: [1, 1, 1], color: [1, 1, 1]}}", "bad.yaml:3:38", "did you mean 'colour'?");
 }
 
-static void wrong_objects_are_reported(void **state) {
-    (void)state;
+TEST(wrong_objects_are_reported) {
     one("sources: [{}]", "bad.yaml:3:11", "needs 'kind'");
     one("sources: [3]", "bad.yaml:3:11", "must be a map, not '3'");
     one("sources: {kind: ball}", "bad.yaml:3:10", "a list of maps");
@@ -189,8 +183,7 @@ static void wrong_objects_are_reported(void **state) {
         "two probes are called 'a'");
 }
 
-static void wrong_sheets_are_reported(void **state) {
-    (void)state;
+TEST(wrong_sheets_are_reported) {
     one("    mesh: x.obj", "bad.yaml:2:5", "exclude each other");
     one("  - name: x", "bad.yaml:3:5", "needs 'mesh' (a file) or 'grid'");
     one("  - {grid: {size: [1, 1], cells: [1, 1]}, name: sheet1}", "bad.yaml:3:49", "two sheets are called 'sheet1'");
@@ -219,8 +212,7 @@ static void whole(const char *text, const char *origin, const char *part) {
     scene_messages_free(&messages);
 }
 
-static void wrong_syntax_is_reported(void **state) {
-    (void)state;
+TEST(wrong_syntax_is_reported) {
     whole("", "bad.yaml:1:1", "empty");
     whole("# nothing\n", "bad.yaml:1:1", "empty");
     whole("- 1\n", "bad.yaml:1:1", "a scene must be a map");
@@ -255,8 +247,7 @@ static char *printed(const SceneMessages *messages) {
 }
 
 /// Characters that control a terminal or are invisible are escaped wherever they stand in a scene.
-static void unprintable_characters_are_escaped(void **state) {
-    (void)state;
+TEST(unprintable_characters_are_escaped) {
     static const struct {
         const char *bytes, *escaped;
     } characters[] = {
@@ -296,8 +287,7 @@ static void unprintable_characters_are_escaped(void **state) {
 }
 
 /// Very long texts are cut between characters.
-static void long_texts_are_cut(void **state) {
-    (void)state;
+TEST(long_texts_are_cut) {
     static const char *const lines[] = {"%s: 1",
                                         "fps: %s",
                                         "name: %s",
@@ -332,8 +322,7 @@ static void long_texts_are_cut(void **state) {
 }
 
 /// A name is not empty, and short enough for the names of files.
-static void impossible_names_are_reported(void **state) {
-    (void)state;
+TEST(impossible_names_are_reported) {
     static const struct {
         const char *piece;
         int count;
@@ -359,8 +348,7 @@ static void expect_origin_prefix(const SceneMessages *messages, const char *pref
     assert_memory_equal(messages->items[0].origin, prefix, strlen(prefix));
 }
 
-static void large_texts_are_refused(void **state) {
-    (void)state;
+TEST(large_texts_are_refused) {
     size_t size = (1 << 20) + 1;
     char *text = malloc(size + 1);
     memset(text, ' ', size);
@@ -381,8 +369,7 @@ static void large_texts_are_refused(void **state) {
     free(text);
 }
 
-static void all_mistakes_are_reported_at_once(void **state) {
-    (void)state;
+TEST(all_mistakes_are_reported_at_once) {
     static const char text[] = "frames: x\n"
                                "sheets:\n"
                                "  - gird: {}\n"
@@ -412,8 +399,7 @@ static void all_mistakes_are_reported_at_once(void **state) {
     scene_messages_free(&messages);
 }
 
-static void messages_print_with_their_line(void **state) {
-    (void)state;
+TEST(messages_print_with_their_line) {
     static const char bad[] = SHEET "\tx: 1\nfps: \u00e9\u00e9 9\nname: [\u00e9, 1]\n";
     Scene *scene;
     SceneMessages messages = {0};
@@ -433,8 +419,7 @@ static void messages_print_with_their_line(void **state) {
     scene_messages_free(&messages);
 }
 
-static void missing_files_are_reported(void **state) {
-    (void)state;
+TEST(missing_files_are_reported) {
     static const char text[] = "sheets:\n  - {mesh: missing.obj, picture: src}\n";
     SceneMessages messages = failing(text, strlen(text), ".", NULL, 0, SINGE_ERROR_FORMAT);
     expect_message(&messages, 0, "bad.yaml:2:12", "mesh: there is no such file (./missing.obj)");
@@ -450,8 +435,7 @@ static void missing_files_are_reported(void **state) {
 }
 
 // Every prefix of a scene in flow style is incomplete and must be refused.
-static void truncated_flow_scenes_are_refused(void **state) {
-    (void)state;
+TEST(truncated_flow_scenes_are_refused) {
     static const char text[] =
         "{frames: 20, 'name': \"a\\u00e9\", sheets: [{grid: {size: [20 cm, 0.3], cells: [2, 3]}, material: {mass_rate:"
         " {from: 1, to: 2, noise: {seed: 3}}}}], sources: [{kind: spot, position: [0, 0, 0]}], # c\n preview: {size: "
@@ -472,8 +456,7 @@ static void truncated_flow_scenes_are_refused(void **state) {
 }
 
 // Prefixes in block style may be scenes of their own; then they must read back from their dump.
-static void truncated_block_scenes_read_back(void **state) {
-    (void)state;
+TEST(truncated_block_scenes_read_back) {
     static const char text[] =
         SHEET "    material:\n      grammage: 80 g/m2\n      mass_rate:\n        from: 1\n        to: 2\n"
               "        attribute: x\nsources:\n  - kind: ball\n    position: [1, 2, 3]\nframes: 1234\n";
@@ -500,19 +483,4 @@ static void truncated_block_scenes_read_back(void **state) {
     // Whole at: the grid's line and blanks behind it (6), grammage 8, 80, "80 ", 80 g/m2 and blanks (11), the
     // attribute's line (2), the position's (2), frames 1 to 1234 (5).
     assert_int_equal(good, 26);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wrong_values_are_reported),          cmocka_unit_test(unknown_keys_are_reported),
-        cmocka_unit_test(wrong_objects_are_reported),         cmocka_unit_test(wrong_sheets_are_reported),
-        cmocka_unit_test(wrong_syntax_is_reported),           cmocka_unit_test(large_texts_are_refused),
-        cmocka_unit_test(all_mistakes_are_reported_at_once),  cmocka_unit_test(messages_print_with_their_line),
-        cmocka_unit_test(missing_files_are_reported),         cmocka_unit_test(messages_name_both_bounds),
-        cmocka_unit_test(all_ranges_are_reported_at_once),    cmocka_unit_test(steps_that_cannot_be_are_reported),
-        cmocka_unit_test(truncated_flow_scenes_are_refused),  cmocka_unit_test(truncated_block_scenes_read_back),
-        cmocka_unit_test(unprintable_characters_are_escaped), cmocka_unit_test(long_texts_are_cut),
-        cmocka_unit_test(impossible_names_are_reported),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -102,8 +102,7 @@ static void check_objects(const Scene *scene) {
     assert_true(scene->preview.ground_height == -0.5f && scene->preview.light_colour[0] == 3);
 }
 
-static void values_are_read(void **state) {
-    (void)state;
+TEST(values_are_read) {
     Scene *scene = good_scene(full, NULL, 0);
     check_full(scene);
     check_objects(scene);
@@ -112,8 +111,7 @@ static void values_are_read(void **state) {
 
 /// Each parameter of a material that may vary is written under its key, fills its own slot and no other, keeps its
 /// texture in a slot of its own, and reads back from a dump.
-static void every_parameter_that_may_vary_does(void **state) {
-    (void)state;
+TEST(every_parameter_that_may_vary_does) {
     static const char *const fields[] = {"texture: p.png", "attribute: burn", "noise: {scale: 2 mm, seed: 9}"};
     SingeMaterialDef standard = singe_default_material();
     SceneParam row;
@@ -160,8 +158,7 @@ static void every_parameter_that_may_vary_does(void **state) {
     assert_false(scene_param(count, &row));
 }
 
-static void missing_keys_take_defaults(void **state) {
-    (void)state;
+TEST(missing_keys_take_defaults) {
     Scene *scene = good_scene(SHEET, NULL, 0);
     assert_string_equal(scene->name, "test");
     SingeMaterialDef material = singe_default_material();
@@ -191,18 +188,11 @@ static void round_trip(SceneSyntax syntax) {
     scene_free(scene);
 }
 
-static void a_yaml_dump_reads_back(void **state) {
-    (void)state;
-    round_trip(SCENE_YAML);
-}
+TEST(a_yaml_dump_reads_back) { round_trip(SCENE_YAML); }
 
-static void a_json_dump_reads_back(void **state) {
-    (void)state;
-    round_trip(SCENE_JSON);
-}
+TEST(a_json_dump_reads_back) { round_trip(SCENE_JSON); }
 
-static void json_is_read(void **state) {
-    (void)state;
+TEST(json_is_read) {
     Scene *scene =
         good_scene("{\"sheets\": [{\"grid\": {\"size\": [\"20 cm\", 0.3], \"cells\": [2, 3]},\n"
                    "\t\"material\": {\"ignition_temperature\": \"240 C\", \"ablate\": false}}], \"frames\": 7}",
@@ -214,8 +204,7 @@ static void json_is_read(void **state) {
 }
 
 /// Quoted texts in every style of YAML, read as the name of an attribute, which may be any text.
-static void quoted_texts_are_read(void **state) {
-    (void)state;
+TEST(quoted_texts_are_read) {
     static const struct {
         const char *written, *read;
     } texts[] = {
@@ -254,8 +243,7 @@ static void quoted_texts_are_read(void **state) {
     scene_free(scene);
 }
 
-static void set_overrides_values(void **state) {
-    (void)state;
+TEST(set_overrides_values) {
     static const char *const sets[] = {
         "sheets.0.material.grammage=60 g/m2",
         "sheets[0].material.weight.red=0.25",
@@ -285,8 +273,7 @@ static void set_overrides_values(void **state) {
 }
 
 // A scene has gas unless it switches it off, by `gas: no` or inside the map.
-static void gas_is_there_unless_switched_off(void **state) {
-    (void)state;
+TEST(gas_is_there_unless_switched_off) {
     const struct {
         const char *text, *set;
         bool enabled;
@@ -312,8 +299,7 @@ static void gas_is_there_unless_switched_off(void **state) {
 }
 
 // The solver's method, alone or with keys in any order: the defaults of missing keys suit the method.
-static void defaults_suit_the_method(void **state) {
-    (void)state;
+TEST(defaults_suit_the_method) {
     static const char sheet[] = "sheets: [{grid: {size: [1, 1], cells: [1, 1]}}]\n";
     static const struct {
         const char *text, *set;
@@ -341,20 +327,4 @@ static void defaults_suit_the_method(void **state) {
         assert_memory_equal(solver->order, standard.order, sizeof standard.order);
         scene_free(scene);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gas_is_there_unless_switched_off),
-        cmocka_unit_test(defaults_suit_the_method),
-        cmocka_unit_test(values_are_read),
-        cmocka_unit_test(missing_keys_take_defaults),
-        cmocka_unit_test(a_yaml_dump_reads_back),
-        cmocka_unit_test(a_json_dump_reads_back),
-        cmocka_unit_test(json_is_read),
-        cmocka_unit_test(quoted_texts_are_read),
-        cmocka_unit_test(set_overrides_values),
-        cmocka_unit_test(every_parameter_that_may_vary_does),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,8 +14,7 @@ static double read_good(const char *text, Dimension dimension) {
 
 static void near(double value, double expected) { assert_true(fabs(value - expected) <= 1e-12 * (1 + fabs(expected))); }
 
-static void units_are_converted(void **state) {
-    (void)state;
+TEST(units_are_converted) {
     near(read_good("293", DIM_TEMPERATURE), 293);
     near(read_good("240 C", DIM_TEMPERATURE), 513.15);
     near(read_good("240C", DIM_TEMPERATURE), 513.15);
@@ -49,8 +48,7 @@ static void units_are_converted(void **state) {
     near(read_good("+.5", DIM_NONE), 0.5);
 }
 
-static void odd_quantities_are_refused(void **state) {
-    (void)state;
+TEST(odd_quantities_are_refused) {
     static const char *const not_numbers[] = {"",      " ",   "x",   "nan", "inf",  "-inf",    "0x10 ",
                                               "--1",   ".",   "+",   "e5",  "1,5",  "C 12",    "- 1",
                                               "1.2.3", "1 2", "+-3", "++3", "- 3",  "\u22123", "infinity m",
@@ -104,8 +102,7 @@ static void back(float value, Dimension dimension, const char *expected) {
     assert_memory_equal(&narrow, &value, sizeof value);
 }
 
-static void numbers_print_with_their_unit(void **state) {
-    (void)state;
+TEST(numbers_print_with_their_unit) {
     back(0, DIM_NONE, "0");
     back(1200, DIM_TEMPERATURE, "1200");
     back(-9.81f, DIM_ACCELERATION, "-9.81");
@@ -127,8 +124,7 @@ static void numbers_print_with_their_unit(void **state) {
 }
 
 // A decimal comma must change nothing. Skipped where no such locale is installed.
-static void a_decimal_comma_changes_nothing(void **state) {
-    (void)state;
+TEST(a_decimal_comma_changes_nothing) {
     static const char *const locales[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE", "fr_FR"};
     bool found = false;
     for (int i = 0; i < 4 && !found; i++) found = setlocale(LC_ALL, locales[i]) != NULL;
@@ -136,14 +132,4 @@ static void a_decimal_comma_changes_nothing(void **state) {
     near(read_good("1.5 mm", DIM_LENGTH), 1.5e-3);
     setlocale(LC_ALL, "C");
     if (!found) skip();
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(units_are_converted),
-        cmocka_unit_test(odd_quantities_are_refused),
-        cmocka_unit_test(numbers_print_with_their_unit),
-        cmocka_unit_test(a_decimal_comma_changes_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,14 +2,11 @@
 #ifndef TESTS_SHELL_SQUARE_H
 #define TESTS_SHELL_SQUARE_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "sample_shells.h"
 #include "shell/sheet.h"

@@ -9,8 +9,7 @@ static const float *centre_uv(const Square *square, uint32_t cell, float uv[2]) 
 }
 
 // The top row of the file is at v = 1; between pixel centres the value is linear, beyond them held.
-static void textures_are_sampled_linearly(void **state) {
-    (void)state;
+TEST(textures_are_sampled_linearly) {
     static const float values[] = {0, 1, 2, 3, 4, 5};
     SingeTexture picture = {3, 2, values};
     static const float expected[][3] = {
@@ -34,8 +33,7 @@ static void textures_are_sampled_linearly(void **state) {
 }
 
 // A picture that is linear in u between its two pixels.
-static void pictures_are_sampled_by_uv(void **state) {
-    (void)state;
+TEST(pictures_are_sampled_by_uv) {
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(8);
     static const float values[] = {0, 1};
@@ -61,8 +59,7 @@ static void pictures_are_sampled_by_uv(void **state) {
 }
 
 // Attributes are taken as they are, beyond [0, 1] too; centres take the mean of their corners.
-static void attributes_are_taken_as_they_are(void **state) {
-    (void)state;
+TEST(attributes_are_taken_as_they_are) {
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(3);
     float values[16];
@@ -94,8 +91,7 @@ static void attributes_are_taken_as_they_are(void **state) {
 }
 
 // Noise lies between the two values, varies, and depends on the seed and on the position alone.
-static void noise_depends_on_seed_and_position(void **state) {
-    (void)state;
+TEST(noise_depends_on_seed_and_position) {
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(24);
     SingeField field = {.kind = SINGE_FIELD_NOISE, .noise = {0.2f, 3, 5}};
@@ -124,14 +120,4 @@ static void noise_depends_on_seed_and_position(void **state) {
     field.kind = (SingeFieldKind)7;
     refuse(&square.def, -1, "unknown kind");
     square_free(&square);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(textures_are_sampled_linearly),
-        cmocka_unit_test(pictures_are_sampled_by_uv),
-        cmocka_unit_test(attributes_are_taken_as_they_are),
-        cmocka_unit_test(noise_depends_on_seed_and_position),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,8 +27,7 @@ enum { VARYING = sizeof varying / sizeof varying[0] };
 
 // Every parameter goes to its own slot, front and back of shrinkage each to its layer, and through the
 // shell into Matter.
-static void every_number_goes_to_its_slot(void **state) {
-    (void)state;
+TEST(every_number_goes_to_its_slot) {
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(2);
     SingeMaterialDef *m = &square.def.material;
@@ -94,8 +93,7 @@ static void every_number_goes_to_its_slot(void **state) {
 
 /// Every parameter follows a texture, an attribute and noise, each in its own slot: the same field gives every one
 /// the values that it gives the thickness, and leaves the others alone.
-static void every_parameter_can_vary(void **state) {
-    (void)state;
+TEST(every_parameter_can_vary) {
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(6);
     static const float pixels[] = {0.25f, 1, 0, 0.5f};
@@ -143,8 +141,7 @@ static void every_parameter_can_vary(void **state) {
 }
 
 /// Mass and capacity where both factors vary, and where their product leaves what a float can hold.
-static void mass_and_capacity_vary(void **state) {
-    (void)state;
+TEST(mass_and_capacity_vary) {
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(4);
     static const float pixels[] = {0, 1};
@@ -186,8 +183,7 @@ static void mass_and_capacity_vary(void **state) {
 
 /// Diffusivity, layer exchange and mass rate are stated for one grammage and are larger where the sheet is lighter; the
 /// product of conductance and capacity, a flux per area, is the same everywhere. Heat is stated by its share.
-static void rates_are_stated_for_a_grammage(void **state) {
-    (void)state;
+TEST(rates_are_stated_for_a_grammage) {
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(4);
     static const float pixels[] = {0, 1};
@@ -225,8 +221,7 @@ static void rates_are_stated_for_a_grammage(void **state) {
 }
 
 // The ends of every range, as its row states them: the last number that is allowed and the first that is not.
-static void ranges_end_where_stated(void **state) {
-    (void)state;
+TEST(ranges_end_where_stated) {
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(1);
     for (int i = 0; i < VARYING; i++) {
@@ -282,8 +277,7 @@ static void ranges_end_where_stated(void **state) {
 
 // A caller's header had fewer fields in the material and in the sheet: the rest take their defaults, and
 // the sheet's fields after the material are found where that caller has them.
-static void older_defs_take_defaults(void **state) {
-    (void)state;
+TEST(older_defs_take_defaults) {
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(1);
     square.def.material.grammage = singe_param(0.2f);
@@ -322,8 +316,7 @@ static void older_defs_take_defaults(void **state) {
 }
 
 // Long names are cut at a character, and the sheet keeps a copy.
-static void long_names_are_cut(void **state) {
-    (void)state;
+TEST(long_names_are_cut) {
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(1);
     char name[80];
@@ -338,17 +331,4 @@ static void long_names_are_cut(void **state) {
     assert_string_equal(source.sheet.name, "sheet");
     sheet_source_free(&memory, &source);
     square_free(&square);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_number_goes_to_its_slot),
-        cmocka_unit_test(ranges_end_where_stated),
-        cmocka_unit_test(rates_are_stated_for_a_grammage),
-        cmocka_unit_test(older_defs_take_defaults),
-        cmocka_unit_test(long_names_are_cut),
-        cmocka_unit_test(every_parameter_can_vary),
-        cmocka_unit_test(mass_and_capacity_vary),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

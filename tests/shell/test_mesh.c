@@ -1,11 +1,8 @@
 // Meshes that are refused, each with its code and its position.
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <math.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "sample_shells.h"
 
@@ -36,14 +33,12 @@ static void refuse(QuadMesh *mesh, SingeResult code, int64_t element, const char
     mesh_release(mesh);
 }
 
-static void a_moebius_strip_is_refused(void **state) {
-    (void)state;
+TEST(a_moebius_strip_is_refused) {
     QuadMesh mesh = mesh_moebius(12);
     refuse(&mesh, SINGE_ERROR_MESH, 11, "is flipped");
 }
 
-static void a_turned_cell_is_refused(void **state) {
-    (void)state;
+TEST(a_turned_cell_is_refused) {
     QuadMesh mesh = mesh_grid(3, 3, 1, 1);
     uint32_t *cell = mesh.cells[4], swap = cell[1];
     cell[1] = cell[3], cell[3] = swap;
@@ -51,8 +46,7 @@ static void a_turned_cell_is_refused(void **state) {
 }
 
 // Three pages bound at the edge 0-1.
-static void three_cells_at_an_edge_are_refused(void **state) {
-    (void)state;
+TEST(three_cells_at_an_edge_are_refused) {
     QuadMesh mesh = {0};
     for (int k = 0; k < 2; k++) mesh_add_vertex(&mesh, 0, (float)k, 0);
     for (int page = 0; page < 3; page++)
@@ -65,8 +59,7 @@ static void three_cells_at_an_edge_are_refused(void **state) {
 }
 
 // Two cells that share only vertex 4.
-static void a_bow_tie_is_refused(void **state) {
-    (void)state;
+TEST(a_bow_tie_is_refused) {
     QuadMesh mesh = mesh_grid(2, 2, 1, 1);
     memcpy(mesh.cells[1], mesh.cells[3], sizeof mesh.cells[1]);
     mesh.cell_count = 2;
@@ -74,8 +67,7 @@ static void a_bow_tie_is_refused(void **state) {
 }
 
 // Two closed surfaces that touch in a vertex have no boundary to betray them.
-static void touching_spheres_are_refused(void **state) {
-    (void)state;
+TEST(touching_spheres_are_refused) {
     QuadMesh mesh = mesh_sphere(2), other = mesh_sphere(2);
     uint32_t first = mesh.vertex_count, touch = 3;
     for (uint32_t v = 0; v < other.vertex_count; v++)
@@ -90,8 +82,7 @@ static void touching_spheres_are_refused(void **state) {
 }
 
 // The element is the second sheet's own, not the shell's.
-static void the_element_is_the_sheets_own(void **state) {
-    (void)state;
+TEST(the_element_is_the_sheets_own) {
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh good = mesh_grid(3, 3, 1, 1), bad = mesh_grid(2, 2, 1, 1);
     memcpy(bad.cells[1], bad.cells[3], sizeof bad.cells[1]);
@@ -111,8 +102,7 @@ static void the_element_is_the_sheets_own(void **state) {
     mesh_release(&bad);
 }
 
-static void bad_numbers_are_refused(void **state) {
-    (void)state;
+TEST(bad_numbers_are_refused) {
     static const float bad[] = {NAN, INFINITY, -INFINITY, 1e30f};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         QuadMesh mesh = mesh_grid(3, 2, 1, 1);
@@ -137,8 +127,7 @@ static void bad_numbers_are_refused(void **state) {
     refuse(&mesh, SINGE_ERROR_MESH, 3, "twice");
 }
 
-static void degenerate_cells_are_refused(void **state) {
-    (void)state;
+TEST(degenerate_cells_are_refused) {
     QuadMesh mesh = mesh_grid(1, 1, 1, 1);
     memcpy(mesh.position[1], mesh.position[0], sizeof mesh.position[0]);
     refuse(&mesh, SINGE_ERROR_MESH, 0, "side without length");
@@ -165,8 +154,7 @@ static void degenerate_cells_are_refused(void **state) {
 }
 
 // A tube as thick as its radius: the centre layer would be a line.
-static void a_tube_as_thick_as_its_radius_is_refused(void **state) {
-    (void)state;
+TEST(a_tube_as_thick_as_its_radius_is_refused) {
     QuadMesh mesh = mesh_cylinder(4, 3, 1, 1);
     for (uint32_t c = 0; c < mesh.cell_count; c++) {
         uint32_t swap = mesh.cells[c][1];
@@ -182,8 +170,7 @@ static void a_tube_as_thick_as_its_radius_is_refused(void **state) {
     mesh_release(&mesh);
 }
 
-static void bad_defs_are_refused(void **state) {
-    (void)state;
+TEST(bad_defs_are_refused) {
     QuadMesh mesh = mesh_grid(1, 1, 1, 1);
     SingeSheetDef def = mesh_sheet(&mesh);
     refuse_def(&(SingeSheetDef){0}, SINGE_ERROR_ARGUMENT, -1, "struct_size");
@@ -217,8 +204,7 @@ static void bad_defs_are_refused(void **state) {
 }
 
 // More cells around a vertex than a particle's count of springs can hold.
-static void too_many_cells_at_a_vertex_are_refused(void **state) {
-    (void)state;
+TEST(too_many_cells_at_a_vertex_are_refused) {
     QuadMesh mesh = {0};
     const uint32_t sides = 21845;
     mesh_add_vertex(&mesh, 0, 0, 0);
@@ -261,8 +247,7 @@ static SingeResult build_all(Memory *memory, const SingeSheetDef *def, SingeErro
 }
 
 // The n-th allocation fails, for every n: the right code, nothing leaked.
-static void every_allocation_fails_once(void **state) {
-    (void)state;
+TEST(every_allocation_fails_once) {
     QuadMesh mesh = mesh_sphere(3);
     SingeSheetDef def = mesh_sheet(&mesh);
     SingeResult result = SINGE_ERROR_MEMORY;
@@ -280,22 +265,4 @@ static void every_allocation_fails_once(void **state) {
     print_message("%ld allocations\n", n - 1);
     assert_true(n > 100);
     mesh_release(&mesh);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_moebius_strip_is_refused),
-        cmocka_unit_test(a_turned_cell_is_refused),
-        cmocka_unit_test(three_cells_at_an_edge_are_refused),
-        cmocka_unit_test(a_bow_tie_is_refused),
-        cmocka_unit_test(touching_spheres_are_refused),
-        cmocka_unit_test(the_element_is_the_sheets_own),
-        cmocka_unit_test(bad_numbers_are_refused),
-        cmocka_unit_test(degenerate_cells_are_refused),
-        cmocka_unit_test(a_tube_as_thick_as_its_radius_is_refused),
-        cmocka_unit_test(bad_defs_are_refused),
-        cmocka_unit_test(too_many_cells_at_a_vertex_are_refused),
-        cmocka_unit_test(every_allocation_fails_once),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

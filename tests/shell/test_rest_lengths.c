@@ -1,11 +1,8 @@
 // Rest geometry: areas, masses, where centres lie, lengths.
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <math.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "sample_shells.h"
 
@@ -33,8 +30,7 @@ static void check_layers(const Shell *shell, double area, double tolerance) {
 }
 
 // Rectangles: quarters at the corner, halves at the side; every length by hand.
-static void rectangles_match_lengths_by_hand(void **state) {
-    (void)state;
+TEST(rectangles_match_lengths_by_hand) {
     Memory memory = memory_make((SingeAllocator){0});
     const float dx = 0.02f, dy = 0.01f, t = 0.003f;
     QuadMesh mesh = mesh_grid(4, 3, dx, dy);
@@ -80,8 +76,7 @@ static int compare(const void *a, const void *b) {
 }
 
 // The median by histograms is the median by sorting.
-static void the_median_cell_size_is_exact(void **state) {
-    (void)state;
+TEST(the_median_cell_size_is_exact) {
     for (uint32_t seed = 1; seed < 6; seed++) {
         Memory memory = memory_make((SingeAllocator){0});
         QuadMesh mesh = mesh_random(2 + seed, seed);
@@ -100,8 +95,7 @@ static void the_median_cell_size_is_exact(void **state) {
 }
 
 // Any planar mesh: the parts sum to the whole. The polygon of k patches: k/2 sin(2 pi/k) of its outline.
-static void parts_of_a_planar_mesh_sum_to_the_whole(void **state) {
-    (void)state;
+TEST(parts_of_a_planar_mesh_sum_to_the_whole) {
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh mesh = mesh_random(7, 3);
     Shell shell = mesh_shell(&memory, &mesh);
@@ -117,8 +111,7 @@ static void parts_of_a_planar_mesh_sum_to_the_whole(void **state) {
 }
 
 // A dart: the triangle (0,0) (2,0) (1,2) without (0,0) (2,0) (1,1), its corners equal for want of better.
-static void a_concave_cell_has_equal_corners(void **state) {
-    (void)state;
+TEST(a_concave_cell_has_equal_corners) {
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh mesh = {0};
     static const float position[4][2] = {{0, 0}, {1, 1}, {2, 0}, {1, 2}};
@@ -132,8 +125,7 @@ static void a_concave_cell_has_equal_corners(void **state) {
 }
 
 // A curved shell: the centre layer of a cylinder is longer outside, at the radius of its own prism.
-static void the_centre_layer_of_a_cylinder_is_longer_outside(void **state) {
-    (void)state;
+TEST(the_centre_layer_of_a_cylinder_is_longer_outside) {
     Memory memory = memory_make((SingeAllocator){0});
     const uint32_t n = 16;
     const double pi = 3.14159265358979, r = 0.1, t = 0.01, h = 0.3;
@@ -157,15 +149,4 @@ static void the_centre_layer_of_a_cylinder_is_longer_outside(void **state) {
     shell_free(&memory, &shell);
     sheet_source_free(&memory, &source);
     mesh_release(&mesh);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rectangles_match_lengths_by_hand),
-        cmocka_unit_test(the_median_cell_size_is_exact),
-        cmocka_unit_test(parts_of_a_planar_mesh_sum_to_the_whole),
-        cmocka_unit_test(a_concave_cell_has_equal_corners),
-        cmocka_unit_test(the_centre_layer_of_a_cylinder_is_longer_outside),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

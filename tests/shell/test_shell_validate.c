@@ -3,8 +3,7 @@
 
 #include "shell/shell_validate.h"
 
-static void good_ones_pass(void **unused) {
-    (void)unused;
+TEST(good_ones_pass) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(5, 4, 0.01f, &material);
     AblatePlan *plan;
@@ -28,8 +27,7 @@ static void good_ones_pass(void **unused) {
         assert_true(validate);                  \
     } while (0)
 
-static void faults_are_named(void **unused) {
-    (void)unused;
+TEST(faults_are_named) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(5, 4, 0.01f, &material);
     AblatePlan *plan;
@@ -65,9 +63,4 @@ static void faults_are_named(void **unused) {
            "live springs have 398 ends, the particles' degrees sum to 400");
     ablate_plan_free(&b->memory, plan);
     burning_sheet_free(b);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(good_ones_pass), cmocka_unit_test(faults_are_named)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,8 @@
 // The start of a simulation, and that a State is one block.
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "sample_shells.h"
 
@@ -30,8 +27,7 @@ static Shell start_shell(Memory *memory) {
     return shell;
 }
 
-static void a_state_starts_at_rest(void **context) {
-    (void)context;
+TEST(a_state_starts_at_rest) {
     Memory memory = memory_make((SingeAllocator){0});
     Shell shell = start_shell(&memory);
     State state;
@@ -77,8 +73,7 @@ static void check_slice(const State *state, const void *slice, size_t size) {
     assert_true(offset + size <= state->arena_size);
 }
 
-static void the_arena_holds_the_whole_state(void **context) {
-    (void)context;
+TEST(the_arena_holds_the_whole_state) {
     Memory memory = memory_make((SingeAllocator){0});
     Shell shell = start_shell(&memory);
     State a, b;
@@ -118,8 +113,7 @@ static void the_arena_holds_the_whole_state(void **context) {
 }
 
 // No two arrays of a State overlap: bytes set through one pointer are not seen through another.
-static void arrays_do_not_overlap(void **context) {
-    (void)context;
+TEST(arrays_do_not_overlap) {
     Memory memory = memory_make((SingeAllocator){0});
     Shell shell = start_shell(&memory);
     State s;
@@ -156,13 +150,4 @@ static void arrays_do_not_overlap(void **context) {
     }
     state_free(&memory, &s);
     shell_free(&memory, &shell);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_state_starts_at_rest),
-        cmocka_unit_test(the_arena_holds_the_whole_state),
-        cmocka_unit_test(arrays_do_not_overlap),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 // Springs, strands and families on meshes whose numbers are known.
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 #include "sample_shells.h"
 
@@ -44,8 +41,7 @@ static Expected grid_expected(uint32_t n, uint32_t m) {
                                                       : 1};
 }
 
-static void a_grid_has_straight_strands(void **state) {
-    (void)state;
+TEST(a_grid_has_straight_strands) {
     static const uint32_t sizes[][2] = {{1, 1}, {2, 2}, {3, 2}, {7, 5}, {5, 7}, {20, 20}, {31, 8}, {1, 9}, {9, 1}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         uint32_t n = sizes[i][0], m = sizes[i][1];
@@ -55,8 +51,7 @@ static void a_grid_has_straight_strands(void **state) {
 }
 
 // The families do not depend on how vertices and cells are numbered.
-static void families_do_not_depend_on_numbering(void **state) {
-    (void)state;
+TEST(families_do_not_depend_on_numbering) {
     for (uint32_t seed = 1; seed < 4; seed++) {
         QuadMesh mesh = mesh_grid(14, 11, 0.01f, 0.01f);
         mesh_shuffle(&mesh, seed);
@@ -69,8 +64,7 @@ static void families_do_not_depend_on_numbering(void **state) {
 static uint32_t gcd(uint32_t a, uint32_t b) { return b ? gcd(b, a % b) : a; }
 
 // All strands are rings: n + m lines, and gcd(n, m) diagonals each way.
-static void strands_of_a_torus_are_rings(void **state) {
-    (void)state;
+TEST(strands_of_a_torus_are_rings) {
     static const uint32_t sizes[][2] = {{12, 8}, {9, 9}, {13, 7}, {3, 3}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         uint32_t n = sizes[i][0], m = sizes[i][1], d = 2 * gcd(n, m), cells = n * m;
@@ -84,8 +78,7 @@ static void strands_of_a_torus_are_rings(void **state) {
 }
 
 // Two cells around: green rings of two springs between the same centres are cut open into two strands.
-static void rings_of_two_springs_are_cut(void **state) {
-    (void)state;
+TEST(rings_of_two_springs_are_cut) {
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh mesh = {0};
     static const float square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -104,8 +97,7 @@ static void rings_of_two_springs_are_cut(void **state) {
     mesh_release(&mesh);
 }
 
-static void strands_go_around_a_cylinder(void **state) {
-    (void)state;
+TEST(strands_go_around_a_cylinder) {
     QuadMesh mesh = mesh_cylinder(12, 5, 0.1f, 0.2f);
     // a diagonal climbs one row a cell, so each starts at one of 12 places and goes once up
     expect(&mesh, "cylinder",
@@ -122,8 +114,7 @@ static void strands_go_around_a_cylinder(void **state) {
 }
 
 // Eight vertices of valence three: the cube's 12 edges are chains, the other lines go round.
-static void strands_of_a_cube_sphere_end_at_its_corners(void **state) {
-    (void)state;
+TEST(strands_of_a_cube_sphere_end_at_its_corners) {
     for (uint32_t n = 1; n <= 8; n++) {
         QuadMesh mesh = mesh_sphere(n);
         assert_int_equal(mesh.vertex_count, 6 * n * n + 2);
@@ -149,8 +140,7 @@ static void strands_of_a_cube_sphere_end_at_its_corners(void **state) {
 }
 
 // Around a vertex of odd valence all ends; of even valence lines go through.
-static void strands_end_at_vertices_of_odd_valence(void **state) {
-    (void)state;
+TEST(strands_end_at_vertices_of_odd_valence) {
     const uint32_t n = 6;
     QuadMesh mesh = mesh_polygon(5, n);
     Memory memory = memory_make((SingeAllocator){0});
@@ -175,8 +165,7 @@ static void strands_end_at_vertices_of_odd_valence(void **state) {
 }
 
 // The inner corner has three cells: both boundary lines run on into the mesh.
-static void strands_run_on_from_an_inner_corner(void **state) {
-    (void)state;
+TEST(strands_run_on_from_an_inner_corner) {
     const uint32_t n = 4;
     QuadMesh mesh = mesh_ell(n);
     uint32_t cells = 3 * n * n;
@@ -196,8 +185,7 @@ static void strands_run_on_from_an_inner_corner(void **state) {
     mesh_release(&mesh);
 }
 
-static void components_are_separate(void **state) {
-    (void)state;
+TEST(components_are_separate) {
     QuadMesh mesh = mesh_grid(5, 4, 0.01f, 0.01f);
     mesh_append_grid(&mesh, 3, 6, 1, 1);
     Expected a = grid_expected(5, 4), b = grid_expected(3, 6);
@@ -209,8 +197,7 @@ static void components_are_separate(void **state) {
 }
 
 // Two sheets are numbered as one shell: all vertices, then all cells.
-static void sheets_are_numbered_as_one_shell(void **state) {
-    (void)state;
+TEST(sheets_are_numbered_as_one_shell) {
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh a = mesh_grid(4, 3, 0.01f, 0.01f), b = mesh_grid(2, 5, 0.03f, 0.03f);
     SingeSheetDef defs[2] = {mesh_sheet(&a), mesh_sheet(&b)};
@@ -240,8 +227,7 @@ static void sheets_are_numbered_as_one_shell(void **state) {
 }
 
 // General meshes: valences from 3 to 8 or so, strands that cross themselves.
-static void random_meshes_have_valid_strands(void **state) {
-    (void)state;
+TEST(random_meshes_have_valid_strands) {
     for (uint32_t seed = 1; seed <= 12; seed++) {
         Memory memory = memory_make((SingeAllocator){0});
         QuadMesh mesh = mesh_random(seed, seed);
@@ -261,8 +247,7 @@ static void random_meshes_have_valid_strands(void **state) {
 }
 
 // A hub of 201 cells: more strands meet than one word of families holds.
-static void a_hub_has_many_families(void **state) {
-    (void)state;
+TEST(a_hub_has_many_families) {
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh mesh = mesh_polygon(201, 1);
     Shell shell = mesh_shell(&memory, &mesh);
@@ -272,22 +257,4 @@ static void a_hub_has_many_families(void **state) {
     assert_int_equal(shell.cell_family_count, 201);
     shell_free(&memory, &shell);
     mesh_release(&mesh);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_grid_has_straight_strands),
-        cmocka_unit_test(families_do_not_depend_on_numbering),
-        cmocka_unit_test(strands_of_a_torus_are_rings),
-        cmocka_unit_test(rings_of_two_springs_are_cut),
-        cmocka_unit_test(strands_go_around_a_cylinder),
-        cmocka_unit_test(strands_of_a_cube_sphere_end_at_its_corners),
-        cmocka_unit_test(strands_end_at_vertices_of_odd_valence),
-        cmocka_unit_test(strands_run_on_from_an_inner_corner),
-        cmocka_unit_test(components_are_separate),
-        cmocka_unit_test(sheets_are_numbered_as_one_shell),
-        cmocka_unit_test(random_meshes_have_valid_strands),
-        cmocka_unit_test(a_hub_has_many_families),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

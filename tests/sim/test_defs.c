@@ -19,8 +19,7 @@
         assert_int_equal(singe_sim_create(&def_, &sim_, NULL), SINGE_ERROR_ARGUMENT); \
     } while (0)
 
-static void bad_simulations(void **state) {
-    (void)state;
+TEST(bad_simulations) {
     SIM_BAD(thread_count, 0, "thread_count");
     SIM_BAD(thread_count, 65, "thread_count");
     SIM_BAD(time_step, 0, "time_step");
@@ -69,13 +68,9 @@ static void *no_enqueue(void *context, SingeTaskFn *run, void *task, int count, 
     return context;
 }
 
-static void half_a_task_hook(void **state) {
-    (void)state;
-    SIM_BAD(tasks.enqueue, no_enqueue, "tasks");
-}
+TEST(half_a_task_hook) { SIM_BAD(tasks.enqueue, no_enqueue, "tasks"); }
 
-static void limits_are_inclusive(void **state) {
-    (void)state;
+TEST(limits_are_inclusive) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
     SingeError error;
@@ -101,8 +96,7 @@ static SingeSim *small_sim(void) { return test_sim(NULL, test_grid(4, 4, 0.01f, 
         assert_int_equal(id.generation, 0);                                            \
     } while (0)
 
-static void bad_sources(void **state) {
-    (void)state;
+TEST(bad_sources) {
     SingeSim *sim = small_sim();
     SingePoseKey key = test_key(0, 0, 0, 0), keys[2] = {key, key};
     const float grey = 1, nan_grey = NAN;
@@ -144,8 +138,7 @@ static void bad_sources(void **state) {
         assert_int_equal(id.generation, 0);                             \
     } while (0)
 
-static void bad_pins(void **state) {
-    (void)state;
+TEST(bad_pins) {
     SingeSim *sim = small_sim();
     const float point[3] = {0, 0, 0}, bad_point[3] = {0, NAN, 0}, far_point[3] = {1e30f, 0, 0};
     const uint32_t vertices[2] = {0, 25};
@@ -169,8 +162,7 @@ static void bad_pins(void **state) {
     singe_sim_destroy(sim);
 }
 
-static void bad_colliders_and_wind(void **state) {
-    (void)state;
+TEST(bad_colliders_and_wind) {
     SingeSim *sim = small_sim();
     SingeColliderDef def = singe_default_collider();
     SingeColliderId id;
@@ -195,8 +187,7 @@ static void bad_colliders_and_wind(void **state) {
 }
 
 /// Fields beyond an older header's struct_size hold rubbish that must not be read.
-static void older_defs(void **state) {
-    (void)state;
+TEST(older_defs) {
     SingeSim *sim;
     SingeError error;
     SingeSimDef def = singe_default_sim();
@@ -238,8 +229,7 @@ static void older_defs(void **state) {
 }
 
 /// An older header's wind inside the simulation's Def is smaller, and what comes after it lies earlier.
-static void older_inner_defs(void **state) {
-    (void)state;
+TEST(older_inner_defs) {
     SingeSimDef def = singe_default_sim();
     def.wind.gust = 0.25f;
     def.wind.struct_size = offsetof(SingeWindDef, gust_size);
@@ -275,8 +265,7 @@ static void older_inner_defs(void **state) {
 }
 
 /// The same of a sheet's material: the fields after it are found behind the smaller one.
-static void older_material(void **state) {
-    (void)state;
+TEST(older_material) {
     TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
     SingeSheetDef def = test_sheet(&mesh);
     def.velocity[1] = 3;
@@ -302,8 +291,7 @@ static void older_material(void **state) {
     test_mesh_free(&mesh);
 }
 
-static void newer_defs(void **state) {
-    (void)state;
+TEST(newer_defs) {
     struct {
         SingeWindDef wind;
         double unknown[4];
@@ -316,8 +304,7 @@ static void newer_defs(void **state) {
 }
 
 /// The simulation copies what it is given.
-static void defs_are_copied(void **state) {
-    (void)state;
+TEST(defs_are_copied) {
     SingeSim *a = small_sim(), *b = small_sim();
     for (int i = 0; i < 2; i++) {
         SingePoseKey keys[2] = {test_key(0, 0, 0, 0), test_key(0.1f, 0.04f, 0, 0)};
@@ -338,14 +325,4 @@ static void defs_are_copied(void **state) {
     test_assert_same(a, b);
     singe_sim_destroy(a);
     singe_sim_destroy(b);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bad_simulations), cmocka_unit_test(half_a_task_hook), cmocka_unit_test(limits_are_inclusive),
-        cmocka_unit_test(bad_sources),     cmocka_unit_test(bad_pins),         cmocka_unit_test(bad_colliders_and_wind),
-        cmocka_unit_test(older_defs),      cmocka_unit_test(older_inner_defs), cmocka_unit_test(older_material),
-        cmocka_unit_test(newer_defs),      cmocka_unit_test(defs_are_copied),
-    };
-    return cmocka_run_group_tests_name("sim_defs", tests, NULL, NULL);
 }

@@ -5,8 +5,7 @@
 #include <string.h>
 
 /// The order in which sheets, objects and the commit come does not matter.
-static void the_order_does_not_matter(void **state) {
-    (void)state;
+TEST(the_order_does_not_matter) {
     SingeSimDef def = scene_def();
     Scene late, early;
     test_ok(NULL, scene_build(&def, 9, &late));
@@ -27,8 +26,7 @@ static void the_order_does_not_matter(void **state) {
 }
 
 /// An object that is invalid fails at the commit as it would after it, and the commit can be repeated.
-static void what_waits_can_be_refused(void **state) {
-    (void)state;
+TEST(what_waits_can_be_refused) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
     test_ok(NULL, singe_sim_create(&def, &sim, NULL));
@@ -63,8 +61,7 @@ static void what_waits_can_be_refused(void **state) {
 }
 
 /// Removed before the commit, an object leaves nothing behind.
-static void removed_while_waiting(void **state) {
-    (void)state;
+TEST(removed_while_waiting) {
     TestAllocator hook = {0};
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
@@ -92,8 +89,7 @@ static void removed_while_waiting(void **state) {
 }
 
 /// A source or collider without a path stands where `position` says, as one with a path of one key does.
-static void without_a_path_it_stands_still(void **state) {
-    (void)state;
+TEST(without_a_path_it_stands_still) {
     SingeSim *sims[2];
     for (int k = 0; k < 2; k++) {
         sims[k] = test_sim(NULL, test_grid(6, 6, 0.01f, 0.01f), NULL);
@@ -123,8 +119,7 @@ static void without_a_path_it_stands_still(void **state) {
 }
 
 /// Callers may omit handles that they do not need; the objects exist nevertheless.
-static void handles_may_be_left_out(void **state) {
-    (void)state;
+TEST(handles_may_be_left_out) {
     SingeSim *sims[2];
     for (int k = 0; k < 2; k++) {
         SingeSimDef def = singe_default_sim();
@@ -158,8 +153,7 @@ static void handles_may_be_left_out(void **state) {
     singe_sim_destroy(sims[1]);
 }
 
-static void user_data_is_the_callers(void **state) {
-    (void)state;
+TEST(user_data_is_the_callers) {
     int ours[5];
     SingeSim *sim, *copy;
     SingeSimDef def = singe_default_sim();
@@ -207,8 +201,7 @@ static void user_data_is_the_callers(void **state) {
 }
 
 /// Every call for memory up to the commit fails once; the commit works when it is called again.
-static void every_allocation_fails_once(void **state) {
-    (void)state;
+TEST(every_allocation_fails_once) {
     TestAllocator count = {0};
     SingeSimDef def = scene_def();
     Scene scene;
@@ -230,14 +223,4 @@ static void every_allocation_fails_once(void **state) {
         test_allocator_check(&hook);
     }
     assert_true(repeated > 50);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_order_does_not_matter),   cmocka_unit_test(what_waits_can_be_refused),
-        cmocka_unit_test(removed_while_waiting),       cmocka_unit_test(without_a_path_it_stands_still),
-        cmocka_unit_test(handles_may_be_left_out),     cmocka_unit_test(user_data_is_the_callers),
-        cmocka_unit_test(every_allocation_fails_once),
-    };
-    return cmocka_run_group_tests_name("sim_early", tests, NULL, NULL);
 }

@@ -12,8 +12,7 @@ static SingeSimDef calm(void) {
     return def;
 }
 
-static void one_ignition_a_particle(void **state) {
-    (void)state;
+TEST(one_ignition_a_particle) {
     Scene scene = scene_make(NULL, 14);
     SingeView view = singe_sim_view(scene.sim);
     unsigned char *seen = calloc(view.particle_count, 1);
@@ -59,8 +58,7 @@ static void tally(const SingeSim *sim, Tally *tally_) {
     }
 }
 
-static void one_hole_for_a_disc(void **state) {
-    (void)state;
+TEST(one_hole_for_a_disc) {
     SingeSimDef def = calm();
     SingeMaterialDef material = scene_quick_material();
     SingeSim *sim = test_sim(&def, test_grid(24, 24, 0.005f, 0.005f), &material);
@@ -92,8 +90,7 @@ static void hot_line(void *context, const struct SingeView *view, float *flux, f
             conductance[i] += 1000, conductance_temperature[i] += 1000 * 1300;
 }
 
-static void one_piece_for_a_cut(void **state) {
-    (void)state;
+TEST(one_piece_for_a_cut) {
     SingeSimDef def = calm();
     SingeMaterialDef material = scene_quick_material();
     material.heat_share = singe_param(0); // burns where it is heated and nowhere else
@@ -124,8 +121,7 @@ static void one_piece_for_a_cut(void **state) {
 }
 
 /// The switches: nothing goes with ablation off, or with m_loss under m_min.
-static void switched_off(void **state) {
-    (void)state;
+TEST(switched_off) {
     for (int which = 0; which < 2; which++) {
         SingeSimDef def = calm();
         SingeMaterialDef material = scene_quick_material();
@@ -146,14 +142,4 @@ static void switched_off(void **state) {
         assert_true(seen.ignited > 50);
         singe_sim_destroy(sim);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_ignition_a_particle),
-        cmocka_unit_test(one_hole_for_a_disc),
-        cmocka_unit_test(one_piece_for_a_cut),
-        cmocka_unit_test(switched_off),
-    };
-    return cmocka_run_group_tests_name("sim_events", tests, NULL, NULL);
 }

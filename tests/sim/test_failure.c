@@ -12,8 +12,7 @@ static void poison(void *context, const struct SingeView *view, float *flux, flo
     if (particle < view->particle_count) flux[particle] = NAN;
 }
 
-static void a_failed_step_changes_nothing(void **state) {
-    (void)state;
+TEST(a_failed_step_changes_nothing) {
     Scene scene = scene_make(NULL, 12), twin = scene_make(NULL, 12);
     SingeSim *sim = scene.sim;
     test_steps(sim, 15);
@@ -52,8 +51,7 @@ static void a_failed_step_changes_nothing(void **state) {
 
 /// A pin drags a particle out of the world: the dynamics fails after other stages have run, and their changes are
 /// undone.
-static void a_failure_late_in_the_step(void **state) {
-    (void)state;
+TEST(a_failure_late_in_the_step) {
     Scene scene = scene_make(NULL, 10);
     SingeSim *sim = scene.sim;
     test_steps(sim, 30);
@@ -78,8 +76,7 @@ static void a_failure_late_in_the_step(void **state) {
     singe_sim_destroy(sim);
 }
 
-static void steps_allocate_nothing(void **state) {
-    (void)state;
+TEST(steps_allocate_nothing) {
     TestAllocator hook = {0};
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
@@ -153,8 +150,7 @@ static long allocations(void) {
 }
 
 /// Every call for memory fails once, and once with all after it.
-static void every_allocation_fails_once(void **state) {
-    (void)state;
+TEST(every_allocation_fails_once) {
     long calls = allocations();
     assert_true(calls > 50);
     for (long n = 1; n <= 2 * calls; n++) {
@@ -175,8 +171,7 @@ static void every_allocation_fails_once(void **state) {
 }
 
 /// A call that failed for lack of memory can be repeated on the same simulation.
-static void failed_calls_can_be_repeated(void **state) {
-    (void)state;
+TEST(failed_calls_can_be_repeated) {
     TestAllocator hook = {0};
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
@@ -231,13 +226,4 @@ static void failed_calls_can_be_repeated(void **state) {
     singe_sim_destroy(sim);
     assert_int_equal(hook.blocks, 0);
     test_mesh_free(&mesh);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_failed_step_changes_nothing), cmocka_unit_test(a_failure_late_in_the_step),
-        cmocka_unit_test(steps_allocate_nothing),        cmocka_unit_test(every_allocation_fails_once),
-        cmocka_unit_test(failed_calls_can_be_repeated),
-    };
-    return cmocka_run_group_tests_name("sim_failure", tests, NULL, NULL);
 }

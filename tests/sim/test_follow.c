@@ -74,8 +74,7 @@ static double mean_of(SingeSim *sim, int axis) {
 }
 
 /// Unmoved, a deforming collider acts as a mesh; moved as a whole, as a mesh on a path: sheets ride on both alike.
-static void moved_as_a_whole_it_is_a_mesh_on_a_path(void **state) {
-    (void)state;
+TEST(moved_as_a_whole_it_is_a_mesh_on_a_path) {
     const float half[3] = {0.08f, 0.08f, 0.02f}, centre[3] = {0, 0, TOP - 0.02f};
     Block block;
     block_make(&block, half, centre);
@@ -144,8 +143,7 @@ static void sweep(double speed, bool at_once, double *behind, double *ahead) {
     singe_sim_destroy(sim);
 }
 
-static void nothing_passes_a_thin_plate(void **state) {
-    (void)state;
+TEST(nothing_passes_a_thin_plate) {
     static const double speeds[] = {0.5, 5, 20, 60};
     for (size_t k = 0; k < sizeof speeds / sizeof *speeds; k++) {
         double behind, ahead;
@@ -158,8 +156,7 @@ static void nothing_passes_a_thin_plate(void **state) {
 }
 
 /// A block that swells lifts what lies on it; its top moves, its bottom does not.
-static void a_swelling_block_lifts(void **state) {
-    (void)state;
+TEST(a_swelling_block_lifts) {
     const float half[3] = {0.08f, 0.08f, 0.05f}, centre[3] = {0, 0, TOP - 0.05f};
     Block block;
     block_make(&block, half, centre);
@@ -230,8 +227,7 @@ static SingeSim *cape(const SingeSimDef *def, SingePinId *pin, SingeColliderId *
     return sim;
 }
 
-static void pins_follow_and_runs_resume(void **state) {
-    (void)state;
+TEST(pins_follow_and_runs_resume) {
     SingeSimDef def = quiet();
     SingePinId pin;
     SingeColliderId body;
@@ -283,8 +279,7 @@ static void pins_follow_and_runs_resume(void **state) {
     singe_sim_destroy(sim);
 }
 
-static void bad_positions_are_refused(void **state) {
-    (void)state;
+TEST(bad_positions_are_refused) {
     SingeSimDef def = quiet();
     SingePinId pin;
     SingeColliderId body, box;
@@ -322,8 +317,7 @@ static void bad_positions_are_refused(void **state) {
 }
 
 /// A mesh that collapses to a plane, to a line and to a point on its way leaves numbers finite; nothing is allocated.
-static void a_mesh_may_collapse(void **state) {
-    (void)state;
+TEST(a_mesh_may_collapse) {
     TestAllocator hook = {0};
     SingeSimDef def = quiet();
     def.allocator = test_allocator(&hook);
@@ -357,16 +351,4 @@ static void a_mesh_may_collapse(void **state) {
         singe_sim_destroy(made);
         test_allocator_check(&failing);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(moved_as_a_whole_it_is_a_mesh_on_a_path),
-        cmocka_unit_test(nothing_passes_a_thin_plate),
-        cmocka_unit_test(a_swelling_block_lifts),
-        cmocka_unit_test(pins_follow_and_runs_resume),
-        cmocka_unit_test(bad_positions_are_refused),
-        cmocka_unit_test(a_mesh_may_collapse),
-    };
-    return cmocka_run_group_tests_name("sim_follow", tests, NULL, NULL);
 }

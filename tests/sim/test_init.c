@@ -1,13 +1,9 @@
 // Defs filled for callers of older and newer headers.
 #include "singe/singe.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 enum { UNTOUCHED = 0xA5, LONGER = 32, MAX = sizeof(SingeSheetDef) + sizeof(SingeSimDef) + LONGER };
 
@@ -63,8 +59,7 @@ static void assert_filled(const Bytes *filled, size_t size, const void *standard
         assert_bytes(&none_, 0, MAX, UNTOUCHED);                                     \
     } while (0)
 
-static void no_byte_beyond_the_size(void **state) {
-    (void)state;
+TEST(no_byte_beyond_the_size) {
     EVERY_SIZE(material, SingeMaterialDef, sizeof(SingeMaterialDef));
     EVERY_SIZE(source, SingeSourceDef, sizeof(SingeSourceDef));
     EVERY_SIZE(collider, SingeColliderDef, sizeof(SingeColliderDef));
@@ -74,8 +69,7 @@ static void no_byte_beyond_the_size(void **state) {
 }
 
 /// A sheet's Def cut anywhere, whatever the size of the material that it says to hold.
-static void sheet_of_any_size(void **state) {
-    (void)state;
+TEST(sheet_of_any_size) {
     const size_t head = offsetof(SingeSheetDef, material);
     const size_t inner[] = {0, 7, 8, sizeof(SingeMaterialDef), sizeof(SingeMaterialDef) + LONGER, SIZE_MAX};
     for (size_t i = 0; i < sizeof inner / sizeof *inner; i++)
@@ -96,8 +90,7 @@ static void sheet_of_any_size(void **state) {
     assert_true(def.drop_pieces_below == 0);
 }
 
-static void sim_of_any_size(void **state) {
-    (void)state;
+TEST(sim_of_any_size) {
     const size_t head = offsetof(SingeSimDef, wind), second = offsetof(SingeSimDef, solver);
     const size_t inner[] = {0, 7, 8, sizeof(SingeWindDef), sizeof(SingeSolverDef) + LONGER, SIZE_MAX};
     enum { COUNT = sizeof inner / sizeof *inner };
@@ -120,8 +113,7 @@ static void sim_of_any_size(void **state) {
 }
 
 /// An older header's smaller wind and material move what comes after them.
-static void older_inner_defs(void **state) {
-    (void)state;
+TEST(older_inner_defs) {
     Bytes bytes = untouched();
     const size_t head = offsetof(SingeSimDef, wind), wind = offsetof(SingeWindDef, gust_time) / 8 * 8;
     const SingeSolverDef standard = singe_default_solver();
@@ -159,8 +151,7 @@ static SingeSim *one_cell(void) {
 }
 
 /// Results fill as many bytes as a caller's header has: the first ones of an older, and 0 behind ours of a newer.
-static void results_of_any_size(void **state) {
-    (void)state;
+TEST(results_of_any_size) {
     SingeSim *sim = one_cell();
     union {
         unsigned char at[1024];
@@ -204,13 +195,4 @@ static void results_of_any_size(void **state) {
     assert_null(newer.surface.position);
     assert_int_equal(newer.more[LONGER - 1], 0);
     singe_sim_destroy(sim);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(results_of_any_size), cmocka_unit_test(no_byte_beyond_the_size),
-        cmocka_unit_test(sheet_of_any_size),   cmocka_unit_test(sim_of_any_size),
-        cmocka_unit_test(older_inner_defs),
-    };
-    return cmocka_run_group_tests_name("sim_init", tests, NULL, NULL);
 }

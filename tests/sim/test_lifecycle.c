@@ -14,8 +14,7 @@ static SingeSim *create(void) {
     return sim;
 }
 
-static void before_the_commit(void **state) {
-    (void)state;
+TEST(before_the_commit) {
     SingeSim *sim = create(), *copy = sim;
     assert_int_equal(singe_sim_error(sim)->code, SINGE_OK);
     test_refused(sim, SINGE_ERROR_STATE, singe_sim_step(sim));
@@ -53,8 +52,7 @@ static void before_the_commit(void **state) {
     singe_sim_destroy(NULL);
 }
 
-static void after_the_commit(void **state) {
-    (void)state;
+TEST(after_the_commit) {
     SingeSim *sim = test_sim(NULL, test_grid(3, 3, 0.01f, 0.01f), NULL);
     TestMesh mesh = test_grid(1, 1, 1, 1);
     SingeSheetDef sheet = test_sheet(&mesh);
@@ -69,8 +67,7 @@ static void after_the_commit(void **state) {
 }
 
 /// A sheet that is refused leaves the simulation as it was; so does a commit that is refused.
-static void refused_sheets(void **state) {
-    (void)state;
+TEST(refused_sheets) {
     SingeSim *sim = create();
     TestMesh good = test_grid(2, 2, 0.01f, 0.01f), bad = test_grid(2, 2, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&bad);
@@ -118,8 +115,7 @@ static void refused_sheets(void **state) {
     test_mesh_free(&bad);
 }
 
-static void particles_are_numbered_as_documented(void **state) {
-    (void)state;
+TEST(particles_are_numbered_as_documented) {
     SingeSim *sim = create();
     TestMesh first = test_grid(2, 3, 0.01f, 0.02f), second = test_grid(1, 1, 0.03f, 0.03f);
     test_mesh_add_vertex(&first, 5, 5, 5);
@@ -183,8 +179,7 @@ static void hear(void *context, SingeLogLevel level, const char *line) {
 }
 
 /// The log's lines are the same where the host's decimal point is a comma.
-static void the_log_has_no_locale(void **state) {
-    (void)state;
+TEST(the_log_has_no_locale) {
     if (!test_comma_locale()) skip();
     Heard heard = {0};
     SingeSimDef def = singe_default_sim();
@@ -197,8 +192,7 @@ static void the_log_has_no_locale(void **state) {
 }
 
 /// The commit reports what was built; a step too long for the cells causes a warning.
-static void the_log_hears_of_the_commit(void **state) {
-    (void)state;
+TEST(the_log_hears_of_the_commit) {
     for (int slow = 0; slow < 2; slow++) {
         Heard heard = {0};
         SingeSimDef def = singe_default_sim();
@@ -217,8 +211,7 @@ static void the_log_hears_of_the_commit(void **state) {
 
 /// A sheet that begins more than a cell behind a plane causes a warning in the first step; one that lies on it does
 /// not.
-static void the_log_hears_of_what_begins_inside(void **state) {
-    (void)state;
+TEST(the_log_hears_of_what_begins_inside) {
     for (int deep = 0; deep < 2; deep++) {
         Heard heard = {0};
         SingeSimDef def = singe_default_sim();
@@ -237,8 +230,7 @@ static void the_log_hears_of_what_begins_inside(void **state) {
     }
 }
 
-static void timers_and_time_grow(void **state) {
-    (void)state;
+TEST(timers_and_time_grow) {
     Scene scene = scene_make(NULL, 10);
     SingeTimers last = singe_sim_timers(scene.sim);
     assert_int_equal(last.steps, 0);
@@ -265,8 +257,7 @@ static void count_warnings(void *context, SingeLogLevel level, const char *line)
 }
 
 /// Steps too long for the solver of the heat equation are taken all the same, and one line reports it.
-static void warns_once_of_conduction_cut_short(void **state) {
-    (void)state;
+TEST(warns_once_of_conduction_cut_short) {
     int warnings = 0;
     SingeSimDef def = singe_default_sim();
     def.log = (SingeLog){count_warnings, &warnings};
@@ -285,8 +276,7 @@ static void warns_once_of_conduction_cut_short(void **state) {
     singe_sim_destroy(sim);
 }
 
-static void every_byte_is_counted_and_freed(void **state) {
-    (void)state;
+TEST(every_byte_is_counted_and_freed) {
     TestAllocator hook = {0};
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
@@ -304,20 +294,4 @@ static void every_byte_is_counted_and_freed(void **state) {
     assert_int_equal(hook.blocks, 0);
     assert_int_equal(hook.bytes, 0);
     assert_int_equal(hook.faults, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(before_the_commit),
-        cmocka_unit_test(after_the_commit),
-        cmocka_unit_test(refused_sheets),
-        cmocka_unit_test(particles_are_numbered_as_documented),
-        cmocka_unit_test(timers_and_time_grow),
-        cmocka_unit_test(the_log_hears_of_the_commit),
-        cmocka_unit_test(the_log_has_no_locale),
-        cmocka_unit_test(the_log_hears_of_what_begins_inside),
-        cmocka_unit_test(warns_once_of_conduction_cut_short),
-        cmocka_unit_test(every_byte_is_counted_and_freed),
-    };
-    return cmocka_run_group_tests_name("sim_lifecycle", tests, NULL, NULL);
 }

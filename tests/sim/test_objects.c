@@ -19,8 +19,7 @@ static float mean_height(SingeSim *sim) {
     return (float)(sum / view.vertex_count);
 }
 
-static void handles_go_stale(void **state) {
-    (void)state;
+TEST(handles_go_stale) {
     Scene scene = scene_make(NULL, 8);
     SingeSim *sim = scene.sim;
     SingePoseKey key = test_key(0, 0, 0, 0);
@@ -64,8 +63,7 @@ static void handles_go_stale(void **state) {
     singe_sim_destroy(sim);
 }
 
-static void refused_moves_change_nothing(void **state) {
-    (void)state;
+TEST(refused_moves_change_nothing) {
     Scene scene = scene_make(NULL, 8), other = scene_make(NULL, 8);
     SingeSim *sim = scene.sim;
     SingePoseKey bad = test_key(0, NAN, 0, 0), good = test_key(0, 0, 0, 0);
@@ -84,8 +82,7 @@ static void refused_moves_change_nothing(void **state) {
     singe_sim_destroy(other.sim);
 }
 
-static void sources_come_and_go(void **state) {
-    (void)state;
+TEST(sources_come_and_go) {
     SingeSimDef def = weightless();
     SingeSim *sim = test_sim(&def, test_grid(10, 10, 0.01f, 0.01f), NULL);
     test_steps(sim, 2);
@@ -119,8 +116,7 @@ static void sources_come_and_go(void **state) {
     singe_sim_destroy(sim);
 }
 
-static void pins_hold_move_and_let_go(void **state) {
-    (void)state;
+TEST(pins_hold_move_and_let_go) {
     SingeSim *sim = test_sim(NULL, test_grid(6, 6, 0.01f, 0.01f), NULL);
     SingeView view = singe_sim_view(sim);
     test_steps(sim, 10);
@@ -173,8 +169,7 @@ static void pins_hold_move_and_let_go(void **state) {
     singe_sim_destroy(sim);
 }
 
-static void a_turning_pin_turns(void **state) {
-    (void)state;
+TEST(a_turning_pin_turns) {
     SingeSimDef def = weightless();
     SingeSim *sim = test_sim(&def, test_grid(4, 4, 0.01f, 0.01f), NULL);
     SingePinDef pin = singe_default_pin();
@@ -193,8 +188,7 @@ static void a_turning_pin_turns(void **state) {
 }
 
 /// The nearest vertex of a point is never one that no cell uses.
-static void unused_vertices_are_not_pinned(void **state) {
-    (void)state;
+TEST(unused_vertices_are_not_pinned) {
     TestMesh mesh = test_grid(2, 2, 0.01f, 0.01f);
     test_mesh_add_vertex(&mesh, 0.03f, 0.03f, 0);
     SingeSim *sim = test_sim(NULL, mesh, NULL);
@@ -208,8 +202,7 @@ static void unused_vertices_are_not_pinned(void **state) {
     singe_sim_destroy(sim);
 }
 
-static void pins_on_one_particle_are_limited(void **state) {
-    (void)state;
+TEST(pins_on_one_particle_are_limited) {
     SingeSim *sim = test_sim(NULL, test_grid(2, 2, 0.01f, 0.01f), NULL);
     const uint32_t vertex = 4;
     SingePinDef pin = singe_default_pin();
@@ -227,8 +220,7 @@ static void pins_on_one_particle_are_limited(void **state) {
 }
 
 /// Neighbours pinned anywhere on a ring of springs, and all of it.
-static void rings_can_be_pinned(void **state) {
-    (void)state;
+TEST(rings_can_be_pinned) {
     for (uint32_t first = 0; first < 9; first++) {
         SingeSim *sim = test_sim(NULL, test_cylinder(8, 4, 0.03f, 0.05f), NULL);
         uint32_t vertices[8];
@@ -243,8 +235,7 @@ static void rings_can_be_pinned(void **state) {
     }
 }
 
-static void colliders_catch_move_and_go(void **state) {
-    (void)state;
+TEST(colliders_catch_move_and_go) {
     SingeSim *sim = test_sim(NULL, test_grid(8, 8, 0.01f, 0.01f), NULL);
     SingePoseKey low = test_key(0, 0, 0, -0.01f);
     SingeColliderDef def = singe_default_collider();
@@ -271,8 +262,7 @@ static void colliders_catch_move_and_go(void **state) {
     singe_sim_destroy(sim);
 }
 
-static void hot_colliders_heat(void **state) {
-    (void)state;
+TEST(hot_colliders_heat) {
     SingeSimDef def = weightless();
     SingeSim *sim = test_sim(&def, test_grid(4, 4, 0.01f, 0.01f), NULL);
     SingePoseKey key = test_key(0, 0, 0, -0.001f);
@@ -286,8 +276,7 @@ static void hot_colliders_heat(void **state) {
     singe_sim_destroy(sim);
 }
 
-static void wind_blows(void **state) {
-    (void)state;
+TEST(wind_blows) {
     SingeSimDef def = weightless();
     TestMesh mesh = test_grid(6, 6, 0.01f, 0.01f);
     SingeSim *sim = test_sim(&def, mesh, NULL);
@@ -309,8 +298,7 @@ static void flux_into_first(void *context, const struct SingeView *view, float *
     callback_seen_time = (float)view->time;
 }
 
-static void callbacks_can_be_exchanged(void **state) {
-    (void)state;
+TEST(callbacks_can_be_exchanged) {
     SingeSimDef def = weightless();
     SingeSim *sim = test_sim(&def, test_grid(4, 4, 0.01f, 0.01f), NULL);
     SingeSourceDef source = singe_default_source();
@@ -331,22 +319,4 @@ static void callbacks_can_be_exchanged(void **state) {
     test_ok(sim, singe_sim_step(sim));
     assert_true(heat_in(sim) == before);
     singe_sim_destroy(sim);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(handles_go_stale),
-        cmocka_unit_test(refused_moves_change_nothing),
-        cmocka_unit_test(sources_come_and_go),
-        cmocka_unit_test(pins_hold_move_and_let_go),
-        cmocka_unit_test(a_turning_pin_turns),
-        cmocka_unit_test(unused_vertices_are_not_pinned),
-        cmocka_unit_test(pins_on_one_particle_are_limited),
-        cmocka_unit_test(rings_can_be_pinned),
-        cmocka_unit_test(colliders_catch_move_and_go),
-        cmocka_unit_test(hot_colliders_heat),
-        cmocka_unit_test(wind_blows),
-        cmocka_unit_test(callbacks_can_be_exchanged),
-    };
-    return cmocka_run_group_tests_name("sim_objects", tests, NULL, NULL);
 }

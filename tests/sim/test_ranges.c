@@ -104,8 +104,7 @@ static int try_table(SingeSim *sim, const DefTable *table, const void *standard,
     return tried;
 }
 
-static void ranges_are_those_of_the_tables(void **state) {
-    (void)state;
+TEST(ranges_are_those_of_the_tables) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
     test_ok(NULL, singe_sim_create(&def, &sim, NULL));
@@ -147,8 +146,7 @@ static void ranges_are_those_of_the_tables(void **state) {
 }
 
 /// An enum's values are 0, 1, 2, ... : tables are indexed by them.
-static void enums_have_no_holes(void **state) {
-    (void)state;
+TEST(enums_have_no_holes) {
     static const char *const enums[] = {"SingeSourceKind",   "SingeColliderKind", "SingeContactSides",
                                         "SingeSolverMethod", "SingeInstructions", "SingeColour",
                                         "SingeHeatOperator"};
@@ -157,10 +155,4 @@ static void enums_have_no_holes(void **state) {
         for (int value = 1; value < 32; value++)
             if (def_has_value(enums[i], value)) assert_true(def_has_value(enums[i], value - 1));
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(ranges_are_those_of_the_tables),
-                                       cmocka_unit_test(enums_have_no_holes)};
-    return cmocka_run_group_tests_name("sim_ranges", tests, NULL, NULL);
 }

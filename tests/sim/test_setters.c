@@ -35,8 +35,7 @@ static void assert_loads_the_same(SingeSim *sim) {
 // ---- gravity, pace, ambient temperature
 
 /// A value set before the first step has the effect of one in the Def.
-static void set_at_once_is_set_in_the_def(void **state) {
-    (void)state;
+TEST(set_at_once_is_set_in_the_def) {
     const float gravity[3] = {1, 0, -3};
     for (int k = 0; k < 3; k++) {
         SingeSimDef def = scene_def(), other = def;
@@ -57,8 +56,7 @@ static void set_at_once_is_set_in_the_def(void **state) {
     }
 }
 
-static void set_later_is_saved(void **state) {
-    (void)state;
+TEST(set_later_is_saved) {
     const float gravity[3] = {0.5f, 0, -20};
     for (int k = 0; k < 3; k++) {
         Scene scene = quiet_scene(8), twin = quiet_scene(8);
@@ -78,8 +76,7 @@ static void set_later_is_saved(void **state) {
 }
 
 /// A sheet that lies still in warmer air takes heat from it, and its ledger goes on without a jump.
-static void warmer_air_warms(void **state) {
-    (void)state;
+TEST(warmer_air_warms) {
     SingeSim *sim = test_sim(NULL, test_grid(6, 6, 0.01f, 0.01f), NULL);
     test_steps(sim, 10);
     assert_true(singe_sim_stats(sim).heat_lost == 0);
@@ -95,8 +92,7 @@ static void warmer_air_warms(void **state) {
     singe_sim_destroy(sim);
 }
 
-static void refused_numbers_change_nothing(void **state) {
-    (void)state;
+TEST(refused_numbers_change_nothing) {
     Scene scene = quiet_scene(8), twin = quiet_scene(8);
     SingeSim *sim = scene.sim;
     const float nowhere[3] = {0, NAN, 0}, sideways[3] = {20, 0, -1}, fast[3] = {0, 1e5f, 0}, share[4] = {0};
@@ -127,8 +123,7 @@ static void refused_numbers_change_nothing(void **state) {
 
 // ---- velocities
 
-static void velocities_throw(void **state) {
-    (void)state;
+TEST(velocities_throw) {
     SingeSimDef def = singe_default_sim();
     memset(def.gravity, 0, sizeof def.gravity);
     def.air_density = 0;
@@ -156,8 +151,7 @@ static void velocities_throw(void **state) {
 
 // ---- materials
 
-static void the_same_material_changes_nothing(void **state) {
-    (void)state;
+TEST(the_same_material_changes_nothing) {
     Scene scene = quiet_scene(8), twin = quiet_scene(8);
     SingeMaterialDef material = scene_quick_material();
     material.mass_rate = singe_param_field(material.mass_rate.value, 0.12f,
@@ -174,8 +168,7 @@ static void the_same_material_changes_nothing(void **state) {
 }
 
 /// A strip that cannot burn stops the fire there, and only there.
-static void a_wet_strip_stops_the_fire(void **state) {
-    (void)state;
+TEST(a_wet_strip_stops_the_fire) {
     enum { N = 24 };
     float share[(N + 1) * (N + 1)];
     double burnt[2];
@@ -205,8 +198,7 @@ static void a_wet_strip_stops_the_fire(void **state) {
 
 /// Materials of another mass_min, char and stiffness, in the middle of a fire with tears: finite, saved, and vertices
 /// keep their numbers.
-static void any_material_at_any_time(void **state) {
-    (void)state;
+TEST(any_material_at_any_time) {
     SingeSimDef def = scene_def();
     def.solver.tearing = true;
     Scene scene;
@@ -232,8 +224,7 @@ static void any_material_at_any_time(void **state) {
 }
 
 /// If memory runs out, the simulation is unchanged.
-static void without_memory_nothing_changes(void **state) {
-    (void)state;
+TEST(without_memory_nothing_changes) {
     TestAllocator hook = {0};
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
@@ -272,8 +263,7 @@ static void without_memory_nothing_changes(void **state) {
 // ---- frames
 
 /// A frame of any length has the steps that fit into it; its remainder is neither lost nor simulated twice.
-static void frames_of_any_length(void **state) {
-    (void)state;
+TEST(frames_of_any_length) {
     Scene advanced = quiet_scene(8), stepped = quiet_scene(8);
     const double h = (double)scene_def().time_step, frames[] = {0.4, 1.7, 0, 3.1, 0.8, 12.5, 0.05};
     double sum = 0;
@@ -314,8 +304,7 @@ static void frames_of_any_length(void **state) {
 }
 
 /// A sum of float steps that is a whole frame in exact numbers is whole here.
-static void frames_of_whole_steps_stay_whole(void **state) {
-    (void)state;
+TEST(frames_of_whole_steps_stay_whole) {
     SingeSimDef def = singe_default_sim();
     def.time_step = 1.0f / 480;
     SingeSim *sim = test_sim(&def, test_grid(2, 2, 0.01f, 0.01f), NULL);
@@ -327,8 +316,7 @@ static void frames_of_whole_steps_stay_whole(void **state) {
     singe_sim_destroy(sim);
 }
 
-static void who_falls_behind_slows_down(void **state) {
-    (void)state;
+TEST(who_falls_behind_slows_down) {
     SingeSim *sim = test_sim(NULL, test_grid(2, 2, 0.01f, 0.01f), NULL);
     const double h = (double)singe_default_sim().time_step;
     uint32_t steps;
@@ -345,8 +333,7 @@ static void who_falls_behind_slows_down(void **state) {
 
 // ---- ranges
 
-static void ranges_stay_through_tears(void **state) {
-    (void)state;
+TEST(ranges_stay_through_tears) {
     SingeSimDef def = singe_default_sim();
     SingeMaterialDef weak = singe_default_material();
     def.solver.tearing = true;
@@ -381,23 +368,4 @@ static void ranges_stay_through_tears(void **state) {
     assert_int_equal(range.vertex_count, 0);
     assert_int_equal(range.struct_size, sizeof range);
     singe_sim_destroy(sim);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(set_at_once_is_set_in_the_def),
-        cmocka_unit_test(set_later_is_saved),
-        cmocka_unit_test(warmer_air_warms),
-        cmocka_unit_test(refused_numbers_change_nothing),
-        cmocka_unit_test(velocities_throw),
-        cmocka_unit_test(the_same_material_changes_nothing),
-        cmocka_unit_test(a_wet_strip_stops_the_fire),
-        cmocka_unit_test(any_material_at_any_time),
-        cmocka_unit_test(without_memory_nothing_changes),
-        cmocka_unit_test(frames_of_any_length),
-        cmocka_unit_test(frames_of_whole_steps_stay_whole),
-        cmocka_unit_test(who_falls_behind_slows_down),
-        cmocka_unit_test(ranges_stay_through_tears),
-    };
-    return cmocka_run_group_tests_name("sim_setters", tests, NULL, NULL);
 }

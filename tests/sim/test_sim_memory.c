@@ -1,8 +1,7 @@
 // A million springs take at most 150 bytes each, by the counts and by the allocator's own count.
 #include "support/support.h"
 
-static void a_million_springs(void **state) {
-    (void)state;
+TEST(a_million_springs) {
     TestAllocator hook = {0};
     SingeSimDef def = singe_default_sim();
     def.allocator = test_allocator(&hook);
@@ -23,9 +22,4 @@ static void a_million_springs(void **state) {
     assert_int_equal(counts.memory, hook.bytes);
     singe_sim_destroy(sim);
     assert_int_equal(hook.blocks, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_million_springs)};
-    return cmocka_run_group_tests_name("sim_memory", tests, NULL, NULL);
 }

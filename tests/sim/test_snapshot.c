@@ -22,8 +22,7 @@ static SingeSim *load(const TestBytes *bytes) {
     return sim;
 }
 
-static void resumed_runs_are_the_same(void **state) {
-    (void)state;
+TEST(resumed_runs_are_the_same) {
     static const int saves[] = {0, 1, 17, 45, 80};
     for (size_t k = 0; k < sizeof saves / sizeof *saves; k++) {
         Scene scene = scene_make(NULL, 14);
@@ -49,8 +48,7 @@ static void resumed_runs_are_the_same(void **state) {
 }
 
 /// The bytes depend on the simulation alone, not on padding or addresses.
-static void bytes_are_the_same(void **state) {
-    (void)state;
+TEST(bytes_are_the_same) {
     Scene a = scene_make(NULL, 9);
     TestAllocator hook = {0}; // fills fresh blocks with rubbish
     SingeSimDef def;
@@ -76,8 +74,7 @@ static void bytes_are_the_same(void **state) {
     assert_int_equal(hook.blocks, 0);
 }
 
-static void handles_keep_their_values(void **state) {
-    (void)state;
+TEST(handles_keep_their_values) {
     Scene scene = scene_make(NULL, 8);
     test_ok(scene.sim, singe_sim_remove_source(scene.sim, scene.ball));
     test_ok(scene.sim, singe_sim_remove_collider(scene.sim, scene.sphere));
@@ -112,8 +109,7 @@ static void handles_keep_their_values(void **state) {
     singe_sim_destroy(scene.sim);
 }
 
-static void clones_are_independent(void **state) {
-    (void)state;
+TEST(clones_are_independent) {
     Scene scene = scene_make(NULL, 10);
     test_steps(scene.sim, 20);
     SingeSim *copy;
@@ -160,8 +156,7 @@ static TestBytes small_snapshot(void) {
     return bytes;
 }
 
-static void truncated_snapshots(void **state) {
-    (void)state;
+TEST(truncated_snapshots) {
     TestBytes bytes = small_snapshot();
     for (size_t k = 0; k < 300; k++) {
         size_t size = k < 100 ? k : (k - 100) * bytes.size / 200;
@@ -179,8 +174,7 @@ static void truncated_snapshots(void **state) {
     free(bytes.data);
 }
 
-static void flipped_bits(void **state) {
-    (void)state;
+TEST(flipped_bits) {
     TestBytes bytes = small_snapshot();
     for (size_t k = 0; k < 1200; k++) {
         size_t bit = k < 512 ? k : (k - 512) * (bytes.size * 8 / 688) + k % 8; // every bit of the header's 64 bytes
@@ -203,8 +197,7 @@ static void forge(TestBytes *bytes, size_t at, uint32_t word) {
 }
 
 /// Forged bodies with correct checksums: loading them neither crashes nor leaks, and a simulation that loads can step.
-static void forged_snapshots(void **state) {
-    (void)state;
+TEST(forged_snapshots) {
     enum { HEADER = 56 };
     static const uint32_t words[] = {0x7FC00000, 0x7F800000, 0xFF800000, 0xBF800000, 0x7F7FFFFF, 0xFFFFFFFF, 0, 1};
     TestBytes good = small_snapshot();
@@ -341,8 +334,7 @@ POKE(gas_field, sim->gas->turn[sim->state.gas.turn].field[GAS_LIGHTNESS][99] = N
 POKE(gas_air, sim->gas->turn[sim->state.gas.turn].air[VERTEX][1] = INFINITY)
 
 /// A simulation with numbers that no step produces can be saved but not loaded.
-static void impossible_numbers(void **state) {
-    (void)state;
+TEST(impossible_numbers) {
 // clang-format off
 #define ROW(name) {#name, poke_##name}
     static const struct { const char *what; void (*poke)(SingeSim *sim); } rows[] = {
@@ -382,8 +374,7 @@ static void impossible_numbers(void **state) {
     singe_sim_destroy(scene.sim);
 }
 
-static void other_versions(void **state) {
-    (void)state;
+TEST(other_versions) {
     TestBytes bytes = small_snapshot();
     SingeSimDef hooks = singe_default_sim();
     SingeSim *sim;
@@ -401,8 +392,7 @@ static void other_versions(void **state) {
 }
 
 /// Time step, gravity and the rest come from the bytes, not from the hooks.
-static void hooks_are_only_hooks(void **state) {
-    (void)state;
+TEST(hooks_are_only_hooks) {
     Scene scene = scene_make(NULL, 8);
     test_steps(scene.sim, 5);
     TestBytes bytes = test_save(scene.sim);
@@ -417,15 +407,4 @@ static void hooks_are_only_hooks(void **state) {
     free(bytes.data);
     singe_sim_destroy(sim);
     singe_sim_destroy(scene.sim);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(resumed_runs_are_the_same), cmocka_unit_test(bytes_are_the_same),
-        cmocka_unit_test(handles_keep_their_values), cmocka_unit_test(clones_are_independent),
-        cmocka_unit_test(truncated_snapshots),       cmocka_unit_test(flipped_bits),
-        cmocka_unit_test(forged_snapshots),          cmocka_unit_test(other_versions),
-        cmocka_unit_test(hooks_are_only_hooks),      cmocka_unit_test(impossible_numbers),
-    };
-    return cmocka_run_group_tests_name("sim_snapshot", tests, NULL, NULL);
 }

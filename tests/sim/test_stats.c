@@ -5,8 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static void ledgers_close(void **state) {
-    (void)state;
+TEST(ledgers_close) {
     Scene scene = scene_make(NULL, 20);
     double worst_heat = 0, worst_mass = 0;
     for (int i = 0; i < 250; i++) {
@@ -28,8 +27,7 @@ static void ledgers_close(void **state) {
 }
 
 /// Cells as bad as they come burn away, and nothing is ever colder than the air.
-static void bad_cells_burn_and_stay_above_the_air(void **state) {
-    (void)state;
+TEST(bad_cells_burn_and_stay_above_the_air) {
     for (uint32_t seed = 0; seed < 2; seed++) {
         SingeSimDef def = scene_def();
         def.solver.tearing = seed == 1;
@@ -54,8 +52,7 @@ static void bad_cells_burn_and_stay_above_the_air(void **state) {
 }
 
 /// Steps so short that their changes vanish in a float are reported.
-static void ledgers_that_do_not_close_are_reported(void **state) {
-    (void)state;
+TEST(ledgers_that_do_not_close_are_reported) {
     SingeSimDef def = scene_def();
     def.pace = 1e-6f;
     SingeMaterialDef material = scene_quick_material();
@@ -70,8 +67,7 @@ static void ledgers_that_do_not_close_are_reported(void **state) {
 }
 
 /// Heat of combustion: eta C dm of every particle, summed by hand over a run.
-static void combustion_is_eta_times_mass(void **state) {
-    (void)state;
+TEST(combustion_is_eta_times_mass) {
     SingeSimDef def = scene_def();
     SingeMaterialDef material = scene_quick_material();
     material.ablate = false;
@@ -90,8 +86,7 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-static void statistics_match_the_view(void **state) {
-    (void)state;
+TEST(statistics_match_the_view) {
     Scene scene = scene_make(NULL, 12);
     const float mass_loss = scene_quick_material().mass_loss.value;
     for (int round = 0; round < 6; round++) {
@@ -130,8 +125,7 @@ static void statistics_match_the_view(void **state) {
     singe_sim_destroy(scene.sim);
 }
 
-static void a_sheet_at_rest(void **state) {
-    (void)state;
+TEST(a_sheet_at_rest) {
     SingeSim *sim = test_sim(NULL, test_grid(7, 5, 0.02f, 0.01f), NULL);
     SingeStats stats = singe_sim_stats(sim);
     double kilograms = 0.08 * 7 * 5 * 0.02 * 0.01;
@@ -151,8 +145,7 @@ static void a_sheet_at_rest(void **state) {
 }
 
 /// Heating without fire: what went in is stored or lost, and all of it is gone after long cooling.
-static void heat_without_fire(void **state) {
-    (void)state;
+TEST(heat_without_fire) {
     SingeSimDef def = scene_def();
     SingeMaterialDef material = singe_default_material();
     material.thickening = 1;
@@ -171,8 +164,7 @@ static void heat_without_fire(void **state) {
 }
 
 /// Office paper through all four stages: the front's speed, from the pattern of times and from two gates.
-static void a_front_runs_along_a_strip(void **state) {
-    (void)state;
+TEST(a_front_runs_along_a_strip) {
     const float size = 0.002f, length = 0.1f;
     SingeSimDef def = singe_default_sim();
     def.gravity[2] = 0;
@@ -201,18 +193,4 @@ static void a_front_runs_along_a_strip(void **state) {
     assert_true(fabs(measured / speed - 1) < 0.05);
     assert_true(speed > 4.4e-3 && speed < 7.0e-3);
     singe_sim_destroy(sim);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ledgers_close),
-        cmocka_unit_test(ledgers_that_do_not_close_are_reported),
-        cmocka_unit_test(bad_cells_burn_and_stay_above_the_air),
-        cmocka_unit_test(a_front_runs_along_a_strip),
-        cmocka_unit_test(combustion_is_eta_times_mass),
-        cmocka_unit_test(statistics_match_the_view),
-        cmocka_unit_test(a_sheet_at_rest),
-        cmocka_unit_test(heat_without_fire),
-    };
-    return cmocka_run_group_tests_name("sim_stats", tests, NULL, NULL);
 }

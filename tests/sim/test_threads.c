@@ -58,8 +58,7 @@ static void host_finish(void *context, void *token) {
     }
 }
 
-static void any_number_of_threads(void **state) {
-    (void)state;
+TEST(any_number_of_threads) {
     SingeSimDef def = scene_def();
     TestBytes expected = run(def);
     for (int threads = 2; threads <= THREADS_MAX; threads += threads < 4 ? 1 : 4) {
@@ -74,9 +73,4 @@ static void any_number_of_threads(void **state) {
     equal(&expected, run(def), "the host's scheduler");
     assert_true(host.jobs > STEPS);
     free(expected.data);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(any_number_of_threads)};
-    return cmocka_run_group_tests_name("sim_threads", tests, NULL, NULL);
 }

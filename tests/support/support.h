@@ -2,15 +2,8 @@
 #ifndef TEST_SUPPORT_H
 #define TEST_SUPPORT_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "singe/singe.h"
+#include "support/test.h"
 
 // ---- meshes (make_mesh.c)
 

@@ -54,8 +54,7 @@ static void expect_no_cracks(const SingeSurface *s) {
     free(edges);
 }
 
-static void random_levels_leave_no_cracks(void **unused) {
-    (void)unused;
+TEST(random_levels_leave_no_cracks) {
     const float details[] = {0.05f, 0.12f, 0.2f, 0.36f, 0.9f};
     for (uint32_t seed = 0; seed < 20; seed++) {
         Drawing *d = fine_drawing(12, 9, 1, details[seed % 5], seed % 3 ? 0.4f : 0);
@@ -80,8 +79,7 @@ static void random_levels_leave_no_cracks(void **unused) {
     }
 }
 
-static void linear_fields_are_exact(void **unused) {
-    (void)unused;
+TEST(linear_fields_are_exact) {
     const Linear levels[] = {{0.1, 0.05, -0.333}, {-0.07, 0.11, 0.031}, {0.02, -0.13, 0.217}, {0.09, 0, -0.3141}};
     for (size_t k = 0; k < sizeof levels / sizeof *levels; k++) {
         Drawing *d = fine_drawing(7, 5, 1, 0.15f, 0);
@@ -97,8 +95,7 @@ static void linear_fields_are_exact(void **unused) {
 }
 
 /// A sheet bent to a cylinder is drawn as one, by the limit surface's own radius: less by side^2/(6 R).
-static void bent_sheets_are_drawn_round(void **unused) {
-    (void)unused;
+TEST(bent_sheets_are_drawn_round) {
     Drawing *d = fine_drawing(12, 9, 1, 0.1f, 0);
     const float radius = 3, sagitta = 1 / (8 * radius), drawn = (4 + 2 * cosf(1 / radius)) / 6 * radius;
     set_linear_fields(d, (Linear){0.03, 0.07, -0.4});
@@ -125,8 +122,7 @@ static Float3 doubled_normal(const SingeSurface *s, uint32_t t) {
 }
 
 /// Far from the origin floats lie 0.5 um apart, wherever the level cuts fine sides.
-static void no_triangle_is_lost_to_rounding(void **unused) {
-    (void)unused;
+TEST(no_triangle_is_lost_to_rounding) {
     const Float3 normal = {-0.36f, 0.48f, 0.8f}, along = {0.8f, 0.6f, 0}, up = {-0.48f, 0.64f, -0.6f};
     for (uint32_t seed = 0; seed < 12; seed++) {
         Drawing *d = fine_drawing(12, 9, 2.5e-3f, 4e-4f, seed % 3 ? 1e-3f : 0);
@@ -155,8 +151,7 @@ static void no_triangle_is_lost_to_rounding(void **unused) {
 }
 
 /// However crumpled the sheet is, its fine triangles face as they would on flat cells, and leave these by `bulge_max`.
-static void crumpled_sheets_are_not_turned_over(void **unused) {
-    (void)unused;
+TEST(crumpled_sheets_are_not_turned_over) {
     for (uint32_t seed = 0; seed < 8; seed++) {
         Drawing *round = fine_drawing(12, 9, 1, 0.1f, 0), *straight = fine_drawing(12, 9, 1, 0.1f, 0);
         float room[130]; // another surface everywhere: as finely drawn, and as flat as can be
@@ -209,8 +204,7 @@ static void tear_along(Drawing *d, uint32_t row, uint32_t length) {
 }
 
 /// The level cuts either tear edge otherwise; what is drawn of the one ends before the other.
-static void tear_edges_at_one_point_are_drawn_apart(void **unused) {
-    (void)unused;
+TEST(tear_edges_at_one_point_are_drawn_apart) {
     SingeMaterialDef material = plain_material();
     for (uint32_t seed = 0; seed < 6; seed++) {
         Drawing *d = drawing_of(burning_spare_sheets(1, 12, 9, 1, &material, 0, 8));
@@ -236,8 +230,7 @@ static void tear_edges_at_one_point_are_drawn_apart(void **unused) {
 }
 
 /// A cell's triangles that have been pulled apart are left out once springs of it have burnt, and not before.
-static void what_a_lost_corner_pulls_apart_is_left_out(void **unused) {
-    (void)unused;
+TEST(what_a_lost_corner_pulls_apart_is_left_out) {
     Drawing *d = fine_drawing(6, 6, 1, 0.2f, 0);
     const uint32_t cell = cell_at(d->sheet, 2, 2), corner = d->sheet->shell.cells[cell][0];
     const float room[49] = {0};
@@ -265,8 +258,7 @@ static void what_a_lost_corner_pulls_apart_is_left_out(void **unused) {
     drawing_free(d);
 }
 
-static void whole_sheets_are_drawn_coarsely(void **unused) {
-    (void)unused;
+TEST(whole_sheets_are_drawn_coarsely) {
     Drawing *d = fine_drawing(4, 3, 0.01f, 1e-4f, 1e-3f);
     draw_fine(d);
     assert_int_equal(d->surface.triangle_count, 48);
@@ -279,8 +271,7 @@ static void whole_sheets_are_drawn_coarsely(void **unused) {
     drawing_free(d);
 }
 
-static void threads_draw_the_same(void **unused) {
-    (void)unused;
+TEST(threads_draw_the_same) {
     Drawing *one = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f), *four = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
     assert_int_equal(pool_create(&four->sheet->memory, (SingeTasks){0}, 4, &four->pool), SINGE_OK);
     burn_rings(one, 0.02f), burn_rings(four, 0.02f);
@@ -304,8 +295,7 @@ static FineLocation location_at(uint32_t n, uint32_t cells) {
 }
 
 /// A walk ends where it would in the plane, across cells that are turned against each other.
-static void walks_cross_cells(void **unused) {
-    (void)unused;
+TEST(walks_cross_cells) {
     Drawing *d = fine_drawing(5, 4, 1, 0.3f, 0);
     const Shell *shell = &d->sheet->shell;
     for (uint32_t n = 0; n < 2000; n++) {
@@ -328,8 +318,7 @@ static void walks_cross_cells(void **unused) {
     drawing_free(d);
 }
 
-static void survives_lack_of_memory(void **unused) {
-    (void)unused;
+TEST(survives_lack_of_memory) {
     Drawing *d = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
     const BurningSheet *b = d->sheet;
     SingeResult result = SINGE_ERROR_MEMORY;
@@ -349,21 +338,4 @@ static void survives_lack_of_memory(void **unused) {
     }
     assert_true(failures > 30);
     drawing_free(d);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_levels_leave_no_cracks),
-        cmocka_unit_test(linear_fields_are_exact),
-        cmocka_unit_test(bent_sheets_are_drawn_round),
-        cmocka_unit_test(no_triangle_is_lost_to_rounding),
-        cmocka_unit_test(crumpled_sheets_are_not_turned_over),
-        cmocka_unit_test(tear_edges_at_one_point_are_drawn_apart),
-        cmocka_unit_test(what_a_lost_corner_pulls_apart_is_left_out),
-        cmocka_unit_test(whole_sheets_are_drawn_coarsely),
-        cmocka_unit_test(threads_draw_the_same),
-        cmocka_unit_test(walks_cross_cells),
-        cmocka_unit_test(survives_lack_of_memory),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -46,8 +46,7 @@ static double preference(Drawing *d, bool fine) {
     return max * DIRECTIONS / sum;
 }
 
-static void no_direction_is_preferred(void **unused) {
-    (void)unused;
+TEST(no_direction_is_preferred) {
     Drawing *coarse = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f), *fine = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
     double before = preference(coarse, false), after = preference(fine, true);
     printf("largest share of a direction over the mean: %.2f as cells are, %.2f refined\n", before, after);
@@ -77,8 +76,7 @@ static void raster(const SingeSurface *s, int width, int height, float step, uin
     }
 }
 
-static void what_is_gone_stays_gone(void **unused) {
-    (void)unused;
+TEST(what_is_gone_stays_gone) {
     enum { WIDTH = 301, HEIGHT = 226 };
     static uint8_t before[WIDTH * HEIGHT], after[WIDTH * HEIGHT];
     Drawing *d = fine_drawing(12, 9, 1, 0.1f, 0.5f);
@@ -103,8 +101,7 @@ static void what_is_gone_stays_gone(void **unused) {
     drawing_free(d);
 }
 
-static void edges_are_eaten_by_a_length(void **unused) {
-    (void)unused;
+TEST(edges_are_eaten_by_a_length) {
     // straight fronts of different widths across the sheet: they lose the same strip
     double lost[3];
     const float width[3] = {0.5f, 0.1f, 0.03f};
@@ -139,8 +136,7 @@ static bool near_one_that_is(const uint8_t *raster, bool wanted, int size, int x
     return false;
 }
 
-static void edges_stay_within_a_cell(void **unused) {
-    (void)unused;
+TEST(edges_stay_within_a_cell) {
     enum { SIZE = 201 };
     static uint8_t coarse[SIZE * SIZE], fine[SIZE * SIZE];
     Drawing *d = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
@@ -162,8 +158,7 @@ static void edges_stay_within_a_cell(void **unused) {
     drawing_free(d);
 }
 
-static void finer_details_converge(void **unused) {
-    (void)unused;
+TEST(finer_details_converge) {
     double area[4];
     const float detail[4] = {2e-3f, 1e-3f, 5e-4f, 2.5e-4f};
     for (int k = 0; k < 4; k++) {
@@ -175,13 +170,4 @@ static void finer_details_converge(void **unused) {
     }
     assert_true(fabs(area[2] - area[1]) < 0.5 * fabs(area[1] - area[0]));
     assert_true(fabs(area[3] - area[2]) < 0.5 * fabs(area[2] - area[1]));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_direction_is_preferred),   cmocka_unit_test(what_is_gone_stays_gone),
-        cmocka_unit_test(edges_are_eaten_by_a_length), cmocka_unit_test(edges_stay_within_a_cell),
-        cmocka_unit_test(finer_details_converge),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

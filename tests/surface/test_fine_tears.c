@@ -31,8 +31,7 @@ static Float3 mean_displacement(const BurningSheet *b, uint32_t vertex) {
     return float3_sub(float3_scale(sum, 0.25f / (float)(last - first)), location);
 }
 
-static void tear_edges_do_not_cross(void **unused) {
-    (void)unused;
+TEST(tear_edges_do_not_cross) {
     SingeMaterialDef material = plain_material();
     uint32_t random = 3, torn = 0, otherwise = 0;
     for (int trial = 0; trial < TRIALS; trial++) {
@@ -59,9 +58,4 @@ static void tear_edges_do_not_cross(void **unused) {
         burning_sheet_free(b);
     }
     assert_true(torn > 300 && otherwise > 3);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(tear_edges_do_not_cross)};
-    return cmocka_run_group_tests_name("tear_edges", tests, NULL, NULL);
 }

@@ -130,8 +130,7 @@ static Steps steps_of(const Bent *b) {
 /// Positions agree to rounding where four cells meet everywhere, to thousandths of a cell about irregular vertices;
 /// 3e-4 at a corner that stands in is what following each cell's own tangents there would give. Normals agree to tenths
 /// of a degree (0.09 to 0.24); those of flat cells are 5 to 18 degrees apart.
-static void cells_agree_on_their_sides(void **unused) {
-    (void)unused;
+TEST(cells_agree_on_their_sides) {
     const struct {
         const char *name;
         QuadMesh mesh;
@@ -155,8 +154,7 @@ static void cells_agree_on_their_sides(void **unused) {
 }
 
 /// Bent cells that have not burnt are drawn in parts, the same for any number of threads and without cracks.
-static void bent_cells_are_split_alike(void **unused) {
-    (void)unused;
+TEST(bent_cells_are_split_alike) {
     SingeSurface first = {0};
     for (int threads = 1; threads <= 4; threads++) {
         Drawing *d = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
@@ -180,12 +178,4 @@ static void bent_cells_are_split_alike(void **unused) {
         drawing_free(d);
     }
     singe_surface_free(&first);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cells_agree_on_their_sides),
-        cmocka_unit_test(bent_cells_are_split_alike),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,8 +13,7 @@ static Drawing *plain_drawing(uint32_t nx, uint32_t ny, float cell) {
     return drawing_of(burning_sheet(nx, ny, cell, &material));
 }
 
-static void cases_of_one_cell(void **unused) {
-    (void)unused;
+TEST(cases_of_one_cell) {
     // levels of the corners and the virtual centre in quarters; the areas follow from t of eq 7
     const struct {
         int level[5];
@@ -69,8 +68,7 @@ static double clipped_area(Linear f, double w, double h) {
     return area / 2;
 }
 
-static void linear_fields_are_exact(void **unused) {
-    (void)unused;
+TEST(linear_fields_are_exact) {
     const Linear levels[] = {{0.1, 0.05, -0.333}, {-0.07, 0.11, 0.031}, {0.02, -0.13, 0.217}, {0.09, 0, -0.3141}};
     for (size_t k = 0; k < sizeof levels / sizeof *levels; k++) {
         Drawing *d = plain_drawing(7, 5, 1);
@@ -83,8 +81,7 @@ static void linear_fields_are_exact(void **unused) {
     }
 }
 
-static void whole_sheet_keeps_the_input_order(void **unused) {
-    (void)unused;
+TEST(whole_sheet_keeps_the_input_order) {
     Drawing *d = plain_drawing(4, 3, 0.01f);
     draw_coarse(d);
     assert_int_equal(d->surface.triangle_count, 48);
@@ -93,8 +90,7 @@ static void whole_sheet_keeps_the_input_order(void **unused) {
     drawing_free(d);
 }
 
-static void without_ablation_all_is_drawn(void **unused) {
-    (void)unused;
+TEST(without_ablation_all_is_drawn) {
     SingeMaterialDef material = plain_material();
     material.ablate = false;
     Drawing *d = drawing_of(burning_sheet(3, 3, 1, &material));
@@ -107,8 +103,7 @@ static void without_ablation_all_is_drawn(void **unused) {
     drawing_free(d);
 }
 
-static void never_ignited_ends_do_not_count(void **unused) {
-    (void)unused;
+TEST(never_ignited_ends_do_not_count) {
     Drawing *d = plain_drawing(1, 1, 1);
     for (uint32_t i = 0; i < 5; i++) set_level(d, i, -0.25f);
     set_level(d, 0, 0.25f);
@@ -154,8 +149,7 @@ static void expect_no_cracks(const SingeSurface *s, float width, float height) {
     free(edges);
 }
 
-static void random_levels_leave_no_cracks(void **unused) {
-    (void)unused;
+TEST(random_levels_leave_no_cracks) {
     for (uint32_t seed = 0; seed < 20; seed++) {
         Drawing *d = plain_drawing(12, 9, 1);
         const Shell *shell = &d->sheet->shell;
@@ -181,8 +175,7 @@ static void random_levels_leave_no_cracks(void **unused) {
     }
 }
 
-static void levels_near_zero_leave_no_cracks(void **unused) {
-    (void)unused;
+TEST(levels_near_zero_leave_no_cracks) {
     const float levels[] = {0, 1e-7f, -1e-7f, 3e-5f, -3e-5f, 0.25f, -0.2f};
     for (uint32_t seed = 0; seed < 20; seed++) {
         Drawing *d = plain_drawing(12, 9, 1);
@@ -205,8 +198,7 @@ static void levels_near_zero_leave_no_cracks(void **unused) {
     }
 }
 
-static void crumpled_normals_are_unit(void **unused) {
-    (void)unused;
+TEST(crumpled_normals_are_unit) {
     Drawing *d = plain_drawing(6, 6, 0.01f);
     float(*position)[4] = d->sheet->state.dynamics.position;
     const uint32_t *corners = d->sheet->shell.cells[0];
@@ -219,8 +211,7 @@ static void crumpled_normals_are_unit(void **unused) {
     drawing_free(d);
 }
 
-static void sheets_and_pieces_are_kept_apart(void **unused) {
-    (void)unused;
+TEST(sheets_and_pieces_are_kept_apart) {
     SingeMaterialDef material = plain_material();
     Drawing *d = calloc(1, sizeof *d);
     d->sheet = burning_sheets(2, 2, 2, 0.01f, &material, 0);
@@ -239,8 +230,7 @@ static void sheets_and_pieces_are_kept_apart(void **unused) {
 }
 
 /// Every allocation of a first drawing and of one that must grow fails once.
-static void survives_lack_of_memory(void **unused) {
-    (void)unused;
+TEST(survives_lack_of_memory) {
     Drawing *small = plain_drawing(2, 2, 0.01f), *large = plain_drawing(9, 9, 0.01f);
     int failures = 0;
     for (int grow = 0; grow < 2; grow++) {
@@ -269,20 +259,4 @@ static void survives_lack_of_memory(void **unused) {
     assert_int_equal(failures, 2 * 18);
     singe_surface_free(NULL);
     drawing_free(small), drawing_free(large);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cases_of_one_cell),
-        cmocka_unit_test(linear_fields_are_exact),
-        cmocka_unit_test(whole_sheet_keeps_the_input_order),
-        cmocka_unit_test(without_ablation_all_is_drawn),
-        cmocka_unit_test(never_ignited_ends_do_not_count),
-        cmocka_unit_test(random_levels_leave_no_cracks),
-        cmocka_unit_test(levels_near_zero_leave_no_cracks),
-        cmocka_unit_test(crumpled_normals_are_unit),
-        cmocka_unit_test(sheets_and_pieces_are_kept_apart),
-        cmocka_unit_test(survives_lack_of_memory),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

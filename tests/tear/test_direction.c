@@ -70,8 +70,7 @@ static double off_across(float angle) {
     return atan2(sum[1], sum[0]) / (double)degree - (double)(angle / degree) - 90;
 }
 
-static void tears_run_across_the_pull(void **unused) {
-    (void)unused;
+TEST(tears_run_across_the_pull) {
     const float angles[] = {0, 15, 30, 45, 60, 75, 90};
     for (int k = 0; k < 7; k++) {
         double off = off_across(angles[k] * degree);
@@ -108,14 +107,7 @@ static uint32_t splits_beside(bool both) {
     return splits;
 }
 
-static void cells_that_hang_by_a_vertex_part(void **unused) {
-    (void)unused;
+TEST(cells_that_hang_by_a_vertex_part) {
     assert_int_equal(splits_beside(false), 0);
     assert_int_equal(splits_beside(true), 1);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(tears_run_across_the_pull),
-                                       cmocka_unit_test(cells_that_hang_by_a_vertex_part)};
-    return cmocka_run_group_tests_name("tear_direction", tests, NULL, NULL);
 }

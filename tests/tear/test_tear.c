@@ -122,8 +122,7 @@ static void check_view(SingeSim *sim) {
 
 // ---- tests
 
-static void pulled_apart_it_tears_at_its_weakest_line(void **unused) {
-    (void)unused;
+TEST(pulled_apart_it_tears_at_its_weakest_line) {
     SingeSimDef def = pull_def();
     SingeSim *sim = pulled(&def, 4, 0.5f, NULL);
     size_t freed = 0, events;
@@ -151,8 +150,7 @@ static void pulled_apart_it_tears_at_its_weakest_line(void **unused) {
     singe_sim_destroy(sim);
 }
 
-static void uniform_sheets_tear_too(void **unused) {
-    (void)unused;
+TEST(uniform_sheets_tear_too) {
     SingeSimDef def = pull_def();
     SingeSim *sim = pulled(&def, 2, 1, NULL);
     test_steps(sim, STEPS);
@@ -165,8 +163,7 @@ static void uniform_sheets_tear_too(void **unused) {
 }
 
 /// A tube, whose strands are rings, tears around.
-static void tubes_tear_around(void **unused) {
-    (void)unused;
+TEST(tubes_tear_around) {
     enum { AROUND = 20, LONG = 16 };
     SingeSimDef def = pull_def();
     SingeMaterialDef material = singe_default_material();
@@ -232,8 +229,7 @@ static TearEdges drawn_tear_edges(float raggedness) {
     return tear_edges;
 }
 
-static void tear_edges_wander_and_fit(void **unused) {
-    (void)unused;
+TEST(tear_edges_wander_and_fit) {
     const double whole = (double)(ALONG * side * ACROSS * side);
     TearEdges smooth = drawn_tear_edges(0), ragged = drawn_tear_edges(2e-3f);
     print_message("edges %.3f sides apart, %.3f to the side; ragged ones %.3f (%.3f at least) and %.3f\n", smooth.apart,
@@ -245,8 +241,7 @@ static void tear_edges_wander_and_fit(void **unused) {
     assert_true(ragged.area < whole && ragged.area > whole - 0.5 * (double)side * ACROSS * (double)side);
 }
 
-static void without_tearing_it_stays_whole(void **unused) {
-    (void)unused;
+TEST(without_tearing_it_stays_whole) {
     SingeSimDef def = pull_def();
     def.solver.tearing = false;
     SingeSim *sim = pulled(&def, 2, 0.5f, NULL);
@@ -270,8 +265,7 @@ static SingeSim *burning(int threads, SingeInstructions instructions) {
     return sim;
 }
 
-static void same_bytes_and_from_a_snapshot(void **unused) {
-    (void)unused;
+TEST(same_bytes_and_from_a_snapshot) {
     SingeSim *one = burning(1, SINGE_INSTRUCTIONS_BEST), *three = burning(3, SINGE_INSTRUCTIONS_PLAIN), *resumed;
     int half = 0;
     for (; half < STEPS && singe_sim_stats(one).tears < 3; half++) test_steps(one, 1);
@@ -296,8 +290,7 @@ static void same_bytes_and_from_a_snapshot(void **unused) {
 }
 
 /// A square metre that falls from the horizontal, held at two corners, does not tear, however coarse its substeps.
-static void cold_sheets_swing_whole(void **unused) {
-    (void)unused;
+TEST(cold_sheets_swing_whole) {
     const int substeps[] = {1, 7, 20};
     for (int k = 0; k < 3; k++) {
         SingeSimDef def = singe_default_sim();
@@ -318,8 +311,7 @@ static void cold_sheets_swing_whole(void **unused) {
 }
 
 /// Vertices in reserve lie behind each sheet's own; the drawn mesh and the pins number them as they were given.
-static void several_sheets_keep_their_numbers(void **unused) {
-    (void)unused;
+TEST(several_sheets_keep_their_numbers) {
     SingeSimDef def = pull_def();
     SingeSim *sim;
     SingeSheetId id[2];
@@ -363,8 +355,7 @@ static void count_lines(void *context, SingeLogLevel level, const char *line) {
     if (level == SINGE_LOG_WARNING && strstr(line, "reserve")) ++*(int *)context;
 }
 
-static void without_reserve_it_tears_no_further(void **unused) {
-    (void)unused;
+TEST(without_reserve_it_tears_no_further) {
     SingeSimDef def = pull_def();
     int lines = 0;
     def.log = (SingeLog){count_lines, &lines};
@@ -390,8 +381,7 @@ static void without_reserve_it_tears_no_further(void **unused) {
 }
 
 /// Every allocation of the making fails once, and nothing is lost.
-static void out_of_memory(void **unused) {
-    (void)unused;
+TEST(out_of_memory) {
     SingeResult result = SINGE_ERROR_MEMORY;
     TestAllocator hook = {0};
     for (long at = 1; result != SINGE_OK; at++) {
@@ -414,8 +404,7 @@ static void out_of_memory(void **unused) {
 }
 
 /// Stretched beyond what it reaches, a sheet tears though its substeps carry less than its strength.
-static void strong_sheets_tear_when_held_too_far_apart(void **unused) {
-    (void)unused;
+TEST(strong_sheets_tear_when_held_too_far_apart) {
     SingeSimDef def = pull_def();
     def.solver.substeps = 2;
     SingeSim *sim = pulled(&def, 500, 0.5f, NULL);
@@ -461,8 +450,7 @@ static uint32_t twins(const SingeView *view, uint32_t input_count, uint32_t of) 
 }
 
 /// A tear that runs into a vertex of more cells than can be split ends there.
-static void a_hub_of_many_cells_stays_whole(void **unused) {
-    (void)unused;
+TEST(a_hub_of_many_cells_stays_whole) {
     SingeSimDef def = pull_def();
     TestMesh mesh = make_disc();
     float weak[1 + SPOKES * RINGS];
@@ -501,8 +489,7 @@ static void flux_fails(void *context, const SingeView *view, float *flux, float 
     for (uint32_t i = 0; i < view->particle_count && *(bool *)context; i++) flux[i] = NAN;
 }
 
-static void failed_steps_leave_it_as_it_was(void **unused) {
-    (void)unused;
+TEST(failed_steps_leave_it_as_it_was) {
     SingeSim *sim = burning(1, SINGE_INSTRUCTIONS_BEST);
     SingeSourceDef source = singe_default_source();
     SingeSourceId id;
@@ -527,23 +514,4 @@ static void failed_steps_leave_it_as_it_was(void **unused) {
     free(before.data);
     free(after.data);
     singe_sim_destroy(sim);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pulled_apart_it_tears_at_its_weakest_line),
-        cmocka_unit_test(uniform_sheets_tear_too),
-        cmocka_unit_test(tubes_tear_around),
-        cmocka_unit_test(tear_edges_wander_and_fit),
-        cmocka_unit_test(without_tearing_it_stays_whole),
-        cmocka_unit_test(same_bytes_and_from_a_snapshot),
-        cmocka_unit_test(failed_steps_leave_it_as_it_was),
-        cmocka_unit_test(cold_sheets_swing_whole),
-        cmocka_unit_test(strong_sheets_tear_when_held_too_far_apart),
-        cmocka_unit_test(several_sheets_keep_their_numbers),
-        cmocka_unit_test(a_hub_of_many_cells_stays_whole),
-        cmocka_unit_test(without_reserve_it_tears_no_further),
-        cmocka_unit_test(out_of_memory),
-    };
-    return cmocka_run_group_tests_name("tear", tests, NULL, NULL);
 }

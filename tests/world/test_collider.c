@@ -31,8 +31,7 @@ static double distance(const SingeColliderDef *def, Float3 p) {
     return (double)distance_at(def, p, &normal);
 }
 
-static void normals_are_gradients(void **state) {
-    (void)state;
+TEST(normals_are_gradients) {
     const float e = 1e-3f;
     for (int kind = SINGE_COLLIDER_PLANE; kind <= SINGE_COLLIDER_CAPSULE; kind++) {
         SingeColliderDef def = make((SingeColliderKind)kind);
@@ -74,8 +73,7 @@ static void expect(SingeColliderKind kind, Float3 p, float d, Float3 n) {
                  (double)normal.z);
 }
 
-static void hand_values(void **state) {
-    (void)state;
+TEST(hand_values) {
     expect(SINGE_COLLIDER_PLANE, float3(5, -7, 0.25f), 0.25f, float3(0, 0, 1));
     expect(SINGE_COLLIDER_PLANE, float3(5, -7, -2), -2, float3(0, 0, 1));
     expect(SINGE_COLLIDER_SPHERE, float3(0, -1, 0), 0.3f, float3(0, -1, 0));
@@ -92,8 +90,7 @@ static void hand_values(void **state) {
     expect(SINGE_COLLIDER_CAPSULE, float3(0, 0.6f, 1.8f), 0.3f, float3(0, 0.6f, 0.8f));
 }
 
-static void surfaces_are_round_inside(void **state) {
-    (void)state;
+TEST(surfaces_are_round_inside) {
     SingeColliderDef def = make(SINGE_COLLIDER_BOX);
     Float3 normal;
     assert_true(distance_at(&def, float3(0.5f, 1, 1.5f), &normal) == 0); // a corner
@@ -116,8 +113,7 @@ static void spoil_conductance(SingeColliderDef *def) { def->conductance = -1; }
 static void spoil_distance(SingeColliderDef *def) { def->contact_distance = NAN; }
 static void spoil_temperature(SingeColliderDef *def) { def->conductance = 1, def->temperature = 0; }
 
-static void bad_fields_are_named(void **state) {
-    (void)state;
+TEST(bad_fields_are_named) {
     static const struct {
         Spoil *spoil;
         const char *word;
@@ -143,14 +139,4 @@ static void bad_fields_are_named(void **state) {
         assert_string_equal(error.stage, "collider");
         assert_non_null(strstr(error.message, cases[i].word));
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(normals_are_gradients),
-        cmocka_unit_test(hand_values),
-        cmocka_unit_test(surfaces_are_round_inside),
-        cmocka_unit_test(bad_fields_are_named),
-    };
-    return cmocka_run_group_tests_name("world_collider", tests, NULL, NULL);
 }

@@ -12,18 +12,17 @@ typedef struct Fixture {
     SingeError error;
 } Fixture;
 
-static int setup(void **state) {
+static Fixture *fixture(void) {
     static Fixture fixture;
     memset(&fixture, 0, sizeof fixture);
     fixture.memory = memory_make(test_allocator(&fixture.hook));
-    *state = &fixture;
-    return 0;
+    return &fixture;
 }
 
-static int teardown(void **state) {
-    Fixture *f = *state;
+static void release(Fixture *f) {
     path_free(&f->path, &f->memory);
-    return f->hook.blocks || f->hook.faults || f->memory.held;
+    test_allocator_check(&f->hook);
+    assert_int_equal(f->memory.held, 0);
 }
 
 static void set(Fixture *f, uint32_t count, const SingePoseKey *keys) {
@@ -34,8 +33,8 @@ static void near_float3(Float3 a, float x, float y, float z) {
     assert_true(float3_length(float3_sub(a, float3(x, y, z))) < 1e-5f);
 }
 
-static void positions_are_linear_and_held(void **state) {
-    Fixture *f = *state;
+TEST(positions_are_linear_and_held) {
+    Fixture *f = fixture();
     SingePoseKey keys[] = {test_key(1, 0, 0, 0), test_key(2, 2, 4, -6), test_key(4, 2, 0, -6)};
     set(f, 3, keys);
     near_float3(path_pose(&f->path, -100).position, 0, 0, 0);
@@ -45,10 +44,11 @@ static void positions_are_linear_and_held(void **state) {
     near_float3(path_pose(&f->path, 3).position, 2, 2, -6);
     near_float3(path_pose(&f->path, 4).position, 2, 0, -6);
     near_float3(path_pose(&f->path, 1e9).position, 2, 0, -6);
+    release(f);
 }
 
-static void one_key_and_none(void **state) {
-    Fixture *f = *state;
+TEST(one_key_and_none) {
+    Fixture *f = fixture();
     near_float3(path_pose(&f->path, 3).position, 0, 0, 0);
     assert_true(path_pose(&f->path, 3).rotation[3] == 1);
     set(f, 0, NULL);
@@ -56,10 +56,11 @@ static void one_key_and_none(void **state) {
     SingePoseKey key = test_key(5, 1, 2, 3);
     set(f, 1, &key);
     for (int t = 0; t < 10; t++) near_float3(path_pose(&f->path, t).position, 1, 2, 3);
+    release(f);
 }
 
-static void rotations_stay_unit_and_go_the_short_way(void **state) {
-    Fixture *f = *state;
+TEST(rotations_stay_unit_and_go_the_short_way) {
+    Fixture *f = fixture();
     const float s = sqrtf(0.5f);
     // a quarter turn about z, its end given with the other sign; and both of wrong length
     SingePoseKey keys[] = {{0, {0}, {0, 0, 0, 2}}, {1, {0}, {0, 0, -3 * s, -3 * s}}};
@@ -79,18 +80,20 @@ static void rotations_stay_unit_and_go_the_short_way(void **state) {
     near_float3(x, s, s, 0);
     x = quat_rotate(path_pose(&f->path, 1).rotation, float3(1, 0, 0));
     near_float3(x, 0, 1, 0);
+    release(f);
 }
 
-static void huge_and_tiny_rotations_are_normalised(void **state) {
-    Fixture *f = *state;
+TEST(huge_and_tiny_rotations_are_normalised) {
+    Fixture *f = fixture();
     SingePoseKey keys[] = {{0, {0}, {1e30f, 0, 0, 0}}, {1, {0}, {0, 1e-5f, 0, 0}}};
     set(f, 2, keys);
     assert_true(fabsf(path_pose(&f->path, 0).rotation[0] - 1) < 1e-6f);
     assert_true(fabsf(path_pose(&f->path, 1).rotation[1] - 1) < 1e-6f);
+    release(f);
 }
 
-static void poses_invert(void **state) {
-    Fixture *f = *state;
+TEST(poses_invert) {
+    Fixture *f = fixture();
     SingePoseKey key = {0, {1, -2, 3}, {0.1f, -0.4f, 0.3f, 0.8f}};
     set(f, 1, &key);
     Pose pose = path_pose(&f->path, 0);
@@ -98,6 +101,7 @@ static void poses_invert(void **state) {
     near_float3(pose_unapply(&pose, world), p.x, p.y, p.z);
     assert_true(fabsf(float3_length(float3_sub(world, pose.position)) - float3_length(p)) < 1e-5f);
     near_float3(pose_apply(&pose, float3(0, 0, 0)), 1, -2, 3);
+    release(f);
 }
 
 static void refused(Fixture *f, uint32_t count, const SingePoseKey *keys, int64_t element) {
@@ -108,8 +112,8 @@ static void refused(Fixture *f, uint32_t count, const SingePoseKey *keys, int64_
     assert_memory_equal(&f->path, &before, sizeof before);
 }
 
-static void bad_keys_are_refused(void **state) {
-    Fixture *f = *state;
+TEST(bad_keys_are_refused) {
+    Fixture *f = fixture();
     SingePoseKey good[] = {test_key(0, 0, 0, 0), test_key(1, 1, 0, 0), test_key(2, 2, 0, 0)}, bad[3];
     set(f, 3, good);
     refused(f, 3, NULL, -1);
@@ -129,27 +133,15 @@ static void bad_keys_are_refused(void **state) {
     BAD(bad[1].rotation[3] = 0, 1);
 #undef BAD
     near_float3(path_pose(&f->path, 1.5).position, 1.5f, 0, 0);
+    release(f);
 }
 
-static void out_of_memory(void **state) {
-    Fixture *f = *state;
+TEST(out_of_memory) {
+    Fixture *f = fixture();
     SingePoseKey keys[] = {test_key(0, 7, 0, 0), test_key(1, 1, 0, 0)};
     set(f, 2, keys);
     f->hook.fail_at = f->hook.calls + 1;
     assert_int_equal(path_set(&f->path, &f->memory, 1, keys, "owner", &f->error), SINGE_ERROR_MEMORY);
     near_float3(path_pose(&f->path, 0).position, 7, 0, 0);
-}
-
-int main(void) {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
-    const struct CMUnitTest tests[] = {
-        TEST(positions_are_linear_and_held),
-        TEST(one_key_and_none),
-        TEST(rotations_stay_unit_and_go_the_short_way),
-        TEST(huge_and_tiny_rotations_are_normalised),
-        TEST(poses_invert),
-        TEST(bad_keys_are_refused),
-        TEST(out_of_memory),
-    };
-    return cmocka_run_group_tests_name("world_path", tests, NULL, NULL);
+    release(f);
 }

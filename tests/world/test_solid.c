@@ -66,8 +66,7 @@ static int compare(const Triangles *mesh, const char *name, int count, float siz
     return inside;
 }
 
-static void distances_are_those_of_all_triangles(void **unused) {
-    (void)unused;
+TEST(distances_are_those_of_all_triangles) {
     Triangles mesh = triangles_sphere(24, 0.05f, 0);
     assert_true(compare(&mesh, "sphere", 1500, 0.1f) > 100);
     triangles_free(&mesh);
@@ -87,8 +86,7 @@ static void distances_are_those_of_all_triangles(void **unused) {
     triangles_free(&mesh);
 }
 
-static void four_triangles_are_enough(void **unused) {
-    (void)unused;
+TEST(four_triangles_are_enough) {
     float vertices[] = {0, 0, 0, 0.1f, 0, 0, 0, 0.1f, 0, 0, 0, 0.1f};
     uint32_t triangles[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
     Triangles mesh = {4, 4, vertices, triangles};
@@ -96,8 +94,7 @@ static void four_triangles_are_enough(void **unused) {
 }
 
 /// Every box of its tree would be near such a position.
-static void impossible_positions_are_far(void **unused) {
-    (void)unused;
+TEST(impossible_positions_are_far) {
     Triangles mesh = triangles_torus(24, 12, 0.1f, 0.04f);
     Memory memory = memory_make((SingeAllocator){0});
     Collider collider = make_mesh(&memory, &mesh);
@@ -115,8 +112,7 @@ static void impossible_positions_are_far(void **unused) {
     triangles_free(&mesh);
 }
 
-static void inside_out_is_turned(void **unused) {
-    (void)unused;
+TEST(inside_out_is_turned) {
     Memory memory = memory_make((SingeAllocator){0});
     Triangles mesh = triangles_sphere(16, 0.05f, 0);
     Collider collider = make_mesh(&memory, &mesh);
@@ -156,8 +152,7 @@ static void spoil_flat(Triangles *mesh) { // three corners in a line
 static void spoil_few(Triangles *mesh) { mesh->triangle_count = 3; }
 static void spoil_none(Triangles *mesh) { mesh->triangle_count = 0; }
 
-static void bad_meshes_are_refused_by_number(void **unused) {
-    (void)unused;
+TEST(bad_meshes_are_refused_by_number) {
     static const struct {
         Spoil *spoil;
         int64_t element; ///< -1: none; -2: any
@@ -223,8 +218,7 @@ static Triangles column(uint32_t columns, uint32_t rows, const float *heights, c
     return mesh;
 }
 
-static void heights_are_those_of_their_triangles(void **unused) {
-    (void)unused;
+TEST(heights_are_those_of_their_triangles) {
     enum { COLUMNS = 31, ROWS = 22 };
     static float heights[COLUMNS * ROWS];
     const float size[2] = {0.2f, 0.14f};
@@ -272,8 +266,7 @@ static void heights_are_those_of_their_triangles(void **unused) {
     triangles_free(&mesh);
 }
 
-static void bad_heights_are_refused(void **unused) {
-    (void)unused;
+TEST(bad_heights_are_refused) {
     float heights[6] = {0, 0, 0, 0, INFINITY, 0};
     Memory memory = memory_make((SingeAllocator){0});
     Collider collider = {0};
@@ -326,8 +319,7 @@ static double cost(const Collider *collider, const Triangles *mesh, float off) {
     return 1e9 * best / COUNT;
 }
 
-static void ten_thousand_triangles_are_quick(void **unused) {
-    (void)unused;
+TEST(ten_thousand_triangles_are_quick) {
     Memory memory = memory_make((SingeAllocator){0});
     Triangles mesh = triangles_torus(125, 40, 0.06f, 0.025f);
     double start = seconds();
@@ -341,18 +333,4 @@ static void ten_thousand_triangles_are_quick(void **unused) {
     assert_true(memory.held < 10e6 && touching < 20000);
     collider_free(&memory, &collider);
     triangles_free(&mesh);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(distances_are_those_of_all_triangles),
-        cmocka_unit_test(four_triangles_are_enough),
-        cmocka_unit_test(inside_out_is_turned),
-        cmocka_unit_test(bad_meshes_are_refused_by_number),
-        cmocka_unit_test(heights_are_those_of_their_triangles),
-        cmocka_unit_test(bad_heights_are_refused),
-        cmocka_unit_test(ten_thousand_triangles_are_quick),
-        cmocka_unit_test(impossible_positions_are_far),
-    };
-    return cmocka_run_group_tests_name("world_solid", tests, NULL, NULL);
 }

@@ -11,8 +11,7 @@ static Float3 at(const SingeWindDef *def, int i) {
                          i * 0.037);
 }
 
-static void no_gust_is_uniform(void **state) {
-    (void)state;
+TEST(no_gust_is_uniform) {
     SingeWindDef def = singe_default_wind();
     def.velocity[0] = 1, def.velocity[1] = -2, def.velocity[2] = 0.5f;
     for (int i = 0; i < 100; i++) {
@@ -21,8 +20,7 @@ static void no_gust_is_uniform(void **state) {
     }
 }
 
-static void mean_and_bound(void **state) {
-    (void)state;
+TEST(mean_and_bound) {
     SingeWindDef def = singe_default_wind();
     def.velocity[0] = 3;
     def.gust = 2;
@@ -38,8 +36,7 @@ static void mean_and_bound(void **state) {
     assert_true(sqrt(square) > 0.3 && sqrt(square) < 1.2); // it does blow
 }
 
-static void seeded(void **state) {
-    (void)state;
+TEST(seeded) {
     SingeWindDef a = singe_default_wind();
     a.gust = 1;
     SingeWindDef b = a;
@@ -53,8 +50,7 @@ static void seeded(void **state) {
     assert_true(equal < 5);
 }
 
-static void smooth_in_time_and_space(void **state) {
-    (void)state;
+TEST(smooth_in_time_and_space) {
     SingeWindDef def = singe_default_wind();
     def.gust = 1;
     for (int i = 0; i < 2000; i++) {
@@ -68,8 +64,7 @@ static void smooth_in_time_and_space(void **state) {
     }
 }
 
-static void bad_fields(void **state) {
-    (void)state;
+TEST(bad_fields) {
     SingeError error;
     SingeWindDef good = singe_default_wind(), bad;
     assert_int_equal(def_check(&wind_table, &good, &error), SINGE_OK);
@@ -87,12 +82,4 @@ static void bad_fields(void **state) {
     BAD(gust_size, -1);
     BAD(gust_size, INFINITY);
 #undef BAD
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_gust_is_uniform),       cmocka_unit_test(mean_and_bound), cmocka_unit_test(seeded),
-        cmocka_unit_test(smooth_in_time_and_space), cmocka_unit_test(bad_fields),
-    };
-    return cmocka_run_group_tests_name("world_wind", tests, NULL, NULL);
 }

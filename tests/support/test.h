@@ -1,0 +1,27 @@
+// A test is a program of cases. Each case adds itself to its program, and tests/support/test.c runs them.
+#ifndef TEST_H
+#define TEST_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+/// A case: TEST(paper_burns) { ... }. The name is a sentence that the case shows.
+#define TEST(name)                                                                       \
+    static void name(void **unused_);                                                    \
+    __attribute__((constructor)) static void add_##name(void) { test_add(#name, name); } \
+    static void name(__attribute__((unused)) void **unused_)
+
+/// Runs `before` ahead of the first case, with the program's arguments, and `after` behind the last, which returns the
+/// number of faults that it finds. `after` may be NULL.
+#define TEST_AROUND(before, after) \
+    __attribute__((constructor)) static void add_around(void) { test_around(before, after); }
+
+void test_add(const char *name, CMUnitTestFunction run);
+void test_around(void (*before)(int argc, char **argv), int (*after)(void));
+
+#endif
