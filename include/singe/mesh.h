@@ -51,7 +51,7 @@ typedef struct SingeGridDef {
     float size[2];      ///< m along x and y, > 0; 0.2
     uint32_t cells[2];  ///< along x and y, at least 1; 50
     float jitter;       ///< of a cell, max offset of vertices from the grid, 0 to 0.3, so that folds do not follow its
-                        ///< lines; 0.15
+                        ///< lines; of slim cells at most twice that share of their width; 0.15
     float displacement; ///< m, root mean square height of waves in the rest shape, >= 0; 0
     uint32_t seed;      ///< of jitter and displacement; 1
     SingeAllocator allocator; ///< zeroed: libc's

@@ -64,8 +64,8 @@ static const SchemaRow grid_rows[] = {
     {"cells", ROW_INTS, DIM_NONE, AT(SceneGrid, cells), .length = 2, .flags = ROW_REQUIRED, WITHIN(1, 20000),
      .doc = "number of cells along x and y"},
     {"jitter", ROW_FLOAT, DIM_FRACTION, AT(SceneGrid, wear.jitter), WITHIN(0, 0.3),
-     .doc = "displacement of vertices off the grid, in cells, so that folds and fronts follow no grid lines; 0 is "
-            "regular"},
+     .doc = "displacement of vertices off the grid, in cells, so that folds and fronts follow no grid lines; at most "
+            "twice as much of the width of slim cells; 0 is regular"},
     {"displacement", ROW_FLOAT, DIM_LENGTH, AT(SceneGrid, wear.displacement), WITHIN(0, 1e3),
      .doc = "root mean square displacement of the rest shape by smooth waves; 0 is flat"},
     {"seed", ROW_UINT32, DIM_NONE, AT(SceneGrid, wear.seed), .doc = "seed of the waves"},

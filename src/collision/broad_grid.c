@@ -1,12 +1,17 @@
 // Pairs of cells whose swept boxes meet.
 //
 // Swept boxes are sorted into the cubes of a hashed grid (Teschner et al., Optimized spatial hashing, 2003), whose edge
-// follows the boxes' mean extent, so the work is linear in the number of cells for any pile. A pair that shares several
+// follows the boxes' mean extent, so the work is linear in the number of cells for any pile. Where most cells are long
+// and lie along one axis the cubes are as slim as they are: else a cube would hold a row of thousands of cells. A pair that shares several
 // cubes counts in the one where its common region begins: along each axis that cube is the first of one of the two.
 // Within a bucket a box is tested against four others at once.
 #include "collision/broad_grid.h"
 
+#include <math.h>
 #include <string.h>
+
+/// Mean length over mean width of swept boxes above which the cubes are as slim as the boxes.
+enum { SLIM = 4 };
 
 typedef struct Find {
     CollisionPlan *plan;
@@ -17,14 +22,12 @@ typedef struct Find {
 
 /// Calls for every cube of every swept box: counts the entries of buckets, or writes them.
 static uint64_t fill_grid(CollisionPlan *plan, bool writing) {
-    float inverse = 1 / plan->edge;
     uint64_t count = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         if (!plan->alive[c]) continue;
 
         const CollisionBox *box = &plan->boxes[c];
-        Cube first = collision_cube(box->swept_low, inverse), last = collision_cube(box->swept_high, inverse),
-             at = first;
+        Cube first = collision_cube(plan, box->swept_low), last = collision_cube(plan, box->swept_high), at = first;
         count += collision_cubes(first, last, plan->sizes.entries);
         if (count > plan->sizes.entries) return count;
 
@@ -195,7 +198,7 @@ uint64_t broad_grid_pairs(CollisionPlan *plan, const Shell *shell, Pool *pool) {
     Find find = {plan, shell};
 
     // the cubes' initial edge: twice the boxes' mean longest side; 0 if no cell is left
-    double sum = 0;
+    double sum = 0, along[3] = {0};
     uint32_t cells = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         if (!plan->alive[c]) continue;
@@ -203,16 +206,24 @@ uint64_t broad_grid_pairs(CollisionPlan *plan, const Shell *shell, Pool *pool) {
         Float4 size = plan->boxes[c].swept_high - plan->boxes[c].swept_low;
         float longest = size[0] > size[1] ? size[0] : size[1];
         sum += (double)(longest > size[2] ? longest : size[2]);
+        for (int k = 0; k < 3; k++) along[k] += (double)size[k];
         cells++;
     }
 
     plan->edge = cells ? (float)(2 * sum / cells) : 0;
+
+    // one over the part of it along each axis; all of it unless one axis has long cells and the others do not
+    double most = fmax(along[0], fmax(along[1], along[2])), least = fmin(along[0], fmin(along[1], along[2]));
+    double middle = along[0] + along[1] + along[2] - most - least;
+    Float4 slim = float4_all(1);
+    for (int k = 0; k < 3 && middle < most / SLIM; k++) slim[k] = (float)(sum / fmax(along[k], middle));
 
     // larger cubes until all entries have room; then the entries, sorted by buckets
     uint64_t count = 0;
     clear_buckets(plan);
 
     for (; plan->edge > 0; plan->edge *= 1.3f) {
+        plan->inverse_edge = slim / plan->edge;
         if (!(plan->edge < 1e30f)) plan->edge = 0; // a position is not finite: the step will fail
         else if ((count = fill_grid(plan, false)) <= plan->sizes.entries) break;
         clear_buckets(plan);

@@ -7,8 +7,8 @@
 typedef Float4Mask Cube; ///< three whole numbers
 
 /// Rounds down; positions too far for whole numbers share the last cube.
-static inline Cube collision_cube(Float4 p, float inverse_edge) {
-    Float4 max = float4_all(1e9f), q = float4_max(float4_min(p * inverse_edge, max), -max);
+static inline Cube collision_cube(const CollisionPlan *plan, Float4 p) {
+    Float4 max = float4_all(1e9f), q = float4_max(float4_min(p * plan->inverse_edge, max), -max);
     Cube whole = __builtin_convertvector(q, Cube);
     return whole + (__builtin_convertvector(whole, Float4) > q); // a mask is -1
 }

@@ -135,9 +135,10 @@ struct CollisionPlan {
     uint8_t *intersecting; ///< [cells] 1: in one of these pairs
 
     // results of the search, and of collision_open
-    uint32_t steps;     ///< for which the search is valid
-    float slack, reach; ///< m; reach is thickness + slack
-    float edge;         ///< m, of the grid's cubes
+    uint32_t steps;      ///< for which the search is valid
+    float slack, reach;  ///< m; reach is thickness + slack
+    float edge;          ///< m, the longest of the grid's cubes; 0: there is no grid
+    Float4 inverse_edge; ///< 1/m, one over their edges along each axis
     uint32_t entry_count, bucket_count, repulsion_count;
     uint32_t listed_count; ///< pairs of the search
     uint32_t pair_count;   ///< and those of cells that have left their boxes, in this step

@@ -60,14 +60,13 @@ static void add_outside_pair(const OutsideSearch *job, uint32_t k, uint32_t l, B
 static void outside_block(void *context, BlockList *list, int block) {
     const OutsideSearch *job = context;
     const CollisionPlan *plan = job->plan;
-    const float inverse = 1 / plan->edge;
     BlockWriter writer = block_list_begin(list, block);
     uint32_t first = (uint32_t)block * COLLISION_OUTSIDE, last = first + COLLISION_OUTSIDE;
 
     for (uint32_t k = first; k < last && k < job->count && !block_list_is_full(&writer); k++) {
         const OutsideBox *box = &plan->outside_boxes[k];
         const uint32_t a = plan->outside[k];
-        Cube low = collision_cube(box->low, inverse), high = collision_cube(box->high, inverse), at = low;
+        Cube low = collision_cube(plan, box->low), high = collision_cube(plan, box->high), at = low;
 
         // thrown far: more cubes than cells
         const bool far = collision_cubes(low, high, plan->sizes.entries) > plan->sizes.entries;
@@ -121,12 +120,11 @@ SingeResult broad_search_outside(Memory *memory, CollisionPlan *plan, const Shel
     pool_for(pool, (int)outside_count, COLLISION_OUTSIDE, box_range, &job);
 
     // cells out of bounds among each other: a grid of the same cubes, buckets as chains
-    float inverse = 1 / plan->edge;
     memset(plan->outside_chain, 0xff, plan->bucket_count * sizeof *plan->outside_chain);
 
     for (uint32_t k = job.count; k-- > 0;) {
         const OutsideBox *box = &plan->outside_boxes[k];
-        Cube first = collision_cube(box->low, inverse), last = collision_cube(box->high, inverse), at = first;
+        Cube first = collision_cube(plan, box->low), last = collision_cube(plan, box->high), at = first;
         uint64_t cubes = collision_cubes(first, last, plan->sizes.entries);
         job.crowded |= cubes > plan->sizes.entries - job.entry_count;
         if (job.crowded) break;

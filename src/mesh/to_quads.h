@@ -29,7 +29,8 @@ SINGE_NODISCARD SingeResult mesh_grid(float size_x, float size_y, uint32_t cells
                                       SingeAllocator allocator, Mesh *mesh, SingeError *error);
 /// Imperfections of a grid.
 typedef struct GridWear {
-    float jitter;       ///< max offset of a vertex from the grid along each axis, in cells, 0 to 0.3
+    float jitter;       ///< max offset of a vertex from the grid along each axis, in cells, 0 to 0.3; at most
+                        ///< twice that of the shorter side of a cell
     float displacement; ///< m, root mean square height of the sheet's waves, >= 0
     uint32_t seed;
 } GridWear;

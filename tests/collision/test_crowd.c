@@ -239,6 +239,39 @@ TEST(what_is_dropped_is_counted) {
     }
 }
 
+/// Pairs of boxes that the search compares, per cell, of a flat sheet in one of three positions.
+static double compared(uint32_t nx, uint32_t ny, float dx, float dy, int position) {
+    SingeSimDef def = singe_default_sim();
+    def.contact.enabled = true;
+    TestMesh mesh = test_grid(nx, ny, dx, dy);
+    if (position == 1) test_mesh_raise(&mesh);
+    for (uint32_t v = 0; position == 2 && v < mesh.vertex_count; v++) { // y becomes x, x becomes z
+        float *p = mesh.positions + 3 * (size_t)v, x = p[0];
+        p[0] = p[1], p[1] = p[2], p[2] = x;
+    }
+    SingeSim *sim = test_sim(&def, mesh, NULL);
+    test_steps(sim, 1);
+    const CollisionPlan *plan = collision(sim);
+    double sum = 0;
+    for (uint32_t b = 0; b < plan->bucket_count; b++) {
+        double count = plan->bucket_first[b + 1] - plan->bucket_first[b];
+        sum += count * (count - 1) / 2;
+    }
+    sum /= plan->cell_count;
+    singe_sim_destroy(sim);
+    return sum;
+}
+
+/// The search costs by cells, not by their shape: slim ones are not all in the same few cubes.
+TEST(slim_cells_cost_as_squares) {
+    const double squares = compared(71, 71, 7e-3f, 7e-3f, 0);
+    for (int position = 0; position < 3; position++) {
+        double slim = compared(1250, 4, 0.4e-3f, 0.125f, position);
+        print_message("boxes compared, per cell: %.1f of squares, %.1f of slim cells\n", squares, slim);
+        assert_true(slim <= 3 * squares);
+    }
+}
+
 /// A step that has no memory to grow fails and can be repeated.
 TEST(no_memory_to_grow) {
     int failures = 0;

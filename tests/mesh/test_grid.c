@@ -56,3 +56,29 @@ TEST(worn_grid_keeps_its_outline) {
         for (int k = 0; k < 4; k++) assert_true(cell_area(&mesh, c, k) > 0.2 * 0.5 * 0.005 * 0.005);
     mesh_free(&mesh), mesh_free(&plain);
 }
+
+/// The jitter follows a cell's width: slim cells keep their shape, whichever side is the longer one.
+TEST(slim_cells_stay_slim) {
+    enum { LONG = 500, SHORT = 4 };
+    for (int turn = 0; turn < 2; turn++) {
+        const uint32_t nx = turn ? SHORT : LONG, ny = turn ? LONG : SHORT;
+        const double side[2] = {1.0 / nx, 1.0 / ny}, width = fmin(side[0], side[1]), length = fmax(side[0], side[1]);
+        Mesh mesh;
+        SingeError error;
+        assert_int_equal(mesh_grid(1, 1, nx, ny, (SingeAllocator){0}, &mesh, &error), SINGE_OK);
+        mesh_grid_wear(&mesh, nx, ny, &(GridWear){.jitter = 0.15f, .seed = 1});
+        double widest = 0, longest = 0;
+        for (uint32_t c = 0; c < mesh.cell_count; c++)
+            for (int k = 0; k < 4; k++) {
+                const float *p = mesh.positions + 3 * mesh.cells[4 * c + (uint32_t)k];
+                const float *q = mesh.positions + 3 * mesh.cells[4 * c + (uint32_t)((k + 1) % 4)];
+                double edge = hypot((double)(p[0] - q[0]), (double)(p[1] - q[1]));
+                bool across = (k % 2 == 0) == (nx == LONG);
+                if (across) widest = fmax(widest, edge);
+                else longest = fmax(longest, edge);
+            }
+        print_message("cells of %g by %g: sides up to %g by %g\n", width, length, widest, longest);
+        assert_true(widest < 1.7 * width && longest < 1.01 * length);
+        mesh_free(&mesh);
+    }
+}

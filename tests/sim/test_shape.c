@@ -1,0 +1,62 @@
+// What a step costs follows the number of cells and not their shape. In processor time, of one thread.
+#include "support/support.h"
+
+#include <math.h>
+#include <time.h>
+
+enum { SHAPES = 3, ROUNDS = 5, STEPS = 4, FALLEN = 60 };
+
+static double seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/// A sheet that falls, with contact, and is lit at its centre.
+static SingeSim *sheet(const uint32_t cells[2], const float size[2]) {
+    SingeGridDef grid = singe_default_grid();
+    SingeSimDef def = singe_default_sim();
+    SingeMesh *mesh;
+    SingeSim *sim;
+    def.thread_count = 1, def.contact.enabled = true;
+    for (int k = 0; k < 2; k++) grid.cells[k] = cells[k], grid.size[k] = size[k];
+    assert_int_equal(singe_mesh_create_grid(&grid, &mesh, NULL), SINGE_OK);
+    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    SingeSheetDef sheet = singe_default_sheet();
+    SingeSheetId id;
+    singe_mesh_fill_sheet(mesh, &sheet);
+    test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
+    test_ok(sim, singe_sim_commit(sim));
+    singe_mesh_destroy(mesh);
+    test_spot(sim, 0, 0, 0, 0.05f, 1200, 150);
+    return sim;
+}
+
+/// Each shape's best round, as the machine may be busy.
+TEST(strips_cost_as_squares) {
+    static const struct {
+        const char *name;
+        uint32_t cells[2];
+        float size[2];
+    } shapes[SHAPES] = {{"a square of squares", {141, 141}, {1, 1}},
+                        {"a strip of squares", {5000, 4}, {35, 0.028f}},
+                        {"a square of strips", {5000, 4}, {1, 1}}};
+    double cost[SHAPES];
+    SingeSim *sims[SHAPES];
+    for (int k = 0; k < SHAPES; k++) {
+        sims[k] = sheet(shapes[k].cells, shapes[k].size);
+        test_steps(sims[k], FALLEN); // as fast as the air lets it
+        cost[k] = INFINITY;
+    }
+    for (int round = 0; round < ROUNDS; round++)
+        for (int k = 0; k < SHAPES; k++) {
+            double begun = seconds();
+            test_steps(sims[k], STEPS);
+            cost[k] = fmin(cost[k], (seconds() - begun) / STEPS);
+        }
+    for (int k = 0; k < SHAPES; k++) {
+        print_message("%s: %.1f ms a step, %.2f times squares\n", shapes[k].name, 1e3 * cost[k], cost[k] / cost[0]);
+        singe_sim_destroy(sims[k]);
+    }
+    for (int k = 1; k < SHAPES; k++) assert_true(cost[k] <= 1.3 * cost[0]);
+}
