@@ -93,11 +93,14 @@ void bloom_apply(Preview *preview) {
 //
 // Film curve: linear but for a short toe, f = x (1 - 0.4 exp(-x / 0.06)), and a shoulder above s = 0.6, s + (1 - s) (1
 // - exp(-(f - s) / (1 - s))). White paper in the sun, 0.8, becomes 0.76 (0.89 in sRGB), and the slope there is still
-// 0.6, so that its wrinkles are visible. Before it, each channel leaks a little into the others, as in film: very
-// bright colours become pale. Then IEC 61966-2-1 and one level of triangular dither.
+// 0.6, so that its wrinkles are visible. Before it, each channel leaks into the others, as in film: a little where it is
+// dim, and more the brighter it is. So the centre of a flame becomes pale, where a curve for each channel alone would
+// clip all of it to the same yellow. Then IEC 61966-2-1 and one level of triangular dither.
 
 enum { CURVE_COUNT = 4096 };
-#define LEAK 0.03f
+#define LEAK 0.03f        ///< of a dim colour
+#define LEAK_BRIGHT 0.15f ///< what is added to it in the limit of bright colours
+#define LEAK_HALF 4.0f    ///< brightness above 1 at which half of LEAK_BRIGHT is added
 
 /// The curve and the encoding as one table over sqrt(x / CURVE_MAX): the curve is slow and smooth.
 #define CURVE_MAX 16.0f
@@ -114,10 +117,12 @@ void tonemap_write(const Preview *preview, uint8_t *rgb) {
     size_t count = (size_t)preview->def.width * (size_t)preview->def.height;
     for (size_t i = 0; i < count; i++) {
         Float3 c = float3_scale(preview->picture[i], preview->def.exposure);
-        const float leak = LEAK * (c.x + c.y + c.z) / 3, channel[3] = {c.x, c.y, c.z};
+        const float over = maxf(maxf(c.x, maxf(c.y, c.z)) - 1, 0);
+        const float leak = LEAK + LEAK_BRIGHT * over * over / (over * over + LEAK_HALF * LEAK_HALF);
+        const float mean = (c.x + c.y + c.z) / 3, channel[3] = {c.x, c.y, c.z};
         uint32_t key = (uint32_t)i * 3u + preview->def.seed * 0x9e3779b1u;
         for (uint32_t k = 0; k < 3; k++) {
-            float x = (1 - LEAK) * channel[k] + leak;
+            float x = mixf(channel[k], mean, leak);
             float at = sqrtf(clampf(x, 0, CURVE_MAX) / CURVE_MAX) * (CURVE_COUNT - 1);
             int j = (int)at < CURVE_COUNT - 2 ? (int)at : CURVE_COUNT - 2;
             float s = mixf(curve[j], curve[j + 1], at - (float)j);

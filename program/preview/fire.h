@@ -100,6 +100,9 @@ void fire_fill_colours(Preview *preview);
 /// Light of a full flame, radiance per metre, for its lamps, and the share of it that a cell emits.
 Float3 fire_emission(const Preview *preview);
 float fire_share(const FireCell *cell);
+
+/// How bright a flame around p is now, 1 in the mean: tongues come and go.
+float fire_flicker(const Fire *fire, Float3 p);
 Matter fire_matter(const Preview *preview, Float3 p, int what);
 
 // fire_march.c

@@ -1,33 +1,37 @@
 // Flame and smoke at a position.
 //
 // The gas comes in cells of several millimetres and is interpolated by quadratic B-splines, so its cells are not
-// visible. Finer detail is added: the lookup position is shifted by noise (domain warping), which is stretched upwards
-// and rises with the gas, so flames have tongues and streaks and flicker.
+// visible. Finer detail is added: the lookup position is shifted by noise (domain warping), which rises with the gas and
+// grows longer as the gas accelerates, so flames have tongues and streaks and flicker.
 //
 // A flame over paper is a thin sheet of burning gas around clear, hot vapour. With f the share that burns, r the height
 // above the paper and N noise of the width of a tongue, it lies where
 //
 //     e = f + a(r) N - c (r / H)^2 = EDGE,   H = (1 + h N) FLAME_HEIGHT,
 //
-// thin, with a fainter glow inside. It stands off the paper by some millimetres, is faint and blue where there is no
+// thin, with a fainter glow inside. It begins at the paper, is faint and blue in the first millimetres, where there is no
 // soot yet, yellow above, orange and torn at its tips. Soot glows as a black body between FLAME_COOL and FLAME_HOT; it
 // hides almost nothing behind it.
 
 #include "preview/internal.h"
 
-#define RISE 0.75f ///< m/s, speed at which eddies rise
+// Gas leaves the paper slowly and accelerates: v^2 = BASE_SPEED^2 + 2 BUOYANCY h at the height h. An eddy that was formed
+// at the base grows longer as it rises, and moves by the same share of its length in every frame.
+#define BASE_SPEED 0.14f ///< m/s
+#define BUOYANCY 5.0f    ///< m/s2
+#define EDDY_RATE 8.0f   ///< 1/s, eddies that pass a height
 
 #define FLAME_COOL 1350.0f ///< K
 #define FLAME_HOT 2050.0f
-#define FLAME_DIM 0.4f ///< radiance of a thick flame at its coolest and its hottest
-#define FLAME_BRIGHT 3.7f
-#define SOOT_DENSE 32.0f   ///< 1/m: radiance per metre relative to that of a thick flame
-#define SOOT_OPAQUE 6.0f   ///< 1/m, extinction
-#define BLUE_DENSE 0.55f   ///< 1/m: radiance of the base per metre
-#define EDGE 0.19f         ///< burning share at a flame's edge
-#define STAND_OFF 0.002f   ///< m above the paper, below which nothing is visible
-#define SOOT_BEGINS 0.010f ///< m
-#define SOOT_FULL 0.030f
+#define FLAME_DIM 0.25f ///< radiance of a thick flame at its coolest and its hottest
+#define FLAME_BRIGHT 3.8f
+#define SOOT_DENSE 17.0f    ///< 1/m: radiance per metre relative to that of a thick flame
+#define SOOT_OPAQUE 6.0f    ///< 1/m, extinction
+#define BLUE_DENSE 1.2f     ///< 1/m: radiance of the base per metre
+#define EDGE 0.19f          ///< burning share at a flame's edge
+#define STAND_OFF 0.0006f   ///< m above the paper, below which nothing is visible
+#define SOOT_BEGINS 0.0035f ///< m
+#define SOOT_FULL 0.019f
 
 // ---- looking up
 
@@ -63,12 +67,18 @@ static inline Noise noise_at(const Fire *fire, Float3 q) {
     return (Noise){n[0], n[1], n[2], n[3]};
 }
 
-/// Noise of eddies `width` across and `stretch` times as long, that rise; rotated away from the axes.
-static inline Noise eddies(const Fire *fire, Float3 p, float time, float width, float stretch) {
-    const float c = 0.829f, s = 0.559f, tilt = 0.21f; // 34 degrees around the vertical
-    float across = 1 / width, z = p.z - RISE * time;
-    return noise_at(fire, float3((c * p.x - s * p.y + tilt * z / stretch) * across,
-                                 (s * p.x + c * p.y) * across + 1.3f * time, z * across / stretch));
+/// The number of eddies that have passed the height since the start: grows with time, and by one over each eddy.
+static inline float eddies_passed(float height, float time) {
+    float speed = sqrtf(BASE_SPEED * BASE_SPEED + 2 * BUOYANCY * maxf(height, 0));
+    return EDDY_RATE * (time - (speed - BASE_SPEED) / BUOYANCY) - minf(height, 0) * EDDY_RATE / BASE_SPEED;
+}
+
+/// Noise of eddies `width` across, of which `often` pass where one of the largest does; rotated away from the axes.
+static inline Noise eddies(const Fire *fire, Float3 p, float passed, float width, float often) {
+    const float c = 0.829f, s = 0.559f; // 34 degrees around the vertical
+    float across = 1 / width;
+    return noise_at(fire, float3((c * p.x - s * p.y) * across + 0.21f * passed,
+                                 (s * p.x + c * p.y) * across + 0.17f * passed, -often * passed));
 }
 
 // ---- flame and smoke
@@ -96,20 +106,26 @@ float fire_share(const FireCell *cell) {
     return stepf(0.1f, 0.6f, cell->flame) * stepf(SOOT_BEGINS, SOOT_FULL, rise);
 }
 
+float fire_flicker(const Fire *fire, Float3 p) {
+    Noise whole = noise_at(fire, float3(0.4f, 0.6f, 6 * fire->moment));
+    Noise part = eddies(fire, p, EDDY_RATE * fire->moment, 0.04f, 1);
+    return maxf(1 + 0.5f * whole.a + 0.8f * part.c, 0.1f);
+}
+
 /// Emission and absorption of flame per metre.
 static Float3 shade_flame(const Fire *fire, const FireCell *cell, Noise wide, Noise fine, float *opaque) {
     float rise = cell->rise / cell->flame, stand = stepf(STAND_OFF, 4 * STAND_OFF, rise);
     if (stand <= 0) return float3(0, 0, 0);
-    float tall = maxf(rise, 0) / (FLAME_HEIGHT * (1 + 0.6f * wide.c + 0.25f * fine.c)), torn = stepf(0, 0.03f, rise);
+    float tall = maxf(rise, 0) / (FLAME_HEIGHT * (1 + 0.6f * wide.c + 0.25f * fine.c)), torn = stepf(0, 0.018f, rise);
     float present = minf(5 * cell->flame, 1);
     float edge = cell->flame + present * ((0.05f + 0.13f * torn) * wide.c + (0.03f + 0.10f * torn) * fine.c);
     edge -= EDGE + 0.09f * tall * tall;
-    float body = stepf(0, 0.08f, edge);
+    float body = stepf(0, 0.05f, edge);
     if (body <= 0) return float3(0, 0, 0);
 
     float fold = 0.8f * wide.d + 0.35f * fine.c, sheet = maxf(1 - 20 * fold * fold, 0);
     float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.003f * fine.d), cooling = stepf(0.4f, 1.5f, tall);
-    float thin = mixf(0.25f, 0.11f + sheet * sheet, torn) * body;
+    float thin = mixf(0.14f, 0.04f + 1.2f * sheet * sheet, torn) * body;
     float hot = 0.50f + 0.3f * stepf(0.05f, 0.3f, edge) + 0.2f * sheet - 0.45f * cooling + 0.12f * fine.d;
     *opaque = SOOT_OPAQUE * thin * soot;
     Float3 glow = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * thin * soot);
@@ -150,7 +166,10 @@ static FireCell cell_at(const Fire *fire, Float3 p) {
 
 /// Flame and smoke at p, as the eddies have shifted them.
 static FireCell fire_sample(const Fire *fire, Float3 p, int what, Float3 *light, float *opaque) {
-    Noise wide = eddies(fire, p, fire->moment, 0.019f, 3.0f);
+    FireCell cell = cell_at(fire, p);
+    float height = cell.flame > 1e-4f ? cell.rise / cell.flame : p.z - fire->low.z;
+    float passed = eddies_passed(height, fire->moment);
+    Noise wide = eddies(fire, p, passed, 0.019f, 1);
     Float3 shifted = float3_mad(p, float3(wide.a, wide.b, 0), 0.7f * FIRE_WARP_WIDE);
 
     // whether the small eddies can bring flame there
@@ -158,10 +177,9 @@ static FireCell fire_sample(const Fire *fire, Float3 p, int what, Float3 *light,
     size_t x = (size_t)clampf(g.x + 0.5f, 0, (float)(fire->size[0] - 1));
     size_t y = (size_t)clampf(g.y + 0.5f, 0, (float)(fire->size[1] - 1));
     size_t z = (size_t)clampf(g.z + 0.5f, 0, (float)(fire->size[2] - 1));
-    FireCell cell = {0, 0, 0, 0};
 
     if (fire->burns[x + (size_t)fire->size[0] * (y + (size_t)fire->size[1] * z)]) {
-        Noise fine = eddies(fire, shifted, fire->moment, 0.0075f, 4.0f);
+        Noise fine = eddies(fire, shifted, passed, 0.0075f, 1.7f);
         cell = cell_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), 0.7f * FIRE_WARP_FINE));
         if (cell.flame > 0.05f) *light = shade_flame(fire, &cell, wide, fine, opaque);
     } else if (what & FIRE_SMOKE) {
@@ -181,7 +199,7 @@ Matter fire_matter(const Preview *preview, Float3 p, int what) {
         m.flame = m.light.z > 0;
     } else {
         cell = cell_at(fire, p);
-        cell.smoke *= maxf(1 + 0.9f * eddies(fire, p, fire->moment, 0.02f, 1.6f).d, 0);
+        cell.smoke *= maxf(1 + 0.9f * eddies(fire, p, eddies_passed(p.z - fire->low.z, fire->moment), 0.02f, 1).d, 0);
     }
 
     // soot and tar scatter about a third, in all directions

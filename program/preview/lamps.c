@@ -134,7 +134,7 @@ void light_gather(Preview *preview) {
                     float share = fire_share(cell);
                     if (share <= 0) continue;
                     Float3 position = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), fire->cell);
-                    Float3 light = float3_scale(strength, share);
+                    Float3 light = float3_scale(strength, share * fire_flicker(fire, position));
                     add_to_cluster(flames, fire->low, fire->high, position, light, float3_luminance(light));
                 }
         float side = float3_length(float3_sub(fire->high, fire->low)) / GRID;

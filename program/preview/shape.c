@@ -113,7 +113,7 @@ float shape_extent(const PreviewShape *shape, float shutter) {
 // Balls, boxes, capsules and solids: matt when cold; hot, they glow like metal, with cooler and darker scale, and a
 // slightly dimmer limb because rough oxide emits less at grazing angles.
 
-#define SHAPE_GAIN 1.35f
+#define SHAPE_GAIN 1.1f
 
 void shape_shade(const Preview *preview, const PreviewShape *shape, float moment, Point *point) {
     point->albedo = float3_load(shape->colour);
