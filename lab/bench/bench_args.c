@@ -107,13 +107,13 @@ static bool read_option(Parser *parser, const char *text, BenchRequest *request)
     case BENCH_OPT_THREADS: return args_int(reader, option, text, 1, 64, &o->threads);
     case BENCH_OPT_SOLVER: {
         int value;
-        if (!read_word(parser, text, words_SingeSolverMethod, &value)) return false;
+        if (!read_word(parser, text, enum_words.SingeSolverMethod, &value)) return false;
         o->solver = (SingeSolverMethod)value;
         return true;
     }
     case BENCH_OPT_INSTRUCTIONS: {
         int value;
-        if (!read_word(parser, text, words_SingeInstructions, &value)) return false;
+        if (!read_word(parser, text, enum_words.SingeInstructions, &value)) return false;
         o->instructions = (SingeInstructions)value;
         return true;
     }

@@ -66,7 +66,7 @@ static SingeResult dynamics_add_row(BenchTable *table, const BenchSetup *setup, 
     if (t->projection_bytes == 0) gb_s = NAN;
     BenchValue row[COLUMNS] = {
         [SPRINGS] = bench_number(springs),
-        [SOLVER] = bench_text(words_SingeSolverMethod[setup->solver.method]),
+        [SOLVER] = bench_text(enum_words.SingeSolverMethod[setup->solver.method]),
         [THREADS] = bench_number(setup->threads),
         [STEP_MEDIAN] = bench_number(timing_median(timing, SINGE_STAGE_DYNAMICS)),
         [STEP_MIN] = bench_number(timing_min(timing, SINGE_STAGE_DYNAMICS)),

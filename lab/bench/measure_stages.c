@@ -84,7 +84,7 @@ static SingeResult stages_measure(const BenchOptions *options, int stage, double
         if (stage == TIMED_STEP) {
             double actual = timing_springs(sim), step = timing_median(&timing, TIMED_STEP);
             row[SPRINGS] = bench_number(actual);
-            row[SOLVER] = bench_text(words_SingeSolverMethod[options->solver]);
+            row[SOLVER] = bench_text(enum_words.SingeSolverMethod[options->solver]);
             row[LIMIT] = bench_number(options->curvature.values[0]);
             row[THREADS] = bench_number(options->threads);
             row[STEP_MEDIAN] = bench_number(step);

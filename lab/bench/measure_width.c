@@ -30,7 +30,7 @@ static SingeResult width_measure(const BenchOptions *options, const BenchSetup *
         // refused: this processor lacks them
         BenchValue row[COLUMNS];
         for (int c = 0; c < COLUMNS; c++) row[c] = bench_number(NAN);
-        row[INSTRUCTIONS] = bench_text(words_SingeInstructions[setup->instructions]);
+        row[INSTRUCTIONS] = bench_text(enum_words.SingeInstructions[setup->instructions]);
         row[BYTES] = bench_text("not here");
         return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
     }
@@ -52,7 +52,7 @@ static SingeResult width_measure(const BenchOptions *options, const BenchSetup *
 
         if (setup->instructions == SINGE_INSTRUCTIONS_PLAIN) *plain = (Reference){hash, projection};
         BenchValue row[COLUMNS] = {
-            [INSTRUCTIONS] = bench_text(words_SingeInstructions[setup->instructions]),
+            [INSTRUCTIONS] = bench_text(enum_words.SingeInstructions[setup->instructions]),
             [SPRINGS] = bench_number(springs),
             [STEP_MEDIAN] = bench_number(timing_median(&timing, SINGE_STAGE_DYNAMICS)),
             [STEP_MIN] = bench_number(timing_min(&timing, SINGE_STAGE_DYNAMICS)),

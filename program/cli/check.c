@@ -109,7 +109,7 @@ static void report_shell(const Job *job, const SingeCounts *c) {
         printf("  %-11s %" PRIu32 " in %" PRIu32 " strands, %" PRIu32 " families\n", rows[i].name,
                c->springs[rows[i].colour], c->strands[rows[i].colour], c->families[rows[i].colour]);
     printf("memory        %.1f MB\n", 1e-6 * (double)c->memory);
-    printf("instructions  %s\n", words_SingeInstructions[c->instructions]);
+    printf("instructions  %s\n", enum_words.SingeInstructions[c->instructions]);
 }
 
 /// Office paper takes 8,000 units of work (StripSetup.work_max), a third of a second in all; a front that advances by

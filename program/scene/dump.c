@@ -76,7 +76,8 @@ static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param,
 }
 
 static void put_order(FILE *file, const SingeColour *order) {
-    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) fprintf(file, "%s\"%s\"", i ? ", " : "[", words_SingeColour[order[i]]);
+    for (int i = 0; i < SINGE_COLOUR_COUNT; i++)
+        fprintf(file, "%s\"%s\"", i ? ", " : "[", enum_words.SingeColour[order[i]]);
     fputc(']', file);
 }
 

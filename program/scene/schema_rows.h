@@ -40,8 +40,8 @@
 #define ROW_OF_UINT64 ROW_UINT64
 #define ROW_OF_BOOL ROW_BOOL
 #define ROW_OF_ORDER ROW_ORDER
-#define ROW_OF_ENUM(name) ROW_ENUM, .names = words_##name
-#define ROW_OF_KIND(name) ROW_ENUM, .names = words_##name, .flags = ROW_REQUIRED
+#define ROW_OF_ENUM(name) ROW_ENUM, .names = enum_words.name
+#define ROW_OF_KIND(name) ROW_ENUM, .names = enum_words.name, .flags = ROW_REQUIRED
 /// The range comes last, as it is several initialisers.
 #define AS_ROW_AT(key_, type_, member, length_, dimension_, kinds_, text, ...) \
     {.key = key_,                                                              \

@@ -183,10 +183,10 @@ void value_order(Reader *reader, const SchemaRow *row, const YamlNode *node, Sin
     int seen = 0;
     for (const YamlNode *child = node->first; child; child = child->next) {
         int colour = 0;
-        if (!value_word(reader, row, child, words_SingeColour, &colour)) return;
+        if (!value_word(reader, row, child, enum_words.SingeColour, &colour)) return;
         if (seen & 1 << colour) {
             message_add(reader->messages, reader->text, child->location, "'%s' is repeated; each colour comes once",
-                        words_SingeColour[colour]);
+                        enum_words.SingeColour[colour]);
             return;
         }
         seen |= 1 << colour;

@@ -4,13 +4,17 @@
 
 #include "singe/types.h"
 
-// indexed by value; "" where scenes have no word for it, NULL after the last
-extern const char *const words_SingeSourceKind[];
-extern const char *const words_SingeColliderKind[];
-extern const char *const words_SingeContactSides[];
-extern const char *const words_SingeSolverMethod[];
-extern const char *const words_SingeInstructions[];
-extern const char *const words_SingeColour[];
-extern const char *const words_SingeHeatOperator[];
+/// The words of each enum, indexed by value: "" where scenes have no word for it, NULL after the last.
+typedef struct EnumWords {
+    const char *SingeSourceKind[8];
+    const char *SingeColliderKind[8];
+    const char *SingeContactSides[8];
+    const char *SingeSolverMethod[8];
+    const char *SingeInstructions[8];
+    const char *SingeColour[8];
+    const char *SingeHeatOperator[8];
+} EnumWords;
+
+extern const EnumWords enum_words;
 
 #endif

@@ -12,18 +12,17 @@ typedef struct DefWord {
     int value;
 } DefWord;
 
+#define SINGE_ROWS_STAY
 #define SINGE_WORD(Enum, NAME, value, word, text) {#Enum, NAME},
 static const DefWord words[] = {
 #include "singe/source.def"
-#define SINGE_WORD(Enum, NAME, value, word, text) {#Enum, NAME},
 #include "singe/collider.def"
-#define SINGE_WORD(Enum, NAME, value, word, text) {#Enum, NAME},
 #include "singe/solver.def"
-#define SINGE_WORD(Enum, NAME, value, word, text) {#Enum, NAME},
 #include "singe/sim.def"
-#define SINGE_WORD(Enum, NAME, value, word, text) {#Enum, NAME},
 #include "singe/material.def"
 };
+#undef SINGE_ROWS_STAY
+#include "singe/rows_end.def"
 
 bool def_has_value(const char *of, int value) {
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
@@ -54,107 +53,79 @@ static const char *const units[] = {
 #define ORDER FIELD_ENUM, "SingeColour"
 #define ENUM(name) FIELD_ENUM, #name
 #define KIND ENUM
-#define AS_FIELD(type, name, length, dimension, standard, range, kinds, text) \
+#define SINGE_ROWS_STAY
+#define SINGE_FIELD(type, name, length, dimension, standard, range, kinds, text) \
     {#name, type, length, offsetof(OF, name), dimension, range, kinds, true},
-#define AS_APART(key, type, name, length, dimension, standard, range, kinds, text) \
+#define SINGE_APART(key, type, name, length, dimension, standard, range, kinds, text) \
     {#name, type, length, offsetof(OF, name), dimension, range, kinds, true},
-#define AS_HOOK(type, name, length, dimension, standard, range, kinds, text) \
+#define SINGE_HOOK(type, name, length, dimension, standard, range, kinds, text) \
     {#name, type, length, offsetof(OF, name), dimension, range, kinds, false},
-#define AS_COUNT(name, text) {#name, UINT32, 1, offsetof(OF, name), DIM_NONE, ANY, ALWAYS, true},
+#define SINGE_COUNT(name, text) {#name, UINT32, 1, offsetof(OF, name), DIM_NONE, ANY, ALWAYS, true},
+#define SINGE_HIDDEN SINGE_FIELD
 #define TABLE(fields) (fields), sizeof(fields) / sizeof *(fields)
 
 #define OF SingeSheetDef
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
 static const DefField sheet_fields[] = {
 #include "singe/sheet.def"
 };
-#undef OF
 const DefTable sheet_table = {"sheet", "", TABLE(sheet_fields), 0};
+#undef OF
 
 #define OF SingeSourceDef
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
-#define SINGE_COUNT AS_COUNT
 static const DefField source_fields[] = {
 #include "singe/source.def"
 };
-#undef OF
 const DefTable source_table = {"source", "", TABLE(source_fields), offsetof(SingeSourceDef, kind)};
+#undef OF
 
 #define OF SingeColliderDef
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
-#define SINGE_COUNT AS_COUNT
 static const DefField collider_fields[] = {
 #include "singe/collider.def"
 };
-#undef OF
 const DefTable collider_table = {"collider", "", TABLE(collider_fields), offsetof(SingeColliderDef, kind)};
+#undef OF
 
 #define OF SingePinDef
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
 static const DefField pin_fields[] = {
 #include "singe/pin.def"
 };
-#undef OF
 const DefTable pin_table = {"pin", "", TABLE(pin_fields), 0};
+#undef OF
 
 #define OF SingeWindDef
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
 static const DefField wind_fields[] = {
 #include "singe/wind.def"
 };
-#undef OF
 const DefTable wind_table = {"wind", "", TABLE(wind_fields), 0};
+#undef OF
 
 #define OF SingeSolverDef
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
 static const DefField solver_fields[] = {
 #include "singe/solver.def"
 };
-#undef OF
 const DefTable solver_table = {"simulation", "solver.", TABLE(solver_fields), 0};
+#undef OF
 
 #define OF SingeGasDef
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
 static const DefField gas_fields[] = {
 #include "singe/gas.def"
 };
-#undef OF
 const DefTable gas_table = {"simulation", "gas.", TABLE(gas_fields), 0};
+#undef OF
 
 #define OF SingeContactDef
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
 static const DefField contact_fields[] = {
 #include "singe/contact.def"
 };
-#undef OF
 const DefTable contact_table = {"contact", "", TABLE(contact_fields), 0};
+#undef OF
 
 #define OF SingeSimDef
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
-#define SINGE_HOOK AS_HOOK
 static const DefField sim_fields[] = {
 #include "singe/sim.def"
 };
-#undef OF
 const DefTable sim_table = {"simulation", "", TABLE(sim_fields), 0};
+#undef OF
 
 // ---- what follows from them
 

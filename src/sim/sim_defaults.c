@@ -49,79 +49,53 @@ static SingeMaterialDef standard_material(void) {
 // The defaults of the tables' rows (singe/*.def). Defs inside others are filled in by singe_init_...
 #define BRACED(...) \
     { __VA_ARGS__ }
-#define AS_FIELD(type, name, length, dimension, standard, range, kinds, text) .name = standard,
-#define AS_APART(key, type, name, length, dimension, standard, range, kinds, text) .name = standard,
-#define AS_OTHER(declaration, name, standard, text) .name = standard,
+#define SINGE_ROWS_STAY
+#define SINGE_FIELD(type, name, length, dimension, standard, range, kinds, text) .name = standard,
+#define SINGE_APART(key, type, name, length, dimension, standard, range, kinds, text) .name = standard,
+#define SINGE_OTHER(declaration, name, standard, text) .name = standard,
+#define SINGE_HIDDEN SINGE_FIELD
+#define SINGE_HOOK SINGE_FIELD
 
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
 static const SingeSheetDef standard_sheet = {
     .struct_size = sizeof(SingeSheetDef),
 #include "singe/sheet.def"
 };
 
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
 static const SingeSourceDef standard_source = {
     .struct_size = sizeof(SingeSourceDef),
 #include "singe/source.def"
 };
 
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
-#define SINGE_OTHER AS_OTHER
 static const SingeColliderDef standard_collider = {
     .struct_size = sizeof(SingeColliderDef),
 #include "singe/collider.def"
 };
 
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
 static const SingePinDef standard_pin = {
     .struct_size = sizeof(SingePinDef),
 #include "singe/pin.def"
 };
 
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
 static const SingeWindDef standard_wind = {
     .struct_size = sizeof(SingeWindDef),
 #include "singe/wind.def"
 };
 
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
 static const SingeSolverDef standard_solver = {
     .struct_size = sizeof(SingeSolverDef),
 #include "singe/solver.def"
 };
 
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
 static const SingeGasDef standard_gas = {
     .struct_size = sizeof(SingeGasDef),
 #include "singe/gas.def"
 };
 
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
 static const SingeContactDef standard_contact = {
     .struct_size = sizeof(SingeContactDef),
 #include "singe/contact.def"
 };
 
-#define SINGE_FIELD AS_FIELD
-#define SINGE_APART AS_APART
-#define SINGE_HIDDEN AS_FIELD
-#define SINGE_HOOK AS_FIELD
 static const SingeSimDef standard_sim = {
     .struct_size = sizeof(SingeSimDef),
 #include "singe/sim.def"
