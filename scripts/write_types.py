@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Writes what follows from the tables of Defs (include/singe/*.def) into include/singe/types.h: structs, enums, defaults.
+"""Writes what follows from the tables of Defs (include/singe/*.def) into include/singe/types.h and material.h: structs,
+enums, defaults.
 
 usage: write_types.py [--check]
 
-Everything else of types.h is written by hand. --check: changes nothing, and fails where the header differs. A range of
-scenes that is wider than the library's is refused.
+Everything else of the headers is written by hand. --check: changes nothing, and fails where a header differs. A range
+of scenes that is wider than the library's is refused.
 """
 
 import math
@@ -40,7 +41,7 @@ def arguments(text):
 def rows(text):
     """(macro, arguments) of each row of a table."""
     text = re.sub(r"//[^\n]*", "", text)
-    for match in re.finditer(r"^SINGE_(FIELD|APART|HIDDEN|HOOK|COUNT|OTHER|WORD|DIMENSION)\(", text, re.MULTILINE):
+    for match in re.finditer(r"^SINGE_(FIELD|APART|HIDDEN|HOOK|COUNT|OTHER|WORD|DIMENSION|PARAM|PARAM_BACK|PARAM_COLOURS|SCALAR)\(", text, re.MULTILINE):
         depth, i, quoted = 1, match.end(), False
         while depth:
             if text[i] == '"' and text[i - 1] != "\\":
@@ -123,6 +124,25 @@ def struct(name, table, units):
     return "\n".join([f"typedef struct {name} {{", *lines, f"}} {name};"])
 
 
+def material_struct(table, units):
+    lines = ["    size_t struct_size;"]
+    for macro, row in table:
+        if macro in ("PARAM", "PARAM_BACK"):
+            _, _, field, dimension, standard, found, _, _, text = row
+            kind = "SingeParam"
+        elif macro == "PARAM_COLOURS":
+            _, _, field, found, text = row
+            kind, dimension, field = "SingeParam", "DIM_NONE", field + "[SINGE_COLOUR_COUNT]"
+        elif macro == "SCALAR":
+            kind, field, dimension, standard, found, text = row
+            kind = TYPES.get(kind) or re.match(r"ENUM\((\w+)\)", kind).group(1)
+        else:
+            continue
+        facts = ", ".join(part for part in (units[dimension], in_words(found)) if part)
+        lines += comment(f"{kind} {field};", (f"{facts}; " if facts else "") + plain(text))
+    return "\n".join(["typedef struct SingeMaterialDef {", *lines, "} SingeMaterialDef;"])
+
+
 def enum(name, words):
     lines = []
     for _, (of, value_name, value, _, text) in words:
@@ -153,29 +173,46 @@ def blurred(text):
     return re.sub(r"\s+", " ", re.sub(r"///<?", " ", text))
 
 
-def main():
-    header = FOLDER / "types.h"
-    before = text = header.read_text(encoding="utf-8")
-    units = {"DIM_" + row[0]: row[2] for _, row in rows((FOLDER / "dimensions.def").read_text(encoding="utf-8"))}
-    for file in [*sorted(FOLDER.glob("*.def")), FOLDER.parents[1] / "program/preview/preview.def"]:
-        for fault in wide_scenes(re.sub(r"//[^\n]*", "", file.read_text(encoding="utf-8"))):
-            sys.exit(f"{file.name}: {fault}: scenes accept what the library refuses")
+def with_enums(text, table):
+    """A header with the enums that a table lists."""
+    words = [row for row in table if row[0] == "WORD"]
+    for of in dict.fromkeys(row[1][0] for row in words):
+        text = re.sub(r"typedef enum %s \{.*?\} %s;" % (of, of), lambda _: enum(of, words), text, flags=re.DOTALL)
+    return text
+
+
+def types_header(text, tables, units):
     for part in DEFS:
-        table = list(rows((FOLDER / f"{part}.def").read_text(encoding="utf-8")))
         name = f"Singe{part.capitalize()}Def"
-        new = defaults(table) + "\n" + struct(name, table, units)
+        new = defaults(tables[part]) + "\n" + struct(name, tables[part], units)
         text, count = re.subn(r"/// Defaults:[^\n]*\n(?:///[^\n]*\n)*typedef struct %s \{.*?\} %s;" % (name, name),
                               lambda _: new, text, flags=re.DOTALL)
         if count != 1:
             sys.exit(f"write_types.py: types.h has no struct {name} below a line of its defaults")
-        words = [row for row in table if row[0] == "WORD"]
-        for of in dict.fromkeys(row[1][0] for row in words):
-            text = re.sub(r"typedef enum %s \{.*?\} %s;" % (of, of), lambda _: enum(of, words), text, flags=re.DOTALL)
-    if "--check" in sys.argv[1:]:
-        if blurred(text) != blurred(before):
-            sys.exit("include/singe/types.h does not follow from the tables: run scripts/write_types.py")
-    else:
-        header.write_text(text, encoding="utf-8")
+        text = with_enums(text, tables[part])
+    return text
+
+
+def material_header(text, tables, units):
+    text = re.sub(r"typedef struct SingeMaterialDef \{.*?\} SingeMaterialDef;",
+                  lambda _: material_struct(tables["material"], units), text, flags=re.DOTALL)
+    return with_enums(text, tables["material"])
+
+
+def main():
+    tables = {file.stem: list(rows(file.read_text(encoding="utf-8"))) for file in FOLDER.glob("*.def")}
+    units = {"DIM_" + row[0]: row[2] for _, row in tables["dimensions"]}
+    for file in [*sorted(FOLDER.glob("*.def")), FOLDER.parents[1] / "program/preview/preview.def"]:
+        for fault in wide_scenes(re.sub(r"//[^\n]*", "", file.read_text(encoding="utf-8"))):
+            sys.exit(f"{file.name}: {fault}: scenes accept what the library refuses")
+    for name, write in (("types.h", types_header), ("material.h", material_header)):
+        header = FOLDER / name
+        before = header.read_text(encoding="utf-8")
+        after = write(before, tables, units)
+        if "--check" not in sys.argv[1:]:
+            header.write_text(after, encoding="utf-8")
+        elif blurred(after) != blurred(before):
+            sys.exit(f"include/singe/{name} does not follow from the tables: run scripts/write_types.py")
     return 0
 
 

@@ -79,19 +79,90 @@ typedef enum SingeColour {
     SINGE_COLOUR_COUNT = 4
 } SingeColour;
 
-/// What a sheet is made of and how it burns: the rows of singe/material.def, each with its unit, range, default and
-/// documentation. Mass is a fraction of the initial mass, 1 unburnt. A SingeParam may vary over the sheet; the others
-/// have one value for it.
-#define SINGE_TYPE_FLOAT float
-#define SINGE_TYPE_BOOL bool
-#define SINGE_TYPE_ENUM(name) name
+/// What a sheet is made of and how it burns. Mass is a fraction of the initial mass, 1 unburnt. A SingeParam may vary
+/// over the sheet; the others have one value for it. Defaults: singe/material.def.
 typedef struct SingeMaterialDef {
     size_t struct_size;
-#define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) SingeParam name;
-#define SINGE_PARAM_BACK SINGE_PARAM
-#define SINGE_PARAM_COLOURS(number, NAME, name, range, text) SingeParam name[SINGE_COLOUR_COUNT];
-#define SINGE_SCALAR(TYPE, name, dimension, standard, range, text) SINGE_TYPE_##TYPE name;
-#include "singe/material.def"
+    SingeParam grammage; ///< kg/m2, > 0; mass per area before it burns
+    /// kg/m2, >= 0; diffusivity, layer_exchange, mass_rate and char_rate are given for this mass per area; on a lighter
+    /// sheet they are larger in proportion, and its fire is faster. 0: they hold for any mass. One number for the whole
+    /// sheet
+    float reference_grammage;
+    SingeParam specific_heat; ///< J/(kg K), > 0; heat capacity of a kilogram
+    /// m, > 0; distance between the model's two layers; it sets the size of the wrinkles, and is larger than the real
+    /// sheet's
+    SingeParam thickness;
+    SingeHeatOperator heat_operator; ///< surface: finite volumes in each layer; umbrella: the paper's eq 3
+    SingeParam diffusivity;          ///< m2/s, >= 0; alpha of eq 2: thermal diffusivity in the sheet
+    SingeParam layer_exchange;       ///< 1/s, >= 0; rate at which the layers' temperatures equalise (surface only)
+    SingeParam convection;           ///< W/(m2 K), >= 0; heat transfer to still air, per side
+    SingeParam emissivity;           ///< 0 to 1; radiation relative to a black body
+    SingeParam loss_mass_floor; ///< above 0, to 1; the mass fraction by which heat losses are divided is at least this
+    /// >= 0; widens the burning front this many times (1 or more) at the same speed, so that cells can hold it; 0: as
+    /// little as the cells need; one number for the whole sheet
+    float thickening;
+    SingeParam temperature;          ///< K, > 0; initial temperature
+    SingeParam ignition_temperature; ///< K, > 0; temperature above which the sheet burns
+    SingeParam heat_of_combustion;   ///< J/kg, >= 0; heat released per kilogram burnt
+    /// 0 to 1; share of it that stays in the sheet; the rest goes into the flame. eta of eq 1, the temperature rise
+    /// when all mass burns without losses, is heat_share heat_of_combustion/specific_heat
+    SingeParam heat_share;
+    SingeParam mass_rate; ///< 1/(K s), >= 0; mu of eq 4: mass lost per second and kelvin above ignition
+    /// K, > 0; temperature above ignition beyond which the burning rate stops growing, as air is limited; inf: as in
+    /// the paper
+    SingeParam rate_ceiling;
+    /// >= 0; p: slows eq 4 near the end by ((m - m_min)/(1 - m_min))^p, so that flakes of ash stay; 0: as in the paper
+    SingeParam ash_exponent;
+    SingeParam mass_min; ///< 0 to below 1; m_min: mass fraction that never burns
+    /// 0 to below 1; m_loss: mass fraction below which the sheet is removed; if it is below mass_min, the sheet
+    /// wrinkles but stays whole
+    SingeParam mass_loss;
+    /// > 0; density at mass_min over the density at the start; with mass_min it sets the shrinkage, eq 5
+    SingeParam ash_density;
+    /// 0 to below 1; mass fraction that pyrolysis leaves as char, which is black and weak. Where it is hot and gets
+    /// air, char glows and becomes grey ash, mass_min. At mass_min or below there is no char: one reaction, the paper's
+    /// eq 4
+    SingeParam char_yield;
+    SingeParam char_density; ///< > 0; density of char over the density at the start
+    /// J/kg, >= 0; heat released per kilogram of char that burns to CO2; all of it stays in the sheet. Hot embers burn
+    /// to CO and release less
+    SingeParam char_heat;
+    /// 1/s, >= 0; share of hot char that burns per second at an edge; noise lets embers survive in some regions only
+    SingeParam char_rate;
+    /// 0 to 1; share of char_rate inside a leaf of char, away from edges and ash; lower values confine embers to edges
+    SingeParam char_air;
+    SingeParam shrink_front; ///< 0 to 2; factor on the shrinkage of the front layer (the upper side of a grid)
+    /// 0 to 2; the same for the back layer; a difference of 5 to 10 % curls the sheet towards the side that shrinks
+    /// more
+    SingeParam shrink_back;
+    /// rad, finite; direction of the fibres: angle from the direction of increasing u (x on a grid) towards increasing
+    /// v; without uv from the first side of each cell
+    SingeParam fibre_angle;
+    SingeParam fibre_shrink; ///< 0.1 to 10; ratio of the shrinkage across the fibres to that along them; 1: isotropic
+    bool ablate;             ///< no: burnt cells are not removed (Fig 4 b)
+    SingeParam weight[SINGE_COLOUR_COUNT];     ///< 0 to 1; weight by colour of spring
+    SingeParam compliance[SINGE_COLOUR_COUNT]; ///< >= 0; compliance by colour of spring
+    SingeParam char_weight;                    ///< 0 to 1; factor on the weight of springs that are burnt to mass_min
+    SingeParam drag;    ///< >= 0; coefficient of air drag, quadratic in the speed along the normal
+    SingeParam damping; ///< 1/s, >= 0; damping of all motion
+    /// m, >= 0; with creases: bending beyond this radius is partly plastic; 0: never. It applies to the model, which is
+    /// ten times as thick as the real sheet
+    SingeParam crease_radius;
+    /// 0 to 1; share of the bend beyond that radius that is plastic; less in char, none in ash
+    SingeParam crease_share;
+    /// N/m, > 0; line force at which unburnt sheet tears; a texture may lower it at perforations and folds. The model's
+    /// value is far below that of real paper
+    SingeParam strength;
+    /// N/m, > 0; the same for char, or without char for sheet burnt to mass_min; interpolated geometrically. Ash has a
+    /// twentieth of it
+    SingeParam char_strength;
+    /// 1/s, >= 0; A: above 0, Arrhenius kinetics replace mass_rate: the mass that can still burn decreases at the rate
+    /// A exp(-E/(R T)), of order ash_exponent, from ignition_temperature on
+    SingeParam pre_exponential;
+    SingeParam activation_energy; ///< J/mol, >= 0; E of the Arrhenius kinetics
+    /// 1/m, >= 0; max curvature of unburnt sheet beyond the rest shape (solver strand); 0: no limit. Without it thin
+    /// sheets that shrink fold along rows of cells
+    SingeParam curvature_max;
 } SingeMaterialDef;
 
 SINGE_API void singe_init_material(SingeMaterialDef *def, size_t struct_size);

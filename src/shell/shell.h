@@ -59,8 +59,14 @@ typedef struct Matter {
 
 /// The parameters that have one value for a sheet.
 typedef struct SheetMaterial {
-#define SINGE_SCALAR(TYPE, name, dimension, standard, range, text) SINGE_TYPE_##TYPE name;
+#define FLOAT float
+#define BOOL bool
+#define ENUM(name) name
+#define SINGE_SCALAR(TYPE, name, dimension, standard, range, text) TYPE name;
 #include "singe/material.def"
+#undef FLOAT
+#undef BOOL
+#undef ENUM
 } SheetMaterial;
 
 /// One sheet's own numbers and ranges.
