@@ -55,6 +55,7 @@ static SingeResult check_rows(const PreviewDef *def, SingeError *error) {
 #define VECTOR(place) (place)
 #define INT(place) \
     &(const float) { (float)(place) }
+#define PREVIEW_APART(TYPE, target, range) {#target, TYPE(def->target), 1, range},
 #define PREVIEW_MAIN(TYPE, key, member, target, length, dimension, standard, range, text) \
     {#target, TYPE(def->target), length, range},
 #define PREVIEW_CAMERA PREVIEW_MAIN
@@ -118,11 +119,6 @@ static bool image_is_good(const Image *image) {
 static SingeResult check_light(const PreviewDef *def, SingeError *error) {
     Float3 sun = float3_load(def->sun_direction);
     if (!(float3_dot(sun, sun) > 1e-20f)) return preview_refuse(error, -1, "sun_direction must not be zero");
-    if (!(def->shutter >= 0 && def->shutter <= 1e4f))
-        return preview_refuse(error, -1, "shutter must lie between 0 and 1e4 s");
-    if (!(def->pace > 0 && def->pace <= 1e9f)) return preview_refuse(error, -1, "pace must be above 0");
-    if ((unsigned)def->ground > PREVIEW_GROUND_PLAIN) return preview_refuse(error, -1, "ground is not a known kind");
-    if ((unsigned)def->sky > PREVIEW_SKY_PICTURE) return preview_refuse(error, -1, "sky is not a known kind");
     if (def->sky == PREVIEW_SKY_PICTURE && !(def->sky_picture && image_is_good(def->sky_picture)))
         return preview_refuse(error, -1, "sky_picture is missing, empty or too large");
     float ground = def->ground_height;
@@ -133,10 +129,6 @@ static SingeResult check_light(const PreviewDef *def, SingeError *error) {
 }
 
 static SingeResult check_def(const PreviewDef *def, SingeError *error) {
-    if (def->width < 1 || def->height < 1 || def->width > SIZE_LIMIT || def->height > SIZE_LIMIT)
-        return preview_refuse(error, -1, "width and height must lie between 1 and 16384");
-    if (def->thread_count < 1 || def->thread_count > THREAD_LIMIT)
-        return preview_refuse(error, -1, "thread_count must lie between 1 and 64");
     SingeResult result = check_rows(def, error);
     if (!result) result = check_camera(&def->camera, error);
     if (!result) result = check_light(def, error);
