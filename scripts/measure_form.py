@@ -3,6 +3,7 @@
 that are joined by commas, and assertions.
 
 usage: measure_form.py [--bars] [--list statics|commas] [FOLDER...]          (default: src program lab)
+       measure_form.py --code          lines of C in the tree, without blank ones and comments, by folder
 
 A static function is named once if its file mentions it in one place besides its definition and declarations. Many of
 them mean that readers have to put together what was one thought. An assignment is joined by a comma if it shares its
@@ -67,12 +68,28 @@ def commas(text):
             yield number, " ".join(statement.split())
 
 
+def count_code(root):
+    """Prints the lines of C below a folder that hold more than blanks and comments, by the first part of the path."""
+    count = {}
+    for file in sorted(path for end in ("c", "h", "def") for path in root.rglob(f"*.{end}")):
+        part = file.relative_to(root).parts[0]
+        if not re.match(r"build|out$|\.", part):
+            lines = without_comments(file.read_text(encoding="utf-8")).splitlines()
+            count[part] = count.get(part, 0) + sum(1 for line in lines if line.strip())
+    for part, lines in (*sorted(count.items()), ("all", sum(count.values()))):
+        print(f"{part:20} {lines:7}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--list", choices=("statics", "commas"))
     parser.add_argument("--bars", action="store_true")
     parser.add_argument("folders", nargs="*", default=["src", "program", "lab"])
+    parser.add_argument("--code", action="store_true")
     options = parser.parse_args()
+    if options.code:
+        count_code(pathlib.Path(__file__).resolve().parents[1])
+        return 0
     print(f"{'folder':20} {'files':>6} {'lines':>7} {'blank':>6} {'statics':>8} {'once':>6} {'commas':>7} {'asserts':>8}")
     total = [0] * 7
     for top in options.folders:
