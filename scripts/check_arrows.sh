@@ -29,7 +29,7 @@ src/materials    common
 program/formats  $files
 program/preview  $files
 program/scene    $files mesh/to_quads.h preview/preview.h preview/preview.def
-program/analysis $files common/double3.h common/float3.h mesh/to_quads.h
+program/analysis $files common/float3.h mesh/to_quads.h
 program/cli      $program
 program/sweep    $program cli
 program/main.c   cli common/printable.h

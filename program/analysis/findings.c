@@ -9,7 +9,6 @@
 
 #include "analysis/crossings.h"
 #include "analysis/exact.h"
-#include "common/double3.h"
 #include "common/float3.h"
 
 enum { REPORTED = 3 };

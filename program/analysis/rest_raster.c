@@ -1,6 +1,6 @@
 #include "analysis/rest_raster.h"
 
-#include "common/double3.h"
+#include "common/float3.h"
 
 #include <math.h>
 #include <stdlib.h>

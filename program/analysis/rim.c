@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/double3.h"
+#include "common/float3.h"
 
 const double rim_band_limits[RIM_BANDS + 1] = {0, 1e-3, 2e-3, 4e-3, 7e-3, 11e-3, 20e-3, 40e-3};
 

@@ -22,8 +22,7 @@ double closest_on_triangle(const double p[3], const double corner[3][3], double 
         w[k] = p[k] - corner[0][k];
     }
 
-    const double uu = closest_dot(u, u), uv = closest_dot(u, v), vv = closest_dot(v, v), wu = closest_dot(w, u),
-                 wv = closest_dot(w, v);
+    const double uu = dot3(u, u), uv = dot3(u, v), vv = dot3(v, v), wu = dot3(w, u), wv = dot3(w, v);
     const double area = uu * vv - uv * uv;
 
     if (area > 1e-12 * uu * vv) {
@@ -43,8 +42,8 @@ double closest_on_triangle(const double p[3], const double corner[3][3], double 
             to[k] = p[k] - corner[i][k];
         }
 
-        const double length = closest_dot(side, side);
-        const double t = length > 0 ? fmin(fmax(closest_dot(to, side) / length, 0), 1) : 0;
+        const double length = dot3(side, side);
+        const double t = length > 0 ? fmin(fmax(dot3(to, side) / length, 0), 1) : 0;
         share[i] = 1 - t;
         share[j] = t;
         const double gap = distance2(p, corner, share);

@@ -2,9 +2,7 @@
 #ifndef SCENE_CLOSEST_POINT_H
 #define SCENE_CLOSEST_POINT_H
 
-static inline double closest_dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+#include "common/float3.h"
 
 /// The squared distance from p to a triangle, and the weights of its corners at the closest point: inside, on an edge
 /// or at a corner. A triangle without area consists of its edges.

@@ -154,7 +154,7 @@ static void axes_of(const double v[3][3], double e[3][3]) {
         e[2][k] = side[(k + 1) % 3] * other[(k + 2) % 3] - side[(k + 2) % 3] * other[(k + 1) % 3];
 
     for (int i = 0; i < 3; i += 2) {
-        const double length = sqrt(closest_dot(e[i], e[i]));
+        const double length = sqrt(dot3(e[i], e[i]));
         for (int k = 0; k < 3; k++) e[i][k] = length > 0 ? e[i][k] / length : 0; // an axis without extent remains 0
     }
 
@@ -190,7 +190,7 @@ static bool bind_pin(const SingeSim *sim, SingePinId pin, SceneSequence *sequenc
         axes_of((const double(*)[3])v, e);
         for (int k = 0; k < 3; k++)
             away[k] = p[k] - made->weights[0] * v[0][k] - made->weights[1] * v[1][k] - made->weights[2] * v[2][k];
-        for (int i = 0; i < 3; i++) made->away[i] = closest_dot(away, e[i]);
+        for (int i = 0; i < 3; i++) made->away[i] = dot3(away, e[i]);
     }
 
     return true;

@@ -1,4 +1,5 @@
 // From a scene to its preview: the Def, the default camera, and the shapes of a time.
+#include "common/float3.h"
 #include "scene/rotation.h"
 #include "scene/scene.h"
 
@@ -43,20 +44,6 @@ static const double farthest = 1e4;
 typedef struct Box {
     double low[3], high[3];
 } Box;
-
-static double dot3(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-static void cross3(const double a[3], const double b[3], double out[3]) {
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        out[i] = a[j] * b[k] - a[k] * b[j];
-    }
-}
-
-static void unit3(double v[3]) {
-    double length = sqrt(dot3(v, v));
-    for (int i = 0; i < 3; i++) v[i] /= length;
-}
 
 /// Unit vectors from the box to the camera, and to the right and up in the picture. Flat sheets are seen from above,
 /// upright ones from the front (-y), a little from the side.

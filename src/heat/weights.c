@@ -34,6 +34,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "common/float3.h"
 #include "common/real.h"
 #include "heat/heat_plan.h"
 
@@ -98,8 +99,6 @@ typedef struct WeightSpring {
     double z[2];
 } WeightSpring;
 
-static double weights_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 /// The cell's springs and twice its area, in its plane.
 static double weights_plane(const Float3 x[4], WeightSpring springs[SPRINGS]) {
     double p[SPRINGS][3], normal[3], across[3];
@@ -112,13 +111,13 @@ static double weights_plane(const Float3 x[4], WeightSpring springs[SPRINGS]) {
 
     const double *d = p[SIDES], *e = p[SIDES + 1];
     for (int k = 0; k < 3; k++) normal[k] = d[(k + 1) % 3] * e[(k + 2) % 3] - d[(k + 2) % 3] * e[(k + 1) % 3];
-    double area = sqrt(weights_dot(normal, normal)), length = sqrt(weights_dot(d, d));
+    double area = sqrt(dot3(normal, normal)), length = sqrt(dot3(d, d));
     if (!(area > 0)) return 0;
 
     for (int k = 0; k < 3; k++)
         across[k] = (normal[(k + 1) % 3] * d[(k + 2) % 3] - normal[(k + 2) % 3] * d[(k + 1) % 3]) / (area * length);
     for (int k = 0; k < SPRINGS; k++) {
-        double u = weights_dot(p[k], d) / length, v = weights_dot(p[k], across), square = u * u + v * v;
+        double u = dot3(p[k], d) / length, v = dot3(p[k], across), square = u * u + v * v;
         springs[k] = (WeightSpring){square, {0, 0}};
         if (square > 0) {
             springs[k].z[0] = (u * u - v * v) / square;

@@ -2,7 +2,7 @@
 #ifndef MESH_WORK_H
 #define MESH_WORK_H
 
-#include "common/double3.h"
+#include "common/float3.h"
 #include "mesh/to_quads.h"
 
 #define MESH_NONE UINT32_MAX

@@ -25,18 +25,6 @@
 /// negative area around it, but a particle needs mass.
 static const double share_min = 1.0 / 32;
 
-static void subtract(const double a[3], const double b[3], double r[3]) {
-    for (int k = 0; k < 3; k++) r[k] = a[k] - b[k];
-}
-
-static void rest_cross(const double a[3], const double b[3], double r[3]) {
-    r[0] = a[1] * b[2] - a[2] * b[1];
-    r[1] = a[2] * b[0] - a[0] * b[2];
-    r[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double rest_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 CellShape cell_shape(const float *const corners[4]) {
     CellShape shape = {0};
     double p[4][3], diagonal[2][3], side[3];
@@ -50,27 +38,27 @@ CellShape cell_shape(const float *const corners[4]) {
     }
 
     for (int i = 0; i < 4; i++) {
-        subtract(p[(i + 1) & 3], p[i], side);
-        double length = sqrt(rest_dot(side, side));
+        sub3(p[(i + 1) & 3], p[i], side);
+        double length = sqrt(dot3(side, side));
         if (i == 0 || length < shape.shortest) shape.shortest = length;
         if (i == 0 || length > shape.longest) shape.longest = length;
     }
 
     // normal
-    subtract(p[2], p[0], diagonal[0]);
-    subtract(p[3], p[1], diagonal[1]);
-    rest_cross(diagonal[0], diagonal[1], shape.normal);
-    double length = sqrt(rest_dot(shape.normal, shape.normal));
+    sub3(p[2], p[0], diagonal[0]);
+    sub3(p[3], p[1], diagonal[1]);
+    cross3(diagonal[0], diagonal[1], shape.normal);
+    double length = sqrt(dot3(shape.normal, shape.normal));
     shape.vector_area = length / 2;
     for (int k = 0; k < 3 && length > 0; k++) shape.normal[k] /= length;
 
     // areas of the triangles (x_i, x_i+1, mean), negative where they face away from the normal
     for (int i = 0; i < 4; i++) {
         double a[3], b[3], c[3];
-        subtract(p[i], shape.centre, a);
-        subtract(p[(i + 1) & 3], shape.centre, b);
-        rest_cross(a, b, c);
-        double area = copysign(sqrt(rest_dot(c, c)) / 2, rest_dot(c, shape.normal));
+        sub3(p[i], shape.centre, a);
+        sub3(p[(i + 1) & 3], shape.centre, b);
+        cross3(a, b, c);
+        double area = copysign(sqrt(dot3(c, c)) / 2, dot3(c, shape.normal));
         shape.area += area;
         shape.corner_area[i] += area / 2;
         shape.corner_area[(i + 1) & 3] += area / 2;

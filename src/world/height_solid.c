@@ -182,7 +182,7 @@ float height_solid_distance(const HeightSolid *solid, Float3 p, float limit, Flo
         at[1 - axis] = fminf(fmaxf(at[1 - axis], -solid->half[1 - axis]), solid->half[1 - axis]);
         Float3 unused;
         TriangleClosest foot = {.away = {(double)p.x - (double)at[0], (double)p.y - (double)at[1], 0}};
-        foot.square = triangle_dot(foot.away, foot.away);
+        foot.square = dot3(foot.away, foot.away);
         if (foot.square < best.square && p.z <= height_at(solid, at[0], at[1], &unused)) best = foot;
     }
 

@@ -75,7 +75,7 @@ static float solid_signed(const MeshSolid *solid, Float3 p, uint32_t t, Float3 *
     if (edge >= 0 && foot.feature < TRIANGLE_FACE)
         *normal = float3_unit(float3_add(*normal, solid_face_normal(solid, solid->neighbours[t][edge])));
     const double n[3] = {(double)normal->x, (double)normal->y, (double)normal->z};
-    double along = triangle_dot(foot.away, n), distance = sqrt(foot.square);
+    double along = dot3(foot.away, n), distance = sqrt(foot.square);
     float sign = along < 0 ? -1 : 1;
 
     // at an edge or a vertex the normal points from the foot to p or back, unless that is lost in rounding

@@ -19,10 +19,6 @@ typedef struct TriangleClosest {
     int feature;
 } TriangleClosest;
 
-static inline double triangle_dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static inline void triangle_less(Float3 b, Float3 a, double out[3]) {
     out[0] = (double)b.x - (double)a.x;
     out[1] = (double)b.y - (double)a.y;
@@ -34,7 +30,7 @@ static inline TriangleClosest triangle_closest_at(const double pa[3], const doub
                                                   double t, int feature) {
     TriangleClosest foot = {.feature = feature, .s = s, .t = t};
     for (int i = 0; i < 3; i++) foot.away[i] = pa[i] - s * ab[i] - t * ac[i];
-    foot.square = triangle_dot(foot.away, foot.away);
+    foot.square = dot3(foot.away, foot.away);
     return foot;
 }
 
@@ -43,8 +39,8 @@ static inline TriangleClosest triangle_closest(Float3 p, Float3 a, Float3 b, Flo
     triangle_less(b, a, ab);
     triangle_less(c, a, ac);
     triangle_less(p, a, pa);
-    const double bb = triangle_dot(ab, ab), cc = triangle_dot(ac, ac), bc = triangle_dot(ab, ac);
-    const double d1 = triangle_dot(ab, pa), d2 = triangle_dot(ac, pa);
+    const double bb = dot3(ab, ab), cc = dot3(ac, ac), bc = dot3(ab, ac);
+    const double d1 = dot3(ab, pa), d2 = dot3(ac, pa);
     if (d1 <= 0 && d2 <= 0) return triangle_closest_at(pa, ab, ac, 0, 0, TRIANGLE_CORNER + 0);
     const double d3 = d1 - bb, d4 = d2 - bc; // of the point seen from b
     if (d3 >= 0 && d4 <= d3) return triangle_closest_at(pa, ab, ac, 1, 0, TRIANGLE_CORNER + 1);
