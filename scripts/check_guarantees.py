@@ -3,7 +3,7 @@
 
 usage: check_guarantees.py ROOT BUILD FILE...
 
-A promise is an item of a list and ends with its tests in brackets: [sim_threads: any_number_of_threads; cli_resume:
+A promise is an item of a list and ends with its tests in brackets: [sim_stats: ledgers_close; cli_resume:
 kill_and_resume]. Before the colon is the name of a test of ctest, or a target of the Makefile ("make gate"). After it
 are cases of that test: TEST(name) in C, or Python methods without their "test_". A promise that no test can show ends
 with [not tested: REASON]. Descriptions do not belong in a list.

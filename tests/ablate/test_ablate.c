@@ -357,7 +357,7 @@ TEST(holes_open_once) {
 }
 
 /// A flame front with noise crosses the sheet: many pieces, everything checked at every step.
-TEST(ledger_and_pieces_of_a_burning_sheet) {
+TEST(the_ledger_closes_as_a_sheet_burns_to_pieces) {
     SingeMaterialDef material = plain_material();
     material.ash_exponent = singe_param(1);
     material.mass_rate = singe_param(1e-3f);

@@ -161,7 +161,7 @@ static double flat(double x, double y, double unused) {
     return 0;
 }
 
-TEST(flat_sheets_and_none) {
+TEST(flat_sheets_have_no_waves) {
     Wrinkles w = look(24, flat, 0), none = {0};
     assert_true(w.axis + w.diagonal < 1e-9);
     assert_true(wrinkles_burnt(&w) < 1e-12 && w.unburnt_area > 0);

@@ -155,7 +155,7 @@ TEST(no_step_passes_the_least_mass) {
         }
 }
 
-TEST(ignites_once_and_in_order) {
+TEST(particles_ignite_once_and_in_order) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(60, 40, 0.01f, &material);
     const BurnState *burn = &b->state.burn;
@@ -186,7 +186,7 @@ TEST(ignites_once_and_in_order) {
     burning_sheet_free(b);
 }
 
-TEST(burnt_when_mass_is_below_loss) {
+TEST(particles_are_burnt_below_the_loss) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(1, 1, 0.01f, &material);
     heat_all(b, 600); // 0.1 of the mass a second

@@ -248,7 +248,7 @@ TEST(coincident_sheets_are_left_alone) {
     singe_sim_destroy(sim);
 }
 
-TEST(any_number_of_threads) {
+TEST(any_number_of_threads_gives_the_same_bytes) {
     SingeSim *one = heap(1, true), *three = heap(3, true), *again;
     uint8_t *a, *b;
     size_t na, nb;

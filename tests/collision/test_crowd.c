@@ -273,7 +273,7 @@ TEST(slim_cells_cost_as_squares) {
 }
 
 /// A step that has no memory to grow fails and can be repeated.
-TEST(no_memory_to_grow) {
+TEST(a_step_without_memory_to_grow_is_repeated) {
     int failures = 0;
     for (long fail = 1; fail < 40; fail++) {
         TestAllocator hook = {0};

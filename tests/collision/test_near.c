@@ -16,7 +16,7 @@ static Float4 point(float size) { return (Float4){size * uniform(), size * unifo
 
 static float length(Float4 a) { return sqrtf(float4_dot(a, a)); }
 
-TEST(triangle_distance) {
+TEST(triangles_are_as_far_as_samples_show) {
     enum { SPLITS = 60 };
     for (int trial = 0; trial < 2000; trial++) {
         Float4 p = point(1), a = point(1), b = point(1), c = point(1);
@@ -32,7 +32,7 @@ TEST(triangle_distance) {
     }
 }
 
-TEST(segment_distance) {
+TEST(segments_are_as_far_as_samples_show) {
     enum { SPLITS = 100 };
     for (int trial = 0; trial < 2000; trial++) {
         Float4 a = point(1), b = point(1), c = point(1), d = point(1);
@@ -48,7 +48,7 @@ TEST(segment_distance) {
 
 /// Over a triangle that is 50 to 5,000 times as long as high, and edges that cross at 1 rad to 1e-4 rad, at a known
 /// distance: found to 1e-6 of the length. With weights in float they are off by .24 and 2.5e-4.
-TEST(distance_to_slivers) {
+TEST(slivers_have_a_distance) {
     float triangles = 0, edges = 0;
     for (int trial = 0; trial < 20000; trial++) {
         const float slim = powf(10, -2.7f + uniform()), far = 1e-3f * (1.1f + uniform()), u = 0.5f + 0.4f * uniform();

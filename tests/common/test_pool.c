@@ -39,7 +39,7 @@ static void check_once(Pool *pool, int count, int grain) {
     assert_false(tally.small);
 }
 
-TEST(every_item_once) {
+TEST(every_item_is_visited_once) {
     static const int counts[] = {-3, 0, 1, 2, 3, 7, 64, 65, 1000, 1024, 4097, ITEMS_MAX};
     static const int grains[] = {1, 2, 7, 64, 1024, 20000};
     Memory memory = memory_make((SingeAllocator){0});
@@ -144,7 +144,7 @@ TEST(sums_are_bitwise_equal) {
     free(partial);
 }
 
-TEST(block_counts) {
+TEST(blocks_cover_every_item) {
     assert_int_equal(pool_blocks(0), 0);
     assert_int_equal(pool_blocks(1), 1);
     assert_int_equal(pool_blocks(POOL_BLOCK), 1);
@@ -158,7 +158,7 @@ static void ranges_end(void *task, int begin, int end) {
 }
 
 /// Counters must not run over at the end of the index type.
-TEST(the_largest_count) {
+TEST(the_largest_count_does_not_overflow) {
     Memory memory = memory_make((SingeAllocator){0});
     Pool *pool = make_pool(&memory, 3);
     atomic_bool bad = false;
@@ -192,7 +192,7 @@ static void host_finish(void *context, void *token) {
     host->finished++;
 }
 
-TEST(the_hosts_tasks) {
+TEST(a_host_may_run_the_ranges) {
     Memory memory = memory_make((SingeAllocator){0});
     Host host = {0};
     Pool *pool;

@@ -10,7 +10,7 @@ static float coordinate(uint32_t *random) {
     return ((float)(*random >> 8) / 16777216.0f - 0.5f) * 200;
 }
 
-TEST(range_and_spread) {
+TEST(noise_fills_its_range) {
     uint32_t random = 3;
     double mean = 0;
     float min = 1, max = 0;
@@ -25,7 +25,7 @@ TEST(range_and_spread) {
     assert_true(min < 0.05f && max > 0.95f);
 }
 
-TEST(fractal_range) {
+TEST(fractal_noise_fills_its_range) {
     uint32_t random = 5;
     for (int octaves = 1; octaves <= 8; octaves++) {
         SingeNoise noise = {0.5f, octaves, 11};
@@ -40,7 +40,7 @@ TEST(fractal_range) {
 }
 
 /// |n(x + e) - n(x)| <= e max|dn/dx|; the blend's slope is at most 15/8, corner values differ by at most 1.
-TEST(continuity) {
+TEST(noise_is_continuous) {
     uint32_t random = 9;
     const float e = 1.0f / 1024;
     for (int i = 0; i < 50000; i++) {
@@ -53,7 +53,7 @@ TEST(continuity) {
     }
 }
 
-TEST(lattice_values) {
+TEST(noise_has_the_hash_at_lattice_points) {
     for (int x = -3; x < 3; x++)
         for (int y = -3; y < 3; y++)
             assert_true(random_noise((float)x, (float)y, -2, 5) ==
@@ -61,7 +61,7 @@ TEST(lattice_values) {
 }
 
 /// Numbers noted once: they may not change, or saved scenes would.
-TEST(noted_values) {
+TEST(hashes_are_those_noted_once) {
     assert_int_equal(random_hash(0, 0, 0, 0), 2456602052u);
     assert_int_equal(random_hash(1, 2, 3, 4), 2523784609u);
     assert_true(random_unit(UINT32_MAX) < 1);

@@ -20,7 +20,7 @@ static void walk(Stream *stream, Things *things) {
     stream_data(stream, things->list, sizeof things->list);
 }
 
-TEST(round_trip) {
+TEST(what_is_written_is_read) {
     Things out = {12345, 6.5, {1, 2, 3, 4, 5}}, in;
     Stream measure = {.mode = STREAM_MEASURE};
     walk(&measure, &out);
@@ -40,7 +40,7 @@ TEST(round_trip) {
 }
 
 /// After a truncation, wherever it is, reads give zero and the failure remains.
-TEST(truncated) {
+TEST(truncated_bytes_read_as_zero) {
     for (size_t size = 0; size < 17; size++) {
         uint8_t *bytes = malloc(size + 1); // its own block, so that reading past it is noticed
         assert_non_null(bytes);

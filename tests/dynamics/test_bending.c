@@ -52,7 +52,7 @@ static double plate(double stiffness, double give) {
     return weight * pow(l, 4) / (8 * stiffness) + weight * l * l / 2 * give;
 }
 
-TEST(cantilever) {
+TEST(a_cantilever_sags_as_a_plate) {
     const double stiffness = 1e-3, expected = plate(stiffness, 0);
     for (float cell = 0.005f; cell > 0.002f; cell /= 2) {
         double w = sag(cell, stiffness, 0, 12);
@@ -63,7 +63,7 @@ TEST(cantilever) {
 }
 
 /// Firm in bending and soft in shear, at the least number of substeps that the solver finds itself and at more.
-TEST(shear) {
+TEST(soft_shear_sags_as_a_plate) {
     const double stiffness = 1e-3, give = 0.4;
     const double expected = plate(stiffness, give);
     for (float cell = 0.005f; cell > 0.002f; cell /= 2)

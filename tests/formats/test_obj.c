@@ -168,7 +168,7 @@ static const char sample[] = SQUARE "v 2 0 0\nv 2 1 0\nvt 0 0\nvt .5 0\nvt .5 1\
                                     "f 1/1 2/2 3/3 4/4\nf 2/2 5/5 6/6 3/3\n";
 
 // A cut file may only be read where the cut leaves whole faces.
-TEST(truncated_at_every_byte) {
+TEST(every_cut_is_an_error) {
     Polygons whole, mesh;
     SingeError error;
     assert_int_equal(parse(sample, &whole, &error), SINGE_OK);

@@ -13,7 +13,7 @@ static void expect_shown(const char *text, const char *expected) {
     assert_int_equal(printable_is(text), strcmp(text, expected) == 0);
 }
 
-TEST(escapes) {
+TEST(odd_characters_are_escaped) {
     expect_shown("", "");
     expect_shown("letter.yaml", "letter.yaml");
     expect_shown("\xc3\xa9\xe2\x82\xac\xf0\x9f\x94\xa5 \\", "\xc3\xa9\xe2\x82\xac\xf0\x9f\x94\xa5 \\");
@@ -33,7 +33,7 @@ TEST(escapes) {
 }
 
 /// Every code point and every pair of bytes: the result prints as it is, and has room.
-TEST(all_characters) {
+TEST(every_character_is_printable) {
     for (unsigned code = 1; code < 0x110000; code++) {
         char text[5] = {0};
         if (code < 0x80) text[0] = (char)code;
@@ -56,7 +56,7 @@ TEST(all_characters) {
     }
 }
 
-TEST(cuts) {
+TEST(long_texts_are_cut_between_characters) {
     static const char *const pieces[] = {"x",   "\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x94\xa5", "\xf3\xa0\x80\x81",
                                          "\xff"};
     for (size_t p = 0; p < sizeof pieces / sizeof *pieces; p++)
@@ -71,7 +71,7 @@ TEST(cuts) {
         }
 }
 
-TEST(trims) {
+TEST(a_cut_character_is_trimmed) {
     static const char *const cases[][2] = {{"", ""},
                                            {"a", "a"},
                                            {"a\xc3", "a"},

@@ -173,7 +173,7 @@ static uint64_t series_value(const CrateFile *file, const char *attribute, uint6
     return crate_number(file, at + 32 + 8 * index, 8) & 0xffffffffffff;
 }
 
-TEST(all_frames_in_one_file) {
+TEST(one_file_has_all_frames) {
     Leaf leaf;
     make_leaf(&leaf);
     OutputScene scene = scene_of(&plain);

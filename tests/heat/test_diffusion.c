@@ -132,7 +132,7 @@ static void shear(float position[3], int column, int row) {
     position[0] += 0.5f * position[1];
 }
 
-TEST(surface_on_skewed_cells) {
+TEST(heat_spreads_evenly_on_skewed_cells) {
     RigDef def = rig_default(70, 60, 0.002f, 0.002f);
     def.shape = shear;
     def.material.layer_exchange = singe_param(0);

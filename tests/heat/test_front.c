@@ -150,7 +150,7 @@ TEST(a_strip_takes_so_much_work) {
     assert_true(result.end == STRIP_CUT && result.speed == 0 && result.work < 20000 + 1000);
 }
 
-TEST(thickening_by_hand_and_its_limits) {
+TEST(thickening_has_limits) {
     FrontMatter front = {
         .diffusivity = 1e-5f, .mass_rate = 9e-3f, .heating = 2400, .ignition_temperature = 513, .rate_ceiling = 260};
     assert_true(heat_thickening_for(3.5f, &front, 293, 0.01f) == 3.5f);

@@ -168,7 +168,7 @@ TEST(conduction_keeps_to_its_range) {
         }
 }
 
-TEST(so_does_the_umbrella) {
+TEST(the_umbrella_keeps_to_its_range) {
     SingeMaterialDef material = rig_default(1, 1, 1, 1).material;
     material.heat_operator = SINGE_HEAT_UMBRELLA;
     for (size_t m = 0; m < MESHES; m++)

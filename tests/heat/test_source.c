@@ -178,7 +178,7 @@ TEST(contact_heat_goes_through_the_sheet) {
     rig_close(&rig);
 }
 
-TEST(texture_and_key_frames) {
+TEST(a_texture_heats_by_its_key_frames) {
     const float pixels[] = {0, 1, 0.5f, 0.25f}; // top row 0 1, bottom row .5 .25
     const SingeValueKey keys[] = {{1, 0}, {3, 2}};
     RigDef def = inert(8, 8);

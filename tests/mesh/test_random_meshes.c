@@ -72,7 +72,7 @@ static bool library_takes(const Made *made) {
     return taken;
 }
 
-TEST(random_meshes) {
+TEST(random_meshes_are_refused_or_sound) {
     static Text text;
     int refused = 0, made_sheets = 0;
     for (uint32_t seed = 0; seed < 2000; seed++) {

@@ -19,7 +19,7 @@
         assert_int_equal(singe_sim_create(&def_, &sim_, NULL), SINGE_ERROR_ARGUMENT); \
     } while (0)
 
-TEST(bad_simulations) {
+TEST(bad_simulations_are_refused) {
     SIM_BAD(thread_count, 0, "thread_count");
     SIM_BAD(thread_count, 65, "thread_count");
     SIM_BAD(time_step, 0, "time_step");
@@ -68,7 +68,7 @@ static void *no_enqueue(void *context, SingeTaskFn *run, void *task, int count, 
     return context;
 }
 
-TEST(half_a_task_hook) { SIM_BAD(tasks.enqueue, no_enqueue, "tasks"); }
+TEST(half_a_task_hook_is_refused) { SIM_BAD(tasks.enqueue, no_enqueue, "tasks"); }
 
 TEST(limits_are_inclusive) {
     SingeSimDef def = singe_default_sim();
@@ -96,7 +96,7 @@ static SingeSim *small_sim(void) { return test_sim(NULL, test_grid(4, 4, 0.01f, 
         assert_int_equal(id.generation, 0);                                            \
     } while (0)
 
-TEST(bad_sources) {
+TEST(bad_sources_are_refused) {
     SingeSim *sim = small_sim();
     SingePoseKey key = test_key(0, 0, 0, 0), keys[2] = {key, key};
     const float grey = 1, nan_grey = NAN;
@@ -138,7 +138,7 @@ TEST(bad_sources) {
         assert_int_equal(id.generation, 0);                             \
     } while (0)
 
-TEST(bad_pins) {
+TEST(bad_pins_are_refused) {
     SingeSim *sim = small_sim();
     const float point[3] = {0, 0, 0}, bad_point[3] = {0, NAN, 0}, far_point[3] = {1e30f, 0, 0};
     const uint32_t vertices[2] = {0, 25};
@@ -162,7 +162,7 @@ TEST(bad_pins) {
     singe_sim_destroy(sim);
 }
 
-TEST(bad_colliders_and_wind) {
+TEST(bad_colliders_and_wind_are_refused) {
     SingeSim *sim = small_sim();
     SingeColliderDef def = singe_default_collider();
     SingeColliderId id;
@@ -187,7 +187,7 @@ TEST(bad_colliders_and_wind) {
 }
 
 /// Fields beyond an older header's struct_size hold rubbish that must not be read.
-TEST(older_defs) {
+TEST(rubbish_beyond_an_older_def_is_not_read) {
     SingeSim *sim;
     SingeError error;
     SingeSimDef def = singe_default_sim();
@@ -229,7 +229,7 @@ TEST(older_defs) {
 }
 
 /// An older header's wind inside the simulation's Def is smaller, and what comes after it lies earlier.
-TEST(older_inner_defs) {
+TEST(a_def_inside_may_be_older) {
     SingeSimDef def = singe_default_sim();
     def.wind.gust = 0.25f;
     def.wind.struct_size = offsetof(SingeWindDef, gust_size);
@@ -265,7 +265,7 @@ TEST(older_inner_defs) {
 }
 
 /// The same of a sheet's material: the fields after it are found behind the smaller one.
-TEST(older_material) {
+TEST(what_follows_an_older_material_is_found) {
     TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
     SingeSheetDef def = test_sheet(&mesh);
     def.velocity[1] = 3;
@@ -291,7 +291,7 @@ TEST(older_material) {
     test_mesh_free(&mesh);
 }
 
-TEST(newer_defs) {
+TEST(what_a_newer_def_adds_is_not_read) {
     struct {
         SingeWindDef wind;
         double unknown[4];

@@ -61,7 +61,7 @@ TEST(what_waits_can_be_refused) {
 }
 
 /// Removed before the commit, an object leaves nothing behind.
-TEST(removed_while_waiting) {
+TEST(what_is_removed_before_the_commit_is_gone) {
     TestAllocator hook = {0};
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);

@@ -12,7 +12,7 @@ static SingeSimDef calm(void) {
     return def;
 }
 
-TEST(one_ignition_a_particle) {
+TEST(a_particle_ignites_once) {
     Scene scene = scene_make(NULL, 14);
     SingeView view = singe_sim_view(scene.sim);
     unsigned char *seen = calloc(view.particle_count, 1);
@@ -58,7 +58,7 @@ static void tally(const SingeSim *sim, Tally *tally_) {
     }
 }
 
-TEST(one_hole_for_a_disc) {
+TEST(a_disc_burns_one_hole) {
     SingeSimDef def = calm();
     SingeMaterialDef material = scene_quick_material();
     SingeSim *sim = test_sim(&def, test_grid(24, 24, 0.005f, 0.005f), &material);
@@ -90,7 +90,7 @@ static void hot_line(void *context, const struct SingeView *view, float *flux, f
             conductance[i] += 1000, conductance_temperature[i] += 1000 * 1300;
 }
 
-TEST(one_piece_for_a_cut) {
+TEST(a_cut_makes_one_piece) {
     SingeSimDef def = calm();
     SingeMaterialDef material = scene_quick_material();
     material.heat_share = singe_param(0); // burns where it is heated and nowhere else
@@ -121,7 +121,7 @@ TEST(one_piece_for_a_cut) {
 }
 
 /// The switches: nothing goes with ablation off, or with m_loss under m_min.
-TEST(switched_off) {
+TEST(nothing_goes_where_it_is_switched_off) {
     for (int which = 0; which < 2; which++) {
         SingeSimDef def = calm();
         SingeMaterialDef material = scene_quick_material();

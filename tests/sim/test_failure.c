@@ -51,7 +51,7 @@ TEST(a_failed_step_changes_nothing) {
 
 /// A pin drags a particle out of the world: the dynamics fails after other stages have run, and their changes are
 /// undone.
-TEST(a_failure_late_in_the_step) {
+TEST(a_failure_late_in_the_step_changes_nothing) {
     Scene scene = scene_make(NULL, 10);
     SingeSim *sim = scene.sim;
     test_steps(sim, 30);

@@ -59,7 +59,7 @@ static void assert_filled(const Bytes *filled, size_t size, const void *standard
         assert_bytes(&none_, 0, MAX, UNTOUCHED);                                     \
     } while (0)
 
-TEST(no_byte_beyond_the_size) {
+TEST(no_byte_beyond_the_size_is_written) {
     EVERY_SIZE(material, SingeMaterialDef, sizeof(SingeMaterialDef));
     EVERY_SIZE(source, SingeSourceDef, sizeof(SingeSourceDef));
     EVERY_SIZE(collider, SingeColliderDef, sizeof(SingeColliderDef));
@@ -69,7 +69,7 @@ TEST(no_byte_beyond_the_size) {
 }
 
 /// A sheet's Def cut anywhere, whatever the size of the material that it says to hold.
-TEST(sheet_of_any_size) {
+TEST(a_sheets_def_may_have_any_size) {
     const size_t head = offsetof(SingeSheetDef, material);
     const size_t inner[] = {0, 7, 8, sizeof(SingeMaterialDef), sizeof(SingeMaterialDef) + LONGER, SIZE_MAX};
     for (size_t i = 0; i < sizeof inner / sizeof *inner; i++)
@@ -90,7 +90,7 @@ TEST(sheet_of_any_size) {
     assert_true(def.drop_pieces_below == 0);
 }
 
-TEST(sim_of_any_size) {
+TEST(a_sims_def_may_have_any_size) {
     const size_t head = offsetof(SingeSimDef, wind), second = offsetof(SingeSimDef, solver);
     const size_t inner[] = {0, 7, 8, sizeof(SingeWindDef), sizeof(SingeSolverDef) + LONGER, SIZE_MAX};
     enum { COUNT = sizeof inner / sizeof *inner };
@@ -113,7 +113,7 @@ TEST(sim_of_any_size) {
 }
 
 /// An older header's smaller wind and material move what comes after them.
-TEST(older_inner_defs) {
+TEST(defs_inside_may_have_any_size) {
     Bytes bytes = untouched();
     const size_t head = offsetof(SingeSimDef, wind), wind = offsetof(SingeWindDef, gust_time) / 8 * 8;
     const SingeSolverDef standard = singe_default_solver();
@@ -151,7 +151,7 @@ static SingeSim *one_cell(void) {
 }
 
 /// Results fill as many bytes as a caller's header has: the first ones of an older, and 0 behind ours of a newer.
-TEST(results_of_any_size) {
+TEST(results_may_have_any_size) {
     SingeSim *sim = one_cell();
     union {
         unsigned char at[1024];

@@ -14,7 +14,7 @@ static SingeSim *create(void) {
     return sim;
 }
 
-TEST(before_the_commit) {
+TEST(calls_before_the_commit_are_refused) {
     SingeSim *sim = create(), *copy = sim;
     assert_int_equal(singe_sim_error(sim)->code, SINGE_OK);
     test_refused(sim, SINGE_ERROR_STATE, singe_sim_step(sim));
@@ -52,7 +52,7 @@ TEST(before_the_commit) {
     singe_sim_destroy(NULL);
 }
 
-TEST(after_the_commit) {
+TEST(sheets_after_the_commit_are_refused) {
     SingeSim *sim = test_sim(NULL, test_grid(3, 3, 0.01f, 0.01f), NULL);
     TestMesh mesh = test_grid(1, 1, 1, 1);
     SingeSheetDef sheet = test_sheet(&mesh);
@@ -67,7 +67,7 @@ TEST(after_the_commit) {
 }
 
 /// A sheet that is refused leaves the simulation as it was; so does a commit that is refused.
-TEST(refused_sheets) {
+TEST(a_refused_sheet_changes_nothing) {
     SingeSim *sim = create();
     TestMesh good = test_grid(2, 2, 0.01f, 0.01f), bad = test_grid(2, 2, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&bad);

@@ -198,7 +198,7 @@ TEST(a_wet_strip_stops_the_fire) {
 
 /// Materials of another mass_min, char and stiffness, in the middle of a fire with tears: finite, saved, and vertices
 /// keep their numbers.
-TEST(any_material_at_any_time) {
+TEST(any_material_can_be_set_at_any_time) {
     SingeSimDef def = scene_def();
     def.solver.tearing = true;
     Scene scene;
@@ -263,7 +263,7 @@ TEST(without_memory_nothing_changes) {
 // ---- frames
 
 /// A frame of any length has the steps that fit into it; its remainder is neither lost nor simulated twice.
-TEST(frames_of_any_length) {
+TEST(frames_may_have_any_length) {
     Scene advanced = quiet_scene(8), stepped = quiet_scene(8);
     const double h = (double)scene_def().time_step, frames[] = {0.4, 1.7, 0, 3.1, 0.8, 12.5, 0.05};
     double sum = 0;

@@ -1,7 +1,7 @@
-// A million springs take at most 150 bytes each, by the counts and by the allocator's own count.
+// A million springs take at most 155 bytes each, by the counts and by the allocator's own count.
 #include "support/support.h"
 
-TEST(a_million_springs) {
+TEST(a_million_springs_take_few_bytes) {
     TestAllocator hook = {0};
     SingeSimDef def = singe_default_sim();
     def.allocator = test_allocator(&hook);

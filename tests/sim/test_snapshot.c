@@ -156,7 +156,7 @@ static TestBytes small_snapshot(void) {
     return bytes;
 }
 
-TEST(truncated_snapshots) {
+TEST(truncated_snapshots_are_refused) {
     TestBytes bytes = small_snapshot();
     for (size_t k = 0; k < 300; k++) {
         size_t size = k < 100 ? k : (k - 100) * bytes.size / 200;
@@ -174,7 +174,7 @@ TEST(truncated_snapshots) {
     free(bytes.data);
 }
 
-TEST(flipped_bits) {
+TEST(flipped_bits_are_noticed) {
     TestBytes bytes = small_snapshot();
     for (size_t k = 0; k < 1200; k++) {
         size_t bit = k < 512 ? k : (k - 512) * (bytes.size * 8 / 688) + k % 8; // every bit of the header's 64 bytes
@@ -197,7 +197,7 @@ static void forge(TestBytes *bytes, size_t at, uint32_t word) {
 }
 
 /// Forged bodies with correct checksums: loading them neither crashes nor leaks, and a simulation that loads can step.
-TEST(forged_snapshots) {
+TEST(forged_snapshots_are_refused) {
     enum { HEADER = 56 };
     static const uint32_t words[] = {0x7FC00000, 0x7F800000, 0xFF800000, 0xBF800000, 0x7F7FFFFF, 0xFFFFFFFF, 0, 1};
     TestBytes good = small_snapshot();
@@ -334,7 +334,7 @@ POKE(gas_field, sim->gas->turn[sim->state.gas.turn].field[GAS_LIGHTNESS][99] = N
 POKE(gas_air, sim->gas->turn[sim->state.gas.turn].air[VERTEX][1] = INFINITY)
 
 /// A simulation with numbers that no step produces can be saved but not loaded.
-TEST(impossible_numbers) {
+TEST(impossible_numbers_are_refused) {
 // clang-format off
 #define ROW(name) {#name, poke_##name}
     static const struct { const char *what; void (*poke)(SingeSim *sim); } rows[] = {
@@ -374,7 +374,7 @@ TEST(impossible_numbers) {
     singe_sim_destroy(scene.sim);
 }
 
-TEST(other_versions) {
+TEST(other_versions_are_refused) {
     TestBytes bytes = small_snapshot();
     SingeSimDef hooks = singe_default_sim();
     SingeSim *sim;

@@ -125,7 +125,7 @@ TEST(statistics_match_the_view) {
     singe_sim_destroy(scene.sim);
 }
 
-TEST(a_sheet_at_rest) {
+TEST(a_sheet_at_rest_has_no_strain) {
     SingeSim *sim = test_sim(NULL, test_grid(7, 5, 0.02f, 0.01f), NULL);
     SingeStats stats = singe_sim_stats(sim);
     double kilograms = 0.08 * 7 * 5 * 0.02 * 0.01;
@@ -145,7 +145,7 @@ TEST(a_sheet_at_rest) {
 }
 
 /// Heating without fire: what went in is stored or lost, and all of it is gone after long cooling.
-TEST(heat_without_fire) {
+TEST(heat_without_fire_is_stored_or_lost) {
     SingeSimDef def = scene_def();
     SingeMaterialDef material = singe_default_material();
     material.thickening = 1;

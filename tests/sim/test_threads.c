@@ -58,7 +58,7 @@ static void host_finish(void *context, void *token) {
     }
 }
 
-TEST(any_number_of_threads) {
+TEST(any_number_of_threads_gives_the_same_bytes) {
     SingeSimDef def = scene_def();
     TestBytes expected = run(def);
     for (int threads = 2; threads <= THREADS_MAX; threads += threads < 4 ? 1 : 4) {

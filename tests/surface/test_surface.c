@@ -13,7 +13,7 @@ static Drawing *plain_drawing(uint32_t nx, uint32_t ny, float cell) {
     return drawing_of(burning_sheet(nx, ny, cell, &material));
 }
 
-TEST(cases_of_one_cell) {
+TEST(one_cell_is_cut_by_its_levels) {
     // levels of the corners and the virtual centre in quarters; the areas follow from t of eq 7
     const struct {
         int level[5];

@@ -265,7 +265,7 @@ static SingeSim *burning(int threads, SingeInstructions instructions) {
     return sim;
 }
 
-TEST(same_bytes_and_from_a_snapshot) {
+TEST(tears_are_the_same_from_a_snapshot) {
     SingeSim *one = burning(1, SINGE_INSTRUCTIONS_BEST), *three = burning(3, SINGE_INSTRUCTIONS_PLAIN), *resumed;
     int half = 0;
     for (; half < STEPS && singe_sim_stats(one).tears < 3; half++) test_steps(one, 1);
@@ -381,7 +381,7 @@ TEST(without_reserve_it_tears_no_further) {
 }
 
 /// Every allocation of the making fails once, and nothing is lost.
-TEST(out_of_memory) {
+TEST(a_tear_without_memory_fails_cleanly) {
     SingeResult result = SINGE_ERROR_MEMORY;
     TestAllocator hook = {0};
     for (long at = 1; result != SINGE_OK; at++) {

@@ -47,7 +47,7 @@ TEST(positions_are_linear_and_held) {
     release(f);
 }
 
-TEST(one_key_and_none) {
+TEST(one_key_stands_still) {
     Fixture *f = fixture();
     near_float3(path_pose(&f->path, 3).position, 0, 0, 0);
     assert_true(path_pose(&f->path, 3).rotation[3] == 1);
@@ -136,7 +136,7 @@ TEST(bad_keys_are_refused) {
     release(f);
 }
 
-TEST(out_of_memory) {
+TEST(without_memory_a_path_stays) {
     Fixture *f = fixture();
     SingePoseKey keys[] = {test_key(0, 7, 0, 0), test_key(1, 1, 0, 0)};
     set(f, 2, keys);

@@ -20,7 +20,7 @@ TEST(no_gust_is_uniform) {
     }
 }
 
-TEST(mean_and_bound) {
+TEST(gusts_have_their_mean_and_bound) {
     SingeWindDef def = singe_default_wind();
     def.velocity[0] = 3;
     def.gust = 2;
@@ -36,7 +36,7 @@ TEST(mean_and_bound) {
     assert_true(sqrt(square) > 0.3 && sqrt(square) < 1.2); // it does blow
 }
 
-TEST(seeded) {
+TEST(gusts_follow_their_seed) {
     SingeWindDef a = singe_default_wind();
     a.gust = 1;
     SingeWindDef b = a;
@@ -50,7 +50,7 @@ TEST(seeded) {
     assert_true(equal < 5);
 }
 
-TEST(smooth_in_time_and_space) {
+TEST(gusts_are_smooth_in_time_and_space) {
     SingeWindDef def = singe_default_wind();
     def.gust = 1;
     for (int i = 0; i < 2000; i++) {
@@ -64,7 +64,7 @@ TEST(smooth_in_time_and_space) {
     }
 }
 
-TEST(bad_fields) {
+TEST(bad_winds_are_refused) {
     SingeError error;
     SingeWindDef good = singe_default_wind(), bad;
     assert_int_equal(def_check(&wind_table, &good, &error), SINGE_OK);
