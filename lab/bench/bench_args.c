@@ -86,6 +86,7 @@ static bool read_word(const Parser *parser, const char *text, const char *const 
         const size_t length = strlen(expected);
         snprintf(expected + length, sizeof expected - length, "%s%s", before, words[*value]);
     }
+
     return bench_args_refuse(parser, expected, text);
 }
 
@@ -93,6 +94,7 @@ static bool read_option(Parser *parser, const char *text, BenchRequest *request)
     BenchOptions *o = &request->options;
     const ArgReader *reader = &parser->reader;
     const int option = parser->option;
+
     switch ((BenchOption)parser->which[option]) {
     case BENCH_OPT_CELLS:
         return read_list(parser, text, 2, 2000, true, 1, "whole numbers from 2 to 2000 as in 32,100", &o->cells);
@@ -161,6 +163,7 @@ int bench_args_read(const char *name, const char *summary, unsigned accepted, in
         parser.options[parser.command.option_count] = all_options[i];
         parser.which[parser.command.option_count++] = i;
     }
+
     parser.reader = args_begin(&parser.command, argc, argv);
     while ((parser.option = args_next(&parser.reader, &value)) >= 0)
         if (!read_option(&parser, value, request)) return ARG_ERROR;

@@ -92,6 +92,7 @@ static ExitCode bench_measure(int m, const BenchRequest *request) {
     SingeError error = {.element = -1};
     SingeResult result = measurements[m].run(&request->options, &table, &error);
     ExitCode code = EXIT_GOOD;
+
     if (result) {
         fflush(stdout);
         error.code = result;
@@ -122,6 +123,7 @@ int command_bench(int argc, char **argv) {
         fputs("singe bench: error: a measurement is missing\nsee: singe bench --help\n", stderr);
         return EXIT_INPUT;
     }
+
     if (strcmp(argv[0], "--help") == 0 || strcmp(argv[0], "-h") == 0) {
         printf("usage: singe bench MEASUREMENT [options]\n\nmeasurements:\n");
         for (int i = 0; i < MEASUREMENTS; i++) printf("  %-16s %s\n", measurements[i].name, measurements[i].summary);
@@ -130,6 +132,7 @@ int command_bench(int argc, char **argv) {
 
         return EXIT_GOOD;
     }
+
     if (strcmp(argv[0], "plot") == 0) return bench_plot(argc - 1, argv + 1);
     int m = bench_find(strcmp(argv[0], "--compare") == 0 ? "compare" : argv[0]);
     if (m < 0) return EXIT_INPUT;

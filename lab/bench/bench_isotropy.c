@@ -54,6 +54,7 @@ static SingeResult isotropy_sheet(SingeSim *sim, const Burn *burn, double angle,
     Mesh mesh;
     const TurnedGrid cut = {size, burn->cells, burn->disc, angle, {.jitter = 0.15f, .seed = 1}};
     SingeResult result = turned_grid(&cut, &mesh, error);
+
     if (result) return result;
     for (uint32_t v = 0; v < mesh.vertex_count; v++) mesh.positions[3 * (size_t)v + 2] = 0.5e-3f;
     def.vertex_count = mesh.vertex_count;
@@ -133,6 +134,7 @@ static SingeResult isotropy_run(const Burn *burn, double angle, Wrinkles *wrinkl
     SingeSim *sim = NULL;
     SingeSurface surface = {0};
     SingeResult result = isotropy_build(burn, angle, &sim, error);
+
     if (result) return result;
     for (int look = 1; look <= MOMENTS && !result; look++) {
         double until = seconds * (0.5 + 0.5 * look / MOMENTS) - 1e-9;
@@ -141,6 +143,7 @@ static SingeResult isotropy_run(const Burn *burn, double angle, Wrinkles *wrinkl
         if (result) *error = *singe_sim_error(sim);
         else if (!wrinkles_add(&surface, wrinkles)) result = SINGE_ERROR_MEMORY;
     }
+
     singe_surface_free(&surface);
     singe_sim_destroy(sim);
     return result;

@@ -25,6 +25,7 @@ static ExitCode read_one(const char *name, size_t length, BenchMaterials *materi
     SceneMessages messages = {0};
     Scene **scene = &materials->scenes[materials->count];
     SingeResult result = scene_parse("material", text, sizeof text - 1, ".", sets, 1, scene, &messages);
+
     scene_messages_print(&messages, stderr);
     scene_messages_free(&messages);
     free(set);
@@ -47,6 +48,7 @@ ExitCode bench_materials_open(const char *list, BenchMaterials *materials) {
         code = read_one(list, length, materials);
         list = list[length] ? list + length + 1 : NULL;
     }
+
     return code;
 }
 

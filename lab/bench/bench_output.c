@@ -56,6 +56,7 @@ static void output_fill(OutputBench *b) {
             b->velocity[v][c] = output_noise(&seed) - 0.5f,
             b->normal[v][c] = (float)(c == 2) + 0.01f * output_noise(&seed);
         }
+
         b->uv[v][0] = x / (SIDE - 1), b->uv[v][1] = y / (SIDE - 1);
         b->temperature[v] = hot > 0 ? 400 + 800 * noise * hot : 293.15f, b->peak[v] = b->temperature[v] + hot;
         b->mass[v] = 1 - 0.5f * hot * noise;
@@ -65,6 +66,7 @@ static void output_fill(OutputBench *b) {
         b->burn[v] = 1 - b->mass[v], b->ignited[v] = hot > 0 ? 0.5f + noise : -1;
         b->piece[v] = hot > 0.9f ? 1 + (int32_t)(v % 7) : 0, b->source[v] = v % 5 ? (int32_t)v : -1, b->sheet[v] = 0;
     }
+
     for (uint32_t y = 0; y + 1 < SIDE; y++)
         for (uint32_t x = 0; x + 1 < SIDE; x++, t += 2) {
             const uint32_t a = y * SIDE + x, two[2][3] = {{a, a + 1, a + SIDE + 1}, {a, a + SIDE + 1, a + SIDE}};
@@ -116,6 +118,7 @@ static SingeResult output_row(OutputBench *b, BenchTable *table, double *ply, Si
             if (pthread_create(&thread, NULL, output_write, b)) output_write(b);
             else pthread_join(thread, NULL);
         }
+
         getrusage(RUSAGE_SELF, &after);
         const double user = (seconds_of(after.ru_utime) - seconds_of(before.ru_utime)) / frames;
         const double system = (seconds_of(after.ru_stime) - seconds_of(before.ru_stime)) / frames;
@@ -162,11 +165,13 @@ SingeResult bench_output(const BenchOptions *options, BenchTable *table, SingeEr
         b->path =
             text_format("%s/singe-bench-%ld.tmp", access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp", (long)getpid());
     }
+
     for (int i = 0; i < OUTPUT_COUNT && !result; i++) {
         if (i == OUTPUT_textures && !exr_available()) continue;
         b->format = i;
         result = output_row(b, table, &ply, error);
     }
+
     if (b) free(b->path);
     free(b);
     return result;

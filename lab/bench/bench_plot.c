@@ -28,6 +28,7 @@ static ExitCode read_all(ArgReader *reader, Curves *curves, const char **out, bo
     Console console = console_make(false);
     const char *value;
     int option;
+
     while ((option = args_next(reader, &value)) != ARG_END) {
         SingeError error = {.element = -1};
         if (option == ARG_HELP) *help = true;
@@ -38,6 +39,7 @@ static ExitCode read_all(ArgReader *reader, Curves *curves, const char **out, bo
         console_result(&console, &error);
         return EXIT_INPUT;
     }
+
     if (*out) return EXIT_GOOD;
     args_complain(reader, "needs -o FILE.svg");
     return EXIT_INPUT;
@@ -48,6 +50,7 @@ int bench_plot(int argc, char **argv) {
     Curves *curves = calloc(1, sizeof *curves);
     const char *out = NULL;
     bool help = false;
+
     if (!curves) {
         fputs("singe bench plot: error: out of memory\n", stderr);
         return EXIT_FAILED;
@@ -61,6 +64,7 @@ int bench_plot(int argc, char **argv) {
         if (code == EXIT_GOOD) printf("%s\n", out);
         else console_result(&console, &error);
     }
+
     free(curves);
     return code;
 }

@@ -93,6 +93,7 @@ static void *make_surface(SingeSurface *s) {
         s->time_ignited[i] = burn > 0 ? fmaxf(0, 1 - 40 * (front - edge)) : -1;
         s->piece[i] = s->sheet[i] = 0;
     }
+
     for (uint32_t k = 0; k < CELLS_X * CELLS_Y; k++) {
         uint32_t a = k / CELLS_X * ACROSS + k % CELLS_X, b = a + 1, c = b + ACROSS, d = a + ACROSS;
         if (fmaxf(fmaxf(s->burn[a], s->burn[b]), fmaxf(s->burn[c], s->burn[d])) > 0.949f) continue;
@@ -105,6 +106,7 @@ static void *make_surface(SingeSurface *s) {
         t[1][2] = d;
         s->triangle_count += 2;
     }
+
     return block;
 }
 
@@ -137,6 +139,7 @@ static Flames *make_flames(void) {
         f->temperature[i] = 293 + 1200 * burning;
         f->velocity[i][2] = 0.3f + 6 * z;
     }
+
     return f;
 }
 
@@ -172,6 +175,7 @@ static SingeResult preview_bench_measure(const BenchOptions *options, const Shot
     SingeResult result = rgb ? preview_create(&def, (SingeAllocator){0}, &preview, error) : SINGE_ERROR_MEMORY;
     Flames *flames = shot->fire && !result ? make_flames() : NULL;
     if (shot->fire && !result) result = flames ? preview_set_gas(preview, &flames->gas, error) : SINGE_ERROR_MEMORY;
+
     // the first picture also prepares the table's appearance, which a film does once
     if (!result) result = preview_draw(preview, surface, 1, rgb, error);
     for (int i = 0; i < REPEATS && !result; i++) {
@@ -179,6 +183,7 @@ static SingeResult preview_bench_measure(const BenchOptions *options, const Shot
         result = preview_draw(preview, surface, 1 + i / 24.0, rgb, error);
         cpu[i] = machine_cpu_clock() - began, wall[i] = machine_clock() - clock;
     }
+
     preview_destroy(preview);
     free(rgb), free(flames);
     if (result) return result;

@@ -10,6 +10,7 @@ void curves_add_paper(Curves *curves) {
     static const double springs[] = {1000, 4000, 16000, 25000, 100000};
     static const double stopped[] = {6.50, 27.93, 159.17, 211.67, 1045.02};
     static const double full[] = {142.46, 362.69, 1268.00, 1877.92, 7412.92};
+
     for (int kind = 0; kind < 2; kind++) {
         Curve *curve = &curves->list[curves->count++];
         *curve = (Curve){.count = 5};
@@ -54,6 +55,7 @@ static SingeResult read_lines(Curves *curves, FILE *file, const char *path, Sing
     char text[LINE_MAX_LENGTH], *fields[COLUMNS_MAX];
     Columns columns = {-1, -1, -1, -1};
     const int first = curves->count;
+
     for (int line = 1; fgets(text, sizeof text, file); line++) {
         if (text[0] == '#' || text[0] == '\n') continue;
 
@@ -96,12 +98,14 @@ static SingeResult read_lines(Curves *curves, FILE *file, const char *path, Sing
 
             continue;
         }
+
         columns = (Columns){curves_read_find(fields, count, "springs"), curves_read_find(fields, count, "step_ms"),
                             curves_read_find(fields, count, "solver"), curves_read_find(fields, count, "threads")};
         if (columns.springs < 0 || columns.ms < 0)
             return curves_read_fail(error, SINGE_ERROR_FORMAT, path, line,
                                     "the columns springs and step_ms are missing");
     }
+
     return curves->count > first ? SINGE_OK : curves_read_fail(error, SINGE_ERROR_FORMAT, path, 0, "holds no rows");
 }
 
@@ -167,11 +171,13 @@ SingeResult curves_draw(const Curves *curves, const char *path, SingeError *erro
             fprintf(file, "<path d=\"M%.1f %d V%.1f\" stroke=\"#dddddd\"/>\n", x, TOP, bottom);
             draw_number(file, x, bottom + 20, "middle", p);
         }
+
         for (int p = frame.ms_low; p <= frame.ms_high; p++) {
             double y = position_y(&frame, p);
             fprintf(file, "<path d=\"M%d %.1f H%.1f\" stroke=\"#dddddd\"/>\n", LEFT, y, right);
             draw_number(file, LEFT - 8, y + 4, "end", p);
         }
+
         fprintf(file, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">springs</text>\n", 0.5 * (LEFT + right),
                 bottom + 42);
         fprintf(file, "<text transform=\"translate(20 %.1f) rotate(-90)\" text-anchor=\"middle\">ms a step</text>\n",
@@ -201,8 +207,10 @@ SingeResult curves_draw(const Curves *curves, const char *path, SingeError *erro
 
             fputs("</text>\n", file);
         }
+
         fputs("</svg>\n", file);
     }
+
     bool failed = !file || ferror(file);
     if (file && fclose(file)) failed = true;
     if (!failed) return SINGE_OK;

@@ -18,6 +18,7 @@ double geometry_energy(const SingeView *view, double gravity) {
         energy += m * (0.5 * square(view->velocity[i]) + gravity * (double)view->position[i][2]);
         mass += m;
     }
+
     return energy / mass;
 }
 
@@ -28,6 +29,7 @@ double geometry_height(const SingeView *view) {
         moment += m * (double)view->position[i][2];
         mass += m;
     }
+
     return moment / mass;
 }
 
@@ -73,6 +75,7 @@ double geometry_folded(const SingeView *view, int cells) {
             edges++;
         }
     }
+
     return edges ? (double)folded / edges : 0;
 }
 
@@ -89,8 +92,10 @@ double geometry_inverted(const SingeView *view) {
             above += normal[axis] * ((double)centre[axis] - mean);
             square += normal[axis] * normal[axis];
         }
+
         count += square > 0 && !(above > 0);
     }
+
     return count;
 }
 
@@ -102,6 +107,7 @@ double geometry_reach(const SingeView *view, const float *position) {
         double ratio = geometry_distance(view->position[i], position) / rest;
         if (!(ratio <= max)) max = ratio; // keeps NaN
     }
+
     return max;
 }
 

@@ -30,6 +30,7 @@ SingeResult sheet_add_strip(SingeSim *sim, SingeSheetDef *def, const int cells[2
     float *positions = malloc((size_t)3 * vertices * sizeof *positions);
     uint32_t *corners = malloc((size_t)4 * n * rows * sizeof *corners);
     SingeResult result = SINGE_ERROR_MEMORY;
+
     if (positions && corners) {
         for (uint32_t v = 0; v < vertices; v++) {
             float across = sides[0] * (float)(v % row) / (float)n, along = sides[1] * (float)(v / row) / (float)rows;
@@ -38,6 +39,7 @@ SingeResult sheet_add_strip(SingeSim *sim, SingeSheetDef *def, const int cells[2
             x[1] = upright ? 0 : along;
             x[2] = upright ? along : 0;
         }
+
         for (uint32_t c = 0; c < n * rows; c++) {
             uint32_t v = c / n * row + c % n, *cell = corners + (size_t)4 * c;
             cell[0] = v;
@@ -45,12 +47,14 @@ SingeResult sheet_add_strip(SingeSim *sim, SingeSheetDef *def, const int cells[2
             cell[2] = v + row + 1;
             cell[3] = v + row;
         }
+
         def->vertex_count = vertices;
         def->positions = positions;
         def->cell_count = n * rows;
         def->cells = corners;
         result = singe_sim_add_sheet(sim, def, id);
     }
+
     free(positions);
     free(corners);
     return result;
@@ -92,6 +96,7 @@ static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
         sheet.material.ash_density = singe_param(min / ratio);
         sheet.material.shrink_front = sheet.material.shrink_back = sheet.material.fibre_shrink = singe_param(1);
     }
+
     sheet.material.damping = singe_param(setup->damping);
     for (int c = 0; setup->rigid && c < SINGE_COLOUR_COUNT; c++) sheet.material.compliance[c] = singe_param(0);
     SingeResult result;
@@ -123,9 +128,11 @@ static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
             pin.path_count = 2;
             pin.path = path;
         }
+
         result = singe_sim_add_pin(sim, &pin, &pin_id);
         if (result) return result;
     }
+
     return SINGE_OK;
 }
 

@@ -20,6 +20,7 @@ static SingeResult instructions_build(SingeSim *sim) {
         positions[v][0] = 0.1f * (float)(v % ROW) / CELLS;
         positions[v][2] = 0.1f * (float)(v / ROW) / CELLS;
     }
+
     for (uint32_t c = 0; c < CELLS * CELLS; c++) {
         uint32_t v = c / CELLS * ROW + c % CELLS;
         cells[c][0] = v;
@@ -27,6 +28,7 @@ static SingeResult instructions_build(SingeSim *sim) {
         cells[c][2] = v + ROW + 1;
         cells[c][3] = v + ROW;
     }
+
     SingeSheetDef def = singe_default_sheet();
     def.vertex_count = ROW * ROW;
     def.positions = positions[0];
@@ -84,6 +86,7 @@ int main(void) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
     SingeError error;
+
     def.instructions = SINGE_INSTRUCTIONS_X86_V3;
     if (singe_sim_create(&def, &sim, &error)) {
         fprintf(stderr, "singe_bench_instructions: %s\n", error.message);

@@ -108,6 +108,7 @@ static SingeResult trajectories(const Comparison *c, BenchState state, double sp
     BenchSetup setup = method_setup(c, state, springs, SINGE_SOLVER_PAPER);
     Outcome paper, ours;
     SingeResult result = compare_follow(c, &setup, c->frames, c->budget, &paper);
+
     if (!result) result = compare_add(c, &setup, springs, &paper, &paper);
     double best_edges = 0, best_all = 0;
     setup = method_setup(c, state, springs, SINGE_SOLVER_STRAND);
@@ -131,11 +132,13 @@ static SingeResult full(const Comparison *c, double springs, SingeSolverMethod m
     BenchSetup setup = method_setup(c, BENCH_SWING, springs, method);
     SingeSim *sim;
     Timing timing = {0};
+
     setup.solver.substeps = 1;
     setup.solver.projections = 7;
     setup.solver.early_exit = false;
     SingeResult result = sheet_build(&setup, &sim, c->error);
     if (result) return result;
+
     // the same few steps for both solvers: a step of the paper's takes seconds at 100,000 springs
     int warm_up = springs > 5e4 ? 5 : 40, steps = springs > 5e4 ? 5 : 11;
     result = timing_measure(&timing, sim, NULL, warm_up, steps);
@@ -171,6 +174,7 @@ SingeResult bench_compare(const BenchOptions *options, BenchTable *table, SingeE
     Comparison c = {.options = options, .table = table, .error = error, .budget = quick ? 8 : 100};
     double seconds = options->time > 0 ? options->time : quick ? 0.25 : 1;
     SingeResult result = SINGE_OK;
+
     c.frames = (int)fmax(1, round(seconds * BENCH_FPS));
     *table = table_begin("compare", columns, COLUMNS, table->text);
     for (int i = 0; i < springs.count && !result; i++) {
@@ -180,5 +184,6 @@ SingeResult bench_compare(const BenchOptions *options, BenchTable *table, SingeE
         if (!result) result = full(&c, size, SINGE_SOLVER_PAPER, &paper_ms);
         if (!result) result = full(&c, size, SINGE_SOLVER_STRAND, &paper_ms);
     }
+
     return result;
 }

@@ -108,5 +108,6 @@ SingeResult bench_dynamics(const BenchOptions *options, BenchTable *table, Singe
         timing_free(&timing);
         singe_sim_destroy(sim);
     }
+
     return result;
 }

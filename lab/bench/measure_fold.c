@@ -74,6 +74,7 @@ static SingeResult fold_fill(SingeSim *sim, Fold *fold) {
     SingeSheetId id;
     SingePinId left, right;
     SingePoseKey path[KEYS];
+
     sheet_inert(&sheet.material);
     sheet.material.damping = singe_param(4);
     sheet.material.thickness = singe_param(1.5e-3f);
@@ -109,6 +110,7 @@ static SingeResult fold_fill(SingeSim *sim, Fold *fold) {
         if (fabs(x) > 0.2 * length) continue;
         along[0] += x * (double)view.position[v][0], along[1] += x * (double)view.position[v][2];
     }
+
     double turned = atan2(along[1], along[0]);
     turned -= 2 * pi * round((turned - angle / 2) / (2 * pi));
     fold->left = 180 / pi * turned * (angle > 0 ? 1 : -1);
@@ -163,5 +165,6 @@ SingeResult bench_fold(const BenchOptions *options, BenchTable *table, SingeErro
         };
         if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
     }
+
     return result;
 }

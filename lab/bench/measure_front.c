@@ -118,6 +118,7 @@ static SingeResult front_material(const BenchOptions *options, const BenchMateri
         row[THICKENING] = bench_number(result.thickening);
         row[SPEED] = beside(result.speed, level ? material->speed : nothing, 1e3, 0);
         row[CHANGE] = bench_number(known.usual > 0 ? 100 * (result.speed / known.usual - 1) : NAN);
+
         // the front that has climbed to the end has not burnt through yet
         const bool burnt = direction != FRONT_UP;
         row[HOTTEST] = beside(burnt ? result.hottest : (double)NAN, level ? material->temperature : nothing, 1, 273.15);
@@ -130,6 +131,7 @@ static SingeResult front_material(const BenchOptions *options, const BenchMateri
         if (direction == FRONT_DOWN) known.down = result.speed;
         if (!table_add(table, row)) return SINGE_ERROR_MEMORY;
     }
+
     return SINGE_OK;
 }
 

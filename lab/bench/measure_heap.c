@@ -68,12 +68,14 @@ static SingeResult add_cloth(SingeSim *sim, int n) {
     float *x = malloc(3 * (size_t)row * row * sizeof *x), cell = side / (float)n;
     uint32_t *cells = malloc(4 * (size_t)n * (size_t)n * sizeof *cells);
     SingeResult result = x && cells ? SINGE_OK : SINGE_ERROR_MEMORY;
+
     for (uint32_t v = 0; v < row * row && !result; v++) {
         float i = (float)(v % row) / (float)n, j = (float)(v / row) / (float)n;
         x[3 * v] = side * (i - 0.5f);
         x[3 * v + 1] = 0.02f * sinf(19 * j) + 0.01f * sinf(13 * i);
         x[3 * v + 2] = lift + side * j;
     }
+
     for (uint32_t c = 0; c < (uint32_t)(n * n) && !result; c++) {
         uint32_t v = c / (uint32_t)n * row + c % (uint32_t)n;
         cells[4 * c] = v;
@@ -91,6 +93,7 @@ static SingeResult add_cloth(SingeSim *sim, int n) {
         def.material.thickness = singe_param(0.8f * cell);
         result = singe_sim_add_sheet(sim, &def, &id);
     }
+
     free(x), free(cells);
     return result;
 }
@@ -126,6 +129,7 @@ static SingeResult add_ball(SingeSim *sim, int cells_a_side) {
                     p[d] = tanf(0.785398f * (2 * (float)at[d] / (float)n - 1));
                     square += p[d] * p[d];
                 }
+
                 for (int d = 0; d < 3; d++) p[d] = ball / sqrtf(square) * p[d] + (d == 2 ? ball + 2e-3f : 0);
             }
         }
@@ -134,6 +138,7 @@ static SingeResult add_ball(SingeSim *sim, int cells_a_side) {
         def.cells = cells;
         result = singe_sim_add_sheet(sim, &def, &id);
     }
+
     free(x), free(cells);
     return result;
 }
@@ -174,6 +179,7 @@ static SingeResult heap_measure(const BenchOptions *options, int cells, bool clo
     double frame_ms[ROOM];
     double time = options->time > 0 ? options->time : closed ? collapse_seconds : seconds;
     int frames = (int)fmin(ROOM, fmax(1, 24 * time));
+
     if (heap_build(options, cells, closed, &sim, error)) return error->code;
     SingeResult result = SINGE_OK;
     for (int f = 0; f < frames && !result; f++) {
@@ -181,6 +187,7 @@ static SingeResult heap_measure(const BenchOptions *options, int cells, bool clo
         for (int step = 0; step < STEPS && !result; step++) result = singe_sim_step(sim);
         frame_ms[f] = 1e3 * (machine_clock() - begun);
     }
+
     BenchValue row[COLUMNS] = {0};
     if (result) *error = *singe_sim_error(sim);
     else {

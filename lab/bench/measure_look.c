@@ -61,11 +61,13 @@ static double prepare_line(double *line) {
         slope += line[i] * (i - centre);
         squares += (i - centre) * (i - centre);
     }
+
     for (int i = 0; i < SAMPLES; i++) {
         line[i] -= mean + slope / squares * (i - centre);
         power += line[i] * line[i] / SAMPLES;
         line[i] *= 0.5 - 0.5 * cos(2 * pi * (i + 0.5) / SAMPLES);
     }
+
     return power;
 }
 
@@ -107,6 +109,7 @@ static SingeResult look_observe(const BenchOptions *options, BenchSetup setup, B
                     geometry_point(&view, cells, (i + 0.5) / SAMPLES, 0.1 + 0.8 * row / (LINES - 1.0), point);
                     line[i] = point[1];
                 }
+
                 square += prepare_line(line) / LINES;
 
                 // adds a line's power at k = 1 to SAMPLES/4 waves over its length
@@ -118,9 +121,11 @@ static SingeResult look_observe(const BenchOptions *options, BenchSetup setup, B
                         re += line[i] * cos(angle);
                         im += line[i] * sin(angle);
                     }
+
                     power[k] += re * re + im * im;
                 }
             }
+
             for (int k = 2; k <= SAMPLES / 4; k++) total += power[k], moment += k * power[k];
 
             // waves over the length at the peak, between whole numbers by the parabola through it and its neighbours
@@ -135,6 +140,7 @@ static SingeResult look_observe(const BenchOptions *options, BenchSetup setup, B
             look->height = sqrt(square);
         }
     }
+
     singe_sim_destroy(sim);
     return result;
 }
@@ -180,6 +186,7 @@ SingeResult bench_look(const BenchOptions *options, BenchTable *table, SingeErro
         };
         if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
     }
+
     free(looks);
     return result;
 }

@@ -30,6 +30,7 @@ static void *resize(void *context, void *block, size_t old_size, size_t new_size
     } else {
         free(block);
     }
+
     held->now += new_size - old_size;
     if (held->now > held->max) held->max = held->now;
     return moved;
@@ -81,5 +82,6 @@ SingeResult bench_memory(const BenchOptions *options, BenchTable *table, SingeEr
         singe_surface_free(&surface);
         singe_sim_destroy(sim);
     }
+
     return result;
 }

@@ -77,6 +77,7 @@ static bool flip(Plane *plane, uint32_t h) {
         m[i][0] = (double)corner[i][0] - (double)last[0], m[i][1] = (double)corner[i][1] - (double)last[1];
         m[i][2] = m[i][0] * m[i][0] + m[i][1] * m[i][1];
     }
+
     bool inside = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
                       m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                       m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) >
@@ -106,6 +107,7 @@ static bool make_delaunay(Plane *plane) {
         side[h][2] = h;
         plane->twin[h] = UINT32_MAX;
     }
+
     qsort(side, sides, sizeof *side, compare_sides);
     for (uint32_t k = 0; k + 1 < sides; k++)
         if (compare_sides(side[k], side[k + 1]) == 0)
@@ -160,6 +162,7 @@ static bool plane_make(Triangles kind, uint32_t n, Plane *plane) {
                 uint32_t other = random_next(&state) % (v + 1);
                 to[v] = to[other], to[other] = v;
             }
+
             for (uint32_t v = 0; v < plane->vertex_count; v++)
                 memcpy(position[to[v]], plane->position[v], sizeof *position);
             memcpy(plane->position, position, plane->vertex_count * sizeof *position);
@@ -171,11 +174,13 @@ static bool plane_make(Triangles kind, uint32_t n, Plane *plane) {
                 memcpy(plane->corner[other], corner, sizeof corner);
             }
         }
+
         bool good = to && position;
         free(to);
         free(position);
         return good;
     }
+
     return kind != DELAUNAY || make_delaunay(plane);
 }
 
@@ -208,6 +213,7 @@ static bool mesh_add_row(BenchTable *table, const BenchSetup *setup, Triangles k
         if (p[0] <= 0 || p[0] >= 1 || p[1] <= 0 || p[1] >= 1) continue;
         inside++, irregular += cells[v] != 4;
     }
+
     free(cells);
 
     BenchValue row[COLUMNS] = {
@@ -238,6 +244,7 @@ static SingeResult mesh_measure(BenchSetup setup, Triangles kind, MeshQuads quad
     SingeSheetDef shape = singe_default_sheet();
     SingeResult result = SINGE_OK;
     bool made = plane_make(kind, (uint32_t)setup.cells, &plane);
+
     if (!made) result = SINGE_ERROR_MEMORY;
     else if (kind <= MOVED) {
         // the grid's quads on the plane's vertices
@@ -267,6 +274,7 @@ SingeResult bench_mesh(const BenchOptions *options, BenchTable *table, SingeErro
     BenchList cells = bench_list(&options->cells, 1, (const double[]){100});
     BenchSetup setup = sheet_setup(options, BENCH_SWING, 1);
     const int frames = (int)fmax(1, round((options->time > 0 ? options->time : 1) * BENCH_FPS));
+
     if (!options->substeps) setup.solver.substeps = SUBSTEPS;
     if (options->smoothing < 0) setup.solver.smoothing = 0;
     if (options->thickness.count) setup.thickness = (float)options->thickness.values[0];
@@ -280,5 +288,6 @@ SingeResult bench_mesh(const BenchOptions *options, BenchTable *table, SingeErro
         for (int kind = EQUILATERAL; kind < TRIANGLES && !result && !options->quick; kind++)
             result = mesh_measure(setup, (Triangles)kind, MESH_QUADS_SPLIT, frames, table, error);
     }
+
     return result;
 }

@@ -77,6 +77,7 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
     SingeSimDef def = singe_default_sim();
     SingeSheetDef sheet = singe_default_sheet();
     SingeSheetId id;
+
     def.thread_count = options->threads;
     def.instructions = options->instructions;
     def.pace = 4;
@@ -104,6 +105,7 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
             positions[3 * v + 2] = (float)z;
             hot[v] = (float)fmax(0, 1 - z / 0.004); // K above ignition at the edge, falling to 0 within 4 mm
         }
+
         for (uint32_t v = 0; v + row < row * rows; v++) {
             if (v % row + 1 == row) continue;
             uint32_t *cell = cells + (size_t)4 * count++;
@@ -112,6 +114,7 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
             cell[2] = v + row + 1;
             cell[3] = v + row;
         }
+
         const SingeAttribute attribute = {"hot", hot};
         sheet.vertex_count = row * rows;
         sheet.positions = positions;
@@ -121,6 +124,7 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
         sheet.attributes = &attribute;
         result = singe_sim_add_sheet(*sim, &sheet, &id);
     }
+
     free(positions);
     free(hot);
     free(cells);
@@ -158,6 +162,7 @@ static bool read_line(const SingeView *view, const Strip *strip, double z, doubl
         if (i > 0) angle[i - 1] = atan2(d[1], sqrt(d[0] * d[0] + d[2] * d[2]));
         for (int a = 0; a < 3; a++) before[a] = point[a];
     }
+
     return true;
 }
 
@@ -167,6 +172,7 @@ static SingeResult spectrum_observe(const BenchOptions *options, int setting, ui
     const Strip strip = {(int)(ACROSS * cells), (int)(UP * cells), width / (ACROSS * cells)};
     const double seconds = options->time > 0 ? options->time : options->quick ? 0.2 : 1.6;
     double thickness = options->thickness.count ? options->thickness.values[0] : 0;
+
     if (settings[setting].thickness != 1)
         thickness = settings[setting].thickness *
                     (thickness > 0 ? thickness : (double)singe_default_material().thickness.value);
@@ -194,11 +200,13 @@ static SingeResult spectrum_observe(const BenchOptions *options, int setting, ui
                         slope += line[i] * (i - centre);
                         squares += (i - centre) * (i - centre);
                     }
+
                     for (int i = 0; i < SAMPLES; i++) {
                         line[i] -= mean + slope / squares * (i - centre);
                         spectrum->square += line[i] * line[i] / SAMPLES;
                         line[i] *= 0.5 - 0.5 * cos(2 * pi * (i + 0.5) / SAMPLES);
                     }
+
                     spectrum->lines++;
                     for (int k = 1; k <= SAMPLES / 2; k++) {
                         int band = wave_band(width / k);
@@ -216,6 +224,7 @@ static SingeResult spectrum_observe(const BenchOptions *options, int setting, ui
                 }
         }
     }
+
     singe_sim_destroy(sim);
     return result;
 }
@@ -230,6 +239,7 @@ static double centre(const Spectrum *spectrum, double exponent) {
         sum += weight;
         moment += weight * log(band_wave(b));
     }
+
     return exp(moment / sum);
 }
 
@@ -260,7 +270,9 @@ SingeResult bench_spectrum(const BenchOptions *options, BenchTable *table, Singe
             for (int b = 0; b < BANDS; b++) sum += spectra[i].band[b];
             row[POWER + i] = bench_number(spectra[i].band[band] / sum);
         }
+
         if (!table_add(table, row)) return SINGE_ERROR_MEMORY;
     }
+
     return SINGE_OK;
 }

@@ -60,5 +60,6 @@ SingeResult bench_spread(const BenchOptions *options, BenchTable *table, SingeEr
         row[OVER_DOWN] = bench_number(speed / down);
         if (!table_add(table, row)) return SINGE_ERROR_MEMORY;
     }
+
     return SINGE_OK;
 }

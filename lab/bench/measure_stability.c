@@ -61,6 +61,7 @@ static void stability_run(void *context, int i) {
     Case *c = &((Cases *)context)->list[i];
     SingeSim *sim = NULL;
     Strain *strain = malloc(sizeof *strain);
+
     c->failed = strain ? sheet_build(&c->setup, &sim, &c->error) : SINGE_ERROR_MEMORY;
     if (!c->failed) {
         strain_clear(strain);
@@ -83,12 +84,14 @@ static void stability_run(void *context, int i) {
             c->reach = larger(c->reach, geometry_reach(&view, corners[c->setup.state == BENCH_SWING]));
             c->finite = c->finite && strain->finite && isfinite(c->speed) && isfinite(c->reach);
         }
+
         view = singe_sim_view(sim);
         double shrunk = c->setup.state == BENCH_SHRINK ? (double)c->setup.shrink : 1;
         c->gyration = geometry_gyration(&view) / (sqrt(1.0 / 6) * shrunk);
         c->folded = geometry_folded(&view, c->setup.cells);
         c->strain = strain_percent(strain);
     }
+
     singe_sim_destroy(sim);
     free(strain);
 }

@@ -75,6 +75,7 @@ static SingeResult stages_measure(const BenchOptions *options, int stage, double
     Timing timing = {0};
     BenchValue row[STEP_COLUMNS] = {0};
     const float pace = stage == SINGE_STAGE_ABLATE ? 20 : 1; // so that much is removed while it is timed
+
     if (burning_build(options, NULL, springs, pace, &sim, error)) return error->code;
     int steps = options->steps ? options->steps : timing_steps(springs, 10, 200);
     SingeResult result = timing_measure(&timing, sim, yardstick, WARM_UP, steps);
@@ -111,8 +112,10 @@ static SingeResult stages_measure(const BenchOptions *options, int stage, double
             row[STAGE_ITERATIONS] = bench_number((double)timing.total.heat_iterations / timing.steps);
             row[STAGE_GONE] = bench_number(actual - singe_sim_stats(sim).springs);
         }
+
         result = table_add(table, row) ? stages_judge(options, &timing, table, error) : SINGE_ERROR_MEMORY;
     }
+
     timing_free(&timing);
     singe_sim_destroy(sim);
     return result;

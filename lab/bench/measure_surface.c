@@ -34,6 +34,7 @@ static SingeResult surface_measure(const BenchOptions *options, double springs, 
         walls[i] = 1e3 * (machine_clock() - begun);
         cpus[i] = 1e3 * (machine_cpu_clock() - cpu_begun);
     }
+
     const double wall = numbers_median(walls, DRAWINGS), cpu = numbers_median(cpus, DRAWINGS);
     if (result) *error = *singe_sim_error(sim);
     double triangles = surface.triangle_count;

@@ -76,6 +76,7 @@ static SingeResult run_all(const BenchOptions *options, BenchSetup *setup, int s
                 const int whip = setup->cells <= ONE_CORNER_CELLS ? ONE_CORNER_SUBSTEPS : 3 * setup->cells;
                 setup->solver.substeps = setup->pins == 1 ? whip : SWING_SUBSTEPS;
             }
+
             Trajectory *trajectory = trajectory_run(setup, frames, steps, INFINITY, error);
             if (!trajectory) return error->code;
 

@@ -41,6 +41,7 @@ static SingeResult add_strip(SingeSim *sim, uint32_t nx, uint32_t ny, SingeSheet
     float picture[PICTURE_WIDTH] = {0};
     SingeSheetDef def = singe_default_sheet();
     SingeResult result = SINGE_ERROR_MEMORY;
+
     picture[PICTURE_LINE] = 1;
     if (positions && uv && corners) {
         for (uint32_t v = 0; v < vertices; v++) {
@@ -50,6 +51,7 @@ static SingeResult add_strip(SingeSim *sim, uint32_t nx, uint32_t ny, SingeSheet
             uv[2 * v] = x;
             uv[2 * v + 1] = y;
         }
+
         for (uint32_t c = 0; c < cells; c++) {
             uint32_t v = c / nx * row + c % nx, *cell = corners + (size_t)4 * c;
             cell[0] = v;
@@ -57,6 +59,7 @@ static SingeResult add_strip(SingeSim *sim, uint32_t nx, uint32_t ny, SingeSheet
             cell[2] = v + row + 1;
             cell[3] = v + row;
         }
+
         def.vertex_count = vertices;
         def.positions = positions;
         def.uv = uv;
@@ -68,6 +71,7 @@ static SingeResult add_strip(SingeSim *sim, uint32_t nx, uint32_t ny, SingeSheet
                               &(SingeField){.kind = SINGE_FIELD_TEXTURE, .texture = {PICTURE_WIDTH, 1, picture}});
         result = singe_sim_add_sheet(sim, &def, id);
     }
+
     free(positions);
     free(uv);
     free(corners);
@@ -98,6 +102,7 @@ static SingeResult pull(const BenchOptions *options, uint32_t nx, uint32_t ny, i
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
     SingeSheetId id;
+
     def.thread_count = options->threads;
     def.instructions = options->instructions;
     def.time_step = 1.0f / (float)rate;
@@ -122,6 +127,7 @@ static SingeResult pull(const BenchOptions *options, uint32_t nx, uint32_t ny, i
             sum += (double)view.line_force[c][0];
             count++;
         }
+
         double load = sum / count;
 
         if (load > pulled->load) {
@@ -129,6 +135,7 @@ static SingeResult pull(const BenchOptions *options, uint32_t nx, uint32_t ny, i
             pulled->stretch = (double)speed * view.time / (double)length;
         }
     }
+
     const SingeStats stats = singe_sim_stats(sim);
     const SingeView view = singe_sim_view(sim);
     pulled->tears = (int)stats.tears;

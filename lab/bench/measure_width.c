@@ -26,6 +26,7 @@ static SingeResult width_measure(const BenchOptions *options, const BenchSetup *
     SingeSim *sim;
     Timing timing = {0};
     SingeResult result = sheet_build(setup, &sim, error);
+
     if (result == SINGE_ERROR_LIMIT && setup->instructions != SINGE_INSTRUCTIONS_PLAIN) {
         // refused: this processor lacks them
         BenchValue row[COLUMNS];
@@ -63,6 +64,7 @@ static SingeResult width_measure(const BenchOptions *options, const BenchSetup *
         };
         result = table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
     }
+
     timing_free(&timing);
     singe_sim_destroy(sim);
     return result;
@@ -81,5 +83,6 @@ SingeResult bench_width(const BenchOptions *options, BenchTable *table, SingeErr
             result = width_measure(options, &setup, table, &plain, error);
         }
     }
+
     return result;
 }

@@ -50,6 +50,7 @@ static void *worker_run(void *context) {
         worker->rate = fmax(worker->rate, done / taken);
         trial++;
     }
+
     return NULL;
 }
 
@@ -64,6 +65,7 @@ static double run_threads(int threads, size_t elements, double seconds) {
         if (elements) workers[t].arrays = aligned_alloc(64, 3 * elements * sizeof(float));
         if (elements && !workers[t].arrays) good = false;
     }
+
     for (int t = 1; good && t < threads; t++) started[t] = pthread_create(&ids[t], NULL, worker_run, &workers[t]) == 0;
     if (good) worker_run(&workers[0]);
     for (int t = 0; t < threads; t++) {
@@ -71,6 +73,7 @@ static double run_threads(int threads, size_t elements, double seconds) {
         rate += workers[t].rate;
         free(workers[t].arrays);
     }
+
     return good ? rate : 0;
 }
 
@@ -84,6 +87,7 @@ bool peaks_measure(Peaks *peaks, int threads, double seconds) {
         peaks->bytes[i] = 12.0 * (double)elements, peaks->gb_s[i] = 1e-9 * rate;
         peaks->count = i + 1;
     }
+
     return peaks->gflops > 0 && peaks->count > 0;
 }
 

@@ -57,5 +57,6 @@ BenchValue strain_percent(const Strain *strain) {
         p99 = fmin((double)value, strain->max);
         break;
     }
+
     return (BenchValue){.number = {100 * strain->max, 100 * p99, 100 * strain->sum / (double)strain->count}};
 }

@@ -25,12 +25,14 @@ bool table_add(BenchTable *table, const BenchValue *row) {
         table->values = values;
         table->capacity = capacity;
     }
+
     memcpy(table->values + (size_t)table->row_count * width, row, width * sizeof *row);
     if (table->text && table->row_count == 0) {
         for (int c = 0; c < table->column_count; c++)
             fprintf(table->text, "%s%*s", c ? "  " : "", table->columns[c].width, table->columns[c].name);
         fputc('\n', table->text);
     }
+
     if (table->text) {
         for (int c = 0; c < table->column_count; c++) {
             if (c) fputs("  ", table->text);
@@ -44,11 +46,14 @@ bool table_add(BenchTable *table, const BenchValue *row) {
                 if (isnan(row[c].number[part])) length += snprintf(shown + length, left, "-");
                 else length += snprintf(shown + length, left, table->columns[c].format, row[c].number[part]);
             }
+
             fprintf(table->text, "%*s", table->columns[c].width, shown);
         }
+
         fputc('\n', table->text);
         fflush(table->text);
     }
+
     table->row_count++;
     return true;
 }
@@ -101,6 +106,7 @@ void table_write_json(const BenchTable *table, FILE *file) {
         fprintf(file, ", \"%s\": ", table->facts[f].name);
         write_number(file, table->facts[f].number, "null");
     }
+
     fputs(", \"rows\": [", file);
     for (int r = 0; r < table->row_count; r++) {
         fputs(r ? ",\n  {" : "\n  {", file);
@@ -119,6 +125,7 @@ void table_write_json(const BenchTable *table, FILE *file) {
 
         fputc('}', file);
     }
+
     fputs("\n]}\n", file);
 }
 

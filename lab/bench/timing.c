@@ -29,6 +29,7 @@ SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, 
         timing->ms[what] = calloc((size_t)steps, sizeof *timing->ms[what]);
         good = good && timing->ms[what];
     }
+
     if (!good) return SINGE_ERROR_MEMORY;
     SingeTimers first = singe_sim_timers(sim);
     for (int step = -warm_up; step < steps; step++) {
@@ -44,9 +45,11 @@ SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, 
                 timing->ms[stage][step] = 1e3 * (after.seconds[stage] - before.seconds[stage]);
                 total += timing->ms[stage][step];
             }
+
             timing->ms[TIMED_STEP][step] = total;
             timing->ms[TIMED_PROJECTION][step] = 1e3 * (after.projection_seconds - before.projection_seconds);
             timing->ms[TIMED_YARDSTICK][step] = yardstick_ms;
+
             // scaled by the yardstick just before it: a temporarily slow machine slows both
             timing->ms[TIMED_SCALED][step] = total / fmax(1, yardstick_ms / yardstick_reference_ms);
         }

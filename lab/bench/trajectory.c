@@ -36,6 +36,7 @@ Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, doubl
                 trajectory->inverted = fmax(trajectory->inverted, geometry_inverted(&start));
                 looked += machine_cpu_clock() - look;
             }
+
             trajectory->cpu_ms[trajectory->frames++] = 1e3 * (machine_cpu_clock() - begun - looked);
             if (!trajectory->diverged) {
                 SingeView view = singe_sim_view(sim);
@@ -43,6 +44,7 @@ Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, doubl
                     strain_add(&trajectory->strain[colour], &view, (SingeColour)colour);
                     if (!trajectory->strain[colour].finite) trajectory->diverged = true;
                 }
+
                 double speed = geometry_speed(&view);
                 if (!(speed <= trajectory->speed_max)) trajectory->speed_max = speed;
                 if (!isfinite(speed)) trajectory->diverged = true;
@@ -51,11 +53,13 @@ Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, doubl
                     if (trajectory->frames == marks[m]) trajectory->fall[m] = trajectory->fall_end;
             }
         }
+
         SingeTimers timers = singe_sim_timers(sim);
         trajectory->dynamics_ms = 1e3 * timers.seconds[SINGE_STAGE_DYNAMICS] / trajectory->frames;
         trajectory->cpu_mean = numbers_mean(trajectory->cpu_ms, trajectory->frames);
         trajectory->cpu_median = numbers_median(trajectory->cpu_ms, trajectory->frames);
     }
+
     singe_sim_destroy(sim);
     return trajectory;
 }

@@ -26,6 +26,7 @@ static void *workers_work(void *argument) {
         w->ran[i] = true;
         while (w->reported < w->count && w->ran[w->reported]) w->done(w->context, w->reported++);
     }
+
     pthread_mutex_unlock(&w->lock);
     return NULL;
 }

@@ -65,6 +65,7 @@ double yardstick_run(Yardstick *yardstick) {
                 for (int i = 0; i < 3; i++) before[i] = link->direction[i] = d[i];
                 link->direction[3] = right;
             }
+
             float factor = 0;
             for (int k = count; k-- > 0;) {
                 Link *link = &links[k];

@@ -34,8 +34,10 @@ SingeResult look_take(Play *play, double cut, Look *look, SingeError *error) {
                                 3;
             if (mass > cut) memmove(play->surface.triangles[kept++], c, sizeof *play->surface.triangles);
         }
+
         play->surface.triangle_count = kept;
     }
+
     if (rim_add(&play->surface, &look->rim) && wrinkles_add(&play->surface, &look->wrinkles)) return SINGE_OK;
     *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
     return SINGE_ERROR_MEMORY;

@@ -36,6 +36,7 @@ SingeResult play_until(Play *play, double time, SingeError *error) {
         *error = *singe_sim_error(play->sim);
         return result;
     }
+
     return SINGE_OK;
 }
 
@@ -57,11 +58,13 @@ static const uint8_t *draw(Play *play, int size[2], SingeError *error) {
             play->surface.time_ignited[v] = -1;
         }
     }
+
     if (play->glow > 0) {
         const float glow = play->glow;
         for (uint32_t v = 0; v < play->surface.vertex_count; v++)
             play->surface.temperature[v] = fminf(play->surface.temperature[v], glow);
     }
+
     SingeGas gas = singe_sim_gas(play->sim);
     pictures_size(play->pictures, &size[0], &size[1]);
     double time = singe_sim_view(play->sim).time;
@@ -125,12 +128,14 @@ static void cut_grid(Mesh *mesh, bool (*inside)(double x, double y)) {
         for (int k = 0; k < 4; k++) number[mesh->cells[4 * (size_t)cells + (size_t)k] = corner[k]] = 1;
         cells++;
     }
+
     for (uint32_t v = 0; v < mesh->vertex_count && number; v++) {
         if (!number[v]) continue;
         memmove(mesh->positions + 3 * (size_t)vertices, mesh->positions + 3 * (size_t)v, 3 * sizeof(float));
         memmove(mesh->uv + 2 * (size_t)vertices, mesh->uv + 2 * (size_t)v, 2 * sizeof(float));
         number[v] = vertices++;
     }
+
     for (size_t i = 0; i < 4 * (size_t)cells; i++) mesh->cells[i] = number[mesh->cells[i]];
     if (number) {
         mesh->cell_count = cells;
@@ -146,6 +151,7 @@ static SingeResult add_grid(const LabGrid *grid, SingeSim *sim, SingeError *erro
     Mesh mesh = {0};
     const uint32_t nx = (uint32_t)grid->cells[0], ny = (uint32_t)grid->cells[1];
     SingeResult result = mesh_grid(grid->sides[0], grid->sides[1], nx, ny, (SingeAllocator){0}, &mesh, error);
+
     if (result) return result;
     mesh_grid_wear(&mesh, nx, ny, &(GridWear){.jitter = grid->jitter});
     float *field = malloc(mesh.vertex_count * sizeof *field);
@@ -154,6 +160,7 @@ static SingeResult add_grid(const LabGrid *grid, SingeSim *sim, SingeError *erro
         for (int k = 0; k < 2; k++) p[k] += grid->sides[k] / 2;
         field[v] = grid->field ? (float)grid->field(grid->context, (double)p[0], (double)p[1]) : 0;
     }
+
     if (grid->inside) cut_grid(&mesh, grid->inside);
     const SingeAttribute attributes[] = {{"field", field}, {"mass", grid->mass ? grid->mass : field}};
     sheet.material = grid->material;
@@ -238,6 +245,7 @@ double shape_bend(const SingeView *view) {
         double angle = shape_angle(view, end[0] - view->vertex_count, end[1] - view->vertex_count);
         sum += angle * angle, count++;
     }
+
     return count > 0 ? sqrt(sum / count) * 180 / acos(-1) : 0;
 }
 
@@ -268,6 +276,7 @@ int shape_pieces(const SingeView *view, double share) {
         if (view->particle_flags[i] & SINGE_ALIVE && view->piece[i] >= 0)
             area[view->piece[i] % MAX] += (double)view->area[i];
     }
+
     for (int p = 0; area && p < MAX; p++) count += area[p] >= share * all && area[p] > 0;
     free(area);
     return count;
@@ -296,6 +305,7 @@ double shape_border(const SingeSurface *surface) {
     size_t count = 3 * (size_t)surface->triangle_count;
     Edge *edges = malloc((count + 1) * sizeof *edges);
     double length = 0, area = 0;
+
     for (uint32_t t = 0; edges && t < surface->triangle_count; t++) {
         const uint32_t *c = surface->triangles[t];
         for (int k = 0; k < 3; k++) {
@@ -306,6 +316,7 @@ double shape_border(const SingeSurface *surface) {
         double r = rest_distance(surface, c[2], c[0]), s = (p + q + r) / 2;
         area += sqrt(fmax(0, s * (s - p) * (s - q) * (s - r)));
     }
+
     if (edges) qsort(edges, count, sizeof *edges, edge_order);
     for (size_t i = 0, j; edges && i < count; i = j) {
         for (j = i + 1; j < count && edge_order(&edges[i], &edges[j]) == 0;) j++;
@@ -332,6 +343,7 @@ static void add_line(const SingeView *view, uint32_t first, uint32_t stride, int
         slope += line[i] * (i - centre);
         squares += (i - centre) * (i - centre);
     }
+
     for (int i = 0; i < count; i++)
         line[i] = (line[i] - mean - slope / squares * (i - centre)) * (0.5 - 0.5 * cos(2 * pi * (i + 0.5) / count));
     for (int k = 1; k <= count / 2; k++) {
@@ -340,6 +352,7 @@ static void add_line(const SingeView *view, uint32_t first, uint32_t stride, int
         if (band < 0 || band >= SHAPE_BANDS) continue;
         for (int i = 0; i < count; i++)
             re += line[i] * cos(2 * pi * k * i / count), im += line[i] * sin(2 * pi * k * i / count);
+
         // a wave's mean square is 2 |c_k|^2/n^2, and the window keeps 3/8 of it
         double power = 2 * (re * re + im * im) / ((double)count * count) / 0.375;
         spectrum->height[band] += power * wave * wave / (4 * pi * pi);
@@ -359,6 +372,7 @@ SingeResult shape_spectrum(const SingeView *view, int across, int along, double 
         for (int k = 1; k <= across / 2; k++) waves += (int)floor(2 * log2(across / (2.0 * k)) + 1e-9) == b;
         spectrum->height[b] = waves ? sqrt(spectrum->height[b] / (across + along + 2)) : (double)NAN;
     }
+
     free(line);
     return SINGE_OK;
 }

@@ -35,6 +35,7 @@ static bool take(const Page *page, const ArgReader *reader, int option, const ch
         else args_complain(reader, "unknown WHAT '%s': expected all, or one of the experiments", shown(value).text);
         return false;
     }
+
     if (strcmp(name, "quick") == 0) return request->quick = true;
     if (strcmp(name, "threads") == 0) return args_int(reader, option, value, 1, JOB_THREADS_MAX, &request->threads);
     request->folder = value;
@@ -52,6 +53,7 @@ static SingeResult write_scenes(const Lab *lab, SingeError *error) {
         result = file_write(path, file->bytes, file->size, error);
         free(path);
     }
+
     return result;
 }
 
@@ -105,6 +107,7 @@ static void run_item(Queue *queue, int index, int threads, bool echo) {
         queue->error = error;
         if (error.code != result) queue->error = (SingeError){.code = result, .element = -1};
     }
+
     queue->done[index] = lab.report;
     add_done(queue);
     pthread_mutex_unlock(&queue->lock);
@@ -147,6 +150,7 @@ static ExitCode fill(Queue *queue) {
         run_together(queue);
         for (int i = 0; i < started; i++) pthread_join(others[i], NULL);
     }
+
     for (int i = 0; i < queue->page->count && !queue->result; i++)
         if (is_wanted(queue, i) && (queue->request->name || is_alone(queue, i))) run_item(queue, i, threads, true);
 
@@ -180,6 +184,7 @@ static ExitCode run(const Page *page, const Request *request) {
     } else {
         fail(&error);
     }
+
     free(queue.done);
     return code;
 }

@@ -42,10 +42,12 @@ static Axis axis_fit(const Plot *plot, bool vertical) {
         axis.low = 0;
         axis.high = 1;
     }
+
     if (axis.high - axis.low < 1e-12) {
         axis.low -= 0.5;
         axis.high += 0.5;
     }
+
     if (axis.log) {
         axis.low = floor(axis.low + 1e-9);
         axis.high = fmax(ceil(axis.high - 1e-9), axis.low + 1);
@@ -57,6 +59,7 @@ static Axis axis_fit(const Plot *plot, bool vertical) {
             axis.high = axis.step * ceil(axis.high / axis.step - 1e-9);
         }
     }
+
     axis.first = vertical ? HEIGHT - BOTTOM : LEFT;
     axis.last = vertical ? TOP : WIDTH - RIGHT;
     return axis;
@@ -103,10 +106,12 @@ void plot_draw(const Plot *plot, FILE *file) {
                 pen = false;
                 continue;
             }
+
             fprintf(file, "%c%.1f,%.1f ", pen ? 'L' : 'M', pixel(&x, line_x(&plot->lines[l], i)),
                     pixel(&y, plot->lines[l].y[i]));
             pen = true;
         }
+
         fprintf(file, "\"/>\n");
         for (int i = 0; i < plot->lines[l].count && plot->lines[l].dots; i++)
             if (shown(&x, line_x(&plot->lines[l], i)) && shown(&y, plot->lines[l].y[i]))
@@ -115,6 +120,7 @@ void plot_draw(const Plot *plot, FILE *file) {
         fprintf(file, "<text x=\"%d\" y=\"%d\" fill=\"%s\">%s</text>\n", WIDTH - RIGHT + 12, TOP + 18 * l + 10,
                 plot->lines[l].colour, plot->lines[l].name);
     }
+
     fprintf(file, "</svg>\n");
 }
 
@@ -123,6 +129,7 @@ SingeResult plot_write(const Plot *plot, const char *path, SingeError *error) {
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     SingeResult result = SINGE_ERROR_MEMORY;
+
     if (file) plot_draw(plot, file);
     if (text_stream_end(file, &text)) result = file_write(path, text, size, error);
     if (result == SINGE_ERROR_MEMORY) *error = (SingeError){.code = result, .element = -1};

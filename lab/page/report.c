@@ -82,6 +82,7 @@ ReportPage *report_page_open(const char *folder, const char *title, const char *
         free(page);
         return NULL;
     }
+
     page->folder = text_format("%s", folder);
     fprintf(page->index.file,
             "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>%s</title>\n"
@@ -114,6 +115,7 @@ Report *report_begin(const ReportPage *page, const char *name, const char *headi
         report_free(report);
         return NULL;
     }
+
     report->page = page;
     report->name = text_format("%s", name), report->heading = text_format("%s", heading);
     fprintf(echo_file(report), "\n%s: %s\n", name, heading);
@@ -146,6 +148,7 @@ static void echo(FILE *file, const char *text) {
         fprintf(file, " %*.*s", length > 11 ? length : 11, length, text);
         text += length + (text[length] == '|');
     }
+
     fprintf(file, "\n");
     fflush(file);
 }
@@ -167,6 +170,7 @@ static void row(Report *report, const char *text, const char *tag) {
         text += length;
         if (!*text) break;
     }
+
     fputs("</tr>\n", file);
 }
 
@@ -223,6 +227,7 @@ void report_bar(Report *report, const ReportBar *bar) {
     const bool blind = bar->bad_what && within(bar->bad, bar->low, bar->high);
     const bool holds = within(bar->value, bar->low, bar->high) && !blind;
     const char *verdict = blind ? "BAR TELLS NOTHING" : holds ? "holds" : "FAILS";
+
     if (report->block != BLOCK_MEASURES)
         fputs("<div class=\"wide\"><table><tr><th>measure</th><th>is</th><th>bar</th><th></th><th>a case that fails "
               "it</th></tr>\n",
@@ -263,6 +268,7 @@ void report_bar(Report *report, const ReportBar *bar) {
         fprintf(json, ", \"bad_what\": ");
         text_json_string(json, bar->bad_what);
     }
+
     fputc('}', json);
 
     Taken *larger = realloc(report->taken, ((size_t)report->measures + 1) * sizeof *larger);
@@ -274,6 +280,7 @@ void report_bar(Report *report, const ReportBar *bar) {
     } else {
         report->result = SINGE_ERROR_MEMORY;
     }
+
     if (!holds) report->failed++;
 }
 
@@ -288,6 +295,7 @@ ReportVerdict report_find(const Report *report, const char *item, const char *na
         *value = taken->value;
         return taken->holds ? REPORT_HOLDS : REPORT_FAILS;
     }
+
     return REPORT_UNKNOWN;
 }
 
@@ -301,6 +309,7 @@ void report_end(ReportPage *page, Report *report) {
         good = text_stream_end(drafts[i]->file, &drafts[i]->text) && good;
         drafts[i]->file = NULL;
     }
+
     if (good) {
         if (report->echo.text) printf("%s", report->echo.text), fflush(stdout);
         fprintf(page->text.file, "<h2 id=\"%s\">%s<span class=\"tag %s\">%s</span></h2>\n%s", report->name,
@@ -322,6 +331,7 @@ void report_end(ReportPage *page, Report *report) {
         if (larger) larger[page->measures++] = report->taken[i];
         else free(report->taken[i].item), free(report->taken[i].name);
     }
+
     page->failed += report->failed;
     if (report->result && !page->result) {
         page->result = report->result;

@@ -35,5 +35,6 @@ double texture_correlation(const SingeView *view, const SingeTexture *picture, b
         yy += b * b;
         xy += a * b;
     }
+
     return (n * xy - x * y) / sqrt((n * xx - x * x) * (n * yy - y * y));
 }

@@ -44,6 +44,7 @@ static SingeResult strip_run(Lab *lab, int i, Strip *strip, SingeError *error) {
             high = fmax(high, x);
             if (view.time_ignited[v] >= 0) front = fmax(front, x);
         }
+
         const double share = front < low ? 0.01 / (high - low) : fmin(1, (front + 0.01 - low) / (high - low));
         const double cells = share + (1 - share) / 9; // elsewhere one in place of 3 x 3
         strip->cells += cells / LOOKS;
@@ -56,6 +57,7 @@ static SingeResult strip_run(Lab *lab, int i, Strip *strip, SingeError *error) {
             if (i != FINE) break;
         }
     }
+
     play_close(&play);
     return result;
 }

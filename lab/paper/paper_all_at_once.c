@@ -19,6 +19,7 @@ static SingeResult set_print(Lab *lab, SingeNetwork *network, uint32_t set, cons
     size_t count = rows < columns ? rows : columns, rank = 0;
     double *jacobian = malloc(rows * columns * sizeof *jacobian), *values = malloc(count * sizeof *values);
     SingeResult result = SINGE_ERROR_MEMORY;
+
     if (jacobian && values) {
         singe_network_jacobian(network, set, jacobian);
         if (singular_values(jacobian, rows, columns, values) == 0) result = SINGE_OK;
@@ -28,6 +29,7 @@ static SingeResult set_print(Lab *lab, SingeNetwork *network, uint32_t set, cons
         report_row(lab->report, "%s|%zu|%zu|%zu|%.2e", name, rows, rank, rows - rank,
                    rank ? values[rank - 1] / values[0] : (double)NAN);
     }
+
     *spare = (double)(rows - rank);
     free(jacobian);
     free(values);
@@ -51,6 +53,7 @@ static SingeResult ranks_print(Lab *lab, const SingeSim *sim, SingeNetwork *all,
         result = set_print(lab, colours, c, names[c], view.particle_count, &more);
         colour_spare += more;
     }
+
     report_bar(lab->report,
                &(ReportBar){"ratio", "constraints over degrees of freedom, all at once", springs / (3.0 * free_count),
                             1.0001, INFINITY, singe_network_set_size(colours, SINGE_BLUE) / (1.5 * free_count),
@@ -75,6 +78,7 @@ static double contender_step(const Contender *contender, int step, uint32_t *ite
         if (singe_network_project(contender->network, set, &report)) *broken = true;
         *iterations += report.iterations;
     }
+
     paper_errors(contender->network, contender->sets, errors);
     for (uint32_t set = 0; set < contender->sets; set++) square += errors[set] * errors[set];
     return sqrt(square);
@@ -118,6 +122,7 @@ SingeResult paper_all_at_once(Lab *lab, SingeError *error) {
                 report_row(lab->report, "%d|%.3g|%.3g|%.3g|%.3g", step, errors[0][step], errors[1][step],
                            errors[2][step], errors[3][step]);
             }
+
             report_row(lab->report, "iterations|%u%s|%u%s|%u%s|%u%s", iterations[0], broken[0] ? ", broke down" : "",
                        iterations[1], broken[1] ? ", broke down" : "", iterations[2], broken[2] ? ", broke down" : "",
                        iterations[3], broken[3] ? ", broke down" : "");
@@ -129,6 +134,7 @@ SingeResult paper_all_at_once(Lab *lab, SingeError *error) {
                 plot_add(&plot, (PlotLine){.name = names[i], .colour = inks[i], .y = errors[i], .count = STEPS + 1});
                 ends[i] = broken[i] ? 1e9 : errors[i][STEPS] / errors[i][0];
             }
+
             report_plot(lab->report, &plot);
             report_text(
                 lab->report,
@@ -147,8 +153,10 @@ SingeResult paper_all_at_once(Lab *lab, SingeError *error) {
             report_bar(lab->report, &(ReportBar){"floor_colours", "with a floor: the same, colour after colour",
                                                  ends[3], 0, 0.9, ends[0], "all at once without"});
         }
+
         for (int i = 0; i < CONTENDERS; i++) singe_network_destroy(contenders[i].network);
     }
+
     singe_sim_destroy(sim);
     return result;
 }

@@ -53,9 +53,11 @@ SingeResult paper_fig1(Lab *lab, SingeError *error) {
                 sum += angle * angle;
                 count++;
             }
+
             runs[i].inner = fmax(runs[i].inner, count > 0 ? sqrt(sum / count) * 180 / acos(-1) : 0);
             if (times[shot] > 2) result = look_take(&play, 0, &runs[i].look, error);
         }
+
         play_close(&play);
     }
     if (result) return result;
@@ -201,12 +203,14 @@ SingeResult paper_fig11(Lab *lab, SingeError *error) {
                 all[k % 12]++;
                 ignited[k % 12] += view.time_ignited[v] >= 0;
             }
+
             for (int k = 0; k < 12; k++) count += ignited[k] >= 0.2 * all[k];
             lit[i] = count;
             stats = singe_sim_stats(play.sim);
             if (i == 0) first = shape_left(&view);
             looks[0].left = shape_left(&view);
         }
+
         play_close(&play);
     }
     if (result) return result;
@@ -255,6 +259,7 @@ SingeResult paper_mass_loss(Lab *lab, SingeError *error) {
             if (i == 0 && k == 2) before = bend;
             pieces[i] = (int)singe_sim_stats(play.sim).pieces;
         }
+
         play_close(&play);
     }
     if (result) return result;
@@ -306,8 +311,10 @@ static void rival_draw(FILE *file, const double (*profile)[RIVAL_POINTS][2], con
             double x = k > 1e-3 ? sin(k * at) / k : at, z = k > 1e-3 ? (1 - cos(k * at)) / k : 0;
             fprintf(file, "%.1f,%.1f ", left + 84 + scale * x, 120 + scale * z);
         }
+
         fprintf(file, "\"/>\n");
     }
+
     fprintf(file, "</svg>\n");
 }
 
@@ -316,6 +323,7 @@ SingeResult paper_rival(Lab *lab, SingeError *error) {
     double profiles[RIVAL_SHOTS][RIVAL_POINTS][2] = {{{0}}}, bend[RIVAL_SHOTS];
     Play play;
     SingeResult result = play_open(&play, lab, "rival.yaml", (const char *const[]){NULL}, error);
+
     for (int k = 0; k < RIVAL_LOOKS && !result; k++) {
         time[k] = k / 24.0;
         result = play_until(&play, time[k], error);
@@ -336,6 +344,7 @@ SingeResult paper_rival(Lab *lab, SingeError *error) {
             angle += atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
             length += hypot(a[0], a[1]);
         }
+
         difference[k] = front - back;
         curvature[k] = angle / length;
 
@@ -352,6 +361,7 @@ SingeResult paper_rival(Lab *lab, SingeError *error) {
                     for (int n = 0; n < 2; n++) profiles[s][i][n] -= mean[n];
             }
     }
+
     play_close(&play);
     if (result) return result;
     double max = 0, hottest = 0;

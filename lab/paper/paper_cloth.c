@@ -26,6 +26,7 @@ SingeResult paper_fig7ab(Lab *lab, SingeError *error) {
     const int shots = 4;
     SingeResult result = SINGE_OK;
     double lowest[4];
+
     report_pictures(lab->report, shots);
     for (int i = 0; i < 4 && !result; i++) {
         Play play;
@@ -43,8 +44,10 @@ SingeResult paper_fig7ab(Lab *lab, SingeError *error) {
             shape_bounds(&view, low, high);
             lowest[i] = low[2];
         }
+
         play_close(&play);
     }
+
     for (int i = 0; i < 4 && !result; i++) // the cloth that stays up against the soft one, and vice versa
         report_bar(lab->report,
                    &(ReportBar){toruses[i].measure, toruses[i].what, lowest[i], toruses[i].held ? 0.05 : -INFINITY,
@@ -102,6 +105,7 @@ static SingeResult shrink_run(Lab *lab, int i, int n, Wrinkling *out, SingeError
                  fmin(10, k + 1));
         result = play_shoot(&play, caption, error);
     }
+
     play_close(&play);
     return result;
 }
@@ -118,6 +122,7 @@ SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
     double percent[MOMENTS];
     const int n = lab->quick ? 24 : 32;
     SingeResult result = SINGE_OK;
+
     report_pictures(lab->report, 4);
     for (int i = 0; i < SHRINK_CASES && !result; i++) result = shrink_run(lab, i, n, &w[i], error);
     if (result) return result;
@@ -191,6 +196,7 @@ static SingeResult shell_run(Lab *lab, const Shell10 *shell, int n, bool papers,
         snprintf(blue, sizeof blue, "sheets.0.material.weight.blue=%s", shell->weight);
         snprintf(yellow, sizeof yellow, "sheets.0.material.weight.yellow=%s", shell->weight);
     }
+
     Play play;
     const char *sets[] = {thick,
                           blue,
@@ -223,9 +229,11 @@ static SingeResult shell_run(Lab *lab, const Shell10 *shell, int n, bool papers,
                 border_slope += atan2((double)q[2] - (double)p[2], across) * 180 / acos(-1);
             }
         }
+
         down = (double)view.position[row * (last / 2) + last / 2][2] - border / count;
         slope = border_slope / count;
     }
+
     *sag += papers ? down : down / FIG10_MESHES;
     *bend += papers ? slope : slope / FIG10_MESHES;
     play_close(&play);
@@ -268,6 +276,7 @@ SingeResult paper_fig10(Lab *lab, SingeError *error) {
         report_bar(lab->report, &(ReportBar){"bend_d_c", "bend, (d) over (c)", bend[0][SHELL_D] / bend[0][SHELL_C], 1.1,
                                              INFINITY, weak, "(c) with weights of 0.9 over (c)"});
     }
+
     return result;
 }
 
@@ -297,8 +306,10 @@ SingeResult paper_weights(Lab *lab, SingeError *error) {
                 if (fabs(x) < 0.1) continue;
                 fall[even][x < 0] += 0.12 - (double)view.position[v][2], count[x < 0]++;
             }
+
             for (int k = 0; k < 2; k++) fall[even][k] /= count[k];
         }
+
         play_close(&play);
     }
     if (result) return result;

@@ -28,6 +28,7 @@ static SingeResult fig8_project(const SingeSim *sim, PaperState state, int steps
     SingeNetwork *network;
     double errors[SINGE_COLOUR_COUNT];
     SingeResult result = paper_network(sim, state, false, singe_default_network().regularisation, &network, error);
+
     if (result) return result;
     for (int step = 0; step <= steps && !result; step++) {
         for (uint32_t set = 0; step > 0 && set < SINGE_COLOUR_COUNT && !result; set++)
@@ -61,6 +62,7 @@ static SingeResult fig8_write(Lab *lab, const char *state, const Fig8 *fig, Sing
         for (int l = 0; l < LINES; l++) fprintf(file, ",%.9g", fig->error[l][step]);
         fputc('\n', file);
     }
+
     SingeResult result = SINGE_ERROR_MEMORY;
     snprintf(path, sizeof path, "%s/fig8-%s.csv", report_folder(lab->report), state);
     if (text_stream_end(file, &csv)) result = file_write(path, csv, size, error);
@@ -105,6 +107,7 @@ SingeResult paper_fig8(Lab *lab, SingeError *error) {
             }
             if (!result && (result = singe_sim_step(sim))) *error = *singe_sim_error(sim);
         }
+
         singe_sim_destroy(sim);
         if (result) break;
         const char *name = paper_state_names[run->state];

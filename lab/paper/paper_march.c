@@ -32,6 +32,7 @@ static void march_cell(March *march, const SingeView *view, const float *mass, u
             double cut = p / (p - q) * (p / (p - r));
             share = inside == 1 ? cut : 1 - cut;
         }
+
         march->expected += share * side * side / 4;
         march->cases[inside]++;
         double *centroid = march->centroids[march->count++];
@@ -54,6 +55,7 @@ static double drawn_area(const SingeSurface *surface) {
                      ((double)q[1] - (double)p[1]) * ((double)r[0] - (double)p[0])) /
                 2;
     }
+
     return area;
 }
 
@@ -113,8 +115,10 @@ SingeResult paper_fig6(Lab *lab, SingeError *error) {
                 const float *p = surface.rest_position[surface.triangles[t][k]];
                 fprintf(file, "%.1f,%.1f ", 12 + scale * (double)p[0], 348 - scale * (double)p[1]);
             }
+
             fprintf(file, "\"/>\n");
         }
+
         fprintf(file, "</svg>\n");
 
         report_text(
@@ -131,6 +135,7 @@ SingeResult paper_fig6(Lab *lab, SingeError *error) {
                                 1.001, march_whole(&march, cell) / march.expected,
                                 "whole triangles wherever a corner is left"});
     }
+
     singe_surface_free(&surface);
     singe_sim_destroy(sim);
     return result;

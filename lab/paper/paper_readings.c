@@ -15,6 +15,7 @@ static double mass_left(double sign) {
         mass -= lost;
         excess += sign * eta * lost;
     }
+
     return mass;
 }
 
@@ -69,6 +70,7 @@ static int row_length(const SingeView *view) {
             count += s[i][0] == s[j][0] || s[i][0] == s[j][1] || s[i][1] == s[j][0] || s[i][1] == s[j][1];
         if (count > max) max = count;
     }
+
     return max;
 }
 
@@ -83,6 +85,7 @@ static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
     double with_mass = NAN, without = NAN;
     int literal = 0, ours = 0, row;
     SingeResult result = centre_moves(true, &with_mass, error);
+
     if (!result) result = centre_moves(false, &without, error);
     if (!result) result = steps_taken(SINGE_SOLVER_PAPER_LITERAL, 200, &literal, error);
     if (!result) result = steps_taken(SINGE_SOLVER_PAPER, 200, &ours, error);

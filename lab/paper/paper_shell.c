@@ -53,12 +53,14 @@ static void draw_springs(FILE *file, const SingeView *view, const Sight *sight, 
                     a[0], a[1], b[0], b[1], inks[c], c == SINGE_RED || c == SINGE_YELLOW ? "1.1" : "2.2");
         }
     }
+
     for (uint32_t i = 0; i < view->particle_count; i++) {
         double p[2];
         sight_position(sight, view->position[i], p);
         fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"%s\"/>\n", p[0], p[1],
                 inks[i < view->vertex_count ? SINGE_BLUE : SINGE_GREEN]);
     }
+
     fprintf(file, "</svg>\n");
 }
 
@@ -73,6 +75,7 @@ static double spring_counts(Report *report, const SingeView *view) {
         if (report) report_row(report, "%s|%.3f|%.0f", names[c], count, expected[c]);
         worst = fmax(worst, fabs(count - expected[c]));
     }
+
     return worst;
 }
 
@@ -93,6 +96,7 @@ SingeResult paper_fig3(Lab *lab, SingeError *error) {
                 "a cell. Centres lie one thickness above the corners' plane.");
     const double few = spring_counts(NULL, &view);
     singe_sim_destroy(sim);
+
     // counts a cell on a large grid; the border's share falls with its size
     enum { LARGE = 60 };
     grid = lab_grid(LARGE, LARGE, 0.01f);
@@ -121,6 +125,7 @@ static double curl_measure(const SingeView *view) {
         sum += fabs(atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]));
         length += hypot(a[0], a[1]), count++;
     }
+
     return sum / count / (length / count);
 }
 
@@ -140,6 +145,7 @@ SingeResult paper_fig2(Lab *lab, SingeError *error) {
     double measured[CURL_CASES], exact[CURL_CASES], beam[CURL_CASES], percent[CURL_CASES], worst = 0, off = 0;
     double apart = 0, flat = 0; // of a shell whose red springs stay; of a strip that has not curled
     SingeResult result = SINGE_OK;
+
     for (int i = 0; i < CURL_CASES && !result; i++) {
         char set[60];
         Play play;
@@ -167,6 +173,7 @@ SingeResult paper_fig2(Lab *lab, SingeError *error) {
             off = fmax(off, fabs(measured[i] / beam[i] - 1));
             apart = fmax(apart, fabs(curl_exact(curl_shrink[i], 0) / exact[i] - 1));
         }
+
         play_close(&play);
     }
     if (result) return result;
@@ -223,6 +230,7 @@ static double state_ratio(const SingeView *view, uint32_t i) {
         if (!(view->spring_flags[SINGE_BLUE][s] & SINGE_ALIVE)) return -1;
         return (double)(view->spring_length[SINGE_BLUE][s] / view->spring_rest[SINGE_BLUE][s]);
     }
+
     return -1;
 }
 
@@ -241,6 +249,7 @@ static void state_table(Lab *lab, const double *ratio, const double *cut, double
             if (ratio[i] >= 0) snprintf(cuts, sizeof cuts, "%.4f|%.4f", cut[i], t);
             *worst_cut = fmax(*worst_cut, fabs(cut[i] - t));
         }
+
         report_row(lab->report, "%c|%g|%g|%s|%s|%s", 'a' + i, state_mass[i][0], state_mass[i][1], states[i], length,
                    cuts);
         *worst = fmax(*worst, fabs(ratio[i] - state_length[i]));
@@ -251,6 +260,7 @@ SingeResult paper_fig5(Lab *lab, SingeError *error) {
     const double cell = 0.01;
     float mass[2 * STATE_COLUMNS];
     LabGrid grid = lab_grid(STATES, 1, (float)cell);
+
     for (int i = 0; i < STATE_COLUMNS; i++)
         for (int k = 0; k < 2; k++) mass[i + k * STATE_COLUMNS] = (float)fmin(state_mass[i][k], 0.999999);
     lab_sets_mass(&grid.material);
@@ -267,9 +277,11 @@ SingeResult paper_fig5(Lab *lab, SingeError *error) {
                 double x = (double)surface.rest_position[v][0], y = (double)surface.rest_position[v][1];
                 if (fabs(x - i * cell) < 1e-6 && y > 1e-4 * cell && y < (1 - 1e-4) * cell) cut[i] = y / cell;
             }
+
             if (ratio[i] >= 0) one_end = fmax(one_end, fabs(state_mass[i][0] - state_length[i]));
             if (state_is_cut(i)) worst_centre = fmax(worst_centre, fabs(0.5 - cut[i]));
         }
+
         state_table(lab, ratio, cut, &worst, &worst_cut);
 
         FILE *file = report_drawing(lab->report);
@@ -295,6 +307,7 @@ SingeResult paper_fig5(Lab *lab, SingeError *error) {
                         x + 11, 124 - k * (ratio[i] < 0 ? 100 : length), state_mass[i][k]);
             fprintf(file, "<text x=\"%g\" y=\"146\" text-anchor=\"middle\">(%c)</text>\n", x, 'a' + i);
         }
+
         fprintf(file, "</svg>\n");
 
         report_bar(lab->report, &(ReportBar){"lengths", "largest difference of the lengths, removed counting as -1",
@@ -302,6 +315,7 @@ SingeResult paper_fig5(Lab *lab, SingeError *error) {
         report_bar(lab->report, &(ReportBar){"cuts", "largest difference of the cuts of c and d from eq 7", worst_cut,
                                              0, 1e-3, worst_centre, "cuts in the middle"});
     }
+
     singe_surface_free(&surface);
     singe_sim_destroy(sim);
     return result;

@@ -106,6 +106,7 @@ SingeResult paper_statements(Lab *lab, SingeError *error) {
         report_row(lab->report, "%s|%s|%s|%s: %s|%.4g|%s", s->section, s->statement, verdict, s->item, s->measure,
                    value, s->found);
     }
+
     report_text(
         lab->report,
         "%d reproduced, %d not reproduced, %d refuted. A statement's measure has its bar with its experiment: of a "

@@ -11,6 +11,7 @@ static SingeResult state_build(SingeSim *sim, PaperState state, int n) {
     SingeResult result = SINGE_ERROR_MEMORY;
     float *positions = malloc(3 * sizeof *positions * (size_t)(n + 1) * (size_t)(n + 1));
     uint32_t *cells = malloc(4 * sizeof *cells * (size_t)n * (size_t)n);
+
     if (positions && cells) {
         const uint32_t side = (uint32_t)n;
         SingeSheetDef def = singe_default_sheet();
@@ -60,6 +61,7 @@ static SingeResult state_build(SingeSim *sim, PaperState state, int n) {
         result = singe_sim_add_sheet(sim, &def, &sheet);
         if (!result) result = singe_sim_commit(sim);
     }
+
     free(positions);
     free(cells);
     if (result || state != PAPER_SWING) return result;
@@ -96,6 +98,7 @@ SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, d
     SingeView view = singe_sim_view(sim);
     SingeNetworkDef def = singe_default_network();
     uint32_t springs = 0;
+
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += view.spring_count[c];
     double *positions = malloc(3 * view.particle_count * sizeof *positions);
     double *inverse_masses = malloc(view.particle_count * sizeof *inverse_masses);
@@ -135,6 +138,7 @@ SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, d
     } else {
         *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
     }
+
     free(positions), free(inverse_masses), free(lengths), free(ends), free(sets);
     return result;
 }

@@ -68,6 +68,7 @@ SingeResult paper_table1(Lab *lab, SingeError *error) {
                 "<circle cx=\"%.1f\" cy=\"%g\" r=\"5\"/><text x=\"372\" y=\"%g\">%s</text>\n",
                 p, y, y, p, y, y, p, y, y + 4, k ? "after" : "before");
     }
+
     fprintf(file, "</svg>\n");
 
     Plot plot = {.title = "Position of the free particle", .x_label = "projection step", .y_label = "x"};

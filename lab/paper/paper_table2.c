@@ -73,6 +73,7 @@ static SingeResult table2_row(Lab *lab, const Table2Row *row, Table2 *table, Sin
     SingeSolverDef full_solver = table2_solver(SINGE_SOLVER_PAPER, false);
     SingeSolverDef strand_solver = table2_solver(SINGE_SOLVER_STRAND, false);
     SingeResult result = cost_measure(row->cells, &early_solver, 1, &early, error);
+
     if (!result) result = cost_measure(row->cells, &full_solver, 1, &full, error);
     if (!result) result = cost_measure(row->cells, &strand_solver, 1, &strand, error);
     if (result) return result;

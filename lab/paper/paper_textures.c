@@ -32,6 +32,7 @@ SingeResult paper_heat(Lab *lab, SingeError *error) {
             if (!result && times[i] >= 1) result = look_take(&play, 0, &looks[plain], error);
             if (!result && !plain) burnt = singe_sim_stats(play.sim).burnt_fraction;
         }
+
         play_close(&play);
     }
     if (result) return result;
@@ -50,6 +51,7 @@ SingeResult paper_alpha(Lab *lab, SingeError *error) {
     static const double times[] = {0.5, 1, 1.5};
     double ratio[2] = {0};
     SingeResult result = SINGE_OK;
+
     report_pictures(lab->report, 4);
     for (int even = 0; even < 2 && !result; even++) {
         Play play;

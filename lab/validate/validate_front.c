@@ -20,10 +20,12 @@ SingeResult validate_front(Lab *lab, SingeError *error) {
     BenchOptions options = bench_options();
     BenchTable table = {0};
     double worst = 0;
+
     if (bench_materials_open(NULL, &materials)) {
         bench_materials_close(&materials);
         return SINGE_ERROR_FORMAT;
     }
+
     options.threads = lab->threads;
     options.quick = lab->quick;
     options.material_count = materials.count;
@@ -44,6 +46,7 @@ SingeResult validate_front(Lab *lab, SingeError *error) {
                        cell(&table, row, "finding")->text);
             if (strcmp(direction, "still") == 0 && isfinite(change)) *&worst = fmax(worst, fabs(change));
         }
+
         report_text(lab->report,
                     "One grammage of one material is calibrated; the others are predictions. The "
                     "sources' ranges "
@@ -61,15 +64,18 @@ SingeResult validate_front(Lab *lab, SingeError *error) {
                 snprintf(what, sizeof what, "%s, level: mm/s against the sources' range (%s)", material, basis);
                 report_measure(lab->report, name, what, speed->number[0], speed->number[1], speed->number[2]);
             }
+
             if (strcmp(direction, "up") != 0) continue;
             snprintf(name, sizeof name, "up_%s", material);
             snprintf(what, sizeof what, "%s: up over down", material);
             double down = cell(&table, row - 1, "speed_mm_s")->number[0];
             report_measure(lab->report, name, what, speed->number[0] / down, 4, 60);
         }
+
         report_measure(lab->report, "change", "largest change of speed with half the cell or half the step, %", worst,
                        0, 6);
     }
+
     table_free(&table);
     bench_materials_close(&materials);
     return result;
@@ -98,6 +104,7 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
     for (int i = 0; i < SHEETS && !result; i++) {
         SingeMaterialDef material = singe_default_material();
         StripResult strip;
+
         // known values of PMMA; parameters of the flame are those of office paper
         material.grammage = singe_param((float)(pmma_rho * bass_um[i] * 1e-6));
         material.specific_heat = singe_param((float)pmma_c);
@@ -108,6 +115,7 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
         material.char_yield = singe_param(0);
         material.heat_share = singe_param(0.2f); // no char: one reaction
         StripSetup setup = strip_setup(&material);
+
         // steps in proportion to the grammage, as the fire is
         setup.time_step *= (float)(bass_um[i] / 100);
         setup.cell = 2e-3f;
@@ -127,6 +135,7 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
         ratio += log(ours[i] / bass_mm_s[i]) / SHEETS;
         spread = fmax(spread, fabs(log(ours[i] / bass_mm_s[i])));
     }
+
     Plot plot = {
         .title = "PMMA sheets, downward", .x_label = "thickness, um", .y_label = "mm/s", .log_x = true, .log_y = true};
     plot_add(&plot, (PlotLine){"BASS-II", "#111", bass_um, bass_mm_s, SHEETS, true, false});

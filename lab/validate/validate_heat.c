@@ -34,6 +34,7 @@ static double mode_amplitude(const SingeView *view) {
         sum += area * c * ((double)view->temperature[v] - warm_mean);
         norm += area * c * c;
     }
+
     return sum / norm;
 }
 
@@ -73,9 +74,11 @@ SingeResult validate_heat(Lab *lab, SingeError *error) {
             order[k][i] = log2(off[k][i - 1] / off[k][i]);
             min[k] = fmin(min[k], order[k][i]);
         }
+
         report_row(lab->report, "%.2f|%.2e|%.2f|%.0f|%.2e|%.2f", size[0][i], off[0][i], order[0][i], size[1][i],
                    off[1][i], order[1][i]);
     }
+
     Plot plot = {.title = "Error of the mode's amplitude after 4 s",
                  .x_label = "cells, mm",
                  .y_label = "relative "
@@ -113,6 +116,7 @@ static void variances(const SingeView *view, double out[2]) {
             square[k] += w * x * x;
         }
     }
+
     for (int k = 0; k < 2; k++) out[k] = square[k] / sum - pow(mean[k] / sum, 2);
 }
 
@@ -154,6 +158,7 @@ SingeResult validate_umbrella(Lab *lab, SingeError *error) {
     static const MeshCase meshes[] = {{"squares", {60, 60}, {.12f, .12f}, 0},
                                       {"2 : 1", {36, 72}, {.144f, .144f}, 0},
                                       {"squares, jitter 0.3", {60, 60}, {.12f, .12f}, 0.3f}};
+
     enum { CASES = sizeof meshes / sizeof *meshes };
     double surface[CASES][2], umbrella[CASES][2], off = 0;
     SingeResult result = SINGE_OK;

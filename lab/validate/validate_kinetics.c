@@ -39,6 +39,7 @@ static KineticsRun kinetics_run(double kelvin_per_minute, double step, double *r
     Kinetics x = {1, 0, 0};
     KineticsRun run = {0};
     const int steps = (int)lround(700 / step);
+
     for (int i = 0; i < steps; i++) {
         double t = 300 + i * step, mass = x.cellulose + x.char_mass + x.ash;
         Kinetics a = kinetics_rate(&x, t), y = plus(&x, &a, h / 2), c = kinetics_rate(&y, t + step / 2);
@@ -55,9 +56,11 @@ static KineticsRun kinetics_run(double kelvin_per_minute, double step, double *r
             run.peak_rate = loss;
             run.peak = t;
         }
+
         if (mass < 0.5 && run.half <= 0) run.half = t;
         if (rate_at && i % (steps / looks) == 0 && i / (steps / looks) < looks) rate_at[i / (steps / looks)] = loss;
     }
+
     run.residue = x.cellulose + x.char_mass + x.ash;
     return run;
 }
@@ -71,6 +74,7 @@ static KineticsRun one_reaction(double kelvin_per_minute, double step) {
     const double b = kelvin_per_minute / 60, h = step / b, r = 8.314462618;
     double x = 1;
     KineticsRun run = {0};
+
     for (int i = 0; i < (int)lround(700 / step); i++) {
         double t = 300 + i * step, f[4], at[4] = {t, t + step / 2, t + step / 2, t + step};
         for (int k = 0; k < 4; k++) {
@@ -83,6 +87,7 @@ static KineticsRun one_reaction(double kelvin_per_minute, double step) {
         }
         x += h / 6 * (f[0] + 2 * f[1] + 2 * f[2] + f[3]);
     }
+
     run.residue = char_left + (1 - char_left) * x;
     return run;
 }
@@ -136,8 +141,10 @@ static SingeResult one_simulated(Lab *lab, double kelvin_per_minute, KineticsRun
             run->peak_rate = loss;
             run->peak = (double)view.temperature[0];
         }
+
         run->residue = (double)view.mass[0];
     }
+
     singe_sim_destroy(sim);
     return result;
 }
@@ -167,6 +174,7 @@ SingeResult validate_kinetics(Lab *lab, SingeError *error) {
         if (i == 0) first = sim.peak;
         else rising = fmin(rising, sim.peak - first);
     }
+
     Plot plot = {.title = "Cellulose in air: mass lost per kelvin, three reactions", .x_label = "C", .y_label = "1/K"};
     for (int i = 0; i < RATES; i++)
         plot_add(&plot, (PlotLine){names[i], inks[i], temperature, loss[i], LOOKS, false, false});
@@ -213,6 +221,7 @@ SingeResult validate_ledgers(Lab *lab, SingeError *error) {
             heat = fmax(heat, s.ledger_error);
             mass = fmax(mass, s.mass_ledger_error);
         }
+
         play_close(&play);
     }
     if (result) return result;

@@ -21,6 +21,7 @@ static SingeResult hold(SingeSim *sim, const double from[2], const double to[2],
     float points[3 * 1024];
     SingePinDef pin = singe_default_pin();
     SingePinId id;
+
     for (double x = from[0]; x <= to[0] + 1e-6; x += cell / 2)
         for (double y = from[1]; y <= to[1] + 1e-6 && pin.point_count < 1024; y += cell / 2) {
             float *p = points + 3 * pin.point_count++;
@@ -49,6 +50,7 @@ static SingeResult beam_sag(Lab *lab, const Beam *beam, double *sag, SingeError 
     const int nx = (int)lroundf(beam_length / beam->cell), ny = (int)lroundf(beam_width / beam->cell);
     const double from[2] = {0, 0}, to[2] = {(double)beam_clamped, (double)beam_width};
     LabGrid grid = lab_grid(nx, ny, beam->cell);
+
     soften(&grid);
     grid.gravity = (float)gravity;
     grid.solver.substeps = beam->cell < 0.004f ? 24 : 12;
@@ -82,6 +84,7 @@ SingeResult validate_beam(Lab *lab, SingeError *error) {
                    b->shear, 1e3 * (double)b->cell, d, 1e3 * sag, 1e3 * plate, sag / plate);
         worst = fmax(worst, fabs(sag / plate - 1));
     }
+
     report_text(lab->report,
                 "A strip of 10 by 4 cm, 80 g/m2, clamped over 1 cm. The first three have one stiffness, D = t²/c, by "
                 "three thicknesses; the fifth is soft in transverse shear.");
@@ -126,6 +129,7 @@ static SingeResult disc_bend(Lab *lab, double shrink, int cells, double principa
             for (int i = 0; i < 6; i++)
                 for (int j = 0; j < 7; j++) m[i][j] += f[i] * f[j];
         }
+
         for (int i = 0; i < 6; i++)
             for (int k = 0; k < 6; k++) {
                 if (k == i) continue;
@@ -139,6 +143,7 @@ static SingeResult disc_bend(Lab *lab, double shrink, int cells, double principa
         *angle = fmod(fabs(0.5 * atan2(c[4], c[3] - c[5])) * 180 / acos(-1), 90);
         if (*angle > 45) *angle = 90 - *angle;
     }
+
     singe_sim_destroy(sim);
     return result;
 }
@@ -190,6 +195,7 @@ static SingeResult pull_test(Lab *lab, bool shear, Stiffness *out, SingeError *e
             out->coupled = -g[1][1] / g[0][0] * out->along;
         }
     }
+
     singe_sim_destroy(sim);
     return result;
 }
@@ -216,6 +222,7 @@ SingeResult validate_disc(Lab *lab, SingeError *error) {
         report_row(lab->report, "%.1f|%.2f|%.1f|%.2f|%.2f|%.3f|%.0f°", 100 * shrinks[i], natural,
                    natural * disc_radius * disc_radius / disc_thickness, p[0], p[1], ratio[i], angle);
     }
+
     report_text(lab->report,
                 "A disc of 6 cm whose corner layer shrinks. Bent far it cannot be a bowl (Gauss) and becomes a "
                 "cylinder of mean curvature (1 + nu)/2 times the natural one; 3/4 is that of nu = 1/2. This shell is "

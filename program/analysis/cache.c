@@ -52,6 +52,7 @@ static SingeResult read_header(const Ply *ply, CacheFrame *frame) {
             frame->there[c] = true;
             frame->offset[c] = frame->row;
         }
+
         frame->row += ply_type_size(property->type);
     }
 
@@ -104,6 +105,7 @@ SingeResult cache_read(const char *path, CacheFrame *frame, SingeError *error) {
         ply.text.at++;
         for (int k = 0; k < 3; k++, ply.text.at += 4) frame->triangles[f][k] = load_u32_little(ply.text.at);
     }
+
     return SINGE_OK;
 }
 

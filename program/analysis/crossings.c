@@ -57,6 +57,7 @@ static bool edge_parts(const Corners a, int turn, const Corners b, int x, int y)
         for (int k = 0; k < 3; k++) outside += turn * exact_orient2(a[i], a[(i + 1) % 3], b[k], x, y) <= 0;
         if (outside == 3) return true;
     }
+
     return false;
 }
 
@@ -172,6 +173,7 @@ static bool join_all(Hinges *hinges) {
             if (end - i == 2) hinges_join(hinges, &sides[i], &sides[i + 1]);
             if (end - i == 1 && loose++ < 2) alone[loose - 1] = &sides[i];
         }
+
         if (loose == 2) hinges_join(hinges, alone[0], alone[1]);
     }
 
@@ -194,6 +196,7 @@ static bool runs_inside(const float *p, const float *q, const Corners t) {
         left += side > 0;
         right += side < 0;
     }
+
     return left && right;
 }
 
@@ -248,6 +251,7 @@ static bool crosses_at(const Hinges *hinges, uint32_t one, int corner, uint32_t 
         const float *u = hinges->position[hinges->triangles[next][hinges->far[two][k]]];
         if (share_length(p, q, t[k], t[(k + 1) % 3]) && parts(p, q, third, b, t[(k + 2) % 3], u)) return true;
     }
+
     return false;
 }
 
@@ -268,6 +272,7 @@ bool hinges_find(const float (*position)[3], const uint32_t (*triangles)[3], uin
         pairs[kept][0] = a;
         pairs[kept++][1] = b;
     }
+
     *count = kept;
     free(hinges.across);
     free(hinges.far);
@@ -381,6 +386,7 @@ static bool tree_make(BoxTree *tree) {
             double centre = 0.5 * ((double)box.low[k] + (double)box.high[k]);
             position |= crossings_spread((uint64_t)((centre - (double)all.low[k]) * scale)) << k;
         }
+
         tree->order[t] = (Placed){position, t};
     }
 
@@ -414,6 +420,7 @@ static bool list_add(CrossingList *list, uint32_t a, uint32_t b) {
         list->pairs = pairs;
         list->capacity = capacity;
     }
+
     list->pairs[list->count][0] = a < b ? a : b;
     list->pairs[list->count++][1] = a < b ? b : a;
     return true;
@@ -459,6 +466,7 @@ static bool tree_pairs(BoxTree *tree, CrossingList *list) {
                 stack[depth][1] = 2 * b + j;
             }
     }
+
     return true;
 }
 
@@ -494,6 +502,7 @@ bool crossings_count(const SingeSurface *surface, uint64_t *pairs, float at[3]) 
     const float(*p)[3] = (const float(*)[3])surface->position;
     uint32_t(*sound)[3] = malloc(((size_t)surface->triangle_count + 1) * sizeof *sound), count = 0;
     CrossingList list = {0};
+
     if (!sound) return false;
 
     for (uint32_t t = 0; t < surface->triangle_count; t++) {

@@ -34,6 +34,7 @@ static void exact_add(Expansion *sum, double term) {
         if (lost != 0) sum->parts[kept++] = lost;
         term = whole;
     }
+
     if (term != 0) sum->parts[kept++] = term;
     sum->count = kept;
 }
@@ -86,6 +87,7 @@ int exact_orient3(const float a[3], const float b[3], const float c[3], const fl
         value += p[k] * (one - other);
         permanent += fabs(p[k]) * (fabs(one) + fabs(other));
     }
+
     // a rounded difference is 0 only if the exact one is, and then its products are 0, too
     if (permanent == 0) return 0;
     if (fabs(value) > (7 + 56 * rounding) * rounding * permanent) return sign_of(value);
@@ -96,6 +98,7 @@ int exact_orient3(const float a[3], const float b[3], const float c[3], const fl
         add_determinant(&sum, 1, p, q, r);
         return expansion_sign(&sum);
     }
+
     const float *const points[4] = {a, b, c, d};
     double at[4][3];
     for (int i = 0; i < 12; i++) at[i / 3][i % 3] = (double)points[i / 3][i % 3];
@@ -110,6 +113,7 @@ int exact_orient2(const float a[3], const float b[3], const float c[3], int x, i
     const double one = ((double)a[x] - (double)c[x]) * ((double)b[y] - (double)c[y]);
     const double other = ((double)a[y] - (double)c[y]) * ((double)b[x] - (double)c[x]);
     const double permanent = fabs(one) + fabs(other), value = one - other;
+
     if (permanent == 0) return 0;
     if (fabs(value) > (3 + 16 * rounding) * rounding * permanent) return sign_of(value);
 

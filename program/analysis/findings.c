@@ -97,6 +97,7 @@ static InitialTriangle entry_of(const CacheFrame *frame, uint32_t triangle) {
         entry.reach =
             fmaxf(entry.reach, reach_of_side * initial_distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
     }
+
     return entry;
 }
 
@@ -179,6 +180,7 @@ static bool check_crossings(const CacheFrame *frame, const uint32_t *sound, uint
             initial->triangles[i] = entry_of(frame, list.pairs[i / 2][i % 2]);
             initial->reach = fmaxf(initial->reach, initial->triangles[i].reach);
         }
+
         if (good) qsort(initial->triangles, initial->count, sizeof *initial->triangles, by_x);
     }
 
@@ -254,6 +256,7 @@ static double findings_bend(float (*const at)[3], const Side *one, const Side *o
         u[k] = (double)at[one->opposite][k] - (double)low[k];
         v[k] = (double)at[other->opposite][k] - (double)high[k];
     }
+
     cross3(along, u, m);
     cross3(back, v, n);
     const double mm = dot3(m, m), nn = dot3(n, n);

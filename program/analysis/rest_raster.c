@@ -29,6 +29,7 @@ static bool find_plane(const SingeSurface *surface, int32_t sheet, Plane *plane)
             a[k] = (double)surface->rest_position[t[1]][k] - plane->origin[k];
             b[k] = (double)surface->rest_position[t[2]][k] - plane->origin[k];
         }
+
         cross3(a, b, own);
         for (int k = 0; k < 3; k++) normal[k] += own[k];
 
@@ -36,6 +37,7 @@ static bool find_plane(const SingeSurface *surface, int32_t sheet, Plane *plane)
             u[i] = (double)surface->uv[t[i + 1]][0] - (double)surface->uv[t[0]][0];
             v[i] = (double)surface->uv[t[i + 1]][1] - (double)surface->uv[t[0]][1];
         }
+
         const double turn = u[0] * v[1] - u[1] * v[0];
         for (int k = 0; k < 3; k++) d[k] = (v[1] * a[k] - v[0] * b[k]) * (turn < 0 ? -1 : 1);
         if (turn == 0 || !unit3(d)) continue;
@@ -96,6 +98,7 @@ static void fill_triangle(const SingeSurface *surface, const Plane *plane, const
                 burn += weight[c] * (double)surface->burn[t[c]];
                 unlit += weight[c] * (surface->time_ignited[t[c]] < 0);
             }
+
             if (!unit3(normal)) continue;
             const int p = j * raster->width + i;
             for (int k = 0; k < 3; k++) raster->normal[k][p] = (float)normal[k];
@@ -208,6 +211,7 @@ void rest_raster_distance(const RestRaster *raster, float min, float *distance) 
     const int width = raster->width, height = raster->height;
     const float side = (float)raster->spacing, across = 1.4142135f * side;
     const size_t w = (size_t)width;
+
     for (size_t p = 0; p < w * (size_t)height; p++)
         distance[p] = raster->cover[p] > 0 && raster->burn[p] > min ? 0 : INFINITY;
 

@@ -93,6 +93,7 @@ static Edge *find_edges(const SingeSurface *surface, int32_t piece, size_t *coun
     Edge *edges = malloc((3 * (size_t)surface->triangle_count + 1) * sizeof *edges);
     Corner *corners = malloc(((size_t)surface->vertex_count + 1) * sizeof *corners);
     uint32_t *number = malloc(((size_t)surface->vertex_count + 1) * sizeof *number);
+
     if (!edges || !corners || !number) {
         free(edges);
         free(corners);
@@ -172,6 +173,7 @@ static bool sort_points(RimPoints *points) {
             points->low[k] = fmin(points->low[k], points->position[p][k]);
             high[k] = fmax(high[k], points->position[p][k]);
         }
+
         side = fmax(side, high[k] - points->low[k]);
     }
 
@@ -237,12 +239,14 @@ static void look_at_ring(const RimPoints *points, const double *position, const 
         low[k] = centre[k] - ring < 0 ? 0 : centre[k] - ring;
         high[k] = centre[k] + ring >= points->size[k] ? points->size[k] - 1 : centre[k] + ring;
     }
+
     int at[3];
     for (at[2] = low[2]; at[2] <= high[2]; at[2]++) {
         const double z = gap_along(points, position, at[2], 2);
         for (at[1] = low[1]; at[1] <= high[1]; at[1]++) {
             const double y = gap_along(points, position, at[1], 1), row = y * y + z * z;
             if (row >= *square) continue;
+
             // rows inside the ring have only its two ends
             const bool whole = abs(at[2] - centre[2]) == ring || abs(at[1] - centre[1]) == ring;
             const int step = whole ? 1 : 2 * ring, begin = whole ? low[0] : centre[0] - ring;
@@ -269,6 +273,7 @@ static double points_distance(const RimPoints *points, const double position[3],
     const int rings = (int)ceil(reach / points->cell);
     double square = reach * reach;
     int centre[3];
+
     for (int k = 0; k < 3; k++) {
         centre[k] = cell_along(points, position[k], k);
         if (centre[k] < -rings || centre[k] >= points->size[k] + rings) return INFINITY;
@@ -288,6 +293,7 @@ static double points_distance(const RimPoints *points, const double position[3],
         look_at_ring(points, position, centre, ring, &square, nearest);
         found = found || square < before;
     }
+
     return found ? sqrt(square) : (double)INFINITY;
 }
 
@@ -478,6 +484,7 @@ static bool take_triangle(Work *work, const uint32_t *t) {
                     sample.normal[k] += weight[c] * (double)surface->normal[t[c]][k];
                 }
             }
+
             if (unit3(sample.normal) && !take_sample(work, &sample)) return false;
         }
     return true;
@@ -521,6 +528,7 @@ void rim_sum(const Rim *rim, Rim *sum) {
         to->height += band->height;
         for (int a = 0; a < RIM_ANGLES; a++) to->slope[a] += band->slope[a];
     }
+
     for (int a = 0; a < RIM_ANGLES; a++) sum->curl[a] += rim->curl[a];
     sum->curl_max = fmax(sum->curl_max, rim->curl_max);
 }

@@ -27,6 +27,7 @@ int singular_values(const double *matrix, size_t rows, size_t columns, double *v
     bool turned = true, upright = rows > columns;
     size_t count = upright ? columns : rows, length = upright ? rows : columns;
     double *vectors = malloc((count * length + 1) * sizeof *vectors), norm = 0;
+
     if (!vectors) return -1;
 
     for (size_t i = 0; i < count; i++)
@@ -49,6 +50,7 @@ int singular_values(const double *matrix, size_t rows, size_t columns, double *v
                     a[k] = c * x - s * y;
                     b[k] = s * x + c * y;
                 }
+
                 turned = true;
             }
     }

@@ -93,6 +93,7 @@ static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
                             &material.pre_exponential,
                             &material.activation_energy,
                             &material.curvature_max};
+
     for (size_t i = 0; i < sizeof params / sizeof *params; i++)
         if (params[i]->field) *params[i] = singe_param(0.5f * (params[i]->value + params[i]->to));
 
@@ -120,6 +121,7 @@ static SingeResult strip_fill(Strip *strip, const StripSetup *setup) {
     SingePinDef pin = singe_default_pin();
     SingePinId pin_id;
     const float centre[3] = {setup->length / 2, 0, 0};
+
     sheet.vertex_count = (strip->along + 1) * (strip->across + 1);
     sheet.positions = strip->positions;
     sheet.cell_count = strip->along * strip->across;

@@ -180,6 +180,7 @@ static bool normal_at(const RestRaster *raster, const Fields *fields, double x, 
         if (!(fields->distance[p] > 0)) return false;
         for (int k = 0; k < 3; k++) normal[k] += weight[corner] * (double)raster->normal[k][p];
     }
+
     return true;
 }
 
@@ -202,6 +203,7 @@ static void add_line(const RestRaster *raster, const Fields *fields, int i, int 
                     total += weight;
                 }
             }
+
             power += pow(normal[n + WINDOW / 2][k] - mean / total, 2);
         }
     folds->power += power / MIDDLE;
@@ -224,9 +226,11 @@ static bool folds_add_sheet(const SingeSurface *surface, int32_t sheet, void *su
             a[k] = (double)surface->rest_position[at[1]][k] - (double)surface->rest_position[at[0]][k];
             b[k] = (double)surface->rest_position[at[2]][k] - (double)surface->rest_position[at[0]][k];
         }
+
         for (int k = 0; k < 3; k++) square += pow(a[k] * b[(k + 1) % 3] - a[(k + 1) % 3] * b[k], 2);
         area += 0.5 * sqrt(square);
     }
+
     const double cell = vertices > 0 ? sqrt(area / vertices) : 0;
     if (!(cell > 0)) return true;
 

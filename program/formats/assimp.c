@@ -205,6 +205,7 @@ static SingeResult count_mesh(Walk *walk, const struct aiMesh *mesh, const struc
         if (corners < 3) continue; // points and lines have no area
         counts->faces++, counts->corners += corners;
     }
+
     counts->vertices += mesh->mNumVertices;
     counts->uv = counts->uv || mesh->mTextureCoords[0];
 
@@ -223,6 +224,7 @@ static SingeResult put_positions(Walk *walk, const struct aiMesh *mesh, const st
                           m->c1 * p.x + m->c2 * p.y + m->c3 * p.z + m->c4};
         put(walk, moved, sizeof moved);
     }
+
     return SINGE_OK;
 }
 
@@ -248,6 +250,7 @@ static SingeResult put_corners(Walk *walk, const struct aiMesh *mesh, const stru
             put(walk, &vertex, sizeof vertex);
         }
     }
+
     walk->counts.vertices += mesh->mNumVertices;
     return SINGE_OK;
 }
@@ -262,6 +265,7 @@ static SingeResult put_uv(Walk *walk, const struct aiMesh *mesh, const struct ai
             put(walk, uv, sizeof uv);
         }
     }
+
     return SINGE_OK;
 }
 
@@ -294,13 +298,16 @@ static SingeResult read_in_child(void *context, IsolateAnswer *answer, SingeErro
                 memcpy(words + n, "...", 3);
                 n += 3;
             }
+
             if (*c == '"') quoted = !quoted;
             else if (!quoted && (unsigned char)*c >= ' ') words[n++] = *c;
         }
+
         words[n] = 0;
         return refuse(error, SINGE_ERROR_FORMAT, "mesh", -1, "%s: %s%s", short_name(source->name), words,
                       source->refused ? source->refused : "");
     }
+
     if (bad_index)
         return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: an index is out of range", short_name(source->name));
 
@@ -349,6 +356,7 @@ SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, Sin
             memcmp(at, kinds[i].begins, length) == 0)
             matches = true;
     }
+
     if (!matches)
         return refuse(error, SINGE_ERROR_FORMAT, "mesh", 0, "%s: the contents do not match the extension",
                       short_name(name));

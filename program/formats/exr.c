@@ -80,6 +80,7 @@ static exr_result_t exr_encode(exr_context_t file, int width, int height, const 
         if (y == 0) result = exr_encoding_choose_default_routines(file, 0, &encoder);
         if (!result) result = exr_encoding_run(file, 0, &encoder);
     }
+
     exr_encoding_destroy(file, &encoder);
     return result;
 }

@@ -39,6 +39,7 @@ SingeResult file_read(const char *path, SingeAllocator allocator, Bytes *bytes, 
 
 SingeResult file_read_max(const char *path, size_t max, SingeAllocator allocator, Bytes *bytes, SingeError *error) {
     memset(bytes, 0, sizeof *bytes);
+
     // without O_NONBLOCK a named pipe would wait here for its writer
     int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) return refuse_system(error, "read", path, errno);
@@ -109,6 +110,7 @@ static int temporary_open(const char *target, char *temporary, size_t length, in
         if (*file >= 0) return 0;
         if (errno != EEXIST) return errno;
     }
+
     return EEXIST;
 }
 
@@ -144,6 +146,7 @@ SingeResult file_write_backup(const char *path, const char *backup, const void *
     char temporary[PATH_MAX + 64];
     int file = -1;
     SingeResult result = check_target(path, error);
+
     if (!result && backup) result = check_target(backup, error);
     if (result) return result;
 

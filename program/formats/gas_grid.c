@@ -74,6 +74,7 @@ bool gas_decode(Gas *gas) {
         gas->flame[i] = gas->flame_share[i] * GAS_FLAME_UNIT;
         sum += 0 * gas->smoke[i] + 0 * gas->flame[i];
     }
+
     return sum == 0;
 }
 
@@ -92,6 +93,7 @@ SingeResult gas_copy(const SingeGas *gas, SingeAllocator allocator, Gas *copy, S
         sum += 0 * gas->temperature[i] + 0 * (GAS_EXTINCTION * gas->smoke[i]) + 0 * gas->flame[i] + 0 * v[0] +
                0 * v[1] + 0 * v[2];
     }
+
     if (sum != 0) return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "a value is not finite");
     copy->view = *gas;
 

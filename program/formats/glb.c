@@ -40,6 +40,7 @@ void glb_put_string(Sink *sink, const char *text) {
         else if ((unsigned char)*c < 0x20) sink_text(sink, "\\u%04x", (unsigned)(unsigned char)*c);
         else sink_bytes(sink, c, 1);
     }
+
     sink_bytes(sink, "\"", 1);
 }
 
@@ -116,10 +117,12 @@ static void put_scene(GlbFile *f, const char *up, const char *extras) {
                 if (plain) sink_bytes(&f->text, c, 1);
                 else sink_text(&f->text, "%%%02X", (unsigned)*c);
             }
+
             sink_bytes(&f->text, "\"", 1);
 
             sink_text(&f->text, "}");
         }
+
         if (pictures) {
             sink_text(&f->text, "],\"samplers\":[{\"wrapS\":33071,\"wrapT\":33071}],\"textures\":[");
             for (uint32_t i = 0; i < pictures; i++)
@@ -204,6 +207,7 @@ static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
     const SheetPart part = sheet_part(&w->parts, sheet);
     const SingeSurface *s = w->surface;
     GlbFile *f = w->file;
+
     if (!part.count || !part.triangle_count) return false;
     sink_text(&f->meshes, "%s{\"name\":", f->mesh_count++ ? "," : "");
     glb_put_string(&f->meshes, f->scene->sheets[sheet].name);
@@ -249,6 +253,7 @@ static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
                                                               : ((const float *)values)[vertex];
                 sink_words(&w->file->data, &value, 1);
             }
+
             for (size_t i = 0; surface_fields[k].name[i]; i++)
                 key[i + 1] = surface_fields[k].name[i] == '_' ? '_' : (char)(surface_fields[k].name[i] - 'a' + 'A');
             put_named(w, key, begin, part.count, 1, NULL);
@@ -320,6 +325,7 @@ SingeResult glb_write_single(const char *path, const OutputScene *scene, const O
                 for (int c = 0; c < 3; c++) scales[count][c] = k == 0;
                 count++;
             }
+
             size_t begin = file.data.size;
             sink_words(&file.data, times, count);
             const float box[2] = {times[0], times[count - 1]};
@@ -335,6 +341,7 @@ SingeResult glb_write_single(const char *path, const OutputScene *scene, const O
             sink_text(&file.nodes, frame.number > 1 ? ",\"scale\":[0,0,0]}" : "}");
             file.node_count++;
         }
+
         sheet_parts_free(&meshes.parts);
         if (!result && file.data.size > UINT32_MAX / 2)
             result = refuse(error, SINGE_ERROR_LIMIT, "glb", frame.number, "%s: frame %d is too large for a GLB",

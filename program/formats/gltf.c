@@ -299,6 +299,7 @@ static SingeResult read_meshes(Gltf *gltf) {
             gltf->ranges[m].count++;
         }
     }
+
     return SINGE_OK;
 }
 

@@ -51,6 +51,7 @@ static bool take_numbers(const Json *json, int64_t object, const char *key, uint
         if (!json_number(json, at, &number) || !(fabs(number) < 3e38)) return false;
         numbers[i] = (float)number;
     }
+
     return true;
 }
 
@@ -61,6 +62,7 @@ static SingeResult node_transform(const Gltf *gltf, uint32_t node, Transform *at
     bool good = take_numbers(json, object, "matrix", 16, matrix) &&
                 take_numbers(json, object, "translation", 3, move) &&
                 take_numbers(json, object, "rotation", 4, rotation) && take_numbers(json, object, "scale", 3, scale);
+
     if (!good) return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: its transform is not finite", node);
 
     if (json_member(json, object, "matrix") != JSON_NONE) {
@@ -128,6 +130,7 @@ static SingeResult walk_nodes(Walk *walk, int64_t list, const Transform *parent,
                                        "too large: its nodes repeat meshes, which come to more than %llu MB",
                                        (unsigned long long)walk->max / 1000000);
             }
+
             if (!store_grow(gltf->allocator, &walk->instances, &walk->capacity, walk->count + 1,
                             sizeof *walk->instances))
                 return refuse_memory(gltf->error, "gltf", gltf->name);
@@ -136,6 +139,7 @@ static SingeResult walk_nodes(Walk *walk, int64_t list, const Transform *parent,
 
         TRY(walk_nodes(walk, json_member(&gltf->json, object, "children"), &here, depth + 1));
     }
+
     return SINGE_OK;
 }
 
@@ -238,6 +242,7 @@ static SingeResult fill_primitive(Fill *fill, const GltfPrimitive *primitive, co
             to[0] = uv[0], to[1] = 1 - uv[1]; // glTF's v runs down
             if (!isfinite(to[0]) || !isfinite(to[1])) to[0] = to[1] = 0;
         }
+
         mesh->first[++mesh->face_count] = mesh->corner_count;
     }
 
@@ -289,6 +294,7 @@ SingeResult gltf_make(Gltf *gltf, uint64_t max, Polygons *polygons) {
     Walk walk = {.gltf = gltf, .max = max};
     static const Transform unit = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     int64_t scenes = json_member(&gltf->json, 0, "scenes"), wanted, at = scenes + 1;
+
     TRY(gltf_index(gltf, 0, "scene", json_items(&gltf->json, scenes), &wanted));
     if (!json_items(&gltf->json, scenes)) return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "it has no scene");
     for (; wanted > 0; wanted--) at = gltf->json.values[at].after;

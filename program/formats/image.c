@@ -313,6 +313,7 @@ static bool jpeg_decode(JpegJob *job, const uint8_t *bytes, size_t size) {
         for (JDIMENSION x = 0; ink && x < jpeg->image_width; x++, p += 4, target += 3)
             for (int k = 0; k < 3; k++) target[k] = (uint8_t)(((p[k] ^ flip) * (p[3] ^ flip) + 127) / 255);
     }
+
     jpeg_finish_decompress(jpeg);
     return true;
 }
@@ -383,6 +384,7 @@ bool image_size(const char *path, int *width, int *height) {
             *width = be16(head + at + 7);
             return true;
         }
+
         at += marker == 0xff ? 1 : 2 + (size_t)be16(head + at + 2);
     }
 

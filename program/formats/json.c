@@ -103,6 +103,7 @@ SingeResult json_read(const char *name, const uint8_t *text, size_t size, SingeA
             if (parser.at == parser.end || *parser.at != ':') return json_bad(&parser, "a colon is missing");
             parser.at++;
         }
+
         TRY(take_value(&parser));
     }
 

@@ -47,6 +47,7 @@ static NumberStatus decimal_read(const uint8_t **at, const uint8_t *end, Decimal
             point = true;
             continue;
         }
+
         any = true;
         behind += point;
         if (digit == 0 && !number->digits) continue;
@@ -65,6 +66,7 @@ static NumberStatus decimal_read(const uint8_t **at, const uint8_t *end, Decimal
             while (i < 3 && start + i < end && (start[i] | 32) == words[w][i]) i++;
             if (i == 3) return NUMBER_NOT_FINITE;
         }
+
         return NUMBER_JUNK;
     }
 
@@ -108,6 +110,7 @@ static void big_multiply_add(Big *a, uint32_t factor, uint32_t summand) {
         a->words[i] = (uint32_t)carry;
         carry >>= 32;
     }
+
     if (carry && a->count < BIG_WORDS) a->words[a->count++] = (uint32_t)carry;
 }
 
@@ -159,6 +162,7 @@ static double decimal_round(const Decimal *number, int bits, int lowest) {
                 over.count = 1;
                 over.words[0] = digit;
             }
+
             taken++;
         }
 
@@ -186,6 +190,7 @@ static double decimal_round(const Decimal *number, int bits, int lowest) {
             while (over.count && over.words[over.count - 1] == 0) over.count--;
             quotient |= 1;
         }
+
         big_shift_left(&over, 1);
     }
 
@@ -206,6 +211,7 @@ NumberStatus number_float(const uint8_t **at, const uint8_t *end, float *value) 
     Decimal number;
     const uint8_t *p = *at;
     NumberStatus status = decimal_read(&p, end, &number);
+
     if (status) return status;
 
     // a quotient or product of two exact doubles, unless it is close to a tie of floats
@@ -240,6 +246,7 @@ NumberStatus number_double(const uint8_t **at, const uint8_t *end, double *value
     Decimal number;
     const uint8_t *p = *at;
     NumberStatus status = decimal_read(&p, end, &number);
+
     if (status) return status;
     double result = decimal_round(&number, 53, -1074);
     if (isinf(result)) return NUMBER_RANGE;

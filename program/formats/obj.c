@@ -79,6 +79,7 @@ static SingeResult obj_numbers(Obj *obj, int min, int max, int kept, float *valu
                                         : status == NUMBER_RANGE    ? "is too large for a float"
                                                                     : "is not a number");
         }
+
         if (count < kept) values[count] = value;
     }
 
@@ -172,6 +173,7 @@ static SingeResult obj_line(Obj *obj) {
             obj->text.at += length - 1;
             obj->text.line++;
         }
+
         return SINGE_OK;
     }
 
@@ -260,6 +262,7 @@ SingeResult obj_read(const char *name, const uint8_t *bytes, size_t size, SingeA
             result = obj_refuse(&obj, SINGE_ERROR_LIMIT, "too many lines");
             break;
         }
+
         obj_skip_blanks(&obj);
         if (!obj_at_end(&obj)) result = obj_line(&obj);
         if (!result) text_next_line(text);

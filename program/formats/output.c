@@ -63,6 +63,7 @@ SingeResult sheet_parts_make(SheetParts *p, const SingeSurface *s, uint32_t shee
         const uint32_t v = p->vertices[i];
         p->local[v] = i - p->vertex_first[s->sheet[v]];
     }
+
     return SINGE_OK;
 }
 

@@ -32,6 +32,7 @@ static SingeResult ply_value(Ply *ply, PlyType type, double *value) {
         float single = 0;
         NumberStatus status = number_float(&text->at, end, &single);
         *value = single;
+
         // an integer is read as one: a float would round it
         if (type < PLY_FLOAT32 && status == NUMBER_OK) {
             int64_t integer = 0;
@@ -40,6 +41,7 @@ static SingeResult ply_value(Ply *ply, PlyType type, double *value) {
             *value = (double)integer;
             if (status == NUMBER_OK && (*value < min[type] || *value > max[type])) status = NUMBER_RANGE;
         }
+
         if (status == NUMBER_OK && text->at == end) return SINGE_OK;
         text->at = word;
         return ply_refuse(ply, SINGE_ERROR_FORMAT, "the value in column %lld is %s",
@@ -98,6 +100,7 @@ static SingeResult ply_skip_property(Ply *ply, const PlyProperty *property) {
         if (text_at_line_end(text)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the line has too few values");
         text->at = text_word_end(text);
     }
+
     return SINGE_OK;
 }
 
@@ -127,6 +130,7 @@ static const PlyProperty *ply_scalar(const Ply *ply, const PlyElement *element, 
         *index = i;
         return property;
     }
+
     return NULL;
 }
 
@@ -185,6 +189,7 @@ static SingeResult ply_plan_vertices(Ply *ply, const PlyElement *element, Polygo
             if (!values) return refuse_memory(ply->error, "ply", ply->name);
             (next++)->values = values;
             targets[i] = (PlyTarget){values, 1, 1};
+
             // 8-bit colours map to 0 to 1, as everywhere else
             for (int k = 0; k < 4; k++)
                 if (properties[i].type == PLY_UINT8 && strcmp(name, colours[k]) == 0) targets[i].scale = 1 / 255.0f;
@@ -505,6 +510,7 @@ SingeResult ply_read_header(Ply *ply) {
         return ply_refuse(ply, SINGE_ERROR_FORMAT, "not a PLY file: it must begin with a line \"ply\"");
 
     bool known = false, ended = false;
+
     // the first line shows how lines end: after a lone CR, a first body byte of 10 is not part of the line end
     bool lone_return = text_end_length(text->at, text->end) == 1 && *text->at == '\r';
     while (!ended) {
@@ -540,6 +546,7 @@ SingeResult ply_read_header(Ply *ply) {
         if (!text_at_line_end(&ply->text)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "too many words on the line");
         if (ply->text.at == ply->text.end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the header is cut off");
     }
+
     if (!known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the header has no format line");
     text->at += lone_return ? 1 : text_end_length(text->at, text->end);
     text->line++;
@@ -557,6 +564,7 @@ SingeResult ply_read_header(Ply *ply) {
             if (header->format == PLY_ASCII) min += 2; // a digit and a separator
             else min += ply_type_size(property->is_list ? property->count_type : property->type);
         }
+
         // the product is below 2^31 * 8000
         if (min * element->count > left)
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file is too short for its %u elements of kind %zu",

@@ -23,6 +23,7 @@ uint8_t *sink_room(Sink *sink, size_t count) {
         sink->failed = true;
         return NULL;
     }
+
     uint8_t *room = sink->bytes + sink->size;
     sink->size += count;
     return room;
@@ -99,6 +100,7 @@ void sink_float(Sink *sink, float value) {
         float again;
         if (number_float(&at, at + strlen(text), &again) == NUMBER_OK && again == value) break;
     }
+
     sink_bytes(sink, text, strlen(text));
 }
 

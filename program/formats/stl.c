@@ -132,14 +132,17 @@ static SingeResult stl_solids(Stl *stl, Polygons *mesh, size_t *vertices, size_t
                     stl->text.at = at;
                 }
             }
+
             TRY(stl_expect(stl, "endloop", NULL));
             TRY(stl_expect(stl, "endfacet", NULL));
 
             *vertices += 3;
         }
+
         TRY(stl_expect(stl, "endsolid", NULL));
         text_next_line(&stl->text);
     }
+
     return *vertices ? SINGE_OK : stl_refuse(stl, "the file has no faces");
 }
 

@@ -75,6 +75,7 @@ static SingeResult draw_layer(Layers *layers, const OutputScene *scene, const Ou
                 output_mesh_uv(&scene->sheets[sheet].mesh, cell, (int)corner, cell_uv[corner]);
                 for (int k = 0; k < 2; k++) centroid[k] += cell_uv[corner][k] / 4;
             }
+
             for (int corner = 0; corner < 4; corner++) {
                 const int j = (corner + 1) & 3;
                 const float triangle[3][2] = {{centroid[0], centroid[1]},
@@ -83,6 +84,7 @@ static SingeResult draw_layer(Layers *layers, const OutputScene *scene, const Ou
                 uv_triangle(canvas.size, triangle, draw_chart, &canvas);
             }
         }
+
         for (uint32_t t = 0; t < frame->surface->triangle_count; t++) {
             const uint32_t *v = frame->surface->triangles[t];
             float uv[3][2];
@@ -94,8 +96,10 @@ static SingeResult draw_layer(Layers *layers, const OutputScene *scene, const Ou
                 canvas.corners[k][2] =
                     frame->surface->burn[v[k]] > EMBER_BURNT ? ember_light(frame->surface->temperature[v[k]]) : 0;
             }
+
             uv_triangle(canvas.size, (const float(*)[2])uv, draw_values, &canvas);
         }
+
         uv_spread(canvas.size, TEXTURE_MARGIN, canvas.chart, canvas.nearest, canvas.queue);
         for (size_t i = 0; i < canvas.pixels; i++)
             canvas.values[TEXTURE_CHANNELS * i + 3] = canvas.nearest[i] != UV_NONE && canvas.covered[canvas.nearest[i]];
@@ -132,6 +136,7 @@ SingeResult textures_write_frame(const char *path, const OutputScene *scene, con
     const SingeAllocator a = frame->surface->allocator;
     SingeResult result = SINGE_OK;
     Layers *layers = store_new(a, 1, sizeof *layers);
+
     if (!layers) return refuse_memory(error, "textures", path);
     layers->count = 0;
 

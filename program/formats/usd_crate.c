@@ -101,12 +101,14 @@ static void put_ints(Crate *crate, Sink *sink, const int32_t *values, size_t cou
         for (size_t k = 0; k < 4 && i + k < count; k++) {
             const int32_t d = (int32_t)((uint32_t)values[i + k] - before);
             before = (uint32_t)values[i + k];
+
             // no branches, since they could not be predicted: writes all four bytes, and keeps as many as are needed
             const unsigned kind = (d != common) * (1u + (d != (int8_t)d) + (d != (int16_t)d));
             kinds |= kind << 2 * k;
             store_u32_little(at, (uint32_t)d);
             at += kind + (kind == 3);
         }
+
         *code++ = (uint8_t)kinds;
     }
 
@@ -174,6 +176,7 @@ static bool put_table(Crate *crate, const float *values, size_t count) {
             table[found++] = bits[i];
             crate->table[at] = (uint32_t)found;
         }
+
         numbers[i] = (int32_t)crate->table[at] - 1;
     }
 
@@ -240,6 +243,7 @@ void crate_spec(Crate *crate, uint32_t path, CrateSpec kind, const CrateField *f
         crate->field_tokens[crate->field_count] = word_number(crate, fields[i].name);
         crate->field_values[crate->field_count++] = fields[i].value;
     }
+
     put_set(crate, UINT32_MAX);
 }
 

@@ -87,6 +87,7 @@ static void put_colours(UsdWriter *w, const SheetPart *part, CrateValue *palette
                 w->gathered[3 * found + (uint32_t)c] = (float)q[c] / steps[c] * ((float)q[c] / steps[c]);
             found++;
         }
+
         w->numbers[i] = *entry;
     }
 
@@ -130,6 +131,7 @@ static CrateValue put_subset_faces(UsdWriter *w, const SheetPart *part, bool fre
         }
         if (untouched == fresh) w->numbers[count++] = (int32_t)i;
     }
+
     return crate_ints(&w->crate, w->numbers, count);
 }
 
@@ -178,6 +180,7 @@ static void put_own(UsdWriter *w, const SheetPart *part, CrateValue values[USD_O
             ember_colour(step, colours[found]);
             entries[step] = found++;
         }
+
         w->numbers[i] = entries[step];
     }
 
@@ -262,6 +265,7 @@ static void put_stage(UsdWriter *w, int first, int last) {
     const uint32_t count = w->scene->sheet_count;
     char name[USD_NAME];
     const char *only[1] = {name};
+
     usd_name(w->scene->name, name);
 
     const uint32_t root = crate_path(crate, "", false, CRATE_NO_PARENT);
@@ -285,6 +289,7 @@ static void put_stage(UsdWriter *w, int first, int last) {
             usd_sheet_name(w->scene, i, names[i]);
             list[i] = names[i];
         }
+
         const uint32_t group = put_group(w, sheets[0], top, list, count);
         w->time = crate_times(crate, first, (size_t)(last - first) + 1);
         for (uint32_t i = 0; i < count; i++) put_mesh(w, group, i);
@@ -332,6 +337,7 @@ SingeResult usd_write_single(const char *path, const OutputScene *scene, const O
     const SingeAllocator a = {0};
     UsdWriter writer = {.scene = scene, .frames = frames};
     SingeResult result = SINGE_OK;
+
     crate_begin(&writer.crate, a);
 
     CrateValue *kept = store_new(a, frames * each, sizeof *kept);

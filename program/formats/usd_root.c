@@ -131,6 +131,7 @@ static void put_sheet(Root *r, uint32_t sheet) {
         put_subset(r, "burnt", "burning");
         put_subset(r, "fresh", print);
     }
+
     put(r, "        }\n");
 }
 
@@ -152,6 +153,7 @@ static void put_gas(Root *r) {
             put_file(r, r->scene->gas_detail ? "gas_detail" : "gas", frame, ".vdb");
             put(r, ",\n");
         }
+
         put(r, "            }\n        }\n");
     }
 
@@ -200,6 +202,7 @@ static void put_camera(Root *r) {
     const OutputScene *s = r->scene;
     const float height = 36 / s->aspect, focal = 0.5f * height / tanf(0.5f * s->fov);
     float back[3];
+
     for (int i = 0; i < 3; i++) back[i] = s->eye[i] - s->target[i];
     put(r, "\n    def Camera \"camera\"\n    {\n        float2 clippingRange = (0.01, 1000)\n");
     put_float(r, "        float focalLength = ", focal);
@@ -231,6 +234,7 @@ static void put_box(Root *r, const float *vertices, uint32_t count) {
             box[1][c] = i && box[1][c] > p[c] ? box[1][c] : p[c];
         }
     }
+
     put(r, "[");
     put_numbers(r, box[0], 3), put(r, ", "), put_numbers(r, box[1], 3);
     put(r, "]");
@@ -261,6 +265,7 @@ static void put_samples(Root *r, const char *attribute, const float *vertices, u
         array(r, now ? now : vertices, count);
         put(r, ",\n");
     }
+
     put(r, "            }\n");
 }
 
@@ -352,6 +357,7 @@ static void put_shape(Root *r, uint32_t index) {
         put_numbers(r, s->half_size, 3);
         put(r, "\n");
     }
+
     sink_text(&r->sink,
               "            uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:orient\"%s]\n        }\n",
               scaled ? ", \"xformOp:scale\"" : "");

@@ -40,6 +40,7 @@ static void put_entry(Sink *sink, uint32_t sum, size_t size, size_t name, size_t
 /// Adds a file; the bytes are copied.
 static void zip_add(Zip *zip, const char *name, const void *bytes, size_t size) {
     const size_t offset = zip->sink.size, length = strlen(name), head = offset + 30 + length;
+
     // an extra field without meaning is the padding: 4 bytes and its contents
     const size_t extra = (ZIP_ALIGNMENT - (head + 4) % ZIP_ALIGNMENT) % ZIP_ALIGNMENT + 4;
 
@@ -115,6 +116,7 @@ static SingeResult add_files(Zip *zip, const char *path, const OutputScene *scen
     for (uint32_t i = 0; i < scene->sheet_count && !result; i++) {
         Bytes bytes = {0};
         if (!scene->sheets[i].picture) continue;
+
         // its path may be relative to the archive's folder
         char name[8192];
         const char *picture = scene->sheets[i].picture, *slash = strrchr(path, '/');

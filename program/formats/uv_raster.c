@@ -32,6 +32,7 @@ void uv_triangle(int size, const float uv[3][2], UvPixel *draw, void *context) {
             const double c[2] = {x + 0.5, y + 0.5};
             const double w[3] = {uv_turn(c, p[1], p[2]) / area, uv_turn(p[0], c, p[2]) / area,
                                  uv_turn(p[0], p[1], c) / area};
+
             // a centre on a side, within rounding, is in both triangles rather than in none
             if (w[0] < -1e-3 || w[1] < -1e-3 || w[2] < -1e-3) continue;
             const float weight[3] = {(float)w[0], (float)w[1], (float)w[2]};

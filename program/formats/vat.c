@@ -93,6 +93,7 @@ static uint32_t *vat_slot(const Vat *vat, uint32_t sheet, const float rest[3]) {
         hash = (hash ^ bits) * 16777619u;
         hash ^= hash >> 15;
     }
+
     return &vat->table[hash * 2654435761u >> (32 - vat->log)];
 }
 
@@ -172,6 +173,7 @@ static SingeResult take_frame(Vat *vat, int number, const char *path, SingeError
         memcpy(vat->normal[texel], vat->facing[v], sizeof vat->facing[v]);
         vat->position[texel][3] = vat->found[v];
     }
+
     return SINGE_OK;
 }
 
@@ -212,6 +214,7 @@ static void put_values(GlbFile *f, const char *name, const VatCorner *corners, u
         }
         sink_words(&f->data, value, 3);
     }
+
     put_attribute(f, name, begin, count, 3, boxed ? box : NULL);
 }
 
@@ -233,6 +236,7 @@ static bool put_sheet(GlbFile *f, const Vat *vat, uint32_t sheet) {
             next[count - 1] = first[corner.vertex];
             at = first[corner.vertex] = count;
         }
+
         number[i] = at - 1;
     }
 
@@ -248,6 +252,7 @@ static bool put_sheet(GlbFile *f, const Vat *vat, uint32_t sheet) {
             const float uv[2] = {corners[k].uv[0], 1 - corners[k].uv[1]};
             sink_words(&f->data, uv, 2);
         }
+
         put_attribute(f, "TEXCOORD_0", uv_begin, count, 2, NULL);
         uv_begin = f->data.size;
         for (uint32_t k = 0; k < count; k++) {
@@ -256,6 +261,7 @@ static bool put_sheet(GlbFile *f, const Vat *vat, uint32_t sheet) {
                                  ((float)(v / width) + 0.5f) / (float)vat->height};
             sink_words(&f->data, uv, 2);
         }
+
         put_attribute(f, "TEXCOORD_1", uv_begin, count, 2, NULL);
 
         f->meshes.size--; // the last comma
@@ -264,11 +270,13 @@ static bool put_sheet(GlbFile *f, const Vat *vat, uint32_t sheet) {
             static const int cut[6] = {0, 1, 2, 0, 2, 3};
             for (int k = 0; k < 6; k++) sink_u32(&f->data, number[4 * (size_t)c + (size_t)cut[k]]);
         }
+
         sink_text(&f->meshes, "},\"indices\":%u}]}",
                   glb_put_accessor(f, begin, 6 * mesh->cell_count, 1, GLB_OF_CORNERS, NULL));
         sink_text(&f->nodes, "%s{\"mesh\":%u}", f->node_count ? "," : "", f->node_count);
         f->mesh_count++, f->node_count++;
     }
+
     free(corners), free(number), free(first), free(next);
     return count > 0;
 }

@@ -204,6 +204,7 @@ static void put_topology(Writer *w, const VdbFieldInfo *field) {
             set_bit(upper, b[0] / NODE_SIDE, b[1] / NODE_SIDE, b[2] / NODE_SIDE, VDB_UPPER_LOG);
             lower = put_node(w, VDB_LOWER_MASK);
         }
+
         set_bit(lower, b[0] % NODE_SIDE, b[1] % NODE_SIDE, b[2] % NODE_SIDE, VDB_LOWER_LOG);
         leaf_mask(w, leaf, w->at);
         w->at += VDB_LEAF_MASK;
@@ -223,8 +224,10 @@ static void put_grid_metadata(Writer *w, const char *name, bool vector) {
             high[c] = to[c] - 1 > high[c] ? to[c] - 1 : high[c];
             volume *= to[c] - from[c];
         }
+
         cells += volume;
     }
+
     put_u32(w, (w->leaf_count ? 6u : 4u) + w->half);
     if (w->half) {
         put_string(w, "is_saved_as_half_float");
@@ -232,6 +235,7 @@ static void put_grid_metadata(Writer *w, const char *name, bool vector) {
         put_u32(w, 1);
         put_bytes(w, "\1", 1);
     }
+
     put_text(w, "name", name);
     if (vector) put_text(w, "vector_type", "contravariant relative");
     else put_text(w, "class", "fog volume");
@@ -291,6 +295,7 @@ static void put_grid(Writer *w, const char *name, VdbField field, const char *pa
                         put_float(w, value);
                         continue;
                     }
+
                     const uint16_t half = to_half(value);
                     const uint8_t bytes[2] = {(uint8_t)half, (uint8_t)(half >> 8)};
                     put_bytes(w, bytes, 2);
@@ -573,6 +578,7 @@ static SingeResult read_grid(Reader *r, VdbField field) {
         const uint32_t low[3] = {(n >> 10) * SIDE, (n >> 5 & 31) * SIDE, (n & 31) * SIDE};
         if (vdb_bit(nodes, n)) TRY(read_node(&body, &buffers, low, field));
     }
+
     return SINGE_OK;
 }
 

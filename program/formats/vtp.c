@@ -96,6 +96,7 @@ SingeResult pvd_write_root(const char *path, const OutputScene *scene, SingeErro
 
         sink_text(&sink, ".%04d.vtp\"/>\n", frame);
     }
+
     sink_text(&sink, "</Collection>\n</VTKFile>\n");
     return sink_write(&sink, path, error);
 }

@@ -98,6 +98,7 @@ static void see_ground(const Preview *preview, Block *block, int lane) {
     Float3 d = block->direction[lane];
     Point *point = &block->point[lane];
     float distance = hit_ground(preview, block->origin[lane], d);
+
     if (!isfinite(distance)) {
         miss_point(point, preview, d);
         return;
@@ -213,6 +214,7 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
                 fire_until(block->tile, block->x[i] % TILE, block->y[i] % TILE, point->distance, &block->fire_light[i],
                            &block->fire_clear[i]);
             }
+
             fire = block->fire_light[i];
             clear = block->fire_clear[i];
             colour = float3_mad(fire, colour, clear);
@@ -280,6 +282,7 @@ static int find_restless(const Preview *preview, const Block *block, const int *
         more[i] = active[i] && !calm ? -1 : 0;
         count += more[i] != 0;
     }
+
     return count;
 }
 
@@ -298,6 +301,7 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
     if (first == 1 && bare) samples = 1;
 
     bool on = first < samples && find_restless(preview, block, active, bare, more);
+
     // at the rim of a shadow more rays are traced; elsewhere the first are enough
     int rays = block->sunlit && block->shaded ? (bare ? RIM_RAYS : 1) : 0;
     for (int i = 0; i < LANES; i++) taken[i] = on && more[i] ? samples : first;
@@ -313,9 +317,11 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
                     more[i] = 0;
                     taken[i] = s;
                 }
+
                 on = on || more[i];
             }
         }
+
         if (on) add_sample(preview, block, more, bare, s, rays);
     }
 }
@@ -417,6 +423,7 @@ static void *draw_tiles(void *context) {
                 job->draw(job->preview, &block);
             }
     }
+
     return NULL;
 }
 

@@ -145,6 +145,7 @@ void sky_fill(Preview *preview) {
                 total += w;
             }
         }
+
         sky->blurred[cell / SKY_ACROSS][cell % SKY_ACROSS] = float3_scale(sum, 1 / total);
     }
 }

@@ -29,6 +29,7 @@ static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *
     size_t corners = 3 * (size_t)solid->triangle_count, vertices = (size_t)solid->vertex_count + 2;
     uint32_t *first = allocator_resize(allocator, NULL, 0, vertices * sizeof *first);
     uint32_t *fan = allocator_resize(allocator, NULL, 0, corners * sizeof *fan);
+
     facets->normals = allocator_resize(allocator, NULL, 0, corners * sizeof *facets->normals);
     bool ok = first && fan && facets->normals;
 
@@ -47,6 +48,7 @@ static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *
             Float3 other = facets_cross(solid, fan[i]);
             if (float3_dot(other, own) >= FACETS_CREASE * float3_length(other)) sum = float3_add(sum, other);
         }
+
         facets->normals[k] = float3_dot(sum, own) > 0 ? float3_unit_or(sum, own) : own;
 
         Float3 v = float3_load(solid->vertices + 3 * (size_t)triangles[k]);

@@ -71,6 +71,7 @@ void bloom_apply(Preview *preview) {
             for (int j = y * SHRINK; j < (y + 1) * SHRINK && j < height; j++)
                 for (int i = x * SHRINK; i < (x + 1) * SHRINK && i < width; i++) {
                     Float3 c = float3_scale(preview->picture[(size_t)j * (size_t)width + (size_t)i], exposure);
+
                     // only glow, not a white sheet in the sun
                     float peak = maxf(c.x, maxf(c.y, c.z)), over = maxf(peak - 1.1f, 0) / maxf(peak, 1e-6f);
                     sum = float3_mad(sum, c, over);

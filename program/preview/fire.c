@@ -114,6 +114,7 @@ static void mark_all(Fire *fire) {
                                 .flame;
                     max = maxf(max, 0.125f * sum);
                 }
+
                 if (!(max > FLAME_SEEN)) continue;
 
                 mark_bricks(fire, x, y, z, wide, FIRE_FLAME);
@@ -123,6 +124,7 @@ static void mark_all(Fire *fire) {
                     low[c] = position[c] > fine ? position[c] - fine : 0;
                     high[c] = position[c] + fine < fire->size[c] ? position[c] + fine : fire->size[c] - 1;
                 }
+
                 for (int k = low[2]; k <= high[2]; k++)
                     for (int j = low[1]; j <= high[1]; j++)
                         memset(&fire->burns[fire_at(fire, low[0], j, k)], 1, (size_t)(high[0] - low[0] + 1));
@@ -196,6 +198,7 @@ static bool make_room(const Preview *preview, Fire *fire) {
         fire->brick_capacity = bricks;
         free_cells(preview, &old);
     }
+
     return fire->cells && fire->seen && fire->burns && fire->source && fire->roots;
 }
 
@@ -203,6 +206,7 @@ static SingeResult check_gas(const SingeGas *gas, SingeError *error) {
     const uint32_t *n = gas->size;
     bool good = n[0] <= 4096 && n[1] <= 4096 && n[2] <= 4096 && n[1] && n[2] &&
                 (uint64_t)n[0] * n[1] * n[2] <= GAS_CELL_LIMIT && gas->cell > 1e-6f && gas->cell < 1e3f;
+
     for (int c = 0; c < 3; c++) good = good && fabsf(gas->origin[c]) < 1e4f;
     good = good && gas->flame && gas->smoke && gas->velocity;
 
@@ -284,6 +288,7 @@ void fire_light_smoke(Preview *preview) {
                 Float3 p = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), fire->cell);
                 for (int k = 0; k < preview->scene.light_count; k++) {
                     Float3 to = float3_sub(float3(lights->x[k], lights->y[k], lights->z[k]), p);
+
                     // scattered equally in all directions: a quarter of the reflection of white paper
                     cell->glow += 0.25f * lights->strength[0][k] / (float3_dot(to, to) + lights->softness[k] + 4e-4f);
                 }

@@ -194,6 +194,7 @@ Matter fire_matter(const Preview *preview, Float3 p, int what) {
     const Fire *fire = &preview->fire;
     Matter m = {{0, 0, 0}, 0, false};
     FireCell cell;
+
     if (what & FIRE_FLAME) {
         cell = fire_sample(fire, p, what, &m.light, &m.dense);
         m.flame = m.light.z > 0;

@@ -80,10 +80,12 @@ SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layer
             int a[2], b[2];
             glow_walk(&picture, x, y, dx, dy, a);
             glow_walk(&picture, x, y, -dx, -dy, b);
+
             // between the centres of the end pixels, plus half of each
             Float3 across = float3_sub(glow_position(&picture, a[0], a[1]), glow_position(&picture, b[0], b[1]));
             min = minf(min, float3_length(across) + layers->depth[pixel] * picture.camera.pixel);
         }
+
         values[lit++] = min;
     }
 

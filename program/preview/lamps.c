@@ -34,6 +34,7 @@ static void add_to_cluster(Cluster *clusters, Float3 low, Float3 high, Float3 po
     int cell[3];
     float at[3] = {(position.x - low.x) / maxf(size.x, 1e-6f), (position.y - low.y) / maxf(size.y, 1e-6f),
                    (position.z - low.z) / maxf(size.z, 1e-6f)};
+
     for (int i = 0; i < 3; i++) cell[i] = (int)clampf(at[i] * GRID, 0, GRID - 1);
     Cluster *cluster = &clusters[(cell[2] * GRID + cell[1]) * GRID + cell[0]];
     cluster->position = float3_mad(cluster->position, position, weight);
@@ -168,6 +169,7 @@ static Float3 lamps_gather(const EmberLights *l, const Point *point, int count, 
         Four x = four_load(l->x + k) - p.x, y = four_load(l->y + k) - p.y, z = four_load(l->z + k) - p.z;
         Four d2 = x * x + y * y + z * z + four_load(l->softness + k), cosine = n.x * x + n.y * y + n.z * z;
         for (int i = 0; i < 4; i++) cosine[i] /= sqrtf(d2[i]);
+
         // wrapped: clusters have an extent that points do not, and their own sheet must be lit, too
         Four seen = four_max(four_max((cosine + 0.2f) * (1 / 1.2f), -point->transmission * cosine), zero) / d2;
         r += seen * four_load(l->strength[0] + k);
@@ -176,6 +178,7 @@ static Float3 lamps_gather(const EmberLights *l, const Point *point, int count, 
         seen *= four_load(l->power + k);
         memcpy(weight + k, &seen, sizeof seen);
     }
+
     return float3(four_sum(r), four_sum(g), four_sum(b));
 }
 
@@ -287,6 +290,7 @@ static float lamps_smooth_line(const Lamp *lamp, const float *values, size_t val
         sum += weight * *(const float *)(const void *)((const char *)values + k * stride * (ptrdiff_t)values_stride);
         total += weight;
     }
+
     return total > 0 ? sum / total : *values;
 }
 

@@ -43,6 +43,7 @@ void camera_ray(const Camera *camera, float x, float y, const float disc[2], Flo
         *origin = float3_add(camera->eye, aside);
         d = float3_mad(d, aside, -1 / camera->focus);
     }
+
     *direction = float3_scale(d, 1 / float3_length(d));
 }
 

@@ -12,6 +12,7 @@ static const float occluded_sky = 0.22f; ///< light from occluded directions
 
 Float3 light_reflect(const Point *point, Float3 l) {
     float cosine = float3_dot(point->normal, l), side = float3_dot(point->geometric, l);
+
     // transmitted light has been scattered often, so it is warmer
     const Float3 warm = {1.35f, 1.12f, 0.80f};
     if (side <= 0) return float3_scale(float3_mul(point->albedo, warm), point->transmission * maxf(-cosine, 0));
@@ -29,6 +30,7 @@ Float3 light_reflect(const Point *point, Float3 l) {
         float lobe = point->gloss * p * p;
         out = float3_add(out, float3(lobe, lobe, lobe));
     }
+
     return out;
 }
 
@@ -99,6 +101,7 @@ static bool sky_may_be_hidden(const Preview *preview, Float3 p, float reach) {
         Float3 to = float3_sub(shape_centre(&preview->shapes[k]), p);
         if (float3_dot(to, to) < near * near) return true;
     }
+
     return false;
 }
 
@@ -107,6 +110,7 @@ static bool sun_may_be_hidden(const Preview *preview, Float3 p, float margin) {
     const PreviewScene *scene = &preview->scene;
     Float3 sun = preview->sun;
     float spread = 1.5f * preview->sun_spread, rise = maxf(scene->high.z - p.z, 0) / maxf(sun.z, 0.02f);
+
     if (scene->triangle_count && tracer_near(scene, p, sun, INFINITY, spread * rise + margin)) return true;
 
     for (uint32_t k = 0; k < preview->shape_count; k++) {
@@ -116,6 +120,7 @@ static bool sun_may_be_hidden(const Preview *preview, Float3 p, float margin) {
         float near = extent + margin + spread * maxf(along + extent, 0);
         if (along > -extent - margin && float3_dot(aside, aside) < near * near) return true;
     }
+
     return false;
 }
 
@@ -169,6 +174,7 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
         if (!light_reaches(block, active, i)) continue;
         const Point *point = &block->point[i];
         Float3 ambient = sky_ambient(&preview->sky, point->normal);
+
         // thin paper also transmits light from its other side
         if (point->transmission > 0)
             ambient =

@@ -24,6 +24,7 @@ static void include(const Preview *preview, Float3 p, Rectangle *r) {
     const Camera *camera = &preview->camera;
     Float3 d = float3_sub(p, camera->eye);
     float depth = float3_dot(d, camera->forward);
+
     if (!(depth > 1e-3f * camera->reach + camera->lens)) {
         *r = everywhere;
         return;
@@ -62,6 +63,7 @@ void mask_fill(Preview *preview) {
             for (int end = 0; moves && end < 2; end++) include(preview, float3_load(scene->moved[end][v]), &r);
             if (!moves) include(preview, float3_load(scene->positions[v]), &r);
         }
+
         mark(preview, &r);
     }
 

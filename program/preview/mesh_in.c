@@ -65,6 +65,7 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
         float ash = clampf(finite_or(surface->ash_fraction[i], 0), 0, 1);
         float fuel = clampf(finite_or(surface->mass[i], 1) - charred - ash, 0, 1);
         if (charred > 0) out->burn = mixf(out->burn, CHAR_LEAF * (1 - fuel), charred / (charred + 2 * ash));
+
         // char without fuel glows without a flame; false for NaN
         if (!(surface->mass[i] - surface->char_fraction[i] - surface->ash_fraction[i] > 0.01f)) out->flaming = 0;
     }
@@ -214,11 +215,13 @@ SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeErro
     scene->vertex_count = vertices;
     for (uint32_t i = 0; i < vertices; i++) {
         PaperVertex *v = &scene->vertices[i];
+
         // a triangle of area A has edges of about sqrt(2 A)
         v->spacing = v->spacing > 0 ? sqrtf(2 * v->gradient / v->spacing) : 0;
         v->heat_gradient = v->gradient > 0 ? float3_length(float3_load(v->warming)) / v->gradient : 0;
         v->gradient = v->gradient > 0 ? float3_length(float3_load(v->slope)) / v->gradient : 0;
         v->rim = 1 - stepf(1.6f * PI_F, 1.95f * PI_F, v->rim);
+
         // no triangle of the scene uses these; the builder still reads them
         float *p = scene->positions[i];
         if (near_enough(p)) continue;

@@ -108,6 +108,7 @@ static SingeResult check_shapes(const PreviewShape *shapes, uint32_t count, Sing
         if (!good)
             return preview_refuse(error, i, "shape: kind, size, position, rotation or temperature is out of range");
     }
+
     return SINGE_OK;
 }
 

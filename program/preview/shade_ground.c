@@ -25,6 +25,7 @@ static Plank find_plank(uint32_t seed, float x, float y) {
     int column = noise_floor(x / PLANK_LENGTH + offset, &along);
     uint32_t key = hash_u32((uint32_t)row * 0x9e3779b1u + (uint32_t)column * 0x85ebca6bu + seed);
     float side = minf(across, 1 - across) * PLANK_WIDTH, end = minf(along, 1 - along) * PLANK_LENGTH;
+
     return (Plank){.along = along * PLANK_LENGTH,
                    .across = (across - 0.5f) * PLANK_WIDTH,
                    .edge = minf(side, end),
@@ -60,6 +61,7 @@ static void wood(const Preview *preview, Float3 position, float footprint, Table
     float fibre = noise2(u * 9, (position.y + 0.4f * bow) * 520, seed + 3) * visible(0.0022f, footprint);
     float pores = noise2(u * 75, (position.y + 0.4f * bow) * 1700, seed + 4) * visible(0.0008f, footprint);
     float hair = noise2(u * 16, position.y * 2100, seed + 7) * visible(0.0006f, footprint);
+
     fibre += 0.8f * noise2(u * 14, (position.y + 0.4f * bow) * 1100, seed + 8) * visible(0.001f, footprint);
     float blotch = noise2(u * 3.1f, p.across * 14, seed + 5), wear = noise2(position.x * 5, position.y * 5, seed + 6);
     float value = 1.10f + 0.34f * (p.tone - 0.5f) - 0.50f * late + 0.055f * fibre + 0.10f * blotch + 0.05f * wear;

@@ -74,6 +74,7 @@ static float capsule(const PreviewShape *shape, Float3 o, Float3 d, float near, 
             *normal = float3_scale(float3_mad(offset, d, t), 1 / r);
         }
     }
+
     return best;
 }
 

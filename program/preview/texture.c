@@ -44,6 +44,7 @@ SingeResult texture_create(Preview *preview, Texture *texture, const Image *imag
         texture->count++;
         texture_halve(preview, texture, level, out);
     }
+
     return SINGE_OK;
 }
 

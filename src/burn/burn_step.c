@@ -28,6 +28,7 @@ static void mark_ignited(void *context, int begin, int end) {
                 count++;
             }
         }
+
         job->partial[block] = count;
     }
 }

@@ -102,6 +102,7 @@ static void lose_mass(void *context, int begin, int end) {
                 memset(burn->release + first, 0, (run - first) * sizeof *burn->release);
                 continue;
             }
+
             for (uint32_t i = first; i < run; i++) {
                 float excess = temperature[i] - field_at(matter->ignition_temperature, i);
                 float ceiling = field_at(matter->rate_ceiling, i), before = burn->mass[i];
@@ -109,6 +110,7 @@ static void lose_mass(void *context, int begin, int end) {
                     burn->burn_rate[i] = burn->release[i] = 0;
                     continue;
                 }
+
                 react(job, i, excess > ceiling ? ceiling : excess); // NaN stays NaN
                 float after = burn->mass[i];
                 if (after < field_at(matter->mass_loss, i) && burn->time_burnt[i] < 0) burn->time_burnt[i] = job->time;

@@ -99,6 +99,7 @@ static void shrink_cells(void *context, int begin, int end) {
                 float in_plane = red_in_plane(matter, &shell->springs[SINGE_RED], s, shell_centre(shell, cell));
                 shrink_spring(job, SINGE_RED, s, centre, corner[i], in_plane);
             }
+
             if ((burns[i] | burns[next]) && (other == SHELL_NONE || cell < other))
                 shrink_spring(job, SINGE_BLUE, springs->blue[i], corner[i], corner[next], 1);
             if (centre_burns && other != SHELL_NONE && (cell < other || !(burn_rate[beyond] > 0)))

@@ -200,6 +200,7 @@ void gas_advect(GasPass *pass) {
     GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     double fastest = 0;
+
     gas_planes(pass, grid, advect_look);
     for (int k = 0; k < grid->n[2]; k++) fastest = plan->partial[k] > fastest ? plan->partial[k] : fastest;
 

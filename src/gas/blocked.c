@@ -72,6 +72,7 @@ void gas_blocked(GasPass *pass) {
                 at[q] = (int)(position[q] + 1) - 1;
                 part[q] = position[q] - (float)at[q];
             }
+
             float *open = plan->open[d] + gas_at(grid, at[0], at[1], at[2]);
             open[0] += share * (1 - part[e]) * (1 - part[f]);
             open[grid->stride[e]] += share * part[e] * (1 - part[f]);

@@ -38,6 +38,7 @@ static void flame_planes(void *context, int begin, int end) {
                 expansion[i] = burnt / GAS_HEAT;
                 flame[i] = burnt * shown;
                 smoke[i] = (smoke[i] + burnt * sooty) * thin;
+
                 // flush small values to 0: denormal numbers are slow
                 fuel[i] = fuel[i] > FLAME_FUEL_MIN ? fuel[i] : 0;
                 L[i] = L[i] > FLAME_LIGHTNESS_MIN ? L[i] < GAS_LIGHTEST ? L[i] : GAS_LIGHTEST : 0;

@@ -36,6 +36,7 @@ static void gas_look(void *context, int begin, int end) {
                 left |= (L[c + (size_t)i] > REST_LIGHTNESS) | (fuel[c + (size_t)i] > REST_FUEL) |
                         (smoke[c + (size_t)i] > REST_SMOKE);
         }
+
         pass->plan->hot[k] = left;
     }
 }
@@ -46,6 +47,7 @@ static bool gas_is_left(const GasPass *pass) {
     const GasGrid *grid = &plan->grid;
     GasTurn *to = pass->to;
     int left = 0;
+
     gas_planes(pass, grid, gas_look);
     for (int k = 0; k < grid->n[2]; k++) left |= plan->hot[k];
     if (left) return true;
@@ -119,6 +121,7 @@ static void show_planes(void *context, int begin, int end) {
     const Show *show = context;
     const GasPlan *plan = show->pass->plan;
     const GasGrid *grid = &plan->grid;
+
     float *const *field = show->turn->field, ambient = plan->settings.ambient_temperature;
     const float *wind = show->pass->wind;
     size_t at = (size_t)begin * (size_t)grid->n[0] * (size_t)grid->n[1];

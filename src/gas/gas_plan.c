@@ -46,6 +46,7 @@ static double plan_fit(GasPlan *plan, const float low[3], const float high[3], f
         plan->grid.n[d] = count < 1e6 ? (int)count : 1000000;
         plan->origin[d] = low[d] - (float)lower * cell;
     }
+
     plan->cell = cell;
     return cells;
 }
@@ -63,8 +64,10 @@ static void plan_lay(GasPlan *plan, const Shell *shell) {
             low[d] = first || x < low[d] ? x : low[d];
             high[d] = first || x > high[d] ? x : high[d];
         }
+
         first = false;
     }
+
     for (int d = 0; d < 3; d++) diagonal += (high[d] - low[d]) * (high[d] - low[d]);
 
     // the requested cell size, or one in proportion; larger until the grid fits the limits
@@ -88,6 +91,7 @@ static void plan_lay(GasPlan *plan, const Shell *shell) {
             even = even && grid.n[d] % 2 == 0 && grid.n[d] >= PLAN_COARSEST;
             half[d] = grid.n[d] / 2;
         }
+
         grid = plan_grid(half);
     }
 }
@@ -123,6 +127,7 @@ static size_t plan_scratch(GasPlan *plan, float *base) {
         level->rhs = gas_take(base, &used, level->grid.cells);
         level->p = l ? gas_take(base, &used, level->grid.cells) : NULL; // the finest is the pressure itself
     }
+
     for (int f = 0; f < 3; f++) plan->view[f] = gas_take(base, &used, plan->view_cells);
     plan->view_velocity = (float(*)[3])gas_take(base, &used, 3 * plan->view_cells);
     return used;
@@ -166,6 +171,7 @@ SingeResult gas_plan_create(Memory *memory, const Shell *shell, const GasSetting
         gas_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
+
     for (int t = 0; t < 2; t++) plan_turn(plan, plan->block[t], &plan->turn[t]);
     plan_scratch(plan, plan->scratch);
 

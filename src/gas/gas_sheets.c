@@ -128,6 +128,7 @@ void gas_feed(GasPass *pass) {
                 weight[e] *= up ? part[d] : 1 - part[d];
                 inside = inside && c >= 0 && c < plan->grid.n[d];
             }
+
             cell[e] = gas_at(&plan->grid, at[0] + (e & 1), at[1] + (e >> 1 & 1), at[2] + (e >> 2));
             if (!inside || plan->solid[cell[e]]) weight[e] = 0;
             sum += weight[e];
@@ -201,6 +202,7 @@ void gas_meet(GasPass *pass) {
     const float *sheet = pass->state->heat->temperature, *gas = pass->to->temperature;
     float volume = plan->cell * plan->cell * plan->cell, scale = pass->dt / (GAS_HEAT * volume), position[3];
     Float3 x;
+
     pool_for(pass->pool, (int)plan->particles, POOL_BLOCK, sheets_meet, pass);
 
     // the gas loses the heat that it gives to the sheets in a step

@@ -51,6 +51,7 @@ static void bound_means(void *context, int begin, int end) {
                     inflow += conductance * (bound_within(pass, (double)plan->star[matrix->column[entry]]) - star);
                     sum += conductance;
                 }
+
                 double all = (double)plan->measure[i] + dt * sum;
                 plan->next[i] = (float)(all > 0 ? bound_within(pass, star + dt * inflow / all) : star);
                 if (!bound_of_surface(pass, i)) continue;
@@ -90,6 +91,7 @@ static void bound_shares(void *context, int begin, int end) {
                 plan->next[i] = heat_round(T, random_hash(i, low, high, HEAT_SEED));
             }
         }
+
         plan->partial[block][0] = made;
     }
 }

@@ -100,6 +100,7 @@ static void conduct_direction(void *context, int begin, int end) {
     HeatPlan *plan = pass->plan;
     const uint8_t *before = plan->rest.awake[!pass->turn];
     uint8_t *awake = plan->rest.awake[pass->turn];
+
     float *restrict search = plan->search, *restrict residual = plan->residual, *restrict correction = plan->correction;
     const float *restrict inverse = plan->matrix.inverse;
 
@@ -132,6 +133,7 @@ static void conduct_product(void *context, int begin, int end) {
                 }
             }
         }
+
         plan->partial[block][0] = sum;
     }
 }
@@ -151,6 +153,7 @@ static void conduct_advance(void *context, int begin, int end) {
                 sum += (double)r * r * plan->matrix.inverse[i];
             }
         }
+
         plan->partial[block][0] = sum;
     }
 }

@@ -121,6 +121,7 @@ static void heat_exchange(void *context, int begin, int end) {
                 for (run = i + 1; run < last && sheet[run] == sheet[i];) run++;
                 heat_exchange_run(pass, i, run, ledger);
             }
+
             for (uint32_t i = first; busy && i < last; i++)
                 warm |= plan->alive[i] & ((plan->star[i] != ambient) | (plan->delta[i] != 0));
             plan->rest.warm[g] = warm != 0;
@@ -156,6 +157,7 @@ SingeResult heat_step(HeatPlan *plan, const StepContext *context, const SourceLi
                      .h = context->h,
                      .dt = context->h * plan->settings.pace};
     double made = 0;
+
     heat_plan_follow(plan, shell, state);
     heat_matrix_follow(plan, shell, state->ablate, pass.dt);
 

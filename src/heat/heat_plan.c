@@ -124,6 +124,7 @@ static bool follow_splits(HeatPlan *plan, const Shell *shell, const StateInput *
         for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
             uint32_t cell = shell->fan[f];
             heat_operator_torn_cell(plan, shell, cell);
+
             // a spring that was spare, and counted as gone, is alive; if it is not, heat_matrix_follow will find out
             for (int i = 0; i < 4; i++)
                 if (shell->cell_springs[cell].blue[i] >= ordinary)

@@ -43,6 +43,7 @@ static void matrix_reserve(const HeatPlan *plan, const Shell *shell, uint32_t *l
             if (v < ordinary) ++*room;
             else *room = SPARE;
         }
+
         if (sheet->material.heat_operator != SINGE_HEAT_SURFACE) continue;
         for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
             const CellSprings *springs = &shell->cell_springs[c];
@@ -128,6 +129,7 @@ SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shel
         matrix_fill_up(matrix, n);
         matrix_scatter(plan, shell, length, true);
     }
+
     FREE(memory, length, n);
     if (!ok) return SINGE_ERROR_MEMORY;
 
@@ -287,6 +289,7 @@ void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *a
                     uint32_t back = heat_entry(matrix, other, j);
                     if (matrix->column[back] == i) matrix->value[back] = 0;
                 }
+
                 matrix_invert(plan, other);
             }
 

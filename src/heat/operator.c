@@ -127,6 +127,7 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
     double w[6];
     uint32_t centre = shell_centre(shell, cell);
     double area = (double)shell->matter.area[centre];
+
     operator_weights(shell, cell, w);
 
     // sides and diagonals, by the cell's weights

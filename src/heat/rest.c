@@ -10,6 +10,7 @@ static void list_near(HeatPlan *plan, uint32_t group, uint32_t *seen) {
     const HeatMatrix *matrix = &plan->matrix;
     uint32_t count = 0, begin = matrix->first[group * (HEAT_GROUP / HEAT_ROWS)];
     uint32_t end = matrix->first[(heat_group_last(plan, group) - 1) / HEAT_ROWS + 1];
+
     seen[group] = group + 1;
     for (uint32_t k = begin; k < end && count <= HEAT_NEAR; k++) {
         uint32_t other = matrix->column[k] / HEAT_GROUP;

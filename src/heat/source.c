@@ -109,6 +109,7 @@ SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceD
         def.path_count = 1;
         def.path = &still;
     }
+
     TRY(source_check(&def, error));
     uint32_t generation = source->generation;
     *source = (Source){.generation = generation, .def = def};
@@ -208,6 +209,7 @@ static void source_ball_task(void *context, int begin, int end) {
     const SingeSourceDef *def = &job->source->def;
     float reach = def->radius + def->falloff, square = reach * reach;
     const float(*position)[4] = (const float(*)[4])job->pass->state->dynamics->position;
+
     for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
         Float3 away = float3_sub(float3_load(position[i]), job->pose.position);
         float d2 = float3_dot(away, away);
@@ -287,10 +289,12 @@ static void source_contact_task(void *context, int begin, int end) {
                 Float3 b = float3_sub(float3_load(x[at[3]]), float3_load(x[at[1]]));
                 sheet = float3_add(sheet, float3_cross(a, b));
             }
+
             float outward = corner ? -1 : 1;
             bool faces = outward * float3_dot(sheet, away) <= SOURCE_LEVEL * float3_length(sheet);
             if (def->sides != SINGE_SIDES_BOTH ? !faces : faces) continue;
         }
+
         source_add(plan, i, def->conductance, def->temperature);
     }
 }
@@ -305,12 +309,14 @@ static void source_gas_task(void *context, int begin, int end) {
     const float *temperature = job->pass->heat->temperature, ambient = plan->settings.ambient_temperature;
     const float *mass = job->pass->state->burn->mass, *fuel = job->pass->state->burn->fuel;
     const Matter *matter = &job->pass->shell->matter;
+
     for (int i = begin; i < end; i++)
         if (gas->conductance[i] > 0 && gas->temperature[i] > temperature[i] && plan->alive[i]) {
             source_add(plan, (uint32_t)i, gas->conductance[i], gas->temperature[i]);
             float convection = field_at(matter->convection, (uint32_t)i), hot = gas->temperature[i], T = temperature[i];
             float slower = shell_glow_slowing(matter, (uint32_t)i, fuel[i]);
             float back = convection * (T - ambient) / slower;
+
             // the convective loss: at most what heats the particle to the gas's temperature; or the convective gain, if
             // it is colder than the ambient air
             float left = fmaxf(mass[i], field_at(matter->loss_mass_floor, (uint32_t)i));
@@ -340,6 +346,7 @@ void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *
         SourceJob job = {.pass = pass, .collider = collider, .pose = path_pose(&collider->path, time)};
         pool_for(pass->pool, (int)plan->particles, POOL_BLOCK, source_contact_task, &job);
     }
+
     if (pass->state->gas->warm)
         pool_for(pass->pool, (int)plan->particles, POOL_BLOCK, source_gas_task, &(SourceJob){.pass = pass});
 }

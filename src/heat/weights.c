@@ -185,6 +185,7 @@ void heat_cell_weights(const Float3 x[4], const double across[4], double w[6]) {
         weights_mean(springs, lambda, k, mean, slope);
         for (int n = 0; n < ITERATIONS && moved > 1e-9 && weights_length(mean[0], mean[1]) > 1e-12; n++) {
             double before[2] = {lambda[0], lambda[1]};
+
             // Newton step, of length 1 at most: the mean is the gradient of a convex function of lambda
             double a = slope[0] + 1e-9, b = slope[1], c = slope[2] + 1e-9, determinant = a * c - b * b;
             double u = (b * mean[1] - c * mean[0]) / determinant, v = (b * mean[0] - a * mean[1]) / determinant;

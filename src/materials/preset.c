@@ -23,6 +23,7 @@ SingeResult singe_material_preset(const char *name, SingeMaterialDef *def, Singe
         return refuse(error, SINGE_ERROR_ARGUMENT, "material", -1, "there is no material of this name; there are: %s",
                       names);
     }
+
     const size_t size = def->struct_size;
     if (size < sizeof size)
         return refuse(error, SINGE_ERROR_ARGUMENT, "material", -1,

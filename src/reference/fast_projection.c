@@ -47,6 +47,7 @@ static double projection_rows(void *task, int begin, int end) {
     const SpringGroup *group = job->group;
     const double *w = network->inverse_mass;
     double sum = 0;
+
     for (int k = begin; k < end; k++) {
         double *g = network->gradient[k];
         g[0] = g[1] = g[2] = network->scale[k] = network->residual[k] = 0;

@@ -35,6 +35,7 @@ static void hooke_forces(void *task, int begin, int end) {
 
         for (int i = 0; i < 3; i++) {
             double v = (double)vb[i] - (double)va[i];
+
             // positions before the substep: x~ less the displacement by v~; held particles have v~ too
             d[i] = xb[i] - xa[i] - job->h * v;
             square += d[i] * d[i];

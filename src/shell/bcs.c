@@ -231,6 +231,7 @@ static SingeResult spring_colour(Memory *memory, const HalfEdges *mesh, Shell *s
         for (int i = 0; i < (colour == SINGE_YELLOW ? 2 : 4); i++)
             if (slot[i] != SHELL_NONE) slot[i] = number[slot[i]];
     }
+
     FREE(memory, loose.ends, count);
     FREE(memory, loose.mate, (size_t)2 * count);
     FREE(memory, number, count);
@@ -279,6 +280,7 @@ SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t so
         for (uint32_t i = 0; i < 4; i++) shell->cell_springs[c].red[i] = 4 * c + i;
         for (uint32_t i = 0; i < 2; i++) shell->cell_springs[c].yellow[i] = 2 * c + i;
     }
+
     for (int colour = 0; colour < SINGE_COLOUR_COUNT && !result; colour++)
         result = spring_colour(memory, &mesh, shell, colour, counts[colour], error);
     half_edge_free(memory, &mesh);

@@ -43,6 +43,7 @@ static bool order_by_breadth(Memory *memory, const ItemNodes *items, uint32_t *o
                 }
             }
     }
+
     SINGE_ASSERT(!done || tail == items->item_count);
     FREE(memory, opened, nodes);
     FREE(memory, seen, items->item_count);
@@ -76,6 +77,7 @@ uint32_t family_colour(Memory *memory, const ItemNodes *items, uint32_t *family)
             if (family[item] >= used) used = family[item] + 1;
         }
     }
+
     FREE(memory, order, items->item_count);
     FREE(memory, taken, items->node_count);
     return ready ? used : 0;

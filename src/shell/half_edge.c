@@ -72,6 +72,7 @@ static SingeResult match_edges(Memory *memory, Shell *shell, HalfEdges *mesh, Si
         second->blue[b & 3] = first->blue[a & 3];
         first->green[a & 3] = second->green[b & 3] = mesh->shared_count++;
     }
+
     FREE(memory, by_high, count);
     FREE(memory, order, count);
     FREE(memory, slot, slots);

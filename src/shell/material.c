@@ -56,6 +56,7 @@ SingeResult material_check_scalars(const SingeMaterialDef *material, const char 
             return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s must be %s", sheet, rule->name,
                              rule->range.words);
     }
+
     if (material->thickening > 0 && material->thickening < 1)
         return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': thickening must be 0, or 1 or more",
                          sheet);
@@ -69,12 +70,14 @@ float shell_sample_texture(const SingeTexture *texture, float u, float v) {
     double limit[2] = {texture->width - 1.0, texture->height - 1.0};
     double at[2] = {(double)u * texture->width - 0.5, (1 - (double)v) * texture->height - 0.5}, part[2];
     size_t low[2], high[2];
+
     for (int k = 0; k < 2; k++) {
         at[k] = !(at[k] > 0) ? 0 : at[k] < limit[k] ? at[k] : limit[k];
         low[k] = (size_t)at[k];
         high[k] = at[k] < limit[k] ? low[k] + 1 : low[k];
         part[k] = at[k] - (double)low[k];
     }
+
     const float *top = texture->values + low[1] * (size_t)texture->width;
     const float *bottom = texture->values + high[1] * (size_t)texture->width;
     double upper = (1 - part[0]) * (double)top[low[0]] + part[0] * (double)top[high[0]];
@@ -137,6 +140,7 @@ static float field_value(const ParamField *field, const uint32_t *vertices, int 
         for (int k = 0; k < 3; k++) position[k] += (double)field->source->position[v][k] / count;
         if (field->attribute) f += (double)field->attribute[v] / count;
     }
+
     if (follows->kind == SINGE_FIELD_TEXTURE)
         f = (double)shell_sample_texture(&follows->texture, (float)uv[0], (float)uv[1]);
     if (follows->kind == SINGE_FIELD_NOISE)
@@ -164,6 +168,7 @@ static SingeResult evaluate(const ParamField *field, const ParamRule *rule, floa
     const SheetSource *source = field->source;
     const Sheet *sheet = &source->sheet;
     uint32_t begin, end;
+
     rule_range(rule, sheet, &begin, &end);
     for (uint32_t i = begin; i < end; i++) {
         uint32_t cell = i - sheet->vertex_count;
@@ -171,6 +176,7 @@ static SingeResult evaluate(const ParamField *field, const ParamRule *rule, floa
             i < sheet->vertex_count ? field_value(field, &i, 1, 0) : field_value(field, source->cells[cell], 4, cell);
         TRY(check_value(rule, sheet, i, values[i], error));
     }
+
     return SINGE_OK;
 }
 
@@ -202,6 +208,7 @@ SingeResult material_check_values(const SheetSource *source, SingeError *error) 
         if (!values) TRY(check_value(rule, &source->sheet, begin, source->value[rule->param], error));
         for (uint32_t i = begin; values && i < end; i++) TRY(check_value(rule, &source->sheet, i, values[i], error));
     }
+
     return check_matter(source, error);
 }
 
@@ -217,11 +224,13 @@ SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSou
             return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for sheet '%s'", source->sheet.name);
         TRY(field_open(def, rule, &field, error));
         TRY(evaluate(&field, rule, *values, error));
+
         // the rules of one parameter, one per layer, are consecutive; a single value is kept if all are the same to the
         // bit
         if (r + 1 < RULE_COUNT && param_rules[r + 1].param == rule->param) continue;
         source->value[rule->param] = (*values)[0];
         if (memcmp(*values, *values + 1, (total - 1) * sizeof **values) == 0) FREE(memory, *values, total);
     }
+
     return check_matter(source, error);
 }

@@ -194,6 +194,7 @@ bool measure_fibres(Memory *memory, Shell *shell) {
             fibre_add(shell, &frame, SINGE_BLUE, springs->blue[i], alone ? 1 : 0.5f);
             if (!alone) fibre_add(shell, &frame, SINGE_GREEN, springs->green[i], 0.5f);
         }
+
         for (int i = 0; i < 2; i++) fibre_add(shell, &frame, SINGE_YELLOW, springs->yellow[i], 1);
     }
 

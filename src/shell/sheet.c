@@ -32,6 +32,7 @@ static bool read_def(const SingeSheetDef *def, SingeSheetDef *out) {
         memcpy(&out->material, bytes + head, sheet_min(inner, sizeof out->material));
         memcpy((char *)out + tail, bytes + head + inner, sheet_min(size - head - inner, sizeof *out - tail));
     }
+
     out->struct_size = sizeof *out;
     out->material.struct_size = sizeof out->material;
     return true;
@@ -91,6 +92,7 @@ static SingeResult check_vertices(const SingeSheetDef *def, const char *name, Si
         if (def->source_vertex && (def->source_vertex[v] < -1 || def->source_vertex[v] >= (int64_t)def->source_count))
             return element_fail(name, "vertex", v, "has a source_vertex that is not below source_count", error);
     }
+
     for (size_t i = 0; i < 4 * (size_t)def->cell_count && def->corner_source_vertex; i++)
         if (def->corner_source_vertex[i] < -1 || def->corner_source_vertex[i] >= (int64_t)def->source_count)
             return element_fail(name, "cell", (uint32_t)(i / 4), "has a source vertex that is not below source_count",
@@ -126,9 +128,11 @@ static SingeResult check_cells(const SingeSheetDef *def, const char *name, Singe
                     return error_set(error, SINGE_ERROR_MESH, "sheet", c, "sheet '%s': cell %u uses vertex %u twice",
                                      name, c, corners[i]);
         }
+
         const char *fault = shape_fault(def, corners);
         if (fault) return element_fail(name, "cell", c, fault, error);
     }
+
     return SINGE_OK;
 }
 
@@ -145,6 +149,7 @@ static bool mass_fits(const SheetSource *source, uint32_t cell) {
         if (!in_float(mass) || !in_float(mass * (double)sheet_param(source, PARAM_SPECIFIC_HEAT, particle)))
             return false;
     }
+
     return true;
 }
 

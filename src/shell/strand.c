@@ -105,6 +105,7 @@ static uint32_t find_families(Memory *memory, const Trace *trace, uint32_t parti
             for (uint32_t k = begin; k < end; k++) items.nodes[total++] = step_from(trace->springs, trace->steps[k]);
             if (!trace->ring[s]) items.nodes[total++] = step_to(trace->springs, trace->steps[end - 1]);
         }
+
         items.first[strands] = total;
         families = family_colour(memory, &items, of_item);
     }
@@ -167,6 +168,7 @@ SingeResult strand_build(Memory *memory, uint32_t particle_count, const LooseSpr
             if (!trace.done[s]) trace_from(&trace, 2 * s);
         done = arrange(memory, particle_count, &trace, set, number);
     }
+
     FREE(memory, trace.steps, count);
     FREE(memory, trace.first, (size_t)count + 1);
     FREE(memory, trace.ring, count);

@@ -52,6 +52,7 @@ static Float3 fine_rest(const Shell *shell, FineLocation location) {
     const uint32_t *at = shell->cells[location.cell];
     float quarter = 0.25f * location.weight[2];
     Float3 sum = {0, 0, 0};
+
     for (int i = 0; i < 4; i++) {
         float weight = quarter;
         if (i == location.side) weight += location.weight[0];
@@ -92,6 +93,7 @@ static void tear_edge_vertex(Fine *fine, uint32_t vertex) {
     const Spline *spline = &fine->splines[SPLINE_TEAR_EDGE];
     float angle = 0;
     bool border = false;
+
     if (shell->fan_first[vertex] == shell->fan_first[vertex + 1]) return;
     if (fine_splits(fine, shell->fan[shell->fan_first[vertex]]) == 1) return; // too coarse to be drawn any finer
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++) {
@@ -117,6 +119,7 @@ void fine_tear_edges(Fine *fine) {
     const SpringSet *blue = &shell->springs[SINGE_BLUE];
     const Spline *spline = &fine->splines[SPLINE_TEAR_EDGE];
     uint32_t first = blue->count - shell->edge_spare_count;
+
     if (shell->edge_spare_used == 0) return;
 
     for (uint32_t s = 0; s < blue->count; s++) spline->edge[s] = 1;
@@ -136,6 +139,7 @@ static float fine_tear_level(const Fine *fine, FineLocation location) {
     const FineSheet *sheet = &fine->sheets[index];
     const uint32_t *at = shell->cells[location.cell];
     float size = shell->sheets[index].cell_size, reach = fminf(sheet->reach, TEAR_EDGE_WANDERS * size);
+
     if (reach > 0) {
         // D, at most `reach` long
         Float3 p = float3_scale(fine_askew(fine_rest(shell, location)), 1 / (TEAR_EDGE_WAVE * size)), sum = {0, 0, 0};
@@ -173,6 +177,7 @@ FineValue fine_value(const Fine *fine, FineLocation location) {
     uint32_t sheet = shell->matter.sheet[shell_centre(shell, location.cell)];
     FineLocation min_location = location;
     float min = smooth_level(fine, location), angle = 0, x, y;
+
     if (fine->sheets[sheet].reach > 0) {
         // the noise: the depth of erosion, m, and the direction, as an angle
         const FineSheet *own = &fine->sheets[sheet];

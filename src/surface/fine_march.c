@@ -74,6 +74,7 @@ static void march_draw(Fine *fine, const Piece *piece) {
                     location.weight[k] += t * (piece->location[outside].weight[k] - location.weight[k]);
                 *piece->cut[a] = add_vertex(fine, location, from->mass + t * (to->mass - from->mass), SHELL_NONE);
             }
+
             vertex[made++] = t > 0 ? *piece->cut[a] : point_vertex(fine, piece, inside);
         }
 
@@ -159,6 +160,7 @@ static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *f
     Fine *fine = march->fine;
     int splits = fine->splits[cell];
     uint32_t line[2][FINE_SPLITS_MAX]; // cuts of the lines between rows
+
     for (int j = 0; j < splits; j++) {
         Row row = {cell,
                    side,

@@ -102,6 +102,7 @@ static void put_rails(void *context, int begin, int end) {
                     point = float3_add(float3_load(fine->inner[c][(i + k) & 3]), float3_load(fine->inner[other][j]));
                     point = float3_scale(point, 0.5f);
                 }
+
                 float3_store(fine->rail[blue][forwards ? k : 1 - k], point);
             }
         }

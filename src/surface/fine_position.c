@@ -56,6 +56,7 @@ static void part_side(Fine *fine, const uint32_t one[2], const uint32_t other[2]
     const Shell *shell = fine->shell;
     const float(*position)[4] = (const float(*)[4])fine->state->dynamics.position;
     float share[2] = {1, 1}, min = 0;
+
     for (int end = 0; end < 2; end++) {
         if (one[end] == other[end]) continue;
 
@@ -113,6 +114,7 @@ static void gather_shares(Fine *fine) {
                 lessen(&fine->share[corner[k]], allowed(doubled, longest, float3_load(fine->normal[corner[k]])));
                 lessen(&fine->max[corner[k]], BULGE_MAX * float3_length(side));
             }
+
             lessen(&whole, allowed(doubled, longest, float3_load(fine->normal[shell_centre(shell, c)])));
         }
 

@@ -175,6 +175,7 @@ static Sample sample_cut(const Drawing *drawing, const uint32_t ends[2]) {
     const Sample a = sample_particle(drawing->shell, drawing->state, inside);
     const Sample b = sample_particle(drawing->shell, drawing->state, outside);
     const float t = surface_cut(level[inside], level[outside], SURFACE_NEAREST);
+
     return (Sample){
         .position = mix_float3(a.position, b.position, t),
         .velocity = mix_float3(a.velocity, b.velocity, t),

@@ -135,6 +135,7 @@ static void fill_range(void *context, int begin, int end) {
     const Fine *fine = context;
     FinePatch patch;
     uint32_t cell = SHELL_NONE;
+
     for (int v = begin; v < end; v++) {
         if (fine->vertices[v].location.cell != cell) {
             cell = fine->vertices[v].location.cell;
@@ -153,6 +154,7 @@ static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError
     FineArray arrays[FINE_ARRAYS_MAX];
     const int count = list_arrays(fine, arrays);
     bool ok = true;
+
     for (int i = 0; i < count && ok; i++) {
         void *block = memory_new(fine->memory, arrays[i].count, arrays[i].size);
         ok = block != NULL;

@@ -121,6 +121,7 @@ static void part_cell(Seams *seams, uint32_t cell, uint32_t begin, uint32_t end)
                         : weight[1] > 1 - SEAM_SAME ? corner[next][d]
                                                     : mixed;
             }
+
             parted[k] = copy_with(seams, triangle[k], uv, same, source);
         }
 
@@ -150,6 +151,7 @@ SingeResult surface_seams(const Shell *shell, const uint32_t *cell_first, SingeS
     Seams seams = {.shell = shell, .surface = surface};
     uint64_t max = surface->vertex_count + claim(&seams, cell_first);
     SingeResult result = surface_grow_vertices(surface, max, error);
+
     if (result) return result;
 
     seams.capacity = (uint32_t)max;

@@ -153,6 +153,7 @@ static void smooth_cells(void *task, int begin, int end) {
             own -= 0.125f;
             for (int k = 0; k < 6; k++) sum[k] += 0.125f * from[other][k];
         }
+
         for (int k = 0; k < 6; k++) to[k] = own * from[c][k] + sum[k];
     }
 }

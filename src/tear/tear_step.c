@@ -277,6 +277,7 @@ static void fill_ratios(void *task, int begin, int end) {
             Turn turn = turn_order(&fan);
             if (turn.count == fan.count && hinge_part(job->state, &fan, &turn)) pull.ratio /= TEAR_HINGE;
         }
+
         if (pull.ratio > 1 && !choose_cells(job->plan, job->shell, job->state, &pull, v, &fan)) pull.ratio = 0;
         job->plan->ratio[v] = pull.ratio;
     }
@@ -303,6 +304,7 @@ static void tear_vertex(TearPlan *plan, Shell *shell, State *state, uint32_t ver
     const Sheet *sheet = &shell->sheets[shell->matter.sheet[vertex]];
     Fan fan;
     SplitResult result;
+
     split_fan(shell, vertex, &fan);
     ShellSplit split = {vertex, choose_cells(plan, shell, state, &pull, vertex, &fan), SHELL_NONE};
     if (split.cells == 0) return;

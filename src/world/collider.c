@@ -15,16 +15,19 @@ static float collider_box(const float half[3], Float3 p, Float3 *normal) {
     float q[3] = {p.x, p.y, p.z}, out[3], n[3] = {0, 0, 0};
     int nearest = 0;
     bool inside = true;
+
     for (int i = 0; i < 3; i++) {
         out[i] = fabsf(q[i]) - half[i];
         if (out[i] > 0) inside = false;
         if (out[i] > out[nearest]) nearest = i;
     }
+
     if (inside) {
         n[nearest] = q[nearest] < 0 ? -1 : 1;
         *normal = float3_load(n);
         return out[nearest];
     }
+
     for (int i = 0; i < 3; i++) n[i] = out[i] > 0 ? copysignf(out[i], q[i]) : 0;
     return collider_round(float3_load(n), 0, normal);
 }

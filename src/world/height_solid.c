@@ -101,6 +101,7 @@ static float height_at(const HeightSolid *solid, float x, float y, Float3 *norma
     float s, t;
     uint32_t i = height_cell(solid, 0, x, &s), j = height_cell(solid, 1, y, &t);
     Float3 corner[3];
+
     height_triangle(solid, i, j, t > s, corner);
     *normal = float3_unit(float3_cross(float3_sub(corner[1], corner[0]), float3_sub(corner[2], corner[0])));
 
@@ -135,6 +136,7 @@ static void height_surface(const HeightSolid *solid, Float3 p, TriangleClosest *
                 double out = fmax(fmax(low, high), 0);
                 sum += out * out;
             }
+
             double out = fmax(fmax((double)range[0] - (double)p.z, (double)p.z - (double)range[1]), 0);
             if (sum + out * out >= best->square) continue;
 
@@ -143,6 +145,7 @@ static void height_surface(const HeightSolid *solid, Float3 p, TriangleClosest *
                 if (first[d] < from[d]) first[d] = from[d];
                 if (end[d] > to[d] + 1) end[d] = to[d] + 1;
             }
+
             for (uint32_t j = first[1]; j < end[1]; j++)
                 for (uint32_t i = first[0]; i < end[0]; i++)
                     for (int upper = 0; upper < 2; upper++) {

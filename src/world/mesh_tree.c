@@ -164,6 +164,7 @@ bool mesh_tree_create(Memory *memory, MeshSolid *solid) {
 
         for (int i = 0; i < SOLID_WIDE; i++) solid->nodes[0].child[i] = ~0;
     }
+
     SINGE_ASSERT(!ok || count <= SOLID_WIDE || build.nodes == nodes); // tree_count has counted them
     FREE(memory, build.centroid, count);
     return ok;
@@ -192,6 +193,7 @@ void mesh_tree_refit(MeshSolid *solid) {
                     box[1][d] = fmaxf(box[1][d], solid->nodes[child].high[d][lane]);
                 }
             }
+
             for (int d = 0; d < 3; d++) {
                 node->low[d][i] = box[0][d];
                 node->high[d][i] = box[1][d];

@@ -32,6 +32,7 @@ SingeResult path_check(uint32_t count, const SingePoseKey *keys, const char *own
             return error_set(error, SINGE_ERROR_ARGUMENT, owner, i,
                              "path key %u has a rotation of length zero; {0,0,0,1} is none", i);
     }
+
     return SINGE_OK;
 }
 
@@ -51,6 +52,7 @@ SingeResult path_set(Path *path, Memory *memory, uint32_t count, const SingePose
         double length = path_rotation_length(keys[i].rotation);
         for (int k = 0; k < 4; k++) copy[i].rotation[k] = (float)((double)keys[i].rotation[k] / length);
     }
+
     path_free(path, memory);
     *path = (Path){count, copy};
     return SINGE_OK;
@@ -71,6 +73,7 @@ Pose path_pose(const Path *path, double time) {
     Pose pose = {
         float3_mad(float3_load(a->position), float3_sub(float3_load(b->position), float3_load(a->position)), t),
         {0, 0, 0, 1}};
+
     // the shorter rotation, then normalised
     float dot = 0, length = 0;
     for (int k = 0; k < 4; k++) dot += a->rotation[k] * b->rotation[k];

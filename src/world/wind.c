@@ -6,6 +6,7 @@
 Float3 wind_velocity(const SingeWindDef *def, Float3 position, double time) {
     Float3 mean = float3_load(def->velocity);
     if (def->gust <= 0) return mean;
+
     // time moves along a diagonal of the lattice, so that no position repeats another's gusts
     float t = (float)(time / def->gust_time), s = 1 / def->gust_size, gust[3];
     for (uint32_t i = 0; i < 3; i++)

@@ -58,6 +58,7 @@ static void expect_consistent(const BurningSheet *b) {
         assert_int_equal(state->particle_flags[i] & SINGE_ALIVE, degree[i] > 0);
         assert_int_equal(state->piece[i] >= 0, degree[i] > 0);
     }
+
     for (uint32_t c = 0; c < b->shell.cell_count; c++) {
         const CellSprings *springs = &b->shell.cell_springs[c];
         bool alive = state->cell_flags[c] & SINGE_ALIVE;
@@ -69,6 +70,7 @@ static void expect_consistent(const BurningSheet *b) {
             assert_int_equal(state->spring_flags[SINGE_GREEN][springs->green[k]] & SINGE_ALIVE, both);
         }
     }
+
     free(degree);
 }
 
@@ -111,6 +113,7 @@ TEST(blue_goes_with_both_triangles) {
     BurningSheet *b = three_by_three();
     AblatePlan *plan = plan_for(b);
     uint32_t spring = b->shell.cell_springs[cell_at(b, 1, 1)].blue[0];
+
     burn_out(b, corner_at(b, 1, 1)), burn_out(b, corner_at(b, 2, 1)), burn_out(b, centre_at(b, 1, 1));
     sheet_ablate(b, plan);
     expect_springs(b, 36, 12, 24, 18); // the triangle below is still there
@@ -233,6 +236,7 @@ TEST(pieces_split_and_keep_ids) {
     BurningSheet *b = burning_sheets(2, 9, 3, 0.01f, &material, 0);
     AblatePlan *plan = plan_for(b);
     const int32_t *piece = b->state.ablate.piece;
+
     sheet_ablate(b, plan);
     assert_int_equal(b->state.ablate.piece_count, 2);
     assert_int_equal(b->events.count, 0);
@@ -276,6 +280,7 @@ TEST(equal_parts_keep_by_smallest_particle) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(7, 3, 0.01f, &material);
     AblatePlan *plan = plan_for(b);
+
     burn_out_column(b, 3); // in the first step of all
     sheet_ablate(b, plan);
     assert_int_equal(b->state.ablate.piece[centre_at(b, 0, 0)], 0);
@@ -377,6 +382,7 @@ TEST(the_ledger_closes_as_a_sheet_burns_to_pieces) {
             float away = b->shell.rest_position[i][0] - 0.0004f * (float)n;
             b->state.heat.temperature[i] = 300 + 700 * expf(-away * away * 2e4f);
         }
+
         assert_int_equal(sheet_burn(b, NULL, 0.05f, 1, &thickening, partial), SINGE_OK);
         uint8_t *before = malloc(count);
         memcpy(before, b->state.ablate.particle_flags, count);
@@ -391,10 +397,12 @@ TEST(the_ledger_closes_as_a_sheet_burns_to_pieces) {
         double gone = b->state.burn.mass_burnt + b->state.ablate.mass_removed;
         assert_true(fabs(initial - mass_left(b) - gone) < 1e-12 * initial);
     }
+
     assert_true(max >= 4);
     assert_true(b->state.ablate.mass_removed > 0.02 * initial);
     assert_true(fabs(heat - b->state.ablate.heat_removed) < 1e-12 * heat);
     assert_int_equal(b->state.ablate.next_piece, 1 + freed);
+
     // pieces are what hangs together: one id along every spring, and as many parts as ids in use
     uint32_t *part = calloc(count, sizeof *part), parts = 0;
     for (uint32_t i = 0; i < count; i++) part[i] = i;
@@ -408,6 +416,7 @@ TEST(the_ledger_closes_as_a_sheet_burns_to_pieces) {
                 changed = true;
             }
     }
+
     for (uint32_t i = 0; i < count; i++) {
         assert_int_equal(b->state.ablate.piece[i], b->state.ablate.degree[i] ? b->state.ablate.piece[part[i]] : -1);
         parts += part[i] == i && b->state.ablate.degree[i];
@@ -415,6 +424,7 @@ TEST(the_ledger_closes_as_a_sheet_burns_to_pieces) {
             if (part[i] == i && part[j] == j && b->state.ablate.degree[i] && b->state.ablate.degree[j])
                 assert_int_not_equal(b->state.ablate.piece[i], b->state.ablate.piece[j]);
     }
+
     assert_int_equal(parts, b->state.ablate.piece_count);
     free(part);
     finish(b, plan);
@@ -428,11 +438,13 @@ TEST(plan_survives_lack_of_memory) {
     SingeResult result = SINGE_ERROR_MEMORY;
     AblatePlan *plan;
     int n = 0;
+
     for (; result; n++) {
         allocator.calls = 0, allocator.fail_at = n + 1;
         result = ablate_plan_create(&memory, &b->shell, &plan);
         assert_true(result == SINGE_OK || (result == SINGE_ERROR_MEMORY && !plan && allocator.bytes == 0));
     }
+
     assert_true(n > 3);
     assert_int_equal(memory.held, allocator.bytes);
     ablate_plan_free(&memory, plan);

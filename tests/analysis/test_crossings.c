@@ -64,6 +64,7 @@ TEST(orientation_has_the_exact_sign) {
             (Wide)(p[0][0] - p[2][0]) * (p[1][1] - p[2][1]) - (Wide)(p[0][1] - p[2][1]) * (p[1][0] - p[2][0]);
         assert_int_equal(exact_orient2(at[0], at[1], at[2], 0, 1), (turn > 0) - (turn < 0));
     }
+
     assert_in_range(flat, 90000, 180000);
 }
 
@@ -79,6 +80,7 @@ TEST(orientation_is_exact_near_a_plane) {
             at[0][k] = ldexpf((float)p[0][k], -30);
             for (int i = 1; i < 4; i++) at[i][k] = ldexpf((float)p[i][k], shift - 20);
         }
+
         const Wide value = minor(p[0], p[2], p[1]);
         assert_int_equal(exact_orient3(at[0], at[1], at[2], at[3]), (value > 0) - (value < 0));
         assert_int_equal(exact_orient3(at[3], at[1], at[2], at[0]), (value < 0) - (value > 0));
@@ -90,15 +92,18 @@ TEST(orientation_is_exact_far_apart) {
     const float huge = 0x1p126f, min = 0x1p-149f;
     const float a[3] = {huge, 0, 0}, b[3] = {0, huge, 0}, c[3] = {-huge, -huge, 0};
     const float d[3] = {1, 2, 0}, below[3] = {1, 2, -min}, above[3] = {1, 2, min};
+
     assert_int_equal(exact_orient3(a, b, c, d), 0);
     assert_int_equal(exact_orient3(a, b, c, below), 1);
     assert_int_equal(exact_orient3(a, b, c, above), -1);
+
     // a plane that no axis is normal to: x + y + z = 0 but for the last of its bits
     const float e[3] = {1, -1, 0}, f[3] = {0, 1, -1}, g[3] = {0x1p60f, 0, -0x1p60f};
     const float on[3] = {0x1p-80f, 0x1p-80f, -0x1p-79f}, off[3] = {0x1p-80f, 0x1p-80f, -0x1.000002p-79f};
     assert_int_equal(exact_orient3(e, f, g, on), 0);
     assert_int_equal(abs(exact_orient3(e, f, g, off)), 1);
     assert_int_equal(exact_orient3(e, f, g, off), exact_orient3(e, f, g, (float[3]){0, 0, -1}));
+
     // p + (2^-40, 2^-40) is on the diagonal through p, and rounds to no float there
     const float p[3] = {0, 0, 0}, q[3] = {0x1p-40f, 0x1p-40f, 5}, r[3] = {1, 1, 7}, s[3] = {1, 0x1.000002p0f, 7};
     assert_int_equal(exact_orient2(p, q, r, 0, 1), 0);
@@ -185,6 +190,7 @@ static Soup *soup_make(uint32_t count, float size, int steps) {
         for (uint32_t k = 0; k < 3; k++) soup->triangles[soup->count][k] = 3 * soup->count + k;
         soup->count++;
     }
+
     return soup;
 }
 
@@ -195,6 +201,7 @@ static void check_soup(Soup *soup) {
     uint32_t(*touching)[2] = malloc(pairs * sizeof *touching);
     bool *crossing = calloc((size_t)soup->count * soup->count + 1, sizeof *crossing);
     size_t touches = 0, count = 0;
+
     assert_true(touching && crossing);
     for (uint32_t a = 0; a < soup->count; a++)
         for (uint32_t b = a + 1; b < soup->count; b++) {
@@ -214,6 +221,7 @@ static void check_soup(Soup *soup) {
         assert_true(*pair);
         *pair = false; // each once
     }
+
     assert_true(soup->count < 10 || count > 0);
     crossings_free(&list);
     free(touching);
@@ -238,6 +246,7 @@ static void add_sheet(uint32_t cells, int sheet, float tilt, float (*position)[3
         p[0] = (float)(v % side) / (float)cells, p[1] = (float)(v / side) / (float)cells;
         p[2] = 0.01f * (float)sheet + tilt * p[0];
     }
+
     for (uint32_t c = 0; c < cells * cells; c++) {
         const uint32_t v = first + c / cells * side + c % cells;
         const uint32_t corners[6] = {v, v + 1, v + side, v + 1, v + side + 1, v + side};
@@ -311,6 +320,7 @@ TEST(cost_grows_with_the_triangles) {
         each[size] = (double)list.tested / count;
         crossings_free(&list);
     }
+
     assert_true(each[1] < 1.5 * each[0]);
     free(position);
     free(triangles);

@@ -23,6 +23,7 @@ static Drawing *folded(float degrees) {
         }
         p[0] = across, p[1] = along, p[2] = height;
     }
+
     return d;
 }
 

@@ -60,6 +60,7 @@ static void add_second(SingeSurface *s, uint32_t v, uint32_t *f) {
         memcpy(s->normal[v + i], normal, sizeof normal);
         s->burn[v + i] = 1, s->mass[v + i] = 0.2f, s->piece[v + i] = 7;
     }
+
     add_cell(s, f, v, v + 1, v + 2, v + 3);
 }
 
@@ -75,6 +76,7 @@ static Rim look(Sheet sheet) {
         s.burn[v] = sheet.burnt && i == 0 ? 1 : 0; // the edges that meet it have not burnt
         s.mass[v] = (float)fmin(0.25 + 0.75 * x / 0.012, 1);
     }
+
     uint32_t f = 0;
     for (uint32_t j = 0; j < CELLS; j++)
         for (uint32_t i = 0; i < CELLS; i++) {
@@ -108,6 +110,7 @@ TEST(a_flat_rim_has_no_curl) {
         double area = side * (rim_band_limits[b + 1] - rim_band_limits[b]);
         near_to(rim.band[b].rest_area, area, 0.15 * area);
     }
+
     near_to(rim.band[2].mass / rim.band[2].rest_area, 0.25 + 0.75 * 3 / 12, 0.02);
 }
 
@@ -115,6 +118,7 @@ TEST(a_rolled_rim_curls) {
     static const double curls[] = {8, 30, 60};
     for (int i = 0; i < 3; i++) {
         Rim rim = look((Sheet){.curl = curls[i], .shrunk = 1, .burnt = true});
+
         // the rim's own normal is the mean over its first 1.5 mm
         near_to(rim_percentile(rim.curl, 0.5), curls[i] * (10 - 0.75) / 10, 0.06 * curls[i]);
         near_to(rim_percentile(rim.band[3].slope, 0.5), curls[i] * (20 - 5.5) / 10, 0.08 * curls[i]);

@@ -60,6 +60,7 @@ static SingeSurface draw(int cells, Height *height, double number) {
             t[0] = corner[i], t[1] = corner[(i + 1) & 3], t[2] = corners + c;
         }
     }
+
     add_normals(&s);
     return s;
 }
@@ -91,6 +92,7 @@ static double share_near(const Wrinkles *w, double degrees, double within) {
         total += w->crease[b];
         if (fmin(off, 180 - off) <= within) near += w->crease[b];
     }
+
     return near / total;
 }
 

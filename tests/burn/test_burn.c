@@ -20,9 +20,11 @@ TEST(volume_ratio_follows_eq_5) {
     // constant density: the volume is the mass
     assert_float_equal(burn_volume_ratio(1, 1, 0, 1, 1), 1, 1e-7);
     assert_float_equal(burn_volume_ratio(0.4f, 0.3f, 0.7f, 1, 1), 0.4f, 1e-7);
+
     // the density at half the way to m_min = 0.2 and rho_ash = 0.3 is 0.65: 0.6/0.65
     assert_float_equal(burn_volume_ratio(0.6f, 0.5f, 0.5f, 0.45f, 0.3f), 0.6 / 0.65, 1e-6);
     assert_float_equal(burn_volume_ratio(0.2f, 0, 1, 0.45f, 0.3f), 0.2 / 0.3, 1e-6);
+
     // never outside [0.05, 1]
     assert_float_equal(burn_volume_ratio(0.9f, 0.125f, 0.875f, 0.45f, 0.01f), 1, 0);
     assert_float_equal(burn_volume_ratio(0, 0, 1, 0.45f, 1), 0.05f, 0);
@@ -41,6 +43,7 @@ TEST(no_exponent_is_a_straight_line) {
             assert_float_equal(b->state.burn.burn_rate[i], 0.08, 1e-6); // per second of scene time
         }
     }
+
     burning_sheet_free(b);
 }
 
@@ -90,6 +93,7 @@ TEST(exponents_follow_their_solutions) {
             double expected = 0.15 + 0.85 * exact(0.2, 0.1 * n, (double)exponents[e]);
             assert_float_equal(b->state.burn.mass[0], expected, 5e-6);
         }
+
         burning_sheet_free(b);
     }
 }
@@ -131,6 +135,7 @@ TEST(kinetics_follow_arrhenius) {
                 assert_float_equal(b->state.burn.mass[i], 0.15 + 0.85 * exact(k, 0.08 * n, (double)exponents[e]), 2e-5);
             }
         }
+
         burning_sheet_free(b);
     }
 }
@@ -150,6 +155,7 @@ TEST(no_step_passes_the_least_mass) {
                 assert_true(mass >= min && mass <= before);
                 before = mass;
             }
+
             if (exponents[e] <= 1) assert_float_equal(before, min, 1e-6);
             burning_sheet_free(b);
         }
@@ -174,6 +180,7 @@ TEST(particles_ignite_once_and_in_order) {
         assert_float_equal(b->events.items[k].position[0], b->shell.rest_position[lit[k]][0], 0);
         assert_float_equal(burn->time_ignited[lit[k]], 1.5f, 0);
     }
+
     assert_float_equal(burn->time_ignited[4000], -1, 0);
     assert_float_equal(burn->time_ignited[4100], -1, 0);
     b->state.time = 1.6;
@@ -197,6 +204,7 @@ TEST(particles_are_burnt_below_the_loss) {
         if (n == 7) b->state.heat.temperature[2] = 500; // 0.3 of its mass stays
         assert_int_equal(step(b, NULL, 1, 1, 1), SINGE_OK);
     }
+
     assert_float_equal(b->state.burn.time_burnt[1], 7, 0);
     assert_float_equal(b->state.burn.mass[1], 0.2, 1e-6);
     b->state.time = 8;
@@ -241,9 +249,11 @@ TEST(springs_shrink_by_eq_6) {
     assert_float_equal(shrunk_ratio(0.75f, 0.5f, 1, 1), 0.625, 1e-6);
     assert_float_equal(shrunk_ratio(0.95f, 0.2f, 1, 1), 0.575, 1e-6);
     assert_float_equal(shrunk_ratio(0.8f, 0.2f, 1, 1), 0.5, 1e-6);
+
     // a layer's own share
     assert_float_equal(shrunk_ratio(0.75f, 0.5f, 0, 0), 1, 0);
     assert_float_equal(shrunk_ratio(0.75f, 0.5f, 0.5f, 1), 1 - 0.75 * 0.375, 1e-6);
+
     // shrinking more than all there is does not turn a spring inside out
     assert_float_equal(shrunk_ratio(0.15f, 0.15f, 2, 2), 0.05, 1e-6);
 }
@@ -265,6 +275,7 @@ TEST(all_colours_shrink_and_do_not_compound) {
                 volumes += m / (1 - 0.7 * (1 - m) / 0.85) / 2;
                 shrink += (end < b->shell.vertex_count ? 1 : 0.5) / 2;
             }
+
             double expected = 1 - shrink * (1 - volumes), rest = (double)b->shell.springs[colour].rest[s];
             if (colour == SINGE_RED && s == 7) expected = 1;
             assert_float_equal((double)b->state.burn.spring_length[colour][s] / rest, expected, 2e-6);
@@ -301,6 +312,7 @@ TEST(fibres_turn_shrinkage) {
             }
         burning_sheet_free(b);
     }
+
     SingeMaterialDef even = plain_material();
     even.fibre_shrink = singe_param(1);
     BurningSheet *b = burning_sheet(2, 2, 0.01f, &even);
@@ -340,6 +352,7 @@ static BurningSheet *crossed_by_stripe(Pool *pool) {
         }
         assert_int_equal(step(b, pool, 0.1f, 1, 1.5f), SINGE_OK);
     }
+
     return b;
 }
 
@@ -369,5 +382,6 @@ TEST(threads_change_nothing) {
         pool_destroy(&memory, pool);
         burning_sheet_free(many);
     }
+
     burning_sheet_free(one);
 }

@@ -54,6 +54,7 @@ TEST(edges_glow_at_two_resistances_in_series) {
             double root = fmax(1 - 0.5 * k * 0.04 * n / SLOWING, 0);
             assert_float_equal(left_of_char(b, 0), root * root, 2e-4);
         }
+
         burning_sheet_free(b);
     }
 }
@@ -70,12 +71,14 @@ TEST(leaves_glow_slower_than_edges) {
     assert_float_equal(1 - sqrt(left_of_char(b, inner)), 0.5 * 0.1 * RATE * AIR, 2e-4);
     assert_float_equal(b->state.burn.mass[fuelled], 0.5f + 0.5f * (float)YIELD, 0);
     assert_float_equal(b->state.burn.mass[cold], YIELD, 1e-7);
+
     // ash beside it lets air through
     uint32_t centre = b->shell.vertex_count + 3 * 6 + 3;
     b->state.burn.mass[centre] = (float)(MIN + 0.5 * (YIELD - MIN));
     double root = sqrt(left_of_char(b, inner));
     assert_int_equal(step(b, 0.1f * (float)SLOWING, 1, 1), SINGE_OK);
     assert_float_equal(root - sqrt(left_of_char(b, inner)), 0.5 * 0.1 * RATE * 0.5, 1e-3);
+
     // fuel beside it, in the other layer, keeps the air away, and so does the flame
     b->state.burn.fuel[centre] = 0.5f, b->state.burn.mass[centre] += 0.5f - 0.5f * (float)MIN;
     double held = sqrt(left_of_char(b, inner));
@@ -83,6 +86,7 @@ TEST(leaves_glow_slower_than_edges) {
     assert_int_equal(step(b, 0.1f * (float)SLOWING, 1, 1), SINGE_OK);
     assert_float_equal(sqrt(left_of_char(b, inner)), held, 2e-4);
     b->state.burn.fuel[centre] = 0, b->state.burn.mass[centre] = (float)MIN;
+
     // a hole beside it is an edge
     uint32_t before = inner;
     double was = sqrt(left_of_char(b, before));
@@ -107,6 +111,7 @@ TEST(ledgers_close_from_fuel_to_ash) {
             b->state.heat.temperature[i] = HOT;
             first += (double)b->shell.matter.mass[i];
         }
+
         for (int n = 0; n < 2000; n++) {
             assert_int_equal(step(b, steps[s], 1, 1), SINGE_OK);
             double mass = (double)b->state.burn.mass[0];
@@ -114,6 +119,7 @@ TEST(ledgers_close_from_fuel_to_ash) {
             assert_true(b->state.burn.fuel[0] > 0 || mass <= YIELD + 1e-6);
             warmed += (double)b->state.burn.release[0] * (double)steps[s], last = mass;
         }
+
         assert_float_equal(last, MIN, 1e-6);
         assert_float_equal(b->state.burn.mass_burnt / first, 1 - MIN, 1e-6);
         double monoxide = 2500 * exp(-6240 / (double)HOT), heat = 0.28 + 0.72 / (1 + monoxide);
@@ -133,6 +139,7 @@ TEST(no_char_is_the_papers_eq_4) {
         for (uint32_t i = 0; i < b[k]->shell.particle_count; i++) b[k]->state.heat.temperature[i] = 500 + 20 * (float)i;
         for (int n = 0; n < 50; n++) assert_int_equal(step(b[k], 0.1f, 1, 1), SINGE_OK);
     }
+
     assert_memory_equal(b[0]->state.arena, b[1]->state.arena, b[0]->state.arena_size);
     burning_sheet_free(b[0]), burning_sheet_free(b[1]);
 }
@@ -153,6 +160,7 @@ TEST(char_and_ash_have_densities_of_their_own) {
         for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.heat.temperature[i] = HOT, air[i] = 1e3f;
         assert_int_equal(step(b, 100, 1, 1), SINGE_OK);
     }
+
     assert_float_equal(ratio[0], YIELD / 0.45, 1e-5);
     assert_float_equal(ratio[1], MIN / 0.22, 1e-5);
     burning_sheet_free(b);

@@ -51,6 +51,7 @@ TEST(unquotes_what_it_quotes) {
     const char *texts[] = {"", "plain", "a \"b\" \\ c", "tab\tnewline\n\x01", "\xc3\xa4/\xe2\x82\xac",
                            // no UTF-8: a stray byte, one cut short, too long a form, a surrogate, beyond Unicode
                            "\xff", "a\xe2\x82", "\xc0\xaf", "\xed\xb2\x80", "\xf4\x90\x80\x80", "\x80 \xc3\xa4\xc3"};
+
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         char *json = NULL;
         size_t size = 0;
@@ -65,6 +66,7 @@ TEST(unquotes_what_it_quotes) {
         free(back);
         free(json);
     }
+
     // as other writers of JSON put it
     char *other = text_json_unquote("\"\\u00e4\\/\\uD83D\\uDD25\\n\"", 24);
     assert_string_equal(other, "\xc3\xa4/\xf0\x9f\x94\xa5\n");
@@ -90,6 +92,7 @@ TEST(reads_arguments) {
     ArgReader reader = args_begin(&command, 9, argv);
     const int expected[] = {1, 2, 0, 0, 0, 1, 0, ARG_OPERAND, ARG_END};
     const char *values[] = {NULL, NULL, "X", "Y", "Z", NULL, "W", "--quiet", NULL};
+
     for (int i = 0; i < 9; i++) {
         const char *value = NULL;
         assert_int_equal(args_next(&reader, &value), expected[i]);
@@ -106,6 +109,7 @@ TEST(averages_tiles) {
         rgb[3 * i + 1] = (uint8_t)(y < 2 ? 10 : 30); // rows of the tile keep theirs
         rgb[3 * i + 2] = 7;
     }
+
     ContactSheet sheet;
     SingeError error;
     assert_int_equal(contact_sheet_make(&sheet, 3, 2, W, H, &error), SINGE_OK); // 3000 wide: halved
@@ -154,6 +158,7 @@ static int ends_by(bool within) {
         if (!within) interrupt_guard_end();
         abort();
     }
+
     int status = 0;
     assert_int_equal(waitpid(child, &status, 0), child);
     return status;
@@ -167,6 +172,7 @@ TEST(an_abort_of_a_library_is_an_error) {
         assert_true(file >= 0);
         close(file);
     }
+
     int status = ends_by(true);
     assert_true(WIFEXITED(status));
     assert_int_equal(WEXITSTATUS(status), EXIT_FAILED);

@@ -39,6 +39,7 @@ static bool triangles_cross(const SingeSurface *s, const uint32_t a[3], const ui
         if (!has(b, a[i]) && !has(b, a[j]) && pierces(p[i], p[j], q)) return true;
         if (!has(a, b[i]) && !has(a, b[j]) && pierces(q[i], q[j], p)) return true;
     }
+
     return false;
 }
 
@@ -67,6 +68,7 @@ long crossings_count(const SingeSurface *s) {
             }
         }
     }
+
     qsort(boxes, s->triangle_count, sizeof *boxes, by_x);
     for (uint32_t i = 0; i < s->triangle_count; i++)
         for (uint32_t j = i + 1; j < s->triangle_count && boxes[j].low[0] <= boxes[i].high[0]; j++) {

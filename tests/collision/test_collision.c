@@ -20,6 +20,7 @@ static SingeSheetId add_flat(SingeSim *sim, const Flat *flat, float cells_thick,
     uint32_t n = (uint32_t)flat->n, row = n + 1;
     float *x = malloc(3 * row * row * sizeof *x);
     uint32_t *cells = malloc(4 * n * n * sizeof *cells);
+
     for (uint32_t j = 0; j <= n; j++)
         for (uint32_t i = 0; i <= n; i++) {
             float s = (float)i / (float)n, t = (float)j / (float)n, bend = wave * sinf(9 * t) + wave / 2 * sinf(7 * s);
@@ -95,6 +96,7 @@ TEST(a_heap_does_not_cross) {
         assert_int_equal(crossings(sim), 0);
         crossed += crossings(without);
     }
+
     print_message("without contact: %ld crossings\n", crossed);
     assert_true(crossed > 100); // it would
     SingeTimers timers = singe_sim_timers(sim);
@@ -108,6 +110,7 @@ TEST(a_heap_does_not_cross) {
 
 TEST(thrown_sheets_do_not_cross) {
     SingeSim *sim = new_sim(1, true);
+
     // two that fly into each other on edge, at 12 m/s: some ten thicknesses a substep
     add_flat(sim, &(Flat){14, {-0.05f, -0.03f, 1}, {0.1f, 0, 0.01f}, {0, 0.02f, 0.1f}}, 0.6f, 2e-3f,
              (float[3]){0, 6, 0});
@@ -165,6 +168,7 @@ static double slide(float friction) {
 TEST(friction_slows_sheets) {
     double slippery = slide(0), rough = slide(0.3f);
     print_message("slid %.4f m without friction, %.4f m with 0.3\n", slippery, rough);
+
     // free but for damping: 38 mm, as without gravity; at 0.3 g it stops after 68 ms and 6.8 mm
     assert_true(fabs(slippery - 0.038) < 0.004);
     assert_true(fabs(rough - 0.0068) < 0.0015);
@@ -193,10 +197,12 @@ TEST(cells_of_other_crossings_are_kept_apart) {
     for (int upper = 0; upper < 2; upper++) {
         float z = upper ? 0.01f : 0, x = upper ? 0.013f : 0.006f, velocity[3] = {0, 0, upper ? -speed : speed};
         add_flat(sim, &(Flat){1, {0, 0, z}, {side, 0, 0}, {0, side, 0}}, 0.6f, 0, velocity);
+
         // up to 1 mm through it, on the side of the other one
         float low = upper ? z - 1e-3f : z + 1e-3f - side;
         add_flat(sim, &(Flat){1, {x, 1e-3f, low}, {0, side - 2e-3f, 0}, {0, 0, side}}, 0.6f, 0, velocity);
     }
+
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
     steps(sim, 1);
     assert_int_equal(singe_sim_stats(sim).intersecting_cells, 4);
@@ -237,6 +243,7 @@ TEST(coincident_sheets_are_left_alone) {
     SingeSim *sim = new_sim(1, true);
     for (int sheet = 0; sheet < 3; sheet++)
         add_flat(sim, &(Flat){10, {0, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
+
     // and one that lies next to them
     add_flat(sim, &(Flat){10, {0.2f, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
@@ -252,7 +259,9 @@ TEST(any_number_of_threads_gives_the_same_bytes) {
     SingeSim *one = heap(1, true), *three = heap(3, true), *again;
     uint8_t *a, *b;
     size_t na, nb;
+
     steps(one, HEAP_STEPS), steps(three, HEAP_STEPS);
+
     // and from a snapshot between two searches
     assert_int_equal(singe_sim_save(one, &a, &na), SINGE_OK);
     SingeSimDef hooks = singe_default_sim();
@@ -287,16 +296,19 @@ static Searched *searched(uint32_t n) {
     uint32_t row = n + 1, next = 1;
     float *x = malloc(3 * row * row * sizeof *x), cell = 2e-3f;
     uint32_t *cells = malloc(4 * n * n * sizeof *cells);
+
     for (uint32_t v = 0; v < row * row; v++) {
         float i = (float)(v % row), j = (float)(v / row);
         next = next * 1664525u + 1013904223u;
         x[3 * v] = cell * (i + 4 * sinf(0.5f * j) + 3 * sinf(0.9f * i)), x[3 * v + 1] = cell * (j + 5 * sinf(0.6f * i));
         x[3 * v + 2] = cell * (4 * sinf(0.4f * i + 0.7f * j) + 0.3f * (float)(next >> 8) / 16777216);
     }
+
     for (uint32_t c = 0; c < n * n; c++) {
         uint32_t v = c / n * row + c % n, corner[4] = {v, v + 1, v + row + 1, v + row};
         memcpy(cells + 4 * c, corner, sizeof corner);
     }
+
     s->memory = memory_make((SingeAllocator){0});
     SingeSheetDef def = singe_default_sheet();
     def.vertex_count = row * row, def.positions = x, def.cell_count = n * n, def.cells = cells;
@@ -329,6 +341,7 @@ static float cell_distance(const Searched *s, uint32_t a, uint32_t b, bool owned
     const CollisionPlan *plan = s->plan;
     Float4 p[5], q[5], origin = float4_load(plan->position[s->shell.cells[a][0]]);
     float min = INFINITY, weight[3], u, t;
+
     collision_nodes(s->shell.cells[a], (const float(*)[4])plan->position, origin, p);
     collision_nodes(s->shell.cells[b], (const float(*)[4])plan->position, origin, q);
     for (int i = 0; i < 5; i++)
@@ -354,11 +367,13 @@ TEST(the_search_finds_all) {
     const CollisionPlan *plan = s->plan;
     uint32_t n = plan->cell_count, near = 0;
     uint8_t *listed = calloc((size_t)n * n, 1);
+
     for (uint32_t k = 0; k < plan->listed_count; k++) {
         const CollisionPair *pair = &plan->pairs[k];
         assert_int_equal(listed[pair->a * n + pair->b] + listed[pair->b * n + pair->a], 0); // once
         listed[pair->a * n + pair->b] = 1;
     }
+
     for (uint32_t a = 0; a < n; a++)
         for (uint32_t b = a + 1; b < n; b++) {
             float distance = cell_distance(s, a, b, false);
@@ -367,6 +382,7 @@ TEST(the_search_finds_all) {
             assert_true(listed[a * n + b] || listed[b * n + a]);
         }
     assert_true(near > 4 * n);
+
     // no bound exceeds the true distance of its pair, and pairs that are near are measured
     uint32_t measured = 0;
     for (uint32_t k = 0; k < plan->listed_count; k++) {
@@ -376,6 +392,7 @@ TEST(the_search_finds_all) {
         assert_true(pair->distance <= distance + 1e-6f);
         measured += fabsf(pair->distance - distance) < 1e-6f;
     }
+
     assert_true(measured > n / 2);
     free(listed);
     searched_free(s);
@@ -387,6 +404,7 @@ TEST(features_are_measured) {
     const CollisionPlan *plan = s->plan;
     const float(*x)[4] = (const float(*)[4])plan->position;
     uint32_t found = 0;
+
     for (uint32_t k = 0; k < plan->listed_count; k++) {
         const CollisionPair *pair = &plan->pairs[k];
         if (pair->a == pair->b || pair->bridge != SHELL_NONE) continue;
@@ -415,12 +433,15 @@ TEST(features_are_measured) {
                 if (own == &b) apart = -apart;
                 u = weight[1], v = weight[2];
             }
+
             Float4 off = apart - n->separation;
             assert_true(float4_dot(off, off) < 1e-12f && fabsf(n->distance - at_most(INFINITY, apart)) < 1e-6f);
             assert_true(fabsf(u - n->u) < 1e-3f && fabsf(v - n->v) < 1e-3f);
         }
+
         found += (uint32_t)count;
     }
+
     assert_true(found > 1000);
     searched_free(s);
 }
@@ -434,8 +455,10 @@ static bool displacements_meet(const Searched *s, const float (*x)[4], uint32_t 
             low[i >> 2] = fminf(low[i >> 2], fminf(s->plan->start[v][k], x[v][k]));
             high[i >> 2] = fmaxf(high[i >> 2], fmaxf(s->plan->start[v][k], x[v][k]));
         }
+
         if (low[0] > high[1] || low[1] > high[0]) return false;
     }
+
     return true;
 }
 
@@ -445,6 +468,7 @@ static void check_outside(float far) {
     CollisionPlan *plan = s->plan;
     uint32_t n = plan->cell_count, count = 0, met = 0;
     float(*x)[4] = malloc(plan->vertex_count * sizeof *x);
+
     memcpy(x, plan->start, plan->vertex_count * sizeof *x);
     for (uint32_t v = 0; v < plan->vertex_count; v += 17)
         for (int k = 0; k < 3; k++) x[v][k] += 4e-3f * sinf((float)(v * (uint32_t)(k + 2))); // two cells far
@@ -454,6 +478,7 @@ static void check_outside(float far) {
         for (int i = 0; i < 4; i++) plan->is_outside[c] |= s->shell.cells[c][i] % 17 == 0;
         if (plan->is_outside[c]) plan->outside[count++] = c;
     }
+
     assert_int_equal(broad_search_outside(&s->memory, plan, &s->shell, NULL, count, (const float(*)[4])x), SINGE_OK);
     uint8_t *listed = calloc((size_t)n * n, 1);
     for (uint32_t k = 0; k < plan->pair_count; k++) {
@@ -461,6 +486,7 @@ static void check_outside(float far) {
         assert_int_equal(listed[pair->a * n + pair->b] + listed[pair->b * n + pair->a], 0); // once
         listed[pair->a * n + pair->b] = 1;
     }
+
     for (uint32_t k = 0; k < count; k++)
         for (uint32_t b = 0, a = plan->outside[k]; b < n; b++) {
             if (a == b || !displacements_meet(s, (const float(*)[4])x, a, b)) continue;
@@ -491,6 +517,7 @@ TEST(the_grid_has_bounds) {
         assert_int_equal(*at, 0); // once
         *at = 1;
     }
+
     plan->position[500][1] = NAN, plan->speed[77][2] = INFINITY;
     assert_int_equal(broad_search(&s->memory, plan, &s->shell, NULL), SINGE_OK);
     assert_int_equal(broad_search_outside(&s->memory, plan, &s->shell, NULL, 3, (const float(*)[4])plan->position),
@@ -512,6 +539,7 @@ TEST(bad_values_are_refused) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
     SingeError error;
+
     def.contact.thickness = 0;
     assert_int_equal(singe_sim_create(&def, &sim, &error), SINGE_ERROR_ARGUMENT);
     assert_non_null(strstr(error.message, "thickness"));

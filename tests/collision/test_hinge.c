@@ -95,6 +95,7 @@ static SingeSim *pages(int count) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
     uint32_t seed = 1;
+
     def.contact.enabled = true;
     assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
     for (int i = 0; i < count; i++) {
@@ -108,6 +109,7 @@ static SingeSim *pages(int count) {
         sheet.velocity[0] = random_from(&seed, -1, 1), sheet.velocity[1] = random_from(&seed, -1, 1);
         assert_int_equal(singe_sim_add_sheet(sim, &sheet, &id), SINGE_OK);
     }
+
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
     return sim;
 }

@@ -62,6 +62,7 @@ TEST(slivers_have_a_distance) {
         float got = length(feature_from_segment(a, b, cross - u * direction, cross + 0.4f * direction, &s, &t));
         edges = fmaxf(edges, fabsf(got - far));
     }
+
     print_message("off by %.2g over triangles, %.2g at edges\n", (double)triangles, (double)edges);
     assert_true(triangles < 1e-6f && edges < 1e-6f);
 }
@@ -77,6 +78,7 @@ static float stepped(const FeatureSweep *sweep, float near) {
                                     : feature_from_triangle(x[0], x[1], x[2], x[3], weight);
         if (length(apart) < near) return time;
     }
+
     return 2;
 }
 
@@ -87,11 +89,13 @@ TEST(sweeps_stop_in_time) {
         for (int i = 0; i < 4; i++) sweep.position[i] = point(1), sweep.displacement[i] = point(1.5f);
         if (stepped(&sweep, 0.05f) == 0) continue; // near from the start
         float hit = feature_sweep(&sweep, 0.01f, 0), first = stepped(&sweep, 0.01f);
+
         // never later than they are as near as the gap, and only if they come near at all
         if (first <= 1) assert_true(hit <= first);
         if (hit <= 1) assert_true(stepped(&sweep, 0.03f) <= 1);
         met += hit <= 1, free_displacements += hit > 1;
     }
+
     assert_true(met > 100 && free_displacements > 1000);
 }
 
@@ -160,6 +164,7 @@ TEST(what_is_parted_does_not_cross) {
             cell[c][3] = grid[x][y + 1];
             close_cell(cell[c]);
         }
+
         Float4 normals[3], normal;
         for (int c = 0; c < 3; c++) normals[c] = feature_normals(cell[c]);
         const unsigned side[2] = {2 | 4, 1 | 8}, corner[2] = {4, 1};
@@ -175,6 +180,7 @@ TEST(what_is_parted_does_not_cross) {
             level[kind] += within, parted[kind] += part, crossed[kind] += crosses;
         }
     }
+
     print_message("level %d and %d, parted %d and %d, crossed %d and %d\n", level[0], level[1], parted[0], parted[1],
                   crossed[0], crossed[1]);
     assert_true(level[0] > 1000 && level[1] > 100 && parted[0] > 10000 && parted[1] > 10000);

@@ -7,6 +7,7 @@ TEST(counts_what_is_held) {
     TestAllocator hook = {0};
     Memory memory = memory_make(test_allocator(&hook));
     double *array;
+
     assert_non_null(NEW(&memory, array, 10));
     for (int i = 0; i < 10; i++) assert_true(array[i] == 0);
     assert_int_equal(memory.held, 80);
@@ -30,6 +31,7 @@ TEST(nothing_can_be_freed) {
     TestAllocator hook = {0};
     Memory memory = memory_make(test_allocator(&hook));
     int *array;
+
     assert_non_null(NEW(&memory, array, 0));
     assert_true(memory_grow(&memory, &array, 0, 4, sizeof *array));
     assert_true(memory_grow(&memory, &array, 4, 0, sizeof *array));
@@ -64,6 +66,7 @@ TEST(failure_changes_nothing) {
     TestAllocator hook = {.fail_at = 2};
     Memory memory = memory_make(test_allocator(&hook));
     int *array, *other;
+
     assert_non_null(NEW(&memory, array, 4));
     array[3] = 9;
     assert_false(memory_grow(&memory, &array, 4, 8, sizeof *array));

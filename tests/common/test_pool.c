@@ -43,12 +43,14 @@ TEST(every_item_is_visited_once) {
     static const int counts[] = {-3, 0, 1, 2, 3, 7, 64, 65, 1000, 1024, 4097, ITEMS_MAX};
     static const int grains[] = {1, 2, 7, 64, 1024, 20000};
     Memory memory = memory_make((SingeAllocator){0});
+
     for (int threads = 1; threads <= 8; threads++) {
         Pool *pool = make_pool(&memory, threads);
         for (size_t c = 0; c < sizeof counts / sizeof *counts; c++)
             for (size_t g = 0; g < sizeof grains / sizeof *grains; g++) check_once(pool, counts[c], grains[g]);
         pool_destroy(&memory, pool);
     }
+
     check_once(NULL, 100, 3);
     assert_int_equal(memory.held, 0);
 }
@@ -72,6 +74,7 @@ TEST(jobs_follow_each_other) {
             for (int job = 0; job < 15; job++) pool_for(pool, 97, 1 + job % 5, bump, values);
             for (int i = 0; i < 97; i++) assert_int_equal(values[i], (int)expected);
         }
+
         pool_destroy(&memory, pool);
     }
 }
@@ -94,6 +97,7 @@ TEST(slow_ranges_are_waited_for) {
             pool_for(pool, 5 + round % 4, 1, slow_item, &done);
             assert_int_equal(atomic_load(&done), 5 + round % 4);
         }
+
         pool_destroy(&memory, pool);
     }
 }
@@ -107,6 +111,7 @@ TEST(idle_pools_end) {
         if (i & 1) pool_for(pool, 8, 1, bump, values);
         pool_destroy(&memory, pool);
     }
+
     pool_destroy(&memory, NULL);
     assert_int_equal(memory.held, 0);
 }
@@ -140,6 +145,7 @@ TEST(sums_are_bitwise_equal) {
             pool_destroy(&memory, pool);
         }
     }
+
     free(values);
     free(partial);
 }
@@ -189,6 +195,7 @@ static void host_finish(void *context, void *token) {
         host->run(host->task, begin, end);
         end = begin;
     }
+
     host->finished++;
 }
 
@@ -196,6 +203,7 @@ TEST(a_host_may_run_the_ranges) {
     Memory memory = memory_make((SingeAllocator){0});
     Host host = {0};
     Pool *pool;
+
     assert_int_equal(pool_create(&memory, (SingeTasks){host_enqueue, host_finish, &host}, 8, &pool), SINGE_OK);
     static int values[1000];
     pool_for(pool, 1000, 64, bump, values);

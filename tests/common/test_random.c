@@ -14,6 +14,7 @@ TEST(noise_fills_its_range) {
     uint32_t random = 3;
     double mean = 0;
     float min = 1, max = 0;
+
     for (int i = 0; i < 100000; i++) {
         float x = coordinate(&random), y = coordinate(&random), z = coordinate(&random);
         float n = random_noise(x, y, z, 7);
@@ -21,6 +22,7 @@ TEST(noise_fills_its_range) {
         mean += (double)n / 100000;
         min = fminf(min, n), max = fmaxf(max, n);
     }
+
     assert_true(fabs(mean - 0.5) < 0.01);
     assert_true(min < 0.05f && max > 0.95f);
 }
@@ -35,6 +37,7 @@ TEST(fractal_noise_fills_its_range) {
             assert_true(n >= 0 && n <= 1);
             min = fminf(min, n), max = fmaxf(max, n);
         }
+
         assert_true(min < 0.1f && max > 0.9f);
     }
 }

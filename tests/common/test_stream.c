@@ -70,6 +70,7 @@ TEST(checksum_sees_every_bit) {
         assert_true(stream_checksum(bytes, sizeof bytes) != good);
         bytes[bit / 8] ^= (uint8_t)(1 << bit % 8);
     }
+
     for (size_t size = 0; size < sizeof bytes; size++) assert_true(stream_checksum(bytes, size) != good);
     uint8_t swapped[43];
     memcpy(swapped, bytes, sizeof bytes);
@@ -111,6 +112,7 @@ TEST(results_have_names) {
         for (int j = 0; j < i; j++)
             assert_string_not_equal(singe_result_name((SingeResult)i), singe_result_name((SingeResult)j));
     }
+
     assert_string_equal(singe_result_name((SingeResult)99), "unknown result");
     assert_string_equal(singe_version(), SINGE_VERSION);
 }

@@ -52,10 +52,12 @@ void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int
         float x = quads.positions[3 * (i / 2) + i % 2];
         low[i % 2] = fminf(low[i % 2], x), high[i % 2] = fmaxf(high[i % 2], x);
     }
+
     for (uint32_t i = 0; i < 2 * quads.vertex_count; i++) {
         uv[i] = (quads.positions[3 * (i / 2) + i % 2] - low[i % 2]) / fmaxf(high[i % 2] - low[i % 2], 1e-6f);
         if (i % 2 == 0) along[i / 2] = uv[i];
     }
+
     SingeAttribute attribute = {"along", along};
     def.uv = uv, def.attribute_count = 1, def.attributes = &attribute;
     assert_int_equal(sheet_source_create(&bench->memory, &def, &bench->source, &bench->error), SINGE_OK);
@@ -85,6 +87,7 @@ void bench_step(Bench *bench, float h) {
                            .pool = bench->pool,
                            .error = &bench->error,
                            .h = h};
+
     context.state.dynamics = NULL;
     SingeResult result = dynamics_step(&bench->memory, bench->plan, &context, &bench->state.dynamics, &bench->counters);
     assert_int_equal(result, SINGE_OK);

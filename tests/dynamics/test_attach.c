@@ -69,6 +69,7 @@ TEST(no_vertex_is_too_far_from_a_pin) {
         for (int pass = 0; pass < 30; pass++) project(&bench);
         for (int k = 0; k < count; k++) assert_true(excess(&bench, k) < 1e-3); // spheres that touch: slow
         for (int k = 0; k < count; k++) assert_true(far_from_start(&bench, corners[k]) == 0);
+
         // centres are off the mesh: left alone
         const uint32_t first = bench.shell.vertex_count;
         assert_memory_equal(before[first], bench.state.dynamics.position[first],
@@ -107,6 +108,7 @@ TEST(a_loose_piece_is_free) {
     project(&bench);
     for (uint32_t v = 1; v < bench.shell.vertex_count; v++)
         assert_true((bench.state.dynamics.position[v][2] == -1) == (v >= vertex(0, 10)));
+
     // nor is it held again by a later measurement, though its cells still touch: after a pin, or while it burns
     dynamics_plan_hold(bench.plan, &bench.shell, &bench.state);
     bench.state.burn.mass_burnt = 1e-6, bench.state.step = ATTACH_PERIOD - 1;
@@ -117,6 +119,7 @@ TEST(a_loose_piece_is_free) {
             assert_true(v >= vertex(0, 10) ? isinf(length) && length > 0 : isfinite(length));
         }
     }
+
     bench_close(&bench);
 }
 
@@ -135,6 +138,7 @@ TEST(nothing_is_held_by_what_is_gone) {
             dynamics_plan_hold(bench.plan, &bench.shell, &bench.state);
             assert_int_equal(bench.plan->attachments.source[0][0], SHELL_NONE);
         }
+
         dynamics_prepare(bench.plan, &bench.shell, STATE_INPUT(&bench.state), &bench.wind, bench.pool,
                          &bench.state.dynamics);
         for (uint32_t v = 1; v < bench.shell.vertex_count; v++) bench.state.dynamics.position[v][2] = -1;
@@ -187,6 +191,7 @@ TEST(lengths_grow_at_once) {
             const float *r = bench.shell.rest_position[shell_centre(&bench.shell, c)];
             if (hypotf(r[0] - 0.1f, r[1] - 0.1f) < 0.0101f * (float)ring) bench.state.ablate.cell_flags[c] = 0;
         }
+
         bench.state.burn.mass_burnt += 1e-6;
         end_step(&bench, ATTACH_PERIOD * ring - 1); // not yet
         assert_memory_equal(before, attachments->length, sizeof before);
@@ -198,6 +203,7 @@ TEST(lengths_grow_at_once) {
             }
         memcpy(before, attachments->length, sizeof before);
     }
+
     assert_true(grown > 100);
     bench_close(&bench);
 }
@@ -218,6 +224,7 @@ TEST(lengths_shorten_in_steps) {
         float done = step <= ATTACH_PERIOD ? 0 : (float)(step - ATTACH_PERIOD) / ATTACH_PERIOD;
         assert_true(fabsf(*length - start * (1 - 0.2f * done)) < 1e-4f * start);
     }
+
     bench_close(&bench);
 }
 
@@ -236,6 +243,7 @@ TEST(rest_ends_without_a_jerk) {
     const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0), vertex(0, SIDE)};
     Bench bench;
     static float before[ROW * ROW][4];
+
     hold(&bench, NULL, 3, corners);
     float(*x)[4] = bench.state.dynamics.position;
     bench.shell.spare_count = 1; // it may tear
@@ -255,6 +263,7 @@ TEST(rest_ends_without_a_jerk) {
         assert_true(farthest_moved(&bench, before) < 2e-3); // of 6 cm
         end_step(&bench, step);
     }
+
     assert_true(excess(&bench, 0) < 1e-4 && (double)x[vertex(SIDE, SIDE)][0] < start - 0.02);
     bench.shell.spare_count = 0;
     bench_close(&bench);
@@ -265,6 +274,7 @@ static SingeSim *hung(const SingeSimDef *def, uint32_t cells, const SingeMateria
     SingeSim *sim = test_sim(def, test_grid(cells, cells, 0.2f / (float)cells, 0.2f / (float)cells), material);
     const uint32_t corners[] = {0, cells};
     const SingePoseKey keys[] = {test_key(0, 0, 0, 0), test_key(0.5f, away, 0, 0)};
+
     for (int k = 0; k < 2; k++) {
         SingePinDef pin = singe_default_pin();
         pin.sheet = the_sheet, pin.vertex_count = 1, pin.vertices = &corners[k];
@@ -272,6 +282,7 @@ static SingeSim *hung(const SingeSimDef *def, uint32_t cells, const SingeMateria
         SingePinId id;
         test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
     }
+
     return sim;
 }
 
@@ -291,6 +302,7 @@ TEST(a_sheet_pulled_apart_trembles_little) {
                 fastest = fmax(fastest, speed), farthest = fmax(farthest, reach);
             }
         }
+
         print_message("pulled to %.2f of its side: up to %.1f m/s, %.3f m from a pin\n",
                       1 + (double)(aways[run] / side), fastest, farthest);
         assert_true(fastest < 10 && farthest < 1.5 * sqrt(2.0) * (double)side);
@@ -323,6 +335,7 @@ TEST(bytes_do_not_depend_on_the_thread_count) {
         test_assert_same(one, more);
         singe_sim_destroy(more);
     }
+
     singe_sim_destroy(one);
 }
 
@@ -367,6 +380,7 @@ TEST(a_removed_pin_lets_go) {
             momentum[step] += (double)(view.area[i] * view.velocity[i][2]), area += (double)view.area[i];
         momentum[step] /= area;
     }
+
     for (int step = 1; step < 3; step++)
         assert_true(fabs((momentum[step] - momentum[step - 1]) * 480 / -9.81 - 1) < 1e-2);
     singe_sim_destroy(sim);

@@ -91,6 +91,7 @@ TEST(nothing_passes_thin_plates) {
                     fail_msg("%d particles passed a plate of %g mm at %g m/s (case %d)", behind[k],
                              1e3 * (double)thickness, (double)speed, k);
         }
+
         triangles_free(&triangles);
     }
 }
@@ -131,6 +132,7 @@ TEST(sheets_slip_above_the_angle_of_friction) {
     Triangles triangles = triangles_box(2, 2, 2, 0.1f);
     const float heights[25] = {0};
     const float angle = atanf(0.4f);
+
     static const char *const names[] = {"plane", "sphere", "box", "capsule", "heightfield", "mesh"};
     for (int kind = SINGE_COLLIDER_PLANE; kind <= SINGE_COLLIDER_MESH; kind++) {
         if (kind == SINGE_COLLIDER_SPHERE || kind == SINGE_COLLIDER_CAPSULE) continue;
@@ -142,6 +144,7 @@ TEST(sheets_slip_above_the_angle_of_friction) {
         assert_true(held < 0.5e-3);
         assert_true(fabs(free_displacement - expected) < 0.1 * expected);
     }
+
     triangles_free(&triangles);
 }
 
@@ -157,6 +160,7 @@ TEST(what_lies_still_does_not_creep) {
         printf("kind %d: creeps %.4f mm/s on the level, %.4f mm/s at 0.3 rad\n", kind, 4e3 * level, 4e3 * slope);
         assert_true(4 * level < 0.02e-3 && 4 * slope < 0.2e-3);
     }
+
     triangles_free(&triangles);
 }
 
@@ -198,6 +202,7 @@ static double deepest(const Bench *bench, double *speed) {
     const Collider *collider = bench->colliders.items;
     Pose pose = path_pose(&collider->path, bench->state.time);
     double worst = -INFINITY, sum = 0;
+
     for (uint32_t c = 0; c < bench->shell.cell_count; c++) {
         const uint32_t *corner = bench->shell.cells[c];
         for (int k = 0; k < 25; k++) {
@@ -210,6 +215,7 @@ static double deepest(const Bench *bench, double *speed) {
             worst = fmax(worst, -(double)distance);
         }
     }
+
     for (uint32_t i = 0; i < bench->shell.particle_count; i++)
         sum += (double)float3_length(float3_load(bench->state.dynamics.velocity[i]));
     *speed = sum / bench->shell.particle_count;
@@ -316,6 +322,7 @@ TEST(what_is_pressed_stays_and_rests) {
             max = fmax(max, fastest(&bench, &under));
             ever += under;
         }
+
         double last = fastest(&bench, &under);
         printf("pressed to %.2f mm: at most %.2f m/s, %.4f m/s after 1 s, %d times under the plate\n",
                1e3 * (double)gap, max, last, ever);
@@ -339,6 +346,7 @@ TEST(a_swat_passes_nothing) {
         float angle = -0.6f + 1.2f * (float)k / (KEYS - 1);
         keys[k] = (SingePoseKey){0.03f * (float)k / (KEYS - 1), {0, 0, 0}, {0, -sinf(angle / 2), 0, cosf(angle / 2)}};
     }
+
     add_collider(&bench, triangles_def(&triangles), KEYS, keys);
     const float none[4] = {0, 0, 0, 1};
     position(&bench, none, float3(0.04f, -0.016f, 0.004f));
@@ -350,6 +358,7 @@ TEST(a_swat_passes_nothing) {
         through += local.z < 0 && local.x > 0.011f && local.x < 0.109f && fabsf(local.y) < 0.049f;
         hit += bench.state.dynamics.velocity[i][2] > 1;
     }
+
     printf("swat: %d of %u particles hit, %d through\n", hit, bench.shell.particle_count, through);
     assert_true(hit > 400 && through == 0);
     triangles_free(&triangles);
@@ -369,6 +378,7 @@ static double look(Bench *bench, Float3 at, uint64_t *contacts) {
     const float none[4] = {0, 0, 0, 1};
     DynamicsPlan *plan = bench->plan;
     double best = INFINITY;
+
     for (int repeat = 0; repeat < 7; repeat++) {
         position(bench, none, at);
         for (uint32_t i = 0; i < bench->shell.particle_count; i++) {
@@ -380,6 +390,7 @@ static double look(Bench *bench, Float3 at, uint64_t *contacts) {
         *contacts = contact_project(plan, 1, NULL, STEP / 3, &bench->state.dynamics);
         best = fmin(best, seconds() - start);
     }
+
     return 1e9 * best / bench->shell.particle_count;
 }
 

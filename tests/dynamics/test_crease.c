@@ -49,6 +49,7 @@ static void rig_roll(Rig *rig, double dx, double angle) {
     const Shell *shell = &rig->shell;
     float(*x)[4] = rig->state.dynamics.position;
     const double radius = angle == 0 ? 0 : dx / 2 / sin(angle / 2);
+
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         double along = (double)shell->rest_position[i][0] / dx * angle, rest = (double)shell->rest_position[i][2];
         bool centre = !shell_is_corner(shell, i);
@@ -64,6 +65,7 @@ static void rig_roll_aslant(Rig *rig, double curvature, double turn) {
     const Shell *shell = &rig->shell;
     float(*x)[4] = rig->state.dynamics.position;
     const double c = cos(turn), s = sin(turn);
+
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         const float *rest = shell->rest_position[i];
         double along = c * (double)rest[0] + s * (double)rest[1], side = c * (double)rest[1] - s * (double)rest[0];
@@ -104,6 +106,7 @@ TEST(lengths_fit_a_rolled_sheet) {
             assert_true(fabs(ratio - expected) < 1e-4);
         }
     }
+
     rig_close(&rig);
 }
 
@@ -125,6 +128,7 @@ TEST(a_creased_spring_bends_as_a_flat_one) {
         double moment = (length[1] - target) * (length[2] - length[0]) / step;
         assert_true(fabs(moment / (4 * thickness * thickness * (now - stays) / 2) - 1) < 0.01);
     }
+
     rig_close(&rig);
 }
 
@@ -146,6 +150,7 @@ TEST(a_mesh_bounds_its_creases) {
                 before = ratio;
             }
         }
+
         rig_close(&rig);
     }
 }
@@ -170,6 +175,7 @@ TEST(a_share_of_the_curvature_stays) {
                 double crease = (double)rig.state.dynamics.crease[k], signed_as = along && bends[b] < 0 ? -1 : 1;
                 assert_true(fabs(signed_as * crease - (along ? expected : 0)) < 0.3);
             }
+
             // let go it keeps that; bent back a little less than it takes to yield again, too
             float kept = rig.state.dynamics.crease[0];
             rig_roll(&rig, dx, (double)kept * dx);
@@ -188,6 +194,7 @@ TEST(the_share_does_not_depend_on_direction) {
     const SingeMaterialDef material = singe_default_material();
     const double yield = 1 / (double)material.crease_radius.value, share = (double)material.crease_share.value;
     const double turns[] = {0, 15, 30, 45, 60}, bends[] = {150, -150, 0.95 * yield};
+
     for (int t = 0; t < 5; t++)
         for (int b = 0; b < 3; b++) {
             const double turn = turns[t] * pi / 180, k = bends[b];
@@ -202,6 +209,7 @@ TEST(the_share_does_not_depend_on_direction) {
                 if (!isnan(expected)) assert_true(fabs(kept - expected) < 0.03 * fabs(k) * part);
                 else assert_true(kept * k >= 0 && fabs(kept) <= share * fabs(k) * part + 0.3);
             }
+
             rig_close(&rig);
         }
 }
@@ -212,12 +220,14 @@ TEST(a_single_edge_keeps_less) {
     const double yield = 1 / (double)material.crease_radius.value, share = (double)material.crease_share.value;
     const float dx = 0.004f, middle = 4 * dx, c = cosf(150 * dx), s = sinf(150 * dx);
     Rig rig;
+
     rig_open(&rig, test_grid(8, 4, dx, 0.003f), NULL, 1);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
         const float *rest = rig.shell.rest_position[i];
         float *x = rig.state.dynamics.position[i], along = rest[0] - middle;
         if (along > 1e-5f) x[0] = middle + c * along + s * rest[2], x[2] = c * rest[2] - s * along;
     }
+
     rig_pass(&rig, 200);
     int creased = 0;
     for (uint32_t k = 0; k < rig.shell.springs[SINGE_GREEN].count; k++) {
@@ -226,6 +236,7 @@ TEST(a_single_edge_keeps_less) {
         assert_true(fabs(crease - share * (100 - yield)) < 0.5);
         creased++;
     }
+
     assert_int_equal(creased, 4);
     rig_close(&rig);
 }
@@ -270,6 +281,7 @@ TEST(a_flat_fold_stays_on_its_side) {
             rig_pass(&rig, 8);
             assert_true(side * rig.state.dynamics.bend[0] >= 0 && side * rig.state.dynamics.crease[0] >= 0);
         }
+
         assert_true(side * rig.state.dynamics.bend[0] * 0.004f > 2.9f);
         rig_close(&rig);
     }
@@ -326,6 +338,7 @@ static SingeSim *folding(int threads, bool creases, SingePinId *right) {
         path[k] = test_key(0.025f * (float)k, (float)(0.03 + 0.03 * cos(turn)), 0, (float)(0.03 * sin(turn)));
         path[k].rotation[1] = (float)-sin(turn / 2), path[k].rotation[3] = (float)cos(turn / 2);
     }
+
     pin.sheet = (SingeSheetId){0, 1}, pin.vertex_count = 6, pin.vertices = vertices[0];
     test_ok(sim, singe_sim_add_pin(sim, &pin, &left));
     pin.vertices = vertices[1], pin.path_count = 9, pin.path = path;
@@ -343,6 +356,7 @@ TEST(bytes_are_the_same_for_any_threads_and_after_loading) {
     test_steps(one, 60), test_steps(three, 60), test_steps(copy, 60), test_steps(elastic, 60);
     test_assert_same(one, three);
     test_assert_same(one, copy);
+
     // and there were creases
     SingeView creased = singe_sim_view(one), plain = singe_sim_view(elastic);
     assert_true(memcmp(creased.position, plain.position, creased.particle_count * sizeof *creased.position) != 0);

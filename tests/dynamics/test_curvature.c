@@ -29,6 +29,7 @@ static void fold(Bench *bench, float angle, int turns) {
             if (into >= 0 && into < turns) heading += angle / (float)turns;
             x += cell * cosf(heading), z += cell * sinf(heading);
         }
+
         float *p = bench->state.dynamics.position[v];
         p[0] = x, p[2] = z;
     }
@@ -49,6 +50,7 @@ static double sharpest(const Bench *bench) {
                b = float3_sub(float3_load(x[v + 1]), float3_load(x[v]));
         max = fmax(max, (double)float3_length(float3_sub(b, a)));
     }
+
     return max / (double)(2 * cell * sinf(0.5f * curvature * cell));
 }
 
@@ -190,6 +192,7 @@ TEST(rings_are_limited_all_around) {
             float *p = bench.state.dynamics.position[v];
             p[0] = cell * (float)(i < 16 ? i : 32 - i), p[2] = 0;
         }
+
         prepare(&bench);
         for (int i = 0; i < 300; i++) curvature_project(bench.plan, bench.pool, &bench.state.dynamics);
         for (uint32_t v = 0; v < 32; v++) {
@@ -199,5 +202,6 @@ TEST(rings_are_limited_all_around) {
             assert_true(float3_length(r) < 1.15f * 2 * cell * sinf(0.5f * curvature * cell) + 0.2f * cell);
         }
     }
+
     bench_close(&bench);
 }

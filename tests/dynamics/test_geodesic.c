@@ -51,6 +51,7 @@ static double straight_error(Quads quads) {
             else worst = fmax(worst, fabs((double)d.distance[v] / straight - 1));
         }
     }
+
     distances_close(&d);
     return worst;
 }
@@ -79,6 +80,7 @@ TEST(a_cylinder_is_as_far_across_as_flat) {
         double displacement = hypot(chord * i, (double)side * (v / AROUND));
         if (displacement > 0) worst = fmax(worst, fabs((double)d.distance[v] / displacement - 1));
     }
+
     print_message("worst error on a cylinder: %.1e\n", worst);
     assert_true(worst < 1e-3);
     distances_close(&d);

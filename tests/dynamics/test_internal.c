@@ -34,6 +34,7 @@ static double wave_left(float cell, float wavelength, int steps) {
     Bench bench;
     SingeMaterialDef material = plain();
     uint32_t n = (uint32_t)lroundf(0.4f / cell);
+
     bench_open(&bench, quads_grid(n, 4, cell, cell, false), &material, 1);
     prepare(&bench);
     float(*v)[4] = bench.state.dynamics.velocity;
@@ -48,6 +49,7 @@ static double wave_left(float cell, float wavelength, int steps) {
         double wave = sin(2 * 3.14159265 * (double)x / (double)wavelength);
         dot += wave * (double)v[i][2], square += wave * wave;
     }
+
     bench_close(&bench);
     return dot / square;
 }
@@ -78,6 +80,7 @@ TEST(friction_keeps_momentum) {
         dynamics_smooth(bench.plan, &bench.shell, &bench.state.ablate, bench.pool, 1.0f / 480, &bench.state.dynamics);
     momentum(&bench, after);
     for (int k = 0; k < 3; k++) assert_true(fabs(after[k] - before[k]) < 1e-5 * fabs(before[2]));
+
     // a body that moves as one is not held back
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) v[i][0] = 1, v[i][1] = -2, v[i][2] = 3;
     dynamics_smooth(bench.plan, &bench.shell, &bench.state.ablate, bench.pool, 1.0f / 480, &bench.state.dynamics);
@@ -166,6 +169,7 @@ TEST(sides_have_a_max) {
         dynamics_limit(bench.plan, &bench.shell, STATE_INPUT(&bench.state), bench.pool, &bench.state.dynamics);
         assert_true(longest_side(&bench) < 1.3);
     }
+
     assert_false(
         dynamics_limit(bench.plan, &bench.shell, STATE_INPUT(&bench.state), bench.pool, &bench.state.dynamics));
     bench_close(&bench);
@@ -236,6 +240,7 @@ TEST(compliance_does_not_depend_on_substeps) {
         stretch[run] = -low;
         bench_close(&bench);
     }
+
     assert_true(stretch[0] > 1e-4 && fabs(stretch[0] / stretch[1] - 1) < 0.02);
 }
 
@@ -276,10 +281,12 @@ TEST(damping_and_drag_follow_a_texture) {
         dynamics_move(bench.plan, &bench.shell, bench.pool, h, &(Between){.opens = true}, &bench.state.dynamics);
         for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
             float f = fminf(fmaxf(2 * bench.shell.rest_position[i][0] / 0.08f - 0.5f, 0), 1);
+
             // a layer of 40 g/m2 in air of 1.2 kg/m3 takes half of the drag
             float slower = drag ? h * 0.25f * 1.2f * 4 * f / 0.04f * 2 : h * 4 * f;
             assert_true(fabsf(bench.state.dynamics.velocity[i][2] - 2 / (1 + slower)) < 1e-5f);
         }
+
         bench_close(&bench);
     }
 }
@@ -303,6 +310,7 @@ static void hang(SingeParam compliance, double stretch[2]) {
         const float(*x)[4] = (const float(*)[4])bench.state.dynamics.position;
         stretch[end] = (double)(x[2 * (row + 5)][1] - x[2 * row][1]) - 0.05;
     }
+
     bench_close(&bench);
 }
 

@@ -24,6 +24,7 @@ static Float3 centre_of_mass(const Bench *bench) {
         for (int k = 0; k < 3; k++) sum[k] += m * (double)bench->state.dynamics.position[i][k];
         mass += m;
     }
+
     return float3((float)(sum[0] / mass), (float)(sum[1] / mass), (float)(sum[2] / mass));
 }
 
@@ -35,6 +36,7 @@ static double blue_strain(const Bench *bench) {
                               float3_load(bench->state.dynamics.position[blue->ends[k][0]]));
         worst = fmax(worst, fabs((double)float3_length(d) / (double)blue->rest[k] - 1));
     }
+
     return worst;
 }
 
@@ -58,6 +60,7 @@ TEST(a_sheet_falls_freely) {
     bench_open(&bench, quads_grid(10, 10, 0.02f, 0.02f, false), &material, 1);
     float start = centre_of_mass(&bench).z;
     for (int step = 0; step < 240; step++) bench_step(&bench, 1.0f / 480);
+
     // symplectic Euler with n substeps falls g t^2/2 (1 + 1/n)
     double n = 240.0 * bench.settings.solver.substeps, expected = 0.5 * 9.81 * 0.25 * (1 + 1 / n);
     assert_true(fabs((double)(start - centre_of_mass(&bench).z) - expected) < 2e-4);
@@ -89,6 +92,7 @@ TEST(free_flight_keeps_lengths_and_momentum) {
         float v[4] = {0.5f, 2 * (r[0] - 0.1f), 2 * (r[0] - 0.1f) + ripple, 0};
         memcpy(bench.state.dynamics.velocity[i], v, sizeof v);
     }
+
     Float3 start = centre_of_mass(&bench);
     double worst = 0;
     for (int step = 0; step < 240; step++) {
@@ -115,9 +119,11 @@ TEST(damping_decays_exponentially) {
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
         double m = (double)bench.shell.matter.mass[i];
         momentum += m * (double)bench.state.dynamics.velocity[i][0], mass += m;
+
         // a position rounded by 1e-9 m is a velocity of 1e-6 m/s, in each of 1440 substeps
         assert_true(fabs((double)bench.state.dynamics.velocity[i][0] / (0.3 * left) - 1) < 0.01);
     }
+
     double mean = momentum / mass;
     print_message("damping: %.2g from its steps, %.2g from exp(-d t)\n", mean / (0.3 * left) - 1,
                   mean / (0.3 * exp(-2)) - 1);
@@ -139,6 +145,7 @@ static void angular_momentum(const Bench *bench, double spin[3]) {
                 if (pass == 0) centre[k] += m * r[k], drift[k] += m * v[k];
                 else r[k] -= centre[k] / mass, v[k] -= drift[k] / mass;
             }
+
             if (pass == 0) mass += m;
             for (int k = 0; k < 3 && pass; k++)
                 spin[k] += m * (r[(k + 1) % 3] * v[(k + 2) % 3] - r[(k + 2) % 3] * v[(k + 1) % 3]);
@@ -199,12 +206,14 @@ static double open_crushed(uint32_t seed) {
         const float *rest = bench.shell.rest_position[i];
         for (int k = 0; k < 3; k++) x[k] = 0.01f * rest[k] + 1e-5f * random_unit(random_hash(i, (uint32_t)k, 3, seed));
     }
+
     double fastest = 0;
     for (int step = 0; step < 480; step++) {
         bench_step(&bench, 1.0f / 480);
         for (uint32_t i = 0; i < bench.shell.particle_count; i++)
             fastest = fmax(fastest, (double)float3_length(float3_load(bench.state.dynamics.velocity[i])));
     }
+
     double strain = blue_strain(&bench);
     print_message("crushed to 1 %%: opens at %.1f m/s, strain %.4f after 1 s\n", fastest, strain);
     assert_true(fastest < 0.01 * 480 * bench.settings.solver.substeps); // a cell in a substep
@@ -228,6 +237,7 @@ static double slide(float slope, float friction) {
     SingeColliderDef plane = singe_default_collider();
     plane.friction = friction;
     plane.offset = 0;
+
     // the plane turned about y, so that it falls towards +x; the sheet laid on it
     SingePoseKey key = {0, {0, 0, 0}, {0, sinf(slope / 2), 0, cosf(slope / 2)}};
     add_collider(&bench, plane, 1, &key);
@@ -286,6 +296,7 @@ TEST(no_vertex_is_inside_a_collider) {
             Float3 local = pose_unapply(&pose, float3_load(bench.state.dynamics.position[i]));
             assert_true(collider_distance(bench.colliders.items, local, INFINITY, &normal) > def.offset - 1e-5f);
         }
+
         drop_collider(&bench);
         bench_close(&bench);
     }
@@ -309,6 +320,7 @@ TEST(bytes_do_not_depend_on_the_thread_count) {
         assert_memory_equal(one.state.dynamics.velocity, more.state.dynamics.velocity, one.shell.particle_count * 16);
         bench_close(&more);
     }
+
     bench_close(&one);
 }
 

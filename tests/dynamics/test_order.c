@@ -62,6 +62,7 @@ TEST(only_centres_move) {
         if (same) assert_memory_equal(v[centre], bench.state.dynamics.velocity[centre], sizeof *v);
         else if (c != 7) assert_true(parting(&bench, c) > -1e-5); // cell 7's is pinned
     }
+
     free(x), free(v), free(before);
     bench_close(&bench);
 }
@@ -99,6 +100,7 @@ static uint32_t step_and_count(SingeSim *sim, int steps) {
         uint32_t inverted = singe_sim_stats(sim).inverted_cells;
         if (inverted > max) max = inverted;
     }
+
     return max;
 }
 
@@ -110,10 +112,12 @@ TEST(a_sheet_pressed_on_the_ground_stays_ordered) {
             float *p = mesh.positions + 3 * v;
             p[2] = 0.02f + 0.006f * sinf(170 * p[0]) * cosf(140 * p[1] + 90 * p[0]);
         }
+
         for (uint32_t c = 0; down && c < mesh.cell_count; c++) {
             uint32_t *cell = mesh.cells + 4 * c, swap = cell[1];
             cell[1] = cell[3], cell[3] = swap;
         }
+
         SingeSimDef def = singe_default_sim();
         def.time_step = 1.0f / 240;
         SingeSim *sim = test_sim(&def, mesh, NULL);

@@ -20,6 +20,7 @@ static Quads quads_with_hole(uint32_t nx, uint32_t ny) {
         if (i >= nx / 3 && i < nx / 2 && j >= ny / 4 && j < ny / 2) continue;
         memmove(quads.cells + 4 * kept++, quads.cells + 4 * c, 4 * sizeof *quads.cells);
     }
+
     quads.cell_count = kept;
     return quads;
 }
@@ -67,6 +68,7 @@ static Quads quads_random_valence(uint32_t n) {
             }
         }
     }
+
     return quads;
 }
 
@@ -79,6 +81,7 @@ static void disturb(Bench *bench) {
         bench->state.burn.mass[i] = i % 64 < 40 ? 1 : 0.3f + 0.7f * random_unit(random_hash(i, 9, 9, 2));
         bench->state.dynamics.pinned[i] = i % 11 == 3;
     }
+
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         for (uint32_t k = 0; k < bench->shell.springs[colour].count; k++)
             if (random_hash(k, (uint32_t)colour, 4, 4) % 16 == 0) bench->state.ablate.spring_flags[colour][k] = 0;
@@ -90,6 +93,7 @@ static void project(Bench *bench, SingeInstructions instructions, Pool *pool, co
     size_t bytes = (bench->shell.particle_count + 1) * 4 * sizeof *result;
     DynamicsCounters counters = {0};
     float *position = bench->state.dynamics.position[0];
+
     memcpy(position, start, bytes);
     bench->plan->kernels = kernels_choose(instructions);
     bench->plan->strands.solve = bench->plan->kernels->solve;
@@ -98,6 +102,7 @@ static void project(Bench *bench, SingeInstructions instructions, Pool *pool, co
         strand_project(bench->plan, colour, pool, 1e-3f, &bench->state.dynamics, &counters);
         curvature_project(bench->plan, pool, &bench->state.dynamics);
     }
+
     memcpy(result, position, bytes);
 }
 
@@ -130,6 +135,7 @@ static void compare_kernels(Quads quads, bool vary) {
         project(&bench, (SingeInstructions)i, bench.pool, start, other);
         assert_memory_equal(plain, other, bytes);
     }
+
     read_compliances(&bench, false);
     project(&bench, SINGE_INSTRUCTIONS_BEST, NULL, start, other);
     assert_memory_equal(plain, other, bytes);
@@ -163,6 +169,7 @@ static void check_lanes(const SpringSet *springs, const StrandSet *set, Density 
             assert_int_equal(set->node[slot], 4 * springs->ends[k - last][last]);
         }
     }
+
     free(taken);
     density->springs += springs->count;
     for (uint32_t g = 0; g < set->group_count; g++) {

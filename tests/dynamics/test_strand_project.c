@@ -30,6 +30,7 @@ static void dense_solve(double a[N_MAX][N_MAX], double *b, int n) {
             b[i] -= f * b[k];
         }
     }
+
     for (int k = n - 1; k >= 0; k--) {
         for (int j = k + 1; j < n; j++) b[k] -= a[k][j] * b[j];
         b[k] /= a[k][k];
@@ -53,6 +54,7 @@ static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand
     const SpringSet *set = &bench->shell.springs[colour];
     uint32_t first = set->strand_first[strand];
     int n = (int)(set->strand_first[strand + 1] - first);
+
     assert_true(n <= N_MAX);
     static double a[N_MAX][N_MAX], b[N_MAX], u[N_MAX][3], stretch[N_MAX];
     const float *w = bench->plan->inverse_mass;
@@ -71,6 +73,7 @@ static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand
         stretch[k] = (length * length - l * l) / (2 * length * length);
         b[k] = (double)bench_weight(bench, colour, first + (uint32_t)k) * (length * length - l * l) / (2 * length);
     }
+
     for (int p = 0; p < n; p++)
         for (int q = 0; q < n; q++) {
             a[p][q] = 0;
@@ -80,6 +83,7 @@ static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand
                 for (int j = 0; j < 2; j++)
                     if (ep[i] == eq[j]) a[p][q] += (i == j ? 1 : -1) * (double)w[ep[i]] * dot;
             if (p == q) a[p][q] += 0.5 * relative * ((double)w[ep[0]] + (double)w[ep[1]]);
+
             // what is too long yields
             if (p == q) a[p][q] += 0.5 * fmax(stretch[p] - 0.01, 0) * ((double)w[ep[0]] + (double)w[ep[1]]);
             if (p == q) a[p][q] += compliance * 1e6;
@@ -115,6 +119,7 @@ static void compare(Quads quads, bool pin_some) {
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         for (uint32_t i = 0; i < bench.shell.particle_count; i++)
             for (int k = 0; k < 3; k++) x[i][k] = (double)bench.state.dynamics.position[i][k];
+
         // strands are stored family by family, and strands of a family do not touch: one after another is the same
         for (uint32_t s = 0; s < bench.shell.springs[colour].strand_count; s++)
             dense_strand(&bench, (SingeColour)colour, s, x);
@@ -122,6 +127,7 @@ static void compare(Quads quads, bool pin_some) {
         for (uint32_t i = 0; i < bench.shell.particle_count; i++)
             for (int k = 0; k < 3; k++) assert_true(fabs(x[i][k] - (double)bench.state.dynamics.position[i][k]) < 2e-6);
     }
+
     free(x);
     bench_close(&bench);
 }

@@ -36,12 +36,14 @@ static void sums(SingeSim *sim, PaperState state, int steps, double *sum) {
     SingeNetwork *network;
     SingeError error;
     double errors[SINGE_COLOUR_COUNT];
+
     assert_int_equal(paper_network(sim, state, false, 1e-4, &network, &error), SINGE_OK);
     for (int step = 0; step <= steps; step++) {
         for (uint32_t set = 0; set < SINGE_COLOUR_COUNT && step; set++)
             assert_int_equal(singe_network_project(network, set, NULL), SINGE_OK);
         sum[step] = paper_errors(network, SINGE_COLOUR_COUNT, errors);
     }
+
     singe_network_destroy(network);
 }
 
@@ -73,6 +75,7 @@ TEST(the_sum_rises_in_some_states) {
         rises += rose, lower += sum[STEPS] < sum[0];
         assert_int_equal(singe_sim_step(sim), SINGE_OK);
     }
+
     print_message("of %d states it rises in %d, and is lower after %d steps in %d\n", STATES, rises, STEPS, lower);
     assert_true(rises >= 5);
     assert_true(lower >= 108 && lower > STATES - rises);
@@ -94,6 +97,7 @@ TEST(every_colour_has_full_rank) {
     SingeSim *sim = sheet(PAPER_SWING, 5, 100);
     SingeNetwork *all, *colours;
     SingeError error;
+
     assert_int_equal(paper_network(sim, PAPER_SWING, true, 0, &all, &error), SINGE_OK);
     assert_int_equal(paper_network(sim, PAPER_SWING, false, 1e-4, &colours, &error), SINGE_OK);
     size_t columns = 3 * (size_t)singe_sim_view(sim).particle_count;
@@ -113,6 +117,7 @@ static double left_after(SingeSim *sim, bool one, double floor) {
     const uint32_t sets = one ? 1 : SINGE_COLOUR_COUNT;
     double errors[SINGE_COLOUR_COUNT], before, after;
     SingeResult result = paper_network(sim, PAPER_SWING, one, floor, &network, &error);
+
     assert_int_equal(result, SINGE_OK);
     before = paper_errors(network, sets, errors);
     for (int step = 0; step < 7; step++)
@@ -128,6 +133,7 @@ TEST(all_at_once_diverges_without_a_floor) {
     SingeSim *sim = sheet(PAPER_SWING, 8, 200);
     const double floors[] = {0, 1e-4};
     double left[2][2];
+
     for (int f = 0; f < 2; f++)
         for (int one = 0; one < 2; one++) {
             left[f][one] = left_after(sim, one, floors[f]);

@@ -97,6 +97,7 @@ TEST(round_trip_is_bitwise) {
     assert_memory_equal(read.source_vertex, s->source_vertex, sizeof sample.source_vertex);
     assert_memory_equal(read.sheet, s->sheet, sizeof sample.sheet);
     assert_memory_equal(read.triangles, s->triangles, sizeof sample.triangles);
+
     // and once more through the file gives the same bytes
     Bytes again = written(&read, time);
     assert_int_equal(again.size, bytes.size);
@@ -123,6 +124,7 @@ TEST(header_is_as_documented) {
         "end_header\n";
     assert_memory_equal(bytes.data, header, sizeof header - 1);
     assert_int_equal(bytes.size, sizeof header - 1 + VERTICES * 25 * 4 + TRIANGLES * 13);
+
     // the first vertex's x and the first face, by hand
     uint32_t bits;
     memcpy(&bits, &sample.position[0][0], 4);
@@ -159,6 +161,7 @@ TEST(nothing_left_is_a_surface_too) {
     SingeSurface empty = {0}, read;
     Bytes bytes = written(&empty, 12);
     SingeError error;
+
     assert_int_equal(ply_read_surface("a.ply", bytes.data, bytes.size, (SingeAllocator){0}, &read, NULL, &error),
                      SINGE_OK);
     assert_int_equal(read.vertex_count, 0);

@@ -43,9 +43,11 @@ static void read_channel(const char *name, exr_pixel_type_t kept, void *values) 
             channel->user_bytes_per_element = 4, channel->user_pixel_stride = 4, channel->user_line_stride = 4 * WIDTH;
             channel->decode_to_ptr = (uint8_t *)values + 4 * WIDTH * (size_t)y;
         }
+
         if (y == 0) assert_int_equal(exr_decoding_choose_default_routines(file, 0, &decoder), EXR_ERR_SUCCESS);
         assert_int_equal(exr_decoding_run(file, 0, &decoder), EXR_ERR_SUCCESS);
     }
+
     assert_true(found);
     exr_decoding_destroy(file, &decoder);
     exr_finish(&file);
@@ -59,6 +61,7 @@ TEST(layers_read_back) {
         depth[i] = i % 7 ? 1 / (1 + (float)i) : INFINITY;
         id[i] = (uint32_t)i * 2654435761u;
     }
+
     const ExrChannel channels[] = {{"R", EXR_KIND_HALF, &colour[0][0], 3},
                                    {"G", EXR_KIND_HALF, &colour[0][1], 3},
                                    {"B", EXR_KIND_HALF, &colour[0][2], 3},
@@ -72,6 +75,7 @@ TEST(layers_read_back) {
         for (int i = 0; i < COUNT; i++) // a half has 11 bits
             assert_true(fabsf(got[i] - colour[i][c]) <= colour[i][c] / 2048);
     }
+
     read_channel("Z", EXR_PIXEL_FLOAT, got);
     assert_memory_equal(got, depth, sizeof depth);
     read_channel("id.piece", EXR_PIXEL_UINT, got_id);
@@ -82,6 +86,7 @@ TEST(bad_layers_are_refused) {
     static float values[COUNT];
     const ExrChannel twice[] = {{"R", EXR_KIND_HALF, values, 1}, {"R", EXR_KIND_HALF, values, 1}};
     SingeError error = {0};
+
     assert_int_equal(exr_write(path, 0, 5, twice, 1, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(exr_write(path, 5, 1 << 20, twice, 1, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(exr_write(path, 5, 5, twice, 0, &error), SINGE_ERROR_ARGUMENT);

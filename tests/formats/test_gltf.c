@@ -30,6 +30,7 @@ static size_t make_glb(const char *json, const Data *d, uint8_t *file) {
     uint32_t length = (uint32_t)strlen(json), padded = (length + 3) / 4 * 4;
     uint32_t head[] = {0x46546c67, 2, 28 + padded + (uint32_t)sizeof *d, padded, 0x4e4f534a};
     uint32_t chunk[] = {sizeof *d, 0x004e4942};
+
     memcpy(file, head, 20);
     memset(file + 20, ' ', padded);
     memcpy(file + 20, json, length);
@@ -69,6 +70,7 @@ static Polygons expect(const char *json, const uint32_t *corners, uint32_t corne
     Data d = data();
     Polygons mesh;
     SingeError error;
+
     if (parse(json, &d, (SingeAllocator){0}, &mesh, &error)) fail_msg("%s", error.message);
     assert_int_equal(mesh.corner_count, corner_count);
     assert_int_equal(mesh.face_count, corner_count / 3);
@@ -112,6 +114,7 @@ TEST(transforms_are_applied) {
                                  "{\"mesh\":0,\"rotation\":[0,0,0.70710678,0.70710678],\"scale\":[2,2,2]}]" MESH(
                                      "{\"attributes\":{\"POSITION\":0},\"indices\":2}"),
                            two, 6);
+
     expect_positions(&mesh, turned, 4);
     static const float mirrored[] = {7, 0, 0, 6, 0, 0, 6, 1, 0, 7, 1, 0};
     mesh = expect(SCENE ",\"nodes\":[{\"mesh\":0,\"matrix\":[-1,0,0,0,0,1,0,0,0,0,1,0,7,0,0,1]}]" MESH(
@@ -163,6 +166,7 @@ TEST(bad_files_are_refused) {
         assert_message(&error, "a.glb");
         assert_null(mesh.positions);
     }
+
     d.indices[4] = 4;
     assert_int_equal(parse(SCENE NODE MESH(PRIMITIVE), &d, (SingeAllocator){0}, &mesh, &error), SINGE_ERROR_MESH);
     assert_message(&error, "meshes[0]: primitive 0: index 4 (from 0): vertex 4 is out of range: there are 4");
@@ -284,12 +288,14 @@ TEST(every_cut_and_failure_of_memory_is_clean) {
     Polygons mesh;
     SingeError error;
     size_t size = make_glb(json, &d, file);
+
     for (size_t cut = 0; cut < size; cut++) {
         uint8_t *copy = malloc(cut ? cut : 1);
         memcpy(copy, file, cut);
         assert_int_not_equal(polygons_read("a.glb", copy, cut, (SingeAllocator){0}, &mesh, &error), SINGE_OK);
         free(copy);
     }
+
     for (size_t cut = 0; cut < sizeof json - 1; cut++) // as text, without data
         assert_int_not_equal(polygons_read("a.gltf", (const uint8_t *)json, cut, (SingeAllocator){0}, &mesh, &error),
                              SINGE_OK);

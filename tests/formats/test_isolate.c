@@ -21,6 +21,7 @@ static SingeResult run(IsolateWork *work, void *context, Bytes *answer, SingeErr
         assert_int_equal(error->code, result);
         assert_message(error, "a.mesh");
     }
+
     return result;
 }
 
@@ -57,6 +58,7 @@ TEST(answers_come_whole) {
     uint8_t *bytes = many();
     Bytes answer;
     SingeError error;
+
     if (run(put_many, bytes, &answer, &error)) fail_msg("%s", error.message);
     assert_int_equal(answer.size, MANY);
     assert_memory_equal(answer.data, bytes, MANY);
@@ -115,12 +117,14 @@ TEST(crashes_are_reported) {
     static const int signals[] = {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGKILL};
     Bytes answer;
     SingeError error;
+
     for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
         char number[24];
         snprintf(number, sizeof number, "signal %d", signals[i]);
         assert_int_equal(run(crash, (void *)(uintptr_t)&signals[i], &answer, &error), SINGE_ERROR_FORMAT);
         assert_message(&error, number);
     }
+
     // a library that ends the process gives no answer, whatever code it has
     for (int code = 0; code < 3; code++) {
         assert_int_equal(run(stop, &code, &answer, &error), SINGE_ERROR_FORMAT);
@@ -162,6 +166,7 @@ TEST(time_is_limited) {
     Bytes answer;
     SingeError error;
     double start = seconds();
+
     assert_int_equal(run(spin, NULL, &answer, &error), SINGE_ERROR_LIMIT);
     assert_message(&error, "more than 1 s");
     IsolateLimits short_time = {64 << 20, 0.1};
@@ -178,6 +183,7 @@ static SingeResult take_slowly(void *context, IsolateAnswer *answer, SingeError 
         memset(block, 1, 1 << 20); // crashes without memory
         nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL);
     }
+
     return SINGE_OK;
 }
 
@@ -278,6 +284,7 @@ TEST(a_parent_that_ignores_its_children_gets_answers) {
     uint8_t *bytes = many();
     Bytes answer;
     SingeError error;
+
     signal(SIGCHLD, SIG_IGN);
     SingeResult result = run(put_many, bytes, &answer, &error);
     signal(SIGCHLD, SIG_DFL);
@@ -305,6 +312,7 @@ TEST(the_child_ends_with_its_parent) {
         (void)!isolate_run("a.mesh", say_and_wait, &ends[1], limits, (SingeAllocator){0}, &answer, NULL);
         _exit(0);
     }
+
     close(ends[1]);
     assert_int_equal(read(ends[0], &byte, 1), 1);
     kill(parent, SIGKILL);

@@ -54,6 +54,7 @@ TEST(damaged_answers_are_refused) {
     Polygons polygons;
     SingeError error;
     Answer answer = good();
+
     for (size_t size = 0; size < WHOLE; size++)
         assert_int_equal(take(&answer, size, &polygons, &error), SINGE_ERROR_FORMAT);
     static const uint64_t wrong[] = {0, 1, 3, 5, 8, 0x7fffffff, 0x80000000, 0x5555555555555559, UINT64_MAX};
@@ -72,6 +73,7 @@ TEST(damaged_answers_are_refused) {
         answer = good(), answer.sizes[0] = sizes[i][0], answer.sizes[1] = sizes[i][1];
         assert_int_equal(take(&answer, WHOLE, &polygons, &error), SINGE_ERROR_FORMAT);
     }
+
     answer = good(), answer.positions[7] = INFINITY;
     assert_int_equal(take(&answer, WHOLE, &polygons, &error), SINGE_ERROR_MESH);
     assert_message(&error, "vertex 2");

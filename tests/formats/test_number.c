@@ -69,6 +69,7 @@ TEST(agrees_with_libc) {
         size_t used;
         assert_int_equal(read_float(text, &value, &used), NUMBER_OK);
         assert_memory_equal(&value, &expected, sizeof value);
+
         // a number of many digits, not a float's own
         snprintf(text, sizeof text, "%u.%020llue%d", bits % 1000, (unsigned long long)seed, (int)(seed % 60) - 40);
         expected = strtof(text, NULL);
@@ -93,6 +94,7 @@ TEST(refuses_what_is_no_number) {
     static const char *const huge[] = {"3.4028236e38", "3.402823567797337e38", "-1e39", "1e400", "1e999999999999"};
     for (size_t i = 0; i < sizeof huge / sizeof *huge; i++)
         assert_int_equal(read_float(huge[i], &value, &used), NUMBER_RANGE);
+
     // the number ends where it stops being one
     assert_int_equal(read_float("0x10", &value, &used), NUMBER_OK);
     assert_int_equal(used, 1);

@@ -4,6 +4,7 @@
 
 static SingeResult parse(const char *text, Polygons *mesh, SingeError *error) {
     memset(error, 0, sizeof *error);
+
     // a copy without the closing zero, so that a sanitizer sees a read behind the end
     size_t size = strlen(text);
     uint8_t *bytes = malloc(size ? size : 1);
@@ -30,6 +31,7 @@ static void expect_error(const char *text, SingeResult code, int64_t line, const
     Polygons mesh;
     SingeError error;
     SingeResult result = parse(text, &mesh, &error);
+
     if (result != code) fail_msg("result %d, not %d, for %s (%s)", result, code, text, error.message);
     assert_int_equal(error.code, code);
     assert_string_equal(error.stage, "obj");
@@ -49,6 +51,7 @@ TEST(keeps_order_and_positions) {
                        "vt 0 0.5\nvt 1 0.5 0\nvt 0.25\nvn 0 0 1\n"
                        "l 1 2\np 1\n"
                        "f 1/1/1 2/2/1 3/3/1 4/1/1";
+
     assert_int_equal(parse(text, &mesh, &error), SINGE_OK);
     static const float positions[] = {0.1f, -0.2f, 0.3f, 125, 0, 0.5f, 1, 1, 0, -0.0f, 1, 0.3f, 9, 9, 9};
     static const float uv[] = {0, 0.5f, 1, 0.5f, 0.25f, 0, 0, 0.5f};
@@ -153,6 +156,7 @@ TEST(registry_goes_by_the_ending) {
     SingeError error;
     static const char text[] = SQUARE "f 1 2 3 4\n";
     const uint8_t *bytes = (const uint8_t *)text;
+
     assert_int_equal(polygons_read("A.OBJ", bytes, sizeof text - 1, (SingeAllocator){0}, &mesh, &error), SINGE_OK);
     polygons_free(&mesh);
     assert_int_equal(polygons_read("a.xyz", bytes, sizeof text - 1, (SingeAllocator){0}, &mesh, &error),
@@ -186,8 +190,10 @@ TEST(every_cut_is_an_error) {
         } else {
             assert_true(error.message[0] != 0);
         }
+
         free(text);
     }
+
     // behind the third corner of a face and the blank; behind the first face: its newline missing or there, an "f"
     // cannot stand alone; the last newline missing
     assert_int_equal(read, 2 + 2 + 2 + 1);
@@ -208,6 +214,7 @@ TEST(the_letter_is_a4) {
     Polygons mesh;
     SingeError error;
     SingeAllocator libc = {0};
+
     if (file_read("examples/letter/letter.obj", libc, &bytes, &error)) fail_msg("%s", error.message);
     if (polygons_read("letter.obj", bytes.data, bytes.size, libc, &mesh, &error)) fail_msg("%s", error.message);
     assert_int_equal(mesh.vertex_count, 47 * 66);
@@ -221,6 +228,7 @@ TEST(the_letter_is_a4) {
         assert_true(cell > 0.5 * 0.21 * 0.297 / 2990);
         area += cell;
     }
+
     assert_float_equal(area, 0.21 * 0.297, 1e-6);
     int on_border = 0;
     for (uint32_t v = 0; v < mesh.vertex_count; v++) {
@@ -228,11 +236,13 @@ TEST(the_letter_is_a4) {
         assert_true(fabsf(p[0]) <= 0.105f && fabsf(p[1]) <= 0.1485f && p[2] >= 0 && p[2] < 0.016f);
         on_border += fabsf(p[0]) == 0.105f || fabsf(p[1]) == 0.1485f;
     }
+
     for (uint32_t i = 0; i < mesh.corner_count; i++) {
         const float *p = mesh.positions + 3 * mesh.corners[i];
         assert_float_equal(mesh.uv[2 * i], p[0] / 0.21f + 0.5f, 1e-5f);
         assert_float_equal(mesh.uv[2 * i + 1], p[1] / 0.297f + 0.5f, 1e-5f);
     }
+
     assert_int_equal(on_border, 2 * (46 + 65));
     polygons_free(&mesh);
     bytes_free(&bytes);

@@ -15,6 +15,7 @@ static void expect_error(const char *text, SingeResult code, int64_t line, const
     Polygons mesh;
     SingeError error;
     SingeResult result = parse_bytes(text, strlen(text), &mesh, &error);
+
     if (result != code) fail_msg("result %d, not %d, for %s (%s)", result, code, text, error.message);
     assert_string_equal(error.stage, "ply");
     if (line >= 0 && error.element != line)
@@ -47,6 +48,7 @@ TEST(reads_ascii) {
                                "9 4 3 2 1 0";
     Polygons mesh;
     SingeError error;
+
     if (parse_bytes(text, sizeof text - 1, &mesh, &error)) fail_msg("%s", error.message);
     static const float positions[] = {1, 2, 0.1f, 3, 4, -1e-3f, 5, 6, 0, 7, 8, 0};
     static const float uv[] = {0, 0, 1, 1, 1, 0, 0.75f, 0.25f}; // of the face's corners
@@ -115,6 +117,7 @@ static Maker make_binary(bool big) {
         put(&maker, 0xffffffff, 4), put(&maker, 0xffffff00, 4);
         put_float(&maker, 0.25f * (float)v), put_float(&maker, 1);
     }
+
     put(&maker, 1, 4), put(&maker, 2, 1), put(&maker, 3, 4), put(&maker, 4, 1);
     put(&maker, 4, 4), put(&maker, 0, 2), put(&maker, 1, 2), put(&maker, 2, 2), put(&maker, 3, 2);
     put(&maker, 0, 1);
@@ -142,6 +145,7 @@ TEST(reads_binary_of_both_orders) {
         }
         assert_true(mesh.uv[6] == 0.75f && mesh.uv[7] == 1 && mesh.uv[8] == 0.75f);
         polygons_free(&mesh);
+
         // a cut anywhere is noticed
         for (size_t size = 0; size < maker.size; size++) {
             if (parse_bytes(maker.bytes, size, &mesh, &error) == SINGE_OK) fail_msg("cut to %d bytes", (int)size);
@@ -261,6 +265,7 @@ TEST(faces_have_uv_of_their_own) {
                "end_header\n" SQUARE "6 0 0 1 0 1 1 3 0 1 2\n8 0 0 1 1 0 1 .5 .5 4 0 2 3 1\n";
     Polygons mesh;
     SingeError error;
+
     if (parse_bytes(text, sizeof text - 1, &mesh, &error)) fail_msg("%s", error.message);
     static const float uv[] = {0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1, 0.5f, 0.5f};
     static const uint32_t face_corners[] = {0, 1, 2, 0, 2, 3, 1}, first[] = {0, 3, 7};
@@ -278,6 +283,7 @@ TEST(every_cut_of_ascii_is_an_error) {
     static const char text[] = GOOD_HEADER SQUARE "4 0 1 2 3\n";
     Polygons mesh;
     SingeError error;
+
     // only the last newline may be missing
     for (size_t size = 0; size + 2 < sizeof text; size++)
         assert_int_not_equal(parse_bytes(text, size, &mesh, &error), SINGE_OK);
@@ -315,6 +321,7 @@ TEST(counts_without_bytes_take_no_memory) {
     TestAllocator counts = {0};
     Polygons mesh;
     SingeError error;
+
     assert_int_equal(ply_read("a.ply", (const uint8_t *)text, sizeof text - 1, test_allocator(&counts), &mesh, &error),
                      SINGE_ERROR_FORMAT);
     assert_message(&error, "no property \"x\"");

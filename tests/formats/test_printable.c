@@ -24,6 +24,7 @@ TEST(odd_characters_are_escaped) {
                  "\\u202a\\u202e\\u2066\\u2069\\u200b\\u200d");
     expect_shown("\xe2\x80\xa8\xe2\x80\xa9\xef\xbb\xbf\xef\xbf\xbe\xf3\xa0\x80\x81",
                  "\\u2028\\u2029\\ufeff\\ufffe\\U000e0001");
+
     // no UTF-8: a lone byte, a cut character, one that is too long, a surrogate, beyond Unicode
     expect_shown("\x9b\xff", "\\x9b\\xff");
     expect_shown("a\xe2\x82", "a\\xe2\\x82");
@@ -50,6 +51,7 @@ TEST(every_character_is_printable) {
         assert_true(length > 0 && length < PRINTABLE_PIECE && strlen(piece) == length && printable_is(piece));
         if (code < 0xd800 || code > 0xdfff) assert_ptr_equal(at, text + strlen(text));
     }
+
     for (unsigned pair = 0x101; pair < 0x10000; pair++) {
         const char text[3] = {(char)(pair >> 8), (char)pair, 0};
         assert_true(printable_is(shown(text).text));

@@ -33,6 +33,7 @@ static void expect_error(const char *name, const char *text, size_t size, SingeR
     Polygons mesh;
     SingeError error;
     SingeResult result = parse_bytes(name, text, size, &mesh, &error);
+
     if (result != code) fail_msg("result %d, not %d, for %s (%s)", result, code, text, error.message);
     if (error.element != element) fail_msg("%d, not %d: %s", (int)error.element, (int)element, error.message);
     assert_message(&error, part);
@@ -74,6 +75,7 @@ TEST(stl_bytes_are_read) {
     uint8_t bytes[184];
     Polygons mesh;
     SingeError error;
+
     static const char *const heads[] = {"a program", "solid, though it is not"};
     for (int i = 0; i < 2; i++) {
         size_t size = binary(bytes, heads[i], 2);

@@ -74,6 +74,7 @@ TEST(empty_is_small) {
     assert_int_equal(vdb_read_gas("a.vdb", bytes.data, bytes.size, (SingeAllocator){0}, &read, NULL, &error), SINGE_OK);
     assert_same(&gas.view, &read.view);
     bytes_free(&bytes), gas_free(&gas), gas_free(&read);
+
     // one warm cell: one block in each grid
     sample.temperature[SIDE * SIDE * SIDE / 2 + 5] = 310;
     assert_int_equal(gas_copy(&sample.gas, (SingeAllocator){0}, &gas, &error), SINGE_OK);
@@ -87,6 +88,7 @@ TEST(bad_gas_is_refused) {
     GasSample sample;
     Gas gas, none = {0};
     SingeError error;
+
     assert_true(gas_sample_make(&sample, 4, 5, 6));
     sample.velocity[7][1] = INFINITY;
     assert_int_equal(gas_copy(&sample.gas, (SingeAllocator){0}, &gas, &error), SINGE_ERROR_ARGUMENT);
@@ -121,6 +123,7 @@ TEST(bad_bytes_are_refused) {
         assert_message(&error, "a.vdb");
         assert_null(read.smoke);
     }
+
     // more metadata than there are: the file's end ends them
     uint8_t few = bytes.data[0x39];
     assert_int_equal(few, 5);
@@ -136,6 +139,7 @@ TEST(bad_bytes_are_refused) {
             gas_free(&read);
         bytes.data[at] = before;
     }
+
     test_allocator_check(&counter);
     bytes_free(&bytes), gas_free(&gas);
 }
@@ -144,6 +148,7 @@ TEST(no_memory_is_reported) {
     GasSample sample;
     SingeError error;
     Gas gas, read;
+
     assert_true(gas_sample_make(&sample, 12, 9, 20));
     Bytes bytes = {0};
     for (long fail_at = 1;; fail_at++) {
@@ -160,6 +165,7 @@ TEST(no_memory_is_reported) {
         assert_int_equal(result, SINGE_ERROR_MEMORY);
         assert_in_range(fail_at, 1, 20);
     }
+
     unlink(path);
     bytes_free(&bytes);
     gas_sample_free(&sample);

@@ -9,6 +9,7 @@ int main(int argc, char **argv) {
     GasSample sample;
     Gas gas = {0};
     SingeError error = {0};
+
     if (argc != 5 && argc != 6) return 2;
     uint32_t n[3];
     for (int c = 0; c < 3; c++) n[c] = (uint32_t)atoi(argv[2 + c]);

@@ -170,6 +170,7 @@ static SingeResult call_follow(Input *input, SingeSim *sim) {
     const uint32_t *particles = singe_sim_pin_particles(sim, pin, &count);
     const SingeView view = singe_sim_view(sim);
     float(*positions)[3] = calloc((size_t)count + 1, sizeof *positions), shift[3];
+
     if (!positions) abort();
     input_point(input, shift);
     for (uint32_t i = 0; i < count; i++)
@@ -232,6 +233,7 @@ static SingeSim *make(Input input, int threads) {
         SingeSheetId id;
         if (singe_sim_add_sheet(sim, &sheet, &id)) abort();
     }
+
     singe_mesh_destroy(mesh);
     if (!(choices & 32) && singe_sim_commit(sim)) abort();
     return sim;
@@ -246,6 +248,7 @@ static void call_both(CallFn *call, Input input, SingeSim *const sims[2]) {
         result[k] = call(&own, sims[k]);
         if (result[k]) demand(digest_view(sims[k]) == before);
     }
+
     demand(result[0] == result[1]);
 }
 
@@ -254,6 +257,7 @@ static void copy_over(bool load, SingeSim *sims[2]) {
     SingeSim *copy = NULL;
     uint8_t *bytes;
     size_t size;
+
     if (singe_sim_save(sims[0], &bytes, &size)) return; // not committed
     SingeSimDef hooks = singe_default_sim();
     hooks.thread_count = 2;
@@ -268,6 +272,7 @@ static uint32_t step_both(Input input, SingeSim *const sims[2]) {
     SingeResult result[2];
     uint32_t made[2] = {0, 0};
     const double seconds = input_rarely(&input, 8) ? (double)input_value(&input) : 0.004 * input_pick(&input, 4);
+
     for (int k = 0; k < 2; k++) {
         result[k] = singe_sim_advance(sims[k], seconds, 4, &made[k]);
         demand_state(sims[k]);
@@ -289,6 +294,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t length) {
         else if (kind == 31) copy_over(input_pick(&record, 2), sims);
         else steps += step_both(record, sims);
     }
+
     for (int k = 0; k < 2; k++) {
         if (singe_sim_view(sims[k]).particle_count > 0) demand_surface(sims[k]);
         singe_sim_destroy(sims[k]);

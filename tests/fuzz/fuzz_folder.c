@@ -23,6 +23,7 @@ static void read_record(const char *json, size_t size) {
         demand_inside((const uint8_t *)json, size, value, length);
         free(text_json_unquote(value, length));
     }
+
     if (!text_json_member(json, size, "scene", &value, &length)) return;
     demand_inside((const uint8_t *)json, size, value, length);
     Scene *scene = NULL;

@@ -20,6 +20,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     char *text = malloc(size + 1);
     const char *sets[SETS_MAX];
     int count = 0;
+
     if (!text) abort();
     for (size_t i = 1; i < size; i++) text[i] = data[i] == '\n' ? 0 : (char)data[i];
     text[size] = 0;

@@ -60,6 +60,7 @@ static void put_word(Input *input, uint8_t *at) {
     static const uint32_t words[] = {0, 1, 2, 0xFF, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF};
     uint32_t word;
     float number;
+
     memcpy(&word, at, sizeof word);
     memcpy(&number, at, sizeof number);
     switch (input_pick(input, 6)) {

@@ -126,6 +126,7 @@ static void move_mesh(Input *input, Mesh *mesh, unsigned sheet, bool near) {
     float gap = (float[]){0.5e-3f, 0.1e-3f, 0.02e-3f, 5e-3f, 0.05f}[input_pick(input, 5)];
     float x = far[input_pick(input, 7) * (input_rarely(input, 4) ? 1 : 0)];
     float scale = scales[input_pick(input, 8) * (input_rarely(input, 8) ? 1 : 0)];
+
     if (near) x = 0, scale = 1;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         float *p = mesh->positions + 3 * (size_t)v;
@@ -139,6 +140,7 @@ static unsigned add_sheets(Input *input, SingeSim *sim, bool near) {
     unsigned count = 1 + input_pick(input, SHEETS), added = 0;
     Mesh mesh = {0};
     SingeMaterialDef material = singe_default_material();
+
     for (unsigned s = 0; s < count; s++) {
         if (s == 0 || input_rarely(input, 4)) {
             mesh_free(&mesh);
@@ -147,6 +149,7 @@ static unsigned add_sheets(Input *input, SingeSim *sim, bool near) {
             if (input_rarely(input, 2)) make_quick(&material);
             if (input_rarely(input, 2)) vary_material(input, &material);
         }
+
         move_mesh(input, &mesh, s == 0 ? 0 : 1, near);
         SingeSheetDef def = sheet_def(&mesh);
         def.material = material;
@@ -155,6 +158,7 @@ static unsigned add_sheets(Input *input, SingeSim *sim, bool near) {
         SingeSheetId id;
         added += singe_sim_add_sheet(sim, &def, &id) == SINGE_OK;
     }
+
     mesh_free(&mesh);
     return added;
 }
@@ -185,6 +189,7 @@ static void add_colliders(Input *input, SingeSim *sim) {
     static const float vertices[] = {0.01f, 0, 0, -0.01f, 0, 0, 0, 0.01f, 0, 0, -0.01f, 0, 0, 0, 0.01f, 0, 0, -0.01f};
     static const uint32_t triangles[] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
     float heights[9];
+
     for (unsigned k = input_pick(input, 3); k > 0; k--) {
         SingeColliderDef def = singe_default_collider();
         SingePoseKey path[2] = {input_pose(input, 0), input_pose(input, 0.02f)};
@@ -228,6 +233,7 @@ static SingeSimDef input_sim(Input *input) {
         if (def.solver.method != SINGE_SOLVER_STRAND) // conjugate gradients take thousands of iterations each
             def.solver.substeps = def.solver.projections = 1;
     }
+
     if (choices & 128) def.time_step = (float[]){1.0f / 24, 1e-9f, 1e-3f, 10}[input_pick(input, 4)];
     if ((more & 7) == 7) def.contact.thickness = input_extreme(input);
     if ((more & 56) == 56) def.pace = input_extreme(input);
@@ -282,6 +288,7 @@ static bool run(SingeSim *sim, bool thorough) {
         if (failed) return false;
         demand_state(sim);
     }
+
     return true;
 }
 
@@ -289,6 +296,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t length) {
     Input input = {data, data + length};
     unsigned thorough = input_byte(&input);
     SingeSim *sim = make(input, 1);
+
     if (!sim) return 0;
     bool good = run(sim, thorough & 1);
     demand_surface(sim);
@@ -300,6 +308,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t length) {
         singe_sim_free_bytes(other, saved.bytes, saved.size);
         singe_sim_destroy(other);
     }
+
     singe_sim_destroy(sim);
     return 0;
 }

@@ -4,6 +4,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     Gas gas;
     double time;
     SingeError error;
+
     if (vdb_read_gas("fuzz.vdb", data, size, (SingeAllocator){0}, &gas, &time, &error) == SINGE_OK) {
         const uint32_t *n = gas.view.size;
         demand(isfinite(time) && gas.view.cell > 0 && n[0] && n[1] && n[2]);

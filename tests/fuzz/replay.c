@@ -42,6 +42,7 @@ static int give_all(const char *name, int *given) {
         failed += give(name, entry->d_name);
         ++*given;
     }
+
     closedir(folder);
     return failed;
 }

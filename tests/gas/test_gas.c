@@ -43,6 +43,7 @@ static void air_step(Air *air) {
                            .colliders = &rig->colliders,
                            .wind = &air->wind,
                            .pool = rig->pool};
+
     context.state.gas = NULL;
     gas_step(air->plan, &context, &rig->state.gas);
     rig->state.step++;
@@ -108,6 +109,7 @@ TEST(power_is_the_real_fires) {
         heat[k] = air_heat(&air);
         air_close(&air);
     }
+
     CHECK_NEAR(heat[0], 4, 0.01);
     CHECK_NEAR(heat[1], 3, 0.01);
     CHECK_NEAR(heat[2], 1, 0.01);
@@ -128,6 +130,7 @@ static double plume_speed(double power, double height) {
         assert_true(plane <= PLANE_MAX);
         for (uint32_t c = 0; step >= FIRST && c < plane; c++) sum[c] += (double)gas.velocity[c + (size_t)plane * k][2];
     }
+
     for (int c = 0; c < PLANE_MAX; c++) max = fmax(max, sum[c]);
     air_close(&air);
     return max / (LAST - FIRST);
@@ -152,6 +155,7 @@ TEST(solids_shut_cells) {
                                          2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
     static const float heights[4] = {0, 0, 0, 0};
     const float half[3] = {0.033f, 0.027f, 0.0301f};
+
     for (int k = 0; k < 24; k++) vertices[k] = (k / 3 >> k % 3 & 1 ? 1 : -1) * half[k % 3];
     static uint8_t expected[1 << 20];
     const SingeColliderKind kinds[3] = {SINGE_COLLIDER_BOX, SINGE_COLLIDER_MESH, SINGE_COLLIDER_HEIGHTFIELD};
@@ -206,6 +210,7 @@ TEST(flow_goes_around) {
         air_burn(&air, 1, true);
         air_step(&air);
     }
+
     const GasPlan *plan = air.plan;
     const float *const *through = (const float *const *)&air_turn(&air)->field[GAS_THROUGH];
     double worst = 0, fastest = 0, covered = 0;
@@ -219,11 +224,13 @@ TEST(flow_goes_around) {
                     fastest = fmax(fastest, fabs((double)through[d][c]));
                     if (plan->open[d][c] == 0) assert_true(through[d][c] == 0), covered++;
                 }
+
                 spread -= (double)(plan->expansion[c] * plan->cell / plan->dt);
                 if (!plan->solid[c]) worst = fmax(worst, fabs(spread));
             }
     print_message("fastest %.3f m/s, divergence off by %.4f m/s at most, %.0f faces closed\n", fastest, worst, covered);
     assert_true(fastest > 0.2 && worst < 0.05 * fastest && covered > 20);
+
     // the sheet lies across the way up
     int level = (int)(0.01f - plan->origin[2] / plan->cell);
     size_t middle = gas_at(&plan->grid, plan->grid.n[0] / 2, plan->grid.n[1] / 2, level);
@@ -247,6 +254,7 @@ TEST(gas_heats_what_it_flows_by) {
                 air.rig.state.burn.fuel[rig_centre(&air.rig, column, 3)] -= 0.02f;
             air_step(&air);
         }
+
         left[k] = air_heat(&air);
         const GasState *gas = &air.rig.state.gas;
         double above = 0, below = 0;
@@ -257,10 +265,12 @@ TEST(gas_heats_what_it_flows_by) {
             if (y > 0.022f) above += (double)excess;
             if (y < 0.012f) below += (double)excess;
         }
+
         assert_int_equal(gas->warm, k);
         if (k) assert_true(above > 10 * below && above > 0);
         air_close(&air);
     }
+
     assert_true(left[1] < 0.99 * left[0]);
 }
 
@@ -307,6 +317,7 @@ TEST(copes_with_anything) {
             for (int d = 0; d < 3; d++) assert_true(isfinite(gas.velocity[c][d]));
         }
     }
+
     air_close(&air);
 }
 
@@ -325,6 +336,7 @@ TEST(grid_suits_the_sheets) {
             count *= gas.size[d];
             assert_true(low < -0.04 && high > (d == 2 ? 0.5 : 0.08));
         }
+
         assert_true(count <= 2e6);
         if (k == 1) assert_true(gas.cell == 0.005f);
         air_close(&air);

@@ -17,6 +17,7 @@ static double mode_amplitude(const Rig *rig, double length, bool centres) {
         sum += area * c * ((double)rig->state.heat.temperature[i] - 600);
         norm += area * c * c;
     }
+
     return sum / norm;
 }
 
@@ -34,6 +35,7 @@ static double mode_error(int n, float aspect, bool centres, float exchange) {
         rig.state.heat.temperature[i] = (float)(600 + 300 * cos(PI * (double)rig_position(&rig, i)[0] / length));
     for (int step = 0; step < steps; step++) rig_step(&rig);
     double amplitude = mode_amplitude(&rig, length, centres);
+
     // the scheme's own decay is known too: 1/(1 + dt lambda), with the part X dx^2/16 of alpha that goes by way of the
     // other layer, half a cell aside: lambda = (2 alpha/dx^2 - X/8)(1 - cos k dx) + (X/2)(1 - cos(k dx/2))
     double k = PI / length, d = (double)dx, x = (double)exchange;
@@ -98,6 +100,7 @@ static Moments gaussian(const RigDef *def, int layer, double deviation) {
                b = ((double)rig_position(&rig, i)[1] - y) / deviation;
         rig.state.heat.temperature[i] = (float)(300 + 800 * exp(-(a * a + b * b) / 2));
     }
+
     Moments before = moments(&rig, layer);
     rig.h = 0.004f;
     for (int k = 0; k < 100; k++) rig_step(&rig);
@@ -136,11 +139,13 @@ TEST(heat_spreads_evenly_on_skewed_cells) {
     RigDef def = rig_default(70, 60, 0.002f, 0.002f);
     def.shape = shear;
     def.material.layer_exchange = singe_param(0);
+
     // corners: cotangents are exact
     Moments m = gaussian(&def, 0, 0.008);
     CHECK_NEAR(m.x, 1e-4, 3e-7);
     CHECK_NEAR(m.y, 1e-4, 3e-7);
     CHECK_NEAR(m.xy, 0, 3e-7);
+
     // centres: two-point fluxes are right in the mean of both directions only
     m = gaussian(&def, 1, 0.008);
     CHECK_NEAR((m.x + m.y) / 2, 1e-4, 3e-7);
@@ -189,6 +194,7 @@ TEST(umbrella_slab_mode_decays) {
         error[k] = fabs(mode_amplitude(&rig, length, false) / (300 * pow(1 + lambda * (double)rig.h, -300)) - 1);
         rig_close(&rig);
     }
+
     double order[2] = {log2(error[0] / error[1]), log2(error[1] / error[2])};
     print_message("umbrella: errors %.2g %.2g %.2g, orders %.2f %.2f\n", error[0], error[1], error[2], order[0],
                   order[1]);
@@ -304,6 +310,7 @@ TEST(what_is_gone_conducts_nothing) {
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.heat.temperature[i] = rig_position(&rig, i)[0] < 0.008f ? 900 : 300;
     rig_step(&rig);
+
     // a cut across the sheet: a column of vertices and one of centres beside it
     for (int row = 0; row < 3; row++) rig_remove(&rig, rig_vertex(&rig, 4, row));
     for (int row = 0; row < 2; row++)
@@ -320,6 +327,7 @@ TEST(what_is_gone_conducts_nothing) {
             *side += a * (double)T[rig_vertex(&rig, column, row)];
             area += a / 2;
         }
+
     // each side has come to rest on a value of its own
     CHECK_NEAR(T[rig_vertex(&rig, 0, 0)], T[rig_vertex(&rig, 3, 2)], 0.5);
     CHECK_NEAR(T[rig_vertex(&rig, 5, 0)], T[rig_vertex(&rig, 8, 2)], 0.5);
@@ -345,6 +353,7 @@ TEST(heat_is_kept_where_capacity_varies) {
         sum += (double)rig.shell.matter.capacity[i] * (double)rig.state.heat.temperature[i];
         capacity += (double)rig.shell.matter.capacity[i];
     }
+
     double before = rig_content(&rig, 1);
     for (int k = 0; k < 6000; k++) {
         rig_step(&rig);

@@ -33,6 +33,7 @@ static double cooled(double seconds, double mass, double thickening) {
         double c = cooling(T + h / 2 * b, mass, thickening), d = cooling(T + h * c, mass, thickening);
         T += h / 6 * (a + 2 * b + 2 * c + d);
     }
+
     return T;
 }
 
@@ -73,6 +74,7 @@ TEST(one_step_of_losses_is_the_formula) {
     double capacity = 0.04 * 1400, rate = (14 + 0.9 * SIGMA * (900.0 + 293) * (900.0 * 900 + 293.0 * 293)) / capacity;
     double after = (900 + 0.002 * rate * 293) / (1 + 0.002 * rate);
     CHECK_NEAR(rig.state.heat.temperature[0], after, 1e-4);
+
     // exactly the loss by eps sigma (T^4 - Ta^4), to first order
     CHECK_NEAR((900 - after) / 0.002, -cooling(900, 1, 1), 0.005 * -cooling(900, 1, 1));
     double lost = 0.002 * rate * (after - 293) * rig_content(&rig, 1) / ((double)rig.state.heat.temperature[0] - 293);
@@ -108,6 +110,7 @@ TEST(pace_is_fire_time) {
         T[k] = (double)rig.state.heat.temperature[0];
         rig_close(&rig);
     }
+
     CHECK_NEAR(T[0], T[1], 1e-4);
 }
 
@@ -125,6 +128,7 @@ TEST(the_peak_is_the_hottest_so_far) {
         rig.state.heat.temperature_peak[i] = hottest[i] = i % 2 ? 1500 : 600;
         rig.state.burn.burn_rate[i] = 8, rig.state.burn.release[i] = 8 * 2400;
     }
+
     for (int step = 0; step < 30; step++) {
         for (uint32_t i = 0; step == 10 && i < n; i++) rig.state.burn.burn_rate[i] = rig.state.burn.release[i] = 0;
         rig_step(&rig);
@@ -134,6 +138,7 @@ TEST(the_peak_is_the_hottest_so_far) {
             assert_true(rig.state.heat.temperature_peak[i] == hottest[i]);
         }
     }
+
     assert_true(hottest[0] > 900 && rig.state.heat.temperature[0] < hottest[0] - 20);
     assert_true(hottest[1] == 1500);
     free(hottest);
@@ -204,6 +209,7 @@ TEST(losses_are_each_particles_own) {
         T[run][1] = rig.state.heat.temperature[rig_centre(&rig, 7, 1)];
         rig_close(&rig);
     }
+
     assert_true(T[0][0] == T[1][0] && T[0][1] == T[2][1]);
     assert_true(fabsf(T[0][0] - T[0][1]) > 5);
 }
@@ -306,6 +312,7 @@ TEST(running_out_of_memory_is_clean) {
                 assert_int_equal(memory.held, 0);
                 break;
             }
+
             assert_int_equal(result, SINGE_ERROR_MEMORY);
             assert_null(plan);
             assert_int_equal(memory.held, 0);

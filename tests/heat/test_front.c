@@ -70,6 +70,7 @@ TEST(speed_is_in_proportion_to_one_over_grammage) {
         CHECK_NEAR(same.thickening, office.thickening, 1e-5);
         if (same.speed < sheets[k].slowest || same.speed > sheets[k].fastest) fail_msg("%.2f mm/s", same.speed * 1e3);
     }
+
     SingeMaterialDef stated = singe_default_material(); // at any grammage alike: losses alone are less
     stated.grammage = singe_param(0.020f), stated.reference_grammage = 0; // which the bar of 2 K does not let pass
     StripResult unscaled = burn_strip(0.001f, 0.0005f, &stated);
@@ -136,6 +137,7 @@ TEST(a_strip_takes_so_much_work) {
     StripSetup setup = strip_setup(&material);
     SingeError error = {0};
     StripResult result = {0};
+
     setup.patience = 500, setup.work_max = 60000;
     assert_int_equal(strip_burn(&setup, &result, &error), SINGE_OK);
     assert_true(result.end == STRIP_THROUGH && result.speed > 0 && result.work > 5000 && result.work < 60000);
@@ -175,6 +177,7 @@ TEST(thickening_goes_by_the_means) {
     RigDef def = rig_default(16, 4, 0.01f, 0.01f);
     SingeParam *params[] = {&def.material.rate_ceiling, &def.material.mass_rate};
     const SingeField field = {.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}};
+
     for (int k = 0; k < 2; k++) *params[k] = singe_param_field(k ? 5e-3f : 100, k ? 15e-3f : 300, &field);
     def.material.thickening = 0;
     Rig rig;

@@ -101,6 +101,7 @@ TEST(threads_do_not_matter) {
         assert_int_equal(one.counters.iterations, rig.counters.iterations);
         rig_close(&rig);
     }
+
     rig_close(&one);
 }
 
@@ -119,10 +120,12 @@ TEST(a_new_plan_goes_on_to_the_bit) {
                     heat_plan_create(&rigs[k].memory, &rigs[k].shell, &rigs[k].settings, &rigs[k].plan, &rigs[k].error),
                     SINGE_OK);
             }
+
             burn(&rigs[k], step % 10 == 0);
             rig_step(&rigs[k]);
         }
     }
+
     assert_memory_equal(rigs[0].state.heat.temperature, rigs[1].state.heat.temperature,
                         rigs[0].shell.particle_count * sizeof(float));
     for (int k = 0; k < 2; k++) rig_close(&rigs[k]);

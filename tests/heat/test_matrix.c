@@ -17,6 +17,7 @@ static int entries(const HeatMatrix *matrix, uint32_t row, uint32_t column, floa
         assert_in_range(count, 0, 1);
         found[count++] = matrix->value[entry];
     }
+
     return count;
 }
 
@@ -43,6 +44,7 @@ TEST(twins_go_one_by_one) {
         float whole[2], left[2], back[2];
         assert_int_equal(entries(&plan->matrix, A, B, whole), 2);
         assert_true(whole[0] != whole[1] && whole[0] > 0 && whole[1] > 0);
+
         // entries lie in order of their springs
         uint32_t yellow[2] = {shell.cell_springs[0].yellow[0], shell.cell_springs[1].yellow[0]};
         uint32_t first = yellow[0] < yellow[1] ? 0 : 1;

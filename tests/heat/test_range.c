@@ -140,6 +140,7 @@ static uint64_t check_range(const Bad *mesh, const SingeMaterialDef *material, f
         double before = rig_content(&rig, 1);
         rig_step(&rig);
         check_matrix(&rig, mesh->name);
+
         // what heat_tolerance allows, and rounding
         float slack = 1.1e-5f * (max - min) + 2e-6f * max;
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
@@ -150,6 +151,7 @@ static uint64_t check_range(const Bad *mesh, const SingeMaterialDef *material, f
         if (material->heat_operator == SINGE_HEAT_SURFACE)
             CHECK_NEAR(rig_content(&rig, 1) / scale, before / scale, 1e-5);
     }
+
     if (rig.counters.iterations > 12 * 200) fail_msg("%s: iterations", mesh->name);
     uint64_t forced = rig.counters.bounded;
     rig_close(&rig);
@@ -163,6 +165,7 @@ TEST(conduction_keeps_to_its_range) {
             SingeMaterialDef material = rig_default(1, 1, 1, 1).material;
             material.layer_exchange = singe_param(k % 2 ? 36 : 0);
             uint64_t forced = check_range(&meshes[m], &material, steps[k], (uint32_t)(10 * m) + (uint32_t)k);
+
             // ordinary steps on what is merely irregular get there by solving
             if (k < 2 && m < 3) assert_int_equal(forced, 0);
         }
@@ -189,6 +192,7 @@ TEST(threads_do_not_matter) {
             rig[k].state.heat.temperature[i] = rig_random(i, 3) < 0.5f ? 300 : 1300;
         for (int step = 0; step < 3; step++) rig_step(&rig[k]);
     }
+
     assert_true(rig[0].counters.bounded > 0 && rig[1].counters.bounded == rig[0].counters.bounded);
     assert_memory_equal(rig[0].state.heat.temperature, rig[1].state.heat.temperature,
                         rig[0].shell.particle_count * sizeof(float));
@@ -228,6 +232,7 @@ TEST(cells_conduct_nothing_negative) {
             if (!(w[k] > -1e-12 && w[k] < 1e7)) fail_msg("cell %u: weight %d is %g", n, k, w[k]);
             min = fmin(min, linear[k]);
         }
+
         if (min >= 0) {
             exact++;
             for (int k = 0; k < 6; k++) assert_true(w[k] == linear[k]);
@@ -240,6 +245,7 @@ TEST(cells_conduct_nothing_negative) {
             if (!(t[0] * t[2] - t[1] * t[1] > 0.25)) fail_msg("cell %u: %g %g %g", n, t[0], t[1], t[2]);
         }
     }
+
     print_message("cells: %u linear, %u mixed and exact, %u that lean too much\n", exact, mixed, poor);
     assert_true(exact > 100 && mixed > 500 && poor > 500);
 }

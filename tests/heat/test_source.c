@@ -49,6 +49,7 @@ TEST(never_overshoots) {
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
             CHECK_NEAR(rig.state.heat.temperature[i], 1200 - (k ? 0 : 0.03), 0.02);
     }
+
     rig_close(&rig);
 }
 
@@ -56,6 +57,7 @@ TEST(falls_off_smoothly_and_moves) {
     const SingePoseKey path[] = {{0, {0, 0.01f, 0}, {0, 0, 0, 1}}, {1, {0.02f, 0.01f, 0}, {0, 0, 0, 1}}};
     RigDef def = inert(10, 10);
     Rig rig;
+
     rig_open(&rig, &def);
     SingeSourceDef source = ball(path, 2, 100, 0.003f, 0.004f);
     source.start = 0.5f, source.end = 0.501f;
@@ -71,6 +73,7 @@ TEST(falls_off_smoothly_and_moves) {
         double g = 100 * (s <= 0 ? 1 : s >= 1 ? 0 : 1 - s * s * (3 - 2 * s)), a = 0.002 * g / PER_AREA;
         CHECK_NEAR(rig.state.heat.temperature[i], (300 + a * 1200) / (1 + a), 1e-3);
     }
+
     float before = rig.state.heat.temperature[rig_vertex(&rig, 5, 5)];
     rig.state.time = 0.502; // over
     rig_step(&rig);
@@ -110,6 +113,7 @@ static void slab(Rig *rig, SingeColliderKind kind, bool below, SingeContactSides
     static const float heights[4] = {0, 0, 0, 0};
     for (int k = 0; k < 24; k++) vertices[k] = CUBE[k] * (k % 3 == 2 ? 1 : 0.01f);
     SingeColliderDef def = singe_default_collider();
+
     // a heightfield's top is its z = 0; turned about x by half a turn it looks down
     float top = kind == SINGE_COLLIDER_HEIGHTFIELD ? 0 : 1;
     SingePoseKey pose = {.position = {0.02f, 0.02f, below ? -0.0005f - top : 0.0025f + top}, .rotation = {0, 0, 0, 1}};
@@ -145,10 +149,12 @@ TEST(contact_heats_the_given_sides) {
                 stored += (double)rig.shell.matter.area[i] * PER_AREA * ((double)rig.state.heat.temperature[i] - 300);
                 continue;
             }
+
             bool touches = off < 0.01 && (both || shell_is_corner(&rig.shell, i) == below);
             CHECK_NEAR(rig.state.heat.temperature[i], touches ? heated : 300, 2e-4);
             stored += (double)rig.shell.matter.area[i] * PER_AREA * ((double)rig.state.heat.temperature[i] - 300);
         }
+
         CHECK_NEAR(rig.state.heat.heat_in, stored, 1e-4 * fabs(stored)); // below 0 where it is cold
         assert_true((rig.state.heat.heat_in < 0) == cold);
         collider_free(&rig.memory, &rig.collider[0]);
@@ -172,6 +178,7 @@ TEST(contact_heat_goes_through_the_sheet) {
         assert_true(rig.state.heat.temperature[behind] >= before - 1e-3f);
         before = rig.state.heat.temperature[behind];
     }
+
     CHECK_NEAR(rig.state.heat.temperature[behind], 700, 12); // in 3 s
     CHECK_NEAR(rig.state.heat.temperature[aside], 300, 0.5); // 8 mm from its edge
     collider_free(&rig.memory, &rig.collider[0]);
@@ -183,6 +190,7 @@ TEST(a_texture_heats_by_its_key_frames) {
     const SingeValueKey keys[] = {{1, 0}, {3, 2}};
     RigDef def = inert(8, 8);
     Rig rig;
+
     rig_open(&rig, &def);
     SingeSourceDef source = singe_default_source();
     source.kind = SINGE_SOURCE_TEXTURE, source.texture = (SingeTexture){2, 2, pixels}, source.flux = 20e3f;
@@ -202,6 +210,7 @@ TEST(a_texture_heats_by_its_key_frames) {
         CHECK_NEAR(rig.state.heat.temperature[rig_vertex(&rig, 4, 4)], 300 + total * per_unit * 0.4375, 1e-3);
         CHECK_NEAR(rig.state.heat.temperature[rig_centre(&rig, 0, 0)], 300 + total * per_unit * 0.5, 1e-3);
     }
+
     rig_close(&rig);
 }
 
@@ -231,6 +240,7 @@ TEST(callback_adds_to_the_rest) {
         CHECK_NEAR(rig.state.heat.temperature[i], i == 5 ? 300 : (300 + a * (q + 10 * 500 + 20 * 1200)) / (1 + a * 30),
                    1e-4);
     }
+
     rig.source[0].def.callback = NULL; // as after a load
     rig_step(&rig);
     assert_int_equal(calls, 1);
@@ -275,6 +285,7 @@ TEST(hot_gas_heats_up_to_itself) {
                 rig.state.heat.temperature[i] = starts[k];
                 conductance[i] = 10, temperature[i] = 1000;
             }
+
             rig.state.gas.warm = true;
             rig.state.gas.conductance = conductance, rig.state.gas.temperature = temperature;
             for (int step = 0; step < 20; step++) {
@@ -284,6 +295,7 @@ TEST(hot_gas_heats_up_to_itself) {
                         fail_msg("from %g K, convection %g: %g K", (double)starts[k], (double)convections[c],
                                  (double)rig.state.heat.temperature[i]);
             }
+
             rig_close(&rig);
         }
 }
@@ -327,6 +339,7 @@ TEST(bad_defs_are_refused) {
         assert_true(rig.error.message[0] != 0);
         assert_int_equal(rig.memory.held, held);
     }
+
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.shell.uv[i][0] = rig.shell.uv[i][1] = 0;
     assert_int_equal(source_create(&rig.memory, &rig.shell, &picture, &rig.source[0], &rig.error),
                      SINGE_ERROR_ARGUMENT);

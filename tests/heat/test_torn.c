@@ -31,11 +31,13 @@ static void make(Torn *t) {
         positions[3 * v] = 1e-3f * (x + 0.8f * y + 1e-3f * (float)any(t, 300));
         positions[3 * v + 1] = 1e-3f * (y + 1e-3f * (float)any(t, 300));
     }
+
     for (uint32_t c = 0; c < CELLS; c++) {
         uint32_t v = c / COLUMNS * (COLUMNS + 1) + c % COLUMNS;
         cells[4 * c] = v, cells[4 * c + 1] = v + 1;
         cells[4 * c + 2] = v + COLUMNS + 2, cells[4 * c + 3] = v + COLUMNS + 1;
     }
+
     SingeSheetDef def = singe_default_sheet();
     def.vertex_count = VERTICES, def.positions = positions, def.cell_count = CELLS, def.cells = cells;
     def.material.thickening = 2;
@@ -110,8 +112,10 @@ TEST(rows_are_as_if_built_anew) {
             heat_matrix_follow(t.anew, &t.shell, &t.state.ablate, 1e-3f);
             check_alike(t.by_rows, t.anew);
         }
+
         end(&t);
     }
+
     // not by rows where one had no room
     assert_true(by_rows > 150);
 }

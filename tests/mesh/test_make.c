@@ -44,6 +44,7 @@ static int irregular(const Mesh *mesh) {
         bool inside = p[0] > 0.016f && p[0] < 0.184f && p[1] > 0.001f && p[1] < 0.17f;
         count += inside && cells[v] != 4;
     }
+
     free(cells), free(sides);
     return count;
 }
@@ -56,6 +57,7 @@ TEST(rows_go_on) {
         for (int i = 0; i <= n; i++)
             text_add(&text, "v %.7g %.7g 0\n", 0.01 * (i + 0.5 * (j % 2)), 0.01 * sqrt(0.75) * j);
     text_cells(&text, n, n, REGULAR);
+
     // rows lean the other way on odd rows: take the diagonal that makes equilateral triangles
     text.size = 0;
     for (int j = 0; j <= n; j++)
@@ -84,6 +86,7 @@ TEST(lone_triangles_are_halved) {
     uint32_t middle = vertex_at(&made.mesh, 1, 0.5f, 0); // of the longest side
     assert_int_equal(middle, 3);
     mesh_free(&made.mesh);
+
     // a tetrahedron: closed, pairs would leave vertices of two cells
     text.size = 0;
     text_add(&text, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
@@ -106,6 +109,7 @@ TEST(polygons_become_quads) {
             for (uint32_t k = 0; k < 4; k++) p[k] = made.mesh.positions + 3 * made.mesh.cells[4 * c + k];
             area += 0.5 * ((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1]));
         }
+
         assert_float_equal(area, 0.5 * n * sin(6.2831853 / n), 1e-5);
         mesh_free(&made.mesh);
     }
@@ -133,6 +137,7 @@ TEST(attributes_and_ids_follow_their_vertices) {
     Polygons polygons;
     Made made;
     MeshOptions options = mesh_default_options();
+
     assert_int_equal(
         ply_read("a.ply", (const uint8_t *)ply, sizeof ply - 1, (SingeAllocator){0}, &polygons, &made.error), SINGE_OK);
     assert_int_equal(
@@ -157,6 +162,7 @@ TEST(shuffled_meshes_are_put_in_order) {
         int other = (int)((random >> 8) % (uint32_t)(v + 1));
         to[v] = to[other], to[other] = v;
     }
+
     for (int v = 0; v < VERTICES; v++) from[to[v]] = v;
     text.size = 0;
     for (int v = 0; v < VERTICES; v++)
@@ -166,6 +172,7 @@ TEST(shuffled_meshes_are_put_in_order) {
         text_add(&text, "f %d %d %d\n", to[a] + 1, to[a + 1] + 1, to[a + N + 2] + 1);
         text_add(&text, "f %d %d %d\n", to[a] + 1, to[a + N + 2] + 1, to[a + N + 1] + 1);
     }
+
     Made made = make(&text);
     const Mesh *mesh = &made.mesh;
     assert_int_equal(mesh->cell_count, N * N);
@@ -175,6 +182,7 @@ TEST(shuffled_meshes_are_put_in_order) {
         uint32_t a = mesh->cells[i], b = mesh->cells[i / 4 * 4 + (i + 1) % 4];
         beside += a + 1 == b || b + 1 == a;
     }
+
     assert_int_equal(beside, 2 * N * N); // every row's sides
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         const float *p = mesh->positions + 3 * v;
@@ -183,6 +191,7 @@ TEST(shuffled_meshes_are_put_in_order) {
         assert_float_equal(p[1], 0.01 * (from[file] / (N + 1)), 1e-6);
         assert_int_equal(mesh->became[file], v);
     }
+
     mesh_free(&made.mesh);
 }
 
@@ -195,6 +204,7 @@ TEST(other_formats_are_made_too) {
     SingeError error;
     SingeResult result =
         polygons_read("a.stl", (const uint8_t *)stl, sizeof stl - 1, (SingeAllocator){0}, &polygons, &error);
+
     if (result) fail_msg("%s", error.message);
     assert_int_equal(polygons.face_count, 2);
     Mesh mesh;

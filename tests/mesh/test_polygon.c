@@ -42,6 +42,7 @@ static Made make_shape(const Shape *shape, MeshQuads quads) {
         text_add(&text, "v %.9g %.9g %.9g\n", p[0] * plane[0][0] + p[1] * plane[1][0],
                  p[0] * plane[0][1] + p[1] * plane[1][1], p[0] * plane[0][2] + p[1] * plane[1][2]);
     }
+
     text_add(&text, "f");
     for (int i = 0; i < shape->corners; i++) text_add(&text, " %d", shape->corner[i] + 1);
     text_add(&text, "\n");
@@ -60,6 +61,7 @@ static int winding(const Shape *shape, const double *p) {
         if (a[1] <= p[1] && b[1] > p[1] && cross2(a, b, p) > 0) rounds++;
         if (a[1] > p[1] && b[1] <= p[1] && cross2(a, b, p) < 0) rounds--;
     }
+
     return rounds;
 }
 
@@ -96,6 +98,7 @@ static int covers(const Mesh *mesh, const double *p) {
         count += turn * cross2(at[0], at[1], p) > 0 && turn * cross2(at[1], at[2], p) > 0 &&
                  turn * cross2(at[2], at[0], p) > 0;
     }
+
     return count;
 }
 
@@ -111,6 +114,7 @@ static void assert_covers_but(const Shape *shape, double area, double less, cons
             cell_triangle(&made.mesh, i / 4, i % 4, at);
             sum += 0.5 * fabs(cross2(at[0], at[1], at[2]));
         }
+
         if (fabs(sum - area) > (1e-5 + less) * area) fail_msg("%s: area %g instead of %g", name, sum, area);
         for (int i = 0; i < shape->positions; i++)
             for (int k = 0; k < 2; k++) {
@@ -122,6 +126,7 @@ static void assert_covers_but(const Shape *shape, double area, double less, cons
             if (less == 0 ? covers(&made.mesh, p) != (winding(shape, p) != 0) : covers(&made.mesh, p) > 1)
                 fail_msg("%s: (%g, %g) is covered %d times", name, p[0], p[1], covers(&made.mesh, p));
         }
+
         mesh_free(&made.mesh);
     }
 }
@@ -196,6 +201,7 @@ TEST(bays_stay_open) {
     static const double arrow[][2] = {{0, 0}, {4, -3}, {1, 0}, {4, 3}};
     static const double letter_u[][2] = {{0, 0}, {5, 0}, {5, 6}, {4, 6}, {4, 1}, {1, 1}, {1, 6}, {0, 6}};
     Shape shape = SHAPE(arrow, 0, 1, 2, 3);
+
     assert_covers(&shape, 3, "an arrow head");
     shape = SHAPE(arrow, 2, 3, 0, 1);
     assert_covers(&shape, 3, "an arrow head, from its bay");
@@ -212,6 +218,7 @@ TEST(bays_stay_open) {
         shape_corner(&shape, shape_position(&shape, 0, 0));
         assert_covers(&shape, fabs(area_of(&shape)), "a comb");
     }
+
     shape = (Shape){0}; // a spiral of two and a half rounds
     for (int i = 0; i <= 50; i++) corner_at(&shape, 2 + 0.1 * i, 0.3 * i);
     for (int i = 50; i >= 0; i--) corner_at(&shape, 1 + 0.1 * i, 0.3 * i);
@@ -228,6 +235,7 @@ TEST(random_stars_are_covered) {
             double radius = 0.2 + (random >> 8) / (double)(1 << 24);
             corner_at(&shape, radius, 6.2831853 * i / n);
         }
+
         assert_covers(&shape, area_of(&shape), "a random star");
     }
 }
@@ -293,6 +301,7 @@ TEST(bent_polygons_are_covered) {
         }
         area += 0.5 * fabs(cross2(a, b, c));
     }
+
     assert_float_equal(area, 15, 1e-4);
     mesh_free(&made.mesh);
     text.size = 0; // folded by 120 degrees

@@ -25,6 +25,7 @@ static double area_of(const SingeMeshView *view) {
         for (int i = 0; i < 4; i++) p[i] = view->positions + 3 * (size_t)view->cells[4 * c + (uint32_t)i];
         area += 0.5 * (double)((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1]));
     }
+
     return area;
 }
 
@@ -34,6 +35,7 @@ static void burn(const SingeMesh *mesh, uint32_t held) {
     SingeSim *sim;
     SingePinDef pin = singe_default_pin();
     SingePinId id;
+
     singe_mesh_fill_sheet(mesh, &sheet);
     pin.vertex_count = 1, pin.vertices = &held;
     test_ok(NULL, singe_sim_create(&def, &sim, NULL));
@@ -65,6 +67,7 @@ TEST(polygons_become_a_sheet) {
             assert_memory_equal(view.positions + 3 * (size_t)now, positions + 3 * (size_t)v, 3 * sizeof(float));
             assert_memory_equal(view.uv + 2 * (size_t)now, uv + 2 * (size_t)v, 2 * sizeof(float));
         }
+
         burn(mesh, singe_mesh_vertex(mesh, 0));
         singe_mesh_destroy(mesh);
     }
@@ -137,6 +140,7 @@ TEST(grids_are_meshes) {
     SingeGridDef def = singe_default_grid();
     SingeMesh *mesh;
     SingeError error;
+
     def.cells[0] = 8, def.cells[1] = 5, def.size[0] = 0.16f, def.size[1] = 0.1f;
     assert_int_equal(singe_mesh_create_grid(&def, &mesh, &error), SINGE_OK);
     SingeMeshView view = singe_mesh_view(mesh);
@@ -221,6 +225,7 @@ TEST(materials_have_names) {
     SingeMaterialDef def = singe_default_material();
     SingeError error = {0};
     uint32_t count = 0;
+
     for (const char *name; (name = singe_material_preset_name(count)); count++)
         assert_int_equal(singe_material_preset(name, &def, NULL), SINGE_OK);
     assert_int_equal(count, 5);

@@ -51,6 +51,7 @@ static void broken_grid(Text *text) {
                          at[(s + 3) & 3]);
         }
     }
+
     text_add(text, "f 1 2 %d\n", n + 2);
 }
 
@@ -59,12 +60,14 @@ static bool library_takes(const Made *made) {
     SingeSim *sim;
     SingeSheetId id;
     SingeSheetDef sheet = singe_default_sheet();
+
     assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
     sheet.vertex_count = made->mesh.vertex_count, sheet.positions = made->mesh.positions;
     sheet.cell_count = made->mesh.cell_count, sheet.cells = made->mesh.cells;
     sheet.uv = made->mesh.uv, sheet.corner_uv = made->mesh.corner_uv;
     sheet.source_vertex = made->mesh.source, sheet.source_count = made->mesh.source ? made->mesh.source_count : 0;
     bool taken = !singe_sim_add_sheet(sim, &sheet, &id) && !singe_sim_commit(sim);
+
     // a crumpled one may be too thick for its curvature, which is no fault of its faces
     if (!taken) taken = strstr(singe_sim_error(sim)->message, "has no length") != NULL;
     if (!taken) print_message("%s\n", singe_sim_error(sim)->message);
@@ -89,10 +92,12 @@ TEST(random_meshes_are_refused_or_sound) {
             refused++;
             continue;
         }
+
         if (!library_takes(&made)) fail_msg("seed %u:\n%s", seed, text.bytes);
         mesh_free(&made.mesh);
         made_sheets++;
     }
+
     print_message("%d made, %d refused\n", made_sheets, refused);
     assert_true(made_sheets > 1000);
 }

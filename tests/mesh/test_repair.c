@@ -61,6 +61,7 @@ TEST(t_junctions_are_closed) {
     assert_int_equal(made.report.count[MESH_JUNCTION], 1);
     assert_int_equal(made.report.first[MESH_JUNCTION], 9);
     assert_int_equal(made.report.components, 1);
+
     // a vertex that lies on a side but belongs to what depends on a point there is no junction
     mesh_free(&made.mesh);
 }
@@ -147,8 +148,10 @@ TEST(edges_of_many_faces_are_cut) {
             int v = faces[f][k];
             text_add(&text, " %d", v == 1 ? 3 : v == 5 ? 7 : 8 + v);
         }
+
         text_add(&text, "\n");
     }
+
     Made made = make(&text);
     assert_int_equal(made.report.count[MESH_CUT], 1);
     assert_int_equal(made.report.components, 2);
@@ -197,6 +200,7 @@ static uint32_t assert_manifold(const Mesh *mesh) {
     const uint32_t count = 4 * mesh->cell_count;
     uint32_t open = 0;
     Side *sides = calloc(count, sizeof *sides);
+
     for (uint32_t i = 0; i < count; i++) {
         uint32_t a = mesh->cells[i], b = mesh->cells[i / 4 * 4 + (i + 1) % 4];
         sides[i] = (Side){a < b ? a : b, a < b ? b : a, a < b};
@@ -209,6 +213,7 @@ static uint32_t assert_manifold(const Mesh *mesh) {
         assert_true(size == 1 || sides[i].up != sides[i + 1].up);
         open += size == 1;
     }
+
     free(sides);
     return open;
 }
@@ -256,6 +261,7 @@ TEST(sheets_that_meet_themselves_are_cut) {
     assert_int_equal(made.mesh.cell_count, 24);
     assert_manifold(&made.mesh);
     mesh_free(&made.mesh);
+
     // a sheet with a loop that is pinched shut at one side, which has four faces that are connected all around
     static const double x[] = {-2, -1, -0.2, -0.5, 0.5, 0.2, 1, 2}, z[] = {0, 0, 0, 1, 1, 0, 0, 0};
     text.size = 0;

@@ -73,6 +73,7 @@ static void check_uv(const SingeSurface *surface) {
                 high[c] = fmaxf(high[c], surface->uv[v][c]);
             }
         }
+
         bool upper = z > 0.064f;
         assert_true(high[0] - low[0] < 0.4f / AROUND + 1e-4f);
         assert_true(high[1] - low[1] < 0.9f / ALONG + 1e-4f);
@@ -106,19 +107,23 @@ static int open_edges(const SingeSurface *surface) {
     Position *positions = calloc(vertices, sizeof *positions);
     uint32_t *one = calloc(vertices, sizeof *one);
     Edge *edge = calloc(edges, sizeof *edge);
+
     for (uint32_t v = 0; v < vertices; v++) {
         memcpy(positions[v].at, surface->position[v], sizeof positions[v].at);
         positions[v].vertex = v;
     }
+
     qsort(positions, vertices, sizeof *positions, by_position);
     for (uint32_t i = 0, number = 0; i < vertices; i++) {
         if (i && by_position(&positions[i], &positions[i - 1]) != 0) number++;
         one[positions[i].vertex] = number;
     }
+
     for (uint32_t e = 0; e < edges; e++) {
         uint32_t a = one[surface->triangles[e / 3][e % 3]], b = one[surface->triangles[e / 3][(e + 1) % 3]];
         edge[e] = (Edge){a < b ? a : b, a < b ? b : a};
     }
+
     qsort(edge, edges, sizeof *edge, by_ends);
     int open = 0;
     for (uint32_t e = 0, size; e < edges; e += size) {
@@ -126,6 +131,7 @@ static int open_edges(const SingeSurface *surface) {
         }
         open += size == 1;
     }
+
     free(positions), free(one), free(edge);
     return open;
 }
@@ -136,6 +142,7 @@ TEST(seams_open_no_cracks) {
         SingeSurface surface = {0}, whole = {0};
         assert_int_equal(singe_sim_surface(sim, &surface), SINGE_OK);
         assert_int_equal(surface.triangle_count, 4 * AROUND * ALONG);
+
         // one more on every seam vertex, two more where seams cross
         assert_int_equal(surface.vertex_count, AROUND * (ALONG + 1) + AROUND * ALONG + (ALONG + 1) + AROUND + 1);
         assert_int_equal(open_edges(&surface), 2 * AROUND);
@@ -147,6 +154,7 @@ TEST(seams_open_no_cracks) {
             assert_int_equal(singe_sim_surface(sim, &surface), SINGE_OK);
             assert_int_equal(singe_sim_surface(plain, &whole), SINGE_OK);
             check_uv(&surface);
+
             // the same surface, with copies of vertices
             assert_int_equal(surface.triangle_count, whole.triangle_count);
             assert_int_equal(open_edges(&surface), open_edges(&whole));
@@ -155,8 +163,10 @@ TEST(seams_open_no_cracks) {
                 assert_memory_equal(surface.position[a], whole.position[b], sizeof surface.position[a]);
                 assert_int_equal(surface.source_vertex[a], whole.source_vertex[b]);
             }
+
             burnt += open_edges(&surface) > 2 * AROUND;
         }
+
         assert_int_equal(burnt, 8);
         singe_surface_free(&surface), singe_surface_free(&whole);
         singe_sim_destroy(sim), singe_sim_destroy(plain);
@@ -196,6 +206,7 @@ TEST(seams_keep_their_vertices) {
         assert_true(surface.uv[v][0] == u[number % 8]);
         assert_int_equal(surface.sheet[v], number / 8);
     }
+
     assert_int_equal(seen, 0xffff);
     singe_surface_free(&surface);
     singe_sim_destroy(sim);

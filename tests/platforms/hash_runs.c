@@ -72,6 +72,7 @@ static SingeResult add_objects(SingeSim *sim, const Run *run, SingeSheetId sheet
         ball.kind = SINGE_COLLIDER_SPHERE, ball.radius = 0.06f, ball.path_count = 1, ball.path = &below;
         result = singe_sim_add_collider(sim, &ball, &id);
     }
+
     return result;
 }
 
@@ -126,6 +127,7 @@ static SingeResult hash_run(const Run *run, const SingeSimDef *base, SingeError 
         printf("%s counts %u particles, %u tears, %d permille burnt\n", run->name, stats.particles, stats.tears,
                (int)(1000 * stats.burnt_fraction));
     }
+
     uint8_t *bytes;
     size_t size;
     if (!result && base->instructions == SINGE_INSTRUCTIONS_BEST) {
@@ -135,6 +137,7 @@ static SingeResult hash_run(const Run *run, const SingeSimDef *base, SingeError 
             singe_sim_free_bytes(sim, bytes, size);
         }
     }
+
     singe_sim_destroy(sim);
     return result;
 }
@@ -156,11 +159,13 @@ int main(int count, char **arguments) {
         else if (strcmp(arguments[i], "--threads") == 0 && *value) def.thread_count = atoi(value), i++;
         else return fprintf(stderr, "usage: hash_runs [--instructions best|plain|v2|v3|v4|neon] [--threads N]\n"), 2;
     }
+
     for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
         SingeError error;
         if (!hash_run(&runs[i], &def, &error)) continue;
         fprintf(stderr, "%s: %s: %s\n", runs[i].name, error.stage, error.message);
         return 1;
     }
+
     return 0;
 }

@@ -58,6 +58,7 @@ static int draw(const Shot *shot, const Image *picture, const char *folder, int 
                          .radius = 0.02f,
                          .colour = {0.3f, 0.3f, 0.32f},
                          .temperature = 1250};
+
     memcpy(def.camera.eye, shot->eye, sizeof shot->eye), memcpy(def.camera.target, shot->target, sizeof shot->target);
     if (shot->flames) def.width = 1280, def.height = 720;
     def.camera.fov = shot->fov, def.samples = shot->samples, def.thread_count = threads;
@@ -71,6 +72,7 @@ static int draw(const Shot *shot, const Image *picture, const char *folder, int 
     SyntheticGas gas = {0};
     if (shot->flames && !synthetic_gas_make(&surface, 0.008f, 1, &gas)) return 1;
     SingeResult result = preview_create(&def, (SingeAllocator){0}, &preview, &error);
+
     // a frame before it, so that the table is known and only the flames differ
     double without = 0, cpu = 0, wall = 0;
     if (!result && shot->flames) result = preview_draw(preview, &surface, 1.0, rgb, &error);

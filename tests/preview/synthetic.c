@@ -29,6 +29,7 @@ static Corner corner_at(SyntheticKind kind, float radius, float x, float y) {
     if (kind == SYNTHETIC_FRESH) return c;
     float s = from_edge(kind, radius, x, y), front = 0.0085f;
     float burn = 0.918f * (1 - smooth(-0.25f * front, front, s)) + (s < 0 ? -s * 6 : 0);
+
     // flakes that went out before they were gone
     float flake = sinf(x * 140 + 1.7f) * sinf(y * 117 + 0.3f) + 0.5f * sinf(x * 260 + y * 90);
     bool ash = s < -0.004f && flake > 0.92f;
@@ -48,6 +49,7 @@ static void position(SyntheticKind kind, float radius, const float rest[3], floa
     float x = rest[0], y = rest[1], s = from_edge(kind, radius, x, y);
     float near = expf(-(s > 0 ? s : 0) / 0.016f), angle = atan2f(y - 0.02f, x - 0.012f);
     float curl = near * (0.006f + 0.0045f * sinf(6 * angle) + 0.002f * sinf(17 * angle + 2));
+
     if (kind == SYNTHETIC_FRESH) curl = 0;
     if (s < 0) curl *= expf(s / 0.012f);
     if (kind == SYNTHETIC_HANGING) {
@@ -102,6 +104,7 @@ static void add_triangle(SyntheticKind kind, float radius, SingeSurface *s, cons
         if (da >= 0) kept[count++] = *a;
         if ((da >= 0) != (db >= 0)) kept[count++] = between(a, b, da / (da - db));
     }
+
     uint32_t first = s->vertex_count;
     for (int k = 0; k < count; k++) add_vertex(kind, radius, s, &kept[k]);
     for (int k = 2; k < count; k++) {

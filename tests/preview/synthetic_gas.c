@@ -61,6 +61,7 @@ static void rise(SyntheticGas *s, float time) {
     const uint32_t *n = s->gas.size;
     size_t layer = (size_t)n[0] * n[1];
     float *fuel = plane(layer), *next = plane(layer);
+
     for (uint32_t z = 0; z < n[2] && fuel && next; z++) {
         float height = (float)z * s->gas.cell;
         for (uint32_t i = 0; i < layer; i++) {
@@ -78,9 +79,11 @@ static void rise(SyntheticGas *s, float time) {
             s->velocity[k][0] = sway_x * 0.9f, s->velocity[k][1] = sway_y * 0.9f;
             s->velocity[k][2] = 0.2f + 1.0f * have / (0.1f + have);
         }
+
         float *swap = fuel;
         fuel = next, next = swap;
     }
+
     free(fuel), free(next);
 }
 

@@ -34,6 +34,7 @@ TEST(a_lens_blurs_what_is_out_of_focus) {
     const Image *pictures[1];
     Float4 q;
     PreviewDef def;
+
     striped(&q, &def, pictures, &image, texels);
     draw(&def, &q.surface, 0, rgb);
     float pinhole = sharpness(rgb, 1, 0);
@@ -70,6 +71,7 @@ TEST(blur_is_drawn_wherever_it_reaches) {
     draw(&def, &q.surface, 0, wide);
     def.camera.aperture = 0;
     draw(&def, &q.surface, 0, none);
+
     // 5 cm of lens over 20 cm beyond the sheet: 7.5 cm around it on the ground, besides its own 3.3 cm
     int beyond = (int)(0.07f / (0.5f * tanf(0.35f)) * (H / 2));
     assert_true(pixel(none, W / 2 + beyond, H / 2)[1] < 8);
@@ -84,6 +86,7 @@ TEST(a_shutter_blurs_motion) {
     const Image *pictures[1];
     Float4 q;
     PreviewDef def;
+
     striped(&q, &def, pictures, &image, texels);
     draw(&def, &q.surface, 0, still);
     for (int i = 0; i < 4; i++) velocity[i][0] = 0.5f;
@@ -132,6 +135,7 @@ TEST(pictures_do_not_depend_on_threads) {
         def.sky = PREVIEW_SKY_STUDIO, def.ground = PREVIEW_GROUND_STONE;
         draw(&def, &surface, 0.5, pictures[threads - 1]);
     }
+
     assert_memory_equal(pictures[0], pictures[1], BIG);
     assert_memory_equal(pictures[0], pictures[2], BIG);
     synthetic_free(&surface);

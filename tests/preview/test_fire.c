@@ -45,6 +45,7 @@ TEST(still_air_changes_no_pixel) {
     static Ball air;
     SingeSurface surface;
     SingeGas none = {{0}, {0}, 0, NULL, NULL, NULL, NULL};
+
     assert_true(synthetic_make(SYNTHETIC_FLAT, 20, 0.05f, &surface));
     PreviewDef def = small();
     draw(&def, &surface, 1, plain);
@@ -63,6 +64,7 @@ TEST(a_flame_glows_orange) {
     static uint8_t rgb[BYTES], plain[BYTES];
     static Ball ball;
     SingeSurface nothing = {0};
+
     ball_make(&ball, 0, 0, 0.2f, 0.03f, 4e6f, 0);
     for (int k = 0; k < 2; k++) {
         PreviewDef def = aside(k ? 0.75f : 0.02f);
@@ -71,6 +73,7 @@ TEST(a_flame_glows_orange) {
         float r = middle(rgb, 0), g = middle(rgb, 1), b = middle(rgb, 2);
         assert_true(r >= g && g > b + (k ? 5 : 40));
         assert_true(k || r > middle(plain, 0) + 60);
+
         // and elsewhere nothing but a little halo
         for (int c = 0; c < 3; c++) assert_true(fabsf(corner(rgb, c) - corner(plain, c)) < 6);
         int white = 0, orange = 0, bright = 0;
@@ -79,6 +82,7 @@ TEST(a_flame_glows_orange) {
             white += p[2] > 245, orange += p[0] > 120 && p[1] < 0.8f * p[0] && p[2] < 0.5f * p[0];
             bright += p[0] > 200 && p[1] > p[2] + 40;
         }
+
         print_message("flame: %.0f %.0f %.0f, %d white, %d orange, %d bright\n", (double)r, (double)g, (double)b, white,
                       orange, bright);
         assert_true(white < 10 && (k || (orange > 30 && bright > 30)));
@@ -102,6 +106,7 @@ TEST(a_bright_flame_is_pale_in_its_centre) {
         pale += p[1] > 225 && p[2] > 150;
         lemon += p[0] > 250 && p[1] > 225 && p[2] < 110;
     }
+
     print_message("of %d pixels of flame %d are pale and %d lemon\n", flame, pale, lemon);
     assert_in_range(pale, flame / 10, flame / 2); // none with the leak of dim colours alone
     assert_true(lemon < flame / 10);
@@ -155,9 +160,11 @@ static void burning_make(Burning *b) {
             memcpy(b->rest[v], b->position[v], 12);
             b->temperature[v] = 293, b->rate[v] = 1;
         }
+
         for (int t = 0; t < 2; t++)
             for (int c = 0; c < 3; c++) b->triangles[2 * k + t][c] = q.triangles[t][c] + 4 * (uint32_t)k;
     }
+
     b->surface = (SingeSurface){.vertex_count = 4 * WIDE,
                                 .triangle_count = 2 * WIDE,
                                 .position = b->position,
@@ -175,6 +182,7 @@ static void burning_make(Burning *b) {
 /// The fire's layer of that line from the side; row 0 of `mean` is the paper's height, others are a mm higher each.
 static void see_line(const SingeSurface *surface, const SingeGas *gas, float (*fire)[4], float (*mean)[4], int rows) {
     PreviewDef def = aside(0.02f);
+
     // a mm is a pixel
     def.camera = (PreviewCamera){
         .eye = {0, -1, H / 2000.0f}, .target = {0, 0, H / 2000.0f}, .up = {0, 0, 1}, .fov = 2 * atanf(H / 2000.0f)};
@@ -197,6 +205,7 @@ TEST(a_flame_has_a_blue_base_and_tongues) {
     static float fire[W * H][4], mean[H][4];
     static Line line;
     static Burning paper;
+
     line_make(&line, 0.003f), burning_make(&paper);
     see_line(&paper.surface, &line.gas, fire, mean, H);
     int dark = 0;
@@ -217,6 +226,7 @@ TEST(the_rim_is_seen_through_the_flames) {
     static float fire[W * H][4], mean[H][4];
     static Line line;
     static Burning paper;
+
     burning_make(&paper);
     for (int wrong = 0; wrong < 2; wrong++) {
         line_make(&line, wrong ? 0.023f : 0.003f);
@@ -238,6 +248,7 @@ TEST(flicker_goes_on_in_time) {
     static Ball ball;
     SingeSurface nothing = {0};
     PreviewDef def = aside(0.02f);
+
     ball_make(&ball, 0, 0, 0.2f, 0.03f, 4e6f, 0);
     draw_gas(&def, &nothing, &ball.gas, 0.3, a);
     draw_gas(&def, &nothing, &ball.gas, 0.3 + 1 / 24.0, b);
@@ -252,6 +263,7 @@ TEST(a_sheet_hides_the_flame_behind_it) {
     static uint8_t before[BYTES], behind[BYTES], plain[BYTES];
     static Ball ball;
     Float4 q;
+
     quad_make(&q, 0.1f, 0.2f);
     PreviewDef def = above();
     for (int c = 0; c < 3; c++) def.sun_colour[c] = 0; // before white in the sun a flame is next to nothing
@@ -272,6 +284,7 @@ TEST(flames_light_the_paper_beside_them) {
     static uint8_t dark[BYTES], lit[BYTES];
     static Ball ball;
     Float4 q;
+
     quad_make(&q, 0.15f, 0.02f);
     PreviewDef def = above();
     for (int c = 0; c < 3; c++) def.sun_colour[c] = 0, def.sky_colour[c] = 0.1f;
@@ -307,6 +320,7 @@ TEST(firelight_flickers) {
             for (int x = W / 2 - 3; x < W / 2 + 3; x++) light += beauty[y * W + x][0] / 36;
         sum += light / FRAMES, squares += light * light / FRAMES;
     }
+
     preview_destroy(preview);
 
     float deviation = sqrtf(fmaxf(squares - sum * sum, 0)) / sum;
@@ -319,6 +333,7 @@ TEST(smoke_dims_what_is_bright) {
     static uint8_t rgb[BYTES], plain[BYTES];
     static Ball ball;
     SingeSurface nothing = {0};
+
     ball_make(&ball, 0, 0, 0.2f, 0.035f, 0, 2e-3f);
     for (int k = 0; k < 2; k++) {
         PreviewDef def = aside(k ? 0.75f : 0.0f);
@@ -338,6 +353,7 @@ TEST(the_fire_layer_is_what_fire_adds) {
     PreviewDef def = aside(0.3f);
     Preview *preview = NULL;
     SingeError error;
+
     ball_make(&ball, 0, 0, 0.2f, 0.03f, 4e6f, 5e-4f);
     assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
     PreviewLayers layers = {.beauty = without, .fire = fire};
@@ -363,6 +379,7 @@ TEST(rays_end_far_away_and_inside_the_flame) {
     static uint8_t rgb[BYTES];
     static Ball ball;
     SingeSurface nothing = {0};
+
     ball_make(&ball, 0, 0, 0.2f, 0.03f, 4e6f, 1e-3f);
     static const float eyes[4][3] = {{0, -0.01f, 0.2f}, {0, -90, 0.2f}, {0, -9000, 0.2f}, {7000, 6000, 8000}};
     for (int i = 0; i < 4; i++) {
@@ -392,11 +409,13 @@ TEST(pictures_do_not_depend_on_threads_or_order) {
             assert_int_equal(preview_draw(preview, &surface, 2, again, NULL), SINGE_OK);
             assert_memory_not_equal(first, again, BIG);
         }
+
         assert_int_equal(preview_set_gas(preview, &gas.gas, NULL), SINGE_OK);
         assert_int_equal(preview_draw(preview, &surface, 1, threads == 1 ? first : again, NULL), SINGE_OK);
         if (threads > 1) assert_memory_equal(first, again, BIG);
         preview_destroy(preview);
     }
+
     synthetic_gas_free(&gas), synthetic_gas_free(&other), synthetic_free(&surface);
 }
 
@@ -406,6 +425,7 @@ TEST(bad_gas_is_refused) {
     PreviewDef def = small();
     TestAllocator allocator = {0};
     Preview *preview = NULL;
+
     assert_int_equal(preview_create(&def, test_allocator(&allocator), &preview, &error), SINGE_OK);
     ball_make(&ball, 0, 0, 0.2f, 0.03f, 4e6f, 0);
     SingeGas bad[5] = {ball.gas, ball.gas, ball.gas, ball.gas, ball.gas};
@@ -414,6 +434,7 @@ TEST(bad_gas_is_refused) {
         assert_int_equal(preview_set_gas(preview, &bad[i], &error), SINGE_ERROR_ARGUMENT);
         assert_non_null(strstr(error.message, "gas"));
     }
+
     ball.flame[7] = NAN;
     assert_int_equal(preview_set_gas(preview, &ball.gas, &error), SINGE_ERROR_ARGUMENT);
     ball.flame[7] = 0;
@@ -424,6 +445,7 @@ TEST(bad_gas_is_refused) {
         result = preview_set_gas(preview, &ball.gas, &error);
         if (result) assert_int_equal(error.code, SINGE_ERROR_MEMORY);
     }
+
     assert_in_range(needed, 1, 7);
     preview_destroy(preview);
     test_allocator_check(&allocator);

@@ -27,6 +27,7 @@ TEST(layers_have_the_surfaces_values) {
     static Kept kept;
     static int32_t piece[4] = {7, 7, 7, 7};
     Float4 q;
+
     quad_make(&q, 0.08f, 0.1f);
     for (int i = 0; i < 4; i++) q.temperature[i] = 500, q.burn[i] = 0.25f, q.sheet[i] = 2;
     q.surface.piece = piece;
@@ -101,6 +102,7 @@ TEST(the_ember_line_is_thin_and_broken) {
         const PreviewLayers layers = {.glow = glow[k]};
         assert_int_equal(preview_draw_layers(preview, &surface, 1 + 0.5 * k, NULL, &layers, NULL), SINGE_OK);
     }
+
     preview_destroy(preview);
     synthetic_free(&surface);
     const float pixel = 1e3f * 2 * 0.5f * tanf(0.12f) / SIDE; // mm
@@ -113,11 +115,13 @@ TEST(the_ember_line_is_thin_and_broken) {
         int sector = (int)((atan2f(y, x) / 6.2832f + 0.5f) * (SECTORS - 0.01f));
         count[sector]++, radius[sector] += sqrtf(x * x + y * y) * pixel;
     }
+
     for (int k = 0; k < SECTORS; k++) {
         if (!count[k]) continue;
         float arc = 6.2832f / SECTORS * radius[k] / (float)count[k], bright = (float)count[k] * pixel * pixel;
         lit++, area += bright, around += arc, widest = fmaxf(widest, bright / arc);
     }
+
     assert_true(area / around > 0.2f && area / around < 1.6f); // mm wide where it glows
     assert_true(widest < 3);
     assert_in_range(lit, SECTORS / 3, SECTORS - 5);
@@ -129,6 +133,7 @@ TEST(layers_change_no_picture) {
     static Kept one, two;
     static uint8_t alone[BYTES], beside[BYTES];
     SingeSurface surface;
+
     assert_true(synthetic_make(SYNTHETIC_FLAT, 30, 0.05f, &surface));
     PreviewDef def = small();
     draw(&def, &surface, 1, alone);

@@ -35,6 +35,7 @@ TEST(white_in_the_sun_is_not_clipped) {
     const Image *pictures[1] = {&image};
     static uint8_t rgb[BYTES];
     Float4 q;
+
     quad_make(&q, 0.1f, 0.01f);
     PreviewDef def = above();
     def.pictures = pictures, def.sheet_count = 1;
@@ -49,6 +50,7 @@ TEST(states_of_burning_differ) {
     Float4 q;
     PreviewDef def = above();
     float fresh, brown, black;
+
     quad_make(&q, 0.1f, 0.01f);
     draw(&def, &q.surface, 0, rgb);
     fresh = pixel(rgb, W / 2, H / 2)[1];
@@ -68,6 +70,7 @@ TEST(cold_remains_stay_brown_and_grey) {
     static uint8_t rgb[BYTES];
     Float4 q;
     PreviewDef def = above();
+
     quad_make(&q, 0.1f, 0.01f);
     for (int i = 0; i < 4; i++) q.peak[i] = 520;
     draw(&def, &q.surface, 0, rgb);
@@ -90,6 +93,7 @@ TEST(only_hot_and_burning_char_glows) {
     static uint8_t rgb[BYTES];
     Float4 q;
     PreviewDef def = above();
+
     quad_make(&q, 0.1f, 0.01f);
     def.sun_colour[0] = def.sun_colour[1] = def.sun_colour[2] = 0;
     for (int i = 0; i < 4; i++) q.burn[i] = 0.7f + 0.2f * (float)(i == 1 || i == 2), q.temperature[i] = 1100;
@@ -111,6 +115,7 @@ TEST(ash_pales_with_time) {
     static float ignited[4] = {1, 1, 1, 1};
     Float4 q;
     PreviewDef def = above();
+
     quad_make(&q, 0.1f, 0.01f);
     for (int i = 0; i < 4; i++) q.peak[i] = 1000, q.burn[i] = 1;
     q.surface.time_ignited = ignited;
@@ -149,6 +154,7 @@ TEST(what_faces_up_does_not_depend_on_the_sky) {
             aside[sky] = side ? aside[sky] - middle(rgb, 1) : middle(rgb, 1);
         }
     }
+
     assert_in_range((int)up[0], 100, 200);
     for (int sky = 1; sky < 4; sky++) assert_float_equal(up[sky], up[0], 12);
     assert_float_equal(aside[PREVIEW_SKY_EVEN], 0, 3);
@@ -168,6 +174,7 @@ TEST(each_ground_has_its_look) {
     static uint8_t rgb[3][BYTES];
     SingeSurface nothing = {0};
     PreviewDef def = above();
+
     for (int kind = 0; kind < 3; kind++) {
         def.ground = (PreviewGround)kind;
         draw(&def, &nothing, 0, rgb[kind]);
@@ -190,6 +197,7 @@ TEST(char_is_black_and_greys) {
     float mass[4], charred[4], ash[4], green[3], red[4];
     Float4 q;
     PreviewDef def = above();
+
     quad_make(&q, 0.1f, 0.01f);
     q.surface.mass = mass, q.surface.char_fraction = charred, q.surface.ash_fraction = ash;
     for (int k = 0; k < 3; k++) { // with one reaction, with a leaf of char, with ash
@@ -197,9 +205,11 @@ TEST(char_is_black_and_greys) {
             charred[i] = k == 1 ? 0.25f : 0, ash[i] = k == 2 ? 0.12f : 0, mass[i] = k == 2 ? 0.12f : 0.25f;
             q.burn[i] = (1 - mass[i]) / 0.88f, q.peak[i] = 900;
         }
+
         draw(&def, &q.surface, 1, rgb);
         green[k] = middle(rgb, 1);
     }
+
     print_message("one reaction %.0f, leaf %.0f, ash %.0f\n", (double)green[0], (double)green[1], (double)green[2]);
     assert_true(green[1] < 60 && green[2] > green[1] + 30 && green[0] > green[1]);
     for (int c = 0; c < 3; c++) def.sun_colour[c] = 0;
@@ -210,9 +220,11 @@ TEST(char_is_black_and_greys) {
             mass[i] = k == 1 ? 0.4f : charred[i] + ash[i];
             q.burn[i] = (1 - mass[i]) / 0.88f, q.temperature[i] = 1100, q.rate[i] = k > 0;
         }
+
         draw(&def, &q.surface, 1, rgb);
         red[k] = mean(rgb, 0) - mean(rgb, 2);
     }
+
     print_message("red of a hot leaf that is idle %.1f, has fuel %.1f, glows %.1f; of a line %.1f\n", (double)red[0],
                   (double)red[1], (double)red[2], (double)red[3]);
     assert_true(red[2] > red[0] + 1.5f && red[2] > red[1] + 1.5f && red[3] > red[0] + 1.5f);

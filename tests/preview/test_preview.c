@@ -11,6 +11,7 @@
 TEST(pictures_do_not_depend_on_threads) {
     SingeSurface surface;
     assert_true(synthetic_make(SYNTHETIC_FLAT, 30, 0.05f, &surface));
+
     // enough tiles that every thread gets some
     enum { BIG_W = 330, BIG_H = 250, BIG = BIG_W * BIG_H * 3 };
     static uint8_t pictures[3][BIG];
@@ -22,6 +23,7 @@ TEST(pictures_do_not_depend_on_threads) {
         def.thread_count = threads, def.shapes = &ball, def.shape_count = 1;
         draw(&def, &surface, 0.5, pictures[threads - 1]);
     }
+
     assert_memory_equal(pictures[0], pictures[1], BIG);
     assert_memory_equal(pictures[0], pictures[2], BIG);
     synthetic_free(&surface);
@@ -74,6 +76,7 @@ TEST(an_empty_surface_is_drawn) {
     static uint8_t rgb[BYTES];
     SingeSurface nothing = {0};
     PreviewDef def = above();
+
     draw(&def, &nothing, 0, rgb);
     const uint8_t *p = pixel(rgb, W / 2, H / 2);
     assert_true(p[0] > p[1] && p[1] > p[2]); // a wooden table
@@ -92,6 +95,7 @@ TEST(uv_and_rows_are_the_right_way_round) {
     const Image *pictures[2] = {&image, NULL};
     static uint8_t rgb[BYTES];
     Float4 q;
+
     quad_make(&q, 0.1f, 0.01f);
     PreviewDef def = above();
     def.pictures = pictures, def.sheet_count = 2;
@@ -121,17 +125,20 @@ TEST(shapes_are_drawn) {
                           .height = 0.02f,
                           .colour = {0.1f, 0.1f, 0.8f},
                           .temperature = 293};
+
     def.shapes = &shape, def.shape_count = 1;
     const SingeColliderKind kinds[3] = {SINGE_COLLIDER_SPHERE, SINGE_COLLIDER_BOX, SINGE_COLLIDER_CAPSULE};
     for (int k = 0; k < 3; k++) {
         shape.kind = kinds[k];
         draw(&def, &nothing, 0, rgb);
+
         // 0.1 m at distance 0.45 m; half the picture's height is 0.45 tan 0.35 there
         int x = (int)(W / 2 + 0.1f / (0.45f * tanf(0.35f)) * (H / 2));
         const uint8_t *on = pixel(rgb, x, H / 2), *off = pixel(rgb, W - x, H / 2);
         assert_true(on[2] > on[0] + 50 && on[2] > 120);
         assert_true(off[0] > off[2]);
     }
+
     shape.kind = SINGE_COLLIDER_PLANE; // planes are the ground's business
     draw(&def, &nothing, 0, rgb);
     const uint8_t *p = pixel(rgb, W / 2, H / 2);
@@ -146,6 +153,7 @@ TEST(a_box_of_a_mesh_is_drawn_as_the_box) {
     float vertices[24];
     uint32_t triangles[] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
                             2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+
     for (int k = 0; k < 24; k++) vertices[k] = (k / 3 >> k % 3 & 1 ? 1 : -1) * (0.02f + 0.01f * (float)(k % 3));
     PreviewSolid solid = {8, 12, vertices, triangles, false};
     PreviewShape shape = {.position = {0.06f, 0.02f, 0.05f},
@@ -168,9 +176,11 @@ TEST(a_box_of_a_mesh_is_drawn_as_the_box) {
             blue += box[i + 2] > box[i] + 30;
             differ += abs(box[i] - mesh[i]) + abs(box[i + 1] - mesh[i + 1]) + abs(box[i + 2] - mesh[i + 2]) > 24;
         }
+
         print_message("solid: %d pixels, %d differ\n", blue, differ);
         assert_true(blue > 100 && differ <= blue / 50);
     }
+
     SingeError error;
     Preview *preview = NULL;
     shape.solid = NULL;
@@ -188,6 +198,7 @@ TEST(a_hot_ball_glows) {
                          .radius = 0.025f,
                          .colour = {0.2f, 0.2f, 0.2f},
                          .temperature = 1250};
+
     def.shapes = &ball, def.shape_count = 1;
     draw(&def, &nothing, 0, hot);
     ball.temperature = 600;
@@ -197,6 +208,7 @@ TEST(a_hot_ball_glows) {
     assert_true(p[0] > 230 && p[0] > p[1] + 15 && p[1] > p[2] + 40); // orange to yellow
     // its light reaches the table beside it
     assert_true(pixel(hot, W / 2 + 9, H / 2)[0] > pixel(cold, W / 2 + 9, H / 2)[0] + 8);
+
     // with no table to light, only the halo is left
     def.ground_height = -INFINITY;
     draw(&def, &nothing, 0, cold);
@@ -225,6 +237,7 @@ TEST(bad_vertices_are_refused) {
     static uint8_t rgb[BYTES];
     PreviewDef def = above();
     const float bad[] = {NAN, INFINITY, -INFINITY, 1e30f};
+
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         Float4 q;
         quad_make(&q, 0.1f, 0.01f);
@@ -236,6 +249,7 @@ TEST(bad_vertices_are_refused) {
         assert_in_range(pixel(rgb, W / 2 + 5, H / 2 + 8)[1], 200, 252);
         assert_true(pixel(rgb, W / 2 - 8, H / 2 - 5)[1] < 190);
     }
+
     Float4 q;
     quad_make(&q, 0.1f, 0.01f);
     q.triangles[1][2] = 0; // degenerate
@@ -356,6 +370,7 @@ TEST(odd_sizes_are_drawn) {
         draw(&def, &surface, 1, rgb);
         free(rgb);
     }
+
     synthetic_free(&surface);
 }
 
@@ -385,9 +400,11 @@ TEST(every_allocation_fails_once) {
             allocator.fail_at = 0;
             assert_int_equal(preview_draw(preview, &q.surface, 0, rgb, &error), SINGE_OK);
         }
+
         preview_destroy(preview);
         test_allocator_check(&allocator);
     }
+
     assert_true(succeeded);
 }
 
@@ -397,6 +414,7 @@ TEST(shapes_can_be_set_anew) {
     PreviewDef def = above();
     Preview *preview = NULL;
     SingeError error = {0};
+
     assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
     PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE,
                          .position = {0, 0, 0.03f},

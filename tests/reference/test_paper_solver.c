@@ -38,11 +38,13 @@ static void random_make(Random *random) {
         if (i + SIDE < SIDE * SIDE) random->ends[count][0] = i + SIDE, random->ends[count++][1] = i;
         if (i < SIDE) random->ends[count][0] = i, random->ends[count++][1] = PARTICLES - 1;
     }
+
     for (uint32_t k = 0; k < count; k++) {
         random->lengths[k] = 0.8 + 0.4 * noise(k, 4);
         random->weights[k] = k % 9 == 2 ? 0 : 0.5 + 0.5 * noise(k, 5);
         random->compliances[k] = k % 3 == 0 ? 1e-3 * noise(k, 6) : 0;
     }
+
     random->def = singe_default_network();
     random->def.particle_count = PARTICLES, random->def.positions = random->positions;
     random->def.inverse_masses = random->inverse_masses, random->def.held = random->held;
@@ -69,6 +71,7 @@ static void dense_solve(double *a, double *b, uint32_t n) {
             b[i] -= f * b[k];
         }
     }
+
     for (uint32_t k = n; k-- > 0;) {
         for (uint32_t j = k + 1; j < n; j++) b[k] -= a[k * n + j] * b[j];
         b[k] = a[k * n + k] == 0 ? 0 : b[k] / a[k * n + k];
@@ -81,6 +84,7 @@ static void dense_row(const Random *random, uint32_t k, double *gradient, double
     const uint32_t *e = random->ends[k];
     const double *w = random->inverse_masses, *x = random->positions;
     double d[3], length = 0, l = random->lengths[k];
+
     memset(gradient, 0, 3 * PARTICLES * sizeof *gradient);
     *right = *soft = 0;
     if (random->weights[k] == 0 || w[e[0]] + w[e[1]] == 0) return;
@@ -101,6 +105,7 @@ static void check_dense(Random *random) {
     double *g = calloc((size_t)n * columns, sizeof *g), *a = calloc((size_t)n * n, sizeof *a);
     double *matrix = calloc((size_t)n * n, sizeof *matrix), *jacobian = calloc((size_t)n * columns, sizeof *jacobian);
     double *right = calloc(n, sizeof *right), *soft = calloc(n, sizeof *soft);
+
     for (uint32_t k = 0; k < n; k++) dense_row(random, k, g + k * columns, &right[k], &soft[k]);
     for (uint32_t i = 0; i < n; i++)
         for (uint32_t j = 0; j < n; j++) {
@@ -125,6 +130,7 @@ static void check_dense(Random *random) {
             expected -= random->inverse_masses[c / 3] * g[k * columns + c] * right[k];
         assert_true(fabs(x[c] - expected) < 1e-9);
     }
+
     singe_network_destroy(network);
     free(g), free(a), free(matrix), free(jacobian), free(right), free(soft);
 }
@@ -144,6 +150,7 @@ TEST(table_1_is_reproduced) {
     const double positions[] = {-1, 0, 0, 0, 0, 0, 1, 0, 0}, lengths[] = {1.65, 0.55};
     const uint32_t ends[] = {0, 1, 1, 2}, sets[] = {0, 1};
     const uint8_t held[] = {1, 0, 1};
+
     def.particle_count = 3, def.positions = positions, def.held = held;
     def.spring_count = 2, def.ends = ends, def.lengths = lengths, def.set_count = 2, def.sets = sets;
     def.regularisation = 0;
@@ -155,6 +162,7 @@ TEST(table_1_is_reproduced) {
             double x = singe_network_positions(network)[3];
             assert_true(x >= table[i] && x < table[i] + 1e-4);
         }
+
         singe_network_destroy(network);
     }
 }
@@ -163,6 +171,7 @@ TEST(bad_networks_are_refused) {
     Random random;
     SingeNetwork *network;
     SingeError error;
+
     random_make(&random);
     random.ends[5][1] = PARTICLES;
     assert_int_equal(singe_network_create(&random.def, &network, &error), SINGE_ERROR_ARGUMENT);
@@ -178,6 +187,7 @@ TEST(bad_networks_are_refused) {
     random_make(&random);
     random.def.tolerance = 0;
     assert_int_equal(singe_network_create(&random.def, &network, NULL), SINGE_ERROR_ARGUMENT);
+
     // memory that fails at every place in turn
     random_make(&random);
     for (long at = 1;; at++) {
@@ -232,6 +242,7 @@ TEST(bytes_do_not_depend_on_threads) {
             assert_memory_equal(a.velocity, b.velocity, a.particle_count * sizeof *a.velocity);
             singe_sim_destroy(sim);
         }
+
         singe_sim_destroy(one);
     }
 }
@@ -240,6 +251,7 @@ TEST(projections_end_early) {
     SingeSimDef def = method_def(SINGE_SOLVER_PAPER);
     uint64_t iterations[2];
     double height[2] = {0, 0};
+
     for (int early = 0; early < 2; early++) {
         def.solver.early_exit = early;
         SingeSim *sim = swing(&def, 10, 1);
@@ -251,8 +263,10 @@ TEST(projections_end_early) {
         assert_true(timers.projection_flops > 0 && timers.projection_bytes > 0);
         singe_sim_destroy(sim);
     }
+
     assert_true(iterations[1] < iterations[0]);
     assert_true(fabs(height[1] / height[0] - 1) < 1e-3);
+
     // at rest there is nothing to solve, and the early exit takes the first projection for the last
     def.gravity[2] = 0, def.solver.early_exit = true;
     SingeSim *sim = swing(&def, 10, 1);
@@ -269,6 +283,7 @@ TEST(the_literal_method_diverges) {
     SingeSim *sim = swing(&def, 8, 1);
     SingeResult result = SINGE_OK;
     int steps = 0;
+
     for (; steps < 100 && !result; steps++) result = singe_sim_step(sim);
     assert_int_equal(result, SINGE_ERROR_DIVERGED);
     assert_string_equal(singe_sim_error(sim)->stage, "dynamics");
@@ -298,6 +313,7 @@ TEST(contact_is_inside_projections) {
     SingeColliderDef plane = singe_default_collider();
     SingePoseKey position = test_key(0, 0, 0, -0.05f);
     SingeColliderId id;
+
     plane.path_count = 1, plane.path = &position;
     test_ok(sim, singe_sim_add_collider(sim, &plane, &id));
     for (int step = 0; step < 150; step++) {
@@ -306,6 +322,7 @@ TEST(contact_is_inside_projections) {
         for (uint32_t i = 0; i < view.particle_count; i++)
             assert_true(view.position[i][2] >= -0.05f + plane.offset - 1e-6f);
     }
+
     SingeTimers timers = singe_sim_timers(sim);
     assert_true(timers.contacts > 0);
     singe_sim_destroy(sim);
@@ -330,6 +347,7 @@ TEST(paper_and_strand_end_alike) {
         for (uint32_t i = 0; i < count; i++) memcpy(last[method][i], view.position[i], sizeof last[method][i]);
         singe_sim_destroy(sim);
     }
+
     double worst = 0;
     for (uint32_t i = 0; i < count; i++)
         for (int c = 0; c < 3; c++) worst = fmax(worst, fabs((double)last[0][i][c] - (double)last[1][i][c]));
@@ -356,6 +374,7 @@ TEST(commits_fail_cleanly_without_memory) {
                 test_ok(sim, singe_sim_step(sim));
                 assert_int_equal(counter.calls, calls);
             }
+
             singe_sim_destroy(sim);
             test_mesh_free(&mesh);
             assert_int_equal(counter.blocks, 0);
@@ -373,6 +392,7 @@ TEST(a_spring_has_its_period) {
     const uint32_t ends[1][2] = {{0, 1}};
     NetworkSprings springs = {1, ends};
     Network network;
+
     assert_int_equal(network_create(&memory, 2, 1, &springs, false, &network), SINGE_OK);
     const double stiffness = 50, h = 1e-4;
     float velocity[2][4] = {{0}};
@@ -391,8 +411,10 @@ TEST(a_spring_has_its_period) {
             last = step - now / (now - before);
             if (crossings++ == 0) first = last;
         }
+
         before = now;
     }
+
     assert_true(crossings > 3);
     double period = h * (last - first) / (crossings - 1);
     double expected = 2 * 3.14159265358979 / sqrt(stiffness * 90 * (1 - 0.01));

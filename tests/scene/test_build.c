@@ -21,6 +21,7 @@ TEST(rotations_turn_about_x_then_y_then_z) {
     const double y[3] = {0, 1, 0}, x[3] = {1, 0, 0}, v[3] = {0.2, -0.7, 1.1};
     float q[4];
     double out[3], m[9];
+
     rotation_quaternion(angles, q);
     turn(q, y, out);
     assert_true(fabs(out[0]) < 1e-6 && fabs(out[1]) < 1e-6 && fabs(out[2] - 1) < 1e-6);
@@ -46,6 +47,7 @@ TEST(a_simulation_has_what_the_scene_says) {
     SceneMessages messages = {0};
     SingeSim *sim;
     SingeSimDef hooks = singe_default_sim();
+
     assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
     SingeResult result = scene_build(scene, &assets, &hooks, &sim, &messages);
     scene_messages_print(&messages, stderr);
@@ -53,6 +55,7 @@ TEST(a_simulation_has_what_the_scene_says) {
     SingeCounts counts = singe_sim_counts(sim);
     assert_int_equal(counts.particles, 15 + 8 + 16 + 9);
     SingeView view = singe_sim_view(sim);
+
     // the first grid, doubled and upright: x from -0.2 to 0.2, z from 0.9 to 1.1
     assert_true(fabsf(view.position[0][0] + 0.2f) < 1e-6f && fabsf(view.position[0][1]) < 1e-6f &&
                 fabsf(view.position[0][2] - 0.9f) < 1e-6f);
@@ -72,6 +75,7 @@ TEST(refused_objects_are_named) {
     SceneMessages messages = {0};
     SingeSim *sim;
     SingeSimDef hooks = singe_default_sim();
+
     assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
     assert_int_not_equal(scene_build(scene, &assets, &hooks, &sim, &messages), SINGE_OK);
     assert_null(sim);
@@ -128,6 +132,7 @@ static SceneMessages refused(const char *text, const char *folder) {
     SceneMessages messages = {0};
     SingeSim *sim = NULL;
     SingeSimDef hooks = singe_default_sim();
+
     assert_int_equal(scene_parse("t.yaml", text, strlen(text), folder, NULL, 0, &scene, &messages), SINGE_OK);
     SingeResult result = scene_load(scene, &assets, &messages);
     if (!result) {
@@ -170,9 +175,11 @@ TEST(bad_meshes_are_reported) {
             assert_string_equal(messages.items[i].origin, meshes[i].origin);
             assert_non_null(strstr(messages.items[i].text, meshes[i].fault));
         }
+
         if (reader) assert_string_equal(messages.items[3].origin, "t.yaml:6:11");
         scene_messages_free(&messages);
     }
+
     SceneMessages messages =
         refused("sheets:\n  - grid: {size: [1e-6, 1e4], cells: [2, 2]}\n  - mesh: line.obj\n", folder);
     assert_int_equal(messages.count, 2);
@@ -189,6 +196,7 @@ TEST(bad_meshes_are_reported) {
         snprintf(path, sizeof path, "%s/%s", folder, names[i]);
         unlink(path);
     }
+
     rmdir(folder);
 }
 
@@ -260,6 +268,7 @@ TEST(solids_become_colliders_and_shapes) {
     snprintf(text, sizeof text, cube, "");
     write_text(folder, names[1], text);
     snprintf(path, sizeof path, "%s/heights.png", folder);
+
     // three columns and two rows: above, black, white, black; below, white, black, black
     const uint8_t pixels[18] = {0, 0, 0, 255, 255, 255, 0, 0, 0, 255, 255, 255};
     assert_int_equal(png_write(path, 3, 2, pixels, &error), SINGE_OK);
@@ -304,6 +313,7 @@ TEST(solids_become_colliders_and_shapes) {
         snprintf(path, sizeof path, "%s/%s", folder, names[i]);
         unlink(path);
     }
+
     rmdir(folder);
 }
 
@@ -319,6 +329,7 @@ TEST(the_preview_has_what_the_scene_says) {
         NULL, 0);
     SceneAssets assets;
     SceneMessages messages = {0};
+
     assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
     PreviewDef def;
     scene_preview(scene, &assets, &def);
@@ -419,6 +430,7 @@ TEST(mesh_files_are_scaled_and_welded) {
         assert_int_equal((view.particle_flags[v] & SINGE_PINNED) != 0, corner);
         held += corner;
     }
+
     assert_int_equal(held, 2);
     singe_sim_destroy(sim);
     scene_assets_free(&assets);
@@ -457,6 +469,7 @@ TEST(the_camera_finds_the_sheets) {
         scene_assets_free(&assets);
         scene_free(scene);
     }
+
     // too far for a camera: the default one stays
     Scene *scene = good_scene("sheets: [{grid: {size: [9000, 9000], cells: [2, 2]}}]", NULL, 0);
     SceneAssets assets;
@@ -467,6 +480,7 @@ TEST(the_camera_finds_the_sheets) {
     assert_memory_equal(&scene->preview.camera, &before, sizeof before);
     scene_assets_free(&assets);
     scene_free(scene);
+
     // an up along the default line of sight is good where that is not used
     scene_free(good_scene(SHEET "preview: {camera: {up: [0, 0.5, -0.4]}}\n", NULL, 0));
 }

@@ -70,6 +70,7 @@ static SingeResult attempt(const char *scene_text, long at, bool once, uint32_t 
         assert_string_equal(dump, undisturbed);
         if (dump != undisturbed) free(dump);
     }
+
     scene_free(scene);
     scene_messages_free(&messages);
     return result;
@@ -87,6 +88,7 @@ static void sweep(const char *scene_text, bool once, SingeResult expected) {
         assert_int_equal(reported == 0, result == SINGE_OK);
         good_in_a_row = result == expected ? good_in_a_row + 1 : 0;
     }
+
     assert_true(n > 180);
 }
 

@@ -40,6 +40,7 @@ static void parse(Sweep *sweep, const char *bytes, size_t size) {
     Scene *scene = NULL;
     SceneMessages messages = {0};
     char *text = malloc(size + 1); // its end is the end of a block, for the sanitizer
+
     memcpy(text, bytes, size);
     text[size] = 0;
     sweep->lines = count_lines(text, size);
@@ -116,8 +117,10 @@ TEST(every_prefix_of_the_examples_has_its_line) {
             if (words++ < 1 || all) sweep_words(&sweep, (char *)bytes.data);
             assert_true(sweep.refused > sweep.parsed / 4);
         }
+
         bytes_free(&bytes);
     }
+
     assert_true(words >= 10);
     globfree(&files);
 }
@@ -134,6 +137,7 @@ TEST(odd_texts_have_their_line) {
         "sheets:\n  - ", "sheets: [{}, {}]\n", "sheets: [[]]", "sheets: [~]", "sheets:\n  -\n  -\n", "~", "null", "{}",
         "[]",    "a: 'b\n\nc", "k: \"\\q\"", "k: \"\\u12\"", "- - - -", "{? a: b}", "[a: b, c: d]", "{a: b, a: c}",
     };
+
     // clang-format on
     Sweep sweep = {.name = "odd.yaml", .folder = "."};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) parse(&sweep, texts[i], strlen(texts[i]));

@@ -59,6 +59,7 @@ static void expect_same_def(const SingeMaterialDef *a, const SingeMaterialDef *b
         if (p->value != q->value || p->to != q->to || !same_field)
             fail_msg("%s: %g and %g", param.key, (double)p->value, (double)q->value);
     }
+
     assert_true(one.heat_operator == two.heat_operator && one.thickening == two.thickening &&
                 one.reference_grammage == two.reference_grammage && one.ablate == two.ablate);
 }
@@ -82,6 +83,7 @@ TEST(built_in_materials_are_good) {
         if (i == 2) expect_same_def(&material->def, &standard);
         scene_free(scene);
     }
+
     assert_null(scene_material_name(5));
     assert_null(scene_material_name(400));
 }
@@ -115,6 +117,7 @@ TEST(set_changes_materials) {
         assert_true(material_of(scene)->def.thickness.value == 0.003f);
         scene_free(scene);
     }
+
     // what the scene itself says of its material stays
     const char *sets[] = {"sheets.0.material.base=tissue"}, *word[] = {"sheets.0.material=cotton"};
     Scene *scene = good_scene(SHEET "    material: {grammage: 60 g/m2}\n", sets, 1);
@@ -162,6 +165,7 @@ TEST(material_files_are_found) {
         free(text);
         scene_free(again);
     }
+
     free(yaml), free(json);
     scene_free(scene);
 }
@@ -212,8 +216,10 @@ TEST(messages_repeat_nothing_of_other_files) {
                 fail_msg("%s: %s: %s\n", secrets[i], message->origin, message->text);
             assert_non_null(strstr(message->origin, "other.yaml:"));
         }
+
         scene_messages_free(&messages);
     }
+
     folder_remove(&folder);
 }
 
@@ -222,6 +228,7 @@ static void expect_mistake(const Folder *folder, const char *line, const char *o
     char text[400];
     Scene *scene = NULL;
     SceneMessages messages = {0};
+
     snprintf(text, sizeof text, SHEET "%s", line);
     SingeResult result = folder_parse(folder, text, NULL, 0, &scene, &messages);
     if (result != SINGE_ERROR_FORMAT || (int)messages.count != count)
@@ -239,6 +246,7 @@ TEST(wrong_materials_are_reported) {
     Folder folder = folder_make();
     const Folder *in = &folder;
     char long_file[100];
+
     folder_file(in, "key.yaml", "grammage: 70 g/m2\nthikness: 1 mm\n");
     folder_file(in, "value.yaml", "grammage: 70 mm\n");
     folder_file(in, "list.yaml", "- grammage\n");
@@ -256,6 +264,7 @@ TEST(wrong_materials_are_reported) {
         snprintf(name, sizeof name, "deep%d.yaml", i), snprintf(text, sizeof text, "base: deep%d.yaml\n", i + 1);
         folder_file(in, name, i < 19 ? text : "drag: 1\n");
     }
+
     snprintf(long_file, sizeof long_file, "%s/long.yaml", folder.path);
     FILE *file = fopen(long_file, "w");
     assert_non_null(file);
@@ -286,6 +295,7 @@ TEST(wrong_materials_are_reported) {
     expect_mistake(in, "    material: range.yaml\n", "range.yaml:1:19", "must be a range from low to high", 1);
     expect_mistake(in, "    material: deep0.yaml\n", "deep15.yaml:1:7", "more than 16 deep", 1);
     expect_mistake(in, "    material: long.yaml\n", "scene.yaml:3:15", "larger than 1 MiB", 1);
+
     // reported once however many sheets are made of it, and behind those of the scene
     expect_mistake(in,
                    "    material: key.yaml\n  - {grid: {size: [1, 1], cells: [1, 1]}, material: key.yaml}\npac: 2\n",
@@ -296,6 +306,7 @@ TEST(wrong_materials_are_reported) {
     expect_mistake(in, "    material: fifo.yaml\n", "scene.yaml:3:15", "not a regular file", 1);
     expect_mistake(in, "    material: /dev/zero\n", "scene.yaml:3:15", "not a regular file", 1);
     folder_remove(in);
+
     // without a folder files are not looked for, but what is built in is there
     Scene *scene = folder_scene(NULL, SHEET "    material: gone.yaml\n", NULL, 0);
     scene_free(scene);

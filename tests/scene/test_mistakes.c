@@ -112,6 +112,7 @@ TEST(all_ranges_are_reported_at_once) {
     static const char text[] = SHEET "pace: 1e9\ngravity: [0, 0, -1e5]\nambient_temperature: 1e9\nair_density: 1e9\n"
                                      "heat_tolerance: 1e-30\nsolver: {substeps: 10001, regularisation: {red: 1e9}}\n"
                                      "wind: {velocity: [1e5, 0, 0]}\nfps: 0.001\n";
+
     static const char *const origins[] = {"bad.yaml:3:7",  "bad.yaml:4:17", "bad.yaml:5:22",
                                           "bad.yaml:6:14", "bad.yaml:7:17", "bad.yaml:8:20",
                                           "bad.yaml:8:49", "bad.yaml:9:19", "bad.yaml:10:6"};
@@ -228,6 +229,7 @@ TEST(wrong_syntax_is_reported) {
     whole("a: 1\n---\nb: 2\n", "bad.yaml:2:1", "second document");
     whole("a: \"\\0\"\n", "bad.yaml:1:4", "zero character");
     whole("%YAML 1.2\n---\nframes: 3\n", "bad.yaml:1:1", "directives");
+
     // libfyaml 0.7 does not return from these two
     whole("\r%\xe0\x99\x8e", "bad.yaml:1:2", "directives");
     whole("\xef\xbb\xbf%\xe0\x99\x8e", "bad.yaml:1:2", "directives");
@@ -312,6 +314,7 @@ TEST(long_texts_are_cut) {
                 assert_null(strstr(messages.items[m].text, "\\x")); // no half characters
                 assert_true(!messages.items[m].source || !strstr(messages.items[m].source, "\\x"));
             }
+
             scene_messages_free(&messages);
             const char *set[] = {text + used};
             messages = failing(SHEET, strlen(SHEET), NULL, set, 1, SINGE_ERROR_FORMAT);
@@ -376,6 +379,7 @@ TEST(all_mistakes_are_reported_at_once) {
                                "    material: {gramage: 3, thickness: 3 K}\n"
                                "sources: [{kind: ball}]\n"
                                "steps: 0\n";
+
     static const char *const sets[] = {"fps=-1", "nme=x", "sources.3.kind=ball", "steps.x=1", "novalue", "=3",
                                        "pace=[", "a..b=1"};
     SceneMessages messages = failing(text, strlen(text), NULL, sets, 8, SINGE_ERROR_FORMAT);
@@ -404,6 +408,7 @@ TEST(messages_print_with_their_line) {
     Scene *scene;
     SceneMessages messages = {0};
     static const char text[] = SHEET "name: x\nfps: {\u00e9: 9, \u00e9b: 3}\n";
+
     assert_int_equal(scene_parse("t.yaml", text, strlen(text), NULL, NULL, 0, &scene, &messages), SINGE_ERROR_FORMAT);
     char *printed = NULL;
     size_t size = 0;
@@ -442,6 +447,7 @@ TEST(truncated_flow_scenes_are_refused) {
         "[32, 32]}}";
     size_t size = strlen(text);
     Scene *scene = good_scene(text, NULL, 0);
+
     scene_free(scene);
     for (size_t length = 0; length < size; length++) {
         char *prefix = malloc(length + 1); // its end is the end of a block, for the sanitizer
@@ -461,6 +467,7 @@ TEST(truncated_block_scenes_read_back) {
         SHEET "    material:\n      grammage: 80 g/m2\n      mass_rate:\n        from: 1\n        to: 2\n"
               "        attribute: x\nsources:\n  - kind: ball\n    position: [1, 2, 3]\nframes: 1234\n";
     int good = 0;
+
     for (size_t length = 0; length <= strlen(text); length++) {
         Scene *scene;
         SceneMessages messages = {0};
@@ -476,10 +483,12 @@ TEST(truncated_block_scenes_read_back) {
             scene_free(again);
             free(dump);
         }
+
         scene_free(scene);
         scene_messages_free(&messages);
         free(prefix);
     }
+
     // Whole at: the grid's line and blanks behind it (6), grammage 8, 80, "80 ", 80 g/m2 and blanks (11), the
     // attribute's line (2), the position's (2), frames 1 to 1234 (5).
     assert_int_equal(good, 26);

@@ -175,6 +175,7 @@ static void round_trip(SceneSyntax syntax) {
     Scene *scene = good_scene(full, NULL, 0);
     char *dump = dump_text(scene, syntax);
     Scene *again = good_scene(dump, NULL, 0);
+
     check_full(again);
     check_objects(again);
     char *second = dump_text(again, syntax);
@@ -237,6 +238,7 @@ TEST(quoted_texts_are_read) {
         scene_free(again);
         scene_free(scene);
     }
+
     const char *set = "name='x''''y'";
     Scene *scene = good_scene(SHEET, &set, 1);
     assert_string_equal(scene->name, "x''y");
@@ -295,6 +297,7 @@ TEST(gas_is_there_unless_switched_off) {
         assert_true(scene->sim.gas.height == cases[i].height);
         scene_free(scene);
     }
+
     assert_false(singe_default_sim().gas.enabled);
 }
 

@@ -16,6 +16,7 @@ void mesh_add_vertex(QuadMesh *mesh, float x, float y, float z) {
         mesh->position = realloc(mesh->position, mesh->vertex_capacity * sizeof *mesh->position);
         assert_non_null(mesh->position);
     }
+
     float *p = mesh->position[mesh->vertex_count++];
     p[0] = x, p[1] = y, p[2] = z;
 }
@@ -26,6 +27,7 @@ void mesh_add_cell(QuadMesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t 
         mesh->cells = realloc(mesh->cells, mesh->cell_capacity * sizeof *mesh->cells);
         assert_non_null(mesh->cells);
     }
+
     uint32_t *cell = mesh->cells[mesh->cell_count++];
     cell[0] = a, cell[1] = b, cell[2] = c, cell[3] = d;
 }
@@ -58,6 +60,7 @@ static void add_patch(QuadMesh *mesh, const double corner[4][3], uint32_t n) {
                            v * ((1 - u) * corner[3][a] + u * corner[2][a]);
                 cell[k] = vertex_at(mesh, p[0], p[1], p[2]);
             }
+
             mesh_add_cell(mesh, cell[0], cell[1], cell[2], cell[3]);
         }
     }
@@ -93,12 +96,14 @@ QuadMesh mesh_torus(uint32_t n, uint32_t m) {
             mesh_add_vertex(&mesh, (float)(r * cos(a)), (float)(r * sin(a)), (float)(0.4 * sin(b)));
         }
     }
+
     for (uint32_t j = 0; j < m; j++) {
         for (uint32_t i = 0; i < n; i++) {
             uint32_t e = (i + 1) % n, f = (j + 1) % m;
             mesh_add_cell(&mesh, j * n + i, j * n + e, f * n + e, f * n + i);
         }
     }
+
     return mesh;
 }
 
@@ -110,6 +115,7 @@ QuadMesh mesh_cylinder(uint32_t n, uint32_t m, float radius, float height) {
             mesh_add_vertex(&mesh, radius * (float)cos(a), radius * (float)sin(a), height * (float)j / (float)m);
         }
     }
+
     for (uint32_t j = 0; j < m; j++)
         for (uint32_t i = 0; i < n; i++)
             mesh_add_cell(&mesh, j * n + i, j * n + (i + 1) % n, (j + 1) * n + (i + 1) % n, (j + 1) * n + i);
@@ -124,6 +130,7 @@ QuadMesh mesh_moebius(uint32_t n) {
             mesh_add_vertex(&mesh, (float)(r * cos(a)), (float)(r * sin(a)), (float)(side * 0.2 * sin(a / 2)));
         }
     }
+
     for (uint32_t i = 0; i + 1 < n; i++) mesh_add_cell(&mesh, 2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1);
     mesh_add_cell(&mesh, 2 * n - 2, 1, 0, 2 * n - 1);
     return mesh;
@@ -138,6 +145,7 @@ QuadMesh mesh_polygon(uint32_t sides, uint32_t n) {
         corner[3][0] = r * cos(a * (s + 0.5)), corner[3][1] = r * sin(a * (s + 0.5));
         add_patch(&mesh, corner, n);
     }
+
     return mesh;
 }
 
@@ -149,6 +157,7 @@ QuadMesh mesh_ell(uint32_t n) {
         const double corner[4][3] = {{x, y, 0}, {x + 1, y, 0}, {x + 1, y + 1, 0}, {x, y + 1, 0}};
         add_patch(&mesh, corner, n);
     }
+
     return mesh;
 }
 
@@ -163,9 +172,11 @@ QuadMesh mesh_sphere(uint32_t n) {
                 corner[k][(axis + 1) % 3] = u * side; // turned outwards on both sides
                 corner[k][(axis + 2) % 3] = v;
             }
+
             add_patch(&mesh, corner, n);
         }
     }
+
     for (uint32_t v = 0; v < mesh.vertex_count; v++) {
         float *p = mesh.position[v], r = sqrtf(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
         for (int k = 0; k < 3; k++) p[k] /= r;
@@ -198,6 +209,7 @@ QuadMesh mesh_random(uint32_t n, uint32_t seed) {
             }
         }
     }
+
     return mesh;
 }
 
@@ -217,6 +229,7 @@ void mesh_shuffle(QuadMesh *mesh, uint32_t seed) {
         memcpy(mesh->cells[c], mesh->cells[k], sizeof turned);
         memcpy(mesh->cells[k], turned, sizeof turned);
     }
+
     free(to);
     free(moved);
 }
@@ -252,6 +265,7 @@ static void check_strands(const SpringSet *set, uint32_t particle_count) {
     uint32_t *strand_at = calloc(particle_count, sizeof *strand_at);
     uint32_t *family_at = calloc(particle_count, sizeof *family_at);
     uint32_t longest = 0;
+
     assert_true(strand_at && family_at);
     assert_int_equal(set->strand_first[0], 0);
     assert_int_equal(set->strand_first[set->strand_count], set->count);
@@ -275,11 +289,13 @@ static void check_strands(const SpringSet *set, uint32_t particle_count) {
                     strand_at[p] = s + 1;
                 }
             }
+
             for (uint32_t k = begin; k < end; k++) family_at[set->ends[k][0]] = family_at[set->ends[k][1]] = f + 1;
             assert_int_equal(set->strand_ring[s], set->ends[end - 1][1] == set->ends[begin][0]);
             if (set->strand_ring[s]) assert_true(end - begin >= 3);
         }
     }
+
     assert_int_equal(set->longest, longest);
     free(strand_at);
     free(family_at);
@@ -318,9 +334,11 @@ static void check_cells(const Shell *shell) {
                 assert_int_equal(shell_neighbour(shell, other, j), c);
                 assert_int_equal(shell->cell_springs[other].blue[j], springs->blue[i]);
             }
+
             assert_int_equal(back, 1);
         }
     }
+
     static const int low[] = {[SINGE_RED] = 1, [SINGE_GREEN] = 2, [SINGE_BLUE] = 1, [SINGE_YELLOW] = 1};
     static const int high[] = {[SINGE_RED] = 1, [SINGE_GREEN] = 2, [SINGE_BLUE] = 2, [SINGE_YELLOW] = 1};
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
@@ -347,6 +365,7 @@ static void check_cell_families(const Shell *shell) {
             }
         }
     }
+
     free(family_at);
     free(seen);
 }

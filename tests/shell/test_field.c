@@ -38,6 +38,7 @@ TEST(pictures_are_sampled_by_uv) {
     Square square = square_make(8);
     static const float values[] = {0, 1};
     SingeField field = {.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, values}};
+
     square.def.material.thickness = singe_param_field(0.001f, 0.003f, &field);
     SheetSource source = evaluate(&memory, &square.def);
     for (uint32_t i = 0; i < 81 + 64; i++) {
@@ -45,6 +46,7 @@ TEST(pictures_are_sampled_by_uv) {
         float f = fminf(fmaxf(2 * u - 0.5f, 0), 1);
         assert_float_equal(sheet_param(&source, PARAM_THICKNESS, i), 0.001f + 0.002f * f, 1e-8f);
     }
+
     sheet_source_free(&memory, &source);
 
     square.def.uv = NULL;
@@ -63,6 +65,7 @@ TEST(attributes_are_taken_as_they_are) {
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(3);
     float values[16];
+
     for (int v = 0; v < 16; v++) values[v] = 0.25f * (float)v;
     SingeAttribute attributes[2] = {{"other", values + 1}, {"burn", values}};
     attributes[0].values = values;
@@ -77,6 +80,7 @@ TEST(attributes_are_taken_as_they_are) {
         for (int i = 0; i < 4; i++) mean += 25 * (float)square.mesh.cells[c][i] / 4;
         assert_float_equal(sheet_param(&source, PARAM_MASS_RATE, 16 + c), 100 + mean, 1e-3f);
     }
+
     sheet_source_free(&memory, &source);
 
     values[6] = -5; // -400
@@ -108,6 +112,7 @@ TEST(noise_depends_on_seed_and_position) {
         different += x != sheet_param(&c, PARAM_WEIGHT + SINGE_BLUE, i);
         low = fminf(low, x), high = fmaxf(high, x);
     }
+
     assert_true(high - low > 0.4f);
     assert_true(different > total / 2);
     sheet_source_free(&memory, &a);

@@ -34,6 +34,7 @@ TEST(every_number_goes_to_its_slot) {
     SingeParam *params[] = {&m->thickness,          &m->diffusivity, &m->temperature, &m->ignition_temperature,
                             &m->heat_of_combustion, &m->heat_share,  &m->mass_rate,   &m->ash_exponent,
                             &m->mass_min,           &m->mass_loss,   &m->ash_density};
+
     enum { FIRST = sizeof params / sizeof *params };
     m->reference_grammage = 0;
     for (int k = 0; k < FIRST; k++) *params[k] = singe_param(0.01f * (float)(k + 1));
@@ -85,6 +86,7 @@ TEST(every_number_goes_to_its_slot) {
         for (int k = 0; k < MORE; k++) assert_true(field_at(others[k], p) == 0.2f + 0.01f * (float)k);
         for (int k = 0; k < 4; k++) assert_true(field_at(matter->compliance[k], p) == 0.3f + 0.1f * (float)k);
     }
+
     for (int k = 0; k < FIRST; k++) assert_true(sheet_param(&source, k, 3) == 0.01f * (float)(k + 1));
     shell_free(&memory, &shell);
     sheet_source_free(&memory, &source);
@@ -98,6 +100,7 @@ TEST(every_parameter_can_vary) {
     Square square = square_make(6);
     static const float pixels[] = {0.25f, 1, 0, 0.5f};
     float values[49];
+
     for (int v = 0; v < 49; v++) values[v] = (float)((v * 5) % 49) / 48;
     SingeAttribute attribute = {"field", values};
     square.def.attribute_count = 1, square.def.attributes = &attribute;
@@ -122,10 +125,12 @@ TEST(every_parameter_can_vary) {
                                                                    : sheet_param(&plain, p, i);
                     assert_true(sheet_param(&source, p, i) == expected);
                 }
+
                 if (!here) continue;
                 low = fminf(low, sheet_param(&source, varying[k].param, i));
                 high = fmaxf(high, sheet_param(&source, varying[k].param, i));
             }
+
             assert_true(low >= 0.5f && high <= 0.9f && high - low > 0.1f);
             sheet_source_free(&memory, &source);
 
@@ -134,8 +139,10 @@ TEST(every_parameter_can_vary) {
             refuse(&def, -1, "not both finite");
             param.to = 0.9f;
         }
+
         sheet_source_free(&memory, &known);
     }
+
     sheet_source_free(&memory, &plain);
     square_free(&square);
 }
@@ -162,6 +169,7 @@ TEST(mass_and_capacity_vary) {
         assert_float_equal(per_area / (double)(shell.matter.capacity[0] / shell.matter.area[0]),
                            field_at(shell.matter.capacity_ratio, p) / field_at(shell.matter.capacity_ratio, 0), 1e-5);
     }
+
     assert_float_equal(ratio, 1, 1e-6);
     assert_true(shell.matter.mass[4] > 3.9f * shell.matter.mass[0]);
     shell_free(&memory, &shell);
@@ -208,11 +216,13 @@ TEST(rates_are_stated_for_a_grammage) {
                                1e-3f);
             assert_true(field_at(matter->gas_heat, p) == 12e6f);
         }
+
         assert_true(matter->mass_rate.mask == (scaled ? UINT32_MAX : 0)); // one value where it does not vary
         assert_true(matter->gas_heat.mask == 0 && matter->heating.mask == UINT32_MAX);
         shell_free(&memory, &shell);
         sheet_source_free(&memory, &source);
     }
+
     m->reference_grammage = 1e30f, m->mass_rate = singe_param(1e30f);
     refuse(&square.def, -1, "mass_rate is too large for its grammage");
     m->reference_grammage = 0, m->heat_of_combustion = singe_param(1e38f), m->specific_heat = singe_param(0.01f);
@@ -257,18 +267,21 @@ TEST(ranges_end_where_stated) {
             }
         }
     }
+
     static const float thickening[] = {0.5f, -1, NAN, INFINITY};
     for (int k = 0; k < 4; k++) {
         SingeSheetDef def = square.def;
         def.material.thickening = thickening[k];
         refuse(&def, -1, "thickening");
     }
+
     static const float reference[] = {-0.01f, NAN, INFINITY};
     for (int k = 0; k < 3; k++) {
         SingeSheetDef def = square.def;
         def.material.reference_grammage = reference[k];
         refuse(&def, -1, "reference_grammage");
     }
+
     SingeSheetDef def = square.def;
     def.material.heat_operator = (SingeHeatOperator)2;
     refuse(&def, -1, "heat operator");
@@ -320,6 +333,7 @@ TEST(long_names_are_cut) {
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(1);
     char name[80];
+
     memset(name, 'a', sizeof name);
     memcpy(name + 62, "\xC3\xA9\xC3\xA9", 5);
     square.def.name = name;

@@ -14,6 +14,7 @@ static void refuse_def(const SingeSheetDef *def, SingeResult code, int64_t eleme
     Shell shell;
     SingeError error = {0};
     SingeResult result = sheet_source_create(&memory, def, &source, &error);
+
     if (result == SINGE_OK) {
         result = shell_create(&memory, &source, 1, &shell, &error);
         sheet_source_free(&memory, &source);
@@ -77,6 +78,7 @@ TEST(touching_spheres_are_refused) {
         for (int i = 0; i < 4; i++) k[i] = other.cells[c][i] == touch ? touch : first + other.cells[c][i];
         mesh_add_cell(&mesh, k[0], k[1], k[2], k[3]);
     }
+
     mesh_release(&other);
     refuse(&mesh, SINGE_ERROR_MESH, 3, "not in one fan");
 }
@@ -109,6 +111,7 @@ TEST(bad_numbers_are_refused) {
         mesh.position[5][i % 3] = bad[i];
         refuse(&mesh, SINGE_ERROR_MESH, 5, "vertex 5");
     }
+
     QuadMesh mesh = mesh_grid(3, 2, 1, 1);
     float uv[12][2] = {{0}};
     SingeSheetDef def = mesh_sheet(&mesh);
@@ -235,6 +238,7 @@ static SingeResult build_all(Memory *memory, const SingeSheetDef *def, SingeErro
     Shell shell;
     State start;
     SingeResult result = sheet_source_create(memory, def, &source, error);
+
     if (result != SINGE_OK) return result;
     result = shell_create(memory, &source, 1, &shell, error);
     if (result == SINGE_OK) {
@@ -242,6 +246,7 @@ static SingeResult build_all(Memory *memory, const SingeSheetDef *def, SingeErro
         if (result == SINGE_OK) state_free(memory, &start);
         shell_free(memory, &shell);
     }
+
     sheet_source_free(memory, &source);
     return result;
 }
@@ -252,6 +257,7 @@ TEST(every_allocation_fails_once) {
     SingeSheetDef def = mesh_sheet(&mesh);
     SingeResult result = SINGE_ERROR_MEMORY;
     long n = 0;
+
     for (; result != SINGE_OK; n++) {
         Failing failing = {.memory = memory_make((SingeAllocator){0}), .fail = n};
         Memory memory = memory_make((SingeAllocator){fail_at, &failing});
@@ -262,6 +268,7 @@ TEST(every_allocation_fails_once) {
         assert_int_equal(memory.held, 0);
         assert_true(n < 1000);
     }
+
     print_message("%ld allocations\n", n - 1);
     assert_true(n > 100);
     mesh_release(&mesh);

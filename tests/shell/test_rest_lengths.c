@@ -47,6 +47,7 @@ TEST(rectangles_match_lengths_by_hand) {
         double share = (i == 0 || i == 4 ? 0.5 : 1) * (j == 0 || j == 3 ? 0.5 : 1);
         assert_near((double)shell.matter.area[v], cell * share, 1e-6);
     }
+
     for (uint32_t c = 0; c < shell.cell_count; c++) {
         const float *p = shell.rest_position[shell_centre(&shell, c)];
         assert_near((double)p[0], 0.02 * (c % 4 + 0.5), 1e-6);
@@ -54,6 +55,7 @@ TEST(rectangles_match_lengths_by_hand) {
         assert_near((double)p[2], (double)t, 1e-6); // the front of a counter-clockwise cell
         assert_near((double)shell.matter.area[shell_centre(&shell, c)], cell, 1e-6);
     }
+
     for (uint32_t s = 0; s < shell.springs[SINGE_RED].count; s++)
         assert_near((double)shell.springs[SINGE_RED].rest[s], sqrt(1e-4 + 0.25e-4 + 9e-6), 1e-6);
     for (uint32_t s = 0; s < shell.springs[SINGE_YELLOW].count; s++)
@@ -63,6 +65,7 @@ TEST(rectangles_match_lengths_by_hand) {
     for (uint32_t s = 0; s < shell.springs[SINGE_BLUE].count; s++) blue += (double)shell.springs[SINGE_BLUE].rest[s];
     assert_near(green, 9 * 0.02 + 8 * 0.01, 1e-6);
     assert_near(blue, 16 * 0.02 + 15 * 0.01, 1e-6);
+
     // 16 edges of 2 cm and 15 of 1 cm: the middle one of 31 is long
     assert_near((double)shell.sheets[0].cell_size, 0.02, 1e-6);
     shell_free(&memory, &shell);
@@ -99,6 +102,7 @@ TEST(parts_of_a_planar_mesh_sum_to_the_whole) {
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh mesh = mesh_random(7, 3);
     Shell shell = mesh_shell(&memory, &mesh);
+
     check_layers(&shell, 49, 1e-5);
     for (uint32_t p = 0; p < shell.particle_count; p++) assert_true(shell.matter.mass[p] > 0);
     shell_free(&memory, &shell);
@@ -115,6 +119,7 @@ TEST(a_concave_cell_has_equal_corners) {
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh mesh = {0};
     static const float position[4][2] = {{0, 0}, {1, 1}, {2, 0}, {1, 2}};
+
     for (int v = 0; v < 4; v++) mesh_add_vertex(&mesh, position[v][0], position[v][1], 0);
     mesh_add_cell(&mesh, 0, 1, 2, 3);
     Shell shell = mesh_shell(&memory, &mesh);
@@ -145,6 +150,7 @@ TEST(the_centre_layer_of_a_cylinder_is_longer_outside) {
         for (uint32_t k = green->strand_first[s]; k < green->strand_first[s + 1]; k++)
             assert_near((double)green->rest[k], green->strand_ring[s] ? around : h / 6, 1e-5);
     }
+
     assert_int_equal(rings, 6);
     shell_free(&memory, &shell);
     sheet_source_free(&memory, &source);

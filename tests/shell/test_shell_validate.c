@@ -7,6 +7,7 @@ TEST(good_ones_pass) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(5, 4, 0.01f, &material);
     AblatePlan *plan;
+
     assert_int_equal(ablate_plan_create(&b->memory, &b->shell, &plan), SINGE_OK);
     sheet_ablate(b, plan);
     ShellFault fault;
@@ -31,6 +32,7 @@ TEST(faults_are_named) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(5, 4, 0.01f, &material);
     AblatePlan *plan;
+
     assert_int_equal(ablate_plan_create(&b->memory, &b->shell, &plan), SINGE_OK);
     sheet_ablate(b, plan);
     ShellFault fault;

@@ -31,6 +31,7 @@ TEST(a_state_starts_at_rest) {
     Memory memory = memory_make((SingeAllocator){0});
     Shell shell = start_shell(&memory);
     State state;
+
     assert_int_equal(state_create(&memory, &shell, &state), SINGE_OK);
     assert_int_equal(shell.particle_count, 13 + 6);
     for (uint32_t p = 0; p < shell.particle_count; p++) {
@@ -44,12 +45,15 @@ TEST(a_state_starts_at_rest) {
             assert_true(state.dynamics.position[p][k] == (k < 3 ? shell.rest_position[p][k] : 0));
             assert_true(state.dynamics.velocity[p][k] == (alive ? velocity[k] : 0));
         }
+
         assert_int_equal(state.dynamics.pinned[p], 0);
+
         // the four cells around vertex 5 are 1, 2, 4, 5; vertex 4 touches cells 0 and 3
         bool touches = p == 13 || p == 16;
         float expected = p == 4 ? 340 : touches ? 310 : 300;
         assert_true(state.heat.temperature[p] == expected && state.heat.temperature_peak[p] == expected);
     }
+
     assert_true(shell.matter.area[12] == 0 && shell.matter.mass[12] == 0);
     assert_int_equal(state.ablate.degree[0], 2 + 1 + 1);
     assert_int_equal(state.ablate.degree[5], 4 + 4 + 4);
@@ -61,6 +65,7 @@ TEST(a_state_starts_at_rest) {
             assert_true(state.burn.spring_length[colour][s] == shell.springs[colour].rest[s]);
         }
     }
+
     for (uint32_t c = 0; c < shell.cell_count; c++) assert_int_equal(state.ablate.cell_flags[c], SINGE_ALIVE);
     state_free(&memory, &state);
     shell_free(&memory, &shell);
@@ -77,6 +82,7 @@ TEST(the_arena_holds_the_whole_state) {
     Memory memory = memory_make((SingeAllocator){0});
     Shell shell = start_shell(&memory);
     State a, b;
+
     assert_int_equal(state_create(&memory, &shell, &a), SINGE_OK);
     assert_int_equal(state_create(&memory, &shell, &b), SINGE_OK);
     size_t particles = shell.particle_count;
@@ -117,6 +123,7 @@ TEST(arrays_do_not_overlap) {
     Memory memory = memory_make((SingeAllocator){0});
     Shell shell = start_shell(&memory);
     State s;
+
     assert_int_equal(state_create(&memory, &shell, &s), SINGE_OK);
     size_t n = shell.particle_count;
     struct {
@@ -143,11 +150,13 @@ TEST(arrays_do_not_overlap) {
         slices[15 + c].at = s.burn.spring_length[c], slices[15 + c].size = 4 * (size_t)shell.springs[c].count;
         slices[19 + c].at = s.ablate.spring_flags[c], slices[19 + c].size = shell.springs[c].count;
     }
+
     for (size_t i = 0; i < sizeof slices / sizeof slices[0]; i++) memset(slices[i].at, (int)i + 1, slices[i].size);
     for (size_t i = 0; i < sizeof slices / sizeof slices[0]; i++) {
         const unsigned char *bytes = slices[i].at;
         for (size_t k = 0; k < slices[i].size; k++) assert_int_equal(bytes[k], i + 1);
     }
+
     state_free(&memory, &s);
     shell_free(&memory, &shell);
 }

@@ -23,6 +23,7 @@ static void expect(QuadMesh *mesh, const char *name, Expected expected) {
         assert_int_equal(count_rings(set), expected.rings[colour]);
         if (expected.families[colour]) assert_int_equal(set->family_count, expected.families[colour]);
     }
+
     print_message("%-16s %u families of cells\n", name, shell.cell_family_count);
     if (expected.cell_families) assert_int_equal(shell.cell_family_count, expected.cell_families);
     shell_free(&memory, &shell);
@@ -82,6 +83,7 @@ TEST(rings_of_two_springs_are_cut) {
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh mesh = {0};
     static const float square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+
     for (int i = 0; i < 4; i++) mesh_add_vertex(&mesh, square[i][0], square[i][1], 0);
     mesh_add_cell(&mesh, 0, 1, 2, 3);
     mesh_add_cell(&mesh, 0, 3, 2, 1);
@@ -99,6 +101,7 @@ TEST(rings_of_two_springs_are_cut) {
 
 TEST(strands_go_around_a_cylinder) {
     QuadMesh mesh = mesh_cylinder(12, 5, 0.1f, 0.2f);
+
     // a diagonal climbs one row a cell, so each starts at one of 12 places and goes once up
     expect(&mesh, "cylinder",
            (Expected){.springs = {240, 12 * 4 + 12 * 5, 12 * 6 + 12 * 5, 120},
@@ -145,6 +148,7 @@ TEST(strands_end_at_vertices_of_odd_valence) {
     QuadMesh mesh = mesh_polygon(5, n);
     Memory memory = memory_make((SingeAllocator){0});
     Shell shell = mesh_shell(&memory, &mesh);
+
     check_shell(&shell);
     const SpringSet *blue = &shell.springs[SINGE_BLUE], *green = &shell.springs[SINGE_GREEN];
     assert_int_equal(blue->strand_count, 5 + 5 * (n - 1) + 5); // spokes, lines across, sides
@@ -171,6 +175,7 @@ TEST(strands_run_on_from_an_inner_corner) {
     uint32_t cells = 3 * n * n;
     Memory memory = memory_make((SingeAllocator){0});
     Shell shell = mesh_shell(&memory, &mesh);
+
     check_shell(&shell);
     assert_int_equal(shell.springs[SINGE_RED].count, 4 * cells);
     assert_int_equal(shell.springs[SINGE_BLUE].strand_count, 2 * (2 * n + 1));
@@ -251,6 +256,7 @@ TEST(a_hub_has_many_families) {
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh mesh = mesh_polygon(201, 1);
     Shell shell = mesh_shell(&memory, &mesh);
+
     check_shell(&shell);
     assert_int_equal(shell.springs[SINGE_BLUE].family_count, 201);
     assert_int_equal(shell.springs[SINGE_YELLOW].family_count, 201);

@@ -10,6 +10,7 @@ SingeMaterialDef scene_quick_material(void) {
     material.heat_of_combustion = singe_param(1500 * 1400), material.heat_share = singe_param(1);
     material.mass_rate = singe_param(0.08f);
     material.shrink_back = singe_param(0.9f);
+
     // one reaction, and no leaf that stays: holes open wherever it burns
     material.char_yield = singe_param(0), material.mass_loss = singe_param(0.25f);
     material.ash_density = singe_param(0.3f);
@@ -41,6 +42,7 @@ static SingeResult scene_sheets(Scene *scene, uint32_t cells) {
     const float side = 0.2f;
     TestMesh grid = test_grid(cells, cells, side / (float)cells, side / (float)cells),
              tube = test_cylinder(8, 5, 0.03f, 0.1f);
+
     test_mesh_add_vertex(&grid, 1, 1, 1); // belongs to no cell
     test_mesh_move(&tube, 0.1f, 0.1f, 0.06f);
     SingeSheetDef sheet = test_sheet(&grid);

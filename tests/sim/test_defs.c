@@ -101,6 +101,7 @@ TEST(bad_sources_are_refused) {
     SingePoseKey key = test_key(0, 0, 0, 0), keys[2] = {key, key};
     const float grey = 1, nan_grey = NAN;
     SingeValueKey strengths[2] = {{0, 1}, {0, 1}};
+
     SOURCE_BAD(SINGE_SOURCE_BALL, def.struct_size = 0);
     SOURCE_BAD(SINGE_SOURCE_BALL, def.temperature = 0);
     SOURCE_BAD(SINGE_SOURCE_BALL, def.temperature = INFINITY);
@@ -143,6 +144,7 @@ TEST(bad_pins_are_refused) {
     const float point[3] = {0, 0, 0}, bad_point[3] = {0, NAN, 0}, far_point[3] = {1e30f, 0, 0};
     const uint32_t vertices[2] = {0, 25};
     SingePoseKey key = test_key(NAN, 0, 0, 0);
+
     PIN_BAD(SINGE_ERROR_ARGUMENT, def.struct_size = 0);
     PIN_BAD(SINGE_ERROR_HANDLE, def.sheet.index = 1);
     PIN_BAD(SINGE_ERROR_HANDLE, def.sheet.generation = 0);
@@ -258,6 +260,7 @@ TEST(a_def_inside_may_be_older) {
         test_ok(both[i], singe_sim_commit(both[i]));
         test_steps(both[i], 5);
     }
+
     test_assert_same(old, new);
     singe_sim_destroy(old);
     singe_sim_destroy(new);
@@ -320,6 +323,7 @@ TEST(defs_are_copied) {
         memset(grey, 0xFF, sizeof grey);
         memset(&def, 0xFF, sizeof def);
     }
+
     test_steps(a, 10);
     test_steps(b, 10);
     test_assert_same(a, b);

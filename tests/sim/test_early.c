@@ -19,6 +19,7 @@ TEST(the_order_does_not_matter) {
         assert_memory_equal(a.data, b.data, a.size);
         free(a.data), free(b.data);
     }
+
     test_assert_same(late.sim, early.sim);
     assert_true(singe_sim_stats(early.sim).burnt_fraction > 0.02);
     singe_sim_destroy(late.sim);
@@ -105,12 +106,14 @@ TEST(without_a_path_it_stands_still) {
             memcpy(box.position, under.position, sizeof box.position);
             memcpy(box.rotation, under.rotation, sizeof box.rotation);
         }
+
         SingeSourceId source;
         SingeColliderId collider;
         test_ok(sims[k], singe_sim_add_source(sims[k], &spot, &source));
         test_ok(sims[k], singe_sim_add_collider(sims[k], &box, &collider));
         test_steps(sims[k], 60);
     }
+
     test_assert_same(sims[0], sims[1]);
     assert_true(singe_sim_stats(sims[1]).heat_in > 0.1);
     assert_true(singe_sim_timers(sims[1]).contacts > 0);
@@ -147,6 +150,7 @@ TEST(handles_may_be_left_out) {
         test_steps(sims[k], 10);
         test_mesh_free(&mesh);
     }
+
     test_assert_same(sims[0], sims[1]);
     assert_true(singe_sim_stats(sims[1]).heat_in > 0);
     singe_sim_destroy(sims[0]);
@@ -157,6 +161,7 @@ TEST(user_data_is_the_callers) {
     int ours[5];
     SingeSim *sim, *copy;
     SingeSimDef def = singe_default_sim();
+
     test_ok(NULL, singe_sim_create(&def, &sim, NULL));
     TestMesh mesh = test_grid(2, 2, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
@@ -182,6 +187,7 @@ TEST(user_data_is_the_callers) {
         assert_ptr_equal(singe_sim_collider_user_data(k ? copy : sim, collider_id), &ours[2]);
         assert_ptr_equal(singe_sim_pin_user_data(k ? copy : sim, pin_id), &ours[3]);
     }
+
     SingeSheetId sheets[2];
     assert_int_equal(singe_sim_sheets(copy, sheets, 2), 1);
     assert_memory_equal(&sheets[0], &pin.sheet, sizeof pin.sheet);
@@ -219,8 +225,10 @@ TEST(every_allocation_fails_once) {
             test_ok(scene.sim, singe_sim_commit(scene.sim));
             test_steps(scene.sim, 1);
         }
+
         singe_sim_destroy(scene.sim);
         test_allocator_check(&hook);
     }
+
     assert_true(repeated > 50);
 }

@@ -16,6 +16,7 @@ TEST(a_particle_ignites_once) {
     Scene scene = scene_make(NULL, 14);
     SingeView view = singe_sim_view(scene.sim);
     unsigned char *seen = calloc(view.particle_count, 1);
+
     assert_non_null(seen);
     for (int i = 0; i < 120; i++) {
         double before = singe_sim_view(scene.sim).time;
@@ -33,11 +34,13 @@ TEST(a_particle_ignites_once) {
             assert_true(view.time_ignited[last] == (float)events[k].time);
         }
     }
+
     uint32_t ignited = 0;
     for (uint32_t i = 0; i < view.particle_count; i++) {
         assert_int_equal(seen[i], view.time_ignited[i] >= 0);
         ignited += seen[i];
     }
+
     assert_true(ignited > 50);
     free(seen);
     singe_sim_destroy(scene.sim);
@@ -62,6 +65,7 @@ TEST(a_disc_burns_one_hole) {
     SingeSimDef def = calm();
     SingeMaterialDef material = scene_quick_material();
     SingeSim *sim = test_sim(&def, test_grid(24, 24, 0.005f, 0.005f), &material);
+
     test_spot(sim, 0.061f, 0.0605f, 0, 0.01f, 1500, 2000);
     Tally seen = {0};
     for (int i = 0; i < 400 && singe_sim_stats(sim).burnt_fraction < 0.25; i++) {
@@ -71,6 +75,7 @@ TEST(a_disc_burns_one_hole) {
         tally(sim, &seen);
         assert_int_equal(singe_sim_view(sim).topology_version > version, singe_sim_stats(sim).springs < springs);
     }
+
     assert_true(singe_sim_stats(sim).mass_removed > 0);
     assert_int_equal(seen.holes, 1);
     assert_int_equal(seen.pieces, 0);
@@ -105,9 +110,11 @@ TEST(a_cut_makes_one_piece) {
         test_ok(sim, singe_sim_step(sim));
         tally(sim, &seen);
     }
+
     SingeView view = singe_sim_view(sim);
     assert_int_equal(singe_sim_stats(sim).pieces, 2);
     assert_int_equal(seen.pieces, 1);
+
     // the larger part, on the right, keeps its id; the left one is new
     assert_int_equal(view.piece[30], 0);
     assert_int_equal(seen.piece.element, view.piece[0]);
@@ -117,6 +124,7 @@ TEST(a_cut_makes_one_piece) {
         int32_t expected = !alive ? -1 : view.rest_position[i][0] > line ? 0 : view.piece[0];
         assert_int_equal(view.piece[i], expected);
     }
+
     singe_sim_destroy(sim);
 }
 

@@ -32,12 +32,14 @@ TEST(a_failed_step_changes_nothing) {
         singe_sim_events(sim, &events);
         assert_int_equal(events, 0);
     }
+
     TestBytes after = test_save(sim);
     assert_int_equal(before.size, after.size);
     assert_memory_equal(before.data, after.data, before.size);
     assert_int_equal(singe_sim_timers(sim).steps, timers.steps);
     assert_int_equal(singe_sim_timers(sim).contacts, timers.contacts);
     free(before.data), free(after.data);
+
     // without the source it continues as if nothing had happened
     test_ok(sim, singe_sim_remove_source(sim, id));
     test_ok(twin.sim, singe_sim_add_source(twin.sim, &def, &id)); // keeps the lists and generations alike
@@ -92,6 +94,7 @@ TEST(steps_allocate_nothing) {
         assert_int_equal(hook.calls, calls);
         assert_int_equal(hook.frees, frees);
     }
+
     SingeStats stats = singe_sim_stats(scene.sim);
     assert_true(events > 20 && stats.mass_removed > 0 && singe_sim_timers(scene.sim).contacts > 0);
     singe_sim_destroy(scene.sim);

@@ -85,11 +85,13 @@ TEST(moved_as_a_whole_it_is_a_mesh_on_a_path) {
     for (int k = 0; k < 2; k++) {
         sims[k] = sheet_at(&def, TOP + 0.003f);
         SingeColliderDef collider = block_def(&block, k ? SINGE_COLLIDER_DEFORMING : SINGE_COLLIDER_MESH);
+
         // up and to the side, so that friction counts
         SingePoseKey path[2] = {test_key(0.25f, 0, 0, 0), test_key(0.75f, 0.05f, 0, 0.05f)};
         if (k == 0) collider.path_count = 2, collider.path = path;
         test_ok(sims[k], singe_sim_add_collider(sims[k], &collider, &ids[k]));
     }
+
     double worst = 0;
     for (int f = 0; f < 48; f++) {
         float to[6 * 36][3];
@@ -101,6 +103,7 @@ TEST(moved_as_a_whole_it_is_a_mesh_on_a_path) {
         for (uint32_t v = 0; v < a.vertex_count; v++)
             for (int i = 0; i < 3; i++) worst = fmax(worst, fabs((double)(a.position[v][i] - b.position[v][i])));
     }
+
     print_message("carried to x %.4f, z %.4f; at most %.2g m from the rigid one\n", mean_of(sims[1], 0),
                   mean_of(sims[1], 2), worst);
     assert_true(mean_of(sims[1], 0) > 0.045 && fabs(mean_of(sims[1], 2) - 0.15) < 0.004);
@@ -125,6 +128,7 @@ static void sweep(double speed, bool at_once, double *behind, double *ahead) {
         float *p = mesh.positions + 3 * (size_t)v, x = p[0];
         p[0] = p[1], p[1] = x - 0.05f, p[2] -= 0.05f;
     }
+
     SingeSim *sim = test_sim(&def, mesh, NULL);
     SingeColliderDef collider = block_def(&block, SINGE_COLLIDER_DEFORMING);
     SingeColliderId id;
@@ -140,6 +144,7 @@ static void sweep(double speed, bool at_once, double *behind, double *ahead) {
         *behind = fmin(*behind, (double)view.position[v][0]);
         *ahead = fmax(*ahead, (double)view.position[v][0]);
     }
+
     singe_sim_destroy(sim);
 }
 
@@ -188,6 +193,7 @@ static void round_trip(SingeSim *sim, SingePinId pin, SingeColliderId body, cons
             to[k][0] = (k ? 0.05f : -0.05f) * cosf(angle), to[k][1] = (k ? 0.05f : -0.05f) * sinf(angle);
             to[k][2] = 0.2f + 0.1f * (float)end;
         }
+
         test_ok(sim, singe_sim_set_pin_positions(sim, pin, to[0], end));
         shifted(block, 0.02f * sinf(8 * (float)end), 0, 0, moved);
         test_ok(sim, singe_sim_set_collider_vertices(sim, body, moved[0], end));
@@ -233,12 +239,15 @@ TEST(pins_follow_and_runs_resume) {
     SingeColliderId body;
     Block block;
     SingeSim *sim = cape(&def, &pin, &body, &block), *threads, *resumed;
+
     round_trip(sim, pin, body, &block, 0, 12);
+
     // any number of threads
     def.thread_count = 2;
     threads = cape(&def, &pin, &body, &block);
     round_trip(threads, pin, body, &block, 0, 12);
     test_assert_same(sim, threads);
+
     // a load in the middle of a frame
     float to[2][3] = {{-0.02f, 0, 0.2f}, {0.03f, 0, 0.25f}};
     test_ok(sim, singe_sim_set_pin_positions(sim, pin, to[0], 13 / 48.0));
@@ -260,12 +269,14 @@ TEST(pins_follow_and_runs_resume) {
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.burnt_fraction > 0.001 && singe_sim_timers(sim).contacts > 50);
     print_message("%.3f burnt, %u contacts\n", stats.burnt_fraction, (unsigned)singe_sim_timers(sim).contacts);
+
     // every truncation is refused
     for (size_t k = 0; k < 60; k++) {
         SingeSim *cut;
         assert_int_not_equal(singe_sim_load(&hooks, bytes.data, bytes.size - 1 - 7 * k, &cut, &error), SINGE_OK);
         assert_null(cut);
     }
+
     // a path again
     SingePoseKey still = test_key(0, 0, 0, 0);
     uint32_t count, corner = singe_sim_pin_particles(sim, pin, &count)[0];
@@ -334,6 +345,7 @@ TEST(a_mesh_may_collapse) {
         test_ok(sim, singe_sim_set_collider_vertices(sim, body, to[0], singe_sim_view(sim).time + 1.0 / 24));
         test_steps(sim, 40);
     }
+
     assert_int_equal(hook.calls, calls);
     assert_true(isfinite(mean_of(sim, 2)));
     singe_sim_destroy(sim);

@@ -117,6 +117,7 @@ TEST(defs_inside_may_have_any_size) {
     Bytes bytes = untouched();
     const size_t head = offsetof(SingeSimDef, wind), wind = offsetof(SingeWindDef, gust_time) / 8 * 8;
     const SingeSolverDef standard = singe_default_solver();
+
     memcpy(bytes.at + head, &wind, sizeof wind);
     memcpy(bytes.at + head + wind, &standard.struct_size, sizeof(size_t));
     singe_init_sim(&bytes.sim, head + wind + sizeof standard);
@@ -142,6 +143,7 @@ static SingeSim *one_cell(void) {
     SingeSheetDef sheet = singe_default_sheet();
     SingeSheetId id;
     SingeSim *sim;
+
     sheet.vertex_count = 4, sheet.positions = positions, sheet.cell_count = 1, sheet.cells = cell;
     assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
     assert_int_equal(singe_sim_add_sheet(sim, &sheet, &id), SINGE_OK);

@@ -57,6 +57,7 @@ TEST(sheets_after_the_commit_are_refused) {
     TestMesh mesh = test_grid(1, 1, 1, 1);
     SingeSheetDef sheet = test_sheet(&mesh);
     SingeSheetId id = {7, 7};
+
     test_refused(sim, SINGE_ERROR_STATE, singe_sim_add_sheet(sim, &sheet, &id));
     assert_int_equal(id.generation, 0);
     test_refused(sim, SINGE_ERROR_STATE, singe_sim_commit(sim));
@@ -109,6 +110,7 @@ TEST(a_refused_sheet_changes_nothing) {
         test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_commit(sim));
         assert_non_null(strstr(singe_sim_error(sim)->message, "thickening"));
     }
+
     singe_sim_destroy(sim);
     test_mesh_free(&fan);
     test_mesh_free(&good);
@@ -137,12 +139,15 @@ TEST(particles_are_numbered_as_documented) {
         assert_memory_equal(view.uv[13 + v], second.uv + 2 * v, 8);
         assert_true(view.velocity[13 + v][0] == 2);
     }
+
     for (int k = 0; k < 4; k++) assert_int_equal(view.cells[6][k], 13 + second.cells[k]);
+
     // the centre of the last cell: above its middle by the thickness, in front
     const float *centre = view.position[23];
     assert_true(fabsf(centre[0] - 1.015f) < 1e-6f && fabsf(centre[1] - 0.015f) < 1e-6f &&
                 fabsf(centre[2] - singe_default_material().thickness.value) < 1e-6f);
     assert_true(fabsf(view.uv[23][0] - 0.5f) < 1e-6f);
+
     // the unused vertex is there, but never lives
     assert_int_equal(view.particle_flags[12] & SINGE_ALIVE, 0);
     assert_int_equal(view.piece[12], -1);
@@ -246,6 +251,7 @@ TEST(timers_and_time_grow) {
         for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++) assert_true(now.seconds[stage] >= last.seconds[stage]);
         last = now;
     }
+
     assert_true(last.heat_iterations > 40 && last.contacts > 0);
     for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++)
         assert_true(last.seconds[stage] > 0 && last.seconds[stage] < 60);

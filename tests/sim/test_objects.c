@@ -67,6 +67,7 @@ TEST(refused_moves_change_nothing) {
     Scene scene = scene_make(NULL, 8), other = scene_make(NULL, 8);
     SingeSim *sim = scene.sim;
     SingePoseKey bad = test_key(0, NAN, 0, 0), good = test_key(0, 0, 0, 0);
+
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_move_source(sim, scene.ball, 1, &bad));
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_move_source(sim, scene.ball, 0, NULL));
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_move_source(sim, scene.ball, 1, NULL));
@@ -113,6 +114,7 @@ TEST(sources_come_and_go) {
         test_ok(sim, singe_sim_step(sim));
         assert_int_equal(heat_in(sim) > before, i == 2 || i == 3);
     }
+
     singe_sim_destroy(sim);
 }
 
@@ -134,6 +136,7 @@ TEST(pins_hold_move_and_let_go) {
         assert_memory_equal(view.position[held[k]], at[k], 12);
         assert_true(view.particle_flags[held[k]] & SINGE_PINNED);
     }
+
     assert_true(view.particle_flags[49] & SINGE_PINNED); // the first centre too
     assert_false(view.particle_flags[2] & SINGE_PINNED);
     assert_true(view.position[48][2] < at[0][2] - 0.01f); // the rest hangs
@@ -150,6 +153,7 @@ TEST(pins_hold_move_and_let_go) {
         assert_true(fabsf(view.position[held[k]][1] - at[k][1]) < 2e-6f);
         assert_true(fabsf(view.position[held[k]][2] - at[k][2] - 0.02f) < 2e-6f);
     }
+
     // a second pin keeps what the first one lets go
     SingePinId second;
     const uint32_t vertex = 0;
@@ -177,6 +181,7 @@ TEST(a_turning_pin_turns) {
     const float s = sqrtf(0.5f);
     SingePoseKey path[2] = {test_key(0, 0, 0, 0), {0.2f, {0, 0, 0}, {0, 0, s, s}}};
     SingePinId id;
+
     pin.sheet = (SingeSheetId){0, 1}, pin.vertex_count = 2, pin.vertices = vertices, pin.path_count = 2,
     pin.path = path;
     test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
@@ -280,6 +285,7 @@ TEST(wind_blows) {
     SingeSimDef def = weightless();
     TestMesh mesh = test_grid(6, 6, 0.01f, 0.01f);
     SingeSim *sim = test_sim(&def, mesh, NULL);
+
     test_steps(sim, 20);
     assert_true(fabsf(mean_height(sim)) < 1e-4f);
     SingeWindDef wind = singe_default_wind();

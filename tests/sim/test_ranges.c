@@ -90,6 +90,7 @@ static int try_table(SingeSim *sim, const DefTable *table, const void *standard,
                 if (!strstr(message, field->name) || !strstr(message, range->words))
                     fail_msg("%s of %g: \"%s\" lacks \"%s\"", field->name, (double)outside[o], message, range->words);
             }
+
             const float inside[] = {range->low_open ? 1e-3f : range->low, isinf(range->high) ? 1e6f : range->high};
             for (int o = 0; o < 2; o++) {
                 if (!has || isinf(inside[o])) continue;
@@ -99,8 +100,10 @@ static int try_table(SingeSim *sim, const DefTable *table, const void *standard,
                 if (result) fail_msg("%s of %g: %s", field->name, (double)inside[o], singe_sim_error(sim)->message);
             }
         }
+
         tried++;
     }
+
     return tried;
 }
 
@@ -119,6 +122,7 @@ TEST(ranges_are_those_of_the_tables) {
         source.texture = (SingeTexture){1, 1, &texel};
         tried += try_table(sim, &source_table, &source, sizeof source, try_source);
     }
+
     for (int kind = 0; def_has_value("SingeColliderKind", kind); kind++) {
         SingeColliderDef collider = singe_default_collider();
         collider.kind = (SingeColliderKind)kind;
@@ -129,6 +133,7 @@ TEST(ranges_are_those_of_the_tables) {
         collider.triangles = faces;
         tried += try_table(sim, &collider_table, &collider, sizeof collider, try_collider);
     }
+
     SingeSheetDef sheet = singe_default_sheet();
     sheet.vertex_count = 4;
     sheet.positions = corners;

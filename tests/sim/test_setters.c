@@ -142,6 +142,7 @@ TEST(velocities_throw) {
     test_steps(loaded, 48);
     test_assert_same(sim, loaded);
     for (uint32_t i = 0; i < view.vertex_count; i++) assert_true(fabsf(view.position[i][2] - 0.2f) < 0.01f);
+
     // a corner alone, and nothing else at first
     test_ok(sim, singe_sim_set_velocity(sim, sheet, 80, 1, up[0]));
     test_ok(sim, singe_sim_set_velocity(sim, sheet, 81, 0, NULL));
@@ -192,6 +193,7 @@ TEST(a_wet_strip_stops_the_fire) {
         burnt[wet] = singe_sim_stats(sim).burnt_fraction;
         singe_sim_destroy(sim);
     }
+
     print_message("burnt: %.2f dry, %.2f with a wet half\n", burnt[0], burnt[1]);
     assert_true(burnt[0] > 1.4 * burnt[1] && burnt[1] > 0.05);
 }
@@ -250,6 +252,7 @@ TEST(without_memory_nothing_changes) {
                 assert_memory_equal(before.data, after.data, before.size);
                 free(after.data);
             }
+
             refused++;
         }
     assert_true(refused > 200);
@@ -268,6 +271,7 @@ TEST(frames_may_have_any_length) {
     const double h = (double)scene_def().time_step, frames[] = {0.4, 1.7, 0, 3.1, 0.8, 12.5, 0.05};
     double sum = 0;
     uint32_t done = 0, events = 0;
+
     for (int round = 0; round < 4; round++)
         for (size_t k = 0; k < sizeof frames / sizeof *frames; k++) {
             uint32_t steps, whole;
@@ -286,6 +290,7 @@ TEST(frames_may_have_any_length) {
                 assert_memory_equal(list + of_steps, each, one * sizeof *each);
                 of_steps += one;
             }
+
             assert_int_equal(count, of_steps);
             events += (uint32_t)count;
         }
@@ -313,6 +318,7 @@ TEST(frames_of_whole_steps_stay_whole) {
         test_ok(sim, singe_sim_advance(sim, 1.0 / 24, 0, &steps));
         assert_int_equal(steps, 20);
     }
+
     singe_sim_destroy(sim);
 }
 
@@ -320,6 +326,7 @@ TEST(who_falls_behind_slows_down) {
     SingeSim *sim = test_sim(NULL, test_grid(2, 2, 0.01f, 0.01f), NULL);
     const double h = (double)singe_default_sim().time_step;
     uint32_t steps;
+
     test_ok(sim, singe_sim_advance(sim, 10.25 * h, 4, &steps));
     assert_int_equal(steps, 4);
     assert_true(fabs(singe_sim_remainder(sim) - 0.25 * h) < 1e-9);
@@ -361,6 +368,7 @@ TEST(ranges_stay_through_tears) {
         if (v < range.torn_count) assert_true(source >= 0 && source < 121);
         else assert_int_equal(source, -1);
     }
+
     for (uint32_t v = 0; v < range.vertex_count; v++) assert_int_equal(view.source_vertex[range.vertex_first + v], v);
     range.torn_count = before.torn_count;
     assert_memory_equal(&range, &before, sizeof range);

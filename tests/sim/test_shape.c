@@ -18,6 +18,7 @@ static SingeSim *sheet(const uint32_t cells[2], const float size[2]) {
     SingeSimDef def = singe_default_sim();
     SingeMesh *mesh;
     SingeSim *sim;
+
     def.thread_count = 1, def.contact.enabled = true;
     for (int k = 0; k < 2; k++) grid.cells[k] = cells[k], grid.size[k] = size[k];
     assert_int_equal(singe_mesh_create_grid(&grid, &mesh, NULL), SINGE_OK);
@@ -48,6 +49,7 @@ TEST(strips_cost_as_squares) {
         test_steps(sims[k], FALLEN); // as fast as the air lets it
         cost[k] = INFINITY;
     }
+
     for (int round = 0; round < ROUNDS; round++)
         for (int k = 0; k < SHAPES; k++) {
             double begun = seconds();
@@ -58,5 +60,6 @@ TEST(strips_cost_as_squares) {
         print_message("%s: %.1f ms a step, %.2f times squares\n", shapes[k].name, 1e3 * cost[k], cost[k] / cost[0]);
         singe_sim_destroy(sims[k]);
     }
+
     for (int k = 1; k < SHAPES; k++) assert_true(cost[k] <= 1.3 * cost[0]);
 }

@@ -14,6 +14,7 @@ TEST(a_million_springs_take_few_bytes) {
     assert_true(springs >= 1000000);
     assert_int_equal(counts.memory, hook.bytes);
     print_message("%.1f bytes a spring\n", (double)counts.memory / (double)springs);
+
     // of it 1.6 the fuel and the heat that burning gives, 2.4 noises of the default material, 1.6 the limit of
     // curvature
     assert_true(counts.memory <= 155 * springs);

@@ -39,6 +39,7 @@ TEST(resumed_runs_are_the_same) {
             singe_sim_events(resumed, &resumed_events);
             assert_int_equal(events, resumed_events);
         }
+
         test_assert_same(scene.sim, resumed);
         if (saves[k] == 80) assert_true(singe_sim_stats(resumed).burnt_fraction > 0.2);
         free(bytes.data);
@@ -52,6 +53,7 @@ TEST(bytes_are_the_same) {
     Scene a = scene_make(NULL, 9);
     TestAllocator hook = {0}; // fills fresh blocks with rubbish
     SingeSimDef def;
+
     memset(&def, 0x5A, sizeof def);
     SingeSimDef standard = scene_def();
     memcpy(&def, &standard, sizeof def);
@@ -93,6 +95,7 @@ TEST(handles_keep_their_values) {
     test_ok(sim, singe_sim_move_source(sim, fresh, 1, &key));
     test_ok(sim, singe_sim_move_collider(sim, scene.box, 1, &key));
     test_ok(sim, singe_sim_remove_pin(sim, scene.vertices));
+
     // what is added next gets the same handle in both
     SingeSourceId next[2] = {test_spot(sim, 0, 0, 0, 0.01f, 900, 100), test_spot(scene.sim, 0, 0, 0, 0.01f, 900, 100)};
     assert_memory_equal(&next[0], &next[1], sizeof next[0]);
@@ -166,6 +169,7 @@ TEST(truncated_snapshots_are_refused) {
         refuse(cut, size, "truncated");
         free(cut);
     }
+
     uint8_t *longer = calloc(bytes.size + 1, 1);
     assert_non_null(longer);
     memcpy(longer, bytes.data, bytes.size);
@@ -183,6 +187,7 @@ TEST(flipped_bits_are_noticed) {
         refuse(bytes.data, bytes.size, "flipped");
         bytes.data[bit / 8] ^= (uint8_t)(1 << bit % 8);
     }
+
     SingeSim *sim = load(&bytes);
     singe_sim_destroy(sim);
     free(bytes.data);
@@ -221,6 +226,7 @@ TEST(forged_snapshots_are_refused) {
             random = random * 1664525u + 1013904223u;
             forge(&bytes, at, k & 1 ? random : words[random >> 29]);
         }
+
         TestAllocator hook = {0};
         SingeSimDef hooks = singe_default_sim();
         hooks.allocator = test_allocator(&hook);
@@ -235,6 +241,7 @@ TEST(forged_snapshots_are_refused) {
         assert_int_equal(hook.blocks, 0);
         free(bytes.data);
     }
+
     assert_in_range(refused, 150, 599);
     free(good.data);
 }
@@ -379,6 +386,7 @@ TEST(other_versions_are_refused) {
     SingeSimDef hooks = singe_default_sim();
     SingeSim *sim;
     SingeError error;
+
     bytes.data[8]++;
     assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &sim, &error), SINGE_ERROR_VERSION);
     bytes.data[8]--;

@@ -16,6 +16,7 @@ TEST(ledgers_close) {
         double heat = stats.heat_in + stats.heat_of_combustion - stats.heat_lost - stats.heat_stored;
         assert_true(fabs(heat) <= 1e-5 * fmax(stats.heat_in, stats.heat_of_combustion));
     }
+
     assert_true(singe_sim_stats(scene.sim).ledgers_close);
     print_message("ledger errors: heat %.1e, mass %.1e\n", worst_heat, worst_mass);
     assert_true(worst_heat < 1e-5);
@@ -45,6 +46,7 @@ TEST(bad_cells_burn_and_stay_above_the_air) {
                 if (!(view.temperature[i] > def.ambient_temperature - 0.1f))
                     fail_msg("step %d: particle %u has %g K", step, i, (double)view.temperature[i]);
         }
+
         SingeStats stats = singe_sim_stats(sim);
         assert_true(stats.particles < 800 && stats.ledgers_close); // of 841
         singe_sim_destroy(sim);
@@ -76,6 +78,7 @@ TEST(combustion_is_eta_times_mass) {
     test_steps(sim, 100);
     SingeStats stats = singe_sim_stats(sim);
     double expected = stats.mass_burnt * (double)material.specific_heat.value * 1500;
+
     // the mass of a step becomes heat in the next one
     assert_true(stats.heat_of_combustion > 0.9 * expected && stats.heat_of_combustion < 1.0001 * expected);
     singe_sim_destroy(sim);
@@ -107,6 +110,7 @@ TEST(statistics_match_the_view) {
             strain[n] = fabsf(sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / view.spring_length[SINGE_BLUE][k] - 1);
             sum += (double)strain[n++];
         }
+
         qsort(strain, n, sizeof *strain, ascending);
         assert_true(fabs(stats.strain_mean - sum / n) < 1e-6);
         assert_true(fabs(stats.strain_max - (double)strain[n - 1]) < 1e-6);
@@ -122,6 +126,7 @@ TEST(statistics_match_the_view) {
         assert_int_equal(stats.particles, particles);
         assert_true(stats.temperature_max == hottest);
     }
+
     singe_sim_destroy(scene.sim);
 }
 
@@ -129,6 +134,7 @@ TEST(a_sheet_at_rest_has_no_strain) {
     SingeSim *sim = test_sim(NULL, test_grid(7, 5, 0.02f, 0.01f), NULL);
     SingeStats stats = singe_sim_stats(sim);
     double kilograms = 0.08 * 7 * 5 * 0.02 * 0.01;
+
     assert_true(fabs(stats.mass_initial / kilograms - 1) < 1e-5);
     assert_true(stats.mass == stats.mass_initial && stats.mass_burnt == 0 && stats.mass_removed == 0 &&
                 stats.burnt_fraction == 0);
@@ -186,6 +192,7 @@ TEST(a_front_runs_along_a_strip) {
         for (int k = 0; k < 2; k++)
             if (view.time_ignited[hit[k]] >= 0) gate[k] = (double)view.time_ignited[hit[k]];
     }
+
     assert_true(gate[1] > gate[0] && gate[0] > 0);
     double speed = 0.5 * (double)length / ((gate[1] - gate[0]) * (double)def.pace);
     double measured = singe_sim_stats(sim).front_speed;

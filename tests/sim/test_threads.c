@@ -50,6 +50,7 @@ static void host_finish(void *context, void *token) {
     Host *host = context;
     const HostJob job = *(HostJob *)token;
     int end = job.count;
+
     while (end > 0) {
         int size = job.grain + host->odd++ % 13, begin = end - size;
         if (begin < job.grain) begin = 0;
@@ -67,6 +68,7 @@ TEST(any_number_of_threads_gives_the_same_bytes) {
         what[0] = (char)('0' + threads);
         equal(&expected, run(def), what);
     }
+
     def.thread_count = 1;
     Host host = {0};
     def.tasks = (SingeTasks){host_enqueue, host_finish, &host};

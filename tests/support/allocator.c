@@ -23,6 +23,7 @@ static void *allocator_resize(void *context, void *block, size_t old_size, size_
         free(old);
         return NULL;
     }
+
     allocator->calls++;
     if (new_size > allocator->largest) allocator->largest = new_size;
     if (allocator->fail_at &&
@@ -30,6 +31,7 @@ static void *allocator_resize(void *context, void *block, size_t old_size, size_
         return NULL;
     BlockHead *head = malloc(sizeof *head + new_size);
     if (!head) return NULL;
+
     // fresh bytes are rubbish, and a resized block always moves
     memset(head + 1, 0xA5, new_size);
     if (old) {
@@ -40,6 +42,7 @@ static void *allocator_resize(void *context, void *block, size_t old_size, size_
     } else {
         allocator->blocks++;
     }
+
     *head = (BlockHead){new_size, block_mark};
     allocator->bytes += new_size;
     if (allocator->bytes > allocator->peak) allocator->peak = allocator->bytes;

@@ -36,6 +36,7 @@ SingeSim *test_sim(const SingeSimDef *def, TestMesh mesh, const SingeMaterialDef
     SingeSim *sim;
     SingeError error = {0};
     SingeResult result = singe_sim_create(def ? def : &standard, &sim, &error);
+
     if (result) fail_msg("create: %s", error.message);
     SingeSheetDef sheet = test_sheet(&mesh);
     if (material) sheet.material = *material;

@@ -26,6 +26,7 @@ static bool covers(const SingeSurface *s, uint32_t t, double x, double y) {
         double ax = (double)a[0], ay = (double)a[1];
         if (((double)b[0] - ax) * (y - ay) - ((double)b[1] - ay) * (x - ax) < 0) return false;
     }
+
     return true;
 }
 
@@ -51,6 +52,7 @@ static void expect_no_cracks(const SingeSurface *s) {
         if (!bsearch(&back, edges, count, sizeof *edges, compare_edges))
             assert_false(covered_behind(s, back.b, back.a));
     }
+
     free(edges);
 }
 
@@ -75,6 +77,7 @@ TEST(random_levels_leave_no_cracks) {
             }
             assert_true(state->ablate.cell_flags[(int)y * 12 + (int)x] & SINGE_ALIVE);
         }
+
         drawing_free(d);
     }
 }
@@ -113,6 +116,7 @@ TEST(bent_sheets_are_drawn_round) {
         float outwards = (s->normal[v][0] * s->position[v][0] + s->normal[v][2] * s->position[v][2]) / distance;
         assert_true(outwards > 0.9999f);
     }
+
     drawing_free(d);
 }
 
@@ -132,6 +136,7 @@ TEST(no_triangle_is_lost_to_rounding) {
             Float3 p = float3_mad(float3_mad(float3(5, -6, -7), along, rest[0]), up, rest[1]);
             float3_store(d->sheet->state.dynamics.position[v], p);
         }
+
         draw_fine(d);
         const SingeSurface *s = &d->surface;
         float thinnest = 1;
@@ -142,8 +147,10 @@ TEST(no_triangle_is_lost_to_rounding) {
                 Float3 side = float3_sub(float3_load(s->position[at[(i + 1) % 3]]), float3_load(s->position[at[i]]));
                 longest = fmaxf(longest, float3_length(side));
             }
+
             thinnest = fminf(thinnest, fabsf(float3_dot(doubled_normal(s, t), normal)) / longest);
         }
+
         assert_true(s->fine_triangle_count > 500);
         assert_true(thinnest > 5e-6f);
         drawing_free(d);
@@ -163,6 +170,7 @@ TEST(crumpled_sheets_are_not_turned_over) {
                 p[k] += (float)(seed % 4 + 1) * 0.4f * (random_unit(random_hash(v, seed, (uint32_t)k, 3)) - 0.5f);
             memcpy(straight->sheet->state.dynamics.position[v], p, 3 * sizeof *p);
         }
+
         set_random_levels(round, seed), set_random_levels(straight, seed);
         straight->detail.room = room, round->detail.bulge_max = seed & 1 ? 0.06f : 0;
         draw_fine(round), draw_fine(straight);
@@ -177,6 +185,7 @@ TEST(crumpled_sheets_are_not_turned_over) {
                 assert_true(float3_length(float3_sub(side, was)) < 0.9f * float3_length(was));
             }
         }
+
         float farthest = 0;
         for (uint32_t v = 0; v < s->vertex_count; v++)
             farthest = fmaxf(farthest,
@@ -224,6 +233,7 @@ TEST(tear_edges_at_one_point_are_drawn_apart) {
                 ends[middle > 4]++;
             }
         }
+
         assert_true(ends[0] > 5 && ends[1] > 5);
         drawing_free(d);
     }
@@ -245,6 +255,7 @@ TEST(what_a_lost_corner_pulls_apart_is_left_out) {
         uint32_t other = d->sheet->shell.fan[d->sheet->shell.fan_first[corner] + (uint32_t)k];
         d->sheet->state.ablate.spring_flags[SINGE_BLUE][d->sheet->shell.cell_springs[other].blue[0]] = 0;
     }
+
     draw_fine(d);
     assert_true(d->surface.triangle_count <= whole - 8);
     for (uint32_t t = 0; t < d->surface.triangle_count; t++)
@@ -311,10 +322,12 @@ TEST(walks_cross_cells) {
                            location->weight[1] * shell->rest_position[c[(location->side + 1) & 3]][i] +
                            location->weight[2] * shell->rest_position[shell_centre(shell, location->cell)][i];
         }
+
         assert_float_equal(at[1][0], fminf(fmaxf(at[0][0] + x, 0), 5), 1e-5);
         assert_float_equal(at[1][1], fminf(fmaxf(at[0][1] + y, 0), 4), 1e-5);
         for (int i = 0; i < 3; i++) assert_true(to.weight[i] >= -1e-6f);
     }
+
     drawing_free(d);
 }
 
@@ -322,6 +335,7 @@ TEST(survives_lack_of_memory) {
     Drawing *d = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
     const BurningSheet *b = d->sheet;
     SingeResult result = SINGE_ERROR_MEMORY;
+
     burn_rings(d, 0.02f);
     int failures = 0;
     for (int n = 0; result; n++) {
@@ -336,6 +350,7 @@ TEST(survives_lack_of_memory) {
         singe_surface_free(&surface);
         test_allocator_check(&allocator);
     }
+
     assert_true(failures > 30);
     drawing_free(d);
 }

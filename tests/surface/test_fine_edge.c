@@ -29,6 +29,7 @@ static void add_directions(const SingeSurface *s, double length[DIRECTIONS]) {
         int bin = (int)floor(atan2(y, x) * DIRECTIONS / 3.14159265358979 + 0.5); // the axes in the middle of theirs
         length[((bin % DIRECTIONS) + DIRECTIONS) % DIRECTIONS] += hypot(x, y);
     }
+
     free(edges);
 }
 
@@ -42,6 +43,7 @@ static double preference(Drawing *d, bool fine) {
         else draw_coarse(d);
         add_directions(&d->surface, length);
     }
+
     for (int k = 0; k < DIRECTIONS; k++) sum += length[k], max = fmax(max, length[k]);
     return max * DIRECTIONS / sum;
 }
@@ -89,12 +91,14 @@ TEST(what_is_gone_stays_gone) {
             if (state->ablate.particle_flags[i] & SINGE_ALIVE)
                 *mass = fmaxf(0.15f, *mass - 0.1f * random_unit(random_hash(i, step, 7, 0)));
         }
+
         ablate(d);
         draw_fine(d);
         raster(&d->surface, WIDTH, HEIGHT, 0.04f, after);
         for (int k = 0; k < WIDTH * HEIGHT; k++) gone += !after[k], back += after[k] && !before[k];
         memcpy(before, after, sizeof before);
     }
+
     assert_true(gone > WIDTH * HEIGHT);
     printf("%d of %d pixels gone are drawn again\n", back, gone);
     assert_true(back * 2000 < gone); // where a fine edge cuts straight through what is curved
@@ -122,6 +126,7 @@ TEST(edges_are_eaten_by_a_length) {
         assert_true(lost[k] > 0.15 * 1.5e-3 * length && lost[k] < 1.5e-3 * length * 1.2);
         drawing_free(d);
     }
+
     assert_float_equal(lost[1] / lost[0], 1, 0.02);
     assert_float_equal(lost[2] / lost[0], 1, 0.02);
 }
@@ -154,6 +159,7 @@ TEST(edges_stay_within_a_cell) {
             assert_true(near_one_that_is(coarse, fine[k], SIZE, k % SIZE, k / SIZE, reach));
         }
     }
+
     assert_true(missing > 1000);
     drawing_free(d);
 }
@@ -168,6 +174,7 @@ TEST(finer_details_converge) {
         area[k] = area_of(&d->surface);
         drawing_free(d);
     }
+
     assert_true(fabs(area[2] - area[1]) < 0.5 * fabs(area[1] - area[0]));
     assert_true(fabs(area[3] - area[2]) < 0.5 * fabs(area[2] - area[1]));
 }

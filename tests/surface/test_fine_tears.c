@@ -23,6 +23,7 @@ static Float3 mean_displacement(const BurningSheet *b, uint32_t vertex) {
     const Shell *shell = &b->shell;
     uint32_t first = shell->fan_first[vertex], last = shell->fan_first[vertex + 1];
     Float3 location = float3_load(b->state.dynamics.position[MIDDLE]), sum = {0, 0, 0};
+
     for (uint32_t f = first; f < last; f++)
         for (int i = 0; i < 4; i++) {
             uint32_t corner = shell->cells[shell->fan[f]][i];
@@ -55,7 +56,9 @@ TEST(tear_edges_do_not_cross) {
             assert_true(float3_length(float3_sub(after, float3_load(b->state.dynamics.position[result.spare]))) >
                         1e-4f);
         }
+
         burning_sheet_free(b);
     }
+
     assert_true(torn > 300 && otherwise > 3);
 }

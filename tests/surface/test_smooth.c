@@ -175,7 +175,9 @@ TEST(bent_cells_are_split_alike) {
             assert_memory_equal(s->position, first.position, s->vertex_count * sizeof *s->position);
             assert_memory_equal(s->normal, first.normal, s->vertex_count * sizeof *s->normal);
         }
+
         drawing_free(d);
     }
+
     singe_surface_free(&first);
 }

@@ -55,6 +55,7 @@ static double clipped_area(Linear f, double w, double h) {
     const double box[4][2] = {{0, 0}, {w, 0}, {w, h}, {0, h}};
     double p[6][2], area = 0;
     int n = 0;
+
     for (int i = 0; i < 4; i++) {
         const double *a = box[i], *b = box[(i + 1) % 4];
         double fa = f.a * a[0] + f.b * a[1] + f.c, fb = f.a * b[0] + f.b * b[1] + f.c;
@@ -64,6 +65,7 @@ static double clipped_area(Linear f, double w, double h) {
             p[n][0] = a[0] + t * (b[0] - a[0]), p[n][1] = a[1] + t * (b[1] - a[1]), n++;
         }
     }
+
     for (int i = 0; i < n; i++) area += p[i][0] * p[(i + 1) % n][1] - p[i][1] * p[(i + 1) % n][0];
     return area / 2;
 }
@@ -125,6 +127,7 @@ static double part_inside(const float level[3], double whole) {
         double own = (double)level[i], p = (double)level[(i + 1) % 3], q = (double)level[(i + 2) % 3];
         sum = own / (own - p) * (own / (own - q)) * whole;
     }
+
     return inside == 1 ? sum : whole - sum;
 }
 
@@ -146,6 +149,7 @@ static void expect_no_cracks(const SingeSurface *s, float width, float height) {
         bool shared = bsearch(&back, edges, count, sizeof *edges, compare_edges) != NULL;
         assert_int_equal(shared, !on_boundary(s, back.a, back.b, width, height));
     }
+
     free(edges);
 }
 
@@ -202,6 +206,7 @@ TEST(crumpled_normals_are_unit) {
     Drawing *d = plain_drawing(6, 6, 0.01f);
     float(*position)[4] = d->sheet->state.dynamics.position;
     const uint32_t *corners = d->sheet->shell.cells[0];
+
     for (uint32_t i = 0; i < 49; i++)
         for (uint32_t k = 0; k < 3; k++) position[i][k] += 0.02f * random_unit(random_hash(i, k, 5, 0));
     for (uint32_t k = 1; k < 4; k++) memcpy(position[corners[k]], position[corners[0]], 16); // a cell in one point
@@ -226,6 +231,7 @@ TEST(sheets_and_pieces_are_kept_apart) {
             assert_int_equal(d->surface.piece[d->surface.triangles[t][i]], sheet);
         }
     }
+
     drawing_free(d);
 }
 
@@ -251,11 +257,13 @@ TEST(survives_lack_of_memory) {
                 allocator.fail_at = 0; // it can be used again
                 assert_int_equal(surface_draw(large->plan, &b->shell, &b->state, &surface, NULL), SINGE_OK);
             }
+
             assert_int_equal(surface.triangle_count, 9 * 9 * 4);
             singe_surface_free(&surface);
             test_allocator_check(&allocator);
         }
     }
+
     assert_int_equal(failures, 2 * 18);
     singe_surface_free(NULL);
     drawing_free(small), drawing_free(large);

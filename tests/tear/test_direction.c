@@ -26,6 +26,7 @@ static BurningSheet *blocks_of_a_sheet(void) {
         const float *p = b->shell.rest_position[i];
         b->state.ablate.piece[i] = (int32_t)(p[1] / (BLOCK * side)) * (BLOCKS + 1) + (int32_t)(p[0] / (BLOCK * side));
     }
+
     return b;
 }
 
@@ -50,6 +51,7 @@ static double off_across(float angle) {
     TearPlan *plan;
     bool short_of_spares;
     const float force = 1.3f;
+
     assert_int_equal(tear_plan_create(&b->memory, &b->shell, 1e-3f, &plan), SINGE_OK);
     pull_evenly(b, force * c * c, force * s * s, force * c * s, pull);
     uint32_t tears = tear_step(plan, &b->shell, &b->state, (const float *const *)pull, NULL, 1, &short_of_spares);
@@ -64,6 +66,7 @@ static double off_across(float angle) {
         double sign = y * (double)c - x * (double)s < 0 ? -1 : 1;
         sum[0] += sign * x, sum[1] += sign * y;
     }
+
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) free(pull[colour]);
     tear_plan_free(&b->memory, plan);
     burning_sheet_free(b);

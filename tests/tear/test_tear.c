@@ -90,6 +90,7 @@ static void check_surface(SingeSim *sim) {
                 float displacement = surface.position[a][d] - surface.position[b][d];
                 square += displacement * displacement;
             }
+
             assert_true(sqrtf(square) < 2.5f * side);
         }
     qsort(edges, count, sizeof *edges, by_ends);
@@ -100,6 +101,7 @@ static void check_surface(SingeSim *sim) {
         assert_true((uint32_t)source < mesh.vertex_count);
         assert_true(surface.uv[v][0] == mesh.uv[2 * source] && surface.uv[v][1] == mesh.uv[2 * source + 1]);
     }
+
     free(edges);
     test_mesh_free(&mesh);
     singe_surface_free(&surface);
@@ -126,11 +128,13 @@ TEST(pulled_apart_it_tears_at_its_weakest_line) {
     SingeSimDef def = pull_def();
     SingeSim *sim = pulled(&def, 4, 0.5f, NULL);
     size_t freed = 0, events;
+
     for (int k = 0; k < STEPS; k++) {
         test_steps(sim, 1);
         const SingeEvent *event = singe_sim_events(sim, &events);
         for (size_t e = 0; e < events; e++) freed += event[e].kind == SINGE_EVENT_PIECE_FREED;
     }
+
     SingeStats stats = singe_sim_stats(sim);
     assert_int_equal(stats.pieces, 2);
     assert_int_equal(freed, 1);
@@ -143,6 +147,7 @@ TEST(pulled_apart_it_tears_at_its_weakest_line) {
     assert_int_equal(left, 0);
     check_surface(sim);
     check_view(sim);
+
     // each tear edge of the tear has the weak line's vertices
     for (uint32_t v = (ALONG + 1) * (ACROSS + 1); v < view.vertex_count; v++)
         if (view.particle_flags[v] & SINGE_ALIVE)
@@ -179,6 +184,7 @@ TEST(tubes_tear_around) {
         pin.path_count = 2, pin.path = path;
         test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
     }
+
     test_steps(sim, STEPS);
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.tears >= AROUND && stats.pieces >= 2 && stats.strain_mean < 0.003);
@@ -217,12 +223,14 @@ static TearEdges drawn_tear_edges(float raggedness) {
             else right[row] = fminf(right[row], p[i][0]);
         }
     }
+
     for (int r = 2; r < ROWS - 2; r++) {
         double apart = ((double)right[r] - (double)left[r]) / (double)side;
         double middle = 0.5 * ((double)right[r] + (double)left[r]) / (double)side - WEAK;
         tear_edges.apart += apart / (ROWS - 4), tear_edges.wanders += middle * middle / (ROWS - 4);
         tear_edges.min = fmin(tear_edges.min, apart);
     }
+
     tear_edges.wanders = sqrt(tear_edges.wanders);
     singe_surface_free(&surface);
     singe_sim_destroy(sim);
@@ -315,6 +323,7 @@ TEST(several_sheets_keep_their_numbers) {
     SingeSimDef def = pull_def();
     SingeSim *sim;
     SingeSheetId id[2];
+
     assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
     for (int k = 0; k < 2; k++) {
         TestMesh mesh = test_grid(6, 4, side, side);
@@ -323,6 +332,7 @@ TEST(several_sheets_keep_their_numbers) {
         test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id[k]));
         test_mesh_free(&mesh);
     }
+
     test_ok(sim, singe_sim_commit(sim));
     const uint32_t last = 7 * 5 - 1, beyond = 7 * 5;
     SingePinDef pin = singe_default_pin();
@@ -340,6 +350,7 @@ TEST(several_sheets_keep_their_numbers) {
         assert_true(view.rest_position[v][2] == (float)second);
         assert_int_equal(view.particle_flags[v] & SINGE_PINNED, v && own == 2 * 7 * 5 ? SINGE_PINNED : 0);
     }
+
     assert_int_equal(own, 2 * 7 * 5);
     SingeSurface surface = {0};
     test_ok(sim, singe_sim_surface(sim, &surface));
@@ -373,6 +384,7 @@ TEST(without_reserve_it_tears_no_further) {
         pin.points = points, pin.point_count = 2, pin.sheet.generation = 1, pin.path_count = 2, pin.path = path;
         test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
     }
+
     test_steps(sim, 300);
     assert_true(singe_sim_stats(sim).tears <= 13 * 9 / 2 + 16);
     assert_int_equal(lines, 1);
@@ -429,6 +441,7 @@ static TestMesh make_disc(void) {
         float radius = side * (float)(8 + (v - 1) / SPOKES);
         mesh.positions[3 * v] = radius * cosf(angle), mesh.positions[3 * v + 1] = radius * sinf(angle);
     }
+
     uint32_t *cell = mesh.cells;
     for (uint32_t k = 0; k < SPOKES; k += 2, cell += 4)
         cell[1] = 1 + k, cell[2] = 2 + k, cell[3] = 1 + (k + 2) % SPOKES;
@@ -454,6 +467,7 @@ TEST(a_hub_of_many_cells_stays_whole) {
     SingeSimDef def = pull_def();
     TestMesh mesh = make_disc();
     float weak[1 + SPOKES * RINGS];
+
     for (uint32_t v = 0; v < mesh.vertex_count; v++) weak[v] = v > 0 && (v - 1) % (SPOKES / 2) == SPOKES / 4;
     const SingeAttribute attribute = {"weak", weak};
     SingeSheetDef sheet = test_sheet(&mesh);
@@ -475,6 +489,7 @@ TEST(a_hub_of_many_cells_stays_whole) {
         pin.vertex_count = count, pin.vertices = held, pin.path_count = 2, pin.path = path, pin.sheet = id;
         test_ok(sim, singe_sim_add_pin(sim, &pin, &made));
     }
+
     test_steps(sim, STEPS);
     SingeView view = singe_sim_view(sim);
     assert_true(twins(&view, mesh.vertex_count, 1 + SPOKES / 4) > 0); // beside the hub
@@ -494,6 +509,7 @@ TEST(failed_steps_leave_it_as_it_was) {
     SingeSourceDef source = singe_default_source();
     SingeSourceId id;
     bool fails = false;
+
     source.kind = SINGE_SOURCE_CALLBACK, source.callback = flux_fails, source.callback_context = &fails;
     test_ok(sim, singe_sim_add_source(sim, &source, &id));
     test_steps(sim, 75);

@@ -267,6 +267,7 @@ static ssize_t write_output(void *context, const char *data, size_t size) {
         if (count <= 0) return 0; // what a cookie says of a failure
         done += (size_t)count;
     }
+
     return (ssize_t)size;
 }
 
@@ -297,6 +298,7 @@ static void read_environment(void) {
         if (shared != MAP_FAILED) state = shared;
         close(file);
     }
+
     unsetenv("LD_PRELOAD");
 }
 

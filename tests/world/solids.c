@@ -54,6 +54,7 @@ Triangles triangles_sphere(uint32_t around, float radius, float rough) {
             put_triangle(&mesh, a, b + around, b);
         }
     }
+
     return mesh;
 }
 
@@ -97,6 +98,7 @@ Triangles triangles_box(uint32_t n, float x, float y, float z) {
                 put_triangle(&mesh, a, side > 0 ? c : d, side > 0 ? d : c);
             }
     }
+
     return mesh;
 }
 
@@ -150,11 +152,14 @@ double triangles_distance(const Triangles *mesh, const float at[3]) {
             min = fmin(min, segment(a, b));
             length[c] = sqrt(dot(a, a));
         }
+
         if (over) min = fmin(min, height * height / dot(n, n));
         triple = height;
+
         // Van Oosterom and Strackee 1983
         angle += 2 * atan2(triple, length[0] * length[1] * length[2] + dot(p[0], p[1]) * length[2] +
                                        dot(p[1], p[2]) * length[0] + dot(p[2], p[0]) * length[1]);
     }
+
     return angle > 6.2831853 ? -sqrt(min) : sqrt(min);
 }

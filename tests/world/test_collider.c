@@ -56,10 +56,12 @@ TEST(normals_are_gradients) {
             if (off > 0.02)
                 fail_msg("kind %d at (%g, %g, %g): the normal is off by %g", kind, (double)p.x, (double)p.y,
                          (double)p.z, off);
+
             // one step of the distance along the normal ends on the surface
             Float3 surface = float3_mad(p, normal, -(float)d);
             assert_true(fabs(distance(&def, surface)) < 1e-5);
         }
+
         assert_true(checked > 4800);
     }
 }

@@ -62,6 +62,7 @@ TEST(one_key_stands_still) {
 TEST(rotations_stay_unit_and_go_the_short_way) {
     Fixture *f = fixture();
     const float s = sqrtf(0.5f);
+
     // a quarter turn about z, its end given with the other sign; and both of wrong length
     SingePoseKey keys[] = {{0, {0}, {0, 0, 0, 2}}, {1, {0}, {0, 0, -3 * s, -3 * s}}};
     set(f, 2, keys);
@@ -76,6 +77,7 @@ TEST(rotations_stay_unit_and_go_the_short_way) {
         assert_true(fabsf(angle - 1.57079633f * (float)i / 100) < 0.03f); // near the even turn
         angle_before = angle;
     }
+
     Float3 x = quat_rotate(path_pose(&f->path, 0.5).rotation, float3(1, 0, 0));
     near_float3(x, s, s, 0);
     x = quat_rotate(path_pose(&f->path, 1).rotation, float3(1, 0, 0));

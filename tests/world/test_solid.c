@@ -35,12 +35,14 @@ static int compare(const Triangles *mesh, const char *name, int count, float siz
     Collider collider = make_mesh(&memory, mesh);
     double worst = 0;
     int inside = 0;
+
     for (int k = 0; k < count; k++) {
         float p[3] = {any(-size, size), any(-size, size), any(-size, size)};
         if (k % 2) { // near a vertex
             const float *v = mesh->vertices + 3 * (size_t)(any(0, 0.999f) * (float)mesh->vertex_count);
             for (int i = 0; i < 3; i++) p[i] = v[i] + 0.05f * p[i] * any(0, 1);
         }
+
         double expected = triangles_distance(mesh, p);
         Float3 normal, at = float3_load(p);
         float found = collider_distance(&collider, at, INFINITY, &normal);
@@ -59,6 +61,7 @@ static int compare(const Triangles *mesh, const char *name, int count, float siz
         float sign = collider_distance(&collider, at, 0, &normal);
         assert_true(sign < 0 ? found < 0 : found >= 0);
     }
+
     printf("%s: %u triangles, %.3g bytes each, %d of %d points inside, off by %.2g of its size\n", name,
            mesh->triangle_count, (double)memory.held / mesh->triangle_count, inside, count, worst / (double)size);
     collider_free(&memory, &collider);
@@ -99,6 +102,7 @@ TEST(impossible_positions_are_far) {
     Memory memory = memory_make((SingeAllocator){0});
     Collider collider = make_mesh(&memory, &mesh);
     const float none[] = {NAN, INFINITY, -INFINITY};
+
     for (int k = 0; k < 27; k++) {
         float p[3] = {0.01f, 0.01f, 0.01f};
         p[k % 3] = none[k / 3 % 3];
@@ -108,6 +112,7 @@ TEST(impossible_positions_are_far) {
         assert_true(isinf(collider_distance(&collider, float3_load(p), 0.01f, &normal)));
         assert_true(fabsf(float3_length(normal) - 1) < 1e-6f);
     }
+
     collider_free(&memory, &collider);
     triangles_free(&mesh);
 }
@@ -116,6 +121,7 @@ TEST(inside_out_is_turned) {
     Memory memory = memory_make((SingeAllocator){0});
     Triangles mesh = triangles_sphere(16, 0.05f, 0);
     Collider collider = make_mesh(&memory, &mesh);
+
     assert_false(collider.mesh.turned);
     collider_free(&memory, &collider);
     for (uint32_t t = 0; t < mesh.triangle_count; t++) {
@@ -190,12 +196,14 @@ static Triangles column(uint32_t columns, uint32_t rows, const float *heights, c
     uint32_t nodes = columns * rows;
     Triangles mesh = {.vertices = calloc(6 * (size_t)nodes, sizeof(float)),
                       .triangles = calloc(3 * (size_t)(4 * nodes + 4 * (columns + rows)), sizeof(uint32_t))};
+
     for (uint32_t k = 0; k < 2 * nodes; k++) {
         float *v = mesh.vertices + 3 * (size_t)k;
         v[0] = size[0] * ((float)(k % columns) / (float)(columns - 1) - 0.5f);
         v[1] = size[1] * ((float)(k % nodes / columns) / (float)(rows - 1) - 0.5f);
         v[2] = k < nodes ? heights[k] : floor_z;
     }
+
     uint32_t *t = mesh.triangles;
     for (uint32_t j = 0; j + 1 < rows; j++)
         for (uint32_t i = 0; i + 1 < columns; i++) {
@@ -214,6 +222,7 @@ static Triangles column(uint32_t columns, uint32_t rows, const float *heights, c
             memcpy(t, new, sizeof new), t += 6;
         }
     }
+
     mesh.vertex_count = 2 * nodes, mesh.triangle_count = (uint32_t)((t - mesh.triangles) / 3);
     return mesh;
 }
@@ -254,11 +263,13 @@ TEST(heights_are_those_of_their_triangles) {
                 fail_msg("at (%g, %g, %g): %g, and %g at the foot", (double)p[0], (double)p[1], (double)p[2],
                          (double)found, (double)rest);
         }
+
         float limit = any(0, 0.03f), near = collider_distance(&collider, at, limit, &normal);
         if (found < limit) assert_true(fabsf(near - found) < 1e-7f);
         else assert_true(near >= limit && near <= found * (1 + 1e-5f));
         assert_true((collider_distance(&collider, at, 0, &normal) < 0) == (found < 0));
     }
+
     printf("heights: %d of 3000 points inside, off by %.2g m\n", inside, worst);
     assert_true(inside > 500);
     collider_free(&memory, &collider);
@@ -307,6 +318,7 @@ static double cost(const Collider *collider, const Triangles *mesh, float off) {
         points[k] = float3_add(float3_mad(a, float3_sub(b, a), any(0, 1)),
                                float3(any(-off, off), any(-off, off), any(-off, off)));
     }
+
     float sum = 0;
     double best = INFINITY;
     for (int repeat = 0; repeat < 7; repeat++) {
@@ -315,6 +327,7 @@ static double cost(const Collider *collider, const Triangles *mesh, float off) {
         for (int k = 0; k < COUNT; k++) sum += collider_distance(collider, points[k], 0.002f, &normal) + normal.x;
         best = fmin(best, seconds() - start);
     }
+
     assert_true(isfinite(sum));
     return 1e9 * best / COUNT;
 }

@@ -32,6 +32,7 @@ TEST(gusts_have_their_mean_and_bound) {
         mean[0] += (double)v.x / COUNT, mean[1] += (double)v.y / COUNT, mean[2] += (double)v.z / COUNT;
         square += (double)(v.y * v.y) / COUNT;
     }
+
     assert_true(fabs(mean[0] - 3) < 0.1 && fabs(mean[1]) < 0.1 && fabs(mean[2]) < 0.1);
     assert_true(sqrt(square) > 0.3 && sqrt(square) < 1.2); // it does blow
 }
@@ -56,6 +57,7 @@ TEST(gusts_are_smooth_in_time_and_space) {
     for (int i = 0; i < 2000; i++) {
         double time = i * 0.013;
         Float3 p = float3((float)i * 0.01f, 0.2f, 0.3f), v = wind_velocity(&def, p, time);
+
         // slopes: the noise's is 2 * 15/8 per lattice cell and direction
         Float3 later = wind_velocity(&def, p, time + 1e-3),
                there = wind_velocity(&def, float3(p.x + 1e-3f, p.y, p.z), time);

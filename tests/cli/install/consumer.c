@@ -10,6 +10,7 @@ int main(void) {
     SingeSheetId id;
     SingeError error;
     SingeSim *sim;
+
     sheet.vertex_count = 4, sheet.positions = positions;
     sheet.cell_count = 1, sheet.cells = cell;
     if (singe_sim_create(&def, &sim, &error)) return 1;

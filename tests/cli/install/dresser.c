@@ -8,6 +8,7 @@ int main(void) {
     SingeMeshDef def = singe_default_mesh();
     SingeMesh *mesh;
     SingeError error;
+
     def.vertex_count = 6, def.positions = positions, def.face_count = 4, def.corners = corners;
     if (singe_mesh_create(&def, &mesh, &error)) return puts(error.message), 1;
     SingeSheetDef sheet = singe_default_sheet();
