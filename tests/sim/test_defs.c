@@ -1,4 +1,4 @@
-// Bad Defs, field by field, and Defs of older and newer headers.
+// Bad Defs, beyond the ranges of their fields (test_ranges.c), and Defs of older and newer headers.
 #include "scenes.h"
 
 #include <math.h>
@@ -20,46 +20,14 @@
     } while (0)
 
 TEST(bad_simulations_are_refused) {
-    SIM_BAD(thread_count, 0, "thread_count");
-    SIM_BAD(thread_count, 65, "thread_count");
-    SIM_BAD(time_step, 0, "time_step");
-    SIM_BAD(time_step, NAN, "time_step");
-    SIM_BAD(time_step, INFINITY, "time_step");
-    SIM_BAD(pace, -1, "pace");
-    SIM_BAD(pace, NAN, "pace");
-    SIM_BAD(gravity[1], NAN, "gravity");
-    SIM_BAD(gravity[2], -INFINITY, "gravity");
-    SIM_BAD(ambient_temperature, 0, "ambient_temperature");
-    SIM_BAD(ambient_temperature, NAN, "ambient_temperature");
-    SIM_BAD(air_density, -1, "air_density");
-    SIM_BAD(surface_detail, -1, "surface_detail");
-    SIM_BAD(surface_detail, NAN, "surface_detail");
-    SIM_BAD(surface_raggedness, INFINITY, "surface_raggedness");
-    SIM_BAD(heat_tolerance, 0, "heat_tolerance");
-    SIM_BAD(heat_tolerance, NAN, "heat_tolerance");
-    SIM_BAD(wind.gust, -1, "gust");
-    SIM_BAD(wind.gust_time, 0, "gust_time");
-    SIM_BAD(wind.gust_size, 0, "gust_size");
-    SIM_BAD(wind.velocity[0], NAN, "velocity");
-    SIM_BAD(solver.substeps, -1, "substeps");
-    SIM_BAD(solver.substeps, 1001, "substeps");
     SIM_BAD(solver.order[0], SINGE_RED, "order");
     SIM_BAD(solver.order[3], (SingeColour)4, "order");
-    SIM_BAD(solver.regularisation[2], 0, "regularisation");
-    SIM_BAD(solver.regularisation[2], NAN, "regularisation");
-    SIM_BAD(solver.height_min, -1, "height_min");
-    SIM_BAD(solver.height_gain, 2, "height_gain");
+    SIM_BAD(wind.gust, -1, "gust");
     SIM_BAD(struct_size, 0, "struct_size");
     SIM_BAD(wind.struct_size, 0, "struct_size");
     SIM_BAD(solver.struct_size, 0, "struct_size");
     SIM_BAD(wind.struct_size, 1 << 20, "struct_size");
     SIM_BAD(gas.struct_size, 0, "struct_size");
-    SIM_BAD(gas.cell_size, -1, "gas.cell_size");
-    SIM_BAD(gas.cell_size, NAN, "gas.cell_size");
-    SIM_BAD(gas.height, 0, "gas.height");
-    SIM_BAD(gas.conductance, -1, "gas.conductance");
-    SIM_BAD(gas.radiated, 0.96f, "gas.radiated");
-    SIM_BAD(gas.soot, NAN, "gas.soot");
 }
 
 static void *no_enqueue(void *context, SingeTaskFn *run, void *task, int count, int grain) {
@@ -69,17 +37,6 @@ static void *no_enqueue(void *context, SingeTaskFn *run, void *task, int count, 
 }
 
 TEST(half_a_task_hook_is_refused) { SIM_BAD(tasks.enqueue, no_enqueue, "tasks"); }
-
-TEST(limits_are_inclusive) {
-    SingeSimDef def = singe_default_sim();
-    SingeSim *sim;
-    SingeError error;
-    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) def.solver.regularisation[i] = 1e-6f;
-    def.pace = 1e-6f, def.heat_tolerance = 1e-9f, def.time_step = 1e-9f, def.solver.height_gain = 1;
-    def.solver.substeps = 1000;
-    assert_int_equal(singe_sim_create(&def, &sim, &error), SINGE_OK);
-    singe_sim_destroy(sim);
-}
 
 static SingeSim *small_sim(void) { return test_sim(NULL, test_grid(4, 4, 0.01f, 0.01f), NULL); }
 
@@ -103,22 +60,14 @@ TEST(bad_sources_are_refused) {
     SingeValueKey strengths[2] = {{0, 1}, {0, 1}};
 
     SOURCE_BAD(SINGE_SOURCE_BALL, def.struct_size = 0);
-    SOURCE_BAD(SINGE_SOURCE_BALL, def.temperature = 0);
-    SOURCE_BAD(SINGE_SOURCE_BALL, def.temperature = INFINITY);
-    SOURCE_BAD(SINGE_SOURCE_BALL, def.conductance = -1);
-    SOURCE_BAD(SINGE_SOURCE_BALL, def.radius = NAN);
-    SOURCE_BAD(SINGE_SOURCE_BALL, def.falloff = -1);
     SOURCE_BAD(SINGE_SOURCE_BALL, (def.path_count = 0, def.position[1] = NAN));
     SOURCE_BAD(SINGE_SOURCE_BALL, def.path = NULL);
     SOURCE_BAD(SINGE_SOURCE_BALL, (def.path = keys, def.path_count = 2)); // not later than the one before
     SOURCE_BAD(SINGE_SOURCE_SPOT, (keys[1].time = 1, def.path = keys, def.path_count = 2));
-    SOURCE_BAD(SINGE_SOURCE_SPOT, def.start = NAN);
-    SOURCE_BAD(SINGE_SOURCE_SPOT, def.end = NAN);
     SOURCE_BAD(SINGE_SOURCE_TEXTURE, def.texture.width = 0);
     SOURCE_BAD(SINGE_SOURCE_TEXTURE, def.texture.height = -1);
     SOURCE_BAD(SINGE_SOURCE_TEXTURE, def.texture.values = NULL);
     SOURCE_BAD(SINGE_SOURCE_TEXTURE, def.texture.values = &nan_grey);
-    SOURCE_BAD(SINGE_SOURCE_TEXTURE, def.flux = NAN);
     SOURCE_BAD(SINGE_SOURCE_TEXTURE, def.strength_count = 2);
     SOURCE_BAD(SINGE_SOURCE_TEXTURE, (def.strength_count = 2, def.strength = strengths));
     SOURCE_BAD((SingeSourceKind)17, (void)0);
@@ -152,8 +101,6 @@ TEST(bad_pins_are_refused) {
     PIN_BAD(SINGE_ERROR_ARGUMENT, def.points = NULL);
     PIN_BAD(SINGE_ERROR_ARGUMENT, def.points = bad_point);
     PIN_BAD(SINGE_ERROR_ARGUMENT, def.points = far_point);
-    PIN_BAD(SINGE_ERROR_ARGUMENT, def.radius = -1);
-    PIN_BAD(SINGE_ERROR_ARGUMENT, def.radius = NAN);
     PIN_BAD(SINGE_ERROR_ARGUMENT, def.vertex_count = 2);
     PIN_BAD(SINGE_ERROR_ARGUMENT, (def.vertex_count = 2, def.vertices = vertices));
     assert_int_equal(singe_sim_error(sim)->element, 1);
@@ -179,9 +126,6 @@ TEST(bad_colliders_and_wind_are_refused) {
     def.path = &key, def.struct_size = 0;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &def, &id));
     SingeWindDef wind = singe_default_wind();
-    wind.gust = -1;
-    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_wind(sim, &wind));
-    wind = singe_default_wind();
     wind.struct_size = 0;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_wind(sim, &wind));
     test_steps(sim, 1);
