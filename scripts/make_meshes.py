@@ -172,7 +172,7 @@ def charts():
 
 
 def split_seam():
-    """The same with the vertices of the seam there twice, at the same places."""
+    """The same with the vertices of the seam doubled, at the same places."""
     mesh = charts()
     uv, corners = mesh.corner_uv
     used = sorted({c for f in corners for c in f})
@@ -408,7 +408,7 @@ MESHES = {
     "tiny-cells": ("obj", "good", tiny_cells, "cells of 18 mm, and of half a millimetre in the middle"),
     "components": ("obj", "good", components, "four patches in one file"),
     "charts": ("obj", "good", charts, "two uv charts, one uv a corner"),
-    "split-seam": ("obj", "good", split_seam, "a uv seam whose vertices are there twice"),
+    "split-seam": ("obj", "good", split_seam, "a uv seam whose vertices are doubled"),
     "split-seam-apart": ("obj", "good", split_seam_apart, "the same, 1 um apart"),
     "triangles": ("obj", "good", lambda: grid().triangles(), "a sheet of regular triangles"),
     "scattered": ("obj", "good", scattered, "a sheet of uneven triangles"),
@@ -424,7 +424,7 @@ MESHES = {
     "tent": ("obj", "broken", tent, "three faces of one sheet at an edge"),
     "moebius": ("obj", "broken", moebius, "a band with one side"),
     "winding": ("obj", "broken", winding, "some faces turned over"),
-    "duplicate-faces": ("obj", "broken", duplicate_faces, "two faces there twice"),
+    "duplicate-faces": ("obj", "broken", duplicate_faces, "two doubled faces"),
     "degenerate-faces": ("obj", "broken", degenerate_faces, "faces without area"),
     "repeated-vertex": ("obj", "broken", repeated_vertex, "a quad with a corner twice"),
     "not-a-number": ("obj", "broken", not_a_number, "a coordinate is NaN"),

@@ -307,7 +307,7 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
     for (int i = 0; i < LANES; i++) taken[i] = on && more[i] ? samples : first;
 
     for (int s = first; s < samples && on; s++) {
-        // after half of the samples: only lanes whose samples still differ so much that more would be visible
+        // after half of the samples: only lanes whose samples still differ visibly
         if (s == samples / 2 && !rays && !is_blurred(preview)) {
             on = false;
             for (int i = 0; i < LANES; i++) {

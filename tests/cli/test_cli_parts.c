@@ -1,4 +1,4 @@
-// The pieces of the command that a run alone would not corner.
+// Parts of the command whose odd cases no run reaches.
 
 #include "support/test.h"
 #include <signal.h>

@@ -187,7 +187,7 @@ TEST(crossing_input_is_left_alone) {
     singe_sim_destroy(sim);
 }
 
-/// Two cells that approach, each crossed by a cell of its own: what crosses one is nothing to the other.
+/// Two cells that approach, each crossed by another cell: they still keep each other apart.
 TEST(cells_of_other_crossings_are_kept_apart) {
     const float side = 0.02f, speed = 0.5f;
     SingeSimDef def = singe_default_sim();

@@ -1,4 +1,4 @@
-// The gas: its heat is kept, it rises as plumes do, sheets and colliders are in its way, and it heats what it flows by.
+// The gas: its heat is kept, it rises as plumes do, sheets and colliders stop it, and it heats what it flows past.
 #include "heat/rig.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-// The heat matrix where two springs join the same two particles: each goes by itself.
+// The heat matrix where two springs join the same two particles: each is ablated by itself.
 //
 // Two cells share both edges of a vertex that only they have, so that the diagonals between the other two corners they
 // share are two springs, as are the green ones between their centres:

@@ -30,7 +30,7 @@ static void random_polygons(Text *text) {
     }
 }
 
-/// A grid of triangles with random holes, faces turned over, there twice, and moved vertices.
+/// A grid of triangles with random holes, faces turned over, doubled faces, and moved vertices.
 static void broken_grid(Text *text) {
     int n = 2 + (int)below(7), m = 2 + (int)below(7);
     double shake = below(3) * 0.004;

@@ -267,7 +267,7 @@ TEST(projections_end_early) {
     assert_true(iterations[1] < iterations[0]);
     assert_true(fabs(height[1] / height[0] - 1) < 1e-3);
 
-    // at rest there is nothing to solve, and the early exit takes the first projection for the last
+    // at rest there is nothing to solve, and the early exit takes the first projection as the last
     def.gravity[2] = 0, def.solver.early_exit = true;
     SingeSim *sim = swing(&def, 10, 1);
     test_steps(sim, 2);

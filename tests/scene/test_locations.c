@@ -1,6 +1,5 @@
-// Every message about a scene has its location. The examples, broken in every way that is near: cut off at each line,
-// each word left out or there twice, each line left out, indented or turned back. A part of it, or with the argument
-// `all` everything.
+// Every message about a scene has its location. The examples are broken in every simple way: cut off at each line, each
+// word left out or doubled, each line left out, indented or outdented. A sample of these, or all with the argument `all`.
 #include "parsing.h"
 
 #include <glob.h>

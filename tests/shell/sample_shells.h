@@ -1,4 +1,4 @@
-// Float4 meshes for the tests of the shell, and what every shell must satisfy.
+// Small meshes for the tests of the shell, and what every shell must satisfy.
 #ifndef TESTS_SHELL_SAMPLE_SHELLS_H
 #define TESTS_SHELL_SAMPLE_SHELLS_H
 

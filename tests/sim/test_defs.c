@@ -211,33 +211,6 @@ TEST(a_def_inside_may_be_older) {
     test_mesh_free(&mesh);
 }
 
-/// The same of a sheet's material: the fields after it are found behind the smaller one.
-TEST(what_follows_an_older_material_is_found) {
-    TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
-    SingeSheetDef def = test_sheet(&mesh);
-    def.velocity[1] = 3;
-    def.material.damping.value = NAN; // not known to the old header
-    size_t head = offsetof(SingeSheetDef, material), tail = offsetof(SingeSheetDef, velocity);
-    size_t inner = offsetof(SingeMaterialDef, damping) / 8 * 8;
-    def.material.struct_size = inner;
-    _Alignas(max_align_t) unsigned char bytes[sizeof def];
-    memset(bytes, 0xFF, sizeof bytes);
-    memcpy(bytes, &def, head);
-    memcpy(bytes + head, &def.material, inner);
-    memcpy(bytes + head + inner, (char *)&def + tail, sizeof def - tail);
-    size_t size = head + inner + sizeof def - tail;
-    memcpy(bytes, &size, sizeof size);
-    SingeSimDef standard = singe_default_sim();
-    SingeSim *sim;
-    SingeSheetId id;
-    assert_int_equal(singe_sim_create(&standard, &sim, NULL), SINGE_OK);
-    test_ok(sim, singe_sim_add_sheet(sim, (SingeSheetDef *)(void *)bytes, &id));
-    test_ok(sim, singe_sim_commit(sim));
-    assert_true(singe_sim_view(sim).velocity[0][1] == 3);
-    singe_sim_destroy(sim);
-    test_mesh_free(&mesh);
-}
-
 TEST(what_a_newer_def_adds_is_not_read) {
     struct {
         SingeWindDef wind;

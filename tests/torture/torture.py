@@ -118,10 +118,10 @@ class Bench:
     """Places for several trials at a time."""
 
     def __init__(self):
-        # files are flushed a great deal, so in memory where that can be had
+        # files are flushed often, so they lie in memory where possible
         self.dir = tempfile.mkdtemp(prefix="singe-torture-", dir="/dev/shm" if os.path.isdir("/dev/shm") else None)
         self.free, self.lock, self.count = [], threading.Lock(), 0
-        self.made_up = {}  # what has been gone on from, and what became of it
+        self.made_up = {}  # each state that was resumed, and the result
 
     def place(self):
         bench = self
@@ -249,7 +249,7 @@ def mixture_faults(left, expected):
 
 
 def made_up_faults(bench, place, trial, left, expected):
-    """Going on gives what an undisturbed run gives. What is left the same way is gone on from once."""
+    """Resuming gives what an undisturbed run gives. Each kind of remains is resumed once."""
     def key(name, data):
         try:
             return name, str(comparable(name, data))

@@ -1,5 +1,5 @@
 // A scene that is read while one allocation after another fails, in libfyaml's process too: an error each time, no
-// crash, and the same scene as soon as none fails. This program's malloc takes the place of libc's for all of its
+// crash, and the same scene when none fails. This program's malloc takes the place of libc's for all of its
 // libraries.
 #include "parsing.h"
 
@@ -92,7 +92,7 @@ static void sweep(const char *scene_text, bool once, SingeResult expected) {
     assert_true(n > 180);
 }
 
-TEST(the_estimate_covers_every_allocation) {
+TEST(every_failed_allocation_is_reported) {
     uint32_t reported;
     assert_int_equal(attempt(text, 0, false, &reported), SINGE_OK);
     sweep(text, false, SINGE_OK);
@@ -102,5 +102,5 @@ TEST(the_estimate_covers_every_allocation) {
     free(undisturbed);
 }
 #else
-TEST(the_estimate_covers_every_allocation) { skip(); }
+TEST(every_failed_allocation_is_reported) { skip(); }
 #endif
