@@ -22,9 +22,6 @@ BenchFn bench_tear;
 BenchFn bench_dynamics;
 /// Whole burning steps with a sphere and the ground; SINGE_ERROR_LIMIT if they exceed a given limit.
 BenchFn bench_step;
-/// One stage of burning steps.
-BenchFn bench_heat;
-BenchFn bench_ablate;
 /// The drawn surface of a burning sheet by detail: triangles and cost.
 BenchFn bench_surface;
 /// A cloth falls over a sphere in folds: cost of contact, strain.

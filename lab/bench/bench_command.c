@@ -35,8 +35,6 @@ static const struct {
      "The dynamics and its projection of springs at several sizes, compared with the machine's peaks."},
     {"step", "bench step", bench_step, SIZES | SOLVER | BENCH_BIT(LIMIT) | BENCH_BIT(CURVATURE),
      "Whole steps of a burning sheet with a sphere and the ground: milliseconds per stage."},
-    {"heat", "bench heat", bench_heat, SIZES, "The heat stage of a burning sheet."},
-    {"ablate", "bench ablate", bench_ablate, SIZES, "The ablation stage of a burning sheet."},
     {"surface", "bench surface", bench_surface, SIZES,
      "The drawn surface of a burning sheet at several refinements: triangles and milliseconds."},
     {"heap", "bench heap", bench_heap,

@@ -1,4 +1,4 @@
-// Whole burning steps, and the stages heat and ablate of them.
+// Whole burning steps, stage by stage.
 #include "bench/bench.h"
 #include "bench/burning.h"
 #include "bench/timing.h"
@@ -26,10 +26,10 @@ enum {
     BURNT,
     MEMORY,
     YARDSTICK,
-    STEP_COLUMNS
+    COLUMNS
 };
 
-static const BenchColumn step_columns[STEP_COLUMNS] = {
+static const BenchColumn columns[COLUMNS] = {
     [SPRINGS] = {"springs", "%.0f", 8, NULL},      [SOLVER] = {"solver", NULL, 11, NULL},
     [LIMIT] = {"curvature_max", "%.0f", 13, NULL}, [THREADS] = {"threads", "%.0f", 7, NULL},
     [STEP_MEDIAN] = {"step_ms", "%.4g", 8, NULL},  [STEP_MIN] = {"min_ms", "%.4g", 8, NULL},
@@ -39,15 +39,6 @@ static const BenchColumn step_columns[STEP_COLUMNS] = {
     [NS] = {"ns_spring", "%.2f", 9, NULL},         [ITERATIONS] = {"heat_iterations", "%.1f", 15, NULL},
     [CONTACTS] = {"contacts", "%.0f", 8, NULL},    [BURNT] = {"burnt_pct", "%.2f", 9, NULL},
     [MEMORY] = {"bytes_spring", "%.1f", 12, NULL}, [YARDSTICK] = {"yardstick_ms", "%.2f", 12, NULL},
-};
-
-enum { STAGE_SPRINGS, STAGE_THREADS, STAGE_MEDIAN, STAGE_MIN, STAGE_NS, STAGE_ITERATIONS, STAGE_GONE, STAGE_COLUMNS };
-
-static const BenchColumn stage_columns[STAGE_COLUMNS] = {
-    [STAGE_SPRINGS] = {"springs", "%.0f", 8, NULL},    [STAGE_THREADS] = {"threads", "%.0f", 7, NULL},
-    [STAGE_MEDIAN] = {"stage_ms", "%.4g", 9, NULL},    [STAGE_MIN] = {"min_ms", "%.4g", 9, NULL},
-    [STAGE_NS] = {"ns_spring", "%.3f", 9, NULL},       [STAGE_ITERATIONS] = {"heat_iterations", "%.1f", 15, NULL},
-    [STAGE_GONE] = {"springs_gone", "%.0f", 12, NULL},
 };
 
 /// Compares the step with the limit of the reference machine, scaled by the yardstick's time on this machine.
@@ -68,51 +59,38 @@ static SingeResult stages_judge(const BenchOptions *options, const Timing *timin
     return SINGE_ERROR_LIMIT;
 }
 
-/// `stage` is one of the stages, or TIMED_STEP for a row of them all.
-static SingeResult stages_measure(const BenchOptions *options, int stage, double springs, Yardstick *yardstick,
-                                  BenchTable *table, SingeError *error) {
+static SingeResult stages_measure(const BenchOptions *options, double springs, Yardstick *yardstick, BenchTable *table,
+                                  SingeError *error) {
     SingeSim *sim;
     Timing timing = {0};
-    BenchValue row[STEP_COLUMNS] = {0};
-    const float pace = stage == SINGE_STAGE_ABLATE ? 20 : 1; // so that much is removed while it is timed
+    if (burning_build(options, NULL, springs, 1, &sim, error)) return error->code;
 
-    if (burning_build(options, NULL, springs, pace, &sim, error)) return error->code;
     int steps = options->steps ? options->steps : timing_steps(springs, 10, 200);
     SingeResult result = timing_measure(&timing, sim, yardstick, WARM_UP, steps);
     if (result) {
         *error = *singe_sim_error(sim);
     } else {
-        if (stage == TIMED_STEP) {
-            double actual = timing_springs(sim), step = timing_median(&timing, TIMED_STEP);
-            row[SPRINGS] = bench_number(actual);
-            row[SOLVER] = bench_text(enum_words.SingeSolverMethod[options->solver]);
-            row[LIMIT] = bench_number(options->curvature.values[0]);
-            row[THREADS] = bench_number(options->threads);
-            row[STEP_MEDIAN] = bench_number(step);
-            row[STEP_MIN] = bench_number(timing_min(&timing, TIMED_STEP));
-            row[HEAT] = bench_number(timing_median(&timing, SINGE_STAGE_HEAT));
-            row[BURN] = bench_number(timing_median(&timing, SINGE_STAGE_BURN));
-            row[ABLATE] = bench_number(timing_median(&timing, SINGE_STAGE_ABLATE));
-            row[DYNAMICS] = bench_number(timing_median(&timing, SINGE_STAGE_DYNAMICS));
-            row[GAS] = bench_number(timing_median(&timing, SINGE_STAGE_GAS));
-            row[PROJECTION] = bench_number(timing_median(&timing, TIMED_PROJECTION));
-            row[NS] = bench_number(1e6 * step / actual);
-            row[ITERATIONS] = bench_number((double)timing.total.heat_iterations / timing.steps);
-            row[CONTACTS] = bench_number((double)timing.total.contacts / timing.steps);
-            row[BURNT] = bench_number(100 * singe_sim_stats(sim).burnt_fraction);
-            row[MEMORY] = bench_number((double)singe_sim_counts(sim).memory / actual);
-            row[YARDSTICK] = bench_number(timing_median(&timing, TIMED_YARDSTICK));
-        } else {
-            double actual = timing_springs(sim), median = timing_median(&timing, stage);
-            row[STAGE_SPRINGS] = bench_number(actual);
-            row[STAGE_THREADS] = bench_number(options->threads);
-            row[STAGE_MEDIAN] = bench_number(median);
-            row[STAGE_MIN] = bench_number(timing_min(&timing, stage));
-            row[STAGE_NS] = bench_number(1e6 * median / actual);
-            row[STAGE_ITERATIONS] = bench_number((double)timing.total.heat_iterations / timing.steps);
-            row[STAGE_GONE] = bench_number(actual - singe_sim_stats(sim).springs);
-        }
-
+        const double actual = timing_springs(sim), step = timing_median(&timing, TIMED_STEP);
+        const BenchValue row[COLUMNS] = {
+            [SPRINGS] = bench_number(actual),
+            [SOLVER] = bench_text(enum_words.SingeSolverMethod[options->solver]),
+            [LIMIT] = bench_number(options->curvature.values[0]),
+            [THREADS] = bench_number(options->threads),
+            [STEP_MEDIAN] = bench_number(step),
+            [STEP_MIN] = bench_number(timing_min(&timing, TIMED_STEP)),
+            [HEAT] = bench_number(timing_median(&timing, SINGE_STAGE_HEAT)),
+            [BURN] = bench_number(timing_median(&timing, SINGE_STAGE_BURN)),
+            [ABLATE] = bench_number(timing_median(&timing, SINGE_STAGE_ABLATE)),
+            [DYNAMICS] = bench_number(timing_median(&timing, SINGE_STAGE_DYNAMICS)),
+            [GAS] = bench_number(timing_median(&timing, SINGE_STAGE_GAS)),
+            [PROJECTION] = bench_number(timing_median(&timing, TIMED_PROJECTION)),
+            [NS] = bench_number(1e6 * step / actual),
+            [ITERATIONS] = bench_number((double)timing.total.heat_iterations / timing.steps),
+            [CONTACTS] = bench_number((double)timing.total.contacts / timing.steps),
+            [BURNT] = bench_number(100 * singe_sim_stats(sim).burnt_fraction),
+            [MEMORY] = bench_number((double)singe_sim_counts(sim).memory / actual),
+            [YARDSTICK] = bench_number(timing_median(&timing, TIMED_YARDSTICK)),
+        };
         result = table_add(table, row) ? stages_judge(options, &timing, table, error) : SINGE_ERROR_MEMORY;
     }
 
@@ -127,31 +105,13 @@ SingeResult bench_step(const BenchOptions *options, BenchTable *table, SingeErro
     BenchList limits = bench_list(&options->curvature, 1, &default_limit);
     Yardstick *yardstick = yardstick_create();
     SingeResult result = yardstick ? SINGE_OK : SINGE_ERROR_MEMORY;
-    *table = table_begin("step", step_columns, STEP_COLUMNS, table->text);
+    *table = table_begin("step", columns, COLUMNS, table->text);
     for (int i = 0; i < springs.count; i++)
         for (int l = 0; l < limits.count && !result; l++) {
             BenchOptions limited = *options;
             limited.curvature = (BenchList){.count = 1, .values = {limits.values[l]}};
-            result = stages_measure(&limited, TIMED_STEP, springs.values[i], yardstick, table, error);
+            result = stages_measure(&limited, springs.values[i], yardstick, table, error);
         }
     yardstick_destroy(yardstick);
     return result;
-}
-
-static SingeResult bench_stage(const char *name, int stage, const BenchOptions *options, BenchTable *table,
-                               SingeError *error) {
-    BenchList springs = bench_list(&options->springs, 5, (const double[]){1e3, 4e3, 16e3, 1e5, 1e6});
-    SingeResult result = SINGE_OK;
-    *table = table_begin(name, stage_columns, STAGE_COLUMNS, table->text);
-    for (int i = 0; i < springs.count && !result; i++)
-        result = stages_measure(options, stage, springs.values[i], NULL, table, error);
-    return result;
-}
-
-SingeResult bench_heat(const BenchOptions *options, BenchTable *table, SingeError *error) {
-    return bench_stage("heat", SINGE_STAGE_HEAT, options, table, error);
-}
-
-SingeResult bench_ablate(const BenchOptions *options, BenchTable *table, SingeError *error) {
-    return bench_stage("ablate", SINGE_STAGE_ABLATE, options, table, error);
 }

@@ -16,8 +16,6 @@ TINY = (
     ("dynamics", ["--springs", "250,1000", "--steps", "3", "--quick"], ["step_ms", "ns_spring_sweep", "blue_pct_mean"]),
     ("dynamics", ["--springs", "250", "--steps", "3", "--quick", "--state", "shrink", "--threads", "2"], ["gflops"]),
     ("step", ["--springs", "1000", "--steps", "3"], ["step_ms", "heat_ms", "contacts"]),
-    ("heat", ["--springs", "1000", "--steps", "3"], ["stage_ms"]),
-    ("ablate", ["--springs", "1000", "--steps", "3"], ["springs_gone"]),
     ("front", ["--material", "tissue", "--quick"], ["speed_mm_s_is", "hottest_C_from", "finding"]),
     ("surface", ["--springs", "1000", "--steps", "20"], ["detail_mm", "triangles", "fine_pct", "surface_ms"]),
     ("memory", ["--springs", "1000"], ["bytes_spring", "all_bytes_spring"]),
