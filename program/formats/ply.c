@@ -384,7 +384,6 @@ static const struct {
 };
 
 size_t ply_type_size(PlyType type) { return ply_types[type].size; }
-const char *ply_type_name(PlyType type) { return ply_types[type].name; }
 
 SingeResult ply_refuse(const Ply *ply, SingeResult code, const char *format, ...) {
     char what[320];

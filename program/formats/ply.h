@@ -58,7 +58,6 @@ void ply_header_free(Ply *ply);
 /// The element of that name, or NULL.
 const PlyElement *ply_element(const Ply *ply, const char *name);
 size_t ply_type_size(PlyType type);
-const char *ply_type_name(PlyType type);
 
 /// Fails at the cursor: by line in text, by byte in binary.
 SingeResult ply_refuse(const Ply *ply, SingeResult code, const char *format, ...) SINGE_PRINTF(3, 4);

@@ -16,7 +16,6 @@
 #define SPACE .min = -1e6, .max = 1e6
 #define LOCATION .min = -1e4, .max = 1e4 // of drawn objects
 #define TURN .min = -1e6 * DEGREE, .max = 1e6 * DEGREE
-#define KELVIN .min = 1, .max = 1e4
 #define OVER(low) .flags = ROW_OPEN_MIN, .min = (low), .max = MUCH
 #define FROM(low) .min = (low), .max = MUCH
 #define OVER_OR_INF(low) .flags = ROW_OPEN_MIN | ROW_INF, .min = (low), .max = MUCH

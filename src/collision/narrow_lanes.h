@@ -11,9 +11,6 @@ typedef struct FourVectors {
 static inline FourVectors four_all(Float4 a) {
     return (FourVectors){float4_all(a[0]), float4_all(a[1]), float4_all(a[2])};
 }
-static inline FourVectors four_plus(FourVectors a, FourVectors b) {
-    return (FourVectors){a.x + b.x, a.y + b.y, a.z + b.z};
-}
 static inline FourVectors four_minus(FourVectors a, FourVectors b) {
     return (FourVectors){a.x - b.x, a.y - b.y, a.z - b.z};
 }

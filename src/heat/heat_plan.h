@@ -182,12 +182,6 @@ static inline float heat_round(double x, uint32_t hash) {
 void heat_blocks(HeatPass *pass, SingeTaskFn *run);
 double heat_sum(const HeatPlan *plan, int column);
 
-/// The particles of a block.
-static inline uint32_t heat_block_end(const HeatPlan *plan, int block) {
-    uint32_t end = (uint32_t)(block + 1) * POOL_BLOCK;
-    return end < plan->particles ? end : plan->particles;
-}
-
 /// The groups of a block are [heat_group_first, heat_group_end).
 static inline uint32_t heat_group_first(int block) { return (uint32_t)block * (POOL_BLOCK / HEAT_GROUP); }
 static inline uint32_t heat_group_end(const HeatPlan *plan, int block) {

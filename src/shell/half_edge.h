@@ -23,7 +23,6 @@ typedef struct HalfEdges {
 SingeResult half_edge_build(Memory *memory, Shell *shell, HalfEdges *mesh, SingeError *error);
 void half_edge_free(Memory *memory, HalfEdges *mesh);
 
-static inline uint32_t half_edge_next(uint32_t half) { return (half & ~3u) | ((half + 1) & 3); }
 static inline uint32_t half_edge_previous(uint32_t half) { return (half & ~3u) | ((half + 3) & 3); }
 
 /// The half-edge that leaves the same vertex one cell further counter-clockwise, or SHELL_NONE.

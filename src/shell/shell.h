@@ -295,9 +295,6 @@ void state_free(Memory *memory, State *state);
 /// Points the arrays of `state` into an arena of state->arena_size bytes laid out for this shell.
 void state_rebase(const Shell *shell, State *state, void *arena);
 
-/// Makes `to` equal to `from`; both were created for this shell. Keeps the arena of `to`.
-void state_copy(const Shell *shell, State *to, const State *from);
-
 /// True for a spare vertex, which no tear has used yet.
 static inline bool shell_is_spare(const Shell *shell, uint32_t vertex) {
     SINGE_ASSERT(vertex < shell->vertex_count);

@@ -71,14 +71,6 @@ void state_rebase(const Shell *shell, State *state, void *arena) {
     state->arena_size = lay_out(shell, state, arena, &state->basic_size);
 }
 
-void state_copy(const Shell *shell, State *to, const State *from) {
-    void *arena = to->arena;
-    if (to == from) return;
-    memcpy(arena, from->arena, from->arena_size);
-    *to = *from;
-    state_rebase(shell, to, arena);
-}
-
 /// Bytes before an aligned block. The last one holds the block's offset in its allocation.
 enum { LEAD = SLICE };
 

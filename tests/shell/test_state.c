@@ -81,10 +81,9 @@ static void check_slice(const State *state, const void *slice, size_t size) {
 TEST(the_arena_holds_the_whole_state) {
     Memory memory = memory_make((SingeAllocator){0});
     Shell shell = start_shell(&memory);
-    State a, b;
+    State a;
 
     assert_int_equal(state_create(&memory, &shell, &a), SINGE_OK);
-    assert_int_equal(state_create(&memory, &shell, &b), SINGE_OK);
     size_t particles = shell.particle_count;
     check_slice(&a, a.dynamics.position, particles * 16);
     check_slice(&a, a.dynamics.velocity, particles * 16);
@@ -96,24 +95,8 @@ TEST(the_arena_holds_the_whole_state) {
         check_slice(&a, a.ablate.spring_flags[colour], shell.springs[colour].count);
     }
 
-    // fill every array to its end; a copy is equal and stands by itself
-    for (size_t p = 0; p < particles; p++) a.heat.temperature[p] = (float)p, a.dynamics.velocity[p][2] = -(float)p;
-    a.ablate.spring_flags[SINGE_YELLOW][shell.springs[SINGE_YELLOW].count - 1] = 0;
-    a.time = 3.5, a.ablate.topology_version = 7, a.burn.mass_burnt = 0.25;
-    void *arena = b.arena;
-    state_copy(&shell, &b, &a);
-    assert_ptr_equal(b.arena, arena);
-    assert_memory_equal(b.arena, a.arena, a.arena_size);
-    assert_true(b.time == 3.5 && b.ablate.topology_version == 7 && b.burn.mass_burnt == 0.25);
-    assert_true(b.heat.temperature != a.heat.temperature && b.heat.temperature[5] == 5);
-    assert_int_equal(b.ablate.spring_flags[SINGE_YELLOW][shell.springs[SINGE_YELLOW].count - 1], 0);
-    a.heat.temperature[5] = -1;
-    assert_true(b.heat.temperature[5] == 5);
-    state_copy(&shell, &b, &b);
-    assert_true(b.heat.temperature[5] == 5);
     state_free(&memory, &a);
-    state_free(&memory, &b);
-    state_free(&memory, &b);
+    state_free(&memory, &a); // nothing is left to free
     shell_free(&memory, &shell);
     assert_int_equal(memory.held, 0);
 }
