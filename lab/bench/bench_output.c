@@ -13,6 +13,7 @@
 
 #include "bench/machine.h"
 #include "cli/text.h"
+#include "common/store.h"
 #include "formats/output.h"
 
 enum { FORMAT, VERTICES, USER, SYSTEM, BOTH, WALL, BYTES, OF_PLY, COLUMNS };
@@ -156,14 +157,17 @@ SingeResult bench_output(const BenchOptions *options, BenchTable *table, SingeEr
         .mesh = {.vertex_count = 4, .cell_count = 1, .positions = corners, .uv = uv, .cells = cell}};
     const OutputScene scene = {.name = "bench", .fps = 24, .texture_size = 1024, .sheet_count = 1, .sheets = &sheet};
     *table = table_begin("output", columns, COLUMNS, table->text);
+    char folder[] = "/dev/shm/singe-bench-XXXXXX"; // of a name that nobody can know beforehand
     OutputBench *b = calloc(1, sizeof *b);
     double ply = 0;
     SingeResult result = b ? SINGE_OK : SINGE_ERROR_MEMORY;
     if (b) {
         output_fill(b);
         b->scene = &scene;
-        b->path =
-            text_format("%s/singe-bench-%ld.tmp", access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp", (long)getpid());
+        if (access("/dev/shm", W_OK)) strcpy(folder, "/tmp/singe-bench-XXXXXX");
+        if (!mkdtemp(folder))
+            result = refuse(error, SINGE_ERROR_FILE, "bench", -1, "cannot make a folder in %s", folder);
+        b->path = text_format("%s/frame", folder);
     }
 
     for (int i = 0; i < OUTPUT_COUNT && !result; i++) {
@@ -172,7 +176,10 @@ SingeResult bench_output(const BenchOptions *options, BenchTable *table, SingeEr
         result = output_row(b, table, &ply, error);
     }
 
-    if (b) free(b->path);
+    if (b) {
+        rmdir(folder);
+        free(b->path);
+    }
     free(b);
     return result;
 }

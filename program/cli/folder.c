@@ -151,8 +151,8 @@ static int frame_of(const Folder *folder, const char *file, const char *ending, 
     return (int)strtol(digits, NULL, 10);
 }
 
-/// Whether this is the suffix that file_write and file_draft add until the file is whole: ".PID-N.tmp", once for a
-/// draft and once more for a file written in its place.
+/// Whether this is the suffix that file_write and file_draft add until the file is whole: ".PID-NUMBER.tmp", once
+/// for a draft and once more for a file written in its place.
 static bool is_temporary(const char *rest) {
     for (int times = 0; times < 2; times++) {
         if (*rest++ != '.') return false;

@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -101,10 +102,13 @@ void bytes_free(Bytes *bytes) {
 
 // ---- writing
 
-// Opens a new file next to `target`.
+// Opens a new file next to `target`. Its name cannot be guessed: in a folder that others may write to, they could take
+// all names of a sequence beforehand.
 static int temporary_open(const char *target, char *temporary, size_t length, int *file) {
-    for (int attempt = 0; attempt < 100; attempt++) {
-        int needed = snprintf(temporary, length, "%s.%ld-%d.tmp", target, (long)getpid(), attempt);
+    for (uint32_t attempt = 0; attempt < 100; attempt++) {
+        uint32_t number;
+        if (getentropy(&number, sizeof number)) number = attempt;
+        int needed = snprintf(temporary, length, "%s.%ld-%lu.tmp", target, (long)getpid(), (unsigned long)number);
         if (needed < 0 || (size_t)needed >= length) return ENAMETOOLONG;
         *file = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (*file >= 0) return 0;

@@ -14,16 +14,15 @@ folder=$(realpath "$2")
 shift 2
 groups=" ${*:-usd vtk paraview alembic gltf vat blender} "
 here=$(cd "$(dirname "$0")" && pwd)
+locks=$here/../locks
 python=${PYTHON:-python3}
 failed=0
 absent=0
 
-# environment NAME PACKAGE...: a Python of its own, made by $python, with these packages
+# environment NAME: a Python of its own, made by $python, with what locks/NAME.txt has, and nothing of another hash
 environment() {
-    local name=$1
-    shift
-    [ -x "$folder/$name/bin/python" ] || "$python" -m venv "$folder/$name" || return
-    "$folder/$name/bin/pip" install --quiet --disable-pip-version-check "$@"
+    [ -x "$folder/$1/bin/python" ] || "$python" -m venv "$folder/$1" || return
+    "$folder/$1/bin/pip" install --quiet --disable-pip-version-check --require-hashes -r "$locks/$1.txt"
 }
 
 # lacking NAME WHAT
@@ -59,11 +58,11 @@ client() {
 
 mkdir -p "$folder/work"
 usd_client() {
-    if environment usd usd-core numpy; then client usd usd.py; else lacking usd "PyPI's usd-core"; fi
+    if environment usd; then client usd usd.py; else lacking usd "PyPI's usd-core"; fi
 }
 
 vtk_client() {
-    if environment vtk vtk numpy; then client vtk vtk_client.py; else lacking vtk "PyPI's vtk"; fi
+    if environment vtk; then client vtk vtk_client.py; else lacking vtk "PyPI's vtk"; fi
 }
 
 paraview_client() {
@@ -84,17 +83,23 @@ paraview_client() {
 }
 
 alembic_client() {
-    if environment alembic alembic3d numpy; then client alembic alembic_client.py; else lacking alembic "PyPI's alembic3d"; fi
+    if environment alembic; then client alembic alembic_client.py; else lacking alembic "PyPI's alembic3d"; fi
+}
+
+# those of the lock file, once; no package runs a script of its own
+npm_packages() {
+    cmp -s "$locks/package-lock.json" "$folder/npm/done" && return
+    mkdir -p "$folder/npm"
+    cp "$locks/package.json" "$locks/package-lock.json" "$folder/npm"
+    npm ci --prefix "$folder/npm" --ignore-scripts --no-audit --no-fund --silent > "$folder/npm.log" 2>&1 || return
+    cp "$locks/package-lock.json" "$folder/npm/done"
 }
 
 gltf_client() {
     echo "== gltf"
-    mkdir -p "$folder/gltf"
-    if ! npm install --prefix "$folder/gltf" --no-audit --no-fund --silent gltf-validator @gltf-transform/core \
-        @gltf-transform/extensions @gltf-transform/functions meshoptimizer > "$folder/gltf.log" 2>&1; then
-        lacking gltf "npm's gltf-validator and @gltf-transform"
-    elif NODE_PATH="$folder/gltf/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
-            node "$here/gltf.js" "$singe" "$folder/work/gltf" >> "$folder/gltf.log" 2>&1; then cat "$folder/gltf.log"
+    if ! npm_packages; then lacking gltf "npm's gltf-validator and @gltf-transform"
+    elif NODE_PATH="$folder/npm/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
+            node "$here/gltf.js" "$singe" "$folder/work/gltf" > "$folder/gltf.log" 2>&1; then cat "$folder/gltf.log"
     else
         failed=1
         tail -30 "$folder/gltf.log"
@@ -105,10 +110,9 @@ vat_client() {
     echo "== vat"
     browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
     if [ -z "$browser" ]; then lacking vat chromium
-    elif ! npm install --prefix "$folder/three" --no-audit --no-fund --silent three > "$folder/vat.log" 2>&1; then
-        lacking vat "npm's three"
-    elif NODE_PATH="$folder/three/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
-            node "$here/vat.js" "$singe" "$folder/work/vat" "$browser" >> "$folder/vat.log" 2>&1; then cat "$folder/vat.log"
+    elif ! npm_packages; then lacking vat "npm's three"
+    elif NODE_PATH="$folder/npm/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
+            node "$here/vat.js" "$singe" "$folder/work/vat" "$browser" > "$folder/vat.log" 2>&1; then cat "$folder/vat.log"
     else
         failed=1
         tail -30 "$folder/vat.log"
@@ -123,7 +127,7 @@ blender_client() {
             lacking "Blender ${version#*:}" "python${version%:*}"
             continue
         fi
-        if environment "blender-${version#*:}" "bpy==${version#*:}.*" numpy; then
+        if environment "blender-${version#*:}"; then
             client "blender-${version#*:}" blender.py
             client "blender-${version#*:}" blender_meshes.py "meshes-${version#*:}"
             client "blender-${version#*:}" blender_alembic.py "alembic-${version#*:}"

@@ -54,6 +54,27 @@ TEST(writes_and_reads) {
     assert_int_equal(unlink(path), 0);
 }
 
+/// As a stranger may do in a folder that all may write to.
+TEST(taken_names_are_no_obstacle) {
+    SingeError error;
+    char *const path = strdup(inside("c.txt")), name[64];
+    for (int i = 0; i < 100; i++) {
+        snprintf(name, sizeof name, "c.txt.%ld-%d.tmp", (long)getpid(), i);
+        assert_int_equal(symlink("/nowhere", inside(name)), 0);
+    }
+
+    assert_int_equal(file_write(path, "hello", 5, &error), SINGE_OK);
+    assert_contents(path, "hello");
+
+    for (int i = 0; i < 100; i++) {
+        snprintf(name, sizeof name, "c.txt.%ld-%d.tmp", (long)getpid(), i);
+        assert_int_equal(unlink(inside(name)), 0);
+    }
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(files_in_folder(), 0);
+    free(path);
+}
+
 TEST(reading_says_why) {
     SingeError error;
     Bytes bytes;

@@ -284,11 +284,11 @@ static void expect_size(const char *file, const void *bytes, size_t size, bool k
 
 /// From a file's first bytes, without reading it; each of its beginnings is handled.
 TEST(a_size_is_known_beforehand) {
-    char file[64];
+    char file[512];
     static const uint8_t rgb[3 * 48] = {0};
     static Encoded encoded;
     int w, h;
-    snprintf(file, sizeof file, "/tmp/singe-image-%d", (int)getpid());
+    snprintf(file, sizeof file, "%s/image", folder);
     assert_false(image_size(file, &w, &h));
     assert_false(image_size("/", &w, &h));
     for (int progressive = 0; progressive < 2; progressive++) {

@@ -1,6 +1,7 @@
 // What stands around a burnt sheet in the files that hold a whole scene: shapes and their motion, the ground, and all
 // frames in one file.
 #include "crate_reader.h"
+#include "format_test.h"
 
 #include "formats/output.h"
 #include "formats/usd.h"
@@ -8,7 +9,7 @@
 #include <math.h>
 #include <unistd.h>
 
-static char path[256];
+static char *folder, path[256];
 
 static const OutputPose still[2] = {{.position = {1, 2, 3}, .rotation = {0, 0, 0, 1}, .visible = true},
                                     {.position = {1, 2, 3}, .rotation = {0, 0, 0, 1}, .visible = true}};
@@ -221,7 +222,10 @@ TEST(a_bad_frame_leaves_no_file) {
 static void make_path(int argc, char **argv) {
     (void)argc;
     (void)argv;
-    snprintf(path, sizeof path, "/tmp/singe-scene-files-%ld", (long)getpid());
+    folder = test_folder();
+    snprintf(path, sizeof path, "%s/scene", folder);
 }
 
-TEST_AROUND(make_path, NULL)
+static int remove_folder(void) { return rmdir(folder) != 0; }
+
+TEST_AROUND(make_path, remove_folder)

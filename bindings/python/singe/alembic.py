@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Callable, List, Optional, Union
 import numpy as np
 
 from . import errors
+from ._whole import whole
 
 if TYPE_CHECKING:
     from .cache import Cache, Frame
@@ -86,8 +87,9 @@ def write(cache: "Cache", path: Union[str, "os.PathLike[str]", None] = None,
     if frames != list(range(1, len(frames) + 1)) or not frames:
         raise errors.FormatError(f"{cache.folder} lacks frames: Alembic needs all from 1", "alembic")
     target = pathlib.Path(path) if path is not None else cache.folder / f"{cache.name}.abc"
-    draft = target.with_name(f"{target.name}.{os.getpid()}.tmp")
-    try:
+    if not target.parent.is_dir():
+        raise errors.FormatError(f"cannot write {target}: there is no folder {target.parent}", "alembic")
+    with whole(target) as draft:
         try:
             writer = _Writer(cache, str(draft))
         except RuntimeError as error:
@@ -97,8 +99,4 @@ def write(cache: "Cache", path: Union[str, "os.PathLike[str]", None] = None,
             if progress:
                 progress(number, len(frames))
         del writer  # the file is whole when nothing holds it
-        os.replace(draft, target)
-    finally:
-        if draft.exists():
-            draft.unlink()
     return target

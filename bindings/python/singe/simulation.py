@@ -18,6 +18,7 @@ from ._aside import LONG, Aside, is_interruptible
 from ._fields import (Attributes, as_dict, assign, default, floats, indices, number, path_keys, pointer, set_texture,
                       text, vector)
 from ._library import library, log_callback, raise_for
+from ._whole import whole
 from .objects import Collider, Pin, Sheet, Source, make_mesh
 from .picture import draw_png, html_picture
 from .views import Gas, OwnedSurface, StepView, Surface, Views, add_fluxes, shown
@@ -485,12 +486,8 @@ class Sim(Views):
             finally:
                 library.singe_sim_free_bytes(handle.pointer, data, size)
         if path is not None:
-            part = pathlib.Path(f"{os.fspath(path)}.{os.getpid()}.tmp")
-            try:
+            with whole(pathlib.Path(path)) as part:
                 part.write_bytes(saved)
-                os.replace(part, path)
-            finally:
-                part.unlink(missing_ok=True)
         return saved
 
     @classmethod
