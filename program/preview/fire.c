@@ -162,9 +162,9 @@ void fire_raise(Preview *preview) {
                 low = float3(minf(low.x, near.x), minf(low.y, near.y), minf(low.z, near.z));
                 high = float3(maxf(high.x, far.x), maxf(high.y, far.y), maxf(high.z, far.z));
             }
-    fire->low = low;
-    fire->high = high;
     fire->visible = low.x < high.x;
+    fire->low = fire->visible ? low : fire->origin; // finite, as heights are measured from it
+    fire->high = fire->visible ? high : fire->origin;
 }
 
 // ---- the whole
