@@ -254,6 +254,21 @@ class PageHot(Example):
         self.assertEqual(max(self.column("inverted_cells")), 0)
 
 
+class Macro(Example):
+    """Cells of 0.75 mm: the leaf curls away from the fire and nothing crosses."""
+
+    NAME = "macro"
+
+    def test_burns_to_a_leaf(self):
+        self.common()
+        self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
+        self.curls("40-49")
+        self.report()
+        self.assertTrue(0.6 < self.rows[-1]["burnt_fraction"] < 0.95)
+        self.assertLess(self.rows[-1]["pieces"], 20)
+        self.assertEqual(max(self.column("inverted_cells")), 0)
+
+
 class Newspaper(Example):
     NAME = "newspaper"
 
