@@ -285,12 +285,13 @@ static inline SingeSolverDef singe_default_solver(void) {
 
 /// Instruction set of the inner loops. Results do not depend on it.
 typedef enum SingeInstructions {
-    SINGE_INSTRUCTIONS_BEST = 0,     ///< the best that the processor has
-    SINGE_INSTRUCTIONS_PLAIN = 1,    ///< plain C
-    SINGE_INSTRUCTIONS_X86_V2 = 2,   ///< x86-64-v2: SSE 4.2, 4 lanes
-    SINGE_INSTRUCTIONS_X86_V3 = 3,   ///< x86-64-v3: AVX2, 8 lanes
-    SINGE_INSTRUCTIONS_X86_V4 = 4,   ///< x86-64-v4: AVX-512, 16 lanes
-    SINGE_INSTRUCTIONS_ARM_NEON = 5, ///< 64-bit Arm: NEON, 4 lanes
+    SINGE_INSTRUCTIONS_BEST = 0,         ///< the best that the processor has
+    SINGE_INSTRUCTIONS_PLAIN = 1,        ///< plain C
+    SINGE_INSTRUCTIONS_X86_V2 = 2,       ///< x86-64-v2: SSE 4.2, 4 lanes
+    SINGE_INSTRUCTIONS_X86_V3 = 3,       ///< x86-64-v3: AVX2, 8 lanes
+    SINGE_INSTRUCTIONS_X86_V4 = 4,       ///< x86-64-v4: AVX-512, 16 lanes
+    SINGE_INSTRUCTIONS_ARM_NEON = 5,     ///< 64-bit Arm: NEON, 4 lanes
+    SINGE_INSTRUCTIONS_WASM_SIMD128 = 6, ///< WebAssembly: simd128, 4 lanes
 } SingeInstructions;
 
 /// The gas around the sheets: hot air, flames and smoke on a grid. It rises, heats and lifts (docs/equations/gas.md).

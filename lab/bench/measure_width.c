@@ -78,7 +78,7 @@ SingeResult bench_width(const BenchOptions *options, BenchTable *table, SingeErr
     for (int i = 0; i < springs.count && !result; i++) {
         Reference plain = {0};
         setup.cells = options_cells(springs.values[i]);
-        for (int set = SINGE_INSTRUCTIONS_PLAIN; set <= SINGE_INSTRUCTIONS_ARM_NEON && !result; set++) {
+        for (int set = SINGE_INSTRUCTIONS_PLAIN; set <= SINGE_INSTRUCTIONS_WASM_SIMD128 && !result; set++) {
             setup.instructions = (SingeInstructions)set;
             result = width_measure(options, &setup, table, &plain, error);
         }

@@ -82,6 +82,9 @@ bool cpu_has(SingeInstructions set) {
 #ifdef __aarch64__ // every such processor has it
     if (set == SINGE_INSTRUCTIONS_ARM_NEON) return true;
 #endif
+#ifdef __wasm_simd128__ // or the module would have been refused
+    if (set == SINGE_INSTRUCTIONS_WASM_SIMD128) return true;
+#endif
     return set == SINGE_INSTRUCTIONS_PLAIN;
 }
 #endif

@@ -11,6 +11,8 @@
 #include <emmintrin.h>
 #elif defined(__aarch64__)
 #include <arm_neon.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 typedef float Float4 __attribute__((vector_size(16)));
@@ -37,6 +39,12 @@ static inline Float4 float4_max(Float4 a, Float4 b) { return (Float4)_mm_max_ps(
 static inline Float4 float4_sqrt(Float4 a) { return (Float4)_mm_sqrt_ps((__m128)a); }
 /// Bit k is set if the mask is true in lane k.
 static inline unsigned float4_bits(Float4Mask mask) { return (unsigned)_mm_movemask_ps((__m128)mask); }
+#elif defined(__wasm_simd128__) // "pseudo-minimum": b where a < b is false, as above
+static inline Float4 float4_min(Float4 a, Float4 b) { return (Float4)wasm_f32x4_pmin((v128_t)b, (v128_t)a); }
+static inline Float4 float4_max(Float4 a, Float4 b) { return (Float4)wasm_f32x4_pmax((v128_t)b, (v128_t)a); }
+static inline Float4 float4_sqrt(Float4 a) { return (Float4)wasm_f32x4_sqrt((v128_t)a); }
+static inline bool float4_any(Float4Mask mask) { return wasm_v128_any_true((v128_t)mask); }
+static inline unsigned float4_bits(Float4Mask mask) { return (unsigned)wasm_i32x4_bitmask((v128_t)mask); }
 #else
 static inline Float4 float4_min(Float4 a, Float4 b) { return float4_select(a < b, a, b); }
 static inline Float4 float4_max(Float4 a, Float4 b) { return float4_select(a > b, a, b); }

@@ -1,4 +1,4 @@
-// Threads, mutexes and conditions: POSIX's, or Windows' own. A Mutex or a Condition must not be moved while it is in
+// Threads, mutexes and conditions: POSIX's, Windows' own, or none in WebAssembly. A Mutex or a Condition must not be moved while it is in
 // use.
 #ifndef COMMON_THREAD_H
 #define COMMON_THREAD_H
@@ -12,7 +12,9 @@ typedef struct Mutex {
 } Mutex; ///< an SRWLOCK
 typedef struct Condition {
     void *variable;
-} Condition; ///< a CONDITION_VARIABLE
+} Condition;            ///< a CONDITION_VARIABLE
+#elif defined(__wasm__) // one thread: nothing can be started, nobody waits
+typedef int ThreadHandle, Mutex, Condition;
 #else
 #include <pthread.h>
 typedef pthread_t ThreadHandle;

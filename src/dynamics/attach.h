@@ -40,7 +40,7 @@ typedef struct Attachments {
 /// Moves vertices that are too far from the sources back: of `count` contiguous vertices, as many whole blocks of lanes
 /// as there are (attach_kernel.h). `length` as in Attachments, `position` with the inverse mass as fourth.
 typedef void AttachHold(const AttachSpread *spread, const float *length, float *position, int count);
-AttachHold attach_hold_plain, attach_hold_v2, attach_hold_v3, attach_hold_v4, attach_hold_neon;
+AttachHold attach_hold_plain, attach_hold_v2, attach_hold_v3, attach_hold_v4, attach_hold_neon, attach_hold_simd128;
 
 bool attach_create(Memory *memory, const Shell *shell, Attachments *attachments);
 void attach_free(Memory *memory, const Shell *shell, Attachments *attachments);

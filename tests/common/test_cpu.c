@@ -8,6 +8,7 @@ TEST(levels_are_as_the_compiler_says) {
     assert_false(cpu_has(SINGE_INSTRUCTIONS_BEST)); // no set
 #ifdef __x86_64__
     assert_false(cpu_has(SINGE_INSTRUCTIONS_ARM_NEON));
+    assert_false(cpu_has(SINGE_INSTRUCTIONS_WASM_SIMD128));
     assert_int_equal(cpu_has(SINGE_INSTRUCTIONS_X86_V2), !!__builtin_cpu_supports("sse4.2"));
     assert_int_equal(cpu_has(SINGE_INSTRUCTIONS_X86_V3),
                      __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2"));

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """The core on other systems: builds it by cross compilers, runs hash_runs there and compares the bytes.
 
-hash_runs is tried on the static library with the best instructions, plain ones and, on Arm, NEON by name; and on the
-shared library of the Python package (Windows: the DLL).
+hash_runs is tried on the static library with the best instructions, plain ones and the system's own by name; and on the
+shared library of the Python package (Windows: the DLL; WebAssembly has none).
 
     check.py --source FOLDER --build FOLDER [--install] [SYSTEM...]
 
 All are built with SINGE_PORTABLE_MATH, as C libraries differ in the last digits of exp and others. The measure is what
 hash_runs prints here, built by the preset "portable". Windows runs under wine, 64-bit Arm Linux under qemu; macOS is
-built, not run. A system whose compiler or emulator is missing is skipped, with a message; --install gets them first
+built, not run; WebAssembly runs under node. A system whose compiler or emulator is missing is skipped, with a message; --install gets them first
 (Debian's packages, and Zig from PyPI into the build folder). The last line counts. Fails if a build fails, a program
 does, a run does too little, or a hash differs.
 """
@@ -26,7 +26,9 @@ SYSTEMS = {
     "arm64": (["gcc-aarch64-linux-gnu", "libc6-dev-arm64-cross", "qemu-user"], ["aarch64-linux-gnu-gcc"],
               ["qemu-aarch64", "qemu-aarch64-static"]),
     "macos": (["python3-venv"], [], None),  # for Zig's folder
+    "wasm": (["clang", "lld", "wasi-libc", "libclang-rt-14-dev-wasm32", "nodejs"], ["wasm-ld"], ["node"]),
 }
+OWN = {"arm64": ["neon"], "windows": ["v2", "v3", "v4"], "wasm": ["simd128"]}  # sets of instructions
 PLAIN = ["--instructions", "plain"]
 
 
@@ -91,13 +93,15 @@ def built(system, source, build):
     subprocess.run(["cmake", "--preset", system, "-S", source, "-B", folder], check=True, env=environment,
                    stdout=subprocess.DEVNULL, cwd=source)
     subprocess.run(["cmake", "--build", folder, "-j2"], check=True, env=environment, stdout=subprocess.DEVNULL)
-    end = ".exe" if system == "windows" else ""
+    end = {"windows": ".exe", "wasm": ".wasm"}.get(system, "")
     return folder / f"tests/platforms/hash_runs{end}", folder / f"python/singe/hash_runs_shared{end}"
 
 
 def emulator(system):
     name = next(filter(None, map(shutil.which, SYSTEMS[system][2])))
-    return [name, "-L", "/usr/aarch64-linux-gnu"] if system == "arm64" else [name]
+    more = {"arm64": ["-L", "/usr/aarch64-linux-gnu"],
+            "wasm": ["--no-warnings", str(pathlib.Path(__file__).with_name("run_wasi.mjs"))]}
+    return [name, *more.get(system, [])]
 
 
 def compare(name, lines, wanted):
@@ -124,13 +128,14 @@ def try_runs(system, build, program, shared, wanted):
     """Runs a system's programs by its emulator, with the instructions that it has and with some that it lacks."""
     quiet = dict(os.environ, WINEDEBUG="-all", WINEPREFIX=str(build / "wine"))
     views = [line for line in wanted if "snapshot" not in line]
-    call, own = emulator(system), ["neon"] if system == "arm64" else ["v2", "v3", "v4"]
+    call, own = emulator(system), OWN[system]
     compare(f"{system}, the best instructions", output([*call, program], quiet, own), wanted)
     compare(f"{system}, plain loops", output([*call, program, *PLAIN], quiet, ["plain"]), views)
     named = own[0]
     compare(f"{system}, {named} by name", output([*call, program, "--instructions", named], quiet, [named]), views)
-    compare(f"{system}, shared library", output([*call, shared], quiet, own), wanted)
-    lacking = "v2" if system == "arm64" else "neon"
+    if system != "wasm":
+        compare(f"{system}, shared library", output([*call, shared], quiet, own), wanted)
+    lacking = "neon" if system == "windows" else "v2"
     done = subprocess.run([*call, program, "--instructions", lacking], capture_output=True, text=True, env=quiet)
     if done.returncode == 0 or "lacks the requested instructions" not in done.stderr:
         fail(f"{system}: {lacking} was not refused: {done.stderr[-500:]}")
@@ -141,7 +146,7 @@ def main():
     parser.add_argument("--source", type=pathlib.Path, required=True)
     parser.add_argument("--build", type=pathlib.Path, required=True)
     parser.add_argument("--install", action="store_true")
-    parser.add_argument("systems", nargs="*", metavar="SYSTEM", help="windows, arm64, macos [all]")
+    parser.add_argument("systems", nargs="*", metavar="SYSTEM", help="windows, arm64, macos, wasm [all]")
     options = parser.parse_args()
     systems = options.systems or list(SYSTEMS)
     build = options.build.resolve()

@@ -9,7 +9,7 @@ import shutil
 import subprocess
 import sys
 
-COMPILERS = {"windows": "x86_64-w64-mingw32-gcc-win32", "arm64": "aarch64-linux-gnu-gcc", "fuzz": "clang"}
+COMPILERS = {"windows": "x86_64-w64-mingw32-gcc-win32", "arm64": "aarch64-linux-gnu-gcc", "fuzz": "clang", "wasm": "wasm-ld"}
 
 
 def compiler_missing(name):

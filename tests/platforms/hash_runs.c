@@ -1,6 +1,6 @@
 // Short runs by the public interface, each with a hash of its snapshot: the same lines on every system (check.py).
 //
-//   hash_runs [--instructions best|plain|v2|v3|v4|neon] [--threads N]
+//   hash_runs [--instructions best|plain|v2|v3|v4|neon|simd128] [--threads N]
 //
 // A line is "NAME STEP HASH". The lines of runs are the same for all sets of instructions; that of the snapshot, which
 // names the set asked for, is printed for the best alone. The set in use goes to the standard error.
@@ -109,7 +109,7 @@ static uint64_t hash_view(const SingeSim *sim) {
     return hash * 31 + hash_bytes(view.particle_flags, view.particle_count);
 }
 
-static const char *const sets[] = {"best", "plain", "v2", "v3", "v4", "neon"};
+static const char *const sets[] = {"best", "plain", "v2", "v3", "v4", "neon", "simd128"};
 enum { SETS = sizeof sets / sizeof sets[0] };
 
 static SingeResult hash_run(const Run *run, const SingeSimDef *base, SingeError *error) {
@@ -157,7 +157,10 @@ int main(int count, char **arguments) {
         int set = strcmp(arguments[i], "--instructions") == 0 ? find_set(value) : SETS;
         if (set < SETS) def.instructions = (SingeInstructions)set, i++;
         else if (strcmp(arguments[i], "--threads") == 0 && *value) def.thread_count = atoi(value), i++;
-        else return fprintf(stderr, "usage: hash_runs [--instructions best|plain|v2|v3|v4|neon] [--threads N]\n"), 2;
+        else
+            return fprintf(stderr,
+                           "usage: hash_runs [--instructions best|plain|v2|v3|v4|neon|simd128] [--threads N]\n"),
+                   2;
     }
 
     for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {

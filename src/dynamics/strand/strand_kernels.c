@@ -15,14 +15,19 @@ static const Kernels *kernels_of(SingeInstructions instructions) {
         [SINGE_INSTRUCTIONS_ARM_NEON] = {strand_solve_neon, attach_hold_neon, strand_bend_neon,
                                          SINGE_INSTRUCTIONS_ARM_NEON},
 #endif
+#ifdef __wasm_simd128__
+        [SINGE_INSTRUCTIONS_WASM_SIMD128] = {strand_solve_simd128, attach_hold_simd128, strand_bend_simd128,
+                                             SINGE_INSTRUCTIONS_WASM_SIMD128},
+#endif
     };
     bool built = (size_t)instructions < sizeof kernels / sizeof kernels[0] && kernels[instructions].solve;
     return built && cpu_has(instructions) ? &kernels[instructions] : NULL;
 }
 
 const Kernels *kernels_choose(SingeInstructions instructions) {
-    static const SingeInstructions best_first[] = {SINGE_INSTRUCTIONS_ARM_NEON, SINGE_INSTRUCTIONS_X86_V4,
-                                                   SINGE_INSTRUCTIONS_X86_V3, SINGE_INSTRUCTIONS_X86_V2};
+    static const SingeInstructions best_first[] = {SINGE_INSTRUCTIONS_WASM_SIMD128, SINGE_INSTRUCTIONS_ARM_NEON,
+                                                   SINGE_INSTRUCTIONS_X86_V4, SINGE_INSTRUCTIONS_X86_V3,
+                                                   SINGE_INSTRUCTIONS_X86_V2};
     if (instructions != SINGE_INSTRUCTIONS_BEST) return kernels_of(instructions);
 
     for (size_t i = 0; i < sizeof best_first / sizeof best_first[0]; i++) {

@@ -69,10 +69,11 @@ typedef struct StrandJob {
 
 /// Projects the strands of one group; `keep` has room for STRAND_KEEP floats for each row and lane.
 typedef void StrandSolve(const StrandJob *job, uint32_t group, float *keep);
-StrandSolve strand_solve_plain, strand_solve_v2, strand_solve_v3, strand_solve_v4, strand_solve_neon;
+StrandSolve strand_solve_plain, strand_solve_v2, strand_solve_v3, strand_solve_v4, strand_solve_neon,
+    strand_solve_simd128;
 
 /// Limits the curvature along the strands of one group (curvature_kernel.h).
 typedef void StrandBend(const StrandSet *set, float *position, uint32_t group);
-StrandBend strand_bend_plain, strand_bend_v2, strand_bend_v3, strand_bend_v4, strand_bend_neon;
+StrandBend strand_bend_plain, strand_bend_v2, strand_bend_v3, strand_bend_v4, strand_bend_neon, strand_bend_simd128;
 
 #endif
