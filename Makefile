@@ -15,7 +15,7 @@ HOURS ?= 1
 MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 .PHONY: all build build-asan build-fuzz build-shared build-tsan configure demo test check check-examples gate \
-        check-clients check-blender check-farm check-packages check-platforms torture coverage fuzz-long soak pictures clean
+        check-clients check-blender check-farm check-packages check-platforms web check-web-core torture coverage fuzz-long soak pictures clean
 
 all: build
 
@@ -99,6 +99,19 @@ check-packages: build
 # the core on Windows, 64-bit Arm Linux and macOS: installs compilers and emulators, and compares the bytes of runs
 check-platforms:
 	tests/platforms/check.py --source . --build build/platforms --install
+
+# the core as WebAssembly, and the npm package around it (bindings/web)
+web:
+	cmake --preset wasm
+	cmake --build --preset wasm --target singe_wasm
+	cd bindings/web && npm ci --ignore-scripts && npm run build
+	cp build-wasm/web/singe.wasm bindings/web/dist
+
+# tests the package in node; its burn must have the bytes of the native library
+check-web-core: web
+	cmake --preset portable
+	cmake --build --preset portable --target hash_runs
+	cd bindings/web && SINGE_NATIVE=$(CURDIR)/build-portable/tests/platforms/hash_runs npm test && node tests/speed.mjs
 
 # lets every allocation, write, open, ... of whole commands fail once. Takes hours; Ctrl-C ends it and prints its table
 torture:

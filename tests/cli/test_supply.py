@@ -52,9 +52,9 @@ class Supply(unittest.TestCase):
             needed = re.split(r"\n(?=\S)", text.split("\n", 1)[1])
             for package in needed:
                 self.assertRegex(package, r"^[\w.-]+==\S+[^\n]*\\\n    --hash=sha256:[0-9a-f]{64}", lock.name)
-        packages = (LOCKS / "package-lock.json").read_text()
-        self.assertNotIn('"resolved"', packages)
-        self.assertEqual(packages.count('"node_modules/'), packages.count('"integrity": "sha512-'))
+        for name, packages in sources("package-lock.json"):
+            self.assertNotIn('"resolved"', packages, name)
+            self.assertEqual(packages.count('"node_modules/'), packages.count('"integrity": "sha512-'), name)
 
     def test_packages_of_the_system_are_signed(self):
         for name, line in self.lines(r'\bdebootstrap"?,? ', ".sh", ".py"):

@@ -93,7 +93,7 @@ def built(system, source, build):
     subprocess.run(["cmake", "--preset", system, "-S", source, "-B", folder], check=True, env=environment,
                    stdout=subprocess.DEVNULL, cwd=source)
     subprocess.run(["cmake", "--build", folder, "-j2"], check=True, env=environment, stdout=subprocess.DEVNULL)
-    end = {"windows": ".exe", "wasm": ".wasm"}.get(system, "")
+    end = ".exe" if system == "windows" else ""
     return folder / f"tests/platforms/hash_runs{end}", folder / f"python/singe/hash_runs_shared{end}"
 
 
