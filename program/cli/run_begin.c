@@ -166,6 +166,7 @@ SingeResult run_take_over(Run *run, SingeError *error) {
     if (!result) result = folder_forget(&run->folder, &removed, error);
     interrupt_disown(draft);
     if (result) {
+        file_name_target(error, draft, run->folder.record);
         file_discard(draft);
     } else {
         run->begun = true;

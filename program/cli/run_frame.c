@@ -228,6 +228,7 @@ SingeResult run_end_frame(Run *run, SingeStats *stats, SingeError *error) {
 
     // remove drafts that have not been published
     for (int i = 0; i < run->file_count; i++) {
+        if (result) file_name_target(error, run->files[i].draft, run->files[i].path);
         interrupt_disown(run->files[i].draft);
         file_discard(run->files[i].draft);
         free(run->files[i].path);

@@ -214,6 +214,13 @@ SingeResult file_publish(char *draft, const char *path, SingeError *error) {
     return SINGE_OK;
 }
 
+void file_name_target(SingeError *error, const char *draft, const char *path) {
+    if (!draft) return;
+    const char *suffix = draft + strlen(path); // messages may have only the end of a long name
+    char *at = strstr(error->message, suffix);
+    if (at) memmove(at, at + strlen(suffix), strlen(at + strlen(suffix)) + 1);
+}
+
 void file_discard(char *draft) {
     if (draft) unlink(draft);
     free(draft);

@@ -45,6 +45,9 @@ SINGE_NODISCARD SingeResult file_draft(const char *path, char **draft, SingeErro
 /// Replaces `path` by a draft. The draft is gone afterwards, also after a failure.
 SINGE_NODISCARD SingeResult file_publish(char *draft, const char *path, SingeError *error);
 
+/// Replaces the draft's name by that of `path` in the message of an error. A draft of NULL is none.
+void file_name_target(SingeError *error, const char *draft, const char *path);
+
 /// Removes a draft. NULL is none.
 void file_discard(char *draft);
 

@@ -99,6 +99,9 @@ SINGE_NODISCARD SingeResult glb_write_frame(const char *path, const OutputScene 
 SINGE_NODISCARD SingeResult textures_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame,
                                                  SingeError *error);
 
+/// Max sheets with uv of a frame of textures.
+enum { OUTPUT_TEXTURE_SHEETS = 64 };
+
 /// The frames of a finished cache, from 1. The result of `read` is valid until the next call.
 typedef struct OutputCache {
     int frames;

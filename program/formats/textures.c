@@ -14,7 +14,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { TEXTURE_MARGIN = 16, TEXTURE_CHANNELS = 4, TEXTURE_SHEETS = 64 };
+enum { TEXTURE_MARGIN = 16, TEXTURE_CHANNELS = 4 };
 
 typedef struct Canvas {
     int size;
@@ -54,10 +54,10 @@ static void draw_chart(void *context, size_t pixel, const float weight[3]) {
 
 typedef struct Layers {
     uint32_t count;
-    uint32_t sheets[TEXTURE_SHEETS];
-    float *values[TEXTURE_SHEETS];
-    char names[TEXTURE_SHEETS * TEXTURE_CHANNELS][USD_NAME + 8];
-    ExrChannel channels[TEXTURE_SHEETS * TEXTURE_CHANNELS];
+    uint32_t sheets[OUTPUT_TEXTURE_SHEETS];
+    float *values[OUTPUT_TEXTURE_SHEETS];
+    char names[OUTPUT_TEXTURE_SHEETS * TEXTURE_CHANNELS][USD_NAME + 8];
+    ExrChannel channels[OUTPUT_TEXTURE_SHEETS * TEXTURE_CHANNELS];
 } Layers;
 
 static SingeResult draw_layer(Layers *layers, const OutputScene *scene, const OutputFrame *frame, uint32_t sheet,
@@ -142,9 +142,9 @@ SingeResult textures_write_frame(const char *path, const OutputScene *scene, con
 
     for (uint32_t i = 0; i < scene->sheet_count && !result; i++) {
         if (!output_mesh_has_uv(&scene->sheets[i].mesh)) continue;
-        if (layers->count == TEXTURE_SHEETS)
+        if (layers->count == OUTPUT_TEXTURE_SHEETS)
             result = refuse(error, SINGE_ERROR_LIMIT, "textures", -1, "%s: more than %d sheets with uv",
-                            short_name(path), TEXTURE_SHEETS);
+                            short_name(path), OUTPUT_TEXTURE_SHEETS);
         else result = draw_layer(layers, scene, frame, i, path, error);
     }
 

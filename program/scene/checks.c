@@ -94,6 +94,13 @@ void finish_pin(Reader *reader, const YamlNode *map, void *object) {
     if (path && motion) complain(reader, motion->key_location, "'path' and 'motion' exclude each other; give one");
 }
 
+/// What the formats need of the sheets is known when those have been read.
+void finish_output(Reader *reader, const YamlNode *map, void *object) {
+    (void)reader;
+    const YamlNode *formats = node_find(map, "formats");
+    if (formats) ((SceneOutput *)object)->location = formats->location;
+}
+
 /// Whether the scene places the camera; otherwise scene_frame does.
 static bool camera_given(const YamlNode *map) { return node_find(map, "eye") || node_find(map, "target"); }
 

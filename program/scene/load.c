@@ -195,6 +195,24 @@ static void load_solid(Loader *loader, uint32_t index) {
     if (result) loader_fail(loader, file, result, error.message);
 }
 
+/// Refuses formats that the sheets cannot be written in, before a run computes its first frame.
+static void check_formats(const Loader *loader) {
+    const Scene *scene = loader->scene;
+    uint32_t with_uv = 0;
+    if (!output_has(scene->output.formats, OUTPUT_textures)) return;
+    for (uint32_t i = 0; i < scene->sheet_count; i++) {
+        const Mesh *mesh = &loader->assets->meshes[i];
+        if (!mesh->positions) return; // its file has a fault, and perhaps uv
+        with_uv += mesh->uv || mesh->corner_uv;
+    }
+    if (!with_uv)
+        message_add(loader->messages, scene->text, scene->output.location,
+                    "the format 'textures' needs a sheet with uv; no sheet has any");
+    else if (with_uv > OUTPUT_TEXTURE_SHEETS)
+        message_add(loader->messages, scene->text, scene->output.location,
+                    "the format 'textures' takes at most %d sheets with uv, not %u", OUTPUT_TEXTURE_SHEETS, with_uv);
+}
+
 static void *many(Loader *loader, size_t count, size_t size) {
     void *items = calloc(count ? count : 1, size);
     loader->no_memory = loader->no_memory || !items;
@@ -231,6 +249,7 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
         if (scene->pins[i].motion.given) load_motion(&loader, &scene->pins[i].motion, &assets->pin_motions[i]);
     if (scene->preview.environment_picture.name && !loader.no_memory)
         (void)load_image(&loader, &scene->preview.environment_picture, &assets->sky);
+    if (!loader.no_memory) check_formats(&loader);
     if (message_total(messages) == before && !loader.no_memory) probes_find(scene, assets, messages);
     if (message_total(messages) == before && !loader.no_memory) return SINGE_OK;
     if (!loader.no_memory) sheet_faults(scene, assets, FAULTS_OF_MESHES, messages);

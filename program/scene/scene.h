@@ -204,6 +204,7 @@ typedef struct ScenePreview {
 
 /// The files that a run writes for other programs.
 typedef struct SceneOutput {
+    SceneLocation location; ///< of `formats`
     OutputSet formats;
     bool events;      ///< events.csv
     int texture_size; ///< pixels

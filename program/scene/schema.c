@@ -98,6 +98,7 @@ static const Schema schema_output = {
     .title = "the output",
     .size = sizeof(SceneOutput),
     ROWS(output_rows),
+    .finish = finish_output,
     .doc = "What a run writes for other programs. `singe convert` makes the same formats from a cache."};
 
 #define OF Scene

@@ -136,6 +136,7 @@ void finish_source(Reader *reader, const YamlNode *map, void *object);
 void finish_collider(Reader *reader, const YamlNode *map, void *object);
 void finish_pin(Reader *reader, const YamlNode *map, void *object);
 void finish_camera(Reader *reader, const YamlNode *map, void *object);
+void finish_output(Reader *reader, const YamlNode *map, void *object);
 void finish_preview(Reader *reader, const YamlNode *map, void *object);
 
 // defaults (defaults.c)

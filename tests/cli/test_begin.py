@@ -45,6 +45,7 @@ class Begin(Case):
                 _, err = self.limited(*self.other_run(*args), most=most - 1)
                 self.assertIn("File too large", err)
                 self.assertIn("is unchanged", err)
+                self.assertNotIn(".tmp", err, "a name that exists for a moment helps nobody")
                 self.assertEqual(self.tree("o"), before)
         self.assertEqual(self.run_scene("o", "--resume", "--frames", "7", *args, preview=True)[1].count("frame 6"), 1)
 
@@ -92,6 +93,26 @@ class Begin(Case):
                     _, err = self.singe("check", scene, expect=2)
                     self.assertIn(f"s{number}.yaml:{len(lines)}:", err)
                 self.singe("run", scene, "-o", self.path(f"o{number}"), expect=code)
+
+    def test_formats_that_no_sheet_can_have_are_refused_by_check(self):
+        """Textures need uv, which a mesh without them does not have."""
+        with open(self.path("bare.obj"), "w") as file:
+            file.write("v 0 0 0\nv .1 0 0\nv .1 .1 0\nv 0 .1 0\nf 1 2 3 4\n")
+        for number, (sheets, code) in enumerate((
+            ("[{mesh: bare.obj}]", 2),
+            ("[{mesh: bare.obj}, {grid: {size: [0.1, 0.1], cells: [4, 4]}, translate: [0, 0, 0.1]}]", 0),
+            (f"[{', '.join('{grid: {size: [1 cm, 1 cm], cells: [1, 1]}, translate: [0, 0, %d cm]}' % k for k in range(65))}]", 2),
+        )):
+            with self.subTest(sheets[:60]):
+                scene = self.path(f"t{number}.yaml")
+                with open(scene, "w") as file:
+                    file.write(f"frames: 1\nsteps: 1\nsheets: {sheets}\noutput: {{formats: [textures], texture_size: 16}}\n"
+                               "preview: {size: [32, 32], samples: 1}\ngas: no\n")
+                for command in (["check"], ["run", "-o", self.path(f"t{number}")]):
+                    _, err = self.singe(*command, scene, expect=code)
+                    if code:
+                        self.assertIn(f"t{number}.yaml:4:19: error: the format 'textures'", err)
+                        self.assertNotIn(".tmp", err)
 
     def code_of(self, *args):
         run = self.start(*args)
