@@ -101,7 +101,7 @@ typedef struct SingeMaterialDef {
     /// >= 0; widens the burning front this many times (1 or more) at the same speed, so that cells can hold it; 0: as
     /// little as the cells need; one number for the whole sheet
     float thickening;
-    SingeParam temperature;          ///< K, > 0; initial temperature
+    SingeParam temperature;          ///< K, 1e-3 to 1e5; initial temperature
     SingeParam ignition_temperature; ///< K, > 0; temperature above which the sheet burns
     SingeParam heat_of_combustion;   ///< J/kg, >= 0; heat released per kilogram burnt
     /// 0 to 1; share of it that stays in the sheet; the rest goes into the flame. eta of eq 1, the temperature rise

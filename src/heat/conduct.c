@@ -174,7 +174,8 @@ static void conduct_finish(void *context, int begin, int end) {
     const float *temperature = pass->heat->temperature;
     const Matter *matter = &pass->shell->matter;
     uint32_t low = (uint32_t)pass->state->step, high = (uint32_t)(pass->state->step >> 32);
-    double min = (double)pass->min - pass->slack, max = (double)pass->max + pass->slack;
+    // never at 0 K, however large the slack is: a much hotter sheet may give the range
+    double min = fmax((double)pass->min - pass->slack, 0.5 * (double)pass->min), max = (double)pass->max + pass->slack;
 
     for (int block = begin; block < end; block++) {
         double made = 0;

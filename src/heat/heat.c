@@ -80,6 +80,7 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
         if (rate > 1) { // little remains of T - Ta, so the difference would have no digits
             if (rate > HEAT_RATE_MAX) rate = HEAT_RATE_MAX;
             loss = rate * (T2 - ambient) / (1 + rate);
+            if (isinf(loss)) loss = (T2 - ambient) * (rate / (1 + rate)); // the product overflows, the loss does not
             plan->star[i] = ambient + (T2 - ambient) / (1 + rate);
             plan->delta[i] = plan->star[i] - T;
         }

@@ -261,6 +261,7 @@ TEST(any_heat_ends_finite) {
                 if (!(rig.state.heat.temperature[i] >= min * 0.9999f && rig.state.heat.temperature[i] <= max))
                     fail_msg("%g K, step of %g s: %g K", (double)starts[k], (double)steps[s],
                              (double)rig.state.heat.temperature[i]);
+            assert_true(isfinite(rig.state.heat.heat_lost));
             double change = rig_content(&rig, 1) - before, scale = fmax(fabs(rig.state.heat.heat_lost), fabs(change));
             CHECK_NEAR(rig.state.heat.heat_lost, -change, 1e-4 * scale + 2e-6 * fabs(before) + 1e-12);
             rig_close(&rig);

@@ -179,6 +179,28 @@ TEST(the_umbrella_keeps_to_its_range) {
 }
 
 /// Steps that end within their range by force are the same for any number of threads.
+/// Where one particle is very hot, a coarse tolerance of the range would reach below 0 K for all others.
+TEST(no_tolerance_lets_a_particle_reach_0_K) {
+    static const float steps[] = {1e-2f, 1, 100};
+    for (int k = 0; k < 3; k++) {
+        RigDef def = rig_default(COLUMNS, ROWS, 0.002f, 0.002f);
+        def.settings.tolerance = 1;
+        Rig rig;
+        rig_open(&rig, &def);
+        rig.h = steps[k];
+        uint32_t seed = 1;
+        for (uint32_t i = 0; i < rig.shell.particle_count; i++)
+            rig.state.heat.temperature[i] = rig_random(i, seed) < 0.5f ? 200 : 1e5f;
+        for (int step = 0; step < 4; step++) {
+            rig_step(&rig);
+            for (uint32_t i = 0; i < rig.shell.particle_count; i++)
+                if (!(rig.state.heat.temperature[i] >= 99))
+                    fail_msg("steps of %g s: %g K", (double)steps[k], (double)rig.state.heat.temperature[i]);
+        }
+        rig_close(&rig);
+    }
+}
+
 TEST(threads_do_not_matter) {
     enum { THREADS = 3 };
     RigDef def = rig_default(120, 90, 0.002f, 0.002f);

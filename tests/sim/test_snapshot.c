@@ -159,6 +159,47 @@ static TestBytes small_snapshot(void) {
     return bytes;
 }
 
+/// At the ends of what is legal a step may fail, but what it leaves can be saved and loaded.
+TEST(what_any_step_leaves_loads) {
+    static const float temperatures[] = {1e-3f, 293.15f, 1e5f, 1e15f}, masses[] = {1e-30f, 0.08f, 1e20f};
+    static const float heats[] = {1e-20f, 1400, 1e30f}, exchanges[] = {0, 14, 1e30f}, fluxes[] = {-3e38f, 30e3f, 3e38f};
+    uint32_t refused = 0, loaded = 0;
+    for (int k = 0; k < 4 * 3 * 3 * 3 * 3; k++) {
+        SingeSimDef def = singe_default_sim();
+        SingeSim *sim;
+        test_ok(NULL, singe_sim_create(&def, &sim, NULL));
+        TestMesh mesh = test_grid(3, 3, 0.01f, 0.01f);
+        SingeSheetDef sheet = test_sheet(&mesh);
+        sheet.material.temperature = singe_param(temperatures[k % 4]);
+        sheet.material.grammage = singe_param(masses[k / 4 % 3]);
+        sheet.material.specific_heat = singe_param(heats[k / 12 % 3]);
+        sheet.material.convection = singe_param(exchanges[k / 36 % 3]);
+        float white = 1;
+        SingeSourceDef source = singe_default_source();
+        source.kind = SINGE_SOURCE_TEXTURE;
+        source.texture = (SingeTexture){1, 1, &white};
+        source.flux = fluxes[k / 108];
+        SingeSourceId id;
+        SingeResult result = singe_sim_add_sheet(sim, &sheet, NULL);
+        if (!result) result = singe_sim_commit(sim);
+        if (!result) result = singe_sim_add_source(sim, &source, &id);
+        refused += result != SINGE_OK;
+        assert_true(result || temperatures[k % 4] <= 1e5f);
+        for (int i = 0; !result && i < 3; i++) {
+            (void)(singe_sim_step(sim) == SINGE_OK);
+            TestBytes bytes = test_save(sim);
+            SingeSim *copy = load(&bytes);
+            assert_true(isfinite(singe_sim_stats(copy).heat_lost) && isfinite(singe_sim_stats(copy).ledger_error));
+            singe_sim_destroy(copy);
+            free(bytes.data);
+            loaded++;
+        }
+        test_mesh_free(&mesh);
+        singe_sim_destroy(sim);
+    }
+    assert_true(refused >= 81 && loaded > 100); // 1e15 K is no start
+}
+
 TEST(truncated_snapshots_are_refused) {
     TestBytes bytes = small_snapshot();
     for (size_t k = 0; k < 300; k++) {
