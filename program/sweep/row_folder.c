@@ -8,6 +8,7 @@
 #include "cli/checkpoint.h"
 #include "cli/folder.h"
 #include "cli/text.h"
+#include "common/printable.h"
 #include "formats/formats.h"
 #include "sweep/sweep.h"
 
@@ -42,6 +43,20 @@ RowState sweep_row_state(const Sweep *sweep, uint32_t row) {
 
 // ---- scenes
 
+/// Whether the file is not a scene, neither alone nor with `sets`. A plan may come from a stranger and name any file of
+/// the user's, so only the errors of what is a scene are shown, with the lines that they quote.
+static bool is_no_scene(const char *path, const SetList *sets) {
+    for (int with = 0; with < 2; with++) {
+        SceneMessages messages = {0};
+        Scene *scene;
+        const SingeResult result = scene_read(path, sets->items, with ? sets->count : 0, &scene, &messages);
+        scene_messages_free(&messages);
+        if (!result) scene_free(scene);
+        if (result != SINGE_ERROR_FORMAT) return false;
+    }
+    return true;
+}
+
 ExitCode sweep_check_row(Sweep *sweep, uint32_t row) {
     const Plan *plan = &sweep->plan;
     char *owned[PLAN_PARAMETERS_MAX];
@@ -55,8 +70,12 @@ ExitCode sweep_check_row(Sweep *sweep, uint32_t row) {
     }
 
     Job job;
-    ExitCode code = job_read(&job, sweep->console, plan->scene, &sets, 1);
-    if (code) {
+    const bool foreign = is_no_scene(plan->scene, &sets);
+    ExitCode code = foreign ? EXIT_INPUT : job_read(&job, sweep->console, plan->scene, &sets, 1);
+    if (foreign) {
+        console_error(sweep->console, "%s, which %s names, is not a valid scene; `singe check` says why",
+                      shown_path(plan->scene).text, sweep->options->plan);
+    } else if (code) {
         console_error(sweep->console, "row %u of %s is not a valid scene", row + 1, sweep->options->plan);
     } else {
         sweep->frames[row] = (uint32_t)job.scene->frames;

@@ -18,6 +18,19 @@ enum { ID_SIZE = 64 };
 typedef enum JobKind { JOB_ROWS, JOB_RENDER, JOB_REPORT, JOB_KINDS } JobKind;
 static const char *const job_names[JOB_KINDS] = {"run", "render", "report"};
 
+/// A text as a part of an #SBATCH line, in which a backslash takes away the meaning of blanks, quotes and #; and with
+/// `pattern` of a file's name, in which %a stands for the task. A line cannot contain a line break: a blank is written.
+static char *sbatch_quote(const char *text, bool pattern) {
+    char *quoted = malloc(2 * strlen(text) + 1), *to = quoted;
+    for (; to && *text; text++) {
+        if (strchr(" \t\"'\\#", *text) || *text == '\n' || *text == '\r') *to++ = '\\';
+        if (*text == '%' && pattern) *to++ = '%';
+        *to++ = *text == '\n' || *text == '\r' ? ' ' : *text;
+    }
+    if (to) *to = 0;
+    return quoted ? quoted : text_format("%s", "sweep");
+}
+
 /// Writes the script of a job. Returns its path, NULL after an error.
 static char *write_job(const Sweep *sweep, JobKind kind, const char *rows, SingeError *error) {
     const SweepOptions *o = sweep->options;
@@ -25,13 +38,14 @@ static char *write_job(const Sweep *sweep, JobKind kind, const char *rows, Singe
     char *path = text_format("%s/slurm/%s.sh", sweep->folder, what), *text = NULL;
     char *program = text_shell_quote(sweep->program), *plan = text_shell_quote(sweep->plan_path);
     char *folder = text_shell_quote(sweep->folder), *line = sweep_row_line(sweep, "\"$SLURM_ARRAY_TASK_ID\"");
+    char *name = sbatch_quote(sweep->plan.name, false), *log = sbatch_quote(sweep->folder, true);
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     if (file)
         fprintf(file,
                 "#!/bin/bash\n#SBATCH --job-name=%s-%s\n#SBATCH --open-mode=append\n"
                 "#SBATCH --output=%s/slurm/%s%s.log\n",
-                sweep->plan.name, what, sweep->folder, what, kind == JOB_REPORT ? "" : "-%a");
+                name, what, log, what, kind == JOB_REPORT ? "" : "-%a");
     for (int i = 0; file && i < o->slurm.count; i++) fprintf(file, "#SBATCH %s\n", o->slurm.items[i]);
 
     if (file && kind == JOB_ROWS) {
@@ -66,7 +80,7 @@ static char *write_job(const Sweep *sweep, JobKind kind, const char *rows, Singe
     SingeResult result = SINGE_ERROR_MEMORY;
     if (text_stream_end(file, &text)) result = file_write(path, text, size, error);
     else *error = (SingeError){.code = result, .stage = "slurm", .element = -1};
-    char *const texts[] = {text, program, plan, folder, line, result ? path : NULL};
+    char *const texts[] = {text, program, plan, folder, line, name, log, result ? path : NULL};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) free(texts[i]);
     return result ? NULL : path;
 }

@@ -7,6 +7,7 @@
 #include "cli/folder.h"
 #include "cli/interrupt.h"
 #include "cli/text.h"
+#include "common/printable.h"
 #include "sweep/sweep.h"
 
 enum {
@@ -167,7 +168,11 @@ int command_sweep(int argc, char **argv) {
         case OPT_REPORT: options.report = true; break;
         case OPT_SLURM: options.submit = true; break;
         case OPT_MAX_RUNNING: good = args_int(&reader, option, value, 1, PLAN_ROWS_MAX, &options.max_running); break;
-        case OPT_SLURM_OPTION: set_add(&options.slurm, value); break;
+        case OPT_SLURM_OPTION:
+            set_add(&options.slurm, value);
+            good = !value[strcspn(value, "\r\n")]; // it becomes a line of a script
+            if (!good) args_complain(&reader, "--slurm-option: expected one line, got '%s'", shown(value).text);
+            break;
         case OPT_RENDER_FRAMES: good = args_int(&reader, option, value, 1, 1000000, &options.frames); break;
         case OPT_QUIET: options.quiet = true; break;
         case ARG_OPERAND: options.plan = value; break;

@@ -24,7 +24,7 @@ typedef struct PlanReader {
     const char *folder; ///< of the plan, "" or ending in a slash
 } PlanReader;
 
-enum { PLAN_BYTES_MAX = 1 << 20 };
+enum { PLAN_BYTES_MAX = 1 << 20, PLAN_KEYS_MAX = 1000 };
 
 static const char *const methods[PLAN_METHODS] = {"grid", "list", "random", "latin-hypercube"};
 
@@ -125,11 +125,29 @@ static int read_word(PlanReader *reader, const YamlNode *node, const char *key, 
     return 0;
 }
 
+/// Refuses keys that a map has twice: the last would count for some readers and the first for others. Returns false
+/// after an error.
+static bool check_once(PlanReader *reader, const YamlNode *map, const char *what) {
+    const uint32_t before = message_total(&reader->messages);
+    if (map->kind == NODE_MAP && map->count > PLAN_KEYS_MAX)
+        message_add(&reader->messages, &reader->text, map->location, "%s has %u keys; at most %d are possible", what,
+                    (unsigned)map->count, PLAN_KEYS_MAX);
+    else if (map->kind == NODE_MAP)
+        for (const YamlNode *node = map->first; node; node = node->next) {
+            const YamlNode *last = node_find(map, node->key);
+            if (last == node) continue;
+            message_add(&reader->messages, &reader->text, last->key_location, "'%s' is given twice in %s",
+                        shown(node->key).text, what);
+        }
+    return message_total(&reader->messages) == before;
+}
+
 // ---- parameters
 
 static void read_range(PlanReader *reader, const YamlNode *map, PlanParameter *parameter) {
     const char *units[2] = {"", ""};
     bool ends[2] = {false, false};
+    if (!check_once(reader, map, "a range")) return;
 
     for (const YamlNode *node = map->first; node; node = node->next) {
         const char *key = node->key;
@@ -177,6 +195,7 @@ static void read_target(PlanReader *reader, const YamlNode *map) {
     }
 
     target->given = true;
+    if (!check_once(reader, map, "a target")) return;
 
     for (const YamlNode *node = map->first; node; node = node->next) {
         const char *key = node->key;
@@ -187,6 +206,7 @@ static void read_target(PlanReader *reader, const YamlNode *map) {
         } else if (strcmp(key, "temperature") == 0 && node->kind != NODE_MAP) {
             plan_complain(reader, node, key, "{file: CURVE.csv, probe: NAME}");
         } else if (strcmp(key, "temperature") == 0) {
+            if (!check_once(reader, node, "a curve")) return;
             for (const YamlNode *part = node->first; part; part = part->next)
                 if (strcmp(part->key, "file") == 0) target->curve = read_path(reader, part, "file");
                 else if (strcmp(part->key, "probe") == 0 && part->kind == NODE_VALUE) target->probe = part->text;
@@ -346,23 +366,28 @@ static void read_key(PlanReader *reader, const YamlNode *node) {
     } else if (strcmp(key, "set") == 0 && node->kind != NODE_MAP) {
         plan_complain(reader, node, "set", "a map of keys of the scene");
     } else if (strcmp(key, "set") == 0) {
+        if (!check_once(reader, node, "set")) return;
         plan->sets = arena_new(plan->arena, (size_t)node->count + 1, sizeof *plan->sets);
-        for (const YamlNode *child = node->first; child && plan->sets; child = child->next) {
+        plan->set_locations = arena_new(plan->arena, (size_t)node->count + 1, sizeof *plan->set_locations);
+        for (const YamlNode *child = node->first; child && plan->sets && plan->set_locations; child = child->next) {
             char *prefix = arena_new(plan->arena, strlen(child->key) + 2, 1);
             if (!prefix) return;
             sprintf(prefix, "%s=", child->key);
+            plan->set_locations[plan->set_count] = child->key_location;
             plan->sets[plan->set_count++] = flow_text(plan, child, prefix);
         }
     } else if (strcmp(key, "parameters") == 0 &&
                (node->kind != NODE_MAP || !node->count || node->count > PLAN_PARAMETERS_MAX)) {
         plan_complain(reader, node, "parameters", "a map of 1 to 64 keys of the scene");
     } else if (strcmp(key, "parameters") == 0) {
+        if (!check_once(reader, node, "parameters")) return;
         plan->parameters = arena_new(plan->arena, node->count, sizeof *plan->parameters);
 
         for (const YamlNode *child = node->first; child && plan->parameters; child = child->next) {
             PlanParameter *parameter = &plan->parameters[plan->parameter_count++];
             parameter->key = child->key;
             parameter->location = child->location;
+            parameter->key_location = child->key_location;
             if (strcmp(child->key, "name") == 0)
                 message_add(&reader->messages, &reader->text, child->key_location, "all rows have the scene's name");
             if (child->kind == NODE_MAP) {
@@ -389,6 +414,47 @@ static void read_key(PlanReader *reader, const YamlNode *node) {
     }
 }
 
+/// The next step of a path of --set, as tree_set takes them apart: "sources[01].start" has the steps of
+/// "sources.1.start". Returns its length; 0 at the end.
+static size_t path_step(const char **rest, const char **step) {
+    const char *c = *rest;
+    c += strspn(c, ".[]");
+    size_t length = strcspn(c, ".[]=");
+    *rest = c + length;
+    for (; length > 1 && *c == '0' && c[1] >= '0' && c[1] <= '9'; length--) c++;
+    *step = c;
+    return length;
+}
+
+/// Whether a value at path `a` replaces what is set at `b`: it is the same, or contains it.
+static bool path_covers(const char *a, const char *b) {
+    for (;;) {
+        const char *step, *other;
+        const size_t length = path_step(&a, &step), size = path_step(&b, &other);
+        if (!length) return true;
+        if (length != size || memcmp(step, other, size) != 0) return false;
+    }
+}
+
+/// Refuses parameters that replace each other or what `set` gives. A parameter may be a part of what `set` gives.
+static void check_overlaps(PlanReader *reader) {
+    const Plan *plan = reader->plan;
+    for (uint32_t p = 0; p < plan->parameter_count; p++) {
+        const PlanParameter *parameter = &plan->parameters[p];
+        for (uint32_t i = 0; i < plan->set_count; i++)
+            if (path_covers(parameter->key, plan->sets[i]))
+                message_add(&reader->messages, &reader->text, parameter->key_location,
+                            "'%s' replaces what 'set' gives in line %d; give one of them", shown(parameter->key).text,
+                            plan->set_locations[i].line);
+        for (uint32_t q = 0; q < p; q++)
+            if (path_covers(parameter->key, plan->parameters[q].key) ||
+                path_covers(plan->parameters[q].key, parameter->key))
+                message_add(&reader->messages, &reader->text, parameter->key_location,
+                            "'%s' and '%s' set the same value; give one of them", shown(parameter->key).text,
+                            shown(plan->parameters[q].key).text);
+    }
+}
+
 static void read_plan(PlanReader *reader, bool fit) {
     Plan *plan = reader->plan;
     const SceneText *text = &reader->text;
@@ -400,7 +466,9 @@ static void read_plan(PlanReader *reader, bool fit) {
         return;
     }
 
+    if (!check_once(reader, root, "the plan")) return;
     for (const YamlNode *node = root->first; node; node = node->next) read_key(reader, node);
+    if (!arena_failed(plan->arena)) check_overlaps(reader);
 
     const bool drawn = plan->method == PLAN_RANDOM || plan->method == PLAN_LATIN_HYPERCUBE;
     if (!plan->scene) message_add(messages, text, root->location, "a plan needs 'scene'");

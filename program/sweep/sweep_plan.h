@@ -24,7 +24,7 @@ typedef struct PlanParameter {
     char *unit;      ///< as written; "" for none
     uint32_t steps;  ///< of a range, for a grid or a list; 0: not given
     bool logarithmic, whole;
-    SceneLocation location;
+    SceneLocation location, key_location;
 } PlanParameter;
 
 /// The target of a fit (docs/sweep.md): the sum of the given terms.
@@ -54,7 +54,8 @@ typedef struct Plan {
     PlanSearch search;
     uint32_t evaluations; ///< max rows of a fit
     uint32_t set_count, parameter_count, row_count;
-    char **sets; ///< [set_count] PATH=VALUE for all rows
+    char **sets;                  ///< [set_count] PATH=VALUE for all rows
+    SceneLocation *set_locations; ///< [set_count] of their keys
     PlanParameter *parameters;
     char **values; ///< [row_count * parameter_count], row by row
 } Plan;

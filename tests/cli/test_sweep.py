@@ -112,6 +112,14 @@ class Sweep(Case):
             ("speed: 1\nparameters: {pace: [1]}\n", 2, "unknown key 'speed'"),
             ("set: 1\nparameters: {pace: [1]}\n", 2, "set: expected a map"),
             ("", 1, "needs 'parameters'"),
+            ("parameters:\n  pace: [1, 2]\n  pace: [3]\n", 4, "'pace' is given twice in parameters"),
+            ("parameters:\n  pace: {from: 1, to: 2, from: 2, steps: 2}\n", 3, "'from' is given twice in a range"),
+            ("set: {fps: 24, fps: 25}\nparameters: {pace: [1]}\n", 2, "'fps' is given twice in set"),
+            ("parameters: {pace: [1]}\nscene: tiny.yaml\n", 3, "'scene' is given twice in the plan"),
+            ("set: {pace: 3}\nparameters:\n  pace: [1]\n", 4, "'pace' replaces what 'set' gives in line 2"),
+            ("set: {'sources[0].start': 1}\nparameters:\n  sources.00.start: [1]\n", 4, "replaces what 'set' gives"),
+            ("set: {gas.cell_size: 1 cm}\nparameters:\n  gas: [no]\n", 4, "'gas' replaces what 'set' gives"),
+            ("parameters:\n  gas: [no]\n  gas.cell_size: [1 cm]\n", 4, "set the same value"),
         ):
             with self.subTest(text):
                 self.write_plan(text)
@@ -125,6 +133,25 @@ class Sweep(Case):
             file.write("parameters: {pace: [1]}\n")
         self.assertIn("needs 'scene'", self.sweep(expect=2)[1])
         self.assertIn("No such file", self.singe("sweep", self.path("none.yaml"), expect=2)[1])
+
+    def test_a_parameter_may_be_a_part_of_what_is_set(self):
+        rows = self.rows("set: {preview: {size: [32, 24]}, sources.0.start: 0}\n"
+                         "parameters:\n  preview.samples: [1, 2]\n  sources.0.end: [1]\n")
+        self.assertEqual([r["preview.samples"] for r in rows], ["1", "2"])
+
+    def test_a_plan_shows_no_other_file(self):
+        """It may come from a stranger, and its messages may go to one."""
+        for number, text in enumerate(("hunter2\nhunter2\n", "hunter2: {\n", "- hunter2\n", "password: hunter2\n")):
+            with self.subTest(text), open(self.path("secret"), "w") as file:
+                file.write(text)
+                file.flush()
+                self.write_plan("parameters: {pace: [1]}\n")
+                with open(self.path("plan.yaml"), "w") as plan:
+                    plan.write("scene: secret\nparameters: {pace: [1], sheets.0.name: [a]}\n")
+                out, err = self.sweep("--print", expect=2)
+                self.assertNotIn("hunter2", out + err)
+                self.assertIn("secret, which", err)
+                self.assertIn("is not a valid scene; `singe check` says why", err)
 
     def test_a_row_that_is_no_scene_stops_all(self):
         self.write_plan("parameters:\n  pace: [1, 2, -3]\n")
@@ -392,6 +419,46 @@ class Sweep(Case):
             else:
                 row, first, last = expected
                 self.assertIn(f"rows/{row:04} --frames {first}-{last} ", done.stdout, done.stderr)
+
+    def sbatch_words(self, line):
+        """As Slurm's sbatch reads the rest of an #SBATCH line: to the first blank that is neither quoted nor escaped."""
+        word, quote, at = "", "", 0
+        while at < len(line) and (quote or not line[at].isspace()):
+            if line[at] == "\\":
+                at += 1
+                word += line[at]
+            elif quote and line[at] == quote:
+                quote = ""
+            elif not quote and line[at] in "\"'":
+                quote = line[at]
+            elif not quote and line[at] == "#":
+                break
+            else:
+                word += line[at]
+            at += 1
+        return word, line[at:].strip()
+
+    def test_slurm_takes_any_folder(self):
+        """Blanks, quotes, # and % of its name, and of the plan's."""
+        out = "a \"folder\" of #1's 100%a"
+        self.write_plan("parameters:\n  pace: [1, 2]\n", "it's mine.yaml")
+        self.singe("sweep", self.path("it's mine.yaml"), "-o", self.path(out), "--no-preview", "--slurm",
+                   env=self.fake_sbatch())
+        for job in "run", "render", "report":
+            with open(self.path(out, "slurm", job + ".sh")) as file:
+                lines = [line[len("#SBATCH "):-1] for line in file if line.startswith("#SBATCH")]
+            words = [self.sbatch_words(line) for line in lines]
+            self.assertEqual([rest for _, rest in words], [""] * len(words))
+            options = dict(word[2:].split("=", 1) for word, _ in words if "=" in word)
+            self.assertEqual(options["job-name"], f"it's mine-{job}")
+            log = options["output"].replace("%%", "%")
+            self.assertEqual(log, self.path(out, "slurm", job + ("" if job == "report" else "-%a") + ".log"))
+
+    def test_an_option_of_slurm_is_one_line(self):
+        self.write_plan("parameters:\n  pace: [1, 2]\n")
+        _, err = self.sweep("--slurm", "--slurm-option=--partition=low\ntouch evil", expect=2, env=self.fake_sbatch())
+        self.assertIn("--slurm-option: expected one line", err)
+        self.assertFalse(os.path.exists(self.path("s")))
 
     def test_slurm_refuses(self):
         self.write_plan("parameters:\n  pace: [1, 2]\n")

@@ -143,7 +143,7 @@ def frames_done(out, row):
 
 
 def check(program, at):
-    plan, local, farm = (os.path.join(at, name) for name in ("plan.yaml", "local", "farm"))
+    plan, local, farm = (os.path.join(at, name) for name in ("plan.yaml", "local", "the farm's #1"))
     for name, text in (("scene.yaml", SCENE), ("plan.yaml", PLAN)):
         with open(os.path.join(at, name), "w") as file:
             file.write(text)
