@@ -29,6 +29,12 @@ SingeResult refuse_memory(SingeError *error, const char *stage, const char *name
 /// The end of a path, short enough to leave room for the reason in a message.
 const char *short_name(const char *name);
 
+/// Whether a struct of the public headers can have this size in some version. All begin with a size_t, so their sizes
+/// are multiples of its size; none has come near 64 KiB.
+static inline bool struct_size_is_possible(size_t size) {
+    return size > sizeof size && size % sizeof size == 0 && size <= 65536;
+}
+
 static inline uint32_t load_u32_little(const uint8_t *p) {
     return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }

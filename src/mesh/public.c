@@ -22,12 +22,12 @@ static void fill_def(void *def, size_t size, const void *standard, size_t known)
     memcpy(def, &size, sizeof size);
 }
 
-/// Copies the common bytes of a caller's Def over *def, which holds the defaults. False if struct_size is not set.
+/// Copies the common bytes of a caller's Def over *def, which holds the defaults. False if struct_size is that of no version.
 static bool read_def(void *def, size_t size, const void *given) {
     size_t known;
     if (!given) return false;
     memcpy(&known, given, sizeof known);
-    if (known < sizeof known) return false;
+    if (!struct_size_is_possible(known)) return false;
     memcpy(def, given, known < size ? known : size);
     memcpy(def, &size, sizeof size);
     return true;
@@ -86,7 +86,7 @@ SingeResult singe_mesh_create(const SingeMeshDef *given, SingeMesh **mesh, Singe
     SingeMeshDef def = singe_default_mesh();
     *mesh = NULL;
     if (!read_def(&def, sizeof def, given))
-        return bad(error, "struct_size is not set; start from singe_default_mesh()");
+        return bad(error, "struct_size is that of no version; start from singe_default_mesh()");
     const char *name = def.name ? def.name : "mesh";
 
     // what mesh_make assumes
@@ -144,7 +144,7 @@ SingeResult singe_mesh_create_grid(const SingeGridDef *given, SingeMesh **mesh, 
     SingeGridDef def = singe_default_grid();
     *mesh = NULL;
     if (!read_def(&def, sizeof def, given))
-        return bad(error, "struct_size is not set; start from singe_default_grid()");
+        return bad(error, "struct_size is that of no version; start from singe_default_grid()");
     if (!(def.jitter >= 0 && def.jitter <= 0.3f)) return bad(error, "grid: jitter must be between 0 and 0.3");
     if (!(def.displacement >= 0 && isfinite(def.displacement)))
         return bad(error, "grid: displacement must be 0 or more");

@@ -2,6 +2,7 @@
 #include "shell/sheet.h"
 
 #include "common/def_table.h"
+#include "common/store.h"
 #include "shell/rest_lengths.h"
 
 #include <math.h>
@@ -23,12 +24,12 @@ static bool read_def(const SingeSheetDef *def, SingeSheetDef *out) {
     const char *bytes = (const char *)def;
     size_t size = def->struct_size, inner;
     *out = singe_default_sheet();
-    if (size < sizeof size) return false;
+    if (!struct_size_is_possible(size)) return false;
     memcpy(out, bytes, sheet_min(size, head));
     if (size > head) {
         if (size - head < sizeof inner) return false;
         memcpy(&inner, bytes + head, sizeof inner);
-        if (inner < sizeof inner || inner > size - head) return false;
+        if (!struct_size_is_possible(inner) || inner > size - head) return false;
         memcpy(&out->material, bytes + head, sheet_min(inner, sizeof out->material));
         memcpy((char *)out + tail, bytes + head + inner, sheet_min(size - head - inner, sizeof *out - tail));
     }
@@ -174,7 +175,7 @@ SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, Shee
     SingeSheetDef def;
     memset(source, 0, sizeof *source);
     if (!given || !read_def(given, &def))
-        return argument("sheet", "struct_size is not set; start from singe_default_sheet()", error);
+        return argument("sheet", "struct_size is that of no version; start from singe_default_sheet()", error);
     Sheet *sheet = &source->sheet;
     copy_name(def.name ? def.name : "sheet", sheet->name, sizeof sheet->name);
     TRY(check_def(&def, sheet->name, error));

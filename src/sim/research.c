@@ -144,7 +144,7 @@ SingeResult singe_network_create(const SingeNetworkDef *given, SingeNetwork **ou
     *out = NULL;
     SingeNetworkDef def = network_standard;
     if (!given || !sim_read_def(&def, sizeof def, given, given->struct_size))
-        return network_refuse(error, -1, "struct_size is not set; start from singe_default_network()");
+        return network_refuse(error, -1, "struct_size is that of no version; start from singe_default_network()");
     TRY(network_check(&def, error));
     Memory memory = memory_make(def.allocator);
     SingeNetwork *network = memory_new(&memory, 1, sizeof *network);

@@ -2,6 +2,7 @@
 #include "common/assertion.h"
 #include "common/def_table.h"
 #include "common/real.h"
+#include "common/store.h"
 #include "shell/shell_validate.h"
 #include "sim/sim_internal.h"
 
@@ -37,7 +38,7 @@ bool sim_read_def(void *def, size_t size, const void *given, size_t given_size) 
     size_t known;
     if (!given || given_size < sizeof known) return false;
     memcpy(&known, given, sizeof known);
-    if (known < sizeof known || known > given_size) return false;
+    if (!struct_size_is_possible(known) || known > given_size) return false;
     memcpy(def, given, known < size ? known : size);
     memcpy(def, &size, sizeof size);
     return true;
@@ -49,7 +50,7 @@ static bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
     const size_t head = offsetof(SingeSimDef, wind);
     const char *bytes = (const char *)given;
     *def = singe_default_sim();
-    if (!given || given->struct_size < sizeof(size_t)) return false;
+    if (!given || !struct_size_is_possible(given->struct_size)) return false;
     size_t rest = given->struct_size, wind, solver, gas;
     memcpy(def, bytes, rest < head ? rest : head);
     def->struct_size = sizeof *def;
@@ -80,7 +81,7 @@ SingeResult singe_sim_create(const SingeSimDef *given, SingeSim **out, SingeErro
     SingeSimDef def;
     if (!sim_read_sim_def(given, &def))
         return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1,
-                         "struct_size is not set; start from singe_default_sim()");
+                         "struct_size is that of no version; start from singe_default_sim()");
     TRY(sim_check_def(&def, error));
     if (!dynamics_runs_here(def.instructions))
         return error_set(error, SINGE_ERROR_LIMIT, "simulation", -1, "this processor lacks the requested instructions");

@@ -297,7 +297,7 @@ TEST(older_defs_take_defaults) {
     square.def.material.damping = singe_param(77); // beyond the older material
     square.def.velocity[0] = 3;
     const size_t head = offsetof(SingeSheetDef, material), inner = offsetof(SingeMaterialDef, damping);
-    const size_t cut = inner & ~(sizeof(void *) - 1), tail = sizeof(float[3]);
+    const size_t cut = inner & ~(sizeof(void *) - 1), tail = 2 * sizeof(size_t);
     unsigned char *old = malloc(head + cut + tail); // exactly: reading more is an error
     assert_non_null(old);
     square.def.struct_size = head + cut + tail;

@@ -24,6 +24,12 @@ TEST(bad_simulations_are_refused) {
     SIM_BAD(solver.order[3], (SingeColour)4, "order");
     SIM_BAD(wind.gust, -1, "gust");
     SIM_BAD(struct_size, 0, "struct_size");
+    SIM_BAD(struct_size, sizeof(size_t), "struct_size");
+    SIM_BAD(struct_size, sizeof(SingeSimDef) - 1, "struct_size");
+    SIM_BAD(struct_size, sizeof(SingeSimDef) + 3, "struct_size");
+    SIM_BAD(struct_size, (size_t)1 << 20, "struct_size");
+    SIM_BAD(struct_size, SIZE_MAX / 8 * 8, "struct_size");
+    SIM_BAD(wind.struct_size, sizeof(SingeWindDef) - 2, "struct_size");
     SIM_BAD(wind.struct_size, 0, "struct_size");
     SIM_BAD(solver.struct_size, 0, "struct_size");
     SIM_BAD(wind.struct_size, 1 << 20, "struct_size");
@@ -60,6 +66,8 @@ TEST(bad_sources_are_refused) {
     SingeValueKey strengths[2] = {{0, 1}, {0, 1}};
 
     SOURCE_BAD(SINGE_SOURCE_BALL, def.struct_size = 0);
+    SOURCE_BAD(SINGE_SOURCE_BALL, def.struct_size = sizeof(SingeSourceDef) + 1);
+    SOURCE_BAD(SINGE_SOURCE_BALL, def.struct_size = 1 << 20);
     SOURCE_BAD(SINGE_SOURCE_BALL, (def.path_count = 0, def.position[1] = NAN));
     SOURCE_BAD(SINGE_SOURCE_BALL, def.path = NULL);
     SOURCE_BAD(SINGE_SOURCE_BALL, (def.path = keys, def.path_count = 2)); // not later than the one before
@@ -132,21 +140,24 @@ TEST(bad_colliders_and_wind_are_refused) {
     singe_sim_destroy(sim);
 }
 
+/// The size of an older header's struct whose fields end there, or before the padding that it would need.
+#define OLDER(Type, field) (offsetof(Type, field) / sizeof(size_t) * sizeof(size_t))
+
 /// Fields beyond an older header's struct_size hold rubbish that must not be read.
 TEST(rubbish_beyond_an_older_def_is_not_read) {
     SingeSim *sim;
     SingeError error;
     SingeSimDef def = singe_default_sim();
-    def.struct_size = offsetof(SingeSimDef, heat_tolerance);
+    def.struct_size = OLDER(SingeSimDef, heat_tolerance);
     def.heat_tolerance = NAN, def.wind.struct_size = 0, def.solver.substeps = -1;
     assert_int_equal(singe_sim_create(&def, &sim, &error), SINGE_OK);
     TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
-    sheet.struct_size = offsetof(SingeSheetDef, drop_pieces_below);
+    sheet.struct_size = OLDER(SingeSheetDef, drop_pieces_below);
     sheet.drop_pieces_below = NAN;
     SingeSheetId sheet_id;
     test_ok(sim, singe_sim_add_sheet(sim, &sheet, &sheet_id));
-    sheet.struct_size = offsetof(SingeSheetDef, material);
+    sheet.struct_size = OLDER(SingeSheetDef, material);
     memset(&sheet.material, 0xFF, sizeof sheet.material);
     test_mesh_move(&mesh, 1, 0, 0);
     test_ok(sim, singe_sim_add_sheet(sim, &sheet, &sheet_id));
@@ -155,18 +166,18 @@ TEST(rubbish_beyond_an_older_def_is_not_read) {
     SingeSourceDef source = singe_default_source();
     SingeSourceId source_id;
     source.path_count = 1, source.path = &key;
-    source.struct_size = offsetof(SingeSourceDef, texture);
+    source.struct_size = OLDER(SingeSourceDef, texture);
     source.texture.width = -1, source.callback = (SingeFluxFn *)1;
     test_ok(sim, singe_sim_add_source(sim, &source, &source_id));
     SingePinDef pin = singe_default_pin();
     SingePinId pin_id;
     const uint32_t vertex = 0;
     pin.sheet = sheet_id, pin.vertex_count = 1, pin.vertices = &vertex;
-    pin.struct_size = offsetof(SingePinDef, path_count);
+    pin.struct_size = OLDER(SingePinDef, path_count);
     pin.path_count = 99, pin.path = NULL;
     test_ok(sim, singe_sim_add_pin(sim, &pin, &pin_id));
     SingeWindDef wind = singe_default_wind();
-    wind.struct_size = offsetof(SingeWindDef, gust_time);
+    wind.struct_size = OLDER(SingeWindDef, gust_time);
     wind.gust = 1, wind.gust_time = NAN;
     test_ok(sim, singe_sim_set_wind(sim, &wind));
     test_steps(sim, 3);
