@@ -317,8 +317,8 @@ bool isolate_possible(void) {
 static SingeResult refuse_process(const char *name, SingeError *error, int reason) {
     char text[120];
     if (strerror_r(reason, text, sizeof text)) snprintf(text, sizeof text, "error %d", reason);
-    return refuse(error, SINGE_ERROR_MEMORY, "file", -1, "%s: cannot start a process to read it: %s", short_name(name),
-                  text);
+    return refuse(error, reason == ENOMEM ? SINGE_ERROR_MEMORY : SINGE_ERROR_FILE, "file", -1,
+                  "%s: cannot start a process to read it: %s", short_name(name), text);
 }
 
 SingeResult isolate_run(const char *name, IsolateWork *work, void *context, IsolateLimits limits,

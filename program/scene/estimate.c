@@ -112,12 +112,20 @@ double scene_picture_memory(const Scene *scene) {
     return memory;
 }
 
+/// "4.3 GB", or "38 MB" where that many gigabytes would have no digit.
+static const char *bytes_text(double bytes, char text[24]) {
+    if (bytes < 0.995e9) snprintf(text, 24, "%.0f MB", 1e-6 * bytes);
+    else snprintf(text, 24, "%.1f GB", 1e-9 * bytes);
+    return text;
+}
+
 bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, double room, SceneMessages *messages) {
     if (!(room > 0) || wanted <= room) return true;
 
     // a heightfield that needs more than half of the memory, or else the largest sheet
     const SceneCollider *heights = NULL;
     double pixels = 0;
+    char needs[24], has[24];
 
     for (uint32_t i = 0; i < scene->collider_count; i++) {
         const double count = height_pixels(&scene->colliders[i]);
@@ -129,8 +137,8 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
 
     if (pixels * (height_bytes + (heights && heights->visible ? drawn_height_bytes : 0)) > 0.5 * wanted) {
         message_add(messages, scene->text, heights->picture.location,
-                    "the scene needs about %.1f GB of memory, and there are %.1f GB: give its heightfield fewer pixels",
-                    1e-9 * wanted, 1e-9 * room);
+                    "the scene needs about %s of memory, and there are %s: give its heightfield fewer pixels",
+                    bytes_text(wanted, needs), bytes_text(room, has));
         return false;
     }
 
@@ -138,8 +146,8 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
     for (uint32_t i = 1; i < scene->sheet_count; i++)
         if (sheet_cells(scene, assets, i) > sheet_cells(scene, assets, largest)) largest = i;
     message_add(messages, scene->text, scene->sheets[largest].location, // there is at least one sheet
-                "the scene needs about %.1f GB of memory, and there are %.1f GB: give its sheets fewer cells",
-                1e-9 * wanted, 1e-9 * room);
+                "the scene needs about %s of memory, and there are %s: give its sheets fewer cells",
+                bytes_text(wanted, needs), bytes_text(room, has));
 
     return false;
 }

@@ -222,8 +222,8 @@ YamlNode *tree_read(SceneArena *arena, const SceneText *text, const char *bytes,
     }
 
     if (result) {
-        message_add(messages, text, location_at(&builder, 1, 1), "not valid YAML, or it cannot be read: %s",
-                    error.message);
+        message_add(messages, text, location_at(&builder, 1, 1), "%s%s",
+                    result == SINGE_ERROR_FILE ? "" : "not valid YAML, or it cannot be read: ", error.message);
         return NULL;
     }
 

@@ -6,7 +6,7 @@ import resource
 import subprocess
 import unittest
 
-from support import SINGE, Case
+from support import SANITIZED, SINGE, Case
 
 
 class Failure(Case):
@@ -35,6 +35,19 @@ class Failure(Case):
         if os.path.isdir("/proc/self"):
             _, err = self.singe("run", self.scene, "-o", "/proc/singe-test", "--no-preview", expect=1)
             self.assertIn("/proc/singe-test", err)
+
+    @unittest.skipIf(SANITIZED, "a sanitizer needs files and memory of its own")
+    def test_limits_of_a_process_are_named(self):
+        """Few open files are not a lack of memory, and little memory is not none."""
+        def limited(kind, most, expect, *args):
+            return self.singe("check", self.scene, *args, expect=expect,
+                              preexec_fn=lambda: resource.setrlimit(kind, (most, most)))[1]
+
+        err = limited(resource.RLIMIT_NOFILE, 4, 2)
+        self.assertIn("tiny.yaml: cannot start a process to read it: Too many open files", err)
+        self.assertNotIn("memory", err)
+        err = limited(resource.RLIMIT_DATA, 40 << 20, 2)
+        self.assertRegex(err, r"tiny.yaml:6:5: error: the scene needs about \d\d+ MB of memory, and there are 42 MB")
 
     def test_stats_in_the_way(self):
         os.makedirs(self.path("o", "stats.csv"))
