@@ -18,17 +18,20 @@ enum { ID_SIZE = 64 };
 typedef enum JobKind { JOB_ROWS, JOB_RENDER, JOB_REPORT, JOB_KINDS } JobKind;
 static const char *const job_names[JOB_KINDS] = {"run", "render", "report"};
 
-/// A text as a part of an #SBATCH line, in which a backslash takes away the meaning of blanks, quotes and #; and with
-/// `pattern` of a file's name, in which %a stands for the task. A line cannot contain a line break: a blank is written.
+/// A text as a part of an #SBATCH line: in double quotes, within which a backslash takes away the meaning of quotes and
+/// backslashes. With `pattern` of a file's name, in which %a stands for the task. A line cannot contain a line break: a
+/// blank is written.
 static char *sbatch_quote(const char *text, bool pattern) {
-    char *quoted = malloc(2 * strlen(text) + 1), *to = quoted;
-    for (; to && *text; text++) {
-        if (strchr(" \t\"'\\#", *text) || *text == '\n' || *text == '\r') *to++ = '\\';
+    char *quoted = malloc(2 * strlen(text) + 3), *to = quoted;
+    if (!quoted) return text_format("%s", "sweep");
+    *to++ = '"';
+    for (; *text; text++) {
+        if (*text == '"' || *text == '\\') *to++ = '\\';
         if (*text == '%' && pattern) *to++ = '%';
         *to++ = *text == '\n' || *text == '\r' ? ' ' : *text;
     }
-    if (to) *to = 0;
-    return quoted ? quoted : text_format("%s", "sweep");
+    memcpy(to, "\"", 2);
+    return quoted;
 }
 
 /// Writes the script of a job. Returns its path, NULL after an error.

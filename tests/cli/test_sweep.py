@@ -421,7 +421,7 @@ class Sweep(Case):
                 self.assertIn(f"rows/{row:04} --frames {first}-{last} ", done.stdout, done.stderr)
 
     def sbatch_words(self, line):
-        """As Slurm's sbatch reads the rest of an #SBATCH line: to the first blank that is neither quoted nor escaped."""
+        """As Slurm's sbatch reads the rest of an #SBATCH line: to the first blank outside quotes."""
         word, quote, at = "", "", 0
         while at < len(line) and (quote or not line[at].isspace()):
             if line[at] == "\\":
