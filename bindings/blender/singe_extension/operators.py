@@ -222,8 +222,8 @@ class SINGE_OT_load(bpy.types.Operator):
         folder = bpy.path.abspath(self.directory or os.path.dirname(self.filepath))
         try:
             frames = load.load(context, folder.rstrip("/\\"))
-        except ERRORS as error:
-            self.report({"ERROR"}, files.sentence(error))
+        except Exception as error:  # the folder may hold anything, and a traceback tells a user nothing
+            self.report({"ERROR"}, f"cannot load {folder}: {files.sentence(error)}")
             return {"CANCELLED"}
         say(context.scene, f"{frames} frames loaded")
         self.report({"INFO"}, context.scene.singe.message)

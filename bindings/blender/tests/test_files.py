@@ -148,6 +148,8 @@ class Take(Case):
             with self.assertRaises((files.FolderError, OSError)) as raised:
                 call()
             said = files.sentence(raised.exception)
+            self.assertEqual(files.sentence(RuntimeError("Error: no such file\n")), "no such file")
+            self.assertEqual(files.sentence(ReferenceError()), "ReferenceError")
             self.assertNotIn("Errno", said)
             self.assertRegex(said.lower(), "not a (folder|directory)")
 
@@ -216,6 +218,11 @@ class Root(Case):
             with self.subTest(record):
                 (cache / "run.json").write_text(json.dumps(record))
                 self.assertEqual(job.root_of(str(cache)) is not None, found)
+        deep, whole = "[" * 100000, '{"scene": {"name": "burn", "fps": %s}}'
+        for text in (deep, '{"scene": ' + deep, whole % ("9" * 400), whole % "1e999", whole % "NaN", whole % -24, "\xff"):
+            with self.subTest(text[:40]):
+                (cache / "run.json").write_text(text, encoding="latin-1")
+                self.assertIsNone(job.root_of(str(cache)))
 
 
 if __name__ == "__main__":
