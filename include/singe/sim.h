@@ -153,7 +153,7 @@ typedef struct SingeView {
     uint32_t particle_count, vertex_count, cell_count;
     uint32_t spring_count[SINGE_COLOUR_COUNT];
     const float (*position)[4];      ///< [particle_count] m; fourth is unused
-    const float (*velocity)[4];      ///< [particle_count] m/s
+    const float (*velocity)[4];      ///< [particle_count] m/s, of the last substep: the next one starts with it
     const float (*rest_position)[4]; ///< [particle_count] m
     const float (*uv)[2];            ///< [particle_count], centres at the mean of their corners
     const float *area;               ///< [particle_count] m2 at rest, of the particle's own layer

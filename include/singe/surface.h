@@ -18,7 +18,7 @@ typedef struct SingeSurface {
     float (*position)[3];         ///< m
     float (*normal)[3];           ///< unit length; area-weighted means if the surface is not smooth
     float (*uv)[2];               ///< 0 if the sheet has none
-    float (*velocity)[3];         ///< m/s
+    float (*velocity)[3];         ///< m/s, displacement over time since the last frame (`velocity_steps` of the Def)
     float (*rest_position)[3];    ///< m
     float *temperature;           ///< K
     float *temperature_peak;      ///< K, highest so far; it decides how brown paper is

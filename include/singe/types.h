@@ -339,10 +339,10 @@ static inline SingeContactDef singe_default_contact(void) {
 
 /// A simulation.
 ///
-/// Defaults: thread_count 1, instructions SINGE_INSTRUCTIONS_BEST, seed 1, time_step 1.0 / 480, pace 1, gravity {0, 0,
-/// -9.81}, ambient_temperature 293.15, air_density 1.2, heat_tolerance 1e-5, surface_raggedness 2e-3, wind
-/// singe_default_wind(), solver singe_default_solver(), gas singe_default_gas(), contact singe_default_contact(); all
-/// else 0 or NULL.
+/// Defaults: thread_count 1, instructions SINGE_INSTRUCTIONS_BEST, seed 1, time_step 1.0 / 480, velocity_steps 1, pace
+/// 1, gravity {0, 0, -9.81}, ambient_temperature 293.15, air_density 1.2, heat_tolerance 1e-5, surface_raggedness 2e-3,
+/// wind singe_default_wind(), solver singe_default_solver(), gas singe_default_gas(), contact singe_default_contact();
+/// all else 0 or NULL.
 typedef struct SingeSimDef {
     size_t struct_size;
     SingeAllocator allocator;       ///< zeroed: libc's
@@ -352,6 +352,8 @@ typedef struct SingeSimDef {
     SingeInstructions instructions; ///< refused where the processor lacks them
     uint64_t seed;                  ///< seed of ragged edges and of the preview; noise and wind have their own seeds
     float time_step;                ///< s, 1e-9 to 10; h of the paper
+    /// 1 to 1000000; steps from a frame to the next: over them a surface's velocity is displacement over time
+    int velocity_steps;
     float pace;       ///< 1e-6 to 1e6; seconds of fire per second of motion; 1 is real, 4 burns four times as fast
     float gravity[3]; ///< m/s2, -1e4 to 1e4; z is up
     float ambient_temperature; ///< K, 1 to 1e4; temperature of the air and the surroundings

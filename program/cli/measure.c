@@ -5,7 +5,8 @@
 //
 //   j = v(t) - (x(t + dt) - x(t - dt))/(2 dt)
 //
-// A smooth motion of frequency f leaves (2 pi f dt)^2/6 of its speed in j: 1 % at a hertz and 24 frames a second.
+// A cache's v is (x(t) - x(t - dt))/dt, so j is half the change of velocity from one frame to the next. A smooth motion
+// of frequency f has pi f dt of its speed in j: 13 % at a hertz and 24 frames a second.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,7 +24,10 @@
 #include "formats/formats.h"
 
 enum { OPT_FRAMES, OPT_CSV, OPT_NO_PREVIEW, OPT_COUNT };
-enum { EMBER_FRAMES = 4, EMBER_SCALE = 3 };
+enum { EMBER_FRAMES = 4, EMBER_SCALE = 3, RUN = 64 };
+
+/// m at rest from all that has ignited, beyond which the sheet is cold.
+static const float cold_from = 0.09f;
 
 static const ArgOption measure_options[OPT_COUNT] = {
     [OPT_FRAMES] = {"frames", 0, "A-B", "reads only these frames (or A alone) [all]"},
@@ -36,7 +40,20 @@ static const ArgCommand measure_command = {
     measure_options, OPT_COUNT, "docs/cli.md describes the numbers. Exit codes: 0 success, 1 failed, 2 bad input."};
 
 /// A number of every frame, and how it is summarized.
-typedef enum Number { BIAS, BEND, BURNT, UNBURNT, FOLD, CURL, CURL_STRONG, CURL_MAX, JITTER, EMBER, NUMBERS } Number;
+typedef enum Number {
+    BIAS,
+    BEND,
+    BURNT,
+    UNBURNT,
+    FOLD,
+    CURL,
+    CURL_STRONG,
+    CURL_MAX,
+    JITTER,
+    JITTER_COLD,
+    EMBER,
+    NUMBERS
+} Number;
 
 static const struct {
     const char *key, *title, *format;
@@ -51,6 +68,7 @@ static const struct {
     [CURL_STRONG] = {"curl_p90_deg", "curl of the rim over 10 mm, p90", "%.1f", false},
     [CURL_MAX] = {"curl_max_deg", "curl of the rim over 10 mm, max", "%.1f", false},
     [JITTER] = {"jitter_mm_per_s", "jitter of the unburnt, mm/s rms", "%.3f", true},
+    [JITTER_COLD] = {"jitter_cold_mm_per_s", "jitter 90 mm and more from the fire, mm/s", "%.3f", true},
     [EMBER] = {"ember_width_mm", "width of the ember line in some frames, mm", "%.2f", true},
 };
 
@@ -59,8 +77,13 @@ typedef struct Moment {
     double time;
     uint32_t count; ///< room
     float (*position)[3], (*velocity)[3];
-    bool *there;
+    bool *there, *cold;
 } Moment;
+
+/// A box around RUN vertices that have ignited.
+typedef struct Box {
+    float low[3], high[3];
+} Box;
 
 typedef struct Measure {
     Console console;
@@ -84,7 +107,25 @@ static void moment_free(Moment *moment) {
     free(moment->position);
     free(moment->velocity);
     free(moment->there);
+    free(moment->cold);
     *moment = (Moment){0};
+}
+
+/// Whether a position at rest is farther than `cold_from` from all that has burnt.
+static bool is_cold(const float *rest, uint32_t count, float (*burnt)[3], const Box *boxes) {
+    const double square = pow((double)cold_from, 2);
+    for (uint32_t first = 0; first < count; first += RUN) {
+        const Box *box = &boxes[first / RUN];
+        double gap = 0;
+        for (int k = 0; k < 3; k++)
+            gap += pow(fmax(0, fmax((double)box->low[k] - (double)rest[k], (double)rest[k] - (double)box->high[k])), 2);
+        for (uint32_t i = first; i < count && i < first + RUN && gap < square; i++) {
+            double distance = 0;
+            for (int k = 0; k < 3; k++) distance += pow((double)burnt[i][k] - (double)rest[k], 2);
+            if (distance < square) return false;
+        }
+    }
+    return true;
 }
 
 /// Keeps the vertices of the input mesh that have not ignited. False when out of memory.
@@ -97,29 +138,51 @@ static bool moment_take(const SingeSurface *surface, double time, Moment *moment
     moment->position = malloc(((size_t)count + 1) * sizeof *moment->position);
     moment->velocity = malloc(((size_t)count + 1) * sizeof *moment->velocity);
     moment->there = calloc((size_t)count + 1, sizeof *moment->there);
+    moment->cold = calloc((size_t)count + 1, sizeof *moment->cold);
     moment->count = count;
     moment->time = time;
-    if (!moment->position || !moment->velocity || !moment->there) return false;
+    float(*burnt)[3] = malloc(((size_t)surface->vertex_count + 1) * sizeof *burnt);
+    Box *boxes = malloc(((size_t)surface->vertex_count / RUN + 1) * sizeof *boxes);
+    const bool good = moment->position && moment->velocity && moment->there && moment->cold && burnt && boxes;
 
-    for (uint32_t v = 0; v < surface->vertex_count; v++) {
+    // what has ignited, at rest, with a box around each run of it
+    uint32_t burnt_count = 0;
+    for (uint32_t v = 0; v < surface->vertex_count && good; v++) {
+        if (surface->time_ignited[v] < 0) continue;
+        Box *box = &boxes[burnt_count / RUN];
+        const bool first = burnt_count % RUN == 0;
+        for (int k = 0; k < 3; k++) {
+            const float x = surface->rest_position[v][k];
+            box->low[k] = !first && box->low[k] < x ? box->low[k] : x;
+            box->high[k] = !first && box->high[k] > x ? box->high[k] : x;
+            burnt[burnt_count][k] = x;
+        }
+        burnt_count++;
+    }
+
+    for (uint32_t v = 0; v < surface->vertex_count && good; v++) {
         if (surface->source_vertex[v] < 0 || surface->time_ignited[v] >= 0) continue;
         const uint32_t i = (uint32_t)surface->source_vertex[v];
         memcpy(moment->position[i], surface->position[v], sizeof moment->position[i]);
         memcpy(moment->velocity[i], surface->velocity[v], sizeof moment->velocity[i]);
         moment->there[i] = true;
+        moment->cold[i] = is_cold(surface->rest_position[v], burnt_count, burnt, boxes);
     }
-    return true;
+
+    free(burnt);
+    free(boxes);
+    return good;
 }
 
-/// m/s, root mean square; NaN if no such vertex is left.
-static double jitter(const Moment *before, const Moment *now, const Moment *after) {
+/// m/s, root mean square, of all vertices or the cold ones; NaN if none is left.
+static double jitter(const Moment *before, const Moment *now, const Moment *after, bool cold) {
     double sum = 0, inverse = 1 / (after->time - before->time);
     uint32_t count = now->count, counted = 0;
     if (count > before->count) count = before->count;
     if (count > after->count) count = after->count;
 
     for (uint32_t i = 0; i < count; i++) {
-        if (!before->there[i] || !now->there[i] || !after->there[i]) continue;
+        if (!before->there[i] || !now->there[i] || !after->there[i] || (cold && !now->cold[i])) continue;
         for (int k = 0; k < 3; k++) {
             double moved = ((double)after->position[i][k] - (double)before->position[i][k]) * inverse;
             sum += pow((double)now->velocity[i][k] - moved, 2);
@@ -143,7 +206,7 @@ static void fill_row(const Wrinkles *frame, const Folds *folds, const Rim *rim, 
     row[CURL] = rim_percentile(rim->curl, 0.5);
     row[CURL_STRONG] = rim_percentile(rim->curl, 0.9);
     row[CURL_MAX] = isnan(row[CURL]) ? (double)NAN : rim->curl_max;
-    row[JITTER] = row[EMBER] = (double)NAN;
+    row[JITTER] = row[JITTER_COLD] = row[EMBER] = (double)NAN;
 }
 
 static SingeResult out_of_memory(SingeError *error) {
@@ -182,8 +245,9 @@ static SingeResult measure_frame(Measure *measure, int frame, SingeError *error)
         fill_row(&wrinkles, &folds, rim, area, row);
 
         const Moment *m = measure->moments;
-        if (index >= 2)
-            measure->rows[index - 1][JITTER] = 1e3 * jitter(&m[(index + 1) % 3], &m[(index + 2) % 3], &m[index % 3]);
+        for (int cold = 0; cold < 2 && index >= 2; cold++)
+            measure->rows[index - 1][cold ? JITTER_COLD : JITTER] =
+                1e3 * jitter(&m[(index + 1) % 3], &m[(index + 2) % 3], &m[index % 3], cold);
 
         // what all frames have in common
         for (int b = 0; b < WRINKLE_BINS; b++) measure->all.crease[b] += wrinkles.crease[b];

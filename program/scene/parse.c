@@ -54,6 +54,7 @@ static SingeResult parse_into(SceneArena *arena, const SceneText *given, const c
         default_scene(arena, scene);
         schema_read(&reader, &schema_scene, root, scene);
         if (!scene->name) take_name(&reader, root);
+        scene->sim.velocity_steps = scene->steps;
         scene->sim.time_step = (float)(1 / ((double)scene->fps * scene->steps));
     } else if (root) {
         char seen[NODE_WORDS];

@@ -211,13 +211,14 @@ typedef struct SceneOutput {
 } SceneOutput;
 
 typedef struct Scene {
-    char *name;      ///< of the outputs; the scene file's name without its ending by default
-    int frames;      ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
-    float fps;       ///< frames a second
-    int steps;       ///< steps a frame
-    int gas_detail;  ///< factor by which the cells of gas_detail/ are smaller; 1: a run has no such files
-    bool tearing;    ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
-    SingeSimDef sim; ///< time_step is 1/(fps * steps); hooks and thread_count are not the scene's
+    char *name;     ///< of the outputs; the scene file's name without its ending by default
+    int frames;     ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
+    float fps;      ///< frames a second
+    int steps;      ///< steps a frame
+    int gas_detail; ///< factor by which the cells of gas_detail/ are smaller; 1: a run has no such files
+    bool tearing;   ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
+    SingeSimDef
+        sim; ///< time_step is 1/(fps * steps), velocity_steps is steps; hooks and thread_count are not the scene's
     uint32_t sheet_count, source_count, collider_count, pin_count, probe_count;
     SceneSheet *sheets;
     SceneSource *sources;

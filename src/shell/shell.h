@@ -198,7 +198,9 @@ typedef struct AblateState {
 
 typedef struct DynamicsState {
     float (*position)[4]; ///< [particles + shell_nowhere_count] m; fourth: 1/kg, inverse mass in this step
-    float (*velocity)[4]; ///< m/s
+    float (*velocity)[4]; ///< m/s, of the last substep: the next one starts with it
+    float (*earlier)[4];  ///< [vertices] m, positions at `earlier_time`; fourth is unused
+    double earlier_time;  ///< s, when the last `velocity_steps` began
     uint8_t *pinned;      ///< [particles] number of pins that hold it
     float *bend;          ///< [green springs] 1/m, curvature beyond rest and curl, low-pass filtered; NULL without
     float *crease;        ///< [green springs] 1/m, its plastic part; NULL without
@@ -294,6 +296,9 @@ void state_free(Memory *memory, State *state);
 
 /// Points the arrays of `state` into an arena of state->arena_size bytes laid out for this shell.
 void state_rebase(const Shell *shell, State *state, void *arena);
+
+/// The vertices' positions in `arena`, a copy of the state's from when this step began, become the `earlier` ones.
+void state_remember(const Shell *shell, State *state, const void *arena);
 
 /// True for a spare vertex, which no tear has used yet.
 static inline bool shell_is_spare(const Shell *shell, uint32_t vertex) {

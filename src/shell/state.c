@@ -58,8 +58,9 @@ static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basi
     TAKE(state->tear.line_force, shell->spare_count ? shell->cell_count : 0);
     TAKE(state->tear.splits, shell->spare_count);
 
-    // springs' lengths, omitted from backups
+    // omitted from backups: springs' lengths, and what is written when no stage can fail any more
     *basic = used;
+    TAKE(state->dynamics.earlier, shell->vertex_count);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         TAKE(state->burn.spring_length[colour], shell->springs[colour].count);
 
@@ -115,6 +116,7 @@ SingeResult state_create(Memory *memory, const Shell *shell, State *state) {
     }
 
     for (uint32_t c = 0; c < shell->cell_count; c++) state->ablate.cell_flags[c] = SINGE_ALIVE;
+    state_remember(shell, state, state->arena);
     return SINGE_OK;
 }
 
@@ -124,4 +126,11 @@ void state_free(Memory *memory, State *state) {
         FREE(memory, block, state->arena_size + LEAD);
     }
     *state = (State){0};
+}
+
+void state_remember(const Shell *shell, State *state, const void *arena) {
+    const ptrdiff_t offset = (const char *)state->dynamics.position - (const char *)state->arena;
+    memcpy(state->dynamics.earlier, (const char *)arena + offset,
+           shell->vertex_count * sizeof *state->dynamics.earlier);
+    state->dynamics.earlier_time = state->time;
 }

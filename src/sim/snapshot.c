@@ -12,7 +12,7 @@
 
 #include <string.h>
 
-enum { SNAPSHOT_VERSION = 8 };
+enum { SNAPSHOT_VERSION = 9 };
 
 typedef struct SnapshotHeader {
     char magic[8];           ///< "SINGESIM"
@@ -42,6 +42,7 @@ static SingeResult snapshot_state(Stream *stream, SingeSim *sim) {
     STREAM(stream, state->heat.heat_lost);
     STREAM(stream, state->heat.heat_of_combustion);
     STREAM(stream, state->burn.mass_burnt);
+    STREAM(stream, state->dynamics.earlier_time);
     STREAM(stream, state->ablate.next_piece);
     STREAM(stream, state->ablate.piece_count);
     STREAM(stream, state->ablate.topology_version);

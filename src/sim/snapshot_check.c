@@ -92,6 +92,9 @@ bool snapshot_state_fits(SingeSim *sim) {
 
     // dynamics
     const DynamicsState *dynamics = &state->dynamics;
+    if (!double_within(dynamics->earlier_time, 0, state->time)) return false;
+    for (uint32_t v = 0; v < shell->vertex_count; v++)
+        if (!position_fits(dynamics->earlier[v])) return false;
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         const float *x = dynamics->position[i], *v = dynamics->velocity[i];
         if (!position_fits(x) || !position_fits(v) || !(x[3] >= 0 && isfinite(x[3])) || !isfinite(v[3])) return false;

@@ -114,6 +114,9 @@ static SingeResult step_stages(SingeSim *sim) {
     TRY(dynamics_step(&sim->memory, sim->dynamics, &context, &state->dynamics, &dynamics));
     step_lap(sim, SINGE_STAGE_DYNAMICS, &start);
 
+    // a frame ended where this step began: surfaces have the displacement since. Nothing can fail from here on
+    if (state->step % (uint64_t)sim->def.velocity_steps == 0) state_remember(&sim->shell, state, sim->backup);
+
     // 5. tears by too large forces; this cannot fail, so no step that tore has to be undone
     if (sim->tear) step_tear(sim, all);
     step_lap(sim, SINGE_STAGE_ABLATE, &start);

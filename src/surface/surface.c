@@ -129,7 +129,9 @@ static Float3 mean_of_corners(const uint32_t corners[4], const float (*field)[4]
 
 static Sample sample_particle(const Shell *shell, const State *state, uint32_t particle) {
     const float(*position)[4] = (const float(*)[4])state->dynamics.position;
+    const float(*earlier)[4] = (const float(*)[4])state->dynamics.earlier;
     const float(*velocity)[4] = (const float(*)[4])state->dynamics.velocity;
+    Float3 was, first;
     const float(*rest)[4] = (const float(*)[4])shell->rest_position;
     const BurnState *burn = &state->burn;
     float min = field_at(shell->matter.mass_min, particle), yield = field_at(shell->matter.char_yield, particle);
@@ -152,14 +154,17 @@ static Sample sample_particle(const Shell *shell, const State *state, uint32_t p
     // a vertex, or a virtual centre
     if (shell_is_corner(shell, particle)) {
         sample.position = float3_load(position[particle]);
-        sample.velocity = float3_load(velocity[particle]);
+        was = float3_load(earlier[particle]);
+        first = float3_load(velocity[particle]);
         sample.rest = float3_load(rest[particle]);
     } else {
         const uint32_t *corners = shell->cells[particle - shell->vertex_count];
         sample.position = mean_of_corners(corners, position);
-        sample.velocity = mean_of_corners(corners, velocity);
+        was = mean_of_corners(corners, earlier);
+        first = mean_of_corners(corners, velocity);
         sample.rest = mean_of_corners(corners, rest);
     }
+    sample.velocity = surface_velocity(state, sample.position, was, first);
 
     return sample;
 }

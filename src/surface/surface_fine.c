@@ -90,7 +90,11 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
 
     // position, velocity, rest position
     fine_position_at(fine, patch, location, surface->position[v], surface->normal[v]);
-    float3_store(surface->velocity[v], blend(at, location, (const float(*)[4])state->dynamics.velocity));
+    const DynamicsState *dynamics = &state->dynamics;
+    float3_store(surface->velocity[v],
+                 surface_velocity(state, blend(at, location, (const float(*)[4])dynamics->position),
+                                  blend(at, location, (const float(*)[4])dynamics->earlier),
+                                  blend(at, location, (const float(*)[4])dynamics->velocity)));
     float3_store(surface->rest_position[v], blend(at, location, (const float(*)[4])shell->rest_position));
 
     // means over the triangle's corners

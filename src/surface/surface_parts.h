@@ -2,6 +2,7 @@
 #ifndef SURFACE_SURFACE_PARTS_H
 #define SURFACE_SURFACE_PARTS_H
 
+#include "common/float3.h"
 #include "surface/surface.h"
 
 /// Makes room for `count` triangles or vertices; previous contents are lost. On failure the surface is empty.
@@ -16,6 +17,13 @@ void surface_copy_vertex(SingeSurface *surface, uint32_t from, uint32_t to);
 /// Gives vertices on seams of the uv a copy for each uv. cell_first: [cells + 1] the first triangle of each cell. Its
 /// scratch comes from the surface's allocator and is freed. On failure the surface is empty (surface_seams.c).
 SingeResult surface_seams(const Shell *shell, const uint32_t *cell_first, SingeSurface *surface, SingeError *error);
+
+/// The velocity of a point of the surface, which is `now`, was `earlier` at the state's earlier time, and starts with
+/// `first`: displacement over time. The last substep's velocity would show how strands tremble, and smear what is still.
+static inline Float3 surface_velocity(const State *state, Float3 now, Float3 earlier, Float3 first) {
+    const double passed = state->time - state->dynamics.earlier_time;
+    return passed > 0 ? float3_scale(float3_sub(now, earlier), (float)(1 / passed)) : first;
+}
 
 /// Empties a surface; keeps its allocator.
 void surface_clear(SingeSurface *surface);

@@ -90,6 +90,7 @@ void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *sp
     COPY(state->ablate.particle_flags, to, from);
     COPY(state->dynamics.position, to, from);
     COPY(state->dynamics.velocity, to, from);
+    COPY(state->dynamics.earlier, to, from);
 
     // a torn edge gets a second spring, and the green spring across it is removed
     for (int k = 0; k < result->torn_count; k++) {

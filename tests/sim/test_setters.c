@@ -123,6 +123,54 @@ TEST(refused_numbers_change_nothing) {
 
 // ---- velocities
 
+/// m/s, the largest difference between the velocities of the surface's vertices and their displacement from `from` on.
+static float surface_differs(SingeSim *sim, float (*from)[3], double seconds) {
+    SingeSurface surface = {0};
+    test_ok(sim, singe_sim_surface(sim, &surface));
+    float worst = 0;
+    for (uint32_t v = 0; v < surface.vertex_count; v++)
+        for (int k = 0; k < 3 && surface.source_vertex[v] >= 0; k++) {
+            const float moved = surface.position[v][k] - from[surface.source_vertex[v]][k];
+            worst = fmaxf(worst, fabsf(surface.velocity[v][k] - (seconds > 0 ? moved / (float)seconds : 0)));
+        }
+    singe_surface_free(&surface);
+    return worst;
+}
+
+static void take_vertices(SingeSim *sim, float to[81][3]) {
+    const SingeView view = singe_sim_view(sim);
+    for (uint32_t v = 0; v < 81; v++) memcpy(to[v], view.position[v], sizeof to[v]);
+}
+
+TEST(surfaces_have_the_displacement_since_the_last_frame_as_velocity) {
+    SingeSimDef def = singe_default_sim();
+    def.velocity_steps = 4;
+    def.air_density = 0;
+    def.surface_detail = 1e-3f;
+    SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.01f, 0.01f), NULL);
+    const double h = (double)def.time_step;
+    float from[81][3];
+    take_vertices(sim, from);
+    assert_true(surface_differs(sim, from, 0) == 0); // the Def's velocity, before the first step
+
+    // after whole frames, and between two
+    test_steps(sim, 4);
+    assert_true(surface_differs(sim, from, 4 * h) < 1e-6f);
+    take_vertices(sim, from);
+    test_steps(sim, 2);
+    assert_true(surface_differs(sim, from, 2 * h) < 1e-6f);
+    SingeSim *loaded = reload(sim);
+    assert_true(surface_differs(loaded, from, 2 * h) < 1e-6f);
+    test_steps(sim, 2);
+    assert_true(surface_differs(sim, from, 4 * h) < 1e-6f);
+
+    // the last substep is faster by the half of the frame that it is ahead of the mean
+    const SingeView view = singe_sim_view(sim);
+    assert_true(fabs(-(double)view.velocity[0][2] - 9.81 * 8 * h) < 0.1 * 9.81 * h);
+    singe_sim_destroy(loaded);
+    singe_sim_destroy(sim);
+}
+
 TEST(velocities_throw) {
     SingeSimDef def = singe_default_sim();
     memset(def.gravity, 0, sizeof def.gravity);

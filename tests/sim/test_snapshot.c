@@ -349,6 +349,8 @@ POKE(dead_length, sim->state.ablate.spring_flags[SINGE_GREEN][GREEN] = 0;
      sim->state.burn.spring_length[SINGE_GREEN][GREEN] = NAN)
 POKE(position, sim->state.dynamics.position[VERTEX][2] = NAN)
 POKE(velocity, sim->state.dynamics.velocity[CENTRE][0] = -INFINITY)
+POKE(earlier, sim->state.dynamics.earlier[VERTEX][1] = NAN)
+POKE(earlier_time, sim->state.dynamics.earlier_time = sim->state.time + 1)
 POKE(inverse_mass, sim->state.dynamics.position[VERTEX][3] = -1)
 POKE(bend, sim->state.dynamics.bend[GREEN] = NAN)
 POKE(crease, sim->state.dynamics.crease[GREEN] = INFINITY)
@@ -394,7 +396,7 @@ TEST(impossible_numbers_are_refused) {
         ROW(pin_particle), ROW(pin_twice), ROW(time), ROW(time_of_step), ROW(heat_in), ROW(heat_start),
         ROW(mass_removed), ROW(temperature), ROW(temperature_below), ROW(temperature_peak), ROW(mass), ROW(mass_nan),
         ROW(burn_rate), ROW(time_ignited), ROW(time_to_come), ROW(dead_length), ROW(position), ROW(velocity),
-        ROW(inverse_mass), ROW(bend), ROW(crease), ROW(pinned), ROW(pinned_flag), ROW(flag), ROW(cell_flag),
+        ROW(earlier), ROW(earlier_time), ROW(inverse_mass), ROW(bend), ROW(crease), ROW(pinned), ROW(pinned_flag), ROW(flag), ROW(cell_flag),
         ROW(spring_gone), ROW(spring_spare), ROW(degree), ROW(piece_none), ROW(piece_far), ROW(piece_other),
         ROW(pieces_to_come), ROW(piece_count), ROW(line_force), ROW(split_count), ROW(split), ROW(attach_source),
         ROW(attach_gap), ROW(attach_length), ROW(attach_goal), ROW(collision_position), ROW(collision_speed),

@@ -177,10 +177,10 @@ class SingeContactDef(Structure):
 class SingeSimDef(Structure):
     _fields_ = [("struct_size", c_size_t), ("allocator", SingeAllocator), ("log", SingeLog), ("tasks", SingeTasks),
                 ("thread_count", c_int), ("instructions", c_int), ("seed", c_uint64), ("time_step", c_float),
-                ("pace", c_float), ("gravity", c_float * 3), ("ambient_temperature", c_float),
-                ("air_density", c_float), ("heat_tolerance", c_float), ("surface_detail", c_float),
-                ("surface_raggedness", c_float), ("wind", SingeWindDef), ("solver", SingeSolverDef),
-                ("gas", SingeGasDef), ("contact", SingeContactDef)]
+                ("velocity_steps", c_int), ("pace", c_float), ("gravity", c_float * 3),
+                ("ambient_temperature", c_float), ("air_density", c_float), ("heat_tolerance", c_float),
+                ("surface_detail", c_float), ("surface_raggedness", c_float), ("wind", SingeWindDef),
+                ("solver", SingeSolverDef), ("gas", SingeGasDef), ("contact", SingeContactDef)]
 
 
 class SingeMeshDef(Structure):

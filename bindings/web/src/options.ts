@@ -157,6 +157,8 @@ export interface SimOptions {
     seed?: number;
     /** s, 1e-9 to 10; h of the paper */
     time_step?: number;
+    /** 1 to 1000000; steps from a frame to the next: over them a surface's velocity is displacement over time */
+    velocity_steps?: number;
     /** 1e-6 to 1e6; seconds of fire per second of motion; 1 is real, 4 burns four times as fast */
     pace?: number;
     /** m/s2, -1e4 to 1e4; z is up */
@@ -202,7 +204,7 @@ export interface MaterialOptions {
     /** >= 0; widens the burning front this many times (1 or more) at the same speed, so that cells can hold it; 0:
      *  as little as the cells need; one number for the whole sheet */
     thickening?: number;
-    /** K, > 0; initial temperature */
+    /** K, 1e-3 to 1e5; initial temperature */
     temperature?: Param;
     /** K, > 0; temperature above which the sheet burns */
     ignition_temperature?: Param;
