@@ -91,12 +91,15 @@ typedef struct SingeSourceDef {
     size_t struct_size;
     /// ball: a hot ball on a path; spot: a hot ball that stands still; texture: a flux drawn on the sheet
     SingeSourceKind kind;
-    float start;              ///< s, any, also infinite; time at which it starts
-    float end;                ///< s, any, also infinite; time at which it ends; inf: never
-    float temperature;        ///< K, ball and spot, 1e-3 to 1e5; of the ball or the flame
-    float conductance;        ///< W/(m2 K), ball and spot, 0 to 1e9; heat transfer coefficient to the sheet
-    float radius;             ///< m, ball and spot, >= 0; full heat within it
-    float falloff;            ///< m, ball and spot, >= 0; beyond the radius, over which the heat falls to nothing
+    float start;       ///< s, any, also infinite; time at which it starts
+    float end;         ///< s, any, also infinite; time at which it ends; inf: never
+    float temperature; ///< K, ball and spot, 1e-3 to 1e5; of the ball or the flame
+    float conductance; ///< W/(m2 K), ball and spot, 0 to 1e9; heat transfer coefficient to the sheet
+    float radius;      ///< m, ball and spot, >= 0; full heat within it
+    float falloff;     ///< m, ball and spot, >= 0; beyond the radius, over which the heat falls to nothing
+    /// W, ball and spot, 0 to 1e6; of a flame that it carries: the flame's gas rises and burns from its centre, if the
+    /// scene has gas; a match has 60 W. It heats sheets through the gas alone
+    float power;
     uint32_t path_count;      ///< of ball and spot; 0: at rest at position. A spot has at most 1
     const SingePoseKey *path; ///< [path_count] positions only
     SingeTexture texture;     ///< texture source

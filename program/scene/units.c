@@ -43,6 +43,7 @@ static const DimensionRow dimensions[DIM_COUNT] = {
     [DIM_COMPLIANCE] = {"compliance", {{"m/N", 1, 0}, {"mm/N", 1e-3, 0}}},
     [DIM_STIFFNESS] = {"stiffness", {{"N/m", 1, 0}, {"N/mm", 1e3, 0}}},
     [DIM_MOLAR_ENERGY] = {"energy per amount", {{"J/mol", 1, 0}, {"kJ/mol", 1e3, 0}}},
+    [DIM_POWER] = {"power", {{"W", 1, 0}, {"kW", 1e3, 0}}},
     [DIM_FRAME_RATE] = {"frame rate", {{"1/s", 1, 0}, {"fps", 1, 0}, {"Hz", 1, 0}}},
 };
 

@@ -32,6 +32,7 @@ typedef enum Dimension {
     DIM_STIFFNESS,
     DIM_MOLAR_ENERGY,
     DIM_FRAME_RATE,
+    DIM_POWER,
     DIM_COUNT
 } Dimension;
 

@@ -68,6 +68,7 @@ void gas_step(GasPlan *plan, const StepContext *context, GasState *gas) {
                     .shell = context->shell,
                     .state = state,
                     .colliders = context->colliders,
+                    .sources = context->sources,
                     .pool = context->pool,
                     .from = &plan->turn[gas->turn],
                     .to = &plan->turn[!gas->turn],

@@ -123,6 +123,7 @@ typedef struct GasPass {
     const Shell *shell;
     const StateInput *state;
     const ColliderList *colliders;
+    const SourceList *sources; ///< may be NULL
     Pool *pool;
     const GasTurn *from;
     GasTurn *to;
@@ -149,10 +150,10 @@ void gas_blocked(GasPass *pass);
 /// Normals of all particles (gas_sheets.c).
 void gas_normals(GasPass *pass);
 
-/// Whether anything burnt since the gas's last step.
+/// Whether anything burnt since the gas's last step, or a source's flame does.
 bool gas_fed(const GasPass *pass);
 
-/// Adds the gas of the burnt material as fuel.
+/// Adds the gas of the burnt material, and of the flames of sources, as fuel.
 void gas_feed(GasPass *pass);
 
 /// Effect of the gas on each particle until its next step, and the heat that the gas loses.

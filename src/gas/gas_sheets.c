@@ -9,6 +9,8 @@
 // the heat of combustion that did not stay in the sheet (shell/matter.c). The fire runs `pace` times as fast as the gas
 // moves, and its power is that of the real fire.
 //
+// A source of power P adds E = (1 - radiated) P dt at its centre: the gas of its own flame.
+//
 // In turn the gas heats the sheet, with the temperature upstream, so that heat arrives only by the flow and not because
 // of the size of the cells:
 //
@@ -85,18 +87,54 @@ static bool sheets_position(const GasPass *pass, uint32_t i, float side, Float3 
     return false;
 }
 
+/// The power of a source's flame now, W.
+static float feed_power(const Source *source, double time) {
+    bool has = source->def.kind == SINGE_SOURCE_BALL || source->def.kind == SINGE_SOURCE_SPOT;
+    return has && source_is_lit(source, time) ? source->def.power : 0;
+}
+
 bool gas_fed(const GasPass *pass) {
     const float *now = pass->state->burn->fuel, *before = pass->from->fuel;
     bool fed = false;
     for (uint32_t i = 0; i < pass->plan->particles && !fed; i++) fed = now[i] < before[i];
+    for (uint32_t k = 0; pass->sources && k < pass->sources->count && !fed; k++)
+        fed = feed_power(&pass->sources->items[k], pass->state->time) > 0;
     return fed;
+}
+
+/// Adds an amount to the eight cells about a position, by trilinear weights, where there is gas in them.
+static void feed_point(const GasPlan *plan, float *field, const float position[3], float amount) {
+    int at[3];
+    float part[3], weight[8], sum = 0;
+    size_t cell[8];
+    for (int d = 0; d < 3; d++) {
+        at[d] = (int)(position[d] + 1) - 1;
+        part[d] = position[d] - (float)at[d];
+    }
+
+    for (int e = 0; e < 8; e++) {
+        weight[e] = 1;
+        bool inside = true;
+        for (int d = 0; d < 3; d++) {
+            int up = e >> d & 1, c = at[d] + up;
+            weight[e] *= up ? part[d] : 1 - part[d];
+            inside = inside && c >= 0 && c < plan->grid.n[d];
+        }
+
+        cell[e] = gas_at(&plan->grid, at[0] + (e & 1), at[1] + (e >> 1 & 1), at[2] + (e >> 2));
+        if (!inside || plan->solid[cell[e]]) weight[e] = 0;
+        sum += weight[e];
+    }
+
+    for (int e = 0; e < 8 && sum > 0; e++)
+        if (weight[e] > 0) field[cell[e]] += amount * weight[e] / sum;
 }
 
 void gas_feed(GasPass *pass) {
     const GasPlan *plan = pass->plan;
     const Matter *matter = &pass->shell->matter;
     const float *now = pass->state->burn->fuel, *before = pass->from->fuel;
-    float *field = pass->to->field[GAS_FUEL], volume = plan->cell * plan->cell * plan->cell;
+    float volume = plan->cell * plan->cell * plan->cell;
     float scale = (1 - plan->settings.def.radiated) / (plan->settings.pace * volume);
     Float3 x, down = float3_unit(float3_load(plan->settings.gravity));
 
@@ -111,31 +149,17 @@ void gas_feed(GasPass *pass) {
         if (!sheets_position(pass, i, side, &x) || !gas_position(plan, x, position)) continue;
         float amount = gone * matter->mass[i] * field_at(matter->gas_heat, i) * scale;
 
-        // trilinear weights of the eight cells about it, if there is gas in them
-        int at[3];
-        float part[3], weight[8], sum = 0;
-        size_t cell[8];
-        for (int d = 0; d < 3; d++) {
-            at[d] = (int)(position[d] + 1) - 1;
-            part[d] = position[d] - (float)at[d];
-        }
+        feed_point(plan, pass->to->field[GAS_FUEL], position, amount);
+    }
 
-        for (int e = 0; e < 8; e++) {
-            weight[e] = 1;
-            bool inside = true;
-            for (int d = 0; d < 3; d++) {
-                int up = e >> d & 1, c = at[d] + up;
-                weight[e] *= up ? part[d] : 1 - part[d];
-                inside = inside && c >= 0 && c < plan->grid.n[d];
-            }
-
-            cell[e] = gas_at(&plan->grid, at[0] + (e & 1), at[1] + (e >> 1 & 1), at[2] + (e >> 2));
-            if (!inside || plan->solid[cell[e]]) weight[e] = 0;
-            sum += weight[e];
-        }
-
-        for (int e = 0; e < 8 && sum > 0; e++)
-            if (weight[e] > 0) field[cell[e]] += amount * weight[e] / sum;
+    // flames of sources
+    for (uint32_t k = 0; pass->sources && k < pass->sources->count; k++) {
+        const Source *source = &pass->sources->items[k];
+        float power = feed_power(source, pass->state->time), position[3];
+        if (!(power > 0) || !gas_position(plan, path_pose(&source->path, pass->state->time).position, position))
+            continue;
+        feed_point(plan, pass->to->field[GAS_FUEL], position,
+                   power * pass->dt * (1 - plan->settings.def.radiated) / volume);
     }
 }
 

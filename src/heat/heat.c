@@ -146,8 +146,7 @@ static void heat_take_over(void *context, int begin, int end) {
     }
 }
 
-SingeResult heat_step(HeatPlan *plan, const StepContext *context, const SourceList *sources, HeatState *heat,
-                      HeatCounters *counters) {
+SingeResult heat_step(HeatPlan *plan, const StepContext *context, HeatState *heat, HeatCounters *counters) {
     const Shell *shell = context->shell;
     const StateInput *state = &context->state;
     HeatPass pass = {.plan = plan,
@@ -163,7 +162,7 @@ SingeResult heat_step(HeatPlan *plan, const StepContext *context, const SourceLi
     heat_matrix_follow(plan, shell, state->ablate, pass.dt);
 
     // eq 1: sources, combustion, losses
-    heat_gather(&pass, sources, context->colliders, context->view);
+    heat_gather(&pass, context->sources, context->colliders, context->view);
     heat_blocks(&pass, heat_exchange);
     double in = heat_sum(plan, 0), lost = heat_sum(plan, 1), combustion = heat_sum(plan, 2);
 

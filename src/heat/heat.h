@@ -4,24 +4,7 @@
 
 #include "common/pool.h"
 #include "shell/shell.h"
-#include "world/collider.h"
 #include "world/step_context.h"
-
-/// A heat source of the simulation. Textures are evaluated once, at every particle.
-typedef struct Source {
-    uint32_t generation; ///< 0: the slot is free
-    SingeSourceDef def;  ///< its pointers (path, texture, strength) are not used
-    Path path;
-    uint32_t strength_count;
-    SingeValueKey *strength;
-    float *texture;       ///< [particle_count] or NULL
-    SingeTexture waiting; ///< own copy of a texture that was added before the commit, until then
-} Source;
-
-typedef struct SourceList {
-    uint32_t count, capacity;
-    Source *items;
-} SourceList;
 
 /// Checks a Def and fills a slot's contents (all but generation). The uv of particles come from the shell; if it is
 /// empty, a texture waits for source_settle.
@@ -85,7 +68,6 @@ typedef struct HeatCounters {
 /// One step; the plan applies its own pace. Reads the other parts of the State, and writes `heat`. Callback sources get
 /// context->view. `sources` and context->colliders may be NULL. SINGE_ERROR_DIVERGED with the particle when a
 /// temperature is not finite. Adds to *counters.
-SingeResult heat_step(HeatPlan *plan, const StepContext *context, const SourceList *sources, HeatState *heat,
-                      HeatCounters *counters);
+SingeResult heat_step(HeatPlan *plan, const StepContext *context, HeatState *heat, HeatCounters *counters);
 
 #endif

@@ -335,8 +335,7 @@ void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *
 
     for (uint32_t k = 0; sources && k < sources->count; k++) {
         const Source *source = &sources->items[k];
-        if (source->generation && time >= source->def.start && time < source->def.end)
-            source_kinds[source->def.kind].add(pass, source, view);
+        if (source_is_lit(source, time)) source_kinds[source->def.kind].add(pass, source, view);
     }
 
     // colliders that conduct, and the gas

@@ -45,6 +45,7 @@ StepContext sim_context(SingeSim *sim, const SingeView *view) {
                          .state = state_input(&sim->state),
                          .pins = &sim->pins,
                          .colliders = &sim->colliders,
+                         .sources = &sim->sources,
                          .wind = &sim->def.wind,
                          .view = view,
                          .pool = sim->pool,
@@ -92,7 +93,7 @@ static SingeResult step_stages(SingeSim *sim) {
     // 1. temperatures from sources, combustion, losses and conduction (eq 1 to 3)
     StepContext context = all;
     context.state.heat = NULL;
-    TRY(heat_step(sim->heat, &context, &sim->sources, &state->heat, &heat));
+    TRY(heat_step(sim->heat, &context, &state->heat, &heat));
     if (heat.unconverged) sim_log_unconverged(sim);
     step_lap(sim, SINGE_STAGE_HEAT, &start);
 

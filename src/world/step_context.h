@@ -6,6 +6,7 @@
 #include "singe/sim.h"
 #include "world/collider.h"
 #include "world/pin.h"
+#include "world/source.h"
 
 /// A step in progress. A stage reads all of this, and writes its own part of the State, its plan and, if it has any,
 /// events and the error. It owns nothing.
@@ -14,6 +15,7 @@ typedef struct StepContext {
     StateInput state; ///< all parts but the one that the stage writes
     const PinList *pins;
     const ColliderList *colliders; ///< may be NULL
+    const SourceList *sources;     ///< may be NULL
     const SingeWindDef *wind;
     const SingeView *view; ///< of the State, for callback sources
     Pool *pool;            ///< NULL: the stage runs here

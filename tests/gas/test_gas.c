@@ -41,6 +41,7 @@ static void air_step(Air *air) {
     StepContext context = {.shell = &rig->shell,
                            .state = state_input(&rig->state),
                            .colliders = &rig->colliders,
+                           .sources = &rig->sources,
                            .wind = &air->wind,
                            .pool = rig->pool};
 
@@ -113,6 +114,49 @@ TEST(power_is_the_real_fires) {
     CHECK_NEAR(heat[0], 4, 0.01);
     CHECK_NEAR(heat[1], 3, 0.01);
     CHECK_NEAR(heat[2], 1, 0.01);
+}
+
+/// A source's flame brings its power to the gas at its centre, at any pace, from its start to its end.
+TEST(a_source_with_power_has_a_flame) {
+    const float centre[3] = {0.05f, -0.02f, 0.1f};
+    for (int pace = 1; pace <= 5; pace += 4) {
+        GasSettings settings = settings_default();
+        settings.def.radiated = 0.25f, settings.pace = (float)pace;
+        Air air;
+        air_open(&air, &settings);
+        SingeSourceDef match = singe_default_source();
+        match.power = 60, match.start = 1.5f / 72, match.end = 3.5f / 72;
+        memcpy(match.position, centre, sizeof centre);
+        rig_source(&air.rig, &match);
+
+        double heat[6];
+        for (int step = 0; step < 6; step++) {
+            air_step(&air);
+            heat[step] = air_heat(&air);
+            if (step != 2) continue;
+            const GasPlan *plan = air.plan;
+            const float *fuel = air_turn(&air)->field[GAS_FUEL];
+            double sum = 0, moment[3] = {0, 0, 0};
+            for (int k = 0; k < plan->grid.n[2]; k++)
+                for (int j = 0; j < plan->grid.n[1]; j++)
+                    for (int i = 0; i < plan->grid.n[0]; i++) {
+                        double there = (double)fuel[gas_at(&plan->grid, i, j, k)];
+                        const double at[3] = {i + 0.5, j + 0.5, k + 0.5};
+                        sum += there;
+                        for (int d = 0; d < 3; d++) moment[d] += there * at[d];
+                    }
+
+            for (int d = 0; d < 3; d++)
+                CHECK_NEAR((double)plan->origin[d] + (double)plan->cell * moment[d] / sum, (double)centre[d], 0.002);
+        }
+
+        const double lit = 60.0 * 0.75 / 72; // J a step
+        assert_true(heat[0] == 0 && heat[1] == 0);
+        CHECK_NEAR(heat[2], lit, 0.01 * lit);
+        CHECK_NEAR(heat[3], 2 * lit, 0.02 * lit);
+        CHECK_NEAR(heat[5], 2 * lit, 0.05 * lit);
+        air_close(&air);
+    }
 }
 
 /// Speed up on the axis of the mean plume at a height over the middle of a steady fire of `power` W.

@@ -76,12 +76,13 @@ SingeResult rig_try_step(Rig *rig) {
     StepContext context = {.shell = &rig->shell,
                            .state = state_input(&rig->state),
                            .colliders = &rig->colliders,
+                           .sources = &rig->sources,
                            .view = &view,
                            .pool = rig->pool,
                            .error = &rig->error,
                            .h = rig->h};
     context.state.heat = NULL;
-    return heat_step(rig->plan, &context, &rig->sources, &rig->state.heat, &rig->counters);
+    return heat_step(rig->plan, &context, &rig->state.heat, &rig->counters);
 }
 
 void rig_step(Rig *rig) {

@@ -129,10 +129,10 @@ class SingeSheetDef(Structure):
 class SingeSourceDef(Structure):
     _fields_ = [("struct_size", c_size_t), ("kind", c_int), ("start", c_float), ("end", c_float),
                 ("temperature", c_float), ("conductance", c_float), ("radius", c_float), ("falloff", c_float),
-                ("path_count", c_uint32), ("path", POINTER(SingePoseKey)), ("texture", SingeTexture),
-                ("flux", c_float), ("strength_count", c_uint32), ("strength", POINTER(SingeValueKey)),
-                ("callback", SingeFluxFn), ("callback_context", c_void_p), ("position", c_float * 3),
-                ("user_data", c_void_p)]
+                ("power", c_float), ("path_count", c_uint32), ("path", POINTER(SingePoseKey)),
+                ("texture", SingeTexture), ("flux", c_float), ("strength_count", c_uint32),
+                ("strength", POINTER(SingeValueKey)), ("callback", SingeFluxFn), ("callback_context", c_void_p),
+                ("position", c_float * 3), ("user_data", c_void_p)]
 
 
 class SingeColliderDef(Structure):

@@ -33,6 +33,9 @@ export interface SourceOptions {
     radius?: number;
     /** m, ball and spot, >= 0; beyond the radius, over which the heat falls to nothing */
     falloff?: number;
+    /** W, ball and spot, 0 to 1e6; of a flame that it carries: the flame's gas rises and burns from its centre, if
+     *  the scene has gas; a match has 60 W. It heats sheets through the gas alone */
+    power?: number;
     /** W/m2, texture, finite; into each of the sheet's two layers where the texture is white; times texture and
      *  strength at most 1e15 W/m2. Below 0 it cools, but not below 1 K */
     flux?: number;
