@@ -40,6 +40,8 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
 
 /// Max distance of a camera from the origin, m.
 static const double farthest = 1e4;
+/// Min distance of a camera from what it looks at, m near the origin.
+static const double nearest = 1e-5;
 
 typedef struct Box {
     double low[3], high[3];
@@ -100,9 +102,14 @@ void scene_frame(Scene *scene, const SceneAssets *assets) {
         distance = fmax(distance, dot3(d, back) + 1.15 * across / half);
     }
 
-    double target[3], eye[3];
+    double target[3], eye[3], off = 0;
     for (int i = 0; i < 3; i++) {
         target[i] = 0.5 * (box.low[i] + box.high[i]);
+        off = fmax(off, fabs(target[i]));
+    }
+
+    distance = fmax(distance, nearest * (1 + off)); // else eye and target may be the same floats
+    for (int i = 0; i < 3; i++) {
         eye[i] = target[i] + distance * back[i];
         if (fabs(eye[i]) > farthest) return;
     }

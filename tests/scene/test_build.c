@@ -470,6 +470,26 @@ TEST(the_camera_finds_the_sheets) {
         scene_free(scene);
     }
 
+    // sheets that are nearly a point: the camera still has a direction
+    static const char *const points[] = {
+        "sheets: [{grid: {size: [0.08, 0.06], cells: [4, 6]}, scale: 1e-6}]",
+        "sheets: [{grid: {size: [2 mm, 2 mm], cells: [4, 6]}, translate: [8000, -7000, 900]}]",
+    };
+    for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
+        Scene *scene = good_scene(points[i], NULL, 0);
+        SceneAssets assets;
+        SceneMessages messages = {0};
+        assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
+        scene_frame(scene, &assets);
+        const PreviewCamera *camera = &scene->preview.camera;
+        double square = 0;
+        for (int k = 0; k < 3; k++) square += pow((double)camera->eye[k] - (double)camera->target[k], 2);
+        print_message("%g m from the sheet\n", sqrt(square));
+        assert_true(sqrt(square) > 9e-6 && sqrt(square) < 0.1);
+        scene_assets_free(&assets);
+        scene_free(scene);
+    }
+
     // too far for a camera: the default one stays
     Scene *scene = good_scene("sheets: [{grid: {size: [9000, 9000], cells: [2, 2]}}]", NULL, 0);
     SceneAssets assets;
