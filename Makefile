@@ -140,11 +140,13 @@ fuzz-long: build-fuzz
 	done
 	scripts/coverage.py build-coverage --no-bars
 
-# checks, runs, verifies and resumes random scenes under the sanitizers for HOURS or MINUTES; findings stay in
-# build-asan/soak
+# checks, runs, verifies and resumes random scenes under the sanitizers for HOURS or MINUTES, half of them at the limits
+# of what is legal; findings stay in build-asan/soak*
 soak: build-asan
-	tests/soak/soak.py build-asan/singe build-asan/tests/soak/draw_scene --minutes $(MINUTES) \
-	    --seed $${SEED:-$$(date +%s)} --work build-asan/soak
+	code=0; for kind in "" --extremes; do \
+	    tests/soak/soak.py build-asan/singe build-asan/tests/soak/draw_scene $$kind --seed $${SEED:-$$(date +%s)} \
+	        --minutes $$(echo $(MINUTES) | awk '{print $$1 / 2}') --work build-asan/soak$$kind || code=1; \
+	done; exit $$code
 
 pictures:
 	scripts/draw_gallery.sh

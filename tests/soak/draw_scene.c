@@ -1,4 +1,5 @@
 // draw_scene SEED: a random scene as JSON, drawn from the schema that reads scenes, so that a new key is drawn as well.
+// draw_scene --ends: the keys of that schema and the ends of their ranges, for extremes.py.
 //
 // Half of all scenes keep near the defaults; in the others any value may be anywhere in its range. What scenes cost is
 // kept small: few cells, frames and steps. Keys that name files are left out.
@@ -247,11 +248,61 @@ static void put_map(Draw *draw, const Schema *schema, void *object) {
     draw->first = outer;
 }
 
+/// The value at an end of a row's range; false if the row is no number, or has no ends but those of its type.
+static bool end_of(const SchemaRow *row, bool high, double *end) {
+    const bool real = row->type == ROW_FLOAT || row->type == ROW_VECTOR || row->type == ROW_PARAM ||
+                      row->type == ROW_POSITION || row->type == ROW_ROTATION;
+    const bool whole =
+        row->type == ROW_INT || row->type == ROW_UINT32 || row->type == ROW_UINT64 || row->type == ROW_INTS;
+    if ((!real && !whole) || !(row->max > row->min)) return false;
+    *end = high ? row->max : row->min;
+    if (real && !high && (row->flags & ROW_OPEN_MIN)) *end = (double)nextafterf((float)row->min, INFINITY);
+    if (real && high && (row->flags & ROW_OPEN_MAX)) *end = (double)nextafterf((float)row->max, -INFINITY);
+    return true;
+}
+
+/// One line of JSON for each number and each choice of a word, by its path from the scene; the first item of lists.
+static void put_ends(const Schema *schema, const char *path) {
+    const SchemaRow *kinds = NULL;
+    for (int i = 0; i < schema->row_count; i++)
+        if (strcmp(schema->rows[i].key, "kind") == 0) kinds = &schema->rows[i];
+
+    for (int i = 0; i < schema->row_count; i++) {
+        const SchemaRow *row = &schema->rows[i];
+        char at[200], text[2][64];
+        double end[2];
+        snprintf(at, sizeof at, "%s%s%s%s", path, *path ? "." : "", row->key, row->type == ROW_LIST ? ".0" : "");
+        if (row->sub && row->type != ROW_STRENGTH) put_ends(row->sub, at);
+        const bool number = end_of(row, false, &end[0]) && end_of(row, true, &end[1]);
+        if (!number && row->type != ROW_ENUM && row->type != ROW_BOOL) continue;
+
+        printf("{\"path\": \"%s\", \"kinds\": [", at);
+        bool first = true;
+        for (int k = 0; kinds && kinds != row && kinds->names[k]; k++)
+            if (row->kinds >> k & 1) printf("%s\"%s\"", first ? "" : ", ", kinds->names[k]), first = false;
+        fputs("], \"values\": [", stdout);
+        for (int k = 0; number && k < 2; k++) {
+            quantity_print((float)end[k], row->dimension, text[k], sizeof text[k]);
+            printf("%s%s", k ? ", " : "", text[k]);
+        }
+        if (number && (row->flags & ROW_INF)) fputs(", \"inf\"", stdout);
+        if (row->type == ROW_BOOL) fputs("false, true", stdout);
+        for (int k = 0; row->type == ROW_ENUM && row->names[k]; k++) printf("%s\"%s\"", k ? ", " : "", row->names[k]);
+        printf("], \"varies\": %s, \"length\": %d}\n", row->type == ROW_PARAM ? "true" : "false",
+               row->type == ROW_POSITION || row->type == ROW_ROTATION ? 3 : row->length);
+    }
+}
+
 int main(int argc, char **argv) {
+    if (argc == 2 && strcmp(argv[1], "--ends") == 0) {
+        put_ends(&schema_scene, "");
+        return 0;
+    }
+
     Draw draw = {.state = argc == 2 ? strtoull(argv[1], NULL, 10) * 7919 : 0, .arena = arena_create()};
     Scene *scene = draw.arena ? arena_new(draw.arena, 1, sizeof *scene) : NULL;
     if (argc != 2 || !scene || !default_scene(draw.arena, scene)) {
-        fputs("usage: draw_scene SEED\n", stderr);
+        fputs("usage: draw_scene SEED | --ends\n", stderr);
         return 2;
     }
     draw.wild = pick(&draw, 2);
