@@ -348,10 +348,10 @@ static inline float shell_glow_slowing(const Matter *matter, uint32_t i, float f
     return 1 + (slowest - 1) * burnt * burnt;
 }
 
-/// Burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash.
+/// Burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash. A mean of m_min below 1 may be rounded to 1: then nothing burns.
 static inline float shell_burn_progress(float mass, float mass_min) {
     float progress = (1 - mass) / (1 - mass_min);
-    return progress < 0 ? 0 : progress > 1 ? 1 : progress;
+    return progress > 1 ? 1 : progress > 0 ? progress : 0;
 }
 
 #endif

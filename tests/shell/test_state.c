@@ -1,4 +1,5 @@
 // The start of a simulation, and that a State is one block.
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -76,6 +77,15 @@ static void check_slice(const State *state, const void *slice, size_t size) {
     size_t offset = (size_t)((const char *)slice - (const char *)state->arena);
     assert_int_equal((uintptr_t)slice % 64, 0);
     assert_true(offset + size <= state->arena_size);
+}
+
+/// Where m_min is the last float below 1, its mean over a triangle may be rounded to 1.
+TEST(burn_progress_is_always_a_number) {
+    assert_float_equal(shell_burn_progress(0.575f, 0.15f), 0.5, 1e-6);
+    assert_float_equal(shell_burn_progress(1, 1), 0, 0);
+    assert_float_equal(shell_burn_progress(nextafterf(1, 0), 1), 1, 0);
+    assert_float_equal(shell_burn_progress(1.01f, 0.15f), 0, 0);
+    assert_float_equal(shell_burn_progress(0.1f, 0.15f), 1, 0);
 }
 
 TEST(the_arena_holds_the_whole_state) {

@@ -2,6 +2,7 @@
 // SINGE_TEST_FILTER, with * and ?, or all without it.
 #include "support/test.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -23,6 +24,14 @@ void test_add(const char *name, CMUnitTestFunction run) {
 void test_around(void (*before)(int argc, char **argv), int (*after)(void)) {
     run_before = before;
     run_after = after;
+}
+
+void test_float_equal(float value, float expected, float tolerance, const char *file, int line) {
+    if (value != expected && !(isfinite(value) && isfinite(expected))) {
+        print_error("%g != %g\n", (double)value, (double)expected);
+        _fail(file, line);
+    }
+    _assert_float_equal(value, expected, tolerance, file, line);
 }
 
 int main(int argc, char **argv) {

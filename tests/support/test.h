@@ -24,4 +24,10 @@
 void test_add(const char *name, CMUnitTestFunction run);
 void test_around(void (*before)(int argc, char **argv), int (*after)(void));
 
+// cmocka's own takes what is no number, and inf, for equal to any number
+void test_float_equal(float value, float expected, float tolerance, const char *file, int line);
+#undef assert_float_equal
+#define assert_float_equal(value, expected, tolerance) \
+    test_float_equal((float)(value), (float)(expected), (float)(tolerance), __FILE__, __LINE__)
+
 #endif
