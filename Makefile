@@ -1,5 +1,5 @@
 # make            builds Singe into build/
-# make demo       installs what it needs (Debian, Ubuntu), builds the command, burns the letter and prints where its video is
+# make demo       installs what it needs (Debian, Ubuntu), builds the command, burns the note and prints where its video is
 # make test       builds and runs the unit tests; PRESET=dev: with assertions
 # make check      installs what it needs, builds everything and runs the tests
 # make pictures   draws the pictures of the documentation again, after make build
@@ -7,7 +7,7 @@
 # docs/testing.md describes the other targets; tests/CMakeLists.txt explains the labels of tests.
 
 FUZZ_SECONDS ?= 30
-DEMO_DIR ?= out/letter
+DEMO_DIR ?= out/note
 PRESET ?= release
 
 # of make fuzz-long and make soak
@@ -44,15 +44,14 @@ build-tsan:
 	cmake --preset tsan
 	cmake --build --preset tsan --target threaded_tests
 
-# Without lens and shutter, which take two thirds of the time of a picture. `singe render out/letter --set
-# preview.camera.aperture=0.003 --set preview.shutter=0.5` draws with them.
-DEMO_LOOK = --set preview.camera.aperture=0 --set preview.shutter=0
+# Smaller pictures, without lens and shutter, which would take most of the time. `singe render out/note` draws them whole.
+DEMO_LOOK = --set preview.size=[640,360] --set preview.camera.aperture=0 --set preview.shutter=0
 
 demo:
 	scripts/setup.sh
 	cmake --preset release
 	cmake --build --preset release --target singe_program
-	build/singe run examples/letter/letter.yaml -o $(DEMO_DIR) $(DEMO_LOOK) $(DEMO_FLAGS)
+	build/singe run examples/note/note.yaml -o $(DEMO_DIR) $(DEMO_LOOK) $(DEMO_FLAGS)
 	@echo "the video: $$(realpath $(DEMO_DIR)/preview.mp4)"
 
 test:

@@ -268,6 +268,21 @@ class PageHot(Example):
         self.assertEqual(max(self.column("inverted_cells")), 0)
 
 
+class Note(Example):
+    """A match lights a corner; all of the note burns, and most of its char becomes ash."""
+
+    NAME = "note"
+
+    def test_burns_to_ash(self):
+        self.common()
+        last = self.rows[-1]
+        self.say["burnt"] = f"{last['burnt_fraction']:.2f}"
+        self.report()
+        self.assertGreater(last["burnt_fraction"], 0.75)  # what is left is ash and a rest of char
+        self.assertLess(self.rows[12]["burnt_fraction"], 1e-3)  # the match comes first
+        self.assertEqual(max(self.column("inverted_cells")), 0)
+
+
 class Macro(Example):
     """Cells of 0.75 mm: the leaf curls away from the fire and nothing crosses."""
 
