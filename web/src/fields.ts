@@ -1,0 +1,187 @@
+// From the library's surface and gas to what the shaders read: the fields of program/preview/mesh_in.c and fire.c.
+import type { Gas, Surface } from "singe";
+
+const CHAR_LEAF = 0.64; // the look of a leaf of char (paper_look.h)
+
+/** Interleaved, FLOATS for each vertex; the shaders' attributes in this order. */
+export const ATTRIBUTES = [
+    ["position", 3], ["normal", 3], ["rest", 3], ["uv", 2], ["heat", 4], ["look", 4],
+] as const;
+export const FLOATS = 19;
+
+export interface Mesh { vertices: Float32Array; triangles: Uint32Array; burning: number }
+
+const clamp = (x: number, low: number, high: number) => (x < low ? low : x > high ? high : x);
+const step = (a: number, b: number, x: number) => {
+    const t = clamp((x - a) / (b - a), 0, 1);
+    return t * t * (3 - 2 * t);
+};
+
+/**
+ * heat: temperature, its peak (K), burn rate and the part of it that is char glowing (1/s); look: burnt share as it looks, its gradient
+ * (1/m), nearness of a border, age (s of fire). The gradient is the area-weighted mean of the triangles', a border is
+ * where the angles around a vertex fall short of a full turn.
+ */
+export function meshOf(surface: Surface, time: number, pace: number): Mesh {
+    const count = surface.vertex_count, out = new Float32Array(FLOATS * count), { triangles } = surface;
+    const slope = new Float32Array(3 * count), area = new Float32Array(count), angle = new Float32Array(count);
+    let burning = 0;
+    for (let i = 0; i < count; i++) {
+        const at = FLOATS * i, mass = surface.mass[i]!, charred = clamp(surface.char_fraction[i]!, 0, 1), ash = clamp(surface.ash_fraction[i]!, 0, 1);
+        const fuel = clamp(mass - charred - ash, 0, 1), rate = Math.max(surface.burn_rate[i]!, 0);
+        let burn = clamp(surface.burn[i]!, 0, 1);
+        if (charred > 0) {
+            const q = charred / (charred + 2 * ash);
+            burn += (CHAR_LEAF * (1 - fuel) - burn) * q;
+        }
+        for (let c = 0; c < 3; c++) {
+            out[at + c] = surface.position[3 * i + c]!;
+            out[at + 3 + c] = surface.normal[3 * i + c]!;
+            out[at + 6 + c] = surface.rest_position[3 * i + c]!;
+        }
+        out[at + 9] = surface.uv[2 * i]!;
+        out[at + 10] = surface.uv[2 * i + 1]!;
+        out[at + 11] = surface.temperature[i]!;
+        out[at + 12] = Math.max(surface.temperature_peak[i]!, surface.temperature[i]!);
+        out[at + 13] = rate;
+        out[at + 14] = fuel > 0.01 ? 0 : rate;
+        out[at + 15] = burn;
+        const ignited = surface.time_ignited[i]!;
+        out[at + 18] = ignited >= 0 ? (time - ignited) * pace : burn > 0 ? 60 : 0;
+        if (rate > 0.02) burning++;
+    }
+
+    const e1 = [0, 0, 0], e2 = [0, 0, 0];
+    for (let t = 0; t < triangles.length; t += 3) {
+        const a = triangles[t]!, b = triangles[t + 1]!, c = triangles[t + 2]!;
+        for (let k = 0; k < 3; k++) {
+            e1[k] = out[FLOATS * b + 6 + k]! - out[FLOATS * a + 6 + k]!;
+            e2[k] = out[FLOATS * c + 6 + k]! - out[FLOATS * a + 6 + k]!;
+        }
+        const nx = e1[1]! * e2[2]! - e1[2]! * e2[1]!, ny = e1[2]! * e2[0]! - e1[0]! * e2[2]!, nz = e1[0]! * e2[1]! - e1[1]! * e2[0]!;
+        const n2 = nx * nx + ny * ny + nz * nz;
+        if (!(n2 > 1e-24)) continue;
+        const n = Math.sqrt(n2), half = 0.5 * n, d1 = out[FLOATS * b + 15]! - out[FLOATS * a + 15]!, d2 = out[FLOATS * c + 15]! - out[FLOATS * a + 15]!;
+        const w = half / n2;
+        const gx = w * (d1 * (e2[1]! * nz - e2[2]! * ny) + d2 * (ny * e1[2]! - nz * e1[1]!));
+        const gy = w * (d1 * (e2[2]! * nx - e2[0]! * nz) + d2 * (nz * e1[0]! - nx * e1[2]!));
+        const gz = w * (d1 * (e2[0]! * ny - e2[1]! * nx) + d2 * (nx * e1[1]! - ny * e1[0]!));
+        // the angles at a, b and c
+        const aa = e1[0]! ** 2 + e1[1]! ** 2 + e1[2]! ** 2, cc = e2[0]! ** 2 + e2[1]! ** 2 + e2[2]! ** 2, ac = e1[0]! * e2[0]! + e1[1]! * e2[1]! + e1[2]! * e2[2]!;
+        const atA = Math.atan2(n, ac), atB = Math.atan2(n, aa - ac), atC = Math.atan2(n, cc - ac);
+        for (const [v, turn] of [[a, atA], [b, atB], [c, atC]] as const) {
+            slope[3 * v]! += gx;
+            slope[3 * v + 1]! += gy;
+            slope[3 * v + 2]! += gz;
+            area[v]! += half;
+            angle[v]! += turn;
+        }
+    }
+    for (let i = 0; i < count; i++) {
+        const size = area[i]!;
+        out[FLOATS * i + 16] = size > 0 ? Math.hypot(slope[3 * i]!, slope[3 * i + 1]!, slope[3 * i + 2]!) / size : 0;
+        out[FLOATS * i + 17] = 1 - step(1.6 * Math.PI, 1.95 * Math.PI, angle[i]!);
+    }
+    return { vertices: out, triangles: triangles.slice(), burning };
+}
+
+// ---- the fire
+
+const BURNING = 2e6; // W/m3 at which half of the gas counts as burning
+const EXTINCTION = 8700; // m2/kg of soot
+const FLAME_END = 0.17; // m
+const LIGHTS = 6;
+
+export interface Fire {
+    size: [number, number, number]; origin: [number, number, number]; cell: number;
+    /** four bytes a cell: flame, flame times height in FLAME_END, smoke in 20 1/m, unused */
+    cells: Uint8Array;
+    /** box of what is not empty, m; null if nothing is */
+    bounds: { low: [number, number, number]; high: [number, number, number] } | null;
+}
+
+/** x, y, z and strength of each light. */
+export type Lights = Float32Array;
+
+export function fireOf(gas: Gas, surface: Surface): Fire {
+    const [nx, ny, nz] = gas.size, count = nx * ny * nz, flame = new Float32Array(count), rise = new Float32Array(count);
+    const rootRate = new Float32Array(count), rootHeight = new Float32Array(count), cells = new Uint8Array(4 * count);
+    const index = (x: number, y: number, z: number) => x + nx * (y + ny * z);
+
+    for (let i = 0; i < surface.vertex_count; i++) {
+        const rate = surface.burn_rate[i]!;
+        if (rate < 0.02 || surface.mass[i]! - surface.char_fraction[i]! - surface.ash_fraction[i]! < 0.01) continue;
+        const [x, y, z] = [0, 1, 2].map((c) => Math.floor((surface.position[3 * i + c]! - gas.origin[c]!) / gas.cell)) as [number, number, number];
+        if (x < 0 || y < 0 || z < 0 || x >= nx || y >= ny || z >= nz) continue;
+        rootRate[index(x, y, z)]! += rate;
+        rootHeight[index(x, y, z)]! += rate * surface.position[3 * i + 2]!;
+    }
+
+    // heights above the paper, layer by layer, carried up with the gas
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    for (let z = 0, i = 0; z < nz; z++)
+        for (let y = 0; y < ny; y++)
+            for (let x = 0; x < nx; x++, i++) {
+                const power = gas.flame[i]!, smoke = Math.max(gas.smoke[i]!, 0) * EXTINCTION;
+                let f = power > 0 ? power / (power + BURNING) : 0, r = 0;
+                if (f > 0) {
+                    const above = z + 1 < nz ? i + nx * ny : i, root = rootRate[i]! > 0 ? i : above;
+                    if (rootRate[root]! > 0) {
+                        r = Math.max(gas.origin[2] + (z + 0.5) * gas.cell - rootHeight[root]! / rootRate[root]!, -gas.cell);
+                    } else if (z > 0) {
+                        const up = Math.max(gas.velocity[3 * i + 2]!, 0.1);
+                        const bx = clamp(Math.round(x - clamp(gas.velocity[3 * i]! / up, -1, 1)), 0, nx - 1);
+                        const by = clamp(Math.round(y - clamp(gas.velocity[3 * i + 1]! / up, -1, 1)), 0, ny - 1), below = index(bx, by, z - 1);
+                        r = flame[below]! > 0 ? Math.min((2 * flame[below]!) / f, 1) * (rise[below]! + gas.cell) : 0;
+                    }
+                    flame[i] = f;
+                    rise[i] = r;
+                    f *= 1 - step(0.6 * FLAME_END, FLAME_END, r);
+                }
+                cells[4 * i] = 255 * f;
+                cells[4 * i + 1] = 255 * clamp((f * r) / FLAME_END, 0, 1);
+                cells[4 * i + 2] = clamp((255 * smoke) / 20, 0, 255);
+                if (f > 0.03 || smoke > 0.15) {
+                    const at = [x, y, z];
+                    for (let c = 0; c < 3; c++) {
+                        low[c] = Math.min(low[c]!, at[c]!);
+                        high[c] = Math.max(high[c]!, at[c]! + 1);
+                    }
+                }
+            }
+    const place = (at: number[], more: number) => at.map((x, c) => gas.origin[c]! + (x + more) * gas.cell) as [number, number, number];
+    return { size: gas.size, origin: gas.origin, cell: gas.cell, cells, bounds: low[0]! < high[0]! ? { low: place(low, -1), high: place(high, 1) } : null };
+}
+
+/** The light of flames, or without gas that of what burns, gathered into the strongest cells of a coarse grid. */
+export function lightsOf(fire: Fire | null, mesh: Mesh): Lights {
+    const clusters = new Map<number, [number, number, number, number]>();
+    const add = (x: number, y: number, z: number, weight: number) => {
+        const key = Math.floor(x / 0.06 + 500) * 1e6 + Math.floor(y / 0.06 + 500) * 1e3 + Math.floor(z / 0.09 + 500);
+        const sum = clusters.get(key) ?? [0, 0, 0, 0];
+        sum[0] += weight * x;
+        sum[1] += weight * y;
+        sum[2] += weight * z;
+        sum[3] += weight;
+        clusters.set(key, sum);
+    };
+    if (fire?.bounds) {
+        const [nx, ny, nz] = fire.size, volume = (fire.cell / 0.0087) ** 3;
+        for (let z = 0, i = 0; z < nz; z++)
+            for (let y = 0; y < ny; y++)
+                for (let x = 0; x < nx; x++, i++) {
+                    const f = fire.cells[4 * i]! / 255;
+                    if (f < 0.08) continue;
+                    add(fire.origin[0] + (x + 0.5) * fire.cell, fire.origin[1] + (y + 0.5) * fire.cell, fire.origin[2] + (z + 0.5) * fire.cell, f * volume);
+                }
+    } else {
+        for (let i = 0; i < mesh.vertices.length; i += FLOATS) {
+            const rate = mesh.vertices[i + 13]!;
+            if (rate > 0.05) add(mesh.vertices[i]!, mesh.vertices[i + 1]!, mesh.vertices[i + 2]! + 0.02, 0.05 * Math.min(rate, 2));
+        }
+    }
+    const sorted = [...clusters.values()].sort((a, b) => b[3] - a[3]), total = sorted.reduce((sum, one) => sum + one[3], 0);
+    const kept = sorted.slice(0, LIGHTS), part = kept.reduce((sum, one) => sum + one[3], 0), out = new Float32Array(4 * LIGHTS);
+    kept.forEach(([x, y, z, weight], i) => out.set([x / weight, y / weight, z / weight, (weight * total) / part], 4 * i));
+    return out;
+}

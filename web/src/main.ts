@@ -1,0 +1,539 @@
+// The page: input, settings, and one request for a frame after another.
+import { MOUSE, Plane, Raycaster, TOUCH, Vector2, Vector3 } from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { FLOATS } from "./fields.js";
+import { glbOf } from "./glb.js";
+import type { Frame, FromWorker, Shape, ToWorker } from "./messages.js";
+import { readObj } from "./obj.js";
+import { Renderer } from "./renderer.js";
+import { fromLink, MATERIALS, RANGES, toLink, toYaml, type Point, type Settings, type Slider } from "./scene.js";
+
+type Tool = "match" | "breath" | "hand" | "pin";
+const LIVE: Slider[] = ["pace", "wind", "gravity"];
+const LONGEST_FRAME = 1 / 20; // s of motion in a frame
+const BUDGET = 45; // ms of computing in a frame
+const FILE_MOST = 30e6; // bytes
+const HINTS: Record<Tool, string> = {
+    match: "Drag the match over the paper", breath: "Hold to blow the fire out", hand: "Take the paper, pull, and tear it",
+    pin: "Click to pin the paper to the table; click a pin to take it out",
+};
+const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+
+const element = <Kind extends HTMLElement>(query: string) => document.querySelector<Kind>(query)!;
+const canvas = element<HTMLCanvasElement>("#view"), hint = element("#hint"), facts = element("#facts");
+const form = element<HTMLFormElement>("#settings");
+
+let { settings, strokes: linkedStrokes, pins: linkedPins } = fromLink(location.hash.slice(1));
+let shape: Shape | null = null, shapeName: string | null = null, picture: CanvasImageSource | null = null;
+let tool: Tool = "match", paused = still, busy = true, begun = false;
+let frame: Frame | null = null;
+let pointer: { id: number; x: number; y: number } | null = null, applying = false;
+let grabbed: { plane: Plane; to: Point } | null = null;
+let keyAt: Point = [0, -0.02, 0.002], keyHeld = false;
+let last = performance.now(), costOfStep = 4, speed = 1;
+
+// ---- what the page needs
+
+function stop(title: string, text: string): void {
+    const box = element("#stop");
+    box.hidden = false;
+    box.replaceChildren(Object.assign(document.createElement("strong"), { textContent: title }), Object.assign(document.createElement("p"), { textContent: text }));
+}
+
+/** A module of one instruction of simd128. */
+const SIMD = new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11]);
+
+function lacking(): [string, string] | null {
+    if (typeof WebAssembly === "undefined" || !WebAssembly.validate(SIMD))
+        return ["This browser cannot compute the fire.", "Singe needs WebAssembly with simd128, which browsers have had since 2021 (Safari since 2023). An update brings it."];
+    const gl = document.createElement("canvas").getContext("webgl2");
+    if (!gl) return ["This browser cannot draw the fire.", "Singe needs WebGL 2. It may be switched off, or the card's driver may be blocked: see the browser's page about its graphics."];
+    if (!gl.getExtension("EXT_color_buffer_float")) return ["This graphics card cannot draw the fire.", "Singe needs render targets of floating point (EXT_color_buffer_float)."];
+    return null;
+}
+
+const lack = lacking();
+let renderer: Renderer, worker: Worker, controls: OrbitControls;
+if (lack) stop(...lack);
+else start();
+
+function start(): void {
+    renderer = new Renderer(canvas);
+    renderer.scale = Math.min(devicePixelRatio, 1.5);
+    controls = new OrbitControls(renderer.camera, canvas);
+    controls.mouseButtons = { LEFT: null, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.ROTATE };
+    controls.touches = { ONE: null, TWO: TOUCH.DOLLY_ROTATE };
+    controls.enablePan = false;
+    controls.minDistance = 0.12;
+    controls.maxDistance = 1.1;
+    controls.maxPolarAngle = 1.52;
+    controls.enableDamping = !still;
+    place();
+    resize();
+    addEventListener("resize", resize);
+    canvas.addEventListener("webglcontextlost", (event) => {
+        event.preventDefault();
+        say("The graphics card has dropped the picture. It comes back when the card does.");
+    });
+    worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+    worker.onmessage = ({ data }: MessageEvent<FromWorker>) => hear(data);
+    worker.onerror = () => stop("The simulation could not be loaded.", "Its worker failed to start. A reload may help; so may a browser of 2023 or later.");
+    send({ kind: "load", wasm: new URL("./singe.wasm", import.meta.url).href });
+    const letter = new Image();
+    letter.onload = () => {
+        if (!picture && !shape) renderer.print((picture = letter));
+    };
+    letter.src = "letter.png";
+    writeSettings();
+    chooseTool("match", true);
+    showPaused();
+    requestAnimationFrame(tick);
+}
+
+function send(message: ToWorker): void { worker.postMessage(message); }
+
+/** A view of the whole sheet; portrait screens stand further away. */
+function place(): void {
+    const away = Math.max(1, 0.95 * Math.sqrt(innerHeight / innerWidth) + 0.25);
+    controls.target.set(0, 0.008, 0.018);
+    renderer.camera.position.set(0.10, -0.43, 0.265).multiplyScalar(away);
+    controls.update();
+}
+
+function resize(): void {
+    renderer.resize(innerWidth, innerHeight);
+    draw();
+}
+
+// ---- frames
+
+function restart(): void {
+    busy = true;
+    send({ kind: "begin", settings, shape, strokes: linkedStrokes, pins: linkedPins });
+}
+
+function hear(message: FromWorker): void {
+    if (message.kind === "loaded") return restart();
+    if (message.kind === "failed") {
+        busy = false;
+        if (!begun) return stop("The simulation could not begin.", message.message);
+        return say(`Singe refused this: ${message.message}`);
+    }
+    if (message.kind === "begun") {
+        begun = true;
+        linkedStrokes = [];
+        linkedPins = [];
+        return;
+    }
+    frame = message;
+    busy = false;
+    if (message.steps) costOfStep += 0.2 * (message.ms / message.steps - costOfStep);
+    if (!stepping) {
+        renderer.show(message);
+        showFacts(message);
+        draw();
+    }
+    canvas.classList.add("ready");
+    element<HTMLButtonElement>("#undo").disabled = !message.marks;
+    waiting.splice(0).forEach((resolve) => resolve());
+}
+
+const waiting: (() => void)[] = [];
+let stepping = false;
+
+/** Asks for `seconds` of motion, if the worker is not at work already. */
+function advance(seconds: number, most: number): void {
+    busy = true;
+    const at = applying ? target() : null;
+    send({
+        kind: "advance", seconds, most, match: at && tool === "match" ? at : null,
+        breath: at && tool === "breath" ? { at, direction: breathDirection(at) } : null, hand: grabbed ? grabbed.to : null,
+    });
+}
+
+function tick(now: number): void {
+    requestAnimationFrame(tick);
+    const passed = (now - last) / 1000;
+    const moved = controls.update();
+    if (!busy && begun && !paused && !document.hidden) {
+        last = now;
+        const seconds = Math.min(passed, LONGEST_FRAME), most = Math.max(1, Math.floor(BUDGET / costOfStep));
+        speed += 0.05 * (Math.min(1, (most / 240) / Math.max(passed, 1e-3)) - speed);
+        advance(seconds, most);
+    } else if (paused) {
+        last = now;
+    }
+    if (moved || (applying && !busy)) draw();
+}
+
+let slow = 0;
+function draw(): void {
+    if (!renderer) return;
+    const at = applying && tool === "match" ? target() : keyHeld && tool === "match" ? keyAt : frame?.match ?? null;
+    renderer.setMatch(at);
+    const before = performance.now();
+    renderer.draw();
+    // a card that cannot keep up gets fewer pixels, not a slower fire
+    slow = performance.now() - before > 60 ? slow + 1 : Math.max(0, slow - 1);
+    if (slow > 6 && renderer.scale > 0.5) {
+        renderer.scale = Math.max(0.5, renderer.scale * 0.75);
+        slow = 0;
+        renderer.resize(innerWidth, innerHeight);
+    }
+}
+
+// ---- pointing
+
+const caster = new Raycaster(), table = new Plane(new Vector3(0, 0, 1), 0);
+
+function rayAt(x: number, y: number): void {
+    caster.setFromCamera(new Vector2((2 * x) / innerWidth - 1, 1 - (2 * y) / innerHeight), renderer.camera);
+}
+
+interface Hit { at: Point; rest: Point | null }
+
+/** The sheet under a place of the screen, or else the table. */
+function pick(x: number, y: number): Hit | null {
+    rayAt(x, y);
+    const { origin, direction } = caster.ray;
+    if (frame) {
+        const { vertices, triangles } = frame, a = new Vector3(), b = new Vector3(), c = new Vector3(), at = new Vector3();
+        let nearest = Infinity, found: Hit | null = null;
+        for (let t = 0; t < triangles.length; t += 3) {
+            const [i, j, k] = [triangles[t]! * FLOATS, triangles[t + 1]! * FLOATS, triangles[t + 2]! * FLOATS];
+            if (!caster.ray.intersectTriangle(a.fromArray(vertices, i), b.fromArray(vertices, j), c.fromArray(vertices, k), false, at)) continue;
+            const distance = at.distanceTo(origin);
+            if (distance < nearest) {
+                nearest = distance;
+                found = { at: at.toArray() as Point, rest: [vertices[i + 6]!, vertices[i + 7]!, vertices[i + 8]!] };
+            }
+        }
+        if (found) return found;
+    }
+    const at = caster.ray.intersectPlane(table, new Vector3());
+    return at && at.length() < 0.6 && direction.z < 0 ? { at: at.toArray() as Point, rest: null } : null;
+}
+
+/** Where the tool works now: at the pointer, or at the keyboard's place. */
+function target(): Point | null {
+    if (!pointer) return keyHeld ? keyAt : null;
+    const hit = pick(pointer.x, pointer.y);
+    return hit ? [hit.at[0], hit.at[1], hit.at[2] + 0.003] : null;
+}
+
+function breathDirection(at: Point): Point {
+    const from = renderer.camera.position.clone().sub(new Vector3(...at)).setZ(0).normalize();
+    return [-from.x, -from.y, -0.15];
+}
+
+function beginUse(hit: Hit | null): void {
+    if (!frame || !hit) return;
+    say("");
+    const near = frame.pins.findIndex((pin) => Math.hypot(pin[0] - hit.at[0], pin[1] - hit.at[1], pin[2] - hit.at[2]) < 0.009);
+    if (tool === "pin") {
+        send({ kind: "mark" });
+        if (near >= 0) send({ kind: "unpin", index: near });
+        else if (hit.rest) send({ kind: "pin", rest: hit.rest });
+        else say("A pin needs paper under it");
+        refresh();
+        return;
+    }
+    if (tool === "hand" && !hit.rest) return say("The hand needs paper under it");
+    send({ kind: "mark" });
+    applying = true;
+    if (tool === "hand") {
+        const normal = renderer.camera.getWorldDirection(new Vector3()).negate();
+        grabbed = { plane: new Plane().setFromNormalAndCoplanarPoint(normal, new Vector3(...hit.at)), to: hit.at };
+        send({ kind: "grab", rest: hit.rest!, at: hit.at });
+        canvas.classList.add("held");
+    }
+    if (paused) pause(false);
+}
+
+function moveUse(): void {
+    if (!grabbed || !pointer) return;
+    rayAt(pointer.x, pointer.y);
+    const to = caster.ray.intersectPlane(grabbed.plane, new Vector3());
+    if (to) grabbed.to = [to.x, to.y, Math.max(to.z, 0.003)];
+}
+
+function endUse(): void {
+    if (grabbed) send({ kind: "release" });
+    grabbed = null;
+    applying = false;
+    canvas.classList.remove("held");
+    writeLink();
+}
+
+/** Shows a change that comes without motion. */
+function refresh(): void { if (!busy) advance(0, 0); }
+
+const down = new Set<number>();
+canvas.addEventListener("pointerdown", (event) => {
+    canvas.focus({ preventScroll: true });
+    down.add(event.pointerId);
+    if (event.button !== 0 || down.size > 1) { // two fingers turn the view
+        if (applying) endUse();
+        pointer = null;
+        return;
+    }
+    pointer = { id: event.pointerId, x: event.clientX, y: event.clientY };
+    canvas.setPointerCapture(event.pointerId);
+    beginUse(pick(event.clientX, event.clientY));
+});
+canvas.addEventListener("pointermove", (event) => {
+    if (pointer?.id !== event.pointerId) return;
+    pointer = { id: event.pointerId, x: event.clientX, y: event.clientY };
+    moveUse();
+});
+for (const name of ["pointerup", "pointercancel"] as const)
+    canvas.addEventListener(name, (event) => {
+        down.delete(event.pointerId);
+        if (pointer?.id !== event.pointerId) return;
+        if (applying) endUse();
+        pointer = null;
+    });
+canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+
+// ---- keys
+
+const STEP = 0.005; // m a key press moves the tool
+const MOVES: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+addEventListener("keydown", (event) => {
+    const inForm = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement;
+    if (lack || inForm || event.ctrlKey && event.key !== "z" || event.metaKey || event.altKey) return;
+    const move = MOVES[event.key], onView = event.target === canvas || event.target === document.body;
+    if (move && onView && event.shiftKey) turn(0.08 * move[0], 0.05 * move[1]);
+    else if (move && onView) moveKey(STEP * move[0], STEP * move[1]);
+    else if (event.key === "Enter" && onView && !event.repeat) useKey();
+    else if (event.key === " " && onView) pause(!paused);
+    else if (event.key === "Escape") { keyHeld = false; if (applying) endUse(); }
+    else if ("1234".includes(event.key)) chooseTool((["match", "breath", "hand", "pin"] as const)[Number(event.key) - 1]!);
+    else if (event.key === "z") undo();
+    else if (event.key === "r") again();
+    else if (event.key === "s") element<HTMLDetailsElement>(".panel").toggleAttribute("open");
+    else return;
+    event.preventDefault();
+});
+
+function turn(aside: number, up: number): void {
+    const { camera } = renderer, offset = camera.position.clone().sub(controls.target);
+    offset.applyAxisAngle(new Vector3(0, 0, 1), -aside);
+    offset.applyAxisAngle(new Vector3(0, 0, 1).cross(offset).normalize(), -up);
+    if (offset.z > 0.02 && Math.hypot(offset.x, offset.y) > 0.05) camera.position.copy(controls.target).add(offset);
+    camera.lookAt(controls.target);
+    draw();
+}
+
+function moveKey(x: number, y: number): void {
+    keyAt = [Math.max(-0.2, Math.min(0.2, keyAt[0] + x)), Math.max(-0.2, Math.min(0.2, keyAt[1] + y)), 0.002];
+    if (grabbed) grabbed.to = [grabbed.to[0] + x, grabbed.to[1] + y, grabbed.to[2] + Math.abs(y)];
+    say(`${tool} at ${Math.round(1000 * keyAt[0])}, ${Math.round(1000 * keyAt[1])} mm: Enter ${keyHeld ? "ends" : "begins"}`);
+}
+
+/** Enter begins what the tool does at the keyboard's place, and ends it. */
+function useKey(): void {
+    if (keyHeld) {
+        keyHeld = false;
+        return endUse();
+    }
+    const screen = new Vector3(...keyAt).project(renderer.camera);
+    keyHeld = tool !== "pin";
+    beginUse(pick(((screen.x + 1) / 2) * innerWidth, ((1 - screen.y) / 2) * innerHeight));
+    keyHeld &&= applying;
+}
+
+// ---- buttons
+
+function chooseTool(wanted: Tool, quiet = false): void {
+    tool = wanted;
+    document.querySelectorAll<HTMLElement>("[data-tool]").forEach((button) => button.setAttribute("aria-pressed", String(button.dataset.tool === wanted)));
+    canvas.className = `${canvas.classList.contains("ready") ? "ready " : ""}${wanted}`;
+    if (!quiet) say(HINTS[wanted]);
+    else say("Drag the match over the paper. The right button, or two fingers, turn the view");
+}
+
+function pause(wanted: boolean): void {
+    paused = wanted;
+    last = performance.now();
+    showPaused();
+}
+
+function showPaused(): void {
+    const button = element<HTMLButtonElement>("#pause");
+    button.setAttribute("aria-pressed", String(paused));
+    button.querySelector("span")!.textContent = paused ? "Play" : "Pause";
+}
+
+function undo(): void {
+    if (!frame?.marks || busy && !begun) return;
+    endUse();
+    send({ kind: "undo" });
+}
+
+function again(): void {
+    endUse();
+    settings = { ...settings, begin: false };
+    restart();
+    say("A new sheet. Strike a match");
+    writeLink();
+}
+
+document.querySelectorAll<HTMLButtonElement>("[data-tool]").forEach((button) => button.addEventListener("click", () => chooseTool(button.dataset.tool as Tool)));
+element("#pause").addEventListener("click", () => pause(!paused));
+element("#undo").addEventListener("click", undo);
+element("#again").addEventListener("click", again);
+
+let silence = 0;
+function say(text: string): void {
+    hint.textContent = text;
+    clearTimeout(silence);
+    if (text) silence = window.setTimeout(() => { hint.textContent = ""; }, 6000);
+}
+
+// ---- settings
+
+function writeSettings(): void {
+    const material = form.elements.namedItem("material") as HTMLSelectElement;
+    material.replaceChildren(...Object.entries(MATERIALS).map(([value, text]) => new Option(text, value, false, value === settings.material)));
+    for (const key of Object.keys(RANGES) as Slider[]) {
+        const { label, least, most, step, text } = RANGES[key], row = document.createElement("label");
+        row.innerHTML = `${label} <output></output><input type="range" name="${key}" min="${least}" max="${most}" step="${step}">`;
+        const input = row.querySelector("input")!;
+        input.value = String(settings[key]);
+        row.querySelector("output")!.textContent = text(settings[key]);
+        element(LIVE.includes(key) ? "#live" : "#fresh").append(row);
+    }
+    (form.elements.namedItem("gas") as HTMLInputElement).checked = settings.gas;
+}
+
+form.addEventListener("input", ({ target }) => {
+    const input = target as HTMLInputElement, key = input.name as keyof Settings;
+    if (!(key in settings)) return;
+    const value = key === "material" ? input.value : key === "gas" ? input.checked : Number(input.value);
+    settings = { ...settings, [key]: value };
+    if (key in RANGES) input.closest("label")!.querySelector("output")!.textContent = RANGES[key as Slider].text(Number(value));
+    if (LIVE.includes(key as Slider) && !(key === "gravity" && settings.gas)) send({ kind: "set", settings });
+});
+form.addEventListener("change", ({ target }) => {
+    const key = (target as HTMLInputElement).name;
+    if (!(key in settings)) return;
+    if (!LIVE.includes(key as Slider) || (key === "gravity" && settings.gas)) restart(); // gravity is the gas's, too
+    writeLink();
+});
+form.addEventListener("submit", (event) => event.preventDefault());
+
+function writeLink(): void {
+    const hash = toLink(settings, frame?.strokes ?? [], frame?.pinRests ?? []);
+    history.replaceState(null, "", hash ? `#${hash}` : location.pathname);
+}
+
+function showFacts(now: Frame): void {
+    const rows = {
+        Time: `${now.time.toFixed(2)} s`, Burnt: `${(100 * now.burnt).toFixed(1)} %`, Hottest: `${Math.round(now.hottest - 273)} °C`,
+        Pieces: String(now.pieces), Springs: now.springs.toLocaleString("en"), "Of real time": `${Math.round(100 * speed)} %`,
+    };
+    facts.replaceChildren(...Object.entries(rows).flatMap(([name, value]) => [
+        Object.assign(document.createElement("dt"), { textContent: name }), Object.assign(document.createElement("dd"), { textContent: value })]));
+}
+
+// ---- files in
+
+async function takeFile(file: File): Promise<void> {
+    try {
+        if (file.size > FILE_MOST) throw new Error(`it has more than ${FILE_MOST / 1e6} MB`);
+        if (/\.obj$/i.test(file.name)) {
+            shape = readObj(await file.text());
+            shapeName = file.name;
+            renderer.print((picture = null));
+            settings = { ...settings, begin: false };
+            restart();
+            say(`${file.name}: ${shape.positions.length / 3} vertices. Strike a match`);
+        } else {
+            picture = await createImageBitmap(file, { imageOrientation: "flipY" }).catch(() => {
+                throw new Error("it is neither a picture that this browser reads, nor an OBJ");
+            });
+            renderer.print(picture);
+            say(`${file.name} is printed`);
+            draw();
+        }
+    } catch (error) {
+        say(`${file.name} was not taken: ${(error as Error).message}`);
+    }
+}
+
+element("#open").addEventListener("click", () => element("#file").click());
+element<HTMLInputElement>("#file").addEventListener("change", ({ target }) => {
+    const input = target as HTMLInputElement;
+    if (input.files?.[0]) void takeFile(input.files[0]);
+    input.value = "";
+});
+addEventListener("dragover", (event) => { event.preventDefault(); document.body.classList.add("drop"); });
+addEventListener("dragleave", (event) => { if (!event.relatedTarget) document.body.classList.remove("drop"); });
+addEventListener("drop", (event) => {
+    event.preventDefault();
+    document.body.classList.remove("drop");
+    const file = event.dataTransfer?.files[0];
+    if (file) void takeFile(file);
+});
+
+// ---- files out
+
+function save(blob: Blob, name: string): void {
+    const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: name });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+let recorder: MediaRecorder | null = null;
+const SAVES: Record<string, () => void> = {
+    png: () => { draw(); canvas.toBlob((blob) => blob && save(blob, "singe.png")); },
+    glb: () => frame && save(new Blob([glbOf(frame)], { type: "model/gltf-binary" }), "singe.glb"),
+    yaml: () => frame && save(new Blob([toYaml(settings, frame.strokes, frame.pinRests, frame.time, shapeName, frame.skipped)], { type: "text/yaml" }), "singe.yaml"),
+    link: () => {
+        writeLink();
+        navigator.clipboard?.writeText(location.href).then(() => say("The link is copied: it has the settings, the pins and the match"), () => say("The link is in the address bar"));
+    },
+    webm: () => {
+        const button = element('[data-save="webm"]');
+        if (recorder) return recorder.stop();
+        if (typeof MediaRecorder === "undefined" || !MediaRecorder.isTypeSupported("video/webm")) return say("This browser records no WebM");
+        const parts: Blob[] = [];
+        recorder = new MediaRecorder(canvas.captureStream(30), { mimeType: "video/webm", videoBitsPerSecond: 12e6 });
+        recorder.ondataavailable = ({ data }) => parts.push(data);
+        recorder.onstop = () => {
+            save(new Blob(parts, { type: "video/webm" }), "singe.webm");
+            recorder = null;
+            button.textContent = "WebM";
+        };
+        recorder.start();
+        button.textContent = "Stop";
+    },
+};
+document.querySelectorAll<HTMLElement>("[data-save]").forEach((button) => button.addEventListener("click", () => SAVES[button.dataset.save!]!()));
+
+// ---- for tests: motion by request, without a clock
+
+Object.assign(globalThis, { page: {
+    /** Some seconds of motion in frames of 1/24 s; the clock stands still afterwards. */
+    async step(seconds: number): Promise<Omit<Frame, "vertices" | "triangles" | "fire" | "lights">> {
+        pause(true);
+        const idle = async () => { while (busy) await new Promise<void>((resolve) => { waiting.push(resolve); }); };
+        await idle();
+        stepping = true; // only the last frame is drawn
+        for (let left = Math.round(seconds * 24); left > 0; left--) {
+            stepping = left > 1;
+            advance(1 / 24, 0);
+            await idle();
+        }
+        stepping = false;
+        const { vertices, triangles, fire, lights, ...rest } = frame!;
+        return { ...rest, ...{ vertexCount: vertices.length / FLOATS, triangleCount: triangles.length / 3 } };
+    },
+    get card() { return renderer.card; },
+    project: (point: Point) => {
+        const at = new Vector3(...point).project(renderer.camera);
+        return [((at.x + 1) / 2) * innerWidth, ((1 - at.y) / 2) * innerHeight];
+    },
+} });

@@ -1,0 +1,25 @@
+// Between the page and its worker.
+import type { Fire, Lights } from "./fields.js";
+import type { Point, Settings, Stroke } from "./scene.js";
+
+export interface Shape { positions: Float32Array; corners: Uint32Array; sizes: Uint32Array; uv: Float32Array | null }
+
+export type ToWorker =
+    | { kind: "load"; wasm: string }
+    | { kind: "begin"; settings: Settings; shape: Shape | null; strokes: Stroke[]; pins: Point[] }
+    | { kind: "advance"; seconds: number; most: number; match: Point | null; breath: { at: Point; direction: Point } | null; hand: Point | null }
+    | { kind: "set"; settings: Settings }
+    | { kind: "grab"; rest: Point; at: Point } | { kind: "release" }
+    | { kind: "pin"; rest: Point } | { kind: "unpin"; index: number }
+    | { kind: "mark" } | { kind: "undo" };
+
+export interface Frame {
+    kind: "frame";
+    vertices: Float32Array; triangles: Uint32Array; burning: number;
+    fire: Fire | null; lights: Lights;
+    time: number; steps: number; ms: number; burnt: number; pieces: number; springs: number; hottest: number;
+    pins: Point[]; match: Point | null; marks: number; skipped: boolean; strokes: Stroke[]; pinRests: Point[];
+}
+
+export type FromWorker =
+    | { kind: "loaded"; version: string } | Frame | { kind: "failed"; message: string } | { kind: "begun"; springs: number };

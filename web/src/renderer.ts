@@ -1,0 +1,353 @@
+// Draws a frame of the worker: the table, the sheet, the match and pins, then the fire, a lens's halo and a film's curve.
+import {
+    BufferGeometry, CanvasTexture, CylinderGeometry, Data3DTexture, DataTexture, DepthTexture, DoubleSide, DynamicDrawUsage, GLSL3, HalfFloatType,
+    InterleavedBuffer, InterleavedBufferAttribute, BufferAttribute, LatheGeometry, LessEqualCompare, LinearFilter, LinearSRGBColorSpace, Matrix4, Mesh,
+    NoColorSpace, OrthographicCamera, PerspectiveCamera, PlaneGeometry, RawShaderMaterial, RepeatWrapping, RGBAFormat, Scene,
+    SphereGeometry, SRGBColorSpace, Texture, UnsignedByteType, UnsignedIntType, Vector2, Vector3, Vector4, WebGLRenderer, WebGLRenderTarget,
+    DataUtils, type IUniform,
+} from "three";
+import { ATTRIBUTES, FLOATS } from "./fields.js";
+import type { Frame } from "./messages.js";
+import type { Point } from "./scene.js";
+import * as glsl from "./shaders.js";
+
+const LAMP = { at: new Vector3(-0.19, 0.21, 0.34), to: new Vector3(0.0, 0.01, 0), colour: [0.155, 0.097, 0.045] };
+const NIGHT = new Vector3(0.0090, 0.0105, 0.0165);
+const EXPOSURE = 1.6;
+const SHADOW = 1024;
+const FIRE_LIGHT = 0.00105; // strength of a cell that burns fully
+const FULL_PAPER = 0.22; // light that comes through (preview.h)
+
+type Uniforms = Record<string, IUniform>;
+
+export class Renderer {
+    readonly camera = new PerspectiveCamera(30, 1, 0.02, 6);
+    readonly paper: Mesh<BufferGeometry, RawShaderMaterial>;
+    private gl: WebGLRenderer;
+    private scene = new Scene();
+    private shadowScene = new Scene();
+    private lamp = new PerspectiveCamera(70, 1, 0.08, 1.2);
+    private shared: Uniforms;
+    private sceneTarget: WebGLRenderTarget;
+    private fireTarget = target();
+    private merged = target();
+    private bright = target();
+    private across = target();
+    private halo = target();
+    private glare = target();
+    private shadowTarget = new WebGLRenderTarget(SHADOW, SHADOW);
+    private full = new Mesh(new PlaneGeometry(2, 2));
+    private fullCamera = new OrthographicCamera(-1, 1, 1, -1, 0, 1);
+    private passes: Record<"fire" | "merge" | "bright" | "blur" | "film", RawShaderMaterial>;
+    private buffer: InterleavedBuffer | null = null;
+    private fireMap: Data3DTexture | null = null;
+    private match: Mesh[];
+    private pins: Mesh[] = [];
+    private solid: (albedo: Point, gloss: number) => RawShaderMaterial;
+    scale = 1;
+
+    constructor(canvas: HTMLCanvasElement) {
+        this.gl = new WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance", preserveDrawingBuffer: true });
+        this.gl.autoClear = false;
+        this.gl.outputColorSpace = LinearSRGBColorSpace;
+        this.camera.up.set(0, 0, 1);
+
+        const depth = new DepthTexture(SHADOW, SHADOW, UnsignedIntType);
+        depth.compareFunction = LessEqualCompare;
+        depth.minFilter = depth.magFilter = LinearFilter;
+        this.shadowTarget.depthTexture = depth;
+        this.lamp.up.set(0, 0, 1);
+        this.lamp.position.copy(LAMP.at);
+        this.lamp.lookAt(LAMP.to);
+        this.lamp.updateMatrixWorld();
+        const lampView = new Matrix4().multiplyMatrices(this.lamp.projectionMatrix, this.lamp.matrixWorldInverse);
+
+        this.sceneTarget = new WebGLRenderTarget(4, 4, { type: HalfFloatType, samples: 4, depthTexture: new DepthTexture(4, 4, UnsignedIntType) });
+        this.shared = {
+            noiseMap: { value: noiseTexture() }, glowMap: { value: glowTexture() }, viewProjection: { value: new Matrix4() },
+            eye: { value: new Vector3() }, lampAt: { value: LAMP.at }, lampTo: { value: LAMP.to }, lampColour: { value: new Vector3(...LAMP.colour as Point) },
+            nightColour: { value: NIGHT }, lampView: { value: lampView }, shadowMap: { value: depth }, time: { value: 0 },
+            fireLights: { value: Array.from({ length: 6 }, () => new Vector4()) }, fireColour: { value: new Vector3(1, 0.46, 0.13) },
+        };
+
+        const paperUniforms = { ...this.shared, printMap: { value: white() }, shadow: { value: 0 }, transmittance: { value: FULL_PAPER } };
+        const paper = material(glsl.PAPER_VERTEX, glsl.PAPER, paperUniforms);
+        paper.side = DoubleSide;
+        this.paper = new Mesh(new BufferGeometry(), paper);
+        this.paper.frustumCulled = false;
+        const caster = material(glsl.PAPER_VERTEX, glsl.PAPER, { ...paperUniforms, shadow: { value: 1 }, viewProjection: { value: lampView }, shadowMap: { value: null } });
+        caster.side = DoubleSide;
+        const cast = new Mesh(this.paper.geometry, caster);
+        cast.frustumCulled = false;
+        this.shadowScene.add(cast);
+
+        const table = new Mesh(new PlaneGeometry(5, 5), material(glsl.PLAIN_VERTEX, glsl.TABLE, this.shared));
+        this.solid = (albedo, gloss) => material(glsl.PLAIN_VERTEX, glsl.SOLID, {
+            ...this.shared, albedo: { value: new Vector3(...albedo) }, emission: { value: new Vector3() }, gloss: { value: gloss },
+        });
+        const stick = new Mesh(new CylinderGeometry(0.0011, 0.0011, 0.05, 8).translate(0, -0.027, 0), this.solid([0.55, 0.37, 0.2], 0.02));
+        const head = new Mesh(new SphereGeometry(0.002, 12, 8).scale(1, 1.5, 1), this.solid([0.035, 0.02, 0.018], 0.03));
+        this.match = [stick, head];
+        for (const part of this.match) {
+            part.visible = false;
+            part.rotation.set(-0.45, 0.0, -0.75); // held from the right, upwards
+        }
+        this.scene.add(table, this.paper, ...this.match);
+
+        this.passes = {
+            fire: material(glsl.FULL_VERTEX, glsl.FIRE, {
+                ...this.shared, fireMap: { value: null }, depthMap: { value: this.sceneTarget.depthTexture }, inverse_: { value: new Matrix4() },
+                low: { value: new Vector3() }, high: { value: new Vector3() }, origin: { value: new Vector3() }, span: { value: new Vector3(1, 1, 1) },
+                match_: { value: new Vector3() }, matchOn: { value: 0 }, paperHeight: { value: 0 },
+            }),
+            merge: material(glsl.FULL_VERTEX, glsl.MERGE, { sceneMap: { value: this.sceneTarget.texture }, fireMap2: { value: this.fireTarget.texture } }),
+            bright: material(glsl.FULL_VERTEX, glsl.BRIGHT, { map: { value: this.merged.texture }, pixel: { value: new Vector2() }, exposure: { value: EXPOSURE } }),
+            blur: material(glsl.FULL_VERTEX, glsl.BLUR, { map: { value: null }, along: { value: new Vector2() }, sigma: { value: 1 } }),
+            film: material(glsl.FULL_VERTEX, glsl.FILM, {
+                map: { value: this.merged.texture }, halo: { value: this.halo.texture }, glare: { value: this.glare.texture }, exposure: { value: EXPOSURE },
+                resolution: { value: new Vector2(1, 1) },
+            }),
+        };
+        this.full.frustumCulled = false;
+    }
+
+    /** The card's name, to be told in a message. */
+    get card(): string {
+        const gl = this.gl.getContext(), info = gl.getExtension("WEBGL_debug_renderer_info");
+        return info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "unknown";
+    }
+
+    resize(width: number, height: number): void {
+        const w = Math.max(2, Math.round(width * this.scale)), h = Math.max(2, Math.round(height * this.scale));
+        this.gl.setSize(w, h, false);
+        this.sceneTarget.setSize(w, h);
+        this.merged.setSize(w, h);
+        this.fireTarget.setSize(Math.ceil(w / 2), Math.ceil(h / 2));
+        for (const small of [this.bright, this.across, this.halo, this.glare]) small.setSize(Math.ceil(w / 4), Math.ceil(h / 4));
+        this.camera.aspect = width / height;
+        this.camera.updateProjectionMatrix();
+        (this.passes.film.uniforms.resolution!.value as Vector2).set(w, h);
+    }
+
+    /** What is printed on the sheet; null is nothing. */
+    print(picture: CanvasImageSource | null): void {
+        const uniforms = this.paper.material.uniforms, old = uniforms.printMap!.value as Texture;
+        let texture: Texture = white();
+        if (picture) {
+            texture = new CanvasTexture(picture as HTMLCanvasElement);
+            texture.colorSpace = SRGBColorSpace;
+            texture.anisotropy = 8;
+        }
+        uniforms.printMap!.value = texture;
+        old.dispose();
+    }
+
+    // ---- a frame's data
+
+    show(frame: Frame): void {
+        this.setMesh(frame);
+        this.setFire(frame);
+        this.shared.time!.value = frame.time % 1000;
+        const lights = this.shared.fireLights!.value as Vector4[];
+        lights.forEach((light, i) => {
+            const [x, y, z, weight] = frame.lights.subarray(4 * i, 4 * i + 4) as unknown as [number, number, number, number];
+            const flicker = 1 + 0.16 * Math.sin(41 * frame.time + 2.4 * i) + 0.12 * Math.sin(67 * frame.time + i * i);
+            light.set(x, y, z, weight * FIRE_LIGHT * flicker);
+        });
+        while (this.pins.length < frame.pins.length) {
+            const pin = new Mesh(tack(), this.solid([0.55, 0.36, 0.10], 0.5));
+            this.pins.push(pin);
+            this.scene.add(pin);
+        }
+        this.pins.forEach((pin, i) => {
+            pin.visible = i < frame.pins.length;
+            if (pin.visible) pin.position.set(...frame.pins[i]!);
+        });
+    }
+
+    /** Where a match burns, or null. */
+    setMatch(at: Point | null): void {
+        for (const part of this.match) {
+            part.visible = !!at;
+            if (at) part.position.set(at[0], at[1], at[2] + 0.003);
+        }
+        const uniforms = this.passes.fire.uniforms;
+        uniforms.matchOn!.value = at ? 1 : 0;
+        if (!at) return;
+        (uniforms.match_!.value as Vector3).set(at[0], at[1], at[2] + 0.004);
+        (this.shared.fireLights!.value as Vector4[])[5]!.set(at[0], at[1], at[2] + 0.018, 0.0016 * (1 + 0.15 * Math.sin(performance.now() / 31)));
+    }
+
+    private setMesh({ vertices, triangles }: Frame): void {
+        const { geometry } = this.paper, room = this.buffer ? this.buffer.array.length : 0;
+        if (vertices.length > room) {
+            geometry.dispose();
+            this.buffer = new InterleavedBuffer(new Float32Array(Math.ceil(1.3 * vertices.length / FLOATS) * FLOATS), FLOATS);
+            this.buffer.setUsage(DynamicDrawUsage);
+            let offset = 0;
+            for (const [name, size] of ATTRIBUTES) {
+                geometry.setAttribute(name, new InterleavedBufferAttribute(this.buffer, size, offset));
+                offset += size;
+            }
+        }
+        const buffer = this.buffer!;
+        (buffer.array as Float32Array).set(vertices);
+        buffer.clearUpdateRanges();
+        buffer.addUpdateRange(0, vertices.length);
+        buffer.needsUpdate = true;
+        let index = geometry.getIndex();
+        if (!index || index.array.length < triangles.length) {
+            index = new BufferAttribute(new Uint32Array(Math.ceil(1.3 * triangles.length)), 1);
+            index.setUsage(DynamicDrawUsage);
+            geometry.setIndex(index);
+        }
+        (index.array as Uint32Array).set(triangles);
+        index.clearUpdateRanges();
+        index.addUpdateRange(0, triangles.length);
+        index.needsUpdate = true;
+        geometry.setDrawRange(0, triangles.length);
+    }
+
+    private setFire({ fire }: Frame): void {
+        const uniforms = this.passes.fire.uniforms, vector = (name: string) => uniforms[name]!.value as Vector3;
+        vector("low").setScalar(1e6); // out of every view
+        vector("high").setScalar(1e6);
+        if (!fire?.bounds) return;
+        const [x, y, z] = fire.size;
+        if (!this.fireMap || this.fireMap.image.width !== x || this.fireMap.image.height !== y || this.fireMap.image.depth !== z) {
+            this.fireMap?.dispose();
+            this.fireMap = new Data3DTexture(fire.cells as Uint8Array<ArrayBuffer>, x, y, z);
+            this.fireMap.format = RGBAFormat;
+            this.fireMap.minFilter = this.fireMap.magFilter = LinearFilter;
+        }
+        this.fireMap.image.data = fire.cells;
+        this.fireMap.needsUpdate = true;
+        uniforms.fireMap!.value = this.fireMap;
+        vector("low").set(...fire.bounds.low);
+        vector("high").set(...fire.bounds.high);
+        vector("origin").set(...fire.origin);
+        vector("span").set(x * fire.cell, y * fire.cell, z * fire.cell);
+    }
+
+    // ---- drawing
+
+    draw(): void {
+        const { gl, camera } = this;
+        camera.updateMatrixWorld();
+        (this.shared.viewProjection!.value as Matrix4).multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+        (this.shared.eye!.value as Vector3).copy(camera.position);
+        (this.passes.fire.uniforms.inverse_!.value as Matrix4).copy(this.shared.viewProjection!.value as Matrix4).invert();
+
+        gl.setRenderTarget(this.shadowTarget);
+        gl.clear(true, true, false);
+        gl.render(this.shadowScene, this.lamp);
+        gl.setRenderTarget(this.sceneTarget);
+        gl.setClearColor(0x000000, 1);
+        gl.clear(true, true, false);
+        gl.render(this.scene, camera);
+
+        this.pass(this.passes.fire, this.fireTarget);
+        this.pass(this.passes.merge, this.merged);
+        const { width, height } = this.merged, bright = this.passes.bright.uniforms;
+        (bright.pixel!.value as Vector2).set(1 / width, 1 / height);
+        this.pass(this.passes.bright, this.bright);
+        this.blur(this.halo, 0.005 * height / 4);
+        this.blur(this.glare, 0.022 * height / 4);
+        this.pass(this.passes.film, null);
+    }
+
+    private blur(to: WebGLRenderTarget, sigma: number): void {
+        const uniforms = this.passes.blur.uniforms, along = uniforms.along!.value as Vector2;
+        uniforms.sigma!.value = Math.max(sigma, 0.5);
+        uniforms.map!.value = this.bright.texture;
+        along.set(1 / this.bright.width, 0);
+        this.pass(this.passes.blur, this.across);
+        uniforms.map!.value = this.across.texture;
+        along.set(0, 1 / this.bright.height);
+        this.pass(this.passes.blur, to);
+    }
+
+    private pass(with_: RawShaderMaterial, to: WebGLRenderTarget | null): void {
+        this.full.material = with_;
+        this.gl.setRenderTarget(to);
+        this.gl.render(this.full, this.fullCamera);
+    }
+}
+
+// ---- what does not change
+
+function target(): WebGLRenderTarget {
+    return new WebGLRenderTarget(4, 4, { type: HalfFloatType, depthBuffer: false, minFilter: LinearFilter, magFilter: LinearFilter });
+}
+
+function material(vertex: string, fragment: string, uniforms: Uniforms): RawShaderMaterial {
+    return new RawShaderMaterial({ vertexShader: `precision highp float;\n${vertex}`, fragmentShader: fragment, uniforms, glslVersion: GLSL3 });
+}
+
+function white(): Texture {
+    const texture = new DataTexture(new Uint8Array([255, 255, 255, 255]), 1, 1);
+    texture.needsUpdate = true;
+    return texture;
+}
+
+/** Random corners, the same on every page. */
+function noiseTexture(): Data3DTexture {
+    const side = 32, bytes = new Uint8Array(4 * side ** 3);
+    let state = 0x9e3779b9;
+    for (let i = 0; i < bytes.length; i++) {
+        state ^= state << 13;
+        state ^= state >>> 17;
+        state ^= state << 5;
+        bytes[i] = state >>> 24;
+    }
+    const texture = new Data3DTexture(bytes, side, side, side);
+    texture.format = RGBAFormat;
+    texture.type = UnsignedByteType;
+    texture.wrapS = texture.wrapT = texture.wrapR = RepeatWrapping;
+    texture.minFilter = texture.magFilter = LinearFilter;
+    texture.unpackAlignment = 1;
+    texture.colorSpace = NoColorSpace;
+    texture.needsUpdate = true;
+    return texture;
+}
+
+/** Planck's law by the eye's three curves (blackbody.c), linear Rec. 709. */
+function blackbody(kelvin: number): [number, number, number] {
+    const lobe = (x: number, centre: number, left: number, right: number) => Math.exp(-0.5 * ((x - centre) * (x < centre ? left : right)) ** 2);
+    const xyz = (t: number) => {
+        const sum = [0, 0, 0];
+        for (let nm = 380; nm <= 780; nm += 5) {
+            const power = (nm * 1e-3) ** -5 / (Math.exp(1.438777e-2 / (nm * 1e-9 * t)) - 1);
+            sum[0]! += power * (0.362 * lobe(nm, 442, 0.0624, 0.0374) + 1.056 * lobe(nm, 599.8, 0.0264, 0.0323) - 0.065 * lobe(nm, 501.1, 0.049, 0.0382));
+            sum[1]! += power * (0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322));
+            sum[2]! += power * (1.217 * lobe(nm, 437, 0.0845, 0.0278) + 0.681 * lobe(nm, 459, 0.0385, 0.0725));
+        }
+        return sum as [number, number, number];
+    };
+    const [X, Y, Z] = xyz(kelvin), reference = xyz(1200)[1], x = X / Y, z = Z / Y;
+    const fade = Math.min(Math.max((kelvin - 780) / 120, 0), 1), strength = (Y / reference) ** 0.55 * fade * fade * (3 - 2 * fade);
+    return [3.2406 * x - 1.5372 - 0.4986 * z, -0.9689 * x + 1.8758 + 0.0415 * z, 0.0557 * x - 0.204 + 1.057 * z]
+        .map((c) => Math.max(c, 0) * strength) as [number, number, number];
+}
+
+function glowTexture(): DataTexture {
+    const width = 128, data = new Uint16Array(8 * width);
+    for (let i = 0; i < width; i++) {
+        const u = i / (width - 1), ember = blackbody(800 + 1300 * u), flame = blackbody(1350 + 700 * u);
+        const bright = (0.25 + 3.55 * u * u) / (0.2126 * flame[0] + 0.7152 * flame[1] + 0.0722 * flame[2]);
+        [ember, flame.map((c) => c * bright)].forEach((colour, row) =>
+            colour.forEach((c, k) => { data[4 * (row * width + i) + k] = DataUtils.toHalfFloat(c); }));
+    }
+    const texture = new DataTexture(data, width, 2, RGBAFormat, HalfFloatType);
+    texture.minFilter = LinearFilter;
+    texture.magFilter = LinearFilter;
+    texture.needsUpdate = true;
+    return texture;
+}
+
+/** A brass tack, its point down. */
+function tack(): LatheGeometry {
+    const outline = [[0, 0.0048], [0.0016, 0.0045], [0.0032, 0.0034], [0.0037, 0.0022], [0.0036, 0.0018], [0.0012, 0.0016], [0.001, 0]] as const;
+    return new LatheGeometry(outline.map(([r, h]) => new Vector2(r, h)), 20).rotateX(Math.PI / 2) as LatheGeometry;
+}
+

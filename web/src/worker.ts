@@ -1,0 +1,194 @@
+// The simulation, away from the page's own thread. The page asks for one frame at a time, so nothing queues up.
+import { load, type Handle, type Simulation, type Singe } from "singe";
+import { fireOf, lightsOf, meshOf } from "./fields.js";
+import type { FromWorker, Shape, ToWorker } from "./messages.js";
+import { FIRST_MATCH, gridOf, MATCH, materialOptions, simulationOptions, TIME_STEP, type Point, type Settings, type Stroke } from "./scene.js";
+
+const FAR: Point = [0, 0, 50]; // where an unused match or breath waits
+const BREATH = { radius: 0.025, falloff: 0.05, conductance: 900, temperature: 293.15 };
+const BREATH_SPEED = 1.6; // m/s
+const MARKS = 6;
+
+/** What a mark brings back; the bytes are the simulation's. */
+interface Mark { bytes: Uint8Array; strokes: Stroke[]; pins: { rest: Point; handle: Handle }[]; skipped: boolean }
+
+let singe: Singe;
+let sim: Simulation | null = null;
+let settings: Settings;
+let sheet: Handle;
+let match: Handle, breath: Handle;
+let hand: { handle: Handle; at: Point } | null = null;
+let pins: { rest: Point; handle: Handle }[] = [];
+let marks: Mark[] = [];
+let planned: Stroke[] = []; // of the link, or the first match
+let strokes: Stroke[] = [], stroke: Stroke | null = null;
+let matchAt: Point = FAR, breathing = false, skipped = false;
+
+const tell = (message: FromWorker, transfer: Transferable[] = []) => self.postMessage(message, { transfer });
+const still = (position: Point) => [{ time: 0, position }];
+
+self.onmessage = async ({ data }: MessageEvent<ToWorker>) => {
+    try {
+        await hear(data);
+    } catch (error) {
+        tell({ kind: "failed", message: error instanceof Error ? error.message : String(error) });
+    }
+};
+
+async function hear(message: ToWorker): Promise<void> {
+    if (message.kind === "load") {
+        singe = await load(message.wasm);
+        return tell({ kind: "loaded", version: singe.version });
+    }
+    if (message.kind === "begin") return begin(message.settings, message.shape, message.strokes, message.pins);
+    if (!sim) return;
+    switch (message.kind) {
+    case "advance": return advance(message);
+    case "set": return change(message.settings);
+    case "grab": return grab(message.rest, message.at);
+    case "release": return release();
+    case "pin": pins.push({ rest: message.rest, handle: sim.addPin({ sheet, points: message.rest, radius: 0.005 }) }); return;
+    case "unpin": sim.removePin(pins.splice(message.index, 1)[0]!.handle); return;
+    case "mark": return mark();
+    case "undo": return undo();
+    }
+}
+
+function begin(wanted: Settings, shape: Shape | null, linked: Stroke[], pinned: Point[]): void {
+    const made = singe.create(simulationOptions(wanted));
+    try {
+        const material = materialOptions(wanted), place = { translate: [0, 0, 0.0005] as const, drop_pieces_below: 4e-6 };
+        const added = shape
+            ? made.addSheet({ positions: shape.positions, corners: shape.corners, sizes: shape.sizes, ...(shape.uv ? { uv: shape.uv } : {}) }, material, place)
+            : made.addSheet(gridOf(wanted), material, place);
+        made.commit();
+        sim?.destroy();
+        sim = made;
+        sheet = added;
+    } catch (error) {
+        made.destroy(); // the burn before goes on
+        throw error;
+    }
+    settings = wanted;
+    sim.addCollider({ kind: "plane", friction: 0.4, offset: 0.0005 });
+    match = sim.addSource({ kind: "ball", path: still(FAR), ...MATCH });
+    breath = sim.addSource({ kind: "ball", path: still(FAR), ...BREATH });
+    hand = null;
+    marks = [];
+    matchAt = FAR;
+    breathing = skipped = false;
+    stroke = null;
+    const first: Stroke = { start: 0, end: 1.25, path: [{ time: 0, position: FIRST_MATCH }] };
+    strokes = linked.length ? [...linked] : wanted.begin && !shape ? [first] : [];
+    planned = [...strokes];
+    for (const { start, end, path } of planned) sim.addSource({ kind: "ball", start, end, path, ...MATCH });
+    pins = pinned.map((rest) => ({ rest, handle: sim!.addPin({ sheet, points: rest, radius: 0.005 }) }));
+    tell({ kind: "begun", springs: sim.view().spring_count.reduce((a, b) => a + b) });
+    frame(0, 0);
+}
+
+function change(wanted: Settings): void {
+    settings = { ...settings, pace: wanted.pace, wind: wanted.wind, gravity: wanted.gravity };
+    sim!.setPace(settings.pace);
+    setWind();
+    // with gas the largest component may not change
+    if (!settings.gas) sim!.setGravity(simulationOptions(settings).gravity);
+}
+
+function setWind(direction: Point | null = null): void {
+    const { wind } = simulationOptions(settings), [x, y, z] = direction ?? [0, 0, 0];
+    sim!.setWind({ ...wind, velocity: [wind.velocity[0] + BREATH_SPEED * x, BREATH_SPEED * y, BREATH_SPEED * z] });
+}
+
+// ---- fire, breath and hand
+
+function moveMatch(at: Point | null, now: number, then: number): void {
+    const from = stroke ? matchAt : at ?? FAR;
+    sim!.moveSource(match, at ? [{ time: now, position: from }, { time: then, position: at }] : still(FAR));
+    if (at && !stroke) strokes.push((stroke = { start: now, end: then, path: [{ time: now, position: at }] }));
+    if (at && stroke) {
+        stroke.end = then;
+        const last = stroke.path[stroke.path.length - 1]!;
+        if (then > last.time + 0.05) stroke.path.push({ time: then, position: at });
+    }
+    if (!at) stroke = null;
+    matchAt = at ?? FAR;
+}
+
+function blow(wanted: { at: Point; direction: Point } | null): void {
+    if (!wanted && !breathing) return;
+    sim!.moveSource(breath, still(wanted ? wanted.at : FAR));
+    setWind(wanted ? wanted.direction : null);
+    breathing = !!wanted;
+    skipped ||= breathing;
+}
+
+function grab(rest: Point, at: Point): void {
+    release();
+    hand = { handle: sim!.addPin({ sheet, points: rest, radius: 0.009, path: still(at) }), at };
+    skipped = true;
+}
+
+function release(): void {
+    if (hand) sim!.removePin(hand.handle);
+    hand = null;
+}
+
+// ---- undo
+
+function mark(): void {
+    const kept = [...pins];
+    marks.push({ bytes: sim!.save(), strokes: strokes.map((one) => ({ ...one, path: [...one.path] })), pins: kept, skipped });
+    if (marks.length > MARKS) marks.shift();
+}
+
+function undo(): void {
+    const before = marks.pop();
+    if (!before) return;
+    const restored = singe.restore(before.bytes);
+    sim!.destroy();
+    sim = restored;
+    ({ strokes, pins, skipped } = before);
+    stroke = hand = null;
+    blow(null);
+    moveMatch(null, 0, 0);
+    frame(0, 0);
+}
+
+// ---- frames
+
+function advance(message: Extract<ToWorker, { kind: "advance" }>): void {
+    const now = sim!.view().time, then = now + Math.max(message.seconds, TIME_STEP), begun = performance.now();
+    moveMatch(message.match, now, then);
+    blow(message.breath);
+    if (hand && message.hand) {
+        sim!.movePin(hand.handle, [{ time: now, position: hand.at }, { time: then, position: message.hand }]);
+        hand.at = message.hand;
+    }
+    const steps = message.seconds > 0 ? sim!.advance(message.seconds, message.most) : 0;
+    frame(steps, performance.now() - begun);
+}
+
+/** Where a planned stroke holds its match now, to draw it. */
+function plannedMatch(time: number): Point | null {
+    const now = planned.find(({ start, end }) => time >= start && time < end);
+    if (!now) return null;
+    let i = 0;
+    while (i + 1 < now.path.length && now.path[i + 1]!.time < time) i++;
+    return now.path[i]!.position;
+}
+
+function frame(steps: number, ms: number): void {
+    const surface = sim!.draw(), view = sim!.view(), stats = sim!.stats();
+    const mesh = meshOf(surface, view.time, settings.pace), gas = sim!.gas(), fire = gas ? fireOf(gas, surface) : null;
+    const lights = lightsOf(fire, mesh), positions = view.position;
+    const places = pins.map(({ handle }) => {
+        const particle = sim!.pinParticles(handle)[0] ?? 0;
+        return [positions[4 * particle]!, positions[4 * particle + 1]!, positions[4 * particle + 2]!] as Point;
+    });
+    tell({
+        kind: "frame", ...mesh, fire, lights, time: view.time, steps, ms, burnt: stats.burnt_fraction, pieces: stats.pieces,
+        springs: stats.springs, hottest: stats.temperature_max, pins: places, match: plannedMatch(view.time), marks: marks.length, skipped,
+        strokes, pinRests: pins.map(({ rest }) => rest),
+    }, [mesh.vertices.buffer, mesh.triangles.buffer, lights.buffer, ...(fire ? [fire.cells.buffer] : [])] as Transferable[]);
+}
