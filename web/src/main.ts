@@ -95,8 +95,8 @@ function send(message: ToWorker): void { worker.postMessage(message); }
 /** A view of the whole sheet; portrait screens stand further away. */
 function place(): void {
     const away = Math.max(1, 0.95 * Math.sqrt(innerHeight / innerWidth) + 0.25);
-    controls.target.set(0, 0.008, 0.018);
-    renderer.camera.position.set(0.10, -0.43, 0.265).multiplyScalar(away);
+    controls.target.set(0, -0.022, 0.012);
+    renderer.camera.position.set(0.085, -0.455, 0.215).multiplyScalar(away);
     controls.update();
 }
 

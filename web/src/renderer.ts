@@ -11,11 +11,11 @@ import type { Frame } from "./messages.js";
 import type { Point } from "./scene.js";
 import * as glsl from "./shaders.js";
 
-const LAMP = { at: new Vector3(-0.19, 0.21, 0.34), to: new Vector3(0.0, 0.01, 0), colour: [0.155, 0.097, 0.045] };
+const LAMP = { at: new Vector3(-0.19, 0.21, 0.34), to: new Vector3(0.0, 0.01, 0), colour: [0.070, 0.049, 0.028] };
 const NIGHT = new Vector3(0.0090, 0.0105, 0.0165);
 const EXPOSURE = 1.6;
 const SHADOW = 1024;
-const FIRE_LIGHT = 0.00105; // strength of a cell that burns fully
+const FIRE_LIGHT = 5e-5; // strength of a cell that burns fully
 const FULL_PAPER = 0.22; // light that comes through (preview.h)
 
 type Uniforms = Record<string, IUniform>;
@@ -175,7 +175,7 @@ export class Renderer {
         uniforms.matchOn!.value = at ? 1 : 0;
         if (!at) return;
         (uniforms.match_!.value as Vector3).set(at[0], at[1], at[2] + 0.004);
-        (this.shared.fireLights!.value as Vector4[])[5]!.set(at[0], at[1], at[2] + 0.018, 0.0016 * (1 + 0.15 * Math.sin(performance.now() / 31)));
+        (this.shared.fireLights!.value as Vector4[])[5]!.set(at[0], at[1], at[2] + 0.018, 0.0005 * (1 + 0.15 * Math.sin(performance.now() / 31)));
     }
 
     private setMesh({ vertices, triangles }: Frame): void {

@@ -312,7 +312,7 @@ vec3 flame(vec3 c, vec4 wide, vec4 fine, out float opaque) {
     float thin = mix(0.14, 0.04 + 1.2 * sheet * sheet, torn) * body;
     float hot = 0.50 + 0.3 * stepf(0.05, 0.3, edge) + 0.2 * sheet - 0.45 * cooling + 0.12 * fine.a;
     opaque = 6.0 * thin * soot;
-    return flameColour(clamp(hot, 0.0, 1.0)) * 17.0 * thin * soot + vec3(0.22, 0.50, 1.25) * 1.2 * body * stand * (1.0 - soot);
+    return flameColour(clamp(hot, 0.0, 1.0)) * 14.0 * thin * soot + vec3(0.22, 0.50, 1.25) * 1.2 * body * stand * (1.0 - soot);
 }
 
 /** The flame of a match: a drop around its head, dark at the wood, blue at its foot. */
@@ -355,7 +355,7 @@ void main() {
                 if (smoke > 0.0) {
                     vec3 lamp = lampColour * 0.10 / max(dot(lampAt - p, lampAt - p), 0.02), glow = vec3(0.0);
                     for (int k = 0; k < 6; k++) { vec3 f = fireLights[k].xyz - p; glow += fireColour * fireLights[k].w / (dot(f, f) + 0.003); }
-                    j += 0.16 * smoke * (lamp + 0.5 * glow);
+                    j += 0.05 * smoke * (lamp + 0.35 * min(glow, vec3(1.5)));
                     dense += smoke;
                 }
             } else {

@@ -1,0 +1,216 @@
+// Plays with the page in real browsers: node tests/check.mjs [chromium] [firefox] [--pictures FOLDER]
+//
+// Motion comes from explicit calls, so a slow machine changes nothing. Without a card Chromium draws by SwiftShader.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { mkdir, readFile } from "node:fs/promises";
+import { createRequire } from "node:module";
+import { chromium, firefox } from "playwright-core";
+import { serve } from "../serve.mjs";
+
+const words = process.argv.slice(2), at = words.indexOf("--pictures"), folder = at >= 0 ? words.splice(at, 2)[1] : null;
+const BROWSERS = {
+    chromium: [chromium, ["/usr/bin/chromium"], ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]],
+    firefox: [firefox, ["/usr/bin/firefox-esr"], []],
+};
+const QUICK = "cells=20&gas=false&begin=false"; // a coarse sheet without gas
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+
+let page, address, failures = 0;
+
+async function open(hash, options = {}) {
+    await page.goto("about:blank");
+    await page.emulateMedia({ reducedMotion: "reduce", ...options }); // the clock begins stopped
+    await page.goto(`${address}#${hash}`);
+    await page.waitForSelector("#view.ready", { timeout: 120_000 });
+}
+const step = (seconds) => page.evaluate((s) => globalThis.page.step(s), seconds);
+const place = (point) => page.evaluate((p) => globalThis.page.project(p), point);
+const hint = () => page.textContent("#hint");
+const picture = async (name) => {
+    if (!folder) return;
+    await mkdir(folder, { recursive: true });
+    await page.screenshot({ path: `${folder}/${name}.png` });
+};
+
+/** Holds the pointer down with a tool while motion passes. */
+async function use(tool, from, to, seconds) {
+    await page.click(`[data-tool=${tool}]`);
+    const [x, y] = await place(from), [u, v] = await place(to);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await step(1 / 24);
+    await page.mouse.move(u, v, { steps: 4 });
+    const state = await step(seconds);
+    await page.mouse.up();
+    return state;
+}
+
+const CASES = {
+    async "a match lights the sheet, and the fire goes through"() {
+        await open(QUICK);
+        const lit = await use("match", [0, 0, 0], [0.02, 0.01, 0], 1);
+        assert.equal(lit.strokes.length, 1);
+        assert.ok(lit.burnt > 0.003, `burnt ${lit.burnt}`);
+        const before = lit.triangleCount, later = await step(2);
+        assert.ok(later.burnt > 3 * lit.burnt && later.triangleCount !== before, `burnt ${later.burnt}`);
+    },
+    async "breath puts the fire out"() {
+        await open("cells=20&gas=false&pace=3");
+        const fire = await step(1);
+        assert.ok(fire.burning > 20);
+        await page.click("[data-tool=breath]");
+        for (const to of [[0.03, -0.045, 0], [0.05, -0.045, 0], [0.01, -0.045, 0], [0.03, -0.02, 0], [0.03, -0.07, 0]]) await use("breath", to, to, 0.4);
+        const out = await step(0.2);
+        assert.ok(out.burning < fire.burning / 4, `${fire.burning} burn before, ${out.burning} after`);
+    },
+    async "the hand lifts and tears"() {
+        await open(`${QUICK}&pins=-95.0.0_-95.-60.0_-95.60.0`);
+        const held = await use("hand", [0.09, 0, 0], [0.09, 0, 0.06], 0.6);
+        assert.equal(held.skipped, true);
+        const lifted = await step(0.1);
+        assert.ok(lifted.pieces >= 1);
+        const link = new URL(page.url()).hash;
+        assert.match(link, /pins=/);
+    },
+    async "a pin is set, holds, and is taken out by a click"() {
+        await open(QUICK);
+        await page.click("[data-tool=pin]");
+        await page.mouse.click(...(await place([0.05, 0.05, 0])));
+        assert.equal((await step(0.05)).pins.length, 1);
+        await page.mouse.click(...(await place([0.05, 0.05, 0.002])));
+        assert.equal((await step(0.05)).pins.length, 0);
+    },
+    async "undo goes back to before the match"() {
+        await open(QUICK);
+        const before = await step(0.1);
+        await use("match", [0, 0, 0], [0.02, 0, 0], 0.5);
+        assert.equal(await page.isDisabled("#undo"), false);
+        await page.keyboard.press("z");
+        const after = await step(0);
+        await page.waitForFunction((time) => page.step(0).then((state) => Math.abs(state.time - time) < 0.05), before.time);
+        assert.equal((await step(0)).strokes.length, 0, `time ${after.time}`);
+    },
+    async "a picture is printed, a mesh is burnt, broken files are told of"() {
+        await open(QUICK);
+        const file = (name, mimeType, buffer) => page.setInputFiles("#file", { name, mimeType, buffer });
+        const told = (pattern) => page.waitForFunction((p) => new RegExp(p).test(document.querySelector("#hint").textContent), pattern, { timeout: 60_000 });
+        await file("letter.png", "image/png", await readFile(new URL("../../examples/letter/letter.png", import.meta.url)));
+        await told("is printed");
+        await file("a.png", "image/png", Buffer.from("no picture"));
+        await told("neither a picture");
+        await file("bad.obj", "text/plain", Buffer.from("v 0 0 0\nv 1 0 0\nf 1 2 9\n"));
+        await told("line 3: there is no vertex 9");
+        await file("knot.obj", "text/plain", Buffer.from("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n"));
+        await page.waitForTimeout(500);
+        assert.ok((await step(0.05)).time > 0); // what was there goes on
+        let square = "";
+        for (let y = 0; y <= 12; y++) for (let x = 0; x <= 12; x++) square += `v ${x} ${y} 0\n`;
+        for (let y = 0; y < 12; y++) for (let x = 0; x < 12; x++) square += `f ${[0, 1, 14, 13].map((d) => y * 13 + x + d + 1).join(" ")}\n`;
+        await file("square.obj", "text/plain", Buffer.from(square));
+        await told("169 vertices");
+        const lit = await use("match", [0, 0, 0], [0.01, 0, 0], 1);
+        assert.ok(lit.burnt > 0.002);
+    },
+    async "PNG, GLB and scene are saved"() {
+        await open(QUICK);
+        await use("match", [0, 0, 0], [0.02, 0, 0], 0.6);
+        await page.click("summary");
+        const saved = async (kind) => {
+            const [download] = await Promise.all([page.waitForEvent("download"), page.click(`[data-save=${kind}]`)]);
+            return readFile(await download.path());
+        };
+        assert.equal((await saved("png")).readUInt32BE(0), 0x89504e47);
+        const glb = await saved("glb"), json = JSON.parse(glb.subarray(20, 20 + glb.readUInt32LE(12)).toString());
+        assert.equal(glb.readUInt32LE(8), glb.length);
+        assert.ok("_TEMPERATURE" in json.meshes[0].primitives[0].attributes);
+        assert.match((await saved("yaml")).toString(), /kind: ball, start: /);
+    },
+    async "a link brings the settings, the match and the pins"() {
+        await open(`${QUICK}&wind=1.5&material=tissue&match=0.0.0.0_400.20.0.0_900&pins=50.50.0`);
+        const state = await step(0.8);
+        assert.equal(state.pins.length, 1);
+        assert.ok(state.burnt > 0.002, `burnt ${state.burnt}`);
+        await open("cells=1e9&material=gold&match=nonsense&pins=a.b.c~&pace=-3");
+        assert.equal((await step(0.05)).pins.length, 0);
+    },
+    async "keys do what the pointer does"() {
+        await open(QUICK);
+        await page.focus("#view");
+        await page.keyboard.press("ArrowRight");
+        await page.keyboard.press("Enter");
+        await step(0.8);
+        await page.keyboard.press("Enter");
+        const state = await step(0.05);
+        assert.equal(state.strokes.length, 1);
+        assert.ok(state.burnt > 0.002, `burnt ${state.burnt}`);
+        await page.keyboard.press("Shift+ArrowLeft");
+        await page.keyboard.press("3");
+        assert.equal(await page.getAttribute("[data-tool=hand]", "aria-pressed"), "true");
+    },
+    async "sizes from a phone to a wide screen are drawn whole"() {
+        await open(QUICK);
+        for (const [width, height] of [[360, 740], [1280, 720], [740, 360]]) {
+            await page.setViewportSize({ width, height });
+            await page.waitForTimeout(150);
+            const out = await page.evaluate(() => [...document.querySelectorAll("h1, .tools, .panel")].filter((e) => {
+                const box = e.getBoundingClientRect();
+                return box.left < -1 || box.right > innerWidth + 1 || box.bottom > innerHeight + 1;
+            }).map((e) => e.className || e.tagName));
+            assert.deepEqual(out, [], `${width} x ${height}`);
+            if (width === 360) await picture("phone");
+        }
+        await page.setViewportSize({ width: 960, height: 600 });
+    },
+    async "axe-core finds nothing serious"() {
+        await open(QUICK);
+        await page.click("summary");
+        await page.evaluate(axe);
+        const { violations } = await page.evaluate(() => globalThis.axe.run());
+        assert.deepEqual(violations.filter(({ impact }) => ["serious", "critical"].includes(impact)).map(({ id, nodes }) => `${id}: ${nodes[0].html}`), []);
+        await picture("settings");
+    },
+    async "without WebGL 2 the page says so"() {
+        const other = await page.context().newPage();
+        await other.addInitScript(() => { HTMLCanvasElement.prototype.getContext = () => null; });
+        await other.goto(address);
+        await other.waitForSelector("#stop:not([hidden])");
+        assert.match(await other.textContent("#stop"), /WebGL 2/);
+        await other.close();
+    },
+    async "the letter burns by itself, with flames"() {
+        await open("", { reducedMotion: "reduce" });
+        const state = await step(1.5);
+        assert.ok(state.burnt > 0.02 && state.hottest > 900, `burnt ${state.burnt}`);
+        await picture("letter");
+    },
+};
+
+async function check(name) {
+    const [kind, programs, args] = BROWSERS[name];
+    const program = programs.find((path) => { try { readFileSync(path); return true; } catch { return false; } });
+    if (!program) return console.log(`${name}: skipped, as it is not installed`);
+    const browser = await kind.launch({ executablePath: program, args }).catch((error) => { console.log(`${name}: skipped, as it does not start: ${error.message.split("\n")[0]}`); });
+    if (!browser) return;
+    page = await browser.newPage({ viewport: { width: 960, height: 600 } });
+    page.setDefaultTimeout(120_000);
+    page.on("pageerror", (error) => { failures++; console.log(`  error on the page: ${error.message}`); });
+    for (const [title, run] of Object.entries(CASES)) {
+        const begun = Date.now();
+        try {
+            await run();
+            console.log(`${name}: ${title} (${((Date.now() - begun) / 1000).toFixed(1)} s)`);
+        } catch (error) {
+            failures++;
+            console.log(`${name}: FAILED ${title}\n  ${String(error.message).split("\n").slice(0, 6).join("\n  ")}`);
+        }
+    }
+    await browser.close();
+}
+
+const { server, address: where } = await serve();
+address = where;
+for (const name of words.length ? words : Object.keys(BROWSERS)) await check(name);
+server.close();
+console.log(failures ? `${failures} failures` : "all is well");
+process.exitCode = failures ? 1 : 0;
