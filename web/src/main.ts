@@ -163,12 +163,13 @@ function tick(now: number): void {
     } else if (paused) {
         last = now;
     }
-    if (moved || (applying && !busy)) draw();
+    if (moved || stale) draw();
 }
 
-let slow = 0;
+let slow = 0, stale = false;
 function draw(): void {
     if (!renderer) return;
+    stale = false;
     const at = applying && tool === "match" ? target() : keyHeld && tool === "match" ? keyAt : frame?.match ?? null;
     renderer.setMatch(at);
     const before = performance.now();
@@ -284,6 +285,7 @@ canvas.addEventListener("pointerdown", (event) => {
 canvas.addEventListener("pointermove", (event) => {
     if (pointer?.id !== event.pointerId) return;
     pointer = { id: event.pointerId, x: event.clientX, y: event.clientY };
+    stale = applying;
     moveUse();
 });
 for (const name of ["pointerup", "pointercancel"] as const)
@@ -530,6 +532,11 @@ Object.assign(globalThis, { page: {
         stepping = false;
         const { vertices, triangles, fire, lights, ...rest } = frame!;
         return { ...rest, ...{ vertexCount: vertices.length / FLOATS, triangleCount: triangles.length / 3 } };
+    },
+    /** Fewer pixels, for machines without a card. */
+    quality(scale: number): void {
+        renderer.scale = scale;
+        resize();
     },
     get card() { return renderer.card; },
     project: (point: Point) => {

@@ -17,7 +17,7 @@ export interface Frame {
     kind: "frame";
     vertices: Float32Array; triangles: Uint32Array; burning: number;
     fire: Fire | null; lights: Lights;
-    time: number; steps: number; ms: number; burnt: number; pieces: number; springs: number; hottest: number;
+    time: number; steps: number; ms: number; burnt: number; pieces: number; tears: number; springs: number; hottest: number;
     pins: Point[]; match: Point | null; marks: number; skipped: boolean; strokes: Stroke[]; pinRests: Point[];
 }
 

@@ -126,7 +126,7 @@ export function toYaml(s: Settings, strokes: Stroke[], pins: Point[], seconds: n
         ...(skipped ? ["# The hand and the breath are not in here: scenes have no such objects."] : []),
         `frames: ${frames}`, "fps: 24", `steps: ${Math.round(1 / (24 * TIME_STEP))}`, `pace: ${s.pace}`, `seed: ${s.seed}`,
         `gravity: ${list([0, 0, -G * s.gravity])}`, "detail: 1.5 mm", "raggedness: 2 mm",
-        "solver: {substeps: 4, tearing: yes}",
+        "solver: {substeps: 4}", "tearing: yes", "creases: no", "contact: {enabled: no}",
         ...(s.gas ? ["gas: {enabled: yes, cell_size: 11.5 mm, height: 20 cm}"] : ["gas: {enabled: no}"]),
         ...(s.wind ? [`wind: {velocity: ${list([s.wind, 0, 0])}, gust: ${+(0.4 * Math.abs(s.wind)).toFixed(3)}, seed: ${s.seed}}`] : []),
         "sheets:", "  - name: sheet",

@@ -182,12 +182,12 @@ function frame(steps: number, ms: number): void {
     const surface = sim!.draw(), view = sim!.view(), stats = sim!.stats();
     const mesh = meshOf(surface, view.time, settings.pace), gas = sim!.gas(), fire = gas ? fireOf(gas, surface) : null;
     const lights = lightsOf(fire, mesh), positions = view.position;
-    const places = pins.map(({ handle }) => {
+    const places = pins.map(({ rest, handle }) => { // beside the first particle that the pin holds
         const particle = sim!.pinParticles(handle)[0] ?? 0;
-        return [positions[4 * particle]!, positions[4 * particle + 1]!, positions[4 * particle + 2]!] as Point;
+        return [0, 1, 2].map((c) => positions[4 * particle + c]! + rest[c]! - view.rest_position[4 * particle + c]!) as Point;
     });
     tell({
-        kind: "frame", ...mesh, fire, lights, time: view.time, steps, ms, burnt: stats.burnt_fraction, pieces: stats.pieces,
+        kind: "frame", ...mesh, fire, lights, time: view.time, steps, ms, burnt: stats.burnt_fraction, pieces: stats.pieces, tears: stats.tears,
         springs: stats.springs, hottest: stats.temperature_max, pins: places, match: plannedMatch(view.time), marks: marks.length, skipped,
         strokes, pinRests: pins.map(({ rest }) => rest),
     }, [mesh.vertices.buffer, mesh.triangles.buffer, lights.buffer, ...(fire ? [fire.cells.buffer] : [])] as Transferable[]);
