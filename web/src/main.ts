@@ -1,5 +1,5 @@
 // The page: input, settings, and one request for a frame after another.
-import { MOUSE, Plane, Raycaster, TOUCH, Vector2, Vector3 } from "three";
+import { MOUSE, Plane, Raycaster, TOUCH, Triangle, Vector2, Vector3 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { FLOATS } from "./fields.js";
 import { glbOf } from "./glb.js";
@@ -206,7 +206,9 @@ function pick(x: number, y: number): Hit | null {
             const distance = at.distanceTo(origin);
             if (distance < nearest) {
                 nearest = distance;
-                found = { at: at.toArray() as Point, rest: [vertices[i + 6]!, vertices[i + 7]!, vertices[i + 8]!] };
+                const share = Triangle.getBarycoord(at, a, b, c, new Vector3()) ?? new Vector3(1, 0, 0);
+                const rest = [6, 7, 8].map((r) => share.x * vertices[i + r]! + share.y * vertices[j + r]! + share.z * vertices[k + r]!);
+                found = { at: at.toArray() as Point, rest: rest as Point };
             }
         }
         if (found) return found;

@@ -97,7 +97,8 @@ const CASES = {
     async "a picture is printed, a mesh is burnt, broken files are told of"() {
         await open(QUICK);
         const file = (name, mimeType, buffer) => page.setInputFiles("#file", { name, mimeType, buffer });
-        const told = (pattern) => page.waitForFunction((p) => new RegExp(p).test(document.querySelector("#hint").textContent), pattern, { timeout: 60_000 });
+        const told = (pattern) => page.waitForFunction((p) => new RegExp(p).test(document.querySelector("#hint").textContent), pattern, { timeout: 60_000, polling: 50 })
+            .catch(async () => assert.fail(`"${pattern}" was not told, but "${await hint()}"`));
         await file("letter.png", "image/png", await readFile(new URL("../../examples/letter/letter.png", import.meta.url)));
         await told("is printed");
         await file("a.png", "image/png", Buffer.from("no picture"));
@@ -173,7 +174,7 @@ const CASES = {
         await picture("settings");
     },
     async "without WebGL 2 the page says so"() {
-        const other = await page.context().newPage();
+        const other = await page.context().browser().newPage();
         await other.addInitScript(() => { HTMLCanvasElement.prototype.getContext = () => null; });
         await other.goto(address);
         await other.waitForSelector("#stop:not([hidden])");
