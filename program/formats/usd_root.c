@@ -117,9 +117,15 @@ static void put_sheet(Root *r, uint32_t sheet) {
               "            rel material:binding = </%s/materials/burning>\n",
               name, r->name);
 
-    for (int i = 0; i < USD_OWN; i++)
-        sink_text(&r->sink, "            %s %s%s\n", usd_attributes[i].type, usd_attributes[i].name,
-                  usd_attributes[i].vertex ? " (\n                interpolation = \"vertex\"\n            )" : "");
+    for (int i = 0; i < USD_OWN; i++) {
+        const char *about =
+            usd_attributes[i].vertex ? " (\n                interpolation = \"vertex\"\n            )" : "";
+        if (i == USD_VELOCITIES)
+            about = " (\n                doc = \"m/s, displacement since the frame before over the time between\"\n"
+                    "            )";
+        sink_text(&r->sink, "            %s %s%s\n", usd_attributes[i].type, usd_attributes[i].name, about);
+    }
+
     for (int i = 0; i < SURFACE_FIELDS; i++)
         sink_text(&r->sink, "            %s primvars:%s (\n                interpolation = \"vertex\"\n            )\n",
                   surface_fields[i].integer ? "int[]" : "float[]", surface_fields[i].name);

@@ -20,6 +20,7 @@ static void set3(float v[3], float x, float y, float z) {
 static void default_preview(ScenePreview *preview) {
     preview->size[0] = 960;
     preview->size[1] = 540;
+    preview->shutter = 0.5f;
     preview->environment = PREVIEW_SKY_STUDIO;
     preview->ground_height = -INFINITY;
 #define PREVIEW_CAMERA(TYPE, key, member, target, length, dimension, standard, range, text) \

@@ -79,6 +79,14 @@ static void expect_in(const char *text, const char *prim, const char *line) {
     if (!at || !to || at > to) fail_msg("%s has no \"%s\"", prim, line);
 }
 
+TEST(velocities_say_over_which_time_they_are) {
+    Sink sink;
+    const OutputScene scene = scene_of(&plain);
+    expect_in(root_text(&sink, &scene), "def Mesh \"leaf\"",
+              "vector3f[] velocities (\n                doc = \"m/s, displacement since the frame before");
+    sink_free(&sink);
+}
+
 TEST(shapes_stand_where_they_are) {
     Sink sink;
     const OutputScene scene = scene_of(&plain);
