@@ -43,7 +43,12 @@ def _arrays(scene, candidate, evaluated, data):
     points = np.empty(3 * len(data.vertices), np.float32)
     data.vertices.foreach_get("co", points)
     matrix = np.array(evaluated.matrix_world)
-    points = (points.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]) * unit
+    with np.errstate(all="ignore"):
+        points = (points.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]) * unit
+    if not np.isfinite(points).all():
+        raise ExportError(f"'{candidate.name}' has a vertex whose place is no number")
+    if not len(data.polygons):
+        raise ExportError(f"'{candidate.name}' has no faces")
     corners, sizes = np.empty(len(data.loops), np.int32), np.empty(len(data.polygons), np.int32)
     data.loops.foreach_get("vertex_index", corners)
     data.polygons.foreach_get("loop_total", sizes)
@@ -117,7 +122,7 @@ class Exporter:
 
     def _document(self, sheets):
         settings, scene = self.settings, self.scene
-        steps, substeps = STEPS["DRAFT" if self.preview else settings.quality]
+        steps, substeps = STEPS["DRAFT" if self.preview else settings.quality or "NORMAL"]
         document = {"name": "burn", "frames": len(self.frames), "fps": self.fps, "steps": steps, "pace": settings.pace,
                     "gravity": [float(g) for g in scene.gravity] if scene.use_gravity else [0, 0, 0],
                     "contact": {"enabled": settings.contact}, "tearing": settings.tearing,
@@ -157,8 +162,6 @@ class Exporter:
     def _sheet(self, document, sheet):
         own = sheet.singe
         mesh = first_mesh(self.scene, sheet)
-        if not len(mesh.sizes):
-            raise ExportError(f"'{sheet.name}' has no faces")
         mesh = meshes.refine(mesh, (2.5 if self.preview else 1) * own.cell_size * self.unit)
         name = f"sheet{len(document['sheets'])}"
         file = f"{name}.ply"
@@ -176,7 +179,7 @@ class Exporter:
 
     def _material(self, sheet, mesh, texture):
         own = sheet.singe
-        material = {"base": own.material}
+        material = {"base": own.material or "office-paper"}
         if own.material == "FILE":
             path = bpy.path.abspath(own.material_file)
             if not os.path.isfile(path):

@@ -3,6 +3,7 @@
 writes only into a folder that is empty or that a burn has marked as its own, through no symbolic link, and Free Cache
 deletes single files by the names that a burn gives them, never a folder with what is in it. Needs no Blender."""
 
+import errno
 import os
 import re
 import stat
@@ -31,12 +32,17 @@ class FolderError(Exception):
     """A folder that a burn must leave alone, with a message for the user."""
 
 
+def printable(text):
+    """Without what controls a terminal: names in a .blend file may have it."""
+    return "".join(c if c.isprintable() or c == "\n" else "?" for c in text)
+
+
 def sentence(error):
     """What went wrong, for the panel: an error of the system without its number."""
     if not isinstance(error, OSError) or not error.strerror:
-        return str(error).removeprefix("Error: ").strip() or type(error).__name__  # "Error: " is Blender's
+        return printable(str(error)).removeprefix("Error: ").strip() or type(error).__name__  # "Error: " is Blender's
     reason = error.strerror[0].lower() + error.strerror[1:]
-    return f"cannot use {error.filename}: {reason}" if error.filename else reason
+    return printable(f"cannot use {error.filename}: {reason}" if error.filename else reason)
 
 
 def _places(folder):
@@ -48,10 +54,7 @@ def is_own(folder):
     """Whether a burn has marked the folder as its own."""
     path = os.path.join(folder, SCENE)
     try:
-        if os.path.islink(folder) or not stat.S_ISREG(os.lstat(path).st_mode):
-            return False
-        with open(path, encoding="utf-8", errors="replace") as file:
-            return file.readline(len(MARK)) == MARK
+        return not os.path.islink(folder) and not os.path.islink(path) and read(path, len(MARK)) == MARK.encode()
     except OSError:
         return False
 
@@ -71,6 +74,14 @@ def take(folder):
             file.write(MARK.encode())
     except FileExistsError as error:
         raise FolderError(f"{error.filename} is not a folder: choose another cache folder") from None
+
+
+def read(path, size=-1):
+    """The bytes of a regular file; OSError if it is anything else, such as a pipe, at which a reader waits for ever."""
+    with open(path, "rb", opener=lambda name, flags: os.open(name, flags | getattr(os, "O_NONBLOCK", 0))) as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise OSError(errno.EINVAL, "not a regular file", path)
+        return file.read(size)
 
 
 def create(path):

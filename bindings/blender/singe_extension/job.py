@@ -90,20 +90,18 @@ class Job:
         # at its end a run writes run.json after stats.csv, so one that ends between two polls is noticed only here
         self.counting = self.counting or self._mark() not in (None, self.started)
         try:
-            with open(self.log, encoding="utf-8", errors="replace") as file:
-                lines = file.read().splitlines()
+            lines = files.read(self.log).decode(errors="replace").splitlines()
         except OSError:
             lines = []
         # only the lines of errors; the lines of the scene quoted below them are dropped
-        said = [line for line in lines if "error:" in line]
+        said = [files.printable(line) for line in lines if "error:" in line]
         return code, "\n".join(re.sub(r"^singe: error: ", "", line) for line in said[:6])
 
 
 def frames_in(cache):
     """The number of complete frames of a cache."""
     try:
-        with open(os.path.join(cache, "stats.csv"), "rb") as file:
-            return max(file.read().count(b"\n") - 1, 0)
+        return max(files.read(os.path.join(cache, "stats.csv")).count(b"\n") - 1, 0)
     except OSError:
         return 0
 
@@ -115,8 +113,7 @@ def can_resume(cache, frames):
 def root_frames(root):
     """The number of frames that a USD root refers to. A run rewrites the root from time to time."""
     try:
-        with open(root, encoding="utf-8") as file:
-            found = re.search(r"endTimeCode = (\d+)", file.read(4096))
+        found = re.search(rb"endTimeCode = (\d{1,9})\b", files.read(root, 4096))
     except OSError:
         found = None
     return int(found.group(1)) if found else 0
@@ -125,8 +122,7 @@ def root_frames(root):
 def root_of(cache):
     """The cache's USD root, the gas of its first frame (or None) and its frame rate; None if there is no root."""
     try:
-        with open(os.path.join(cache, "run.json"), encoding="utf-8") as file:
-            scene = json.load(file)["scene"]
+        scene = json.loads(files.read(os.path.join(cache, "run.json")))["scene"]
         name, fps = scene["name"], float(scene["fps"])
     except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError):
         return None
@@ -135,10 +131,10 @@ def root_of(cache):
     if not isinstance(name, str) or os.path.basename(name) != name:  # a name with folders leads out of the cache
         return None
     root = os.path.join(cache, f"{name}.usda")
-    if not os.path.exists(root):
+    if not os.path.isfile(root):
         return None
     for part in ("gas_detail", "gas"):
         gas = os.path.join(cache, part, f"{name}.0001.vdb")
-        if os.path.exists(gas):
+        if os.path.isfile(gas):
             return root, gas, fps
     return root, None, fps

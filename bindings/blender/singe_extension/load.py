@@ -49,8 +49,13 @@ def clear(context, cache):
         bpy.data.collections.remove(collection)
     _close(context, cache)
     for sheet in export.objects(context.scene, "SHEET"):
-        sheet.hide_render = False
-        sheet.hide_set(False)
+        _hide(context, sheet, False)
+
+
+def _hide(context, sheet, hidden):
+    sheet.hide_render = hidden
+    if sheet.name in context.view_layer.objects:  # not if its collection is left out of it
+        sheet.hide_set(hidden)
 
 
 def _close(context, cache):
@@ -143,8 +148,7 @@ def _dress(context, loaded):
             if modifier.type == "MESH_SEQUENCE_CACHE":
                 modifier.use_vertex_interpolation = False  # each frame has its own vertices
         if source:
-            source.hide_render = True
-            source.hide_set(True)
+            _hide(context, source, True)
 
 
 def _add_gas(context, collection, path, frames):

@@ -102,12 +102,18 @@ def write_ply(path, mesh):
         lines.append("property list int float texcoord")
     table = np.column_stack([mesh.points, *mesh.weights.values()]).astype("<f4")
     faces, at = [], 0
-    for size in mesh.sizes.tolist():
-        faces.append(np.concatenate(([size], mesh.corners[at:at + size])).astype("<i4").tobytes())
+    # faces of one size after each other, as after a subdivision, are one table
+    ends = np.flatnonzero(np.diff(mesh.sizes, append=-1)) + 1
+    for size, count in zip(mesh.sizes[ends - 1].tolist(), np.diff(ends, prepend=0).tolist()):
+        columns = [("size", "<i4"), ("corners", "<i4", (size,))]
         if mesh.uv is not None:
-            faces.append(np.int32(2 * size).astype("<i4").tobytes())
-            faces.append(mesh.uv[at:at + size].astype("<f4").tobytes())
-        at += size
+            columns += [("uv_size", "<i4"), ("uv", "<f4", (size, 2))]
+        rows = np.empty(count, columns)
+        rows["size"], rows["corners"] = size, mesh.corners[at:at + size * count].reshape(count, size)
+        if mesh.uv is not None:
+            rows["uv_size"], rows["uv"] = 2 * size, mesh.uv[at:at + size * count].reshape(count, size, 2)
+        faces.append(rows.tobytes())
+        at += size * count
     with files.create(path) as file:
         file.write(("\n".join(lines) + "\nend_header\n").encode("ascii"))
         file.write(table.tobytes())

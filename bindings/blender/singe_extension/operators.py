@@ -3,6 +3,7 @@
 
 import os
 import subprocess
+import traceback
 
 import bpy
 from bpy.props import BoolProperty, StringProperty
@@ -16,6 +17,8 @@ def burn_folder(scene, preview=False):
     path = bpy.path.abspath(scene.singe.folder or "//singe")
     if path.startswith("//") or not os.path.isabs(path):
         raise export.ExportError("save the .blend file first, or choose a cache folder with an absolute path")
+    if os.sep != "\\" and "\\" in path:
+        raise export.ExportError(f"{path} has a \\ in its name, which Blender takes for a /: choose another cache folder")
     return os.path.join(path, "preview" if preview else "burn")
 
 
@@ -82,11 +85,13 @@ class Burning:
         """Returns whether the job has completed. If not, the scene's message says why."""
         code, said = self.job.finish()
         self.look(context)
-        scene, frames = context.scene, job.frames_in(self.job.cache)
+        scene, frames = context.scene, self.job.frames_done()
         if code == 0:
             say(scene, f"{frames} frames burnt")
         elif said:
             say(scene, said, True)
+        elif not frames:
+            say(scene, f"the program has ended before the first frame, with code {code} and without a reason", True)
         else:
             say(scene, f"stopped after frame {frames} of {self.job.frames}; Resume continues the burn")
         scene.singe.progress = frames / self.job.frames
@@ -109,11 +114,19 @@ class SINGE_OT_burn(bpy.types.Operator, Burning):
     def _begin(self, context):
         try:
             self.begin_job(context, self.preview, self.resume)
-        except ERRORS as error:
-            say(context.scene, files.sentence(error), True)
-            self.report({"ERROR"}, context.scene.singe.message)
+        except Exception as error:
+            self._fail(context, error)
             return False
         return True
+
+    def _fail(self, context, error):
+        said = files.sentence(error)
+        if not isinstance(error, ERRORS):  # the file has what nobody thought of
+            traceback.print_exception(error)
+            said = f"the extension cannot use this scene: {type(error).__name__}: {said}; the console shows more"
+        say(context.scene, said, True)
+        self.report({"ERROR"}, said)
+        return {"CANCELLED"}
 
     def execute(self, context):
         """Waits until the burn ends; for scripts and for Blender without a window."""
@@ -127,12 +140,12 @@ class SINGE_OT_burn(bpy.types.Operator, Burning):
                     pass
         except KeyboardInterrupt:
             self.job.stop()
-        except ERRORS as error:
+        except Exception as error:
             return self._abandon(context, error)
         try:
             if self.end_job(context):
                 return {"FINISHED"}
-        except ERRORS as error:
+        except Exception as error:
             return self._abandon(context, error)
         self.report({"ERROR"}, context.scene.singe.message)
         return {"CANCELLED"}
@@ -141,9 +154,7 @@ class SINGE_OT_burn(bpy.types.Operator, Burning):
         """Stops the program because what it has written cannot be shown."""
         self.job.stop()
         self.job.finish()
-        say(context.scene, files.sentence(error), True)
-        self.report({"ERROR"}, context.scene.singe.message)
-        return {"CANCELLED"}
+        return self._fail(context, error)
 
     def invoke(self, context, event):
         if bpy.app.background:
@@ -163,7 +174,7 @@ class SINGE_OT_burn(bpy.types.Operator, Burning):
                 return {"PASS_THROUGH"}
             if not self.end_job(context) and context.scene.singe.failed:
                 self.report({"ERROR"}, context.scene.singe.message)
-        except ERRORS as error:
+        except Exception as error:
             result = self._abandon(context, error)
         context.window_manager.event_timer_remove(self.timer)
         return result
@@ -223,7 +234,7 @@ class SINGE_OT_load(bpy.types.Operator):
         try:
             frames = load.load(context, folder.rstrip("/\\"))
         except Exception as error:  # the folder may hold anything, and a traceback tells a user nothing
-            self.report({"ERROR"}, f"cannot load {folder}: {files.sentence(error)}")
+            self.report({"ERROR"}, f"cannot load {files.printable(folder)}: {files.sentence(error)}")
             return {"CANCELLED"}
         say(context.scene, f"{frames} frames loaded")
         self.report({"INFO"}, context.scene.singe.message)

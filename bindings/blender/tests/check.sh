@@ -28,7 +28,7 @@ extension() {
         failed=1
         tail -20 "$folder/$name.log"
     fi
-    grep '^passed\|^Blender' "$folder/$name.log" || true
+    grep -a '^passed\|^Blender' "$folder/$name.log" || true
 }
 
 tried=0
@@ -46,6 +46,7 @@ for version in 3.11:4.5 3.13:5.2; do
     "$python" "$here/test_mesh.py"
     "$python" "$here/test_files.py"
     extension "sources-$blender" "$python" "$here/rig.py" "$singe" "$folder/work/sources-$blender"
+    extension "attack-$blender" "$python" "$here/attack.py" "$singe" "$folder/work/attack-$blender"
     if [ -n "${3:-}" ]; then
         "$python" "$here/../build.py" --wheels "$3" --out "$folder"
         extension "installed-$blender" "$python" "$here/rig.py" "$singe" "$folder/work/installed-$blender" \

@@ -439,13 +439,19 @@ def main():
     print(f"Blender {bpy.app.version_string}: pictures in {folder}")
 
 
-try:
-    main()
-    # bpy 4.5 may hang as it ends, after a volume was drawn
-    sys.stdout.flush()
-    os._exit(0)
-except Exception:
-    import traceback
-    traceback.print_exc()
-    sys.stdout.flush()
-    os._exit(1)
+def run(scenarios):
+    """Ends the process: with 1 if one of them fails."""
+    try:
+        scenarios()
+        # bpy 4.5 may hang as it ends, after a volume was drawn
+        sys.stdout.flush()
+        os._exit(0)
+    except Exception:
+        import traceback
+        traceback.print_exc()
+        sys.stdout.flush()
+        os._exit(1)
+
+
+if __name__ == "__main__":
+    run(main)

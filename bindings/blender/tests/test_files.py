@@ -154,6 +154,25 @@ class Take(Case):
             self.assertRegex(said.lower(), "not a (folder|directory)")
 
 
+class Read(Case):
+    @unittest.skipIf(sys.platform == "win32", "needs pipes")
+    def test_no_pipe_is_waited_for(self):
+        cache = self.dir / "cache"
+        cache.mkdir()
+        for name in ("run.json", "stats.csv", "burn.usda", "burn.yaml"):
+            os.mkfifo(cache / name)
+            with self.assertRaisesRegex(OSError, "not a regular file"):
+                files.read(str(cache / name))
+        self.assertEqual(job.frames_in(str(cache)), 0)
+        self.assertEqual(job.root_frames(str(cache / "burn.usda")), 0)
+        self.assertIsNone(job.root_of(str(cache)))
+        self.assertFalse(files.is_own(str(cache)))
+
+    def test_nothing_controls_a_terminal(self):
+        self.assertEqual(files.sentence(RuntimeError("'\x1b[31mGröße\n'")), "'?[31mGröße\n'")
+        self.assertNotIn("\x1b", files.sentence(FileNotFoundError(2, "No such file", "\x1b]0;x\x07")))
+
+
 class Program(Case):
     def setUp(self):
         super().setUp()
