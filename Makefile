@@ -113,7 +113,7 @@ web-package:
 web-serve: web
 	cd web && node serve.mjs
 
-# plays with the page in Chromium and, where it is installed, Firefox
+# plays with the page in Chromium, and prints its speed there
 check-web: web
 	cd web && node tests/check.mjs
 
