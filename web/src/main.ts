@@ -6,12 +6,12 @@ import { glbOf } from "./glb.js";
 import type { Frame, FromWorker, Shape, ToWorker } from "./messages.js";
 import { readObj } from "./obj.js";
 import { Renderer } from "./renderer.js";
-import { fromLink, MATERIALS, RANGES, toLink, toYaml, type Point, type Settings, type Slider } from "./scene.js";
+import { fromLink, MATERIALS, RANGES, TIME_STEP, toLink, toYaml, type Point, type Settings, type Slider } from "./scene.js";
 
 type Tool = "match" | "breath" | "hand" | "pin";
 const LIVE: Slider[] = ["pace", "wind", "gravity"];
-const LONGEST_FRAME = 1 / 20; // s of motion in a frame
-const BUDGET = 45; // ms of computing in a frame
+const LONGEST_FRAME = 1 / 10; // s of motion in a frame
+const BUDGET = { least: 45, most: 250 }; // ms of computing in a frame, more where drawing takes long
 const FILE_MOST = 30e6; // bytes
 const HINTS: Record<Tool, string> = {
     match: "Drag the match over the paper", breath: "Hold to blow the fire out", hand: "Take the paper, pull, and tear it",
@@ -30,7 +30,7 @@ let frame: Frame | null = null;
 let pointer: { id: number; x: number; y: number } | null = null, applying = false;
 let grabbed: { plane: Plane; to: Point } | null = null;
 let keyAt: Point = [0, -0.02, 0.002], keyHeld = false;
-let last = performance.now(), costOfStep = 4, speed = 1;
+let last = performance.now(), costOfStep = 4, speed = 1, motion = 0; // motion: s, of the last frame
 
 // ---- what the page needs
 
@@ -127,6 +127,7 @@ function hear(message: FromWorker): void {
     }
     frame = message;
     busy = false;
+    motion = message.steps * TIME_STEP;
     if (message.steps) costOfStep += 0.2 * (message.ms / message.steps - costOfStep);
     if (!stepping) {
         renderer.show(message);
@@ -157,9 +158,9 @@ function tick(now: number): void {
     const moved = controls.update();
     if (!busy && begun && !paused && !document.hidden) {
         last = now;
-        const seconds = Math.min(passed, LONGEST_FRAME), most = Math.max(1, Math.floor(BUDGET / costOfStep));
-        speed += 0.05 * (Math.min(1, (most / 240) / Math.max(passed, 1e-3)) - speed);
-        advance(seconds, most);
+        const budget = Math.min(Math.max(1000 * passed, BUDGET.least), BUDGET.most);
+        speed += 0.3 * (motion / Math.max(passed, 1e-3) - speed);
+        advance(Math.min(passed, LONGEST_FRAME), Math.max(1, Math.floor(budget / costOfStep)));
     } else if (paused) {
         last = now;
     }
@@ -176,8 +177,8 @@ function draw(): void {
     renderer.draw();
     // a card that cannot keep up gets fewer pixels, not a slower fire
     slow = performance.now() - before > 60 ? slow + 1 : Math.max(0, slow - 1);
-    if (slow > 6 && renderer.scale > 0.5) {
-        renderer.scale = Math.max(0.5, renderer.scale * 0.75);
+    if (slow > 6 && renderer.scale > 0.3) {
+        renderer.scale = Math.max(0.3, renderer.scale * 0.75);
         slow = 0;
         renderer.resize(innerWidth, innerHeight);
     }
@@ -436,7 +437,7 @@ function writeLink(): void {
 function showFacts(now: Frame): void {
     const rows = {
         Time: `${now.time.toFixed(2)} s`, Burnt: `${(100 * now.burnt).toFixed(1)} %`, Hottest: `${Math.round(now.hottest - 273)} °C`,
-        Pieces: String(now.pieces), Springs: now.springs.toLocaleString("en"), "Of real time": `${Math.round(100 * speed)} %`,
+        Pieces: String(now.pieces), Springs: now.springs.toLocaleString("en"), "Of real time": `${Math.round(100 * Math.min(speed, 1))} %`,
     };
     facts.replaceChildren(...Object.entries(rows).flatMap(([name, value]) => [
         Object.assign(document.createElement("dt"), { textContent: name }), Object.assign(document.createElement("dd"), { textContent: value })]));
