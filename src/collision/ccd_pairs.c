@@ -73,6 +73,15 @@ static void sweep_pair(const Ccd *ccd, CollisionPair *pair) {
     ccd_sweep_cells(ccd, pair, &p, &q);
     collision_same(a, b, of_b);
     collision_same(b, a, of_a);
+
+    // most pairs that are swept pass each other: a plane shows that for all of their features at once
+    if (!(of_b[0] | of_b[1] | of_b[2] | of_b[3])) {
+        FeatureHulls hulls = {{four_of(p.position)}, {four_of(q.position)}};
+        hulls.a[1] = four_plus(hulls.a[0], four_of(p.displacement));
+        hulls.b[1] = four_plus(hulls.b[0], four_of(q.displacement));
+        if (feature_is_apart(&hulls, 2 * ccd->plan->gap + ccd->plan->noise)) return;
+    }
+
     sweep_all_nodes(ccd, pair, pair->a, &p, &q, of_b, COLLISION_NODE_OF_A);
     if (pair->a != pair->b) sweep_all_nodes(ccd, pair, pair->b, &q, &p, of_a, COLLISION_NODE_OF_B);
 

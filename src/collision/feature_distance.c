@@ -124,6 +124,49 @@ Float4 feature_from_segment(Float4 a, Float4 b, Float4 c, Float4 d, float *s, fl
     return (a + *s * u) - (c + *t * v);
 }
 
+// ---- trajectories that a plane keeps apart
+//
+// Along a unit vector n the difference of any point of a and any of b changes linearly. So if all differences are more
+// than `margin` at both ends, the bodies are farther apart than that all the way. Such an n is the direction of the
+// point nearest to 0 in the hull of all differences at both ends. Gilbert's algorithm (1966) nears that point: from a
+// point v of the hull it goes to the one nearest to 0 between v and the difference that reaches farthest against v.
+
+bool feature_is_apart(const FeatureHulls *hulls, float margin) {
+    enum { TRIALS = 10 };
+    Float4 v = {0};
+    for (int trial = 0; trial <= TRIALS; trial++) {
+        float reach = INFINITY, square = trial ? float4_dot(v, v) : 0;
+        Float4 farthest[2];
+        for (int t = 0; t < 2; t++) {
+            // at first, the means of both ends
+            if (trial == 0) {
+                FourVectors off = four_minus(hulls->a[t], hulls->b[t]);
+                farthest[t] = 0.25f * (Float4){float4_sum(off.x), float4_sum(off.y), float4_sum(off.z), 0};
+                continue;
+            }
+
+            Float4 a = four_dot(hulls->a[t], four_all(v)), b = four_dot(hulls->b[t], four_all(v));
+            float low = float4_smallest(a), high = float4_largest(b);
+            if (!(low - high < reach)) continue;
+            reach = low - high;
+            farthest[0] = four_lane(hulls->a[t], __builtin_ctz(float4_bits(a == low) | 8)) -
+                          four_lane(hulls->b[t], __builtin_ctz(float4_bits(b == high) | 8));
+        }
+
+        if (trial) {
+            if (reach > 0 && reach < INFINITY && reach * reach > margin * margin * square) return true;
+            if (!(square > margin * margin)) return false;
+            farthest[1] = v;
+        }
+
+        Float4 along = farthest[1] - farthest[0];
+        float length = float4_dot(along, along), share = length > 0 ? -float4_dot(farthest[0], along) / length : 0;
+        v = farthest[0] + (share < 0 ? 0 : share > 1 ? 1 : share) * along;
+    }
+
+    return false;
+}
+
 static Float4 sweep_separation(const FeatureSweep *sweep, float time, Float4 x[4]) {
     float weight[3], s, t;
     for (int i = 0; i < 4; i++) x[i] = sweep->position[i] + time * sweep->displacement[i];
@@ -134,6 +177,31 @@ static Float4 sweep_separation(const FeatureSweep *sweep, float time, Float4 x[4
 static float sweep_distance(const FeatureSweep *sweep, float time) {
     Float4 x[4], separation = sweep_separation(sweep, time, x);
     return sqrtf(float4_dot(separation, separation));
+}
+
+/// Whether the features end no nearer than where the advancement below would stop, shown by a plane.
+static bool sweep_is_apart(const FeatureSweep *sweep, float margin) {
+    FeatureHulls hulls;
+    for (int t = 0; t < 2; t++) {
+        Float4 x[4];
+        for (int i = 0; i < 4; i++) x[i] = t ? sweep->position[i] + sweep->displacement[i] : sweep->position[i];
+        FourVectors all = four_of(x);
+        if (sweep->edges) {
+            hulls.a[t] = (FourVectors){FLOAT4_SHUFFLE(all.x, all.x, 0, 1, 0, 1),
+                                       FLOAT4_SHUFFLE(all.y, all.y, 0, 1, 0, 1),
+                                       FLOAT4_SHUFFLE(all.z, all.z, 0, 1, 0, 1)};
+            hulls.b[t] = (FourVectors){FLOAT4_SHUFFLE(all.x, all.x, 2, 3, 2, 3),
+                                       FLOAT4_SHUFFLE(all.y, all.y, 2, 3, 2, 3),
+                                       FLOAT4_SHUFFLE(all.z, all.z, 2, 3, 2, 3)};
+        } else {
+            hulls.a[t] = four_all(x[0]);
+            hulls.b[t] = (FourVectors){FLOAT4_SHUFFLE(all.x, all.x, 1, 2, 3, 3),
+                                       FLOAT4_SHUFFLE(all.y, all.y, 1, 2, 3, 3),
+                                       FLOAT4_SHUFFLE(all.z, all.z, 1, 2, 3, 3)};
+        }
+    }
+
+    return feature_is_apart(&hulls, margin);
 }
 
 float feature_sweep(const FeatureSweep *sweep, float gap, float noise) {
@@ -147,6 +215,8 @@ float feature_sweep(const FeatureSweep *sweep, float gap, float noise) {
         length[i] = sqrtf(float4_dot(sweep->displacement[i] - mean, sweep->displacement[i] - mean));
     float late = fmaxf(length[2], length[3]);
     float approach = sweep->edges ? fmaxf(length[0], length[1]) + late : length[0] + fmaxf(length[1], late);
+    if (sweep_is_apart(sweep, 2 * gap + noise)) return 2;
+
     float distance = sweep_distance(sweep, 0), time = 0;
     bool close = distance <= 2 * gap; // then the distance may only grow
     if (close && sweep_distance(sweep, 1) < distance - noise) return 0;

@@ -2,7 +2,7 @@
 #ifndef COLLISION_FEATURE_DISTANCE_H
 #define COLLISION_FEATURE_DISTANCE_H
 
-#include "common/float4.h"
+#include "collision/narrow_lanes.h"
 
 #include <stdbool.h>
 
@@ -12,6 +12,15 @@ Float4 feature_from_triangle(Float4 p, Float4 a, Float4 b, Float4 c, float weigh
 
 /// The vector from the nearest point of segment c-d to that of a-b, at c + t (d - c) and a + s (b - a) (Ericson 5.1.9).
 Float4 feature_from_segment(Float4 a, Float4 b, Float4 c, Float4 d, float *s, float *t);
+
+/// Up to four points of each of two bodies, at the start of their displacements and at the end.
+typedef struct FeatureHulls {
+    FourVectors a[2], b[2];
+} FeatureHulls;
+
+/// Whether a plane of one orientation keeps the convex hulls of the two bodies more than `margin` apart all the way.
+/// False if a few trials find none.
+bool feature_is_apart(const FeatureHulls *hulls, float margin);
 
 /// Four points and their displacements: a node and a triangle, or two edges.
 typedef struct FeatureSweep {

@@ -14,6 +14,9 @@ static inline FourVectors four_all(Float4 a) {
 static inline FourVectors four_minus(FourVectors a, FourVectors b) {
     return (FourVectors){a.x - b.x, a.y - b.y, a.z - b.z};
 }
+static inline FourVectors four_plus(FourVectors a, FourVectors b) {
+    return (FourVectors){a.x + b.x, a.y + b.y, a.z + b.z};
+}
 /// a + s b
 static inline FourVectors four_along(FourVectors a, Float4 s, FourVectors b) {
     return (FourVectors){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
@@ -50,6 +53,8 @@ static inline float float4_largest(Float4 a) {
     return b[0] > b[1] ? b[0] : b[1];
 }
 static inline float float4_sum(Float4 a) { return (a[0] + a[1]) + (a[2] + a[3]); }
+
+static inline Float4 four_lane(FourVectors a, int lane) { return (Float4){a.x[lane], a.y[lane], a.z[lane], 0}; }
 
 typedef struct FourBoxes {
     FourVectors low, high;
