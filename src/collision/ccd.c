@@ -4,6 +4,10 @@
 // moved differently (ccd_zones.c). As this may put them in the path of other cells, it is repeated for the cells that
 // have changed.
 //
+// The work of a step has a bound, in counts, so that it is the same on every machine: sheets that pass each other at many
+// cells a step, or crowds beyond all reason, would take minutes for one. A step that reaches it halts: all cells keep
+// the places that they had as it began, up to one displacement in common. So they do not cross in such a step either.
+//
 // A corner that has left the box that the search gave its cell may have met a cell that the search did not list: then
 // the search is repeated for this step's own displacements.
 #include "common/assertion.h"
@@ -139,7 +143,7 @@ static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float
         *hits = ccd_meet(ccd, pool, 0);
     }
 
-    if (*hits > 0) return SINGE_OK;
+    if (*hits > 0 || ccd_is_spent(ccd->plan)) return SINGE_OK;
 
     // pairs that cells outside their boxes may have met; if these are many, all are searched again
     CollisionPlan *plan = ccd->plan;
@@ -159,6 +163,7 @@ static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float
         plan->step = state->step;
         ccd->time = h;
         TRY(broad_search(ccd->memory, plan, ccd->shell, pool));
+        plan->work += plan->pair_count;
         ccd_measure(ccd, pool);
         count = list_out_of_bounds(plan);
     }
@@ -217,6 +222,7 @@ static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *
                               Pool *pool, float h, DynamicsState *dynamics) {
     Ccd ccd = {memory, plan, shell, dynamics, state->ablate->cell_flags, h * (float)(state->step - plan->step + 1), 0};
     bool stopped = false;
+    if (!plan->closed) plan->work = 0;
     SINGE_ASSERT(plan->stopped_count == 0); // ccd_apply has emptied the zones of the last run
 
     // where CCD has run in this step before, only what has moved since counts
@@ -230,8 +236,9 @@ static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *
     for (int impacts = 0, zones = 0;;) {
         uint32_t hits;
         TRY(ccd_look(&ccd, state, pool, h, stopped || plan->closed, &hits));
-        if (hits == 0) break;
-        if (zones == ZONE_ROUNDS) {
+        const bool spent = ccd_is_spent(plan);
+        if (hits == 0 && !spent) break;
+        if (!spent && zones == ZONE_ROUNDS) {
             plan->counters.unresolved += hits;
             break;
         }
@@ -239,6 +246,13 @@ static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *
         if (!stopped) memcpy(plan->want, dynamics->position, plan->vertex_count * sizeof *plan->want);
         plan->counters.stops += hits;
         stopped = true;
+        if (spent) {
+            plan->counters.halts++;
+            ccd_halt(&ccd);
+            ccd_measure(&ccd, pool);
+            break;
+        }
+
         bool crowd = ccd.looked > (uint64_t)IMPACT_LOOKS * plan->pair_count;
         if (zones > 0 || impacts == IMPACT_ROUNDS || crowd) {
             ccd_zones(&ccd, zones++);

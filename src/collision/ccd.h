@@ -31,8 +31,11 @@ typedef struct Swept {
 /// Nodes of the pair's cells, in a frame that moves with the first corner of a.
 void ccd_sweep_cells(const Ccd *ccd, const CollisionPair *pair, Swept *a, Swept *b);
 
+/// Whether the work of the step has reached its bound.
+static inline bool ccd_is_spent(const CollisionPlan *plan) { return plan->work > plan->work_max; }
+
 /// Checks pairs from `first` on, or the `count` ones of plan->active: where two collide, stores after what share of the
-/// step's displacement, and which features. Lists them in plan->active; returns how many.
+/// step's displacement, and which features. Lists them in plan->active; returns how many, or 0 if the work is spent.
 uint32_t ccd_meet(const Ccd *ccd, Pool *pool, uint32_t first);
 uint32_t ccd_meet_active(const Ccd *ccd, Pool *pool, uint32_t count);
 
@@ -41,5 +44,8 @@ void ccd_impacts(const Ccd *ccd);
 
 /// Joins pairs that collide into zones, in the iteration of this number, and moves these.
 void ccd_zones(const Ccd *ccd, int round);
+
+/// Moves all cells as one zone that keeps nothing of its displacements but their mean.
+void ccd_halt(const Ccd *ccd);
 
 #endif

@@ -44,9 +44,10 @@ void ccd_sweep_cells(const Ccd *ccd, const CollisionPair *pair, Swept *p, Swept 
 }
 
 /// Nodes of p that cell c owns against triangles of q that do not contain them; bits of same[i] are the corners of q
-/// that are corner i of p.
-static void sweep_all_nodes(const Ccd *ccd, CollisionPair *pair, uint32_t c, const Swept *p, const Swept *q,
-                            const unsigned same[4], int kind) {
+/// that are corner i of p. Returns how many are swept.
+static int sweep_all_nodes(const Ccd *ccd, CollisionPair *pair, uint32_t c, const Swept *p, const Swept *q,
+                           const unsigned same[4], int kind) {
+    int count = 0;
     for (int i = 0; i < 5; i++) {
         if (!collision_owns_node(ccd->plan, c, i)) continue;
 
@@ -61,14 +62,19 @@ static void sweep_all_nodes(const Ccd *ccd, CollisionPair *pair, uint32_t c, con
                 {p->displacement[i], q->displacement[k[0]], q->displacement[k[1]], q->displacement[k[2]]},
                 false};
             note_hit(pair, feature_sweep(&sweep, ccd->plan->gap, ccd->plan->noise), kind, i, j);
+            count++;
         }
     }
+
+    return count;
 }
 
-/// Finds the share of the step's displacement after which two cells collide, and the features that do.
-static void sweep_pair(const Ccd *ccd, CollisionPair *pair) {
+/// Finds the share of the step's displacement after which two cells collide, and the features that do. Returns how many
+/// pairs of features it has swept.
+static int sweep_pair(const Ccd *ccd, CollisionPair *pair) {
     const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
     unsigned of_b[4], of_a[4];
+    int count = 0;
     Swept p, q;
     ccd_sweep_cells(ccd, pair, &p, &q);
     collision_same(a, b, of_b);
@@ -79,11 +85,11 @@ static void sweep_pair(const Ccd *ccd, CollisionPair *pair) {
         FeatureHulls hulls = {{four_of(p.position)}, {four_of(q.position)}};
         hulls.a[1] = four_plus(hulls.a[0], four_of(p.displacement));
         hulls.b[1] = four_plus(hulls.b[0], four_of(q.displacement));
-        if (feature_is_apart(&hulls, 2 * ccd->plan->gap + ccd->plan->noise)) return;
+        if (feature_is_apart(&hulls, 2 * ccd->plan->gap + ccd->plan->noise)) return 0;
     }
 
-    sweep_all_nodes(ccd, pair, pair->a, &p, &q, of_b, COLLISION_NODE_OF_A);
-    if (pair->a != pair->b) sweep_all_nodes(ccd, pair, pair->b, &q, &p, of_a, COLLISION_NODE_OF_B);
+    count += sweep_all_nodes(ccd, pair, pair->a, &p, &q, of_b, COLLISION_NODE_OF_A);
+    if (pair->a != pair->b) count += sweep_all_nodes(ccd, pair, pair->b, &q, &p, of_a, COLLISION_NODE_OF_B);
 
     // edges against edges
     const CollisionPlan *plan = ccd->plan;
@@ -109,8 +115,11 @@ static void sweep_pair(const Ccd *ccd, CollisionPair *pair) {
                 {p.displacement[k[0]], p.displacement[k[1]], q.displacement[l[0]], q.displacement[l[1]]},
                 true};
             note_hit(pair, feature_sweep(&sweep, plan->gap, plan->noise), COLLISION_EDGES, i, j);
+            count++;
         }
     }
+
+    return count;
 }
 
 /// Bits of those of four pairs that are free: by their distance or, if connected, by their normals (proof in
@@ -158,23 +167,28 @@ static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
     return free;
 }
 
+/// Pairs that are checked before the work is compared with its bound; and what a pair that collides adds to the work in
+/// a sum of both, which is exact: the work of a chunk is less.
+enum { LOOK_CHUNK = 16 * POOL_BLOCK, LOOK_HIT = 1 << 26 };
+
 typedef struct Look {
     const Ccd *ccd;
-    uint32_t first;         ///< pair
+    uint32_t first;         ///< pair, or its place in `active`
     const uint32_t *active; ///< pairs, or NULL for all from the first on
 } Look;
 
-/// Checks pairs, four at a time. Returns how many collide.
+/// Checks pairs, four at a time. Returns the work, a unit for each pair and for each two features swept, and LOOK_HIT
+/// for each pair that collides.
 static double look_range(void *task, int begin, int end) {
     const Look *look = task;
     const Ccd *ccd = look->ccd;
     CollisionPair *pairs = ccd->plan->pairs;
-    double hits = 0;
+    int work = end - begin, hits = 0;
     for (int k = begin; k < end; k += 4) {
         uint32_t number[4], count = end - k < 4 ? (uint32_t)(end - k) : 4;
         for (uint32_t i = 0; i < 4; i++) {
-            uint32_t at = (uint32_t)k + (i < count ? i : 0);
-            number[i] = look->active ? look->active[at] : look->first + at;
+            uint32_t at = look->first + (uint32_t)k + (i < count ? i : 0);
+            number[i] = look->active ? look->active[at] : at;
         }
 
         // those of the four that are not free
@@ -201,30 +215,41 @@ static double look_range(void *task, int begin, int end) {
                 parted = feature_is_separated(p, q, shared, ccd->plan->gap, &normal[t]);
             }
 
-            if (!parted || !(float4_dot(normal[0], normal[1]) > 0)) sweep_pair(ccd, pair);
+            if (!parted || !(float4_dot(normal[0], normal[1]) > 0)) work += sweep_pair(ccd, pair);
             hits += pair->hit < 2;
         }
     }
 
-    return hits;
+    return (double)work + (double)LOOK_HIT * hits;
+}
+
+/// Checks `count` pairs, and lists those that collide in plan->active, which `look` may read from. Returns how many;
+/// none if the work of the step has reached its bound meanwhile.
+static uint32_t look_all(Look look, Pool *pool, uint32_t count) {
+    CollisionPlan *plan = look.ccd->plan;
+    const uint32_t begin = look.first;
+    uint64_t hits = 0;
+    plan->hit_count = 0;
+    for (uint32_t done = 0; done < count; done += LOOK_CHUNK) {
+        const uint32_t some = count - done < LOOK_CHUNK ? count - done : LOOK_CHUNK;
+        look.first = begin + done;
+        const uint64_t sum = (uint64_t)pool_sum(pool, (int)some, look_range, &look, plan->partial);
+        hits += sum / LOOK_HIT;
+        plan->work += sum % LOOK_HIT;
+        if (ccd_is_spent(plan)) return 0;
+    }
+
+    for (uint32_t k = begin; hits > 0 && k < begin + count; k++) {
+        const uint32_t number = look.active ? look.active[k] : k;
+        if (plan->pairs[number].hit < 2) plan->active[plan->hit_count++] = number;
+    }
+    return plan->hit_count;
 }
 
 uint32_t ccd_meet(const Ccd *ccd, Pool *pool, uint32_t first) {
-    CollisionPlan *plan = ccd->plan;
-    Look look = {ccd, first, NULL};
-    plan->hit_count = 0;
-    if (pool_sum(pool, (int)(plan->pair_count - first), look_range, &look, plan->partial) > 0)
-        for (uint32_t k = first; k < plan->pair_count; k++)
-            if (plan->pairs[k].hit < 2) plan->active[plan->hit_count++] = k;
-    return plan->hit_count;
+    return look_all((Look){ccd, first, NULL}, pool, ccd->plan->pair_count - first);
 }
 
 uint32_t ccd_meet_active(const Ccd *ccd, Pool *pool, uint32_t count) {
-    CollisionPlan *plan = ccd->plan;
-    Look look = {ccd, 0, plan->active};
-    plan->hit_count = 0;
-    if (pool_sum(pool, (int)count, look_range, &look, plan->partial) > 0)
-        for (uint32_t k = 0; k < count; k++)
-            if (plan->pairs[plan->active[k]].hit < 2) plan->active[plan->hit_count++] = plan->active[k];
-    return plan->hit_count;
+    return look_all((Look){ccd, 0, ccd->plan->active}, pool, count);
 }

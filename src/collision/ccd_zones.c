@@ -137,37 +137,19 @@ static uint32_t zone_root(CollisionPlan *plan, uint32_t v) {
     return v;
 }
 
-void ccd_zones(const Ccd *ccd, int round) {
+/// Puts a vertex that is in no zone into one of its own, with all of its displacement.
+static void zone_begin(const Ccd *ccd, uint32_t v) {
     CollisionPlan *plan = ccd->plan;
+    if (plan->zone[v] != SHELL_NONE) return;
 
-    // join the corners of colliding pairs, and reduce their share of the displacement
-    for (uint32_t k = 0; k < plan->hit_count; k++) {
-        const CollisionPair *pair = &plan->pairs[plan->active[k]];
-        const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
-        uint32_t root = SHELL_NONE;
-        float share = 1;
-        for (int i = 0; i < 8; i++) {
-            uint32_t v = i < 4 ? a[i] : b[i - 4];
-            if (plan->zone[v] == SHELL_NONE) { // into a zone of its own, with all of its displacement
-                plan->zone[v] = v;
-                plan->share[v] = 1;
-                plan->stopped[plan->stopped_count++] = v;
-                memcpy(plan->goal[v], ccd->dynamics->position[v], sizeof *plan->goal);
-            }
+    plan->zone[v] = v;
+    plan->share[v] = 1;
+    plan->stopped[plan->stopped_count++] = v;
+    memcpy(plan->goal[v], ccd->dynamics->position[v], sizeof *plan->goal);
+}
 
-            uint32_t other = zone_root(plan, v);
-            share = fminf(share, plan->share[other]);
-            if (root == SHELL_NONE) root = other;
-            if (other < root) {
-                plan->zone[root] = other;
-                root = other;
-            } else plan->zone[other] = root;
-        }
-
-        // in the first round the share is the free one; later the displacements of the zone itself have changed
-        float less = round == 0 ? 0.9f * pair->hit : round < ZONE_PATIENCE ? 0.5f * share : 0;
-        plan->share[root] = fminf(share, less);
-    }
+static void zones_move(const Ccd *ccd) {
+    CollisionPlan *plan = ccd->plan;
 
     // mean displacements by mass; if there are held corners, only theirs count
     for (uint32_t k = 0; k < plan->stopped_count; k++) plan->drift[plan->stopped[k]] = (Float4){0};
@@ -193,4 +175,45 @@ void ccd_zones(const Ccd *ccd, int round) {
 
     ccd_forget_changed(plan);
     for (uint32_t k = 0; k < plan->stopped_count; k++) ccd_mark_around(ccd, plan->stopped[k]);
+}
+
+void ccd_zones(const Ccd *ccd, int round) {
+    CollisionPlan *plan = ccd->plan;
+
+    // join the corners of colliding pairs, and reduce their share of the displacement
+    for (uint32_t k = 0; k < plan->hit_count; k++) {
+        const CollisionPair *pair = &plan->pairs[plan->active[k]];
+        const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
+        uint32_t root = SHELL_NONE;
+        float share = 1;
+        for (int i = 0; i < 8; i++) {
+            uint32_t v = i < 4 ? a[i] : b[i - 4];
+            zone_begin(ccd, v);
+
+            uint32_t other = zone_root(plan, v);
+            share = fminf(share, plan->share[other]);
+            if (root == SHELL_NONE) root = other;
+            if (other < root) {
+                plan->zone[root] = other;
+                root = other;
+            } else plan->zone[other] = root;
+        }
+
+        // in the first round the share is the free one; later the displacements of the zone itself have changed
+        float less = round == 0 ? 0.9f * pair->hit : round < ZONE_PATIENCE ? 0.5f * share : 0;
+        plan->share[root] = fminf(share, less);
+    }
+
+    zones_move(ccd);
+}
+
+void ccd_halt(const Ccd *ccd) {
+    CollisionPlan *plan = ccd->plan;
+    for (uint32_t c = 0; c < plan->cell_count; c++)
+        for (int i = 0; i < 4 && ccd_is_alive(ccd, c); i++) zone_begin(ccd, ccd->shell->cells[c][i]);
+
+    // one zone for all
+    for (uint32_t k = 0; k < plan->stopped_count; k++) plan->zone[plan->stopped[k]] = plan->stopped[0];
+    if (plan->stopped_count > 0) plan->share[plan->stopped[0]] = 0;
+    zones_move(ccd);
 }

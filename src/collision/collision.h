@@ -56,6 +56,7 @@ typedef struct CollisionCounters {
     uint64_t stops;              ///< pairs of cells stopped by CCD
     uint64_t looks;              ///< pairs of cells checked again, as an iteration had moved one of them
     uint64_t unresolved;         ///< pairs that could not be kept apart, as both are held by pins
+    uint64_t halts;              ///< steps in which CCD's work reached its bound (ccd.c)
     uint64_t dropped;            ///< pairs, of cells or of points, for which there was no room
     uint32_t intersecting;       ///< cells that have intersected or coincided with others since the start
     uint32_t intersecting_first; ///< the lowest of them

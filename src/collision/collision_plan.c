@@ -144,6 +144,7 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     }
 
     for (uint32_t v = 0; v < plan->vertex_count; v++) plan->zone[v] = SHELL_NONE;
+    plan->work_max = COLLISION_WORK_MIN + (uint64_t)COLLISION_WORK * plan->cell_count;
 
     // centroids at rest, and the thickness of cells: cells far smaller than the rest of their sheet would be torn apart
     // by the contact of their own corners

@@ -11,6 +11,9 @@
 enum { COLLISION_STEPS = 10 };
 /// Buckets, pairs or cells in one work item of a thread.
 enum { COLLISION_BUCKETS = 128, COLLISION_BLOCK = 256, COLLISION_OUTSIDE = 16 };
+/// The bound of CCD's work in a step: COLLISION_WORK per cell and COLLISION_WORK_MIN. A second or so for a few thousand
+/// cells.
+enum { COLLISION_WORK = 1000, COLLISION_WORK_MIN = 1 << 18 };
 /// Items per cell in each list. Lists of pairs and repulsions grow if that is too little, by COLLISION_GROWTH, or to
 /// COLLISION_LIST_MIN items if that is more.
 enum {
@@ -170,7 +173,8 @@ struct CollisionPlan {
     uint8_t *changed;       ///< [cells] 1: moved by the last round
     uint32_t *changed_list; ///< [changed_count] of them
     uint32_t changed_count;
-    uint32_t *active; ///< [hit_count] pairs that collide
+    uint64_t work, work_max; ///< of CCD in this step: pairs checked, and features swept; and its bound
+    uint32_t *active;        ///< [hit_count] pairs that collide
     uint32_t hit_count;
     uint32_t *around_first; ///< [cells + 2] a cell's pairs are around[around_first[c]] to around[around_first[c + 1]]
     uint32_t *around;       ///< [2 pair_capacity]

@@ -167,9 +167,10 @@ static SingeResult dynamics_close(Memory *memory, DynamicsPlan *plan, const Step
     for (int turn = 0; turn < TURNS; turn++) {
         bool limited = plan->solver->limit(plan, shell, state, context->pool, dynamics);
         if (!plan->collision || (turn > 0 && !limited)) break;
-        uint64_t stops = collision_counters(plan->collision).stops;
+        const CollisionCounters before = collision_counters(plan->collision);
         TRY(ccd_apply(memory, plan->collision, shell, state, context->pool, context->h, dynamics));
-        if (collision_counters(plan->collision).stops == stops) break;
+        const CollisionCounters after = collision_counters(plan->collision);
+        if (after.stops == before.stops || after.halts > before.halts) break;
     }
 
     return SINGE_OK;
