@@ -258,6 +258,7 @@ typedef struct SingeTimers {
     uint64_t contact_unresolved; ///< pairs that CCD could not separate: pins hold both
     uint64_t contact_dropped;    ///< pairs beyond the capacity of the lists, not checked
     uint64_t contact_pairs;      ///< pairs of cells that the broad phase found, summed over steps
+    uint64_t contact_halts;      ///< steps in which CCD's work reached its bound, so that all sheets stood still
 } SingeTimers;
 
 /// All 0 before the commit. Fills `struct_size` bytes, the caller's sizeof.

@@ -18,7 +18,7 @@ typedef struct Trailer {
     uint64_t checksum; ///< of everything before it
 } Trailer;
 
-static const char checkpoint_magic[8] = {'S', 'I', 'N', 'G', 'E', 'C', 'P', '4'};
+static const char checkpoint_magic[8] = {'S', 'I', 'N', 'G', 'E', 'C', 'P', '5'};
 
 /// FNV-1a over words of 8 bytes with a final mix; the rest byte by byte.
 static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size) {

@@ -1,4 +1,5 @@
 // singe run: frame 1 is the start, at time 0; each later frame is `steps` steps on from the one before it.
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -83,6 +84,7 @@ static const double strain_max = 0.5;
 /// Waits for the frame being written, if any, and reports it.
 static SingeResult end_frame(Run *run, SingeError *error) {
     const int frame = run->writing.frame;
+    const uint64_t halts = run->writing.totals.contact_halts;
     SingeStats stats;
     SingeResult result = run_end_frame(run, &stats, error);
     if (result || !frame) return result;
@@ -91,6 +93,16 @@ static SingeResult end_frame(Run *run, SingeError *error) {
         run->strain = stats.strain_p99;
         run->strained = frame;
     }
+
+    if (halts > run->halts && !run->halted) {
+        run->halted = true;
+        console_warn(run->console,
+                     "in frame %d sheets move so fast that contact would take too long: in %" PRIu64 " of its %d steps "
+                     "they all stood still (reported once; contact_halts in stats.csv); use more steps, or slower "
+                     "motion",
+                     frame, halts - run->halts, run->job.scene->steps);
+    }
+    run->halts = halts;
 
     const double now = console_clock(), seconds = now - run->frame_ended;
     run->frame_ended = now;

@@ -90,6 +90,8 @@ typedef struct Run {
     int step;                          ///< steps done towards the next frame
     int strained;                      ///< the frame with the largest strain_p99 above the limit; 0: none
     double strain;                     ///< strain_p99 in that frame
+    uint64_t halts;                    ///< totals->contact_halts at the last frame
+    bool halted;                       ///< contact's bound has been reported
     bool begun;                        ///< the folder belongs to this run: its first frame is whole, or it has resumed
 } Run;
 

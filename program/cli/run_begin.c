@@ -87,6 +87,7 @@ static ExitCode resume(Run *run) {
     }
 
     *run->totals = checkpoint.totals;
+    run->halts = checkpoint.totals.contact_halts;
     run->wall_before = checkpoint.totals.wall_seconds;
     run->record.resumed_from = run->record.frames_done = frame;
     run->first = frame + 1;

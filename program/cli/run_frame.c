@@ -33,6 +33,7 @@ static void read_timers(Run *run, FrameCost *cost) {
     run->totals->heat_iterations += now.heat_iterations - before->heat_iterations;
     run->totals->strands_projected += now.strands_projected - before->strands_projected;
     run->totals->contacts += now.contacts - before->contacts;
+    run->totals->contact_halts += now.contact_halts - before->contact_halts;
     *before = now;
 }
 

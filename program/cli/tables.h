@@ -21,8 +21,9 @@ typedef struct Totals {
     double wall_seconds;
     uint64_t steps, heat_iterations, strands_projected, contacts;
     uint64_t ignited, holes_opened, pieces_freed;
-    uint64_t crossed; ///< pairs of triangles of the first frame
-    double hottest;   ///< K, of all frames
+    uint64_t crossed;       ///< pairs of triangles of the first frame
+    uint64_t contact_halts; ///< steps
+    double hottest;         ///< K, of all frames
 } Totals;
 
 /// A file that grows by whole lines.

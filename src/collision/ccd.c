@@ -184,8 +184,9 @@ static Float4 shifted_velocity(Float4 before, Float4 shift, Float4 displacement,
     return square > max ? sqrtf(max / square) * after : after;
 }
 
-/// Velocities and centres follow the changed positions.
-static void close_trajectories(const Ccd *ccd, float h) {
+/// Velocities and centres follow the changed positions. A step that halts leaves what it has moved with the velocities of
+/// its displacements: what would have been too fast for it is too fast for the next one as well.
+static void close_trajectories(const Ccd *ccd, float h, bool halted) {
     CollisionPlan *plan = ccd->plan;
     DynamicsState *dynamics = ccd->dynamics;
 
@@ -203,8 +204,9 @@ static void close_trajectories(const Ccd *ccd, float h) {
         shift[3] = displacement[3] = 0;
         if (position[3] == 0 || float4_dot(shift, shift) == 0) continue;
         float4_store(dynamics->position[centre], position + shift);
+        const Float4 before = float4_load(dynamics->velocity[centre]);
         float4_store(dynamics->velocity[centre],
-                     shifted_velocity(float4_load(dynamics->velocity[centre]), shift, displacement, h));
+                     halted ? displacement / h : shifted_velocity(before, shift, displacement, h));
     }
 
     // velocities of the corners
@@ -212,16 +214,17 @@ static void close_trajectories(const Ccd *ccd, float h) {
         Float4 corner = float4_load(dynamics->position[v]), shift = corner - float4_load(plan->want[v]);
         Float4 displacement = corner - float4_load(plan->start[v]);
         shift[3] = displacement[3] = 0;
-        if (float4_dot(shift, shift) > 0)
-            float4_store(dynamics->velocity[v],
-                         shifted_velocity(float4_load(dynamics->velocity[v]), shift, displacement, h));
+        if (float4_dot(shift, shift) == 0) continue;
+        const Float4 before = float4_load(dynamics->velocity[v]);
+        float4_store(dynamics->velocity[v],
+                     halted ? displacement / h : shifted_velocity(before, shift, displacement, h));
     }
 }
 
 static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state,
                               Pool *pool, float h, DynamicsState *dynamics) {
     Ccd ccd = {memory, plan, shell, dynamics, state->ablate->cell_flags, h * (float)(state->step - plan->step + 1), 0};
-    bool stopped = false;
+    bool stopped = false, halted = false;
     if (!plan->closed) plan->work = 0;
     SINGE_ASSERT(plan->stopped_count == 0); // ccd_apply has emptied the zones of the last run
 
@@ -248,6 +251,7 @@ static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *
         stopped = true;
         if (spent) {
             plan->counters.halts++;
+            halted = true;
             ccd_halt(&ccd);
             ccd_measure(&ccd, pool);
             break;
@@ -264,7 +268,7 @@ static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *
 
     // remember where the step has ended, for the next one
     plan->counters.looks += ccd.looked;
-    if (stopped) close_trajectories(&ccd, h);
+    if (stopped) close_trajectories(&ccd, h, halted);
     memcpy(plan->end, dynamics->position, plan->vertex_count * sizeof *plan->end);
     plan->closed = true;
     return SINGE_OK;
@@ -281,3 +285,5 @@ SingeResult ccd_apply(Memory *memory, CollisionPlan *plan, const Shell *shell, c
     plan->counters.seconds += clock_seconds() - start;
     return result;
 }
+
+bool ccd_is_busy(const CollisionPlan *plan) { return plan->work > plan->work_max / 4; }

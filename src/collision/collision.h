@@ -48,6 +48,9 @@ void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, 
 SingeResult ccd_apply(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
                       float h, DynamicsState *dynamics);
 
+/// Whether a quarter of the work that CCD may do in a step is done.
+bool ccd_is_busy(const CollisionPlan *plan);
+
 /// Counts since the plan was made.
 typedef struct CollisionCounters {
     uint64_t searches;           ///< for nearby pairs

@@ -13,7 +13,7 @@ enum { COLLISION_STEPS = 10 };
 enum { COLLISION_BUCKETS = 128, COLLISION_BLOCK = 256, COLLISION_OUTSIDE = 16 };
 /// The bound of CCD's work in a step: COLLISION_WORK per cell and COLLISION_WORK_MIN. A second or so for a few thousand
 /// cells.
-enum { COLLISION_WORK = 1000, COLLISION_WORK_MIN = 1 << 18 };
+enum { COLLISION_WORK = 500, COLLISION_WORK_MIN = 1 << 18 };
 /// Items per cell in each list. Lists of pairs and repulsions grow if that is too little, by COLLISION_GROWTH, or to
 /// COLLISION_LIST_MIN items if that is more.
 enum {

@@ -187,17 +187,17 @@ static bool sweep_is_apart(const FeatureSweep *sweep, float margin) {
         for (int i = 0; i < 4; i++) x[i] = t ? sweep->position[i] + sweep->displacement[i] : sweep->position[i];
         FourVectors all = four_of(x);
         if (sweep->edges) {
-            hulls.a[t] = (FourVectors){FLOAT4_SHUFFLE(all.x, all.x, 0, 1, 0, 1),
-                                       FLOAT4_SHUFFLE(all.y, all.y, 0, 1, 0, 1),
-                                       FLOAT4_SHUFFLE(all.z, all.z, 0, 1, 0, 1)};
-            hulls.b[t] = (FourVectors){FLOAT4_SHUFFLE(all.x, all.x, 2, 3, 2, 3),
-                                       FLOAT4_SHUFFLE(all.y, all.y, 2, 3, 2, 3),
-                                       FLOAT4_SHUFFLE(all.z, all.z, 2, 3, 2, 3)};
+            hulls.a[t] =
+                (FourVectors){FLOAT4_SHUFFLE(all.x, all.x, 0, 1, 0, 1), FLOAT4_SHUFFLE(all.y, all.y, 0, 1, 0, 1),
+                              FLOAT4_SHUFFLE(all.z, all.z, 0, 1, 0, 1)};
+            hulls.b[t] =
+                (FourVectors){FLOAT4_SHUFFLE(all.x, all.x, 2, 3, 2, 3), FLOAT4_SHUFFLE(all.y, all.y, 2, 3, 2, 3),
+                              FLOAT4_SHUFFLE(all.z, all.z, 2, 3, 2, 3)};
         } else {
             hulls.a[t] = four_all(x[0]);
-            hulls.b[t] = (FourVectors){FLOAT4_SHUFFLE(all.x, all.x, 1, 2, 3, 3),
-                                       FLOAT4_SHUFFLE(all.y, all.y, 1, 2, 3, 3),
-                                       FLOAT4_SHUFFLE(all.z, all.z, 1, 2, 3, 3)};
+            hulls.b[t] =
+                (FourVectors){FLOAT4_SHUFFLE(all.x, all.x, 1, 2, 3, 3), FLOAT4_SHUFFLE(all.y, all.y, 1, 2, 3, 3),
+                              FLOAT4_SHUFFLE(all.z, all.z, 1, 2, 3, 3)};
         }
     }
 

@@ -157,7 +157,8 @@ static SingeResult dynamics_check(DynamicsPlan *plan, Pool *pool, DynamicsState 
         i);
 }
 
-/// Alternates limits and CCD: what CCD has stopped may be too far from what it has not.
+/// Alternates limits and CCD: what CCD has stopped may be too far from what it has not. Where that takes much work, CCD
+/// has the last word.
 static SingeResult dynamics_close(Memory *memory, DynamicsPlan *plan, const StepContext *context,
                                   DynamicsState *dynamics) {
     enum { TURNS = 8 };
@@ -167,10 +168,9 @@ static SingeResult dynamics_close(Memory *memory, DynamicsPlan *plan, const Step
     for (int turn = 0; turn < TURNS; turn++) {
         bool limited = plan->solver->limit(plan, shell, state, context->pool, dynamics);
         if (!plan->collision || (turn > 0 && !limited)) break;
-        const CollisionCounters before = collision_counters(plan->collision);
+        const uint64_t stops = collision_counters(plan->collision).stops;
         TRY(ccd_apply(memory, plan->collision, shell, state, context->pool, context->h, dynamics));
-        const CollisionCounters after = collision_counters(plan->collision);
-        if (after.stops == before.stops || after.halts > before.halts) break;
+        if (collision_counters(plan->collision).stops == stops || ccd_is_busy(plan->collision)) break;
     }
 
     return SINGE_OK;

@@ -77,6 +77,7 @@ static void step_note(SingeSim *sim, const HeatCounters *heat, const DynamicsCou
     timers->contact_stops = found.stops;
     timers->contact_unresolved = found.unresolved;
     timers->contact_dropped = found.dropped;
+    timers->contact_halts = found.halts;
     sim_log_contacts(sim, &found);
 }
 

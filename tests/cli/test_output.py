@@ -50,6 +50,22 @@ class Output(Case):
         self.assertIn("warning: the ledgers do not close", err)
         self.assertGreater(float(self.stats("bad")[-1]["ledger_error"]), 1e-3)
 
+    def test_a_storm_ends(self):
+        """Cells that meet all others in every step stand still in it: a warning names the frame, a column counts."""
+        scene = {"frames": 3, "steps": 2, "sheets": [{"grid": {"size": [0.06, 0.06], "cells": [36, 36]}}],
+                 "wind": {"velocity": [1000, 0, 0], "gust": 1000}, "pins": [{"vertices": [0, 36]}]}
+        with open(self.path("storm.json"), "w") as file:
+            json.dump(scene, file)
+        self.assertIn(": good", self.singe("check", self.path("storm.json"))[0])
+        _, err = self.singe("run", self.path("storm.json"), "-o", self.path("o"), "--no-preview")
+        self.assertEqual(err.count("they all stood still"), 1)
+        self.assertIn("warning: in frame 2 sheets move so fast", err)
+        halts = [int(row["contact_halts"]) for row in self.stats("o")]
+        self.assertEqual(halts[0], 0)
+        self.assertTrue(0 < halts[1] <= 2 and halts[1] <= halts[2] <= 4, halts)
+        found, _ = self.singe("verify", self.path("o"))
+        self.assertRegex(found, r"pairs of triangles that cross +0\b")
+
     def test_what_is_torn_out_of_shape(self):
         """Sheets that a plane throws out by many cells are warned of twice: as they begin, and for what came of it."""
         for depth, reported in (("0 m", False), ("0.6 m", True)):

@@ -239,6 +239,40 @@ TEST(what_is_dropped_is_counted) {
     }
 }
 
+/// A sheet that a storm of 1,000 m/s takes away by its corners: cells meet all others in a step. The bound of the work
+/// ends it, at the same place for any number of threads, and nothing crosses.
+TEST(steps_that_would_take_minutes_halt) {
+    SingeSim *sims[2];
+    for (int k = 0; k < 2; k++) {
+        SingeSimDef def = singe_default_sim();
+        def.thread_count = 1 + 2 * k;
+        def.contact.enabled = true;
+        def.time_step = 1.0f / 240;
+        def.wind.velocity[0] = 1000;
+        def.wind.gust = 1000;
+        TestMesh mesh = test_grid(36, 36, 1.7e-3f, 1.7e-3f);
+        const uint32_t corners[] = {0, 36};
+        SingePinDef pin = singe_default_pin();
+        SingePinId id;
+        sims[k] = test_sim(&def, mesh, NULL);
+        assert_int_equal(singe_sim_sheets(sims[k], &pin.sheet, 1), 1);
+        pin.vertices = corners;
+        pin.vertex_count = 2;
+        test_ok(sims[k], singe_sim_add_pin(sims[k], &pin, &id));
+        test_steps(sims[k], 3);
+        const CollisionPlan *plan = collision(sims[k]);
+        const SingeTimers timers = singe_sim_timers(sims[k]);
+        print_message("%d of 3 steps halted, the last with %.0f units of work a cell\n", (int)timers.contact_halts,
+                      (double)plan->work / plan->cell_count);
+        assert_true(timers.contact_halts > 0);
+        assert_true(plan->work < 2 * plan->work_max);
+        assert_int_equal(crossings(sims[k]), 0);
+    }
+
+    test_assert_same(sims[0], sims[1]);
+    singe_sim_destroy(sims[0]), singe_sim_destroy(sims[1]);
+}
+
 /// Pairs of boxes that the search compares, per cell, of a flat sheet in one of three positions.
 static double compared(uint32_t nx, uint32_t ny, float dx, float dy, int position) {
     SingeSimDef def = singe_default_sim();
