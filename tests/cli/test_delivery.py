@@ -139,7 +139,8 @@ class Delivery(Case):
         self.assertEqual(min(image["two_too.A"]), 1)
         with open(self.scene, "w") as file:
             file.write(BURNING + "sheets: [{mesh: bare.obj}]\noutput: {formats: [textures]}\n")
-        self.assertIn("no sheet has uv", self.run_scene("x", expect=1)[1])
+        self.assertIn("many.yaml:8:19: error: the format 'textures' needs a sheet with uv; no sheet has any",
+                      self.run_scene("x", expect=2)[1])
 
     @unittest.skipIf(HAS_EXR, "built with EXR")
     def test_without_exr(self):
