@@ -13,8 +13,10 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "cli/outputs.h"
 #include "cli/text.h"
 #include "common/allocator.h"
+#include "scene/messages.h"
 
 #if defined(__APPLE__)
 #include <sys/sysctl.h>
@@ -203,6 +205,20 @@ ExitCode job_build(Job *job, Console *console, SingeSim **sim) {
     SceneMessages messages = {0};
     job_note_long(job, console, "building");
     SingeResult result = scene_build(job->scene, &job->assets, &job->hooks, sim, &messages);
+
+    // what a run would find when it writes its first frame
+    if (!result && job->scene->gas_detail > 1) {
+        const SingeGas coarse = singe_sim_gas(*sim);
+        SingeGas fine;
+        SingeError error = {0};
+        result = gas_detail_shape(&coarse, job->scene->gas_detail, &fine, &error);
+        if (result) {
+            message_add(&messages, job->scene->text, (SceneLocation){0}, "%s", error.message);
+            singe_sim_destroy(*sim);
+            *sim = NULL;
+        }
+    }
+
     if (result) {
         console_clear(console);
         scene_messages_print(&messages, stderr);

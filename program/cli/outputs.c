@@ -293,7 +293,19 @@ static void refine(const SingeGas *coarse, int detail, Gas *fine) {
     }
 }
 
-SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Pictures *pictures, int number, int detail,
+SingeResult gas_detail_shape(const SingeGas *coarse, int detail, SingeGas *fine, SingeError *error) {
+    *fine = *coarse;
+    fine->cell = coarse->cell / (float)detail;
+    for (int c = 0; c < 3; c++) fine->size[c] *= (uint32_t)detail;
+    if (gas_shape_is_good(fine)) return SINGE_OK;
+    *error = (SingeError){.code = SINGE_ERROR_LIMIT, .stage = "gas", .element = -1};
+    snprintf(error->message, sizeof error->message,
+             "the gas with detail %d has %u x %u x %u cells: at most 4096 a side and %d in all are possible", detail,
+             fine->size[0], fine->size[1], fine->size[2], GAS_CELL_LIMIT);
+    return SINGE_ERROR_LIMIT;
+}
+
+SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Pictures *pictures, int detail,
                                    SingeError *error) {
     Gas fine = {0};
     const SingeGas *coarse = &frame->gas.view;
@@ -302,17 +314,8 @@ SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Picture
         snprintf(error->message, sizeof error->message, "%.200s: the frame has no gas", path);
         return SINGE_ERROR_FILE;
     }
-    fine.view = *coarse;
-    fine.view.cell = coarse->cell / (float)detail;
-    for (int c = 0; c < 3; c++) fine.view.size[c] *= (uint32_t)detail;
-    if (!gas_shape_is_good(&fine.view)) {
-        *error = (SingeError){.code = SINGE_ERROR_LIMIT, .stage = "gas", .element = number};
-        snprintf(error->message, sizeof error->message, "a gas of %u x %u x %u cells is too fine: at most %d cells",
-                 fine.view.size[0], fine.view.size[1], fine.view.size[2], GAS_CELL_LIMIT);
-        return SINGE_ERROR_LIMIT;
-    }
-
-    SingeResult result = gas_make(&fine, path, 0, error);
+    SingeResult result = gas_detail_shape(coarse, detail, &fine.view, error);
+    if (!result) result = gas_make(&fine, path, 0, error);
     if (!result)
         result = pictures_bake(pictures, &frame->surface, coarse, frame->time, detail, fine.extinction,
                                fine.flame_share, error);
@@ -329,7 +332,7 @@ SingeResult gas_detail_convert(const Folder *folder, Pictures *pictures, int num
     Frame frame = {0};
     char *path = folder_gas_detail(folder, number);
     SingeResult result = frame_read(folder, number, &frame, error);
-    if (!result) result = gas_detail_write_frame(path, &frame, pictures, number, detail, error);
+    if (!result) result = gas_detail_write_frame(path, &frame, pictures, detail, error);
     frame_free(&frame);
     free(path);
     return result;

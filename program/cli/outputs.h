@@ -40,9 +40,12 @@ typedef bool OutputsProgress(void *context, int frame);
 SINGE_NODISCARD SingeResult outputs_write_single(const Outputs *outputs, int single, int frames,
                                                  OutputsProgress *progress, void *context, SingeError *error);
 
+/// The gas on cells `detail` times as fine, without values. SINGE_ERROR_LIMIT if a file cannot hold so many.
+SINGE_NODISCARD SingeResult gas_detail_shape(const SingeGas *coarse, int detail, SingeGas *fine, SingeError *error);
+
 /// Writes a frame that has gas, on cells `detail` times as fine.
-SINGE_NODISCARD SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Pictures *pictures, int number,
-                                                   int detail, SingeError *error);
+SINGE_NODISCARD SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Pictures *pictures, int detail,
+                                                   SingeError *error);
 
 /// The same from the cache.
 SINGE_NODISCARD SingeResult gas_detail_convert(const Folder *folder, Pictures *pictures, int number, int detail,

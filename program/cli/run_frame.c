@@ -110,7 +110,7 @@ static void *write_files(void *argument) {
     if (!result && gas && run->baker) {
         result = file_begin(run, folder_gas_detail(&run->folder, frame), &name, error);
         const int detail = run->job.scene->gas_detail;
-        if (!result) result = gas_detail_write_frame(name, &run->frame, run->baker, frame, detail, error);
+        if (!result) result = gas_detail_write_frame(name, &run->frame, run->baker, detail, error);
     }
 
     seconds[TOTAL_PLY] += seconds_since(&clock);

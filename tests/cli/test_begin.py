@@ -114,6 +114,18 @@ class Begin(Case):
                         self.assertIn(f"t{number}.yaml:4:19: error: the format 'textures'", err)
                         self.assertNotIn(".tmp", err)
 
+    def test_a_gas_too_fine_for_a_file_is_refused_by_check(self):
+        for detail, code in (1, 0), (4, 2):
+            with self.subTest(detail):
+                scene = self.path(f"g{detail}.yaml")
+                with open(scene, "w") as file:
+                    file.write("frames: 1\nsteps: 1\nsheets: [{grid: {size: [0.4, 0.4], cells: [6, 6]}}]\n"
+                               f"preview: {{size: [32, 32], samples: 1}}\ngas: {{cell_size: 3 mm, detail: {detail}}}\n")
+                for command in (["check"], ["run", "--no-preview", "-o", self.path(f"g{detail}")]):
+                    _, err = self.singe(*command, scene, expect=code)
+                    self.assertEqual(f"g{detail}.yaml: error: the gas with detail 4 has" in err, code == 2)
+                self.assertEqual(os.path.exists(self.path(f"g{detail}")), code == 0)
+
     def code_of(self, *args):
         run = self.start(*args)
         run.communicate(timeout=120)
