@@ -9,6 +9,7 @@
 #include "cli/interrupt.h"
 #include "cli/run.h"
 #include "cli/video.h"
+#include "scene/warnings.h"
 
 enum { OPT_OUTPUT, OPT_FRAMES, OPT_THREADS, OPT_SET, OPT_RESUME, OPT_NO_PREVIEW, OPT_EXR, OPT_QUIET, OPT_COUNT };
 
@@ -157,6 +158,11 @@ static void print_summary(Run *run) {
     console_note(run->console, "front %.1f mm/s, hottest %.0f C, %.0f %% burnt, %u pieces, %u particles left",
                  1e3 * stats.front_speed, run->totals->hottest - 273.15, 100 * stats.burnt_fraction, stats.pieces,
                  stats.particles);
+    const double ignition = scene_ignition(run->job.scene);
+    if (strcmp(record->result, "complete") == 0 && run->job.scene->frames > 1 && isfinite(ignition) &&
+        run->totals->ignited == 0 && stats.burnt_fraction == 0)
+        console_warn(run->console, "nothing ignited: hottest %.0f C, ignition %.0f C", run->totals->hottest - 273.15,
+                     ignition - 273.15);
     if (!stats.ledgers_close)
         console_warn(run->console,
                      "the ledgers do not close: heat is off by %.2g of its largest entry, mass by %.2g (the limit is "

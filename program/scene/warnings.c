@@ -67,26 +67,26 @@ static void warn_of_motion(const Scene *scene, const SceneMotion *motion, const 
                      scene->frames);
 }
 
-/// A source that cannot heat anything, whatever moves.
-static void warn_of_source(const Scene *scene, const SceneSource *source, const SingeLog *log) {
+const char *source_heats_nothing(const Scene *scene, const SceneSource *source) {
     const SingeSourceDef *def = &source->def;
     const double end = (scene->frames - 1) / (double)scene->fps;
     bool weak = source->strength_count > 0;
     for (uint32_t i = 0; i < source->strength_count; i++) weak = weak && source->strength[i].value == 0;
 
-    const char *why = NULL;
-    if (def->kind == SINGE_SOURCE_TEXTURE && (def->flux == 0 || weak)) why = "its flux is 0";
-    else if (def->kind != SINGE_SOURCE_TEXTURE && def->conductance == 0) why = "its conductance is 0";
-    else if (def->kind != SINGE_SOURCE_TEXTURE && def->radius + def->falloff == 0)
-        why = "its radius and its falloff are 0";
-    else if (def->end <= def->start) why = "it ends when it starts";
-    else if (scene->frames > 1 && (double)def->start >= end) why = "it starts after the last frame";
-    if (why) message_warn(log, scene->text, source->location, "the source heats nothing: %s", why);
+    if (def->kind == SINGE_SOURCE_TEXTURE && (def->flux == 0 || weak)) return "its flux is 0";
+    if (def->kind != SINGE_SOURCE_TEXTURE && def->conductance == 0) return "its conductance is 0";
+    if (def->kind != SINGE_SOURCE_TEXTURE && def->radius + def->falloff == 0) return "its radius and its falloff are 0";
+    if (def->end <= def->start) return "it ends when it starts";
+    return scene->frames > 1 && (double)def->start >= end ? "it starts after the last frame" : NULL;
 }
 
 void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
     if (!log->write) return;
-    for (uint32_t i = 0; i < scene->source_count; i++) warn_of_source(scene, &scene->sources[i], log);
+    for (uint32_t i = 0; i < scene->source_count; i++) {
+        const char *why = source_heats_nothing(scene, &scene->sources[i]);
+        if (why) message_warn(log, scene->text, scene->sources[i].location, "the source heats nothing: %s", why);
+    }
+    scene_warn_of_fires(scene, assets, log);
     for (uint32_t i = 0; i < scene->pin_count; i++) warn_of_pin(scene, assets, &scene->pins[i], log);
     for (uint32_t i = 0; i < scene->collider_count; i++)
         warn_of_motion(scene, &scene->colliders[i].motion, &assets->collider_motions[i], log);

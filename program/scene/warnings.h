@@ -7,4 +7,14 @@
 /// Logs settings that certainly have no effect, or not the intended one, each with its location in the scene.
 void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *log);
 
+/// Why a source cannot heat anything, whatever moves; NULL: it may.
+const char *source_heats_nothing(const Scene *scene, const SceneSource *source);
+
+/// Logs sources that miss all sheets, with the nearest distance, and those that are too weak to light them; or that there
+/// is no fire at all (fires.c).
+void scene_warn_of_fires(const Scene *scene, const SceneAssets *assets, const SingeLog *log);
+
+/// The lowest temperature at which a sheet of the scene begins to burn, K; INFINITY if none can.
+double scene_ignition(const Scene *scene);
+
 #endif

@@ -43,6 +43,17 @@ class Output(Case):
         self.assertLess(float(rows[-1]["ledger_error"]), 1e-5)
         self.assertLess(float(rows[-1]["mass_ledger_error"]), 1e-6)
 
+    def test_a_run_that_ignites_nothing_says_so(self):
+        cold = "nothing ignited: hottest 20 C, ignition 240 C"
+        for sets, said in ((["frames=6"], False), (["sources.0.position=[6, 0, 5 cm]"], True),
+                           (["sources=[]"], True), (["sources=[]", "sheets.0.material.mass_rate=0"], False),
+                           (["sources=[]", "sheets.0.material.temperature=300 C"], False)):
+            with self.subTest(sets):
+                _, err = self.run_scene("o", *(word for text in sets for word in ("--set", text)))
+                self.assertEqual(f"warning: {cold}" in err, said, err)
+                self.assertEqual("misses the sheets" in err, "6, 0" in sets[0], err)
+                self.assertEqual("nothing lights the sheets" in err, said and sets[0] == "sources=[]", err)
+
     def test_ledgers_that_do_not_close(self):
         _, err = self.run_scene("good")
         self.assertNotIn("ledgers", err)

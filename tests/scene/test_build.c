@@ -1,11 +1,13 @@
 // From a scene to a simulation and a preview.
 #include "parsing.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "scene/rotation.h"
+#include "scene/warnings.h"
 
 static void turn(const float q[4], const double v[3], double out[3]) {
     double x = q[0], y = q[1], z = q[2], w = q[3];
@@ -205,6 +207,25 @@ static void keep_line(void *context, SingeLogLevel level, const char *line) {
     if (level == SINGE_LOG_WARNING) strcat(strcat(lines, line), "\n");
 }
 
+/// Parses, loads and builds a scene, and keeps its warnings.
+static void warnings_of(const char *text, char *lines) {
+    SceneMessages messages = {0};
+    SceneAssets assets;
+    SingeSim *sim;
+    Scene *scene;
+    SingeSimDef hooks = singe_default_sim();
+    hooks.log = (SingeLog){keep_line, lines};
+    lines[0] = 0;
+    if (scene_parse("t.yaml", text, strlen(text), NULL, NULL, 0, &scene, &messages))
+        fail_msg("%s: %s", text, messages.items[0].text);
+    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
+    assert_int_equal(scene_build(scene, &assets, &hooks, &sim, &messages), SINGE_OK);
+    singe_sim_destroy(sim);
+    scene_assets_free(&assets);
+    scene_free(scene);
+    scene_messages_free(&messages);
+}
+
 /// Values without effect cause warnings with their location.
 TEST(values_without_effect_are_warned_of) {
     static const struct {
@@ -228,23 +249,108 @@ TEST(values_without_effect_are_warned_of) {
         {"frames: 26\nsources: [{kind: ball, position: [0, 0, 0], start: 1}]", NULL},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char text[400], lines[2000] = "";
+        char text[400], lines[4000];
         snprintf(text, sizeof text, "%s%s\n", SHEET, cases[i].more);
+        warnings_of(text, lines);
+        const bool warned = strstr(lines, "misses") || strstr(lines, "heats nothing");
+        if (cases[i].warning ? !strstr(lines, cases[i].warning) : warned) fail_msg("%s: %s", cases[i].more, lines);
+    }
+}
+
+/// A sheet of 10 cm at rest 5 cm above the ground, and a match at it. Each case replaces one line.
+TEST(fires_that_miss_are_warned_of) {
+    enum { SHEETS, SOURCES, MORE, LINES };
+    static const char *const usual[LINES] = {
+        "sheets: [{name: a, grid: {size: [10 cm, 10 cm], cells: [20, 20]}, translate: [0, 0, 5 cm]}]",
+        "sources: [{kind: spot, position: [-3 cm, 0, 5 cm], radius: 1 cm, falloff: 1 cm, temperature: 850 C, end: 2 s}]",
+        "colliders: [{kind: plane}]"};
+#define SPOT(...) "sources: [{kind: spot, radius: 1 cm, falloff: 1 cm, " __VA_ARGS__ "}]"
+#define GRID(size, more) "sheets: [{name: a, grid: {size: " size ", cells: [20, 20]}, " more "}]"
+    static const struct {
+        int line;
+        const char *text, *warning; ///< NULL: none
+    } cases[] = {
+        {MORE, "", NULL},
+        // a unit is missing
+        {SOURCES, SPOT("position: [6, 0, 5 cm]"),
+         "t.yaml:4:11: the source misses the sheets: what it heats ends 5.93 m from sheet 'a', the nearest\n"},
+        {SOURCES, SPOT("position: [-3, 0, 5 cm]"), "the source misses the sheets: what it heats ends 2.93 m"},
+        {SOURCES, SPOT("position: [-3 cm, 0, 5]"), "the source misses the sheets: what it heats ends 4.93 m"},
+        {SOURCES, SPOT("position: [-3 cm, 0, -5]"), "the source misses the sheets"},
+        {SOURCES, SPOT("position: [0, 30, 5 cm]"), "the source misses the sheets: what it heats ends 29.9 m"},
+        {SOURCES,
+         "sources: [{kind: ball, path: [{time: 0, position: [20, 0, 5 cm]}, {time: 1, position: [3, 0, 5 cm]}]}]",
+         "the source misses the sheets: what it heats ends 2.93 m"},
+        {SOURCES, SPOT("position: [-3 cm, 0, 5 cm], end: 1 ms"),
+         "t.yaml:4:11: the source lights nothing: it brings a sheet to 22 C at most, which ignites at 240 C\n"},
+        {SHEETS, GRID("[10 cm, 10 cm]", "translate: [20, 0, 5 cm]"), "the source misses the sheets"},
+        {SHEETS, GRID("[10, 10]", "translate: [0, 0, 5 cm]"), "it reaches 0.02 m, and the cells of sheet 'a' are 0."},
+        {SHEETS, GRID("[10 cm, 10 cm]", "translate: [0, 0, 5 cm], material: {grammage: 80}"),
+         "the source lights nothing"},
+        {SHEETS, GRID("[10 cm, 10 cm]", "translate: [0, 0, 5]") "\npins: [{points: [[0, 0, 5]]}]",
+         "the source misses the sheets"},
+        // no fire at all, or too cold a one
+        {SOURCES, "", "t.yaml: nothing lights the sheets: there is no source"},
+        {SOURCES, SPOT("position: [-3 cm, 0, 5 cm], temperature: 120 C"), "at most, which ignites at 240 C"},
+        // what comes to the fire, or the fire to it
+        {SHEETS, GRID("[10 cm, 10 cm]", "translate: [0, 0, 2 m]"), NULL},
+        {SHEETS, GRID("[10 cm, 10 cm]", "translate: [-2 m, 0, 10 cm], velocity: [2, 0, 0]"), NULL},
+        {SHEETS, GRID("[10 cm, 10 cm]", "translate: [-2 m, 0, 1 m]") "\nwind: {velocity: [3, 0, 0]}", NULL},
+        {SHEETS,
+         GRID("[10 cm, 10 cm]", "translate: [1 m, 0, 5 cm]") "\npins: [{points: [[1, 0, 0.05]], path: [{time: 0, "
+                                                             "position: [0, 0, 0]}, {time: 1, position: [-1, 0, 0]}]}]",
+         NULL},
+        {SOURCES,
+         "sources: [{kind: ball, path: [{time: 0, position: [-9, 1 cm, 5 cm]}, {time: 1, position: [9, 0, 5 cm]}]}]",
+         NULL},
+        {MORE, "frames: 2", NULL},
+        // lit by something else
+        {SHEETS, GRID("[10 cm, 10 cm]", "material: {temperature: 300 C}"), NULL},
+        {SOURCES, "ambient_temperature: 600", NULL},
+        {SHEETS, GRID("[10 cm, 10 cm]", "material: {mass_rate: 0}"), NULL},
+    };
+#undef SPOT
+#undef GRID
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[1000] = "frames: 48\nsteps: 4\n", lines[4000];
+        if (strstr(cases[i].text, "frames")) text[0] = 0;
+        for (int line = 0; line < LINES; line++)
+            strcat(strcat(text, line == cases[i].line ? cases[i].text : usual[line]), "\n");
+        warnings_of(text, lines);
+        if (cases[i].warning ? !strstr(lines, cases[i].warning) : strstr(lines, "source ") || strstr(lines, "lights"))
+            fail_msg("case %zu: %s\n%s", i, cases[i].text, lines);
+    }
+    char lines[4000];
+    warnings_of("frames: 48\nsteps: 4\nsheets: [{grid: {size: [10 cm, 10 cm], cells: [4, 4]}}]\n"
+                "colliders: [{kind: sphere, position: [0, 0, -6 cm], temperature: 600 C, conductance: 100}]\n",
+                lines);
+    assert_null(strstr(lines, "lights"));
+}
+
+/// The examples burn, and none of them is suspected of not doing so.
+TEST(fires_of_the_examples_miss_nothing) {
+    DIR *folder = opendir("examples");
+    uint32_t count = 0;
+    assert_non_null(folder);
+    for (struct dirent *entry; (entry = readdir(folder));) {
+        char path[600], lines[4000] = "";
+        snprintf(path, sizeof path, "examples/%.200s/%.200s.yaml", entry->d_name, entry->d_name);
+        if (access(path, R_OK) != 0) continue;
         SceneMessages messages = {0};
         SceneAssets assets;
-        SingeSim *sim;
         Scene *scene;
-        SingeSimDef hooks = singe_default_sim();
-        hooks.log = (SingeLog){keep_line, lines};
-        assert_int_equal(scene_parse("t.yaml", text, strlen(text), NULL, NULL, 0, &scene, &messages), SINGE_OK);
+        const SingeLog log = {keep_line, lines};
+        assert_int_equal(scene_read(path, NULL, 0, &scene, &messages), SINGE_OK);
         assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
-        assert_int_equal(scene_build(scene, &assets, &hooks, &sim, &messages), SINGE_OK);
-        if (cases[i].warning ? !strstr(lines, cases[i].warning) : lines[0]) fail_msg("%s: %s", cases[i].more, lines);
-        singe_sim_destroy(sim);
+        scene_warn(scene, &assets, &log);
+        if (lines[0]) fail_msg("%s", lines);
         scene_assets_free(&assets);
         scene_free(scene);
         scene_messages_free(&messages);
+        count++;
     }
+    closedir(folder);
+    assert_true(count >= 13);
 }
 
 static const char cube[] = "v 0 0 0\nv 20 0 0\nv 20 20 0\nv 0 20 0\nv 0 0 20\nv 20 0 20\nv 20 20 20\nv 0 20 20\n"

@@ -94,8 +94,9 @@ class Job:
         except OSError:
             lines = []
         # only the lines of errors; the lines of the scene quoted below them are dropped
-        said = [files.printable(line) for line in lines if "error:" in line]
-        return code, "\n".join(re.sub(r"^singe: error: ", "", line) for line in said[:6])
+        said = [files.printable(line) for line in lines
+                if "error:" in line or (code == 0 and "nothing ignited" in line)]
+        return code, "\n".join(re.sub(r"^singe: (error|warning): ", "", line) for line in said[:6])
 
 
 def frames_in(cache):

@@ -87,7 +87,7 @@ class Burning:
         self.look(context)
         scene, frames = context.scene, self.job.frames_done()
         if code == 0:
-            say(scene, f"{frames} frames burnt")
+            say(scene, f"{frames} frames burnt" + (f"; {said}: see Lit By" if said else ""))
         elif said:
             say(scene, said, True)
         elif not frames:
