@@ -51,7 +51,7 @@ demo:
 	scripts/setup.sh
 	cmake --preset release
 	cmake --build --preset release --target singe_program
-	build/singe run examples/note/note.yaml -o $(DEMO_DIR) $(DEMO_LOOK) $(DEMO_FLAGS)
+	build/singe run examples/note/note.yaml -o $(DEMO_DIR) --force $(DEMO_LOOK) $(DEMO_FLAGS)
 	@echo "the video: $$(realpath $(DEMO_DIR)/preview.mp4)"
 
 test:

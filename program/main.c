@@ -45,6 +45,7 @@ static void main_help(void) {
     }
 
     printf("\n  singe COMMAND --help   the command's options\n"
+           "  singe help COMMAND     the same\n"
            "  singe --version        the version\n\n"
            "Exit codes: 0 success, 1 the run failed or was interrupted, 2 bad input.\n");
 }
@@ -57,19 +58,15 @@ int main(int argc, char **argv) {
     mallopt(M_TRIM_THRESHOLD, 256 << 20);
 #endif
     if (console_open()) return EXIT_FAILED;
-    if (argc < 2) {
-        fputs("singe: error: needs a command: ", stderr);
-        for (int i = 0; i < COMMAND_COUNT && commands[i].group; i++) {
-            const bool last = i + 1 == COMMAND_COUNT || !commands[i + 1].group;
-            fprintf(stderr, "%s%s", i == 0 ? "" : last ? " or " : ", ", commands[i].name);
-        }
-        fputs("\nsee: singe --help\n", stderr);
-        return EXIT_INPUT;
-    }
+    const char *word = argc < 2 ? "help" : argv[1];
+    const bool help = strcmp(word, "help") == 0;
+    if (help && argc > 2) word = argv[2]; // singe help run: singe run --help
 
-    const char *word = argv[1];
-    for (int i = 0; i < COMMAND_COUNT; i++)
-        if (strcmp(word, commands[i].name) == 0) return console_finish(commands[i].run(argc - 2, argv + 2));
+    for (int i = 0; i < COMMAND_COUNT; i++) {
+        if (strcmp(word, commands[i].name) != 0) continue;
+        char *const ask[] = {"--help", NULL};
+        return console_finish(help ? commands[i].run(1, (char **)ask) : commands[i].run(argc - 2, argv + 2));
+    }
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0) {
         main_help();
         return console_finish(EXIT_GOOD);

@@ -2,6 +2,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "analysis/strip.h"
 #include "cli/args.h"
@@ -153,7 +154,7 @@ static SingeResult report_materials(const Scene *scene, float thickening, SingeE
         result = front_of(material, fine, &front, error);
         if (!result && front.speed > 0) {
             printf(": a level front of %.3g mm/s and %.0f C", 1e3 * front.speed, front.hottest - 273.15);
-            if (pace != 1) printf(", at this pace %.3g mm/s", 1e3 * front.speed * (double)pace);
+            if (pace != 1) printf(", on film %.3g mm/s (pace %.3g)", 1e3 * front.speed * (double)pace, (double)pace);
             const float step = scene->sim.time_step * pace * (float)front.thickening / thickening;
             if (step > fine && !(result = front_of(material, step, &rough, error))) {
                 const double slower = 1 - rough.speed / front.speed;
@@ -219,7 +220,8 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
         const double frame = scene->steps * times.step + times.surface + times.picture;
         char text[32];
         console_duration(frame * scene->frames, text);
-        printf("thickening    %.3g (of the front, by F)\n", (double)thickening);
+        printf("thickening    %.3g: the front is so many times as thick as a real one, as the cells need\n",
+               (double)thickening);
         printf("frames        %d at %.4g a second, %d steps of %.3g ms each\n", scene->frames, (double)scene->fps,
                scene->steps, 1e3 * (double)scene->sim.time_step);
         printf("time          about %s: a step %.2f ms, a surface %.2f ms, a picture %.0f ms, with %d threads\n", text,
@@ -251,7 +253,9 @@ int command_check(int argc, char **argv) {
 
     if (frames) set_frames(&sets, frames);
     Console console = console_make(false);
-    ExitCode code = good ? check_scene(&console, scene, &sets, threads) : EXIT_INPUT;
+    char *path = good ? job_scene_path(&console, scene) : NULL;
+    ExitCode code = path ? check_scene(&console, path, &sets, threads) : EXIT_INPUT;
+    free(path);
     set_free(&sets);
     return code;
 }

@@ -106,37 +106,45 @@ static ExitCode convert_parse(int argc, char **argv, ConvertOptions *o, bool *do
     return EXIT_INPUT;
 }
 
-/// What the progress line needs.
+/// The progress over all that is written. What reads the frames several times counts once.
 typedef struct ConvertProgress {
     Console *console;
     double begun;
-    int last;
+    int last, parts; ///< frames, and how many times they are written
+    int part, shown; ///< from 0; frames of all parts so far
 } ConvertProgress;
 
 static bool show_progress(void *context, int frame) {
-    const ConvertProgress *progress = context;
-    console_picture(progress->console, frame, progress->last, (console_clock() - progress->begun) / frame);
+    ConvertProgress *progress = context;
+    const int done = progress->part * progress->last + frame;
+    if (done > progress->shown) {
+        progress->shown = done;
+        console_picture(progress->console, done, progress->parts * progress->last,
+                        (console_clock() - progress->begun) / done);
+    }
     return !interrupt_asked();
 }
 
 /// Writes what was asked for. If Ctrl-C ends it, the result is an error.
 static SingeResult convert_all(const Outputs *outputs, const ConvertOptions *o, Console *console, int last,
                                SingeError *error) {
-    ConvertProgress progress = {console, console_clock(), last};
+    ConvertProgress progress = {console, console_clock(), last, o->gas + (o->formats != 0), 0, 0};
     SingeResult result = SINGE_OK;
+    for (int i = 0; i < OUTPUT_SINGLE_COUNT; i++) progress.parts += (int)(o->singles >> i & 1);
     if (o->gas) result = gas_detail_write(outputs->job, outputs->folder, last, show_progress, &progress, error);
 
-    progress.begun = console_clock();
+    progress.part = o->gas;
     for (int frame = 1; frame <= last && !result && o->formats; frame++) {
         result = outputs_convert(outputs, frame, o->formats, error);
         if (!show_progress(&progress, frame) && frame < last && !result) result = SINGE_ERROR_STATE;
     }
     if (!result && o->formats) result = outputs_write_roots(outputs, last, error);
 
+    progress.part += o->formats != 0;
     for (int i = 0; i < OUTPUT_SINGLE_COUNT && !result; i++) {
         if (!(o->singles >> i & 1)) continue;
-        progress.begun = console_clock();
         result = outputs_write_single(outputs, i, last, show_progress, &progress, error);
+        progress.part++;
     }
     return result;
 }

@@ -6,16 +6,19 @@
 
 #include "cli/job.h"
 
+#include <dirent.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include "cli/outputs.h"
 #include "cli/text.h"
 #include "common/allocator.h"
+#include "common/printable.h"
 #include "scene/messages.h"
 
 #if defined(__APPLE__)
@@ -114,6 +117,48 @@ static void set_hooks(Job *job, Console *console, int threads) {
     job->hooks.allocator = allocator_or_libc((SingeAllocator){0});
     job->hooks.log = console_log(console);
     job->hooks.thread_count = threads;
+}
+
+char *job_scene_path(Console *console, const char *path) {
+    DIR *folder = opendir(path);
+    if (!folder) return text_format("%s", path); // a file, or nothing: job_read says so
+
+    // the folder's own name, also of "." and "letter/"
+    char *whole = realpath(path, NULL), *found = NULL, *names = text_format("%s", "");
+    const char *slash = whole ? strrchr(whole, '/') : NULL;
+    char *own = text_format("%s.yaml", slash ? slash + 1 : path);
+    int count = 0;
+    for (struct dirent *entry; (entry = readdir(folder));) {
+        const char *dot = strrchr(entry->d_name, '.');
+        if (!dot || dot == entry->d_name || (strcmp(dot, ".yaml") != 0 && strcmp(dot, ".yml") != 0)) continue;
+        const bool named = strcmp(entry->d_name, own) == 0;
+        if (named || count == 0) {
+            free(found);
+            found = text_format(path[strlen(path) - 1] == '/' ? "%s%s" : "%s/%s", path, entry->d_name);
+        }
+        if (named) {
+            count = 1;
+            break;
+        }
+        if (count++ < 5) {
+            char *longer = text_format("%s%s%s", names, *names ? ", " : "", shown(entry->d_name).text);
+            free(names);
+            names = longer;
+        }
+    }
+    closedir(folder);
+    free(whole);
+    free(own);
+
+    if (count != 1) {
+        if (count)
+            console_error(console, "%s is a folder of several scenes: name one of %s", shown_path(path).text, names);
+        else console_error(console, "%s is a folder without a scene (.yaml)", shown_path(path).text);
+        free(found);
+        found = NULL;
+    }
+    free(names);
+    return found;
 }
 
 ExitCode job_read(Job *job, Console *console, const char *scene_path, const SetList *sets, int threads) {

@@ -24,6 +24,10 @@ typedef struct Job {
     SingeSimDef hooks; ///< allocator, log and threads
 } Job;
 
+/// The path of a scene that the command line names: a file, or a folder with one scene or with one of the folder's name.
+/// NULL after an error. Free it.
+char *job_scene_path(Console *console, const char *path);
+
 /// Reads only the scene file. Messages have been printed unless the result is EXIT_GOOD, and the job is closed.
 ExitCode job_read(Job *job, Console *console, const char *scene_path, const SetList *sets, int threads);
 

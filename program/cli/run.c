@@ -2,6 +2,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -11,7 +12,18 @@
 #include "cli/video.h"
 #include "scene/warnings.h"
 
-enum { OPT_OUTPUT, OPT_FRAMES, OPT_THREADS, OPT_SET, OPT_RESUME, OPT_NO_PREVIEW, OPT_EXR, OPT_QUIET, OPT_COUNT };
+enum {
+    OPT_OUTPUT,
+    OPT_FRAMES,
+    OPT_THREADS,
+    OPT_SET,
+    OPT_RESUME,
+    OPT_FORCE,
+    OPT_NO_PREVIEW,
+    OPT_EXR,
+    OPT_QUIET,
+    OPT_COUNT
+};
 
 static const ArgOption run_options[OPT_COUNT] = {
     [OPT_OUTPUT] = {"output", 'o', "DIR", "folder of the cache [out/NAME]"},
@@ -19,6 +31,7 @@ static const ArgOption run_options[OPT_COUNT] = {
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]; the result does not depend on them"},
     [OPT_SET] = {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated"},
     [OPT_RESUME] = {"resume", 0, NULL, "continues from DIR/checkpoint.singe"},
+    [OPT_FORCE] = {"force", 'f', NULL, "replaces an earlier run in DIR without a question, which a terminal is asked"},
     [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no pictures and makes no video"},
     [OPT_EXR] = {"exr", 0, NULL, "also writes DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
     [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
@@ -49,6 +62,7 @@ static ExitCode run_parse(int argc, char **argv, RunOptions *options, bool *done
         case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &options->threads); break;
         case OPT_SET: set_add(&options->sets, value); break;
         case OPT_RESUME: options->resume = true; break;
+        case OPT_FORCE: options->force = true; break;
         case OPT_NO_PREVIEW: options->no_preview = true; break;
         case OPT_EXR: options->exr = true; break;
         case OPT_QUIET: options->quiet = true; break;
@@ -155,8 +169,11 @@ static void print_summary(Run *run) {
     console_duration(run->totals->wall_seconds, took);
     console_note(run->console, "%s: %d of %d frames in %s", record->result, record->frames_done, run->job.scene->frames,
                  took);
-    console_note(run->console, "front %.1f mm/s, hottest %.0f C, %.0f %% burnt, %u pieces, %u particles left",
-                 1e3 * stats.front_speed, run->totals->hottest - 273.15, 100 * stats.burnt_fraction, stats.pieces,
+    char film[60] = "";
+    const double pace = (double)run->job.scene->sim.pace;
+    if (pace != 1) snprintf(film, sizeof film, " in the fire's time, %.1f on film", 1e3 * stats.front_speed * pace);
+    console_note(run->console, "front %.1f mm/s%s, hottest %.0f C, %.0f %% burnt, %u pieces, %u particles left",
+                 1e3 * stats.front_speed, film, run->totals->hottest - 273.15, 100 * stats.burnt_fraction, stats.pieces,
                  stats.particles);
     const double ignition = scene_ignition(run->job.scene);
     if (strcmp(record->result, "complete") == 0 && run->job.scene->frames > 1 && isfinite(ignition) &&
@@ -260,9 +277,11 @@ int command_run(int argc, char **argv) {
                    .pictures_lock = LOCK_NONE,
                    .started = console_clock()};
         run.checkpoint_time = run.started;
-        run.record = record_make(options.scene);
+        char *scene = job_scene_path(&console, options.scene);
+        options.scene = scene;
+        run.record = record_make(scene ? scene : "");
         run.totals = &run.record.totals;
-        code = job_read(&run.job, &console, options.scene, &options.sets, options.threads);
+        code = scene ? job_read(&run.job, &console, scene, &options.sets, options.threads) : EXIT_INPUT;
         const bool drawn = !options.no_preview && pictures_available();
         if (!code) code = job_load(&run.job, &console, drawn ? scene_picture_memory(run.job.scene) : 0);
         if (!code) code = run_scene(&run, &options);
@@ -276,6 +295,7 @@ int command_run(int argc, char **argv) {
         lock_release(&run.cache_lock);
         folder_free(&run.folder);
         job_close(&run.job);
+        free(scene);
     }
 
     set_free(&options.sets);

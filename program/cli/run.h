@@ -37,7 +37,7 @@ typedef struct RunOptions {
     const char *scene, *output;
     SetList sets;
     int threads;
-    bool resume, no_preview, exr, quiet;
+    bool resume, force, no_preview, exr, quiet;
 } RunOptions;
 
 /// A file of the current frame.

@@ -3,6 +3,7 @@
 // An earlier run remains until the first frame of the new one and its run.json are whole, under temporary names. Then
 // the earlier checkpoint is removed, run.json is replaced, the earlier frames are removed, the new frame gets its name,
 // and the tables start again. Thus frames of two runs are never mixed.
+#include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -186,6 +187,22 @@ SingeResult run_take_over(Run *run, SingeError *error) {
     return result ? result : tables_begin(&run->tables, error);
 }
 
+/// Asks on a terminal whether an earlier run may be replaced. Scripts are not asked.
+static bool may_replace(const Run *run) {
+    char *first = folder_ply(&run->folder, 1), answer[16] = "";
+    const bool asks = folder_has(first) && isatty(STDIN_FILENO) && isatty(STDERR_FILENO);
+    free(first);
+    if (!asks) return true;
+    fprintf(stderr, "%s has frames of an earlier run of '%s'. Replace them? [y/N] ", run->folder.path,
+            run->folder.name);
+    fflush(stderr);
+    if (fgets(answer, sizeof answer, stdin) && (answer[0] == 'y' || answer[0] == 'Y')) return true;
+    console_error(run->console,
+                  "nothing was replaced; -o names another folder, --force replaces without a question, and "
+                  "--resume continues a run");
+    return false;
+}
+
 // ---- both
 
 ExitCode run_prepare(Run *run, const RunOptions *options) {
@@ -216,6 +233,7 @@ ExitCode run_prepare(Run *run, const RunOptions *options) {
     }
     if (options->resume && !run->sim)
         console_note(run->console, "no checkpoint in %s: starting from the beginning", run->folder.path);
+    if (!run->sim && !options->force && !may_replace(run)) return EXIT_FAILED;
     if (!run->sim && (code = job_build(&run->job, run->console, &run->sim))) return code;
     if ((code = hold_folder(run))) return code;
 

@@ -22,6 +22,16 @@ static const char events_header[] = "frame,time,event,element,x,y,z,u,v\n";
 static const char probes_header[] =
     "frame,time,probe,sheet,there,x,y,z,temperature,temperature_peak,mass,burn_rate,time_ignited,piece\n";
 
+const char *tables_unit(const char *column) {
+    static const struct {
+        const char *begins, *unit;
+    } units[] = {{"time", "s"},  {"mass_ledger", ""}, {"mass", "kg"},    {"temperature_", "K"},
+                 {"heat_", "J"}, {"ms_", "ms"},       {"speed_", "m/s"}, {"front_speed", "m/s of the fire's time"}};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+        if (strncmp(column, units[i].begins, strlen(units[i].begins)) == 0) return units[i].unit;
+    return "";
+}
+
 static SingeResult tables_no_memory(SingeError *error) {
     *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "output", .element = -1};
     return SINGE_ERROR_MEMORY;

@@ -79,6 +79,8 @@ SINGE_NODISCARD SingeResult tables_write_frame(Tables *tables, int frame, const 
 SINGE_NODISCARD SingeResult tables_write_steps(Tables *tables, int frame, SingeError *error);
 /// Asks the system to put the lines on the disk, as a checkpoint relies on them.
 SINGE_NODISCARD SingeResult tables_sync(Tables *tables, SingeError *error);
+/// The unit of a column of stats.csv; "" if it has none.
+const char *tables_unit(const char *column);
 void tables_close(Tables *tables);
 
 #endif

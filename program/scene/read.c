@@ -250,8 +250,11 @@ static void read_child(Reader *reader, const Schema *schema, unsigned kind, cons
         Nearest nearest = {.word = child->key};
         for (int i = 0; i < schema->row_count; i++)
             if (row_allowed(&schema->rows[i], kind)) nearest_offer(&nearest, schema->rows[i].key);
+        nearest_hint(&nearest, hint, sizeof hint);
+        if (!nearest.best && (strcmp(child->key, "color") == 0 || strcmp(child->key, "colour") == 0))
+            snprintf(hint, sizeof hint, "; sheets and colliders have a 'colour'");
         message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
-                    node_key(child, key, sizeof key), schema->title, nearest_hint(&nearest, hint, sizeof hint));
+                    node_key(child, key, sizeof key), schema->title, hint);
     }
 }
 

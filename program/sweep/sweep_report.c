@@ -12,6 +12,7 @@
 #include "analysis/numbers.h"
 #include "cli/csv.h"
 #include "cli/folder.h"
+#include "cli/tables.h"
 #include "cli/text.h"
 #include "cli/video.h"
 #include "formats/formats.h"
@@ -153,6 +154,14 @@ static void write_page(const Report *report, FILE *page) {
     for (int c = 0; c < report->column_count; c++) {
         if (c) fputs(", ", file);
         text_json_string(file, report->columns[c].name);
+    }
+
+    // names of measure.csv end with their units
+    fputs("], \"units\": [", file);
+    for (int c = 0; c < report->column_count; c++) {
+        const char *name = report->columns[c].name;
+        if (c) fputs(", ", file);
+        text_json_string(file, strncmp(name, "stats.", 6) == 0 ? tables_unit(name + 6) : "");
     }
 
     fputs("],\n\"rows\": [", file);

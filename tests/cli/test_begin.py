@@ -2,11 +2,12 @@
 
 import hashlib
 import os
+import pty
 import resource
 import shutil
 import unittest
 
-from support import HAS_EXR, HAS_PREVIEW, Case
+from support import HAS_EXR, HAS_PREVIEW, SINGE, Case
 
 
 class Begin(Case):
@@ -48,6 +49,41 @@ class Begin(Case):
                 self.assertNotIn(".tmp", err, "a name that exists for a moment helps nobody")
                 self.assertEqual(self.tree("o"), before)
         self.assertEqual(self.run_scene("o", "--resume", "--frames", "7", *args, preview=True)[1].count("frame 6"), 1)
+
+    def on_a_terminal(self, answer, *args):
+        """Runs with a terminal as all three streams. Returns the exit code and what was shown."""
+        pid, terminal = pty.fork()
+        if pid == 0:
+            os.execv(SINGE, [SINGE, *args])
+        shown = b""
+        if answer:
+            while b"[y/N]" not in shown:
+                shown += os.read(terminal, 1000)
+            os.write(terminal, answer)
+        try:
+            while more := os.read(terminal, 1000):
+                shown += more
+        except OSError:  # the end, on Linux
+            pass
+        os.close(terminal)
+        return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), shown.decode(errors="replace")
+
+    def test_a_terminal_is_asked_before_an_earlier_run_goes(self):
+        """Only where there is something to lose, and a script never is."""
+        run = ["run", self.scene, "-o", self.path("o"), "--no-preview", "--set", "frames=2"]
+        code, shown = self.on_a_terminal(None, *run)
+        self.assertEqual((code, "[y/N]" in shown), (0, False), shown)
+        before = self.tree("o")
+        for answer in b"n\n", b"\n", b"\x04":
+            code, shown = self.on_a_terminal(answer, *run)
+            self.assertEqual(code, 1, shown)
+            self.assertRegex(shown, "o has frames of an earlier run of 'tiny'. Replace them?(.|\n)*nothing was replaced")
+            self.assertEqual(self.tree("o"), before)
+        for answer, more in ((b"y\n", []), (None, ["--force"]), (None, ["--resume"])):
+            code, shown = self.on_a_terminal(answer, *run, *more)
+            self.assertEqual((code, "[y/N]" in shown), (0, answer is not None), shown)
+            self.assertEqual("removed " in shown, more != ["--resume"], shown)
+        self.singe(*run)
 
     def test_a_full_folder_leaves_the_earlier_run(self):
         self.run_scene("o", preview=True)

@@ -45,6 +45,15 @@ class Convert(Case):
         self.no_temporaries("c")
         self.assertEqual(self.plys("o"), self.plys("c"))
 
+    def test_progress_ends_once(self):
+        """Whatever is written, and however often a format reads the frames."""
+        self.run_scene("o", "--quiet", "--set", "output.texture_size=64")
+        for wanted in (["usd"], ["usd", "glb", "vtp"], ["vat"], ["usdz", "vat", "glb"]):
+            with self.subTest(wanted):
+                _, err = self.singe("convert", self.path("o"), *(word for name in wanted for word in ("--to", name)))
+                ends = re.findall(r"frame (\d+)/(\d+)", err)
+                self.assertEqual(sum(a == b for a, b in ends), 1, err)
+
     def test_resume(self):
         """A run that goes on, with a format more than it began with, leaves what one from the start does."""
         self.run_formats("o")

@@ -355,6 +355,10 @@ class Sweep(Case):
         self.assertNotIn("a<b>", page)
         self.assertEqual(data["parameters"], ["pace", "sheets.0.picture"])
         self.assertEqual(data["rows"][3]["values"], ["9", '"a<b>&\\"c.png"'])
+        units = dict(zip(data["columns"], data["units"]))
+        self.assertEqual({units["stats." + name] for name in ("burnt_fraction", "pieces", "mass_ledger_error")}, {""})
+        self.assertEqual([units["stats." + name] for name in ("mass", "temperature_max", "heat_in", "ms_gas",
+                         "front_speed")], ["kg", "K", "J", "ms", "m/s of the fire's time"])
         table = self.table("report.csv")
         for i, row in enumerate(table):
             stats = self.stats(f"s/rows/{i + 1:04}")[-1]

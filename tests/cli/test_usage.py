@@ -23,9 +23,30 @@ class Usage(Case):
             self.assertIn(f"usage: singe {command}", out)
             self.assertIn(word, out)
 
+    def test_help_is_where_it_is_looked_for(self):
+        whole, _ = self.singe("--help")
+        self.assertEqual(self.singe(), (whole, ""))
+        self.assertEqual(self.singe("help"), (whole, ""))
+        for command in "run", "check", "sweep", "scene-doc":
+            self.assertEqual(self.singe("help", command), self.singe(command, "--help"))
+        self.assertIn("did you mean 'run'?", self.singe("help", "rum", expect=2)[1])
+
+    def test_a_folder_stands_for_its_scene(self):
+        os.mkdir(self.path("letter"))
+        self.write_scene("letter/any.yaml", frames=2, gas="no")
+        for folder in "letter", "letter/", "./letter":
+            self.assertIn("any.yaml: good", self.singe("check", folder, cwd=self.dir)[0])
+        self.write_scene("letter/other.yaml", frames=2, gas="no")
+        _, err = self.singe("run", self.path("letter"), "-o", self.path("o"), expect=2)
+        self.assertRegex(err, r"letter is a folder of several scenes: name one of (any.yaml, other|other.yaml, any).yaml")
+        self.write_scene("letter/letter.yaml", frames=2, gas="no")
+        self.singe("run", ".", "-o", self.path("o"), "--no-preview", cwd=self.path("letter"))
+        self.assertEqual(os.listdir(self.path("o", "ply"))[0][:6], "letter")
+        os.mkdir(self.path("empty"))
+        self.assertIn("empty is a folder without a scene", self.singe("check", self.path("empty"), expect=2)[1])
+
     def test_bad_usage(self):
         for args, hint in (
-            ([], "needs a command"),
             (["rum"], "did you mean 'run'?"),
             (["--verison"], "unknown option"),
             (["run"], "needs SCENE"),

@@ -1,6 +1,6 @@
 """Alembic from a cache, for pipelines without USD: shape, uv and velocity.
 
-Needs `pip install singe[alembic]`.
+Needs the package alembic3d of PyPI.
 USD and PLY keep every field; Alembic's readers drop scalars of vertices, so none are written (docs/formats.md).
 """
 
@@ -27,7 +27,7 @@ def _modules() -> Any:
         import alembic3d.AbcGeom
         import imath
     except ImportError as error:
-        raise ImportError("Alembic needs the package alembic3d: pip install singe[alembic]") from error
+        raise ImportError("Alembic needs the package alembic3d: pip install alembic3d") from error
     return alembic3d, imath
 
 

@@ -175,7 +175,7 @@ class Cache:
         """Writes all frames as one Alembic file, NAME.abc in the folder by default, and returns its path.
 
         A mesh a sheet, y up: positions, triangles, uv of corners, and velocities (m/s) for motion blur; no fields.
-        Frame f is at f/fps seconds. `progress` is called with (frame, frames). Needs `pip install singe[alembic]`.
+        Frame f is at f/fps seconds. `progress` is called with (frame, frames). Needs the package alembic3d of PyPI.
         """
         from .alembic import write
         return write(self, path, progress)
