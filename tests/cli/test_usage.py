@@ -80,7 +80,7 @@ class Usage(Case):
         open(empty, "w").close()
         for path, hint in (
             (self.path("nothing.yaml"), "nothing.yaml"),
-            (self.dir, "directory"),
+            (self.dir, "folder of several scenes"),
             (unknown, "colour"),
             (mesh, "nowhere.obj"),
             (empty, "empty.yaml"),
