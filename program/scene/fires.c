@@ -110,18 +110,7 @@ static Place place_of(const Scene *scene, const SceneAssets *assets, uint32_t in
     return place;
 }
 
-/// The distance of a point from the box that a sheet sweeps as it falls, m.
-static double box_distance(const Place *place, const double p[3]) {
-    double sum = 0;
-    for (int c = 0; c < 3; c++) {
-        const double low = place->low[c] + fmin(place->fall[c], 0), high = place->high[c] + fmax(place->fall[c], 0);
-        const double out = fmax(fmax(low - p[c], p[c] - high), 0);
-        sum += out * out;
-    }
-    return sqrt(sum);
-}
-
-/// The least distance of a source from the box while it burns. The distance from a box is convex along each part of the
+/// The least distance of a source from the box that a sheet sweeps as it falls, while the source burns. The distance from a box is convex along each part of the
 /// path, so that dividing the part finds it.
 static double path_distance(const SceneSource *source, const Place *place) {
     const double from = fmax((double)source->def.start, 0), to = (double)source->def.end;
@@ -137,11 +126,17 @@ static double path_distance(const SceneSource *source, const Place *place) {
         for (int k = 0; k < 40; k++) {
             double at[2], distance[2];
             for (int side = 0; side < 2; side++) {
-                double p[3];
+                double sum = 0;
                 at[side] = low + (high - low) * (1 + side) / 3;
-                for (int c = 0; c < 3; c++)
-                    p[c] = (double)a->position[c] + at[side] * ((double)b->position[c] - (double)a->position[c]);
-                distance[side] = box_distance(place, p);
+                for (int c = 0; c < 3; c++) {
+                    const double p =
+                        (double)a->position[c] + at[side] * ((double)b->position[c] - (double)a->position[c]);
+                    const double below = place->low[c] + fmin(place->fall[c], 0) - p;
+                    const double above = p - place->high[c] - fmax(place->fall[c], 0);
+                    const double out = fmax(fmax(below, above), 0);
+                    sum += out * out;
+                }
+                distance[side] = sqrt(sum);
             }
             least = fmin(least, fmin(distance[0], distance[1]));
             if (distance[0] < distance[1]) high = at[1];
@@ -150,24 +145,6 @@ static double path_distance(const SceneSource *source, const Place *place) {
         }
     }
     return least;
-}
-
-/// The distance of a source that stands still from the nearest particle, where they are at the start.
-static double particle_distance(const Mesh *mesh, const float p[3]) {
-    double least = INFINITY;
-    for (uint32_t i = 0; i < mesh->vertex_count + mesh->cell_count; i++) {
-        double sum = 0;
-        for (size_t c = 0; c < 3; c++) {
-            double x = 0;
-            if (i < mesh->vertex_count) x = (double)mesh->positions[3 * (size_t)i + c];
-            for (size_t k = 0; k < 4 && i >= mesh->vertex_count; k++)
-                x += 0.25 *
-                     (double)mesh->positions[3 * (size_t)mesh->cells[4 * (size_t)(i - mesh->vertex_count) + k] + c];
-            sum += (x - (double)p[c]) * (x - (double)p[c]);
-        }
-        least = fmin(least, sum);
-    }
-    return sqrt(least);
 }
 
 /// The temperature to which a source can bring a layer of the sheet, K, if it heats all of it for as long as it burns,
@@ -194,7 +171,10 @@ static double heat_of(const Scene *scene, const SceneSource *source, const Place
 static bool source_lights(const Scene *scene, const SceneAssets *assets, const SceneSource *source, const Place *places,
                           bool lit, const SingeLog *log) {
     const bool everywhere = source->def.kind == SINGE_SOURCE_TEXTURE;
-    const double reach = everywhere ? INFINITY : (double)source->def.radius + (double)source->def.falloff;
+    // a flame of its own is some 0.24 m high at 1 kW, and its hot gas rises farther
+    const bool flame = !everywhere && scene->sim.gas.enabled && source->def.power > 0;
+    const double plume = flame ? 0.5 * pow(1e-3 * (double)source->def.power, 0.4) : 0;
+    const double reach = everywhere ? INFINITY : (double)source->def.radius + (double)source->def.falloff + plume;
     double nearest = INFINITY, hottest = 0, ignition = INFINITY;
     uint32_t near = 0, between = UINT32_MAX;
     bool touches = false;
@@ -204,15 +184,31 @@ static bool source_lights(const Scene *scene, const SceneAssets *assets, const S
         if (gap < nearest) nearest = gap, near = i;
         if (!(gap <= places[i].slack)) continue;
 
-        // a source that is smaller than the cells, on a sheet that has not moved yet
-        if (gap <= 0 && source->key_count == 1 && reach < 0.5 * places[i].cell &&
-            particle_distance(&assets->meshes[i], source->keys[0].position) > reach) {
+        // a source that is smaller than the cells may lie between the particles of a sheet that has not moved yet
+        const Mesh *mesh = &assets->meshes[i];
+        const bool small = gap <= 0 && source->key_count == 1 && reach < 0.5 * places[i].cell;
+        double particle = small ? INFINITY : 0;
+        for (uint32_t k = 0; small && k < mesh->vertex_count + mesh->cell_count; k++) {
+            double sum = 0;
+            for (size_t c = 0; c < 3; c++) {
+                double x = k < mesh->vertex_count ? (double)mesh->positions[3 * (size_t)k + c] : 0;
+                const uint32_t *cell =
+                    k < mesh->vertex_count ? NULL : mesh->cells + 4 * (size_t)(k - mesh->vertex_count);
+                for (size_t corner = 0; cell && corner < 4; corner++)
+                    x += 0.25 * (double)mesh->positions[3 * (size_t)cell[corner] + c];
+                x -= (double)source->keys[0].position[c];
+                sum += x * x;
+            }
+            particle = fmin(particle, sqrt(sum));
+        }
+        if (particle > reach) {
             between = i;
             continue;
         }
+
         touches = true;
         const double heat = heat_of(scene, source, &places[i]);
-        if (places[i].burns && heat >= places[i].ignition) return true;
+        if (places[i].burns && (flame || heat >= places[i].ignition)) return true;
         hottest = fmax(hottest, heat);
         ignition = fmin(ignition, places[i].ignition);
     }

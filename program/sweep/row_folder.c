@@ -43,20 +43,6 @@ RowState sweep_row_state(const Sweep *sweep, uint32_t row) {
 
 // ---- scenes
 
-/// Whether the file is not a scene, neither alone nor with `sets`. A plan may come from a stranger and name any file of
-/// the user's, so only the errors of what is a scene are shown, with the lines that they quote.
-static bool is_no_scene(const char *path, const SetList *sets) {
-    for (int with = 0; with < 2; with++) {
-        SceneMessages messages = {0};
-        Scene *scene;
-        const SingeResult result = scene_read(path, sets->items, with ? sets->count : 0, &scene, &messages);
-        scene_messages_free(&messages);
-        if (!result) scene_free(scene);
-        if (result != SINGE_ERROR_FORMAT) return false;
-    }
-    return true;
-}
-
 ExitCode sweep_check_row(Sweep *sweep, uint32_t row) {
     const Plan *plan = &sweep->plan;
     char *owned[PLAN_PARAMETERS_MAX];
@@ -70,7 +56,19 @@ ExitCode sweep_check_row(Sweep *sweep, uint32_t row) {
     }
 
     Job job;
-    const bool foreign = is_no_scene(plan->scene, &sets);
+
+    // A plan may come from a stranger and name any file of the user's: only the errors of what is a scene, alone or with
+    // the row's values, are shown, with the lines that they quote
+    bool foreign = true;
+    for (int with = 0; with < 2 && foreign; with++) {
+        SceneMessages messages = {0};
+        Scene *scene;
+        const SingeResult result = scene_read(plan->scene, sets.items, with ? sets.count : 0, &scene, &messages);
+        scene_messages_free(&messages);
+        if (!result) scene_free(scene);
+        foreign = result == SINGE_ERROR_FORMAT;
+    }
+
     ExitCode code = foreign ? EXIT_INPUT : job_read(&job, sweep->console, plan->scene, &sets, 1);
     if (foreign) {
         console_error(sweep->console, "%s, which %s names, is not a valid scene; `singe check` says why",

@@ -289,6 +289,10 @@ TEST(fires_that_miss_are_warned_of) {
          "the source lights nothing"},
         {SHEETS, GRID("[10 cm, 10 cm]", "translate: [0, 0, 5]") "\npins: [{points: [[0, 0, 5]]}]",
          "the source misses the sheets"},
+        // a flame heats what is above it
+        {SOURCES, SPOT("position: [-3 cm, 0, -15 cm], power: 100, conductance: 0") "\ngas: yes", NULL},
+        {SOURCES, SPOT("position: [-3 cm, 0, -5], power: 100, conductance: 0") "\ngas: yes",
+         "the source misses the sheets"},
         // no fire at all, or too cold a one
         {SOURCES, "", "t.yaml: nothing lights the sheets: there is no source"},
         {SOURCES, SPOT("position: [-3 cm, 0, 5 cm], temperature: 120 C"), "at most, which ignites at 240 C"},
