@@ -26,6 +26,7 @@ static const struct {
     {"verify", command_verify, "look", "finds faults in a cache: crossings, inverted cells, bad edges and values"},
     {"sweep", command_sweep, "many", "burns a scene many times with other parameters, here or on a farm"},
     {"fit", command_fit, "many", "fits a scene's parameters to measurements"},
+    {"replay", command_replay, "research", "repeats a recording of a run, and names the first step that differs"},
     {"bench", command_bench, "research", "measures speed, strain and stability of the solver on this machine"},
     {"paper", command_paper, "research", "runs the paper's experiments and writes a page about them"},
     {"validate", command_validate, "research", "compares the physics with outside sources, on a page"},

@@ -95,6 +95,14 @@ typedef struct SingeLog {
     void *context;
 } SingeLog;
 
+/// Receives a recording (docs/replay.md), in pieces and in order: how the simulation was made, and every call that
+/// changes it. `write` gets a call's arguments before the call does anything, so that what has been written reproduces a
+/// crash. If it returns false, the recording ends, with a warning in the log; the simulation goes on.
+typedef struct SingeRecord {
+    bool (*write)(void *context, const void *bytes, size_t size);
+    void *context;
+} SingeRecord;
+
 /// A range of independent work items [begin, end).
 typedef void SingeTaskFn(void *task, int begin, int end);
 

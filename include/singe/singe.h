@@ -8,6 +8,7 @@
 #include "singe/mesh.h"
 #include "singe/surface.h"
 #include "singe/sim.h"
+#include "singe/replay.h"
 #include "singe/research.h"
 
 #endif

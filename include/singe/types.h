@@ -373,6 +373,7 @@ typedef struct SingeSimDef {
     SingeSolverDef solver;   ///< how springs are kept at their lengths
     SingeGasDef gas;         ///< not enabled: still air
     SingeContactDef contact; ///< not enabled: sheets pass through themselves and each other
+    SingeRecord record;      ///< zeroed: nothing is recorded. A clone records nothing
 } SingeSimDef;
 
 SINGE_API void singe_init_sim(SingeSimDef *def, size_t struct_size);

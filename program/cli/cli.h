@@ -16,6 +16,7 @@ int command_render(int argc, char **argv);
 int command_convert(int argc, char **argv);
 int command_measure(int argc, char **argv);
 int command_verify(int argc, char **argv);
+int command_replay(int argc, char **argv);
 int command_bench(int argc, char **argv);
 int command_paper(int argc, char **argv);
 int command_validate(int argc, char **argv);

@@ -21,6 +21,7 @@ enum {
     OPT_FORCE,
     OPT_NO_PREVIEW,
     OPT_EXR,
+    OPT_RECORD,
     OPT_QUIET,
     OPT_COUNT
 };
@@ -34,6 +35,7 @@ static const ArgOption run_options[OPT_COUNT] = {
     [OPT_FORCE] = {"force", 'f', NULL, "replaces an earlier run in DIR without a question, which a terminal is asked"},
     [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no pictures and makes no video"},
     [OPT_EXR] = {"exr", 0, NULL, "also writes DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
+    [OPT_RECORD] = {"record", 0, "FILE", "also writes a recording, which `singe replay` repeats and compares"},
     [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
 };
 
@@ -65,6 +67,7 @@ static ExitCode run_parse(int argc, char **argv, RunOptions *options, bool *done
         case OPT_FORCE: options->force = true; break;
         case OPT_NO_PREVIEW: options->no_preview = true; break;
         case OPT_EXR: options->exr = true; break;
+        case OPT_RECORD: options->record = value; break;
         case OPT_QUIET: options->quiet = true; break;
         case ARG_OPERAND: options->scene = value; break;
         case ARG_HELP: *done = true; return EXIT_GOOD;
@@ -284,6 +287,8 @@ int command_run(int argc, char **argv) {
         code = scene ? job_read(&run.job, &console, scene, &options.sets, options.threads) : EXIT_INPUT;
         const bool drawn = !options.no_preview && pictures_available();
         if (!code) code = job_load(&run.job, &console, drawn ? scene_picture_memory(run.job.scene) : 0);
+        if (!code && options.record) code = recording_open(&run.recording, options.record, &console);
+        run.job.hooks.record = recording_hook(&run.recording);
         if (!code) code = run_scene(&run, &options);
         tables_close(&run.tables);
         frame_free(&run.frame);
@@ -291,6 +296,7 @@ int command_run(int argc, char **argv) {
         if (run.baker != run.pictures) pictures_close(run.baker);
         pictures_close(run.pictures);
         singe_sim_destroy(run.sim);
+        code = recording_close(&run.recording, code, &console);
         lock_release(&run.pictures_lock);
         lock_release(&run.cache_lock);
         folder_free(&run.folder);

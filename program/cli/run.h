@@ -11,6 +11,7 @@
 #include "cli/lock.h"
 #include "cli/outputs.h"
 #include "cli/pictures.h"
+#include "cli/recording.h"
 #include "cli/tables.h"
 
 /// DIR/run.json: the scene, the program, the time taken and the outcome of a run.
@@ -35,6 +36,7 @@ SINGE_NODISCARD SingeResult record_write(const Record *record, const char *path,
 
 typedef struct RunOptions {
     const char *scene, *output;
+    const char *record; ///< file of the recording; NULL: none
     SetList sets;
     int threads;
     bool resume, force, no_preview, exr, quiet;
@@ -79,6 +81,7 @@ typedef struct Run {
     int file_count;
     FrameWriting writing;
     Tables tables;
+    Recording recording;
     Record record;
     Totals *totals;     ///< the record's
     SingeTimers timers; ///< as last read

@@ -216,6 +216,7 @@ SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const Sin
     def.allocator = hooks->allocator;
     def.log = hooks->log;
     def.tasks = hooks->tasks;
+    def.record = hooks->record;
     def.thread_count = hooks->thread_count;
 
     *sim = NULL;

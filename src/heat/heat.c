@@ -155,7 +155,9 @@ SingeResult heat_step(HeatPlan *plan, const StepContext *context, HeatState *hea
                      .heat = heat,
                      .pool = context->pool,
                      .h = context->h,
-                     .dt = context->h * plan->settings.pace};
+                     .dt = context->h * plan->settings.pace,
+                     .heard = context->heard,
+                     .hearer = context->hearer};
     double made = 0;
 
     heat_plan_follow(plan, shell, state);

@@ -96,14 +96,16 @@ typedef struct HeatPass {
     const StateInput *state;
     HeatState *heat;
     Pool *pool;
-    float h;           ///< s of scene time
-    float dt;          ///< s of fire
-    float step_length; ///< of the conjugate gradients
-    float direction;   ///< their beta
-    int turn;          ///< which of rest.awake is current
-    float min, max;    ///< K, the range of T*
-    double slack;      ///< K, allowed outside of it before bound.c ends the step
-    double share;      ///< fraction of the distance to the range's end, in bound.c
+    float h;            ///< s of scene time
+    float dt;           ///< s of fire
+    float step_length;  ///< of the conjugate gradients
+    float direction;    ///< their beta
+    int turn;           ///< which of rest.awake is current
+    float min, max;     ///< K, the range of T*
+    double slack;       ///< K, allowed outside of it before bound.c ends the step
+    double share;       ///< fraction of the distance to the range's end, in bound.c
+    SingeFluxFn *heard; ///< of the context
+    void *hearer;
 } HeatPass;
 
 /// Updates operator and matrix for a shell that has torn since the last call (heat_plan.c).

@@ -252,9 +252,10 @@ static void source_texture(HeatPass *pass, const Source *source, const SingeView
 
 static void source_callback(HeatPass *pass, const Source *source, const SingeView *view) {
     HeatPlan *plan = pass->plan;
-    if (source->def.callback)
-        source->def.callback(source->def.callback_context, view, plan->flux, plan->source_conductance,
-                             plan->source_temperature);
+    if (!source->def.callback) return;
+    source->def.callback(source->def.callback_context, view, plan->flux, plan->source_conductance,
+                         plan->source_temperature);
+    if (pass->heard) pass->heard(pass->hearer, view, plan->flux, plan->source_conductance, plan->source_temperature);
 }
 
 /// A particle is in contact within contact_distance if its side of the sheet faces the collider. The particle behind it

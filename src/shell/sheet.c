@@ -17,9 +17,9 @@ static const double measure_max = 1e30;
 
 static size_t sheet_min(size_t a, size_t b) { return a < b ? a : b; }
 
-/// Copies a Def of any version over the defaults. The material is embedded and has grown on its own, so the fields
-/// after it are located by the size that the caller's header gave it.
-static bool read_def(const SingeSheetDef *def, SingeSheetDef *out) {
+// The material is embedded and has grown on its own, so the fields after it are located by the size that the caller's
+// header gave it.
+bool sheet_read_def(const SingeSheetDef *def, SingeSheetDef *out) {
     const size_t head = offsetof(SingeSheetDef, material), tail = offsetof(SingeSheetDef, velocity);
     const char *bytes = (const char *)def;
     size_t size = def->struct_size, inner;
@@ -174,7 +174,7 @@ static bool source_alloc(Memory *memory, const SingeSheetDef *def, SheetSource *
 SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, SheetSource *source, SingeError *error) {
     SingeSheetDef def;
     memset(source, 0, sizeof *source);
-    if (!given || !read_def(given, &def))
+    if (!given || !sheet_read_def(given, &def))
         return argument("sheet", "struct_size is that of no version; start from singe_default_sheet()", error);
     Sheet *sheet = &source->sheet;
     copy_name(def.name ? def.name : "sheet", sheet->name, sizeof sheet->name);

@@ -146,6 +146,9 @@ static inline float sheet_param(const SheetSource *source, int param, uint32_t i
     return source->values[param] ? source->values[param][i] : source->value[param];
 }
 
+/// Copies a Def of any version over the defaults. False when a struct_size is not set.
+bool sheet_read_def(const SingeSheetDef *given, SingeSheetDef *def);
+
 /// Checks a sheet's Def, copies its mesh (sheet.c) and evaluates its material (material.c). Errors name the
 /// sheet's own vertex or cell.
 SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *def, SheetSource *source, SingeError *error);

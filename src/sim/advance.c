@@ -1,5 +1,5 @@
 // Steps of a fixed length for frames of any length.
-#include "sim/sim_internal.h"
+#include "sim/calls.h"
 
 #include <string.h>
 
@@ -7,7 +7,7 @@
 /// 6e-8 of itself in each step.
 static const double ADVANCE_SLACK = 0.01;
 
-SingeResult singe_sim_advance(SingeSim *sim, double seconds, uint32_t steps_max, uint32_t *steps) {
+SingeResult call_advance(SingeSim *sim, double seconds, uint32_t steps_max, uint32_t *steps) {
     const double h = (double)sim->def.time_step;
     uint32_t done = 0;
     if (steps) *steps = 0;

@@ -13,7 +13,7 @@ void sim_free_source(SingeSim *sim, Source *source) {
     memset(source, 0, sizeof *source);
 }
 
-SingeResult singe_sim_add_source(SingeSim *sim, const SingeSourceDef *given, SingeSourceId *id) {
+SingeResult call_add_source(SingeSim *sim, const SingeSourceDef *given, SingeSourceId *id) {
     if (id) *id = (SingeSourceId){0, 0};
     SingeSourceDef def;
     OBJECT_DEF(sim, "source", def, given, singe_default_source);
@@ -27,14 +27,14 @@ SingeResult singe_sim_add_source(SingeSim *sim, const SingeSourceDef *given, Sin
     return SINGE_OK;
 }
 
-SingeResult singe_sim_remove_source(SingeSim *sim, SingeSourceId id) {
+SingeResult call_remove_source(SingeSim *sim, SingeSourceId id) {
     Source *source = OBJECT_FIND(sim->sources, id);
     if (!source) return object_stale(sim, "source", id.index);
     sim_free_source(sim, source);
     return SINGE_OK;
 }
 
-SingeResult singe_sim_set_source_callback(SingeSim *sim, SingeSourceId id, SingeFluxFn *callback, void *context) {
+SingeResult call_set_source_callback(SingeSim *sim, SingeSourceId id, SingeFluxFn *callback, void *context) {
     Source *source = OBJECT_FIND(sim->sources, id);
     if (!source) return object_stale(sim, "source", id.index);
     if (source->def.kind != SINGE_SOURCE_CALLBACK)
@@ -44,7 +44,7 @@ SingeResult singe_sim_set_source_callback(SingeSim *sim, SingeSourceId id, Singe
     return SINGE_OK;
 }
 
-SingeResult singe_sim_move_source(SingeSim *sim, SingeSourceId id, uint32_t count, const SingePoseKey *path) {
+SingeResult call_move_source(SingeSim *sim, SingeSourceId id, uint32_t count, const SingePoseKey *path) {
     Source *source = OBJECT_FIND(sim->sources, id);
     if (!source) return object_stale(sim, "source", id.index);
     if (source->def.kind != SINGE_SOURCE_BALL && source->def.kind != SINGE_SOURCE_SPOT)
@@ -57,7 +57,7 @@ SingeResult singe_sim_move_source(SingeSim *sim, SingeSourceId id, uint32_t coun
 
 // ---- colliders
 
-SingeResult singe_sim_add_collider(SingeSim *sim, const SingeColliderDef *given, SingeColliderId *id) {
+SingeResult call_add_collider(SingeSim *sim, const SingeColliderDef *given, SingeColliderId *id) {
     if (id) *id = (SingeColliderId){0, 0};
     SingeColliderDef def;
     OBJECT_DEF(sim, "collider", def, given, singe_default_collider);
@@ -74,21 +74,21 @@ SingeResult singe_sim_add_collider(SingeSim *sim, const SingeColliderDef *given,
     return SINGE_OK;
 }
 
-SingeResult singe_sim_remove_collider(SingeSim *sim, SingeColliderId id) {
+SingeResult call_remove_collider(SingeSim *sim, SingeColliderId id) {
     Collider *collider = OBJECT_FIND(sim->colliders, id);
     if (!collider) return object_stale(sim, "collider", id.index);
     collider_free(&sim->memory, collider);
     return SINGE_OK;
 }
 
-SingeResult singe_sim_move_collider(SingeSim *sim, SingeColliderId id, uint32_t count, const SingePoseKey *path) {
+SingeResult call_move_collider(SingeSim *sim, SingeColliderId id, uint32_t count, const SingePoseKey *path) {
     Collider *collider = OBJECT_FIND(sim->colliders, id);
     if (!collider) return object_stale(sim, "collider", id.index);
     if (count == 0) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "collider", id.index, "the path needs at least one key");
     return path_set(&collider->path, &sim->memory, count, path, "collider", &sim->error);
 }
 
-SingeResult singe_sim_set_collider_vertices(SingeSim *sim, SingeColliderId id, const float *vertices, double time) {
+SingeResult call_set_collider_vertices(SingeSim *sim, SingeColliderId id, const float *vertices, double time) {
     Collider *collider = OBJECT_FIND(sim->colliders, id);
     if (!collider) return object_stale(sim, "collider", id.index);
     if (collider->def.kind != SINGE_COLLIDER_DEFORMING)
@@ -102,7 +102,7 @@ SingeResult singe_sim_set_collider_vertices(SingeSim *sim, SingeColliderId id, c
 
 // ---- wind
 
-SingeResult singe_sim_set_wind(SingeSim *sim, const SingeWindDef *given) {
+SingeResult call_set_wind(SingeSim *sim, const SingeWindDef *given) {
     SingeWindDef def;
     OBJECT_DEF(sim, "wind", def, given, singe_default_wind);
     TRY(def_check(&wind_table, &def, &sim->error));

@@ -2,7 +2,7 @@
 #ifndef SIM_OBJECTS_H
 #define SIM_OBJECTS_H
 
-#include "sim/sim_internal.h"
+#include "sim/calls.h"
 
 /// Reads the part of a caller's Def that it knows, over the defaults; fails if its struct_size is that of no version.
 #define OBJECT_DEF(sim, stage, local, given, defaults)                                        \

@@ -141,7 +141,7 @@ static SingeResult pin_hold(SingeSim *sim, const SingePinDef *def, Pin *pin) {
     return SINGE_OK;
 }
 
-SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *given, SingePinId *id) {
+SingeResult call_add_pin(SingeSim *sim, const SingePinDef *given, SingePinId *id) {
     if (id) *id = (SingePinId){0, 0};
     SingePinDef def;
     OBJECT_DEF(sim, "pin", def, given, singe_default_pin);
@@ -182,7 +182,7 @@ SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *given, SingePinI
     return SINGE_OK;
 }
 
-SingeResult singe_sim_remove_pin(SingeSim *sim, SingePinId id) {
+SingeResult call_remove_pin(SingeSim *sim, SingePinId id) {
     Pin *pin = OBJECT_FIND(sim->pins, id);
     if (!pin) return object_stale(sim, "pin", id.index);
     pin_count(sim, pin, -1);
@@ -191,7 +191,7 @@ SingeResult singe_sim_remove_pin(SingeSim *sim, SingePinId id) {
     return SINGE_OK;
 }
 
-SingeResult singe_sim_move_pin(SingeSim *sim, SingePinId id, uint32_t count, const SingePoseKey *path) {
+SingeResult call_move_pin(SingeSim *sim, SingePinId id, uint32_t count, const SingePoseKey *path) {
     Pin *pin = OBJECT_FIND(sim->pins, id);
     if (!pin) return object_stale(sim, "pin", id.index);
     // anchors are relative to the pose at which the pin was added: carry them over to the new path's frame
@@ -211,7 +211,7 @@ const uint32_t *singe_sim_pin_particles(const SingeSim *sim, SingePinId id, uint
     return pin && pin->count ? pin->particles : NULL;
 }
 
-SingeResult singe_sim_set_pin_positions(SingeSim *sim, SingePinId id, const float *positions, double time) {
+SingeResult call_set_pin_positions(SingeSim *sim, SingePinId id, const float *positions, double time) {
     Pin *pin = OBJECT_FIND(sim->pins, id);
     if (!pin) return object_stale(sim, "pin", id.index);
     if (!sim->committed)

@@ -21,7 +21,7 @@ static int gravity_axis(const float gravity[3]) {
     return gravity[up] > 0 ? -(up + 1) : up + 1;
 }
 
-SingeResult singe_sim_set_gravity(SingeSim *sim, const float gravity[3]) {
+SingeResult call_set_gravity(SingeSim *sim, const float gravity[3]) {
     TRY(def_check_field(&sim_table, "gravity", gravity, "gravity", &sim->error));
     if (sim->gas && gravity_axis(gravity) != gravity_axis(sim->def.gravity))
         return sim_fail(sim, SINGE_ERROR_STATE, "gravity", -1,
@@ -32,7 +32,7 @@ SingeResult singe_sim_set_gravity(SingeSim *sim, const float gravity[3]) {
     return SINGE_OK;
 }
 
-SingeResult singe_sim_set_pace(SingeSim *sim, float pace) {
+SingeResult call_set_pace(SingeSim *sim, float pace) {
     TRY(def_check_field(&sim_table, "pace", &pace, "pace", &sim->error));
     sim->def.pace = pace;
     if (sim->heat) heat_plan_set_pace(sim->heat, pace);
@@ -40,8 +40,7 @@ SingeResult singe_sim_set_pace(SingeSim *sim, float pace) {
     return SINGE_OK;
 }
 
-SingeResult singe_sim_set_velocity(SingeSim *sim, SingeSheetId id, uint32_t first, uint32_t count,
-                                   const float *velocity) {
+SingeResult call_set_velocity(SingeSim *sim, SingeSheetId id, uint32_t first, uint32_t count, const float *velocity) {
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "velocity", -1,
                         "singe_sim_commit must come first; a sheet's Def has the velocity at the start");
@@ -80,21 +79,24 @@ SingeResult singe_sim_set_velocity(SingeSim *sim, SingeSheetId id, uint32_t firs
 static SingeResult sim_rebuild(SingeSim *sim) {
     SingeSim *fresh;
     if (!sim->committed) return SINGE_OK;
-    TRY(singe_sim_clone(sim, &fresh));
+    TRY(call_clone(sim, &fresh));
     fresh->timers = sim->timers;
     fresh->intersecting_warned = sim->intersecting_warned;
     fresh->crossing_warned = sim->crossing_warned;
     fresh->crowd_warned = sim->crowd_warned;
     fresh->heat_warned = sim->heat_warned;
     fresh->tear_warned = sim->tear_warned;
+    fresh->def.record = sim->def.record;
     const SingeSim swap = *sim;
     *sim = *fresh;
     *fresh = swap;
+    sim->recorder = fresh->recorder;
+    fresh->recorder = NULL;
     singe_sim_destroy(fresh);
     return SINGE_OK;
 }
 
-SingeResult singe_sim_set_ambient_temperature(SingeSim *sim, float temperature) {
+SingeResult call_set_ambient_temperature(SingeSim *sim, float temperature) {
     TRY(def_check_field(&sim_table, "ambient_temperature", &temperature, "ambient", &sim->error));
     const float before = sim->def.ambient_temperature;
     const double start = sim->heat_start, stored = sim->committed ? sim_enthalpy(sim) : 0;
@@ -157,7 +159,7 @@ static void material_swap(SheetSource *source, MaterialValues *with) {
     }
 }
 
-SingeResult singe_sim_set_material(SingeSim *sim, SingeSheetId id, const SingeMaterialDef *given, const float *share) {
+SingeResult call_set_material(SingeSim *sim, SingeSheetId id, const SingeMaterialDef *given, const float *share) {
     if (id.generation != 1 || id.index >= sim->sheet_count) return object_stale(sim, "material", id.index);
     SingeMaterialDef material;
     OBJECT_DEF(sim, "material", material, given, singe_default_material);

@@ -4,7 +4,7 @@
 #include "common/real.h"
 #include "common/store.h"
 #include "shell/shell_validate.h"
-#include "sim/sim_internal.h"
+#include "sim/calls.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -44,14 +44,14 @@ bool sim_read_def(void *def, size_t size, const void *given, size_t given_size) 
     return true;
 }
 
-/// Reads a simulation's Def of any version. Wind, solver, gas and contact lie inside and grow separately, so the field
-/// after each is found by the size that the caller's header gave it.
-static bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
+// Wind, solver, gas and contact lie inside and grow separately, so the field after each is found by the size that the
+// caller's header gave it.
+bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
     const size_t head = offsetof(SingeSimDef, wind);
     const char *bytes = (const char *)given;
     *def = singe_default_sim();
     if (!given || !struct_size_is_possible(given->struct_size)) return false;
-    size_t rest = given->struct_size, wind, solver, gas;
+    size_t rest = given->struct_size, wind, solver, gas, contact;
     memcpy(def, bytes, rest < head ? rest : head);
     def->struct_size = sizeof *def;
     if (rest <= head) return true;
@@ -73,10 +73,18 @@ static bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
     memcpy(&gas, bytes, sizeof gas);
     bytes += gas;
     rest -= gas;
-    return rest == 0 || sim_read_def(&def->contact, sizeof def->contact, bytes, rest);
+    if (rest == 0) return true;
+    if (!sim_read_def(&def->contact, sizeof def->contact, bytes, rest)) return false;
+    memcpy(&contact, bytes, sizeof contact);
+    bytes += contact;
+    rest -= contact;
+    if (rest == 0) return true;
+    if (rest < sizeof def->record) return false;
+    memcpy(&def->record, bytes, sizeof def->record);
+    return true;
 }
 
-SingeResult singe_sim_create(const SingeSimDef *given, SingeSim **out, SingeError *error) {
+SingeResult sim_make(const SingeSimDef *given, SingeSim **out, SingeError *error) {
     *out = NULL;
     SingeSimDef def;
     if (!sim_read_sim_def(given, &def))
@@ -99,6 +107,22 @@ SingeResult singe_sim_create(const SingeSimDef *given, SingeSim **out, SingeErro
     }
     *out = sim;
     return SINGE_OK;
+}
+
+SingeResult singe_sim_create(const SingeSimDef *def, SingeSim **sim, SingeError *error) {
+    TRY(sim_make(def, sim, error));
+    SingeResult result = sim_record(*sim, NULL, 0, error);
+    if (!result) return SINGE_OK;
+    singe_sim_destroy(*sim);
+    *sim = NULL;
+    return result;
+}
+
+SingeResult sim_record(SingeSim *sim, const uint8_t *bytes, size_t size, SingeError *error) {
+    if (!sim->def.record.write) return SINGE_OK;
+    sim->recorder = recorder_open(&sim->def, bytes, size);
+    if (sim->recorder) return SINGE_OK;
+    return error_set(error, SINGE_ERROR_MEMORY, "simulation", -1, "out of memory");
 }
 
 /// Frees what sim_build made, also so that a failed commit can be tried again.
@@ -128,6 +152,7 @@ static void sim_unbuild(SingeSim *sim) {
 void singe_sim_destroy(SingeSim *sim) {
     if (!sim) return;
     Memory *memory = &sim->memory;
+    recorder_close(sim->recorder);
     pool_destroy(memory, sim->pool);
     for (uint32_t i = 0; i < sim->sources.count; i++) sim_free_source(sim, &sim->sources.items[i]);
     for (uint32_t i = 0; i < sim->colliders.count; i++) collider_free(memory, &sim->colliders.items[i]);
@@ -161,7 +186,7 @@ void *sim_slot(SingeSim *sim, void *items_pointer, uint32_t *count, uint32_t *ca
     return memset(items + i * size, 0, size);
 }
 
-SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSheetId *id) {
+SingeResult call_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSheetId *id) {
     if (id) *id = (SingeSheetId){0, 0};
     if (sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "sheet", -1, "sheets must be added before singe_sim_commit");
@@ -233,7 +258,7 @@ SingeResult sim_build(SingeSim *sim) {
     return SINGE_OK;
 }
 
-SingeResult singe_sim_commit(SingeSim *sim) {
+SingeResult call_commit(SingeSim *sim) {
     if (sim->committed) return sim_fail(sim, SINGE_ERROR_STATE, "commit", -1, "the simulation is committed already");
     if (sim->sheet_count == 0) return sim_fail(sim, SINGE_ERROR_STATE, "commit", -1, "there is no sheet");
     SingeResult result = sim_build(sim);
@@ -255,5 +280,6 @@ SingeResult singe_sim_commit(SingeSim *sim) {
     sim->committed = true;
     shell_assert(&sim->shell, &sim->state);
     sim_log_commit(sim);
+    if (sim->recorder) recorder_state(sim->recorder, &sim->shell, &sim->state);
     return SINGE_OK;
 }

@@ -9,6 +9,7 @@
 #include "gas/gas.h"
 #include "heat/heat.h"
 #include "tear/tear.h"
+#include "sim/recorder.h"
 
 #include <string.h>
 
@@ -16,7 +17,8 @@ struct SingeSim {
     Memory memory;
     SingeSimDef def;
     Pool *pool;
-    SingeError error; ///< of the last failed call
+    SingeError error;   ///< of the last failed call
+    Recorder *recorder; ///< NULL: nothing is recorded
 
     // description: fixed once committed
     uint32_t sheet_count, sheet_capacity;
@@ -57,6 +59,9 @@ struct SingeSim {
 /// One step, for singe_sim_step and singe_sim_advance.
 SingeResult sim_step(SingeSim *sim);
 
+/// Makes an empty simulation, without a recorder.
+SingeResult sim_make(const SingeSimDef *def, SingeSim **sim, SingeError *error);
+
 /// Stores a failure in sim->error and returns it.
 SingeResult sim_fail(SingeSim *sim, SingeResult code, const char *stage, int64_t element, const char *message);
 
@@ -69,6 +74,12 @@ static inline void sim_write_result(void *result, size_t size, const void *ours,
     memset(result, 0, size);
     memcpy(result, ours, size < known ? size : known);
 }
+
+/// The Def of a simulation, of any version. False when struct_size is not set.
+bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def);
+
+/// Begins the recording that the simulation's Def asks for, if any: of one that was made, or loaded from `bytes`.
+SingeResult sim_record(SingeSim *sim, const uint8_t *bytes, size_t size, SingeError *error);
 
 /// Checks the numbers of a simulation's Def.
 SingeResult sim_check_def(const SingeSimDef *def, SingeError *error);

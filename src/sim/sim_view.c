@@ -1,5 +1,5 @@
 // Read-only views, events, timers, counts and the drawn surface.
-#include "sim/sim_internal.h"
+#include "sim/calls.h"
 #include "surface/surface.h"
 
 void singe_sim_read_view(const SingeSim *sim, SingeView *out, size_t struct_size) {
@@ -93,7 +93,7 @@ void singe_sim_read_counts(const SingeSim *sim, SingeCounts *out, size_t struct_
     sim_write_result(out, struct_size, &counts, sizeof counts);
 }
 
-SingeResult singe_sim_draw(SingeSim *sim, SingeSurface *surface, size_t struct_size) {
+SingeResult call_draw(SingeSim *sim, SingeSurface *surface, size_t struct_size) {
     if (struct_size < sizeof *surface)
         return sim_fail(sim, SINGE_ERROR_ARGUMENT, "surface", -1, "struct_size is smaller than a SingeSurface");
     if (!sim->committed)

@@ -6,6 +6,7 @@
 // not malice: data read back must pass the checks of the public functions, and a State those of what steps can leave
 // (snapshot_check.c).
 #include "shell/split.h"
+#include "sim/calls.h"
 #include "sim/snapshot_check.h"
 #include "sim/snapshot_def.h"
 #include "sim/snapshot_objects.h"
@@ -116,7 +117,7 @@ static SingeResult snapshot_body(Stream *stream, SingeSim *sim) {
     return ok ? SINGE_OK : sim_fail(sim, SINGE_ERROR_MEMORY, "load", -1, "out of memory");
 }
 
-SingeResult singe_sim_save(SingeSim *sim, uint8_t **bytes, size_t *size) {
+SingeResult call_save(SingeSim *sim, uint8_t **bytes, size_t *size) {
     *bytes = NULL;
     *size = 0;
     if (!sim->committed)
@@ -162,15 +163,16 @@ SingeResult singe_sim_load(const SingeSimDef *hooks, const uint8_t *bytes, size_
         return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "the snapshot is damaged: wrong checksum");
 
     SingeSim *sim;
-    TRY(singe_sim_create(hooks, &sim, error));
+    TRY(sim_make(hooks, &sim, error));
 
     // the stream only reads: the cast does not drop constness in effect
     Stream read = {.mode = STREAM_READ,
                    .bytes = (uint8_t *)(uintptr_t)(bytes + sizeof(SnapshotHeader)),
                    .size = size - sizeof(SnapshotHeader)};
     SingeResult result = snapshot_body(&read, sim);
+    if (result && error) *error = sim->error;
+    if (!result) result = sim_record(sim, bytes, size, error);
     if (result) {
-        if (error) *error = sim->error;
         singe_sim_destroy(sim);
         return result;
     }
@@ -179,12 +181,14 @@ SingeResult singe_sim_load(const SingeSimDef *hooks, const uint8_t *bytes, size_
     return SINGE_OK;
 }
 
-SingeResult singe_sim_clone(SingeSim *sim, SingeSim **copy) {
+SingeResult call_clone(SingeSim *sim, SingeSim **copy) {
     *copy = NULL;
     uint8_t *bytes;
     size_t size;
-    TRY(singe_sim_save(sim, &bytes, &size));
-    SingeResult result = singe_sim_load(&sim->def, bytes, size, copy, &sim->error);
+    SingeSimDef hooks = sim->def;
+    hooks.record = (SingeRecord){0};
+    TRY(call_save(sim, &bytes, &size));
+    SingeResult result = singe_sim_load(&hooks, bytes, size, copy, &sim->error);
     singe_sim_free_bytes(sim, bytes, size);
     if (result) return result;
     sim_copy_hooks(sim, *copy);

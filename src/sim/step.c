@@ -2,7 +2,7 @@
 #include "common/assertion.h"
 #include "common/clock.h"
 #include "shell/shell_validate.h"
-#include "sim/sim_internal.h"
+#include "sim/calls.h"
 
 #include <string.h>
 
@@ -48,6 +48,8 @@ StepContext sim_context(SingeSim *sim, const SingeView *view) {
                          .sources = &sim->sources,
                          .wind = &sim->def.wind,
                          .view = view,
+                         .heard = sim->recorder ? recorder_hear : NULL,
+                         .hearer = sim->recorder,
                          .pool = sim->pool,
                          .events = &sim->events,
                          .error = &sim->error,
@@ -162,6 +164,7 @@ SingeResult sim_step(SingeSim *sim) {
     sim->state.step++;
     sim->state.time = (double)sim->state.step * (double)sim->def.time_step;
     sim->timers.steps++;
+    if (sim->recorder) recorder_state(sim->recorder, &sim->shell, &sim->state);
 
     // with assertions: checks everything that a step may have changed
     shell_assert(&sim->shell, &sim->state);
@@ -169,7 +172,7 @@ SingeResult sim_step(SingeSim *sim) {
     return SINGE_OK;
 }
 
-SingeResult singe_sim_step(SingeSim *sim) {
+SingeResult call_step(SingeSim *sim) {
     sim->gathers = false;
     return sim_step(sim);
 }

@@ -18,6 +18,8 @@ typedef struct StepContext {
     const SourceList *sources;     ///< may be NULL
     const SingeWindDef *wind;
     const SingeView *view; ///< of the State, for callback sources
+    SingeFluxFn *heard;    ///< gets the arrays after each callback source, for a recording; may be NULL
+    void *hearer;          ///< its first argument
     Pool *pool;            ///< NULL: the stage runs here
     EventList *events;
     SingeError *error;

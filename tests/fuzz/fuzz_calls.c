@@ -1,6 +1,10 @@
-// Any bytes as calls: two sheets, and steps between which anything is set, added, moved, removed, saved and loaded.
+// Any bytes as calls: sheets, and steps between which anything is set, added, moved, removed, saved and loaded.
 // Nothing crashes; a call that fails changes nothing; what is left stays finite; a second simulation, with two threads,
 // which is loaded or cloned from the first at times, gets the same answers and has the same bytes.
+//
+// With SINGE_RECORD=FILE in the environment, FILE.1 and FILE.2 become recordings of the two (docs/replay.md); the latter
+// begins at the last load.
+#include <stdio.h>
 #include <string.h>
 
 #include "sim_state.h"
@@ -207,12 +211,37 @@ static CallFn *const calls[] = {call_gravity,       call_pace,
                                 call_follow,        call_move_pin,
                                 call_remove_pin,    call_commit};
 
+// ---- recordings
+
+static FILE *recordings[2];
+
+static bool record_write(void *file, const void *bytes, size_t size) { return fwrite(bytes, 1, size, file) == size; }
+
+/// Begins a recording, if any are asked for; the one before has ended.
+static SingeRecord record(int which) {
+    const char *name = getenv("SINGE_RECORD");
+    if (!name) return (SingeRecord){NULL, NULL};
+    char path[4096];
+    snprintf(path, sizeof path, "%s.%d", name, which + 1);
+    if (recordings[which]) fclose(recordings[which]);
+    recordings[which] = fopen(path, "wb");
+    if (!recordings[which]) {
+        perror(path);
+        exit(1);
+    }
+    setvbuf(recordings[which], NULL, _IONBF, 0); // a crash loses nothing
+    return (SingeRecord){record_write, recordings[which]};
+}
+
 // ---- two simulations
 
-static SingeSim *make(Input input, int threads) {
+/// Two sheets, 1 mm from each other; or five in one place, for whose contacts the lists must grow.
+static SingeSim *make(Input input, int which) {
     SingeSimDef def = singe_default_sim();
     const unsigned choices = input_byte(&input);
-    def.thread_count = threads, def.contact.enabled = choices & 1;
+    const bool crowded = choices & 64;
+    def.record = record(which);
+    def.thread_count = 1 + which, def.contact.enabled = choices & 1;
     def.solver.creases = choices & 2, def.solver.tearing = choices & 4, def.pace = 4;
     def.gas.enabled = choices & 8, def.gas.cell_size = 0.02f, def.gas.height = 0.05f;
     SingeSim *sim;
@@ -227,8 +256,8 @@ static SingeSim *make(Input input, int threads) {
     sheet.material.temperature = singe_param(choices & 16 ? 700 : 300);
     float raised[VERTICES][3];
     memcpy(raised, sheet.positions, sizeof raised);
-    for (int s = 0; s < 2; s++) {
-        for (int v = 0; v < VERTICES; v++) raised[v][2] += 0.001f * (float)s;
+    for (int s = 0; s < (crowded ? 5 : 2); s++) {
+        for (int v = 0; v < VERTICES && !crowded; v++) raised[v][2] += 0.001f * (float)s;
         sheet.positions = raised[0];
         SingeSheetId id;
         if (singe_sim_add_sheet(sim, &sheet, &id)) abort();
@@ -252,19 +281,21 @@ static void call_both(CallFn *call, Input input, SingeSim *const sims[2]) {
     demand(result[0] == result[1]);
 }
 
-/// Puts a copy of the first simulation in place of the second.
+/// Puts a copy of the first simulation in place of the second. A clone records nothing.
 static void copy_over(bool load, SingeSim *sims[2]) {
-    SingeSim *copy = NULL;
     uint8_t *bytes;
     size_t size;
-
     if (singe_sim_save(sims[0], &bytes, &size)) return; // not committed
+    singe_sim_destroy(sims[1]);
     SingeSimDef hooks = singe_default_sim();
     hooks.thread_count = 2;
-    if (load ? singe_sim_load(&hooks, bytes, size, &copy, NULL) : singe_sim_clone(sims[0], &copy)) abort();
+    if (load || getenv("SINGE_RECORD")) {
+        hooks.record = record(1);
+        if (singe_sim_load(&hooks, bytes, size, &sims[1], NULL)) abort();
+    } else if (singe_sim_clone(sims[0], &sims[1])) {
+        abort();
+    }
     singe_sim_free_bytes(sims[0], bytes, size);
-    singe_sim_destroy(sims[1]);
-    sims[1] = copy;
 }
 
 /// Returns the steps made; a step that fails changes nothing.
@@ -283,7 +314,7 @@ static uint32_t step_both(Input input, SingeSim *const sims[2]) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t length) {
     Input input = {data, data + length};
-    SingeSim *sims[2] = {make(input, 1), make(input, 2)};
+    SingeSim *sims[2] = {make(input, 0), make(input, 1)};
     (void)input_byte(&input);
     uint32_t steps = 0;
     for (int i = 0; i < CALLS_MAX && input.at < input.end && steps < STEPS_MAX; i++) {

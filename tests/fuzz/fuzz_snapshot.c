@@ -2,17 +2,13 @@
 // fails, but neither crashes nor hangs.
 //
 // The input is a list of changes to one of a few good snapshots, made here, so that it outlives their layout.
-#include <math.h>
 #include <string.h>
 
 #include "common/stream.h"
-#include "input.h"
+#include "damage.h"
 #include "sim/scenes.h"
 
 enum { SNAPSHOTS = 4, MESHED = 3, HEADER = 56, SIZE_AT = 16, CHECKSUM_AT = 24, CHANGES = 24, STEPS = 2 };
-
-/// The memory that a load or step may hold, so that a forged count is noticed.
-static const size_t memory_max = (size_t)1 << 29;
 
 typedef struct Saved {
     uint8_t *bytes;
@@ -43,43 +39,6 @@ static Saved make_snapshot(int which) {
     return copy;
 }
 
-static void *limited_resize(void *context, void *block, size_t old_size, size_t new_size) {
-    size_t *held = context;
-    if (new_size > old_size && new_size - old_size > memory_max - *held) return NULL;
-    *held += new_size - old_size;
-    if (new_size == 0) {
-        free(block);
-        return NULL;
-    }
-    return realloc(block, new_size);
-}
-
-static void put_word(Input *input, uint8_t *at) {
-    static const float specials[] = {NAN,    INFINITY, -INFINITY, -1,    0,     -0.0f, 1,
-                                     1e-45f, 1e-30f,   1e9f,      1e19f, 3e38f, -3e38f};
-    static const uint32_t words[] = {0, 1, 2, 0xFF, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF};
-    uint32_t word;
-    float number;
-
-    memcpy(&word, at, sizeof word);
-    memcpy(&number, at, sizeof number);
-    switch (input_pick(input, 6)) {
-    case 0: number = specials[input_pick(input, sizeof specials / sizeof *specials)]; break;
-    case 1: number *= 1 + input_share(input); break;
-    case 2: number *= 1e6f * input_share(input); break;
-    case 3: word = words[input_pick(input, 8)], memcpy(&number, &word, sizeof number); break;
-    case 4: word += (uint32_t)((int)input_byte(input) - 128), memcpy(&number, &word, sizeof number); break;
-    default: word = input_word(input), memcpy(&number, &word, sizeof number);
-    }
-    memcpy(at, &number, sizeof number);
-}
-
-static void put_double(Input *input, uint8_t *at) {
-    static const double specials[] = {(double)NAN, (double)INFINITY, -1, 0, 1e-300, 1e9, 1e19, 1e300};
-    double number = specials[input_pick(input, 8)];
-    memcpy(at, &number, sizeof number);
-}
-
 /// Makes one change at an offset of the body; *size may become less.
 static void change(Input *input, uint8_t *body, size_t *size) {
     unsigned how = input_pick(input, 16);
@@ -95,13 +54,13 @@ static void change(Input *input, uint8_t *body, size_t *size) {
 }
 
 static void try_snapshot(const uint8_t *bytes, size_t size) {
-    size_t held = 0;
+    Limited memory = {.max = (size_t)1 << 29};
     SingeSimDef hooks = singe_default_sim();
-    hooks.allocator = (SingeAllocator){limited_resize, &held};
+    hooks.allocator = (SingeAllocator){limited_resize, &memory};
     SingeSim *sim = NULL;
     SingeError error = {0};
     if (singe_sim_load(&hooks, bytes, size, &sim, &error)) {
-        demand(!sim && error.code && error.message[0] && held == 0);
+        demand(!sim && error.code && error.message[0] && memory.held == 0);
         return;
     }
     bool failed = false;
@@ -113,7 +72,7 @@ static void try_snapshot(const uint8_t *bytes, size_t size) {
     singe_surface_free(&surface);
     (void)singe_sim_stats(sim);
     singe_sim_destroy(sim);
-    demand(held == 0);
+    demand(memory.held == 0);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

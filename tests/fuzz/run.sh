@@ -19,7 +19,7 @@ fuzz() {
     mkdir -p "$work/corpus" "$work/findings"
     start="$work/corpus"
     limit=10 # s for one input, of a reader; whole simulations have more
-    case $name in step | snapshot) limit=120 ;; esac
+    case $name in step | snapshot | replay) limit=120 ;; esac
     if [ -d "$seeds/$name" ]; then start="$start $seeds/$name"; fi
     # shellcheck disable=SC2086
     if "$1" -max_total_time="$seconds" -timeout="$limit" -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
@@ -28,6 +28,12 @@ fuzz() {
         echo "  fuzz_$name: ok, ${runs:-?} runs" >"$work/summary"
     else
         tail -n 40 "$work/log"
+        if [ "$name" = calls ]; then # what it found as recordings, which `singe replay` repeats (docs/replay.md)
+            for found in "$work/findings"/*-*; do
+                case $found in *.singerec.?) continue ;; esac
+                SINGE_RECORD=$found.singerec "$1" "$found" >/dev/null 2>&1
+            done
+        fi
         echo "  fuzz_$name: FOUND SOMETHING, see $work/log and $work/findings" >"$work/summary"
     fi
 }

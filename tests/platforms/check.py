@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The core on other systems: builds it by cross compilers, runs hash_runs there and compares the bytes.
 
+Recordings (docs/replay.md) of these runs, made here, are replayed there: the state after every step is the same.
 hash_runs is tried on the static library with the best instructions, plain ones and the system's own by name; and on the
 shared library of the Python package (Windows: the DLL; WebAssembly has none).
 
@@ -112,6 +113,17 @@ def compare(name, lines, wanted):
     print(f"{name}: {len(lines)} hashes, the same")
 
 
+def replay(name, command, recordings, environment=None):
+    """Every recording gives the same states."""
+    steps = 0
+    for path in recordings:
+        said = output([*command, "--replay", path], environment)
+        if len(said) != 1 or not said[0].startswith("the same: "):
+            fail(f"{name}: the replay of {path.name} says {said}")
+        steps += int(said[0].split()[2])
+    print(f"{name}: {steps} replayed steps, the same")
+
+
 def enough(lines):
     """Ends the check if the runs burn, ablate and tear too little to compare anything by."""
     counts = {words[0]: (int(words[2]), int(words[4]), int(words[6])) for words in map(str.split, lines)
@@ -124,7 +136,7 @@ def enough(lines):
         fail("two hashes are the same: the runs do not differ, or nothing moves")
 
 
-def try_runs(system, build, program, shared, wanted):
+def try_runs(system, build, program, shared, wanted, recordings):
     """Runs a system's programs by its emulator, with the instructions that it has and with some that it lacks."""
     quiet = dict(os.environ, WINEDEBUG="-all", WINEPREFIX=str(build / "wine"))
     views = [line for line in wanted if "snapshot" not in line]
@@ -135,6 +147,7 @@ def try_runs(system, build, program, shared, wanted):
     compare(f"{system}, {named} by name", output([*call, program, "--instructions", named], quiet, [named]), views)
     if system != "wasm":
         compare(f"{system}, shared library", output([*call, shared], quiet, own), wanted)
+    replay(system, [*call, program], recordings, quiet)
     lacking = "neon" if system == "windows" else "v2"
     done = subprocess.run([*call, program, "--instructions", lacking], capture_output=True, text=True, env=quiet)
     if done.returncode == 0 or "lacks the requested instructions" not in done.stderr:
@@ -160,11 +173,18 @@ def main():
         sys.exit(77) # for ctest: nothing to try is a skip, not a success
 
     program, shared = built("portable", options.source, build)
-    wanted = output([program])
+    recorded = build / "recordings"
+    shutil.rmtree(recorded, ignore_errors=True)
+    recorded.mkdir()
+    wanted = output([program, "--record", recorded])
+    recordings = sorted(recorded.glob("*.singerec"))
+    if len(recordings) != len({line.split()[0] for line in wanted}):
+        fail(f"there are {len(recordings)} recordings")
     views = [line for line in wanted if "snapshot" not in line]
     enough(wanted)
     compare("here, 3 threads", output([program, "--threads", "3", *PLAIN], used=["plain"]), views)
     compare("here, shared library", output([shared]), wanted)
+    replay("here, 3 threads", [program, "--threads", "3", *PLAIN], recordings)
 
     tried = 0
     for system in systems:
@@ -177,7 +197,7 @@ def main():
         if SYSTEMS[system][2] is None:
             print(f"{system}: built, not run")
             continue
-        try_runs(system, build, program, shared, wanted)
+        try_runs(system, build, program, shared, wanted, recordings)
     print(f"tried {tried} of {len(systems)} systems")
 
 

@@ -1,6 +1,10 @@
 // Short runs by the public interface, each with a hash of its snapshot: the same lines on every system (check.py).
 //
-//   hash_runs [--instructions best|plain|v2|v3|v4|neon|simd128] [--threads N]
+//   hash_runs [--instructions best|plain|v2|v3|v4|neon|simd128] [--threads N] [--record FOLDER]
+//   hash_runs --replay FILE
+//
+// With --record, the runs become FOLDER/NAME.singerec. With --replay, a recording's calls are made and compared, as
+// `singe replay` does; the one line says what differs first.
 //
 // A line is "NAME STEP HASH". The lines of runs are the same for all sets of instructions; that of the snapshot, which
 // names the set asked for, is printed for the best alone. The set in use goes to the standard error.
@@ -112,8 +116,46 @@ static uint64_t hash_view(const SingeSim *sim) {
 static const char *const sets[] = {"best", "plain", "v2", "v3", "v4", "neon", "simd128"};
 enum { SETS = sizeof sets / sizeof sets[0] };
 
-static SingeResult hash_run(const Run *run, const SingeSimDef *base, SingeError *error) {
+// ---- recordings
+
+static bool record_write(void *file, const void *bytes, size_t size) { return fwrite(bytes, 1, size, file) == size; }
+
+/// NULL without a folder, and after a message.
+static FILE *record_open(const char *folder, const Run *run) {
+    char path[4096];
+    if (!folder) return NULL;
+    snprintf(path, sizeof path, "%s/%s.singerec", folder, run->name);
+    FILE *file = fopen(path, "wb");
+    if (!file) perror(path);
+    return file;
+}
+
+static int replay(const char *path, const SingeSimDef *hooks) {
+    FILE *file = fopen(path, "rb");
+    long size = -1;
+    if (file && fseek(file, 0, SEEK_END) == 0) size = ftell(file);
+    uint8_t *bytes = size > 0 ? malloc((size_t)size) : NULL;
+    if (bytes) rewind(file);
+    const bool read = bytes && fread(bytes, 1, (size_t)size, file) == (size_t)size;
+    if (!read) perror(path);
+    if (file) fclose(file);
+
+    SingeReplay found = {0};
+    SingeError error = {0};
+    if (read && singe_replay(hooks, bytes, (size_t)size, &found, &error)) fprintf(stderr, "%s\n", error.message);
+    else if (read && !found.same) printf("differs first: %s\n", found.what);
+    else if (read && found.complete) printf("the same: %d steps\n", (int)found.steps);
+    free(bytes);
+    return !(found.complete && found.same);
+}
+
+// ----
+
+static SingeResult hash_run(const Run *run, const SingeSimDef *def, const char *folder, SingeError *error) {
     SingeSim *sim = NULL;
+    SingeSimDef recorded = *def, *base = &recorded;
+    FILE *file = record_open(folder, run);
+    if (file) recorded.record = (SingeRecord){record_write, file};
     SingeResult result = open_run(run, base, &sim, error);
     if (!result && run == runs) fprintf(stderr, "instructions: %s\n", sets[singe_sim_counts(sim).instructions]);
     for (int step = 1; step <= run->steps && !result; step++) {
@@ -139,6 +181,7 @@ static SingeResult hash_run(const Run *run, const SingeSimDef *base, SingeError 
     }
 
     singe_sim_destroy(sim);
+    if (file) fclose(file);
     return result;
 }
 
@@ -152,20 +195,25 @@ static int find_set(const char *name) {
 int main(int count, char **arguments) {
     SingeSimDef def = singe_default_sim();
     def.thread_count = 1;
+    const char *folder = NULL, *recording = NULL;
     for (int i = 1; i < count; i++) {
         const char *value = i + 1 < count ? arguments[i + 1] : "";
         int set = strcmp(arguments[i], "--instructions") == 0 ? find_set(value) : SETS;
         if (set < SETS) def.instructions = (SingeInstructions)set, i++;
         else if (strcmp(arguments[i], "--threads") == 0 && *value) def.thread_count = atoi(value), i++;
-        else
-            return fprintf(stderr,
-                           "usage: hash_runs [--instructions best|plain|v2|v3|v4|neon|simd128] [--threads N]\n"),
-                   2;
+        else if (strcmp(arguments[i], "--record") == 0 && *value) folder = value, i++;
+        else if (strcmp(arguments[i], "--replay") == 0 && *value) recording = value, i++;
+        else {
+            fprintf(stderr, "usage: hash_runs [--instructions best|plain|v2|v3|v4|neon|simd128] [--threads N]"
+                            " [--record FOLDER | --replay FILE]\n");
+            return 2;
+        }
     }
 
+    if (recording) return replay(recording, &def);
     for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
         SingeError error;
-        if (!hash_run(&runs[i], &def, &error)) continue;
+        if (!hash_run(&runs[i], &def, folder, &error)) continue;
         fprintf(stderr, "%s: %s: %s\n", runs[i].name, error.stage, error.message);
         return 1;
     }

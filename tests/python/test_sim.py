@@ -129,6 +129,24 @@ class Burning(Case):
         with self.assertRaises(singe.FormatError):
             singe.Sim.load(b"")
 
+    def test_a_recording_is_replayed(self):
+        path = self.dir / "burn.singerec"
+        sim = burning(record=path)
+        sim.source("callback", callback=lambda view: 3e3)
+        sim.step(4)
+        sim.set_gravity([0, 0, -1])
+        sim.advance(0.01)
+        done = sim.steps
+        del sim
+        gc.collect()
+        replay = subprocess.run([os.environ["SINGE_PROGRAM"], "replay", path], capture_output=True, text=True)
+        self.assertRegex(replay.stdout, rf"^the same: {done} steps, ", replay.stderr)
+        self.assertEqual(replay.stderr, "")
+        with self.assertRaises(OSError):
+            singe.Sim(record=self.dir / "none" / "burn.singerec")
+        with self.assertRaises(singe.ArgumentError):
+            singe.Sim(record=path, pace=-1)
+
     def test_surface_and_gas(self):
         sim = burning(gas={"cell_size": 0.008}, surface_detail=0.001)
         sim.advance(0.4)

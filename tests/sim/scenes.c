@@ -1,5 +1,6 @@
 #include "scenes.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 SingeMaterialDef scene_quick_material(void) {
@@ -169,4 +170,88 @@ Scene scene_make(const SingeSimDef *def, uint32_t cells) {
     SingeResult result = scene_build(def ? def : &standard, cells, &scene);
     test_ok(scene.sim, result);
     return scene;
+}
+
+// ---- every call
+
+static void scene_set(const Scene *scene) {
+    SingeSim *sim = scene->sim;
+    test_steps(sim, 4);
+    const float down[3] = {0, 1, -9};
+    test_ok(sim, singe_sim_set_gravity(sim, down));
+    test_ok(sim, singe_sim_set_pace(sim, 3));
+    assert_int_equal(singe_sim_set_pace(sim, -1), SINGE_ERROR_ARGUMENT);
+    SingeWindDef wind = singe_default_wind();
+    wind.velocity[0] = 2;
+    test_ok(sim, singe_sim_set_wind(sim, &wind));
+    wind.struct_size = 0;
+    assert_int_equal(singe_sim_set_wind(sim, &wind), SINGE_ERROR_ARGUMENT);
+    assert_int_equal(singe_sim_set_wind(sim, NULL), SINGE_ERROR_ARGUMENT);
+    const float velocity[2][3] = {{0, 0, 1}, {0, 1, 0}};
+    test_ok(sim, singe_sim_set_velocity(sim, scene->sheets[0], 3, 2, velocity[0]));
+    assert_int_equal(singe_sim_set_velocity(sim, scene->sheets[0], 3, 1u << 30, velocity[0]), SINGE_ERROR_ARGUMENT);
+
+    uint32_t steps;
+    test_ok(sim, singe_sim_advance(sim, 0.011, 0, &steps));
+    test_ok(sim, singe_sim_advance(sim, 0.011, 2, NULL));
+    test_ok(sim, singe_sim_set_ambient_temperature(sim, 280));
+    SingeMaterialDef material = singe_default_material();
+    const SingeField noise = {.kind = SINGE_FIELD_NOISE, .noise = {0.01f, 2, 5}};
+    material.mass_rate = singe_param_field(0.5f, 2, &noise);
+    material.drag = singe_param_field(1, 2, &noise);
+    test_ok(sim, singe_sim_set_material(sim, scene->sheets[1], &material, NULL));
+    static const float share[256] = {[1] = 0.5f, [20] = 1};
+    test_ok(sim, singe_sim_set_material(sim, scene->sheets[1], &material, share));
+    test_steps(sim, 2);
+}
+
+static void scene_move(const Scene *scene) {
+    SingeSim *sim = scene->sim;
+    const SingePoseKey to[2] = {test_key(0, 0, 0, 0.01f), test_key(1, 0.02f, 0, 0.01f)};
+    test_ok(sim, singe_sim_move_source(sim, scene->ball, 2, to));
+    test_ok(sim, singe_sim_move_collider(sim, scene->sphere, 2, to));
+    test_ok(sim, singe_sim_move_pin(sim, scene->points, 2, to));
+    test_ok(sim, singe_sim_remove_source(sim, scene->spot));
+    assert_int_equal(singe_sim_remove_source(sim, scene->spot), SINGE_ERROR_HANDLE);
+    test_ok(sim, singe_sim_remove_collider(sim, scene->box));
+    uint32_t held;
+    const uint32_t *particles = singe_sim_pin_particles(sim, scene->vertices, &held);
+    float(*positions)[3] = calloc(held, sizeof *positions);
+    assert_non_null(positions);
+    for (uint32_t i = 0; i < held; i++) memcpy(positions[i], singe_sim_view(sim).position[particles[i]], 12);
+    test_ok(sim, singe_sim_set_pin_positions(sim, scene->vertices, positions[0], 0.5));
+    free(positions);
+}
+
+static void scene_deform(SingeSim *sim) {
+    static const float corners[4][3] = {{0, 0, 0}, {0.01f, 0, 0}, {0, 0.01f, 0}, {0, 0, 0.01f}};
+    static const uint32_t triangles[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    SingeColliderDef wedge = singe_default_collider();
+    wedge.kind = SINGE_COLLIDER_DEFORMING;
+    wedge.vertex_count = wedge.triangle_count = 4;
+    wedge.vertices = corners[0];
+    wedge.triangles = triangles[0];
+    SingeColliderId id;
+    test_ok(sim, singe_sim_add_collider(sim, &wedge, &id));
+    test_ok(sim, singe_sim_set_collider_vertices(sim, id, corners[0], 1));
+    test_steps(sim, 2);
+}
+
+void scene_every_call(const Scene *scene) {
+    SingeSim *sim = scene->sim, *copy;
+    scene_set(scene);
+    scene_move(scene);
+    scene_deform(sim);
+    SingeSurface surface = {0};
+    test_ok(sim, singe_sim_surface(sim, &surface));
+    singe_surface_free(&surface);
+    TestBytes bytes = test_save(sim);
+    free(bytes.data);
+    test_ok(sim, singe_sim_clone(sim, &copy));
+    test_steps(copy, 1); // a clone is not recorded
+    singe_sim_destroy(copy);
+    test_ok(sim, singe_sim_set_source_callback(sim, scene->callback, NULL, NULL));
+    test_steps(sim, 2);
+    test_ok(sim, singe_sim_remove_pin(sim, scene->points));
+    test_steps(sim, 2);
 }

@@ -28,6 +28,9 @@ SingeResult scene_build_early(const SingeSimDef *def, uint32_t cells, Scene *sce
 Scene scene_make(const SingeSimDef *def, uint32_t cells);
 SingeSimDef scene_def(void);
 
+/// Makes every call that changes a simulation, and some that fail, with steps between them.
+void scene_every_call(const Scene *scene);
+
 /// The callback source's function: a flux that grows with position and time; *context is a float, W/m2.
 void scene_flux(void *context, const struct SingeView *view, float *flux, float *conductance,
                 float *conductance_temperature);

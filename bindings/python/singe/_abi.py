@@ -50,6 +50,10 @@ class SingeLog(Structure):
     _fields_ = [("write", CFUNCTYPE(None, c_void_p, c_int, c_char_p)), ("context", c_void_p)]
 
 
+class SingeRecord(Structure):
+    _fields_ = [("write", CFUNCTYPE(c_bool, c_void_p, c_void_p, c_size_t)), ("context", c_void_p)]
+
+
 class SingeTasks(Structure):
     _fields_ = [("enqueue", CFUNCTYPE(c_void_p, c_void_p, SingeTaskFn, c_void_p, c_int, c_int)),
                 ("finish", CFUNCTYPE(None, c_void_p, c_void_p)), ("context", c_void_p)]
@@ -180,7 +184,8 @@ class SingeSimDef(Structure):
                 ("velocity_steps", c_int), ("pace", c_float), ("gravity", c_float * 3),
                 ("ambient_temperature", c_float), ("air_density", c_float), ("heat_tolerance", c_float),
                 ("surface_detail", c_float), ("surface_raggedness", c_float), ("wind", SingeWindDef),
-                ("solver", SingeSolverDef), ("gas", SingeGasDef), ("contact", SingeContactDef)]
+                ("solver", SingeSolverDef), ("gas", SingeGasDef), ("contact", SingeContactDef),
+                ("record", SingeRecord)]
 
 
 class SingeMeshDef(Structure):
@@ -272,6 +277,11 @@ class SingeCounts(Structure):
                 ("memory", c_size_t), ("instructions", c_int)]
 
 
+class SingeReplay(Structure):
+    _fields_ = [("struct_size", c_size_t), ("version", c_char * 20), ("calls", c_uint64), ("steps", c_uint64),
+                ("complete", c_bool), ("same", c_bool), ("step", c_uint64), ("what", c_char * 160)]
+
+
 class SingeNetworkDef(Structure):
     _fields_ = [("struct_size", c_size_t), ("allocator", SingeAllocator), ("tasks", SingeTasks),
                 ("thread_count", c_int), ("particle_count", c_uint32), ("positions", POINTER(c_double)),
@@ -286,12 +296,12 @@ class SingeNetworkReport(Structure):
     _fields_ = [("iterations", c_uint32), ("residual", c_double)]
 
 
-STRUCTS = [SingeError, SingeAllocator, SingeLog, SingeTasks, SingeSheetId, SingeSourceId, SingeColliderId, SingePinId,
-           SingeTexture, SingeNoise, SingeAttribute, SingeField, SingeParam, SingeMaterialDef, SingePoseKey,
-           SingeValueKey, SingeSheetDef, SingeSourceDef, SingeColliderDef, SingePinDef, SingeWindDef, SingeSolverDef,
-           SingeGasDef, SingeContactDef, SingeSimDef, SingeMeshDef, SingeGridDef, SingeMeshView, SingeSurface,
-           SingeGas, SingeView, SingeSheetRange, SingeEvent, SingeTimers, SingeStats, SingeCounts, SingeNetworkDef,
-           SingeNetworkReport]
+STRUCTS = [SingeError, SingeAllocator, SingeLog, SingeRecord, SingeTasks, SingeSheetId, SingeSourceId,
+           SingeColliderId, SingePinId, SingeTexture, SingeNoise, SingeAttribute, SingeField, SingeParam,
+           SingeMaterialDef, SingePoseKey, SingeValueKey, SingeSheetDef, SingeSourceDef, SingeColliderDef,
+           SingePinDef, SingeWindDef, SingeSolverDef, SingeGasDef, SingeContactDef, SingeSimDef, SingeMeshDef,
+           SingeGridDef, SingeMeshView, SingeSurface, SingeGas, SingeView, SingeSheetRange, SingeEvent, SingeTimers,
+           SingeStats, SingeCounts, SingeReplay, SingeNetworkDef, SingeNetworkReport]
 # enumerations of fields
 FIELD_ENUMS = {"SingeError.code": "SingeResult", "SingeField.kind": "SingeFieldKind",
                "SingeMaterialDef.heat_operator": "SingeHeatOperator", "SingeSourceDef.kind": "SingeSourceKind",
@@ -376,6 +386,8 @@ FUNCTIONS = {
     "singe_sim_load": (c_int, [POINTER(SingeSimDef), POINTER(c_uint8), c_size_t, POINTER(c_void_p),
                                POINTER(SingeError)]),
     "singe_sim_clone": (c_int, [c_void_p, POINTER(c_void_p)]),
+    "singe_replay_read": (c_int, [POINTER(SingeSimDef), POINTER(c_uint8), c_size_t, POINTER(SingeReplay), c_size_t,
+                                  POINTER(SingeError)]),
     "singe_init_network": (None, [POINTER(SingeNetworkDef), c_size_t]),
     "singe_network_create": (c_int, [POINTER(SingeNetworkDef), POINTER(c_void_p), POINTER(SingeError)]),
     "singe_network_destroy": (None, [c_void_p]),

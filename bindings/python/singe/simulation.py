@@ -28,6 +28,8 @@ Material = Union[str, Mapping[str, Any]]
 Result = TypeVar("Result")
 Callback = Callable[[StepView], Any]
 EVENT = np.dtype(_abi.SingeEvent)
+_fields: Any = _abi.SingeRecord._fields_
+_WRITE = dict(_fields)["write"]
 _SLICE = 16  # steps between which advance() can be interrupted
 _SECONDS_MAX = 1e6  # the library's limit for one advance
 
@@ -35,12 +37,32 @@ _SECONDS_MAX = 1e6  # the library's limit for one advance
 class _Handle:
     """A simulation of the library, destroyed when no Sim and no array refers to it any more."""
 
-    def __init__(self, pointer_: ctypes.c_void_p):
+    def __init__(self, pointer_: ctypes.c_void_p, recording: Optional["_Recording"] = None):
         self.pointer = pointer_
+        self._recording = recording
         self._destroy = library.singe_sim_destroy
 
     def __del__(self) -> None:
         self._destroy(self.pointer)
+        if self._recording:
+            self._recording.close()
+
+
+class _Recording:
+    """A new file to which the library writes a recording, at once."""
+
+    def __init__(self, path: Union[str, "os.PathLike[str]"]):
+        self._file = open(path, "wb", buffering=0)
+        self.write = _WRITE(self._write)
+
+    def _write(self, _context: object, data: int, size: int) -> bool:
+        try:
+            return self._file.write(ctypes.string_at(data, size)) == size
+        except OSError:
+            return False  # the library ends the recording, with a warning
+
+    def close(self) -> None:
+        self._file.close()
 
 
 class Sim(Views):
@@ -49,6 +71,7 @@ class Sim(Views):
     Options are the fields of SingeSimDef (include/singe/types.h): `pace`, seconds of fire per second of motion (1);
     `time_step`, s (1/480); `threads` (1); `gravity`, m/s2; `ambient_temperature`, K; `seed`; `surface_detail`, m;
     `gas` and `contact`, True or a dict of their fields; `wind` and `solver`, dicts: `solver={"tearing": True}`.
+    `record`, the path of a recording, which `singe replay` repeats (docs/replay.md); OSError if it cannot be opened.
 
     Steps release the interpreter's lock: simulations in several threads run at once. One simulation does one call at a
     time; a second thread waits. The library's messages go to the logger "singe".
@@ -60,14 +83,20 @@ class Sim(Views):
         self._setup(None)
         if "threads" in options:
             options["thread_count"] = options.pop("threads")
+        path = options.pop("record", None)
         keep: List[Any] = []
         made = default(_abi.SingeSimDef, "singe_init_sim")
         assign(made, options, keep)
         made.log.write = log_callback
+        recording = _Recording(path) if path is not None else None
+        if recording:
+            made.record.write = recording.write
         out, error = ctypes.c_void_p(), _abi.SingeError()
         if library.singe_sim_create(ctypes.byref(made), ctypes.byref(out), ctypes.byref(error)):
+            if recording:
+                recording.close()
             raise_for(error)
-        self._handle = _Handle(out)
+        self._handle = _Handle(out, recording)
         self._time_step = made.time_step
 
     def _setup(self, handle: Optional[_Handle]) -> None:

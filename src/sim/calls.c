@@ -1,0 +1,162 @@
+// The public calls that change a simulation, one for each row of calls.def: recorded where a recording is asked for, then
+// made by src/sim's own function.
+#include "sim/calls.h"
+
+#include "sim/objects.h"
+
+static void tape_handle(Tape *tape, uint32_t index, uint32_t generation) {
+    TAPE(tape, index);
+    TAPE(tape, generation);
+}
+
+static void tape_asked(Tape *tape, const void *result) {
+    bool asked = result != NULL;
+    tape_bool(tape, &asked);
+}
+
+/// 3 * count floats, behind their count.
+static void tape_points(Tape *tape, uint32_t count, const float *points) {
+    TAPE(tape, count);
+    tape_array(tape, &points, 3 * (uint64_t)count, sizeof(float));
+}
+
+uint32_t call_collider_points(const SingeSim *sim, SingeColliderId id) {
+    const Collider *collider = OBJECT_FIND(sim->colliders, id);
+    return collider && collider->def.kind == SINGE_COLLIDER_DEFORMING ? collider->deform.motion.count : 0;
+}
+
+uint32_t call_pin_points(const SingeSim *sim, SingePinId id) {
+    const Pin *pin = OBJECT_FIND(sim->pins, id);
+    return pin ? pin->count : 0;
+}
+
+/// The vertices of a sheet's mesh; 0 for a stale handle.
+static uint32_t sheet_vertices(const SingeSim *sim, SingeSheetId id) {
+    return id.generation == 1 && id.index < sim->sheet_count ? sim->sheets[id.index].sheet.vertex_count : 0;
+}
+
+/// Velocities that the call reads: none if the sheet has not as many vertices.
+static const float *velocities_read(const SingeSim *sim, SingeSheetId id, uint32_t first, uint32_t count,
+                                    const float *velocities) {
+    if (!sim->committed || !sheet_vertices(sim, id)) return NULL;
+    const uint32_t room = sim->shell.sheets[id.index].vertex_count;
+    return count <= room && first <= room - count ? velocities : NULL;
+}
+
+// ---- what a recording holds of each kind of arguments
+
+#define ARGUMENTS_NOTHING
+#define WRITE_NOTHING
+
+#define WRITE_DEF(Type, name) \
+    Type whole;               \
+    tape_##name##_def(tape, def, &whole);
+#define ARGUMENTS_SHEET_DEF , def
+#define WRITE_SHEET_DEF WRITE_DEF(SingeSheetDef, sheet)
+#define ARGUMENTS_SOURCE_DEF , def
+#define WRITE_SOURCE_DEF WRITE_DEF(SingeSourceDef, source)
+#define ARGUMENTS_COLLIDER_DEF , def
+#define WRITE_COLLIDER_DEF WRITE_DEF(SingeColliderDef, collider)
+#define ARGUMENTS_PIN_DEF , def
+#define WRITE_PIN_DEF WRITE_DEF(SingePinDef, pin)
+#define ARGUMENTS_WIND_DEF , def
+#define WRITE_WIND_DEF WRITE_DEF(SingeWindDef, wind)
+#define ARGUMENTS_MATERIAL_DEF , def
+#define WRITE_MATERIAL_DEF WRITE_DEF(SingeMaterialDef, material)
+
+#define ARGUMENTS_NEW_SHEET , made
+#define WRITE_NEW_SHEET tape_asked(tape, made);
+#define ARGUMENTS_NEW_SOURCE , made
+#define WRITE_NEW_SOURCE tape_asked(tape, made);
+#define ARGUMENTS_NEW_COLLIDER , made
+#define WRITE_NEW_COLLIDER tape_asked(tape, made);
+#define ARGUMENTS_NEW_PIN , made
+#define WRITE_NEW_PIN tape_asked(tape, made);
+
+#define ARGUMENTS_SHEET , id
+#define WRITE_SHEET tape_handle(tape, id.index, id.generation);
+#define ARGUMENTS_SOURCE , id
+#define WRITE_SOURCE tape_handle(tape, id.index, id.generation);
+#define ARGUMENTS_COLLIDER , id
+#define WRITE_COLLIDER tape_handle(tape, id.index, id.generation);
+#define ARGUMENTS_PIN , id
+#define WRITE_PIN tape_handle(tape, id.index, id.generation);
+
+#define ARGUMENTS_CALLBACK , callback, context
+#define WRITE_CALLBACK              \
+    bool called = callback != NULL; \
+    (void)context;                  \
+    tape_bool(tape, &called);
+#define ARGUMENTS_COLLIDER_VERTICES , points
+#define WRITE_COLLIDER_VERTICES tape_points(tape, call_collider_points(sim, id), points);
+#define ARGUMENTS_PIN_POSITIONS , points
+#define WRITE_PIN_POSITIONS tape_points(tape, call_pin_points(sim, id), points);
+#define ARGUMENTS_PATH , path_count, path
+#define WRITE_PATH tape_path(tape, &path_count, &path);
+#define ARGUMENTS_GRAVITY , gravity
+#define WRITE_GRAVITY tape_data(tape, (float *)(uintptr_t)gravity, 3, sizeof *gravity);
+#define ARGUMENTS_NUMBER , number
+#define WRITE_NUMBER TAPE(tape, number);
+#define ARGUMENTS_SECONDS , seconds
+#define WRITE_SECONDS TAPE(tape, seconds);
+#define ARGUMENTS_VELOCITIES , first, count, velocities
+#define WRITE_VELOCITIES \
+    TAPE(tape, first);   \
+    tape_points(tape, count, velocities_read(sim, id, first, count, velocities));
+#define ARGUMENTS_SHARE , share
+#define WRITE_SHARE                           \
+    uint32_t count = sheet_vertices(sim, id); \
+    const float *read = count ? share : NULL; \
+    TAPE(tape, count);                        \
+    tape_array(tape, &read, count, sizeof *share);
+#define ARGUMENTS_STEPS , steps_max, steps
+#define WRITE_STEPS        \
+    TAPE(tape, steps_max); \
+    tape_asked(tape, steps);
+#define ARGUMENTS_SURFACE , surface, struct_size
+#define WRITE_SURFACE            \
+    uint64_t size = struct_size; \
+    (void)surface;               \
+    TAPE(tape, size);
+#define ARGUMENTS_SNAPSHOT , bytes, size
+#define WRITE_SNAPSHOT (void)bytes, (void)size;
+#define ARGUMENTS_COPY , copy
+#define WRITE_COPY (void)copy;
+
+// Answers besides the result: two numbers.
+#define FIRST_NOTHING 0
+#define SECOND_NOTHING 0
+#define FIRST_SECONDS 0
+#define SECOND_SECONDS 0
+#define FIRST_SHARE 0
+#define SECOND_SHARE 0
+#define FIRST_SURFACE 0
+#define SECOND_SURFACE 0
+#define FIRST_SNAPSHOT 0
+#define SECOND_SNAPSHOT 0
+#define FIRST_COPY 0
+#define SECOND_COPY 0
+#define FIRST_NEW_SHEET made ? made->index : 0
+#define SECOND_NEW_SHEET made ? made->generation : 0
+#define FIRST_NEW_SOURCE FIRST_NEW_SHEET
+#define SECOND_NEW_SOURCE SECOND_NEW_SHEET
+#define FIRST_NEW_COLLIDER FIRST_NEW_SHEET
+#define SECOND_NEW_COLLIDER SECOND_NEW_SHEET
+#define FIRST_NEW_PIN FIRST_NEW_SHEET
+#define SECOND_NEW_PIN SECOND_NEW_SHEET
+#define FIRST_STEPS steps ? *steps : 0
+#define SECOND_STEPS 0
+
+#define SINGE_CALL(number, name, A, B, C)                                                                          \
+    static void write_##name(Tape *tape, SingeSim *sim PARAMETERS_##A PARAMETERS_##B PARAMETERS_##C) {             \
+        (void)tape, (void)sim;                                                                                     \
+        WRITE_##A WRITE_##B WRITE_##C                                                                              \
+    }                                                                                                              \
+    SingeResult singe_sim_##name(SingeSim *sim PARAMETERS_##A PARAMETERS_##B PARAMETERS_##C) {                     \
+        if (!sim->recorder) return call_##name(sim ARGUMENTS_##A ARGUMENTS_##B ARGUMENTS_##C);                     \
+        RECORD(sim->recorder, number, tape) { write_##name(tape, sim ARGUMENTS_##A ARGUMENTS_##B ARGUMENTS_##C); } \
+        recorder_flush(sim->recorder);                                                                             \
+        SingeResult result = call_##name(sim ARGUMENTS_##A ARGUMENTS_##B ARGUMENTS_##C);                           \
+        return recorder_result(sim->recorder, result, FIRST_##C, SECOND_##C);                                      \
+    }
+#include "sim/calls.def"
