@@ -77,6 +77,8 @@ static void add_base(char *buffer, size_t size) {
 static void add_quantity(char *buffer, size_t size, const SchemaRow *row) {
     char units[80];
     quantity_units(row->dimension, units, sizeof units);
+    expected_add(buffer, size, quantity_article(row->dimension));
+    expected_add(buffer, size, " ");
     expected_add(buffer, size, quantity_name(row->dimension));
 
     if (units[0]) {
@@ -102,7 +104,6 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
     case ROW_STRENGTH: expected_add(buffer, size, "a number or a list of {time, value}"); break;
     case ROW_FLOAT:
     case ROW_PARAM:
-        expected_add(buffer, size, "a ");
         add_quantity(buffer, size, row);
         if (row->type == ROW_PARAM) expected_add(buffer, size, " or a map {from, to, texture | attribute | noise}");
         break;
@@ -110,7 +111,7 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
     case ROW_ROTATION:
     case ROW_VECTOR:
         expected_add(buffer, size, count);
-        expected_add(buffer, size, row->dimension ? "numbers, each a " : "numbers");
+        expected_add(buffer, size, row->dimension ? "numbers, each " : "numbers");
         if (row->dimension) add_quantity(buffer, size, row);
         break;
     case ROW_INTS:

@@ -217,8 +217,8 @@ typedef struct Scene {
     int steps;      ///< steps a frame
     int gas_detail; ///< factor by which the cells of gas_detail/ are smaller; 1: a run has no such files
     bool tearing;   ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
-    SingeSimDef
-        sim; ///< time_step is 1/(fps * steps), velocity_steps is steps; hooks and thread_count are not the scene's
+    /// time_step is 1/(fps * steps), and velocity_steps is steps; hooks and thread_count are not the scene's
+    SingeSimDef sim;
     uint32_t sheet_count, source_count, collider_count, pin_count, probe_count;
     SceneSheet *sheets;
     SceneSource *sources;

@@ -124,6 +124,10 @@ const char *quantity_unit(Dimension dimension) { return dimensions[dimension].un
 
 const char *quantity_name(Dimension dimension) { return dimensions[dimension].name; }
 
+const char *quantity_article(Dimension dimension) {
+    return strchr("aeiou", dimensions[dimension].name[0]) ? "an" : "a";
+}
+
 void quantity_units(Dimension dimension, char *buffer, size_t size) {
     size_t used = 0;
     buffer[0] = 0;

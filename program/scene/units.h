@@ -46,6 +46,9 @@ NumberFault quantity_read(const char *text, Dimension dimension, double *value);
 const char *quantity_unit(Dimension dimension);
 const char *quantity_name(Dimension dimension);
 
+/// "a", or "an" before the names that begin with a vowel.
+const char *quantity_article(Dimension dimension);
+
 /// All units of a dimension, "K, C, F".
 void quantity_units(Dimension dimension, char *buffer, size_t size);
 

@@ -57,8 +57,9 @@ bool value_float(Reader *reader, const SchemaRow *row, const YamlNode *node, flo
     if (fault == NUMBER_BAD_UNIT) {
         char units[80], seen[NODE_WORDS];
         quantity_units(row->dimension, units, sizeof units);
-        message_add(reader->messages, reader->text, node->location, "%s has an unknown unit for a %s; possible are: %s",
-                    node_describe(node, seen, sizeof seen), quantity_name(row->dimension),
+        message_add(reader->messages, reader->text, node->location,
+                    "%s has an unknown unit for %s %s; possible are: %s", node_describe(node, seen, sizeof seen),
+                    quantity_article(row->dimension), quantity_name(row->dimension),
                     units[0] ? units : "none, only a bare number");
         return false;
     }

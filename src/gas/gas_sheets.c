@@ -87,10 +87,9 @@ static bool sheets_position(const GasPass *pass, uint32_t i, float side, Float3 
     return false;
 }
 
-/// The power of a source's flame now, W.
+/// The power of a source's flame now, W. Only kinds with a path have one; of others it is never checked.
 static float feed_power(const Source *source, double time) {
-    bool has = source->def.kind == SINGE_SOURCE_BALL || source->def.kind == SINGE_SOURCE_SPOT;
-    return has && source_is_lit(source, time) ? source->def.power : 0;
+    return source->path.count > 0 && source_is_lit(source, time) ? source->def.power : 0;
 }
 
 bool gas_fed(const GasPass *pass) {

@@ -56,6 +56,8 @@ TEST(wrong_values_are_reported) {
     one("frames: -99999999999999999999999", "bad.yaml:3:9", "out of range");
     one("seed: 18446744073709551616", "bad.yaml:3:7", "seed must be 0 to 18446744073709551615");
     one("seed: -1", "bad.yaml:3:7", "whole number");
+    one("preview: {camera: {fov: 30 m}}", "bad.yaml:3:25", "unknown unit for an angle; possible are: deg, rad");
+    one("preview: {camera: {fov: wide}}", "bad.yaml:3:25", "an angle (deg, rad)");
     one("ambient_temperature: 20 m", "bad.yaml:3:22", "unknown unit for a temperature; possible are: K, C, F");
     one("ambient_temperature: -300 C", "bad.yaml:3:22", "must be 1 to 10000 K");
     one("gravity: [0, 0]", "bad.yaml:3:10", "a list of 3 numbers");
