@@ -66,7 +66,7 @@ class Command(Case):
         try:
             import alembic3d  # noqa: F401
         except ImportError:
-            with self.assertRaisesRegex(ImportError, r"singe\[alembic\]"):
+            with self.assertRaisesRegex(ImportError, "pip install alembic3d"):
                 cache.write_alembic()
             return
         reported = []
