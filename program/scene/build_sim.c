@@ -1,6 +1,7 @@
 // Creates a simulation from a scene and its files: one walk over the scene's objects, which ends at the first that the
 // library refuses. faults.c reports that one in the scene's words.
 #include "common/store.h"
+#include "scene/builder.h"
 #include "scene/faults.h"
 #include "scene/rotation.h"
 #include "scene/schema.h"
@@ -47,15 +48,6 @@ static SingePoseKey *poses(const SceneKey *keys, uint32_t count) {
     return path;
 }
 
-/// The construction as far as it has come. A function that adds an object leaves the library's error in `error`.
-typedef struct SceneBuilder {
-    const Scene *scene;
-    const SceneAssets *assets;
-    SingeSim *sim;
-    SingeSheetId *sheets;
-    SingeError *error;
-} SceneBuilder;
-
 static SingeResult no_memory(const SceneBuilder *builder) {
     return refuse(builder->error, SINGE_ERROR_MEMORY, "scene", -1, "out of memory");
 }
@@ -65,7 +57,7 @@ static SingeResult take_error(const SceneBuilder *builder, SingeResult result) {
     return result;
 }
 
-static SingeResult add_source(const SceneBuilder *builder, uint32_t index) {
+SingeResult builder_add_source(const SceneBuilder *builder, uint32_t index) {
     const SceneSource *source = &builder->scene->sources[index];
     SingeSourceDef def = source->def;
     SingePoseKey *path = poses(source->keys, source->key_count);
@@ -83,7 +75,7 @@ static SingeResult add_source(const SceneBuilder *builder, uint32_t index) {
     return take_error(builder, result);
 }
 
-static SingeResult add_collider(const SceneBuilder *builder, uint32_t index) {
+SingeResult builder_add_collider(const SceneBuilder *builder, uint32_t index) {
     const SceneCollider *collider = &builder->scene->colliders[index];
     const SceneSolid *solid = &builder->assets->solids[index];
     SingeColliderDef def = collider->def;
@@ -136,7 +128,7 @@ static SingeResult vertices_of_file(const SceneBuilder *builder, const ScenePin 
     return result;
 }
 
-static SingeResult add_pin(const SceneBuilder *builder, uint32_t index) {
+SingeResult builder_add_pin(const SceneBuilder *builder, uint32_t index) {
     const ScenePin *pin = &builder->scene->pins[index];
     SingePinDef def = singe_default_pin();
     SingePoseKey *path = poses(pin->keys, pin->key_count);
@@ -191,9 +183,9 @@ static SingeResult construct(SceneBuilder *builder, SceneFault *fault) {
         uint32_t count;
         SingeResult (*add)(const SceneBuilder *builder, uint32_t index);
     } lists[] = {
-        {FAULT_SOURCE, scene->source_count, add_source},
-        {FAULT_COLLIDER, scene->collider_count, add_collider},
-        {FAULT_PIN, scene->pin_count, add_pin},
+        {FAULT_SOURCE, scene->source_count, builder_add_source},
+        {FAULT_COLLIDER, scene->collider_count, builder_add_collider},
+        {FAULT_PIN, scene->pin_count, builder_add_pin},
     };
 
     for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) {

@@ -5,6 +5,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct Dumper {
@@ -205,6 +206,31 @@ static void dump_map(const Dumper *dumper, const Schema *schema, const void *obj
         dump_line(dumper, indent);
         fputc('}', dumper->file);
     }
+}
+
+/// The text of a stream of open_memstream, which it closes; NULL when out of memory.
+static char *stream_text(FILE *file, char **text) {
+    bool good = file && !ferror(file);
+    if (file && fclose(file) != 0) good = false;
+    if (good) return *text;
+    free(*text);
+    return NULL;
+}
+
+char *dump_text(const Schema *schema, const void *object) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    if (file) dump_map(&(Dumper){file, true}, schema, object, 0, true);
+    return stream_text(file, &text);
+}
+
+char *dump_row_text(const SchemaRow *row, unsigned kind, const void *object) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    if (file && row_present(row, kind, object)) dump_row(&(Dumper){file, true}, row, object, 0);
+    return stream_text(file, &text);
 }
 
 void scene_dump(const Scene *scene, SceneSyntax syntax, int indent, FILE *file) {

@@ -14,7 +14,7 @@ typedef struct SceneText {
     int number;              ///< of a material file, 0 for the scene
     struct SceneText *files; ///< of the scene: the material files read so far, the last one first
     struct SceneText *next;  ///< of a material file: the one before it
-    struct YamlNode *root;   ///< of a material file that was read: its tree, NULL if it is invalid
+    struct YamlNode *root;   ///< its tree; of a material file NULL if it is invalid
     bool was_read;
 } SceneText;
 

@@ -67,6 +67,7 @@ static SingeResult parse_into(SceneArena *arena, const SceneText *given, const c
     if (message_total(messages) != before) return SINGE_ERROR_FORMAT;
     if (!root) return SINGE_ERROR_MEMORY;
 
+    text->root = root;
     scene->text = text;
     scene->arena = arena;
     *result = scene;

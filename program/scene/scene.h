@@ -343,6 +343,27 @@ SINGE_NODISCARD SingeResult scene_build(const Scene *scene, const SceneAssets *a
 SINGE_NODISCARD SingeResult scene_follow(const Scene *scene, SceneAssets *assets, SingeSim *sim, int frame,
                                          SingeError *error);
 
+// ---- branches: a scene goes on from a frame of another
+
+/// A scene with its files.
+typedef struct SceneWhole {
+    const Scene *scene;
+    const SceneAssets *assets;
+} SceneWhole;
+
+/// Whether a simulation of the scene `before` can go on as `scene`. Otherwise *messages has a message at each value that
+/// differs and cannot be changed: SINGE_ERROR_ARGUMENT. SINGE_ERROR_MEMORY.
+SINGE_NODISCARD SingeResult scene_may_branch(SceneWhole scene, SceneWhole before, SceneMessages *messages);
+
+/// Makes a simulation of `before`, at the end of frame `frame`, go on as `scene`: wind, gravity, pace, ambient
+/// temperature, materials, and those sources, colliders and pins that differ. What is equal is not touched. The scenes
+/// have passed scene_may_branch. On failure *messages has the reason at its place, and the simulation is to be destroyed.
+SINGE_NODISCARD SingeResult scene_branch(SceneWhole scene, SceneWhole before, int frame, SingeSim *sim,
+                                         SceneMessages *messages);
+
+/// Whether frames of both are drawn alike: with the same preview, and sheets of the same colours and pictures.
+bool scene_looks_alike(SceneWhole scene, SceneWhole before);
+
 // ---- from scene to preview
 
 /// Places a camera that is not given so that all sheets, at their start, fill the picture. If that is more than 10 km
