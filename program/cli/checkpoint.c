@@ -1,9 +1,11 @@
 #include "cli/checkpoint.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "cli/text.h"
@@ -106,6 +108,7 @@ SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets,
     bare.frames = 1;
     bare.output = (SceneOutput){0};
     bare.gas_detail = 0;
+    bare.checkpoints = (SceneCheckpoints){0};
     bool good = hash_scene(&bare, &hash->looks);
     bare.preview = (ScenePreview){0};
     if (good && hash_scene(&bare, &hash->result)) {
@@ -195,8 +198,21 @@ static SingeResult read_trailer(const char *path, const Bytes *bytes, SceneHash 
     return SINGE_OK;
 }
 
-static SingeResult read_file(const char *path, const SingeSimDef *hooks, SceneHash hash, const SceneAssets *assets,
-                             Checkpoint *checkpoint, SingeError *error) {
+bool checkpoint_peek(const char *path, Progress *progress) {
+    Trailer trailer;
+    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    struct stat info;
+    bool good = file >= 0 && fstat(file, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > (off_t)sizeof trailer;
+    good = good && pread(file, &trailer, sizeof trailer, info.st_size - (off_t)sizeof trailer) == sizeof trailer &&
+           memcmp(trailer.magic, checkpoint_magic, sizeof trailer.magic) == 0 && trailer.frame >= 1 &&
+           trailer.frame <= INT_MAX && trailer.step <= INT_MAX;
+    if (file >= 0) close(file);
+    if (good) *progress = (Progress){(int)trailer.frame, (int)trailer.step};
+    return good;
+}
+
+SingeResult checkpoint_read_file(const char *path, const SingeSimDef *hooks, SceneHash hash, const SceneAssets *assets,
+                                 Checkpoint *checkpoint, SingeError *error) {
     Bytes bytes = {0};
     SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
     if (result) return result;
@@ -223,13 +239,13 @@ SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, Scen
     *checkpoint = (Checkpoint){0};
     if (!last && !before) return SINGE_OK;
     if (last) {
-        SingeResult result = read_file(folder->checkpoint, hooks, hash, assets, checkpoint, error);
+        SingeResult result = checkpoint_read_file(folder->checkpoint, hooks, hash, assets, checkpoint, error);
         // the previous one would be of another scene, too, or need the same memory
         if (!result || !before || result == SINGE_ERROR_STATE || result == SINGE_ERROR_MEMORY) return result;
     }
     const SingeError refused = last ? *error : (SingeError){0};
     *checkpoint = (Checkpoint){.previous = true, .refused = refused};
-    SingeResult result = read_file(folder->previous_checkpoint, hooks, hash, assets, checkpoint, error);
+    SingeResult result = checkpoint_read_file(folder->previous_checkpoint, hooks, hash, assets, checkpoint, error);
     if (result && last) *error = refused;
     return result && last ? refused.code : result;
 }

@@ -56,6 +56,13 @@ typedef struct Checkpoint {
 SINGE_NODISCARD SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, SceneHash hash,
                                             const SceneAssets *assets, Checkpoint *checkpoint, SingeError *error);
 
+/// The progress of a file's checkpoint, without reading the rest; false if it has none of this version.
+bool checkpoint_peek(const char *path, Progress *progress);
+
+/// Reads the checkpoint in a file. Errors as above.
+SINGE_NODISCARD SingeResult checkpoint_read_file(const char *path, const SingeSimDef *hooks, SceneHash hash,
+                                                 const SceneAssets *assets, Checkpoint *checkpoint, SingeError *error);
+
 /// Replaces the last checkpoint, which is unusable, by the previous one: the next one written then does not replace the
 /// only good one.
 SINGE_NODISCARD SingeResult checkpoint_promote(const Folder *folder, SingeError *error);

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "cli/text.h"
+#include "formats/formats.h"
 
 Folder folder_name(const char *path, const char *name) {
     Folder folder = {.name = text_format("%s", name)};
@@ -84,7 +85,7 @@ SingeResult folder_make(const char *path, SingeError *error) {
 }
 
 /// The folders of frames: those of formats first.
-enum { INNER_FRAMES = OUTPUT_COUNT, INNER_GAS, INNER_GAS_DETAIL, INNER_EXR, INNER_COUNT };
+enum { INNER_FRAMES = OUTPUT_COUNT, INNER_GAS, INNER_GAS_DETAIL, INNER_EXR, INNER_CHECKPOINTS, INNER_COUNT };
 
 /// A folder's name, and the ending of its files.
 typedef struct Inner {
@@ -92,13 +93,14 @@ typedef struct Inner {
 } Inner;
 
 static Inner inner(int which) {
-    static const Inner others[] = {{"frames", ".png"}, {"gas", ".vdb"}, {"gas_detail", ".vdb"}, {"exr", ".exr"}};
+    static const Inner others[] = {
+        {"frames", ".png"}, {"gas", ".vdb"}, {"gas_detail", ".vdb"}, {"exr", ".exr"}, {"checkpoints", ".singe"}};
     if (which >= OUTPUT_COUNT) return others[which - OUTPUT_COUNT];
     return (Inner){output_formats[which].name, output_formats[which].ending};
 }
 
 static bool is_asked(FolderParts parts, int which) {
-    const bool others[] = {parts.pictures, parts.gas, parts.gas_detail, parts.exr};
+    const bool others[] = {parts.pictures, parts.gas, parts.gas_detail, parts.exr, parts.checkpoints};
     if (which >= OUTPUT_COUNT) return others[which - OUTPUT_COUNT];
     return which == OUTPUT_ply || output_has(parts.outputs, which);
 }
@@ -126,6 +128,7 @@ char *folder_png(const Folder *folder, int frame) { return frame_path(folder, IN
 char *folder_vdb(const Folder *folder, int frame) { return frame_path(folder, INNER_GAS, frame); }
 char *folder_gas_detail(const Folder *folder, int frame) { return frame_path(folder, INNER_GAS_DETAIL, frame); }
 char *folder_exr(const Folder *folder, int frame) { return frame_path(folder, INNER_EXR, frame); }
+char *folder_kept(const Folder *folder, int frame) { return frame_path(folder, INNER_CHECKPOINTS, frame); }
 char *folder_output(const Folder *folder, int format, int frame) { return frame_path(folder, format, frame); }
 
 char *folder_root(const Folder *folder, int format) {
@@ -279,6 +282,36 @@ SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, 
 bool folder_has(const char *path) {
     struct stat info;
     return stat(path, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0;
+}
+
+SingeResult folder_link(const char *from, const char *to, SingeError *error) {
+    struct stat info;
+    if (lstat(from, &info) != 0) return folder_fail(from, "read", errno, error);
+    if (!S_ISREG(info.st_mode)) return folder_fail(from, "read", S_ISLNK(info.st_mode) ? ELOOP : 0, error);
+    if (unlink(to) != 0 && errno != ENOENT) return folder_fail(to, "replace", errno, error);
+    if (link(from, to) == 0) return SINGE_OK;
+
+    Bytes bytes = {0};
+    SingeResult result = file_read(from, (SingeAllocator){0}, &bytes, error);
+    if (!result) result = file_write(to, bytes.data, bytes.size, error);
+    bytes_free(&bytes);
+    return result;
+}
+
+SingeResult folder_each_kept(const Folder *folder, FolderVisit *visit, void *context, SingeError *error) {
+    char *path = text_format("%s/%s", folder->path, inner(INNER_CHECKPOINTS).name);
+    DIR *dir = opendir(path);
+    SingeResult result = dir || errno == ENOENT ? SINGE_OK : folder_fail(path, "list", errno, error);
+    for (struct dirent *entry; dir && !result && (entry = next_entry(dir, path, &result, error));) {
+        const char *rest;
+        struct stat info;
+        const int frame = frame_of(folder, entry->d_name, inner(INNER_CHECKPOINTS).ending, &rest);
+        if (!frame || *rest || fstatat(dirfd(dir), entry->d_name, &info, AT_SYMLINK_NOFOLLOW) != 0) continue;
+        if (S_ISREG(info.st_mode)) visit(context, frame, (uint64_t)info.st_size);
+    }
+    if (dir) closedir(dir);
+    free(path);
+    return result;
 }
 
 ExitCode folder_span(const Folder *folder, Console *console, int *first, int *last) {

@@ -1,10 +1,11 @@
 // Paths of a run's files: DIR/ply/NAME.0001.ply, DIR/gas/NAME.0001.vdb, DIR/frames/NAME.0001.png,
-// DIR/exr/NAME.0001.exr, the formats of formats/output.h (DIR/vtp/NAME.0001.vtp, DIR/NAME.pvd), and files that are not
+// DIR/exr/NAME.0001.exr, DIR/checkpoints/NAME.0001.singe, the formats of formats/output.h (DIR/vtp/NAME.0001.vtp, DIR/NAME.pvd), and files that are not
 // per frame.
 #ifndef CLI_FOLDER_H
 #define CLI_FOLDER_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "cli/cli.h"
 #include "cli/console.h"
@@ -34,7 +35,7 @@ SINGE_NODISCARD SingeResult folder_make(const char *path, SingeError *error);
 
 /// What a run writes besides the cache: folders, each for one kind of file, and tables.
 typedef struct FolderParts {
-    bool pictures, gas, gas_detail, exr, events, probes;
+    bool pictures, gas, gas_detail, exr, checkpoints, events, probes;
     OutputSet outputs;
 } FolderParts;
 
@@ -48,6 +49,7 @@ char *folder_png(const Folder *folder, int frame);
 char *folder_vdb(const Folder *folder, int frame);
 char *folder_gas_detail(const Folder *folder, int frame);
 char *folder_exr(const Folder *folder, int frame);
+char *folder_kept(const Folder *folder, int frame); ///< a checkpoint that is kept
 char *folder_output(const Folder *folder, int format, int frame);
 /// Path of a file with all frames, from malloc: DIR/NAME.usdc, or DIR/vat/NAME, to which endings are added.
 char *folder_single(const Folder *folder, int single);
@@ -67,6 +69,15 @@ SINGE_NODISCARD SingeResult folder_sweep(const Folder *folder, SingeError *error
 
 /// Whether a file exists and is not empty.
 bool folder_has(const char *path);
+
+/// Gives a file a second name, in place of what has that name; where the file system cannot, copies it. Only a regular
+/// file: no link is followed.
+SINGE_NODISCARD SingeResult folder_link(const char *from, const char *to, SingeError *error);
+
+/// Calls `visit` with each checkpoint that is kept, in no order, and its size.
+typedef void FolderVisit(void *context, int frame, uint64_t size);
+SINGE_NODISCARD SingeResult folder_each_kept(const Folder *folder, FolderVisit *visit, void *context,
+                                             SingeError *error);
 
 /// Checks that the PLYs of frames *first to *last exist; sets both to the range of all frames if *first is 0. A message
 /// has been printed unless the result is EXIT_GOOD.

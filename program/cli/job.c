@@ -196,9 +196,8 @@ ExitCode job_parse(Job *job, Console *console, const char *name, const char *tex
     *job = (Job){0};
     set_hooks(job, console, threads);
     SingeResult result = scene_parse(name, text, size, folder, sets->items, sets->count, &job->scene, &messages);
-    if (!result) result = scene_load(job->scene, &job->assets, &messages);
-    if (!result) scene_frame(job->scene, &job->assets);
-    return job_tell(job, console, result, &messages);
+    const ExitCode code = job_tell(job, console, result, &messages);
+    return code ? code : job_load(job, console, 0);
 }
 
 ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetList *sets, int threads) {

@@ -94,6 +94,7 @@ static void write_all(FILE *file, const Record *record, const Job *job) {
     write_numbers(file, record);
     fputs("  \"scene\": ", file);
     scene_dump(scene, SCENE_JSON, 2, file);
+    if (record->from) fprintf(file, ",\n  \"from\": %s", record->from);
     fputs("\n}\n", file);
 }
 

@@ -18,6 +18,7 @@ enum {
     OPT_THREADS,
     OPT_SET,
     OPT_RESUME,
+    OPT_FROM,
     OPT_FORCE,
     OPT_NO_PREVIEW,
     OPT_EXR,
@@ -32,6 +33,7 @@ static const ArgOption run_options[OPT_COUNT] = {
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]; the result does not depend on them"},
     [OPT_SET] = {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated"},
     [OPT_RESUME] = {"resume", 0, NULL, "continues from DIR/checkpoint.singe"},
+    [OPT_FROM] = {"from", 0, "DIR:FRAME", "goes on from a frame of an earlier run, with what has changed since"},
     [OPT_FORCE] = {"force", 'f', NULL, "replaces an earlier run in DIR without a question, which a terminal is asked"},
     [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no pictures and makes no video"},
     [OPT_EXR] = {"exr", 0, NULL, "also writes DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
@@ -64,6 +66,7 @@ static ExitCode run_parse(int argc, char **argv, RunOptions *options, bool *done
         case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &options->threads); break;
         case OPT_SET: set_add(&options->sets, value); break;
         case OPT_RESUME: options->resume = true; break;
+        case OPT_FROM: options->from = value; break;
         case OPT_FORCE: options->force = true; break;
         case OPT_NO_PREVIEW: options->no_preview = true; break;
         case OPT_EXR: options->exr = true; break;
@@ -295,6 +298,8 @@ int command_run(int argc, char **argv) {
         outputs_close(&run.outputs);
         if (run.baker != run.pictures) pictures_close(run.baker);
         pictures_close(run.pictures);
+        branch_close(&run.branch);
+        free(run.record.from);
         singe_sim_destroy(run.sim);
         code = recording_close(&run.recording, code, &console);
         lock_release(&run.pictures_lock);

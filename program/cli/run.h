@@ -22,6 +22,7 @@ typedef struct Record {
     SingeError error;   ///< when failed
     int frames_done;
     int resumed_from; ///< frame of the checkpoint from which the last start resumed, 0 for none
+    char *from;       ///< JSON: the run that this is a branch of, from malloc; NULL for none
     bool preview, video;
     SingeCounts counts;
     float thickening;
@@ -36,6 +37,7 @@ SINGE_NODISCARD SingeResult record_write(const Record *record, const char *path,
 
 typedef struct RunOptions {
     const char *scene, *output;
+    const char *from;   ///< "DIR:FRAME", the frame of which it is a branch; NULL: none
     const char *record; ///< file of the recording; NULL: none
     SetList sets;
     int threads;
@@ -65,6 +67,15 @@ typedef struct FrameWriting {
     SingeError error;
 } FrameWriting;
 
+/// The run that this one goes on from.
+typedef struct Branch {
+    int frame; ///< 0: this is no branch
+    Job job;   ///< its scene at that frame
+    Folder folder;
+    int first;  ///< frame from which that scene holds
+    bool alike; ///< its pictures are those of this run
+} Branch;
+
 /// A run in progress.
 typedef struct Run {
     Console *console;
@@ -86,6 +97,8 @@ typedef struct Run {
     Totals *totals;     ///< the record's
     SingeTimers timers; ///< as last read
     SceneHash hash;
+    Branch branch;
+    int keep_every;              ///< frames from one kept checkpoint to the next; 0: none are kept
     double started, wall_before; ///< s, clock at the start and time spent before a resumption
     double checkpoint_time, checkpoint_cost;
     double frame_ended, frame_seconds; ///< s, clock at the end of the last frame, and the time of a frame
@@ -104,6 +117,23 @@ FolderParts run_parts(const Run *run);
 /// Reads, builds and locks everything that the run needs, and with --resume loads its checkpoint. Of an earlier run
 /// only half-written files have been removed.
 ExitCode run_prepare(Run *run, const RunOptions *options);
+
+/// Makes the simulation of a branch: that of the earlier run at the frame, with what has changed since. Writes nothing.
+ExitCode branch_prepare(Run *run, const char *from);
+
+/// Fills the folder, which has no frames, with those up to the branch, and writes its first checkpoint.
+SINGE_NODISCARD SingeResult branch_fill(Run *run, SingeError *error);
+
+void branch_close(Branch *branch);
+
+/// The member "from" of a folder's run.json, from malloc; NULL if there is none.
+char *branch_lineage(const Folder *folder);
+
+/// Counts the steps since the last frame, as at a frame that is not written.
+SINGE_NODISCARD SingeResult run_pass_frame(Run *run, int frame, SingeError *error);
+
+/// Keeps the last checkpoint, which is of that frame, if the scene asks for it, and drops those that no longer fit.
+SINGE_NODISCARD SingeResult run_keep_checkpoint(Run *run, int frame, SingeError *error);
 
 /// Replaces an earlier run's files by the first frame of a new run, which has been written whole.
 SINGE_NODISCARD SingeResult run_take_over(Run *run, SingeError *error);

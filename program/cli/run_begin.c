@@ -16,6 +16,7 @@ FolderParts run_parts(const Run *run) {
                          .gas = gas,
                          .gas_detail = gas && run->baker,
                          .exr = run->layers,
+                         .checkpoints = run->keep_every || run->branch.frame,
                          .events = run->job.scene->output.events,
                          .probes = run->job.scene->probe_count > 0,
                          .outputs = run->job.scene->output.formats};
@@ -87,6 +88,7 @@ static ExitCode resume(Run *run) {
         return result == SINGE_ERROR_FORMAT ? EXIT_INPUT : EXIT_FAILED;
     }
 
+    run->record.from = branch_lineage(&run->folder);
     *run->totals = checkpoint.totals;
     run->halts = checkpoint.totals.contact_halts;
     run->wall_before = checkpoint.totals.wall_seconds;
@@ -184,7 +186,8 @@ SingeResult run_take_over(Run *run, SingeError *error) {
         result = file_publish(run->files[i].draft, run->files[i].path, error);
         run->files[i].draft = NULL;
     }
-    return result ? result : tables_begin(&run->tables, error);
+    if (!result) result = run->branch.frame ? branch_fill(run, error) : tables_begin(&run->tables, error);
+    return result;
 }
 
 /// Asks on a terminal whether an earlier run may be replaced. Scripts are not asked.
@@ -211,6 +214,8 @@ ExitCode run_prepare(Run *run, const RunOptions *options) {
 
     run->folder = folder_name(options->output, run->job.scene->name);
     run->first = 1;
+    const SceneCheckpoints *kept = &run->job.scene->checkpoints;
+    run->keep_every = kept->every ? kept->every : kept->megabytes > 0 ? 10 : 0;
     SingeResult result = checkpoint_scene_hash(run->job.scene, &run->job.assets, &run->hash, &error);
     const bool drawn = !options->no_preview && pictures_available();
     if (options->no_preview) console_note(run->console, "no preview");
@@ -231,9 +236,18 @@ ExitCode run_prepare(Run *run, const RunOptions *options) {
     if (options->resume && access(run->folder.path, F_OK) == 0) {
         if ((code = hold_folder(run)) || (code = resume(run))) return code;
     }
-    if (options->resume && !run->sim)
+    if (options->resume && !run->sim && !options->from) {
+        char *lineage = branch_lineage(&run->folder);
+        if (lineage)
+            console_error(run->console,
+                          "%s is a branch that was cut short before its first checkpoint; give its --from",
+                          run->folder.path);
+        free(lineage);
+        if (lineage) return EXIT_INPUT;
         console_note(run->console, "no checkpoint in %s: starting from the beginning", run->folder.path);
+    }
     if (!run->sim && !options->force && !may_replace(run)) return EXIT_FAILED;
+    if (!run->sim && options->from && (code = branch_prepare(run, options->from))) return code;
     if (!run->sim && (code = job_build(&run->job, run->console, &run->sim))) return code;
     if ((code = hold_folder(run))) return code;
 
@@ -243,6 +257,7 @@ ExitCode run_prepare(Run *run, const RunOptions *options) {
     run->outputs.scene.gas_detail = parts.gas_detail;
     if (!result) result = folder_create(&run->folder, parts, &error);
     if (!result) result = folder_sweep(&run->folder, &error);
+    if (!result && run->branch.frame) result = run_take_over(run, &error);
     if (!result && !run->begun)
         result = tables_open(&run->tables, &run->folder, run->job.scene, &run->job.assets, &error);
     if (!result) return EXIT_GOOD;

@@ -37,6 +37,32 @@ static void read_timers(Run *run, FrameCost *cost) {
     *before = now;
 }
 
+/// Counts the pairs of triangles of the first frame that cross.
+static SingeResult count_crossings(Run *run, SingeError *error) {
+    float at[3];
+    if (!crossings_count(&run->frame.surface, &run->totals->crossed, at)) {
+        *error = (SingeError){
+            .code = SINGE_ERROR_MEMORY, .element = -1, .message = "out of memory while looking for crossings"};
+        return SINGE_ERROR_MEMORY;
+    }
+    if (run->totals->crossed)
+        console_warn(run->console,
+                     "%" PRIu64 " pairs of triangles cross initially, the first near (%.4g, %.4g, %.4g) m; `singe "
+                     "verify` counts them separately",
+                     run->totals->crossed, (double)at[0], (double)at[1], (double)at[2]);
+    return SINGE_OK;
+}
+
+SingeResult run_pass_frame(Run *run, int frame, SingeError *error) {
+    FrameCost cost;
+    run->step = 0;
+    read_timers(run, &cost);
+    run->totals->hottest = fmax(run->totals->hottest, (double)singe_sim_stats(run->sim).temperature_max);
+    if (frame > 1) return SINGE_OK;
+    SingeResult result = frame_take_surface(run->sim, &run->frame, error);
+    return result ? result : count_crossings(run, error);
+}
+
 SingeResult run_advance(Run *run, int frame, SingeError *error) {
     if (run->step == 0) {
         SingeResult result = scene_follow(run->job.scene, &run->job.assets, run->sim, frame - 1, error);
@@ -188,22 +214,12 @@ SingeResult run_begin_frame(Run *run, int frame, bool last, SingeError *error) {
     if (!result) result = tables_take_frame(&run->tables, run->sim, frame, error);
 
     // contact cannot separate triangles that cross in the first frame
-    float at[3];
-    if (!result && frame == 1 && !crossings_count(&run->frame.surface, &run->totals->crossed, at)) {
-        *error = (SingeError){
-            .code = SINGE_ERROR_MEMORY, .element = -1, .message = "out of memory while looking for crossings"};
-        result = SINGE_ERROR_MEMORY;
-    }
+    if (!result && frame == 1) result = count_crossings(run, error);
 
-    if (!result && frame == 1 && run->totals->crossed)
-        console_warn(run->console,
-                     "%" PRIu64 " pairs of triangles cross initially, the first near (%.4g, %.4g, %.4g) m; `singe "
-                     "verify` counts them separately",
-                     run->totals->crossed, (double)at[0], (double)at[1], (double)at[2]);
-
+    const bool kept = run->keep_every && frame % run->keep_every == 0;
     const double since = console_clock() - run->checkpoint_time;
     const bool due = since >= run->checkpoint_cost * (1 / checkpoint_share - 1) || since >= checkpoint_every;
-    if (!result && (last || due)) result = take_checkpoint(run, &writing->checkpoint, error);
+    if (!result && (last || due || kept)) result = take_checkpoint(run, &writing->checkpoint, error);
     writing->totals = *run->totals;
     if (result) {
         writing->frame = 0;
@@ -243,6 +259,7 @@ SingeResult run_end_frame(Run *run, SingeStats *stats, SingeError *error) {
     if (!result) run->record.frames_done = frame;
     if (!result && writing->checkpoint.bytes)
         result = write_checkpoint(run, &writing->checkpoint, (Progress){frame, 0}, &writing->totals, error);
+    if (!result && run->keep_every && frame % run->keep_every == 0) result = run_keep_checkpoint(run, frame, error);
     checkpoint_drop(run->sim, &writing->checkpoint);
     return result;
 }

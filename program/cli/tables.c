@@ -79,33 +79,42 @@ static SingeResult lines_begin(LineFile *file, const char *header, SingeError *e
     return lines_append(file, header, strlen(header), error);
 }
 
-/// Truncates the file to its header and `count` lines, which must exist. If `per_frame` is not 0, each begins with its
+/// Reads a file's header and the first `count` lines, which must exist. If `per_frame` is not 0, each begins with its
 /// frame, and a frame has that many. `what` is for the message: "frames 1 to 12".
-static SingeResult lines_cut(LineFile *file, const char *header, uint64_t count, uint32_t per_frame, const char *what,
-                             SingeError *error) {
-    Bytes bytes = {0};
-    SingeResult result = file_read(file->path, (SingeAllocator){0}, &bytes, error);
+static SingeResult lines_read(const char *path, const char *header, uint64_t count, uint32_t per_frame,
+                              const char *what, Bytes *bytes, size_t *size, SingeError *error) {
+    SingeResult result = file_read(path, (SingeAllocator){0}, bytes, error);
     if (result) return result;
 
     // the size of what is kept
     size_t at = strlen(header);
-    bool good = bytes.size >= at && memcmp(bytes.data, header, at) == 0;
+    bool good = bytes->size >= at && memcmp(bytes->data, header, at) == 0;
     for (uint64_t i = 0; good && i < count; i++) {
-        const char *line = (const char *)bytes.data + at, *end = memchr(line, '\n', bytes.size - at);
+        const char *line = (const char *)bytes->data + at, *end = memchr(line, '\n', bytes->size - at);
         char number[24] = "";
         if (per_frame) snprintf(number, sizeof number, "%" PRIu64 ",", i / per_frame + 1);
         good = end && (size_t)(end - line) >= strlen(number) && memcmp(line, number, strlen(number)) == 0;
         if (good) at += (size_t)(end - line) + 1;
     }
-    bytes_free(&bytes);
+    *size = at;
+    if (good) return SINGE_OK;
 
-    if (!good) {
-        *error = (SingeError){.code = SINGE_ERROR_FORMAT, .stage = "resume", .element = -1};
-        snprintf(error->message, sizeof error->message,
-                 "%.200s lacks %s, which the checkpoint needs; run without --resume to start over", file->path, what);
-        return SINGE_ERROR_FORMAT;
-    }
-    file->size = (int64_t)at;
+    bytes_free(bytes);
+    *error = (SingeError){.code = SINGE_ERROR_FORMAT, .stage = "resume", .element = -1};
+    snprintf(error->message, sizeof error->message,
+             "%.200s lacks %s, which the checkpoint needs; run without --resume to start over", path, what);
+    return SINGE_ERROR_FORMAT;
+}
+
+/// Truncates the file to them.
+static SingeResult lines_cut(LineFile *file, const char *header, uint64_t count, uint32_t per_frame, const char *what,
+                             SingeError *error) {
+    Bytes bytes = {0};
+    size_t size;
+    SingeResult result = lines_read(file->path, header, count, per_frame, what, &bytes, &size, error);
+    if (result) return result;
+    bytes_free(&bytes);
+    file->size = (int64_t)size;
     if (ftruncate(file->fd, (off_t)file->size) != 0) return folder_fail(file->path, "cut", errno, error);
     return SINGE_OK;
 }
@@ -149,6 +158,36 @@ SingeResult tables_cut(Tables *tables, int frames, const Totals *totals, SingeEr
         const uint64_t events = totals->ignited + totals->holes_opened + totals->pieces_freed;
         snprintf(what, sizeof what, "the %" PRIu64 " events up to frame %d", events, frames);
         result = lines_cut(&tables->events, events_header, events, 0, what, error);
+    }
+    return result;
+}
+
+SingeResult tables_copy(const Folder *from, const Folder *to, const Scene *scene, int frames, const Totals *totals,
+                        SingeError *error) {
+    char what[80];
+    snprintf(what, sizeof what, "frames 1 to %d", frames);
+    const uint64_t events = totals->ignited + totals->holes_opened + totals->pieces_freed, all = (uint64_t)frames;
+    const struct {
+        bool asked;
+        const char *from, *to, *header;
+        uint64_t lines;
+        uint32_t per_frame;
+    } parts[] = {
+        {true, from->stats, to ? to->stats : NULL, stats_header, all, 1},
+        {scene->probe_count > 0, from->probes, to ? to->probes : NULL, probes_header, all * scene->probe_count,
+         scene->probe_count},
+        {scene->output.events, from->events, to ? to->events : NULL, events_header, events, 0},
+    };
+
+    SingeResult result = SINGE_OK;
+    for (size_t i = 0; i < sizeof parts / sizeof *parts && !result; i++) {
+        if (!parts[i].asked) continue;
+        Bytes bytes = {0};
+        size_t size;
+        result =
+            lines_read(parts[i].from, parts[i].header, parts[i].lines, parts[i].per_frame, what, &bytes, &size, error);
+        if (!result && to) result = file_write(parts[i].to, bytes.data, size, error);
+        if (!result) bytes_free(&bytes);
     }
     return result;
 }

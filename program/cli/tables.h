@@ -68,6 +68,11 @@ SINGE_NODISCARD SingeResult tables_begin(Tables *tables, SingeError *error);
 /// must exist.
 SINGE_NODISCARD SingeResult tables_cut(Tables *tables, int frames, const Totals *totals, SingeError *error);
 
+/// Copies the tables that the scene asks for from another folder, as they were at that state; `to` NULL only checks that
+/// all lines exist.
+SINGE_NODISCARD SingeResult tables_copy(const Folder *from, const Folder *to, const Scene *scene, int frames,
+                                        const Totals *totals, SingeError *error);
+
 /// Holds the events of the simulation's last step.
 SINGE_NODISCARD SingeResult tables_take_step(Tables *tables, const SingeSim *sim, SingeError *error);
 /// Holds the probes' values at a frame; the events so far belong to that frame.

@@ -19,6 +19,7 @@ static const char *const changeable[] = {
     "gravity",
     "ambient_temperature",
     "wind",
+    "checkpoints",
     "sources",
     "colliders",
     "pins",

@@ -210,6 +210,12 @@ typedef struct SceneOutput {
     int texture_size; ///< pixels
 } SceneOutput;
 
+/// Which checkpoints a run keeps; all 0: only the last two.
+typedef struct SceneCheckpoints {
+    int every;       ///< frames
+    float megabytes; ///< 0: any number
+} SceneCheckpoints;
+
 typedef struct Scene {
     char *name;     ///< of the outputs; the scene file's name without its ending by default
     int frames;     ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
@@ -227,6 +233,7 @@ typedef struct Scene {
     SceneProbe *probes;
     ScenePreview preview;
     SceneOutput output;
+    SceneCheckpoints checkpoints;
     struct SceneText *text;   ///< the source, for messages after parsing
     struct SceneArena *arena; ///< owns all of the above
 } Scene;

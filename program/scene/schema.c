@@ -84,6 +84,20 @@ static const Schema schema_contact = {
         "Sheets do not pass through themselves or each other. With `contact: no` they do, as in the paper. Colliders "
         "have their own friction."};
 
+static const SchemaRow checkpoints_rows[] = {
+    {"every", ROW_INT, DIM_NONE, AT(SceneCheckpoints, every), WITHIN(0, 1000000),
+     .doc = "keeps the checkpoints of frames N, 2N, 3N, ... in `checkpoints/`; 0: none"},
+    {"megabytes", ROW_FLOAT, DIM_NONE, AT(SceneCheckpoints, megabytes), WITHIN(0, 1e9),
+     .doc = "what they may take: beyond it every second one goes. 0: any amount. Alone it begins with every 10 frames"},
+};
+static const Schema schema_checkpoints = {
+    .title = "checkpoints",
+    .size = sizeof(SceneCheckpoints),
+    ROWS(checkpoints_rows),
+    .doc =
+        "A run always keeps its last two checkpoints, to go on after an interruption. More of them let a branch begin "
+        "at once ([directing.md](directing.md)); without, it simulates the frames before it again."};
+
 static const SchemaRow output_rows[] = {
     {"formats", ROW_FORMATS, DIM_NONE, AT(SceneOutput, formats),
      .doc =
@@ -136,6 +150,8 @@ static const SchemaRow scene_rows[] = {
     {"contact", ROW_MAP, DIM_NONE, AT(Scene, sim.contact), .sub = &schema_contact,
      .doc = "contact of sheets with themselves and each other"},
     {"preview", ROW_MAP, DIM_NONE, AT(Scene, preview), .sub = &schema_preview, .doc = "how frames are drawn"},
+    {"checkpoints", ROW_MAP, DIM_NONE, AT(Scene, checkpoints), .sub = &schema_checkpoints,
+     .doc = "which of them are kept"},
     {"output", ROW_MAP, DIM_NONE, AT(Scene, output), .sub = &schema_output, .doc = "what is written of them"},
 };
 #undef OF
