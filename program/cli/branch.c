@@ -330,7 +330,7 @@ ExitCode branch_prepare(Run *run, const char *from) {
     branch->job.hooks = run->job.hooks;
     if (!code && !run->sim) code = job_build(&branch->job, run->console, &run->sim);
     if (code) return code;
-    if (at.frame < branch->frame)
+    if (branch->frame > (at.frame > 0 ? at.frame : 1))
         console_note(run->console, "simulating frames %d to %d again (the scene's `checkpoints` can save this)",
                      at.frame + 1, branch->frame);
     SingeError error = {0};

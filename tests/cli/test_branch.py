@@ -1,0 +1,232 @@
+"""Runs that go on from a frame of an earlier run."""
+
+import json
+import os
+import shutil
+import unittest
+
+from support import HAS_PREVIEW, Case
+
+FRAMES = 6
+# what may change, and which of it a frame later shows
+CHANGES = {
+    "wind": ["wind.velocity=[2, 0, 1]"],
+    "gravity": ["gravity=[0, 1, -9.81]"],
+    "pace": ["pace=8"],
+    "ambient temperature": ["ambient_temperature=350 K"],
+    "a source": ["sources.0.temperature=900 K"],
+    "a source's place": ["sources.0.position=[-3 cm, 1 cm, 5 cm]"],
+    "no sources": ["sources=[]"],
+    "another source": ["sources=[{kind: spot, position: [3 cm, 0, 5 cm], temperature: 1500 K, conductance: 300, "
+                       "radius: 2 cm, falloff: 1 cm}]"],
+    "a collider": ["colliders=[{kind: sphere, radius: 2 cm, position: [0, 0, 0]}]"],
+    "a pin": ["pins=[{points: [[3 cm, 3 cm, 5 cm]], radius: 5 mm}]"],
+    "a material": ["sheets.0.material.ignition_temperature=450 K"],
+}
+
+
+class Branch(Case):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write_scene(frames=FRAMES, cells=8)
+
+    def whole(self, *args):
+        self.run_scene("whole", "--quiet", *args)
+
+    def branch(self, out, frame, *sets, of="whole", args=(), **options):
+        given = [part for one in sets for part in ("--set", one)]
+        return self.run_scene(out, "--from", f"{self.path(of)}:{frame}", *given, *args, **options)
+
+    def same(self, out, whole="whole"):
+        self.assertEqual(self.plys(whole), self.plys(out))
+        self.assertEqual(self.numbers(whole), self.numbers(out))
+        for name in os.listdir(self.path(whole, "gas")):
+            with open(self.path(whole, "gas", name), "rb") as one, open(self.path(out, "gas", name), "rb") as other:
+                self.assertEqual(one.read(), other.read(), name)
+        self.assertEqual(self.record(out)["totals"], self.record(whole)["totals"])
+        self.no_temporaries(out)
+
+    def test_unchanged(self):
+        """With and without a checkpoint, on one thread and on two, the frames are those of the whole run."""
+        self.whole("--set", "checkpoints.every=3")
+        self.assertEqual(sorted(os.listdir(self.path("whole", "checkpoints"))), ["tiny.0003.singe", "tiny.0006.singe"])
+        for frame, threads in (1, "1"), (3, "2"), (5, "1"):
+            with self.subTest(frame=frame):
+                _, err = self.branch(f"b{frame}", frame, args=("--threads", threads))
+                if frame < 5:  # the run's own last checkpoints depend on its speed
+                    self.assertNotIn("again", err)
+                self.same(f"b{frame}")
+        record = self.record("b5")
+        self.assertEqual((record["from"]["folder"], record["from"]["frame"]),
+                         (os.path.realpath(self.path("whole")), 5))
+        self.assertTrue(os.path.samefile(self.path("whole", "ply", "tiny.0002.ply"),
+                                         self.path("b5", "ply", "tiny.0002.ply")))
+
+    def test_killed(self):
+        """A branch that was killed goes on from its own checkpoint, and stays a branch."""
+        self.whole()
+        out = self.path("k")
+        run = self.start("run", self.scene, "-o", out, "--from", f"{self.path('whole')}:3", "--no-preview",
+                         "--set", "wind.velocity=[2, 0, 1]", "--set", "frames=200")
+        while not os.path.exists(os.path.join(out, "ply", "tiny.0005.ply")) and run.poll() is None:
+            pass
+        run.kill()
+        run.wait()
+        run.stderr.close()
+        wind = ("--set", "wind.velocity=[2, 0, 1]", "--set", "frames=24")
+        self.run_scene("k", "--resume", *wind)
+        self.branch("b", 3, "wind.velocity=[2, 0, 1]", "frames=24", args=("--threads", "1"))
+        self.same("k", "b")
+        self.assertEqual(self.record("k")["from"]["frame"], 3)
+
+    def test_each_change(self):
+        """Each thing that may change does, from the frame after on."""
+        self.whole("--set", "checkpoints.every=2")
+        whole = self.plys("whole")
+        frames = sorted(whole)
+        for what, sets in CHANGES.items():
+            with self.subTest(what):
+                self.branch("b", 2, *sets, args=("--force",))
+                made = self.plys("b")
+                self.assertEqual([whole[frame] for frame in frames[:2]], [made[frame] for frame in frames[:2]])
+                self.assertNotEqual(whole[frames[-1]], made[frames[-1]])
+
+    def test_there_and_back(self):
+        """What is changed at a frame and changed back at the same frame leaves no trace."""
+        self.whole("--set", "checkpoints.every=2")
+        there = [one for what, sets in CHANGES.items() if "source" not in what and "pin" not in what for one in sets]
+        self.branch("there", 2, *there, "sources=[]", args=("--threads", "2"))
+        self.branch("back", 2, of="there", args=("--threads", "1"))
+        self.same("back")
+
+    def test_outputs_and_pictures(self):
+        self.whole("--set", "name=tiny", "--set", "checkpoints.every=4")
+        self.branch("b", 4, "name=other", "output.formats=[ply, vtp]", "gas.detail=2")
+        self.assertEqual(list(self.plys("whole").values()), list(self.plys("b").values()))
+        self.assertEqual(len(os.listdir(self.path("b", "vtp"))), FRAMES)
+        self.assertEqual(len(os.listdir(self.path("b", "gas_detail"))), FRAMES)
+        if HAS_PREVIEW:
+            self.run_scene("drawn", "--set", "preview.size=[32, 32]", preview=True)
+            self.branch("p", 4, "preview.size=[32, 32]", preview=True)
+            for name in os.listdir(self.path("drawn", "frames")):
+                with open(self.path("drawn", "frames", name), "rb") as a, open(self.path("p", "frames", name), "rb") as b:
+                    self.assertEqual(a.read(), b.read(), name)
+
+    def test_branch_of_a_branch(self):
+        """A branch can be branched before and after its first frame, also without its ancestors."""
+        self.whole()
+        self.branch("one", 5, "pace=8")
+        os.rename(self.path("whole"), self.path("away"))
+        self.branch("two", 6, "pace=8", of="one")
+        self.assertEqual(self.plys("one"), self.plys("two"))
+        self.assertEqual(self.record("two")["from"]["from"]["frame"], 5)
+        self.branch("old", 3, of="one")
+        self.assertEqual(self.plys("away"), self.plys("old"))
+
+    def test_refusals(self):
+        """What cannot change is named with its place in the scene, and nothing is written."""
+        self.whole()
+        with open(self.scene) as file:
+            text = file.read()
+        with open(self.scene, "w") as file:
+            file.write(text.replace("steps: 2", "steps: 3") + "contact: {friction: 0.9}\n")
+        _, err = self.branch("b", 4, "sheets.0.grid.cells=[9, 8]", "sheets.0.material.thickness=2 mm", "seed=4",
+                             expect=2)
+        for part in ("tiny.yaml:3:8: error: steps cannot change in a branch: it was 2",
+                     "contact.friction cannot change", "--set sheets.0.grid.cells=[9, 8]: error: ",
+                     "sheets.0.material.thickness cannot change", "seed cannot change"):
+            self.assertIn(part, err)
+        self.assertFalse(os.path.exists(self.path("b")))
+        with open(self.scene, "w") as file:
+            file.write(text)
+        os.symlink("whole", self.path("link"))
+        for of, frame, out, part in (("whole", 7, "b", "whole has 1-6"), ("whole", 0, "b", "expected DIR:FRAME"),
+                                     ("none", 4, "b", "run.json"), ("link", 4, "whole", "also the folder of this run"),
+                                     ("whole", "4x", "b", "expected DIR:FRAME")):
+            with self.subTest(of=of, frame=frame):
+                _, err = self.branch(out, frame, of=of, expect=2)
+                self.assertIn(part, err)
+                self.assertFalse(os.path.exists(self.path("b")))
+        _, err = self.branch("b", 4, "output.events=true", expect=2)
+        self.assertIn("output.events cannot change", err)
+        _, err = self.branch("b", 4, "frames=3", expect=2)
+        self.assertIn("only 3 frames", err)
+
+    def test_damaged_runs(self):
+        """A damaged record, checkpoint, frame or table is an error or is not needed, and is never believed."""
+        self.whole("--set", "checkpoints.every=2")
+
+        def damaged(name, change, expect, part):
+            shutil.rmtree(self.path("d"), ignore_errors=True)
+            shutil.copytree(self.path("whole"), self.path("d"))
+            for own in "checkpoint.singe", "checkpoint.previous.singe":
+                os.remove(self.path("d", own))
+            path = self.path("d", name)
+            change(path)
+            with self.subTest(name=name, part=part):
+                _, err = self.branch("b", 5, of="d", args=("--force",), expect=expect)
+                self.assertIn(part, err)
+                if expect:
+                    self.assertFalse(os.path.exists(self.path("b")))
+                else:
+                    self.same("b")
+                    shutil.rmtree(self.path("b"))
+
+        def cut(path):
+            os.truncate(path, os.path.getsize(path) // 2)
+
+        def flip(path):
+            with open(path, "r+b") as file:
+                header = file.read().find(b"end_header\n")
+                file.seek(header + 12 if header >= 0 else os.path.getsize(path) // 3)
+                byte = file.read(1)
+                file.seek(-1, os.SEEK_CUR)
+                file.write(bytes([byte[0] ^ 1]))
+
+        def record(**members):
+            def change(path):
+                with open(path) as file:
+                    whole = json.load(file)
+                whole.update(members)
+                with open(path, "w") as file:
+                    json.dump(whole, file)
+            return change
+
+        damaged("run.json", cut, 2, "run.json is not the record of a run")
+        damaged("run.json", os.remove, 2, "run.json")
+        damaged("run.json", record(name="../whole/tiny"), 2, "damaged")
+        damaged("run.json", record(name="other"), 2, "no frames")
+        damaged("run.json", record(scene={"sheets": 1}), 2, "sheets")
+        damaged("run.json", record(scene_folder=3), 2, "damaged")
+        damaged("run.json", record(**{"from": {"frame": "x"}}), 2, "damaged")
+        damaged("run.json", record(**{"from": {"frame": 7}}), 2, "damaged")
+        damaged("checkpoints/tiny.0004.singe", flip, 0, "damaged")
+        damaged("checkpoints/tiny.0004.singe", cut, 0, "frames 3 to 5 again")
+        damaged("checkpoints/tiny.0004.singe", lambda path: os.truncate(path, 0), 0, "frames 3 to 5 again")
+        damaged("checkpoints", shutil.rmtree, 0, "frames 1 to 5 again")
+        damaged("ply/tiny.0003.ply", os.remove, 2, "a branch needs all frames up to it")
+        damaged("ply/tiny.0005.ply", flip, 2, "differs from that in")
+        damaged("stats.csv", cut, 2, "stats.csv lacks frames 1 to 5")
+
+        # a link is not followed
+        shutil.rmtree(self.path("d"))
+        shutil.copytree(self.path("whole"), self.path("d"))
+        os.remove(self.path("d", "ply", "tiny.0002.ply"))
+        os.symlink(self.path("tiny.yaml"), self.path("d", "ply", "tiny.0002.ply"))
+        _, err = self.branch("b", 5, of="d", expect=1)
+        self.assertIn("it is a link", err)
+
+    def test_checkpoints_within_a_budget(self):
+        self.whole("--set", "checkpoints={every: 1}")
+        size = os.path.getsize(self.path("whole", "checkpoints", "tiny.0004.singe"))
+        self.run_scene("few", "--set", f"checkpoints={{every: 1, megabytes: {2.5e-6 * size}}}")
+        self.assertEqual(sorted(os.listdir(self.path("few", "checkpoints"))), ["tiny.0004.singe"])
+        self.assertEqual(self.plys("whole"), self.plys("few"))
+        with open(self.path("few", "checkpoints", "tiny.0004.singe"), "rb") as file:
+            self.assertEqual(len(file.read()), size)
+        self.run_scene("few", "--force")  # a run without them removes those of another
+        self.assertFalse(os.path.exists(self.path("few", "checkpoints")))
+
+
+if __name__ == "__main__":
+    unittest.main()
