@@ -1,5 +1,5 @@
 // Internals of singe run: a run in progress, and its parts. run.c is the command, run_begin.c begins or resumes a run,
-// run_frame.c steps to a frame and writes it, record.c writes DIR/run.json.
+// run_branch.c goes on from another, run_frame.c steps to a frame and writes it, record.c writes DIR/run.json.
 #ifndef CLI_RUN_H
 #define CLI_RUN_H
 
