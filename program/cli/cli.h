@@ -11,6 +11,8 @@ typedef enum ExitCode {
 
 /// Each gets the arguments after the command's name.
 int command_run(int argc, char **argv);
+int command_info(int argc, char **argv);
+int command_clean(int argc, char **argv);
 int command_check(int argc, char **argv);
 int command_render(int argc, char **argv);
 int command_convert(int argc, char **argv);

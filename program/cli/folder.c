@@ -84,9 +84,6 @@ SingeResult folder_make(const char *path, SingeError *error) {
     return result;
 }
 
-/// The folders of frames: those of formats first.
-enum { INNER_FRAMES = OUTPUT_COUNT, INNER_GAS, INNER_GAS_DETAIL, INNER_EXR, INNER_CHECKPOINTS, INNER_COUNT };
-
 /// A folder's name, and the ending of its files.
 typedef struct Inner {
     const char *name, *ending;
@@ -111,7 +108,7 @@ static char *frame_path(const Folder *folder, int which, int frame) {
 
 SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *error) {
     SingeResult result = SINGE_OK;
-    for (int i = 0; i < INNER_COUNT && !result; i++) {
+    for (int i = 0; i < FOLDER_COUNT && !result; i++) {
         if (!is_asked(parts, i)) continue;
         struct stat info;
         char *path = text_format("%s/%s", folder->path, inner(i).name);
@@ -123,12 +120,14 @@ SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *e
     return result;
 }
 
+const char *folder_kind(int kind) { return kind < FOLDER_COUNT ? inner(kind).name : NULL; }
+
 char *folder_ply(const Folder *folder, int frame) { return frame_path(folder, OUTPUT_ply, frame); }
-char *folder_png(const Folder *folder, int frame) { return frame_path(folder, INNER_FRAMES, frame); }
-char *folder_vdb(const Folder *folder, int frame) { return frame_path(folder, INNER_GAS, frame); }
-char *folder_gas_detail(const Folder *folder, int frame) { return frame_path(folder, INNER_GAS_DETAIL, frame); }
-char *folder_exr(const Folder *folder, int frame) { return frame_path(folder, INNER_EXR, frame); }
-char *folder_kept(const Folder *folder, int frame) { return frame_path(folder, INNER_CHECKPOINTS, frame); }
+char *folder_png(const Folder *folder, int frame) { return frame_path(folder, FOLDER_FRAMES, frame); }
+char *folder_vdb(const Folder *folder, int frame) { return frame_path(folder, FOLDER_GAS, frame); }
+char *folder_gas_detail(const Folder *folder, int frame) { return frame_path(folder, FOLDER_GAS_DETAIL, frame); }
+char *folder_exr(const Folder *folder, int frame) { return frame_path(folder, FOLDER_EXR, frame); }
+char *folder_kept(const Folder *folder, int frame) { return frame_path(folder, FOLDER_CHECKPOINTS, frame); }
 char *folder_output(const Folder *folder, int format, int frame) { return frame_path(folder, format, frame); }
 
 char *folder_root(const Folder *folder, int format) {
@@ -190,24 +189,50 @@ static struct dirent *next_entry(DIR *dir, const char *path, SingeResult *result
     return entry;
 }
 
-/// Removes frames if `frames` is set, otherwise the half-written files of a killed run. Follows no link to a folder.
-static SingeResult clean_frames(const Folder *folder, int which, bool frames, int *removed, SingeError *error) {
-    char *path = text_format("%s/%s", folder->path, inner(which).name);
+/// Opens a folder of frames, and follows no link. *dir is NULL without an error if there is none.
+static SingeResult open_inner(const char *path, DIR **dir, SingeError *error) {
     const int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    DIR *dir = fd < 0 ? NULL : fdopendir(fd);
-    SingeResult result = SINGE_OK;
-    if (!dir && errno != ENOENT && errno != ELOOP && errno != ENOTDIR) result = folder_fail(path, "list", errno, error);
-    if (!dir && fd >= 0) close(fd);
+    *dir = fd < 0 ? NULL : fdopendir(fd);
+    if (*dir) return SINGE_OK;
+    const int reason = errno;
+    if (fd >= 0) close(fd);
+    if (reason == ENOENT || reason == ELOOP || reason == ENOTDIR) return SINGE_OK;
+    return folder_fail(path, "list", reason, error);
+}
+
+/// Which frames go: of 1 to `last` those that are neither the first nor the last nor a multiple of `every`; all if it is
+/// 0. Without any: half-written files of a killed run.
+typedef struct Thinning {
+    int every, last;
+} Thinning;
+
+static bool frame_goes(const Thinning *thinning, int frame) {
+    return !thinning->every || (frame > 1 && frame < thinning->last && frame % thinning->every != 0);
+}
+
+static SingeResult clean_frames(const Folder *folder, int which, const Thinning *frames, int *removed,
+                                SingeError *error) {
+    char *path = text_format("%s/%s", folder->path, inner(which).name);
+    DIR *dir;
+    SingeResult result = open_inner(path, &dir, error);
 
     for (struct dirent *entry; dir && !result && (entry = next_entry(dir, path, &result, error));) {
         const char *rest;
         const int frame = frame_of(folder, entry->d_name, inner(which).ending, &rest);
-        if (!frame || !(frames ? *rest == 0 : is_temporary(rest))) continue;
+        if (!frame || !(frames ? *rest == 0 && frame_goes(frames, frame) : is_temporary(rest))) continue;
         result = remove_at(dir, path, entry->d_name, removed, error);
     }
 
     if (dir) closedir(dir);
     free(path);
+    return result;
+}
+
+SingeResult folder_thin(const Folder *folder, int every, int last, int *removed, SingeError *error) {
+    const Thinning thinning = {every, last};
+    SingeResult result = SINGE_OK;
+    for (int i = 0; i < FOLDER_COUNT && !result; i++)
+        if (i != FOLDER_CHECKPOINTS) result = clean_frames(folder, i, &thinning, removed, error);
     return result;
 }
 
@@ -240,7 +265,7 @@ static SingeResult clean_top(const Folder *folder, int *removed, SingeError *err
 SingeResult folder_sweep(const Folder *folder, SingeError *error) {
     int removed = 0;
     SingeResult result = clean_top(folder, &removed, error);
-    for (int i = 0; i < INNER_COUNT && !result; i++) result = clean_frames(folder, i, false, &removed, error);
+    for (int i = 0; i < FOLDER_COUNT && !result; i++) result = clean_frames(folder, i, NULL, &removed, error);
     return result;
 }
 
@@ -269,8 +294,8 @@ SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, 
         free(root);
     }
 
-    for (int i = 0; i < INNER_COUNT && !result; i++) {
-        result = clean_frames(folder, i, true, removed, error);
+    for (int i = 0; i < FOLDER_COUNT && !result; i++) {
+        result = clean_frames(folder, i, &(Thinning){0}, removed, error);
         if (result || is_asked(parts, i)) continue;
         char *path = text_format("%s/%s", folder->path, inner(i).name);
         rmdir(path); // may fail: other files are in it
@@ -298,16 +323,16 @@ SingeResult folder_link(const char *from, const char *to, SingeError *error) {
     return result;
 }
 
-SingeResult folder_each_kept(const Folder *folder, FolderVisit *visit, void *context, SingeError *error) {
-    char *path = text_format("%s/%s", folder->path, inner(INNER_CHECKPOINTS).name);
-    DIR *dir = opendir(path);
-    SingeResult result = dir || errno == ENOENT ? SINGE_OK : folder_fail(path, "list", errno, error);
+SingeResult folder_each(const Folder *folder, int kind, FolderVisit *visit, void *context, SingeError *error) {
+    char *path = text_format("%s/%s", folder->path, inner(kind).name);
+    DIR *dir;
+    SingeResult result = open_inner(path, &dir, error);
     for (struct dirent *entry; dir && !result && (entry = next_entry(dir, path, &result, error));) {
         const char *rest;
         struct stat info;
-        const int frame = frame_of(folder, entry->d_name, inner(INNER_CHECKPOINTS).ending, &rest);
+        const int frame = frame_of(folder, entry->d_name, inner(kind).ending, &rest);
         if (!frame || *rest || fstatat(dirfd(dir), entry->d_name, &info, AT_SYMLINK_NOFOLLOW) != 0) continue;
-        if (S_ISREG(info.st_mode)) visit(context, frame, (uint64_t)info.st_size);
+        if (S_ISREG(info.st_mode)) visit(context, frame, (uint64_t)info.st_size, info.st_nlink > 1);
     }
     if (dir) closedir(dir);
     free(path);

@@ -26,6 +26,11 @@ typedef struct Folder {
     char *cache_lock, *pictures_lock; ///< DIR/cache.lock, DIR/pictures.lock: while they are written
 } Folder;
 
+/// The kinds of files of frames, each in a folder of its own: those of formats first.
+enum { FOLDER_FRAMES = OUTPUT_COUNT, FOLDER_GAS, FOLDER_GAS_DETAIL, FOLDER_EXR, FOLDER_CHECKPOINTS, FOLDER_COUNT };
+/// The name of a kind's folder; NULL after the last.
+const char *folder_kind(int kind);
+
 /// Names only; nothing is created. `path` NULL is out/NAME.
 Folder folder_name(const char *path, const char *name);
 void folder_free(Folder *folder);
@@ -74,10 +79,14 @@ bool folder_has(const char *path);
 /// file: no link is followed.
 SINGE_NODISCARD SingeResult folder_link(const char *from, const char *to, SingeError *error);
 
-/// Calls `visit` with each checkpoint that is kept, in no order, and its size.
-typedef void FolderVisit(void *context, int frame, uint64_t size);
-SINGE_NODISCARD SingeResult folder_each_kept(const Folder *folder, FolderVisit *visit, void *context,
-                                             SingeError *error);
+/// Calls `visit` with each file of a kind, in no order, its size, and whether other folders have it too.
+typedef void FolderVisit(void *context, int frame, uint64_t size, bool shared);
+SINGE_NODISCARD SingeResult folder_each(const Folder *folder, int kind, FolderVisit *visit, void *context,
+                                        SingeError *error);
+
+/// Removes the files of all frames but 1, `last`, those beyond it, and every `every`-th one; checkpoints remain. Adds to
+/// *removed.
+SINGE_NODISCARD SingeResult folder_thin(const Folder *folder, int every, int last, int *removed, SingeError *error);
 
 /// Checks that the PLYs of frames *first to *last exist; sets both to the range of all frames if *first is 0. A message
 /// has been printed unless the result is EXIT_GOOD.

@@ -158,9 +158,9 @@ static void offer_checkpoint(Candidates *candidates, char *path) {
     else free(path);
 }
 
-static void offer_kept(void *context, int frame, uint64_t size) {
+static void offer_kept(void *context, int frame, uint64_t size, bool shared) {
     Candidates *candidates = context;
-    (void)size;
+    (void)size, (void)shared;
     offer_checkpoint(candidates, folder_kept(&candidates->branch->folder, frame));
 }
 
@@ -177,7 +177,7 @@ static ExitCode load_checkpoint(Run *run, Progress *progress) {
     SingeError error = {0};
     Candidates candidates = {.branch = branch};
     SingeResult result = checkpoint_scene_hash(branch->job.scene, &branch->job.assets, &hash, &error);
-    if (!result) result = folder_each_kept(&branch->folder, offer_kept, &candidates, &error);
+    if (!result) result = folder_each(&branch->folder, FOLDER_CHECKPOINTS, offer_kept, &candidates, &error);
     offer_checkpoint(&candidates, text_format("%s", branch->folder.checkpoint));
     offer_checkpoint(&candidates, text_format("%s", branch->folder.previous_checkpoint));
     if (candidates.count) qsort(candidates.items, candidates.count, sizeof *candidates.items, latest_first);
@@ -371,9 +371,9 @@ typedef struct KeptLinks {
     SingeError *error;
 } KeptLinks;
 
-static void link_kept(void *context, int frame, uint64_t size) {
+static void link_kept(void *context, int frame, uint64_t size, bool shared) {
     KeptLinks *links = context;
-    (void)size;
+    (void)size, (void)shared;
     if (links->result || frame >= links->branch->frame) return;
     links->result =
         link_optional(folder_kept(&links->branch->folder, frame), folder_kept(links->to, frame), links->error);
@@ -396,7 +396,7 @@ SingeResult branch_fill(Run *run, SingeError *error) {
             result = link_optional(folder_exr(from, i), folder_exr(to, i), error);
     }
     KeptLinks links = {branch, to, SINGE_OK, error};
-    if (!result) result = folder_each_kept(from, link_kept, &links, error);
+    if (!result) result = folder_each(from, FOLDER_CHECKPOINTS, link_kept, &links, error);
     if (!result) result = links.result;
     if (!result) result = tables_copy(from, to, run->job.scene, branch->frame, run->totals, error);
     if (!result) result = tables_open(&run->tables, to, run->job.scene, &run->job.assets, error);
@@ -436,8 +436,9 @@ static bool kept_stays(const KeptSizes *sizes, int frame) {
     return frame % sizes->every == 0 || frame == sizes->branch;
 }
 
-static void visit_kept(void *context, int frame, uint64_t size) {
+static void visit_kept(void *context, int frame, uint64_t size, bool shared) {
     KeptSizes *sizes = context;
+    (void)shared;
     if (kept_stays(sizes, frame)) sizes->bytes += (double)size;
     if (kept_stays(sizes, frame) || !sizes->folder) return;
     char *path = folder_kept(sizes->folder, frame);
@@ -456,12 +457,12 @@ SingeResult run_keep_checkpoint(Run *run, int frame, SingeError *error) {
     const char *from = run->record.from;
     const int branch = from ? ancestor_frame((Ancestor){from, strlen(from)}) : 0;
     KeptSizes sizes = {run->keep_every, branch, 0, NULL};
-    result = folder_each_kept(&run->folder, visit_kept, &sizes, error);
+    result = folder_each(&run->folder, FOLDER_CHECKPOINTS, visit_kept, &sizes, error);
     while (!result && sizes.bytes > most && sizes.every < 1 << 20) {
         sizes = (KeptSizes){2 * sizes.every, branch, 0, NULL};
-        result = folder_each_kept(&run->folder, visit_kept, &sizes, error);
+        result = folder_each(&run->folder, FOLDER_CHECKPOINTS, visit_kept, &sizes, error);
     }
     run->keep_every = sizes.every;
     sizes.folder = &run->folder;
-    return result ? result : folder_each_kept(&run->folder, visit_kept, &sizes, error);
+    return result ? result : folder_each(&run->folder, FOLDER_CHECKPOINTS, visit_kept, &sizes, error);
 }

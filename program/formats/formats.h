@@ -120,6 +120,8 @@ SINGE_NODISCARD SingeResult image_luminance(const Image *image, SingeAllocator a
 
 // ---- the cache: one binary PLY per frame (docs/formats.md)
 
+/// Bytes of its file, nearly.
+uint64_t ply_surface_size(const SingeSurface *surface);
 SINGE_NODISCARD SingeResult ply_write_surface(const char *path, const SingeSurface *surface, double time,
                                               SingeError *error);
 /// Reads what ply_write_surface wrote; free with singe_surface_free. *time may be NULL.

@@ -64,6 +64,8 @@ static uint64_t surface_data_size(const SingeSurface *surface) {
     return (uint64_t)VERTEX_SIZE * surface->vertex_count + (uint64_t)FACE_SIZE * surface->triangle_count;
 }
 
+uint64_t ply_surface_size(const SingeSurface *surface) { return HEADER_LIMIT / 2 + surface_data_size(surface); }
+
 // ---- writing
 
 SingeResult ply_write_surface(const char *path, const SingeSurface *surface, double time, SingeError *error) {

@@ -2,10 +2,11 @@
 
 import json
 import os
+import re
 import shutil
 import unittest
 
-from support import HAS_PREVIEW, Case
+from support import HAS_PREVIEW, SANITIZED, Case
 
 FRAMES = 6
 # what may change, and which of it a frame later shows
@@ -50,7 +51,7 @@ class Branch(Case):
         """With and without a checkpoint, on one thread and on two, the frames are those of the whole run."""
         self.whole("--set", "checkpoints.every=3")
         self.assertEqual(sorted(os.listdir(self.path("whole", "checkpoints"))), ["tiny.0003.singe", "tiny.0006.singe"])
-        for frame, threads in (1, "1"), (3, "2"), (5, "1"):
+        for frame, threads in ((5, "2"),) if SANITIZED else ((1, "1"), (3, "2"), (5, "1")):
             with self.subTest(frame=frame):
                 _, err = self.branch(f"b{frame}", frame, args=("--threads", threads))
                 if frame < 5:  # the run's own last checkpoints depend on its speed
@@ -84,7 +85,7 @@ class Branch(Case):
         self.whole("--set", "checkpoints.every=2")
         whole = self.plys("whole")
         frames = sorted(whole)
-        for what, sets in CHANGES.items():
+        for what, sets in list(CHANGES.items())[::4 if SANITIZED else 1]:
             with self.subTest(what):
                 self.branch("b", 2, *sets, args=("--force",))
                 made = self.plys("b")
@@ -157,6 +158,8 @@ class Branch(Case):
         self.whole("--set", "checkpoints.every=2")
 
         def damaged(name, change, expect, part):
+            if SANITIZED and name == "run.json" and part == "damaged":
+                return  # three more of the same
             shutil.rmtree(self.path("d"), ignore_errors=True)
             shutil.copytree(self.path("whole"), self.path("d"))
             for own in "checkpoint.singe", "checkpoint.previous.singe":
@@ -226,6 +229,43 @@ class Branch(Case):
             self.assertEqual(len(file.read()), size)
         self.run_scene("few", "--force")  # a run without them removes those of another
         self.assertFalse(os.path.exists(self.path("few", "checkpoints")))
+
+    def test_info_and_clean(self):
+        self.whole("--set", "checkpoints.every=4")
+        out, _ = self.singe("check", self.scene, "--set", "checkpoints.every=4")
+        low, high = map(float, re.search(r"^disk +about (\S+) to (\S+) MB, \S+ MB of them checkpoints$", out,
+                                         re.M).groups())
+        written = 1e-6 * sum(os.path.getsize(self.path("whole", folder, name)) for folder in ("ply", "gas", "checkpoints")
+                             for name in os.listdir(self.path("whole", folder)))
+        self.assertTrue(0.98 * low < written < high, (low, written, high))
+        self.branch("b", 4)
+        out, _ = self.singe("info", self.path("b"))
+        for part in (f"frame 4 of {os.path.realpath(self.path('whole'))}", "ply           1 to 6: ",
+                     "checkpoints   4: ", "complete", "shared with other folders"):
+            self.assertIn(part, out)
+        note = self.path("b", "ply", "tiny.0099.ply"), self.path("b", "ply", "tiny.0002.ply.txt")
+        for path in note:
+            with open(path, "w") as file:
+                file.write("mine")
+        _, err = self.singe("clean", self.path("b"), "--keep-every", "4")
+        self.assertIn("removed 6 files of 6 frames", err)
+        self.assertEqual([name[5:9] for name in self.plys("b")], ["0001", "0002", "0004", "0006", "0099"])
+        self.assertEqual(len(self.plys("whole")), FRAMES)
+        out, _ = self.singe("info", self.path("b"))
+        self.assertIn("gas           1, 4, 6: ", out)
+        self.assertIn("a branch needs all frames", self.branch("c", 4, of="b", expect=2)[1])
+
+        # a record that lists nothing, and a folder that is a link, lose nothing
+        os.rename(self.path("b", "gas"), self.path("away"))
+        os.symlink(self.path("away"), self.path("b", "gas"))
+        self.singe("clean", self.path("b"), "--keep-every", "100")
+        self.assertEqual(len(os.listdir(self.path("away"))), 3)
+        for text, code in ("{}", 2), ('{"name": "tiny", "frames": 6, "frames_done": -4}', 2), ("[", 2), ("", 2):
+            with open(self.path("whole", "run.json"), "w") as file:
+                file.write(text)
+            self.singe("clean", self.path("whole"), "--keep-every", "4", expect=code)
+        self.singe("clean", self.path("whole"), expect=2)
+        self.assertEqual(len(self.plys("whole")), FRAMES)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,252 @@
+// singe info: what is in a run's folder. singe clean: removes frames of it.
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/args.h"
+#include "cli/folder.h"
+#include "cli/lock.h"
+#include "cli/text.h"
+#include "common/printable.h"
+#include "common/store.h"
+#include "formats/formats.h"
+#include "scene/values.h"
+
+// ---- the record
+
+/// A folder's run.json.
+typedef struct Book {
+    Bytes bytes;
+    char *name, *result, *version, *scene;
+    long frames, done;
+} Book;
+
+/// A member that is a string, from malloc; "" if there is none.
+static char *text_member(const char *json, size_t size, const char *name) {
+    const char *value;
+    size_t length;
+    char *text = text_json_member(json, size, name, &value, &length) ? text_json_unquote(value, length) : NULL;
+    return text ? text : text_format("%s", "");
+}
+
+/// A member that is a whole number; 0 if there is none.
+static long number_member(const char *json, size_t size, const char *name) {
+    const char *value;
+    size_t length;
+    char text[16];
+    if (!text_json_member(json, size, name, &value, &length) || length >= sizeof text) return 0;
+    snprintf(text, sizeof text, "%.*s", (int)length, value);
+    const long number = strtol(text, NULL, 10);
+    return number >= 0 && number <= 1000000 ? number : 0;
+}
+
+static void book_close(Book *book) {
+    bytes_free(&book->bytes);
+    free(book->name);
+    free(book->result);
+    free(book->version);
+    free(book->scene);
+    *book = (Book){0};
+}
+
+static ExitCode book_open(Book *book, Console *console, const char *folder) {
+    SingeError error = {0};
+    *book = (Book){0};
+    char *path = text_format("%s/run.json", folder);
+    const SingeResult result = file_read(path, (SingeAllocator){0}, &book->bytes, &error);
+    if (result) console_result(console, &error);
+    const char *json = (const char *)book->bytes.data;
+    const size_t size = book->bytes.size;
+    if (!result) {
+        book->name = text_member(json, size, "name");
+        book->result = text_member(json, size, "result");
+        book->version = text_member(json, size, "version");
+        book->scene = text_member(json, size, "scene_file");
+        book->frames = number_member(json, size, "frames");
+        book->done = number_member(json, size, "frames_done");
+    }
+    const bool good = !result && value_names_files(book->name) && book->frames > 0;
+    if (!result && !good)
+        console_error(console, "%s is not the record of a run, or it is damaged", shown_path(path).text);
+    free(path);
+    return good ? EXIT_GOOD : EXIT_INPUT;
+}
+
+// ---- info
+
+/// The files of a kind.
+typedef struct Kind {
+    int *frames;
+    size_t count, capacity;
+    double bytes, shared;
+    bool no_memory;
+} Kind;
+
+static void take_file(void *context, int frame, uint64_t size, bool shared) {
+    Kind *kind = context;
+    kind->bytes += (double)size;
+    if (shared) kind->shared += (double)size;
+    if (store_grow((SingeAllocator){0}, &kind->frames, &kind->capacity, kind->count + 1, sizeof *kind->frames))
+        kind->frames[kind->count++] = frame;
+    else kind->no_memory = true;
+}
+
+static int by_number(const void *a, const void *b) {
+    const int one = *(const int *)a, other = *(const int *)b;
+    return (one > other) - (one < other);
+}
+
+/// "1 to 60, 80, 96" of sorted numbers.
+static void print_ranges(const int *frames, size_t count) {
+    enum { RANGES_MAX = 12 };
+    size_t ranges = 0;
+    for (size_t i = 0; i < count; ranges++) {
+        size_t end = i;
+        while (end + 1 < count && frames[end + 1] == frames[end] + 1) end++;
+        if (ranges < RANGES_MAX)
+            printf(end > i + 1 ? "%s%d to %d" : end > i ? "%s%d, %d" : "%s%d", i ? ", " : "", frames[i], frames[end]);
+        i = end + 1;
+    }
+    if (ranges > RANGES_MAX) printf(" and %zu more", ranges - RANGES_MAX);
+}
+
+static void print_lineage(const char *json, size_t size) {
+    for (int depth = 0; depth < 1000; depth++) {
+        const char *from;
+        size_t length;
+        if (!text_json_member(json, size, "from", &from, &length)) return;
+        char *folder = text_member(from, length, "folder");
+        printf("%-13s frame %ld of %s\n", depth ? "  itself from" : "branch from", number_member(from, length, "frame"),
+               shown_path(folder).text);
+        free(folder);
+        json = from;
+        size = length;
+    }
+}
+
+static ExitCode show_folder(Console *console, const char *path) {
+    Book book;
+    ExitCode code = book_open(&book, console, path);
+    if (code) {
+        book_close(&book);
+        return code;
+    }
+
+    Folder folder = folder_name(path, book.name);
+    SingeError error = {0};
+    SingeResult result = SINGE_OK;
+    double bytes = 0, shared = 0;
+    printf("%-13s %s, by singe %s\n", "run", shown(book.result).text, shown(book.version).text);
+    printf("%-13s %s, from %s\n", "scene", shown(book.name).text, shown_path(book.scene).text);
+    print_lineage((const char *)book.bytes.data, book.bytes.size);
+    printf("%-13s %ld\n", "frames asked", book.frames);
+    for (int k = 0; k < FOLDER_COUNT && !result; k++) {
+        Kind kind = {0};
+        result = folder_each(&folder, k, take_file, &kind, &error);
+        if (kind.no_memory) result = error.code = SINGE_ERROR_MEMORY;
+        if (!result && kind.count) {
+            qsort(kind.frames, kind.count, sizeof *kind.frames, by_number);
+            printf("%-13s ", folder_kind(k));
+            print_ranges(kind.frames, kind.count);
+            printf(": %.1f MB\n", 1e-6 * kind.bytes);
+        }
+        bytes += kind.bytes;
+        shared += kind.shared;
+        store_free((SingeAllocator){0}, kind.frames, kind.capacity, sizeof *kind.frames);
+    }
+    if (!result) printf("%-13s %.1f MB of frames", "in all", 1e-6 * bytes);
+    if (!result && shared > 0) printf(", %.1f MB of them shared with other folders", 1e-6 * shared);
+    if (!result) printf("\n");
+    else console_result(console, &error);
+    folder_free(&folder);
+    book_close(&book);
+    return result ? EXIT_FAILED : EXIT_GOOD;
+}
+
+static const ArgCommand info_command = {
+    "info", "DIR", "Prints what a run's folder holds: frames, sizes, checkpoints, and what it is a branch of.",
+    NULL,   0,     "Exit codes: 0 success, 1 the folder cannot be listed, 2 bad input."};
+
+int command_info(int argc, char **argv) {
+    ArgReader reader = args_begin(&info_command, argc, argv);
+    const char *value, *folder = NULL;
+    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
+        if (option == ARG_HELP) return EXIT_GOOD;
+        if (option != ARG_OPERAND) return EXIT_INPUT;
+        folder = value;
+    }
+    Console console = console_make(false);
+    return show_folder(&console, folder);
+}
+
+// ---- clean
+
+enum { OPT_KEEP_EVERY, OPT_QUIET, OPT_COUNT };
+
+static const ArgOption clean_options[OPT_COUNT] = {
+    [OPT_KEEP_EVERY] = {"keep-every", 0, "N", "keeps frames N, 2N, 3N, ..., the first and the last"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
+};
+
+static const ArgCommand clean_command = {
+    "clean",
+    "DIR",
+    "Removes frames of a run, and keeps every N-th one. Only files of frames that DIR/run.json lists are removed.",
+    clean_options,
+    OPT_COUNT,
+    "A run that lacks frames cannot be resumed or branched. Exit codes: 0 success, 1 a file cannot be removed,\n"
+    "2 bad input."};
+
+static ExitCode clean_folder(Console *console, const char *path, int every) {
+    Book book;
+    SingeError error = {0};
+    ExitCode code = book_open(&book, console, path);
+    if (!code && book.done < 1) {
+        console_error(console, "%s/run.json lists no frames: the run has not ended, or was killed; --resume ends it",
+                      shown_path(path).text);
+        code = EXIT_INPUT;
+    }
+    if (code) {
+        book_close(&book);
+        return code;
+    }
+
+    Folder folder = folder_name(path, book.name);
+    Lock cache = LOCK_NONE, pictures = LOCK_NONE;
+    int removed = 0;
+    SingeResult result = lock_take(&cache, folder.cache_lock, "frames", false, console, &error);
+    if (!result) result = lock_take(&pictures, folder.pictures_lock, "pictures", false, console, &error);
+    if (!result) result = folder_thin(&folder, every, (int)book.done, &removed, &error);
+    if (result) console_result(console, &error);
+    else console_note(console, "removed %d files of %ld frames in %s", removed, book.done, folder.path);
+    lock_release(&pictures);
+    lock_release(&cache);
+    folder_free(&folder);
+    book_close(&book);
+    return result ? EXIT_FAILED : EXIT_GOOD;
+}
+
+int command_clean(int argc, char **argv) {
+    ArgReader reader = args_begin(&clean_command, argc, argv);
+    const char *value, *folder = NULL;
+    int every = 0;
+    bool quiet = false;
+    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
+        bool good = true;
+        switch (option) {
+        case OPT_KEEP_EVERY: good = args_int(&reader, option, value, 1, 1000000, &every); break;
+        case OPT_QUIET: quiet = true; break;
+        case ARG_OPERAND: folder = value; break;
+        case ARG_HELP: return EXIT_GOOD;
+        default: good = false;
+        }
+        if (!good) return EXIT_INPUT;
+    }
+    if (!every) {
+        args_complain(&reader, "--keep-every says which frames remain");
+        return EXIT_INPUT;
+    }
+    Console console = console_make(quiet);
+    return clean_folder(&console, folder, every);
+}
