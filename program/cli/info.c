@@ -111,20 +111,6 @@ static void print_ranges(const int *frames, size_t count) {
     if (ranges > RANGES_MAX) printf(" and %zu more", ranges - RANGES_MAX);
 }
 
-static void print_lineage(const char *json, size_t size) {
-    for (int depth = 0; depth < 1000; depth++) {
-        const char *from;
-        size_t length;
-        if (!text_json_member(json, size, "from", &from, &length)) return;
-        char *folder = text_member(from, length, "folder");
-        printf("%-13s frame %ld of %s\n", depth ? "  itself from" : "branch from", number_member(from, length, "frame"),
-               shown_path(folder).text);
-        free(folder);
-        json = from;
-        size = length;
-    }
-}
-
 static ExitCode show_folder(Console *console, const char *path) {
     Book book;
     ExitCode code = book_open(&book, console, path);
@@ -139,7 +125,17 @@ static ExitCode show_folder(Console *console, const char *path) {
     double bytes = 0, shared = 0;
     printf("%-13s %s, by singe %s\n", "run", shown(book.result).text, shown(book.version).text);
     printf("%-13s %s, from %s\n", "scene", shown(book.name).text, shown_path(book.scene).text);
-    print_lineage((const char *)book.bytes.data, book.bytes.size);
+
+    const char *json = (const char *)book.bytes.data, *from;
+    size_t size = book.bytes.size, length;
+    for (int depth = 0; depth < 1000 && text_json_member(json, size, "from", &from, &length); depth++) {
+        char *parent = text_member(from, length, "folder");
+        printf("%-13s frame %ld of %s\n", depth ? "  itself from" : "branch from", number_member(from, length, "frame"),
+               shown_path(parent).text);
+        free(parent);
+        json = from;
+        size = length;
+    }
     printf("%-13s %ld\n", "frames asked", book.frames);
     for (int k = 0; k < FOLDER_COUNT && !result; k++) {
         Kind kind = {0};

@@ -245,18 +245,6 @@ static ExitCode compare_frame(Run *run) {
     return job_exit(result ? result : SINGE_ERROR_STATE);
 }
 
-/// Makes what the new scene has changed part of the simulation.
-static ExitCode take_over_scene(Run *run) {
-    SceneMessages messages = {0};
-    const SceneWhole now = {run->job.scene, &run->job.assets},
-                     before = {run->branch.job.scene, &run->branch.job.assets};
-    const SingeResult result = scene_branch(now, before, run->branch.frame, run->sim, &messages);
-    if (result) scene_messages_print(&messages, stderr);
-    else scene_warn(now.scene, now.assets, &run->job.hooks.log);
-    scene_messages_free(&messages);
-    return job_exit(result);
-}
-
 // ---- before anything is written
 
 /// "DIR:80" → the folder, from malloc, and the frame. NULL after an error.
@@ -348,9 +336,13 @@ ExitCode branch_prepare(Run *run, const char *from) {
         console_result(run->console, &error);
         code = EXIT_INPUT;
     }
-    if (!code) code = take_over_scene(run);
-    branch->alike = scene_looks_alike((SceneWhole){run->job.scene, &run->job.assets},
-                                      (SceneWhole){branch->job.scene, &branch->job.assets});
+    const SceneWhole now = {run->job.scene, &run->job.assets}, before = {branch->job.scene, &branch->job.assets};
+    SceneMessages messages = {0};
+    if (!code) code = job_exit(scene_branch(now, before, branch->frame, run->sim, &messages));
+    scene_messages_print(&messages, stderr);
+    scene_messages_free(&messages);
+    if (!code) scene_warn(now.scene, now.assets, &run->job.hooks.log);
+    branch->alike = scene_looks_alike(now, before);
     return code;
 }
 

@@ -306,26 +306,6 @@ static SingeResult branch_objects(const SceneBuilder *builder, SceneWhole now, S
     return result;
 }
 
-/// The scene's own numbers: wind, gravity, pace, temperature. *path is the key at fault.
-static SingeResult branch_numbers(SingeSim *sim, const SingeSimDef *now, const SingeSimDef *before, bool wind,
-                                  const char **path) {
-    SingeResult result = SINGE_OK;
-    *path = "wind";
-    if (wind) result = singe_sim_set_wind(sim, &now->wind);
-    if (result) return result;
-    *path = "gravity";
-    if (memcmp(now->gravity, before->gravity, sizeof now->gravity) != 0)
-        result = singe_sim_set_gravity(sim, now->gravity);
-    if (result) return result;
-    *path = "pace";
-    if (now->pace != before->pace) result = singe_sim_set_pace(sim, now->pace);
-    if (result) return result;
-    *path = "ambient_temperature";
-    if (now->ambient_temperature != before->ambient_temperature)
-        result = singe_sim_set_ambient_temperature(sim, now->ambient_temperature);
-    return result;
-}
-
 SingeResult scene_branch(SceneWhole scene, SceneWhole before, int frame, SingeSim *sim, SceneMessages *messages) {
     SceneFault fault = {.object = FAULT_SIM};
     const uint32_t sheets = scene.scene->sheet_count;
@@ -356,8 +336,21 @@ SingeResult scene_branch(SceneWhole scene, SceneWhole before, int frame, SingeSi
                 winds[1] = dump_row_text(&schema_scene.rows[i], ~0u, before.scene);
             }
         const bool wind = !texts_equal(winds[0], winds[1], &no_memory);
-        const char *path;
-        result = branch_numbers(sim, &scene.scene->sim, &before.scene->sim, wind, &path);
+        const SingeSimDef *now = &scene.scene->sim, *was = &before.scene->sim;
+        const char *path = "wind";
+        if (wind) result = singe_sim_set_wind(sim, &now->wind);
+        if (!result && memcmp(now->gravity, was->gravity, sizeof now->gravity) != 0) {
+            path = "gravity";
+            result = singe_sim_set_gravity(sim, now->gravity);
+        }
+        if (!result && now->pace != was->pace) {
+            path = "pace";
+            result = singe_sim_set_pace(sim, now->pace);
+        }
+        if (!result && now->ambient_temperature != was->ambient_temperature) {
+            path = "ambient_temperature";
+            result = singe_sim_set_ambient_temperature(sim, now->ambient_temperature);
+        }
         if (result)
             message_add(messages, scene.scene->text, location_of(scene.scene, path), "%s",
                         singe_sim_error(sim)->message);
