@@ -200,6 +200,27 @@ ExitCode job_parse(Job *job, Console *console, const char *name, const char *tex
     return code ? code : job_load(job, console, 0);
 }
 
+char *job_recorded_path(const char *folder) {
+    SingeError error;
+    Bytes bytes = {0};
+    char *record = text_format("%s/run.json", folder), *path = NULL;
+    if (file_read(record, (SingeAllocator){0}, &bytes, &error) == SINGE_OK) {
+        const char *json = (const char *)bytes.data, *value[2];
+        size_t size[2];
+        if (text_json_member(json, bytes.size, "scene_folder", &value[0], &size[0]) &&
+            text_json_member(json, bytes.size, "scene_file", &value[1], &size[1])) {
+            char *base = text_json_unquote(value[0], size[0]), *file = text_json_unquote(value[1], size[1]);
+            const char *slash = file ? strrchr(file, '/') : NULL;
+            if (base && file) path = text_format("%s/%s", base, slash ? slash + 1 : file);
+            free(base);
+            free(file);
+        }
+        bytes_free(&bytes);
+    }
+    free(record);
+    return path;
+}
+
 ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetList *sets, int threads) {
     SingeError error = {0};
     Bytes bytes = {0};

@@ -42,6 +42,9 @@ ExitCode job_open(Job *job, Console *console, const char *scene_path, const SetL
 ExitCode job_parse(Job *job, Console *console, const char *name, const char *text, size_t size, const char *folder,
                    const SetList *sets, int threads);
 
+/// The scene's path in the record of a run's folder, from malloc; NULL if the folder is none.
+char *job_recorded_path(const char *folder);
+
 /// Reads the scene in a run's record, FOLDER/run.json.
 ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetList *sets, int threads);
 

@@ -113,6 +113,17 @@ class Branch(Case):
                 with open(self.path("drawn", "frames", name), "rb") as a, open(self.path("p", "frames", name), "rb") as b:
                     self.assertEqual(a.read(), b.read(), name)
 
+    def test_a_run_is_its_scene(self):
+        """The folder of a run stands for the scene that it has burnt, wherever the command runs."""
+        self.whole("--set", "pace=5", "--set", "checkpoints.every=4")
+        self.scene = self.path("whole")
+        self.branch("b", 4, cwd="/")
+        self.same("b")
+        self.assertEqual(self.record("b")["scene"], self.record("whole")["scene"])
+        self.assertEqual(self.record("b")["scene_folder"], self.record("whole")["scene_folder"])
+        self.run_scene("c", "--set", "frames=2")
+        self.assertEqual(list(self.plys("c").values()), list(self.plys("b").values())[:2])
+
     def test_branch_of_a_branch(self):
         """A branch can be branched before and after its first frame, also without its ancestors."""
         self.whole()

@@ -36,6 +36,18 @@ class Command(Case):
         measured = singe.measure(self.dir / "out", frames=(2, 3))
         self.assertEqual(list(measured["frame"]), [2, 3])
 
+    def test_branch(self):
+        whole = singe.run(self.scene(), self.dir / "out", frames=4, preview=False, settings={"pace": 3})
+        other = singe.branch(whole, 2, self.dir / "faster", settings={"pace": 9}, preview=False)
+        back = singe.branch(other.folder, 2, self.dir / "back", settings={"pace": 3}, preview=False, threads=1)
+        for frame in whole:
+            self.assertEqual(frame.path.read_bytes(), back[frame.number].path.read_bytes())
+            self.assertEqual(frame.path.read_bytes() == other[frame.number].path.read_bytes(), frame.number <= 2)
+        self.assertEqual(other.record["from"]["frame"], 2)
+        with self.assertRaisesRegex(singe.SceneError, "seed cannot change"):
+            singe.branch(whole, 2, self.dir / "no", settings={"seed": 2})
+        self.assertFalse((self.dir / "no").exists())
+
     def test_a_frame_is_what_its_file_says(self):
         cache = singe.run(self.scene(), self.dir / "out", frames=3, preview=False)
         frame, data = cache[3], cache[3].path.read_bytes()

@@ -16,7 +16,7 @@ changes them. docs/python.md is the guide. Names of fields have the meaning that
 from ._abi import VERSION as __version__
 from ._fields import Vary
 from .cache import Cache, Frame, read_cache
-from .command import check, command_path, measure, render, run
+from .command import branch, check, command_path, measure, render, run
 from .errors import (ArgumentError, CommandError, CommandMissingError, DivergedError, Error, FormatError, HandleError,
                      LimitError, MeshError, OutOfMemoryError, Problem, SceneError, StateError, VersionError)
 from .objects import Collider, Grid, Pin, Sheet, Source, grid

@@ -173,21 +173,39 @@ class _Progress:
 
 def run(scene: Path, out: Optional[Path] = None, *, frames: Optional[int] = None, threads: Optional[int] = None,
         settings: Optional[Mapping[str, Any]] = None, resume: bool = False, preview: bool = True, exr: bool = False,
-        progress: Optional[Callable[[int, int], None]] = None) -> Cache:
+        progress: Optional[Callable[[int, int], None]] = None,
+        start: Optional[Tuple[Path, int]] = None) -> Cache:
     """Burns a scene into the folder `out` (out/ and the name of the scene's file) and returns its cache.
 
     settings: values of the scene to override, such as {"pace": 8, "sheets.0.grid.cells": [40, 60]}. progress: called
     with (frames done, frames). Ctrl-C, or an exception in `progress`, lets the command write a checkpoint, from which
-    resume=True goes on. SceneError has file, line and column of each error.
+    resume=True goes on. start: the folder of an earlier run and the frame of it to go on from, as in `branch`.
+    SceneError has file, line and column of each error.
     """
     folder = pathlib.Path(out) if out is not None else pathlib.Path("out") / pathlib.Path(scene).stem
     arguments = ["run", _positional(scene), "-o", _positional(folder), *_options(frames, threads, settings)]
     for wanted, flag in ((resume, "--resume"), (not preview, "--no-preview"), (exr, "--exr")):
         arguments += [flag] if wanted else []
+    if start is not None:
+        arguments += ["--from", f"{os.fspath(start[0])}:{int(start[1])}"]
     watch = _Progress(folder, progress or (lambda done, frames: None))
     _Process(arguments).finish(watch)
     watch()
     return read_cache(folder)
+
+
+def branch(folder: Union[Path, Cache], frame: int, out: Path, scene: Optional[Path] = None, *,
+           settings: Optional[Mapping[str, Any]] = None, **options: Any) -> Cache:
+    """Goes on from a frame of an earlier run with other settings, in the folder `out`, and returns its cache.
+
+    folder: the earlier run, or its cache. scene: a scene file; without one it is the scene of the earlier run with all
+    that its settings gave it. settings and options are those of `run`. What cannot change is a SceneError
+    (docs/directing.md). Frames up to `frame` are those of the earlier run.
+
+        singe.branch("out/letter", 80, "out/windy", settings={"wind.velocity": [0, 2, 0]})
+    """
+    earlier = folder.folder if isinstance(folder, Cache) else folder
+    return run(scene if scene is not None else earlier, out, settings=settings, start=(earlier, frame), **options)
 
 
 def check(scene: Path, *, frames: Optional[int] = None, threads: Optional[int] = None,
