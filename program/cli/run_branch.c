@@ -189,7 +189,13 @@ static ExitCode load_checkpoint(Run *run, Progress *progress) {
         run->sim = checkpoint.sim;
         *progress = checkpoint.progress;
         *run->totals = checkpoint.totals;
-        // the files that the earlier scene names are not what they were: an earlier checkpoint would not help
+        // of another scene, an earlier checkpoint would not help
+        if (refused == SINGE_ERROR_STATE)
+            snprintf(
+                error.message, sizeof error.message,
+                "%.200s: a mesh or picture that its scene names has changed since; leave its files as they are, and "
+                "give changed ones other names",
+                candidates.items[i].path);
         if (refused == SINGE_ERROR_STATE || refused == SINGE_ERROR_MEMORY) result = refused;
         else if (refused) console_warn(run->console, "%s; an earlier checkpoint is used", error.message);
     }

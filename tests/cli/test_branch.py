@@ -222,6 +222,21 @@ class Branch(Case):
         damaged("ply/tiny.0005.ply", flip, 2, "differs from that in")
         damaged("stats.csv", cut, 2, "stats.csv lacks frames 1 to 5")
 
+        # a file of the earlier scene is not what it was
+        with open(self.path("mesh.obj"), "w") as file:
+            file.write("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+        with open(self.scene) as file:
+            text = file.read()
+        self.scene = self.path("of_mesh.yaml")
+        with open(self.scene, "w") as file:
+            file.write(text.replace("grid: {size: [6 cm, 6 cm], cells: [8, 8]}", "mesh: mesh.obj"))
+        self.run_scene("m", "--set", "frames=3")
+        with open(self.path("mesh.obj"), "a") as file:
+            file.write("v 2 0 0\nv 2 1 0\nf 2 5 6 3\n")
+        _, err = self.branch("b", 2, of="m", expect=2)
+        self.assertIn("a mesh or picture that its scene names has changed", err)
+        self.scene = self.path("tiny.yaml")
+
         # a link is not followed
         shutil.rmtree(self.path("d"))
         shutil.copytree(self.path("whole"), self.path("d"))

@@ -127,6 +127,7 @@ class Exporter:
                     "gravity": [float(g) for g in scene.gravity] if scene.use_gravity else [0, 0, 0],
                     "contact": {"enabled": settings.contact}, "tearing": settings.tearing,
                     "creases": settings.creases, "output": {"formats": ["ply", "usd"]},
+                    "checkpoints": {"every": 10, "megabytes": 1000},
                     "sheets": [], "sources": [], "pins": [], "colliders": []}
         if substeps:
             document["solver"] = {"substeps": substeps}

@@ -13,16 +13,23 @@ SCENE = "burn.yaml"
 
 _FRAME = r"burn\.(\d{4}|[1-9]\d{4,8})"
 _DRAFT = r"(\.\d+-\d+\.tmp){0,2}"  # of a program that was killed while it wrote
-# the names of files by folder; a folder comes after those inside it
-_MADE = {
+CACHE = "cache"
+EARLIER = "earlier"  # the cache of which a branch is made, until it has begun
+# the names of files of a cache by folder; a folder comes after those inside it
+_CACHE = {
     "cache/ply": rf"{_FRAME}\.ply{_DRAFT}",
     "cache/usd": rf"{_FRAME}\.usdc{_DRAFT}",
     "cache/gas": rf"{_FRAME}\.vdb{_DRAFT}",
     "cache/gas_detail": rf"{_FRAME}\.vdb{_DRAFT}",
     "cache/frames": rf"{_FRAME}\.png{_DRAFT}",
     "cache/exr": rf"{_FRAME}\.exr{_DRAFT}",
+    "cache/checkpoints": rf"{_FRAME}\.singe{_DRAFT}",
     "cache": r"(burn\.usda|run\.json|(stats|events|probes)\.csv|checkpoint(\.previous)?\.singe|sheet\.png"
              rf"|preview\.(mp4|gif)){_DRAFT}|(cache|pictures)\.lock",
+}
+_MADE = {
+    **_CACHE,
+    **{part.replace(CACHE, EARLIER, 1): names for part, names in _CACHE.items()},
     "": r"burn\.yaml(\.part)?|log\.txt|sheet\d+(-speed\.png|(-pin\.\d{4,})?\.ply)"
         r"|collider-\d+-[0-9a-f]+(\.\d{4,})?\.ply",
 }
@@ -45,9 +52,10 @@ def sentence(error):
     return printable(f"cannot use {error.filename}: {reason}" if error.filename else reason)
 
 
-def _places(folder):
-    """(folder, pattern of the names of files) of each folder of a burn."""
-    return [(os.path.join(folder, *part.split("/")) if part else folder, names) for part, names in _MADE.items()]
+def _places(folder, within=""):
+    """(folder, pattern of the names of files) of each folder of a burn, or of those within one of them."""
+    return [(os.path.join(folder, *part.split("/")) if part else folder, names) for part, names in _MADE.items()
+            if not within or part.split("/")[0] == within]
 
 
 def is_own(folder):
@@ -101,10 +109,33 @@ def remove(path):
 def free(folder):
     """Deletes the files that a burn has written into a folder, and the folders that are empty then. Returns the number
     of files; 0 if no burn has marked the folder."""
-    if not is_own(folder):
-        return 0
+    return _free(folder, "") if is_own(folder) else 0
+
+
+def set_aside(folder):
+    """Makes the cache the earlier one, for a branch. FolderError if it is not of a burn."""
+    take(folder)
+    put_back(folder)
+    _free(folder, EARLIER)
+    os.rename(os.path.join(folder, CACHE), os.path.join(folder, EARLIER))
+
+
+def put_back(folder):
+    """Makes the earlier cache the cache again if a branch of it has not begun, and otherwise deletes it."""
+    earlier, cache = os.path.join(folder, EARLIER), os.path.join(folder, CACHE)
+    if not is_own(folder) or os.path.islink(earlier) or not os.path.isdir(earlier):
+        return
+    if os.path.exists(os.path.join(cache, "checkpoint.singe")):
+        _free(folder, EARLIER)
+        return
+    _free(folder, CACHE)
+    if not os.path.exists(cache):
+        os.rename(earlier, cache)
+
+
+def _free(folder, within):
     count = 0
-    for place, names in _places(folder):
+    for place, names in _places(folder, within):
         if place != folder and (os.path.islink(place) or os.path.islink(os.path.dirname(place))):
             continue
         if not os.path.isdir(place):

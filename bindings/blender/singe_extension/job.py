@@ -47,11 +47,14 @@ def find_program(chosen=""):
 class Job:
     """One run of the program into `folder`/cache."""
 
-    def __init__(self, program, folder, frames, resume=False):
-        self.folder, self.frames = folder, frames
-        self.cache = os.path.join(folder, "cache")
+    def __init__(self, program, folder, frames, resume=False, branch=0):
+        """branch: the frame from 1 of folder/earlier from which the run goes on; 0: none."""
+        self.folder, self.frames, self.branch = folder, frames, branch
+        self.cache = os.path.join(folder, files.CACHE)
         self.log = os.path.join(folder, "log.txt")
         command = [program, "run", os.path.join(folder, files.SCENE), "-o", self.cache, "--no-preview"]
+        if branch:
+            command += ["--from", f"{os.path.join(folder, files.EARLIER)}:{branch}"]
         self.started = self._mark()
         self.resumed = self.counting = resume
         with files.create(self.log) as log:
@@ -87,6 +90,8 @@ class Job:
         """Waits for the program and returns its exit code and its errors."""
         code = self.process.wait()
         RUNNING.pop(self.folder, None)
+        if self.branch:
+            files.put_back(self.folder)
         # at its end a run writes run.json after stats.csv, so one that ends between two polls is noticed only here
         self.counting = self.counting or self._mark() not in (None, self.started)
         try:
@@ -105,6 +110,11 @@ def frames_in(cache):
         return max(files.read(os.path.join(cache, "stats.csv")).count(b"\n") - 1, 0)
     except OSError:
         return 0
+
+
+def can_branch(cache, frame, frames):
+    """Whether a frame (from 1) of a cache is there to go on from, and not the last of the new run."""
+    return os.path.exists(os.path.join(cache, "run.json")) and 0 < frame <= frames_in(cache) and frame < frames
 
 
 def can_resume(cache, frames):

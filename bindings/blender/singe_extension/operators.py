@@ -37,10 +37,15 @@ def frame_count(scene):
     return scene.frame_end - scene.frame_start + 1
 
 
-class Burning:
-    """A job and its display in the scene; shared by burn, preview and resume."""
+def branch_frame(scene):
+    """The current frame's number in a burn, from 1."""
+    return scene.frame_current - scene.frame_start + 1
 
-    def begin_job(self, context, preview, resume):
+
+class Burning:
+    """A job and its display in the scene; shared by burn, preview, resume and branch."""
+
+    def begin_job(self, context, preview, resume, branch=False):
         scene = context.scene
         folder = burn_folder(scene, preview)
         if folder in job.RUNNING:
@@ -52,10 +57,24 @@ class Burning:
             if not files.is_own(folder):
                 raise export.ExportError(f"{folder} has no burn to resume")
             files.take(folder)
+        elif branch:
+            frame = branch_frame(scene)
+            if not files.is_own(folder) or not job.can_branch(os.path.join(folder, "cache"), frame, frame_count(scene)):
+                raise export.ExportError(f"the burn has no frame {scene.frame_current} to go on from: move to one that "
+                                         "is burnt and is not the scene's last")
+            load.clear(context, os.path.join(folder, "cache"))
+            files.set_aside(folder)
+            try:
+                export.Exporter(context, folder).write()
+                self.job = job.Job(program, folder, frame_count(scene), branch=frame)
+            except BaseException:
+                files.put_back(folder)
+                raise
         else:
             load.clear(context, os.path.join(folder, "cache"))
             export.Exporter(context, folder, preview).write()
-        self.job = job.Job(program, folder, frame_count(scene), resume)
+        if not branch:
+            self.job = job.Job(program, folder, frame_count(scene), resume)
         self.root_time, self.shown = None, -1
         scene.singe.progress = 0
         say(scene, "burning")
@@ -110,10 +129,13 @@ class SINGE_OT_burn(bpy.types.Operator, Burning):
 
     preview: BoolProperty(options={"SKIP_SAVE"}, description="Coarse, without gas")
     resume: BoolProperty(options={"SKIP_SAVE"}, description="Continue a burn that was stopped")
+    branch: BoolProperty(options={"SKIP_SAVE"},
+                         description="Keep the burn up to the current frame, and go on with what has changed since: wind, "
+                                     "pins, colliders, fire, materials, pace")
 
     def _begin(self, context):
         try:
-            self.begin_job(context, self.preview, self.resume)
+            self.begin_job(context, self.preview, self.resume, self.branch)
         except Exception as error:
             self._fail(context, error)
             return False

@@ -55,6 +55,7 @@ def draw_burn(layout, context):
         row.operator("singe.burn", icon="PLAY")
         row.operator("singe.burn", text="Preview").preview = True
         draw_resume(layout, scene)
+        draw_branch(layout, scene)
         row = layout.row(align=True)
         row.operator("singe.load", icon="FILE_FOLDER")
         row.operator("singe.free", icon="TRASH")
@@ -69,6 +70,16 @@ def draw_resume(layout, scene):
         return
     if files.is_own(os.path.dirname(cache)) and job.can_resume(cache, operators.frame_count(scene)):
         layout.operator("singe.burn", text=f"Resume from Frame {job.frames_in(cache)}").resume = True
+
+
+def draw_branch(layout, scene):
+    try:
+        folder = operators.burn_folder(scene)
+    except export.ExportError:
+        return
+    there = job.can_branch(os.path.join(folder, files.CACHE), operators.branch_frame(scene), operators.frame_count(scene))
+    if there and files.is_own(folder):
+        layout.operator("singe.burn", text="Branch Here", icon="PLAY").branch = True
 
 
 class SINGE_PT_object(bpy.types.Panel):

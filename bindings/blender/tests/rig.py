@@ -304,6 +304,34 @@ def open_collider():
     edit.free()
 
 
+def branch():
+    """Frames up to the branch stay; a change after it shows; what cannot change leaves the burn as it was."""
+    scene = fresh(frames=20, start=11)
+    curtain = add_curtain()
+    assert bpy.ops.singe.burn() == {"FINISHED"}, scene.singe.message
+    ply = os.path.join(folder, "cache", "burn", "cache", "ply", "burn.%04d.ply")
+    before = [open(ply % frame, "rb").read() for frame in (6, 20)]
+    scene.frame_set(16)
+    assert bpy.ops.singe.burn(branch=True) == {"FINISHED"}, scene.singe.message
+    assert before == [open(ply % frame, "rb").read() for frame in (6, 20)], "unchanged, it differs"
+    scene.gravity = (1, 0, -9.81)
+    assert bpy.ops.singe.burn(branch=True) == {"FINISHED"}, scene.singe.message
+    after = [open(ply % frame, "rb").read() for frame in (6, 20)]
+    assert before[0] == after[0] and before[1] != after[1]
+    sheet, = burning()
+    assert len(evaluated(sheet, 30).vertices)
+    assert not os.path.exists(os.path.join(folder, "cache", "burn", "earlier"))
+    curtain.singe.cell_size = 0.02
+    for frame, expected in (16, "has changed since"), (30, "has no frame 30"):
+        scene.frame_set(frame)
+        try:
+            bpy.ops.singe.burn(branch=True)
+            raise AssertionError("it was branched")
+        except RuntimeError:
+            assert expected in scene.singe.message, scene.singe.message
+        assert after == [open(ply % frame, "rb").read() for frame in (6, 20)]
+
+
 def cancel_and_resume(extension):
     """A burn that is stopped leaves frames; resumed it has those of one that never was."""
     scene = fresh(frames=30)
@@ -431,7 +459,7 @@ def preview_and_load():
 def main():
     extension = install()
     for scenario in (curtain_burns, lambda: saved_and_moved(extension), errors, folders, burnt_again, speed_by_texture,
-                     lambda: cancel_and_resume(extension), preview_and_load, suzanne):
+                     lambda: cancel_and_resume(extension), branch, preview_and_load, suzanne):
         begun = time.monotonic()
         scenario()
         name = scenario.__name__ if scenario.__name__ != "<lambda>" else "saved, cancelled or resumed"

@@ -23,10 +23,14 @@ MADE = """burn.yaml burn.yaml.part log.txt sheet0.ply sheet12-speed.png sheet0-p
           cache/checkpoint.singe cache/checkpoint.previous.singe cache/sheet.png cache/preview.mp4 cache/preview.gif
           cache/cache.lock cache/pictures.lock cache/run.json.12-0.tmp cache/ply/burn.0001.ply
           cache/ply/burn.0002.ply.77-1.tmp cache/ply/burn.12345.ply cache/usd/burn.0001.usdc cache/gas/burn.0001.vdb
-          cache/gas_detail/burn.0001.vdb cache/frames/burn.0001.png cache/exr/burn.0001.exr""".split()
+          cache/gas_detail/burn.0001.vdb cache/frames/burn.0001.png cache/exr/burn.0001.exr
+          cache/checkpoints/burn.0010.singe earlier/run.json earlier/ply/burn.0001.ply""".split()
 OTHERS = """notes.txt sheet.ply sheet0.ply.bak mysheet0.ply collider-0.ply cache/notes.txt cache/letter.usda
             cache/run.json.bak cache/ply/letter.0001.ply cache/ply/burn.1.ply cache/ply/burn.0001.usdc
             cache/ply/burn.00012.ply cache/burn.0001.ply cache/old/burn.0001.ply burn.0001.ply""".split()
+
+
+CACHE = ["cache/run.json", "cache/ply/burn.0001.ply", "cache/checkpoint.singe"]
 
 
 class Case(unittest.TestCase):
@@ -53,6 +57,33 @@ class Free(Case):
         self.assertEqual(files.free(str(self.folder)), len(MADE))
         self.assertFalse(self.folder.exists())
         self.assertTrue(self.folder.parent.exists())
+
+    def test_a_cache_is_set_aside_for_a_branch(self):
+        files.take(str(self.folder))
+        self.fill(CACHE)
+        files.set_aside(str(self.folder))
+        self.assertEqual(self.left(), sorted(["burn.yaml"] + [name.replace("cache", "earlier") for name in CACHE]))
+        self.fill(["cache/run.json"])  # refused before its first checkpoint
+        files.put_back(str(self.folder))
+        self.assertEqual(self.left(), sorted(["burn.yaml"] + CACHE))
+
+        files.set_aside(str(self.folder))
+        self.fill(CACHE + ["earlier/notes.txt"])  # it has begun
+        files.put_back(str(self.folder))
+        self.assertEqual(self.left(), sorted(["burn.yaml", "earlier/notes.txt"] + CACHE))
+
+    def test_a_link_is_not_set_aside(self):
+        files.take(str(self.folder))
+        other = self.dir / "other"
+        other.mkdir()
+        (other / "run.json").write_text("x")
+        for name in "cache", "earlier":
+            (self.folder / name).symlink_to(other)
+            with self.assertRaisesRegex(files.FolderError, "symbolic link"):
+                files.set_aside(str(self.folder))
+            files.put_back(str(self.folder))
+            (self.folder / name).unlink()
+        self.assertEqual((other / "run.json").read_text(), "x")
 
     def test_nothing_else(self):
         files.take(str(self.folder))
