@@ -175,12 +175,13 @@ static void print_summary(Run *run) {
     console_duration(run->totals->wall_seconds, took);
     console_note(run->console, "%s: %d of %d frames in %s", record->result, record->frames_done, run->job.scene->frames,
                  took);
-    char film[60] = "";
-    const double pace = (double)run->job.scene->sim.pace;
-    if (pace != 1) snprintf(film, sizeof film, " in the fire's time, %.1f on film", 1e3 * stats.front_speed * pace);
-    console_note(run->console, "front %.1f mm/s%s, hottest %.0f C, %.0f %% burnt, %u pieces, %u particles left",
-                 1e3 * stats.front_speed, film, run->totals->hottest - 273.15, 100 * stats.burnt_fraction, stats.pieces,
-                 stats.particles);
+    char front[100] = ""; // a front that has had several paces has no one speed
+    const double pace = (double)run->job.scene->sim.pace, speed = 1e3 * stats.front_speed;
+    if (pace == 1) snprintf(front, sizeof front, "front %.1f mm/s, ", speed);
+    else snprintf(front, sizeof front, "front %.1f mm/s in the fire's time, %.1f on film, ", speed, speed * pace);
+    if (run->job.scene->pace_count) front[0] = 0;
+    console_note(run->console, "%shottest %.0f C, %.0f %% burnt, %u pieces, %u particles left", front,
+                 run->totals->hottest - 273.15, 100 * stats.burnt_fraction, stats.pieces, stats.particles);
     const double ignition = scene_ignition(run->job.scene);
     if (strcmp(record->result, "complete") == 0 && run->job.scene->frames > 1 && isfinite(ignition) &&
         run->totals->ignited == 0 && stats.burnt_fraction == 0)

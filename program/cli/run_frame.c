@@ -70,7 +70,9 @@ SingeResult run_advance(Run *run, int frame, SingeError *error) {
     }
 
     while (run->step < run->job.scene->steps) {
-        SingeResult result = singe_sim_step(run->sim);
+        SingeResult result = scene_begin_step(run->job.scene, run->sim, frame - 1, run->step, error);
+        if (result) return result;
+        result = singe_sim_step(run->sim);
         if (result) {
             *error = *singe_sim_error(run->sim);
             return result;

@@ -343,7 +343,8 @@ SingeResult scene_branch(SceneWhole scene, SceneWhole before, int frame, SingeSi
             path = "gravity";
             result = singe_sim_set_gravity(sim, now->gravity);
         }
-        if (!result && now->pace != was->pace) {
+        // one that has keys is where they have led
+        if (!result && (now->pace != was->pace || before.scene->pace_count)) {
             path = "pace";
             result = singe_sim_set_pace(sim, now->pace);
         }

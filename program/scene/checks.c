@@ -2,6 +2,7 @@
 #include "common/printable.h"
 #include "scene/schema.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -198,6 +199,9 @@ void finish_scene(Reader *reader, const YamlNode *map, void *object) {
                     "%.6g frames a second of %d steps each are %.6g steps a second, which must be 0.1 to 1e9",
                     (double)scene->fps, scene->steps, rate);
     scene->sim.solver.tearing = scene->tearing && scene->sim.solver.method == SINGE_SOLVER_STRAND;
+
+    check_times(reader, node_find(map, "pace"), scene->paces, sizeof *scene->paces, scene->pace_count);
+    if (scene->pace_count) scene->sim.pace = fmaxf(scene->paces[0].value, SCENE_PACE_MIN);
 
     bool many_sheets = sheets && sheets->count > 1000; // comparing their names would take long
     if (sheets && sheets->kind == NODE_LIST) {

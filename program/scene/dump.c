@@ -193,10 +193,12 @@ static void dump_row(const Dumper *dumper, const SchemaRow *row, const void *obj
 static void dump_map(const Dumper *dumper, const Schema *schema, const void *object, int indent, bool inline_first) {
     unsigned kind = schema_kind(schema, object);
     bool first = true;
+    const char *keyed = ""; // a list that stands for the number of this key
     if (dumper->json) fputc('{', dumper->file);
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
-        if (!row_present(row, kind, object)) continue;
+        if (!row_present(row, kind, object) || strcmp(row->key, keyed) == 0) continue;
+        if (row->flags & ROW_KEYED) keyed = row->key;
         if (!first && dumper->json) fputc(',', dumper->file);
         if (!first || !inline_first || dumper->json) dump_line(dumper, indent + (dumper->json ? 2 : 0));
         dump_row(dumper, row, object, indent);

@@ -151,7 +151,9 @@ static double path_distance(const SceneSource *source, const Place *place) {
 /// nothing cools it, and all balls and spots are there. Without the rise by the sheet's own fire.
 static double heat_of(const Scene *scene, const SceneSource *source, const Place *place) {
     const SingeSourceDef *def = &source->def;
-    const double time = fmax((double)def->end - fmax((double)def->start, 0), 0) * (double)scene->sim.pace;
+    double pace = (double)scene->sim.pace; // the highest
+    for (uint32_t i = 0; i < scene->pace_count; i++) pace = fmax(pace, (double)scene->paces[i].value);
+    const double time = fmax((double)def->end - fmax((double)def->start, 0), 0) * pace;
     if (def->kind == SINGE_SOURCE_TEXTURE) {
         double strength = source->strength_count ? 0 : 1;
         for (uint32_t i = 0; i < source->strength_count; i++)

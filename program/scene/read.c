@@ -224,7 +224,7 @@ static void read_child(Reader *reader, const Schema *schema, unsigned kind, cons
     const SchemaRow *other = NULL;
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
-        if (strcmp(row->key, child->key) != 0) continue;
+        if (strcmp(row->key, child->key) != 0 || ((row->flags & ROW_KEYED) && child->kind != NODE_LIST)) continue;
         if (!row_allowed(row, kind)) {
             other = row;
             continue;

@@ -217,12 +217,14 @@ typedef struct SceneCheckpoints {
 } SceneCheckpoints;
 
 typedef struct Scene {
-    char *name;     ///< of the outputs; the scene file's name without its ending by default
-    int frames;     ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
-    float fps;      ///< frames a second
-    int steps;      ///< steps a frame
-    int gas_detail; ///< factor by which the cells of gas_detail/ are smaller; 1: a run has no such files
-    bool tearing;   ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
+    char *name;          ///< of the outputs; the scene file's name without its ending by default
+    int frames;          ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
+    float fps;           ///< frames a second
+    int steps;           ///< steps a frame
+    int gas_detail;      ///< factor by which the cells of gas_detail/ are smaller; 1: a run has no such files
+    uint32_t pace_count; ///< 0: the pace is sim.pace throughout
+    SingeValueKey *paces;
+    bool tearing; ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
     /// time_step is 1/(fps * steps), and velocity_steps is steps; hooks and thread_count are not the scene's
     SingeSimDef sim;
     uint32_t sheet_count, source_count, collider_count, pin_count, probe_count;
@@ -267,6 +269,9 @@ bool scene_material_same(const SceneMaterial *a, const SceneMaterial *b);
 
 /// Writes docs/scene.md, the reference of scene files, from the schema.
 void scene_document(FILE *file);
+
+/// A pace of 0 is this one: the library takes none that is smaller. In a year of motion 30 seconds of fire pass.
+#define SCENE_PACE_MIN 1e-6f
 
 // ---- from scene to simulation
 
@@ -344,6 +349,9 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
 /// object. Settings that certainly have no effect are reported to the log of `hooks`, with their locations.
 SINGE_NODISCARD SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const SingeSimDef *hooks,
                                         SingeSim **sim, SceneMessages *messages);
+
+/// Sets what the scene gives by keys for step `step` (from 0) after frame `frame` (from 1). Call it before each step.
+SINGE_NODISCARD SingeResult scene_begin_step(const Scene *scene, SingeSim *sim, int frame, int step, SingeError *error);
 
 /// Sets the positions at the end of frame `frame` (from 1) of colliders and pins that move with meshes. This is the
 /// start of the next frame. Call it before the first step of each frame. `assets` hold the bonds of pins.

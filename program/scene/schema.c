@@ -115,6 +115,18 @@ static const Schema schema_output = {
     .finish = finish_output,
     .doc = "What a run writes for other programs. `singe convert` makes the same formats from a cache."};
 
+static const SchemaRow pace_rows[] = {
+    {"time", ROW_FLOAT, DIM_TIME, AT(SingeValueKey, time), .min = 0, .max = 1e6, .flags = ROW_REQUIRED,
+     .doc = "when, of the motion"},
+    {"value", ROW_FLOAT, DIM_NONE, AT(SingeValueKey, value), .min = 0, .max = 1e6, .flags = ROW_REQUIRED,
+     .doc = "seconds of fire per second of motion"},
+};
+static const Schema schema_pace = {.title = "a pace's entry",
+                                   .size = sizeof(SingeValueKey),
+                                   ROWS(pace_rows),
+                                   .doc =
+                                       "The pace of the fire at a time, interpolated linearly. Times must increase."};
+
 #define OF Scene
 #define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
     AS_ROW_AT(#name, TYPE, sim.name, length, dimension, kinds, text, range)
@@ -127,6 +139,8 @@ static const SchemaRow scene_rows[] = {
      .doc = "number of frames; the first is the start, so N frames span (N - 1)/fps"},
     {"fps", ROW_FLOAT, DIM_FRAME_RATE, AT(Scene, fps), .min = 1e-3, .max = 1e5, .doc = "frames per second"},
     {"steps", ROW_INT, DIM_NONE, AT(Scene, steps), WITHIN(1, 100000), .doc = "simulation steps per frame"},
+    {"pace", ROW_LIST, DIM_NONE, AT(Scene, paces), EXTRA(Scene, pace_count), .sub = &schema_pace, .flags = ROW_KEYED,
+     .doc = "over time: slow motion, haste, and at 0 a fire that stands still; or a number"},
 #include "singe/sim.def"
     {"sheets", ROW_LIST, DIM_NONE, AT(Scene, sheets), EXTRA(Scene, sheet_count), .sub = &schema_sheet,
      .flags = ROW_REQUIRED, .doc = "sheets that burn, at least one"},

@@ -40,6 +40,7 @@ enum {
     ROW_NONE = 16,     ///< "none" is allowed: -INFINITY
     ROW_SHORT = 32,    ///< short for another key; not dumped
     ROW_NUMBERED = 64, ///< ROW_FILE: a name with a run of # instead of a number
+    ROW_KEYED = 128,   ///< ROW_LIST: in place of the number that a later row of the same key takes
 };
 
 typedef struct SchemaRow {

@@ -222,6 +222,22 @@ static SingeResult follow_pin(SingeSim *sim, SingePinId pin, SceneSequence *sequ
     return result;
 }
 
+SingeResult scene_begin_step(const Scene *scene, SingeSim *sim, int frame, int step, SingeError *error) {
+    if (!scene->pace_count) return SINGE_OK;
+    const double time = ((double)(frame - 1) + (double)step / scene->steps) / (double)scene->fps;
+    const SingeValueKey *keys = scene->paces;
+    uint32_t after = 0;
+    while (after < scene->pace_count && (double)keys[after].time <= time) after++;
+    double pace = (double)keys[after ? after - 1 : 0].value;
+    if (after > 0 && after < scene->pace_count) {
+        const double begin = (double)keys[after - 1].time, end = (double)keys[after].time;
+        pace += (time - begin) / (end - begin) * ((double)keys[after].value - pace);
+    }
+    const SingeResult result = singe_sim_set_pace(sim, fmaxf((float)pace, SCENE_PACE_MIN));
+    if (result) *error = *singe_sim_error(sim);
+    return result;
+}
+
 SingeResult scene_follow(const Scene *scene, SceneAssets *assets, SingeSim *sim, int frame, SingeError *error) {
     const double time = frame / (double)scene->fps;
     SingeResult result = SINGE_OK;

@@ -113,6 +113,29 @@ class Branch(Case):
                 with open(self.path("drawn", "frames", name), "rb") as a, open(self.path("p", "frames", name), "rb") as b:
                     self.assertEqual(a.read(), b.read(), name)
 
+    def test_keyed_pace(self):
+        """A pace by keys: constant it is that number, at 0 the fire stands still, and it survives a branch."""
+        self.whole("--set", "pace=4")
+        self.run_scene("const", "--set", "pace=[{time: 0, value: 4}, {time: 1 s, value: 4}]")
+        self.same("const")
+        keys = "pace=[{time: 0, value: 4}, {time: 0.1 s, value: 4}, {time: 0.11 s, value: 0}]"
+        self.run_scene("still", "--set", keys, "--set", "checkpoints.every=3")
+        mass = [float(row["mass"]) for row in self.stats("still")]
+        self.assertEqual(self.stats("still")[2]["mass"], self.stats("whole")[2]["mass"])
+        self.assertLess(mass[3], mass[1])
+        self.assertLess(abs(mass[5] - mass[3]), 1e-6 * mass[0])  # frame 4 is at 0.125 s
+        self.assertLess(float(self.stats("whole")[5]["mass"]), mass[5])
+        for frame in 3, 5:
+            self.branch("b", frame, keys, of="still", args=("--force",))
+            self.same("b", "still")
+        self.branch("on", 4, "pace=4", of="still")  # the fire goes on
+        self.assertLess(float(self.stats("on")[5]["mass"]), mass[5])
+        self.assertEqual(self.record("still")["scene"]["pace"][2]["value"], 0)
+        for wrong, part in (("[{time: 1, value: 2}, {time: 1, value: 3}]", "increase"), ("[{time: 0, value: -1}]", "value"),
+                            ("fast", "number")):
+            with self.subTest(wrong):
+                self.assertIn(part, self.run_scene("no", "--set", f"pace={wrong}", expect=2)[1])
+
     def test_a_run_is_its_scene(self):
         """The folder of a run stands for the scene that it has burnt, wherever the command runs."""
         self.whole("--set", "pace=5", "--set", "checkpoints.every=4")
