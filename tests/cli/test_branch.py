@@ -125,7 +125,7 @@ class Branch(Case):
         self.assertLess(mass[3], mass[1])
         self.assertLess(abs(mass[5] - mass[3]), 1e-6 * mass[0])  # frame 4 is at 0.125 s
         self.assertLess(float(self.stats("whole")[5]["mass"]), mass[5])
-        for frame in 3, 5:
+        for frame in (5,) if SANITIZED else (3, 5):
             self.branch("b", frame, keys, of="still", args=("--force",))
             self.same("b", "still")
         self.branch("on", 4, "pace=4", of="still")  # the fire goes on
