@@ -21,6 +21,8 @@
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
+#include <string.h>
+
 /// m/s, relative to a collider: a faster particle may pass a collider smaller than its displacement in a substep.
 static const float CONTACT_SPEED = 20;
 
@@ -30,9 +32,17 @@ enum { CONTACT_STEPS = 128 };
 /// A position this near outside a surface, as a share of the offset or in m, counts as on it.
 static const float CONTACT_SKIN = 1.0f / 16, CONTACT_SKIN_MIN = 1e-6f;
 
+/// Shapes whose distance a few operations give.
+static bool collider_is_simple(const Collider *collider) {
+    return collider->def.kind == SINGE_COLLIDER_PLANE || collider->def.kind == SINGE_COLLIDER_SPHERE ||
+           collider->def.kind == SINGE_COLLIDER_BOX || collider->def.kind == SINGE_COLLIDER_CAPSULE;
+}
+
 MovingCollider contact_collider(const Collider *collider, double before, double after) {
-    MovingCollider moving = {
-        .collider = collider, .before = path_pose(&collider->path, before), .after = path_pose(&collider->path, after)};
+    MovingCollider moving = {.collider = collider,
+                             .is_simple = collider_is_simple(collider),
+                             .before = path_pose(&collider->path, before),
+                             .after = path_pose(&collider->path, after)};
     Float3 low, high;
     if (collider->def.kind == SINGE_COLLIDER_DEFORMING) {
         deform_between(&collider->deform, before, after);
@@ -156,50 +166,95 @@ bool contact_particle(const MovingCollider *moving, float offset, Float3 previou
     return true;
 }
 
-/// Whether any of four particles may be nearer to a collider than it reaches.
-static inline bool contact_any_near(const MovingCollider *collider, const Float4 x[4]) {
+// ---- four particles at once, for colliders of a simple shape; to the bit what contact_particle computes
+
+/// Four points or vectors, a lane each.
+typedef struct Float3s {
+    Float4 x, y, z;
+} Float3s;
+
+static inline Float3s float3s_add(Float3s a, Float3s b) { return (Float3s){a.x + b.x, a.y + b.y, a.z + b.z}; }
+static inline Float3s float3s_sub(Float3s a, Float3s b) { return (Float3s){a.x - b.x, a.y - b.y, a.z - b.z}; }
+static inline Float3s float3s_mad(Float3s a, Float3s b, Float4 s) {
+    return (Float3s){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
+}
+static inline Float4 float3s_dot(Float3s a, Float3s b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline Float3s float3s_all(Float3 a) { return (Float3s){float4_all(a.x), float4_all(a.y), float4_all(a.z)}; }
+
+static inline Float3s float3s_load(const float (*from)[4], const int particle[4]) {
+    Float4 q[4];
+    for (int k = 0; k < 4; k++) q[k] = float4_load(from[particle[k]]);
+    float4_transpose(q);
+    return (Float3s){q[0], q[1], q[2]};
+}
+
+/// Rotates as quat_rotate does; `back` as quat_unrotate.
+static inline Float3s float3s_rotate(const float q[4], Float3s v, bool back) {
+    const float x = back ? -q[0] : q[0], y = back ? -q[1] : q[1], z = back ? -q[2] : q[2];
+    if (x == 0 && y == 0 && z == 0 && q[3] == 1) return v;
+    Float3s t = {(y * v.z - z * v.y) * 2, (z * v.x - x * v.z) * 2, (x * v.y - y * v.x) * 2};
+    Float3s cross = {y * t.z - z * t.y, z * t.x - x * t.z, x * t.y - y * t.x};
+    return float3s_add(float3s_mad(v, t, float4_all(q[3])), cross);
+}
+
+/// collider_distance, for a simple shape.
+static inline Float4 simple_distance(const SingeColliderDef *def, Float3s p, Float3s *normal) {
+    const Float4 zero = float4_all(0), one = float4_all(1);
+    Float4Mask inside = {0, 0, 0, 0};
+    Float4 radius = float4_all(def->radius), deepest = zero;
+    Float3s within = {zero, zero, zero}; // the normal inside a box
+    switch (def->kind) {
+    case SINGE_COLLIDER_BOX: {
+        const Float4 q[3] = {p.x, p.y, p.z};
+        Float4 out[3], n[3], side[3];
+        for (int i = 0; i < 3; i++) {
+            out[i] = float4_max(q[i], -q[i]) - def->half_size[i];
+            side[i] = float4_select(q[i] < 0, -one, one);
+            n[i] = float4_select(out[i] > 0, float4_select(q[i] < 0, -out[i], out[i]), zero);
+        }
+
+        inside = ~((out[0] > 0) | (out[1] > 0) | (out[2] > 0));
+        Float4Mask second = out[1] > out[0];
+        deepest = float4_select(second, out[1], out[0]);
+        Float4Mask third = out[2] > deepest;
+        deepest = float4_select(third, out[2], deepest);
+        within = (Float3s){float4_select(second | third, zero, side[0]), float4_select(second & ~third, side[1], zero),
+                           float4_select(third, side[2], zero)};
+        p = (Float3s){n[0], n[1], n[2]};
+        radius = zero;
+        break;
+    }
+    case SINGE_COLLIDER_CAPSULE: {
+        const Float4 half = float4_all(def->height / 2);
+        p.z = p.z - float4_min(float4_max(p.z, -half), half);
+        break;
+    }
+    case SINGE_COLLIDER_SPHERE: break;
+    default: *normal = (Float3s){zero, zero, one}; return p.z;
+    }
+
+    const Float4 length = float4_sqrt(float3s_dot(p, p)), inverse = 1 / length;
+    const Float4Mask off = length > 0;
+    *normal = (Float3s){float4_select(inside, within.x, float4_select(off, p.x * inverse, zero)),
+                        float4_select(inside, within.y, float4_select(off, p.y * inverse, zero)),
+                        float4_select(inside, within.z, float4_select(off, p.z * inverse, one))};
+    return float4_select(inside, deepest, length - radius);
+}
+
+/// Whether four points lie in the collider's box: nearer to it than it reaches.
+static inline Float4Mask contact_near(const MovingCollider *collider, Float4 x, Float4 y, Float4 z) {
     Float3 origin = collider->after.position;
-    Float4 dx = x[0] - origin.x, dy = x[1] - origin.y, dz = x[2] - origin.z;
+    Float4 dx = x - origin.x, dy = y - origin.y, dz = z - origin.z;
     Float4Mask near = {-1, -1, -1, -1};
 
     for (int i = 2; i >= 0; i--) {
         Float3 axis = collider->axis[i];
         Float4 along = dx * axis.x + dy * axis.y + dz * axis.z;
         near &= (along < collider->high[i]) & (along > collider->low[i]);
-        if (!(near[0] | near[1] | near[2] | near[3])) return false;
+        if (!float4_bits(near)) break;
     }
 
-    return true;
-}
-
-uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
-                       int end) {
-    uint64_t contacts = 0;
-    float(*position)[4] = dynamics->position;
-
-    for (int first = begin; first < end && collider_count > 0; first += 4) {
-        // four particles at once, against boxes
-        int count = end - first < 4 ? end - first : 4;
-        Float4 x[4];
-        for (int i = 0; i < 4; i++) x[i] = float4_load(position[first + (i < count ? i : 0)]);
-        float4_transpose(x);
-        for (uint32_t c = 0; c < collider_count; c++) {
-            const MovingCollider *collider = &plan->colliders[c];
-            if (!contact_any_near(collider, x)) continue;
-
-            // each of them, along its displacement
-            float offset = collider->collider->def.offset;
-            for (int i = first; i < first + count; i++) {
-                if (position[i][3] == 0) continue;
-                Float3 previous = float3_mad(float3_load(plan->predicted[i]), float3_load(dynamics->velocity[i]), -h);
-                contacts += contact_particle(collider, offset, previous, position[i]);
-            }
-            for (int i = 0; i < 4; i++) x[i] = float4_load(position[first + (i < count ? i : 0)]);
-            float4_transpose(x);
-        }
-    }
-
-    return contacts;
+    return near;
 }
 
 typedef struct Contact {
@@ -209,9 +264,114 @@ typedef struct Contact {
     DynamicsState *dynamics;
 } Contact;
 
+/// Where a particle was when the substep began.
+static inline Float3 contact_previous(const Contact *job, int i) {
+    return float3_mad(float3_load(job->plan->predicted[i]), float3_load(job->dynamics->velocity[i]), -job->h);
+}
+
+/// Contact of the particles that `moves` selects, at *x, with a collider of a simple shape. Returns which of them it
+/// has moved. Those that may have entered the collider on their way are left to contact_particle: *through.
+static inline Float4Mask contact_simple(const Contact *job, const MovingCollider *moving, const int particle[4],
+                                        Float4Mask moves, Float3s *x, Float4Mask *through) {
+    const SingeColliderDef *def = &moving->collider->def;
+    const bool plane = def->kind == SINGE_COLLIDER_PLANE;
+    const bool still = memcmp(&moving->before, &moving->after, sizeof moving->before) == 0;
+    const Float3s origin = float3s_all(moving->after.position);
+    const Float3s local = float3s_rotate(moving->after.rotation, float3s_sub(*x, origin), true);
+    Float3s normal;
+    const Float4 distance = simple_distance(def, local, &normal);
+    Float4Mask touches = moves & (distance < def->offset);
+    *through = (Float4Mask){0, 0, 0, 0};
+    if (plane && !float4_bits(touches)) return touches;
+
+    // a plane is never passed
+    const Float3s velocity = float3s_load((const float(*)[4])job->dynamics->velocity, particle);
+    const Float3s previous =
+        float3s_mad(float3s_load((const float(*)[4])job->plan->predicted, particle), velocity, float4_all(-job->h));
+    if (!plane) {
+        const Float3s from =
+            float3s_rotate(moving->before.rotation, float3s_sub(previous, float3s_all(moving->before.position)), true);
+        const Float3s displacement = float3s_sub(local, from);
+        *through = moves & (distance < float4_sqrt(float3s_dot(displacement, displacement)));
+        touches &= ~*through;
+        if (!float4_bits(touches)) return touches;
+    }
+
+    // out
+    const Float4 depth = def->offset - distance;
+    touches &= depth > 0;
+    const Float3s out = float3s_sub(float3s_mad(local, normal, depth), local);
+    Float3s after = float3s_add(*x, float3s_rotate(moving->after.rotation, out, false));
+    normal = float3s_rotate(moving->after.rotation, normal, false);
+
+    // friction
+    Float3s slip = float3s_sub(after, previous);
+    if (!still) {
+        const Float3s end = float3s_add(origin, float3s_rotate(moving->after.rotation, local, false));
+        const Float3s start =
+            float3s_add(float3s_all(moving->before.position), float3s_rotate(moving->before.rotation, local, false));
+        slip = float3s_sub(slip, float3s_sub(end, start));
+    }
+    slip = float3s_mad(slip, normal, -float3s_dot(slip, normal));
+    const Float4 length = float4_sqrt(float3s_dot(slip, slip)), max = def->friction * depth;
+    after = float3s_mad(after, slip, float4_select(length <= max, float4_all(-1), -max / length));
+    *x = (Float3s){float4_select(touches, after.x, x->x), float4_select(touches, after.y, x->y),
+                   float4_select(touches, after.z, x->z)};
+    return touches;
+}
+
 static double contact_block(void *task, int begin, int end) {
     const Contact *job = task;
-    return (double)contact_range(job->plan, job->collider_count, job->h, job->dynamics, begin, end);
+    uint64_t contacts = 0;
+    float(*position)[4] = job->dynamics->position;
+
+    for (int first = begin; first < end && job->collider_count > 0; first += 4) {
+        // the last of a block is repeated in lanes without a particle
+        int particle[4];
+        for (int i = 0; i < 4; i++) particle[i] = first + i < end ? first + i : end - 1;
+        Float4 q[4];
+        for (int i = 0; i < 4; i++) q[i] = float4_load(position[particle[i]]);
+        float4_transpose(q);
+        const Float4Mask lane = {0, 1, 2, 3}, moves = (q[3] != 0) & (lane < end - first);
+        for (uint32_t c = 0; c < job->collider_count; c++) {
+            const MovingCollider *collider = &job->plan->colliders[c];
+            if (!float4_bits(contact_near(collider, q[0], q[1], q[2]))) continue;
+
+            unsigned one_by_one = float4_bits(moves);
+            if (collider->is_simple) {
+                Float3s x = {q[0], q[1], q[2]};
+                Float4Mask through;
+                const unsigned touched = float4_bits(contact_simple(job, collider, particle, moves, &x, &through));
+                one_by_one = float4_bits(through);
+                if (touched) {
+                    Float4 row[4] = {x.x, x.y, x.z, q[3]};
+                    float4_transpose(row);
+                    for (int i = 0; i < 4; i++)
+                        if (touched >> i & 1) float4_store(position[particle[i]], row[i]);
+                    contacts += (uint64_t)__builtin_popcount(touched);
+                    memcpy(q, &x, sizeof x);
+                }
+            }
+
+            // along their displacements
+            if (!one_by_one) continue;
+            float offset = collider->collider->def.offset;
+            for (int i = 0; i < 4; i++)
+                if (one_by_one >> i & 1)
+                    contacts +=
+                        contact_particle(collider, offset, contact_previous(job, particle[i]), position[particle[i]]);
+            for (int i = 0; i < 4; i++) q[i] = float4_load(position[particle[i]]);
+            float4_transpose(q);
+        }
+    }
+
+    return (double)contacts;
+}
+
+uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
+                       int end) {
+    Contact job = {plan, collider_count, h, dynamics};
+    return (uint64_t)contact_block(&job, begin, end);
 }
 
 uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics) {
@@ -235,13 +395,46 @@ typedef struct Centroid {
     float h;
 } Centroid;
 
+/// Which of the cells [first, end), at most four of them, have a centroid that a collider may touch: bits.
+static unsigned centroid_touching(const Centroid *job, int first, int end) {
+    const float(*position)[4] = (const float(*)[4])job->dynamics->position;
+    Float4 q[4];
+    unsigned alive = 0, touching = 0;
+    for (int i = 0; i < 4; i++) {
+        const uint32_t cell = job->cells[first + i < end ? first + i : first], *corner = job->shell->cells[cell];
+        Float4 sum = {0, 0, 0, 0};
+        for (int j = 0; j < 4; j++) sum += float4_load(position[corner[j]]);
+        q[i] = sum * 0.25f;
+        if (first + i < end && job->ablate->cell_flags[cell] & SINGE_ALIVE) alive |= 1u << i;
+    }
+
+    float4_transpose(q);
+    for (uint32_t c = 0; c < job->collider_count && touching != alive; c++) {
+        const MovingCollider *moving = &job->plan->colliders[c];
+        const SingeColliderDef *def = &moving->collider->def;
+        if (def->kind == SINGE_COLLIDER_PLANE) continue;
+        Float4Mask near = contact_near(moving, q[0], q[1], q[2]);
+        if (moving->is_simple && float4_bits(near)) {
+            const Float3s from = float3s_sub((Float3s){q[0], q[1], q[2]}, float3s_all(moving->after.position));
+            Float3s normal;
+            near &= simple_distance(def, float3s_rotate(moving->after.rotation, from, true), &normal) <
+                    CENTROID_SHARE * def->offset;
+        }
+        touching |= float4_bits(near) & alive;
+    }
+
+    return touching;
+}
+
 static void centroid_cells(void *task, int begin, int end) {
     const Centroid *job = task;
     float(*position)[4] = job->dynamics->position;
-    for (int k = begin; k < end; k++) {
-        const uint32_t *corner = job->shell->cells[job->cells[k]];
-        if (!(job->ablate->cell_flags[job->cells[k]] & SINGE_ALIVE)) continue;
+    unsigned touching = 0; // bit i: cell k + i of four
+    for (int k = begin; k < end; k++, touching >>= 1) {
+        if ((k - begin) % 4 == 0) touching = centroid_touching(job, k, end);
+        if (!(touching & 1)) continue;
 
+        const uint32_t *corner = job->shell->cells[job->cells[k]];
         Float3 sum = {0, 0, 0};
         for (int i = 0; i < 4; i++) sum = float3_add(sum, float3_load(position[corner[i]]));
         Float3 mean = float3_scale(sum, 0.25f);

@@ -2,6 +2,7 @@
 // come to rest lies on meshes and heights without sinking in.
 #include "sample_sheets.h"
 
+#include "common/random.h"
 #include "dynamics/dynamics_plan.h"
 #include "world/solids.h"
 
@@ -363,6 +364,62 @@ TEST(a_swat_passes_nothing) {
     assert_true(hit > 400 && through == 0);
     triangles_free(&triangles);
     close_all(&bench);
+}
+
+// ---- four at once
+
+/// Planes, spheres, boxes and capsules, at rest, turned and moving: particles outside, in the skin, deep inside and on
+/// their way through.
+TEST(particles_move_four_at_once_as_one_by_one) {
+    const SingeColliderKind kinds[] = {SINGE_COLLIDER_PLANE, SINGE_COLLIDER_SPHERE, SINGE_COLLIDER_BOX,
+                                       SINGE_COLLIDER_CAPSULE};
+    const SingePoseKey keys[2] = {{0, {0.03f, 0.02f, 0.01f}, {0.1f, 0.2f, 0.3f, 0.9f}},
+                                  {(double)STEP, {0.031f, 0.0205f, 0.0098f}, {0.12f, 0.19f, 0.3f, 0.9f}}};
+    const float h = STEP / 3;
+    uint64_t all = 0;
+
+    for (int trial = 0; trial < 12; trial++) {
+        // at rest as it is, at rest but turned, moving
+        Bench bench;
+        SingeMaterialDef material = plain();
+        bench_open(&bench, quads_grid(29, 30, 0.002f, 0.002f, false), &material, 1);
+        SingeColliderDef def = singe_default_collider();
+        def.kind = kinds[trial % 4];
+        def.radius = 0.01f;
+        def.height = 0.02f;
+        memcpy(def.half_size, (float[]){0.01f, 0.012f, 0.008f}, sizeof def.half_size);
+        add_collider(&bench, def, trial < 4 ? 0 : trial < 8 ? 1 : 2, trial < 4 ? NULL : keys);
+
+        const uint32_t count = bench.shell.particle_count;
+        DynamicsState *dynamics = &bench.state.dynamics;
+        float(*one)[4] = malloc(count * sizeof *one);
+        for (uint32_t i = 0; i < count; i++) {
+            for (uint32_t k = 0; k < 3; k++) {
+                const uint32_t draw = 8 * i + k;
+                const float centre = trial < 4 ? 0 : keys[0].position[k];
+                dynamics->position[i][k] = centre + 0.03f * (random_unit(draw) - 0.5f);
+                dynamics->velocity[i][k] = (i % 5 == 0 ? 8.0f : 0.5f) * (random_unit(draw + 4) - 0.5f);
+            }
+            dynamics->position[i][3] = i % 7 == 0 ? 0 : 1;
+            memcpy(bench.plan->predicted[i], dynamics->position[i], sizeof *one);
+            memcpy(one[i], dynamics->position[i], sizeof *one);
+        }
+
+        MovingCollider *collider = bench.plan->colliders;
+        *collider = contact_collider(bench.colliders.items, 0, (double)h);
+        uint64_t contacts = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            Float3 before = float3_mad(float3_load(one[i]), float3_load(dynamics->velocity[i]), -h);
+            if (one[i][3] != 0) contacts += contact_particle(collider, def.offset, before, one[i]);
+        }
+        assert_int_equal(contact_project(bench.plan, 1, NULL, h, dynamics), contacts);
+        assert_memory_equal(dynamics->position, one, count * sizeof *one);
+        all += contacts;
+        free(one);
+        close_all(&bench);
+    }
+
+    assert_true(all > 1000);
 }
 
 // ---- cost
