@@ -57,15 +57,15 @@ static float bend_limit(const Shell *shell, uint32_t a, uint32_t b, uint32_t c, 
     return sqrtf(float3_dot(rest, rest) + turned * turned);
 }
 
-void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour colour, uint32_t strand,
-                       StrandSet *set) {
+void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour colour, uint32_t strand, uint32_t from,
+                       uint32_t to, StrandSet *set) {
     const SpringSet *springs = &shell->springs[colour];
     const float *mass = state->burn->mass, *length = state->burn->spring_length[colour];
     const uint32_t first = springs->strand_first[strand], end = springs->strand_first[strand + 1];
     const float side = colour == SINGE_YELLOW ? 0.70710678f : 1; // of a cell, over the spring
-    size_t slot = set->strand_slot[strand];
+    size_t slot = set->strand_slot[strand] + (size_t)(from - first) * STRAND_LANES;
 
-    for (uint32_t k = first; k < end; k++, slot += STRAND_LANES) {
+    for (uint32_t k = from; k < to; k++, slot += STRAND_LANES) {
         // the spring before, which is the last one at the start of a ring
         const uint32_t b = springs->ends[k][0], c = springs->ends[k][1];
         uint32_t before = k - 1;

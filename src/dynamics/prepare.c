@@ -19,14 +19,35 @@ typedef struct Prepare {
     DynamicsState *dynamics; ///< its positions get the inverse mass
 } Prepare;
 
+/// Marks the run of a spring, if it is in a strand, to be prepared again. Several threads may mark one.
+static inline void prepare_mark(StrandSet *set, uint32_t spring) {
+    const uint32_t run = spring / PREPARE_RUN;
+    if (run < set->run_count) atomic_store_explicit(&set->stale[run], 1, memory_order_relaxed);
+}
+
+/// Normals of cells; springs at what lost mass get other weights and lengths.
 static void prepare_cells(void *task, int begin, int end) {
     Prepare *job = task;
-    const float(*x)[4] = (const float(*)[4])job->dynamics->position;
-    for (int c = begin; c < end; c++) {
-        const uint32_t *corner = job->shell->cells[c];
+    const Shell *shell = job->shell;
+    const float(*x)[4] = (const float(*)[4])job->dynamics->position, *burn_rate = job->state->burn->burn_rate;
+    StrandSet *sets = job->plan->strands.sets;
+
+    for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
+        const uint32_t *corner = shell->cells[c];
         Float3 a = float3_sub(float3_load(x[corner[2]]), float3_load(x[corner[0]]));
         Float3 b = float3_sub(float3_load(x[corner[3]]), float3_load(x[corner[1]]));
         float3_store(job->plan->cell_normal[c], float3_cross(a, b));
+
+        bool burns = burn_rate[shell_centre(shell, c)] > 0;
+        for (int i = 0; i < 4; i++) burns |= burn_rate[corner[i]] > 0;
+        if (!burns || !sets[SINGE_RED].stale) continue;
+        const CellSprings *springs = &shell->cell_springs[c];
+        for (int i = 0; i < 4; i++) {
+            prepare_mark(&sets[SINGE_RED], springs->red[i]);
+            prepare_mark(&sets[SINGE_BLUE], springs->blue[i]);
+            prepare_mark(&sets[SINGE_GREEN], springs->green[i]);
+        }
+        for (int i = 0; i < 2; i++) prepare_mark(&sets[SINGE_YELLOW], springs->yellow[i]);
     }
 }
 

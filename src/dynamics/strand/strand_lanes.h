@@ -12,7 +12,9 @@
 
 #include "shell/shell.h"
 
-enum { STRAND_LANES = 16, STRAND_KEEP = 3 };
+#include <stdatomic.h>
+
+enum { STRAND_LANES = 16, STRAND_KEEP = 3, PREPARE_RUN = 32 };
 _Static_assert(STRAND_LANES % 16 == 0, "the widest kernel has 16 lanes");
 
 /// Share of a bend beyond the limit that a substep removes (curvature.c).
@@ -48,8 +50,13 @@ typedef struct StrandSet {
     float *compliance;     ///< [row_count STRAND_LANES] m/N
     float *bend_limit;     ///< [row_count STRAND_LANES] m, as in curvature.c, at a node; NULL: none
     float *pull;           ///< [row_count STRAND_LANES] sums of mu, lambda over length; NULL: not needed
-    float compliance_all;  ///< m/N, that of every spring; negative where they differ
-    void *block;           ///< memory of the five arrays
+    uint32_t run_count;    ///< of springs: PREPARE_RUN each, in the springs' order
+    _Atomic uint8_t *stale; ///< [run_count] 1: weights, lengths or limits of the run change in this step
+    uint8_t *creased;       ///< [run_count] 1: a crease had changed a length of the run
+    uint8_t *seen;          ///< [run_count PREPARE_RUN] the springs' flags that the weights are for
+    bool rings;             ///< some strands are rings
+    float compliance_all;   ///< m/N, that of every spring; negative where they differ
+    void *block;            ///< memory of the five arrays
 } StrandSet;
 
 static inline uint32_t strand_lane(uint32_t width, uint32_t column) {

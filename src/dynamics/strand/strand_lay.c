@@ -382,10 +382,17 @@ bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowher
         }
     }
 
+    // runs of springs that are prepared together
+    set->run_count = springs->strand_first[set->strand_count] / PREPARE_RUN + 1;
+    if (!NEW(memory, set->stale, set->run_count) || !NEW(memory, set->creased, set->run_count) ||
+        !NEW(memory, set->seen, (size_t)set->run_count * PREPARE_RUN))
+        return false;
+
     // rows whose particles have consecutive numbers
     for (uint32_t g = 0; g < set->group_count; g++) {
         const StrandGroup *group = &set->groups[g];
         if (set->longest < group->rows) set->longest = group->rows;
+        set->rings |= group->ring;
         for (uint32_t row = group->row; row <= group->row + group->rows; row++) {
             const uint32_t *node = set->node + (size_t)row * STRAND_LANES;
             set->contiguous[row] = node[0];
@@ -398,6 +405,9 @@ bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowher
 }
 
 void strand_set_free(Memory *memory, StrandSet *set) {
+    FREE(memory, set->stale, set->run_count);
+    FREE(memory, set->creased, set->run_count);
+    FREE(memory, set->seen, (size_t)set->run_count * PREPARE_RUN);
     FREE(memory, set->groups, set->group_capacity);
     FREE(memory, set->family_first, (size_t)set->family_count + 1);
     FREE(memory, set->strand_slot, set->strand_count);

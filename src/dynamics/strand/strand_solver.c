@@ -8,6 +8,7 @@
 #include "dynamics/stiffness.h"
 
 #include <stdatomic.h>
+#include <string.h>
 
 /// Operations of a row of the chain's solve and bytes it moves, counted in strand_kernel.h. The bytes: node, length,
 /// weight, compliance and position forward; node, position twice back. Rows whose particles are contiguous do without
@@ -69,9 +70,37 @@ typedef struct Prepare {
     const StateInput *state;
     const DynamicsState *dynamics;
     SingeColour colour;
+    bool all; ///< whatever has changed
 } Prepare;
 
-static void prepare_range(void *task, int begin, int end) {
+/// The strand of a spring.
+static uint32_t strand_of(const SpringSet *springs, uint32_t spring) {
+    uint32_t low = 0, high = springs->strand_count;
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2;
+        if (springs->strand_first[middle] <= spring) low = middle;
+        else high = middle;
+    }
+
+    return low;
+}
+
+/// The springs of run r that are in strands end here.
+static uint32_t run_end(const SpringSet *springs, uint32_t r) {
+    uint32_t all = springs->strand_first[springs->strand_count];
+    return (r + 1) * PREPARE_RUN < all ? (r + 1) * PREPARE_RUN : all;
+}
+
+/// Whether a run has a spring whose weight or length is another one now; `flags` and `crease` begin at the run.
+static bool run_changed(const StrandSet *set, uint32_t r, const uint8_t *flags, const float *crease, uint32_t count) {
+    bool creased = set->creased[r];
+    for (uint32_t k = 0; crease && k < count; k++) creased |= crease[k] != 0;
+    return creased || atomic_load_explicit(&set->stale[r], memory_order_relaxed) ||
+           memcmp(flags, set->seen + (size_t)r * PREPARE_RUN, count) != 0;
+}
+
+/// Weights and lengths of runs into the lanes; a crease changes lengths of green springs.
+static void prepare_runs(void *task, int begin, int end) {
     const Prepare *job = task;
     const SpringSet *springs = &job->shell->springs[job->colour];
     StrandSet *set = &job->plan->strands.sets[job->colour];
@@ -80,42 +109,70 @@ static void prepare_range(void *task, int begin, int end) {
     const Field material = job->shell->matter.weight[job->colour];
     const float *soft = job->plan->soft;
     const Hinge *hinges = job->colour == SINGE_GREEN ? job->plan->hinges : NULL;
-    const float *crease = job->dynamics->crease, *bend = job->dynamics->bend;
+    const float *crease = hinges ? job->dynamics->crease : NULL, *bend = job->dynamics->bend;
     const bool torn = job->shell->split_count > 0;
 
-    for (int s = begin; s < end; s++) {
-        // weights and lengths into the lanes; a crease changes lengths of green springs
-        size_t slot = set->strand_slot[s];
-        for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
+    for (uint32_t r = (uint32_t)begin; r < (uint32_t)end; r++) {
+        const uint32_t first = r * PREPARE_RUN, last = run_end(springs, r), count = last - first;
+        if (count == 0) continue;
+        if (!job->all && !run_changed(set, r, flags + first, crease ? crease + first : NULL, count)) continue;
+
+        atomic_store_explicit(&set->stale[r], 1, memory_order_relaxed);
+        memcpy(set->seen + first, flags + first, count);
+        set->creased[r] = 0;
+        uint32_t s = strand_of(springs, first);
+        for (uint32_t k = first; k < last; k++) {
+            while (k >= springs->strand_first[s + 1]) s++;
+            const size_t slot = set->strand_slot[s] + (size_t)(k - springs->strand_first[s]) * STRAND_LANES;
             uint32_t a = springs->ends[k][0], b = springs->ends[k][1];
             bool here = flags[k] & SINGE_ALIVE;
             if (torn) here = here && patch_is_in_strand(job->plan, job->shell, job->colour, k, slot);
             set->weight[slot] = here ? dynamics_weight(material, soft, a, b) : 0;
             set->length[slot] = target[k];
-            if (!hinges || crease[k] == 0) continue;
+            if (!crease || crease[k] == 0) continue;
             float stays = crease[k] * hinges[k].arc * crease_kept(job->shell, job->state, k);
             set->length[slot] *= crease_ratio(&hinges[k], stays, bend[k] * hinges[k].arc);
+            set->creased[r] = 1;
         }
+    }
+}
 
-        if (set->bend_limit) curvature_prepare(job->shell, job->state, job->colour, (uint32_t)s, set);
+/// Limits of curvature, once all weights are there: those of a run's first spring also follow from the run before.
+static void prepare_limits(void *task, int begin, int end) {
+    const Prepare *job = task;
+    const SpringSet *springs = &job->shell->springs[job->colour];
+    StrandSet *set = &job->plan->strands.sets[job->colour];
+
+    for (uint32_t r = (uint32_t)begin; r < (uint32_t)end; r++) {
+        const uint32_t first = r * PREPARE_RUN;
+        uint32_t last = run_end(springs, r);
+        bool stale = job->all || set->rings || atomic_load_explicit(&set->stale[r], memory_order_relaxed);
+        bool before = r > 0 && atomic_load_explicit(&set->stale[r - 1], memory_order_relaxed);
+        if (first == last || !(stale || before)) continue;
+        if (!stale) last = first + 1;
+        uint32_t s = strand_of(springs, first);
+        for (uint32_t k = first; k < last; s++) {
+            const uint32_t to = springs->strand_first[s + 1] < last ? springs->strand_first[s + 1] : last;
+            curvature_prepare(job->shell, job->state, job->colour, s, k, to, set);
+            k = to;
+        }
     }
 }
 
 static void strands_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
                             const DynamicsState *dynamics) {
-    Prepare job = {plan, shell, state, dynamics, SINGE_RED};
+    Prepare job = {plan, shell, state, dynamics, SINGE_RED, false};
     bool torn = patch_follow(plan, shell);
 
-    // where nothing has burnt, the values of an earlier step are still right
-    bool same = plan->strands_written && state->burn->mass_burnt == 0 && !torn;
+    // otherwise the values of an earlier step are still right, but for the springs of what burns (prepare.c)
+    job.all = !plan->strands_written || torn;
     plan->strands_written = false; // till the step is done: one that is undone may have written other weights
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
-        if (same && !(plan->creased && colour == SINGE_GREEN)) continue;
-
         job.colour = (SingeColour)colour;
-        const SpringSet *springs = &shell->springs[colour];
-        int grain = 1 + (int)((uint64_t)POOL_BLOCK * springs->strand_count / (springs->count + 1));
-        pool_for(pool, (int)springs->strand_count, grain, prepare_range, &job);
+        StrandSet *set = &plan->strands.sets[colour];
+        pool_for(pool, (int)set->run_count, POOL_BLOCK / PREPARE_RUN, prepare_runs, &job);
+        if (set->bend_limit) pool_for(pool, (int)set->run_count, POOL_BLOCK / PREPARE_RUN, prepare_limits, &job);
+        memset((void *)set->stale, 0, set->run_count);
     }
 
     patch_prepare(plan, shell, state);
