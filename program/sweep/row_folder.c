@@ -202,8 +202,18 @@ ExitCode sweep_note_plan(Sweep *sweep) {
         code = EXIT_FAILED;
     }
 
-    char *note = text_format("{\"frames\": %d, \"scene\": \"%016llx\", \"preview\": \"%016llx\"}\n", frames,
-                             (unsigned long long)hash.result, (unsigned long long)hash.looks);
+    char *note = NULL;
+    size_t note_size = 0;
+    FILE *file = open_memstream(&note, &note_size);
+    if (file)
+        fprintf(file, "{\"frames\": %d, \"scene\": \"%016llx\", \"preview\": \"%016llx\"", frames,
+                (unsigned long long)hash.result, (unsigned long long)hash.looks);
+    if (file && sweep->plan.from) {
+        fputs(", \"from\": ", file);
+        text_json_string(file, sweep->plan.from);
+    }
+    if (file) fputs("}\n", file);
+    if (!text_stream_end(file, &note)) code = EXIT_FAILED;
     if (!code) code = note_or_compare(sweep, "plan.csv", table, true);
     if (!code) code = note_or_compare(sweep, "sweep.json", note, false);
     free(note);
@@ -226,6 +236,7 @@ char **sweep_run_command(const Sweep *sweep, uint32_t row) {
     command[n++] = text_format("--output=%s/unfinished/%04u", sweep->folder, row + 1);
     command[n++] = text_format("--threads=%d", sweep->options->threads);
     command[n++] = text_format("--resume");
+    if (plan->from) command[n++] = text_format("--from=%s", plan->from);
     if (sweep->options->no_preview) command[n++] = text_format("--no-preview");
     for (uint32_t i = 0; i < plan->set_count; i++) command[n++] = text_format("--set=%s", plan->sets[i]);
     for (uint32_t p = 0; p < plan->parameter_count; p++)

@@ -356,6 +356,8 @@ static void read_key(PlanReader *reader, const YamlNode *node) {
     const char *key = node->key;
     if (strcmp(key, "scene") == 0) {
         plan->scene = read_path(reader, node, key);
+    } else if (strcmp(key, "from") == 0) {
+        plan->from = read_path(reader, node, key);
     } else if (strcmp(key, "method") == 0) {
         plan->method =
             (PlanMethod)read_word(reader, node, key, methods, PLAN_METHODS, "grid, list, random or latin-hypercube");
@@ -407,10 +409,11 @@ static void read_key(PlanReader *reader, const YamlNode *node) {
     } else if (strcmp(key, "evaluations") == 0) {
         read_count(reader, node, key, 1, PLAN_ROWS_MAX, &plan->evaluations);
     } else {
-        message_add(&reader->messages, &reader->text, node->key_location,
-                    "unknown key '%s' of a plan: expected scene, method, samples, seed, set, parameters, and for a fit "
-                    "target, search, evaluations",
-                    shown(key).text);
+        message_add(
+            &reader->messages, &reader->text, node->key_location,
+            "unknown key '%s' of a plan: expected scene, from, method, samples, seed, set, parameters, and for a fit "
+            "target, search, evaluations",
+            shown(key).text);
     }
 }
 

@@ -48,6 +48,7 @@ typedef struct Plan {
     SceneArena *arena; ///< owns all of the below
     char *name;        ///< the file's, without its ending
     char *scene;       ///< path of the scene
+    char *from;        ///< DIR:FRAME, of which all rows are branches; NULL: none
     PlanMethod method;
     uint32_t samples, seed;
     PlanTarget target;

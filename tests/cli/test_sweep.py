@@ -176,6 +176,16 @@ class Sweep(Case):
             self.assertEqual(self.numbers(f"s/rows/{number}"), self.numbers(f"by-hand{pace}"))
         self.assertNotEqual(self.plys("s/rows/0001"), self.plys("s/rows/0002"))
 
+    def test_rows_branch_from_one_frame(self):
+        self.singe("run", self.scene, "-o", self.path("whole"), "--no-preview", "--set", "checkpoints.every=2", "-q")
+        self.write_plan("from: whole:2\nparameters:\n  pace: [4, 9]\n")
+        self.sweep()
+        whole, rows = self.plys("whole"), [self.plys(f"s/rows/{row}") for row in self.complete()]
+        self.assertEqual(rows[0], whole)
+        self.assertEqual([rows[1][name] == whole[name] for name in sorted(whole)], [True, True, False, False])
+        self.write_plan("from: whole:3\nparameters:\n  pace: [4, 9]\n")
+        self.sweep(expect=2)  # another plan
+
     def test_again_does_nothing(self):
         self.write_plan("parameters:\n  pace: [2, 5]\n")
         self.sweep()
