@@ -111,9 +111,21 @@ static void print_ranges(const int *frames, size_t count) {
     if (ranges > RANGES_MAX) printf(" and %zu more", ranges - RANGES_MAX);
 }
 
-static ExitCode show_folder(Console *console, const char *path) {
+static const ArgCommand info_command = {
+    "info", "DIR", "Prints what a run's folder holds: frames, sizes, checkpoints, and what it is a branch of.",
+    NULL,   0,     "Exit codes: 0 success, 1 the folder cannot be listed, 2 bad input."};
+
+int command_info(int argc, char **argv) {
+    ArgReader reader = args_begin(&info_command, argc, argv);
+    const char *value, *path = NULL;
+    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
+        if (option == ARG_HELP) return EXIT_GOOD;
+        if (option != ARG_OPERAND) return EXIT_INPUT;
+        path = value;
+    }
+    Console console = console_make(false);
     Book book;
-    ExitCode code = book_open(&book, console, path);
+    ExitCode code = book_open(&book, &console, path);
     if (code) {
         book_close(&book);
         return code;
@@ -154,26 +166,10 @@ static ExitCode show_folder(Console *console, const char *path) {
     if (!result) printf("%-13s %.1f MB of frames", "in all", 1e-6 * bytes);
     if (!result && shared > 0) printf(", %.1f MB of them shared with other folders", 1e-6 * shared);
     if (!result) printf("\n");
-    else console_result(console, &error);
+    else console_result(&console, &error);
     folder_free(&folder);
     book_close(&book);
     return result ? EXIT_FAILED : EXIT_GOOD;
-}
-
-static const ArgCommand info_command = {
-    "info", "DIR", "Prints what a run's folder holds: frames, sizes, checkpoints, and what it is a branch of.",
-    NULL,   0,     "Exit codes: 0 success, 1 the folder cannot be listed, 2 bad input."};
-
-int command_info(int argc, char **argv) {
-    ArgReader reader = args_begin(&info_command, argc, argv);
-    const char *value, *folder = NULL;
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        if (option == ARG_HELP) return EXIT_GOOD;
-        if (option != ARG_OPERAND) return EXIT_INPUT;
-        folder = value;
-    }
-    Console console = console_make(false);
-    return show_folder(&console, folder);
 }
 
 // ---- clean
@@ -194,12 +190,32 @@ static const ArgCommand clean_command = {
     "A run that lacks frames cannot be resumed or branched. Exit codes: 0 success, 1 a file cannot be removed,\n"
     "2 bad input."};
 
-static ExitCode clean_folder(Console *console, const char *path, int every) {
+int command_clean(int argc, char **argv) {
+    ArgReader reader = args_begin(&clean_command, argc, argv);
+    const char *value, *path = NULL;
+    int every = 0;
+    bool quiet = false;
+    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
+        bool good = true;
+        switch (option) {
+        case OPT_KEEP_EVERY: good = args_int(&reader, option, value, 1, 1000000, &every); break;
+        case OPT_QUIET: quiet = true; break;
+        case ARG_OPERAND: path = value; break;
+        case ARG_HELP: return EXIT_GOOD;
+        default: good = false;
+        }
+        if (!good) return EXIT_INPUT;
+    }
+    if (!every) {
+        args_complain(&reader, "--keep-every says which frames remain");
+        return EXIT_INPUT;
+    }
+    Console console = console_make(quiet);
     Book book;
     SingeError error = {0};
-    ExitCode code = book_open(&book, console, path);
+    ExitCode code = book_open(&book, &console, path);
     if (!code && book.done < 1) {
-        console_error(console, "%s/run.json lists no frames: the run has not ended, or was killed; --resume ends it",
+        console_error(&console, "%s/run.json lists no frames: the run has not ended, or was killed; --resume ends it",
                       shown_path(path).text);
         code = EXIT_INPUT;
     }
@@ -211,38 +227,14 @@ static ExitCode clean_folder(Console *console, const char *path, int every) {
     Folder folder = folder_name(path, book.name);
     Lock cache = LOCK_NONE, pictures = LOCK_NONE;
     int removed = 0;
-    SingeResult result = lock_take(&cache, folder.cache_lock, "frames", false, console, &error);
-    if (!result) result = lock_take(&pictures, folder.pictures_lock, "pictures", false, console, &error);
+    SingeResult result = lock_take(&cache, folder.cache_lock, "frames", false, &console, &error);
+    if (!result) result = lock_take(&pictures, folder.pictures_lock, "pictures", false, &console, &error);
     if (!result) result = folder_thin(&folder, every, (int)book.done, &removed, &error);
-    if (result) console_result(console, &error);
-    else console_note(console, "removed %d files of %ld frames in %s", removed, book.done, folder.path);
+    if (result) console_result(&console, &error);
+    else console_note(&console, "removed %d files of %ld frames in %s", removed, book.done, folder.path);
     lock_release(&pictures);
     lock_release(&cache);
     folder_free(&folder);
     book_close(&book);
     return result ? EXIT_FAILED : EXIT_GOOD;
-}
-
-int command_clean(int argc, char **argv) {
-    ArgReader reader = args_begin(&clean_command, argc, argv);
-    const char *value, *folder = NULL;
-    int every = 0;
-    bool quiet = false;
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        bool good = true;
-        switch (option) {
-        case OPT_KEEP_EVERY: good = args_int(&reader, option, value, 1, 1000000, &every); break;
-        case OPT_QUIET: quiet = true; break;
-        case ARG_OPERAND: folder = value; break;
-        case ARG_HELP: return EXIT_GOOD;
-        default: good = false;
-        }
-        if (!good) return EXIT_INPUT;
-    }
-    if (!every) {
-        args_complain(&reader, "--keep-every says which frames remain");
-        return EXIT_INPUT;
-    }
-    Console console = console_make(quiet);
-    return clean_folder(&console, folder, every);
 }

@@ -253,20 +253,6 @@ static ExitCode compare_frame(Run *run) {
 
 // ---- before anything is written
 
-/// "DIR:80" → the folder, from malloc, and the frame. NULL after an error.
-static char *parse_from(Run *run, const char *from) {
-    const char *colon = strrchr(from, ':');
-    char *end = NULL;
-    errno = 0;
-    const long frame = colon && colon[1] >= '0' && colon[1] <= '9' ? strtol(colon + 1, &end, 10) : 0;
-    if (frame < 1 || frame > 1000000 || *end || errno || colon == from) {
-        console_error(run->console, "--from: expected DIR:FRAME, such as out/letter:80, not '%s'", shown(from).text);
-        return NULL;
-    }
-    run->branch.frame = (int)frame;
-    return text_format("%.*s", (int)(colon - from), from);
-}
-
 /// Whether all that the frames up to the branch need is there.
 static ExitCode check_branch(Run *run) {
     Branch *branch = &run->branch;
@@ -300,8 +286,16 @@ static ExitCode check_branch(Run *run) {
 ExitCode branch_prepare(Run *run, const char *from) {
     Branch *branch = &run->branch;
     struct stat here, there;
-    char *folder = parse_from(run, from);
-    if (!folder) return EXIT_INPUT;
+    const char *colon = strrchr(from, ':');
+    char *end = NULL;
+    errno = 0;
+    const long frame = colon && colon[1] >= '0' && colon[1] <= '9' ? strtol(colon + 1, &end, 10) : 0;
+    if (frame < 1 || frame > 1000000 || *end || errno || colon == from) {
+        console_error(run->console, "--from: expected DIR:FRAME, such as out/letter:80, not '%s'", shown(from).text);
+        return EXIT_INPUT;
+    }
+    branch->frame = (int)frame;
+    char *folder = text_format("%.*s", (int)(colon - from), from);
     ExitCode code = EXIT_GOOD;
     if (stat(folder, &here) == 0 && stat(run->folder.path, &there) == 0 && here.st_dev == there.st_dev &&
         here.st_ino == there.st_ino) {
