@@ -117,6 +117,8 @@ void texture_free(const Preview *preview, Texture *texture);
 Float3 texture_sample(const Preview *preview, const Texture *texture, float u, float v, float texels);
 
 // mesh_in.c
+/// Fills the scene's vertices and triangles, for what traces no rays; tracer_load also makes it ready for rays.
+SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError *error);
 SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeError *error);
 void tracer_free(Preview *preview);
 

@@ -182,7 +182,7 @@ static SingeResult check_surface(const SingeSurface *surface, SingeError *error)
     return SINGE_OK;
 }
 
-SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeError *error) {
+SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError *error) {
     PreviewScene *scene = &preview->scene;
     tracer_release(preview);
     scene->vertex_count = scene->triangle_count = 0;
@@ -230,7 +230,12 @@ SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeErro
     }
 
     measure(preview);
-    return tracer_build(preview, error);
+    return SINGE_OK;
+}
+
+SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeError *error) {
+    SingeResult result = mesh_load(preview, surface, error);
+    return result ? result : tracer_build(preview, error);
 }
 
 void tracer_free(Preview *preview) {

@@ -131,6 +131,20 @@ SINGE_NODISCARD SingeResult preview_draw_layers(Preview *preview, const SingeSur
 /// a sharp lens; NaN if nothing glows.
 SINGE_NODISCARD SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layers, double *width,
                                                SingeError *error);
+/// A frame for a renderer elsewhere (pack.c has the layout): the sheets' fields as they are shaded here, the gas that is
+/// seen, the lamps. No ray is traced. Set its shapes and gas before. Free *bytes, from malloc. Fails in a build without
+/// Embree.
+SINGE_NODISCARD SingeResult preview_pack(Preview *preview, const SingeSurface *surface, double time, uint8_t **bytes,
+                                         size_t *size, SingeError *error);
+
+/// Stretch of the surface at a vertex: the largest principal stretch against the rest shape, less one, as the mean of the
+/// triangles around it by area. 0 if there is none.
+float preview_stretch(const SingeSurface *surface, uint32_t vertex);
+
+/// What a renderer elsewhere needs of the light, on the film's scale: the reflection by white paper of the sun, and of
+/// all other light as spherical harmonics of order 2 (environment.c).
+void preview_light(const Preview *preview, float sun[3], float towards[3], float ambient[9][3]);
+
 void preview_destroy(Preview *preview);
 
 #endif

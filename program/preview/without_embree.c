@@ -18,6 +18,13 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     return draw_nothing(error);
 }
 
+SingeResult preview_pack(Preview *preview, const SingeSurface *surface, double time, uint8_t **bytes, size_t *size,
+                         SingeError *error) {
+    (void)preview, (void)surface, (void)time, (void)size;
+    *bytes = NULL;
+    return draw_nothing(error);
+}
+
 SingeResult tracer_open(Preview *preview, SingeError *error) {
     (void)preview, (void)error;
     return SINGE_OK;
