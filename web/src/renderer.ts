@@ -9,7 +9,8 @@ import {
 import { ATTRIBUTES, FLOATS } from "./fields.js";
 import type { Frame } from "./messages.js";
 import type { Point } from "./scene.js";
-import * as glsl from "./shaders.js";
+import { glowBytes, noiseBytes } from "../view/tables.js";
+import * as glsl from "../view/shaders.js";
 
 const LAMP = { at: new Vector3(-0.19, 0.21, 0.34), to: new Vector3(0.0, 0.01, 0), colour: [0.070, 0.049, 0.028] };
 const NIGHT = new Vector3(0.0090, 0.0105, 0.0165);
@@ -70,19 +71,19 @@ export class Renderer {
             fireLights: { value: Array.from({ length: 6 }, () => new Vector4()) }, fireColour: { value: new Vector3(1, 0.46, 0.13) },
         };
 
-        const paperUniforms = { ...this.shared, printMap: { value: white() }, shadow: { value: 0 }, transmittance: { value: FULL_PAPER } };
-        const paper = material(glsl.PAPER_VERTEX, glsl.PAPER, paperUniforms);
+        const paperUniforms = { ...this.shared, printMap: { value: white() }, shadow: { value: 0 }, transmittance: { value: FULL_PAPER }, tint: { value: new Vector3(1, 1, 1) } };
+        const paper = material(glsl.PAPER_VERTEX, glsl.paper(glsl.LAMP), paperUniforms);
         paper.side = DoubleSide;
         this.paper = new Mesh(new BufferGeometry(), paper);
         this.paper.frustumCulled = false;
-        const caster = material(glsl.PAPER_VERTEX, glsl.PAPER, { ...paperUniforms, shadow: { value: 1 }, viewProjection: { value: lampView }, shadowMap: { value: null } });
+        const caster = material(glsl.PAPER_VERTEX, glsl.paper(glsl.LAMP), { ...paperUniforms, shadow: { value: 1 }, viewProjection: { value: lampView }, shadowMap: { value: null } });
         caster.side = DoubleSide;
         const cast = new Mesh(this.paper.geometry, caster);
         cast.frustumCulled = false;
         this.shadowScene.add(cast);
 
-        const table = new Mesh(new PlaneGeometry(5, 5), material(glsl.PLAIN_VERTEX, glsl.TABLE, this.shared));
-        this.solid = (albedo, gloss) => material(glsl.PLAIN_VERTEX, glsl.SOLID, {
+        const table = new Mesh(new PlaneGeometry(5, 5), material(glsl.PLAIN_VERTEX, glsl.table(glsl.LAMP, "vec3(0.20, 0.105, 0.052)", "float far = length(p.xy) / 1.5; c *= exp(-far * far);"), this.shared));
+        this.solid = (albedo, gloss) => material(glsl.PLAIN_VERTEX, glsl.solid(glsl.LAMP), {
             ...this.shared, albedo: { value: new Vector3(...albedo) }, emission: { value: new Vector3() }, gloss: { value: gloss },
         });
         const stick = new Mesh(new CylinderGeometry(0.0011, 0.0011, 0.05, 8).translate(0, -0.027, 0), this.solid([0.55, 0.37, 0.2], 0.02));
@@ -104,7 +105,7 @@ export class Renderer {
             bright: material(glsl.FULL_VERTEX, glsl.BRIGHT, { map: { value: this.merged.texture }, pixel: { value: new Vector2() }, exposure: { value: EXPOSURE } }),
             blur: material(glsl.FULL_VERTEX, glsl.BLUR, { map: { value: null }, along: { value: new Vector2() }, sigma: { value: 1 } }),
             film: material(glsl.FULL_VERTEX, glsl.FILM, {
-                map: { value: this.merged.texture }, halo: { value: this.halo.texture }, glare: { value: this.glare.texture }, exposure: { value: EXPOSURE },
+                map: { value: this.merged.texture }, halo: { value: this.halo.texture }, glare: { value: this.glare.texture }, exposure: { value: EXPOSURE }, vignette: { value: 0.32 },
                 resolution: { value: new Vector2(1, 1) },
             }),
         };
@@ -290,16 +291,8 @@ function white(): Texture {
     return texture;
 }
 
-/** Random corners, the same on every page. */
 function noiseTexture(): Data3DTexture {
-    const side = 32, bytes = new Uint8Array(4 * side ** 3);
-    let state = 0x9e3779b9;
-    for (let i = 0; i < bytes.length; i++) {
-        state ^= state << 13;
-        state ^= state >>> 17;
-        state ^= state << 5;
-        bytes[i] = state >>> 24;
-    }
+    const { side, bytes } = noiseBytes();
     const texture = new Data3DTexture(bytes, side, side, side);
     texture.format = RGBAFormat;
     texture.type = UnsignedByteType;
@@ -311,33 +304,8 @@ function noiseTexture(): Data3DTexture {
     return texture;
 }
 
-/** Planck's law by the eye's three curves (blackbody.c), linear Rec. 709. */
-function blackbody(kelvin: number): [number, number, number] {
-    const lobe = (x: number, centre: number, left: number, right: number) => Math.exp(-0.5 * ((x - centre) * (x < centre ? left : right)) ** 2);
-    const xyz = (t: number) => {
-        const sum = [0, 0, 0];
-        for (let nm = 380; nm <= 780; nm += 5) {
-            const power = (nm * 1e-3) ** -5 / (Math.exp(1.438777e-2 / (nm * 1e-9 * t)) - 1);
-            sum[0]! += power * (0.362 * lobe(nm, 442, 0.0624, 0.0374) + 1.056 * lobe(nm, 599.8, 0.0264, 0.0323) - 0.065 * lobe(nm, 501.1, 0.049, 0.0382));
-            sum[1]! += power * (0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322));
-            sum[2]! += power * (1.217 * lobe(nm, 437, 0.0845, 0.0278) + 0.681 * lobe(nm, 459, 0.0385, 0.0725));
-        }
-        return sum as [number, number, number];
-    };
-    const [X, Y, Z] = xyz(kelvin), reference = xyz(1200)[1], x = X / Y, z = Z / Y;
-    const fade = Math.min(Math.max((kelvin - 780) / 120, 0), 1), strength = (Y / reference) ** 0.55 * fade * fade * (3 - 2 * fade);
-    return [3.2406 * x - 1.5372 - 0.4986 * z, -0.9689 * x + 1.8758 + 0.0415 * z, 0.0557 * x - 0.204 + 1.057 * z]
-        .map((c) => Math.max(c, 0) * strength) as [number, number, number];
-}
-
 function glowTexture(): DataTexture {
-    const width = 128, data = new Uint16Array(8 * width);
-    for (let i = 0; i < width; i++) {
-        const u = i / (width - 1), ember = blackbody(800 + 1300 * u), flame = blackbody(1350 + 700 * u);
-        const bright = (0.25 + 3.55 * u * u) / (0.2126 * flame[0] + 0.7152 * flame[1] + 0.0722 * flame[2]);
-        [ember, flame.map((c) => c * bright)].forEach((colour, row) =>
-            colour.forEach((c, k) => { data[4 * (row * width + i) + k] = DataUtils.toHalfFloat(c); }));
-    }
+    const { width, values } = glowBytes(), data = Uint16Array.from(values, (c) => DataUtils.toHalfFloat(c));
     const texture = new DataTexture(data, width, 2, RGBAFormat, HalfFloatType);
     texture.minFilter = LinearFilter;
     texture.magFilter = LinearFilter;

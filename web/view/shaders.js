@@ -1,7 +1,7 @@
-// GLSL after program/preview: the same noise, scorch, char, ash, ember and flame, as far as a frame's time allows.
+// Shared by the page (web/src) and `singe view` (web/view): GLSL after program/preview: the same noise, scorch, char, ash, ember and flame, as far as a frame's time allows.
 
 /** Four smooth noises from -1 to 1, lattice size 1, by one look into a texture of random corners. */
-const NOISE = /* glsl */ `
+export const NOISE = /* glsl */ `
 precision highp float;
 precision highp sampler3D;
 uniform sampler3D noiseMap; // 32 corners a side, repeated
@@ -14,14 +14,14 @@ float stepf(float a, float b, float x) { return smoothstep(a, b, x); }
 `;
 
 /** Blackbodies: row 0 from 800 K to 2100 K as embers, row 1 flames from their coolest to their hottest. */
-const GLOW = /* glsl */ `
+export const GLOW = /* glsl */ `
 uniform sampler2D glowMap;
 vec3 emberColour(float kelvin) { return texture(glowMap, vec2((kelvin - 800.0) / 1300.0, 0.25)).rgb; }
 vec3 flameColour(float hot) { return texture(glowMap, vec2(hot, 0.75)).rgb; }
 `;
 
 /** The lamp with its shadow, the fire's lights, and a little of the night. */
-const LIGHT = /* glsl */ `
+export const LAMP = /* glsl */ `
 precision highp sampler2DShadow;
 uniform vec3 lampAt, lampTo, lampColour, nightColour;
 uniform mat4 lampView;
@@ -92,13 +92,15 @@ void main() {
     gl_Position = viewProjection * vec4(position, 1.0);
 }`;
 
-export const PAPER = /* glsl */ `${NOISE}${GLOW}${LIGHT}
+/** The sheet in this light: GLSL with lampSeen, lit and shine. */
+export const paper = (light) => /* glsl */ `${NOISE}${GLOW}${light}
 in vec3 vPosition, vNormal, vRest;
 in vec2 vUv;
 in vec4 vHeat, vLook;
 uniform sampler2D printMap;
 uniform float time, shadow; // shadow: 1 while the lamp's map is drawn
 uniform float transmittance;
+uniform vec3 tint;
 out vec4 colour;
 
 const float EMBER_BURN = 0.74, EMBER_WIDTH = 0.00042, EMBER_GAIN = 3.4;
@@ -141,7 +143,7 @@ void main() {
     if (dot(n, view) < 0.0) n = -n;
 
     // fresh paper, browned by the peak of its heat and by what has burnt
-    vec3 fresh = vec3(0.86, 0.852, 0.832) * texture(printMap, vUv).rgb * (1.0 + 0.018 * noise4(p * 417.0).a);
+    vec3 fresh = vec3(0.86, 0.852, 0.832) * tint * texture(printMap, vUv).rgb * (1.0 + 0.018 * noise4(p * 417.0).a);
     float jitter = (0.17 * coarse + 0.08 * medium + 0.025 * fine) * (1.0 - 0.6 * inside);
     float peak = peakSoFar + 0.25 * (peakSoFar - 293.0) * jitter * stepf(310.0, 350.0, peakSoFar), above = peak - 293.0;
     float byHeat = above > 55.0 ? 0.76 * min(log(above / 55.0) / log(360.0 / 55.0), 1.0) : 0.0;
@@ -213,8 +215,8 @@ void main() {
     gl_Position = viewProjection * p;
 }`;
 
-/** Planks after shade_ground.c, each with its own trunk's rings. */
-export const TABLE = /* glsl */ `${NOISE}${LIGHT}
+/** Planks after shade_ground.c, each with its own trunk's rings; `fade` is GLSL that changes c. */
+export const table = (light, colour, fade) => /* glsl */ `${NOISE}${light}
 in vec3 vPosition, vNormal;
 out vec4 colour;
 float hash(vec2 p) { return fract(sin(dot(p, vec2(127.1, 311.7))) * 43758.5453); }
@@ -247,15 +249,15 @@ void main() {
     value *= 1.0 - 0.8 * joint * min(1.0, 0.0016 / size);
 
     float red = clamp(0.35 * late + 0.5 * (hue - 0.5), -0.3, 0.5);
-    vec3 albedo = vec3(0.20, 0.105, 0.052) * vec3(1.0 + 0.22 * red, 1.0 - 0.10 * red, 1.0 - 0.42 * red) * max(value, 0.04);
+    vec3 albedo = ${colour} * vec3(1.0 + 0.22 * red, 1.0 - 0.10 * red, 1.0 - 0.42 * red) * max(value, 0.04);
     vec3 n = normalize(vec3(0.004 * wear, 0.012 * (blotch + fibre), 1.0));
     float polish = (0.42 - 0.18 * late + 0.10 * wear) * (1.0 - 0.8 * joint), seen = lampSeen(p + vec3(0.0, 0.0, 0.0006));
     vec3 c = albedo * lit(p, n, 0.0, seen) + 0.10 * polish * shine(p, n, view, 26.0, seen);
-    float far = length(p.xy) / 1.5;
-    colour = vec4(c * exp(-far * far), 1.0);
+    ${fade}
+    colour = vec4(c, 1.0);
 }`;
 
-export const SOLID = /* glsl */ `${NOISE}${LIGHT}
+export const solid = (light) => /* glsl */ `${NOISE}${light}
 in vec3 vPosition, vNormal;
 uniform vec3 albedo, emission;
 uniform float gloss;
@@ -385,7 +387,8 @@ in vec2 at;
 uniform sampler2D sceneMap, fireMap2;
 out vec4 colour;
 void main() {
-    vec4 f = texture(fireMap2, at);
+    vec2 d = 0.75 / vec2(textureSize(fireMap2, 0)); // the mean of a few: steps of the fire begin at random
+    vec4 f = 0.25 * (texture(fireMap2, at + d) + texture(fireMap2, at - d) + texture(fireMap2, at + vec2(d.x, -d.y)) + texture(fireMap2, at + vec2(-d.x, d.y)));
     colour = vec4(texture(sceneMap, at).rgb * f.a + f.rgb, 1.0);
 }`;
 
@@ -431,7 +434,7 @@ export const FILM = /* glsl */ `
 precision highp float;
 in vec2 at;
 uniform sampler2D map, halo, glare;
-uniform float exposure;
+uniform float exposure, vignette;
 uniform vec2 resolution;
 out vec4 colour;
 float curve(float x) {
@@ -442,7 +445,7 @@ float curve(float x) {
 void main() {
     vec3 c = texture(map, at).rgb * exposure + 0.14 * texture(halo, at).rgb + 0.10 * texture(glare, at).rgb;
     vec2 d = (at - 0.5) * vec2(resolution.x / resolution.y, 1.0);
-    c *= 1.0 - 0.32 * smoothstep(0.35, 1.05, length(d));
+    c *= 1.0 - vignette * smoothstep(0.35, 1.05, length(d));
     float over = max(max(c.r, max(c.g, c.b)) - 1.0, 0.0), leak = 0.03 + 0.15 * over * over / (over * over + 16.0);
     c = mix(c, vec3((c.r + c.g + c.b) / 3.0), leak);
     float dither = fract(52.9829 * fract(dot(gl_FragCoord.xy, vec2(0.06711, 0.00584)))) - 0.5;

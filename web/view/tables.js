@@ -1,0 +1,44 @@
+// Tables that the shaders look into, shared by the page (web/src) and `singe view`.
+
+/** Random corners of a cube, four bytes each, the same on every page. */
+export function noiseBytes() {
+    const side = 32, bytes = new Uint8Array(4 * side ** 3);
+    let state = 0x9e3779b9;
+    for (let i = 0; i < bytes.length; i++) {
+        state ^= state << 13;
+        state ^= state >>> 17;
+        state ^= state << 5;
+        bytes[i] = state >>> 24;
+    }
+    return { side, bytes };
+}
+
+/** Planck's law by the eye's three curves (blackbody.c), linear Rec. 709. */
+function blackbody(kelvin) {
+    const lobe = (x, centre, left, right) => Math.exp(-0.5 * ((x - centre) * (x < centre ? left : right)) ** 2);
+    const xyz = (t) => {
+        const sum = [0, 0, 0];
+        for (let nm = 380; nm <= 780; nm += 5) {
+            const power = (nm * 1e-3) ** -5 / (Math.exp(1.438777e-2 / (nm * 1e-9 * t)) - 1);
+            sum[0] += power * (0.362 * lobe(nm, 442, 0.0624, 0.0374) + 1.056 * lobe(nm, 599.8, 0.0264, 0.0323) - 0.065 * lobe(nm, 501.1, 0.049, 0.0382));
+            sum[1] += power * (0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322));
+            sum[2] += power * (1.217 * lobe(nm, 437, 0.0845, 0.0278) + 0.681 * lobe(nm, 459, 0.0385, 0.0725));
+        }
+        return sum;
+    };
+    const [X, Y, Z] = xyz(kelvin), reference = xyz(1200)[1], x = X / Y, z = Z / Y;
+    const fade = Math.min(Math.max((kelvin - 780) / 120, 0), 1), strength = (Y / reference) ** 0.55 * fade * fade * (3 - 2 * fade);
+    return [3.2406 * x - 1.5372 - 0.4986 * z, -0.9689 * x + 1.8758 + 0.0415 * z, 0.0557 * x - 0.204 + 1.057 * z]
+        .map((c) => Math.max(c, 0) * strength);
+}
+
+/** Row 0: embers from 800 K to 2100 K; row 1: flames from their coolest to their hottest. Four values each. */
+export function glowBytes() {
+    const width = 128, values = new Float32Array(8 * width);
+    for (let i = 0; i < width; i++) {
+        const u = i / (width - 1), ember = blackbody(800 + 1300 * u), flame = blackbody(1350 + 700 * u);
+        const bright = (0.25 + 3.55 * u * u) / (0.2126 * flame[0] + 0.7152 * flame[1] + 0.0722 * flame[2]);
+        [ember, flame.map((c) => c * bright)].forEach((colour, row) => values.set(colour, 4 * (row * width + i)));
+    }
+    return { width, values };
+}
