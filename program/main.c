@@ -22,6 +22,7 @@ static const struct {
     {"check", command_check, "burn", "checks a scene, and prints its size and cost"},
     {"info", command_info, "burn", "prints what a run's folder holds: frames, sizes, checkpoints, lineage"},
     {"clean", command_clean, "burn", "removes frames of a run, and keeps every N-th one"},
+    {"view", command_view, "look", "shows a cache, or a scene while it burns, in a browser"},
     {"render", command_render, "look", "draws a cache's pictures and video again"},
     {"convert", command_convert, "look", "writes a cache in another format, such as USD"},
     {"measure", command_measure, "look", "measures the shape of a cache: creases, wrinkles, jitter"},

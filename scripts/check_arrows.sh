@@ -32,6 +32,7 @@ program/scene    $files mesh/to_quads.h preview/preview.h preview/preview.def
 program/analysis $files common/float3.h mesh/to_quads.h
 program/cli      $program
 program/sweep    $program cli
+program/view     $program cli
 program/main.c   cli common/printable.h
 lab/bench        $program cli
 lab/page         $program cli bench

@@ -14,6 +14,7 @@ int command_run(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_clean(int argc, char **argv);
 int command_check(int argc, char **argv);
+int command_view(int argc, char **argv);
 int command_render(int argc, char **argv);
 int command_convert(int argc, char **argv);
 int command_measure(int argc, char **argv);

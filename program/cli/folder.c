@@ -339,14 +339,12 @@ SingeResult folder_each(const Folder *folder, int kind, FolderVisit *visit, void
     return result;
 }
 
-ExitCode folder_span(const Folder *folder, Console *console, int *first, int *last) {
-    // the range of the frames with a PLY
+SingeResult folder_find(const Folder *folder, int *first, int *last, SingeError *error) {
     int lowest = INT_MAX, highest = 0;
-    SingeError error = {0};
     char *path = text_format("%s/ply", folder->path);
     DIR *dir = opendir(path);
-    SingeResult result = dir || errno == ENOENT ? SINGE_OK : folder_fail(path, "list", errno, &error);
-    for (struct dirent *entry; dir && !result && (entry = next_entry(dir, path, &result, &error));) {
+    SingeResult result = dir || errno == ENOENT ? SINGE_OK : folder_fail(path, "list", errno, error);
+    for (struct dirent *entry; dir && !result && (entry = next_entry(dir, path, &result, error));) {
         const char *rest;
         const int frame = frame_of(folder, entry->d_name, ".ply", &rest);
         if (!frame || *rest) continue;
@@ -356,7 +354,15 @@ ExitCode folder_span(const Folder *folder, Console *console, int *first, int *la
 
     if (dir) closedir(dir);
     free(path);
-    if (result) {
+    *first = highest ? lowest : 0;
+    *last = highest;
+    return result;
+}
+
+ExitCode folder_span(const Folder *folder, Console *console, int *first, int *last) {
+    int lowest, highest;
+    SingeError error = {0};
+    if (folder_find(folder, &lowest, &highest, &error)) {
         console_result(console, &error);
         return EXIT_FAILED;
     }

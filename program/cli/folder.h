@@ -88,6 +88,9 @@ SINGE_NODISCARD SingeResult folder_each(const Folder *folder, int kind, FolderVi
 /// *removed.
 SINGE_NODISCARD SingeResult folder_thin(const Folder *folder, int every, int last, int *removed, SingeError *error);
 
+/// The range of the frames that have a PLY; 0 and 0 if there are none.
+SINGE_NODISCARD SingeResult folder_find(const Folder *folder, int *first, int *last, SingeError *error);
+
 /// Checks that the PLYs of frames *first to *last exist; sets both to the range of all frames if *first is 0. A message
 /// has been printed unless the result is EXIT_GOOD.
 ExitCode folder_span(const Folder *folder, Console *console, int *first, int *last);

@@ -1,0 +1,143 @@
+// singe view: shows a burn in a browser, from a run's folder or while a scene burns.
+#include "view/view.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/args.h"
+#include "cli/interrupt.h"
+#include "cli/text.h"
+#include "common/printable.h"
+
+enum { OPT_SET, OPT_FRAMES, OPT_THREADS, OPT_PORT, OPT_QUIET, OPT_COUNT };
+
+static const ArgOption view_options[OPT_COUNT] = {
+    [OPT_SET] = {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated"},
+    [OPT_FRAMES] = {"frames", 0, "N", "frames of the scene"},
+    [OPT_THREADS] = {"threads", 0, "N", "threads of the burn [all]"},
+    [OPT_PORT] = {"port", 0, "N", "port on this machine [a free one]"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only the address and errors"},
+};
+
+static const ArgCommand view_command = {
+    "view",
+    "SCENE|DIR",
+    "Shows a burn in a browser: the cache in DIR, or SCENE while it burns, again each time its file is saved.",
+    view_options,
+    OPT_COUNT,
+    "Only this machine can open the address, and only whoever knows it. From afar: ssh -L PORT:127.0.0.1:PORT, and "
+    "--port PORT.\nExit codes: 0 ended by Ctrl-C, 1 failed, 2 bad input."};
+
+typedef struct ViewOptions {
+    const char *what;
+    SetList sets;
+    int threads, port;
+    bool quiet;
+} ViewOptions;
+
+static ExitCode view_parse(int argc, char **argv, ViewOptions *o, bool *done) {
+    ArgReader reader = args_begin(&view_command, argc, argv);
+    const char *value;
+    int frames;
+    *o = (ViewOptions){.threads = job_threads()};
+    *done = false;
+    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
+        bool good = true;
+        switch (option) {
+        case OPT_SET: set_add(&o->sets, value); break;
+        case OPT_FRAMES:
+            good = args_int(&reader, option, value, 1, 1000000, &frames);
+            if (good) set_frames(&o->sets, frames);
+            break;
+        case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &o->threads); break;
+        case OPT_PORT: good = args_int(&reader, option, value, 1, 65535, &o->port); break;
+        case OPT_QUIET: o->quiet = true; break;
+        case ARG_OPERAND: o->what = value; break;
+        case ARG_HELP: *done = true; return EXIT_GOOD;
+        default: good = false;
+        }
+        if (!good) return EXIT_INPUT;
+    }
+    return EXIT_GOOD;
+}
+
+static ExitCode show(View *view, const ViewOptions *o) {
+    SingeError error = {0};
+    // 128 bits that nobody can guess
+    uint8_t bytes[16];
+    FILE *file = fopen("/dev/urandom", "rb");
+    const bool random = file && fread(bytes, sizeof bytes, 1, file) == 1;
+    if (file) fclose(file);
+    for (size_t i = 0; i < sizeof bytes && random; i++) snprintf(view->token + 2 * i, 3, "%02x", bytes[i]);
+    if (!random) {
+        console_error(view->console, "/dev/urandom gives no random numbers");
+        return EXIT_FAILED;
+    }
+
+    char *record = text_format("%s/run.json", o->what);
+    const bool is_cache = access(record, F_OK) == 0;
+    free(record);
+    if (is_cache) {
+        if (o->sets.count) {
+            console_error(view->console, "%s is a cache: --set and --frames are for scenes", shown_path(o->what).text);
+            return EXIT_INPUT;
+        }
+        const ExitCode code = shown_open(view, o->what);
+        int first = 0, last = 0;
+        if (code) return code;
+        if (folder_span(&view->shown.folder, view->console, &first, &last)) return EXIT_INPUT;
+    } else {
+        // a scene that is wrong from the start is an error here; later ones are told on the page
+        Job job;
+        view->live.scene = job_scene_path(view->console, o->what);
+        const ExitCode code =
+            view->live.scene ? job_read(&job, view->console, view->live.scene, &o->sets, 1) : EXIT_INPUT;
+        if (code) return code;
+        job_close(&job);
+        char path[4096];
+        const ssize_t size = readlink("/proc/self/exe", path, sizeof path - 1);
+        if (size > 0) path[size] = 0;
+        view->live.program = text_format("%s", size > 0 ? path : "singe");
+        view->live.sets = &o->sets;
+        view->live.threads = o->threads;
+    }
+
+    interrupt_watch(); // from here on there is something to clean up
+    Server *server = NULL;
+    view->port = o->port;
+    SingeResult result = server_open(view, &server, &error);
+    if (!result && view->live.scene) result = live_begin(view, &error);
+    if (result) {
+        console_result(view->console, &error);
+        server_close(server);
+        return EXIT_FAILED;
+    }
+
+    printf("http://127.0.0.1:%d/%s/\n", view->port, view->token);
+    fflush(stdout);
+    console_note(view->console, "open this address in a browser; Ctrl-C ends the view");
+    while (!interrupt_asked()) {
+        server_attend(server, 50);
+        if (view->live.scene) live_attend(view);
+    }
+    server_close(server);
+    return EXIT_GOOD;
+}
+
+int command_view(int argc, char **argv) {
+    ViewOptions options;
+    bool done;
+    ExitCode code = view_parse(argc, argv, &options, &done);
+    if (!code && !done) {
+        interrupt_shield();
+        Console console = console_make(options.quiet);
+        View view = {.console = &console};
+        code = show(&view, &options);
+        shown_close(&view.shown);
+        live_end(&view);
+    }
+    set_free(&options.sets);
+    return code;
+}
