@@ -122,6 +122,12 @@ static int sweep_pair(const Ccd *ccd, CollisionPair *pair) {
     return count;
 }
 
+/// Whether a cell turns or stretches by so much of its size that what is true of it at both ends of the step need not be
+/// so in between: a side may pass through the cell next to its own, and leave it again.
+static bool turns_far(const CollisionPlan *plan, uint32_t cell) {
+    return plan->motion[cell][COLLISION_DISPLACEMENT][3] > 0.5f * plan->rest[cell][3];
+}
+
 /// Bits of those of four pairs that are free: by their distance or, if connected, by their normals (proof in
 /// feature_distance.c).
 static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
@@ -142,7 +148,8 @@ static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
     for (unsigned i = 0; i < 4; i++) {
         if (!(bridged >> i & 1) || !ccd_is_alive(ccd, four.bridge[i])) continue;
         if (four.a[i] != four.b[i]) {
-            free |= (unsigned)(four.bridge[i] == four.a[i] ? sides[i] != 0 : corners[i] != 0) << i;
+            const bool flat = four.bridge[i] == four.a[i] ? sides[i] != 0 : corners[i] != 0;
+            free |= (unsigned)(flat && !turns_far(plan, four.a[i]) && !turns_far(plan, four.b[i])) << i;
             continue;
         }
 
@@ -206,7 +213,8 @@ static double look_range(void *task, int begin, int end) {
             unsigned shared[2] = {0, 0};
             for (int i = 0; i < 16; i++)
                 if (a[i >> 2] == b[i & 3]) shared[0] |= 1u << (i >> 2), shared[1] |= 1u << (i & 3);
-            bool parted = shared[0] && pair->a != pair->b;
+            bool parted =
+                shared[0] && pair->a != pair->b && !turns_far(ccd->plan, pair->a) && !turns_far(ccd->plan, pair->b);
             Float4 p[5], q[5], normal[2] = {{0}, {0}};
             for (int t = 0; t < 2 && parted; t++) {
                 Float4 origin = float4_load(positions[t][a[0]]);
