@@ -57,7 +57,7 @@ static CollisionSlab slab(const Float4 position[4]) {
 static void box_range(void *task, int begin, int end) {
     Find *find = task;
     CollisionPlan *plan = find->plan;
-    float time = (float)plan->steps * plan->time_step;
+    float time = (float)plan->steps * plan->h;
 
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         if (!plan->alive[c]) continue;
@@ -120,10 +120,11 @@ SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell
         if (plan->alive[c]) sum += (double)sqrtf(float4_dot(off, off));
     }
 
-    double step = sum / fmax(cells, 1) * (double)plan->time_step, max = (double)plan->cell_size / 2;
+    double step = sum / fmax(cells, 1) * (double)plan->h, max = (double)plan->cell_size / 2;
 
     // a step that is not finite, as with positions that overflow, gets the fewest
     plan->steps = step * COLLISION_STEPS < max ? COLLISION_STEPS : step * 2 <= max ? (uint32_t)(max / step) : 2;
+    if (plan->h < plan->time_step) plan->steps = 1; // a part of a step
 
     // boxes; a vertex is owned by its lowest cell
     for (uint32_t c = plan->cell_count; c-- > 0;)

@@ -51,15 +51,17 @@ static void measure_cell(const Ccd *ccd, uint32_t c) {
 
 static void measure_range(void *task, int begin, int end) {
     const Ccd *ccd = task;
-    for (int c = begin; c < end; c++) {
-        if (ccd_is_alive(ccd, (uint32_t)c)) measure_cell(ccd, (uint32_t)c);
+    for (int k = begin; k < end; k++) {
+        const uint32_t c = ccd->changed ? ccd->plan->changed_list[k] : (uint32_t)k;
+        if (ccd_is_alive(ccd, c)) measure_cell(ccd, c);
         else ccd->plan->is_outside[c] = 0;
     }
 }
 
-static void measure_changed(void *task, int begin, int end) {
-    const Ccd *ccd = task;
-    for (int k = begin; k < end; k++) measure_cell(ccd, ccd->plan->changed_list[k]);
+/// Measures all cells, or those that have changed.
+static void ccd_measure(Ccd *ccd, Pool *pool, bool changed) {
+    ccd->changed = changed;
+    pool_for(pool, (int)(changed ? ccd->plan->changed_count : ccd->plan->cell_count), 512, measure_range, ccd);
 }
 
 // ---- cells that the last round has changed
@@ -121,8 +123,6 @@ static uint32_t list_changed(CollisionPlan *plan) {
 
 // ---- the step's end
 
-static void ccd_measure(Ccd *ccd, Pool *pool) { pool_for(pool, (int)ccd->plan->cell_count, 512, measure_range, ccd); }
-
 static uint32_t list_out_of_bounds(CollisionPlan *plan) {
     uint32_t count = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++)
@@ -134,12 +134,12 @@ static uint32_t list_out_of_bounds(CollisionPlan *plan) {
 static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float h, bool changed, uint32_t *hits) {
     uint32_t first;
     if (changed) {
-        pool_for(pool, (int)ccd->plan->changed_count, 512, measure_changed, ccd);
+        ccd_measure(ccd, pool, true);
         uint32_t count = list_changed(ccd->plan);
         ccd->looked += count;
         *hits = ccd_meet_active(ccd, pool, count);
     } else {
-        ccd_measure(ccd, pool);
+        ccd_measure(ccd, pool, false);
         *hits = ccd_meet(ccd, pool, 0);
     }
 
@@ -164,7 +164,7 @@ static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float
         ccd->time = h;
         TRY(broad_search(ccd->memory, plan, ccd->shell, pool));
         plan->work += plan->pair_count;
-        ccd_measure(ccd, pool);
+        ccd_measure(ccd, pool, false);
         count = list_out_of_bounds(plan);
     }
 
@@ -223,9 +223,9 @@ static void close_trajectories(const Ccd *ccd, float h, bool halted) {
 
 static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state,
                               Pool *pool, float h, DynamicsState *dynamics) {
-    Ccd ccd = {memory, plan, shell, dynamics, state->ablate->cell_flags, h * (float)(state->step - plan->step + 1), 0};
+    Ccd ccd = {memory, plan, shell, dynamics, state->ablate->cell_flags, h * (float)(state->step - plan->step + 1),
+               0,      false};
     bool stopped = false, halted = false;
-    if (!plan->closed) plan->work = 0;
     SINGE_ASSERT(plan->stopped_count == 0); // ccd_apply has emptied the zones of the last run
 
     // where CCD has run in this step before, only what has moved since counts
@@ -253,7 +253,7 @@ static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *
             plan->counters.halts++;
             halted = true;
             ccd_halt(&ccd);
-            ccd_measure(&ccd, pool);
+            ccd_measure(&ccd, pool, false);
             break;
         }
 
@@ -277,7 +277,14 @@ static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *
 SingeResult ccd_apply(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
                       float h, DynamicsState *dynamics) {
     double start = clock_seconds();
+    const uint64_t halts = plan->counters.halts;
     SingeResult result = close_step(memory, plan, shell, state, pool, h, dynamics);
+
+    // the next step has half as many parts as this one at least, and four times as many if this one has halted
+    const uint32_t parts = (uint32_t)(plan->time_step / plan->h + 0.5f), max = COLLISION_PARTS;
+    const bool halted = plan->counters.halts > halts;
+    if (halted) plan->restless = parts < max / 4 ? 8 * parts : 2 * max;
+    else if (parts > 1) plan->restless = parts;
     plan->pair_count = plan->listed_count;
     for (uint32_t k = 0; k < plan->stopped_count; k++) plan->zone[plan->stopped[k]] = SHELL_NONE;
     plan->stopped_count = 0;

@@ -13,6 +13,7 @@ typedef struct Ccd {
     const uint8_t *cell_flags;
     float time;      ///< s since the search
     uint64_t looked; ///< pairs, in all rounds but the first
+    bool changed;    ///< only cells that have changed are measured
 } Ccd;
 
 static inline bool ccd_is_alive(const Ccd *ccd, uint32_t c) { return ccd->cell_flags[c] & SINGE_ALIVE; }

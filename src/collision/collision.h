@@ -35,10 +35,16 @@ SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const She
 /// Must be called when the corners of cells have changed.
 void collision_plan_forget(CollisionPlan *plan);
 
-/// Opens a step whose particles are at `dynamics`, the inverse masses in place. SINGE_ERROR_MEMORY, as ccd_apply:
-/// where sheets crowd, lists grow. After an error the step must be rolled back; the next one searches again.
+/// In how many parts a step of h seconds is to be taken, so that none moves layers through many others: 1 for all but
+/// storms.
+int collision_parts(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
+                    const DynamicsState *dynamics);
+
+/// Opens a step or, if h is less than the time step, a part of one, whose particles are at `dynamics`, the inverse masses
+/// in place; `first`: no part of this step has gone before. SINGE_ERROR_MEMORY, as ccd_apply: where sheets crowd, lists
+/// grow. After an error the step must be rolled back; the next one searches again.
 SingeResult collision_open(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
-                           const DynamicsState *dynamics);
+                           float h, bool first, const DynamicsState *dynamics);
 
 /// Pushes points apart that are too near, in a substep of h seconds that began at `predicted` less h times the
 /// velocities.

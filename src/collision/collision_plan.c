@@ -105,7 +105,7 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
 
     plan->def = *def;
-    plan->time_step = time_step;
+    plan->time_step = plan->h = time_step;
     plan->vertex_count = shell->vertex_count;
     plan->cell_count = shell->cell_count;
     plan->sizes = *sizes;
@@ -199,7 +199,7 @@ SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const She
     if (stream->mode != STREAM_READ) return SINGE_OK;
 
     // whether the data read back may be that of a search; cells that are alive now were alive then
-    if (plan->searched > 1 || plan->restless > 1) stream->failed = true;
+    if (plan->searched > 1 || plan->restless > 2 * COLLISION_PARTS) stream->failed = true;
     for (uint32_t v = 0; v < plan->vertex_count; v++)
         for (int k = 0; k < 3; k++)
             if (!isfinite(plan->position[v][k]) || !isfinite(plan->speed[v][k])) stream->failed = true;

@@ -26,6 +26,9 @@ enum {
 _Static_assert(COLLISION_ENTRIES >= 8, "a box overlaps eight cubes of the grid at least");
 _Static_assert(COLLISION_OUTSIDE <= COLLISION_BLOCK, "a block of cells outside is a block of pairs at most");
 
+/// Max parts of a step.
+enum { COLLISION_PARTS = 64 };
+
 /// Kinds of features that collide.
 enum { COLLISION_NODE_OF_A, COLLISION_NODE_OF_B, COLLISION_EDGES };
 
@@ -117,6 +120,7 @@ struct CollisionPlan {
     CollisionSizes sizes;
     uint32_t cell_count, vertex_count;
     float time_step; ///< s
+    float h;         ///< s, of this step, or of the part of it that is open
     float cell_size; ///< m, of the smallest
     float thickness; ///< m, of contact; at most 2/5 of a sheet's typical cell
     float *thin;     ///< [cells] m, the same; at most 2/5 of this cell's shortest side
@@ -125,8 +129,10 @@ struct CollisionPlan {
     float noise;     ///< m, rounding error of positions
 
     // the last search: part of a snapshot
-    uint32_t searched;    ///< 0: never
-    uint32_t restless;    ///< many cells have left their boxes since: search as the next step opens
+    uint32_t searched; ///< 0: never
+    /// 1: many cells have left their boxes since: search as the next step opens. More, up to 2 COLLISION_PARTS: so too,
+    /// by velocities, and that step has half as many parts at least
+    uint32_t restless;
     uint64_t step;        ///< it was for displacements from this step's start
     float (*position)[4]; ///< [vertices] m
     float (*speed)[4];    ///< [vertices] m/s

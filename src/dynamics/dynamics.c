@@ -157,31 +157,14 @@ static SingeResult dynamics_check(DynamicsPlan *plan, Pool *pool, DynamicsState 
         i);
 }
 
-/// Alternates limits and CCD: what CCD has stopped may be too far from what it has not. Where that takes much work, CCD
-/// has the last word.
-static SingeResult dynamics_close(Memory *memory, DynamicsPlan *plan, const StepContext *context,
-                                  DynamicsState *dynamics) {
-    enum { TURNS = 8 };
-    const Shell *shell = context->shell;
-    const StateInput *state = &context->state;
-
-    for (int turn = 0; turn < TURNS; turn++) {
-        bool limited = plan->solver->limit(plan, shell, state, context->pool, dynamics);
-        if (!plan->collision || (turn > 0 && !limited)) break;
-        const uint64_t stops = collision_counters(plan->collision).stops;
-        TRY(ccd_apply(memory, plan->collision, shell, state, context->pool, context->h, dynamics));
-        if (collision_counters(plan->collision).stops == stops || ccd_is_busy(plan->collision)) break;
-    }
-
-    return SINGE_OK;
-}
-
 static SingeResult dynamics_contact_result(SingeResult result, SingeError *error) {
     return result ? error_set(error, result, "contact", -1, "out of memory for the list of contacts") : SINGE_OK;
 }
 
-SingeResult dynamics_step(Memory *memory, DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics,
-                          DynamicsCounters *counters) {
+/// A part of a step, of context->h seconds from context->state.time on.
+static SingeResult dynamics_part(Memory *memory, DynamicsPlan *plan, const StepContext *context, bool first,
+                                 DynamicsState *dynamics, DynamicsCounters *counters) {
+    enum { TURNS = 8 };
     const SingeSolverDef *solver = &plan->settings.solver;
     const Shell *shell = context->shell;
     const StateInput *state = &context->state;
@@ -190,10 +173,11 @@ SingeResult dynamics_step(Memory *memory, DynamicsPlan *plan, const StepContext 
     SingeError *error = context->error;
     float h = context->h;
 
-    // what stays the same during the step
+    // what stays the same during the part
     dynamics_prepare(plan, shell, state, context->wind, pool, dynamics);
     if (plan->collision)
-        TRY(dynamics_contact_result(collision_open(memory, plan->collision, shell, state, pool, dynamics), error));
+        TRY(dynamics_contact_result(collision_open(memory, plan->collision, shell, state, pool, h, first, dynamics),
+                                    error));
 
     // each pass closes a substep and opens the next: one pass more than substeps
     Substep part = {shell, state, pool, 0, h / (float)solver->substeps, dynamics, counters, error};
@@ -227,19 +211,45 @@ SingeResult dynamics_step(Memory *memory, DynamicsPlan *plan, const StepContext 
         between.collider_count = between.closes ? part.collider_count : 0;
     }
 
-    // forces for the tears; limits and CCD
+    // forces for the tears
     if (shell->spare_count > 0) plan->solver->gather(plan, shell, pool, part.h);
     TRY(dynamics_check(plan, pool, dynamics, error));
-    TRY(dynamics_contact_result(dynamics_close(memory, plan, context, dynamics), error));
 
-    // once a step: internal friction, order of the layers, creases, attachments
+    // limits and CCD alternate: what CCD has stopped may be too far from what it has not. Where that takes much work, CCD
+    // has the last word
+    for (int turn = 0; turn < TURNS; turn++) {
+        bool limited = plan->solver->limit(plan, shell, state, pool, dynamics);
+        if (!plan->collision || (turn > 0 && !limited)) break;
+        const uint64_t stops = collision_counters(plan->collision).stops;
+        TRY(dynamics_contact_result(ccd_apply(memory, plan->collision, shell, state, pool, h, dynamics), error));
+        if (collision_counters(plan->collision).stops == stops || ccd_is_busy(plan->collision)) break;
+    }
+
+    // internal friction, order of the layers, creases
     dynamics_smooth(plan, shell, ablate, pool, h, dynamics);
     dynamics_order(plan, shell, ablate, pool, dynamics);
     plan->strands_written = true;
     dynamics_crease(plan, shell, state, pool, h, dynamics);
-    TRY(dynamics_check(plan, pool, dynamics, error));
+    return dynamics_check(plan, pool, dynamics, error);
+}
+
+SingeResult dynamics_step(Memory *memory, DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics,
+                          DynamicsCounters *counters) {
+    const StateInput *state = &context->state;
+    const bool contact = plan->collision != NULL && plan->solver == &strand_solver;
+    const int count =
+        contact ? collision_parts(plan->collision, context->shell, state, context->pool, context->h, dynamics) : 1;
+    StepContext part = *context;
+    part.h = context->h / (float)count;
+    for (int k = 0; k < count; k++) {
+        const uint64_t halts = plan->collision ? collision_counters(plan->collision).halts : 0;
+        part.state.time = state->time + (double)context->h * k / count;
+        TRY(dynamics_part(memory, plan, &part, k == 0, dynamics, counters));
+        if (count > 1 && collision_counters(plan->collision).halts > halts) break; // the rest of the step, too
+    }
+
     StateInput done = *state;
     done.dynamics = dynamics; // nothing writes it from here on
-    if (solver->attachments) attach_update(&plan->attachments, shell, &done, false);
+    if (plan->settings.solver.attachments) attach_update(&plan->attachments, context->shell, &done, false);
     return SINGE_OK;
 }

@@ -319,7 +319,8 @@ static Searched *searched(uint32_t n) {
     assert_int_equal(collision_plan_create(&s->memory, &s->shell, &contact, 1.0f / 480, &s->plan), SINGE_OK);
     for (uint32_t v = 0; v < row * row; v++)
         for (int k = 0; k < 3; k++) s->state.dynamics.velocity[v][k] = 0.5f * sinf((float)(v * (uint32_t)(k + 3)));
-    assert_int_equal(collision_open(&s->memory, s->plan, &s->shell, STATE_INPUT(&s->state), NULL, &s->state.dynamics),
+    assert_int_equal(collision_open(&s->memory, s->plan, &s->shell, STATE_INPUT(&s->state), NULL, s->plan->time_step,
+                                    true, &s->state.dynamics),
                      SINGE_OK);
     free(x), free(cells);
     return s;
