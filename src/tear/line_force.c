@@ -17,6 +17,7 @@
 // with the mean over all substeps of a step for N_step, whatever h; where a sheet is released, N follows at once. N is
 // also averaged over a process zone of a fixed length: one pass, 1/8 of each neighbour and 1/2 of the cell itself,
 // spreads by s^2/4 (variance, an axis), and so does the mean over the cells at a vertex.
+#include "common/float4.h"
 #include "common/real.h"
 #include "tear/tear_plan.h"
 
@@ -51,11 +52,11 @@ typedef struct Measure {
 } Measure;
 
 /// The centroid of a cell's corners at rest: its centre, projected along the normal.
-static Float3 centroid(const Shell *shell, uint32_t cell) {
+static inline Float4 centroid(const Shell *shell, uint32_t cell) {
     const uint32_t *corner = shell->cells[cell];
     const float(*rest)[4] = (const float(*)[4])shell->rest_position;
-    Float3 a = float3_add(float3_load(rest[corner[0]]), float3_load(rest[corner[1]]));
-    return float3_scale(float3_add(a, float3_add(float3_load(rest[corner[2]]), float3_load(rest[corner[3]]))), 0.25f);
+    Float4 a = float4_load(rest[corner[0]]) + float4_load(rest[corner[1]]);
+    return (a + (float4_load(rest[corner[2]]) + float4_load(rest[corner[3]]))) * 0.25f;
 }
 
 /// Length of an edge or a diagonal over its length at rest.
@@ -93,6 +94,13 @@ static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
     return false;
 }
 
+/// tensor_add on the two halves of a tensor.
+static inline void measure_add(Float4 *along, Float4 *across, Float4 n, float s) {
+    const Float4 scaled = s * n;
+    *along += scaled * n;
+    *across += FLOAT4_SHUFFLE(scaled, scaled, 1, 2, 0, 3) * FLOAT4_SHUFFLE(n, n, 2, 0, 1, 3);
+}
+
 static double measure_cells(void *task, int begin, int end) {
     const Measure *job = task;
     const Shell *shell = job->shell;
@@ -106,21 +114,23 @@ static double measure_cells(void *task, int begin, int end) {
             continue;
         }
 
-        // N of this step
+        // N of this step: xx, yy, zz and yz, zx, xy
         const CellSprings *springs = &shell->cell_springs[c];
-        Tensor now = {0};
-        Float3 p[4], centre = centroid(shell, c);
-        for (int i = 0; i < 4; i++) p[i] = float3_load(shell->rest_position[shell->cells[c][i]]);
+        const Float4 centre = centroid(shell, c);
+        Float4 p[4], along = float4_all(0), across = along;
+        for (int i = 0; i < 4; i++) p[i] = float4_load(shell->rest_position[shell->cells[c][i]]);
         for (int i = 0; i < 4; i++) {
             uint32_t other = shell_neighbour(shell, c, i);
-            tensor_add(now, float3_sub(p[i], centre), pull[SINGE_RED][springs->red[i]]);
+            measure_add(&along, &across, p[i] - centre, pull[SINGE_RED][springs->red[i]]);
             float share = other == SHELL_NONE ? 1 : 0.5f;
-            tensor_add(now, float3_sub(p[(i + 1) & 3], p[i]), share * pull[SINGE_BLUE][springs->blue[i]]);
+            measure_add(&along, &across, p[(i + 1) & 3] - p[i], share * pull[SINGE_BLUE][springs->blue[i]]);
             if (other == SHELL_NONE) continue;
-            tensor_add(now, float3_sub(centroid(shell, other), centre), 0.5f * pull[SINGE_GREEN][springs->green[i]]);
+            measure_add(&along, &across, centroid(shell, other) - centre, 0.5f * pull[SINGE_GREEN][springs->green[i]]);
         }
 
-        for (int i = 0; i < 2; i++) tensor_add(now, float3_sub(p[i + 2], p[i]), pull[SINGE_YELLOW][springs->yellow[i]]);
+        for (int i = 0; i < 2; i++)
+            measure_add(&along, &across, p[i + 2] - p[i], pull[SINGE_YELLOW][springs->yellow[i]]);
+        Tensor now = {along[0], along[1], along[2], across[0], across[1], across[2]};
         float area = shell->matter.area[shell_centre(shell, c)];
         for (int k = 0; k < 6; k++) now[k] /= area;
 

@@ -266,10 +266,27 @@ typedef struct Ratios {
     const State *state;
 } Ratios;
 
-/// How close each vertex is to tearing; 0 if it would tear but can along none of its edges.
+/// Whether a vertex cannot tear: no principal value of its cells' mean line force exceeds the largest of their norms,
+/// which is well below its strength even for a hinge, and below what lets a stretched edge tear it.
+static inline bool is_far_from_tearing(const Ratios *job, uint32_t vertex) {
+    const Shell *shell = job->shell;
+    const float strength = tear_strength(job->plan, shell, job->state, vertex);
+    const float least = 0.9f * fminf(TEAR_HINGE * strength, job->plan->safe), square = least * least;
+    for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++) {
+        const float *t = job->plan->smooth[0][shell->fan[k]];
+        float norm = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
+        if (!(norm < square)) return false;
+    }
+
+    return true;
+}
+
+/// How close each vertex is to tearing; 0 if it would tear but can along none of its edges, or is far from it.
 static void fill_ratios(void *task, int begin, int end) {
     const Ratios *job = task;
     for (uint32_t v = (uint32_t)begin; v < (uint32_t)end; v++) {
+        job->plan->ratio[v] = 0;
+        if (is_far_from_tearing(job, v)) continue;
         TearPull pull = tear_pull(job->plan, job->shell, job->state, v);
         Fan fan;
         if (pull.ratio > TEAR_HINGE) {
