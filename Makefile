@@ -70,7 +70,7 @@ check:
 	tests/fuzz/run.sh build-fuzz $(FUZZ_SECONDS)
 	ctest --preset release -j2 -LE '^long$$'
 
-# burns and verifies every example, and runs the tests that make check leaves out: 40 minutes
+# burns and verifies every example, and runs the tests that make check leaves out: 42 minutes
 check-examples: build
 	ctest --preset release -j2 -L '^(long|example)$$'
 
