@@ -9,34 +9,63 @@
 #include "cli/cli.h"
 #include "cli/console.h"
 #include "common/printable.h"
+#include "scene/scene.h"
 #include "singe/singe.h"
 
-/// The commands, group by group: of the help and of every message that lists them.
-static const struct {
-    const char *name;
-    int (*run)(int argc, char **argv);
-    const char *group; ///< heading in the help; NULL: not in the help
-    const char *summary;
-} commands[] = {
-    {"run", command_run, "burn", "burns a scene: cache, pictures, video, numbers"},
-    {"check", command_check, "burn", "checks a scene, and prints its size and cost"},
-    {"info", command_info, "burn", "prints what a run's folder holds: frames, sizes, checkpoints, lineage"},
-    {"clean", command_clean, "burn", "removes frames of a run, and keeps every N-th one"},
-    {"view", command_view, "look", "shows a cache, or a scene while it burns, in a browser"},
-    {"render", command_render, "look", "draws a cache's pictures and video again"},
-    {"convert", command_convert, "look", "writes a cache in another format, such as USD"},
-    {"measure", command_measure, "look", "measures the shape of a cache: creases, wrinkles, jitter"},
-    {"verify", command_verify, "look", "finds faults in a cache: crossings, inverted cells, bad edges and values"},
-    {"sweep", command_sweep, "many", "burns a scene many times with other parameters, here or on a farm"},
-    {"fit", command_fit, "many", "fits a scene's parameters to measurements"},
-    {"replay", command_replay, "research", "repeats a recording of a run, and names the first step that differs"},
-    {"bench", command_bench, "research", "measures speed, strain and stability of the solver on this machine"},
-    {"paper", command_paper, "research", "runs the paper's experiments and writes a page about them"},
-    {"validate", command_validate, "research", "compares the physics with outside sources, on a page"},
-    {"scene-doc", command_scene_doc, NULL, NULL},
+/// The commands, group by group: of the help, the manual, completion and every message that lists them.
+static const Command commands[] = {
+    {"new", command_new, &new_command, "burn", "writes a commented scene to begin with"},
+    {"run", command_run, &run_command, "burn", "burns a scene: cache, pictures, video, numbers"},
+    {"check", command_check, &check_command, "burn", "checks a scene, and prints its size and cost"},
+    {"info", command_info, &info_command, "burn",
+     "prints what a run's folder holds: frames, sizes, checkpoints, lineage"},
+    {"clean", command_clean, &clean_command, "burn", "removes frames of a run, and keeps every N-th one"},
+    {"view", command_view, &view_command, "look", "shows a cache, or a scene while it burns, in a browser"},
+    {"render", command_render, &render_command, "look", "draws a cache's pictures and video again"},
+    {"convert", command_convert, &convert_command, "look", "writes a cache in another format, such as USD"},
+    {"measure", command_measure, &measure_command, "look", "measures the shape of a cache: creases, wrinkles, jitter"},
+    {"verify", command_verify, &verify_command, "look",
+     "finds faults in a cache: crossings, inverted cells, bad edges and values"},
+    {"sweep", command_sweep, &sweep_command, "many",
+     "burns a scene many times with other parameters, here or on a farm"},
+    {"fit", command_fit, &fit_command, "many", "fits a scene's parameters to measurements"},
+    {"replay", command_replay, &replay_command, "research",
+     "repeats a recording of a run, and names the first step that differs"},
+    {"bench", command_bench, &bench_command, "research",
+     "measures speed, strain and stability of the solver on this machine"},
+    {"paper", command_paper, &paper_command, "research", "runs the paper's experiments and writes a page about them"},
+    {"validate", command_validate, &validate_command, "research",
+     "compares the physics with outside sources, on a page"},
+    {"materials", command_materials, &materials_command, "help", "lists the built-in materials, or prints one"},
+    {"scene-schema", command_scene_schema, &scene_schema_command, "help",
+     "prints the JSON Schema of scenes, by which editors complete and check them"},
+    {"manual", command_manual, &manual_command, "help", "prints a command's manual page"},
+    {"completion", command_completion, &completion_command, "help", "prints what bash, zsh or fish complete"},
+    {"scene-doc", command_scene_doc, &scene_doc_command, NULL, NULL},
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
+
+static const char *command_word(int index) {
+    return index < COMMAND_COUNT && commands[index].group ? commands[index].name : NULL;
+}
+
+/// What the names of operands and of options' values stand for.
+static const CommandValue values[] = {
+    {"DIR", VALUE_FOLDER, NULL},
+    {"FILE", VALUE_FILE, NULL},
+    {"SCENE", VALUE_YAML, NULL},
+    {"PLAN", VALUE_YAML, NULL},
+    {"FORMAT", VALUE_WORD, convert_format_word},
+    {"MEASUREMENT", VALUE_WORD, bench_measurement_word},
+    {"WHAT", VALUE_WORD, paper_item_word},
+    {"TEMPLATE", VALUE_WORD, new_template_word},
+    {"MATERIAL", VALUE_WORD, scene_material_name},
+    {"COMMAND", VALUE_WORD, command_word},
+    {"SHELL", VALUE_WORD, completion_shell_word},
+};
+
+const CommandTable command_table = {commands, values, COMMAND_COUNT, sizeof values / sizeof *values};
 
 static void main_help(void) {
     printf("singe %s burns cloth and paper.\n\nusage: singe COMMAND [options]\n", singe_version());
@@ -45,7 +74,7 @@ static void main_help(void) {
     for (int i = 0; i < COMMAND_COUNT && commands[i].group; i++) {
         if (strcmp(group, commands[i].group) != 0) printf("\n%s:\n", commands[i].group);
         group = commands[i].group;
-        printf("  %-10s %s\n", commands[i].name, commands[i].summary);
+        printf("  %-13s %s\n", commands[i].name, commands[i].summary);
     }
 
     printf("\n  singe COMMAND --help   the command's options\n"
@@ -81,9 +110,14 @@ int main(int argc, char **argv) {
         return console_finish(EXIT_GOOD);
     }
 
-    const char *near = args_nearest(word, commands, COMMAND_COUNT, sizeof commands[0]);
-    fprintf(stderr, "singe: error: unknown %s '%s'", word[0] == '-' ? "option" : "command", shown(word).text);
-    if (near) fprintf(stderr, "; did you mean '%s'?", near);
+    static const char *const options[] = {"--help", "--version"};
+    const bool option = word[0] == '-';
+    const char *near = option ? args_nearest(word, options, 2, sizeof options[0])
+                              : args_nearest(word, commands, COMMAND_COUNT, sizeof commands[0]);
+    const char *ending = strrchr(word, '.');
+    const bool scene = ending && (strcmp(ending, ".yaml") == 0 || strcmp(ending, ".yml") == 0);
+    fprintf(stderr, "singe: error: unknown %s '%s'", option ? "option" : "command", shown(word).text);
+    if (near || scene) fprintf(stderr, "; did you mean '%s%s'?", near ? near : "run ", near ? "" : shown(word).text);
     fputs("\nsee: singe --help\n", stderr);
     return EXIT_INPUT;
 }

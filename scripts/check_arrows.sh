@@ -33,7 +33,7 @@ program/analysis $files common/float3.h mesh/to_quads.h
 program/cli      $program
 program/sweep    $program cli
 program/view     $program cli
-program/main.c   cli common/printable.h
+program/main.c   cli common/printable.h scene/scene.h
 lab/bench        $program cli
 lab/page         $program cli bench
 lab/paper        $program cli bench page

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const ArgOption all_options[BENCH_OPT_COUNT] = {
+const ArgOption bench_all_options[BENCH_OPT_COUNT] = {
     [BENCH_OPT_CELLS] = {"cells", 0, "N,N,...", "cells per side of the sheet, 2 to 2000"},
     [BENCH_OPT_THICKNESS] = {"thickness", 0, "MM,MM,...", "distance between the two layers, 0.01 to 100 mm"},
     [BENCH_OPT_PINS] = {"pins", 0, "1|2", "number of corners that are held [2]"},
@@ -160,7 +160,7 @@ int bench_args_read(const char *name, const char *summary, unsigned accepted, in
     *request = (BenchRequest){.options = bench_options()};
     for (int i = 0; i < BENCH_OPT_COUNT; i++) {
         if (!(accepted >> i & 1)) continue;
-        parser.options[parser.command.option_count] = all_options[i];
+        parser.options[parser.command.option_count] = bench_all_options[i];
         parser.which[parser.command.option_count++] = i;
     }
 

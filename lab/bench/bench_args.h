@@ -6,6 +6,7 @@
 #include "cli/args.h"
 
 /// The options of all measurements.
+extern const ArgOption bench_all_options[];
 typedef enum BenchOption {
     BENCH_OPT_CELLS,
     BENCH_OPT_THICKNESS,

@@ -116,6 +116,21 @@ static int bench_find(const char *word) {
     return -1;
 }
 
+const ArgCommand bench_command = {
+    .name = "bench",
+    .operand = "MEASUREMENT",
+    .summary = "Measures speed, strain and stability of the solver on this machine.",
+    .options = bench_all_options,
+    .option_count = BENCH_OPT_COUNT,
+    .footer = "Each measurement takes some of these options: `singe bench MEASUREMENT --help` shows which.",
+    .examples = "singe bench front --material newsprint,cotton\n"
+                "singe bench step --springs 100000 --threads 2 --csv step.csv",
+};
+
+const char *bench_measurement_word(int index) {
+    return index < MEASUREMENTS ? measurements[index].name : index == MEASUREMENTS ? "plot" : NULL;
+}
+
 int command_bench(int argc, char **argv) {
     if (argc < 1) {
         fputs("singe bench: error: a measurement is missing\nsee: singe bench --help\n", stderr);
@@ -127,7 +142,7 @@ int command_bench(int argc, char **argv) {
         for (int i = 0; i < MEASUREMENTS; i++) printf("  %-16s %s\n", measurements[i].name, measurements[i].summary);
         printf("  %-16s %s\n", "plot", "Draws cost over the number of springs, from tables written with --csv.");
         printf("\n  singe bench MEASUREMENT --help   shows its options\n");
-
+        args_examples(&bench_command);
         return EXIT_GOOD;
     }
 

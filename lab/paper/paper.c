@@ -92,7 +92,7 @@ static const ArgOption paper_options[OPT_COUNT] = {
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
 };
 
-static const ArgCommand paper_command = {
+const ArgCommand paper_command = {
     "paper",
     "WHAT",
     "Runs the paper's experiments and writes a page about them, DIR/index.html.",
@@ -103,7 +103,9 @@ static const ArgCommand paper_command = {
     "  heat alpha all-at-once mass-loss weights rival crossing adaptive readings statements   (docs/cli.md "
     "describes them)\n"
     "\n"
-    "Exit codes: 0 good, 1 an error, or a measure outside its bars, 2 bad usage."};
+    "Exit codes: 0 good, 1 an error, or a measure outside its bars, 2 bad usage.",
+    "singe paper fig8 -o out\n"
+    "singe paper all --quick"};
 
 static const char *const alone[] = {"table2", "adaptive", "statements", NULL};
 
@@ -116,5 +118,10 @@ static const Page page = {
     "them. Each item shows what the paper reports and what the program computes, and compares measures of it with "
     "bars. The scenes are in <code>scenes/</code> next to this page; <code>singe run</code> runs them.",
     alone};
+
+const char *paper_item_word(int index) {
+    if (index == 0) return "all";
+    return index <= (int)(sizeof items / sizeof *items) ? items[index - 1].name : NULL;
+}
 
 int command_paper(int argc, char **argv) { return page_run(&page, &paper_command, argc, argv); }

@@ -34,13 +34,15 @@ static const ArgOption validate_options[OPT_COUNT] = {
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
 };
 
-static const ArgCommand validate_command = {
+const ArgCommand validate_command = {
     "validate",
     NULL,
     "Compares the physics with independent sources and writes a page about it, DIR/index.html.",
     validate_options,
     OPT_COUNT,
-    "Exit codes: 0 good, 1 an error, or a measure outside its bars, 2 bad usage."};
+    "Exit codes: 0 good, 1 an error, or a measure outside its bars, 2 bad usage.",
+    "singe validate -o out\n"
+    "singe validate --only heat"};
 
 static const Page page = {
     items,

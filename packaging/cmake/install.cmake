@@ -51,6 +51,14 @@ if(SINGE_PROGRAM)
   endif()
   add_dependencies(singe_program singe singe_input) # who has built the command can install everything
   install(TARGETS singe_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+  if(NOT CMAKE_CROSSCOMPILING) # where man, bash, zsh and fish look
+    set(words ${PROJECT_BINARY_DIR}/words)
+    install(DIRECTORY ${words}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT program)
+    install(FILES ${words}/singe.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME singe
+            COMPONENT program)
+    install(FILES ${words}/_singe DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT program)
+    install(FILES ${words}/singe.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
+  endif()
   # the command contains the materials; these are for reading and copying
   install(DIRECTORY src/materials DESTINATION ${CMAKE_INSTALL_DATADIR}/singe COMPONENT program FILES_MATCHING PATTERN "*.yaml")
 endif()

@@ -137,7 +137,8 @@ int args_next(ArgReader *reader, const char **value) {
     }
 
     if (reader->index >= reader->argc) {
-        if (command->operand && reader->operand_count == 0) return args_complain(reader, "needs %s", command->operand);
+        if (command->operand && command->operand[0] != '[' && reader->operand_count == 0)
+            return args_complain(reader, "needs %s", command->operand);
         return ARG_END;
     }
 
@@ -174,7 +175,17 @@ void args_help(const ArgCommand *command) {
     }
 
     printf("  %-26s %s\n", "-h, --help", "this text");
+    args_examples(command);
     if (command->footer) printf("\n%s\n", command->footer);
+}
+
+void args_examples(const ArgCommand *command) {
+    if (command->examples) printf("\nexamples:\n");
+    for (const char *line = command->examples; line && *line;) {
+        const size_t length = strcspn(line, "\n");
+        printf("  %.*s\n", (int)length, line);
+        line += length + (line[length] == '\n');
+    }
 }
 
 bool args_int(const ArgReader *reader, int option, const char *text, int low, int high, int *number) {

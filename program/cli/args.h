@@ -13,11 +13,12 @@ typedef struct ArgOption {
 
 typedef struct ArgCommand {
     const char *name;    ///< "run"
-    const char *operand; ///< "SCENE" takes exactly one, "FILE..." one or more, NULL none
+    const char *operand; ///< "SCENE" takes exactly one, "[NAME]" one at most, "FILE..." one or more, NULL none
     const char *summary;
     const ArgOption *options;
     int option_count;
-    const char *footer; ///< printed below the options in the help, or NULL
+    const char *footer;   ///< printed below the options in the help, or NULL
+    const char *examples; ///< command lines, one a line, for the help and the manual; NULL: none
 } ArgCommand;
 
 /// Results of args_next besides an option, which is its index in `options`, from 0.
@@ -39,6 +40,9 @@ ArgReader args_begin(const ArgCommand *command, int argc, char **argv);
 int args_next(ArgReader *reader, const char **value);
 
 void args_help(const ArgCommand *command);
+
+/// The part of the help with the examples.
+void args_examples(const ArgCommand *command);
 
 /// Reads a whole number within [low, high], or prints what the option expects and returns false.
 bool args_int(const ArgReader *reader, int option, const char *text, int low, int high, int *number);

@@ -21,14 +21,16 @@ static const ArgOption check_options[OPT_COUNT] = {
     [OPT_SET] = {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated"},
 };
 
-static const ArgCommand check_command = {
+const ArgCommand check_command = {
     "check",
     "SCENE",
     "Reads a scene with its meshes and images, builds it, and prints its size and cost.",
     check_options,
     OPT_COUNT,
     "Exit codes: 0 the scene is valid, 1 a step failed, memory ran out or standard output could not be written,\n"
-    "2 bad input."};
+    "2 bad input.",
+    "singe check letter.yaml\n"
+    "singe check letter.yaml --set sheets.0.material=newsprint"};
 
 /// Steps are timed until this many are done or this much time has passed.
 enum { CHECK_STEPS = 10 };

@@ -9,7 +9,43 @@ typedef enum ExitCode {
     EXIT_INPUT = 2,  ///< usage, or a scene, mesh, picture or checkpoint that cannot be used
 } ExitCode;
 
-/// Each gets the arguments after the command's name.
+/// A command, as main.c lists it: for the help, the manual and completion.
+typedef struct Command {
+    const char *name;
+    int (*run)(int argc, char **argv); ///< gets the arguments after the command's name
+    const struct ArgCommand *arguments;
+    const char *group; ///< heading in the help; NULL: not in the help
+    const char *summary;
+} Command;
+
+/// What an operand or an option's value stands for, by its name in the help: "DIR".
+typedef enum ValueKind { VALUE_FOLDER, VALUE_FILE, VALUE_YAML, VALUE_WORD } ValueKind;
+typedef struct CommandValue {
+    const char *name;
+    ValueKind kind;
+    const char *(*word)(int index); ///< VALUE_WORD: each in turn, NULL after the last
+} CommandValue;
+
+/// All of the command's words.
+typedef struct CommandTable {
+    const Command *commands;
+    const CommandValue *values;
+    int command_count, value_count;
+} CommandTable;
+extern const CommandTable command_table; ///< in main.c
+
+extern const struct ArgCommand run_command, check_command, render_command, convert_command, measure_command,
+    verify_command, replay_command, bench_command, paper_command, validate_command, sweep_command, fit_command,
+    scene_doc_command, info_command, clean_command, view_command, scene_schema_command, materials_command, new_command,
+    manual_command, completion_command;
+
+/// The words of `convert --to`, `bench MEASUREMENT`, `paper WHAT` and `completion SHELL`.
+const char *convert_format_word(int index);
+const char *bench_measurement_word(int index);
+const char *paper_item_word(int index);
+const char *completion_shell_word(int index);
+const char *new_template_word(int index);
+
 int command_run(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_clean(int argc, char **argv);
@@ -26,5 +62,10 @@ int command_validate(int argc, char **argv);
 int command_sweep(int argc, char **argv);
 int command_fit(int argc, char **argv);
 int command_scene_doc(int argc, char **argv);
+int command_scene_schema(int argc, char **argv);
+int command_materials(int argc, char **argv);
+int command_new(int argc, char **argv);
+int command_manual(int argc, char **argv);
+int command_completion(int argc, char **argv);
 
 #endif

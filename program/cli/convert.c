@@ -19,13 +19,16 @@ static const ArgOption convert_options[OPT_COUNT] = {
     [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
 };
 
-static const ArgCommand convert_command = {
+const ArgCommand convert_command = {
     "convert",
     "DIR",
     "Writes the frames of a cache in other formats, beside it.",
     convert_options,
     OPT_COUNT,
-    "Existing frames are written again. Exit codes: 0 success, 1 failed or interrupted, 2 bad input."};
+    "Existing frames are written again. Exit codes: 0 success, 1 failed or interrupted, 2 bad input.",
+    "singe convert out --to usd\n"
+    "singe convert out --to glb --single\n"
+    "singe convert out --to vtp --to textures --set output.texture_size=512"};
 
 typedef struct ConvertOptions {
     const char *folder;
@@ -41,6 +44,16 @@ static int single_named(const char *name, bool by_option) {
     for (int i = 0; i < OUTPUT_SINGLE_COUNT; i++)
         if (output_singles[i].by_option == by_option && strcmp(output_singles[i].name, name) == 0) return i;
     return -1;
+}
+
+const char *convert_format_word(int index) {
+    if (index == 0) return "gas";
+    for (int i = 0; i < OUTPUT_COUNT + OUTPUT_SINGLE_COUNT; i++) {
+        const OutputSingle *single = i < OUTPUT_COUNT ? NULL : &output_singles[i - OUTPUT_COUNT];
+        if (single ? single->by_option : i == OUTPUT_ply) continue; // the former are formats of frames too
+        if (--index == 0) return single ? single->name : output_formats[i].name;
+    }
+    return NULL;
 }
 
 static bool add_format(const ArgReader *reader, const char *name, ConvertOptions *o) {

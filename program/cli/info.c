@@ -111,9 +111,14 @@ static void print_ranges(const int *frames, size_t count) {
     if (ranges > RANGES_MAX) printf(" and %zu more", ranges - RANGES_MAX);
 }
 
-static const ArgCommand info_command = {
-    "info", "DIR", "Prints what a run's folder holds: frames, sizes, checkpoints, and what it is a branch of.",
-    NULL,   0,     "Exit codes: 0 success, 1 the folder cannot be listed, 2 bad input."};
+const ArgCommand info_command = {
+    "info",
+    "DIR",
+    "Prints what a run's folder holds: frames, sizes, checkpoints, and what it is a branch of.",
+    NULL,
+    0,
+    "Exit codes: 0 success, 1 the folder cannot be listed, 2 bad input.",
+    "singe info out"};
 
 int command_info(int argc, char **argv) {
     ArgReader reader = args_begin(&info_command, argc, argv);
@@ -181,14 +186,15 @@ static const ArgOption clean_options[OPT_COUNT] = {
     [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
 };
 
-static const ArgCommand clean_command = {
+const ArgCommand clean_command = {
     "clean",
     "DIR",
     "Removes frames of a run, and keeps every N-th one. Only files of frames that DIR/run.json lists are removed.",
     clean_options,
     OPT_COUNT,
     "A run that lacks frames cannot be resumed or branched. Exit codes: 0 success, 1 a file cannot be removed,\n"
-    "2 bad input."};
+    "2 bad input.",
+    "singe clean out --keep-every 10"};
 
 int command_clean(int argc, char **argv) {
     ArgReader reader = args_begin(&clean_command, argc, argv);

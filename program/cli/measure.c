@@ -35,9 +35,14 @@ static const ArgOption measure_options[OPT_COUNT] = {
     [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no frames, so embers are not measured"},
 };
 
-static const ArgCommand measure_command = {
-    "measure",       "DIR",     "Measures what a cache looks like: creases, wrinkles, jitter, embers.",
-    measure_options, OPT_COUNT, "docs/cli.md describes the numbers. Exit codes: 0 success, 1 failed, 2 bad input."};
+const ArgCommand measure_command = {"measure",
+                                    "DIR",
+                                    "Measures what a cache looks like: creases, wrinkles, jitter, embers.",
+                                    measure_options,
+                                    OPT_COUNT,
+                                    "docs/cli.md describes the numbers. Exit codes: 0 success, 1 failed, 2 bad input.",
+                                    "singe measure out\n"
+                                    "singe measure out --frames 10-40 --csv shape.csv"};
 
 /// A number of every frame, and how it is summarized.
 typedef enum Number {

@@ -26,9 +26,15 @@ static const ArgOption render_options[OPT_COUNT] = {
     [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
 };
 
-static const ArgCommand render_command = {
-    "render",       "DIR",     "Draws the pictures and the video of a cache again.",
-    render_options, OPT_COUNT, "Exit codes: 0 success, 1 failed or interrupted, 2 bad input."};
+const ArgCommand render_command = {"render",
+                                   "DIR",
+                                   "Draws the pictures and the video of a cache again.",
+                                   render_options,
+                                   OPT_COUNT,
+                                   "Exit codes: 0 success, 1 failed or interrupted, 2 bad input.",
+                                   "singe render out --set preview.exposure=2\n"
+                                   "singe render out --frames 24 --exr\n"
+                                   "singe render out --sheet 4x2 --only-sheet"};
 
 typedef struct RenderOptions {
     const char *folder;

@@ -15,14 +15,16 @@ static const ArgOption replay_options[OPT_COUNT] = {
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]; the result does not depend on them"},
 };
 
-static const ArgCommand replay_command = {
+const ArgCommand replay_command = {
     "replay",
     "FILE",
     "Makes the calls of a recording (singe run --record) once more, and compares the state after every step.",
     replay_options,
     OPT_COUNT,
     "Exit codes: 0 nothing differs, also where a crash has cut the recording short, 1 something differs, or there is no\n"
-    "memory, 2 not a recording, or a damaged one."};
+    "memory, 2 not a recording, or a damaged one.",
+    "singe run letter.yaml --record letter.replay\n"
+    "singe replay letter.replay --threads 1"};
 
 /// Prints what a replay has shown, and returns the exit code.
 static ExitCode replay_report(const SingeReplay *replay, Console *console) {

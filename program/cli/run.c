@@ -41,14 +41,17 @@ static const ArgOption run_options[OPT_COUNT] = {
     [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
 };
 
-static const ArgCommand run_command = {
+const ArgCommand run_command = {
     "run",
     "SCENE",
     "Simulates a scene file and writes a cache, pictures, a video and statistics to DIR.",
     run_options,
     OPT_COUNT,
     "Ctrl-C ends the run after the current step; a second Ctrl-C ends it at once. Exit codes: 0 success,\n"
-    "1 the run failed or was interrupted, or ffmpeg failed, 2 bad input."};
+    "1 the run failed or was interrupted, or ffmpeg failed, 2 bad input.",
+    "singe run letter.yaml -o out\n"
+    "singe run letter.yaml --frames 24 --set pace=2 --set \"sheets.0.grid.cells=[40, 60]\"\n"
+    "singe run letter.yaml -o out --resume"};
 
 static ExitCode run_parse(int argc, char **argv, RunOptions *options, bool *done) {
     ArgReader reader = args_begin(&run_command, argc, argv);

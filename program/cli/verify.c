@@ -24,13 +24,15 @@ static const ArgOption verify_options[OPT_COUNT] = {
     [OPT_CSV] = {"csv", 0, "FILE", "also writes the counts of every frame to FILE"},
 };
 
-static const ArgCommand verify_command = {
+const ArgCommand verify_command = {
     "verify",
     "DIR",
     "Reads a cache and counts crossings, inverted cells and other faults.",
     verify_options,
     OPT_COUNT,
-    "docs/cli.md defines the faults. Exit codes: 0 no faults, 1 faults or interrupted, 2 a frame cannot be read."};
+    "docs/cli.md defines the faults. Exit codes: 0 no faults, 1 faults or interrupted, 2 a frame cannot be read.",
+    "singe verify out\n"
+    "singe verify out --stretch 1.5 --csv faults.csv"};
 
 static const struct {
     const char *key, *title;

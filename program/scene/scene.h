@@ -273,6 +273,9 @@ void scene_document(FILE *file);
 /// A pace of 0 is this one: the library takes none that is smaller. In a year of motion 30 seconds of fire pass.
 #define SCENE_PACE_MIN 1e-6f
 
+/// Writes the JSON Schema (draft 7) of scene files.
+void scene_json_schema(FILE *file);
+
 // ---- from scene to simulation
 
 /// A collider's mesh or heights, in its own frame.

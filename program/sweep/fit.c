@@ -32,14 +32,14 @@ static const ArgOption fit_options[OPT_COUNT] = {
     [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors and the result"},
 };
 
-static const ArgCommand fit_command = {
-    "fit",
-    "PLAN",
-    "Finds the parameters with which a scene best matches measurements.",
-    fit_options,
-    OPT_COUNT,
-    "docs/sweep.md describes plans. The same command continues a fit that was stopped.\n"
-    "Exit codes: 0 success, 1 a row failed or the fit was interrupted, 2 bad input."};
+const ArgCommand fit_command = {"fit",
+                                "PLAN",
+                                "Finds the parameters with which a scene best matches measurements.",
+                                fit_options,
+                                OPT_COUNT,
+                                "docs/sweep.md describes plans. The same command continues a fit that was stopped.\n"
+                                "Exit codes: 0 success, 1 a row failed or the fit was interrupted, 2 bad input.",
+                                "singe fit fit.yaml -o out"};
 
 /// Changes of the coordinates in [0, 1] below this end the search.
 static const double parameter_tolerance = 1e-3;

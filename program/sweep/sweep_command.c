@@ -43,14 +43,17 @@ static const ArgOption sweep_options[OPT_COUNT] = {
     [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
 };
 
-static const ArgCommand sweep_command = {
+const ArgCommand sweep_command = {
     "sweep",
     "PLAN",
     "Runs a scene many times with other parameters, and writes a report.",
     sweep_options,
     OPT_COUNT,
     "docs/sweep.md describes plans. The same command continues a sweep that was stopped.\n"
-    "Exit codes: 0 all rows are complete, 1 a row failed or the sweep was interrupted, 2 bad input."};
+    "Exit codes: 0 all rows are complete, 1 a row failed or the sweep was interrupted, 2 bad input.",
+    "singe sweep sweep.yaml -o out --jobs 4\n"
+    "singe sweep sweep.yaml -o out --print\n"
+    "singe sweep sweep.yaml -o out --slurm --max-running 20"};
 
 /// Absolute, so that jobs may start in any folder.
 static char *absolute(const char *path) {

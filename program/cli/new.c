@@ -1,0 +1,150 @@
+// singe new: a commented scene to begin with. singe materials: the built-in materials, and the text of one.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cli/args.h"
+#include "cli/cli.h"
+#include "cli/console.h"
+#include "cli/folder.h"
+#include "cli/text.h"
+#include "common/printable.h"
+#include "scene/builtin.h"
+#include "scene/scene.h"
+
+/// The files of templates/, embedded.
+extern const SceneBuiltin new_templates[];
+
+/// A template: the file to begin with, and one that it needs, which is written only where there is none.
+static const struct {
+    const char *name, *file, *needs;
+} templates[] = {
+    {"letter", "letter.yaml", NULL},
+    {"cloth", "cloth.yaml", NULL},
+    {"mesh", "mesh.yaml", "mesh.obj"},
+    {"sweep", "sweep.yaml", "letter.yaml"},
+};
+
+enum { TEMPLATES = sizeof templates / sizeof *templates };
+enum { OPT_OUTPUT, OPT_FORCE, OPT_COUNT };
+
+static const ArgOption new_options[OPT_COUNT] = {
+    [OPT_OUTPUT] = {"output", 'o', "DIR", "folder of the scene [.]"},
+    [OPT_FORCE] = {"force", 'f', NULL, "replaces a file of this name"},
+};
+
+const ArgCommand new_command = {
+    "new",
+    "TEMPLATE",
+    "Writes a scene with comments to begin with: letter, cloth, mesh or sweep.",
+    new_options,
+    OPT_COUNT,
+    "letter  a sheet of paper burns on a table\n"
+    "cloth   a cloth hangs, and burns in the wind\n"
+    "mesh    a mesh burns, in place of which you put yours\n"
+    "sweep   the letter burns many times with other parameters\n\n"
+    "Exit codes: 0 success, 1 a file could not be written, 2 bad input, or there is such a file already.",
+    "singe new letter\n"
+    "singe new mesh -o lamp"};
+
+const char *new_template_word(int index) { return index < TEMPLATES ? templates[index].name : NULL; }
+
+static void print_template(FILE *file, const void *context) {
+    const SceneBuiltin *found = context;
+    fwrite(found->bytes, 1, found->size, file);
+}
+
+int command_new(int argc, char **argv) {
+    ArgReader reader = args_begin(&new_command, argc, argv);
+    const char *value, *word = NULL, *folder = ".";
+    bool force = false;
+    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
+        switch (option) {
+        case OPT_OUTPUT: folder = *value ? value : "."; break;
+        case OPT_FORCE: force = true; break;
+        case ARG_OPERAND: word = value; break;
+        case ARG_HELP: return EXIT_GOOD;
+        default: return EXIT_INPUT;
+        }
+    }
+
+    int which = 0;
+    while (which < TEMPLATES && strcmp(templates[which].name, word) != 0) which++;
+    if (which == TEMPLATES) {
+        const char *near = args_nearest(word, templates, TEMPLATES, sizeof *templates);
+        args_complain(&reader, "expected letter, cloth, mesh or sweep, got '%s'%s%s%s", shown(word).text,
+                      near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+        return EXIT_INPUT;
+    }
+
+    Console console = console_make(false);
+    SingeError error = {0};
+    if (folder_make(folder, &error)) {
+        console_result(&console, &error);
+        return EXIT_FAILED;
+    }
+
+    // what is needed comes first, so that the scene is never without it
+    const char *const files[] = {templates[which].needs, templates[which].file};
+    const char *before = strcmp(folder, ".") == 0 ? "" : folder, *slash = *before ? "/" : "";
+    char *paths[2];
+    struct stat info;
+    for (int i = 0; i < 2; i++) paths[i] = text_format("%s%s%s", before, slash, files[i] ? files[i] : "");
+    ExitCode code = EXIT_GOOD;
+    if (!force && lstat(paths[1], &info) == 0) {
+        console_error(&console, "%s is there already; --force replaces it", shown_path(paths[1]).text);
+        code = EXIT_INPUT;
+    }
+    for (int i = 0; i < 2 && !code; i++) {
+        if (!files[i] || (i == 0 && lstat(paths[0], &info) == 0)) continue;
+        const SceneBuiltin *found = new_templates;
+        while (strcmp(found->name, files[i]) != 0) found++;
+        code = console_write_table(&console, paths[i], print_template, found);
+        if (!code) printf("%s\n", paths[i]);
+    }
+
+    if (!code) console_note(&console, "next: singe %s %s", which == TEMPLATES - 1 ? "sweep" : "check", paths[1]);
+    for (int i = 0; i < 2; i++) free(paths[i]);
+    return code;
+}
+
+// ---- materials
+
+const ArgCommand materials_command = {
+    .name = "materials",
+    .operand = "[MATERIAL]",
+    .summary = "Lists the built-in materials, or prints the file of one, to change it.",
+    .footer = "A scene names a material by `material: newsprint`, or a file by `material: mine.yaml`.\n"
+              "Exit codes: 0 success, 2 bad input.",
+    .examples = "singe materials\n"
+                "singe materials newsprint > mine.yaml",
+};
+
+int command_materials(int argc, char **argv) {
+    ArgReader reader = args_begin(&materials_command, argc, argv);
+    const char *value, *word = NULL;
+    for (int option; (option = args_next(&reader, &value)) != ARG_END; word = value) {
+        if (option == ARG_HELP) return EXIT_GOOD;
+        if (option == ARG_ERROR) return EXIT_INPUT;
+    }
+
+    int count = 0;
+    for (const SceneBuiltin *material = scene_builtins; material->name; material++, count++) {
+        if (word && strcmp(word, material->name) == 0) {
+            fwrite(material->bytes, 1, material->size, stdout);
+            return EXIT_GOOD;
+        }
+        if (word) continue;
+
+        // the first sentence of the file's comment
+        const char *text = material->bytes + strspn(material->bytes, "# "), *dot = strpbrk(text, ":.");
+        printf("%-14s %.*s\n", material->name, (int)(dot - text), text);
+    }
+    if (!word) return EXIT_GOOD;
+
+    const char *near = args_nearest(word, scene_builtins, count, sizeof *scene_builtins);
+    args_complain(&reader, "there is no material '%s'%s%s%s", shown(word).text, near ? "; did you mean '" : "",
+                  near ? near : "", near ? "'?" : "");
+    return EXIT_INPUT;
+}
