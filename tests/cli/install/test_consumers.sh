@@ -50,6 +50,8 @@ ninja -C "$work/demo" -t inputs singe_program | grep -E '^[^/].*\.a$' | while re
     ar rcs "$work/demo/$archive" "$work/stand_in.o"
 done
 touch "$work/demo/singe"
+mkdir -p "$work/demo/words/man1" # which the command writes as it is built
+touch "$work/demo/words/man1/singe.1" "$work/demo/words/"{singe.bash,_singe,singe.fish}
 cmake --install "$work/demo" --prefix "$work/prefix" > "$work/log" 2>&1 || { tail -20 "$work/log"; exit 1; }
 [ -f "$work/prefix/bin/singe" ] && [ -f "$work/prefix/include/singe/singe.h" ]
 echo "cmake --install after make demo: the command, the libraries and the headers"
