@@ -1,20 +1,15 @@
 #include "cli/video.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include "cli/interrupt.h"
+#include "cli/spawn.h"
 #include "cli/text.h"
 #include "formats/formats.h"
-
-extern char **environ;
 
 enum { WHY_SIZE = sizeof(((SingeError *)0)->message) };
 
@@ -32,22 +27,8 @@ static char *pattern_escape(const char *text) {
 
 /// Runs the program and waits. If it failed, `why` is the reason.
 static VideoResult spawn(char *const *arguments, char why[WHY_SIZE]) {
-    posix_spawn_file_actions_t actions;
-    posix_spawnattr_t attributes;
-    sigset_t shielded; // the child must not ignore what this program ignores
     pid_t child;
-
-    sigemptyset(&shielded);
-    sigaddset(&shielded, SIGPIPE);
-    sigaddset(&shielded, SIGXFSZ);
-    posix_spawnattr_init(&attributes);
-    posix_spawnattr_setsigdefault(&attributes, &shielded);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    int reason = posix_spawnp(&child, arguments[0], &actions, &attributes, arguments, environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&actions);
+    const int reason = spawn_program(arguments, NULL, &child);
     if (reason) {
         snprintf(why, WHY_SIZE, "cannot run ffmpeg (%s)", strerror(reason));
         return reason == ENOENT ? VIDEO_NO_PROGRAM : VIDEO_FAILED;

@@ -1,9 +1,7 @@
 // Runs rows on this machine: several at a time, each as a process of its own: singe run, then singe measure. A row that
 // succeeds moves to rows/. Ctrl-C and SIGTERM are passed on, so that each row leaves a checkpoint.
 #include <errno.h>
-#include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,11 +11,10 @@
 
 #include "cli/folder.h"
 #include "cli/interrupt.h"
+#include "cli/spawn.h"
 #include "cli/text.h"
 #include "formats/formats.h"
 #include "sweep/sweep.h"
-
-extern char **environ;
 
 typedef enum Stage { STAGE_IDLE, STAGE_RUN, STAGE_MEASURE } Stage;
 
@@ -63,28 +60,7 @@ static void start_stage(Pool *pool, Slot *slot, Stage stage) {
     char *measure_undrawn[] = {program, "measure", csv, "--no-preview", "--", folder, NULL};
     char **run = stage == STAGE_RUN ? sweep_run_command(pool->sweep, slot->row) : NULL;
     char **command = run ? run : pool->sweep->options->no_preview ? measure_undrawn : measure;
-    int reason = ENOMEM;
-    if (stage != STAGE_RUN || run) {
-        posix_spawn_file_actions_t actions;
-        posix_spawnattr_t attributes;
-        sigset_t shielded; // the child must not ignore what this program ignores
-        sigemptyset(&shielded);
-        sigaddset(&shielded, SIGPIPE);
-        sigaddset(&shielded, SIGXFSZ);
-        posix_spawnattr_init(&attributes);
-        posix_spawnattr_setsigdefault(&attributes, &shielded);
-        // a process group of its own: otherwise Ctrl-C in a terminal would reach it twice, and the second ends a run
-        // at once
-        posix_spawnattr_setpgroup(&attributes, 0);
-        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-        posix_spawn_file_actions_init(&actions);
-        posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-        posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log, O_WRONLY | O_CREAT | O_APPEND, 0666);
-        posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-        reason = posix_spawnp(&slot->process, command[0], &actions, &attributes, command, environ);
-        posix_spawnattr_destroy(&attributes);
-        posix_spawn_file_actions_destroy(&actions);
-    }
+    const int reason = stage != STAGE_RUN || run ? spawn_program(command, log, &slot->process) : ENOMEM;
 
     slot->stage = stage;
     if (reason) {

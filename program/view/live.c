@@ -6,10 +6,8 @@
 #include "view/view.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <ftw.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,9 +15,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "cli/spawn.h"
 #include "cli/text.h"
-
-extern char **environ;
 
 static int remove_entry(const char *path, const struct stat *info, int kind, struct FTW *walk) {
     (void)info, (void)kind, (void)walk;
@@ -60,41 +57,20 @@ static void start(View *view) {
     look_at_file(live, &changed);
 
     char *threads = text_format("--threads=%d", live->threads);
-    const int fixed = 8;
-    char **command = calloc((size_t)(fixed + 2 * live->sets->count), sizeof *command);
+    char *const first[] = {live->program, "run", "--no-preview", "--force", threads, "-o", live->folder};
+    const size_t fixed = sizeof first / sizeof *first;
+    char **command = calloc(fixed + 2 * (size_t)live->sets->count + 3, sizeof *command);
     int reason = ENOMEM;
     if (command) {
-        int n = 0;
-        char *const first[] = {live->program, "run", "--no-preview", "--force", threads, "-o", live->folder};
-        for (size_t i = 0; i < sizeof first / sizeof *first; i++) command[n++] = first[i];
+        size_t n = 0;
+        for (; n < fixed; n++) command[n] = first[n];
         for (int i = 0; i < live->sets->count; i++) {
             command[n++] = "--set";
             command[n++] = (char *)live->sets->items[i];
         }
-        char **longer = realloc(command, (size_t)(n + 3) * sizeof *command);
-        if (longer) {
-            command = longer;
-            command[n++] = "--";
-            command[n++] = live->scene;
-            command[n] = NULL;
-            posix_spawn_file_actions_t actions;
-            posix_spawnattr_t attributes;
-            sigset_t shielded; // the child must not ignore what this program ignores
-            sigemptyset(&shielded);
-            sigaddset(&shielded, SIGPIPE);
-            sigaddset(&shielded, SIGXFSZ);
-            posix_spawnattr_init(&attributes);
-            posix_spawnattr_setsigdefault(&attributes, &shielded);
-            posix_spawnattr_setpgroup(&attributes, 0); // Ctrl-C in a terminal is ours; we end the run
-            posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-            posix_spawn_file_actions_init(&actions);
-            posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-            posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, live->log, O_WRONLY | O_CREAT | O_APPEND, 0600);
-            posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-            reason = posix_spawnp(&live->process, command[0], &actions, &attributes, command, environ);
-            posix_spawnattr_destroy(&attributes);
-            posix_spawn_file_actions_destroy(&actions);
-        }
+        command[n++] = "--";
+        command[n++] = live->scene; // and NULL
+        reason = spawn_program(command, live->log, &live->process);
     }
     if (reason) {
         live->process = 0;
