@@ -387,6 +387,7 @@ TEST(particles_move_four_at_once_as_one_by_one) {
         def.kind = kinds[trial % 4];
         def.radius = 0.01f;
         def.height = 0.02f;
+        def.friction = 0.1f; // some stick, some slide
         memcpy(def.half_size, (float[]){0.01f, 0.012f, 0.008f}, sizeof def.half_size);
         add_collider(&bench, def, trial < 4 ? 0 : trial < 8 ? 1 : 2, trial < 4 ? NULL : keys);
 
