@@ -236,9 +236,9 @@ static SingeResult dynamics_part(Memory *memory, DynamicsPlan *plan, const StepC
 SingeResult dynamics_step(Memory *memory, DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics,
                           DynamicsCounters *counters) {
     const StateInput *state = &context->state;
-    const bool contact = plan->collision != NULL && plan->solver == &strand_solver;
+    const bool parts = plan->collision && plan->solver->takes_parts;
     const int count =
-        contact ? collision_parts(plan->collision, context->shell, state, context->pool, context->h, dynamics) : 1;
+        parts ? collision_parts(plan->collision, context->shell, state, context->pool, context->h, dynamics) : 1;
     StepContext part = *context;
     part.h = context->h / (float)count;
     for (int k = 0; k < count; k++) {

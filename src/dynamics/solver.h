@@ -39,6 +39,9 @@ typedef struct Solver {
     /// Contact of particles with colliders, eq 13 and attachments are left to the pass between two projections (move.c);
     /// otherwise `project` ends with v^.
     bool leaves_closing;
+
+    /// A violent step may be taken in parts (collision_parts). The paper's methods take it whole, as the paper does.
+    bool takes_parts;
 } Solver;
 
 extern const Solver strand_solver, paper_solver;

@@ -256,4 +256,5 @@ const Solver strand_solver = {.create = strands_create,
                               .project = strands_project,
                               .gather = patch_gather,
                               .limit = dynamics_limit,
-                              .leaves_closing = true};
+                              .leaves_closing = true,
+                              .takes_parts = true};
