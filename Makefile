@@ -113,9 +113,11 @@ web-package:
 web-serve: web
 	cd web && node serve.mjs
 
-# plays with the page in Chromium, and prints its speed there
+# plays with the page in Chromium, and prints its speed there; looks at a burn by `singe view` in Chromium and Firefox
 check-web: web
-	cd web && node tests/check.mjs
+	cmake --preset release
+	cmake --build --preset release --target singe_program
+	cd web && npm test
 
 # tests the package in node; its burn must have the bytes of the native library
 check-web-core: web-package

@@ -8,10 +8,9 @@ import { mkdir, readFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { chromium } from "playwright-core";
 import { serve } from "../serve.mjs";
+import { CHROMIUM, CHROMIUM_ARGS } from "./browsers.mjs";
 
 const only = process.env.ONLY, words = process.argv.slice(2), folder = words[0] === "--pictures" ? words[1] : null;
-const PROGRAM = process.env.CHROMIUM ?? "/usr/bin/chromium";
-const ARGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 const QUICK = "cells=20&gas=false&begin=false"; // a coarse sheet without gas
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 
@@ -204,7 +203,7 @@ async function speed() {
 
 const { server, address: where } = await serve();
 address = where;
-const browser = await chromium.launch({ executablePath: PROGRAM, args: ARGS });
+const browser = await chromium.launch({ executablePath: CHROMIUM, args: CHROMIUM_ARGS });
 page = await browser.newPage({ viewport: { width: 960, height: 600 } });
 page.setDefaultTimeout(120_000);
 page.on("pageerror", (error) => { failures++; console.log(`  error on the page: ${error.message}`); });

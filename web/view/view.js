@@ -270,8 +270,9 @@ function showVertex() {
         one.children[1].textContent = now ? show(now[index]) : "gone";
         drawLines(one.children[2], [{ axis: 0, colour, tight: true, points: points.map(([f, v]) => [f, v[index]]) }], { first: +$("time").min, last: +$("time").max, now: shown });
     });
-    picked.at = here === null ? null : positionOf(frame, here);
-    dirty = true;
+    const at = here === null ? null : positionOf(frame, here);
+    if (`${at}` !== `${picked.at}`) dirty = true; // its mark moves; the plots alone need no new picture
+    picked.at = at;
 }
 
 // ---- plots, numbers, timeline
@@ -292,7 +293,7 @@ function showFacts() {
         return one;
     }));
     $("time").value = shown;
-    $("at").replaceChildren(`${shown}`, Object.assign(document.createElement("span"), { textContent: ` / ${last}   ${((shown - 1) / room.fps).toFixed(2)} s` }));
+    $("at").replaceChildren(`${shown}`, ...[` / ${last}`, `   ${((shown - 1) / room.fps).toFixed(2)} s`].map((textContent) => Object.assign(document.createElement("span"), { textContent })));
     $("from").textContent = shown;
     writeCommand();
     showVertex();
@@ -408,7 +409,7 @@ function bind() {
         $("command").select();
         await navigator.clipboard?.writeText($("command").value).catch(() => document.execCommand("copy"));
         $("copy").textContent = "Copied";
-        setTimeout(() => { $("copy").textContent = "Copy the command"; }, 1500);
+        setTimeout(() => { $("copy").textContent = "Copy"; }, 1500);
     });
     $("vertex").querySelector("button").addEventListener("click", forget);
     $("play").addEventListener("click", () => play(!playing));

@@ -1,0 +1,122 @@
+// Chromium and Firefox behind the same few words. Both are the system's own, and draw without a card.
+//
+// Chromium is driven by playwright-core. It cannot drive an unchanged Firefox, so that one is spoken to directly in
+// WebDriver BiDi, in a window of Xvfb: without a window Firefox has no WebGL here. Needs node --experimental-websocket.
+import { spawn } from "node:child_process";
+import { existsSync } from "node:fs";
+import { mkdtemp, rm, writeFile } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { chromium } from "playwright-core";
+
+export const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
+const FIREFOX = process.env.FIREFOX ?? "/usr/bin/firefox-esr";
+export const CHROMIUM_ARGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const PATIENCE = 60_000;
+const KEYS = { Escape: "\uE00C", Home: "\uE011", End: "\uE010", ArrowLeft: "\uE012", ArrowRight: "\uE014" };
+
+async function chromiumPage() {
+    const browser = await chromium.launch({ executablePath: CHROMIUM, args: CHROMIUM_ARGS });
+    const page = await browser.newPage({ viewport: { width: 1100, height: 700 } }), errors = [];
+    page.on("pageerror", (error) => errors.push(error.message));
+    return {
+        errors,
+        open: (address) => page.goto(address),
+        evaluate: (call, argument) => page.evaluate(call, argument),
+        size: (width, height) => page.setViewportSize({ width, height }),
+        async drag(from, to) {
+            await page.mouse.move(...from);
+            await page.mouse.down();
+            await page.mouse.move(...to, { steps: 3 });
+            await page.mouse.up();
+        },
+        key: (name) => page.keyboard.press(name),
+        picture: async (path) => { await page.screenshot({ path }); },
+        close: () => browser.close(),
+    };
+}
+
+/** Sends commands and hands answers to those who asked. */
+class Session {
+    constructor(socket) {
+        this.socket = socket;
+        this.asked = new Map();
+        this.number = 0;
+        socket.addEventListener("message", ({ data }) => {
+            const answer = JSON.parse(data), { resolve, reject } = this.asked.get(answer.id) ?? {};
+            this.asked.delete(answer.id);
+            if (answer.type === "success") resolve?.(answer.result);
+            else if (answer.type === "error") reject?.(new Error(answer.message));
+        });
+    }
+    send(method, params) {
+        const id = ++this.number;
+        this.socket.send(JSON.stringify({ id, method, params }));
+        return new Promise((resolve, reject) => this.asked.set(id, { resolve, reject }));
+    }
+}
+
+async function firefoxPage() {
+    const profile = await mkdtemp(join(tmpdir(), "singe-firefox-"));
+    await writeFile(join(profile, "user.js"), 'user_pref("webgl.force-enabled", true);\nuser_pref("app.update.enabled", false);\n');
+    const program = [FIREFOX, "--remote-debugging-port", "0", "--profile", profile, "--no-remote", "about:blank"];
+    const process = spawn("xvfb-run", ["-a", "-s", "-screen 0 1600x1200x24", ...program], { stdio: ["ignore", "ignore", "pipe"], detached: true });
+    const url = await new Promise((resolve, reject) => {
+        let said = "";
+        process.stderr.on("data", (text) => {
+            said += text;
+            const [, address] = /WebDriver BiDi listening on (ws:\S+)/.exec(said) ?? [];
+            if (address) resolve(`${address}/session`);
+        });
+        process.on("exit", () => reject(new Error(`Firefox ended: ${said.slice(-400)}`)));
+        setTimeout(() => reject(new Error("Firefox does not listen")), PATIENCE).unref();
+    });
+    const socket = new WebSocket(url);
+    await new Promise((resolve, reject) => { socket.onopen = resolve; socket.onerror = reject; });
+    const session = new Session(socket);
+    await session.send("session.new", { capabilities: {} });
+    const context = (await session.send("browsingContext.getTree", {})).contexts[0].context;
+    const act = (actions) => session.send("input.performActions", { context, actions });
+    const page = {
+        errors: [],
+        open: (url) => session.send("browsingContext.navigate", { context, url, wait: "complete" }),
+        async evaluate(call, argument) {
+            const expression = `(async () => JSON.stringify(await (${call})(${JSON.stringify(argument) ?? ""})) ?? "null")()`;
+            const answer = await session.send("script.evaluate", { expression, target: { context }, awaitPromise: true });
+            if (answer.type === "exception") throw new Error(answer.exceptionDetails.text);
+            return JSON.parse(answer.result.value);
+        },
+        size: (width, height) => session.send("browsingContext.setViewport", { context, viewport: { width, height } }),
+        drag: ([x, y], [u, v]) => act([{ type: "pointer", id: "mouse", actions: [
+            { type: "pointerMove", x: Math.round(x), y: Math.round(y) }, { type: "pointerDown", button: 0 },
+            { type: "pointerMove", x: Math.round(u), y: Math.round(v), duration: 60 }, { type: "pointerUp", button: 0 },
+        ] }]),
+        key: (name) => act([{ type: "key", id: "keys", actions: ["keyDown", "keyUp"].map((type) => ({ type, value: KEYS[name] ?? name })) }]),
+        async picture(path) {
+            const { data } = await session.send("browsingContext.captureScreenshot", { context });
+            await writeFile(path, Buffer.from(data, "base64"));
+        },
+        async close() {
+            const ended = new Promise((resolve) => process.once("exit", resolve));
+            await session.send("browser.close", {}).catch(() => {});
+            await ended;
+            await rm(profile, { recursive: true, force: true, maxRetries: 5 });
+        },
+    };
+    await page.size(1100, 700);
+    return page;
+}
+
+/** The browsers that are here, by name. */
+export const BROWSERS = Object.fromEntries(
+    [["Chromium", CHROMIUM, chromiumPage], ["Firefox", FIREFOX, firefoxPage]].filter(([, path]) => existsSync(path)).map(([name, , open]) => [name, open]),
+);
+
+/** Waits until what the page computes is true, and returns it. */
+export async function until(page, call, argument, what = String(call)) {
+    for (const end = Date.now() + PATIENCE; Date.now() < end; await new Promise((resolve) => setTimeout(resolve, 60))) {
+        const value = await page.evaluate(call, argument);
+        if (value) return value;
+    }
+    throw new Error(`it did not happen: ${what}`);
+}

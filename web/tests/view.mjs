@@ -1,0 +1,187 @@
+// Looks at a burn by `singe view` in the browsers that are here:
+// node --experimental-websocket tests/view.mjs [--pictures FOLDER]
+//
+// SINGE=PROGRAM, build/singe without it. It burns a coarse letter first, and then all cases look at the same cache.
+import assert from "node:assert/strict";
+import { execFileSync, spawn } from "node:child_process";
+import { mkdir, mkdtemp, rm } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { createInterface } from "node:readline";
+import { BROWSERS, until } from "./browsers.mjs";
+
+const words = process.argv.slice(2), pictures = words[0] === "--pictures" ? words[1] : null;
+const ROOT = new URL("../../", import.meta.url).pathname, SINGE = process.env.SINGE ?? `${ROOT}build/singe`;
+const FRAMES = 30, SIZES = [[1100, 700], [360, 740], [740, 360]];
+const work = await mkdtemp(join(tmpdir(), "singe-view-test-")), cache = join(work, "letter");
+let failures = 0;
+
+/** `singe view` with these words, and the address that it prints. */
+async function view(...args) {
+    const process = spawn(SINGE, ["view", ...args], { stdio: ["ignore", "pipe", "inherit"] });
+    const [address] = await new Promise((resolve, reject) => {
+        createInterface(process.stdout).once("line", (line) => resolve([line]));
+        process.once("exit", () => reject(new Error("singe view ended")));
+    });
+    return { address, end: () => new Promise((resolve) => { process.once("exit", resolve); process.kill("SIGINT"); }) };
+}
+
+const state = (page) => page.evaluate(() => globalThis.view.state);
+const click = (page, selector) => page.evaluate((s) => document.querySelector(s).click(), selector);
+const textOf = (page, selector) => page.evaluate((s) => document.querySelector(s).textContent, selector);
+const ready = async (page, address, quality = 0.25) => {
+    await page.open(address);
+    await until(page, () => Boolean(globalThis.view), null, "the page starts");
+    await page.evaluate((q) => globalThis.view.quality(q), quality);
+    await until(page, () => document.querySelector("#view").classList.contains("ready"), null, "a frame is shown");
+};
+const goTo = async (page, frame) => {
+    await page.evaluate((f) => globalThis.view.goTo(f), frame);
+    await until(page, (f) => globalThis.view.state.shown === f, frame, `frame ${frame} is shown`);
+};
+/** The mean red, green and blue of what is drawn. */
+const colour = (page) => page.evaluate(() => {
+    const { stage, camera } = globalThis.view, small = document.createElement("canvas"), [w, h] = [64, 40];
+    Object.assign(small, { width: w, height: h });
+    stage.draw(camera);
+    const pen = small.getContext("2d");
+    pen.drawImage(document.querySelector("#view"), 0, 0, w, h);
+    const { data } = pen.getImageData(0, 0, w, h);
+    return [0, 1, 2].map((c) => { let sum = 0; for (let i = c; i < data.length; i += 4) sum += data[i]; return sum / (w * h); });
+});
+const apart = (a, b) => Math.max(...a.map((v, i) => Math.abs(v - b[i])));
+/** What stands outside the window, or over another card. */
+const outside = (page) => page.evaluate(() => [...document.querySelectorAll("header, aside, footer, footer button, #at, #values, aside > :not([hidden])")].filter((e) => {
+    const box = e.getBoundingClientRect();
+    return box.width > 0 && (box.left < -1 || box.right > innerWidth + 1 || (box.bottom > innerHeight + 1 && !e.closest("aside")));
+}).map((e) => e.id || e.className || e.tagName));
+
+const CASES = {
+    async "the cache opens at its first frame and is scrubbed to its last"(page, { address }) {
+        await ready(page, address);
+        assert.deepEqual([(await state(page)).shown, (await state(page)).last], [1, FRAMES]);
+        const before = await colour(page);
+        await page.evaluate((f) => { const time = document.querySelector("#time"); time.value = f; time.dispatchEvent(new Event("input")); }, FRAMES);
+        await until(page, (f) => globalThis.view.state.shown === f, FRAMES, "the last frame is shown");
+        const after = await colour(page);
+        assert.ok(after[0] > before[0] + 3, `red ${before[0].toFixed(1)} before the fire, ${after[0].toFixed(1)} in it`);
+    },
+    async "keys go through time, and the plots go with it"(page) {
+        await page.key("Home");
+        await until(page, () => globalThis.view.state.shown === 1, null, "Home");
+        await page.key("ArrowRight");
+        await until(page, () => globalThis.view.state.shown === 2, null, "an arrow");
+        const early = await textOf(page, "#values");
+        await page.key("End");
+        await until(page, (f) => globalThis.view.state.shown === f, FRAMES, "End");
+        assert.notEqual(await textOf(page, "#values"), early);
+        assert.equal((await state(page)).stats, FRAMES);
+    },
+    async "each layer has its own colours and legend"(page) {
+        await goTo(page, FRAMES);
+        const seen = [];
+        for (const layer of ["paper", "temperature", "char", "strain"]) {
+            await click(page, `[data-layer=${layer}]`);
+            const one = await colour(page), legend = await page.evaluate(() => !document.querySelector("#legend").hidden);
+            assert.equal(legend, layer !== "paper");
+            for (const [other, there] of seen) assert.ok(apart(one, there) > 1, `${layer} looks like ${other}`);
+            seen.push([layer, one]);
+        }
+        await click(page, "[data-layer=paper]");
+        const lit = await colour(page);
+        await click(page, "#fire");
+        assert.ok(lit[0] > (await colour(page))[0] + 1, "the flames are switched off");
+        await click(page, "#fire");
+    },
+    async "dragging turns the view, and the camera comes home"(page) {
+        const eye = () => page.evaluate(() => globalThis.view.camera.eye), home = await eye();
+        await page.drag([500, 300], [620, 280]);
+        assert.notDeepEqual(await eye(), home);
+        await click(page, "#home");
+        assert.deepEqual(await eye(), home);
+    },
+    async "a vertex tells its story over all frames"(page) {
+        const at = await page.evaluate(() => { const { stage, camera } = globalThis.view; return stage.project(camera, [-0.05, 0.05, 0.001]); });
+        await page.drag(at, at);
+        const { picked } = await state(page);
+        assert.ok(picked, "a click on the letter picks a vertex");
+        await until(page, (f) => globalThis.view.state.picked?.frames === f, FRAMES, "all frames are asked for");
+        assert.match(await textOf(page, "#series"), /Temperature\d+ °CMass\d+ %Strain/);
+        await until(page, () => !document.querySelector("#mark").hidden, null, "the vertex is marked");
+        await page.key("Escape");
+        assert.equal((await state(page)).picked, null);
+    },
+    async "the branch's command burns"(page) {
+        await goTo(page, 12);
+        await click(page, "#branch");
+        await page.evaluate(() => { const pace = document.querySelector("#sliders [data-key=pace]"); pace.value = 9; pace.dispatchEvent(new Event("input")); });
+        const command = await page.evaluate(() => document.querySelector("#command").value), branch = join(work, "branch");
+        assert.match(command, /--from \S+:12 -o \S+-12 --set pace=9$/);
+        const [, ...args] = command.replace(/-o \S+/, `-o ${branch} --force`).split(" ");
+        execFileSync(SINGE, [...args, "--frames", "14", "--no-preview", "--set", "sheets.0.grid.cells=[42, 59]"], { cwd: ROOT, stdio: "pipe" });
+        await click(page, "#branch");
+    },
+    async "a picture of what is seen is saved"(page) {
+        const size = await page.evaluate(() => new Promise((resolve) => {
+            const make = URL.createObjectURL;
+            URL.createObjectURL = (blob) => {
+                URL.createObjectURL = make;
+                blob.arrayBuffer().then((b) => resolve([b.byteLength, ...new Uint8Array(b, 0, 4)]));
+                return make.call(URL, blob);
+            };
+            document.querySelector("#still").click();
+        }));
+        assert.deepEqual(size.slice(1), [0x89, 0x50, 0x4e, 0x47]);
+        assert.ok(size[0] > 5000, `${size[0]} bytes`);
+    },
+    async "nothing stands outside the window, from a phone to a wide screen"(page, _, name) {
+        await goTo(page, 24);
+        for (const [width, height] of SIZES) {
+            await page.size(width, height);
+            if (pictures) await page.evaluate(() => globalThis.view.quality(1));
+            await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(resolve, 150)))));
+            assert.deepEqual(await outside(page), [], `${width} x ${height}`);
+            if (pictures) await page.picture(`${pictures}/view-${name}-${width}.png`);
+            await click(page, "[data-layer=temperature]");
+            await click(page, "#branch");
+            assert.deepEqual(await outside(page), [], `${width} x ${height} with a branch`);
+            if (pictures) await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 400)));
+            if (pictures) await page.picture(`${pictures}/view-${name}-${width}-branch.png`);
+            await click(page, "#branch");
+            await click(page, "[data-layer=paper]");
+        }
+        await page.size(...SIZES[0]);
+        await page.evaluate(() => globalThis.view.quality(0.25));
+    },
+    async "a scene burns while one looks"(page) {
+        const live = await view("examples/letter", "--frames", "8", "--set", "sheets.0.grid.cells=[30, 42]");
+        await ready(page, live.address);
+        await until(page, () => globalThis.view.state.shown === 8 && !globalThis.view.state.burning, null, "the last frame is shown as it burns");
+        assert.equal(await textOf(page, "#status"), "8 frames burnt");
+        await live.end();
+    },
+};
+
+if (pictures) await mkdir(pictures, { recursive: true });
+execFileSync(SINGE, ["run", "examples/letter", "-o", cache, "--no-preview", "--frames", String(FRAMES), "--set", "sheets.0.grid.cells=[42, 59]", "--set", "pace=10"], { cwd: ROOT, stdio: "pipe" });
+process.chdir(ROOT);
+for (const [name, open] of Object.entries(BROWSERS)) {
+    const served = await view(cache), page = await open();
+    for (const [title, run] of Object.entries(CASES)) {
+        const begun = Date.now();
+        try {
+            await run(page, served, name.toLowerCase());
+            console.log(`${name}: ${title} (${((Date.now() - begun) / 1000).toFixed(1)} s)`);
+        } catch (error) {
+            failures++;
+            console.log(`FAILED ${name}: ${title}\n  ${String(error.message).split("\n").slice(0, 6).join("\n  ")}`);
+        }
+    }
+    for (const message of page.errors) { failures++; console.log(`FAILED ${name}: error on the page: ${message}`); }
+    await page.close();
+    await served.end();
+}
+await rm(work, { recursive: true, force: true });
+for (const name of ["Chromium", "Firefox"]) if (!BROWSERS[name]) console.log(`${name} is not here, and was left out`);
+console.log(`${Object.keys(BROWSERS).join(", ") || "no browser is here"}: ${failures ? `${failures} failures` : "all is well"}`);
+process.exitCode = failures || !Object.keys(BROWSERS).length ? 1 : 0;
