@@ -9,9 +9,9 @@ shared library of the Python package (Windows: the DLL; WebAssembly has none).
 
 All are built with SINGE_PORTABLE_MATH, as C libraries differ in the last digits of exp and others. The measure is what
 hash_runs prints here, built by the preset "portable". Windows runs under wine, 64-bit Arm Linux under qemu; macOS is
-built, not run; WebAssembly runs under node. A system whose compiler or emulator is missing is skipped, with a message; --install gets them first
-(Debian's packages, and Zig from PyPI into the build folder). The last line counts. Fails if a build fails, a program
-does, a run does too little, or a hash differs.
+built, not run; WebAssembly runs under wasmtime. A system whose compiler or emulator is missing is skipped, with a
+message; --install gets them first (Debian's packages, and Zig and wasmtime from PyPI into the build folder). The last
+line counts. Fails if a build fails, a program does, a run does too little, or a hash differs.
 """
 import argparse
 import os
@@ -20,15 +20,16 @@ import shutil
 import subprocess
 import sys
 
-# preset: what to install, compilers, emulators, whether it runs
+# preset: what to install, compilers, emulators (None: it is not run)
 SYSTEMS = {
     "windows": (["gcc-mingw-w64-x86-64-win32", "wine64"], ["x86_64-w64-mingw32-gcc-win32"],
                 ["wine64", "wine", "/usr/lib/wine/wine64"]),
     "arm64": (["gcc-aarch64-linux-gnu", "libc6-dev-arm64-cross", "qemu-user"], ["aarch64-linux-gnu-gcc"],
               ["qemu-aarch64", "qemu-aarch64-static"]),
-    "macos": (["python3-venv"], [], None),  # for Zig's folder
-    "wasm": (["clang", "lld", "wasi-libc", "libclang-rt-14-dev-wasm32", "nodejs"], ["wasm-ld"], ["node"]),
+    "macos": (["python3-venv"], [], None),
+    "wasm": (["clang", "lld", "wasi-libc", "libclang-rt-14-dev-wasm32", "python3-venv"], ["wasm-ld"], []),
 }
+FROM_PYPI = {"macos": ("zig", "ziglang"), "wasm": ("wasmtime", "wasmtime")}  # folder and lock, module
 OWN = {"arm64": ["neon"], "windows": ["v2", "v3", "v4"], "wasm": ["simd128"]}  # sets of instructions
 PLAIN = ["--instructions", "plain"]
 
@@ -49,14 +50,19 @@ def output(command, environment=None, used=None):
     return done.stdout.replace("\r", "").splitlines()
 
 
-def zig(build):
-    """How to call Zig: SINGE_ZIG, a module of this Python, or the one that --install put there; None without."""
-    if os.environ.get("SINGE_ZIG"):
-        return os.environ["SINGE_ZIG"]
-    for python in filter(shutil.which, (build / "zig/bin/python3", sys.executable)):
-        if subprocess.run([python, "-m", "ziglang", "version"], capture_output=True).returncode == 0:
-            return f"{python} -m ziglang"
+def python_with(system, build):
+    """The Python that has what a system needs from PyPI: the one that --install made, or this one. None without."""
+    folder, module = FROM_PYPI[system]
+    for python in filter(shutil.which, (build / folder / "bin/python3", sys.executable)):
+        if subprocess.run([python, "-c", f"import {module}"], capture_output=True).returncode == 0:
+            return str(python)
     return None
+
+
+def zig(build):
+    """How to call Zig: SINGE_ZIG, or a module of a Python; None without."""
+    python = python_with("macos", build)
+    return os.environ.get("SINGE_ZIG") or (python and f"{python} -m ziglang")
 
 
 def install(systems, build):
@@ -67,10 +73,12 @@ def install(systems, build):
         subprocess.run([*root, "apt-get", "update", "-q"], check=True)
         subprocess.run([*root, *environment, "apt-get", "install", "-q", "-y", "--no-install-recommends", *packages],
                        check=True)
-    if "macos" in systems and not zig(build):
-        subprocess.run([sys.executable, "-m", "venv", build / "zig"], check=True)
-        lock = pathlib.Path(__file__).resolve().parents[1] / "locks/zig.txt"
-        subprocess.run([build / "zig/bin/pip", "install", "-q", "--require-hashes", "-r", lock], check=True)
+    for system, (name, _) in FROM_PYPI.items():
+        if system not in systems or python_with(system, build) or (system == "macos" and zig(build)):
+            continue
+        subprocess.run([sys.executable, "-m", "venv", build / name], check=True)
+        lock = pathlib.Path(__file__).resolve().parents[1] / f"locks/{name}.txt"
+        subprocess.run([build / name / "bin/pip", "install", "-q", "--require-hashes", "-r", lock], check=True)
 
 
 def missing(system, build):
@@ -80,6 +88,8 @@ def missing(system, build):
     _, compilers, emulators = SYSTEMS[system]
     if not any(map(shutil.which, compilers)):
         return " or ".join(compilers)
+    if system == "wasm":
+        return None if python_with(system, build) else "PyPI's wasmtime"
     return None if any(map(shutil.which, emulators)) else " or ".join(emulators)
 
 
@@ -98,11 +108,11 @@ def built(system, source, build):
     return folder / f"tests/platforms/hash_runs{end}", folder / f"python/singe/hash_runs_shared{end}"
 
 
-def emulator(system):
+def emulator(system, build):
+    if system == "wasm":
+        return [python_with(system, build), pathlib.Path(__file__).with_name("run_wasi.py")]
     name = next(filter(None, map(shutil.which, SYSTEMS[system][2])))
-    more = {"arm64": ["-L", "/usr/aarch64-linux-gnu"],
-            "wasm": ["--no-warnings", str(pathlib.Path(__file__).with_name("run_wasi.mjs"))]}
-    return [name, *more.get(system, [])]
+    return [name, "-L", "/usr/aarch64-linux-gnu"] if system == "arm64" else [name]
 
 
 def compare(name, lines, wanted):
@@ -140,7 +150,7 @@ def try_runs(system, build, program, shared, wanted, recordings):
     """Runs a system's programs by its emulator, with the instructions that it has and with some that it lacks."""
     quiet = dict(os.environ, WINEDEBUG="-all", WINEPREFIX=str(build / "wine"))
     views = [line for line in wanted if "snapshot" not in line]
-    call, own = emulator(system), OWN[system]
+    call, own = emulator(system, build), OWN[system]
     compare(f"{system}, the best instructions", output([*call, program], quiet, own), wanted)
     compare(f"{system}, plain loops", output([*call, program, *PLAIN], quiet, ["plain"]), views)
     named = own[0]
