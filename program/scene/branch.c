@@ -16,6 +16,7 @@ static const char *const changeable[] = {
     "name",
     "frames",
     "pace",
+    "burn_by",
     "gravity",
     "ambient_temperature",
     "wind",
@@ -343,8 +344,10 @@ SingeResult scene_branch(SceneWhole scene, SceneWhole before, int frame, SingeSi
             path = "gravity";
             result = singe_sim_set_gravity(sim, now->gravity);
         }
-        // one that has keys is where they have led
-        if (!result && (now->pace != was->pace || before.scene->pace_count)) {
+        // one that has keys, or follows the fire, is where that has led
+        const SceneBurnBy *by = &scene.scene->burn_by, *by_before = &before.scene->burn_by;
+        const bool led = before.scene->pace_count || (by_before->given && !by->given);
+        if (!result && (now->pace != was->pace || led)) {
             path = "pace";
             result = singe_sim_set_pace(sim, now->pace);
         }

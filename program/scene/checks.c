@@ -202,6 +202,9 @@ void finish_scene(Reader *reader, const YamlNode *map, void *object) {
 
     check_times(reader, node_find(map, "pace"), scene->paces, sizeof *scene->paces, scene->pace_count);
     if (scene->pace_count) scene->sim.pace = fmaxf(scene->paces[0].value, SCENE_PACE_MIN);
+    if (scene->pace_count && scene->burn_by.given)
+        complain(reader, node_find(map, "burn_by")->key_location,
+                 "'burn_by' sets the pace, so 'pace' has no keys; give one number");
 
     bool many_sheets = sheets && sheets->count > 1000; // comparing their names would take long
     if (sheets && sheets->kind == NODE_LIST) {

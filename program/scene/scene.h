@@ -216,6 +216,14 @@ typedef struct SceneCheckpoints {
     float megabytes; ///< 0: any number
 } SceneCheckpoints;
 
+/// How much has burnt by when; the pace follows.
+typedef struct SceneBurnBy {
+    bool given;
+    SceneLocation location;
+    float fraction; ///< of the initial mass
+    int frame;
+} SceneBurnBy;
+
 typedef struct Scene {
     char *name;          ///< of the outputs; the scene file's name without its ending by default
     int frames;          ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
@@ -224,6 +232,7 @@ typedef struct Scene {
     int gas_detail;      ///< factor by which the cells of gas_detail/ are smaller; 1: a run has no such files
     uint32_t pace_count; ///< 0: the pace is sim.pace throughout
     SingeValueKey *paces;
+    SceneBurnBy burn_by;
     bool tearing; ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
     /// time_step is 1/(fps * steps), and velocity_steps is steps; hooks and thread_count are not the scene's
     SingeSimDef sim;

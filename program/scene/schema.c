@@ -127,6 +127,22 @@ static const Schema schema_pace = {.title = "a pace's entry",
                                    .doc =
                                        "The pace of the fire at a time, interpolated linearly. Times must increase."};
 
+static const SchemaRow burn_by_rows[] = {
+    {"fraction", ROW_FLOAT, DIM_FRACTION, AT(SceneBurnBy, fraction), .flags = ROW_REQUIRED, .min = 1e-3, .max = 1,
+     .doc = "of the mass at the start that is to be burnt or gone (`burnt_fraction` of `stats.csv`)"},
+    {"frame", ROW_INT, DIM_NONE, AT(SceneBurnBy, frame), .flags = ROW_REQUIRED, .min = 2, .max = 1e6,
+     .doc = "by this frame"},
+};
+static SceneLocation *burn_by_location(void *object) { return &((SceneBurnBy *)object)->location; }
+static const Schema schema_burn_by = {
+    .title = "burn_by",
+    .size = sizeof(SceneBurnBy),
+    ROWS(burn_by_rows),
+    .location = burn_by_location,
+    .doc =
+        "The pace follows the fire from frame to frame, between a thousandth and a thousand of `pace`, so that so much "
+        "has burnt by that frame. From then on it is `pace` again."};
+
 #define OF Scene
 #define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
     AS_ROW_AT(#name, TYPE, sim.name, length, dimension, kinds, text, range)
@@ -141,6 +157,8 @@ static const SchemaRow scene_rows[] = {
     {"steps", ROW_INT, DIM_NONE, AT(Scene, steps), WITHIN(1, 100000), .doc = "simulation steps per frame"},
     {"pace", ROW_LIST, DIM_NONE, AT(Scene, paces), EXTRA(Scene, pace_count), .sub = &schema_pace, .flags = ROW_KEYED,
      .doc = "over time: slow motion, haste, and at 0 a fire that stands still; or a number"},
+    {"burn_by", ROW_MAP, DIM_NONE, AT(Scene, burn_by), EXTRA(Scene, burn_by.given), .sub = &schema_burn_by,
+     .doc = "how much is to have burnt by which frame"},
 #include "singe/sim.def"
     {"sheets", ROW_LIST, DIM_NONE, AT(Scene, sheets), EXTRA(Scene, sheet_count), .sub = &schema_sheet,
      .flags = ROW_REQUIRED, .doc = "sheets that burn, at least one"},

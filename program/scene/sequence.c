@@ -222,7 +222,37 @@ static SingeResult follow_pin(SingeSim *sim, SingePinId pin, SceneSequence *sequ
     return result;
 }
 
+/// Once a frame: the pace at which what is left to burn until the frame of `burn_by` burns evenly, if the fire goes on as
+/// it does now. It changes by a quarter a frame at most, so that nobody sees it. It depends on the simulation alone, as
+/// the frames of a run that is resumed or branched have to.
+static SingeResult follow_burn_by(const Scene *scene, SingeSim *sim, int frame, SingeError *error) {
+    static const double change = 1.25, most = 1000;
+    const SceneBurnBy *by = &scene->burn_by;
+    const double base = (double)scene->sim.pace;
+    double pace = base;
+
+    if (frame < by->frame && frame > 1) {
+        const SingeView view = singe_sim_view(sim);
+        double rate = 0, area = 0;
+        for (uint32_t i = 0; i < view.particle_count; i++) {
+            area += (double)view.area[i];
+            if (view.particle_flags[i] & SINGE_ALIVE) rate += (double)view.burn_rate[i] * (double)view.area[i];
+        }
+        const SingeStats stats = singe_sim_stats(sim);
+        const double left = (double)by->fraction - stats.burnt_fraction;
+        const double needed = left * (double)scene->fps / (by->frame - frame), now = area > 0 ? rate / area : 0;
+        const double factor = now > 0 ? needed / now : 1; // nothing burns yet
+        pace = (double)stats.pace * fmin(fmax(factor, 1 / change), change);
+        pace = fmin(fmax(pace, base / most), base * most);
+        pace = fmin(fmax(pace, 1e-6), 1e6);
+    }
+    const SingeResult result = singe_sim_set_pace(sim, (float)pace);
+    if (result) *error = *singe_sim_error(sim);
+    return result;
+}
+
 SingeResult scene_begin_step(const Scene *scene, SingeSim *sim, int frame, int step, SingeError *error) {
+    if (scene->burn_by.given) return step ? SINGE_OK : follow_burn_by(scene, sim, frame, error);
     if (!scene->pace_count) return SINGE_OK;
     const double time = ((double)(frame - 1) + (double)step / scene->steps) / (double)scene->fps;
     const SingeValueKey *keys = scene->paces;

@@ -6,7 +6,7 @@ import re
 import shutil
 import unittest
 
-from support import HAS_PREVIEW, SANITIZED, Case
+from support import HAS_PREVIEW, ROOT, SANITIZED, Case
 
 FRAMES = 6
 # what may change, and which of it a frame later shows
@@ -20,6 +20,7 @@ CHANGES = {
     "no sources": ["sources=[]"],
     "another source": ["sources=[{kind: spot, position: [3 cm, 0, 5 cm], temperature: 1500 K, conductance: 300, "
                        "radius: 2 cm, falloff: 1 cm}]"],
+    "a map": ["sources=[{kind: arrival, texture: map.png, to: 0.2 s}]"],
     "a collider": ["colliders=[{kind: sphere, radius: 2 cm, position: [0, 0, 0]}]"],
     "a pin": ["pins=[{points: [[3 cm, 3 cm, 5 cm]], radius: 5 mm}]"],
     "a material": ["sheets.0.material.ignition_temperature=450 K"],
@@ -30,6 +31,7 @@ class Branch(Case):
     def setUp(self):
         super().setUp()
         self.scene = self.write_scene(frames=FRAMES, cells=8)
+        shutil.copy(os.path.join(ROOT, "examples", "page-hot", "rate.png"), self.path("map.png"))
 
     def whole(self, *args):
         self.run_scene("whole", "--quiet", *args)
@@ -135,6 +137,27 @@ class Branch(Case):
                             ("fast", "number")):
             with self.subTest(wrong):
                 self.assertIn(part, self.run_scene("no", "--set", f"pace={wrong}", expect=2)[1])
+
+    def test_burn_by(self):
+        """So much has burnt by a frame, whether the fire would be faster or slower; then the pace is its own again."""
+        self.whole("--frames", "40")
+        own = float(self.stats("whole")[29]["burnt_fraction"])
+        for goal in (0.3 * own,) if SANITIZED else (0.3 * own, 2 * own):
+            by = f"burn_by={{fraction: {goal}, frame: 30}}"
+            self.run_scene("by", "--force", "--frames", "40", "--set", by, "--set", "checkpoints.every=10")
+            rows = self.stats("by")
+            self.assertLess(abs(float(rows[29]["burnt_fraction"]) / goal - 1), 0.02)
+            self.assertEqual(rows[35]["pace"], self.stats("whole")[0]["pace"])
+            self.branch("b", 15, by, of="by", args=("--force", "--frames", "40"))
+            self.same("b", "by")
+        self.branch("free", 15, of="by", args=("--frames", "40"))  # without it the pace is the scene's
+        self.assertEqual(self.stats("free")[20]["pace"], self.stats("whole")[0]["pace"])
+        for wrong, part in (("burn_by={fraction: 2, frame: 9}", "fraction"), ("burn_by={fraction: 50 %}", "frame"),
+                            ("burn_by={fraction: 50 %, frame: 1}", "frame")):
+            with self.subTest(wrong):
+                self.assertIn(part, self.run_scene("no", "--set", wrong, expect=2)[1])
+        keys = ("--set", "pace=[{time: 0, value: 1}, {time: 1, value: 2}]", "--set", "burn_by={fraction: 50 %, frame: 9}")
+        self.assertIn("'pace' has no keys", self.run_scene("no", *keys, expect=2)[1])
 
     def test_a_run_is_its_scene(self):
         """The folder of a run stands for the scene that it has burnt, wherever the command runs."""
