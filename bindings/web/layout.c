@@ -253,6 +253,9 @@ static const LayoutField fields[] = {
     FIELD(front_speed, 1, DOUBLE),
     FIELD(tears, 1, UINT32),
     FIELD(ledgers_close, 1, BOOL),
+    FIELD(arrival_error, 1, DOUBLE),
+    FIELD(arrival_missed, 1, UINT32),
+    FIELD(pace, 1, FLOAT),
 #undef STRUCT
 #undef STRUCT_NAME
 #define STRUCT SingeEvent

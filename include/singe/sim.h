@@ -300,6 +300,11 @@ typedef struct SingeStats {
     /// Whether both ledger errors are at most SINGE_LEDGER_BOUND. They exceed it if steps of fire are so short that
     /// temperatures change by less than a float's last digit: rounding is correct only on average.
     bool ledgers_close;
+    /// s, of the arrival maps that are active: the error of the time of ignition that 95 % of the particles do not exceed,
+    /// of those that have ignited; 0 without a map.
+    double arrival_error;
+    uint32_t arrival_missed; ///< particles that are more than a step late, or have ignited where the map says never
+    float pace;              ///< in use
 } SingeStats;
 
 /// Fills `struct_size` bytes, the caller's sizeof.

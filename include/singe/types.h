@@ -70,6 +70,7 @@ typedef enum SingeSourceKind {
     SINGE_SOURCE_TEXTURE = 1,  ///< a flux drawn on the sheet: over uv, black none, white full
     SINGE_SOURCE_SPOT = 2,     ///< a hot ball that stands still
     SINGE_SOURCE_CALLBACK = 3, ///< a function of the caller
+    SINGE_SOURCE_ARRIVAL = 4,  ///< a map drawn on the sheet of when the fire's front is where
 } SingeSourceKind;
 
 struct SingeView;
@@ -86,10 +87,11 @@ typedef void SingeFluxFn(void *context, const struct SingeView *view, float *flu
 /// a sheet has two layers, and takes up twice as much per square metre.
 ///
 /// Defaults: kind SINGE_SOURCE_SPOT, end INFINITY, temperature 1200, conductance 150, radius 0.005, falloff 0.01, flux
-/// 30e3; all else 0 or NULL.
+/// 30e3, arrival_to 1, lead 0.1; all else 0 or NULL.
 typedef struct SingeSourceDef {
     size_t struct_size;
-    /// ball: a hot ball on a path; spot: a hot ball that stands still; texture: a flux drawn on the sheet
+    /// ball: a hot ball on a path; spot: a hot ball that stands still; texture: a flux drawn on the sheet; arrival: a
+    /// map drawn on the sheet of when the fire's front is where
     SingeSourceKind kind;
     float start;       ///< s, any, also infinite; time at which it starts
     float end;         ///< s, any, also infinite; time at which it ends; inf: never
@@ -102,7 +104,7 @@ typedef struct SingeSourceDef {
     float power;
     uint32_t path_count;      ///< of ball and spot; 0: at rest at position. A spot has at most 1
     const SingePoseKey *path; ///< [path_count] positions only
-    SingeTexture texture;     ///< texture source
+    SingeTexture texture;     ///< texture source, or arrival map
     /// W/m2, texture, finite; into each of the sheet's two layers where the texture is white; times texture and
     /// strength at most 1e15 W/m2. Below 0 it cools, but not below 1 K
     float flux;
@@ -112,6 +114,11 @@ typedef struct SingeSourceDef {
     void *callback_context;        ///< its first argument
     float position[3];             ///< m, of a ball or spot without a path
     void *user_data;               ///< for the caller's use; see singe_sim_source_user_data
+    float arrival_from;            ///< s, arrival, 0 to 1e9; when the front is where the map is black
+    float arrival_to; ///< s, arrival, 0 to 1e9; when it is where the map is white; pure white never ignites
+    /// s, arrival, 1e-3 to 1e6; the sheet is scorched this long before the front arrives; longer makes a wider brown
+    /// rim
+    float lead;
 } SingeSourceDef;
 
 SINGE_API void singe_init_source(SingeSourceDef *def, size_t struct_size);

@@ -185,6 +185,12 @@ static void print_summary(Run *run) {
     if (run->job.scene->pace_count) front[0] = 0;
     console_note(run->console, "%shottest %.0f C, %.0f %% burnt, %u pieces, %u particles left", front,
                  run->totals->hottest - 273.15, 100 * stats.burnt_fraction, stats.pieces, stats.particles);
+    bool mapped = false;
+    for (uint32_t i = 0; i < run->job.scene->source_count; i++)
+        mapped = mapped || run->job.scene->sources[i].def.kind == SINGE_SOURCE_ARRIVAL;
+    if (mapped)
+        console_note(run->console, "the front kept to its map within %.1f ms, %u of %u particles missed it",
+                     1e3 * stats.arrival_error, stats.arrival_missed, singe_sim_counts(run->sim).particles);
     const double ignition = scene_ignition(run->job.scene);
     if (strcmp(record->result, "complete") == 0 && run->job.scene->frames > 1 && isfinite(ignition) &&
         run->totals->ignited == 0 && stats.burnt_fraction == 0)

@@ -162,7 +162,7 @@ static double heat_of(const Scene *scene, const SceneSource *source, const Place
     }
     double conductance = 0;
     for (uint32_t i = 0; i < scene->source_count; i++)
-        if (scene->sources[i].def.kind != SINGE_SOURCE_TEXTURE)
+        if (scene->sources[i].def.kind != SINGE_SOURCE_TEXTURE && scene->sources[i].def.kind != SINGE_SOURCE_ARRIVAL)
             conductance += (double)scene->sources[i].def.conductance;
     const double rest = exp(-conductance * time / place->capacity);
     return fmax(place->start, (double)def->temperature - ((double)def->temperature - place->start) * rest);
@@ -172,7 +172,8 @@ static double heat_of(const Scene *scene, const SceneSource *source, const Place
 /// else lights the scene: a weaker source may warm it.
 static bool source_lights(const Scene *scene, const SceneAssets *assets, const SceneSource *source, const Place *places,
                           bool lit, const SingeLog *log) {
-    const bool everywhere = source->def.kind == SINGE_SOURCE_TEXTURE;
+    const bool mapped = source->def.kind == SINGE_SOURCE_ARRIVAL;
+    const bool everywhere = mapped || source->def.kind == SINGE_SOURCE_TEXTURE;
     // a flame of its own is some 0.24 m high at 1 kW, and its hot gas rises farther
     const bool flame = !everywhere && scene->sim.gas.enabled && source->def.power > 0;
     const double plume = flame ? 0.5 * pow(1e-3 * (double)source->def.power, 0.4) : 0;
@@ -210,7 +211,7 @@ static bool source_lights(const Scene *scene, const SceneAssets *assets, const S
 
         touches = true;
         const double heat = heat_of(scene, source, &places[i]);
-        if (places[i].burns && (flame || heat >= places[i].ignition)) return true;
+        if (places[i].burns && (flame || mapped || heat >= places[i].ignition)) return true;
         hottest = fmax(hottest, heat);
         ignition = fmin(ignition, places[i].ignition);
     }

@@ -128,6 +128,8 @@ static SceneLocation *source_location(void *object) { return &((SceneSource *)ob
 #define OF SceneSource
 #define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
     AS_ROW_AT(#name, TYPE, def.name, length, dimension, kinds, text, range)
+#define SINGE_APART(key, TYPE, name, length, dimension, standard, range, kinds, text) \
+    AS_ROW_AT(key, TYPE, def.name, length, dimension, kinds, text, range)
 static const SchemaRow source_rows[] = {
 #include "singe/source.def"
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
@@ -139,6 +141,10 @@ static const SchemaRow source_rows[] = {
      .sub = &schema_key, .doc = "its trajectory; this or `position`"},
     {"texture", ROW_FILE, DIM_NONE, AT(SceneSource, texture), .kinds = BIT(SINGE_SOURCE_TEXTURE), .flags = ROW_REQUIRED,
      .doc = "PNG or JPEG over the sheets' uv: white is the full flux, black none"},
+    {"texture", ROW_FILE, DIM_NONE, AT(SceneSource, texture), .kinds = BIT(SINGE_SOURCE_ARRIVAL), .flags = ROW_REQUIRED,
+     .doc =
+         "PNG or JPEG over the sheets' uv: the time of ignition from black, `from`, to the lightest grey, `to`; pure "
+         "white never ignites"},
     {"strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count),
      .kinds = BIT(SINGE_SOURCE_TEXTURE), .min = 0, .max = 1e6, .sub = &schema_strength,
      .doc = "multiplies the flux over time; 1 when not given"},

@@ -172,7 +172,7 @@ SingeResult heat_step(HeatPlan *plan, const StepContext *context, HeatState *hea
     TRY(heat_conduct(&pass, counters, &made, context->error));
 
     heat_blocks(&pass, heat_take_over);
-    heat->heat_in += in + made;
+    heat->heat_in += in + made + heat_arrive(&pass, context->sources);
     heat->heat_lost += lost;
     heat->heat_of_combustion += combustion;
     return SINGE_OK;

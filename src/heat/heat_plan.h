@@ -158,6 +158,12 @@ bool heat_rest_reaches(const HeatRest *rest, const uint8_t *set, uint32_t group)
 /// Sums all sources into the plan's arrays (source.c).
 void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *colliders, const SingeView *view);
 
+/// Value of an arrival map at a point of uv: 0 to 1, or SOURCE_NEVER where it is white (arrival.c).
+float heat_sample_arrival(const SingeTexture *map, float u, float v);
+
+/// Holds temperatures to the arrival maps that are lit, and returns the heat that this gave, J.
+double heat_arrive(HeatPass *pass, const SourceList *sources);
+
 /// Solves the diffusion and leaves new temperatures in plan->next (conduct.c). *made is the heat in J that
 /// the umbrella made.
 SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, SingeError *error);

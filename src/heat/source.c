@@ -11,8 +11,10 @@
 static void source_ball(HeatPass *pass, const Source *source, const SingeView *view);
 static void source_texture(HeatPass *pass, const Source *source, const SingeView *view);
 static void source_callback(HeatPass *pass, const Source *source, const SingeView *view);
+static void source_arrives(HeatPass *pass, const Source *source, const SingeView *view);
 static SingeResult source_check_ball(const SingeSourceDef *def, SingeError *error);
 static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *error);
+static SingeResult source_check_arrival(const SingeSourceDef *def, SingeError *error);
 
 /// A kind of source: what it checks besides the ranges of its fields (NULL: nothing), and how it adds its heat.
 static const struct SourceKind {
@@ -24,6 +26,7 @@ static const struct SourceKind {
     [SINGE_SOURCE_TEXTURE] = {source_check_texture, source_texture, false},
     [SINGE_SOURCE_SPOT] = {source_check_ball, source_ball, true},
     [SINGE_SOURCE_CALLBACK] = {NULL, source_callback, false}, // its function may be set later
+    [SINGE_SOURCE_ARRIVAL] = {source_check_arrival, source_arrives, false},
 };
 
 // --- creating a source ----------------------------------------------------------------------------------
@@ -65,6 +68,17 @@ static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *e
     return SINGE_OK;
 }
 
+static SingeResult source_check_arrival(const SingeSourceDef *def, SingeError *error) {
+    const SingeTexture *map = &def->texture;
+    if (map->width < 1 || map->height < 1 || !map->values) return source_bad(error, "the arrival map is empty");
+    size_t count = (size_t)map->width * (size_t)map->height;
+    for (size_t k = 0; k < count; k++)
+        if (!(map->values[k] >= 0 && map->values[k] <= 1))
+            return error_set(error, SINGE_ERROR_ARGUMENT, "source", (int64_t)k,
+                             "value %lld of the arrival map is not between 0 and 1", (long long)k);
+    return SINGE_OK;
+}
+
 static SingeResult source_check_ball(const SingeSourceDef *def, SingeError *error) {
     if (def->path_count < 1 || !def->path) return source_bad(error, "a ball or spot needs a path");
     if (def->kind == SINGE_SOURCE_SPOT && def->path_count != 1)
@@ -95,8 +109,22 @@ static SingeResult source_set_texture(Memory *memory, const Shell *shell, const 
         mapped = shell->uv[i][0] != 0 || shell->uv[i][1] != 0;
     if (!mapped) return source_bad(error, "a texture needs a sheet with uv");
     if (!NEW(memory, source->texture, shell->particle_count)) return source_no_memory(error);
+    bool arrives = source->def.kind == SINGE_SOURCE_ARRIVAL;
     for (uint32_t i = 0; i < shell->particle_count; i++)
-        source->texture[i] = shell_sample_texture(texture, shell->uv[i][0], shell->uv[i][1]);
+        source->texture[i] =
+            (arrives ? heat_sample_arrival : shell_sample_texture)(texture, shell->uv[i][0], shell->uv[i][1]);
+
+    // sheets without uv have no map
+    for (uint32_t s = 0; s < shell->sheet_count && arrives; s++) {
+        const Sheet *sheet = &shell->sheets[s];
+        bool covered = false;
+        for (uint32_t v = 0; v < sheet->vertex_count && !covered; v++)
+            covered = shell->uv[sheet->vertex_first + v][0] != 0 || shell->uv[sheet->vertex_first + v][1] != 0;
+        for (uint32_t v = 0; v < sheet->vertex_count && !covered; v++)
+            source->texture[sheet->vertex_first + v] = SOURCE_UNMAPPED;
+        for (uint32_t c = 0; c < sheet->cell_count && !covered; c++)
+            source->texture[shell_centre(shell, sheet->cell_first + c)] = SOURCE_UNMAPPED;
+    }
     return SINGE_OK;
 }
 
@@ -121,7 +149,7 @@ SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceD
     SingeResult result = SINGE_OK;
     if (source_has_path(&def)) {
         result = path_set(&source->path, memory, def.path_count, def.path, "source", error);
-    } else if (def.kind == SINGE_SOURCE_TEXTURE) {
+    } else if (def.kind == SINGE_SOURCE_TEXTURE || def.kind == SINGE_SOURCE_ARRIVAL) {
         const SingeTexture *texture = &def.texture;
         float *values;
         bool ok = NEW(memory, source->strength, def.strength_count);
@@ -162,9 +190,19 @@ SingeResult source_check_read(const Shell *shell, const Source *source, SingeErr
     def.strength_count = source->strength_count;
     def.strength = source->strength;
     def.texture = (SingeTexture){(int)shell->particle_count, 1, source->texture};
-    TRY(source_check(&def, error));
-    if (source->texture && def.kind != SINGE_SOURCE_TEXTURE)
-        return source_bad(error, "a texture needs a source of kind texture");
+    bool arrives = def.kind == SINGE_SOURCE_ARRIVAL;
+    if (arrives) { // of its particles a map has more values
+        TRY(def_check(&source_table, &def, error));
+        if (!source->texture) return source_bad(error, "the arrival map is empty");
+        for (uint32_t i = 0; i < shell->particle_count; i++)
+            if (!(source->texture[i] >= 0 && source->texture[i] <= 1) && source->texture[i] != SOURCE_NEVER &&
+                source->texture[i] != SOURCE_UNMAPPED)
+                return source_bad(error, "the arrival map has other values than times");
+    } else {
+        TRY(source_check(&def, error));
+    }
+    if (source->texture && def.kind != SINGE_SOURCE_TEXTURE && !arrives)
+        return source_bad(error, "a texture needs a source of kind texture or arrival");
     return path_check(def.path_count, def.path, "source", error);
 }
 
@@ -248,6 +286,11 @@ static void source_texture(HeatPass *pass, const Source *source, const SingeView
     SourceJob job = {.pass = pass, .source = source, .strength = source->def.flux * strength};
     if (source->texture && job.strength != 0)
         pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_texture_task, &job);
+}
+
+/// A map adds no heat before conduction (arrival.c).
+static void source_arrives(HeatPass *pass, const Source *source, const SingeView *view) {
+    (void)pass, (void)source, (void)view;
 }
 
 static void source_callback(HeatPass *pass, const Source *source, const SingeView *view) {

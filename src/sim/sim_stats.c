@@ -90,6 +90,25 @@ static double stats_front_speed(const SingeSim *sim) {
     return n ? (double)stats_select(sim->sample, n, n / 2) : 0;
 }
 
+/// How well the fire has kept to the arrival maps.
+static void stats_arrival(const SingeSim *sim, SingeStats *stats) {
+    const float *ignited = sim->state.burn.time_ignited;
+    const uint8_t *flags = sim->state.ablate.particle_flags;
+    size_t n = 0;
+    for (uint32_t k = 0; k < sim->sources.count; k++) {
+        const Source *source = &sim->sources.items[k];
+        if (!source_is_lit(source, sim->state.time) || source->def.kind != SINGE_SOURCE_ARRIVAL) continue;
+        for (uint32_t i = 0; i < sim->shell.particle_count; i++) {
+            if (source->texture[i] == SOURCE_UNMAPPED || (ignited[i] < 0 && !(flags[i] & SINGE_ALIVE))) continue;
+            const double due = source_arrival(source, i), h = (double)sim->def.time_step;
+            if (ignited[i] < 0) stats->arrival_missed += due + 1.5 * h < sim->state.time;
+            else if (isinf(due)) stats->arrival_missed++;
+            else if (n < sim->shell.springs[SINGE_BLUE].count) sim->sample[n++] = (float)fabs((double)ignited[i] - due);
+        }
+    }
+    if (n) stats->arrival_error = (double)stats_select(sim->sample, n, (size_t)(0.95 * (double)(n - 1)));
+}
+
 /// Cells with the centre on the wrong side. A cell of no area has no side.
 static uint32_t stats_inverted(const SingeSim *sim) {
     const float(*x)[4] = (const float(*)[4])sim->state.dynamics.position;
@@ -163,6 +182,8 @@ void singe_sim_read_stats(const SingeSim *sim, SingeStats *out, size_t struct_si
     stats.intersecting_cells = dynamics_plan_contacts(sim->dynamics).intersecting;
     stats.tears = state->tear.split_count;
     stats.front_speed = stats_front_speed(sim);
+    stats_arrival(sim, &stats);
+    stats.pace = sim->def.pace;
     for (uint32_t s = 0; s < shell->sheet_count; s++) stats.thickening = fmaxf(stats.thickening, sim->thickening[s]);
     sim_write_result(out, struct_size, &stats, sizeof stats);
 }

@@ -2,6 +2,8 @@
 #ifndef WORLD_SOURCE_H
 #define WORLD_SOURCE_H
 
+#include <math.h>
+
 #include "singe/sim.h"
 #include "world/path.h"
 
@@ -12,9 +14,13 @@ typedef struct Source {
     Path path;
     uint32_t strength_count;
     SingeValueKey *strength;
-    float *texture;       ///< [particle_count] or NULL
+    float *texture;       ///< [particle_count] or NULL; of an arrival map also the two values below
     SingeTexture waiting; ///< own copy of a texture that was added before the commit, until then
 } Source;
+
+/// A particle that an arrival map never ignites, and one of a sheet that it does not cover.
+#define SOURCE_NEVER 2.0f
+#define SOURCE_UNMAPPED (-1.0f)
 
 typedef struct SourceList {
     uint32_t count, capacity;
@@ -24,6 +30,13 @@ typedef struct SourceList {
 /// Whether a slot holds a source that is lit at this time.
 static inline bool source_is_lit(const Source *source, double time) {
     return source->generation && time >= source->def.start && time < source->def.end;
+}
+
+/// When an arrival map ignites a particle that it covers, s; INFINITY: never.
+static inline double source_arrival(const Source *source, uint32_t particle) {
+    const double from = (double)source->def.arrival_from, to = (double)source->def.arrival_to;
+    const float map = source->texture[particle];
+    return map == SOURCE_NEVER ? (double)INFINITY : from + (to - from) * (double)map;
 }
 
 #endif

@@ -527,6 +527,24 @@ class BurningTorus(Example):
         self.assertGreaterEqual(self.rows[-1]["pieces"], 2)
 
 
+class Title(Example):
+    """Fire writes a word, as a map says."""
+
+    NAME = "title"
+
+    def test_writes(self):
+        self.common()
+        last = self.rows[-1]
+        self.say["arrival"] = f"{1e3 * last['arrival_error']:.1f} ms, {last['arrival_missed']:.0f} missed"
+        self.say["burnt"] = f"{last['burnt_fraction']:.2f}"
+        self.report()
+        self.assertTrue(0 < max(self.column("arrival_error")) <= 1.01 / (self.fps * 16)) # a step
+        self.assertEqual(max(self.column("arrival_missed")), 0)
+        self.assertEqual(max(self.column("inverted_cells")), 0)
+        self.assertTrue(0.1 < last["burnt_fraction"] < 0.3) # the word, and not the page
+        self.assertLess(last["ignited"], 0.4 * self.rows[0]["particles"])
+
+
 class SameBytes(Example):
     """Any number of threads, and a run that is killed and goes on, give the same cache."""
 

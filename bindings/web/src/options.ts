@@ -19,8 +19,9 @@ export interface SheetOptions {
 }
 
 export interface SourceOptions {
-    /** ball: a hot ball on a path; spot: a hot ball that stands still; texture: a flux drawn on the sheet */
-    kind?: "ball" | "texture" | "spot";
+    /** ball: a hot ball on a path; spot: a hot ball that stands still; texture: a flux drawn on the sheet; arrival:
+     *  a map drawn on the sheet of when the fire's front is where */
+    kind?: "ball" | "texture" | "spot" | "arrival";
     /** s, any, also infinite; time at which it starts */
     start?: number;
     /** s, any, also infinite; time at which it ends; inf: never */
@@ -39,6 +40,13 @@ export interface SourceOptions {
     /** W/m2, texture, finite; into each of the sheet's two layers where the texture is white; times texture and
      *  strength at most 1e15 W/m2. Below 0 it cools, but not below 1 K */
     flux?: number;
+    /** s, arrival, 0 to 1e9; when the front is where the map is black */
+    arrival_from?: number;
+    /** s, arrival, 0 to 1e9; when it is where the map is white; pure white never ignites */
+    arrival_to?: number;
+    /** s, arrival, 1e-3 to 1e6; the sheet is scorched this long before the front arrives; longer makes a wider
+     *  brown rim */
+    lead?: number;
 }
 
 export interface ColliderOptions {
