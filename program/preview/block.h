@@ -19,7 +19,7 @@ typedef struct Block {
     int x[LANES], y[LANES];
     float turn[LANES][2];
     uint32_t key[LANES];
-    Float3 origin[LANES], direction[LANES], light[LANES], sum[LANES];
+    Float3 origin[LANES], direction[LANES], sum[LANES];
     float time[LANES]; ///< of the ray within the exposure, 0 to 1
     Point point[LANES];
     FireTile *tile;                         ///< flame and smoke; NULL: none
@@ -27,17 +27,12 @@ typedef struct Block {
     Float3 fire_light[LANES];
     float fire_clear[LANES];
     float low[LANES], high[LANES];
-    float clear[LANES]; ///< of a shadow ray
-    float sun_seen;     ///< sum over rays to the sun
-    int sun_asked;
-    float open[LANES], sky_seen[LANES]; ///< visible share of the sky, of a sample and summed
-    int sky_asked[LANES];
-    bool clouded;        ///< whether anything hid sky
-    bool sunlit, shaded; ///< whether any ray reached the sun, and whether any was blocked
-    Float3 lamp[LANES];  ///< light of flames and embers, summed over samples, without occlusion
-    Float3 lamp_position[LANES], lamp_normal[LANES],
-        lamp_white[LANES];                     ///< where it was last computed, and its value on white
-    float lamp_seen[LANES], lamp_asked[LANES]; ///< luminance that rays found visible, and luminance that they tested
+    float clear[LANES];           ///< of a shadow ray
+    bool hidden;                  ///< whether a ray to sun or sky was blocked
+    float spread;                 ///< pixels over which lens and shutter spread what is seen, the largest of the points
+    Float3 lit[LIT_KINDS][LANES]; ///< light before occlusion, summed over samples
+    float lit_seen[LIT_KINDS][LANES], lit_asked[LIT_KINDS][LANES];      ///< luminance found visible, and tested
+    Float3 lamp_position[LANES], lamp_normal[LANES], lamp_white[LANES]; ///< where lamps were last gathered; on white
     LayerSum layer[LANES];
 } Block;
 
@@ -64,6 +59,11 @@ static inline void rest_ray(struct RTCRay16 *ray, int lane) {
 /// In place of a sample's number: the centre of the sun and an open sky, if nothing can occlude them.
 enum { SAMPLE_CENTRE = -1 };
 
+enum {
+    SAMPLES_FIRST = 4,  ///< that every pixel gets
+    SAMPLES_STILL = 64, ///< of a still: every pixel gets all of them, and nothing is smoothed
+};
+
 // lighting.c
 /// Reflected share of the light along l, per unit of irradiance: diffuse and a Blinn-Phong lobe.
 Float3 light_reflect(const Point *point, Float3 l);
@@ -71,22 +71,28 @@ Float3 light_reflect(const Point *point, Float3 l);
 /// Whether the point that the lane sees is lit.
 bool light_reaches(const Block *block, const int *active, int lane);
 
-/// Adds the light of the sun and the sky that reaches the eye from block->point: the sun by `rays` rays each, the sky
-/// by one, or by earlier results if no rays are to be traced.
-void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, int rays);
-void light_add_sky(const Preview *preview, Block *block, const int *active, int sample, bool ask);
+/// Adds the light of sun and sky that reaches the eye from block->point, times `through`, before occlusion, and if
+/// `ask` tests its visibility by a ray per lane.
+void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],
+                   bool ask);
+void light_add_sky(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],
+                   bool ask);
 
 /// Whether anything could occlude sun or sky at any of the points.
 bool light_may_be_hidden(const Preview *preview, const Block *block, const int *active);
 
 // lamps.c
-/// Adds the light of flames and embers that reaches block->point, times `through`, and tests its visibility.
-void lamps_add(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES]);
-void lamps_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples);
+/// The same for the light of flames and embers.
+void lamps_add(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],
+               bool ask);
 
-/// Called per block once all blocks are written: first smooths along rows; then, for all blocks, along columns, and
-/// adds the result to the picture.
-void lamps_smooth(Preview *preview, Block *block);
-void lamps_finish(Preview *preview, Block *block);
+// seen.c
+/// Writes the light of a pixel with that many samples. `mixed`: it shows several faces.
+void seen_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples, bool mixed);
+
+/// Called per block once all blocks are written: first smooths the visible shares along rows; then, for all blocks,
+/// along columns, and adds the light to the picture.
+void seen_smooth(Preview *preview, Block *block);
+void seen_finish(Preview *preview, Block *block);
 
 #endif

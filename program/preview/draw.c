@@ -1,19 +1,19 @@
 // One frame: tiles of blocks of 4 x 4 pixels, a packet of 16 rays per block and sample.
 //
-// A sample is: the nearest surface; its appearance; light = sun (a ray to a random point of its disc) + sky and bounce
-// (one ambient-occlusion ray); see lighting.c. The light of flames and embers comes last (lamps.c). Pixels whose first
-// samples agree get no more. Blocks that no sheet or shape can touch show only the table or the background: nothing is
-// intersected, and where no shadow can fall one sample is enough. Random numbers depend only on the pixel's position
-// and the sample's number, not on threads.
+// A sample is: the nearest surface; its appearance; the light of sun, sky (lighting.c) and lamps (lamps.c) before
+// occlusion, whose visible shares the first samples test by rays; they are smoothed over neighbours last (seen.c).
+// Pixels whose first samples agree get no more. Blocks that no sheet or shape can touch show only the table or the
+// background: nothing is intersected, and where no shadow can fall one sample is enough. Random numbers depend only on
+// the pixel's position and the sample's number, not on threads.
 
 #include "preview/block.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
+#include <string.h>
 
 enum {
     HOLE_LIMIT = 4,
-    RIM_RAYS = 4, ///< rays to the sun per sample at the rim of a shadow
 };
 
 static void store(float (*layer)[3], size_t pixel, Float3 value) {
@@ -141,6 +141,7 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
     if (shape) {
         point->hit = true;
         point->temperature = shape->temperature;
+        point->moved = preview->def.shutter * float3_length(float3_load(shape->velocity));
         point->normal = point->geometric = float3_dot(found, point->view) >= 0 ? found : float3_scale(found, -1);
         shape_shade(preview, shape, moment, point);
         return true;
@@ -161,8 +162,21 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
     point->piece = state.piece;
     point->temperature = state.temperature;
     point->burn = state.burn;
+    if (preview->def.shutter > 0)
+        point->moved = float3_length(
+            float3_sub(float3_load(preview->scene.moved[1][t[0]]), float3_load(preview->scene.moved[0][t[0]])));
 
     return paper_shade(preview, &state, point) || last;
+}
+
+/// Pixels over which the lens and the shutter spread the point that a lane sees.
+static float find_spread(const Preview *preview, const Block *block, int lane) {
+    const Point *point = &block->point[lane];
+    if (!point->hit) return 0;
+    float depth = point->distance * float3_dot(block->direction[lane], preview->camera.forward);
+    float spread = camera_blur(&preview->camera, depth);
+    if (!(preview->def.shutter > 0)) return spread;
+    return maxf(spread, point->moved / (preview->camera.pixel * depth));
 }
 
 static void find_points(const Preview *preview, Block *block, const int *active) {
@@ -180,6 +194,7 @@ static void find_points(const Preview *preview, Block *block, const int *active)
             if (!block->valid[i]) continue;
             if (resolve(preview, block, i, pass == HOLE_LIMIT - 1)) {
                 block->valid[i] = 0;
+                block->spread = maxf(block->spread, find_spread(preview, block, i));
             } else {
                 block->rays.ray.tnear[i] = block->rays.ray.tfar[i] + preview->scene.epsilon;
                 block->rays.ray.tfar[i] = INFINITY;
@@ -189,21 +204,21 @@ static void find_points(const Preview *preview, Block *block, const int *active)
     }
 }
 
-/// Adds the colour of block->point in the light of one sample, the sun's by `rays` rays, and its layers.
-static void add_light(const Preview *preview, Block *block, const int *active, int sample, int rays) {
-    float through[LANES];
-    for (int i = 0; i < LANES; i++) block->light[i] = float3(0, 0, 0);
-    light_add_sun(preview, block, active, sample, rays);
-    light_add_sky(preview, block, active, sample, rays > 0);
+static bool is_still(const Preview *preview) { return preview->def.samples >= SAMPLES_STILL; }
 
+/// Adds the colour of block->point in one sample and its layers. `ask`: whether rays test what lights it.
+static void add_light(const Preview *preview, Block *block, const int *active, int sample, bool ask) {
+    float through[LANES], known[LANES];
     for (int i = 0; i < LANES; i++) {
+        through[i] = known[i] = 0;
         if (!active[i]) continue;
         const Point *point = &block->point[i];
-        Float3 colour = float3_add(block->light[i], point->glow), fire = {0, 0, 0};
-        float l = float3_luminance(colour), shown = l / (1 + l), clear = 1;
-        block->low[i] = minf(block->low[i], shown);
-        block->high[i] = maxf(block->high[i], shown);
-        if (point->fade > 0) colour = float3_mix(colour, background_colour(preview, block->direction[i]), point->fade);
+        Float3 colour = point->glow, fire = {0, 0, 0};
+        float clear = 1;
+        for (int k = 0; k < LIT_KINDS; k++) known[i] += float3_luminance(block->lit[k][i]);
+        if (point->fade > 0)
+            colour = float3_mad(float3_scale(colour, 1 - point->fade), background_colour(preview, block->direction[i]),
+                                point->fade);
 
         // the fire in front of the point; a pixel's points mostly have nearly the same distance
         if (block->tile) {
@@ -241,11 +256,26 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
         sum->burn += point->burn;
     }
 
-    lamps_add(preview, block, active, sample, through);
+    light_add_sun(preview, block, active, sample, through, ask);
+
+    // sky and lamps change slowly enough for every second sample, but not where faces meet
+    const bool all = sample < 0 || sample >= SAMPLES_FIRST || preview->def.samples == 1 || is_still(preview);
+    light_add_sky(preview, block, active, sample, through, ask && (all || sample % 2 == 0));
+    lamps_add(preview, block, active, sample, through, ask && (all || sample % 2 != 0));
+
+    // how much the samples differ, but for what hides the light
+    for (int i = 0; i < LANES; i++) {
+        if (!active[i]) continue;
+        float l = through[i] * float3_luminance(block->point[i].glow) - known[i];
+        for (int k = 0; k < LIT_KINDS; k++) l += float3_luminance(block->lit[k][i]);
+        float shown = l / (1 + l);
+        block->low[i] = minf(block->low[i], shown);
+        block->high[i] = maxf(block->high[i], shown);
+    }
 }
 
 /// In a bare block the rays stay the same, unless the lens spreads them.
-static void add_sample(const Preview *preview, Block *block, const int *active, bool bare, int sample, int rays) {
+static void add_sample(const Preview *preview, Block *block, const int *active, bool bare, int sample, bool ask) {
     if (!bare || preview->camera.lens > 0) {
         float at[2];
         sample_offset(sample, at);
@@ -255,13 +285,26 @@ static void add_sample(const Preview *preview, Block *block, const int *active, 
             if (active[i]) see_ground(preview, block, i);
     }
 
-    add_light(preview, block, active, sample, rays);
+    add_light(preview, block, active, sample, ask);
 }
 
-static bool is_blurred(const Preview *preview) { return preview->camera.lens > 0 || preview->def.shutter > 0; }
+/// Whether some of a pixel's samples hit a sheet or a shape and some do not.
+static bool is_edge(const LayerSum *sum) { return sum->hits > 0 && sum->hits < sum->samples; }
+
+/// Whether a sheet or a shape ends between the lane's pixel and one beside it in the block.
+static bool is_beside_edge(const Block *block, int lane) {
+    const int x = lane % BLOCK, y = lane / BLOCK, step[4] = {-1, 1, -BLOCK, BLOCK};
+    const bool inside[4] = {x > 0, x<BLOCK - 1, y> 0, y < BLOCK - 1};
+    const LayerSum *sum = &block->layer[lane];
+    for (int k = 0; k < 4; k++)
+        if (inside[k] && sum->samples && block->layer[lane + step[k]].samples &&
+            (sum->hits > 0) != (block->layer[lane + step[k]].hits > 0))
+            return true;
+    return false;
+}
 
 /// The lanes whose first samples differ, from each other or from their neighbours'. Returns how many.
-static int find_restless(const Preview *preview, const Block *block, const int *active, bool bare, int *more) {
+static int find_restless(const Block *block, const int *active, int *more) {
     int hits = 0, samples = 0, count = 0;
     float low = INFINITY, high = -INFINITY;
     for (int i = 0; i < LANES; i++) {
@@ -271,14 +314,12 @@ static int find_restless(const Preview *preview, const Block *block, const int *
         high = maxf(high, block->high[i]);
     }
 
-    // where a lens or a shutter blurs strongly, all first samples of some pixels miss what their neighbours' hit; at the
-    // rim of a shadow on the table, nearly all of a pixel's first rays to the sun may agree
-    bool mixed = (is_blurred(preview) && hits > 0 && hits < samples) || (bare && block->sunlit && block->shaded);
+    // where a lens or a shutter blurs strongly, all first samples of some pixels miss what their neighbours' hit
+    bool mixed = block->spread > 1 && hits > 0 && hits < samples;
 
     for (int i = 0; i < LANES; i++) {
-        const LayerSum *sum = &block->layer[i];
-        bool edge = sum->hits > 0 && sum->hits < sum->samples; // also if only fire lights it, which is not in `high`
-        bool calm = !edge && block->high[i] - block->low[i] < 0.026f && high - low < 0.15f && !mixed;
+        bool calm = !is_edge(&block->layer[i]) && !is_beside_edge(block, i) &&
+                    block->high[i] - block->low[i] < 0.026f && high - low < 0.15f && !mixed;
         more[i] = active[i] && !calm ? -1 : 0;
         count += more[i] != 0;
     }
@@ -286,34 +327,31 @@ static int find_restless(const Preview *preview, const Block *block, const int *
     return count;
 }
 
-/// Takes a quarter of the samples, but at least 4, of every pixel (half if a lens or a shutter blurs a sheet or a
-/// shape), and the rest of pixels that need it. A bare block whose first rays are not blocked needs only one.
+/// Takes SAMPLES_FIRST samples of every pixel (half of all where a lens or a shutter blurs a sheet or a shape), and the
+/// rest of pixels that need it. Bare blocks get the first only, and one if its rays are not blocked.
 static void add_samples(const Preview *preview, Block *block, const int *active, bool bare, int *taken) {
-    int more[LANES], samples = preview->def.samples, first = samples;
-    int share = is_blurred(preview) && !bare ? 2 : 4;
-    if (samples > 4) first = (samples / share + 3) / 4 * 4;
-    if (first > samples) first = samples;
+    int more[LANES], samples = preview->def.samples, first = SAMPLES_FIRST;
+    if (samples < first || is_still(preview)) first = samples;
     for (int s = 0; s < first; s++) {
-        add_sample(preview, block, active, bare, s, 1);
-        if (bare && !block->shaded && !block->clouded && !is_blurred(preview)) first = s + 1;
+        add_sample(preview, block, active, bare, s, true);
+        if (bare && s == 1 && !block->hidden && !is_still(preview)) first = s + 1;
+        if (s == SAMPLES_FIRST - 1 && !bare && block->spread > 1 && samples > first) first = (samples / 2 + 3) / 4 * 4;
+        if (first > samples) first = samples;
     }
 
-    if (first == 1 && bare) samples = 1;
-
-    bool on = first < samples && find_restless(preview, block, active, bare, more);
-
-    // at the rim of a shadow more rays are traced; elsewhere the first are enough
-    int rays = block->sunlit && block->shaded ? (bare ? RIM_RAYS : 1) : 0;
-    for (int i = 0; i < LANES; i++) taken[i] = on && more[i] ? samples : first;
+    bool on = first < samples && !bare && find_restless(block, active, more);
+    bool ask = block->spread > 1; // only pixels that show several faces need more rays
+    for (int i = 0; i < LANES; i++) {
+        ask = ask || (active[i] && is_edge(&block->layer[i]));
+        taken[i] = on && more[i] ? samples : first;
+    }
 
     for (int s = first; s < samples && on; s++) {
         // after half of the samples: only lanes whose samples still differ visibly
-        if (s == samples / 2 && !rays && !is_blurred(preview)) {
+        if (s == samples / 2 && block->spread <= 1) {
             on = false;
             for (int i = 0; i < LANES; i++) {
-                const LayerSum *sum = &block->layer[i];
-                bool edge = sum->hits > 0 && sum->hits < sum->samples;
-                if (more[i] && !edge && block->high[i] - block->low[i] < 0.22f) {
+                if (more[i] && !is_edge(&block->layer[i]) && block->high[i] - block->low[i] < 0.22f) {
                     more[i] = 0;
                     taken[i] = s;
                 }
@@ -322,27 +360,27 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
             }
         }
 
-        if (on) add_sample(preview, block, more, bare, s, rays);
+        if (on) add_sample(preview, block, more, bare, s, ask);
     }
 }
 
 static void draw_block(Preview *preview, Block *block) {
     const PreviewDef *def = &preview->def;
     int active[LANES], taken[LANES];
-    block->sunlit = block->shaded = block->clouded = false;
-    block->sun_seen = 0;
-    block->sun_asked = 0;
+    block->hidden = false;
+    block->spread = 0;
+    memset(block->lit, 0, sizeof block->lit);
+    memset(block->lit_seen, 0, sizeof block->lit_seen);
+    memset(block->lit_asked, 0, sizeof block->lit_asked);
 
     for (int i = 0; i < LANES; i++) {
         active[i] = block->x[i] < def->width && block->y[i] < def->height ? -1 : 0;
         sample_pixel(block->x[i], block->y[i], def->seed, block->turn[i]);
         block->key[i] = sample_key(block->x[i], block->y[i], def->seed);
-        block->sum[i] = block->lamp[i] = float3(0, 0, 0);
+        block->sum[i] = float3(0, 0, 0);
         block->low[i] = block->fire_from[i] = INFINITY;
         block->high[i] = block->fire_to[i] = -INFINITY;
         block->time[i] = 0.5f;
-        block->sky_seen[i] = block->lamp_seen[i] = block->lamp_asked[i] = 0;
-        block->sky_asked[i] = 0;
         block->layer[i] = (LayerSum){.depth = INFINITY, .sheet = -1, .piece = -1};
     }
 
@@ -354,7 +392,7 @@ static void draw_block(Preview *preview, Block *block) {
     }
 
     if (bare && !light_may_be_hidden(preview, block, active)) {
-        add_light(preview, block, active, SAMPLE_CENTRE, 1);
+        add_light(preview, block, active, SAMPLE_CENTRE, true);
         for (int i = 0; i < LANES; i++) taken[i] = 1;
     } else {
         add_samples(preview, block, active, bare, taken);
@@ -366,15 +404,21 @@ static void draw_block(Preview *preview, Block *block) {
         size_t pixel = pixel_index(preview, block, i);
         preview->picture[pixel] = float3_scale(block->sum[i], 1 / (float)taken[i]);
         layers_write(preview, pixel, &block->layer[i]);
-        lamps_write(preview, pixel, block, i, taken[i]);
+        seen_write(preview, pixel, block, i, taken[i], is_still(preview) || is_edge(&block->layer[i]));
     }
 }
 
 /// The table's own colour in every pixel. The camera does not move, so it is computed once.
 static void fill_table(Preview *preview, Block *block) {
     Table sum[LANES] = {{{0, 0, 0}, {0, 0}, 0}};
-    int count[LANES] = {0}, samples = preview->camera.lens > 0 ? 24 : 4;
+    int count[LANES] = {0};
     for (int i = 0; i < LANES; i++) block->key[i] = sample_key(block->x[i], block->y[i], preview->def.seed);
+
+    // where a lens blurs the table, its grain is as fine as the distance between the samples on the lens
+    aim_block(preview, block, SAMPLE_CENTRE, (const float[2]){0, 0});
+    float far = hit_ground(preview, block->origin[0], block->direction[0]);
+    float blur = isfinite(far) ? camera_blur(&preview->camera, far) : 0, wide = maxf(0.7f * blur, 1);
+    int samples = preview->camera.lens > 0 ? 8 : 4;
 
     for (int s = 0; s < samples; s++) {
         float at[2];
@@ -385,7 +429,7 @@ static void fill_table(Preview *preview, Block *block) {
             if (!isfinite(distance)) continue;
             Table look;
             Float3 position = float3_mad(block->origin[i], block->direction[i], distance);
-            ground_look(preview, position, block->direction[i].z, distance, &look);
+            ground_look(preview, position, block->direction[i].z, wide * distance, &look);
             sum[i].albedo = float3_add(sum[i].albedo, look.albedo);
             sum[i].polish += look.polish;
             sum[i].tilt[0] += look.tilt[0];
@@ -464,10 +508,8 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     if (!preview->table_known) draw_all(preview, fill_table);
     preview->table_known = true;
     draw_all(preview, draw_block);
-    if (preview->scene.light_count) {
-        draw_all(preview, lamps_smooth);
-        draw_all(preview, lamps_finish);
-    }
+    draw_all(preview, seen_smooth);
+    draw_all(preview, seen_finish);
 
     const size_t pixels = (size_t)preview->def.width * (size_t)preview->def.height;
     for (size_t i = 0; layers->beauty && i < pixels; i++) store(layers->beauty, i, preview->picture[i]);

@@ -33,11 +33,13 @@ typedef struct FireView {
 
 /// Flames have no edges as sharp as a sheet's: one ray for each second pixel across and down, through the corners that
 /// four of them share, and pixels take the mean of the four surrounding rays, weighted by nearness.
-enum { FIRE_TILE = 32, FIRE_ACROSS = FIRE_TILE / 2 + 1 };
+/// Where four rays at twice that distance see nearly the same, there are none between them.
+enum { FIRE_TILE = 32, FIRE_ACROSS = FIRE_TILE / 2 + 1, FIRE_COARSE = FIRE_TILE / 4 };
 
 typedef struct FireTile {
     FireView views[FIRE_ACROSS * FIRE_ACROSS];
-    bool empty; ///< no ray meets anything
+    bool fine[FIRE_COARSE * FIRE_COARSE]; ///< whether squares of 4 x 4 pixels have rays at all their corners of 2 x 2
+    bool empty;                           ///< no ray meets anything
 } FireTile;
 
 typedef struct Fire {

@@ -5,6 +5,8 @@
 
 #include "preview/internal.h"
 
+#define FIRE_EVEN 0.012f ///< difference of light, as l / (1 + l), that may be interpolated
+
 static void see_ray(const Preview *preview, Float3 d, FireView *view) {
     const Fire *fire = &preview->fire;
     const Float3 eye = preview->camera.eye;
@@ -73,17 +75,52 @@ static void see_ray(const Preview *preview, Float3 d, FireView *view) {
     }
 }
 
-void fire_see(const Preview *preview, int x, int y, FireTile *tile) {
+/// Traces the ray of a tile's corner `k`.
+static void see_corner(const Preview *preview, int x, int y, int k, FireTile *tile) {
     const float disc[2] = {0, 0};
-    tile->empty = true;
-    for (int k = 0; k < FIRE_ACROSS * FIRE_ACROSS; k++) {
-        float u = 2 * (float)(x + 2 * (k % FIRE_ACROSS)) / (float)preview->def.width - 1;
-        float v = 1 - 2 * (float)(y + 2 * (k / FIRE_ACROSS)) / (float)preview->def.height;
-        Float3 origin, direction;
-        camera_ray(&preview->camera, u, v, disc, &origin, &direction);
-        see_ray(preview, direction, &tile->views[k]);
-        tile->empty = tile->empty && !tile->views[k].count;
+    float u = 2 * (float)(x + 2 * (k % FIRE_ACROSS)) / (float)preview->def.width - 1;
+    float v = 1 - 2 * (float)(y + 2 * (k / FIRE_ACROSS)) / (float)preview->def.height;
+    Float3 origin, direction;
+    camera_ray(&preview->camera, u, v, disc, &origin, &direction);
+    see_ray(preview, direction, &tile->views[k]);
+    tile->empty = tile->empty && !tile->views[k].count;
+}
+
+/// Whether the rays at the corners of a square of 4 x 4 pixels, the first of which is `k`, see nearly the same.
+static bool is_even(const FireTile *tile, int k) {
+    float low[2] = {INFINITY, INFINITY}, high[2] = {0, 0};
+    for (int i = 0; i < 4; i++) {
+        const FireView *view = &tile->views[k + i % 2 * 2 + i / 2 * 2 * FIRE_ACROSS];
+        float light = view->count ? float3_luminance(view->light[view->count - 1]) : 0;
+        float value[2] = {light / (1 + light), view->count ? 1 - view->clear[view->count - 1] : 0};
+        for (int c = 0; c < 2; c++) {
+            low[c] = minf(low[c], value[c]);
+            high[c] = maxf(high[c], value[c]);
+        }
     }
+
+    return high[0] - low[0] < FIRE_EVEN && high[1] - low[1] < 2 * FIRE_EVEN;
+}
+
+void fire_see(const Preview *preview, int x, int y, FireTile *tile) {
+    bool known[FIRE_ACROSS * FIRE_ACROSS] = {false};
+    tile->empty = true;
+    for (int i = 0; i < FIRE_ACROSS; i += 2)
+        for (int j = 0; j < FIRE_ACROSS; j += 2) {
+            see_corner(preview, x, y, i * FIRE_ACROSS + j, tile);
+            known[i * FIRE_ACROSS + j] = true;
+        }
+
+    for (int i = 0; i < FIRE_COARSE; i++)
+        for (int j = 0; j < FIRE_COARSE; j++) {
+            int first = 2 * i * FIRE_ACROSS + 2 * j;
+            bool fine = tile->fine[i * FIRE_COARSE + j] = !is_even(tile, first);
+            for (int m = 0; fine && m < 9; m++) {
+                int k = first + m / 3 * FIRE_ACROSS + m % 3;
+                if (!known[k]) see_corner(preview, x, y, k, tile);
+                known[k] = true;
+            }
+        }
 }
 
 /// Adds a ray's light and transmittance, times a weight.
@@ -111,13 +148,14 @@ static void add_view(const FireView *view, float distance, float weight, Float3 
 }
 
 void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear) {
-    const float near = 0.75f, far = 0.25f; // a pixel's centre lies at a quarter of the distance between two rays
-    float right = x % 2 ? near : far, down = y % 2 ? near : far;
-    const FireView *view = &tile->views[y / 2 * FIRE_ACROSS + x / 2];
+    bool fine = tile->fine[y / 4 * FIRE_COARSE + x / 4];
+    int apart = fine ? 1 : 2, side = 2 * apart; // in rays and in pixels
+    const FireView *view = &tile->views[y / side * apart * FIRE_ACROSS + x / side * apart];
+    float right = ((float)(x % side) + 0.5f) / (float)side, down = ((float)(y % side) + 0.5f) / (float)side;
     *light = float3(0, 0, 0);
     *clear = 0;
     add_view(view, distance, (1 - right) * (1 - down), light, clear);
-    add_view(view + 1, distance, right * (1 - down), light, clear);
-    add_view(view + FIRE_ACROSS, distance, (1 - right) * down, light, clear);
-    add_view(view + FIRE_ACROSS + 1, distance, right * down, light, clear);
+    add_view(view + apart, distance, right * (1 - down), light, clear);
+    add_view(view + apart * FIRE_ACROSS, distance, (1 - right) * down, light, clear);
+    add_view(view + apart * FIRE_ACROSS + apart, distance, right * down, light, clear);
 }

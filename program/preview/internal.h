@@ -76,10 +76,10 @@ struct Preview {
     Texture *textures; ///< [def.sheet_count]
     float linear[256]; ///< sRGB byte to linear
     Float3 blackbody[BLACKBODY_COUNT];
-    Float3 *picture; ///< [height * width] radiance
-    Lamp *lamps;     ///< [height * width]
-    float *seen;     ///< [height * width] of the lamps, smoothed along rows
-    Table *table;    ///< [height * width], once `table_known`
+    Float3 *picture;          ///< [height * width] radiance
+    Lit *lit;                 ///< [height * width]
+    float (*seen)[LIT_KINDS]; ///< [height * width] visible shares, smoothed along rows
+    Table *table;             ///< [height * width], once `table_known`
     bool table_known;
     uint8_t *mask;   ///< [mask_size] for each block, whether a sheet or a shape may touch it
     Float3 *glow[2]; ///< [quarter height * quarter width] for the bloom
@@ -101,6 +101,7 @@ typedef struct Point {
     bool lit;                                 ///< false: glow only
     float distance;                           ///< m, from the lens; infinite: nothing
     float temperature, burn;
+    float moved;          ///< m, its way while the shutter is open
     int32_t sheet, piece; ///< -1: none
     bool hit;             ///< a sheet or a shape
 } Point;

@@ -1,9 +1,7 @@
 // The light of flames, embers and hot shapes, with shadows.
 //
 // The unoccluded light U = sum_k U_k over the lamps k is exact. Visibility is tested by one ray per sample, to a random
-// point of a lamp chosen with probability U_k / U: its mean, V, has no noise where all lamps or none are visible. All
-// noise is in V, so V is smoothed over the pixels that show the same face, and the picture gets V U: print and edges
-// remain sharp.
+// point of a lamp chosen with probability U_k / U: its mean has no noise where all lamps or none are visible.
 
 #include "preview/block.h"
 
@@ -150,7 +148,6 @@ void light_gather(Preview *preview) {
 
 // ---- their light
 
-enum { LAMP_SAMPLES = 4 }; ///< samples of a pixel that trace rays; the rest only add light
 static const float too_faint = 4e-3f;
 
 static inline Four four_max(Four a, Four b) {
@@ -183,8 +180,8 @@ static Float3 lamps_gather(const EmberLights *l, const Point *point, int count, 
 }
 
 /// Tests the lamps' visibility by one ray per lane, to a random point of a lamp.
-static void ask(const Preview *preview, Block *block, const float wanted[LANES], float (*weight)[LIGHT_LIMIT],
-                int sample) {
+static void ask_lamps(const Preview *preview, Block *block, const float wanted[LANES], float (*weight)[LIGHT_LIMIT],
+                      int sample) {
     const EmberLights *l = &preview->scene.lights;
     const float golden = 0.61803399f;
     const int count = preview->scene.light_count;
@@ -222,16 +219,17 @@ static void ask(const Preview *preview, Block *block, const float wanted[LANES],
     tracer_occlude(preview, block->valid, &block->shadow, block->clear);
     for (int i = 0; i < LANES; i++) {
         if (wanted[i] <= 0) continue;
-        block->lamp_asked[i] += wanted[i];
-        block->lamp_seen[i] += wanted[i] * block->clear[i];
+        block->lit_asked[LIT_LAMPS][i] += wanted[i];
+        block->lit_seen[LIT_LAMPS][i] += wanted[i] * block->clear[i];
     }
 }
 
-void lamps_add(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES]) {
+void lamps_add(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],
+               bool ask) {
     const PreviewScene *scene = &preview->scene;
     if (!scene->light_count) return;
     float weight[LANES][LIGHT_LIMIT], wanted[LANES];
-    bool any = false, ask_now = sample < LAMP_SAMPLES;
+    bool any = false;
 
     for (int i = 0; i < LANES; i++) {
         wanted[i] = 0;
@@ -241,7 +239,7 @@ void lamps_add(const Preview *preview, Block *block, const int *active, int samp
         const Point *point = &block->point[i];
         Float3 moved = float3_sub(point->position, block->lamp_position[i]);
         bool known =
-            !ask_now && float3_dot(moved, moved) < 4 * point->footprint * point->footprint &&
+            !ask && float3_dot(moved, moved) < 4 * point->footprint * point->footprint &&
             (float3_dot(point->normal, block->lamp_normal[i]) > 0.99f || float3_luminance(point->albedo) < 0.08f);
         if (!known) {
             block->lamp_position[i] = point->position;
@@ -251,7 +249,7 @@ void lamps_add(const Preview *preview, Block *block, const int *active, int samp
 
         Float3 light = float3_mul(block->lamp_white[i], point->albedo);
         light = float3_scale(float3(minf(light.x, 40), minf(light.y, 40), minf(light.z, 40)), through[i]);
-        block->lamp[i] = float3_add(block->lamp[i], light);
+        block->lit[LIT_LAMPS][i] = float3_add(block->lit[LIT_LAMPS][i], light);
         float luminance = float3_luminance(light);
         if (luminance > too_faint) {
             wanted[i] = luminance;
@@ -259,67 +257,5 @@ void lamps_add(const Preview *preview, Block *block, const int *active, int samp
         }
     }
 
-    if (!any || !ask_now) return;
-    int rays = sample == SAMPLE_CENTRE ? LAMP_SAMPLES : 1;
-    for (int k = 0; k < rays; k++) ask(preview, block, wanted, weight, sample == SAMPLE_CENTRE ? k : sample);
-}
-
-void lamps_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples) {
-    const Point *point = &block->point[lane];
-    preview->lamps[pixel] =
-        (Lamp){.light = float3_scale(block->lamp[lane], 1 / (float)samples),
-               .normal = point->geometric,
-               .distance = point->distance,
-               .sheet = point->sheet,
-               .seen = block->lamp_asked[lane] > 0 ? block->lamp_seen[lane] / block->lamp_asked[lane] : 1};
-}
-
-// ---- smoothed
-
-/// Mean of `values` along a line of pixels `stride` apart that show the lamp's face, from `before` to `after`, weighted
-/// by nearness.
-static float lamps_smooth_line(const Lamp *lamp, const float *values, size_t values_stride, ptrdiff_t stride,
-                               int before, int after, int reach) {
-    float sum = 0, total = 0;
-    for (int k = -before; k <= after; k++) {
-        const Lamp *other = lamp + k * stride;
-        if (lamp->sheet != other->sheet || !(fabsf(lamp->distance - other->distance) < 0.02f * lamp->distance) ||
-            !(float3_dot(lamp->normal, other->normal) > 0.8f))
-            continue;
-        float weight = (float)(reach + 1 - (k < 0 ? -k : k));
-        sum += weight * *(const float *)(const void *)((const char *)values + k * stride * (ptrdiff_t)values_stride);
-        total += weight;
-    }
-
-    return total > 0 ? sum / total : *values;
-}
-
-static int lamps_lesser(int a, int b) { return a < b ? a : b; }
-
-static int smooth_reach(const Preview *preview) { return 2 + preview->def.height / 180; }
-
-void lamps_smooth(Preview *preview, Block *block) {
-    int w = preview->def.width, h = preview->def.height, reach = smooth_reach(preview);
-    for (int i = 0; i < LANES; i++) {
-        int x = block->x[i], y = block->y[i];
-        if (x >= w || y >= h) continue;
-        size_t pixel = (size_t)y * (size_t)w + (size_t)x;
-        const Lamp *lamp = &preview->lamps[pixel];
-        preview->seen[pixel] = lamps_smooth_line(lamp, &lamp->seen, sizeof *lamp, 1, lamps_lesser(x, reach),
-                                                 lamps_lesser(w - 1 - x, reach), reach);
-    }
-}
-
-void lamps_finish(Preview *preview, Block *block) {
-    int w = preview->def.width, h = preview->def.height, reach = smooth_reach(preview);
-    for (int i = 0; i < LANES; i++) {
-        int x = block->x[i], y = block->y[i];
-        if (x >= w || y >= h) continue;
-        size_t pixel = (size_t)y * (size_t)w + (size_t)x;
-        const Lamp *lamp = &preview->lamps[pixel];
-        if (lamp->light.x + lamp->light.y + lamp->light.z <= 0) continue;
-        float seen = lamps_smooth_line(lamp, &preview->seen[pixel], sizeof(float), w, lamps_lesser(y, reach),
-                                       lamps_lesser(h - 1 - y, reach), reach);
-        preview->picture[pixel] = float3_mad(preview->picture[pixel], lamp->light, seen);
-    }
+    if (any && ask) ask_lamps(preview, block, wanted, weight, sample > 0 ? sample : 0);
 }

@@ -36,14 +36,17 @@ typedef struct Sky {
     Float3 ambient[9];                     ///< spherical harmonics of the light reflected by white paper
 } Sky;
 
-/// The light of embers and flames in a pixel, before occlusion.
-typedef struct Lamp {
-    Float3 light;   ///< as it reaches the eye
-    Float3 normal;  ///< of the last sample
-    float distance; ///< m, the same
-    float seen;     ///< visible share, by few rays
+/// Light whose visibility rays test.
+enum { LIT_SUN, LIT_SKY, LIT_LAMPS, LIT_KINDS };
+
+/// The light of a pixel by its kind, before occlusion.
+typedef struct Lit {
+    Float3 light[LIT_KINDS]; ///< as it reaches the eye
+    float seen[LIT_KINDS];   ///< visible share, by few rays; -1: none were traced
+    Float3 normal;           ///< of the last sample
+    float distance;          ///< m, the same; negative: the pixel shows several faces
     int32_t sheet;
-} Lamp;
+} Lit;
 
 // environment.c
 void sky_fill(Preview *preview);

@@ -2,8 +2,8 @@
 //
 //     L = a [ E_sun max(n.l, 0) V + tau E_sun max(-n.l, 0) V + (E(n) + tau E(-n)) A + lamps ] + m S(r) F A
 //
-// with V, A the visibilities, tau the paper's transmission and E the ambient light (environment.c); V by a ray to a
-// random point of the sun's disc, or several if the block contains the rim of a shadow; A by an ambient-occlusion ray.
+// with V, A the visibilities, tau the paper's transmission and E the ambient light (environment.c); V by rays to random
+// points of the sun's disc, A by ambient-occlusion rays, each smoothed over neighbours (seen.c).
 // Glossy surfaces reflect the blurred sky S along r. Lamps are flames and embers (lamps.c).
 
 #include "preview/block.h"
@@ -38,51 +38,39 @@ bool light_reaches(const Block *block, const int *active, int lane) {
     return active[lane] && block->point[lane].lit && block->point[lane].fade < 0.995f;
 }
 
-/// Traces one ray per lane and adds `share` of its result.
-static void add_sun_ray(const Preview *preview, Block *block, const int *active, int index, float share) {
-    Float3 reflected[LANES];
-    int asked[LANES];
+void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],
+                   bool ask) {
+    float asked[LANES];
+    bool any = false;
     for (int i = 0; i < LANES; i++) {
-        block->valid[i] = asked[i] = 0;
+        asked[i] = 0;
+        block->valid[i] = 0;
         rest_ray(&block->shadow, i);
         if (!light_reaches(block, active, i)) continue;
         const Point *point = &block->point[i];
         float square[2] = {0, 0}, disc[2];
-        if (index != SAMPLE_CENTRE) sample_square((uint32_t)index, block->turn[i][0], block->turn[i][1], square);
+        if (sample != SAMPLE_CENTRE) sample_square((uint32_t)sample, block->turn[i][0], block->turn[i][1], square);
         sample_disc(square, disc);
         Float3 l = float3_mad(preview->sun, preview->sun_right, disc[0] * preview->sun_spread);
         l = float3_unit_or(float3_mad(l, preview->sun_up, disc[1] * preview->sun_spread), preview->sun);
-        reflected[i] = light_reflect(point, l);
-        if (reflected[i].x + reflected[i].y + reflected[i].z < 1e-4f) continue;
+        Float3 light = float3_scale(float3_mul(light_reflect(point, l), preview->sun_light), through[i]);
+        block->lit[LIT_SUN][i] = float3_add(block->lit[LIT_SUN][i], light);
+        asked[i] = float3_luminance(light);
+        if (!ask || asked[i] < 1e-4f) continue;
         float side = float3_dot(point->geometric, l) > 0 ? preview->scene.epsilon : -preview->scene.epsilon;
         aim_ray(&block->shadow, i, float3_mad(point->position, point->geometric, side), l, 0, INFINITY, block->time[i]);
-        block->valid[i] = asked[i] = -1;
+        block->valid[i] = -1;
+        any = true;
     }
 
+    if (!any) return;
+    for (int i = 0; i < LANES; i++) asked[i] = block->valid[i] ? asked[i] : 0;
     tracer_occlude(preview, block->valid, &block->shadow, block->clear);
     for (int i = 0; i < LANES; i++) {
-        if (!asked[i]) continue;
-        block->light[i] =
-            float3_mad(block->light[i], float3_mul(reflected[i], preview->sun_light), share * block->clear[i]);
-        block->sunlit = block->sunlit || block->clear[i] > 0.99f;
-        block->shaded = block->shaded || block->clear[i] < 0.99f;
-        block->sun_seen += block->clear[i];
-        block->sun_asked++;
+        block->lit_asked[LIT_SUN][i] += asked[i];
+        block->lit_seen[LIT_SUN][i] += asked[i] * block->clear[i];
+        block->hidden = block->hidden || (asked[i] > 0 && block->clear[i] < 0.99f);
     }
-}
-
-void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, int rays) {
-    for (int k = 0; k < rays; k++)
-        add_sun_ray(preview, block, active, sample == SAMPLE_CENTRE ? SAMPLE_CENTRE : sample * rays + k,
-                    1 / (float)rays);
-    if (rays) return;
-
-    // the light from the sun's centre, times the visibility found by the block's earlier rays
-    float seen = block->sun_asked ? block->sun_seen / (float)block->sun_asked : 1;
-    for (int i = 0; i < LANES; i++)
-        if (light_reaches(block, active, i))
-            block->light[i] = float3_mad(
-                block->light[i], float3_mul(light_reflect(&block->point[i], preview->sun), preview->sun_light), seen);
 }
 
 /// Length of ambient-occlusion rays.
@@ -142,7 +130,7 @@ bool light_may_be_hidden(const Preview *preview, const Block *block, const int *
 }
 
 /// Finds the open share of each point's sky by one ray.
-static void ask_sky(const Preview *preview, Block *block, const int *active, int sample) {
+static void ask_sky(const Preview *preview, Block *block, const int *active, int sample, float open[LANES]) {
     float reach = sky_reach(&preview->scene);
     for (int i = 0; i < LANES; i++) {
         block->valid[i] = 0;
@@ -161,15 +149,15 @@ static void ask_sky(const Preview *preview, Block *block, const int *active, int
 
     tracer_occlude(preview, block->valid, &block->shadow, block->clear);
     for (int i = 0; i < LANES; i++) {
-        block->open[i] = mixf(occluded_sky, 1, block->clear[i]);
-        block->sky_seen[i] += block->open[i];
-        block->sky_asked[i]++;
-        block->clouded = block->clouded || block->clear[i] < 1;
+        open[i] = mixf(occluded_sky, 1, block->clear[i]);
+        block->hidden = block->hidden || block->clear[i] < 1;
     }
 }
 
-void light_add_sky(const Preview *preview, Block *block, const int *active, int sample, bool ask) {
-    if (ask) ask_sky(preview, block, active, sample);
+void light_add_sky(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],
+                   bool ask) {
+    float open[LANES];
+    if (ask) ask_sky(preview, block, active, sample, open);
     for (int i = 0; i < LANES; i++) {
         if (!light_reaches(block, active, i)) continue;
         const Point *point = &block->point[i];
@@ -189,7 +177,11 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
             light = float3_add(light, float3_scale(sky_mirrored(&preview->sky, out), share));
         }
 
-        float open = ask ? block->open[i] : block->sky_seen[i] / (float)block->sky_asked[i];
-        block->light[i] = float3_mad(block->light[i], light, open);
+        light = float3_scale(light, through[i]);
+        block->lit[LIT_SKY][i] = float3_add(block->lit[LIT_SKY][i], light);
+        float luminance = float3_luminance(light);
+        if (!ask || luminance < 1e-6f) continue;
+        block->lit_asked[LIT_SKY][i] += luminance;
+        block->lit_seen[LIT_SKY][i] += luminance * open[i];
     }
 }

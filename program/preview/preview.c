@@ -160,15 +160,15 @@ static SingeResult preview_allocate(Preview *preview, SingeError *error) {
     const SingeAllocator *allocator = &preview->allocator;
     preview->picture = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(Float3));
     preview->table = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(Table));
-    preview->lamps = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(Lamp));
-    preview->seen = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(float));
+    preview->lit = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof *preview->lit);
+    preview->seen = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof *preview->seen);
     preview->mask = allocator_resize(*allocator, NULL, 0, mask_size(preview));
 
     for (int i = 0; i < 2; i++)
         preview->glow[i] = allocator_resize(*allocator, NULL, 0, glow_count(def) * sizeof(Float3));
     preview->textures = allocator_resize(*allocator, NULL, 0, def->sheet_count * sizeof(Texture));
     if (preview->textures) memset(preview->textures, 0, def->sheet_count * sizeof(Texture));
-    if (!preview->picture || !preview->lamps || !preview->seen || !preview->table || !preview->mask ||
+    if (!preview->picture || !preview->lit || !preview->seen || !preview->table || !preview->mask ||
         !preview->glow[0] || !preview->glow[1] || (def->sheet_count && !preview->textures))
         return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a picture of %d x %d", def->width,
                             def->height);
@@ -250,8 +250,8 @@ void preview_destroy(Preview *preview) {
     allocator_resize(allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);
     allocator_resize(allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
     allocator_resize(allocator, preview->picture, pixel_count(def) * sizeof(Float3), 0);
-    allocator_resize(allocator, preview->lamps, preview->lamps ? pixel_count(def) * sizeof(Lamp) : 0, 0);
-    allocator_resize(allocator, preview->seen, preview->seen ? pixel_count(def) * sizeof(float) : 0, 0);
+    allocator_resize(allocator, preview->lit, preview->lit ? pixel_count(def) * sizeof *preview->lit : 0, 0);
+    allocator_resize(allocator, preview->seen, preview->seen ? pixel_count(def) * sizeof *preview->seen : 0, 0);
     allocator_resize(allocator, preview->table, pixel_count(def) * sizeof(Table), 0);
     allocator_resize(allocator, preview->mask, mask_size(preview), 0);
 

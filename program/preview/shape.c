@@ -78,6 +78,18 @@ static float capsule(const PreviewShape *shape, Float3 o, Float3 d, float near, 
     return best;
 }
 
+Float3 shape_centre(const PreviewShape *shape) {
+    Float3 position = float3_load(shape->position);
+    return shape->facets ? float3_add(position, quat_rotate(shape->rotation, shape->facets->centre)) : position;
+}
+
+float shape_extent(const PreviewShape *shape, float shutter) {
+    float travel = shutter > 0 ? 0.5f * shutter * float3_length(float3_load(shape->velocity)) : 0;
+    if (shape->facets) return travel + shape->facets->extent;
+    if (shape->kind == SINGE_COLLIDER_BOX) return travel + float3_length(float3_load(shape->half_size));
+    return travel + shape->radius + (shape->kind == SINGE_COLLIDER_CAPSULE ? 0.5f * shape->height : 0);
+}
+
 float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Float3 direction, float near, float far,
                       Float3 *normal) {
     Float3 offset = float3_mad(float3_sub(origin, float3_load(shape->position)), float3_load(shape->velocity), -moment);
@@ -85,6 +97,12 @@ float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Fl
         float t = sphere(offset, direction, shape->radius, near, far);
         if (t > 0) *normal = float3_scale(float3_mad(offset, direction, t), 1 / shape->radius);
         return t;
+    }
+
+    // outside the sphere around it, and away from it or past it
+    if (!shape->facets) {
+        float r = shape_extent(shape, 0), b = float3_dot(offset, direction), c = float3_dot(offset, offset) - r * r;
+        if (c > 0 && (b > 0 || b * b < c)) return -1;
     }
 
     Float3 o = quat_unrotate(shape->rotation, offset), d = quat_unrotate(shape->rotation, direction), n = {0, 0, 1};
@@ -95,18 +113,6 @@ float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Fl
     if (t > 0) *normal = quat_rotate(shape->rotation, n);
 
     return t;
-}
-
-Float3 shape_centre(const PreviewShape *shape) {
-    Float3 position = float3_load(shape->position);
-    return shape->facets ? float3_add(position, quat_rotate(shape->rotation, shape->facets->centre)) : position;
-}
-
-float shape_extent(const PreviewShape *shape, float shutter) {
-    float travel = 0.5f * shutter * float3_length(float3_load(shape->velocity));
-    if (shape->facets) return travel + shape->facets->extent;
-    if (shape->kind == SINGE_COLLIDER_BOX) return travel + float3_length(float3_load(shape->half_size));
-    return travel + shape->radius + (shape->kind == SINGE_COLLIDER_CAPSULE ? 0.5f * shape->height : 0);
 }
 
 // ---- appearance

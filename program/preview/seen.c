@@ -1,0 +1,82 @@
+// What is visible of sun, sky and lamps in a pixel, from few rays.
+//
+// The light U of each kind before occlusion has no noise; its visible share V has, as only some samples trace a ray to
+// it. So V is smoothed over the pixels around that show the same face, and the picture gets V U: print and edges remain
+// sharp. The sun's shadows are the sharpest, so its V is smoothed least. A pixel that shows several faces keeps its own
+// V, from more rays, and lends it to none.
+
+#include "preview/block.h"
+
+void seen_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples, bool mixed) {
+    const Point *point = &block->point[lane];
+    Lit lit = {.normal = point->geometric, .distance = mixed ? -1 : point->distance, .sheet = point->sheet};
+    for (int k = 0; k < LIT_KINDS; k++) {
+        lit.light[k] = float3_scale(block->lit[k][lane], 1 / (float)samples);
+        float asked = block->lit_asked[k][lane];
+        lit.seen[k] = asked > 0 ? block->lit_seen[k][lane] / asked : -1;
+    }
+
+    preview->lit[pixel] = lit;
+}
+
+static bool one_face(const Lit *a, const Lit *b) {
+    return a->sheet == b->sheet && fabsf(a->distance - b->distance) < 0.02f * a->distance &&
+           float3_dot(a->normal, b->normal) > 0.8f;
+}
+
+/// Pixels that are smoothed to each side.
+static void find_reach(const Preview *preview, int reach[LIT_KINDS]) {
+    reach[LIT_SUN] = 2;
+    reach[LIT_SKY] = reach[LIT_LAMPS] = 2 + preview->def.height / 180;
+}
+
+/// Means of visible shares along a line of pixels `stride` apart that show the lit one's face, weighted by nearness.
+/// `before` and `after` are the numbers of pixels on both sides.
+static void smooth_line(const Lit *lit, const float (*values)[LIT_KINDS], size_t values_size, ptrdiff_t stride,
+                        int before, int after, const int reach[LIT_KINDS], float out[LIT_KINDS]) {
+    float sum[LIT_KINDS] = {0}, total[LIT_KINDS] = {0};
+    int first = before < reach[LIT_SKY] ? -before : -reach[LIT_SKY];
+    int last = after < reach[LIT_SKY] ? after : reach[LIT_SKY];
+    for (int at = first; at <= last; at++) {
+        const Lit *other = lit + at * stride;
+        if (!one_face(lit, other)) continue;
+        const float *value = (const float *)(const void *)((const char *)values + at * stride * (ptrdiff_t)values_size);
+        for (int k = 0; k < LIT_KINDS; k++) {
+            float weight = (float)(reach[k] + 1 - (at < 0 ? -at : at));
+            if (weight <= 0 || value[k] < 0) continue;
+            sum[k] += weight * value[k];
+            total[k] += weight;
+        }
+    }
+
+    for (int k = 0; k < LIT_KINDS; k++) out[k] = total[k] > 0 ? sum[k] / total[k] : -1;
+}
+
+void seen_smooth(Preview *preview, Block *block) {
+    int w = preview->def.width, h = preview->def.height, reach[LIT_KINDS];
+    find_reach(preview, reach);
+    for (int i = 0; i < LANES; i++) {
+        int x = block->x[i], y = block->y[i];
+        if (x >= w || y >= h) continue;
+        size_t pixel = (size_t)y * (size_t)w + (size_t)x;
+        const Lit *lit = &preview->lit[pixel];
+        smooth_line(lit, &lit->seen, sizeof *lit, 1, x, w - 1 - x, reach, preview->seen[pixel]);
+    }
+}
+
+void seen_finish(Preview *preview, Block *block) {
+    int w = preview->def.width, h = preview->def.height, reach[LIT_KINDS];
+    find_reach(preview, reach);
+    for (int i = 0; i < LANES; i++) {
+        int x = block->x[i], y = block->y[i];
+        if (x >= w || y >= h) continue;
+        size_t pixel = (size_t)y * (size_t)w + (size_t)x;
+        const Lit *lit = &preview->lit[pixel];
+        float seen[LIT_KINDS];
+        if (lit->distance < 0)
+            for (int k = 0; k < LIT_KINDS; k++) seen[k] = lit->seen[k];
+        else smooth_line(lit, &preview->seen[pixel], sizeof *preview->seen, w, y, h - 1 - y, reach, seen);
+        for (int k = 0; k < LIT_KINDS; k++)
+            preview->picture[pixel] = float3_mad(preview->picture[pixel], lit->light[k], seen[k] < 0 ? 1 : seen[k]);
+    }
+}
