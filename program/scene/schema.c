@@ -117,7 +117,7 @@ static const Schema schema_output = {
 
 static const SchemaRow pace_rows[] = {
     {"time", ROW_FLOAT, DIM_TIME, AT(SingeValueKey, time), .min = 0, .max = 1e6, .flags = ROW_REQUIRED,
-     .doc = "when, of the motion"},
+     .doc = "when, in seconds of motion"},
     {"value", ROW_FLOAT, DIM_NONE, AT(SingeValueKey, value), .min = 0, .max = 1e6, .flags = ROW_REQUIRED,
      .doc = "seconds of fire per second of motion"},
 };

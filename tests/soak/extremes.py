@@ -86,6 +86,9 @@ def complete(scene):
             source.pop("end", None)
     for collider in scene.get("colliders", []):
         collider.setdefault("kind", "plane")
+    for number, key in enumerate(scene["pace"] if isinstance(scene.get("pace"), list) else []):
+        key.setdefault("time", float(number))
+        key.setdefault("value", 1)
     for probe in scene.get("probes", []):
         probe.setdefault("kind", "uv")
         probe.setdefault("at", [0.5, 0.5] if probe["kind"] == "uv" else [0, 0, 0])
