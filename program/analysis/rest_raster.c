@@ -157,28 +157,36 @@ static void line_add(float *restrict to, const float *restrict from, float share
     for (int i = 0; i < count; i++) to[i] += share * from[i];
 }
 
+/// The part of a line that is not zero. A strip that lies across its raster covers little of each line.
+static void line_part(const float *line, int width, int part[2]) {
+    part[0] = 0, part[1] = width;
+    while (part[0] < width && line[part[0]] == 0) part[0]++;
+    while (part[1] > part[0] && line[part[1] - 1] == 0) part[1]--;
+}
+
 static void blur_rows(const float *from, float *to, int width, int height, const float *kernel, int reach) {
     for (int j = 0; j < height; j++) {
         const float *line = from + (size_t)j * (size_t)width;
         float *sum = to + (size_t)j * (size_t)width;
-        for (int i = 0; i < width; i++) sum[i] = kernel[0] * line[i];
-        for (int k = 1; k <= reach && k < width; k++) {
-            line_add(sum + k, line, kernel[k], width - k);
-            line_add(sum, line + k, kernel[k], width - k);
+        int part[2];
+        line_part(line, width, part);
+        memset(sum, 0, (size_t)width * sizeof *sum);
+        for (int k = -reach; k <= reach; k++) {
+            const int begin = part[0] + k < 0 ? -k : part[0], end = part[1] + k > width ? width - k : part[1];
+            if (begin < end) line_add(sum + begin + k, line + begin, kernel[abs(k)], end - begin);
         }
     }
 }
 
 /// Also row by row, to read memory in its order.
 static void blur_columns(const float *from, float *to, int width, int height, const float *kernel, int reach) {
+    memset(to, 0, (size_t)width * (size_t)height * sizeof *to);
     for (int j = 0; j < height; j++) {
         const float *line = from + (size_t)j * (size_t)width;
-        float *sum = to + (size_t)j * (size_t)width;
-        for (int i = 0; i < width; i++) sum[i] = kernel[0] * line[i];
-        for (int k = 1; k <= reach; k++) {
-            if (j - k >= 0) line_add(sum, line - (size_t)k * (size_t)width, kernel[k], width);
-            if (j + k < height) line_add(sum, line + (size_t)k * (size_t)width, kernel[k], width);
-        }
+        int part[2];
+        line_part(line, width, part);
+        for (int k = j < reach ? -j : -reach; k <= reach && j + k < height; k++)
+            line_add(to + (size_t)(j + k) * (size_t)width + part[0], line + part[0], kernel[abs(k)], part[1] - part[0]);
     }
 }
 

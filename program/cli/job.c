@@ -278,7 +278,7 @@ ExitCode job_build(Job *job, Console *console, SingeSim **sim) {
         SingeError error = {0};
         result = gas_detail_shape(&coarse, job->scene->gas_detail, &fine, &error);
         if (result) {
-            message_add(&messages, job->scene->text, (SceneLocation){0}, "%s", error.message);
+            message_add(&messages, job->scene->text, job->scene->gas_detail_location, "%s", error.message);
             singe_sim_destroy(*sim);
             *sim = NULL;
         }

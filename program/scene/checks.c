@@ -200,6 +200,8 @@ void finish_scene(Reader *reader, const YamlNode *map, void *object) {
                     (double)scene->fps, scene->steps, rate);
     scene->sim.solver.tearing = scene->tearing && scene->sim.solver.method == SINGE_SOLVER_STRAND;
 
+    const YamlNode *detail = node_find(node_find(map, "gas"), "detail");
+    if (detail) scene->gas_detail_location = detail->location;
     check_times(reader, node_find(map, "pace"), scene->paces, sizeof *scene->paces, scene->pace_count);
     if (scene->pace_count) scene->sim.pace = fmaxf(scene->paces[0].value, SCENE_PACE_MIN);
     if (scene->pace_count && scene->burn_by.given)

@@ -225,11 +225,12 @@ typedef struct SceneBurnBy {
 } SceneBurnBy;
 
 typedef struct Scene {
-    char *name;          ///< of the outputs; the scene file's name without its ending by default
-    int frames;          ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
-    float fps;           ///< frames a second
-    int steps;           ///< steps a frame
-    int gas_detail;      ///< factor by which the cells of gas_detail/ are smaller; 1: a run has no such files
+    char *name;     ///< of the outputs; the scene file's name without its ending by default
+    int frames;     ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
+    float fps;      ///< frames a second
+    int steps;      ///< steps a frame
+    int gas_detail; ///< factor by which the cells of gas_detail/ are smaller; 1: a run has no such files
+    SceneLocation gas_detail_location;
     uint32_t pace_count; ///< 0: the pace is sim.pace throughout
     SingeValueKey *paces;
     SceneBurnBy burn_by;
