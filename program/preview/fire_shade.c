@@ -24,14 +24,14 @@
 #define FLAME_COOL 1350.0f ///< K
 #define FLAME_HOT 2050.0f
 #define FLAME_DIM 0.25f ///< radiance of a thick flame at its coolest and its hottest
-#define FLAME_BRIGHT 3.8f
-#define SOOT_DENSE 17.0f    ///< 1/m: radiance per metre relative to that of a thick flame
+#define FLAME_BRIGHT 4.6f
+#define SOOT_DENSE 12.5f    ///< 1/m: radiance per metre relative to that of a thick flame
 #define SOOT_OPAQUE 6.0f    ///< 1/m, extinction
 #define BLUE_DENSE 1.2f     ///< 1/m: radiance of the base per metre
 #define EDGE 0.19f          ///< burning share at a flame's edge
 #define STAND_OFF 0.0006f   ///< m above the paper, below which nothing is visible
-#define SOOT_BEGINS 0.0035f ///< m
-#define SOOT_FULL 0.019f
+#define SOOT_BEGINS 0.0034f ///< m
+#define SOOT_FULL 0.0125f
 
 // ---- looking up
 
@@ -98,7 +98,7 @@ static Float3 flame_colour(const Fire *fire, float hot) {
     return float3_mix(fire->colours[i], fire->colours[i + 1], x - (float)i);
 }
 
-Float3 fire_emission(const Preview *preview) { return float3_scale(flame_colour(&preview->fire, 1), 140); }
+Float3 fire_emission(const Preview *preview) { return float3_scale(flame_colour(&preview->fire, 1), 103); }
 
 float fire_share(const FireCell *cell) {
     if (cell->flame <= 0.05f) return 0;
@@ -124,7 +124,8 @@ static Float3 shade_flame(const Fire *fire, const FireCell *cell, Noise wide, No
     if (body <= 0) return float3(0, 0, 0);
 
     float fold = 0.8f * wide.d + 0.35f * fine.c, sheet = maxf(1 - 20 * fold * fold, 0);
-    float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.003f * fine.d), cooling = stepf(0.4f, 1.5f, tall);
+    float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.0025f * fine.d), cooling = stepf(0.4f, 1.5f, tall);
+    soot *= soot;
     float thin = mixf(0.14f, 0.04f + 1.2f * sheet * sheet, torn) * body;
     float hot = 0.50f + 0.3f * stepf(0.05f, 0.3f, edge) + 0.2f * sheet - 0.45f * cooling + 0.12f * fine.d;
     *opaque = SOOT_OPAQUE * thin * soot;

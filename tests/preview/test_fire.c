@@ -200,7 +200,8 @@ static void see_line(const SingeSurface *surface, const SingeGas *gas, float (*f
         }
 }
 
-/// A flame begins within 3 mm of the paper, is faint and blue there and yellow above, and has gaps between its tongues.
+/// A flame begins within 3 mm of the paper, is faint and blue there, yellow 8 mm above it, and has gaps between its
+/// tongues.
 TEST(a_flame_has_a_blue_base_and_tongues) {
     static float fire[W * H][4], mean[H][4];
     static Line line;
@@ -216,7 +217,8 @@ TEST(a_flame_has_a_blue_base_and_tongues) {
     print_message("%d of %d columns dark at 35 mm\n", dark, W);
     assert_true(mean[2][2] > 0.02f && mean[2][2] > 1.5f * mean[2][0]);
     assert_true(mean[2][0] < 0.1f * mean[35][0]);
-    assert_true(mean[12][0] > 0.3f * mean[35][0] && mean[35][0] > 3 * mean[35][2]);
+    assert_true(mean[8][0] > 0.4f * mean[35][0] && // .36 with soot from 4 to 19 mm
+                mean[12][0] > 0.3f * mean[35][0] && mean[35][0] > 3 * mean[35][2]);
     assert_in_range(dark, W / 8, W / 2);
 }
 
