@@ -9,11 +9,12 @@
 #include "cli/outputs.h"
 #include "common/printable.h"
 
-enum { OPT_TO, OPT_SINGLE, OPT_SET, OPT_QUIET, OPT_COUNT };
+enum { OPT_TO, OPT_SINGLE, OPT_PLAIN, OPT_SET, OPT_QUIET, OPT_COUNT };
 
 static const ArgOption convert_options[OPT_COUNT] = {
     [OPT_TO] = {"to", 0, "FORMAT", "format to write (see docs/formats.md); may be repeated"},
     [OPT_SINGLE] = {"single", 0, NULL, "writes all frames into one file: `usd` or `glb`"},
+    [OPT_PLAIN] = {"plain", 0, NULL, "does not pack a single GLB: for readers without EXT_meshopt_compression"},
     [OPT_SET] = {"set", 0, "PATH=VALUE",
                  "sets a value of the scene (output.texture_size, gas.detail); may be repeated"},
     [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
@@ -37,7 +38,7 @@ typedef struct ConvertOptions {
     OutputSet formats;
     unsigned singles; ///< of output_singles, a bit each
     SetList sets;
-    bool single, gas, quiet;
+    bool single, plain, gas, quiet;
 } ConvertOptions;
 
 static int single_named(const char *name, bool by_option) {
@@ -102,6 +103,7 @@ static ExitCode convert_parse(int argc, char **argv, ConvertOptions *o, bool *do
             else args_complain(&reader, "--to: too many formats");
             break;
         case OPT_SINGLE: o->single = true; break;
+        case OPT_PLAIN: o->plain = true; break;
         case OPT_SET: set_add(&o->sets, value); break;
         case OPT_QUIET: o->quiet = true; break;
         case ARG_OPERAND: o->folder = value; break;
@@ -183,6 +185,7 @@ static ExitCode convert(const ConvertOptions *o, Console *console, const Job *jo
     SingeResult result = lock_take(lock, folder->cache_lock, "frames", false, console, &error);
     char *vdb = folder_vdb(folder, 1), *fine = folder_gas_detail(folder, 1);
     if (!result) result = outputs_open(&outputs, job, folder, o->formats, folder_has(vdb), &error);
+    outputs.scene.plain = o->plain;
     outputs.scene.gas_detail = job->scene->gas_detail > 1 && (o->gas || folder_has(fine));
     free(vdb);
     free(fine);

@@ -22,12 +22,13 @@ void glb_begin(GlbFile *f, const OutputScene *scene, SingeAllocator a) {
                    .meshes.allocator = a,
                    .nodes.allocator = a,
                    .animations.allocator = a,
+                   .scratch.allocator = a,
                    .scene = scene};
 }
 
 void glb_free(GlbFile *f) {
     sink_free(&f->text), sink_free(&f->data), sink_free(&f->views), sink_free(&f->accessors), sink_free(&f->meshes);
-    sink_free(&f->nodes), sink_free(&f->animations);
+    sink_free(&f->nodes), sink_free(&f->animations), sink_free(&f->scratch);
 }
 
 // ---- JSON
@@ -80,10 +81,45 @@ static void put_part(GlbFile *f, const char *before, const Sink *part) {
     sink_bytes(&f->text, part->bytes, part->size);
 }
 
+/// The first sheet that has this sheet's picture, and how many other pictures come before that.
+static uint32_t picture_of(const OutputScene *scene, uint32_t sheet, uint32_t *before) {
+    *before = 0;
+    for (uint32_t i = 0; i < sheet; i++) {
+        uint32_t ignored;
+        if (!scene->sheets[i].picture) continue;
+        if (strcmp(scene->sheets[i].picture, scene->sheets[sheet].picture) == 0) return i;
+        *before += picture_of(scene, i, &ignored) == i;
+    }
+    return sheet;
+}
+
+/// Adds the files of the pictures to the data, each once.
+static SingeResult put_pictures(GlbFile *f, const char *path, SingeError *error) {
+    f->first_picture = f->view_count;
+    for (uint32_t i = 0; i < f->scene->sheet_count; i++) {
+        Bytes bytes;
+        uint32_t before;
+        if (!f->scene->sheets[i].picture || picture_of(f->scene, i, &before) != i) continue;
+        SingeResult result = output_picture_read(path, f->scene->sheets[i].picture, &bytes, error);
+        if (result) return result;
+        sink_text(&f->views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu}", f->view_count++ ? "," : "",
+                  f->data.size, bytes.size);
+        sink_bytes(&f->data, bytes.data, bytes.size);
+        sink_align(&f->data, 4);
+        bytes_free(&bytes);
+    }
+    return SINGE_OK;
+}
+
 static void put_scene(GlbFile *f, const char *up, const char *extras) {
     sink_text(&f->text, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"Singe " SINGE_VERSION "\",\"extras\":");
     sink_bytes(&f->text, extras, strlen(extras));
-    sink_text(&f->text, "},\"scene\":0,\"scenes\":[{");
+    sink_text(&f->text, "},");
+    if (f->packed && f->mesh_count) {
+        static const char list[] = "[\"EXT_meshopt_compression\",\"KHR_mesh_quantization\"]";
+        sink_text(&f->text, "\"extensionsUsed\":%s,\"extensionsRequired\":%s,", list, list);
+    }
+    sink_text(&f->text, "\"scene\":0,\"scenes\":[{");
 
     if (f->mesh_count) {
         sink_text(&f->text, "\"nodes\":[");
@@ -107,10 +143,19 @@ static void put_scene(GlbFile *f, const char *up, const char *extras) {
         uint32_t pictures = 0;
         for (uint32_t i = 0; i < f->scene->sheet_count; i++) {
             if (!f->scene->sheets[i].picture) continue;
-            sink_text(&f->text, pictures++ ? ",{\"uri\":" : ",\"images\":[{\"uri\":");
+            sink_text(&f->text, pictures++ ? ",{" : ",\"images\":[{");
+            if (f->pictures_inside) {
+                uint32_t before;
+                picture_of(f->scene, i, &before);
+                const char *ending = strrchr(f->scene->sheets[i].picture, '.');
+                const bool png = ending && (strcmp(ending, ".png") == 0 || strcmp(ending, ".PNG") == 0);
+                sink_text(&f->text, "\"bufferView\":%u,\"mimeType\":\"image/%s\"}", f->first_picture + before,
+                          png ? "png" : "jpeg");
+                continue;
+            }
 
             // a path as a URI, prefixed by `up` if it is relative
-            sink_text(&f->text, "\"%s", *f->scene->sheets[i].picture == '/' ? "" : up);
+            sink_text(&f->text, "\"uri\":\"%s", *f->scene->sheets[i].picture == '/' ? "" : up);
             for (const unsigned char *c = (const unsigned char *)f->scene->sheets[i].picture; *c; c++) {
                 const bool plain = (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9') ||
                                    strchr("-_.~/", *c);
@@ -133,7 +178,12 @@ static void put_scene(GlbFile *f, const char *up, const char *extras) {
         if (f->animations.size) put_part(f, ",\"animations\":", &f->animations);
         put_part(f, ",\"accessors\":[", &f->accessors);
         put_part(f, "],\"bufferViews\":[", &f->views);
-        sink_text(&f->text, "],\"buffers\":[{\"byteLength\":%zu}]}", f->data.size);
+        sink_text(&f->text, "],\"buffers\":[{\"byteLength\":%zu}", f->data.size);
+        if (f->packed)
+            sink_text(&f->text,
+                      ",{\"byteLength\":%zu,\"extensions\":{\"EXT_meshopt_compression\":{\"fallback\":true}}}",
+                      f->unpacked);
+        sink_text(&f->text, "]}");
     } else {
         sink_text(&f->text, "}]}");
     }
@@ -143,6 +193,10 @@ static void put_scene(GlbFile *f, const char *up, const char *extras) {
 
 /// The header and the two chunks; the data are multiples of 4 bytes anyway.
 SingeResult glb_finish(GlbFile *f, const char *up, const char *extras, const char *path, SingeError *error) {
+    if (f->pictures_inside && f->mesh_count) {
+        const SingeResult result = put_pictures(f, path, error);
+        if (result) return result;
+    }
     put_scene(f, up, extras);
     if (f->data.size + f->text.size > UINT32_MAX / 2)
         return refuse(error, SINGE_ERROR_LIMIT, "glb", -1, "%s: too large for a GLB", short_name(path));
@@ -163,7 +217,7 @@ SingeResult glb_finish(GlbFile *f, const char *up, const char *extras, const cha
     }
 
     sink.failed = sink.failed || f->text.failed || f->data.failed || f->views.failed || f->accessors.failed ||
-                  f->meshes.failed || f->nodes.failed || f->animations.failed;
+                  f->meshes.failed || f->nodes.failed || f->animations.failed || f->scratch.failed;
     return sink_write(&sink, path, error);
 }
 
@@ -176,9 +230,24 @@ typedef struct GlbMeshes {
     bool lean; ///< only drawn and common attributes
 } GlbMeshes;
 
+/// How a packed file rounds an attribute. Custom ones are on grids: 1 K, 4 mm/s, a 1024th.
+static GlbRounding rounding_of(const GlbFile *f, const char *name) {
+    if (strcmp(name, "POSITION") == 0) return (GlbRounding){GLB_GRID, f->grid, 0};
+    if (strcmp(name, "NORMAL") == 0) return (GlbRounding){GLB_DIRECTION, 0, 0};
+    if (strcmp(name, "TEXCOORD_0") == 0) return (GlbRounding){GLB_SHARE, 2, 0};
+    if (strcmp(name, "COLOR_0") == 0) return (GlbRounding){GLB_SHARE, 6, 0};
+    return (GlbRounding){GLB_GRID,
+                         strcmp(name, "_TEMPERATURE") == 0 ? 0
+                         : strcmp(name, "_VELOCITY") == 0  ? -8
+                                                           : -10,
+                         0};
+}
+
 static void put_named(GlbMeshes *w, const char *name, size_t begin, uint32_t count, int width, const float *box) {
-    sink_text(&w->file->meshes, "\"%s\":%u,", name,
-              glb_put_accessor(w->file, begin, count, width, GLB_OF_VERTICES, box));
+    GlbFile *f = w->file;
+    sink_text(&f->meshes, "\"%s\":%u,", name,
+              f->packed ? glb_put_packed(f, begin, count, width, rounding_of(f, name), box != NULL)
+                        : glb_put_accessor(f, begin, count, width, GLB_OF_VERTICES, box));
 }
 
 static void put_vectors(GlbMeshes *w, const SheetPart *part, const char *name, float (*values)[3], bool unit,
@@ -202,13 +271,44 @@ static void put_vectors(GlbMeshes *w, const SheetPart *part, const char *name, f
 
 // ---- meshes
 
+/// Numbers a sheet's vertices by their first use: neighbours in the file are then neighbours on the sheet, and pack
+/// better. Those that no triangle has go.
+static void sort_by_use(SheetParts *p, SheetPart *part) {
+    uint32_t *vertices = p->vertices + p->vertex_first[part->sheet], count = 0;
+    for (uint32_t i = 0; i < part->count; i++) p->local[vertices[i]] = UINT32_MAX;
+    for (uint32_t i = 0; i < part->triangle_count; i++)
+        for (int k = 0; k < 3; k++) {
+            const uint32_t vertex = p->surface->triangles[part->triangles[i]][k];
+            if (p->local[vertex] != UINT32_MAX) continue;
+            p->local[vertex] = count;
+            vertices[count++] = vertex;
+        }
+    part->count = count;
+}
+
+/// The grid of positions: a 32,768th of the mesh's longest side, or finer.
+static int grid_of(const SingeSurface *s) {
+    float side = 0;
+    for (int c = 0; c < 3; c++) {
+        float low = 0, high = 0;
+        for (uint32_t i = 0; i < s->vertex_count; i++) {
+            const float x = s->position[i][c];
+            low = i && low < x ? low : x;
+            high = i && high > x ? high : x;
+        }
+        side = fmaxf(side, high - low);
+    }
+    return side > 0 && isfinite(side) ? ilogbf(side) - 15 : -17;
+}
+
 /// The mesh of a sheet. False if nothing of it is left: glTF has no empty meshes.
 static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
-    const SheetPart part = sheet_part(&w->parts, sheet);
+    SheetPart part = sheet_part(&w->parts, sheet);
     const SingeSurface *s = w->surface;
     GlbFile *f = w->file;
 
     if (!part.count || !part.triangle_count) return false;
+    if (f->packed) sort_by_use(&w->parts, &part);
     sink_text(&f->meshes, "%s{\"name\":", f->mesh_count++ ? "," : "");
     glb_put_string(&f->meshes, f->scene->sheets[sheet].name);
     sink_text(&f->meshes, ",\"primitives\":[{\"material\":%u,\"attributes\":{", sheet);
@@ -260,13 +360,14 @@ static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
         }
 
     f->meshes.size--; // the last comma
-    sink_text(&f->meshes, "},\"indices\":%u}]}", f->view_count);
-
     const size_t corner_begin = w->file->data.size;
     for (uint32_t i = 0; i < part.triangle_count; i++)
         for (int k = 0; k < 3; k++)
             sink_u32(&w->file->data, w->parts.local[w->surface->triangles[part.triangles[i]][k]]);
-    glb_put_accessor(w->file, corner_begin, 3 * part.triangle_count, 1, GLB_OF_CORNERS, NULL);
+    const GlbRounding corners = {GLB_TRIANGLES, 0, part.count};
+    sink_text(&f->meshes, "},\"indices\":%u}]}",
+              f->packed ? glb_put_packed(f, corner_begin, 3 * part.triangle_count, 1, corners, false)
+                        : glb_put_accessor(f, corner_begin, 3 * part.triangle_count, 1, GLB_OF_CORNERS, NULL));
 
     return true;
 }
@@ -303,12 +404,15 @@ SingeResult glb_write_single(const char *path, const OutputScene *scene, const O
     GlbFile file;
     SingeResult result = SINGE_OK;
     glb_begin(&file, scene, (SingeAllocator){0});
+    file.packed = glb_pack_available() && !scene->plain;
+    file.pictures_inside = true;
     sink_text(&file.animations, "[{\"name\":\"burn\",\"samplers\":[");
 
     for (int i = 1; i <= cache->frames && !result; i++) {
         OutputFrame frame;
         result = cache->read(cache->context, i, &frame, error);
         if (result) break;
+        if (i == 1) file.grid = grid_of(frame.surface);
 
         GlbMeshes meshes = {.file = &file, .surface = frame.surface, .lean = true};
         result = sheet_parts_make(&meshes.parts, frame.surface, scene->sheet_count, path, error);

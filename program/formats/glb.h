@@ -6,9 +6,14 @@
 #include "formats/sink.h"
 
 typedef struct GlbFile {
-    Sink text, data, views, accessors, meshes, nodes, animations;
+    Sink text, data, views, accessors, meshes, nodes, animations, scratch;
     const OutputScene *scene;
     uint32_t view_count, mesh_count, node_count;
+    bool packed;            ///< vertices and corners are rounded and packed
+    bool pictures_inside;   ///< and not beside the file
+    uint32_t first_picture; ///< the view of the first picture inside
+    int grid;               ///< of packed positions: multiples of two to this power, m
+    size_t unpacked;        ///< bytes of what is packed
 } GlbFile;
 
 /// The target of an accessor; animations have none.
@@ -22,6 +27,25 @@ void glb_put_string(Sink *sink, const char *text);
 /// Adds the view and the accessor of the data written since `begin`: `count` times `width` floats, or corners. `box`:
 /// [2][width] min and max, or NULL. Returns the accessor's number.
 uint32_t glb_put_accessor(GlbFile *file, size_t begin, uint32_t count, int width, GlbUse use, const float *box);
+
+// ---- packed: by meshoptimizer, where the build has it
+
+/// How values are rounded before they are packed.
+typedef struct GlbRounding {
+    enum {
+        GLB_GRID,  ///< floats; multiples of two to the power of `bits`, or coarser where they are too large for that
+        GLB_SHARE, ///< of 0 to 1, in 16 bits of which the last `bits` are spared; on a grid if some are not
+        GLB_DIRECTION, ///< unit vectors, in 8 bits a component
+        GLB_TRIANGLES, ///< corners of triangles with `vertices` vertices: whole numbers
+    } kind;
+    int bits;
+    uint32_t vertices;
+} GlbRounding;
+
+bool glb_pack_available(void);
+/// Packs the `count` times `width` floats, or corners, written since `begin`, and adds their view and accessor. `box`:
+/// with min and max. Returns the accessor's number.
+uint32_t glb_put_packed(GlbFile *file, size_t begin, uint32_t count, int width, GlbRounding rounding, bool box);
 
 /// A vector of the cache, rotated to y up.
 static inline void glb_turn(const float from[3], float to[3]) { to[0] = from[0], to[1] = from[2], to[2] = -from[1]; }

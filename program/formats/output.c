@@ -3,6 +3,7 @@
 
 #include "common/store.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define OUTPUT_ROW(name, ...) {#name, __VA_ARGS__},
@@ -16,6 +17,16 @@ const OutputSingle output_singles[OUTPUT_SINGLE_COUNT] = {{"usd", true, ".usdc",
 SingeResult ply_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame, SingeError *error) {
     (void)scene;
     return ply_write_surface(path, frame->surface, frame->time, error);
+}
+
+SingeResult output_picture_read(const char *path, const char *picture, Bytes *bytes, SingeError *error) {
+    char name[8192];
+    const char *slash = strrchr(path, '/');
+    const int folder = *picture == '/' || !slash ? 0 : (int)(slash - path) + 1;
+    *bytes = (Bytes){0};
+    if ((size_t)snprintf(name, sizeof name, "%.*s%s", folder, path, picture) >= sizeof name)
+        return refuse(error, SINGE_ERROR_LIMIT, "output", -1, "%s: the name is too long", short_name(picture));
+    return file_read(name, (SingeAllocator){0}, bytes, error);
 }
 
 // ---- sheets

@@ -70,6 +70,7 @@ typedef struct OutputScene {
     float fps;
     int frames;       ///< number of frames, from 1
     int texture_size; ///< pixels a side of textures
+    bool plain;       ///< a single GLB: floats that every reader knows, not packed
     bool gas;         ///< gas/NAME.0001.vdb exist
     bool gas_detail;  ///< gas_detail/NAME.0001.vdb exist, too: the root refers to those
     uint32_t sheet_count, shape_count;
@@ -118,6 +119,10 @@ SINGE_NODISCARD SingeResult usdz_write(const char *path, const OutputScene *scen
                                        SingeError *error);
 SINGE_NODISCARD SingeResult vat_write(const char *path, const OutputScene *scene, const OutputCache *cache,
                                       SingeError *error);
+
+/// Reads the file of a sheet's picture. `path`: of the root or the archive, whose folder relative ones begin at. Free
+/// the bytes.
+SINGE_NODISCARD SingeResult output_picture_read(const char *path, const char *picture, Bytes *bytes, SingeError *error);
 
 typedef SingeResult OutputWriteFrame(const char *path, const OutputScene *scene, const OutputFrame *frame,
                                      SingeError *error);

@@ -117,13 +117,7 @@ static SingeResult add_files(Zip *zip, const char *path, const OutputScene *scen
         Bytes bytes = {0};
         if (!scene->sheets[i].picture) continue;
 
-        // its path may be relative to the archive's folder
-        char name[8192];
-        const char *picture = scene->sheets[i].picture, *slash = strrchr(path, '/');
-        const int folder = *picture == '/' || !slash ? 0 : (int)(slash - path) + 1;
-        if ((size_t)snprintf(name, sizeof name, "%.*s%s", folder, path, picture) >= sizeof name)
-            return refuse(error, SINGE_ERROR_LIMIT, "usdz", -1, "%s: the name is too long", short_name(picture));
-        result = file_read(name, (SingeAllocator){0}, &bytes, error);
+        result = output_picture_read(path, scene->sheets[i].picture, &bytes, error);
         if (!result) zip_add(zip, names[i], bytes.data, bytes.size);
         bytes_free(&bytes);
     }

@@ -6,6 +6,7 @@ import re
 import struct
 import unittest
 import xml.etree.ElementTree as xml
+import zlib
 
 from support import Case, HAS_EXR
 
@@ -127,6 +128,33 @@ class Convert(Case):
         with open(self.path("again.yaml"), "w") as file:
             file.write("sheets: [{mesh: o/glb/tiny.0001.glb, up: y}]\npreview: {size: [64, 48], samples: 1}\ngas: no\n")
         self.singe("check", self.path("again.yaml"), "--frames", "1")
+
+    def test_a_single_glb_is_packed_unless_it_is_to_be_plain(self):
+        """tests/clients/gltf.js decodes it, and compares the values."""
+        chunks = ((b"IHDR", struct.pack(">2I5B", 2, 2, 8, 2, 0, 0, 0)), (b"IDAT", zlib.compress(b"\0abcdef" * 2)), (b"IEND", b""))
+        with open(self.path("p.png"), "wb") as file:
+            file.write(b"\x89PNG\r\n\x1a\n")
+            for kind, data in chunks:
+                file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))
+        self.run_scene("o", "--quiet", "--frames", "3", "--set", "sheets.0.picture=" + self.path("p.png"))
+        stages, sizes = [], []
+        for plain in (["--plain"], []):
+            self.singe("convert", self.path("o"), "--to", "glb", "--single", *plain)
+            with open(self.path("o", "tiny.glb"), "rb") as file:
+                glb = file.read()
+            size = struct.unpack_from("<I", glb, 12)[0]
+            stages.append(json.loads(glb[20 : 20 + size]))
+            sizes.append(len(glb))
+            image = stages[-1]["images"][0]
+            view = stages[-1]["bufferViews"][image["bufferView"]]
+            with open(self.path("p.png"), "rb") as file:
+                self.assertEqual(glb[28 + size + view["byteOffset"] :][: view["byteLength"]], file.read())
+            self.assertEqual(image["mimeType"], "image/png")
+        self.assertNotIn("extensionsRequired", stages[0])
+        attributes = [[mesh["primitives"][0]["attributes"].keys() for mesh in stage["meshes"]] for stage in stages]
+        self.assertEqual(*attributes)
+        if "extensionsRequired" in stages[1]:  # this build has meshoptimizer
+            self.assertLess(sizes[1], 0.5 * sizes[0])
 
     def test_vtp_holds_the_cache(self):
         """Every number of the appended arrays is the PLY's."""

@@ -36,7 +36,7 @@ function readGlb(file) {
         const width = {SCALAR: 1, VEC2: 2, VEC3: 3}[a.type];
         return Array.from({length: a.count * width}, (_, i) => data.readFloatLE(begin + 4 * i));
     };
-    return {json, accessor};
+    return {json, accessor, data};
 }
 
 function check(frame) {
@@ -76,16 +76,65 @@ async function validate(file) {
 // The model of all frames: a mesh a sheet and frame, shown by its scale.
 async function checkSingle() {
     execFileSync(singe, ['convert', out, '--to', 'vat', '--quiet']);
-    execFileSync(singe, ['convert', out, '--to', 'glb', '--single', '--quiet']);
-    const single = path.join(out, 'burn.glb');
+    execFileSync(singe, ['convert', out, '--to', 'glb', '--single', '--plain', '--quiet']);
+    const single = path.join(folder, 'plain.glb');
+    fs.renameSync(path.join(out, 'burn.glb'), single);
     const remarks = await validate(path.join(out, 'vat', 'burn.glb')) + await validate(single);
     const {json, accessor} = readGlb(single);
+    if (json.images.length !== 1 || json.images[0].mimeType !== 'image/png') throw new Error('no picture inside');
     const channels = json.animations[0].channels;
     if (channels.length !== json.nodes.length || json.nodes.length < 24) throw new Error('channels');
     const cache = readPly(path.join(out, 'ply', 'burn.0001.ply')), first = json.meshes[0].primitives[0].attributes;
     const mine = [...Array(cache.count).keys()].filter(i => cache.sheet[i] === 0);
     if (accessor(first._TEMPERATURE).some((value, k) => value !== cache.temperature[mine[k]])) throw new Error('values');
     return remarks;
+}
+
+// The packed model, decoded by meshoptimizer's own decoder, against the plain one: each value of each corner.
+const ERRORS = {POSITION: 2 ** -18, NORMAL: 0.02, TEXCOORD_0: 2 ** -14, COLOR_0: 2 ** -10, _VELOCITY: 2 ** -9, _TEMPERATURE: 0.5, _BURNT: 2 ** -11};
+async function checkPacked() {
+    const {MeshoptDecoder} = require('meshoptimizer'), worst = {};
+    await MeshoptDecoder.ready;
+    execFileSync(singe, ['convert', out, '--to', 'glb', '--single', '--quiet']);
+    const file = path.join(out, 'burn.glb'), remarks = await validate(file);
+    const plain = readGlb(path.join(folder, 'plain.glb')), bytes = fs.readFileSync(file), size = bytes.readUInt32LE(12);
+    const json = JSON.parse(bytes.subarray(20, 20 + size).toString()), data = bytes.subarray(28 + size);
+    if (!json.extensionsRequired) return 'this singe does not pack';
+    const read = index => {
+        const a = json.accessors[index], view = json.bufferViews[a.bufferView].extensions.EXT_meshopt_compression;
+        const raw = new Uint8Array(view.count * view.byteStride), width = {SCALAR: 1, VEC2: 2, VEC3: 3}[a.type], values = [];
+        MeshoptDecoder.decodeGltfBuffer(raw, view.count, view.byteStride, data.subarray(view.byteOffset, view.byteOffset + view.byteLength), view.mode, view.filter);
+        const from = new DataView(raw.buffer), kind = {5120: ['getInt8', 1, 127], 5123: ['getUint16', 2, 65535], 5125: ['getUint32', 4, 1], 5126: ['getFloat32', 4, 1]}[a.componentType];
+        for (let i = 0; i < a.count; i++) for (let c = 0; c < width; c++) values.push(from[kind[0]](i * view.byteStride + c * kind[1], true) / kind[2]);
+        return {values, width};
+    };
+    plain.json.meshes.forEach((mesh, m) => {
+        const before = mesh.primitives[0], after = json.meshes[m].primitives[0], corners = read(after.indices).values;
+        const a = plain.json.accessors[before.indices], view = plain.json.bufferViews[a.bufferView];
+        const was = Array.from({length: a.count}, (_, i) => plain.data.readUInt32LE(view.byteOffset + 4 * i));
+        if (corners.length !== was.length) throw new Error('corners');
+        if (Object.keys(before.attributes).join() !== Object.keys(after.attributes).join()) throw new Error('attributes');
+        const turns = []; // a packed triangle may begin at another of its corners
+        for (const name of Object.keys(ERRORS)) {
+            const old = plain.accessor(before.attributes[name]), {values, width} = read(after.attributes[name]);
+            const far = (t, turn) => {
+                let most = 0;
+                for (let k = 0; k < 3; k++) for (let c = 0; c < width; c++)
+                    most = Math.max(most, Math.abs(values[corners[3 * t + (k + turn) % 3] * width + c] - old[was[3 * t + k] * width + c]));
+                return most;
+            };
+            for (let t = 0; 3 * t < was.length; t++) {
+                if (name === 'POSITION') turns[t] = [0, 1, 2].reduce((best, turn) => far(t, turn) < far(t, best) ? turn : best, 0);
+                worst[name] = Math.max(worst[name] || 0, far(t, turns[t]));
+            }
+        }
+    });
+    for (const [name, bound] of Object.entries(ERRORS))
+        if (!(worst[name] <= bound * 1.0001)) throw new Error(`${name} is off by ${worst[name]}, more than ${bound}`);
+    const share = bytes.length / fs.statSync(path.join(folder, 'plain.glb')).size;
+    if (share > 0.25) throw new Error(`the packed model has ${share} of the plain one's bytes`);
+    const list = Object.entries(worst).map(([name, value]) => `${name} ${value.toPrecision(2)}`).join(', ');
+    return `the packed model: ${bytes.length} bytes, ${(100 * share).toFixed(0)} % of the plain one, ${remarks} remarks; largest errors ${list}`;
 }
 
 // gltf-transform's meshopt keeps every attribute; values within -1 to 1 are rounded to 12 bits.
@@ -134,6 +183,7 @@ async function checkMeshopt() {
         nodes.push((readGlb(path.join(gone, 'glb', file)).json.nodes || []).length);
     }
     if (nodes.length !== 12 || !nodes[0] || nodes[11]) throw new Error(`a sheet that burns away has nodes ${nodes}`);
+    console.log(await checkPacked());
     console.log(await checkMeshopt());
     const frames = [1, 10, 20, 24];
     frames.forEach(check);

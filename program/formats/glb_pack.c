@@ -1,0 +1,147 @@
+// Smaller GLB: values are rounded, and then packed without loss by meshoptimizer (EXT_meshopt_compression, version 0 of
+// its streams). The buffer that the accessors name is empty, as the extension has it: a reader fills it.
+#include "formats/glb.h"
+
+#include "common/store.h"
+
+#include <math.h>
+#include <string.h>
+
+#ifndef SINGE_MESHOPT
+
+bool glb_pack_available(void) { return false; }
+
+uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, GlbRounding rounding, bool box) {
+    (void)count, (void)width, (void)rounding, (void)box;
+    f->data.size = begin;
+    return f->view_count;
+}
+
+#else
+
+#include <meshoptimizer.h>
+
+bool glb_pack_available(void) { return true; }
+
+enum { GLB_BYTE = 5120, GLB_USHORT = 5123, GLB_FLOAT32 = 5126, GLB_UINT32 = 5125, GRID_LARGEST = (1 << 23) - 1 };
+
+/// The bytes of an element. Those of vertices must be multiples of four.
+static uint32_t stride_of(GlbRounding rounding, int width) {
+    if (rounding.kind == GLB_TRIANGLES) return 4;
+    if (rounding.kind == GLB_DIRECTION) return 4;
+    if (rounding.kind == GLB_SHARE) return width > 2 ? 8 : 4;
+    return 4 * (uint32_t)width;
+}
+
+/// Floats as the extension's exponential filter has them, all with one exponent: 24 bits of a multiple, 8 of the
+/// exponent. Rounds `values` to what a reader will get.
+static void round_to_grid(float *values, size_t count, int finest, uint8_t *stream) {
+    float largest = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (!isfinite(values[i])) values[i] = 0;
+        largest = fmaxf(largest, fabsf(values[i]));
+    }
+
+    int exponent = finest;
+    while (ldexpf(largest, -exponent) > GRID_LARGEST) exponent++;
+    for (size_t i = 0; i < count; i++) {
+        const int32_t multiple = (int32_t)lrintf(ldexpf(values[i], -exponent));
+        const uint32_t bits = ((uint32_t)multiple & 0xffffff) | (uint32_t)exponent << 24;
+        memcpy(stream + 4 * i, &bits, 4);
+        values[i] = ldexpf((float)multiple, exponent);
+    }
+}
+
+/// Shares of 0 to 1 in 16 bits, of which the last `spare` are 0 (1 has them all set).
+static void round_shares(const float *values, uint32_t count, int width, int spare, uint32_t stride, uint8_t *stream) {
+    const float steps = (float)(65536 >> spare);
+    for (uint32_t i = 0; i < count; i++)
+        for (int c = 0; c < width; c++) {
+            const long step = lrintf(values[i * (size_t)width + (size_t)c] * steps) << spare;
+            const uint16_t share = (uint16_t)(step < 0 ? 0 : step > 65535 ? 65535 : step);
+            memcpy(stream + i * (size_t)stride + 2 * (size_t)c, &share, 2);
+        }
+}
+
+static bool are_shares(const float *values, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (!(values[i] >= 0 && values[i] <= 1)) return false;
+    return true;
+}
+
+uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, GlbRounding rounding, bool box) {
+    static const char *const types[] = {[1] = "SCALAR", [2] = "VEC2", [3] = "VEC3"};
+    float *values = (float *)(void *)(f->data.bytes + begin);
+    const size_t total = (size_t)count * (size_t)width;
+    const bool corners = rounding.kind == GLB_TRIANGLES;
+    if (f->data.failed) return f->view_count;
+    if (rounding.kind == GLB_SHARE && !are_shares(values, total)) rounding = (GlbRounding){GLB_GRID, -15, 0};
+    const uint32_t stride = stride_of(rounding, width);
+
+    // the stream before packing
+    f->scratch.size = 0;
+    sink_zeros(&f->scratch, (size_t)count * stride);
+    if (f->scratch.failed) return f->view_count;
+    uint8_t *stream = f->scratch.bytes;
+    if (corners) memcpy(stream, values, 4 * total);
+    else if (rounding.kind == GLB_GRID) round_to_grid(values, total, rounding.bits, stream);
+    else if (rounding.kind == GLB_SHARE) round_shares(values, count, width, rounding.bits, stride, stream);
+    else
+        for (uint32_t i = 0; i < count; i++) {
+            const float direction[4] = {values[3 * i], values[3 * i + 1], values[3 * i + 2], 1};
+            meshopt_encodeFilterOct(stream + 4 * (size_t)i, 1, 4, 8, direction);
+        }
+
+    float bounds[2][3] = {{0}};
+    for (size_t i = 0; i < total && box; i++) {
+        const size_t c = i % (size_t)width;
+        if (i < (size_t)width || values[i] < bounds[0][c]) bounds[0][c] = values[i];
+        if (i < (size_t)width || values[i] > bounds[1][c]) bounds[1][c] = values[i];
+    }
+
+    // packed, in place of the floats; the versions are those that the extension allows
+    meshopt_encodeVertexVersion(0);
+    meshopt_encodeIndexVersion(1);
+    f->data.size = begin;
+    const size_t bound = corners ? meshopt_encodeIndexBufferBound(count, rounding.vertices)
+                                 : meshopt_encodeVertexBufferBound(count, stride);
+    uint8_t *room = sink_room(&f->data, bound);
+    if (!room) return f->view_count;
+    const size_t size = corners ? meshopt_encodeIndexBuffer(room, bound, (const unsigned *)(void *)stream, count)
+                                : meshopt_encodeVertexBuffer(room, bound, stream, count, stride);
+    f->data.size = begin + size;
+
+    const char *comma = f->view_count ? "," : "";
+    sink_text(&f->views, "%s{\"buffer\":1,\"byteOffset\":%zu,\"byteLength\":%zu", comma, f->unpacked,
+              (size_t)count * stride);
+    if (!corners) sink_text(&f->views, ",\"byteStride\":%u", (unsigned)stride);
+    sink_text(&f->views, ",\"target\":%d,\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,\"byteOffset\":%zu,",
+              corners ? 34963 : 34962, begin);
+    sink_text(&f->views, "\"byteLength\":%zu,\"byteStride\":%u,\"count\":%u,\"mode\":\"%s\"%s}}}", size,
+              (unsigned)stride, (unsigned)count, corners ? "TRIANGLES" : "ATTRIBUTES",
+              rounding.kind == GLB_GRID        ? ",\"filter\":\"EXPONENTIAL\""
+              : rounding.kind == GLB_DIRECTION ? ",\"filter\":\"OCTAHEDRAL\""
+                                               : "");
+    f->unpacked += (size_t)count * stride;
+    sink_align(&f->data, 4);
+
+    const bool share = rounding.kind == GLB_SHARE, direction = rounding.kind == GLB_DIRECTION;
+    sink_text(&f->accessors, "%s{\"bufferView\":%u,\"componentType\":%d,\"count\":%u,\"type\":\"%s\"%s", comma,
+              f->view_count,
+              corners     ? GLB_UINT32
+              : share     ? GLB_USHORT
+              : direction ? GLB_BYTE
+                          : GLB_FLOAT32,
+              (unsigned)count, types[width], share || direction ? ",\"normalized\":true" : "");
+    for (int side = 0; box && side < 2; side++) {
+        sink_text(&f->accessors, side ? "],\"max\":[" : ",\"min\":[");
+        for (int c = 0; c < width; c++) {
+            sink_text(&f->accessors, c ? "," : "");
+            sink_float(&f->accessors, bounds[side][c]);
+        }
+    }
+    sink_text(&f->accessors, box ? "]}" : "}");
+    return f->view_count++;
+}
+
+#endif
