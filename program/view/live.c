@@ -5,12 +5,15 @@
 #endif
 #include "view/view.h"
 
+#include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <ftw.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -25,6 +28,35 @@ static int remove_entry(const char *path, const struct stat *info, int kind, str
 
 /// Removes a folder of ours with all in it; follows no link.
 static void remove_folder(const char *path) { nftw(path, remove_entry, 16, FTW_DEPTH | FTW_PHYS); }
+
+/// Whoever holds this file's lock uses the folder. Its name is no run's.
+static int open_lock(const char *folder, int flags) {
+    char *path = text_format("%s/lock", folder);
+    const int file = open(path, flags | O_RDWR | O_NOFOLLOW, 0600);
+    free(path);
+    if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0) return file;
+    if (file >= 0) close(file);
+    return -1;
+}
+
+/// Removes what views that were killed have left: our user's folders whose lock nobody holds.
+static void remove_left(const char *base) {
+    DIR *entries = opendir(base);
+    if (!entries) return;
+    for (struct dirent *entry; (entry = readdir(entries));) {
+        struct stat info;
+        if (strncmp(entry->d_name, "singe-view-", 11) != 0 || strlen(entry->d_name) != 17) continue;
+        char *path = text_format("%s/%s", base, entry->d_name);
+        const bool ours = lstat(path, &info) == 0 && S_ISDIR(info.st_mode) && info.st_uid == geteuid();
+        const int lock = ours ? open_lock(path, 0) : -1;
+        if (lock >= 0) {
+            remove_folder(path);
+            close(lock);
+        }
+        free(path);
+    }
+    closedir(entries);
+}
 
 static char *run_folder(const Live *live, int number) { return text_format("%s/%d", live->room, number); }
 
@@ -83,13 +115,16 @@ static void start(View *view) {
 SingeResult live_begin(View *view, SingeError *error) {
     Live *live = &view->live;
     const char *base = getenv("TMPDIR");
-    live->room = text_format("%s/singe-view-XXXXXX", base && *base ? base : "/tmp");
+    if (!base || !*base) base = "/tmp";
+    remove_left(base);
+    live->room = text_format("%s/singe-view-XXXXXX", base);
     if (!mkdtemp(live->room)) {
         folder_fail(live->room, "make the folder", errno, error);
         free(live->room);
         live->room = NULL;
         return SINGE_ERROR_FILE;
     }
+    live->lock = open_lock(live->room, O_CREAT); // held to the end; runs inherit it, and hold it if they outlive us
     start(view);
     return SINGE_OK;
 }
@@ -136,7 +171,10 @@ void live_end(View *view) {
         kill(live->process, SIGKILL);
         waitpid(live->process, NULL, 0);
     }
-    if (live->room) remove_folder(live->room);
+    if (live->room) {
+        remove_folder(live->room);
+        if (live->lock >= 0) close(live->lock);
+    }
     free(live->room);
     free(live->folder);
     free(live->log);

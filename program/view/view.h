@@ -26,6 +26,7 @@ typedef struct Exhibit {
 /// A scene that burns, again each time its file is saved.
 typedef struct Live {
     char *program, *scene, *room; ///< `room`: our own folder for the runs, removed at the end
+    int lock;                     ///< open file in `room`: the folder is in use; -1: none
     const SetList *sets;
     int threads;
     int number;              ///< of the current run, from 1

@@ -200,6 +200,19 @@ class Live(Case):
         os.replace(self.scene + "~", self.scene)
         return saved
 
+    def test_what_a_killed_view_left_is_removed_by_the_next(self):
+        self.view.wait(lambda s: s["last"] == 4 and not s["burning"])
+        left, = os.listdir(self.path("tmp"))
+        os.mkdir(self.path("tmp", "singe-view-others"))
+        second = View(self, self.scene, "--threads", "1", env={**os.environ, "TMPDIR": self.path("tmp")})
+        self.assertIn(left, os.listdir(self.path("tmp")))  # in use
+        second.end()
+        self.view.process.kill()
+        self.view.process.wait(PATIENCE)
+        self.assertEqual(sorted(os.listdir(self.path("tmp"))), sorted([left, "singe-view-others"]))
+        View(self, self.scene, "--threads", "1", env={**os.environ, "TMPDIR": self.path("tmp")}).end()
+        self.assertEqual(os.listdir(self.path("tmp")), ["singe-view-others"])
+
     def test_a_scene_burns_while_it_is_watched_and_again_when_it_is_saved(self):
         state = self.view.wait(lambda s: s["last"] == 4 and not s["burning"])
         self.assertEqual((state["run"], state["live"], state["exit"]), (1, True, 0))
