@@ -256,6 +256,7 @@ static const LayoutField fields[] = {
     FIELD(arrival_error, 1, DOUBLE),
     FIELD(arrival_missed, 1, UINT32),
     FIELD(pace, 1, FLOAT),
+    FIELD(water, 1, DOUBLE),
 #undef STRUCT
 #undef STRUCT_NAME
 #define STRUCT SingeEvent

@@ -163,6 +163,9 @@ typedef struct SingeMaterialDef {
     /// 1/m, >= 0; max curvature of unburnt sheet beyond the rest shape (solver strand); 0: no limit. Without it thin
     /// sheets that shrink fold along rows of cells
     SingeParam curvature_max;
+    /// 0 to 3; mass of water at the start over the mass before it burns; it boils off before the sheet gets hotter than
+    /// 100 C. Paper in a room holds 5 to 8 %. 0: dry
+    SingeParam moisture;
 } SingeMaterialDef;
 
 SINGE_API void singe_init_material(SingeMaterialDef *def, size_t struct_size);

@@ -305,6 +305,7 @@ typedef struct SingeStats {
     double arrival_error;
     uint32_t arrival_missed; ///< particles that are more than a step late, or have ignited where the map says never
     float pace;              ///< in use
+    double water;            ///< kg, in the sheets
 } SingeStats;
 
 /// Fills `struct_size` bytes, the caller's sizeof.

@@ -71,6 +71,7 @@ typedef enum SingeSourceKind {
     SINGE_SOURCE_SPOT = 2,     ///< a hot ball that stands still
     SINGE_SOURCE_CALLBACK = 3, ///< a function of the caller
     SINGE_SOURCE_ARRIVAL = 4,  ///< a map drawn on the sheet of when the fire's front is where
+    SINGE_SOURCE_WATER = 5,    ///< water that wets the sheet, by a picture
 } SingeSourceKind;
 
 struct SingeView;
@@ -87,11 +88,11 @@ typedef void SingeFluxFn(void *context, const struct SingeView *view, float *flu
 /// a sheet has two layers, and takes up twice as much per square metre.
 ///
 /// Defaults: kind SINGE_SOURCE_SPOT, end INFINITY, temperature 1200, conductance 150, radius 0.005, falloff 0.01, flux
-/// 30e3, arrival_to 1, lead 0.1; all else 0 or NULL.
+/// 30e3, arrival_to 1, lead 0.1, wetting 0.1; all else 0 or NULL.
 typedef struct SingeSourceDef {
     size_t struct_size;
     /// ball: a hot ball on a path; spot: a hot ball that stands still; texture: a flux drawn on the sheet; arrival: a
-    /// map drawn on the sheet of when the fire's front is where
+    /// map drawn on the sheet of when the fire's front is where; water: water that wets the sheet, by a picture
     SingeSourceKind kind;
     float start;       ///< s, any, also infinite; time at which it starts
     float end;         ///< s, any, also infinite; time at which it ends; inf: never
@@ -119,6 +120,9 @@ typedef struct SingeSourceDef {
     /// s, arrival, 1e-3 to 1e6; the sheet is scorched this long before the front arrives; longer makes a wider brown
     /// rim
     float lead;
+    /// kg/(m2 s), water, 0 to 1e6; water that falls where the picture is white, of the air's temperature. It needs a
+    /// sheet whose moisture is above 0, which then holds at most three times its own mass
+    float wetting;
 } SingeSourceDef;
 
 SINGE_API void singe_init_source(SingeSourceDef *def, size_t struct_size);

@@ -37,7 +37,7 @@ static const char *const changeable[] = {
 };
 
 /// Parameters of materials that fix a sheet's mass, shape or start.
-static const char *const lasting[] = {"grammage", "specific_heat", "thickness", "temperature"};
+static const char *const lasting[] = {"grammage", "specific_heat", "thickness", "temperature", "moisture"};
 
 static bool listed(const char *key, const char *const *keys, size_t count) {
     for (size_t i = 0; i < count; i++)

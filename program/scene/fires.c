@@ -162,7 +162,7 @@ static double heat_of(const Scene *scene, const SceneSource *source, const Place
     }
     double conductance = 0;
     for (uint32_t i = 0; i < scene->source_count; i++)
-        if (scene->sources[i].def.kind != SINGE_SOURCE_TEXTURE && scene->sources[i].def.kind != SINGE_SOURCE_ARRIVAL)
+        if ((scene->sources[i].def.kind == SINGE_SOURCE_BALL || scene->sources[i].def.kind == SINGE_SOURCE_SPOT))
             conductance += (double)scene->sources[i].def.conductance;
     const double rest = exp(-conductance * time / place->capacity);
     return fmax(place->start, (double)def->temperature - ((double)def->temperature - place->start) * rest);
@@ -173,6 +173,7 @@ static double heat_of(const Scene *scene, const SceneSource *source, const Place
 static bool source_lights(const Scene *scene, const SceneAssets *assets, const SceneSource *source, const Place *places,
                           bool lit, const SingeLog *log) {
     const bool mapped = source->def.kind == SINGE_SOURCE_ARRIVAL;
+    if (source->def.kind == SINGE_SOURCE_WATER) return false; // it puts fires out
     const bool everywhere = mapped || source->def.kind == SINGE_SOURCE_TEXTURE;
     // a flame of its own is some 0.24 m high at 1 kW, and its hot gas rises farther
     const bool flame = !everywhere && scene->sim.gas.enabled && source->def.power > 0;

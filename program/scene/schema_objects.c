@@ -145,6 +145,11 @@ static const SchemaRow source_rows[] = {
      .doc =
          "PNG or JPEG over the sheets' uv: the time of ignition from black, `from`, to the lightest grey, `to`; pure "
          "white never ignites"},
+    {"texture", ROW_FILE, DIM_NONE, AT(SceneSource, texture), .kinds = BIT(SINGE_SOURCE_WATER), .flags = ROW_REQUIRED,
+     .doc = "PNG or JPEG over the sheets' uv: it rains where it is white, and nowhere where it is black"},
+    {"strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count),
+     .kinds = BIT(SINGE_SOURCE_WATER), .min = 0, .max = 1e6, .sub = &schema_strength,
+     .doc = "multiplies the rain over time; 1 when not given"},
     {"strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count),
      .kinds = BIT(SINGE_SOURCE_TEXTURE), .min = 0, .max = 1e6, .sub = &schema_strength,
      .doc = "multiplies the flux over time; 1 when not given"},

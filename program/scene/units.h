@@ -33,6 +33,7 @@ typedef enum Dimension {
     DIM_MOLAR_ENERGY,
     DIM_FRAME_RATE,
     DIM_POWER,
+    DIM_WETTING,
     DIM_COUNT
 } Dimension;
 

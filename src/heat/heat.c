@@ -16,6 +16,12 @@
 // 1 K. Losses are implicit, too, with T^4 - Ta^4 = (T + Ta)(T^2 + Ta^2)(T - Ta) and the first two factors at T*:
 //   T** = (T* + dt K Ta)/(1 + dt K),  K = [h_c/C'' + eps sigma/C'' (T* + Ta)(T*^2 + Ta^2)]/max(m, floor)/(F F_c).
 //
+// Water boils at T_b = 373 K, where T** is above it: by at most C (T** - T_b)/L kg, and T falls by L/C of them, with
+//
+//   L = 2.257 MJ/kg + 4186 J/(kg K) (T_b - Ta)    from water at Ta to steam at T_b
+//
+// so that nothing wet gets hotter, but for what is conducted in the step. Water has no other effect on heat.
+//
 // Ledger: heat in = A dt f, heat lost = C dt K (T** - Ta), heat of combustion = C r h, with the particle's unburnt
 // capacity C, as in the stored enthalpy C (T - Ta).
 #include <math.h>
@@ -25,6 +31,8 @@
 static const float STEFAN_BOLTZMANN = 5.670374e-8f; // W/(m2 K4)
 static const float HEAT_COLDEST = 1;                // K, a negative flux does not cool below it
 static const float HEAT_RATE_MAX = 1e30f;           // everything is lost in a step
+static const float BOILING = 373.15f;               // K
+static const float STEAM = 2.257e6f, WATER = 4186;  // J/kg, J/(kg K)
 
 void heat_blocks(HeatPass *pass, SingeTaskFn *run) { pool_for(pass->pool, pass->plan->blocks, 1, run, pass); }
 
@@ -42,6 +50,7 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
     const float *temperature = pass->heat->temperature, *mass = pass->state->burn->mass;
     const float *burn_rate = pass->state->burn->burn_rate, *release = pass->state->burn->release;
     const float *fuel = pass->state->burn->fuel;
+    float *water = pass->heat->water;
     float ambient = plan->settings.ambient_temperature, dt = pass->dt, h = pass->h;
     float slower = 1 / plan->thickening[sheet];
 
@@ -85,6 +94,18 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
             plan->delta[i] = plan->star[i] - T;
         }
 
+        // boiling; the steam takes the heat along
+        const float excess = plan->star[i] - BOILING;
+        if (water && water[i] > 0 && excess > 0) {
+            const float latent = STEAM + WATER * fmaxf(BOILING - ambient, 0), boils = matter->mass[i] * latent;
+            const float steam = fminf(water[i], excess * matter->capacity[i] / boils);
+            const float cooling = steam * boils / matter->capacity[i];
+            water[i] -= steam;
+            plan->star[i] -= cooling;
+            plan->delta[i] -= cooling;
+            ledger[3] += (double)cooling * (double)matter->capacity[i];
+        }
+
         // ledger
         ledger[0] += (double)flux * matter->area[i] * dt;
         ledger[1] += (double)loss * matter->capacity[i];
@@ -103,7 +124,7 @@ static void heat_exchange(void *context, int begin, int end) {
 
     for (int block = begin; block < end; block++) {
         double *ledger = plan->partial[block];
-        ledger[0] = ledger[1] = ledger[2] = 0;
+        ledger[0] = ledger[1] = ledger[2] = ledger[3] = 0;
         for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
             uint32_t first = g * HEAT_GROUP, last = heat_group_last(plan, g);
 
@@ -166,7 +187,7 @@ SingeResult heat_step(HeatPlan *plan, const StepContext *context, HeatState *hea
     // eq 1: sources, combustion, losses
     heat_gather(&pass, context->sources, context->colliders, context->view);
     heat_blocks(&pass, heat_exchange);
-    double in = heat_sum(plan, 0), lost = heat_sum(plan, 1), combustion = heat_sum(plan, 2);
+    double in = heat_sum(plan, 0), lost = heat_sum(plan, 1) + heat_sum(plan, 3), combustion = heat_sum(plan, 2);
 
     // eq 2 and 3: diffusion
     TRY(heat_conduct(&pass, counters, &made, context->error));

@@ -12,6 +12,7 @@ static void source_ball(HeatPass *pass, const Source *source, const SingeView *v
 static void source_texture(HeatPass *pass, const Source *source, const SingeView *view);
 static void source_callback(HeatPass *pass, const Source *source, const SingeView *view);
 static void source_arrives(HeatPass *pass, const Source *source, const SingeView *view);
+static void source_wets(HeatPass *pass, const Source *source, const SingeView *view);
 static SingeResult source_check_ball(const SingeSourceDef *def, SingeError *error);
 static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *error);
 static SingeResult source_check_arrival(const SingeSourceDef *def, SingeError *error);
@@ -27,6 +28,7 @@ static const struct SourceKind {
     [SINGE_SOURCE_SPOT] = {source_check_ball, source_ball, true},
     [SINGE_SOURCE_CALLBACK] = {NULL, source_callback, false}, // its function may be set later
     [SINGE_SOURCE_ARRIVAL] = {source_check_arrival, source_arrives, false},
+    [SINGE_SOURCE_WATER] = {source_check_texture, source_wets, false},
 };
 
 // --- creating a source ----------------------------------------------------------------------------------
@@ -63,7 +65,8 @@ static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *e
     }
 
     // the largest flux
-    if (!((double)fabsf(def->flux) * (double)whitest * (double)strongest <= (double)SOURCE_FLUX_MAX))
+    if (def->kind == SINGE_SOURCE_TEXTURE &&
+        !((double)fabsf(def->flux) * (double)whitest * (double)strongest <= (double)SOURCE_FLUX_MAX))
         return source_bad(error, "flux times strength and texture must be at most 1e15 W/m2");
     return SINGE_OK;
 }
@@ -96,6 +99,10 @@ static bool source_has_path(const SingeSourceDef *def) {
     return def_has_value("SingeSourceKind", (int)def->kind) && source_kinds[def->kind].has_path;
 }
 
+static bool source_is_drawn(const SingeSourceDef *def) {
+    return def->kind == SINGE_SOURCE_TEXTURE || def->kind == SINGE_SOURCE_ARRIVAL || def->kind == SINGE_SOURCE_WATER;
+}
+
 static size_t texture_size(const SingeTexture *texture) { return (size_t)texture->width * (size_t)texture->height; }
 
 static SingeResult source_no_memory(SingeError *error) {
@@ -108,6 +115,8 @@ static SingeResult source_set_texture(Memory *memory, const Shell *shell, const 
     for (uint32_t i = 0; i < shell->particle_count && !mapped; i++)
         mapped = shell->uv[i][0] != 0 || shell->uv[i][1] != 0;
     if (!mapped) return source_bad(error, "a texture needs a sheet with uv");
+    if (source->def.kind == SINGE_SOURCE_WATER && !shell_holds_water(shell))
+        return source_bad(error, "water needs a sheet whose moisture is above 0; others have no room for it");
     if (!NEW(memory, source->texture, shell->particle_count)) return source_no_memory(error);
     bool arrives = source->def.kind == SINGE_SOURCE_ARRIVAL;
     for (uint32_t i = 0; i < shell->particle_count; i++)
@@ -149,7 +158,7 @@ SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceD
     SingeResult result = SINGE_OK;
     if (source_has_path(&def)) {
         result = path_set(&source->path, memory, def.path_count, def.path, "source", error);
-    } else if (def.kind == SINGE_SOURCE_TEXTURE || def.kind == SINGE_SOURCE_ARRIVAL) {
+    } else if (source_is_drawn(&def)) {
         const SingeTexture *texture = &def.texture;
         float *values;
         bool ok = NEW(memory, source->strength, def.strength_count);
@@ -201,8 +210,10 @@ SingeResult source_check_read(const Shell *shell, const Source *source, SingeErr
     } else {
         TRY(source_check(&def, error));
     }
-    if (source->texture && def.kind != SINGE_SOURCE_TEXTURE && !arrives)
-        return source_bad(error, "a texture needs a source of kind texture or arrival");
+    if (def.kind == SINGE_SOURCE_WATER && !shell_holds_water(shell))
+        return source_bad(error, "water needs a sheet whose moisture is above 0");
+    if (source->texture && !source_is_drawn(&def))
+        return source_bad(error, "a texture needs a source of kind texture, arrival or water");
     return path_check(def.path_count, def.path, "source", error);
 }
 
@@ -269,23 +280,45 @@ static void source_texture_task(void *context, int begin, int end) {
         if (plan->alive[i]) plan->flux[i] += job->strength * job->source->texture[i];
 }
 
-static void source_texture(HeatPass *pass, const Source *source, const SingeView *view) {
-    (void)view;
+/// The strength at a time: linear between keys, held beyond the ends, 1 without keys.
+static float source_strength(const Source *source, double time) {
     uint32_t count = source->strength_count, k = 0;
     const SingeValueKey *keys = source->strength;
-    double time = pass->state->time;
-
-    // the strength at this time: linear between keys, held beyond the ends, 1 without keys
     while (k < count && time >= keys[k].time) k++;
     float strength = count == 0 ? 1 : keys[k < count ? k : count - 1].value;
     if (k > 0 && k < count) {
         double part = (time - keys[k - 1].time) / ((double)keys[k].time - keys[k - 1].time);
         strength = (float)(keys[k - 1].value + part * ((double)keys[k].value - keys[k - 1].value));
     }
+    return strength;
+}
 
+static void source_texture(HeatPass *pass, const Source *source, const SingeView *view) {
+    (void)view;
+    float strength = source_strength(source, pass->state->time);
     SourceJob job = {.pass = pass, .source = source, .strength = source->def.flux * strength};
     if (source->texture && job.strength != 0)
         pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_texture_task, &job);
+}
+
+/// In the time of motion: a spray is not part of the fire. Each layer takes half of it.
+static void source_wet_task(void *context, int begin, int end) {
+    const SourceJob *job = context;
+    const Matter *matter = &job->pass->shell->matter;
+    float *water = job->pass->heat->water;
+    for (int i = begin; i < end; i++) {
+        const float rain = 0.5f * job->strength * job->source->texture[i] * job->pass->h;
+        if (rain > 0 && job->pass->plan->alive[i])
+            water[i] = fminf(water[i] + rain * matter->area[i] / matter->mass[i], fmaxf(water[i], HEAT_WATER_MAX));
+    }
+}
+
+static void source_wets(HeatPass *pass, const Source *source, const SingeView *view) {
+    (void)view;
+    SourceJob job = {.pass = pass, .source = source};
+    job.strength = source->def.wetting * source_strength(source, pass->state->time);
+    if (source->texture && job.strength > 0)
+        pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_wet_task, &job);
 }
 
 /// A map adds no heat before conduction (arrival.c).

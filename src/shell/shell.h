@@ -170,9 +170,13 @@ void shell_free(Memory *memory, Shell *shell);
 // ---------------------------------------------------------------------------------------------------
 // State: what changes from step to step. Each stage writes its own part only.
 
+/// The most water that a sheet holds, over the mass before it burns.
+#define HEAT_WATER_MAX 3.0f
+
 typedef struct HeatState {
-    float *temperature;                            ///< [particles] K
-    float *temperature_peak;                       ///< [particles] K, highest so far
+    float *temperature;      ///< [particles] K
+    float *temperature_peak; ///< [particles] K, highest so far
+    float *water;            ///< [particles] over the mass before it burns, or NULL (shell_holds_water)
     double heat_in, heat_lost, heat_of_combustion; ///< J, cumulative
 } HeatState;
 
@@ -355,6 +359,11 @@ static inline float shell_glow_slowing(const Matter *matter, uint32_t i, float f
 static inline float shell_burn_progress(float mass, float mass_min) {
     float progress = (1 - mass) / (1 - mass_min);
     return progress > 1 ? 1 : progress > 0 ? progress : 0;
+}
+
+/// Whether a sheet had water at the start: then every particle has room for it in the State, and otherwise none.
+static inline bool shell_holds_water(const Shell *shell) {
+    return shell->matter.moisture.mask || shell->matter.moisture.values[0] > 0;
 }
 
 #endif

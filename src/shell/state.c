@@ -36,6 +36,7 @@ static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basi
     TAKE(state->dynamics.velocity, particles);
     TAKE(state->heat.temperature, particles);
     TAKE(state->heat.temperature_peak, particles);
+    if (shell_holds_water(shell)) TAKE(state->heat.water, particles);
     TAKE(state->burn.mass, particles);
     TAKE(state->burn.fuel, particles);
     TAKE(state->burn.burn_rate, particles);
@@ -109,6 +110,7 @@ SingeResult state_create(Memory *memory, const Shell *shell, State *state) {
         }
 
         state->heat.temperature[p] = state->heat.temperature_peak[p] = field_at(shell->matter.temperature, p);
+        if (state->heat.water) state->heat.water[p] = field_at(shell->matter.moisture, p);
         state->burn.mass[p] = state->burn.fuel[p] = 1;
         state->burn.time_ignited[p] = state->burn.time_burnt[p] = -1;
         state->ablate.particle_flags[p] = alive ? SINGE_ALIVE : 0;

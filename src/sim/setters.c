@@ -113,7 +113,7 @@ SingeResult call_set_ambient_temperature(SingeSim *sim, float temperature) {
 /// Parameters that determined the sheet's mass, shape or start: these stay.
 static bool material_stays(int param) {
     return param == PARAM_GRAMMAGE || param == PARAM_SPECIFIC_HEAT || param == PARAM_THICKNESS ||
-           param == PARAM_TEMPERATURE;
+           param == PARAM_TEMPERATURE || param == PARAM_MOISTURE;
 }
 
 /// A sheet's parameters, as SheetSource has them.

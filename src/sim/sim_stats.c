@@ -167,6 +167,7 @@ void singe_sim_read_stats(const SingeSim *sim, SingeStats *out, size_t struct_si
         if (!(state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
         stats.particles++;
         stats.mass += (double)matter->mass[i] * (double)state->burn.mass[i];
+        if (state->heat.water) stats.water += (double)matter->mass[i] * (double)state->heat.water[i];
         stats.temperature_max = fmaxf(stats.temperature_max, state->heat.temperature[i]);
         if (state->burn.time_ignited[i] >= 0 || state->dynamics.pinned[i]) continue;
         Float3 v = float3_load(state->dynamics.velocity[i]);

@@ -81,6 +81,7 @@ bool snapshot_state_fits(SingeSim *sim) {
     // heat and burning
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         float temperature = state->heat.temperature[i], peak = state->heat.temperature_peak[i];
+        if (state->heat.water && !(state->heat.water[i] >= 0 && state->heat.water[i] <= HEAT_WATER_MAX)) return false;
         if (!(temperature >= 0 && isfinite(temperature) && peak >= 0 && isfinite(peak))) return false;
         if (!double_within((double)state->burn.mass[i], 0, 1)) return false;
         if (!double_within((double)state->burn.fuel[i], 0, 1)) return false;

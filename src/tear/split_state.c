@@ -80,6 +80,7 @@ void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *sp
     state->tear.splits[state->tear.split_count++] = (ShellSplit){from, split->cells, to};
     COPY(state->heat.temperature, to, from);
     COPY(state->heat.temperature_peak, to, from);
+    if (state->heat.water) COPY(state->heat.water, to, from);
     COPY(state->burn.mass, to, from);
     COPY(state->burn.fuel, to, from);
     COPY(state->burn.burn_rate, to, from);

@@ -17,7 +17,7 @@ ENUMS = {
     "SingeHeatOperator": {"SINGE_HEAT_SURFACE": 0, "SINGE_HEAT_UMBRELLA": 1},
     "SingeColour": {"SINGE_RED": 0, "SINGE_GREEN": 1, "SINGE_BLUE": 2, "SINGE_YELLOW": 3, "SINGE_COLOUR_COUNT": 4},
     "SingeSourceKind": {"SINGE_SOURCE_BALL": 0, "SINGE_SOURCE_TEXTURE": 1, "SINGE_SOURCE_SPOT": 2,
-                        "SINGE_SOURCE_CALLBACK": 3, "SINGE_SOURCE_ARRIVAL": 4},
+                        "SINGE_SOURCE_CALLBACK": 3, "SINGE_SOURCE_ARRIVAL": 4, "SINGE_SOURCE_WATER": 5},
     "SingeColliderKind": {"SINGE_COLLIDER_PLANE": 0, "SINGE_COLLIDER_SPHERE": 1, "SINGE_COLLIDER_BOX": 2,
                           "SINGE_COLLIDER_CAPSULE": 3, "SINGE_COLLIDER_HEIGHTFIELD": 4, "SINGE_COLLIDER_MESH": 5,
                           "SINGE_COLLIDER_DEFORMING": 6},
@@ -110,7 +110,7 @@ class SingeMaterialDef(Structure):
                 ("compliance", SingeParam * 4), ("char_weight", SingeParam), ("drag", SingeParam),
                 ("damping", SingeParam), ("crease_radius", SingeParam), ("crease_share", SingeParam),
                 ("strength", SingeParam), ("char_strength", SingeParam), ("pre_exponential", SingeParam),
-                ("activation_energy", SingeParam), ("curvature_max", SingeParam)]
+                ("activation_energy", SingeParam), ("curvature_max", SingeParam), ("moisture", SingeParam)]
 
 
 class SingePoseKey(Structure):
@@ -137,7 +137,7 @@ class SingeSourceDef(Structure):
                 ("texture", SingeTexture), ("flux", c_float), ("strength_count", c_uint32),
                 ("strength", POINTER(SingeValueKey)), ("callback", SingeFluxFn), ("callback_context", c_void_p),
                 ("position", c_float * 3), ("user_data", c_void_p), ("arrival_from", c_float),
-                ("arrival_to", c_float), ("lead", c_float)]
+                ("arrival_to", c_float), ("lead", c_float), ("wetting", c_float)]
 
 
 class SingeColliderDef(Structure):
@@ -270,7 +270,7 @@ class SingeStats(Structure):
                 ("strain_mean", c_double), ("strain_p99", c_double), ("strain_max", c_double),
                 ("inverted_cells", c_uint32), ("intersecting_cells", c_uint32), ("speed_rms_unburnt", c_double),
                 ("thickening", c_float), ("front_speed", c_double), ("tears", c_uint32), ("ledgers_close", c_bool),
-                ("arrival_error", c_double), ("arrival_missed", c_uint32), ("pace", c_float)]
+                ("arrival_error", c_double), ("arrival_missed", c_uint32), ("pace", c_float), ("water", c_double)]
 
 
 class SingeCounts(Structure):

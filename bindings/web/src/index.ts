@@ -381,7 +381,7 @@ export interface Stats {
     time: number; particles: number; springs: number; cells: number; pieces: number; mass: number; mass_initial: number;
     burnt_fraction: number; temperature_max: number; strain_mean: number; strain_p99: number; strain_max: number;
     front_speed: number; tears: number; ledgers_close: boolean;
-    arrival_error: number; arrival_missed: number; pace: number;
+    arrival_error: number; arrival_missed: number; pace: number; water: number;
     [name: string]: number | boolean;
 }
 

@@ -20,8 +20,8 @@ export interface SheetOptions {
 
 export interface SourceOptions {
     /** ball: a hot ball on a path; spot: a hot ball that stands still; texture: a flux drawn on the sheet; arrival:
-     *  a map drawn on the sheet of when the fire's front is where */
-    kind?: "ball" | "texture" | "spot" | "arrival";
+     *  a map drawn on the sheet of when the fire's front is where; water: water that wets the sheet, by a picture */
+    kind?: "ball" | "texture" | "spot" | "arrival" | "water";
     /** s, any, also infinite; time at which it starts */
     start?: number;
     /** s, any, also infinite; time at which it ends; inf: never */
@@ -47,6 +47,9 @@ export interface SourceOptions {
     /** s, arrival, 1e-3 to 1e6; the sheet is scorched this long before the front arrives; longer makes a wider
      *  brown rim */
     lead?: number;
+    /** kg/(m2 s), water, 0 to 1e6; water that falls where the picture is white, of the air's temperature. It needs
+     *  a sheet whose moisture is above 0, which then holds at most three times its own mass */
+    wetting?: number;
 }
 
 export interface ColliderOptions {
@@ -295,4 +298,7 @@ export interface MaterialOptions {
     /** 1/m, >= 0; max curvature of unburnt sheet beyond the rest shape (solver strand); 0: no limit. Without it
      *  thin sheets that shrink fold along rows of cells */
     curvature_max?: Param;
+    /** 0 to 3; mass of water at the start over the mass before it burns; it boils off before the sheet gets hotter
+     *  than 100 C. Paper in a room holds 5 to 8 %. 0: dry */
+    moisture?: Param;
 }

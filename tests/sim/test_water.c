@@ -1,0 +1,137 @@
+// Water in sheets: it boils off before they burn, takes the heat that is published, and puts fires out.
+#include "support/support.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double FLUX = 40e3;         // W/m2, into each layer
+static const double GRAMMAGE = 0.08 / 2; // kg/m2, of a layer
+static const float WHITE = 1;
+
+/// A sheet of 20 mm by 20 mm that loses no heat, lit all over from 20 C.
+static SingeSim *lit(float moisture, bool burns) {
+    SingeSimDef def = singe_default_sim();
+    def.gravity[2] = 0;
+    def.solver.substeps = 1;
+    SingeMaterialDef material = singe_default_material();
+    material.moisture = singe_param(moisture);
+    material.convection = singe_param(0);
+    material.emissivity = singe_param(0);
+    material.ablate = false;
+    if (!burns) material.mass_rate = singe_param(0);
+    SingeSim *sim = test_sim(&def, test_grid(4, 4, 5e-3f, 5e-3f), &material);
+    SingeSourceDef source = singe_default_source();
+    SingeSourceId id;
+    source.kind = SINGE_SOURCE_TEXTURE;
+    source.texture = (SingeTexture){1, 1, &WHITE};
+    source.flux = (float)FLUX;
+    test_ok(sim, singe_sim_add_source(sim, &source, &id));
+    return sim;
+}
+
+/// Heat per kilogram of dry sheet until it ignites, J/kg.
+static double heat_of_ignition(float moisture) {
+    SingeSim *sim = lit(moisture, true);
+    while (singe_sim_view(sim).time_ignited[12] < 0 && singe_sim_view(sim).step < 4000) test_steps(sim, 1);
+    double time = (double)singe_sim_view(sim).time_ignited[12];
+    assert_true(time > 0 && singe_sim_stats(sim).ledgers_close);
+    singe_sim_destroy(sim);
+    return FLUX * time / GRAMMAGE;
+}
+
+/// The heat of ignition of fine fuels is 250 + 1116 M Btu/lb, M the moisture (Frandsen 1973; Rothermel 1972, eq 12):
+/// 2.596 MJ for each kilogram of water.
+TEST(ignition_waits_for_the_water) {
+    const double published = 1116 * 2326.0, dry = heat_of_ignition(0);
+    assert_true(fabs(dry / (1400 * 220.0) - 1) < 0.03); // c_p from 20 to 240 C
+    static const float moistures[] = {0.07f, 0.3f, 1};
+    for (int k = 0; k < 3; k++) {
+        const double water = (heat_of_ignition(moistures[k]) - dry) / (double)moistures[k];
+        if (!(fabs(water / published - 1) < 0.05)) fail_msg("%g MJ/kg at %g", 1e-6 * water, (double)moistures[k]);
+    }
+}
+
+TEST(nothing_wet_is_hotter_than_boiling) {
+    SingeSim *sim = lit(0.5f, false);
+    double mass = 4e-4 * 2 * GRAMMAGE, before = singe_sim_stats(sim).water;
+    assert_true(fabs(before / (0.5 * mass) - 1) < 1e-5);
+    for (int k = 0; k < 200; k++) {
+        test_steps(sim, 4);
+        SingeStats stats = singe_sim_stats(sim);
+        assert_true(stats.ledgers_close && stats.water >= 0);
+        if (stats.water > 1e-4 * before) assert_true(stats.temperature_max < 373.2f);
+
+        // what has gone took its heat along, and nothing else did
+        const double heat = (before - stats.water) * (2.257e6 + 4186 * 80);
+        assert_true(fabs(stats.heat_lost - heat) < 1e-3 * (before * 2.6e6));
+    }
+    assert_true(singe_sim_stats(sim).water == 0 && singe_sim_stats(sim).temperature_max > 500);
+    singe_sim_destroy(sim);
+}
+
+/// A burning sheet on which it rains from the 300th step on.
+static SingeSim *rained_on(float wetting, int steps) {
+    SingeSim *sim = lit(0.05f, true);
+    SingeSourceDef rain = singe_default_source();
+    SingeSourceId id, heat;
+    const SingeValueKey strength[] = {{300 / 480.0f, 0}, {301 / 480.0f, 1}};
+    singe_sim_sources(sim, &heat, 1);
+    rain.kind = SINGE_SOURCE_WATER;
+    rain.texture = (SingeTexture){1, 1, &WHITE};
+    rain.wetting = wetting;
+    rain.strength_count = 2;
+    rain.strength = strength;
+    test_ok(sim, singe_sim_add_source(sim, &rain, &id));
+    test_steps(sim, 400);
+    test_ok(sim, singe_sim_remove_source(sim, heat));
+    test_steps(sim, steps);
+    return sim;
+}
+
+TEST(rain_puts_a_fire_out) {
+    SingeSim *dry = rained_on(0, 100), *wet = rained_on(1, 100);
+    assert_true(singe_sim_stats(dry).temperature_max > 600);
+    assert_true(singe_sim_stats(wet).temperature_max < 380);
+    SingeView view = singe_sim_view(wet);
+    for (uint32_t i = 0; i < view.particle_count; i++) assert_true(view.burn_rate[i] == 0);
+    assert_true(singe_sim_stats(wet).mass > singe_sim_stats(dry).mass);
+    assert_true(singe_sim_stats(wet).water > 0 && singe_sim_stats(wet).ledgers_close);
+
+    // a sheet holds no more than three times its mass
+    test_steps(wet, 400);
+    assert_true(singe_sim_stats(wet).water <= 3.001 * singe_sim_stats(wet).mass_initial);
+    assert_true(singe_sim_stats(wet).water > 2.99 * singe_sim_stats(wet).mass_initial);
+
+    // saved, with the rain that still falls
+    TestBytes bytes = test_save(wet);
+    SingeSimDef hooks = singe_default_sim();
+    SingeSim *loaded;
+    hooks.thread_count = 2;
+    assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &loaded, NULL), SINGE_OK);
+    test_steps(wet, 20), test_steps(loaded, 20);
+    test_assert_same(wet, loaded);
+    singe_sim_destroy(dry), singe_sim_destroy(wet), singe_sim_destroy(loaded);
+    free(bytes.data);
+}
+
+TEST(bad_water_is_refused) {
+    SingeSim *sim = lit(0, true);
+    SingeSourceDef rain = singe_default_source();
+    SingeSourceId id;
+    rain.kind = SINGE_SOURCE_WATER;
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_source(sim, &rain, &id)); // no picture
+    rain.texture = (SingeTexture){1, 1, &WHITE};
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_source(sim, &rain, &id)); // a dry sheet has no room
+    singe_sim_destroy(sim);
+    sim = lit(0.01f, true);
+    rain.wetting = -1;
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_source(sim, &rain, &id));
+    rain.wetting = 1;
+    test_ok(sim, singe_sim_add_source(sim, &rain, &id));
+    SingeMaterialDef material = singe_default_material();
+    material.moisture = singe_param(3.5f);
+    SingeSheetId sheet;
+    singe_sim_sheets(sim, &sheet, 1);
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_material(sim, sheet, &material, NULL));
+    singe_sim_destroy(sim);
+}
