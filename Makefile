@@ -15,7 +15,7 @@ HOURS ?= 1
 MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 .PHONY: all web-package build build-asan build-fuzz build-shared build-tsan configure demo test check check-examples gate \
-        check-clients check-blender check-farm check-packages check-platforms web web-serve check-web check-web-core torture coverage fuzz-long soak pictures clean
+        check-clients check-blender check-farm check-packages check-platforms web web-serve check-web check-web-core torture mutations coverage fuzz-long soak pictures clean
 
 all: build
 
@@ -129,6 +129,11 @@ check-web-core: web-package
 torture:
 	cmake --preset release
 	cmake --build --preset release --target torture
+
+# changes lines of the core one at a time; each change must die in the test that is named for it
+mutations:
+	scripts/setup.sh
+	tests/mutations/mutations.py
 
 # how much of each folder of src, program/formats and program/scene the tests reach; docs/coverage.md lists the rest
 coverage:

@@ -244,6 +244,45 @@ TEST(compliance_does_not_depend_on_substeps) {
     assert_true(stretch[0] > 1e-4 && fabs(stretch[0] / stretch[1] - 1) < 0.02);
 }
 
+/// Two masses on a spring between two corners swing with omega^2 = (w_a + w_b)/c, and keep their energy: eq 13 gives
+/// back all that the projection takes.
+TEST(compliant_springs_swing_with_their_period_and_energy) {
+    Bench bench;
+    SingeMaterialDef material = plain();
+    const double compliance = 20, h = 1.0 / 40000;
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = singe_param(c == SINGE_BLUE ? 20 : 1e6f);
+    bench_open(&bench, quads_grid(1, 1, 0.01f, 0.01f, false), &material, 1);
+    SingeSolverDef *solver = &bench.plan->settings.solver;
+    solver->substeps = 1, solver->smoothing = solver->height_min = 0;
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) solver->regularisation[c] = 1e-6f;
+    bench.plan->settings.gravity[2] = 0;
+
+    // thrown apart along x
+    double before = 0, fastest = 0, crossing[3] = {0};
+    int crossings = 0, step = 0;
+    for (uint32_t i = 0; i < bench.shell.vertex_count; i++)
+        bench.state.dynamics.velocity[i][0] = bench.shell.rest_position[i][0] > 0.005f ? 0.05f : -0.05f;
+    for (; step < 4000 && crossings < 3; step++) {
+        bench_step(&bench, (float)h);
+        const float(*x)[4] = (const float(*)[4])bench.state.dynamics.position;
+        const double now = (double)x[1][0] - (double)x[0][0] - 0.01;
+        const double speed =
+            fabs((double)bench.state.dynamics.velocity[1][0] - (double)bench.state.dynamics.velocity[0][0]) / 2;
+        if (crossings == 2) fastest = fmax(fastest, speed);
+        if (step > 0 && before * now <= 0 && now != before) crossing[crossings++] = step - now / (now - before);
+        before = now;
+    }
+
+    assert_int_equal(crossings, 3);
+    const double period = h * (crossing[2] - crossing[0]);
+    const double expected = 2 * 3.14159265358979 / sqrt(2 * (double)bench.plan->inverse_mass[0] / compliance);
+    print_message("period %.3f ms, by the formula %.3f ms; speed %.5f m/s of 0.05\n", 1e3 * period, 1e3 * expected,
+                  fastest);
+    assert_true(fabs(period / expected - 1) < 0.02);
+    assert_true(fastest > 0.9 * 0.05 && fastest < 1.01 * 0.05);
+    bench_close(&bench);
+}
+
 /// Springs burnt to ash keep a share of their weight that varies: here from 0.2 at the left to 0.8 at the right.
 TEST(char_weight_follows_an_attribute) {
     Bench bench;

@@ -155,6 +155,34 @@ TEST(pulled_apart_it_tears_at_its_weakest_line) {
     singe_sim_destroy(sim);
 }
 
+/// In a strip that hangs at rest the line force is the weight of what hangs below, over the width.
+TEST(line_force_of_a_hanging_strip_is_its_weight) {
+    enum { WIDE = 6, LONG = 16 };
+    SingeSimDef def = pull_def();
+    def.gravity[1] = -9.81f, def.air_density = 0, def.solver.attachments = false;
+    SingeMaterialDef material = singe_default_material();
+    material.damping = singe_param(20), material.strength = singe_param(INFINITY);
+    TestMesh mesh = test_grid(WIDE, LONG, side, side);
+    SingeSim *sim = test_sim(&def, mesh, &material);
+    uint32_t top[WIDE + 1];
+    for (uint32_t i = 0; i <= WIDE; i++) top[i] = LONG * (WIDE + 1) + i;
+    SingePinDef pin = singe_default_pin();
+    SingePinId id;
+    pin.vertex_count = WIDE + 1, pin.vertices = top, pin.sheet.generation = 1;
+    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    test_steps(sim, 300);
+
+    const SingeView view = singe_sim_view(sim);
+    for (uint32_t row = 4; row < 12; row++) {
+        double force = 0;
+        for (uint32_t i = 0; i < WIDE; i++) force += (double)view.line_force[row * WIDE + i][1] / WIDE;
+        const double weight = 0.08 * 9.81 * (row + 0.5) * (double)side;
+        print_message("row %2u: %.5f N/m, weight %.5f N/m\n", row, force, weight);
+        assert_true(fabs(force / weight - 1) < 0.1);
+    }
+    singe_sim_destroy(sim);
+}
+
 TEST(uniform_sheets_tear_too) {
     SingeSimDef def = pull_def();
     SingeSim *sim = pulled(&def, 2, 1, NULL);

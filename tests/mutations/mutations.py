@@ -1,0 +1,177 @@
+#!/usr/bin/env python3
+"""Changes lines of the core one at a time, in a copy, and shows that each change dies in the test that is named for it.
+
+    tests/mutations/mutations.py [--only WORD] [--jobs N] [--folder DIR]
+
+Every row of MUTATIONS is a file of src, a text that stands in it exactly once, what it becomes, a test, and the pattern
+of its cases. First all named tests must pass unchanged. Then a change survives if its test still passes, or does not
+build; the command ends with 1 if one does. The copy and its build stay in DIR for the next time.
+"""
+
+import argparse
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+
+MUTATIONS = [
+    # eq 1 to 3: heat
+    ("heat/heat.c", "float T1 = T + combustion;", "float T1 = T - combustion;",
+     "heat_exchange", "combustion_is_eta_times_burnt_mass"),
+    ("heat/heat.c", "float loss = rate * (T2 - ambient) / (1 + rate);", "float loss = rate * (T2 - ambient);",
+     "heat_exchange", "one_step_of_losses_is_the_formula"),
+    ("heat/source.c", "float reach = def->radius + def->falloff", "float reach = def->radius",
+     "heat_source", "falls_off_smoothly_and_moves"),
+    ("heat/conduct.c", "double rise = (double)pass->dt * inflow[i % HEAT_ROWS] / plan->measure[i];",
+     "double rise = 0.9 * (double)pass->dt * inflow[i % HEAT_ROWS] / plan->measure[i];",
+     "heat_diffusion", "slab_mode_decays_with_second_order"),
+    ("heat/operator.c", "double flux = square > 0 ? (double)(face / square) : 0;",
+     "double flux = square > 0 ? (double)(face / square / 2) : 0;",
+     "heat_diffusion", "gaussian_spreads_at_the_right_rate"),
+    ("heat/operator.c", "plan->measure[a] += length / 2;", "plan->measure[a] += length;",
+     "heat_diffusion", "umbrella_has_its_derived_diffusivity"),
+    ("heat/operator.c", "return fmaxf(length, LIVE_LENGTH_MIN * rest);", "return rest;",
+     "heat_diffusion", "umbrella_as_printed_goes_with_the_lengths_of_the_moment"),
+    # eq 4 to 6: burning
+    ("burn/lose_mass.c", "if (p == 0.0f) return k > x ? x : k;", "if (p == 0.0f) return k > x ? x : 0.9f * k;",
+     "burn", "no_exponent_is_a_straight_line"),
+    ("burn/lose_mass.c", "react(job, i, excess > ceiling ? ceiling : excess);", "react(job, i, excess);",
+     "burn", "rate_stops_growing_at_its_ceiling"),
+    ("burn/volume.h", "(char_density - 1) * (1 - fuel)", "(char_density - 1) * fuel",
+     "burn", "volume_ratio_follows_eq_5"),
+    ("burn/shrink.c", "float ratio = 1 - shrink * (1 - 0.5f * (a.volume + b.volume));",
+     "float ratio = 1 - shrink * (1 - a.volume);", "burn", "springs_shrink_by_eq_6"),
+    ("burn/shrink.c", "stretch = (1 - even) * (q - 1) / (q + 1);", "stretch = (1 - even) * (1 - q) / (q + 1);",
+     "burn", "fibres_turn_shrinkage"),
+    # section 6 and eq 7: what goes
+    ("ablate/ablate_plan.c", "return state->burn.mass[particle] - field_at(matter->mass_loss, particle);",
+     "return state->burn.mass[particle] - 0.9f * field_at(matter->mass_loss, particle);",
+     "ablate", "level_is_mass_above_loss"),
+    ("ablate/ablate_step.c", "if (!(left >> ((i + 3) & 3) & 1)) remove_spring", "if (true) remove_spring",
+     "ablate", "red_goes_with_both_triangles"),
+    ("ablate/ablate_step.c", "    for (int i = 0; i < 2; i++) remove_spring(removal, SINGE_YELLOW, springs->yellow[i]);",
+     "    for (int i = 0; i < 1; i++) remove_spring(removal, SINGE_YELLOW, springs->yellow[i]);",
+     "ablate", "yellow_and_green_go_with_the_cell"),
+    ("surface/surface.c", "float t = inside / (inside - outside);", "float t = 0.9f * inside / (inside - outside);",
+     "surface", "one_cell_is_cut_by_its_levels"),
+    # eq 8 to 15: motion
+    ("dynamics/move.c", "velocity = (velocity + fall) * keep;", "velocity = (velocity + 0.9f * fall) * keep;",
+     "motion", "a_sheet_falls_freely"),
+    ("dynamics/move.c", "velocity += (point - float4_load(predicted[i])) * inverse_h;",
+     "velocity += 0.9f * (point - float4_load(predicted[i])) * inverse_h;",
+     "dynamics_internal", "compliant_springs_swing_with_their_period_and_energy"),
+    ("dynamics/move.c", "return velocity - slip * k / (1 + k) * normal;",
+     "return velocity - 0.9f * slip * k / (1 + k) * normal;", "motion", "drag_gives_a_terminal_speed"),
+    ("dynamics/collider_contact.c", "max = def->friction * depth;",
+     "max = 0.5f * def->friction * depth;", "motion", "friction_holds_a_block_on_a_slope"),
+    # eq 10 to 19: projection
+    ("dynamics/strand/strand_kernel.h", "Lanes e = (square - target) * lanes_all(0.5f);",
+     "Lanes e = (square - target) * lanes_all(0.45f);", "strand_project", "chains_match_a_dense_solver"),
+    ("dynamics/strand/strand_kernel.h", "mu = lanes_load(keep_at(group, k, KEEP_RIGHT)) + factor * mu;",
+     "mu = lanes_load(keep_at(group, k, KEEP_RIGHT));", "strand_project", "chains_match_a_dense_solver"),
+    ("dynamics/strand/strand_solver.c", "strand_project(plan, solver->order[i], pool, h, dynamics, substep->counters);",
+     "strand_project(plan, solver->order[3 - i], pool, h, dynamics, substep->counters);",
+     "paper", "the_last_colour_of_the_order_is_satisfied_best"),
+    ("dynamics/smooth.c", "velocity[b], vb + 2 * wb * j);", "velocity[b], vb + wb * j);",
+     "dynamics_internal", "friction_keeps_momentum"),
+    # the paper's own solver
+    ("reference/conjugate_gradient.c", "job.beta = rest / before;", "job.beta = 0;",
+     "paper", "conjugate_gradients_end_after_as_many_iterations_as_unknowns"),
+    ("reference/fast_projection.c", "diagonal += 0.5 * group->regularisation * both", "diagonal += group->regularisation * both",
+     "paper", "projection_matches_a_dense_solver"),
+    ("reference/mass_spring.c", "double size = stiffness * (distance - job->group->length[k])",
+     "double size = 0.9 * stiffness * (distance - job->group->length[k])", "paper", "a_spring_has_its_period"),
+    # what the paper lacks: attachments, creases, tears
+    ("dynamics/attach_kernel.h", "limit = max[k] * max[k];", "limit = 1.1f * max[k] * max[k];", "attach", "*"),
+    ("dynamics/crease.c", "hinge.max = real_atan2f(2 * thickness, hinge.arc);",
+     "hinge.max = real_atan2f(thickness, hinge.arc);", "crease", "*"),
+    ("tear/line_force.c", "for (int k = 0; k < 6; k++) now[k] /= area;",
+     "for (int k = 0; k < 6; k++) now[k] /= 2 * area;", "tear", "line_force_of_a_hanging_strip_is_its_weight"),
+]
+
+
+def run(command, **options):
+    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **options)
+
+
+def copy(folder):
+    """The tracked files as they are now. Files that have not changed keep their time, so that little is built again."""
+    names = run(["git", "ls-files", "-z"], cwd=ROOT).stdout.split("\0")
+    for name in filter(None, names):
+        source, target = ROOT / name, folder / name
+        if not source.is_file():
+            continue
+        data = source.read_bytes()
+        if target.is_file() and target.read_bytes() == data:
+            continue
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source, target)
+        shutil.copymode(source, target)
+
+
+def build(folder, tests, jobs):
+    return run(["cmake", "--build", folder / "build", "-j", str(jobs), "--target", *(f"test_{t}" for t in tests)])
+
+
+def passes(folder, test, cases):
+    """True, False, or None if no case has such a name."""
+    program = next((folder / "build" / "tests").glob(f"*/test_{test}"))
+    result = run([program], cwd=folder, env={**os.environ, "SINGE_TEST_FILTER": cases}, timeout=120)
+    if "] 0 test(s) run" in result.stdout:
+        return None
+    return result.returncode == 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--only", default="", help="the rows whose file, test or cases contain this")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--folder", type=pathlib.Path, default=ROOT / "build" / "mutations")
+    options = parser.parse_args()
+    chosen = [m for m in MUTATIONS if any(options.only in m[k] for k in (0, 3, 4))]
+    folder = options.folder.resolve()
+
+    for file, old, _, _, _ in chosen:
+        count = (ROOT / "src" / file).read_text().count(old)
+        if count != 1:
+            sys.exit(f"src/{file}: the text stands in it {count} times, not once: {old}")
+
+    copy(folder)
+    configured = run(["cmake", "-S", folder, "-B", folder / "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"])
+    if configured.returncode:
+        sys.exit(configured.stdout)
+    tests = sorted({m[3] for m in chosen})
+    built = build(folder, tests, options.jobs)
+    if built.returncode:
+        sys.exit(built.stdout[-4000:])
+    for test, cases in sorted({(m[3], m[4]) for m in chosen}):
+        if not passes(folder, test, cases):
+            sys.exit(f"{test}: {cases} does not pass, or is not there, before anything is changed")
+
+    survivors = 0
+    begun = time.time()
+    for file, old, new, test, cases in chosen:
+        path = folder / "src" / file
+        text = path.read_text()
+        path.write_text(text.replace(old, new))
+        try:
+            good = build(folder, [test], options.jobs).returncode == 0
+            try:
+                dies = good and passes(folder, test, cases) is False
+            except subprocess.TimeoutExpired:
+                dies = True
+        finally:
+            path.write_text(text)
+        survivors += not dies
+        verdict = "dies" if dies else "survives" if good else "does not build"
+        print(f"{verdict:14} {file}: {new}\n{'':14}   {test}: {cases}", flush=True)
+    print(f"{len(chosen) - survivors} of {len(chosen)} die, in {time.time() - begun:.0f} s")
+    return survivors > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
