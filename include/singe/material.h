@@ -66,8 +66,10 @@ static inline SingeParam singe_param_field(float value, float to, const SingeFie
 
 /// The discrete Laplacian of the heat equation.
 typedef enum SingeHeatOperator {
-    SINGE_HEAT_SURFACE = 0,  ///< finite volumes in each layer and a conductance through the thickness
-    SINGE_HEAT_UMBRELLA = 1, ///< the paper's scale-dependent umbrella over all springs, eq 3
+    SINGE_HEAT_SURFACE = 0, ///< finite volumes in each layer and a conductance through the thickness
+    /// the paper's scale-dependent umbrella over all springs, eq 3, with their initial lengths
+    SINGE_HEAT_UMBRELLA = 1,
+    SINGE_HEAT_UMBRELLA_LIVE = 2, ///< eq 3 as printed: over the springs that are left, with the lengths they have
 } SingeHeatOperator;
 
 /// Spring colours of the body-centred square, in the paper's order.
@@ -92,11 +94,13 @@ typedef struct SingeMaterialDef {
     /// m, > 0; distance between the model's two layers; it sets the size of the wrinkles, and is larger than the real
     /// sheet's
     SingeParam thickness;
-    SingeHeatOperator heat_operator; ///< surface: finite volumes in each layer; umbrella: the paper's eq 3
-    SingeParam diffusivity;          ///< m2/s, >= 0; alpha of eq 2: thermal diffusivity in the sheet
-    SingeParam layer_exchange;       ///< 1/s, >= 0; rate at which the layers' temperatures equalise (surface only)
-    SingeParam convection;           ///< W/(m2 K), >= 0; heat transfer to still air, per side
-    SingeParam emissivity;           ///< 0 to 1; radiation relative to a black body
+    /// surface: finite volumes in each layer; umbrella: the paper's eq 3, with springs' initial lengths; umbrella-live:
+    /// eq 3 as printed, with the springs that are left and the lengths they have
+    SingeHeatOperator heat_operator;
+    SingeParam diffusivity;     ///< m2/s, >= 0; alpha of eq 2: thermal diffusivity in the sheet
+    SingeParam layer_exchange;  ///< 1/s, >= 0; rate at which the layers' temperatures equalise (surface only)
+    SingeParam convection;      ///< W/(m2 K), >= 0; heat transfer to still air, per side
+    SingeParam emissivity;      ///< 0 to 1; radiation relative to a black body
     SingeParam loss_mass_floor; ///< above 0, to 1; the mass fraction by which heat losses are divided is at least this
     /// >= 0; widens the burning front this many times (1 or more) at the same speed, so that cells can hold it; 0: as
     /// little as the cells need; one number for the whole sheet

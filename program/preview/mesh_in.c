@@ -46,8 +46,8 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
         .normal = {normal.x, normal.y, normal.z},
         .rest = {rest[0], rest[1], rest[2]},
         .uv = {finite_or(surface->uv[i][0], 0), finite_or(surface->uv[i][1], 0)},
-        .temperature = clampf(finite_or(surface->temperature[i], 293), 0, 5000),
-        .peak = clampf(finite_or(surface->temperature_peak[i], 293), 0, 5000),
+        .temperature = clampf(finite_or(surface->temperature[i], 293), 0, preview->def.hottest),
+        .peak = clampf(finite_or(surface->temperature_peak[i], 293), 0, preview->def.hottest),
         .burn = clampf(finite_or(surface->burn[i], 0), 0, 1),
         .burn_rate = rate,
         .flaming = rate,
@@ -68,6 +68,11 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
 
         // char without fuel glows without a flame; false for NaN
         if (!(surface->mass[i] - surface->char_fraction[i] - surface->ash_fraction[i] > 0.01f)) out->flaming = 0;
+    }
+
+    if (preview->def.plain) {
+        out->temperature = out->peak = 293;
+        out->burn = out->burn_rate = out->flaming = out->age = 0;
     }
 
     float *position = preview->scene.positions[i];

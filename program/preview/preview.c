@@ -32,6 +32,7 @@ PreviewDef preview_default(void) {
         .ground_colour = {0.235f, 0.145f, 0.085f},
         .background = {0.16f, 0.15f, 0.145f},
         .exposure = 1,
+        .hottest = 5000,
         .pace = 1,
     };
 }

@@ -65,6 +65,8 @@ typedef struct PreviewDef {
     float ground_colour[3]; ///< linear
     float background[3];
     float exposure; ///< multiplies before tone mapping
+    float hottest;  ///< K; what is hotter is drawn as hot as this
+    bool plain;     ///< sheets are drawn as if nothing had burnt, to show their shapes
     float shutter;  ///< s, exposure, centred at the frame's time; 0: no blur
     float pace;     ///< speed of the fire relative to a real one, to convert ages
     uint32_t seed;

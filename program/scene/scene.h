@@ -199,6 +199,8 @@ typedef struct ScenePreview {
     float ground_colour[3];
     float background[3];
     float exposure;
+    float hottest; ///< K
+    bool plain;
     float shutter; ///< share of a frame's time
 } ScenePreview;
 

@@ -78,6 +78,8 @@ static const SchemaRow preview_rows[] = {
     {"ground", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_ground, .doc = "the floor"},
     {"shutter", ROW_FLOAT, DIM_FRACTION, AT(ScenePreview, shutter), WITHIN(0, 1),
      .doc = "share of a frame's time during which the shutter is open; film has 0.5; 0: no motion blur"},
+    {"plain", ROW_BOOL, DIM_NONE, AT(ScenePreview, plain),
+     .doc = "yes: sheets are drawn as if nothing had burnt, to show their shapes"},
 #include "preview/preview.def"
 };
 #undef OF

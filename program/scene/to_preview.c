@@ -17,6 +17,8 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
         .sun_angle = preview->light_angle,
         .ground_height = preview->ground_height,
         .exposure = preview->exposure,
+        .hottest = preview->hottest,
+        .plain = preview->plain,
         .shutter = preview->shutter / scene->fps,
         .pace = (float)scene->sim.pace,
         .sky = assets->sky.rgb ? PREVIEW_SKY_PICTURE : preview->environment,

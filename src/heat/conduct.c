@@ -195,7 +195,7 @@ static void conduct_finish(void *context, int begin, int end) {
                 if (change != 0)
                     plan->next[i] = heat_round(temperature[i] + change, random_hash(i, low, high, HEAT_SEED));
                 within &= (double)plan->next[i] >= min && (double)plan->next[i] <= max;
-                if (pass->shell->sheets[matter->sheet[i]].material.heat_operator == SINGE_HEAT_UMBRELLA)
+                if (pass->shell->sheets[matter->sheet[i]].material.heat_operator != SINGE_HEAT_SURFACE)
                     made += matter->capacity[i] * rise;
             }
         }

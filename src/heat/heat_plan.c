@@ -85,7 +85,9 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
 
     // thickening, then conductances, which must stay finite in a step
     SingeResult result = plan_thicken(plan, shell, error);
-    if (!result) heat_operator(plan, shell);
+    if (!result) heat_operator(plan, shell, NULL);
+    for (uint32_t s = 0; s < shell->sheet_count; s++)
+        plan->live |= shell->sheets[s].material.heat_operator == SINGE_HEAT_UMBRELLA_LIVE;
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         for (uint32_t k = 0; k < shell->springs[c].count && !result; k++)
             if (!(plan->conductance[plan->spring_first[c] + k] <= PLAN_CONDUCTANCE_MAX))
@@ -94,10 +96,10 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
                                    "thickening",
                                    shell->sheets[shell->matter.sheet[shell->springs[c].ends[k][0]]].name);
 
-    // the matrix; after it only tears need the conductances
+    // the matrix; after it only tears and `live` need the conductances
     if (!result) {
         result = heat_matrix_create(memory, plan, shell);
-        if (shell->spare_count == 0) FREE(memory, plan->conductance, plan->springs);
+        if (shell->spare_count == 0 && !plan->live) FREE(memory, plan->conductance, plan->springs);
         if (!result) result = heat_rest_create(memory, plan);
     }
 
@@ -115,7 +117,7 @@ static bool follow_splits(HeatPlan *plan, const Shell *shell, const StateInput *
     if (plan->matrix.full || plan->matrix.twin_capacity > 0 || last - first > shell->cell_count / 64 + 1) return false;
 
     for (uint32_t s = 0; s < shell->sheet_count; s++)
-        if (shell->sheets[s].material.heat_operator == SINGE_HEAT_UMBRELLA) return false;
+        if (shell->sheets[s].material.heat_operator != SINGE_HEAT_SURFACE) return false;
 
     // conductances of the cells around the vertices
     for (uint32_t k = 2 * first; k < 2 * last; k++) {
@@ -160,14 +162,17 @@ static bool follow_splits(HeatPlan *plan, const Shell *shell, const StateInput *
 void heat_plan_follow(HeatPlan *plan, const Shell *shell, const StateInput *state) {
     uint32_t first = plan->split_count;
     plan->split_count = shell->split_count;
-    if (first == shell->split_count || follow_splits(plan, shell, state, first)) return;
+    const bool torn = first != shell->split_count;
+    if (!plan->live && (!torn || follow_splits(plan, shell, state, first))) return;
 
     // rebuild everything; the step's scratch is free, as the step has not begun
     for (uint32_t k = 0; k < plan->springs; k++) plan->conductance[k] = 0;
     for (uint32_t i = 0; i < plan->particles; i++) plan->measure[i] = 0;
-    heat_operator(plan, shell);
+    heat_operator(plan, shell, state);
     heat_matrix_rebuild(plan, shell, plan->scratch);
-    heat_rest_rebuild(plan, plan->scratch);
+    if (torn) heat_rest_rebuild(plan, plan->scratch);
+    for (uint32_t k = 0; plan->live && k < plan->springs; k++)
+        plan->spring_alive[k] = plan->conductance[k] > 0; // the others are not in the matrix, to be taken out of it
 }
 
 void heat_plan_free(Memory *memory, HeatPlan *plan) {

@@ -67,7 +67,8 @@ struct HeatPlan {
     // operator
     float *measure;        ///< [particles] D: m2 (surface) or m (umbrella)
     float *conductance;    ///< [springs] alpha F times the operator's weight: D/s. Freed once the matrix is built,
-                           ///< unless sheets can tear
+                           ///< unless sheets can tear or `live`
+    bool live;             ///< a sheet's operator changes as it moves: all is made again at every step
     uint32_t split_count;  ///< of the shell that the matrix is for
     uint8_t *spring_alive; ///< [springs] alive in the matrix
     uint8_t *alive;        ///< [particles] alive in the matrix
@@ -108,7 +109,8 @@ typedef struct HeatPass {
     void *hearer;
 } HeatPass;
 
-/// Updates operator and matrix for a shell that has torn since the last call (heat_plan.c).
+/// Updates operator and matrix for a shell that has torn since the last call, or whose operator follows its motion
+/// (heat_plan.c).
 void heat_plan_follow(HeatPlan *plan, const Shell *shell, const StateInput *state);
 
 /// One cell's weights of the springs along its four sides and two diagonals by linear elements, without diffusivity and
@@ -120,8 +122,9 @@ bool heat_cell_linear(const Float3 corners[4], double weights[6]);
 /// side (0 at a border) is added.
 void heat_cell_weights(const Float3 corners[4], const double across[4], double weights[6]);
 
-/// Fills plan->conductance and plan->measure (operator.c).
-void heat_operator(HeatPlan *plan, const Shell *shell);
+/// Fills plan->conductance and plan->measure (operator.c). `state` is that of the moment, for eq 3 as printed; NULL: at
+/// rest.
+void heat_operator(HeatPlan *plan, const Shell *shell, const StateInput *state);
 
 /// The same for one cell's sides and diagonals, and for a vertex, next to a new tear; not for the umbrella.
 void heat_operator_torn_cell(HeatPlan *plan, const Shell *shell, uint32_t cell);

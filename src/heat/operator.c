@@ -31,12 +31,17 @@
 //   r = sqrt(q^2/4 + t^2), smooth T diffuses along x with
 //     a_x/a = (2 dx + 2 dx^2/q + dx^2/r)/(2 dx + 2 dy + 2 q + 4 r),
 //   one half for dx = dy and t = 0; less for thick shells, and a_x/a_y is not 1 where dx is not dy.
+//   `umbrella-live` is the letter of eq 3: d_ij are the lengths of the moment, of the springs that are left, so D and c
+//   are made again at every step. A length counts as at least LIVE_LENGTH_MIN of the initial one, the least target.
 //   It conserves sum D_i T_i, not the heat sum C_i T_i, as D is not proportional to the area: corners have yellow
 //   springs, too. See heat_conduct for how the ledger accounts for that.
 #include <math.h>
 
 #include "common/assertion.h"
 #include "heat/heat_plan.h"
+
+/// The shortest length of eq 3 as printed, over the initial one: eq 6's least target (burn/shrink.c).
+static const float LIVE_LENGTH_MIN = 0.05f;
 
 /// Diffusivity of a spring with F and r, m2/s.
 static float operator_spring(const HeatPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring) {
@@ -180,6 +185,21 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
     }
 }
 
+/// The length of a spring in eq 3, m; 0 if heat no longer goes along it. `state` is NULL before the first step.
+static float operator_length(const Shell *shell, const StateInput *state, SingeColour colour, uint32_t spring) {
+    const SpringSet *set = &shell->springs[colour];
+    const uint32_t a = set->ends[spring][0], b = set->ends[spring][1];
+    const float rest = set->rest[spring];
+    const bool live = shell->sheets[shell->matter.sheet[a]].material.heat_operator == SINGE_HEAT_UMBRELLA_LIVE;
+    if (!live || !state) return rest;
+    const AblateState *ablate = state->ablate;
+    if (!(ablate->spring_flags[colour][spring] & ablate->particle_flags[a] & ablate->particle_flags[b] & SINGE_ALIVE))
+        return 0;
+    const float(*x)[4] = (const float(*)[4])state->dynamics->position;
+    const float length = float3_length(float3_sub(float3_load(x[a]), float3_load(x[b])));
+    return fmaxf(length, LIVE_LENGTH_MIN * rest);
+}
+
 /// A weight times alpha F. The sum of two cells' weights is 0 or more, unless mixing reduced one of them.
 static float operator_conductance(const HeatPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring,
                                   float weight) {
@@ -187,13 +207,13 @@ static float operator_conductance(const HeatPlan *plan, const Shell *shell, Sing
     return weight > 0 ? weight * operator_spring(plan, shell, colour, spring) : 0;
 }
 
-void heat_operator(HeatPlan *plan, const Shell *shell) {
+void heat_operator(HeatPlan *plan, const Shell *shell, const StateInput *state) {
     const Matter *matter = &shell->matter;
 
     // surface: capacities, weights of the cells, exchange between the layers
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const Sheet *sheet = &shell->sheets[s];
-        if (sheet->material.heat_operator == SINGE_HEAT_UMBRELLA) continue;
+        if (sheet->material.heat_operator != SINGE_HEAT_SURFACE) continue;
         for (uint32_t i = 0; i < shell->particle_count; i++)
             if (matter->sheet[i] == s) plan->measure[i] = matter->area[i] * field_at(matter->capacity_ratio, i);
         for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++)
@@ -209,9 +229,10 @@ void heat_operator(HeatPlan *plan, const Shell *shell) {
             // umbrella: half the lengths of the springs at a particle, and their inverses
             bool surface = shell->sheets[matter->sheet[a]].material.heat_operator == SINGE_HEAT_SURFACE;
             if (!surface) {
-                plan->measure[a] += set->rest[k] / 2;
-                plan->measure[b] += set->rest[k] / 2;
-                *conductance = set->rest[k] > 0 ? 1 / set->rest[k] : 0;
+                const float length = operator_length(shell, state, (SingeColour)c, k);
+                plan->measure[a] += length / 2;
+                plan->measure[b] += length / 2;
+                *conductance = length > 0 ? 1 / length : 0;
             }
 
             // times alpha F, all but exchange rates

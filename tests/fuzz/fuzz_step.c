@@ -99,7 +99,7 @@ static void vary_material(Input *input, SingeMaterialDef *material) {
         }
         memcpy((char *)material + at, &param, sizeof param);
     }
-    if (input_rarely(input, 4)) material->heat_operator = SINGE_HEAT_UMBRELLA;
+    if (input_rarely(input, 4)) material->heat_operator = SINGE_HEAT_UMBRELLA_LIVE;
     if (input_rarely(input, 4)) material->thickening = input_extreme(input);
     if (input_rarely(input, 8)) material->ablate = false;
 }

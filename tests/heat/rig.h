@@ -15,6 +15,7 @@ typedef struct RigDef {
     SingeMaterialDef material;
     HeatSettings settings;
     RigShape *shape;
+    float size; ///< of the sheet over that at rest, where a test moves it
 } RigDef;
 
 typedef struct Rig {

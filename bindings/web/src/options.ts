@@ -203,8 +203,9 @@ export interface MaterialOptions {
     /** m, > 0; distance between the model's two layers; it sets the size of the wrinkles, and is larger than the
      *  real sheet's */
     thickness?: Param;
-    /** surface: finite volumes in each layer; umbrella: the paper's eq 3 */
-    heat_operator?: "surface" | "umbrella";
+    /** surface: finite volumes in each layer; umbrella: the paper's eq 3, with springs' initial lengths; umbrella-
+     *  live: eq 3 as printed, with the springs that are left and the lengths they have */
+    heat_operator?: "surface" | "umbrella" | "umbrella-live";
     /** m2/s, >= 0; alpha of eq 2: thermal diffusivity in the sheet */
     diffusivity?: Param;
     /** 1/s, >= 0; rate at which the layers' temperatures equalise (surface only) */
