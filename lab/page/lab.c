@@ -29,6 +29,14 @@ SingeResult play_open(Play *play, Lab *lab, const char *scene, const char *const
     return code ? SINGE_ERROR_FORMAT : SINGE_OK;
 }
 
+void lab_usual_compliance(char *set, size_t size) {
+    const SingeMaterialDef usual = singe_default_material();
+    const SingeParam *c = usual.compliance;
+    snprintf(set, size, "sheets.0.material.compliance={red: %.9g, green: %.9g, blue: %.9g, yellow: %.9g}",
+             (double)c[SINGE_RED].value, (double)c[SINGE_GREEN].value, (double)c[SINGE_BLUE].value,
+             (double)c[SINGE_YELLOW].value);
+}
+
 SingeResult play_until(Play *play, double time, SingeError *error) {
     while (singe_sim_view(play->sim).time < time - 1e-9) {
         SingeResult result = singe_sim_step(play->sim);
@@ -49,22 +57,6 @@ SingeResult play_surface(Play *play, SingeError *error) {
 static const uint8_t *draw(Play *play, int size[2], SingeError *error) {
     if (!play->pictures && pictures_open(&play->job, &play->pictures, error)) return NULL;
     if (play_surface(play, error)) return NULL;
-    if (play->plain) {
-        // in a scene about shapes, burning only stands for shrinkage and should not look like char
-        for (uint32_t v = 0; v < play->surface.vertex_count; v++) {
-            play->surface.temperature[v] = play->surface.temperature_peak[v] = 293;
-            play->surface.mass[v] = 1;
-            play->surface.burn[v] = play->surface.burn_rate[v] = 0;
-            play->surface.time_ignited[v] = -1;
-        }
-    }
-
-    if (play->glow > 0) {
-        const float glow = play->glow;
-        for (uint32_t v = 0; v < play->surface.vertex_count; v++)
-            play->surface.temperature[v] = fminf(play->surface.temperature[v], glow);
-    }
-
     SingeGas gas = singe_sim_gas(play->sim);
     pictures_size(play->pictures, &size[0], &size[1]);
     double time = singe_sim_view(play->sim).time;

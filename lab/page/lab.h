@@ -24,14 +24,15 @@ typedef struct Play {
     SingeSim *sim;
     Pictures *pictures; ///< opened with the first picture
     SingeSurface surface;
-    bool plain; ///< drawn as if unburnt, to show shapes
-    float glow; ///< K, max temperature that is drawn; 0: no limit
 } Play;
 
 /// Builds a scene of the folder `paper`, with PATH=VALUE texts that override it. `sets` ends with NULL; empty texts are
 /// skipped. Close it in any case.
 SINGE_NODISCARD SingeResult play_open(Play *play, Lab *lab, const char *scene, const char *const *sets,
                                       SingeError *error);
+/// Writes the setting of the first sheet's compliances to those of an ordinary material, for our system in a scene of the
+/// paper's.
+void lab_usual_compliance(char *set, size_t size);
 /// Steps to a time of the scene.
 SINGE_NODISCARD SingeResult play_until(Play *play, double time, SingeError *error);
 /// Draws the surface with the scene's own detail and raggedness, also if they are 0.

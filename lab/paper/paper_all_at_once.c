@@ -101,8 +101,8 @@ SingeResult paper_all_at_once(Lab *lab, SingeError *error) {
             {.sets = 1}, {.sets = SINGE_COLOUR_COUNT}, {.sets = 1}, {.sets = SINGE_COLOUR_COUNT}};
         result = SINGE_OK;
         for (int i = 0; i < CONTENDERS && !result; i++)
-            result = paper_network(sim, PAPER_SWING, contenders[i].sets == 1, i < 2 ? 0 : floor, &contenders[i].network,
-                                   error);
+            result = paper_network(sim, PAPER_SWING, contenders[i].sets == 1, i < 2 ? 0 : floor, 0,
+                                   &contenders[i].network, error);
         if (!result) result = ranks_print(lab, sim, contenders[0].network, contenders[1].network);
         if (!result) {
             static const char *const inks[CONTENDERS] = {"#b2182b", "#2166ac", "#e08214", "#5aae61"};

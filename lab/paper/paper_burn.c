@@ -126,24 +126,14 @@ SingeResult paper_fig4(Lab *lab, SingeError *error) {
     for (int i = 0; i <= FIG4_MEAN && !result; i++) {
         // *rate: the mean of (d)'s rate, which the next run uses
         static const double times[ROWS] = {0.9, 1.6, 2.3, 2.7};
-        static const char *const variants[FIG4_MEAN + 1][3] = {
-            {"sheets.0.material.shrink_front=0", "sheets.0.material.shrink_back=0", "tearing=no"},
-            {"sheets.0.material.ablate=no", "tearing=no", ""},
-            {"", "", ""},
-            {"sheets.0.material.mass_rate={from: 1e-3, to: 20e-3, texture: rate.png}", "", ""},
-            {"", "", ""}};
+        static const char *const scenes[FIG4_MEAN + 1] = {"fig4a.yaml", "fig4b.yaml", "fig4c.yaml", "fig4d.yaml",
+                                                          "fig4c.yaml"};
         char mean[60] = "";
         if (i == FIG4_MEAN) snprintf(mean, sizeof mean, "sheets.0.material.mass_rate=%g", rate);
         const double cut = i == 1 ? 0.2 : 0; // the scene's mass_loss: where the edge of (b) would be
         Play play;
-        const char *sets[] = {variants[i][0],
-                              variants[i][1],
-                              variants[i][2],
-                              mean,
-                              lab->quick ? small_grid : "",
-                              lab->quick ? "preview.size=[320, 384]" : "",
-                              NULL};
-        result = play_open(&play, lab, "fig4.yaml", sets, error);
+        const char *sets[] = {mean, lab->quick ? small_grid : "", lab->quick ? "preview.size=[320, 384]" : "", NULL};
+        result = play_open(&play, lab, scenes[i], sets, error);
         if (!result && i == FIG4_MEAN - 1)
             rate = 1e-3 + 19e-3 * texture_mean(&play.job.assets.fields[0][SCENE_PARAM_SLOT(mass_rate)].texture);
         for (int k = 0; k < ROWS && !result; k++) {

@@ -10,7 +10,7 @@
 #include "cli/text.h"
 #include "formats/formats.h"
 
-enum { CELLS = 20, STEPS = 20, COUNTED = 7, LINES = SINGE_COLOUR_COUNT + 1 };
+enum { CELLS = 20, STEPS = 20, COUNTED = 7, EVERY = 2, LINES = SINGE_COLOUR_COUNT + 1 };
 
 typedef struct Fig8 {
     double error[LINES][STEPS + 1]; ///< of red, green, blue, yellow and their sum, before and after each step
@@ -23,11 +23,12 @@ typedef struct Fig8Run {
 
 static const Fig8Run runs[] = {{PAPER_SWING, 200, 250}, {PAPER_SHRINK, 50, 200}};
 
-/// Projects `steps` times and records the errors.
-static SingeResult fig8_project(const SingeSim *sim, PaperState state, int steps, Fig8 *fig, SingeError *error) {
+/// Projects `steps` times and records the errors; `floor` on the diagonal, of which the paper has none.
+static SingeResult fig8_project(const SingeSim *sim, PaperState state, double floor, int steps, Fig8 *fig,
+                                SingeError *error) {
     SingeNetwork *network;
     double errors[SINGE_COLOUR_COUNT];
-    SingeResult result = paper_network(sim, state, false, singe_default_network().regularisation, &network, error);
+    SingeResult result = paper_network(sim, state, false, floor, 0, &network, error);
 
     if (result) return result;
     for (int step = 0; step <= steps && !result; step++) {
@@ -44,10 +45,21 @@ static SingeResult fig8_project(const SingeSim *sim, PaperState state, int steps
 /// Of all states of a run.
 typedef struct Fig8Count {
     int states;
-    int rises;    ///< states in which the sum rises in one of the first 7 steps
+    int rises[2]; ///< states in which the sum rises in one of the first 7 steps: with the solver's floor, and without
     int lower;    ///< states in which it is lower after them
     double worst; ///< sum after 7 steps over that before, max
 } Fig8Count;
+
+static void fig8_add(const Fig8 *counted, int bare, Fig8Count *own) {
+    const double *sum = counted->error[SINGE_COLOUR_COUNT];
+    bool rises = false;
+    for (int k = 0; k < COUNTED; k++) rises = rises || sum[k + 1] > sum[k];
+    own->rises[bare] += rises;
+    if (bare) return;
+    own->states++;
+    own->lower += sum[COUNTED] < sum[0];
+    if (sum[0] > 0 && sum[COUNTED] / sum[0] > own->worst) own->worst = sum[COUNTED] / sum[0];
+}
 
 static SingeResult fig8_write(Lab *lab, const char *state, const Fig8 *fig, SingeError *error) {
     static const char *const names[] = {"red", "green", "blue", "yellow", "sum"};
@@ -81,6 +93,8 @@ static SingeResult fig8_write(Lab *lab, const char *state, const Fig8 *fig, Sing
 SingeResult paper_fig8(Lab *lab, SingeError *error) {
     enum { RUNS = sizeof runs / sizeof *runs };
     Fig8Count count[RUNS] = {{0}}, all = {0};
+    double fell[RUNS] = {0};
+    const double floor = singe_default_network().regularisation;
     SingeResult result = SINGE_OK;
     for (int i = 0; i < RUNS && !result; i++) {
         const Fig8Run *run = &runs[i];
@@ -92,18 +106,10 @@ SingeResult paper_fig8(Lab *lab, SingeError *error) {
         result = paper_sim(run->state, CELLS, &solver, 1, &sim, error);
         if (result) break;
         for (int step = 0; step <= run->last && !result; step++) {
-            if (step == run->shown) result = fig8_project(sim, run->state, STEPS, &shown, error);
-            if (!result) {
-                result = fig8_project(sim, run->state, COUNTED, &counted, error);
-                if (!result) {
-                    const double *sum = counted.error[SINGE_COLOUR_COUNT];
-                    own->states++;
-                    bool rises = false;
-                    for (int k = 0; k < COUNTED; k++) rises = rises || sum[k + 1] > sum[k];
-                    own->rises += rises;
-                    own->lower += sum[COUNTED] < sum[0];
-                    if (sum[0] > 0 && sum[COUNTED] / sum[0] > own->worst) own->worst = sum[COUNTED] / sum[0];
-                }
+            if (step == run->shown) result = fig8_project(sim, run->state, floor, STEPS, &shown, error);
+            for (int bare = 0; bare < 2 && !result && step % EVERY == 0; bare++) {
+                result = fig8_project(sim, run->state, bare ? 0 : floor, COUNTED, &counted, error);
+                if (!result) fig8_add(&counted, bare, own);
             }
             if (!result && (result = singe_sim_step(sim))) *error = *singe_sim_error(sim);
         }
@@ -116,23 +122,27 @@ SingeResult paper_fig8(Lab *lab, SingeError *error) {
         report_text(
             lab->report,
             "%s at %g s: the sum falls from %.3g to %.3g m in %d projection steps, to %.3g in %d. Of %d states up to "
-            "%g s it rises in one of the first %d steps in %d, and is lower after them in %d; in the worst it is %.2f "
-            "times what it was.",
+            "%g s it rises in one of the first %d steps in %d, and in %d without our floor of 1e-4 on the diagonal; it is "
+            "lower after them in %d, and in the worst %.2f times what it was.",
             name, run->shown * (double)PAPER_TIME_STEP, sum[0], sum[COUNTED], COUNTED, sum[STEPS], STEPS, own->states,
-            run->last * (double)PAPER_TIME_STEP, COUNTED, own->rises, own->lower, own->worst);
+            run->last * (double)PAPER_TIME_STEP, COUNTED, own->rises[0], own->rises[1], own->lower, own->worst);
 
+        fell[i] = sum[COUNTED] / sum[0];
         all.states += count[i].states;
-        all.rises += count[i].rises;
+        for (int bare = 0; bare < 2; bare++) all.rises[bare] += count[i].rises[bare];
         all.lower += count[i].lower;
     }
     if (result) return result;
-    const double rises = (double)all.rises / all.states, lower = (double)all.lower / all.states;
-    report_bar(lab->report,
-               &(ReportBar){"rises",
-                            "share of all states in which the sum rises in one of 7 steps: \"always "
-                            "decreases\" is refuted",
-                            rises, 0.05, 1, (double)count[1].rises / count[1].states, "the shrinking sheet alone"});
+    const double rises = (double)all.rises[1] / all.states, lower = (double)all.lower / all.states;
+    report_bar(
+        lab->report,
+        &(ReportBar){"rises",
+                     "share of all states in which the sum rises in one of 7 steps, with nothing on the diagonal, "
+                     "as the paper has it: \"always decreases\" is refuted",
+                     rises, 0.25, 1, (double)all.rises[0] / all.states, "with our floor of 1e-4"});
+    report_bar(lab->report, &(ReportBar){"shrunk", "sum after 7 steps over that before, the sheet that shrinks evenly",
+                                         fell[1], 0, 0.05, fell[0], "the sheet that swings"});
     report_bar(lab->report, &(ReportBar){"lower", "share of all states in which the sum is lower after 7 steps", lower,
-                                         0.95, 1, 1 - rises, "in which it falls in each of them"});
+                                         0.95, 1, 1 - rises, "in which it falls in each of them, without the floor"});
     return SINGE_OK;
 }

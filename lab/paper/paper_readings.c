@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "analysis/strip.h"
+#include "page/hot_spot.h"
 #include "paper/paper.h"
 #include "paper/paper_states.h"
 
@@ -79,6 +80,25 @@ static SingeResult burn_strip(const SingeMaterialDef *material, StripResult *out
     setup.cell = 2e-3f;
     setup.width = 6e-3f;
     return strip_burn(&setup, out, error);
+}
+
+/// A spring's length over its initial one, 200 steps after it began to burn to 9/10 of its mass.
+static SingeResult length_after(Lab *lab, double *length, SingeError *error) {
+    LabGrid grid = lab_grid(2, 2, 0.01f);
+    float mass[9];
+    for (int i = 0; i < 9; i++) mass[i] = 0.9f;
+    SingeSim *sim;
+    SingeSurface surface = {0};
+    lab_sets_mass(&grid.material);
+    SingeResult result = paper_burn_to(lab, &grid, mass, 0, &sim, &surface, error);
+    if (!result) {
+        const SingeView view = singe_sim_view(sim);
+        *length = (double)(view.spring_length[SINGE_BLUE][0] / view.spring_rest[SINGE_BLUE][0]);
+    }
+
+    singe_surface_free(&surface);
+    singe_sim_destroy(sim);
+    return result;
 }
 
 static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
@@ -159,6 +179,11 @@ SingeResult paper_readings(Lab *lab, SingeError *error) {
     still.convection = singe_param(0);
     if (!result) result = burn_strip(&still, &radiating, error);
     if (result) return result;
+    static const SpotMesh meshes[] = {{"2 : 1", {36, 72}, {.144f, .144f}, 0}, {"squares", {60, 60}, {.12f, .12f}, 0}};
+    double spread[2][2];
+    for (int i = 0; i < 2; i++)
+        if ((result = spot_spread(lab, &meshes[i], SINGE_HEAT_UMBRELLA, spread[i], error))) return result;
+    const double aspect = spread[0][0] / spread[0][1], square = spread[1][0] / spread[1][1];
     const double printed = mass_left(-1), read = mass_left(1);
     report_row(lab->report,
                "eq 1|+ eta dm, where dm is negative|- eta dm: burning heats|as printed a fire puts itself out with "
@@ -185,5 +210,11 @@ SingeResult paper_readings(Lab *lab, SingeError *error) {
     report_bar(lab->report,
                &(ReportBar){"losses", "K of the hottest without losses over that with them", hot.hottest / ours.hottest,
                             1.1, INFINITY, radiating.hottest / ours.hottest, "without convection alone"});
+    double stays = NAN;
+    if ((result = length_after(lab, &stays, error))) return result;
+    report_bar(lab->report, &(ReportBar){"l_rest", "eq 6 from l_init: share of its length after 200 steps at v = 0.9",
+                                         stays, 0.8999, 0.9001, pow(0.9, 200), "from the length that it has"});
+    report_bar(lab->report, &(ReportBar){"umbrella_long", "the umbrella on cells of 2 : 1, along x over along y",
+                                         aspect, 1.2, INFINITY, square, "on squares"});
     return readings_of_motion(lab, error);
 }

@@ -93,7 +93,7 @@ SingeResult paper_sim(PaperState state, int cells, const SingeSolverDef *solver,
     return result;
 }
 
-SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, double regularisation,
+SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, double regularisation, int cap,
                           SingeNetwork **network, SingeError *error) {
     SingeView view = singe_sim_view(sim);
     SingeNetworkDef def = singe_default_network();
@@ -133,7 +133,7 @@ SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, d
         def.set_count = one_set ? 1 : SINGE_COLOUR_COUNT;
         def.sets = sets;
         def.regularisation = regularisation;
-        if (one_set) def.iterations = (int)springs;
+        if (one_set || cap > 0) def.iterations = one_set ? (int)springs : cap;
         result = singe_network_create(&def, network, error);
     } else {
         *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};

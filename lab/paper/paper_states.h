@@ -22,9 +22,9 @@ SINGE_NODISCARD SingeResult paper_sim(PaperState state, int cells, const SingeSo
 
 /// The springs of a sheet as a network at its current positions, or at those after eq 8 and 9. The sets are the colours
 /// red, green, blue, yellow; with `one_set` all springs are one set, whose conjugate gradients end after as many
-/// iterations as there are unknowns.
+/// iterations as there are unknowns. Others end after `cap` iterations, if it is not 0.
 SINGE_NODISCARD SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, double regularisation,
-                                          SingeNetwork **network, SingeError *error);
+                                          int cap, SingeNetwork **network, SingeError *error);
 
 /// |C| of the four colours, and their sum; `sets` is 4, or 1 for a network of one set, which is the sum.
 double paper_errors(const SingeNetwork *network, uint32_t sets, double *errors);

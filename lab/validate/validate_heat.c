@@ -3,21 +3,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "page/hot_spot.h"
 #include "validate/validate.h"
 
-static const double alpha = 1e-4, slab = 0.08, warm_mean = 600, amplitude = 300; // m2/s, m, K
-
-/// Insulated, nothing burns; the temperature is 600 K plus 300 K times the field.
-static LabGrid heat_grid(int across, int along, float cell, SingeHeatOperator operator) {
-    LabGrid grid = lab_grid(across, along, cell);
-    grid.material.heat_operator = operator;
-    grid.material.diffusivity = singe_param((float)alpha);
-    grid.material.ignition_temperature = singe_param(5000);
-    static const SingeField field = {.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "field"};
-    grid.material.temperature = singe_param_field((float)warm_mean, (float)(warm_mean + amplitude), &field);
-    grid.solver.substeps = 1; // nothing moves
-    return grid;
-}
+static const double slab = 0.08; // m
 
 // ---- a slab: cos(pi x/L) decays as exp(-alpha (pi/L)^2 t)
 
@@ -31,7 +20,7 @@ static double mode_amplitude(const SingeView *view) {
     double sum = 0, norm = 0;
     for (uint32_t v = 0; v < view->vertex_count; v++) {
         double c = cos(acos(-1) * (double)view->rest_position[v][0] / slab), area = (double)view->area[v];
-        sum += area * c * ((double)view->temperature[v] - warm_mean);
+        sum += area * c * ((double)view->temperature[v] - WARM_MEAN);
         norm += area * c * c;
     }
 
@@ -41,7 +30,7 @@ static double mode_amplitude(const SingeView *view) {
 /// The relative error of the amplitude after 4 s.
 static SingeResult slab_error(Lab *lab, int cells, int steps, double *off, SingeError *error) {
     const double seconds = 4, k = acos(-1) / slab;
-    LabGrid grid = heat_grid(cells, 3, (float)slab / (float)cells, SINGE_HEAT_SURFACE);
+    LabGrid grid = warm_grid(cells, 3, (float)slab / (float)cells, SINGE_HEAT_SURFACE);
     grid.field = slab_mode;
     grid.time_step = (float)(seconds / steps);
     SingeSim *sim;
@@ -49,7 +38,7 @@ static SingeResult slab_error(Lab *lab, int cells, int steps, double *off, Singe
     if (result) return result;
     result = lab_steps(sim, steps, error);
     SingeView view = singe_sim_view(sim);
-    *off = fabs(mode_amplitude(&view) / (amplitude * exp(-alpha * k * k * seconds)) - 1);
+    *off = fabs(mode_amplitude(&view) / (WARM_AMPLITUDE * exp(-WARM_DIFFUSIVITY * k * k * seconds)) - 1);
     singe_sim_destroy(sim);
     return result;
 }
@@ -97,75 +86,25 @@ SingeResult validate_heat(Lab *lab, SingeError *error) {
     return SINGE_OK;
 }
 
-// ---- a hot spot: its variance grows by 2 alpha t
-
-static double spot(const void *context, double x, double y) {
-    const double *centre = context;
-    return 2 * exp(-(pow(x - centre[0], 2) + pow(y - centre[1], 2)) / (2 * centre[2] * centre[2]));
-}
-
-/// Variances along x and y of both layers' temperature rise, weighted by area.
-static void variances(const SingeView *view, double out[2]) {
-    double sum = 0, mean[2] = {0}, square[2] = {0};
-    for (uint32_t i = 0; i < view->particle_count; i++) {
-        double w = (double)view->area[i] * ((double)view->temperature[i] - warm_mean);
-        sum += w;
-        for (int k = 0; k < 2; k++) {
-            double x = (double)view->rest_position[i][k];
-            mean[k] += w * x;
-            square[k] += w * x * x;
-        }
-    }
-
-    for (int k = 0; k < 2; k++) out[k] = square[k] / sum - pow(mean[k] / sum, 2);
-}
-
-typedef struct MeshCase {
-    const char *name;
-    int cells[2];
-    float sides[2], jitter;
-} MeshCase;
-
-static SingeResult spread_measure(Lab *lab, const MeshCase *mesh, SingeHeatOperator operator, double ratio[2],
-                                  SingeError *error) {
-    const double centre[3] = {(double)mesh->sides[0] / 2, (double)mesh->sides[1] / 2, 0.008}, seconds = 0.4;
-    LabGrid grid = heat_grid(mesh->cells[0], mesh->cells[1], 1, operator);
-    grid.sides[0] = mesh->sides[0], grid.sides[1] = mesh->sides[1], grid.jitter = mesh->jitter;
-    grid.field = spot;
-    grid.context = centre;
-    grid.time_step = 0.004f;
-    grid.material.thickness = singe_param(1e-4f);
-    SingeSim *sim;
-    SingeResult result = lab_build(lab, &grid, &sim, error);
-    if (result) return result;
-    SingeView view = singe_sim_view(sim);
-    double before[2], after[2];
-    variances(&view, before);
-    result = lab_steps(sim, (int)lround(seconds / 0.004), error);
-    variances(&view, after);
-    for (int k = 0; k < 2; k++) ratio[k] = (after[k] - before[k]) / (2 * alpha * seconds);
-    singe_sim_destroy(sim);
-    return result;
-}
-
 /// docs/equations/heat.md: the umbrella's effective alpha along x on cells dx by dy without thickness.
 static double umbrella_factor(double dx, double dy) {
     double q = hypot(dx, dy), r = q / 2;
     return (2 * dx + 2 * dx * dx / q + dx * dx / r) / (2 * dx + 2 * dy + 2 * q + 4 * r);
 }
 
+static const SpotMesh meshes[] = {{"squares", {60, 60}, {.12f, .12f}, 0},
+                                  {"2 : 1", {36, 72}, {.144f, .144f}, 0},
+                                  {"squares, jitter 0.3", {60, 60}, {.12f, .12f}, 0.3f}};
+
 SingeResult validate_umbrella(Lab *lab, SingeError *error) {
-    static const MeshCase meshes[] = {{"squares", {60, 60}, {.12f, .12f}, 0},
-                                      {"2 : 1", {36, 72}, {.144f, .144f}, 0},
-                                      {"squares, jitter 0.3", {60, 60}, {.12f, .12f}, 0.3f}};
 
     enum { CASES = sizeof meshes / sizeof *meshes };
     double surface[CASES][2], umbrella[CASES][2], off = 0;
     SingeResult result = SINGE_OK;
     report_heads(lab->report, "mesh|surface, x|y|umbrella, x|y|umbrella by formula, x|y");
     for (int i = 0; i < CASES && !result; i++) {
-        result = spread_measure(lab, &meshes[i], SINGE_HEAT_SURFACE, surface[i], error);
-        if (!result) result = spread_measure(lab, &meshes[i], SINGE_HEAT_UMBRELLA, umbrella[i], error);
+        result = spot_spread(lab, &meshes[i], SINGE_HEAT_SURFACE, surface[i], error);
+        if (!result) result = spot_spread(lab, &meshes[i], SINGE_HEAT_UMBRELLA, umbrella[i], error);
         double dx = (double)meshes[i].sides[0] / meshes[i].cells[0];
         double dy = (double)meshes[i].sides[1] / meshes[i].cells[1];
         if (!result)

@@ -203,7 +203,7 @@ SingeResult validate_kinetics(Lab *lab, SingeError *error) {
 SingeResult validate_ledgers(Lab *lab, SingeError *error) {
     static const char *const cases[][2] = {{"a hole burns", "adaptive.yaml"},
                                            {"the same, with gas", "adaptive.yaml"},
-                                           {"a hot sphere crosses", "fig4.yaml"},
+                                           {"a hot sphere crosses", "fig4c.yaml"},
                                            {"a torus", "fig11.yaml"}};
     double heat = 0, mass = 0;
     SingeResult result = SINGE_OK;

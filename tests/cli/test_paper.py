@@ -8,6 +8,7 @@ import re
 import unittest
 
 from support import Case
+from test_docs import ROOT
 
 TABLE1 = "0.4306 0.4401 0.5527 0.4954 0.5767 0.5038 0.5804 0.5050 0.5810 0.5052".split()
 
@@ -42,12 +43,42 @@ class Paper(Case):
 
     def test_scenes_lie_beside_the_page(self):
         self.singe("paper", "fig5", "-o", self.path("page"))
-        for name in "fig4.yaml", "torus.obj", "rate.png":
+        for name in "fig4c.yaml", "torus.obj", "rate.png":
             self.assertTrue(os.path.getsize(self.path("page", "scenes", name)) > 100)
         for name in os.listdir(self.path("page", "scenes")):
             if name.endswith(".yaml"):
                 self.singe("run", self.path("page", "scenes", name), "-o", self.path("run"), "--frames", "1",
                            "--no-preview", "--quiet")
+
+    def test_parts_of_a_figure_differ_only_in_what_they_show(self):
+        """fig4a.yaml to fig4d.yaml and the like are one scene each but for these keys; each wears its plain look."""
+        shown = {"fig4": "tearing shrink_front shrink_back ablate mass_rate mass_loss char_strength",
+                 "fig7a fig7b": "solver", "fig7c fig7d": "solver", "fig10": "thickness weight"}
+        folder = os.path.join(ROOT, "lab", "paper", "scenes")
+        for figure, keys in shown.items():
+            names = figure.split() if " " in figure else [figure + part for part in "abcd"]
+            texts = []
+            for name in names:
+                with open(os.path.join(folder, name + ".yaml")) as file:
+                    lines = [line.split("#")[0].strip() for line in file]
+                texts.append([line for line in lines if line])
+                self.assertEqual("plain: yes" in lines, figure != "fig4", name)
+            kept = [[line for line in text if line.split(":")[0] not in keys.split()] for text in texts]
+            for name, text, lines in zip(names, texts, kept):
+                self.assertEqual(lines, kept[0], name)
+                self.assertNotIn(text, [other for other in texts if other is not text], name)
+
+    def test_the_papers_system_is_in_its_scenes(self):
+        """No losses, eq 3 as printed, no ceiling, all of eq 6, no compliance, no tears, and its solver."""
+        for number in 1, 4, 11:
+            with open(os.path.join(ROOT, "lab", "paper", "scenes", f"whole-fig{number}.yaml")) as file:
+                lines = [line.split("#")[0].strip() for line in file]
+            for line in ("heat_operator: umbrella-live", "convection: 0", "emissivity: 0", "rate_ceiling: 1e6",
+                         "ash_exponent: 0", "shrink_front: 1", "shrink_back: 1", "tearing: no", "contact: no",
+                         "compliance: {red: 0, green: 0, blue: 0, yellow: 0}",
+                         "solver: {method: paper, order: [red, green, blue, yellow], projections: 7, tolerance: 1e-7, "
+                         "early_exit: yes}"):
+                self.assertIn(line, lines, number)
 
     def test_table1(self):
         out, _ = self.singe("paper", "table1", "-o", self.path("page"))

@@ -37,7 +37,7 @@ static void sums(SingeSim *sim, PaperState state, int steps, double *sum) {
     SingeError error;
     double errors[SINGE_COLOUR_COUNT];
 
-    assert_int_equal(paper_network(sim, state, false, 1e-4, &network, &error), SINGE_OK);
+    assert_int_equal(paper_network(sim, state, false, 1e-4, 0, &network, &error), SINGE_OK);
     for (int step = 0; step <= steps; step++) {
         for (uint32_t set = 0; set < SINGE_COLOUR_COUNT && step; set++)
             assert_int_equal(singe_network_project(network, set, NULL), SINGE_OK);
@@ -98,8 +98,8 @@ TEST(every_colour_has_full_rank) {
     SingeNetwork *all, *colours;
     SingeError error;
 
-    assert_int_equal(paper_network(sim, PAPER_SWING, true, 0, &all, &error), SINGE_OK);
-    assert_int_equal(paper_network(sim, PAPER_SWING, false, 1e-4, &colours, &error), SINGE_OK);
+    assert_int_equal(paper_network(sim, PAPER_SWING, true, 0, 0, &all, &error), SINGE_OK);
+    assert_int_equal(paper_network(sim, PAPER_SWING, false, 1e-4, 0, &colours, &error), SINGE_OK);
     size_t columns = 3 * (size_t)singe_sim_view(sim).particle_count;
     assert_int_equal(singe_network_set_size(all, 0), 10 * 5 * 5);
     assert_true(rank(all, 0, columns) <= columns - 6); // two of the particles are held
@@ -116,7 +116,7 @@ static double left_after(SingeSim *sim, bool one, double floor) {
     SingeError error;
     const uint32_t sets = one ? 1 : SINGE_COLOUR_COUNT;
     double errors[SINGE_COLOUR_COUNT], before, after;
-    SingeResult result = paper_network(sim, PAPER_SWING, one, floor, &network, &error);
+    SingeResult result = paper_network(sim, PAPER_SWING, one, floor, 0, &network, &error);
 
     assert_int_equal(result, SINGE_OK);
     before = paper_errors(network, sets, errors);

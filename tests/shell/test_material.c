@@ -283,7 +283,7 @@ TEST(ranges_end_where_stated) {
     }
 
     SingeSheetDef def = square.def;
-    def.material.heat_operator = (SingeHeatOperator)2;
+    def.material.heat_operator = (SingeHeatOperator)3;
     refuse(&def, -1, "heat operator");
     square_free(&square);
 }
