@@ -212,11 +212,12 @@ uint64_t broad_grid_pairs(CollisionPlan *plan, const Shell *shell, Pool *pool) {
 
     plan->edge = cells ? (float)(2 * sum / cells) : 0;
 
-    // one over the part of it along each axis; all of it unless one axis has long cells and the others do not
+    // one over the part of it along each axis; all of it unless one axis has long cells and the others do not. A part is
+    // a thousandth at least: boxes may be flat
     double most = fmax(along[0], fmax(along[1], along[2])), least = fmin(along[0], fmin(along[1], along[2]));
     double middle = along[0] + along[1] + along[2] - most - least;
     Float4 slim = float4_all(1);
-    for (int k = 0; k < 3 && middle < most / SLIM; k++) slim[k] = (float)(sum / fmax(along[k], middle));
+    for (int k = 0; k < 3 && middle < most / SLIM; k++) slim[k] = (float)(sum / fmax(along[k], 1e-3 * most));
 
     // larger cubes until all entries have room; then the entries, sorted by buckets
     uint64_t count = 0;
