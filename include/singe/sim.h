@@ -259,6 +259,11 @@ typedef struct SingeTimers {
     uint64_t contact_dropped;    ///< pairs beyond the capacity of the lists, not checked
     uint64_t contact_pairs;      ///< pairs of cells that the broad phase found, summed over steps
     uint64_t contact_halts;      ///< steps in which CCD's work reached its bound, so that all sheets stood still
+    uint64_t contact_rounds;     ///< of CCD: how often it has moved what it had found to collide
+    uint64_t contact_looks;      ///< pairs of cells that CCD checked again, as a round had moved one of them
+    double contact_find_seconds; ///< of contact_seconds: finding what is near as a step opens
+    double contact_push_seconds; ///< pushing it apart in the substeps
+    double contact_stop_seconds; ///< CCD
 } SingeTimers;
 
 /// All 0 before the commit. Fills `struct_size` bytes, the caller's sizeof.

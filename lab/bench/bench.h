@@ -27,6 +27,8 @@ BenchFn bench_surface;
 /// A cloth falls over a sphere in folds: cost of contact, strain.
 BenchFn bench_heap;
 BenchFn bench_collapse;
+/// Sheets fall on top of each other over a sphere: cost of the crowd, strain, crossings, memory.
+BenchFn bench_stack;
 /// Bytes per spring.
 BenchFn bench_memory;
 

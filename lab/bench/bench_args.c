@@ -9,6 +9,7 @@
 
 const ArgOption bench_all_options[BENCH_OPT_COUNT] = {
     [BENCH_OPT_CELLS] = {"cells", 0, "N,N,...", "cells per side of the sheet, 2 to 2000"},
+    [BENCH_OPT_SHEETS] = {"sheets", 0, "N,N,...", "sheets on top of each other, 1 to 1000"},
     [BENCH_OPT_THICKNESS] = {"thickness", 0, "MM,MM,...", "distance between the two layers, 0.01 to 100 mm"},
     [BENCH_OPT_PINS] = {"pins", 0, "1|2", "number of corners that are held [2]"},
     [BENCH_OPT_TIME] = {"time", 0, "S", "seconds of motion, 0.01 to 60"},
@@ -98,6 +99,8 @@ static bool read_option(Parser *parser, const char *text, BenchRequest *request)
     switch ((BenchOption)parser->which[option]) {
     case BENCH_OPT_CELLS:
         return read_list(parser, text, 2, 2000, true, 1, "whole numbers from 2 to 2000 as in 32,100", &o->cells);
+    case BENCH_OPT_SHEETS:
+        return read_list(parser, text, 1, 1000, true, 1, "whole numbers from 1 to 1000 as in 10,50", &o->sheets);
     case BENCH_OPT_THICKNESS:
         return read_list(parser, text, 0.01, 100, false, 1e-3, "millimetres from 0.01 to 100 as in 1,2.5",
                          &o->thickness);

@@ -9,6 +9,7 @@
 extern const ArgOption bench_all_options[];
 typedef enum BenchOption {
     BENCH_OPT_CELLS,
+    BENCH_OPT_SHEETS,
     BENCH_OPT_THICKNESS,
     BENCH_OPT_PINS,
     BENCH_OPT_TIME,

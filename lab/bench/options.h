@@ -36,6 +36,7 @@ typedef struct BenchMaterial {
 
 typedef struct BenchOptions {
     BenchList cells;     ///< per side of the square sheet
+    BenchList sheets;    ///< on top of each other
     BenchList thickness; ///< m
     BenchList springs;
     BenchList curvature; ///< 1/m, limits of it; 0: none

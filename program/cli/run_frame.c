@@ -29,6 +29,7 @@ static void read_timers(Run *run, FrameCost *cost) {
         run->totals->stage_seconds[i] += seconds;
     }
 
+    cost->contact = 1e3 * (now.contact_seconds - before->contact_seconds);
     run->totals->steps += now.steps - before->steps;
     run->totals->heat_iterations += now.heat_iterations - before->heat_iterations;
     run->totals->strands_projected += now.strands_projected - before->strands_projected;

@@ -37,7 +37,8 @@ typedef struct LineFile {
 
 /// The times of a frame (ms) and its triangles.
 typedef struct FrameCost {
-    double stage[SINGE_STAGE_COUNT], surface, output; ///< output includes the surface
+    double stage[SINGE_STAGE_COUNT], contact; ///< contact is a part of the dynamics
+    double surface, output;                   ///< output includes the surface
     uint64_t triangles, fine_triangles;
 } FrameCost;
 

@@ -248,6 +248,7 @@ static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *
 
         if (!stopped) memcpy(plan->want, dynamics->position, plan->vertex_count * sizeof *plan->want);
         plan->counters.stops += hits;
+        plan->counters.rounds++;
         stopped = true;
         if (spent) {
             plan->counters.halts++;
@@ -289,7 +290,7 @@ SingeResult ccd_apply(Memory *memory, CollisionPlan *plan, const Shell *shell, c
     for (uint32_t k = 0; k < plan->stopped_count; k++) plan->zone[plan->stopped[k]] = SHELL_NONE;
     plan->stopped_count = 0;
     if (result) collision_plan_forget(plan);
-    plan->counters.seconds += clock_seconds() - start;
+    plan->counters.stop_seconds += clock_seconds() - start;
     return result;
 }
 

@@ -69,7 +69,8 @@ typedef struct CollisionCounters {
     uint64_t dropped;            ///< pairs, of cells or of points, for which there was no room
     uint32_t intersecting;       ///< cells that have intersected or coincided with others since the start
     uint32_t intersecting_first; ///< the lowest of them
-    double seconds;
+    uint64_t rounds;             ///< in which CCD has moved what it had found to collide
+    double find_seconds, push_seconds, stop_seconds;
 } CollisionCounters;
 
 CollisionCounters collision_counters(const CollisionPlan *plan);

@@ -351,7 +351,7 @@ SingeResult collision_open(Memory *memory, CollisionPlan *plan, const Shell *she
     if (first) plan->work = 0;
     SingeResult result = open_step(memory, plan, shell, state, pool, dynamics);
     if (result) collision_plan_forget(plan);
-    plan->counters.seconds += clock_seconds() - start;
+    plan->counters.find_seconds += clock_seconds() - start;
     return result;
 }
 

@@ -60,5 +60,5 @@ void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, 
         }
     }
 
-    plan->counters.seconds += clock_seconds() - start;
+    plan->counters.push_seconds += clock_seconds() - start;
 }

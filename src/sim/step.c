@@ -72,7 +72,6 @@ static void step_note(SingeSim *sim, const HeatCounters *heat, const DynamicsCou
 
     // contacts
     CollisionCounters found = dynamics_plan_contacts(sim->dynamics);
-    timers->contact_seconds = found.seconds;
     timers->contact_searches = found.searches;
     timers->contact_pairs = found.pairs;
     timers->contact_repulsions = found.repulsions;
@@ -80,6 +79,12 @@ static void step_note(SingeSim *sim, const HeatCounters *heat, const DynamicsCou
     timers->contact_unresolved = found.unresolved;
     timers->contact_dropped = found.dropped;
     timers->contact_halts = found.halts;
+    timers->contact_rounds = found.rounds;
+    timers->contact_looks = found.looks;
+    timers->contact_find_seconds = found.find_seconds;
+    timers->contact_push_seconds = found.push_seconds;
+    timers->contact_stop_seconds = found.stop_seconds;
+    timers->contact_seconds = found.find_seconds + found.push_seconds + found.stop_seconds;
     sim_log_contacts(sim, &found);
 }
 
