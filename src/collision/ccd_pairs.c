@@ -85,7 +85,12 @@ static int sweep_pair(const Ccd *ccd, CollisionPair *pair) {
         FeatureHulls hulls = {{four_of(p.position)}, {four_of(q.position)}};
         hulls.a[1] = four_plus(hulls.a[0], four_of(p.displacement));
         hulls.b[1] = four_plus(hulls.b[0], four_of(q.displacement));
-        if (feature_is_apart(&hulls, 2 * ccd->plan->gap + ccd->plan->noise)) return 0;
+        const float margin = 2 * ccd->plan->gap + ccd->plan->noise;
+        const Float4 normal[2] = {float4_cross(p.position[2] - p.position[0], p.position[3] - p.position[1]),
+                                  float4_cross(q.position[2] - q.position[0], q.position[3] - q.position[1])};
+        for (int i = 0; i < 2; i++)
+            if (feature_is_apart_along(&hulls, normal[i], margin)) return 0; // layers that lie on each other
+        if (feature_is_apart(&hulls, margin)) return 0;
     }
 
     count += sweep_all_nodes(ccd, pair, pair->a, &p, &q, of_b, COLLISION_NODE_OF_A);

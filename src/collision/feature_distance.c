@@ -131,6 +131,20 @@ Float4 feature_from_segment(Float4 a, Float4 b, Float4 c, Float4 d, float *s, fl
 // point nearest to 0 in the hull of all differences at both ends. Gilbert's algorithm (1966) nears that point: from a
 // point v of the hull it goes to the one nearest to 0 between v and the difference that reaches farthest against v.
 
+bool feature_is_apart_along(const FeatureHulls *hulls, Float4 normal, float margin) {
+    const FourVectors n = four_all(normal);
+    Float4 reach[2]; // from b to a along n, and from a to b
+    for (int t = 0; t < 2; t++) {
+        const Float4 a = four_dot(hulls->a[t], n), b = four_dot(hulls->b[t], n);
+        const float above = float4_smallest(a) - float4_largest(b), below = float4_smallest(b) - float4_largest(a);
+        reach[t] = (Float4){above, below};
+    }
+
+    const Float4 least = float4_min(reach[0], reach[1]);
+    const float most = least[0] > least[1] ? least[0] : least[1];
+    return most > 0 && most < INFINITY && most * most > margin * margin * float4_dot(normal, normal);
+}
+
 bool feature_is_apart(const FeatureHulls *hulls, float margin) {
     enum { TRIALS = 10 };
     Float4 v = {0};

@@ -18,6 +18,10 @@ typedef struct FeatureHulls {
     FourVectors a[2], b[2];
 } FeatureHulls;
 
+/// Whether planes across `normal`, of any length, keep the convex hulls of the two bodies more than `margin` apart all
+/// the way.
+bool feature_is_apart_along(const FeatureHulls *hulls, Float4 normal, float margin);
+
 /// Whether a plane of one orientation keeps the convex hulls of the two bodies more than `margin` apart all the way.
 /// False if a few trials find none.
 bool feature_is_apart(const FeatureHulls *hulls, float margin);
