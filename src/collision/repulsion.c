@@ -9,55 +9,72 @@
 // separates them at COLLISION_PART m/s. Slip across n since the substep began is taken back by at most mu |C|
 // (Coulomb), as in contact with colliders. A virtual centre is replaced by its four corners, a quarter each. Points
 // nearer at rest than twice the thickness (the edges of a tear) are kept apart by four times CCD's gap only.
+// One pass carries a push from a layer to the next. In a crowd, where layers lie on many others, there are more passes, in
+// turn forwards and backwards: what they leave is work for CCD, which costs many times more.
 #include "common/clock.h"
 #include "collision/collision_plan.h"
 
-void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics) {
-    double start = clock_seconds();
+/// Repulsions per cell from which on there are more passes, and the most passes. Folds and heaps have up to .8, ten layers
+/// 2 to 5.
+enum { CROWD_FROM = 1, CROWD_PASSES = 8 };
+
+static void repulsion_push(CollisionPlan *plan, const Repulsion *repulsion, const float (*predicted)[4], float h,
+                           DynamicsState *dynamics) {
     float(*x)[4] = dynamics->position;
-    for (uint32_t k = 0; k < plan->repulsion_count; k++) {
-        const Repulsion *repulsion = &plan->repulsions[k];
 
-        // how much too near the two points are
-        Float4 separation = {0};
-        for (uint32_t i = 0; i < repulsion->count; i++)
-            separation += repulsion->weight[i] * float4_load(x[repulsion->node[i]]);
-        float height = float4_dot(separation, repulsion->normal) - repulsion->target, weight = 0;
-        if (height >= 0) continue;
+    // how much too near the two points are
+    Float4 separation = {0};
+    for (uint32_t i = 0; i < repulsion->count; i++)
+        separation += repulsion->weight[i] * float4_load(x[repulsion->node[i]]);
+    float height = float4_dot(separation, repulsion->normal) - repulsion->target, weight = 0;
+    if (height >= 0) return;
 
-        for (uint32_t i = 0; i < repulsion->count; i++)
-            weight += repulsion->weight[i] * repulsion->weight[i] * x[repulsion->node[i]][3];
-        if (weight <= 0) continue;
+    for (uint32_t i = 0; i < repulsion->count; i++)
+        weight += repulsion->weight[i] * repulsion->weight[i] * x[repulsion->node[i]][3];
+    if (weight <= 0) return;
 
-        // move them apart along the normal
-        Float4 away = -height / weight * repulsion->normal;
-        for (uint32_t i = 0; i < repulsion->count; i++) {
-            Float4 position = float4_load(x[repulsion->node[i]]);
-            float4_store(x[repulsion->node[i]], position + position[3] * repulsion->weight[i] * away);
-        }
+    // move them apart along the normal
+    Float4 away = -height / weight * repulsion->normal;
+    for (uint32_t i = 0; i < repulsion->count; i++) {
+        Float4 position = float4_load(x[repulsion->node[i]]);
+        float4_store(x[repulsion->node[i]], position + position[3] * repulsion->weight[i] * away);
+    }
 
-        plan->counters.repulsions++;
-        if (!(plan->def.friction > 0)) continue;
+    plan->counters.repulsions++;
+    if (!(plan->def.friction > 0)) return;
 
-        // friction: take back slip across the normal, at most `max`
-        const float max = -plan->def.friction * height;
-        Float4 slip = {0};
-        for (uint32_t i = 0; i < repulsion->count; i++) {
-            uint32_t at = repulsion->node[i];
-            Float4 before = float4_load(predicted[at]) - h * float4_load(dynamics->velocity[at]);
-            slip += repulsion->weight[i] * (float4_load(x[at]) - before);
-        }
+    // friction: take back slip across the normal, at most `max`
+    const float max = -plan->def.friction * height;
+    Float4 slip = {0};
+    for (uint32_t i = 0; i < repulsion->count; i++) {
+        uint32_t at = repulsion->node[i];
+        Float4 before = float4_load(predicted[at]) - h * float4_load(dynamics->velocity[at]);
+        slip += repulsion->weight[i] * (float4_load(x[at]) - before);
+    }
 
-        slip[3] = 0;
-        slip -= float4_dot(slip, repulsion->normal) * repulsion->normal;
-        float length = sqrtf(float4_dot(slip, slip));
-        if (!(length > 0)) continue;
+    slip[3] = 0;
+    slip -= float4_dot(slip, repulsion->normal) * repulsion->normal;
+    float length = sqrtf(float4_dot(slip, slip));
+    if (!(length > 0)) return;
 
-        Float4 back = (length <= max ? 1 : max / length) / weight * slip;
-        for (uint32_t i = 0; i < repulsion->count; i++) {
-            Float4 position = float4_load(x[repulsion->node[i]]);
-            float4_store(x[repulsion->node[i]], position - position[3] * repulsion->weight[i] * back);
-        }
+    Float4 back = (length <= max ? 1 : max / length) / weight * slip;
+    for (uint32_t i = 0; i < repulsion->count; i++) {
+        Float4 position = float4_load(x[repulsion->node[i]]);
+        float4_store(x[repulsion->node[i]], position - position[3] * repulsion->weight[i] * back);
+    }
+}
+
+void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics) {
+    const double start = clock_seconds();
+    const uint32_t count = plan->repulsion_count, cells = plan->cell_count;
+    uint64_t passes = 1;
+    if (count > CROWD_FROM * (uint64_t)cells) passes = 1 + 2 * (uint64_t)count / cells;
+    if (passes > CROWD_PASSES) passes = CROWD_PASSES;
+    for (uint64_t pass = 0; pass < passes; pass++) {
+        const uint64_t before = plan->counters.repulsions;
+        for (uint32_t k = 0; k < count; k++)
+            repulsion_push(plan, &plan->repulsions[pass & 1 ? count - 1 - k : k], predicted, h, dynamics);
+        if (plan->counters.repulsions == before) break;
     }
 
     plan->counters.push_seconds += clock_seconds() - start;
