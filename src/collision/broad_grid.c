@@ -28,8 +28,8 @@ static uint64_t fill_grid(CollisionPlan *plan, bool writing) {
 
         const CollisionBox *box = &plan->boxes[c];
         Cube first = collision_cube(plan, box->swept_low), last = collision_cube(plan, box->swept_high), at = first;
-        count += collision_cubes(first, last, plan->sizes.entries);
-        if (count > plan->sizes.entries) return count;
+        count += collision_cubes(first, last, plan->sizes.entry_max);
+        if (count > plan->sizes.entry_max) return count;
 
         for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
             for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
@@ -194,7 +194,7 @@ static int grid_blocks(const CollisionPlan *plan) {
     return (int)((plan->bucket_count + COLLISION_BUCKETS - 1) / COLLISION_BUCKETS);
 }
 
-uint64_t broad_grid_pairs(CollisionPlan *plan, const Shell *shell, Pool *pool) {
+SingeResult broad_grid_pairs(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool, uint64_t *pairs) {
     Find find = {plan, shell};
 
     // the cubes' initial edge: twice the boxes' mean longest side; 0 if no cell is left
@@ -226,18 +226,20 @@ uint64_t broad_grid_pairs(CollisionPlan *plan, const Shell *shell, Pool *pool) {
     for (; plan->edge > 0; plan->edge *= 1.3f) {
         plan->inverse_edge = slim / plan->edge;
         if (!(plan->edge < 1e30f)) plan->edge = 0; // a position is not finite: the step will fail
-        else if ((count = fill_grid(plan, false)) <= plan->sizes.entries) break;
+        else if ((count = fill_grid(plan, false)) <= plan->sizes.entry_max) break;
         clear_buckets(plan);
     }
 
     plan->entry_count = 0;
     if (plan->edge > 0) {
+        if (!collision_grow_entries(memory, plan, count)) return SINGE_ERROR_MEMORY;
         for (uint32_t k = 0; k < plan->bucket_count; k++) plan->bucket_first[k + 2] += plan->bucket_first[k + 1];
         fill_grid(plan, true);
         plan->entry_count = (uint32_t)count;
     }
 
-    return block_list_write(&plan->found_pairs, pool, grid_blocks(plan), plan->sizes.pair_max, pair_block, &find);
+    *pairs = block_list_write(&plan->found_pairs, pool, grid_blocks(plan), plan->sizes.pair_max, pair_block, &find);
+    return SINGE_OK;
 }
 
 void broad_grid_keep(CollisionPlan *plan, const Shell *shell, Pool *pool, uint64_t count, uint32_t room) {

@@ -102,7 +102,7 @@ static void sweep_boxes(void *task, int begin, int end) {
 SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool) {
     enum { TRIALS = 5 };
     Find find = {plan, shell};
-    plan->listed_count = plan->pair_count = 0;
+    plan->listed_count = plan->pair_count = plan->repulsion_count = 0; // repulsions name pairs
     plan->restless = 0;
 
     // fewer steps where corners move fast relative to each other: on average by at most a third of a cell
@@ -138,7 +138,7 @@ SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell
     for (int trial = 1;; trial++) {
         plan->reach = plan->thickness + plan->slack;
         pool_for(pool, (int)plan->cell_count, 512, sweep_boxes, &find);
-        count = broad_grid_pairs(plan, shell, pool);
+        TRY(broad_grid_pairs(memory, plan, shell, pool, &count));
         if (count + plan->cell_count <= plan->sizes.pair_budget || trial == TRIALS) break;
         plan->slack *= 0.5f;
     }

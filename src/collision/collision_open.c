@@ -68,35 +68,6 @@ static inline float due(float thickness, const CollisionPlan *plan, float approa
     return 1.25f * thickness + 1.5f * plan->h * (approach > 0 ? approach : 0);
 }
 
-/// Adds a node's weight to the corners of its cell.
-static void add_node(float corner[4], int node, float weight) {
-    if (node < 4) {
-        corner[node] += weight;
-        return;
-    }
-
-    for (int i = 0; i < 4; i++) corner[i] += 0.25f * weight;
-}
-
-/// Weights of the corners of a and of b at two features' points.
-static void point_weights(int kind, int first, int second, float u, float v, float wa[4], float wb[4]) {
-    if (kind == COLLISION_EDGES) {
-        const uint8_t *k = collision_edge[first], *l = collision_edge[second];
-        add_node(wa, k[0], 1 - u);
-        add_node(wa, k[1], u);
-        add_node(wb, l[0], 1 - v);
-        add_node(wb, l[1], v);
-        return;
-    }
-
-    float *own = kind == COLLISION_NODE_OF_B ? wb : wa, *other = kind == COLLISION_NODE_OF_B ? wa : wb;
-    const uint8_t *k = collision_triangle[second];
-    add_node(own, first, 1);
-    add_node(other, k[0], 1 - u - v);
-    add_node(other, k[1], u);
-    add_node(other, k[2], v);
-}
-
 /// Distance that two features must keep in this step; 0 if they need no repulsion.
 static float target(const Opening *job, const CollisionPair *pair, const Look *look, const NearFeatures *near) {
     const CollisionPlan *plan = job->plan;
@@ -129,7 +100,7 @@ static float target(const Opening *job, const CollisionPair *pair, const Look *l
     if (!(float4_dot(apart, apart) > max * max) &&
         sheet[shell_centre(shell, pair->a)] == sheet[shell_centre(shell, pair->b)]) {
         float wa[4] = {0}, wb[4] = {0};
-        point_weights(near->kind, near->first, near->second, near->u, near->v, wa, wb);
+        collision_weights(near->kind, near->first, near->second, near->u, near->v, wa, wb);
         apart = (Float4){0};
         for (int i = 0; i < 4; i++)
             apart += wa[i] * float4_load(shell->rest_position[shell->cells[pair->a][i]]) -
@@ -186,10 +157,10 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Blo
     node_velocities(job, pair->b, look.speed_b);
     for (int i = 0; i < count; i++) {
         float keep = target(job, pair, &look, &near[i]);
-        FoundPoints *found = keep > 0 ? block_list_add(writer) : NULL;
+        Repulsion *found = keep > 0 ? block_list_add(writer) : NULL;
         if (!found) continue;
 
-        *found = (FoundPoints){k, near[i].kind, near[i].first, near[i].second, near[i].u, near[i].v, {0}, keep};
+        *found = (Repulsion){k, near[i].kind, near[i].first, near[i].second, near[i].u, near[i].v, {0}, keep};
         for (int d = 0; d < 3; d++) found->normal[d] = near[i].separation[d] / near[i].distance;
     }
 }
@@ -233,33 +204,9 @@ static void look_block(void *context, BlockList *list, int block) {
 
 // ---- repulsions
 
-static void open_gather(Repulsion *repulsion, const uint32_t corner[4], const float weight[4], float sign) {
-    for (int i = 0; i < 4; i++) {
-        if (weight[i] == 0) continue;
-        uint32_t k = 0;
-        while (k < repulsion->count && repulsion->node[k] != corner[i]) k++;
-        if (k == repulsion->count) {
-            repulsion->node[repulsion->count] = corner[i];
-            repulsion->weight[repulsion->count++] = 0;
-        }
-
-        repulsion->weight[k] += sign * weight[i];
-    }
-}
-
-static void open_repulsion(void *context, const void *item, uint32_t number) {
+static void keep_repulsion(void *context, const void *item, uint32_t number) {
     const Opening *job = context;
-    FoundPoints found;
-    memcpy(&found, item, sizeof found);
-    const CollisionPair *pair = &job->plan->pairs[found.pair];
-    Repulsion *repulsion = &job->plan->repulsions[number];
-    float wa[4] = {0}, wb[4] = {0};
-    point_weights(found.kind, found.first, found.second, found.u, found.v, wa, wb);
-    repulsion->normal = (Float4){found.normal[0], found.normal[1], found.normal[2], 0};
-    repulsion->target = found.target;
-    repulsion->count = 0;
-    open_gather(repulsion, job->shell->cells[pair->a], wa, 1);
-    open_gather(repulsion, job->shell->cells[pair->b], wb, -1);
+    memcpy(&job->plan->repulsions[number], item, sizeof(Repulsion));
 }
 
 /// A step has parts from PARTS_FROM on, as many as leave PARTS_MOTION for each, up to COLLISION_PARTS. The numbers are the rms,
@@ -339,7 +286,7 @@ static SingeResult open_step(Memory *memory, CollisionPlan *plan, const Shell *s
     job.again = true;
     plan->repulsion_count = block_list_settle(list, pool, blocks, count, plan->repulsion_capacity, look_block, &job);
     plan->counters.dropped += count - plan->repulsion_count;
-    block_list_read(list, pool, blocks, plan->repulsion_count, open_repulsion, &job);
+    block_list_read(list, pool, blocks, plan->repulsion_count, keep_repulsion, &job);
     plan->counters.pairs += plan->listed_count;
     return SINGE_OK;
 }

@@ -1,9 +1,9 @@
 // The plan: its memory, sizes, snapshot and invariants.
 //
-// The lists of pairs and repulsions have room for folds and heaps; in denser crowds they grow as needed, up to a max that
-// only sheets lying within each other reach. Items beyond that are dropped and counted. The size of a list does not
-// affect results: any sufficient size gives the same items, so that a run continued from a snapshot, where lists begin
-// small again, has the same bytes.
+// The lists of pairs and repulsions have room for flat sheets; where these fold, lie on each other or crowd they grow as
+// needed, up to a max that only sheets lying within each other reach. Items beyond that are dropped and counted. The size
+// of a list does not affect results: any sufficient size gives the same items, so that a run continued from a snapshot,
+// where lists begin small again, has the same bytes.
 #include "common/error.h"
 #include "collision/feature_distance.h"
 #include "collision/collision_plan.h"
@@ -12,20 +12,16 @@
 
 static uint32_t capped(uint64_t count) { return count < UINT32_MAX / 2 ? (uint32_t)count : UINT32_MAX / 2; }
 
-static uint32_t capacity_max(uint32_t capacity) {
-    uint64_t max = (uint64_t)COLLISION_GROWTH * capacity;
-    return capped(max > COLLISION_LIST_MIN ? max : COLLISION_LIST_MIN);
-}
+static uint32_t list_max(uint64_t items) { return capped(items > COLLISION_LIST_MIN ? items : COLLISION_LIST_MIN); }
 
 CollisionSizes collision_sizes(const Shell *shell) {
     uint64_t cells = shell->cell_count;
-    CollisionSizes sizes = {.entries = capped(COLLISION_ENTRIES * cells + 64),
+    return (CollisionSizes){.entry_max = capped(COLLISION_ENTRIES_MAX * cells + 64),
                             .pairs = capped(COLLISION_PAIRS * cells + 64),
-                            .repulsions = capped(COLLISION_REPULSIONS * cells + 64)};
-    sizes.pair_max = capacity_max(sizes.pairs);
-    sizes.repulsion_max = capacity_max(sizes.repulsions);
-    sizes.pair_budget = sizes.pairs;
-    return sizes;
+                            .pair_max = list_max(COLLISION_PAIRS_MAX * cells + 512),
+                            .repulsions = capped(COLLISION_REPULSIONS * cells + 64),
+                            .repulsion_max = list_max(COLLISION_REPULSIONS_MAX * cells + 512),
+                            .pair_budget = capped(COLLISION_PAIRS_FAR * cells + 64)};
 }
 
 typedef struct Array {
@@ -52,7 +48,7 @@ static void list_arrays(CollisionPlan *plan, Array list[ARRAYS]) {
         ARRAY(rest, cells),
         ARRAY(owned, cells),
         ARRAY(owner, vertices),
-        ARRAY(entries, plan->sizes.entries),
+        ARRAY(entries, plan->entry_capacity),
         ARRAY(bucket_first, (size_t)plan->bucket_count + 2),
         ARRAY(pairs, plan->pair_capacity),
         ARRAY(repulsions, plan->repulsion_capacity),
@@ -74,7 +70,7 @@ static void list_arrays(CollisionPlan *plan, Array list[ARRAYS]) {
         ARRAY(outside, cells),
         ARRAY(outside_boxes, cells),
         ARRAY(outside_chain, plan->bucket_count),
-        ARRAY(outside_entries, plan->sizes.entries),
+        ARRAY(outside_entries, plan->outside_capacity),
         ARRAY(partial, (size_t)pool_blocks((int)plan->pair_capacity)),
     };
 #undef ARRAY
@@ -111,6 +107,8 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     plan->sizes = *sizes;
     plan->pair_capacity = sizes->pairs;
     plan->repulsion_capacity = sizes->repulsions;
+    plan->entry_capacity = COLLISION_ENTRIES * plan->cell_count;
+    plan->outside_capacity = COLLISION_BLOCK;
     for (plan->bucket_count = 256; plan->bucket_count < 2 * (uint64_t)plan->cell_count;) plan->bucket_count *= 2;
 
     // lengths that follow from the sheets
@@ -137,7 +135,7 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     uint32_t buckets = plan->bucket_count / COLLISION_BUCKETS + 1, blocks = plan->cell_count / COLLISION_OUTSIDE + 1;
     if (buckets < blocks) buckets = blocks;
     if (!done || !block_list_create(memory, &plan->found_pairs, sizeof(CollisionPair), plan->pair_capacity, buckets) ||
-        !block_list_create(memory, &plan->found, sizeof(FoundPoints), plan->repulsion_capacity,
+        !block_list_create(memory, &plan->found, sizeof(Repulsion), plan->repulsion_capacity,
                            collision_look_blocks(plan->pair_capacity))) {
         collision_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
@@ -298,6 +296,26 @@ bool collision_grow_repulsions(Memory *memory, CollisionPlan *plan, uint64_t wan
     return true;
 }
 
+static bool grow_entries(Memory *memory, void *entries, size_t size, uint32_t max, uint64_t wanted,
+                         uint32_t *capacity) {
+    if (wanted <= *capacity) return true;
+    const uint32_t after = with_margin(wanted, max);
+    const Room room = {entries, *capacity, after, size};
+    if (!grow_rooms(memory, &room, 1)) return false;
+    *capacity = after;
+    return true;
+}
+
+bool collision_grow_entries(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
+    return grow_entries(memory, &plan->entries, sizeof *plan->entries, plan->sizes.entry_max, wanted,
+                        &plan->entry_capacity);
+}
+
+bool collision_grow_outside(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
+    return grow_entries(memory, &plan->outside_entries, sizeof *plan->outside_entries, plan->sizes.entry_max, wanted,
+                        &plan->outside_capacity);
+}
+
 // ---- invariants, for assertions and tests
 
 const char *collision_validate(const CollisionPlan *plan) {
@@ -320,15 +338,13 @@ const char *collision_validate(const CollisionPlan *plan) {
 
     for (uint32_t k = 0; k < plan->repulsion_count; k++) {
         const Repulsion *repulsion = &plan->repulsions[k];
-        float sum = 0;
-        if (repulsion->count < 1 || repulsion->count > 8) return "a repulsion is of one to eight corners";
-
-        for (uint32_t n = 0; n < repulsion->count; n++) {
-            if (repulsion->node[n] >= plan->vertex_count) return "a repulsion is of vertices";
-            sum += repulsion->weight[n];
-        }
-
-        if (!(fabsf(sum) < 1e-4f)) return "the weights of two points cancel";
+        const bool edges = repulsion->kind == COLLISION_EDGES;
+        if (repulsion->pair >= plan->listed_count) return "a repulsion is of a pair";
+        if (repulsion->kind > COLLISION_EDGES || repulsion->first >= (edges ? 8 : 5) ||
+            repulsion->second >= (edges ? 8 : 4))
+            return "a repulsion is of features";
+        if (!(repulsion->u >= -1e-4f && repulsion->v >= -1e-4f && repulsion->u <= 1.0001f && repulsion->v <= 1.0001f))
+            return "a repulsion's points are on its features";
         if (!isfinite(repulsion->target)) return "a repulsion has a target";
     }
 

@@ -14,16 +14,20 @@ enum { COLLISION_BUCKETS = 128, COLLISION_BLOCK = 256, COLLISION_OUTSIDE = 16 };
 /// The bound of CCD's work in a step: COLLISION_WORK per cell and COLLISION_WORK_MIN. A second or so for a few thousand
 /// cells.
 enum { COLLISION_WORK = 500, COLLISION_WORK_MIN = 1 << 18 };
-/// Items per cell in each list. Lists of pairs and repulsions grow if that is too little, by COLLISION_GROWTH, or to
-/// COLLISION_LIST_MIN items if that is more.
+/// Items per cell that lists begin with. They grow: entries of the grid up to COLLISION_ENTRIES_MAX, pairs and repulsions
+/// to what COLLISION_PAIRS_MAX and COLLISION_REPULSIONS_MAX say, or to COLLISION_LIST_MIN items if that is more. A search
+/// that finds more than COLLISION_PAIRS_FAR pairs searches less far.
 enum {
-    COLLISION_ENTRIES = 12,
-    COLLISION_PAIRS = 40,
-    COLLISION_REPULSIONS = 24,
-    COLLISION_GROWTH = 8,
+    COLLISION_ENTRIES = 2,
+    COLLISION_ENTRIES_MAX = 12,
+    COLLISION_PAIRS = 4,
+    COLLISION_PAIRS_FAR = 40,
+    COLLISION_PAIRS_MAX = 320,
+    COLLISION_REPULSIONS = 1,
+    COLLISION_REPULSIONS_MAX = 192,
     COLLISION_LIST_MIN = 1 << 19
 };
-_Static_assert(COLLISION_ENTRIES >= 8, "a box overlaps eight cubes of the grid at least");
+_Static_assert(COLLISION_ENTRIES_MAX >= 8, "a box overlaps eight cubes of the grid at least");
 _Static_assert(COLLISION_OUTSIDE <= COLLISION_BLOCK, "a block of cells outside is a block of pairs at most");
 
 /// Max parts of a step.
@@ -66,24 +70,18 @@ typedef struct CollisionPair {
     uint8_t kind;     ///< COLLISION_NODE_OF_A, COLLISION_NODE_OF_B or COLLISION_EDGES
 } CollisionPair;
 
-_Static_assert(sizeof(CollisionPair) == 24, "five words and three bytes a pair: 40 pairs a cell");
+_Static_assert(sizeof(CollisionPair) == 24, "five words and three bytes a pair");
 
-/// Two points that are near as a step opens, before they are a Repulsion.
-typedef struct FoundPoints {
+/// Two points of a pair, near as a step opens, that are to be at least `target` apart along `normal`.
+typedef struct Repulsion {
     uint32_t pair;
     uint8_t kind, first, second; ///< as in a CollisionPair
     float u, v;                  ///< weights of the triangle's second and third node, or shares of the edges
-    float normal[3], target;     ///< see Repulsion
-} FoundPoints;
-
-/// Two points that are to be kept apart: sum of weight x, over `count` particles, along `normal` is at least `target`.
-typedef struct Repulsion {
-    Float4 normal;
-    uint32_t node[8];
-    float weight[8];
-    float target; ///< m
-    uint32_t count;
+    float normal[3];             ///< from the point of b to that of a
+    float target;                ///< m
 } Repulsion;
+
+_Static_assert(sizeof(Repulsion) == 32, "lists are long");
 
 /// The slightly widened region that a cell passes over in a step.
 typedef struct OutsideBox {
@@ -102,7 +100,7 @@ enum { COLLISION_DISPLACEMENT, COLLISION_VELOCITY, COLLISION_NORMAL, COLLISION_M
 
 /// Initial and max items of the lists.
 typedef struct CollisionSizes {
-    uint32_t entries;         ///< at least 8 a cell
+    uint32_t entry_max;       ///< at least 8 a cell
     uint32_t pairs, pair_max; ///< at least 1 a cell
     uint32_t repulsions, repulsion_max;
     uint32_t pair_budget; ///< enough for a search: if there are more it searches less far
@@ -151,18 +149,18 @@ struct CollisionPlan {
     uint32_t entry_count, bucket_count, repulsion_count;
     uint32_t listed_count; ///< pairs of the search
     uint32_t pair_count;   ///< and those of cells that have left their boxes, in this step
-    uint32_t pair_capacity, repulsion_capacity;
+    uint32_t pair_capacity, repulsion_capacity, entry_capacity, outside_capacity;
     CollisionBox *boxes;     ///< [cells]
     CollisionSlab *slabs;    ///< [cells]
     Float4 *rest;            ///< [cells] centroid at rest, and how far a corner is from it
     uint8_t *owned;          ///< [cells] bits 0-3 corners, 4-7 sides that count as this cell's
     uint32_t *owner;         ///< [vertices]
-    CollisionEntry *entries; ///< [sizes.entries] by bucket
+    CollisionEntry *entries; ///< [entry_capacity] by bucket
     uint32_t *bucket_first;  ///< [bucket_count + 2]
     CollisionPair *pairs;    ///< [pair_capacity]
-    Repulsion *repulsions;   ///< [repulsion_count]
+    Repulsion *repulsions;   ///< [repulsion_capacity]
     BlockList found_pairs;   ///< CollisionPair, as they are found
-    BlockList found;         ///< FoundPoints
+    BlockList found;         ///< Repulsion, as they are found
 
     // the step
     float (*start)[4]; ///< [vertices] m
@@ -189,7 +187,7 @@ struct CollisionPlan {
     uint32_t *outside;      ///< [cells] a list of them
     OutsideBox *outside_boxes;     ///< [cells] theirs
     uint32_t *outside_chain;       ///< [bucket_count] first entries
-    OutsideEntry *outside_entries; ///< [sizes.entries]
+    OutsideEntry *outside_entries; ///< [outside_capacity]
     double *partial;               ///< [pool_blocks(pair_capacity)]
     CollisionCounters counters;
 };
@@ -199,8 +197,8 @@ struct CollisionPlan {
 SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool);
 
 /// Pairs of cells whose swept boxes meet (broad_grid.c): sorts them into the grid, and writes those that `reach` allows
-/// to plan->found_pairs. Returns how many there are, with or without room.
-uint64_t broad_grid_pairs(CollisionPlan *plan, const Shell *shell, Pool *pool);
+/// to plan->found_pairs. *count: how many there are, with or without room. SINGE_ERROR_MEMORY.
+SingeResult broad_grid_pairs(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool, uint64_t *count);
 
 /// Keeps the first `room` of the `count` pairs that broad_grid_pairs has found, as plan->pairs.
 void broad_grid_keep(CollisionPlan *plan, const Shell *shell, Pool *pool, uint64_t count, uint32_t room);
@@ -212,6 +210,11 @@ static inline uint32_t collision_look_blocks(uint32_t pairs) { return (pairs + C
 /// their content. False when out of memory.
 bool collision_grow_pairs(Memory *memory, CollisionPlan *plan, uint64_t wanted);
 bool collision_grow_repulsions(Memory *memory, CollisionPlan *plan, uint64_t wanted);
+
+/// Makes room for `wanted` entries of the grid, or of that of cells outside their boxes; their content is lost. False when
+/// out of memory.
+bool collision_grow_entries(Memory *memory, CollisionPlan *plan, uint64_t wanted);
+bool collision_grow_outside(Memory *memory, CollisionPlan *plan, uint64_t wanted);
 
 /// Whether the search has listed two cells, a before b; *distance is a lower bound of their distance at plan->position.
 bool collision_is_listed(const CollisionPlan *plan, uint32_t a, uint32_t b, float *distance);
@@ -310,6 +313,35 @@ static inline void collision_nodes(const uint32_t corner[4], const float (*x)[4]
 /// Nodes of a cell's edges 0 to 7: sides, then the lines from the corners to the centre; and of its triangles.
 static const uint8_t collision_edge[8][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}};
 static const uint8_t collision_triangle[4][3] = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+
+/// Adds a node's weight to the corners of its cell.
+static inline void collision_add_node(float corner[4], int node, float weight) {
+    if (node < 4) {
+        corner[node] += weight;
+        return;
+    }
+
+    for (int i = 0; i < 4; i++) corner[i] += 0.25f * weight;
+}
+
+/// Adds the weights of the corners of a and of b at two features' points.
+static inline void collision_weights(int kind, int first, int second, float u, float v, float wa[4], float wb[4]) {
+    if (kind == COLLISION_EDGES) {
+        const uint8_t *k = collision_edge[first], *l = collision_edge[second];
+        collision_add_node(wa, k[0], 1 - u);
+        collision_add_node(wa, k[1], u);
+        collision_add_node(wb, l[0], 1 - v);
+        collision_add_node(wb, l[1], v);
+        return;
+    }
+
+    float *own = kind == COLLISION_NODE_OF_B ? wb : wa, *other = kind == COLLISION_NODE_OF_B ? wa : wb;
+    const uint8_t *k = collision_triangle[second];
+    collision_add_node(own, first, 1);
+    collision_add_node(other, k[0], 1 - u - v);
+    collision_add_node(other, k[1], u);
+    collision_add_node(other, k[2], v);
+}
 
 /// Bits of same[i]: corners of the second cell that are corner i of the first.
 static inline void collision_same(const uint32_t first[4], const uint32_t second[4], unsigned same[4]) {

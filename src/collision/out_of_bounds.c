@@ -69,7 +69,7 @@ static void outside_block(void *context, BlockList *list, int block) {
         Cube low = collision_cube(plan, box->low), high = collision_cube(plan, box->high), at = low;
 
         // thrown far: more cubes than cells
-        const bool far = collision_cubes(low, high, plan->sizes.entries) > plan->sizes.entries;
+        const bool far = collision_cubes(low, high, plan->sizes.entry_max) > plan->sizes.entry_max;
         for (uint32_t b = 0; far && b < plan->cell_count; b++)
             if (plan->alive[b]) against_box(job, a, box, b, &writer);
 
@@ -125,9 +125,10 @@ SingeResult broad_search_outside(Memory *memory, CollisionPlan *plan, const Shel
     for (uint32_t k = job.count; k-- > 0;) {
         const OutsideBox *box = &plan->outside_boxes[k];
         Cube first = collision_cube(plan, box->low), last = collision_cube(plan, box->high), at = first;
-        uint64_t cubes = collision_cubes(first, last, plan->sizes.entries);
-        job.crowded |= cubes > plan->sizes.entries - job.entry_count;
+        uint64_t cubes = collision_cubes(first, last, plan->sizes.entry_max);
+        job.crowded |= cubes > plan->sizes.entry_max - job.entry_count;
         if (job.crowded) break;
+        if (!collision_grow_outside(memory, plan, job.entry_count + cubes)) return SINGE_ERROR_MEMORY;
 
         for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
             for (at[1] = first[1]; at[1] <= last[1]; at[1]++)

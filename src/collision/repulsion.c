@@ -9,6 +9,7 @@
 // separates them at COLLISION_PART m/s. Slip across n since the substep began is taken back by at most mu |C|
 // (Coulomb), as in contact with colliders. A virtual centre is replaced by its four corners, a quarter each. Points
 // nearer at rest than twice the thickness (the edges of a tear) are kept apart by four times CCD's gap only.
+//
 // One pass carries a push from a layer to the next. In a crowd, where layers lie on many others, there are more passes, in
 // turn forwards and backwards: what they leave is work for CCD, which costs many times more.
 #include "common/clock.h"
@@ -18,26 +19,52 @@
 /// 2 to 5.
 enum { CROWD_FROM = 1, CROWD_PASSES = 8 };
 
-static void repulsion_push(CollisionPlan *plan, const Repulsion *repulsion, const float (*predicted)[4], float h,
-                           DynamicsState *dynamics) {
-    float(*x)[4] = dynamics->position;
+/// The vector between two points: the sum of weight x over `count` vertices.
+typedef struct Points {
+    uint32_t node[8], count;
+    float weight[8];
+} Points;
+
+/// Adds the corners of a cell; cells that are connected have some in common.
+static void points_add(Points *points, const uint32_t corner[4], const float weight[4], float sign) {
+    for (int i = 0; i < 4; i++) {
+        if (weight[i] == 0) continue;
+        uint32_t k = 0;
+        while (k < points->count && points->node[k] != corner[i]) k++;
+        if (k == points->count) {
+            points->node[points->count] = corner[i];
+            points->weight[points->count++] = 0;
+        }
+
+        points->weight[k] += sign * weight[i];
+    }
+}
+
+static void repulsion_push(CollisionPlan *plan, const Shell *shell, const Repulsion *repulsion,
+                           const float (*predicted)[4], float h, DynamicsState *dynamics) {
+    float(*x)[4] = dynamics->position, wa[4] = {0}, wb[4] = {0};
+    const Float4 normal = {repulsion->normal[0], repulsion->normal[1], repulsion->normal[2], 0};
+    const CollisionPair *pair = &plan->pairs[repulsion->pair];
+    Points points;
+    points.count = 0;
+    collision_weights(repulsion->kind, repulsion->first, repulsion->second, repulsion->u, repulsion->v, wa, wb);
+    points_add(&points, shell->cells[pair->a], wa, 1);
+    points_add(&points, shell->cells[pair->b], wb, -1);
 
     // how much too near the two points are
     Float4 separation = {0};
-    for (uint32_t i = 0; i < repulsion->count; i++)
-        separation += repulsion->weight[i] * float4_load(x[repulsion->node[i]]);
-    float height = float4_dot(separation, repulsion->normal) - repulsion->target, weight = 0;
+    for (uint32_t i = 0; i < points.count; i++) separation += points.weight[i] * float4_load(x[points.node[i]]);
+    float height = float4_dot(separation, normal) - repulsion->target, weight = 0;
     if (height >= 0) return;
 
-    for (uint32_t i = 0; i < repulsion->count; i++)
-        weight += repulsion->weight[i] * repulsion->weight[i] * x[repulsion->node[i]][3];
+    for (uint32_t i = 0; i < points.count; i++) weight += points.weight[i] * points.weight[i] * x[points.node[i]][3];
     if (weight <= 0) return;
 
     // move them apart along the normal
-    Float4 away = -height / weight * repulsion->normal;
-    for (uint32_t i = 0; i < repulsion->count; i++) {
-        Float4 position = float4_load(x[repulsion->node[i]]);
-        float4_store(x[repulsion->node[i]], position + position[3] * repulsion->weight[i] * away);
+    Float4 away = -height / weight * normal;
+    for (uint32_t i = 0; i < points.count; i++) {
+        Float4 position = float4_load(x[points.node[i]]);
+        float4_store(x[points.node[i]], position + position[3] * points.weight[i] * away);
     }
 
     plan->counters.repulsions++;
@@ -46,25 +73,26 @@ static void repulsion_push(CollisionPlan *plan, const Repulsion *repulsion, cons
     // friction: take back slip across the normal, at most `max`
     const float max = -plan->def.friction * height;
     Float4 slip = {0};
-    for (uint32_t i = 0; i < repulsion->count; i++) {
-        uint32_t at = repulsion->node[i];
+    for (uint32_t i = 0; i < points.count; i++) {
+        uint32_t at = points.node[i];
         Float4 before = float4_load(predicted[at]) - h * float4_load(dynamics->velocity[at]);
-        slip += repulsion->weight[i] * (float4_load(x[at]) - before);
+        slip += points.weight[i] * (float4_load(x[at]) - before);
     }
 
     slip[3] = 0;
-    slip -= float4_dot(slip, repulsion->normal) * repulsion->normal;
+    slip -= float4_dot(slip, normal) * normal;
     float length = sqrtf(float4_dot(slip, slip));
     if (!(length > 0)) return;
 
     Float4 back = (length <= max ? 1 : max / length) / weight * slip;
-    for (uint32_t i = 0; i < repulsion->count; i++) {
-        Float4 position = float4_load(x[repulsion->node[i]]);
-        float4_store(x[repulsion->node[i]], position - position[3] * repulsion->weight[i] * back);
+    for (uint32_t i = 0; i < points.count; i++) {
+        Float4 position = float4_load(x[points.node[i]]);
+        float4_store(x[points.node[i]], position - position[3] * points.weight[i] * back);
     }
 }
 
-void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics) {
+void repulsion_apply(CollisionPlan *plan, const Shell *shell, const float (*predicted)[4], float h,
+                     DynamicsState *dynamics) {
     const double start = clock_seconds();
     const uint32_t count = plan->repulsion_count, cells = plan->cell_count;
     uint64_t passes = 1;
@@ -73,7 +101,7 @@ void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, 
     for (uint64_t pass = 0; pass < passes; pass++) {
         const uint64_t before = plan->counters.repulsions;
         for (uint32_t k = 0; k < count; k++)
-            repulsion_push(plan, &plan->repulsions[pass & 1 ? count - 1 - k : k], predicted, h, dynamics);
+            repulsion_push(plan, shell, &plan->repulsions[pass & 1 ? count - 1 - k : k], predicted, h, dynamics);
         if (plan->counters.repulsions == before) break;
     }
 

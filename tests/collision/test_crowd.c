@@ -161,7 +161,7 @@ static long crossings(SingeSim *sim) {
 /// No room to begin with: everything has to grow.
 static CollisionSizes tiny(const SingeSim *sim) {
     CollisionSizes sizes = collision_sizes(&sim->shell);
-    sizes.entries = 8 * sim->shell.cell_count, sizes.pairs = sim->shell.cell_count, sizes.repulsions = 1;
+    sizes.entry_max = 8 * sim->shell.cell_count, sizes.pairs = sim->shell.cell_count, sizes.repulsions = 1;
     return sizes;
 }
 
@@ -200,7 +200,7 @@ TEST(what_lists_grow_to_decides_nothing) {
         SingeSim *usual = crowd(scenes[k], 1, NULL), *small = crowd(scenes[k], 1, NULL);
         SingeSim *threads = crowd(scenes[k], 3, NULL);
         CollisionSizes sizes = tiny(small), same = collision_sizes(&usual->shell);
-        same.entries = sizes.entries; // the order of pairs follows the grid
+        same.entry_max = sizes.entry_max; // the order of pairs follows the grid
         resize(small, &sizes), resize(threads, &sizes), resize(usual, &same);
         test_steps(usual, 8), test_steps(small, 8), test_steps(threads, 8);
         assert_true(collision(small)->pair_capacity > sizes.pairs);
