@@ -258,7 +258,9 @@ class SingeTimers(Structure):
                 ("springs_projected", c_uint64), ("projection_iterations", c_uint64), ("projection_flops", c_double),
                 ("projection_bytes", c_double), ("contact_seconds", c_double), ("contact_searches", c_uint64),
                 ("contact_repulsions", c_uint64), ("contact_stops", c_uint64), ("contact_unresolved", c_uint64),
-                ("contact_dropped", c_uint64), ("contact_pairs", c_uint64), ("contact_halts", c_uint64)]
+                ("contact_dropped", c_uint64), ("contact_pairs", c_uint64), ("contact_halts", c_uint64),
+                ("contact_rounds", c_uint64), ("contact_looks", c_uint64), ("contact_find_seconds", c_double),
+                ("contact_push_seconds", c_double), ("contact_stop_seconds", c_double)]
 
 
 class SingeStats(Structure):
