@@ -1,7 +1,6 @@
 // A stack of sheets that falls over a sphere: the cost of a crowd, in which every layer lies on the next.
 #include <math.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "analysis/crossings.h"
 #include "bench/bench.h"
@@ -75,12 +74,6 @@ static void *resize(void *context, void *block, size_t old_size, size_t new_size
     return moved;
 }
 
-static double processor_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static SingeResult stack_fill(SingeSim *sim, uint32_t sheets, uint32_t cells, SingeError *error) {
     SingeGridDef grid = singe_default_grid();
     SingeSheetDef def = singe_default_sheet();
@@ -135,7 +128,7 @@ static SingeResult stack_measure(const BenchOptions *options, uint32_t sheets, u
 
     const double time = options->time > 0 ? options->time : seconds;
     const int steps = (int)fmax(1, time * STEPS_FRAME * FPS);
-    const double begun = machine_clock(), processor = processor_seconds();
+    const double begun = machine_clock(), processor = machine_cpu_clock();
     double worst = 0, worst_p99 = 0;
     for (int step = 0; step < steps && !result; step++) {
         const double before = machine_clock();
@@ -144,7 +137,7 @@ static SingeResult stack_measure(const BenchOptions *options, uint32_t sheets, u
         if (step % STEPS_FRAME == 0 && !result) worst_p99 = fmax(worst_p99, singe_sim_stats(sim).strain_p99);
     }
 
-    const double wall = machine_clock() - begun, busy = processor_seconds() - processor;
+    const double wall = machine_clock() - begun, busy = machine_cpu_clock() - processor;
     const size_t max = held.max;
     SingeSurface surface = {0};
     uint64_t crossing = 0;

@@ -12,15 +12,15 @@
 
 static uint32_t capped(uint64_t count) { return count < UINT32_MAX / 2 ? (uint32_t)count : UINT32_MAX / 2; }
 
-static uint32_t list_max(uint64_t items) { return capped(items > COLLISION_LIST_MIN ? items : COLLISION_LIST_MIN); }
-
 CollisionSizes collision_sizes(const Shell *shell) {
     uint64_t cells = shell->cell_count;
+    const uint64_t pairs = COLLISION_PAIRS_MAX * cells, repulsions = COLLISION_REPULSIONS_MAX * cells;
+    const uint64_t least = COLLISION_LIST_MIN;
     return (CollisionSizes){.entry_max = capped(COLLISION_ENTRIES_MAX * cells + 64),
-                            .pairs = capped(COLLISION_PAIRS * cells + 64),
-                            .pair_max = list_max(COLLISION_PAIRS_MAX * cells + 512),
-                            .repulsions = capped(COLLISION_REPULSIONS * cells + 64),
-                            .repulsion_max = list_max(COLLISION_REPULSIONS_MAX * cells + 512),
+                            .pairs = capped(COLLISION_PAIRS * cells + COLLISION_LIST_BEGIN),
+                            .pair_max = capped(pairs > least ? pairs : least),
+                            .repulsions = capped(COLLISION_REPULSIONS * cells + COLLISION_LIST_BEGIN / 2),
+                            .repulsion_max = capped(repulsions > least ? repulsions : least),
                             .pair_budget = capped(COLLISION_PAIRS_FAR * cells + 64)};
 }
 
@@ -107,8 +107,8 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     plan->sizes = *sizes;
     plan->pair_capacity = sizes->pairs;
     plan->repulsion_capacity = sizes->repulsions;
-    plan->entry_capacity = COLLISION_ENTRIES * plan->cell_count;
-    plan->outside_capacity = COLLISION_BLOCK;
+    plan->entry_capacity = COLLISION_ENTRIES * plan->cell_count + COLLISION_LIST_BEGIN;
+    plan->outside_capacity = COLLISION_LIST_BEGIN;
     for (plan->bucket_count = 256; plan->bucket_count < 2 * (uint64_t)plan->cell_count;) plan->bucket_count *= 2;
 
     // lengths that follow from the sheets
@@ -296,24 +296,22 @@ bool collision_grow_repulsions(Memory *memory, CollisionPlan *plan, uint64_t wan
     return true;
 }
 
-static bool grow_entries(Memory *memory, void *entries, size_t size, uint32_t max, uint64_t wanted,
-                         uint32_t *capacity) {
-    if (wanted <= *capacity) return true;
-    const uint32_t after = with_margin(wanted, max);
-    const Room room = {entries, *capacity, after, size};
+bool collision_grow_entries(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
+    const uint32_t before = plan->entry_capacity, after = with_margin(wanted, plan->sizes.entry_max);
+    const Room room = {&plan->entries, before, after, sizeof *plan->entries};
+    if (wanted <= before) return true;
     if (!grow_rooms(memory, &room, 1)) return false;
-    *capacity = after;
+    plan->entry_capacity = after;
     return true;
 }
 
-bool collision_grow_entries(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
-    return grow_entries(memory, &plan->entries, sizeof *plan->entries, plan->sizes.entry_max, wanted,
-                        &plan->entry_capacity);
-}
-
 bool collision_grow_outside(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
-    return grow_entries(memory, &plan->outside_entries, sizeof *plan->outside_entries, plan->sizes.entry_max, wanted,
-                        &plan->outside_capacity);
+    const uint32_t before = plan->outside_capacity, after = with_margin(wanted, plan->sizes.entry_max);
+    const Room room = {&plan->outside_entries, before, after, sizeof *plan->outside_entries};
+    if (wanted <= before) return true;
+    if (!grow_rooms(memory, &room, 1)) return false;
+    plan->outside_capacity = after;
+    return true;
 }
 
 // ---- invariants, for assertions and tests

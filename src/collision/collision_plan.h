@@ -25,6 +25,7 @@ enum {
     COLLISION_PAIRS_MAX = 320,
     COLLISION_REPULSIONS = 1,
     COLLISION_REPULSIONS_MAX = 192,
+    COLLISION_LIST_BEGIN = 4096, ///< more, so that lists of a small sheet do not grow
     COLLISION_LIST_MIN = 1 << 19
 };
 _Static_assert(COLLISION_ENTRIES_MAX >= 8, "a box overlaps eight cubes of the grid at least");
