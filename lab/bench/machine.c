@@ -1,5 +1,6 @@
 #include "bench/machine.h"
 
+#include <stdlib.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -43,4 +44,19 @@ const char *machine_name(void) {
 #else
     return "unknown";
 #endif
+}
+
+void *machine_resize(void *context, void *block, size_t old_size, size_t new_size) {
+    MachineHeld *held = context;
+    void *moved = NULL;
+    if (new_size) {
+        moved = realloc(block, new_size);
+        if (!moved) return NULL;
+    } else {
+        free(block);
+    }
+
+    held->now += new_size - old_size;
+    if (held->now > held->max) held->max = held->now;
+    return moved;
 }

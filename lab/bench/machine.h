@@ -2,6 +2,8 @@
 #ifndef BENCH_MACHINE_H
 #define BENCH_MACHINE_H
 
+#include <stddef.h>
+
 #include "singe/singe.h"
 
 /// The processor's name from the system, or its architecture.
@@ -15,5 +17,13 @@ double machine_clock(void);
 
 /// s, processor time of this process, all threads together.
 double machine_cpu_clock(void);
+
+/// Bytes that machine_resize has allocated and not freed, and the most there were.
+typedef struct MachineHeld {
+    size_t now, max;
+} MachineHeld;
+
+/// A SingeAllocator's resize, which counts; `context` is a MachineHeld.
+void *machine_resize(void *context, void *block, size_t old_size, size_t new_size);
 
 #endif

@@ -1,8 +1,7 @@
 // Bytes per spring by size: of a simulation, added by contact, the peak while building it, and of its drawn mesh.
-#include <stdlib.h>
-
 #include "bench/bench.h"
 #include "bench/burning.h"
+#include "bench/machine.h"
 #include "bench/timing.h"
 
 enum { SPRINGS, SIMULATION, CONTACT, BUILDING, SURFACE, TOGETHER, MEGABYTES, COLUMNS };
@@ -17,29 +16,10 @@ static const BenchColumn columns[COLUMNS] = {
     [MEGABYTES] = {"all_mb", "%.2f", 8, NULL},
 };
 
-typedef struct Held {
-    size_t now, max;
-} Held;
-
-static void *resize(void *context, void *block, size_t old_size, size_t new_size) {
-    Held *held = context;
-    void *moved = NULL;
-    if (new_size) {
-        moved = realloc(block, new_size);
-        if (!moved) return NULL;
-    } else {
-        free(block);
-    }
-
-    held->now += new_size - old_size;
-    if (held->now > held->max) held->max = held->now;
-    return moved;
-}
-
 /// Memory of a simulation with contact, after a step.
 static SingeResult measure_contact(const BenchOptions *options, double springs, size_t *held_bytes, SingeError *error) {
-    Held held = {0};
-    const SingeAllocator counting = {resize, &held};
+    MachineHeld held = {0};
+    const SingeAllocator counting = {machine_resize, &held};
     BenchOptions with = *options;
     SingeSim *sim;
     with.contact = true;
@@ -56,8 +36,8 @@ SingeResult bench_memory(const BenchOptions *options, BenchTable *table, SingeEr
     SingeResult result = SINGE_OK;
     *table = table_begin("memory", columns, COLUMNS, table->text);
     for (int i = 0; i < springs.count && !result; i++) {
-        Held held = {0};
-        const SingeAllocator counting = {resize, &held};
+        MachineHeld held = {0};
+        const SingeAllocator counting = {machine_resize, &held};
         SingeSim *sim;
         SingeSurface surface = {.allocator = counting};
         size_t with_contact = 0;

@@ -55,25 +55,6 @@ static const BenchColumn columns[COLUMNS] = {
     [MEGABYTES] = {"max_mb", "%.1f", 8, NULL},
 };
 
-typedef struct Held {
-    size_t now, max;
-} Held;
-
-static void *resize(void *context, void *block, size_t old_size, size_t new_size) {
-    Held *held = context;
-    void *moved = NULL;
-    if (new_size) {
-        moved = realloc(block, new_size);
-        if (!moved) return NULL;
-    } else {
-        free(block);
-    }
-
-    held->now += new_size - old_size;
-    if (held->now > held->max) held->max = held->now;
-    return moved;
-}
-
 static SingeResult stack_fill(SingeSim *sim, uint32_t sheets, uint32_t cells, SingeError *error) {
     SingeGridDef grid = singe_default_grid();
     SingeSheetDef def = singe_default_sheet();
@@ -115,10 +96,10 @@ static SingeResult stack_fill(SingeSim *sim, uint32_t sheets, uint32_t cells, Si
 
 static SingeResult stack_measure(const BenchOptions *options, uint32_t sheets, uint32_t cells, BenchTable *table,
                                  SingeError *error) {
-    Held held = {0};
+    MachineHeld held = {0};
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
-    def.allocator = (SingeAllocator){resize, &held};
+    def.allocator = (SingeAllocator){machine_resize, &held};
     def.thread_count = options->threads;
     def.time_step = 1.0f / (STEPS_FRAME * FPS);
     def.contact.enabled = true;

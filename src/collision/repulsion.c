@@ -40,8 +40,8 @@ static void points_add(Points *points, const uint32_t corner[4], const float wei
     }
 }
 
-static void repulsion_push(CollisionPlan *plan, const Shell *shell, const Repulsion *repulsion,
-                           const float (*predicted)[4], float h, DynamicsState *dynamics) {
+static inline void repulsion_push(CollisionPlan *plan, const Shell *shell, const Repulsion *repulsion,
+                                  const float (*predicted)[4], float h, DynamicsState *dynamics) {
     float(*x)[4] = dynamics->position, wa[4] = {0}, wb[4] = {0};
     const Float4 normal = {repulsion->normal[0], repulsion->normal[1], repulsion->normal[2], 0};
     const CollisionPair *pair = &plan->pairs[repulsion->pair];
