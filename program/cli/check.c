@@ -45,13 +45,13 @@ typedef struct CheckTimes {
 /// on eight runs of the examples. The gas takes at most some bytes a cell, and a picture some a pixel.
 static const double mesh_growth = 4, gas_bytes = 3.5, pixel_bytes = 1.2;
 
-/// Max rays of the timed picture, roughly: a larger one is drawn with fewer samples, and its time is scaled.
-static const double check_rays = 16e6;
+/// Max rays and pixels of the timed picture, roughly: a larger one is drawn with fewer of them, and its time is scaled.
+/// The whole of 16,384 x 16,384 pixels takes 21 GB, which checking a scene must not need.
+static const double check_rays = 16e6, check_pixels = 4e6;
 
 static double pixels_of(const ScenePreview *preview) { return (double)preview->size[0] * (double)preview->size[1]; }
 
-/// Times what run computes for its first frame, except the files, and then some steps. A picture that takes long is
-/// drawn with fewer samples.
+/// Times what run computes for its first frame, except the files, and then some steps.
 static SingeResult time_frame(const Job *job, SingeSim *sim, CheckTimes *times, SingeError *error) {
     Frame frame = {0};
     double begun = console_clock();
@@ -64,14 +64,17 @@ static SingeResult time_frame(const Job *job, SingeSim *sim, CheckTimes *times, 
     if (!result && pictures_available()) {
         Pictures *pictures = NULL;
         const uint8_t *rgb;
-        int *samples = &job->scene->preview.samples;
-        const int wanted = *samples;
-        while (*samples > 1 && pixels_of(&job->scene->preview) * *samples > check_rays) *samples /= 2;
+        ScenePreview *preview = &job->scene->preview;
+        const ScenePreview wanted = *preview;
+        while (pixels_of(preview) > check_pixels)
+            for (int k = 0; k < 2; k++) preview->size[k] = (preview->size[k] + 1) / 2;
+        while (preview->samples > 1 && pixels_of(preview) * preview->samples > check_rays) preview->samples /= 2;
+        const double rays = pixels_of(preview) * preview->samples;
         result = pictures_open(job, &pictures, error);
         begun = console_clock();
         if (!result) result = frame_draw(&frame, pictures, &rgb, error);
-        times->picture = (console_clock() - begun) * wanted / *samples;
-        *samples = wanted;
+        times->picture = (console_clock() - begun) * pixels_of(&wanted) * wanted.samples / rays;
+        *preview = wanted;
         pictures_close(pictures);
     }
 
@@ -238,7 +241,7 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
     job_note_long(&job, console, "burning a strip of each material");
     SingeResult result = report_materials(job.scene, thickening, &error);
     if (!result) job_note_long(&job, console, "timing steps");
-    if (!result && pictures_available() && pixels_of(&job.scene->preview) > check_rays)
+    if (!result && pictures_available() && pixels_of(&job.scene->preview) > check_pixels)
         console_note(console, "drawing");
     if (!result) result = time_frame(&job, sim, &times, &error);
     if (result) {
