@@ -159,8 +159,21 @@ class Begin(Case):
                                f"preview: {{size: [32, 32], samples: 1}}\ngas: {{cell_size: 3 mm, detail: {detail}}}\n")
                 for command in (["check"], ["run", "--no-preview", "-o", self.path(f"g{detail}")]):
                     _, err = self.singe(*command, scene, expect=code)
-                    self.assertEqual(f"g{detail}.yaml: error: the gas with detail 4 has" in err, code == 2)
+                    self.assertEqual("g4.yaml:5:32: error: the gas with detail 4 has" in err, code == 2)
                 self.assertEqual(os.path.exists(self.path(f"g{detail}")), code == 0)
+
+    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
+    def test_checking_a_scene_with_a_huge_picture_takes_little_memory(self):
+        """The whole picture would take 21 GB; a smaller one is timed."""
+        scene = self.path("huge.yaml")
+        with open(scene, "w") as file:
+            file.write("frames: 1\nsteps: 1\nsheets: [{grid: {size: [0.4, 0.4], cells: [6, 6]}}]\n"
+                       "preview: {size: [16384, 16384], samples: 1}\n")
+        run = self.start("check", scene)
+        _, status, usage = os.wait4(run.pid, 0)
+        run.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(run.returncode, 0)
+        self.assertLess(usage.ru_maxrss, 1e6)  # KB
 
     def code_of(self, *args):
         run = self.start(*args)
