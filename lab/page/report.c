@@ -117,7 +117,8 @@ Report *report_begin(const ReportPage *page, const char *name, const char *headi
     }
 
     report->page = page;
-    report->name = text_format("%s", name), report->heading = text_format("%s", heading);
+    report->name = text_format("%s", name);
+    report->heading = text_format("%s", heading);
     fprintf(echo_file(report), "\n%s: %s\n", name, heading);
     fprintf(report->body.file, "<p class=\"shows\"><b>The source:</b> %s</p>\n", shows);
     return report;
@@ -153,19 +154,16 @@ static void echo(FILE *file, const char *text) {
     fflush(file);
 }
 
-/// Whether a cell of a table has no number, or a range of none: "nan", "+nan", "nan to nan".
-static bool is_nothing(const char *text, int length) {
-    text += strspn(text, "+-") < (size_t)length ? strspn(text, "+-") : 0;
-    return length >= 3 && strncmp(text, "nan", 3) == 0;
-}
-
 static void row(Report *report, const char *text, const char *tag) {
     FILE *file = body(report, BLOCK_TABLE);
     echo(echo_file(report), text);
     fputs("<tr>", file);
     for (;; text++) {
         int length = (int)strcspn(text, "|");
-        if (is_nothing(text, length)) fprintf(file, "<%s>-</%s>", tag, tag);
+
+        // a cell may have no number, or a range of none: "nan", "+nan", "nan to nan"
+        const char *digits = text + (strspn(text, "+-") < (size_t)length ? strspn(text, "+-") : 0);
+        if (length >= 3 && strncmp(digits, "nan", 3) == 0) fprintf(file, "<%s>-</%s>", tag, tag);
         else fprintf(file, "<%s>%.*s</%s>", tag, length, text, tag);
         text += length;
         if (!*text) break;

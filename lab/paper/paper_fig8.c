@@ -50,17 +50,6 @@ typedef struct Fig8Count {
     double worst; ///< sum after 7 steps over that before, max
 } Fig8Count;
 
-static void fig8_add(const Fig8 *counted, int bare, Fig8Count *own) {
-    const double *sum = counted->error[SINGE_COLOUR_COUNT];
-    bool rises = false;
-    for (int k = 0; k < COUNTED; k++) rises = rises || sum[k + 1] > sum[k];
-    own->rises[bare] += rises;
-    if (bare) return;
-    own->states++;
-    own->lower += sum[COUNTED] < sum[0];
-    if (sum[0] > 0 && sum[COUNTED] / sum[0] > own->worst) own->worst = sum[COUNTED] / sum[0];
-}
-
 static SingeResult fig8_write(Lab *lab, const char *state, const Fig8 *fig, SingeError *error) {
     static const char *const names[] = {"red", "green", "blue", "yellow", "sum"};
     static const char *const inks[] = {"#d62728", "#2ca02c", "#1f77b4", "#d0a000", "#777777"};
@@ -109,7 +98,16 @@ SingeResult paper_fig8(Lab *lab, SingeError *error) {
             if (step == run->shown) result = fig8_project(sim, run->state, floor, STEPS, &shown, error);
             for (int bare = 0; bare < 2 && !result && step % EVERY == 0; bare++) {
                 result = fig8_project(sim, run->state, bare ? 0 : floor, COUNTED, &counted, error);
-                if (!result) fig8_add(&counted, bare, own);
+                if (result) break;
+
+                const double *sum = counted.error[SINGE_COLOUR_COUNT];
+                bool rises = false;
+                for (int k = 0; k < COUNTED; k++) rises = rises || sum[k + 1] > sum[k];
+                own->rises[bare] += rises;
+                if (bare) continue;
+                own->states++;
+                own->lower += sum[COUNTED] < sum[0];
+                if (sum[0] > 0 && sum[COUNTED] / sum[0] > own->worst) own->worst = sum[COUNTED] / sum[0];
             }
             if (!result && (result = singe_sim_step(sim))) *error = *singe_sim_error(sim);
         }

@@ -59,13 +59,6 @@ static double drawn_area(const SingeSurface *surface) {
     return area;
 }
 
-/// What the bars of Fig 6 must not pass: cells drawn whole where any of their triangles is.
-static double march_whole(const March *march, double side) {
-    double area = 0;
-    for (int i = 0; i < march->count; i++) area += march->centroids[i][2] > 0 ? side * side / 4 : 0;
-    return area;
-}
-
 static int march_fewest(const March *march) {
     int fewest = march->cases[0];
     for (int k = 1; k <= 3; k++)
@@ -130,10 +123,11 @@ SingeResult paper_fig6(Lab *lab, SingeError *error) {
         for (int k = 3; k >= 0; k--) report_row(lab->report, "%d|%s|%d", k, shapes[k], march.cases[k]);
         report_bar(lab->report, &(ReportBar){"cases", "triangles of the rarest case", march_fewest(&march), 1, INFINITY,
                                              march_fewest(&fresh), "the sheet before it burns"});
+        double whole = 0; // what the bar must not pass: cells drawn whole where any of their triangles is
+        for (int i = 0; i < march.count; i++) whole += march.centroids[i][2] > 0 ? cell * cell / 4 : 0;
         report_bar(lab->report,
                    &(ReportBar){"area", "drawn area over that of eq 7", drawn_area(&surface) / march.expected, 0.999,
-                                1.001, march_whole(&march, cell) / march.expected,
-                                "whole triangles wherever a corner is left"});
+                                1.001, whole / march.expected, "whole triangles wherever a corner is left"});
     }
 
     singe_surface_free(&surface);

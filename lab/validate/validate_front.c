@@ -129,7 +129,8 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
         const double um = bass_um[i];
         double flame = (pmma_flame - pmma_vapour) / (pmma_vapour - ambient);
         const double ris = 1e3 * sqrt(2) * gas_k * flame / (pmma_rho * pmma_c * um / 2 * 1e-6);
-        ours[i] = 1e3 * strip.speed, formula[i] = ris;
+        ours[i] = 1e3 * strip.speed;
+        formula[i] = ris;
         report_row(lab->report, "%.0f|%.0f|%.3g|%.3g|%.3g|%.2f", bass_um[i], 1e3 * (double)material.grammage.value,
                    bass_mm_s[i], formula[i], ours[i], ours[i] / bass_mm_s[i]);
         ratio += log(ours[i] / bass_mm_s[i]) / SHEETS;

@@ -15,18 +15,6 @@ static double slab_mode(const void *context, double x, double y) {
     return cos(acos(-1) * x / slab);
 }
 
-/// K, the mode's amplitude in the layer of corners.
-static double mode_amplitude(const SingeView *view) {
-    double sum = 0, norm = 0;
-    for (uint32_t v = 0; v < view->vertex_count; v++) {
-        double c = cos(acos(-1) * (double)view->rest_position[v][0] / slab), area = (double)view->area[v];
-        sum += area * c * ((double)view->temperature[v] - WARM_MEAN);
-        norm += area * c * c;
-    }
-
-    return sum / norm;
-}
-
 /// The relative error of the amplitude after 4 s.
 static SingeResult slab_error(Lab *lab, int cells, int steps, double *off, SingeError *error) {
     const double seconds = 4, k = acos(-1) / slab;
@@ -38,7 +26,15 @@ static SingeResult slab_error(Lab *lab, int cells, int steps, double *off, Singe
     if (result) return result;
     result = lab_steps(sim, steps, error);
     SingeView view = singe_sim_view(sim);
-    *off = fabs(mode_amplitude(&view) / (WARM_AMPLITUDE * exp(-WARM_DIFFUSIVITY * k * k * seconds)) - 1);
+
+    // K, the mode's amplitude in the layer of corners
+    double sum = 0, norm = 0;
+    for (uint32_t v = 0; v < view.vertex_count; v++) {
+        double c = cos(acos(-1) * (double)view.rest_position[v][0] / slab), area = (double)view.area[v];
+        sum += area * c * ((double)view.temperature[v] - WARM_MEAN);
+        norm += area * c * c;
+    }
+    *off = fabs(sum / norm / (WARM_AMPLITUDE * exp(-WARM_DIFFUSIVITY * k * k * seconds)) - 1);
     singe_sim_destroy(sim);
     return result;
 }

@@ -159,7 +159,8 @@ static void line_add(float *restrict to, const float *restrict from, float share
 
 /// The part of a line that is not zero. A strip that lies across its raster covers little of each line.
 static void line_part(const float *line, int width, int part[2]) {
-    part[0] = 0, part[1] = width;
+    part[0] = 0;
+    part[1] = width;
     while (part[0] < width && line[part[0]] == 0) part[0]++;
     while (part[1] > part[0] && line[part[1] - 1] == 0) part[1]--;
 }

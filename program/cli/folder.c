@@ -206,10 +206,6 @@ typedef struct Thinning {
     int every, last;
 } Thinning;
 
-static bool frame_goes(const Thinning *thinning, int frame) {
-    return !thinning->every || (frame > 1 && frame < thinning->last && frame % thinning->every != 0);
-}
-
 static SingeResult clean_frames(const Folder *folder, int which, const Thinning *frames, int *removed,
                                 SingeError *error) {
     char *path = text_format("%s/%s", folder->path, inner(which).name);
@@ -219,7 +215,9 @@ static SingeResult clean_frames(const Folder *folder, int which, const Thinning 
     for (struct dirent *entry; dir && !result && (entry = next_entry(dir, path, &result, error));) {
         const char *rest;
         const int frame = frame_of(folder, entry->d_name, inner(which).ending, &rest);
-        if (!frame || !(frames ? *rest == 0 && frame_goes(frames, frame) : is_temporary(rest))) continue;
+        const bool thinned =
+            frames && (!frames->every || (frame > 1 && frame < frames->last && frame % frames->every != 0));
+        if (!frame || !(frames ? *rest == 0 && thinned : is_temporary(rest))) continue;
         result = remove_at(dir, path, entry->d_name, removed, error);
     }
 

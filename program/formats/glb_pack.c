@@ -25,14 +25,6 @@ bool glb_pack_available(void) { return true; }
 
 enum { GLB_BYTE = 5120, GLB_USHORT = 5123, GLB_FLOAT32 = 5126, GLB_UINT32 = 5125, GRID_LARGEST = (1 << 23) - 1 };
 
-/// The bytes of an element. Those of vertices must be multiples of four.
-static uint32_t stride_of(GlbRounding rounding, int width) {
-    if (rounding.kind == GLB_TRIANGLES) return 4;
-    if (rounding.kind == GLB_DIRECTION) return 4;
-    if (rounding.kind == GLB_SHARE) return width > 2 ? 8 : 4;
-    return 4 * (uint32_t)width;
-}
-
 /// Floats as the extension's exponential filter has them, all with one exponent: 24 bits of a multiple, 8 of the
 /// exponent. Rounds `values` to what a reader will get.
 static void round_to_grid(float *values, size_t count, int finest, uint8_t *stream) {
@@ -63,20 +55,19 @@ static void round_shares(const float *values, uint32_t count, int width, int spa
         }
 }
 
-static bool are_shares(const float *values, size_t count) {
-    for (size_t i = 0; i < count; i++)
-        if (!(values[i] >= 0 && values[i] <= 1)) return false;
-    return true;
-}
-
 uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, GlbRounding rounding, bool box) {
     static const char *const types[] = {[1] = "SCALAR", [2] = "VEC2", [3] = "VEC3"};
     float *values = (float *)(void *)(f->data.bytes + begin);
     const size_t total = (size_t)count * (size_t)width;
     const bool corners = rounding.kind == GLB_TRIANGLES;
     if (f->data.failed) return f->view_count;
-    if (rounding.kind == GLB_SHARE && !are_shares(values, total)) rounding = (GlbRounding){GLB_GRID, -15, 0};
-    const uint32_t stride = stride_of(rounding, width);
+    for (size_t i = 0; i < total && rounding.kind == GLB_SHARE; i++) // what is no share keeps its range
+        if (!(values[i] >= 0 && values[i] <= 1)) rounding = (GlbRounding){GLB_GRID, -15, 0};
+
+    // the bytes of an element; those of vertices must be multiples of four
+    const uint32_t stride = rounding.kind == GLB_GRID                 ? 4 * (uint32_t)width
+                            : rounding.kind == GLB_SHARE && width > 2 ? 8
+                                                                      : 4;
 
     // the stream before packing
     f->scratch.size = 0;

@@ -22,8 +22,6 @@ enum {
     ZIP_PADDING = 0x1986
 };
 
-static void zip_free(Zip *zip) { sink_free(&zip->sink), sink_free(&zip->directory); }
-
 static void put_u16(Sink *sink, uint32_t value) {
     const uint8_t bytes[2] = {(uint8_t)value, (uint8_t)(value >> 8)};
     sink_bytes(sink, bytes, 2);
@@ -137,7 +135,8 @@ SingeResult usdz_write(const char *path, const OutputScene *scene, const OutputC
         result = refuse(error, SINGE_ERROR_LIMIT, "zip", -1, "%s: more than 4 GiB, or 65535 files", short_name(path));
 
     if (result) {
-        zip_free(&zip);
+        sink_free(&zip.sink);
+        sink_free(&zip.directory);
         return result;
     }
 

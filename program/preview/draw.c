@@ -169,16 +169,6 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
     return paper_shade(preview, &state, point) || last;
 }
 
-/// Pixels over which the lens and the shutter spread the point that a lane sees.
-static float find_spread(const Preview *preview, const Block *block, int lane) {
-    const Point *point = &block->point[lane];
-    if (!point->hit) return 0;
-    float depth = point->distance * float3_dot(block->direction[lane], preview->camera.forward);
-    float spread = camera_blur(&preview->camera, depth);
-    if (!(preview->def.shutter > 0)) return spread;
-    return maxf(spread, point->moved / (preview->camera.pixel * depth));
-}
-
 static void find_points(const Preview *preview, Block *block, const int *active) {
     int left = 0;
     for (int i = 0; i < LANES; i++) {
@@ -192,14 +182,21 @@ static void find_points(const Preview *preview, Block *block, const int *active)
         left = 0;
         for (int i = 0; i < LANES; i++) {
             if (!block->valid[i]) continue;
-            if (resolve(preview, block, i, pass == HOLE_LIMIT - 1)) {
-                block->valid[i] = 0;
-                block->spread = maxf(block->spread, find_spread(preview, block, i));
-            } else {
+            if (!resolve(preview, block, i, pass == HOLE_LIMIT - 1)) {
                 block->rays.ray.tnear[i] = block->rays.ray.tfar[i] + preview->scene.epsilon;
                 block->rays.ray.tfar[i] = INFINITY;
                 left++;
+                continue;
             }
+            block->valid[i] = 0;
+
+            // the pixels over which the lens and the shutter spread the point
+            const Point *point = &block->point[i];
+            if (!point->hit) continue;
+            const float depth = point->distance * float3_dot(block->direction[i], preview->camera.forward);
+            block->spread = maxf(block->spread, camera_blur(&preview->camera, depth));
+            if (preview->def.shutter > 0)
+                block->spread = maxf(block->spread, point->moved / (preview->camera.pixel * depth));
         }
     }
 }

@@ -19,11 +19,6 @@ void seen_write(const Preview *preview, size_t pixel, const Block *block, int la
     preview->lit[pixel] = lit;
 }
 
-static bool one_face(const Lit *a, const Lit *b) {
-    return a->sheet == b->sheet && fabsf(a->distance - b->distance) < 0.02f * a->distance &&
-           float3_dot(a->normal, b->normal) > 0.8f;
-}
-
 /// Pixels that are smoothed to each side.
 static void find_reach(const Preview *preview, int reach[LIT_KINDS]) {
     reach[LIT_SUN] = 2;
@@ -39,7 +34,10 @@ static void smooth_line(const Lit *lit, const float (*values)[LIT_KINDS], size_t
     int last = after < reach[LIT_SKY] ? after : reach[LIT_SKY];
     for (int at = first; at <= last; at++) {
         const Lit *other = lit + at * stride;
-        if (!one_face(lit, other)) continue;
+        const bool one_face = lit->sheet == other->sheet &&
+                              fabsf(lit->distance - other->distance) < 0.02f * lit->distance &&
+                              float3_dot(lit->normal, other->normal) > 0.8f;
+        if (!one_face) continue;
         const float *value = (const float *)(const void *)((const char *)values + at * stride * (ptrdiff_t)values_size);
         for (int k = 0; k < LIT_KINDS; k++) {
             float weight = (float)(reach[k] + 1 - (at < 0 ? -at : at));

@@ -215,15 +215,20 @@ bool scene_looks_alike(SceneWhole scene, SceneWhole before) {
 
 // ---- taking over
 
-/// Whether a list's entry is the same in both scenes, with the contents of its files. An entry that only one has is not.
-static bool sources_equal(SceneWhole a, SceneWhole b, uint32_t i, bool *no_memory) {
-    return i < a.scene->source_count && i < b.scene->source_count &&
-           pictures_equal(&a.assets->source_textures[i], &b.assets->source_textures[i]) &&
-           texts_equal(dump_text(&schema_source, &a.scene->sources[i]), dump_text(&schema_source, &b.scene->sources[i]),
-                       no_memory);
-}
+/// Whether an entry of a list (0: sources, 1: colliders, 2: pins) is the same in both scenes, with the contents of its
+/// files. An entry that only one has is not.
+static bool entries_equal(int list, SceneWhole a, SceneWhole b, uint32_t i, bool *no_memory) {
+    if (list == 0)
+        return i < a.scene->source_count && i < b.scene->source_count &&
+               pictures_equal(&a.assets->source_textures[i], &b.assets->source_textures[i]) &&
+               texts_equal(dump_text(&schema_source, &a.scene->sources[i]),
+                           dump_text(&schema_source, &b.scene->sources[i]), no_memory);
+    if (list == 2)
+        return i < a.scene->pin_count && i < b.scene->pin_count &&
+               motions_equal(&a.assets->pin_motions[i], &b.assets->pin_motions[i]) &&
+               texts_equal(dump_text(&schema_pin, &a.scene->pins[i]), dump_text(&schema_pin, &b.scene->pins[i]),
+                           no_memory);
 
-static bool colliders_equal(SceneWhole a, SceneWhole b, uint32_t i, bool *no_memory) {
     if (i >= a.scene->collider_count || i >= b.scene->collider_count) return false;
     const SceneSolid *one = &a.assets->solids[i], *other = &b.assets->solids[i];
     return solids_equal(&one->surface, &other->surface) &&
@@ -232,12 +237,6 @@ static bool colliders_equal(SceneWhole a, SceneWhole b, uint32_t i, bool *no_mem
            arrays_equal(one->heights, other->heights, (size_t)one->columns * one->rows, sizeof(float)) &&
            texts_equal(dump_text(&schema_collider, &a.scene->colliders[i]),
                        dump_text(&schema_collider, &b.scene->colliders[i]), no_memory);
-}
-
-static bool pins_equal(SceneWhole a, SceneWhole b, uint32_t i, bool *no_memory) {
-    return i < a.scene->pin_count && i < b.scene->pin_count &&
-           motions_equal(&a.assets->pin_motions[i], &b.assets->pin_motions[i]) &&
-           texts_equal(dump_text(&schema_pin, &a.scene->pins[i]), dump_text(&schema_pin, &b.scene->pins[i]), no_memory);
 }
 
 static bool materials_equal(SceneWhole a, SceneWhole b, uint32_t i, bool *no_memory) {
@@ -271,9 +270,7 @@ static SingeResult branch_objects(const SceneBuilder *builder, SceneWhole now, S
         if (!no_memory && list == 1) singe_sim_colliders(sim, colliders, was);
         if (!no_memory && list == 2) singe_sim_pins(sim, pins, was);
         for (uint32_t i = 0; i < most && !no_memory && !result; i++) {
-            equal[i] = list == 0   ? sources_equal(now, before, i, &no_memory)
-                       : list == 1 ? colliders_equal(now, before, i, &no_memory)
-                                   : pins_equal(now, before, i, &no_memory);
+            equal[i] = entries_equal(list, now, before, i, &no_memory);
             if (equal[i] || i >= was) continue;
             result = list == 0   ? singe_sim_remove_source(sim, sources[i])
                      : list == 1 ? singe_sim_remove_collider(sim, colliders[i])

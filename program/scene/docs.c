@@ -83,11 +83,6 @@ static const char *bare_title(const Schema *schema) {
     return strncmp(title, "a ", 2) == 0 ? title + 2 : strncmp(title, "the ", 4) == 0 ? title + 4 : title;
 }
 
-static void put_heading(FILE *file, const Schema *schema) {
-    const char *title = bare_title(schema);
-    fprintf(file, "\n## %c%s\n\n%s\n\n", title[0] + 'A' - 'a', title + 1, schema->doc);
-}
-
 static void put_link(FILE *file, const Schema *schema) {
     const char *title = bare_title(schema);
     fprintf(file, "[%s](#", title);
@@ -159,7 +154,8 @@ static void put_table(FILE *file, const Schema *schema, const void *object, unsi
 
 // A section per map. If it has kinds, the shared keys come first, then those of each kind.
 static void put_section(FILE *file, const Schema *schema, const void *object) {
-    put_heading(file, schema);
+    const char *title = bare_title(schema);
+    fprintf(file, "\n## %c%s\n\n%s\n\n", title[0] + 'A' - 'a', title + 1, schema->doc);
     put_table(file, schema, object, ~0u, true);
     if (!schema->kind_offset) return;
     const char *const *names = schema->rows[0].names;

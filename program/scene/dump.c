@@ -76,12 +76,6 @@ static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param,
     fputc('}', file);
 }
 
-static void put_order(FILE *file, const SingeColour *order) {
-    for (int i = 0; i < SINGE_COLOUR_COUNT; i++)
-        fprintf(file, "%s\"%s\"", i ? ", " : "[", enum_words.SingeColour[order[i]]);
-    fputc(']', file);
-}
-
 static void put_formats(FILE *file, OutputSet set) {
     bool first = true;
     fputc('[', file);
@@ -124,7 +118,11 @@ void dump_value(const SchemaRow *row, const void *object, FILE *file) {
         put_text(file, row->names[value]);
         break;
     }
-    case ROW_ORDER: put_order(file, field); break;
+    case ROW_ORDER:
+        for (int i = 0; i < SINGE_COLOUR_COUNT; i++)
+            fprintf(file, "%s\"%s\"", i ? ", " : "[", enum_words.SingeColour[((const SingeColour *)field)[i]]);
+        fputc(']', file);
+        break;
     case ROW_FORMATS: put_formats(file, *(const OutputSet *)field); break;
     case ROW_PARAM: put_param(file, row, field, dump_at(object, row->extra)); break;
     case ROW_POINTS: put_points(file, items_at(object, row), count_at(object, row)); break;

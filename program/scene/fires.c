@@ -63,7 +63,8 @@ static Place place_of(const Scene *scene, const SceneAssets *assets, uint32_t in
 
     // the box and the largest cell
     for (int c = 0; c < 3; c++) {
-        place.low[c] = INFINITY, place.high[c] = -INFINITY;
+        place.low[c] = INFINITY;
+        place.high[c] = -INFINITY;
         for (uint32_t v = 0; v < mesh->vertex_count; v++) {
             place.low[c] = fmin(place.low[c], (double)mesh->positions[3 * (size_t)v + (size_t)c]);
             place.high[c] = fmax(place.high[c], (double)mesh->positions[3 * (size_t)v + (size_t)c]);
@@ -185,7 +186,10 @@ static bool source_lights(const Scene *scene, const SceneAssets *assets, const S
 
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         const double gap = everywhere ? 0 : path_distance(source, &places[i]) - reach;
-        if (gap < nearest) nearest = gap, near = i;
+        if (gap < nearest) {
+            nearest = gap;
+            near = i;
+        }
         if (!(gap <= places[i].slack)) continue;
 
         // a source that is smaller than the cells may lie between the particles of a sheet that has not moved yet

@@ -24,13 +24,6 @@ static bool between(const SchemaRow *row, double value, double low, double high)
            (row->flags & ROW_OPEN_MAX ? value < high : value <= high);
 }
 
-static bool in_range(const SchemaRow *row, double value) { return between(row, value, row->min, row->max); }
-
-/// The bounds are floats like the value, so that the bound itself, as printed, is inside.
-static bool float_in_range(const SchemaRow *row, float value) {
-    return between(row, (double)value, (double)(float)row->min, (double)(float)row->max);
-}
-
 static void out_of_range(Reader *reader, const SchemaRow *row, const YamlNode *node) {
     char range[80], seen[NODE_WORDS];
     const char *unit = quantity_unit(row->dimension);
@@ -68,7 +61,8 @@ bool value_float(Reader *reader, const SchemaRow *row, const YamlNode *node, flo
         return false;
     }
     float narrow = (float)value;
-    if (!isfinite(narrow) || !float_in_range(row, narrow)) {
+    // the bounds are floats like the value, so that the bound itself, as printed, is inside
+    if (!isfinite(narrow) || !between(row, (double)narrow, (double)(float)row->min, (double)(float)row->max)) {
         out_of_range(reader, row, node);
         return false;
     }
@@ -94,7 +88,7 @@ static bool read_whole(Reader *reader, const SchemaRow *row, const YamlNode *nod
         return false;
     }
     int64_t number = large ? 0 : minus ? -(int64_t)value : (int64_t)value;
-    if (large || (row->max > row->min && !in_range(row, (double)number))) {
+    if (large || (row->max > row->min && !between(row, (double)number, row->min, row->max))) {
         out_of_range(reader, row, node);
         return false;
     }

@@ -224,8 +224,12 @@ void tape_sheet_def(Tape *tape, const SingeSheetDef *given, SingeSheetDef *def) 
     TAPE(tape, def->cell_count);
     const uint64_t vertices = def->vertex_count, cells = def->cell_count;
     const bool many = vertices + cells > array_max || cells > array_max / 4;
-    if (many) def->positions = NULL, def->cells = NULL, def->uv = def->corner_uv = NULL;
-    if (many) def->source_vertex = def->corner_source_vertex = NULL;
+    if (many) {
+        def->positions = NULL;
+        def->cells = NULL;
+        def->uv = def->corner_uv = NULL;
+        def->source_vertex = def->corner_source_vertex = NULL;
+    }
     tape_array(tape, &def->positions, 3 * vertices, sizeof(float));
     tape_array(tape, &def->cells, 4 * cells, sizeof(uint32_t));
     tape_array(tape, &def->uv, 2 * vertices, sizeof(float));
