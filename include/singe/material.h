@@ -170,6 +170,10 @@ typedef struct SingeMaterialDef {
     /// 0 to 3; mass of water at the start over the mass before it burns; it boils off before the sheet gets hotter than
     /// 100 C. Paper in a room holds 5 to 8 %. 0: dry
     SingeParam moisture;
+    /// N m, >= 0; bending stiffness D, moment per width over curvature: paper has 1e-4 to 1e-3 N m, cloth 1e-6 to 1e-5.
+    /// Above 0 it sets compliance.green to thickness^2/D, less compliance.blue; 0: compliance.green as it is, by
+    /// default 1e-5 N m. Stiff sheets need substeps
+    SingeParam bending;
 } SingeMaterialDef;
 
 SINGE_API void singe_init_material(SingeMaterialDef *def, size_t struct_size);

@@ -311,6 +311,11 @@ typedef struct SingeStats {
     uint32_t arrival_missed; ///< particles that are more than a step late, or have ignited where the map says never
     float pace;              ///< in use
     double water;            ///< kg, in the sheets
+    /// J, of what is left: of motion; of springs that give; of heights above the positions at rest.
+    double energy_kinetic, energy_elastic, energy_gravity;
+    /// J, what these three have lost since the start: to damping, air, friction and the solver, with the mass that has
+    /// gone, less what pins, colliders, wind and the fire have put in.
+    double energy_lost;
 } SingeStats;
 
 /// Fills `struct_size` bytes, the caller's sizeof.

@@ -285,6 +285,9 @@ typedef struct SingeSolverDef {
     /// sheets tear where the line force exceeds the material's strength; needs the method strand. Each sheet then has a
     /// reserve of vertices, which views show after its own vertices
     bool tearing;
+    /// strand: yes: bending is the same in all directions of the mesh, by springs between centres across vertices, for
+    /// cloth that drapes and sheets that curl; no: softest along the diagonals, as in the paper
+    bool isotropic;
 } SingeSolverDef;
 
 /// Fills a Def with the defaults of SINGE_SOLVER_STRAND, or of another method.

@@ -54,6 +54,8 @@ BenchFn bench_look;
 BenchFn bench_fold;
 /// How much the folds of a burning sheet follow the mesh: the same burn on a grid and on the grid turned by 45 degrees.
 BenchFn bench_isotropy;
+/// Bending of strips and discs by the direction of their mesh, against plate theory.
+BenchFn bench_plate;
 /// The spectrum of the wrinkles of a burning edge, and the dependence of its peak on time step and resolution.
 BenchFn bench_spectrum;
 

@@ -77,6 +77,9 @@ static const struct {
          BENCH_BIT(SEEDS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SUBSTEPS) | BENCH_BIT(INSTRUCTIONS) |
          BENCH_BIT(QUICK) | OUTPUT,
      "The same burn on a grid and on one turned by 45 degrees: whether its folds follow the mesh."},
+    {"plate", "bench plate", bench_plate,
+     BENCH_BIT(CELLS) | BENCH_BIT(SUBSTEPS) | BENCH_BIT(THREADS) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(QUICK) | OUTPUT,
+     "Strips that sag and discs that roll up, by the direction of their mesh: stiffness and curvatures."},
     {"spectrum", "bench spectrum", bench_spectrum,
      BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(QUICK) | BENCH_BIT(INSTRUCTIONS) |
          BENCH_BIT(SUBSTEPS) | OUTPUT,

@@ -52,7 +52,8 @@ static SingeResult isotropy_sheet(SingeSim *sim, const Burn *burn, double angle,
     SingeSheetId id;
     SingeField noises[NOISES];
     Mesh mesh;
-    const TurnedGrid cut = {size, burn->cells, burn->disc, angle, {.jitter = 0.15f, .seed = 1}};
+    const TurnedGrid cut = {
+        .size = size, .cells = burn->cells, .disc = burn->disc, .angle = angle, .wear = {.jitter = 0.15f, .seed = 1}};
     SingeResult result = turned_grid(&cut, &mesh, error);
 
     if (result) return result;

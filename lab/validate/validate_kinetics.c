@@ -207,7 +207,9 @@ SingeResult validate_ledgers(Lab *lab, SingeError *error) {
                                            {"a torus", "fig11.yaml"}};
     double heat = 0, mass = 0;
     SingeResult result = SINGE_OK;
-    report_heads(lab->report, "scene|heat in J|combustion J|lost J|stored J|heat ledger|mass ledger");
+    report_heads(lab->report,
+                 "scene|heat in J|combustion J|lost J|stored J|heat ledger|mass ledger|kinetic mJ|elastic mJ|gravity "
+                 "mJ|dissipated mJ");
     for (int i = 0; i < 4 && !result; i++) {
         const char *sets[] = {i == 1 ? "gas=yes" : "", i == 3 ? "sheets.0.mesh=torus-small.obj" : "",
                               i == 2 ? "sheets.0.grid.cells=[30, 42]" : "", NULL};
@@ -216,8 +218,9 @@ SingeResult validate_ledgers(Lab *lab, SingeError *error) {
         if (!result) result = play_until(&play, lab->quick ? 1 : 2, error);
         if (!result) {
             SingeStats s = singe_sim_stats(play.sim);
-            report_row(lab->report, "%s|%.3g|%.3g|%.3g|%.3g|%.1e|%.1e", cases[i][0], s.heat_in, s.heat_of_combustion,
-                       s.heat_lost, s.heat_stored, s.ledger_error, s.mass_ledger_error);
+            report_row(lab->report, "%s|%.3g|%.3g|%.3g|%.3g|%.1e|%.1e|%.3g|%.3g|%.3g|%.3g", cases[i][0], s.heat_in,
+                       s.heat_of_combustion, s.heat_lost, s.heat_stored, s.ledger_error, s.mass_ledger_error,
+                       1e3 * s.energy_kinetic, 1e3 * s.energy_elastic, 1e3 * s.energy_gravity, 1e3 * s.energy_lost);
             heat = fmax(heat, s.ledger_error);
             mass = fmax(mass, s.mass_ledger_error);
         }

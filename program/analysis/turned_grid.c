@@ -9,8 +9,9 @@ static const double inside_min = 0.25;
 
 /// m, depth of a point within the outline; negative outside.
 static double turned_grid_inside(const TurnedGrid *cut, const double p[2]) {
-    double from_centre = cut->disc ? hypot(p[0], p[1]) : fmax(fabs(p[0]), fabs(p[1]));
-    return cut->size / 2 - from_centre;
+    if (cut->disc) return cut->size / 2 - hypot(p[0], p[1]);
+    const double across = cut->across > 0 ? cut->across : cut->size;
+    return fmin(cut->size / 2 - fabs(p[0]), across / 2 - fabs(p[1]));
 }
 
 SingeResult turned_grid(const TurnedGrid *cut, Mesh *mesh, SingeError *error) {
@@ -63,8 +64,9 @@ SingeResult turned_grid(const TurnedGrid *cut, Mesh *mesh, SingeError *error) {
         double p[2] = {(double)position[0], (double)position[1]};
         const double from_centre = hypot(p[0], p[1]);
         const bool beyond = turned_grid_inside(cut, p) < 0;
+        const double sides[2] = {half, cut->across > 0 ? cut->across / 2 : half};
         for (int k = 0; k < 2; k++) {
-            if (beyond) p[k] = cut->disc ? p[k] * half / from_centre : fmax(-half, fmin(half, p[k]));
+            if (beyond) p[k] = cut->disc ? p[k] * half / from_centre : fmax(-sides[k], fmin(sides[k], p[k]));
             position[k] = (float)p[k];
             uv[k] = (float)(p[k] / cut->size + 0.5);
         }

@@ -5,8 +5,9 @@
 #include "mesh/to_quads.h"
 
 typedef struct TurnedGrid {
-    double size; ///< m, side of the square or diameter of the disc, centred at the origin in the x-y plane
-    int cells;   ///< along size
+    double size;   ///< m, side of the square or diameter of the disc, centred at the origin in the x-y plane
+    double across; ///< m, the other side of a rectangle; 0: the same
+    int cells;     ///< along size
     bool disc;
     double angle;  ///< rad, of the grid's lines against x; the outline stays
     GridWear wear; ///< of the grid before it is cut

@@ -17,7 +17,8 @@ static const char stats_header[] =
     "frame,time,particles,springs,triangles,pieces,mass,burnt_fraction,temperature_max,heat_in,heat_lost,"
     "heat_of_combustion,heat_stored,ledger_error,strain_mean,strain_p99,strain_max,inverted_cells,ms_heat,ms_burn,"
     "ms_ablate,ms_dynamics,ms_gas,ms_output,speed_rms_unburnt,mass_ledger_error,ignited,holes_opened,pieces_freed,"
-    "front_speed,triangles_fine,ms_surface,tears,contact_halts,arrival_error,arrival_missed,pace,water,ms_contact\n";
+    "front_speed,triangles_fine,ms_surface,tears,contact_halts,arrival_error,arrival_missed,pace,water,ms_contact,"
+    "energy_kinetic,energy_elastic,energy_gravity,energy_lost\n";
 static const char events_header[] = "frame,time,event,element,x,y,z,u,v\n";
 static const char probes_header[] =
     "frame,time,probe,sheet,there,x,y,z,temperature,temperature_peak,mass,burn_rate,time_ignited,piece\n";
@@ -28,7 +29,7 @@ const char *tables_unit(const char *column) {
     } units[] = {
         {"time", "s"},          {"mass_ledger", ""}, {"mass", "kg"},    {"temperature_", "K"},
         {"heat_", "J"},         {"ms_", "ms"},       {"speed_", "m/s"}, {"front_speed", "m/s of the fire's time"},
-        {"arrival_error", "s"}, {"water", "kg"}};
+        {"arrival_error", "s"}, {"water", "kg"},     {"energy_", "J"}};
     for (size_t i = 0; i < sizeof units / sizeof *units; i++)
         if (strncmp(column, units[i].begins, strlen(units[i].begins)) == 0) return units[i].unit;
     return "";
@@ -322,13 +323,14 @@ SingeResult tables_write_frame(Tables *tables, int frame, const SingeStats *s, c
         "%d,%.9g,%" PRIu32 ",%" PRIu32 ",%" PRIu64 ",%" PRIu32
         ",%.9g,%.9g,%.7g,%.9g,%.9g,%.9g,%.9g,%.4g,%.6g,%.6g,%.6g,%" PRIu32
         ",%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.6g,%.4g,%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%.6g,%" PRIu64 ",%.3f,%" PRIu32
-        ",%" PRIu64 ",%.6g,%" PRIu32 ",%.6g,%.9g,%.3f\n",
+        ",%" PRIu64 ",%.6g,%" PRIu32 ",%.6g,%.9g,%.3f,%.6g,%.6g,%.6g,%.6g\n",
         frame, s->time, s->particles, s->springs, cost->triangles, s->pieces, s->mass, s->burnt_fraction,
         (double)s->temperature_max, s->heat_in, s->heat_lost, s->heat_of_combustion, s->heat_stored, s->ledger_error,
         s->strain_mean, s->strain_p99, s->strain_max, s->inverted_cells, cost->stage[SINGE_STAGE_HEAT],
         cost->stage[SINGE_STAGE_BURN], cost->stage[SINGE_STAGE_ABLATE], cost->stage[SINGE_STAGE_DYNAMICS],
         cost->stage[SINGE_STAGE_GAS], cost->output, s->speed_rms_unburnt, s->mass_ledger_error, totals->ignited,
         totals->holes_opened, totals->pieces_freed, s->front_speed, cost->fine_triangles, cost->surface, s->tears,
-        totals->contact_halts, s->arrival_error, s->arrival_missed, (double)s->pace, s->water, cost->contact);
+        totals->contact_halts, s->arrival_error, s->arrival_missed, (double)s->pace, s->water, cost->contact, s->energy_kinetic,
+        s->energy_elastic, s->energy_gravity, s->energy_lost);
     return lines_append(&tables->stats, line, (size_t)length, error);
 }

@@ -45,6 +45,7 @@ static const DimensionRow dimensions[DIM_COUNT] = {
     [DIM_MOLAR_ENERGY] = {"energy per amount", {{"J/mol", 1, 0}, {"kJ/mol", 1e3, 0}}},
     [DIM_POWER] = {"power", {{"W", 1, 0}, {"kW", 1e3, 0}}},
     [DIM_WETTING] = {"mass per area and time", {{"kg/(m2 s)", 1, 0}, {"g/(m2 s)", 1e-3, 0}}},
+    [DIM_BENDING] = {"bending stiffness", {{"N m", 1, 0}, {"mN m", 1e-3, 0}, {"uN m", 1e-6, 0}}},
     [DIM_FRAME_RATE] = {"frame rate", {{"1/s", 1, 0}, {"fps", 1, 0}, {"Hz", 1, 0}}},
 };
 

@@ -34,6 +34,7 @@ typedef enum Dimension {
     DIM_FRAME_RATE,
     DIM_POWER,
     DIM_WETTING,
+    DIM_BENDING,
     DIM_COUNT
 } Dimension;
 

@@ -3,7 +3,7 @@
 #define BURN_BURN_H
 
 #include "common/pool.h"
-#include "burn/volume.h"
+#include "shell/target_length.h"
 #include "world/step_context.h"
 
 /// One step: masses, times and target lengths. `thickening` holds F for every sheet; rates are divided by it. `partial`

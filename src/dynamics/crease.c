@@ -182,6 +182,14 @@ float crease_kept(const Shell *shell, const StateInput *state, uint32_t green) {
     return kept;
 }
 
+float crease_factor(const DynamicsPlan *plan, const Shell *shell, const StateInput *state,
+                    const DynamicsState *dynamics, uint32_t green) {
+    if (!plan->hinges || dynamics->crease[green] == 0) return 1;
+    const Hinge *hinge = &plan->hinges[green];
+    const float stays = dynamics->crease[green] * hinge->arc * crease_kept(shell, state, green);
+    return crease_ratio(hinge, stays, dynamics->bend[green] * hinge->arc);
+}
+
 static Float3 crease_edge(const Crease *job, const uint32_t *ends, const Hinge *hinge) {
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     const uint32_t *corner = job->shell->cells[ends[0] - job->shell->vertex_count];

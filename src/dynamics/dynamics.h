@@ -64,6 +64,9 @@ bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider
 /// Counters of contact of sheets so far; zero without it.
 CollisionCounters dynamics_plan_contacts(const DynamicsPlan *plan);
 
+/// J, of all springs that give (energy.c).
+double dynamics_elastic_energy(const DynamicsPlan *plan, const Shell *shell, const State *state);
+
 /// NULL, or the invariant of the plan that is broken between two steps.
 const char *dynamics_plan_validate(const DynamicsPlan *plan);
 

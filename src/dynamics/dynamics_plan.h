@@ -3,6 +3,7 @@
 #define DYNAMICS_DYNAMICS_PLAN_H
 
 #include "dynamics/attach.h"
+#include "dynamics/brace.h"
 #include "dynamics/dynamics.h"
 #include "dynamics/solver.h"
 #include "dynamics/strand/strand_lanes.h"
@@ -82,6 +83,7 @@ struct DynamicsPlan {
     const Kernels *kernels;
     float *soft;     ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min
     Strands strands; ///< of the strand solver
+    Braces *braces;  ///< NULL unless bending is isotropic
     Paper *paper;    ///< of the paper's methods
     Patches patches;
     bool strands_written; ///< their weights and targets, in a step that succeeded
@@ -170,6 +172,10 @@ void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const StateInput *s
 
 /// Target length of a green spring with a crease of `stays` rad, over that without, when it is bent to `now` rad.
 float crease_ratio(const Hinge *hinge, float stays, float now);
+
+/// The same of a green spring now; 1 without a crease.
+float crease_factor(const DynamicsPlan *plan, const Shell *shell, const StateInput *state,
+                    const DynamicsState *dynamics, uint32_t green);
 
 /// Share of a green spring's crease that burning has left.
 float crease_kept(const Shell *shell, const StateInput *state, uint32_t green);

@@ -121,7 +121,7 @@ static void paper_fill_particles(void *task, int begin, int end) {
 static void paper_fill_springs(void *task, int begin, int end) {
     const Fill *job = task;
     Stiffness stiffness;
-    stiffness_begin(job->shell, job->colour, 0, 0, &stiffness);
+    stiffness_begin(job->shell, job->colour, 0, &job->plan->settings.solver, &stiffness);
     const float *length = job->state->burn->spring_length[job->colour];
     const Field material = job->shell->matter.weight[job->colour];
     const uint8_t *flags = job->state->ablate->spring_flags[job->colour];

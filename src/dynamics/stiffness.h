@@ -11,13 +11,18 @@ enum { STIFFNESS_MAX = 1000 };
 typedef struct Stiffness {
     const Shell *shell;
     SingeColour colour;
-    float softness; ///< s2, of the solver itself; over a particle's mass it is a compliance
-    uint32_t sheet; ///< of the last spring asked for
-    float own;      ///< m/N, of its springs without any compliance
+    uint32_t (*braces)[2]; ///< ends of braces, whose springs these are then; NULL: the colour's
+    bool isotropic;        ///< green springs share bending with braces
+    float softness;        ///< s2, of the solver itself; over a particle's mass it is a compliance
+    float red_softness[2]; ///< s2, that of red springs in transverse shear, and in twist
+    uint32_t sheet;        ///< of the last spring asked for
+    float mass;            ///< kg, of its particles
+    float own;             ///< m/N, of its springs without any compliance
 } Stiffness;
 
 /// For substeps of h seconds, or 0 for a solver without a numerical compliance.
-void stiffness_begin(const Shell *shell, SingeColour colour, float h, float regularisation, Stiffness *stiffness);
+void stiffness_begin(const Shell *shell, SingeColour colour, float h, const SingeSolverDef *solver,
+                     Stiffness *stiffness);
 
 /// Compliance of a spring, m/N.
 float stiffness_compliance(Stiffness *stiffness, uint32_t spring);

@@ -184,18 +184,20 @@ static SingeResult evaluate(const ParamField *field, const ParamRule *rule, floa
 static SingeResult check_matter(const SheetSource *source, SingeError *error) {
     static const struct {
         int param;
-        const char *name;
-    } made[] = {{PARAM_DIFFUSIVITY, "diffusivity"}, {PARAM_LAYER_EXCHANGE, "layer_exchange"},
-                {PARAM_MASS_RATE, "mass_rate"},     {PARAM_HEAT_SHARE, "heat_of_combustion"},
-                {PARAM_CHAR_HEAT, "char_heat"},     {PARAM_CHAR_RATE, "char_rate"}};
+        const char *name, *than;
+    } made[] = {{PARAM_DIFFUSIVITY, "diffusivity", "grammage"},
+                {PARAM_LAYER_EXCHANGE, "layer_exchange", "grammage"},
+                {PARAM_MASS_RATE, "mass_rate", "grammage"},
+                {PARAM_HEAT_SHARE, "heat_of_combustion", "specific heat"},
+                {PARAM_CHAR_HEAT, "char_heat", "specific heat"},
+                {PARAM_CHAR_RATE, "char_rate", "grammage"},
+                {PARAM_COMPLIANCE + SINGE_GREEN, "thickness", "bending"}};
     uint32_t total = source->sheet.vertex_count + source->sheet.cell_count;
     for (size_t k = 0; k < sizeof made / sizeof *made; k++)
         for (uint32_t i = 0; i < total; i++)
             if (!isfinite(matter_value(source, made[k].param, i)))
                 return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s is too large for its %s",
-                                 source->sheet.name, made[k].name,
-                                 made[k].param == PARAM_HEAT_SHARE || made[k].param == PARAM_CHAR_HEAT ? "specific heat"
-                                                                                                       : "grammage");
+                                 source->sheet.name, made[k].name, made[k].than);
     return SINGE_OK;
 }
 

@@ -11,6 +11,7 @@
 //   gas_heat  (1 - s) H [J/kg]                                        stays in the sheet
 //   char_heating  H_c/c_p [K]                                         H_c heat of glowing char [J/kg]
 //   char_yield    max(nu, m_min)                                      nu <= m_min: no char
+//   compliance of green springs   t^2/D - c_blue, if D > 0            D bending stiffness [N m], t thickness
 //
 // The first four model effects of the gas next to a sheet: heat conducted along it (W/K) and oxygen that reaches it
 // (kg/(m2 s K)) are the same next to a thick sheet and a thin one, but the thin one has less mass to heat and burn.
@@ -50,6 +51,9 @@ static bool matter_varies(const SheetSource *source, int param) {
     case PARAM_HEAT_OF_COMBUSTION: return values[param] || values[PARAM_HEAT_SHARE];
     case PARAM_CHAR_HEAT: return values[param] || values[PARAM_SPECIFIC_HEAT];
     case PARAM_CHAR_YIELD: return values[param] || values[PARAM_MASS_MIN];
+    case PARAM_COMPLIANCE + SINGE_GREEN:
+        return values[param] || values[PARAM_BENDING] || values[PARAM_THICKNESS] ||
+               values[PARAM_COMPLIANCE + SINGE_BLUE];
     default: return values[param] != NULL;
     }
 }
@@ -66,6 +70,12 @@ float matter_value(const SheetSource *source, int param, uint32_t i) {
     case PARAM_CHAR_HEAT: return value / sheet_param(source, PARAM_SPECIFIC_HEAT, i);
     case PARAM_CHAR_YIELD: return fmaxf(value, sheet_param(source, PARAM_MASS_MIN, i));
     case PARAM_HEAT_OF_COMBUSTION: return value * (1 - sheet_param(source, PARAM_HEAT_SHARE, i));
+    case PARAM_COMPLIANCE + SINGE_GREEN: {
+        // both layers are in series: t^2/(c_green + c_blue) is D
+        const float bending = sheet_param(source, PARAM_BENDING, i), t = sheet_param(source, PARAM_THICKNESS, i);
+        if (!(bending > 0)) return value;
+        return fmaxf(0, t * t / bending - sheet_param(source, PARAM_COMPLIANCE + SINGE_BLUE, i));
+    }
     default: return value;
     }
 }

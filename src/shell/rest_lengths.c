@@ -170,13 +170,22 @@ static FibreFrame fibre_frame(const Shell *shell, uint32_t cell) {
     return (FibreFrame){e1, float3_cross(normal, e1), real_cosf(2 * angle), real_sinf(2 * angle)};
 }
 
+static float frame_grain(const FibreFrame *frame, Float3 d) {
+    float x = float3_dot(d, frame->e1), y = float3_dot(d, frame->e2), square = float3_dot(d, d);
+    return ((x * x - y * y) * frame->cosine + 2 * x * y * frame->sine) / square;
+}
+
+float cell_grain(const Shell *shell, uint32_t cell, Float3 along) {
+    const FibreFrame frame = fibre_frame(shell, cell);
+    return frame_grain(&frame, along);
+}
+
 /// Adds `share` of a spring's grain in a cell's frame.
 static void fibre_add(Shell *shell, const FibreFrame *frame, SingeColour colour, uint32_t spring, float share) {
     SpringSet *set = &shell->springs[colour];
     const uint32_t *ends = set->ends[spring];
     Float3 d = float3_sub(float3_load(shell->rest_position[ends[1]]), float3_load(shell->rest_position[ends[0]]));
-    float x = float3_dot(d, frame->e1), y = float3_dot(d, frame->e2), square = float3_dot(d, d);
-    set->grain[spring] += share * ((x * x - y * y) * frame->cosine + 2 * x * y * frame->sine) / square;
+    set->grain[spring] += share * frame_grain(frame, d);
 }
 
 bool measure_fibres(Memory *memory, Shell *shell) {

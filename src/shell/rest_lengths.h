@@ -2,6 +2,7 @@
 #ifndef SHELL_REST_LENGTHS_H
 #define SHELL_REST_LENGTHS_H
 
+#include "common/float3.h"
 #include "shell/shell.h"
 
 typedef struct CellShape {
@@ -21,6 +22,9 @@ void measure_particles(Shell *shell);
 /// Fills the rest lengths of all springs and each sheet's cell size. Fails with SINGE_ERROR_MESH if a spring has no
 /// length, as when neighbouring centres coincide.
 SingeResult measure_springs(Shell *shell, SingeError *error);
+
+/// cos 2(angle to the cell's fibres) of a direction in its plane, times the square of the share of `along` that lies in it.
+float cell_grain(const Shell *shell, uint32_t cell, Float3 along);
 
 /// Fills the springs' `grain` where a sheet shrinks more in one direction; rest positions and lengths are in place.
 /// False when out of memory.

@@ -145,6 +145,8 @@ static void stats_ledgers(const SingeSim *sim, SingeStats *stats) {
     stats->ledgers_close = stats->ledger_error <= SINGE_LEDGER_BOUND && stats->mass_ledger_error <= SINGE_LEDGER_BOUND;
 }
 
+static double stats_square(Float3 v) { return (double)float3_dot(v, v); }
+
 void singe_sim_read_stats(const SingeSim *sim, SingeStats *out, size_t struct_size) {
     const Shell *shell = &sim->shell;
     const State *state = &sim->state;
@@ -160,21 +162,31 @@ void singe_sim_read_stats(const SingeSim *sim, SingeStats *out, size_t struct_si
             stats.springs += state->ablate.spring_flags[colour][k] & SINGE_ALIVE;
     for (uint32_t c = 0; c < shell->cell_count; c++) stats.cells += state->ablate.cell_flags[c] & SINGE_ALIVE;
 
-    // particles
-    double square = 0, moving = 0;
+    // particles. The energy of weight is 0 where a particle was at rest: mass that leaves there takes none along
+    double square = 0, moving = 0, energy = 0;
     for (uint32_t i = 0; i < sim->shell.particle_count; i++) {
         stats.mass_initial += (double)matter->mass[i];
+        const float *first = shell->sheets[matter->sheet[i]].velocity;
+        energy += 0.5 * (double)matter->mass[i] * stats_square(float3_load(first));
         if (!(state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
         stats.particles++;
         stats.mass += (double)matter->mass[i] * (double)state->burn.mass[i];
         if (state->heat.water) stats.water += (double)matter->mass[i] * (double)state->heat.water[i];
         stats.temperature_max = fmaxf(stats.temperature_max, state->heat.temperature[i]);
+        const double mass = (double)matter->mass[i] * (double)state->burn.mass[i],
+                     speed2 = stats_square(float3_load(state->dynamics.velocity[i]));
+        stats.energy_kinetic += 0.5 * mass * speed2;
+        for (int k = 0; k < 3; k++) {
+            const double up = (double)state->dynamics.position[i][k] - (double)shell->rest_position[i][k];
+            stats.energy_gravity -= mass * (double)sim->def.gravity[k] * up;
+        }
         if (state->burn.time_ignited[i] >= 0 || state->dynamics.pinned[i]) continue;
-        Float3 v = float3_load(state->dynamics.velocity[i]);
-        square += (double)float3_dot(v, v);
+        square += speed2;
         moving++;
     }
     stats.speed_rms_unburnt = moving > 0 ? sqrt(square / moving) : 0;
+    stats.energy_elastic = dynamics_elastic_energy(sim->dynamics, shell, state);
+    stats.energy_lost = energy - stats.energy_kinetic - stats.energy_elastic - stats.energy_gravity;
 
     // what is summed over the run or the springs
     stats_ledgers(sim, &stats);

@@ -230,6 +230,39 @@ TEST(rates_are_stated_for_a_grammage) {
     square_free(&square);
 }
 
+/// A stated bending stiffness D gives green springs the compliance t^2/D, less that of blue ones in series, where it
+/// stands and where it varies; without one their own compliance counts.
+TEST(bending_is_stated_as_a_stiffness) {
+    Memory memory = memory_make((SingeAllocator){0});
+    Square square = square_make(4);
+    static const float pixels[] = {0, 1};
+    const SingeField texture = {.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, pixels}};
+    SingeMaterialDef *m = &square.def.material;
+    m->thickness = singe_param(2e-3f);
+    m->compliance[SINGE_GREEN] = singe_param(0.1f);
+    for (int kind = 0; kind < 4; kind++) {
+        m->bending = kind == 2 ? singe_param_field(1e-4f, 3e-4f, &texture) : singe_param(kind ? 3e-4f : 0);
+        m->compliance[SINGE_BLUE] = singe_param(kind == 3 ? 1e-3f : 0);
+        SheetSource source = evaluate(&memory, &square.def);
+        Shell shell;
+        assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
+        const Field green = shell.matter.compliance[SINGE_GREEN];
+        for (uint32_t p = shell.vertex_count; p < shell.particle_count; p++) {
+            const float bending = sheet_param(&source, PARAM_BENDING, p), blue = kind == 3 ? 1e-3f : 0;
+            const float expected = kind ? 4e-6f / bending - blue : 0.1f;
+            assert_float_equal(field_at(green, p), expected, 1e-6f);
+        }
+
+        assert_true(green.mask == (kind == 2 ? UINT32_MAX : 0)); // one value where it does not vary
+        shell_free(&memory, &shell);
+        sheet_source_free(&memory, &source);
+    }
+
+    m->bending = singe_param(1e-38f), m->thickness = singe_param(10);
+    refuse(&square.def, -1, "thickness is too large for its bending");
+    square_free(&square);
+}
+
 // The ends of every range, as its row states them: the last number that is allowed and the first that is not.
 TEST(ranges_end_where_stated) {
     Memory memory = memory_make((SingeAllocator){0});

@@ -27,6 +27,58 @@ TEST(ledgers_close) {
     singe_sim_destroy(scene.sim);
 }
 
+/// What damping takes from a sheet that falls is what the energies lack, and free fall lacks nothing; a strip that swings
+/// passes all its energy to its springs and back.
+TEST(energies_are_accounted_for) {
+    SingeSimDef def = singe_default_sim();
+    SingeMaterialDef material = singe_default_material();
+    material.drag = singe_param(0);
+    for (int damped = 0; damped < 2; damped++) {
+        const double rate = damped ? 5 : 0, g = 9.81, time = 0.5, mass = 0.08 * 0.01;
+        material.damping = singe_param((float)rate);
+        SingeSim *sim = test_sim(&def, test_grid(10, 10, 0.01f, 0.01f), &material);
+        test_steps(sim, 240);
+        const SingeStats stats = singe_sim_stats(sim);
+
+        // v = g (1 - exp(-d t))/d, and damping takes d m v^2
+        double taken = 0;
+        for (int i = 0; i < 1000 && damped; i++) {
+            const double v = g * (1 - exp(-rate * time * (i + 0.5) / 1000)) / rate;
+            taken += rate * mass * v * v * time / 1000;
+        }
+        print_message("damping %g: kinetic %.4g J, gravity %.4g J, lost %.4g J, to damping %.4g J\n", rate,
+                      stats.energy_kinetic, stats.energy_gravity, stats.energy_lost, taken);
+        assert_true(fabs(stats.energy_lost - taken) < 4e-3 * fabs(stats.energy_gravity));
+        assert_true(stats.energy_elastic < 1e-4 * stats.energy_kinetic);
+        singe_sim_destroy(sim);
+    }
+
+    // a strip held along one side falls and swings
+    material.damping = singe_param(0);
+    def.gravity[2] = -1;
+    def.solver.substeps = 24;
+    def.solver.smoothing = 0;
+    SingeSim *sim = test_sim(&def, test_grid(16, 4, 0.0025f, 0.0025f), &material);
+    float points[3 * 10] = {0};
+    for (int k = 0; k < 10; k++) points[3 * k] = k < 5 ? 0 : 0.0025f, points[3 * k + 1] = 0.0025f * (float)(k % 5);
+    SingePinDef pin = singe_default_pin();
+    SingePinId id;
+    pin.sheet = (SingeSheetId){0, 1}, pin.points = points, pin.point_count = 10, pin.radius = 1e-4f;
+    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    double passed = 0, elastic = 0, lost = 0;
+    for (int i = 0; i < 160; i++) {
+        test_steps(sim, 1);
+        const SingeStats stats = singe_sim_stats(sim);
+        passed = fmax(passed, -stats.energy_gravity);
+        elastic = fmax(elastic, stats.energy_elastic);
+        lost = fmax(lost, fabs(stats.energy_lost));
+    }
+
+    print_message("a strip: weight gave %.3g J, springs held %.3g J, lost %.3g J\n", passed, elastic, lost);
+    assert_true(elastic > 0.98 * passed && lost < 0.01 * passed);
+    singe_sim_destroy(sim);
+}
+
 /// Cells as bad as they come burn away, and nothing is ever colder than the air.
 TEST(bad_cells_burn_and_stay_above_the_air) {
     for (uint32_t seed = 0; seed < 2; seed++) {

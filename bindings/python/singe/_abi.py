@@ -110,7 +110,8 @@ class SingeMaterialDef(Structure):
                 ("compliance", SingeParam * 4), ("char_weight", SingeParam), ("drag", SingeParam),
                 ("damping", SingeParam), ("crease_radius", SingeParam), ("crease_share", SingeParam),
                 ("strength", SingeParam), ("char_strength", SingeParam), ("pre_exponential", SingeParam),
-                ("activation_energy", SingeParam), ("curvature_max", SingeParam), ("moisture", SingeParam)]
+                ("activation_energy", SingeParam), ("curvature_max", SingeParam), ("moisture", SingeParam),
+                ("bending", SingeParam)]
 
 
 class SingePoseKey(Structure):
@@ -167,7 +168,7 @@ class SingeSolverDef(Structure):
                 ("order", c_int * 4), ("regularisation", c_float * 4), ("attachments", c_bool),
                 ("early_exit", c_bool), ("tolerance", c_float), ("stiffness", c_float), ("smoothing", c_float),
                 ("smoothing_length", c_float), ("height_min", c_float), ("height_gain", c_float), ("creases", c_bool),
-                ("tearing", c_bool)]
+                ("tearing", c_bool), ("isotropic", c_bool)]
 
 
 class SingeGasDef(Structure):
@@ -272,7 +273,9 @@ class SingeStats(Structure):
                 ("strain_mean", c_double), ("strain_p99", c_double), ("strain_max", c_double),
                 ("inverted_cells", c_uint32), ("intersecting_cells", c_uint32), ("speed_rms_unburnt", c_double),
                 ("thickening", c_float), ("front_speed", c_double), ("tears", c_uint32), ("ledgers_close", c_bool),
-                ("arrival_error", c_double), ("arrival_missed", c_uint32), ("pace", c_float), ("water", c_double)]
+                ("arrival_error", c_double), ("arrival_missed", c_uint32), ("pace", c_float), ("water", c_double),
+                ("energy_kinetic", c_double), ("energy_elastic", c_double), ("energy_gravity", c_double),
+                ("energy_lost", c_double)]
 
 
 class SingeCounts(Structure):

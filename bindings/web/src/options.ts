@@ -134,6 +134,9 @@ export interface SolverOptions {
     /** sheets tear where the line force exceeds the material's strength; needs the method strand. Each sheet then
      *  has a reserve of vertices, which views show after its own vertices */
     tearing?: boolean;
+    /** strand: yes: bending is the same in all directions of the mesh, by springs between centres across vertices,
+     *  for cloth that drapes and sheets that curl; no: softest along the diagonals, as in the paper */
+    isotropic?: boolean;
 }
 
 export interface GasOptions {
@@ -302,4 +305,8 @@ export interface MaterialOptions {
     /** 0 to 3; mass of water at the start over the mass before it burns; it boils off before the sheet gets hotter
      *  than 100 C. Paper in a room holds 5 to 8 %. 0: dry */
     moisture?: Param;
+    /** N m, >= 0; bending stiffness D, moment per width over curvature: paper has 1e-4 to 1e-3 N m, cloth 1e-6 to
+     *  1e-5. Above 0 it sets compliance.green to thickness^2/D, less compliance.blue; 0: compliance.green as it is,
+     *  by default 1e-5 N m. Stiff sheets need substeps */
+    bending?: Param;
 }

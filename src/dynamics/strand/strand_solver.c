@@ -20,6 +20,19 @@ static size_t keep_floats(const Strands *strands) {
     return ((size_t)strands->longest * STRAND_KEEP + 1) * STRAND_LANES;
 }
 
+/// Compliances of a set's springs, and whether they are all the same.
+static void set_stiffness(const SpringSet *springs, Stiffness *stiffness, StrandSet *set) {
+    set->compliance_all = 0;
+    for (uint32_t s = 0; s < set->strand_count; s++) {
+        float *slot = set->compliance + set->strand_slot[s];
+        for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
+            *slot = stiffness_compliance(stiffness, k);
+            if (s == 0 && k == 0) set->compliance_all = *slot;
+            if (*slot != set->compliance_all) set->compliance_all = -1;
+        }
+    }
+}
+
 static bool strands_create(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
     const SingeSolverDef *solver = &plan->settings.solver;
     const float h = plan->settings.time_step / (float)solver->substeps;
@@ -32,18 +45,19 @@ static bool strands_create(Memory *memory, const Shell *shell, DynamicsPlan *pla
         if (!strand_set_create(memory, springs, shell->particle_count, shell->spare_count > 0, set)) return false;
         if (strands->longest < set->longest) strands->longest = set->longest;
 
-        // compliances, and whether they are all the same
         Stiffness stiffness;
-        stiffness_begin(shell, (SingeColour)colour, h, solver->regularisation[colour], &stiffness);
-        set->compliance_all = 0;
-        for (uint32_t s = 0; s < set->strand_count; s++) {
-            float *slot = set->compliance + set->strand_slot[s];
-            for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
-                *slot = stiffness_compliance(&stiffness, k);
-                if (s == 0 && k == 0) set->compliance_all = *slot;
-                if (*slot != set->compliance_all) set->compliance_all = -1;
-            }
-        }
+        stiffness_begin(shell, (SingeColour)colour, h, solver, &stiffness);
+        set_stiffness(springs, &stiffness, set);
+    }
+
+    // between centres, in two directions more
+    if (solver->isotropic) {
+        Stiffness stiffness;
+        if (!NEW(memory, plan->braces, 1) || !braces_create(memory, shell, plan->braces)) return false;
+        stiffness_begin(shell, SINGE_GREEN, h, solver, &stiffness);
+        stiffness.braces = plan->braces->springs.ends;
+        set_stiffness(&plan->braces->springs, &stiffness, &plan->braces->set);
+        if (strands->longest < plan->braces->set.longest) strands->longest = plan->braces->set.longest;
     }
 
     if (!NEW(memory, strands->keep, keep_floats(strands) * (size_t)strands->room_count)) return false;
@@ -60,6 +74,8 @@ static void strands_release(Memory *memory, const Shell *shell, DynamicsPlan *pl
     FREE(memory, strands->keep, keep_floats(strands) * (size_t)strands->room_count);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) strand_set_free(memory, &strands->sets[colour]);
     FREE(memory, plan->hinges, shell->springs[SINGE_GREEN].count);
+    if (plan->braces) braces_free(memory, plan->braces);
+    FREE(memory, plan->braces, 1);
 }
 
 // ---- a step's weights and lengths
@@ -108,8 +124,7 @@ static void prepare_runs(void *task, int begin, int end) {
     const float *target = job->state->burn->spring_length[job->colour];
     const Field material = job->shell->matter.weight[job->colour];
     const float *soft = job->plan->soft;
-    const Hinge *hinges = job->colour == SINGE_GREEN ? job->plan->hinges : NULL;
-    const float *crease = hinges ? job->dynamics->crease : NULL, *bend = job->dynamics->bend;
+    const float *crease = job->colour == SINGE_GREEN && job->plan->hinges ? job->dynamics->crease : NULL;
     const bool torn = job->shell->split_count > 0;
 
     for (uint32_t r = (uint32_t)begin; r < (uint32_t)end; r++) {
@@ -130,8 +145,7 @@ static void prepare_runs(void *task, int begin, int end) {
             set->weight[slot] = here ? dynamics_weight(material, soft, a, b) : 0;
             set->length[slot] = target[k];
             if (!crease || crease[k] == 0) continue;
-            float stays = crease[k] * hinges[k].arc * crease_kept(job->shell, job->state, k);
-            set->length[slot] *= crease_ratio(&hinges[k], stays, bend[k] * hinges[k].arc);
+            set->length[slot] *= crease_factor(job->plan, job->shell, job->state, job->dynamics, k);
             set->creased[r] = 1;
         }
     }
@@ -166,6 +180,8 @@ static void strands_prepare(DynamicsPlan *plan, const Shell *shell, const StateI
 
     // otherwise the values of an earlier step are still right, but for the springs of what burns (prepare.c)
     job.all = !plan->strands_written || torn;
+    if (plan->braces && (job.all || plan->creased || state->burn->mass_burnt > 0))
+        braces_prepare(plan->braces, plan, shell, state, pool, dynamics);
     plan->strands_written = false; // till the step is done: one that is undone may have written other weights
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         job.colour = (SingeColour)colour;
@@ -208,13 +224,15 @@ static void project_range(void *task, int begin, int end) {
 void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h, DynamicsState *dynamics,
                     DynamicsCounters *counters) {
     Strands *strands = &plan->strands;
-    const StrandSet *set = &strands->sets[colour];
-    Project project = {
-        {set, dynamics->position[0], plan->settings.solver.regularisation[colour], 1 / (h * h)}, strands, 0};
-
-    for (uint32_t f = 0; f < set->family_count; f++) {
-        project.first_group = set->family_first[f];
-        pool_for(pool, (int)(set->family_first[f + 1] - project.first_group), 1, project_range, &project);
+    const StrandSet *set = &strands->sets[colour], *braces = NULL;
+    if (colour == SINGE_GREEN && plan->braces) braces = &plan->braces->set;
+    for (const StrandSet *next = set; next; next = next == set ? braces : NULL) {
+        Project project = {
+            {next, dynamics->position[0], plan->settings.solver.regularisation[colour], 1 / (h * h)}, strands, 0};
+        for (uint32_t f = 0; f < next->family_count; f++) {
+            project.first_group = next->family_first[f];
+            pool_for(pool, (int)(next->family_first[f + 1] - project.first_group), 1, project_range, &project);
+        }
     }
 
     patch_project(plan, colour, 1 / (h * h), dynamics);
