@@ -330,7 +330,7 @@ SingeResult tables_write_frame(Tables *tables, int frame, const SingeStats *s, c
         cost->stage[SINGE_STAGE_BURN], cost->stage[SINGE_STAGE_ABLATE], cost->stage[SINGE_STAGE_DYNAMICS],
         cost->stage[SINGE_STAGE_GAS], cost->output, s->speed_rms_unburnt, s->mass_ledger_error, totals->ignited,
         totals->holes_opened, totals->pieces_freed, s->front_speed, cost->fine_triangles, cost->surface, s->tears,
-        totals->contact_halts, s->arrival_error, s->arrival_missed, (double)s->pace, s->water, cost->contact, s->energy_kinetic,
-        s->energy_elastic, s->energy_gravity, s->energy_lost);
+        totals->contact_halts, s->arrival_error, s->arrival_missed, (double)s->pace, s->water, cost->contact,
+        s->energy_kinetic, s->energy_elastic, s->energy_gravity, s->energy_lost);
     return lines_append(&tables->stats, line, (size_t)length, error);
 }

@@ -87,7 +87,8 @@ TEST(finds_the_nearest_word) {
 
 TEST(reads_arguments) {
     static const ArgOption options[] = {{"out", 'o', "DIR", ""}, {"quiet", 'q', NULL, ""}, {"all", 'a', NULL, ""}};
-    const ArgCommand command = {"test", "SCENE", "", options, 3, NULL};
+    const ArgCommand command = {
+        .name = "test", .operand = "SCENE", .summary = "", .options = options, .option_count = 3};
     char *argv[] = {"-qa", "-oX", "--out=Y", "--out", "Z", "-qo", "W", "--", "--quiet"};
     ArgReader reader = args_begin(&command, 9, argv);
     const int expected[] = {1, 2, 0, 0, 0, 1, 0, ARG_OPERAND, ARG_END};
