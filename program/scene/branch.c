@@ -239,13 +239,6 @@ static bool entries_equal(int list, SceneWhole a, SceneWhole b, uint32_t i, bool
                        dump_text(&schema_collider, &b.scene->colliders[i]), no_memory);
 }
 
-static bool materials_equal(SceneWhole a, SceneWhole b, uint32_t i, bool *no_memory) {
-    for (int k = 0; k < SCENE_PARAM_SLOTS; k++)
-        if (!pictures_equal(&a.assets->fields[i][k].texture, &b.assets->fields[i][k].texture)) return false;
-    return texts_equal(dump_text(&schema_material, &a.scene->sheets[i].material),
-                       dump_text(&schema_material, &b.scene->sheets[i].material), no_memory);
-}
-
 /// Both lists in the simulation are those of `before`, in order; slots that are freed are filled again in order, so the
 /// order remains, which scene_follow relies on.
 static SingeResult branch_objects(const SceneBuilder *builder, SceneWhole now, SceneWhole before, int frame,
@@ -314,7 +307,12 @@ SingeResult scene_branch(SceneWhole scene, SceneWhole before, int frame, SingeSi
     if (!result) singe_sim_sheets(sim, builder.sheets, sheets);
 
     for (uint32_t i = 0; i < sheets && !result; i++) {
-        if (materials_equal(scene, before, i, &no_memory)) continue;
+        bool equal = texts_equal(dump_text(&schema_material, &scene.scene->sheets[i].material),
+                                 dump_text(&schema_material, &before.scene->sheets[i].material), &no_memory);
+        for (int k = 0; k < SCENE_PARAM_SLOTS && equal; k++)
+            equal = pictures_equal(&scene.assets->fields[i][k].texture, &before.assets->fields[i][k].texture);
+        if (equal) continue;
+
         SingeSheetDef def;
         scene_sheet_def(scene.scene, scene.assets, i, &def);
         result = no_memory ? SINGE_ERROR_MEMORY : singe_sim_set_material(sim, builder.sheets[i], &def.material, NULL);

@@ -83,14 +83,6 @@ static const char *bare_title(const Schema *schema) {
     return strncmp(title, "a ", 2) == 0 ? title + 2 : strncmp(title, "the ", 4) == 0 ? title + 4 : title;
 }
 
-static void put_link(FILE *file, const Schema *schema) {
-    const char *title = bare_title(schema);
-    fprintf(file, "[%s](#", title);
-    for (const char *c = title; *c; c++)
-        if (*c != '\'') fputc(*c == ' ' ? '-' : *c, file);
-    fputc(')', file);
-}
-
 static void put_type(FILE *file, const SchemaRow *row) {
     static const char *const names[] = {
         [ROW_BOOL] = "yes or no",      [ROW_INT] = "whole number",
@@ -103,7 +95,11 @@ static void put_type(FILE *file, const SchemaRow *row) {
     const char *unit = quantity_unit(row->dimension);
     if (row->sub) {
         if (row->type != ROW_MAP) fputs(row->type == ROW_STRENGTH ? "number, or list of " : "list of ", file);
-        put_link(file, row->sub);
+        const char *title = bare_title(row->sub);
+        fprintf(file, "[%s](#", title);
+        for (const char *c = title; *c; c++)
+            if (*c != '\'') fputc(*c == ' ' ? '-' : *c, file);
+        fputc(')', file);
     } else if (row->type == ROW_ENUM) {
         for (int i = 0; row->names[i]; i++)
             if (row->names[i][0]) fprintf(file, "%s`%s`", i ? ", " : "", row->names[i]);

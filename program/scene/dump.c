@@ -87,15 +87,6 @@ static void put_formats(FILE *file, OutputSet set) {
     fputc(']', file);
 }
 
-static void put_points(FILE *file, const ScenePoint *points, uint32_t count) {
-    fputc('[', file);
-    for (uint32_t i = 0; i < count; i++) {
-        fputs(i ? ", " : "", file);
-        put_numbers(file, points[i].position, 3, DIM_LENGTH);
-    }
-    fputc(']', file);
-}
-
 void dump_value(const SchemaRow *row, const void *object, FILE *file) {
     const void *field = dump_at(object, row->offset);
     switch (row->type) {
@@ -125,7 +116,16 @@ void dump_value(const SchemaRow *row, const void *object, FILE *file) {
         break;
     case ROW_FORMATS: put_formats(file, *(const OutputSet *)field); break;
     case ROW_PARAM: put_param(file, row, field, dump_at(object, row->extra)); break;
-    case ROW_POINTS: put_points(file, items_at(object, row), count_at(object, row)); break;
+    case ROW_POINTS: {
+        const ScenePoint *points = items_at(object, row);
+        fputc('[', file);
+        for (uint32_t i = 0; i < count_at(object, row); i++) {
+            fputs(i ? ", " : "", file);
+            put_numbers(file, points[i].position, 3, DIM_LENGTH);
+        }
+        fputc(']', file);
+        break;
+    }
     case ROW_INDICES: {
         const uint32_t *indices = items_at(object, row);
         for (uint32_t i = 0; i < count_at(object, row); i++) fprintf(file, "%s%" PRIu32, i ? ", " : "[", indices[i]);
