@@ -212,22 +212,20 @@ static void report_size(const Job *job, const SceneAssets *assets, double pictur
     fflush(stdout);
 }
 
-/// The needs are printed before anything is built, and again when meshes have been read.
-static ExitCode load_and_build(Job *job, Console *console, SingeSim **sim) {
-    const double pictures = pictures_available() ? scene_picture_memory(job->scene) : 0;
-    const bool unread = scene_size(job->scene, NULL).unread > 0;
-    report_size(job, NULL, pictures);
-    ExitCode code = job_load(job, console, pictures);
-    if (code) return code;
-    if (unread) report_size(job, &job->assets, pictures);
-    return job_build(job, console, sim);
-}
-
 static ExitCode check_scene(Console *console, const char *path, const SetList *sets, int threads) {
     Job job;
     SingeSim *sim = NULL;
     ExitCode code = job_read(&job, console, path, sets, threads);
-    if (!code) code = load_and_build(&job, console, &sim);
+
+    // the needs are printed before anything is built, and again when meshes have been read
+    if (!code) {
+        const double pictures = pictures_available() ? scene_picture_memory(job.scene) : 0;
+        const bool unread = scene_size(job.scene, NULL).unread > 0;
+        report_size(&job, NULL, pictures);
+        code = job_load(&job, console, pictures);
+        if (!code && unread) report_size(&job, &job.assets, pictures);
+        if (!code) code = job_build(&job, console, &sim);
+    }
     if (code) {
         job_close(&job);
         return code;

@@ -44,17 +44,6 @@ static void round_to_grid(float *values, size_t count, int finest, uint8_t *stre
     }
 }
 
-/// Shares of 0 to 1 in 16 bits, of which the last `spare` are 0 (1 has them all set).
-static void round_shares(const float *values, uint32_t count, int width, int spare, uint32_t stride, uint8_t *stream) {
-    const float steps = (float)(65536 >> spare);
-    for (uint32_t i = 0; i < count; i++)
-        for (int c = 0; c < width; c++) {
-            const long step = lrintf(values[i * (size_t)width + (size_t)c] * steps) << spare;
-            const uint16_t share = (uint16_t)(step < 0 ? 0 : step > 65535 ? 65535 : step);
-            memcpy(stream + i * (size_t)stride + 2 * (size_t)c, &share, 2);
-        }
-}
-
 uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, GlbRounding rounding, bool box) {
     static const char *const types[] = {[1] = "SCALAR", [2] = "VEC2", [3] = "VEC3"};
     float *values = (float *)(void *)(f->data.bytes + begin);
@@ -76,7 +65,12 @@ uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, Glb
     uint8_t *stream = f->scratch.bytes;
     if (corners) memcpy(stream, values, 4 * total);
     else if (rounding.kind == GLB_GRID) round_to_grid(values, total, rounding.bits, stream);
-    else if (rounding.kind == GLB_SHARE) round_shares(values, count, width, rounding.bits, stride, stream);
+    else if (rounding.kind == GLB_SHARE) // of 0 to 1 in 16 bits, of which the last ones are 0 (1 has them all set)
+        for (size_t i = 0; i < total; i++) {
+            const long step = lrintf(values[i] * (float)(65536 >> rounding.bits)) << rounding.bits;
+            const uint16_t share = (uint16_t)(step < 0 ? 0 : step > 65535 ? 65535 : step);
+            memcpy(stream + i / (size_t)width * stride + 2 * (i % (size_t)width), &share, 2);
+        }
     else
         for (uint32_t i = 0; i < count; i++) {
             const float direction[4] = {values[3 * i], values[3 * i + 1], values[3 * i + 2], 1};
