@@ -116,9 +116,9 @@ SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_velocity(SingeSim *sim, Sing
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_material(SingeSim *sim, SingeSheetId id,
                                                              const SingeMaterialDef *def, const float *share);
 
-/// One step of length time_step: heat, burn, ablate, dynamics, tears, gas. Allocates nothing. On failure the
-/// simulation is unchanged and the error names stage and element: SINGE_ERROR_DIVERGED, or
-/// SINGE_ERROR_STATE before the commit.
+/// One step of length time_step: heat, burn, ablate, dynamics, tears, gas. Allocates nothing, unless the lists of contact
+/// must grow. On failure the simulation is unchanged and the error names stage and element: SINGE_ERROR_DIVERGED,
+/// SINGE_ERROR_MEMORY if a list cannot grow, or SINGE_ERROR_STATE before the commit.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_step(SingeSim *sim);
 
 /// Makes as many steps as fit in `seconds` (0 to 1e6) plus the remainder of earlier calls. The rest, less than one
