@@ -242,7 +242,7 @@ class Delivery(Case):
 
     def test_glb(self):
         self.burn("o")
-        out, _ = self.singe("convert", self.path("o"), "--to", "glb", "--single")
+        out, _ = self.singe("convert", self.path("o"), "--to", "glb", "--single", "--plain")
         self.assertEqual(out.strip(), self.path("o", "burn.glb"))
         text, values = glb(self.path("o", "burn.glb"))
         self.assertEqual((len(text["meshes"]), len(text["nodes"])), (10, 10))
