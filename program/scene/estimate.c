@@ -7,8 +7,9 @@
 
 #include <math.h>
 
-/// Bytes of a cell with its springs and its share of the drawn mesh, and bytes added by contact.
-static const double cell_bytes = 3.6e3, contact_bytes = 6.9e3;
+/// Bytes of a cell with its springs and its share of the drawn mesh, and bytes added by contact: more than flat sheets
+/// need, as the lists of contact grow where sheets crowd.
+static const double cell_bytes = 3.6e3, contact_bytes = 3.2e3;
 /// Gas: bytes per cell, default and max number of cells, and the margin around and below the sheets, m.
 static const double gas_bytes = 160, gas_cells_usual = 200e3, gas_cells_max = 2e6, gas_margin = 0.045;
 /// Bytes per pixel: of the drawn picture, of a sheet's picture, of a parameter's texture while it is read, and of a

@@ -161,7 +161,7 @@ class Usage(Case):
             begun = time.monotonic()
             out, err = self.singe(*command, self.scene, "--set", cells + "[10000, 10000]", expect=2)
             self.assertLess(time.monotonic() - begun, 10)
-            self.assertRegex(err, r"tiny.yaml:6:5: error: the scene needs about 10\d\d\.\d GB of memory, and there are")
+            self.assertRegex(err, r"tiny.yaml:6:5: error: the scene needs about 6\d\d\.\d GB of memory, and there are")
         self.assertFalse(os.path.exists(self.path("large")))
         with open(self.path("two.obj"), "w") as file:
             file.write("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
@@ -183,7 +183,7 @@ class Usage(Case):
                 _, err = self.singe(*command, heights, expect=2, preexec_fn=limited)
                 self.assertRegex(err, r"heights.yaml:\d+:\d+: error: .* and there are 4.3 GB: give its heightfield")
             for command in ["check"], ["run", "-o", self.path("large")]:
-                _, err = self.singe(*command, self.scene, "--set", cells + "[700, 700]", expect=2, preexec_fn=limited)
+                _, err = self.singe(*command, self.scene, "--set", cells + "[900, 900]", expect=2, preexec_fn=limited)
                 self.assertIn("and there are 4.3 GB", err)
 
     @unittest.skipUnless(HAS_PREVIEW and not SANITIZED, "measures pictures")
