@@ -117,7 +117,7 @@ class Fit(Case):
 
     def test_a_killed_fit_goes_on(self):
         speed = float(self.truth()["front_speed"])
-        plan = f"scene: tiny.yaml\ntarget: {{front_speed: {speed}}}\nevaluations: 7\n{RANGE}"
+        plan = f"scene: tiny.yaml\ntarget: {{front_speed: {speed}}}\nevaluations: 9\n{RANGE}"
         whole, _ = self.fit(plan, out="whole")
         for stop in signal.SIGKILL, signal.SIGINT:
             before = len(self.lines())

@@ -223,7 +223,7 @@ static unsigned put_kind(Draw *draw, const Schema *schema) {
     if (!row || !schema->kind_offset) return ~0u;
     while (row->names[count]) count++;
     do kind = pick(draw, count);
-    while (needs_file(schema, 1u << kind));
+    while (!row->names[kind][0] || needs_file(schema, 1u << kind)); // kinds for programs have no name here
     put_key(draw, "kind");
     printf("\"%s\"", row->names[kind]);
     return 1u << kind;
@@ -239,6 +239,7 @@ static void put_map(Draw *draw, const Schema *schema, void *object) {
         const SchemaRow *row = &schema->rows[i];
         if (!row_allowed(row, kind) || (kind != ~0u && strcmp(row->key, "kind") == 0)) continue;
         if (path && (row->type == ROW_LIST || row->type == ROW_ROTATION)) continue; // a place, or a path
+        if (row->sub && needs_file(row->sub, ~0u)) continue;
         if (!is_drawn(draw, schema, row)) continue;
         put_key(draw, row->key);
         put_value(draw, schema, row, object);
