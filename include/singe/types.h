@@ -70,8 +70,8 @@ typedef enum SingeSourceKind {
     SINGE_SOURCE_TEXTURE = 1,  ///< a flux drawn on the sheet: over uv, black none, white full
     SINGE_SOURCE_SPOT = 2,     ///< a hot ball that stands still
     SINGE_SOURCE_CALLBACK = 3, ///< a function of the caller
-    SINGE_SOURCE_ARRIVAL = 4,  ///< a map drawn on the sheet of when the fire's front is where
-    SINGE_SOURCE_WATER = 5,    ///< water that wets the sheet, by a picture
+    SINGE_SOURCE_ARRIVAL = 4,  ///< a picture of when the front arrives where
+    SINGE_SOURCE_WATER = 5,    ///< a picture of where the sheet is wetted
 } SingeSourceKind;
 
 struct SingeView;
@@ -92,7 +92,7 @@ typedef void SingeFluxFn(void *context, const struct SingeView *view, float *flu
 typedef struct SingeSourceDef {
     size_t struct_size;
     /// ball: a hot ball on a path; spot: a hot ball that stands still; texture: a flux drawn on the sheet; arrival: a
-    /// map drawn on the sheet of when the fire's front is where; water: water that wets the sheet, by a picture
+    /// picture of when the front arrives where; water: a picture of where the sheet is wetted
     SingeSourceKind kind;
     float start;       ///< s, any, also infinite; time at which it starts
     float end;         ///< s, any, also infinite; time at which it ends; inf: never
@@ -115,13 +115,12 @@ typedef struct SingeSourceDef {
     void *callback_context;        ///< its first argument
     float position[3];             ///< m, of a ball or spot without a path
     void *user_data;               ///< for the caller's use; see singe_sim_source_user_data
-    float arrival_from;            ///< s, arrival, 0 to 1e9; when the front is where the map is black
-    float arrival_to; ///< s, arrival, 0 to 1e9; when it is where the map is white; pure white never ignites
-    /// s, arrival, 1e-3 to 1e6; the sheet is scorched this long before the front arrives; longer makes a wider brown
-    /// rim
+    float arrival_from;            ///< s, arrival, 0 to 1e9; when the front arrives where the map is black
+    float arrival_to; ///< s, arrival, 0 to 1e9; when it arrives where the map is white; pure white never ignites
+    /// s, arrival, 1e-3 to 1e6; how long before the front the sheet begins to scorch; longer makes a wider brown rim
     float lead;
-    /// kg/(m2 s), water, 0 to 1e6; water that falls where the picture is white, of the air's temperature. It needs a
-    /// sheet whose moisture is above 0, which then holds at most three times its own mass
+    /// kg/(m2 s), water, 0 to 1e6; water that falls where the picture is white, at the air's temperature. It needs a
+    /// sheet with moisture above 0, which holds at most three times its own mass
     float wetting;
 } SingeSourceDef;
 

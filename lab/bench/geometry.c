@@ -121,3 +121,27 @@ void geometry_point(const SingeView *view, int cells, double u, double v, double
         for (int c = 0; c < 4; c++) point[axis] += weights[c] * (double)view->position[corners[c]][axis];
     }
 }
+
+double geometry_curvatures(const SingeView *view, double x, double y, double radius, double principal[2]) {
+    double c[6], m[6][7] = {{0}};
+    for (uint32_t v = 0; v < view->vertex_count; v++) {
+        const float *at = view->position[v], *rest = view->rest_position[v];
+        if (hypot((double)rest[0] - x, (double)rest[1] - y) > radius) continue;
+        const double u = (double)at[0], w = (double)at[1], f[7] = {1, u, w, u * u, u * w, w * w, (double)at[2]};
+        for (int i = 0; i < 6; i++)
+            for (int j = 0; j < 7; j++) m[i][j] += f[i] * f[j];
+    }
+
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < 6; k++) {
+            if (k == i) continue;
+            const double factor = m[k][i] / m[i][i];
+            for (int j = i; j < 7; j++) m[k][j] -= factor * m[i][j];
+        }
+    for (int i = 0; i < 6; i++) c[i] = m[i][6] / m[i][i];
+
+    const double mean = c[3] + c[5], half = hypot(c[3] - c[5], c[4]), sign = mean < 0 ? -1 : 1;
+    principal[0] = fabs(mean) + half;
+    principal[1] = fabs(mean) - half;
+    return fmod(0.5 * atan2(sign * c[4], sign * (c[3] - c[5])) + acos(-1), acos(-1));
+}

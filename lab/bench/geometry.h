@@ -26,6 +26,11 @@ double geometry_inverted(const SingeView *view);
 /// it at rest.
 double geometry_reach(const SingeView *view, const float *position);
 
+/// The surface z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 through the vertices that lie within `radius` of a point at
+/// rest, in least squares: its curvatures, 1/m, in `principal` with that of the larger size first, positive where both bend
+/// to one side. Returns the angle to x of the direction that rolls up, rad, from 0 to pi.
+double geometry_curvatures(const SingeView *view, double x, double y, double radius, double principal[2]);
+
 /// The sheet's point at (u, v) in [0, 1] of the square, bilinear between vertices.
 void geometry_point(const SingeView *view, int cells, double u, double v, double *point);
 

@@ -18,6 +18,7 @@
 
 #include "analysis/turned_grid.h"
 #include "bench/bench.h"
+#include "bench/geometry.h"
 #include "bench/hung_sheet.h"
 
 static const double pi = 3.14159265358979323846;
@@ -158,29 +159,8 @@ static SingeResult disc_roll(const Plate *plate, double curvature[2], double *ro
     if (!result) result = plate_run(sim, 2);
     if (result) return fail(sim, &mesh, result, error);
 
-    // z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 over the inner part of the disc
     const SingeView view = singe_sim_view(sim);
-    double c[6], m[6][7] = {{0}};
-    for (uint32_t v = 0; v < view.vertex_count; v++) {
-        const double x = (double)view.position[v][0], y = (double)view.position[v][1];
-        if (hypot((double)view.rest_position[v][0], (double)view.rest_position[v][1]) > 0.3 * disc_diameter) continue;
-        const double f[7] = {1, x, y, x * x, x * y, y * y, (double)view.position[v][2]};
-        for (int i = 0; i < 6; i++)
-            for (int j = 0; j < 7; j++) m[i][j] += f[i] * f[j];
-    }
-
-    for (int i = 0; i < 6; i++)
-        for (int k = 0; k < 6; k++) {
-            if (k == i) continue;
-            const double factor = m[k][i] / m[i][i];
-            for (int j = i; j < 7; j++) m[k][j] -= factor * m[i][j];
-        }
-    for (int i = 0; i < 6; i++) c[i] = m[i][6] / m[i][i];
-
-    const double mean = c[3] + c[5], half = hypot(c[3] - c[5], c[4]), sign = mean < 0 ? -1 : 1;
-    curvature[0] = fabs(mean) + half;
-    curvature[1] = fabs(mean) - half;
-    *rolls = fmod(0.5 * atan2(sign * c[4], sign * (c[3] - c[5])) * 180 / pi + 180, 180);
+    *rolls = geometry_curvatures(&view, 0, 0, 0.3 * disc_diameter, curvature) * 180 / pi;
     return fail(sim, &mesh, result, error);
 }
 

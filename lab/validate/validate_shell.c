@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "bench/geometry.h"
 #include "validate/validate.h"
 
 // ---- a clamped strip: w = rho g l^4/(8 D) + rho g l^2/(2 S)
@@ -116,32 +117,8 @@ static SingeResult disc_bend(Lab *lab, double shrink, int cells, bool isotropic,
     result = lab_steps(sim, lab->quick ? 960 : 1920, error);
     if (!result) {
         SingeView view = singe_sim_view(sim);
-        double c[6];
-
-        // solves the normal equations of z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 over the inner half of the
-        // disc
-        double m[6][7] = {{0}};
-        for (uint32_t v = 0; v < view.vertex_count; v++) {
-            double x = (double)view.position[v][0], y = (double)view.position[v][1];
-            if (hypot((double)view.rest_position[v][0] - disc_radius, (double)view.rest_position[v][1] - disc_radius) >
-                0.6 * disc_radius)
-                continue;
-            const double f[7] = {1, x, y, x * x, x * y, y * y, (double)view.position[v][2]};
-            for (int i = 0; i < 6; i++)
-                for (int j = 0; j < 7; j++) m[i][j] += f[i] * f[j];
-        }
-
-        for (int i = 0; i < 6; i++)
-            for (int k = 0; k < 6; k++) {
-                if (k == i) continue;
-                double factor = m[k][i] / m[i][i];
-                for (int j = i; j < 7; j++) m[k][j] -= factor * m[i][j];
-            }
-        for (int i = 0; i < 6; i++) c[i] = m[i][6] / m[i][i];
-
-        double mean = c[3] + c[5], half = hypot(c[3] - c[5], c[4]);
-        principal[0] = fabs(mean) + half, principal[1] = fabs(mean) - half;
-        *angle = fmod(fabs(0.5 * atan2(c[4], c[3] - c[5])) * 180 / acos(-1), 90);
+        const double rolls = geometry_curvatures(&view, disc_radius, disc_radius, 0.6 * disc_radius, principal);
+        *angle = fmod(rolls * 180 / acos(-1), 90); // which layer is inside does not matter
         if (*angle > 45) *angle = 90 - *angle;
     }
 

@@ -296,22 +296,24 @@ bool collision_grow_repulsions(Memory *memory, CollisionPlan *plan, uint64_t wan
     return true;
 }
 
-bool collision_grow_entries(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
-    const uint32_t before = plan->entry_capacity, after = with_margin(wanted, plan->sizes.entry_max);
-    const Room room = {&plan->entries, before, after, sizeof *plan->entries};
-    if (wanted <= before) return true;
+/// The list at `at`, of elements of `size` bytes.
+static bool grow_entry_list(Memory *memory, const CollisionPlan *plan, void *at, size_t size, uint32_t *capacity,
+                            uint64_t wanted) {
+    const uint32_t after = with_margin(wanted, plan->sizes.entry_max);
+    const Room room = {at, *capacity, after, size};
+    if (wanted <= *capacity) return true;
     if (!grow_rooms(memory, &room, 1)) return false;
-    plan->entry_capacity = after;
+    *capacity = after;
     return true;
 }
 
+bool collision_grow_entries(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
+    return grow_entry_list(memory, plan, &plan->entries, sizeof *plan->entries, &plan->entry_capacity, wanted);
+}
+
 bool collision_grow_outside(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
-    const uint32_t before = plan->outside_capacity, after = with_margin(wanted, plan->sizes.entry_max);
-    const Room room = {&plan->outside_entries, before, after, sizeof *plan->outside_entries};
-    if (wanted <= before) return true;
-    if (!grow_rooms(memory, &room, 1)) return false;
-    plan->outside_capacity = after;
-    return true;
+    return grow_entry_list(memory, plan, &plan->outside_entries, sizeof *plan->outside_entries, &plan->outside_capacity,
+                           wanted);
 }
 
 // ---- invariants, for assertions and tests

@@ -32,9 +32,6 @@
 /// a above, of red springs.
 static const float COUPLING = 2.5f;
 
-/// The same under twist.
-static const float TWIST = 0;
-
 /// D66 is to be so many times what isotropy asks for (measured, `singe bench plate`): vertices at a border have no braces.
 static const double TWIST_MORE = 1.1;
 
@@ -66,7 +63,7 @@ void stiffness_begin(const Shell *shell, SingeColour colour, float h, const Sing
                              .colour = colour,
                              .isotropic = solver->isotropic && solver->method == SINGE_SOLVER_STRAND,
                              .softness = softness * h * h,
-                             .red_softness = {(COUPLING + red) * h * h, (TWIST + red) * h * h},
+                             .red_softness = {(COUPLING + red) * h * h, red * h * h},
                              .sheet = UINT32_MAX};
 }
 

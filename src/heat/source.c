@@ -99,10 +99,6 @@ static bool source_has_path(const SingeSourceDef *def) {
     return def_has_value("SingeSourceKind", (int)def->kind) && source_kinds[def->kind].has_path;
 }
 
-static bool source_is_drawn(const SingeSourceDef *def) {
-    return def->kind == SINGE_SOURCE_TEXTURE || def->kind == SINGE_SOURCE_ARRIVAL || def->kind == SINGE_SOURCE_WATER;
-}
-
 static size_t texture_size(const SingeTexture *texture) { return (size_t)texture->width * (size_t)texture->height; }
 
 static SingeResult source_no_memory(SingeError *error) {

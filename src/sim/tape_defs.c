@@ -263,8 +263,7 @@ void tape_source_def(Tape *tape, const SingeSourceDef *given, SingeSourceDef *de
     TAPE_GIVEN(tape, given, def, singe_default_source);
     tape_table(tape, &source_table, def);
     tape_data(tape, def->position, 3, sizeof(float));
-    const bool textured =
-        def->kind == SINGE_SOURCE_TEXTURE || def->kind == SINGE_SOURCE_ARRIVAL || def->kind == SINGE_SOURCE_WATER;
+    const bool textured = source_is_drawn(def);
     if (textured) def->path = NULL; // nobody reads it
     else def->strength = NULL;
     tape_array(tape, &def->path, 8 * (uint64_t)def->path_count, sizeof(float));

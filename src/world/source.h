@@ -27,6 +27,11 @@ typedef struct SourceList {
     Source *items;
 } SourceList;
 
+/// Whether its kind has a picture over uv.
+static inline bool source_is_drawn(const SingeSourceDef *def) {
+    return def->kind == SINGE_SOURCE_TEXTURE || def->kind == SINGE_SOURCE_ARRIVAL || def->kind == SINGE_SOURCE_WATER;
+}
+
 /// Whether a slot holds a source that is lit at this time.
 static inline bool source_is_lit(const Source *source, double time) {
     return source->generation && time >= source->def.start && time < source->def.end;

@@ -20,7 +20,7 @@ export interface SheetOptions {
 
 export interface SourceOptions {
     /** ball: a hot ball on a path; spot: a hot ball that stands still; texture: a flux drawn on the sheet; arrival:
-     *  a map drawn on the sheet of when the fire's front is where; water: water that wets the sheet, by a picture */
+     *  a picture of when the front arrives where; water: a picture of where the sheet is wetted */
     kind?: "ball" | "texture" | "spot" | "arrival" | "water";
     /** s, any, also infinite; time at which it starts */
     start?: number;
@@ -40,15 +40,15 @@ export interface SourceOptions {
     /** W/m2, texture, finite; into each of the sheet's two layers where the texture is white; times texture and
      *  strength at most 1e15 W/m2. Below 0 it cools, but not below 1 K */
     flux?: number;
-    /** s, arrival, 0 to 1e9; when the front is where the map is black */
+    /** s, arrival, 0 to 1e9; when the front arrives where the map is black */
     arrival_from?: number;
-    /** s, arrival, 0 to 1e9; when it is where the map is white; pure white never ignites */
+    /** s, arrival, 0 to 1e9; when it arrives where the map is white; pure white never ignites */
     arrival_to?: number;
-    /** s, arrival, 1e-3 to 1e6; the sheet is scorched this long before the front arrives; longer makes a wider
-     *  brown rim */
+    /** s, arrival, 1e-3 to 1e6; how long before the front the sheet begins to scorch; longer makes a wider brown
+     *  rim */
     lead?: number;
-    /** kg/(m2 s), water, 0 to 1e6; water that falls where the picture is white, of the air's temperature. It needs
-     *  a sheet whose moisture is above 0, which then holds at most three times its own mass */
+    /** kg/(m2 s), water, 0 to 1e6; water that falls where the picture is white, at the air's temperature. It needs
+     *  a sheet with moisture above 0, which holds at most three times its own mass */
     wetting?: number;
 }
 
