@@ -15,7 +15,7 @@ HOURS ?= 1
 MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 .PHONY: all web-package build build-asan build-fuzz build-shared build-tsan configure demo test check check-examples gate \
-        check-clients check-blender check-farm check-packages check-platforms web web-serve check-web check-web-core torture mutations coverage fuzz-long soak pictures clean
+        site check-clients check-blender check-farm check-packages check-platforms web web-serve check-web check-web-core torture mutations coverage fuzz-long soak pictures clean
 
 all: build
 
@@ -118,6 +118,19 @@ check-web: web
 	cmake --preset release
 	cmake --build --preset release --target singe_program
 	cd web && npm test
+
+# the documentation as a site in build/site/html, with references made from the headers and the docstrings: needs doxygen;
+# Sphinx is installed into build/site. Warnings and dead links are errors. Where `make web` was run, its page is inside
+site:
+	cmake --preset release
+	cmake --build --preset release --target singe_python
+	[ -x build/site/venv/bin/sphinx-build ] || python3 -m venv build/site/venv
+	build/site/venv/bin/pip install --quiet --disable-pip-version-check --require-hashes -r tests/locks/site.txt
+	mkdir -p build/site/doxygen
+	doxygen docs/site/Doxyfile
+	SINGE_LIBRARY=$(CURDIR)/build/python/singe/libsinge.so build/site/venv/bin/sphinx-build --quiet --fail-on-warning \
+	    -c docs/site -d build/site/doctrees . build/site/html
+	docs/site/check.py build/site/html
 
 # tests the package in node; its burn must have the bytes of the native library
 check-web-core: web-package

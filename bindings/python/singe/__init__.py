@@ -1,4 +1,4 @@
-"""Singe burns cloth and paper.
+"""Singe burns cloth and paper::
 
     import singe
     sim = singe.Sim(pace=5)
