@@ -20,6 +20,7 @@ typedef struct Page {
     const char *title, *lead; ///< of the report
     /// Items (the list ends with NULL) that run one by one after the others: they measure time, or need others' measures
     const char *const *alone;
+    ReportGradeFn *grade; ///< NULL: its measures have none
 } Page;
 
 /// Reads a command line and runs items into a report: all, or the one named by an operand (or `all`) or --only. Items

@@ -23,12 +23,6 @@ static double pixel(const Axis *axis, double value) {
 
 static double line_x(const PlotLine *line, int i) { return line->x ? line->x[i] : i; }
 
-/// 1, 2 or 5 times a power of ten that divides a span into about `parts`.
-static double round_step(double span, int parts) {
-    double raw = span / parts, power = pow(10, floor(log10(raw))), f = raw / power;
-    return power * (f < 1.5 ? 1 : f < 3.5 ? 2 : f < 7.5 ? 5 : 10);
-}
-
 static Axis axis_fit(const Plot *plot, bool vertical) {
     Axis axis = {.log = vertical ? plot->log_y : plot->log_x, .low = INFINITY, .high = -INFINITY};
     for (int l = 0; l < plot->line_count; l++)
@@ -53,7 +47,9 @@ static Axis axis_fit(const Plot *plot, bool vertical) {
         axis.high = fmax(ceil(axis.high - 1e-9), axis.low + 1);
         axis.step = fmax(1, ceil((axis.high - axis.low) / 8));
     } else {
-        axis.step = round_step(axis.high - axis.low, 6);
+        // 1, 2 or 5 times a power of ten that divides the span into about six
+        const double raw = (axis.high - axis.low) / 6, power = pow(10, floor(log10(raw))), f = raw / power;
+        axis.step = power * (f < 1.5 ? 1 : f < 3.5 ? 2 : f < 7.5 ? 5 : 10);
         if (vertical) {
             axis.low = axis.step * floor(axis.low / axis.step + 1e-9);
             axis.high = axis.step * ceil(axis.high / axis.step - 1e-9);

@@ -27,13 +27,14 @@ static const char *const block_ends[] = {[BLOCK_NONE] = "",
 typedef struct Taken {
     char *item, *name;
     double value;
-    bool holds;
+    ReportVerdict verdict;
 } Taken;
 
 struct ReportPage {
     char *folder;
+    ReportGradeFn *grade; ///< or NULL
     Draft text, index, csv, json;
-    int measures, failed;
+    int measures, failed, missing;
     Taken *taken;       ///< [measures]
     SingeResult result; ///< the first failure
     SingeError error;
@@ -42,9 +43,10 @@ struct ReportPage {
 struct Report {
     const ReportPage *page;
     Draft body, csv, json, echo; ///< `echo` has no file if lines are printed at once
+    Draft table;                 ///< rows of the last table
     Block block;
     char *name, *heading;
-    int pictures, measures, failed;
+    int pictures, measures, failed, missing;
     Taken *taken;       ///< [measures]
     SingeResult result; ///< the first failure
     SingeError error;
@@ -72,7 +74,8 @@ static void draft_free(Draft *draft) {
     *draft = (Draft){0};
 }
 
-ReportPage *report_page_open(const char *folder, const char *title, const char *lead, SingeError *error) {
+ReportPage *report_page_open(const char *folder, const char *title, const char *lead, ReportGradeFn *grade,
+                             SingeError *error) {
     if (folder_make(folder, error)) return NULL;
     ReportPage *page = calloc(1, sizeof *page);
     if (!page || !draft_open(&page->text) || !draft_open(&page->index) || !draft_open(&page->csv) ||
@@ -84,12 +87,13 @@ ReportPage *report_page_open(const char *folder, const char *title, const char *
     }
 
     page->folder = text_format("%s", folder);
+    page->grade = grade;
     fprintf(page->index.file,
             "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>%s</title>\n"
             "<meta name=\"viewport\" content=\"width=device-width\">\n<style>%s</style></head>\n<body>\n<h1>%s</h1>\n"
             "<p>%s</p>\n<div class=\"wide\"><table><tr><th>item</th><th>measures</th><th>verdict</th></tr>\n",
             title, style, title, lead);
-    fprintf(page->csv.file, "item,measure,value,low,high,verdict,what,bad,bad_what\n");
+    fprintf(page->csv.file, "item,measure,value,low,high,verdict,what,bad,bad_what%s\n", grade ? ",grade" : "");
     fprintf(page->json.file, "{\"title\": ");
     text_json_string(page->json.file, title);
     fprintf(page->json.file, ",\n \"measures\": [");
@@ -101,7 +105,8 @@ const char *report_folder(const Report *report) { return report->page->folder; }
 static FILE *echo_file(const Report *report) { return report->echo.file ? report->echo.file : stdout; }
 
 static void report_free(Report *report) {
-    draft_free(&report->body), draft_free(&report->csv), draft_free(&report->json), draft_free(&report->echo);
+    Draft *drafts[] = {&report->body, &report->csv, &report->json, &report->table, &report->echo};
+    for (int i = 0; i < 5; i++) draft_free(drafts[i]);
     free(report->taken);
     free(report->name), free(report->heading);
     free(report);
@@ -111,7 +116,7 @@ Report *report_begin(const ReportPage *page, const char *name, const char *headi
     Report *report = calloc(1, sizeof *report);
     if (!report) return NULL;
     if (!draft_open(&report->body) || !draft_open(&report->csv) || !draft_open(&report->json) ||
-        (!echo && !draft_open(&report->echo))) {
+        !draft_open(&report->table) || (!echo && !draft_open(&report->echo))) {
         report_free(report);
         return NULL;
     }
@@ -155,11 +160,12 @@ static void echo(FILE *file, const char *text) {
 }
 
 static void row(Report *report, const char *text, const char *tag) {
-    FILE *file = body(report, BLOCK_TABLE);
+    FILE *file = body(report, BLOCK_TABLE), *table = report->table.file;
     echo(echo_file(report), text);
     fputs("<tr>", file);
     for (;; text++) {
         int length = (int)strcspn(text, "|");
+        fprintf(table, "\"%.*s\"%c", length, text, text[length] ? ',' : '\n');
 
         // a cell may have no number, or a range of none: "nan", "+nan", "nan to nan"
         const char *digits = text + (strspn(text, "+-") < (size_t)length ? strspn(text, "+-") : 0);
@@ -174,6 +180,7 @@ static void row(Report *report, const char *text, const char *tag) {
 
 void report_heads(Report *report, const char *heads) {
     body(report, BLOCK_NONE);
+    rewind(report->table.file);
     fputs("<div class=\"wide\"><table>\n", report->body.file);
     row(report, heads, "th");
 }
@@ -185,6 +192,15 @@ void report_row(Report *report, const char *format, ...) {
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
     row(report, text, "td");
+}
+
+SingeResult report_table(Report *report, const char *name, SingeError *error) {
+    char *path = text_format("%s/%s.csv", report_folder(report), name);
+    const bool good = fflush(report->table.file) == 0;
+    SingeResult result = good ? file_write(path, report->table.text, report->table.size, error) : SINGE_ERROR_MEMORY;
+    if (!good) *error = (SingeError){.code = result, .element = -1};
+    free(path);
+    return result;
 }
 
 void report_pictures(Report *report, int columns) {
@@ -221,34 +237,49 @@ static void print_bar(FILE *file, double low, double high, const char *min, cons
 
 static bool within(double value, double low, double high) { return value >= low && value <= high; }
 
+/// What is printed of a verdict, written to the data, and its colour.
+static const char *const verdict_words[][3] = {[REPORT_HOLDS] = {"holds", "holds", "good"},
+                                               [REPORT_MISSES] = {"MISSES, as known", "misses", "bad"},
+                                               [REPORT_FAILS] = {"FAILS", "fails", "bad"}};
+
 void report_bar(Report *report, const ReportBar *bar) {
+    const bool graded = report->page->grade;
+    const ReportGrade grade = graded ? report->page->grade(report->name, bar->name) : (ReportGrade){0};
     const bool blind = bar->bad_what && within(bar->bad, bar->low, bar->high);
-    const bool holds = within(bar->value, bar->low, bar->high) && !blind;
-    const char *verdict = blind ? "BAR TELLS NOTHING" : holds ? "holds" : "FAILS";
+    const bool good = within(bar->value, bar->low, bar->high) && !blind;
+    const ReportVerdict verdict =
+        good != grade.misses && (grade.word || !graded) ? (good ? REPORT_HOLDS : REPORT_MISSES) : REPORT_FAILS;
+    const char *const *words = verdict_words[verdict];
+    const char *said = blind                   ? "BAR TELLS NOTHING"
+                       : graded && !grade.word ? "FAILS: it has no grade"
+                       : good && grade.misses  ? "FAILS: it holds, and is graded as one that misses"
+                                               : words[0];
 
     if (report->block != BLOCK_MEASURES)
-        fputs("<div class=\"wide\"><table><tr><th>measure</th><th>is</th><th>bar</th><th></th><th>a case that fails "
-              "it</th></tr>\n",
-              body(report, BLOCK_MEASURES));
+        fprintf(body(report, BLOCK_MEASURES),
+                "<div class=\"wide\"><table><tr><th>measure</th><th>is</th><th>bar</th><th></th><th>%s</th></tr>\n",
+                graded ? "grade" : "a case that fails it");
     FILE *file = body(report, BLOCK_MEASURES);
     fprintf(file, "<tr><td>%s</td><td>%.4g</td><td>", bar->what, bar->value);
     print_bar(file, bar->low, bar->high, "&ge; %.4g", "&le; %.4g", "%.4g to %.4g");
-    fprintf(file, "</td><td class=\"%s\">%s</td><td>", holds ? "good" : "bad", holds ? "holds" : "fails");
+    fprintf(file, "</td><td class=\"%s\">%s</td><td>%s", words[2], words[1], grade.word ? grade.word : "");
     if (bar->bad_what) fprintf(file, "%.4g: %s", bar->bad, bar->bad_what);
     fprintf(file, "</td></tr>\n");
     FILE *echo = echo_file(report);
     fprintf(echo, "  %-26s %11.4g  ", bar->name, bar->value);
     print_bar(echo, bar->low, bar->high, "at least %.4g", "at most %.4g", "%.4g to %.4g");
-    fprintf(echo, "  %s", verdict);
+    fprintf(echo, "  %s", said);
+    if (grade.word) fprintf(echo, "; %s", grade.word);
     if (bar->bad_what) fprintf(echo, "; not %.4g (%s)", bar->bad, bar->bad_what);
     fprintf(echo, "\n");
     fflush(echo);
 
     FILE *csv = report->csv.file;
-    fprintf(csv, "%s,%s,%.9g,%.9g,%.9g,%s,\"%s\",", report->name, bar->name, bar->value, bar->low, bar->high,
-            holds ? "holds" : "fails", bar->what);
-    if (bar->bad_what) fprintf(csv, "%.9g,\"%s\"\n", bar->bad, bar->bad_what);
-    else fprintf(csv, ",\n");
+    fprintf(csv, "%s,%s,%.9g,%.9g,%.9g,%s,\"%s\",", report->name, bar->name, bar->value, bar->low, bar->high, words[1],
+            bar->what);
+    if (bar->bad_what) fprintf(csv, "%.9g,\"%s\"", bar->bad, bar->bad_what);
+    else fprintf(csv, ",");
+    fprintf(csv, "%s%s\n", graded ? "," : "", grade.word ? grade.word : "");
 
     FILE *json = report->json.file;
     fprintf(json, "%s\n  {\"item\": \"%s\", \"measure\": \"%s\", \"value\": ", report->measures ? "," : "",
@@ -258,7 +289,7 @@ void report_bar(Report *report, const ReportBar *bar) {
     text_json_number(json, bar->low);
     fprintf(json, ", \"high\": ");
     text_json_number(json, bar->high);
-    fprintf(json, ", \"holds\": %s, \"what\": ", holds ? "true" : "false");
+    fprintf(json, ", \"holds\": %s, \"what\": ", verdict == REPORT_HOLDS ? "true" : "false");
     text_json_string(json, bar->what);
     if (bar->bad_what) {
         fprintf(json, ", \"bad\": ");
@@ -266,6 +297,8 @@ void report_bar(Report *report, const ReportBar *bar) {
         fprintf(json, ", \"bad_what\": ");
         text_json_string(json, bar->bad_what);
     }
+    if (grade.word)
+        fprintf(json, ", \"grade\": \"%s\", \"known_to_miss\": %s", grade.word, grade.misses ? "true" : "false");
 
     fputc('}', json);
 
@@ -273,13 +306,14 @@ void report_bar(Report *report, const ReportBar *bar) {
     if (larger) {
         report->taken = larger;
         larger[report->measures] =
-            (Taken){text_format("%s", report->name), text_format("%s", bar->name), bar->value, holds};
+            (Taken){text_format("%s", report->name), text_format("%s", bar->name), bar->value, verdict};
         report->measures++;
     } else {
         report->result = SINGE_ERROR_MEMORY;
     }
 
-    if (!holds) report->failed++;
+    report->failed += verdict == REPORT_FAILS;
+    report->missing += verdict == REPORT_MISSES;
 }
 
 void report_measure(Report *report, const char *name, const char *what, double value, double low, double high) {
@@ -291,14 +325,17 @@ ReportVerdict report_find(const Report *report, const char *item, const char *na
         const Taken *taken = &report->page->taken[i];
         if (strcmp(taken->item, item) || strcmp(taken->name, name)) continue;
         *value = taken->value;
-        return taken->holds ? REPORT_HOLDS : REPORT_FAILS;
+        return taken->verdict;
     }
 
     return REPORT_UNKNOWN;
 }
 
 void report_end(ReportPage *page, Report *report) {
-    const char *class = report->failed ? "bad" : "good", *verdict = report->failed ? "fails" : "holds";
+    const char *const *words = verdict_words[report->failed    ? REPORT_FAILS
+                                             : report->missing ? REPORT_MISSES
+                                                               : REPORT_HOLDS];
+    const char *class = words[2], *verdict = words[1];
     Draft *drafts[] = {&report->body, &report->csv, &report->json, &report->echo};
     bool good = true;
     body(report, BLOCK_NONE);
@@ -313,7 +350,8 @@ void report_end(ReportPage *page, Report *report) {
         fprintf(page->text.file, "<h2 id=\"%s\">%s<span class=\"tag %s\">%s</span></h2>\n%s", report->name,
                 report->heading, class, verdict, report->body.text);
         fprintf(page->index.file, "<tr><td><a href=\"#%s\">%s</a></td><td>%d of %d</td><td class=\"%s\">%s</td></tr>\n",
-                report->name, report->heading, report->measures - report->failed, report->measures, class, verdict);
+                report->name, report->heading, report->measures - report->failed - report->missing, report->measures,
+                class, verdict);
         fputs(report->csv.text, page->csv.file);
         fprintf(page->json.file, "%s%s", page->measures && report->measures ? "," : "", report->json.text);
     } else {
@@ -331,6 +369,7 @@ void report_end(ReportPage *page, Report *report) {
     }
 
     page->failed += report->failed;
+    page->missing += report->missing;
     if (report->result && !page->result) {
         page->result = report->result;
         page->error = report->error;
@@ -351,15 +390,16 @@ static SingeResult write_draft(const ReportPage *page, const char *name, Draft *
     return result;
 }
 
-SingeResult report_page_close(ReportPage *page, int *failed, SingeError *error) {
+SingeResult report_page_close(ReportPage *page, int *failed, int *missing, SingeError *error) {
     *failed = page->failed;
+    *missing = page->missing;
     fprintf(page->text.file, "</body></html>\n");
     fflush(page->text.file);
     fprintf(page->index.file,
             "</table></div>\n<p>%d of %d measures hold. As data: <a href=\"measures.csv\">"
             "measures.csv</a>, <a href=\"measures.json\">measures.json</a>.</p>\n",
-            page->measures - page->failed, page->measures);
-    fprintf(page->json.file, "\n ],\n \"failed\": %d}\n", page->failed);
+            page->measures - page->failed - page->missing, page->measures);
+    fprintf(page->json.file, "\n ],\n \"failed\": %d, \"missing\": %d}\n", page->failed, page->missing);
     SingeResult result = page->result;
     if (result) {
         *error = page->error;

@@ -16,8 +16,17 @@
 typedef struct ReportPage ReportPage;
 typedef struct Report Report;
 
-/// Creates the folder. NULL on failure, with *error filled.
-ReportPage *report_page_open(const char *folder, const char *title, const char *lead, SingeError *error);
+/// What a measure is worth: in a word, for its table, and whether it is known to miss its bar. Such a miss is printed and
+/// counted, and is no failure; that it holds is one, as then its grade is out of date.
+typedef struct ReportGrade {
+    const char *word; ///< NULL: it has none, and fails
+    bool misses;
+} ReportGrade;
+typedef ReportGrade ReportGradeFn(const char *item, const char *measure);
+
+/// Creates the folder. `grade` may be NULL: measures have no grades. NULL on failure, with *error filled.
+ReportPage *report_page_open(const char *folder, const char *title, const char *lead, ReportGradeFn *grade,
+                             SingeError *error);
 
 /// Begins an item. `name` prefixes its pictures and measures. Tables and measures are also printed: at once if `echo`
 /// is set, else by report_end. NULL when out of memory. May be called by any thread.
@@ -32,6 +41,9 @@ void report_text(Report *report, const char *format, ...) SINGE_PRINTF(2, 3);
 /// A table's headings and rows, their cells divided by '|'.
 void report_heads(Report *report, const char *heads);
 void report_row(Report *report, const char *format, ...) SINGE_PRINTF(2, 3);
+
+/// Writes the last table, complete, to the file NAME.csv beside the page.
+SINGE_NODISCARD SingeResult report_table(Report *report, const char *name, SingeError *error);
 
 /// Consecutive pictures are side by side, `columns` in a row.
 void report_pictures(Report *report, int columns);
@@ -54,15 +66,16 @@ typedef struct ReportBar {
 } ReportBar;
 void report_bar(Report *report, const ReportBar *bar);
 
-typedef enum ReportVerdict { REPORT_UNKNOWN, REPORT_HOLDS, REPORT_FAILS } ReportVerdict;
+typedef enum ReportVerdict { REPORT_UNKNOWN, REPORT_HOLDS, REPORT_MISSES, REPORT_FAILS } ReportVerdict;
 
-/// Whether a measure of an added item holds, and its value; REPORT_UNKNOWN if it was not measured.
+/// Whether a measure of an added item holds, or misses as is known, and its value; REPORT_UNKNOWN if it was not measured.
 ReportVerdict report_find(const Report *report, const char *item, const char *name, double *value);
 
 /// The path of the report.
 const char *report_folder(const Report *report);
 
-/// Writes the files and frees the page. *failed is the number of measures that do not hold.
-SINGE_NODISCARD SingeResult report_page_close(ReportPage *page, int *failed, SingeError *error);
+/// Writes the files and frees the page. *failed is the number of measures that fail, *missing of those that miss, as is
+/// known.
+SINGE_NODISCARD SingeResult report_page_close(ReportPage *page, int *failed, int *missing, SingeError *error);
 
 #endif

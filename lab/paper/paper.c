@@ -117,7 +117,8 @@ static const Page page = {
     "The experiments of <i>Shrinkage, wrinkling and ablation of burning cloth and paper</i>, as this program runs "
     "them. Each item shows what the paper reports and what the program computes, and compares measures of it with "
     "bars. The scenes are in <code>scenes/</code> next to this page; <code>singe run</code> runs them.",
-    alone};
+    alone,
+    NULL};
 
 const char *paper_item_word(int index) {
     if (index == 0) return "all";

@@ -1,11 +1,7 @@
 // The statements of the paper's sections 5 to 8, the result here, and the measure that shows it.
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "paper/paper.h"
-#include "cli/text.h"
-#include "formats/formats.h"
 
 typedef enum Verdict { REPRODUCED, CORRECTED, CHOICE, NOT_REPRODUCED, REFUTED, OURS, VERDICTS } Verdict;
 static const char *const verdicts[VERDICTS] = {
@@ -119,6 +115,7 @@ SingeResult paper_statements(Lab *lab, SingeError *error) {
                    value, s->found);
     }
 
+    SingeResult result = report_table(lab->report, "statements", error);
     report_text(
         lab->report,
         "%d reproduced, %d corrected, %d depend on an unstated choice, %d not reproduced, %d refuted, %d ours. A "
@@ -129,18 +126,5 @@ SingeResult paper_statements(Lab *lab, SingeError *error) {
                    &(ReportBar){"measures", "share of these measures that hold, of those taken",
                                 (double)holding / taken, 1, 1, (double)(holding - 1) / taken, "one that does not"});
 
-    char *csv = NULL, *path = text_format("%s/statements.csv", report_folder(lab->report));
-    size_t size = 0;
-    FILE *file = open_memstream(&csv, &size);
-    SingeResult result = SINGE_ERROR_MEMORY;
-    if (file) {
-        fprintf(file, "section,statement,verdict,item,measure,found\n");
-        for (const Statement *s = statements; s < statements + COUNT; s++)
-            fprintf(file, "%s,\"%s\",%s,%s,%s,\"%s\"\n", s->section, s->statement, verdicts[s->verdict], s->item,
-                    s->measure, s->found);
-        if (text_stream_end(file, &csv)) result = file_write(path, csv, size, error);
-    }
-    if (result && error->code != result) *error = (SingeError){.code = result, .element = -1};
-    free(csv), free(path);
     return result;
 }

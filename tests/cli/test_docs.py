@@ -1,5 +1,6 @@
 """Numbers and options on the pages are those of the program."""
 
+import csv
 import json
 import os
 import re
@@ -70,6 +71,22 @@ class Docs(Case):
                     if isinstance(one.get(key), dict) and "noise" in one[key]:
                         one[key] = dict(one[key], noise=one[key]["noise"]["scale"])
                 self.assertEqual(changed, plain)
+
+    def test_grades(self):
+        """docs/validation.md has the grades that the command has, and README.md their numbers."""
+        self.singe("validate", "--only", "grades", "-o", self.path("page"))
+        with open(self.path("page", "grades.csv"), newline="") as file:
+            grades = list(csv.DictReader(file))
+        rows = [[cell.strip(" `") for cell in line.strip().strip("|").split("|")]
+                for line in page("validation.md").splitlines() if line.startswith("| `")]
+        self.assertEqual(rows, [[g["item"], g["measure"], g["grade"], g["bar"], g["compared with"]] for g in grades])
+        count = {grade: sum(g["grade"] == grade for g in grades) for grade in
+                 ("independent", "calibrated", "by construction")}
+        missing = sum(g["bar"] == "misses" for g in grades)
+        said = (f"Of {len(grades)} [checks of the physics](docs/validation.md) {count['independent']} are independent, "
+                f"{count['calibrated']} calibrated and {count['by construction']} by construction; {missing} miss.")
+        with open(os.path.join(ROOT, "README.md")) as file:
+            self.assertIn(said, " ".join(file.read().split()))
 
     def test_options(self):
         """The synopsis of docs/cli.md has every option of every command, and no other."""

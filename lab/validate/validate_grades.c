@@ -1,0 +1,89 @@
+// The grade of each measure of `singe validate`: how far its source is from what the parameters were set by.
+#include <math.h>
+#include <string.h>
+
+#include "validate/validate.h"
+
+typedef enum Grade { INDEPENDENT, CALIBRATED, BY_CONSTRUCTION, GRADES } Grade;
+static const char *const grade_words[GRADES] = {
+    [INDEPENDENT] = "independent", [CALIBRATED] = "calibrated", [BY_CONSTRUCTION] = "by construction"};
+
+typedef struct Graded {
+    const char *item, *measure;
+    Grade grade;
+    bool misses;          ///< known not to hold
+    const char *compared; ///< with what; where it misses, how far it is off
+} Graded;
+
+static const Graded graded[] = {
+    {"heat", "order_space", INDEPENDENT, false, "a slab's exact mode, by cells"},
+    {"heat", "order_time", INDEPENDENT, false, "a slab's exact mode, by steps"},
+    {"heat", "error", INDEPENDENT, false, "a slab's exact mode"},
+    {"umbrella", "surface", INDEPENDENT, false, "a hot spot's exact spread"},
+    {"umbrella", "umbrella_squares", BY_CONSTRUCTION, false, "the factor that follows from eq 3"},
+    {"umbrella", "umbrella_long", BY_CONSTRUCTION, false, "the factor that follows from eq 3"},
+    {"front", "speed_office-paper", CALIBRATED, false, "Thomas and Law 1965; the parameters were set by it"},
+    {"front", "speed_one-reaction", CALIBRATED, false, "the same; the same parameters"},
+    {"front", "speed_cotton", BY_CONSTRUCTION, false, "its range is mostly office paper's over its mass"},
+    {"front", "speed_newsprint", BY_CONSTRUCTION, false, "its range is office paper's over its mass, as the model is"},
+    {"front", "speed_tissue", BY_CONSTRUCTION, false, "its range is office paper's over its mass, as the model is"},
+    {"front", "up_cotton", INDEPENDENT, true, "Mathur, Vikas and Kale 2011; fire climbs a fifth as fast as it should"},
+    {"front", "change", BY_CONSTRUCTION, false, "itself, in smaller cells and steps"},
+    {"pmma", "power", BY_CONSTRUCTION, false, "-1, as the model is and as de Ris 1969 has it"},
+    {"pmma", "power_measured", INDEPENDENT, false, "BASS-II"},
+    {"pmma", "mean", INDEPENDENT, false, "BASS-II"},
+    {"pmma", "worst", INDEPENDENT, false, "BASS-II"},
+    {"cone", "ignition_25", INDEPENDENT, true, "FSRI, cone calorimeter; it ignites at two fifths of the time"},
+    {"cone", "ignition_50", INDEPENDENT, true, "FSRI, cone calorimeter; it ignites at two fifths of the time"},
+    {"cone", "ignition_75", INDEPENDENT, true, "FSRI, cone calorimeter; it ignites at two fifths of the time"},
+    {"cone", "power", INDEPENDENT, false, "FSRI, cone calorimeter"},
+    {"cone", "peak", INDEPENDENT, true, "FSRI, cone calorimeter; a sheet heated at once burns nine times too fiercely"},
+    {"cone", "total", INDEPENDENT, false, "FSRI, cone calorimeter"},
+    {"oxygen", "limit", INDEPENDENT, true, "an extinction oxygen index of cotton; it burns in a quarter of that"},
+    {"beam", "sag", INDEPENDENT, false, "plate theory"},
+    {"disc", "stiffness", BY_CONSTRUCTION, false, "the lattice of springs"},
+    {"disc", "poisson_grid", BY_CONSTRUCTION, false, "the lattice of springs"},
+    {"disc", "poisson_diagonal", BY_CONSTRUCTION, false, "the lattice of springs"},
+    {"disc", "bowl", INDEPENDENT, false, "an isotropic plate; its shear was set on strips, not on discs"},
+    {"disc", "rolls", BY_CONSTRUCTION, false, "the lattice of springs: its soft direction"},
+    {"disc", "cylinder", INDEPENDENT, false, "plate theory (arXiv 1509.05259) with the nu of a pull"},
+    {"kinetics", "peak", BY_CONSTRUCTION, false, "the same reaction, finely integrated"},
+    {"kinetics", "residue", BY_CONSTRUCTION, false, "the same reaction, finely integrated"},
+    {"kinetics", "three", INDEPENDENT, false, "three reactions (Kashiwagi and Nambu 1992), of which the run has one"},
+    {"kinetics", "shift", BY_CONSTRUCTION, false, "the reaction's activation energy"},
+    {"kinetics", "threshold", INDEPENDENT, false, "Kashiwagi and Nambu 1992; eq 4's threshold is from elsewhere"},
+    {"ledgers", "heat", BY_CONSTRUCTION, false, "conservation"},
+    {"ledgers", "mass", BY_CONSTRUCTION, false, "conservation"},
+};
+enum { COUNT = sizeof graded / sizeof *graded };
+
+ReportGrade validate_grade(const char *item, const char *measure) {
+    for (const Graded *g = graded; g < graded + COUNT; g++)
+        if (strcmp(g->item, item) == 0 && strcmp(g->measure, measure) == 0)
+            return (ReportGrade){grade_words[g->grade], g->misses};
+    return (ReportGrade){NULL, false};
+}
+
+SingeResult validate_grades(Lab *lab, SingeError *error) {
+    int counts[GRADES] = {0}, missing = 0;
+    report_heads(lab->report, "item|measure|grade|is|bar|compared with");
+    for (const Graded *g = graded; g < graded + COUNT; g++) {
+        double value = NAN;
+        const ReportVerdict found = report_find(lab->report, g->item, g->measure, &value);
+        counts[g->grade]++;
+        missing += g->misses;
+        report_row(lab->report, "%s|%s|%s|%.3g|%s|%s", g->item, g->measure, grade_words[g->grade], value,
+                   found == REPORT_FAILS ? "fails"
+                   : g->misses           ? "misses"
+                                         : "holds",
+                   g->compared);
+    }
+
+    report_text(lab->report,
+                "Of %d measures %d are independent, %d calibrated and %d by construction; %d of the independent ones "
+                "miss. Independent: no parameter was set by its source, or by anything that follows from it. "
+                "Calibrated: parameters were set so that it holds. By construction: it follows from the model's own "
+                "equations, so that only a fault could break it.",
+                COUNT, counts[INDEPENDENT], counts[CALIBRATED], counts[BY_CONSTRUCTION], missing);
+    return report_table(lab->report, "grades", error);
+}
