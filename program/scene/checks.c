@@ -200,6 +200,11 @@ void finish_scene(Reader *reader, const YamlNode *map, void *object) {
                     (double)scene->fps, scene->steps, rate);
     scene->sim.solver.tearing = scene->tearing && scene->sim.solver.method == SINGE_SOLVER_STRAND;
 
+    const YamlNode *isotropic = node_find(node_find(map, "solver"), "isotropic");
+    if (isotropic && scene->sim.solver.isotropic && scene->sim.solver.method != SINGE_SOLVER_STRAND)
+        complain(reader, isotropic->key_location,
+                 "'isotropic' needs the solver 'strand': the paper's have no such springs");
+
     const YamlNode *detail = node_find(node_find(map, "gas"), "detail");
     if (detail) scene->gas_detail_location = detail->location;
     check_times(reader, node_find(map, "pace"), scene->paces, sizeof *scene->paces, scene->pace_count);

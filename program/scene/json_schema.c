@@ -166,7 +166,8 @@ static void put_value(Definitions *definitions, const SchemaRow *row) {
             put_quantity(file, row);
             fputs(", ", file);
         }
-        fputs("{\"type\": \"array\", \"items\": ", file);
+        fprintf(file, "{\"type\": \"array\", %s\"items\": ",
+                row->type == ROW_STRENGTH || (row->flags & ROW_KEYED) ? "\"minItems\": 1, " : "");
         put_reference(definitions, row->sub);
         fputs(row->type == ROW_STRENGTH ? "}]}" : "}", file);
         break;

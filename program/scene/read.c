@@ -93,10 +93,14 @@ static void *list_new(Reader *reader, void *object, const SchemaRow *row, uint32
 
 static void read_list(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     const Schema *schema = row->sub;
+    const bool keyed = (row->flags & ROW_KEYED) || row->type == ROW_STRENGTH;
     if (node->kind != NODE_LIST) {
         value_wrong(reader, node, row);
         return;
     }
+    if (keyed && !node->count)
+        message_add(reader->messages, reader->text, node->location,
+                    "'%s' is an empty list: it needs at least one entry", row->key);
 
     char *items = list_new(reader, object, row, node->count, schema->size);
     for (const YamlNode *child = node->first; items && child; child = child->next, items += schema->size) {

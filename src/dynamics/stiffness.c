@@ -61,7 +61,7 @@ void stiffness_begin(const Shell *shell, SingeColour colour, float h, const Sing
     const float softness = (colour == SINGE_RED ? COUPLING : 0) + floor;
     *stiffness = (Stiffness){.shell = shell,
                              .colour = colour,
-                             .isotropic = solver->isotropic && solver->method == SINGE_SOLVER_STRAND,
+                             .isotropic = solver->isotropic,
                              .softness = softness * h * h,
                              .red_softness = {(COUPLING + red) * h * h, red * h * h},
                              .sheet = UINT32_MAX};

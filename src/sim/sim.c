@@ -29,6 +29,8 @@ SingeResult sim_check_def(const SingeSimDef *def, SingeError *error) {
             return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "solver.order must name each colour once");
         seen[def->solver.order[i]] = true;
     }
+    if (def->solver.isotropic && def->solver.method != SINGE_SOLVER_STRAND)
+        return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "solver.isotropic needs the method strand");
     if (def->tasks.enqueue && !def->tasks.finish)
         return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "tasks.enqueue needs tasks.finish");
     return SINGE_OK;

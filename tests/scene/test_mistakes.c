@@ -47,6 +47,9 @@ TEST(wrong_values_are_reported) {
     one("pace: 1e60", "bad.yaml:3:7", "'1e60' is out of range: pace must be 1e-6 to 1000000");
     one("pace: 1e999999", "bad.yaml:3:7", "");
     one("pace: 1e-60", "bad.yaml:3:7", "pace must be 1e-6 to 1000000");
+    one("pace: []", "bad.yaml:3:7", "'pace' is an empty list: it needs at least one entry");
+    one("sources: [{kind: texture, texture: a.png, strength: []}]", "bad.yaml:3:53", "at least one entry");
+    one("solver: {method: paper, isotropic: yes}", "bad.yaml:3:25", "'isotropic' needs the solver 'strand'");
     one("frames: 1e3", "bad.yaml:3:9", "whole number");
     one("frames: 2.0", "bad.yaml:3:9", "whole number");
     one("frames: 0", "bad.yaml:3:9", "frames must be 1 to 1000000");

@@ -20,6 +20,10 @@
     } while (0)
 
 TEST(bad_simulations_are_refused) {
+    SingeSolverDef paper = singe_default_sim().solver;
+    paper.method = SINGE_SOLVER_PAPER;
+    paper.isotropic = true;
+    SIM_BAD(solver, paper, "isotropic");
     SIM_BAD(solver.order[0], SINGE_RED, "order");
     SIM_BAD(solver.order[3], (SingeColour)4, "order");
     SIM_BAD(wind.gust, -1, "gust");

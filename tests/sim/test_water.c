@@ -39,7 +39,7 @@ static double heat_of_ignition(float moisture) {
     return FLUX * time / GRAMMAGE;
 }
 
-/// The heat of ignition of fine fuels is 250 + 1116 M Btu/lb, M the moisture (Frandsen 1973; Rothermel 1972, eq 12):
+/// The heat of preignition of fine fuels is 250 + 1116 M Btu/lb, M the moisture (Rothermel 1972, INT-115, eq 12):
 /// 2.596 MJ for each kilogram of water.
 TEST(ignition_waits_for_the_water) {
     const double published = 1116 * 2326.0, dry = heat_of_ignition(0);

@@ -17,6 +17,8 @@ typedef struct Draw {
     SceneArena *arena;
     double moment; ///< s, of the last key of a path
     bool first;    ///< of the map that is written
+    bool keyed;    ///< the pace has keys, in place of a number, and of `burn_by`
+    bool paper;    ///< the solver is not `strand`, and takes no `isotropic`
 } Draw;
 
 /// From 0 to 1 (splitmix64, Steele et al. 2014).
@@ -92,7 +94,8 @@ static void put_map(Draw *draw, const Schema *schema, void *object);
 
 static void put_list(Draw *draw, const SchemaRow *row, void *object) {
     bool sheets = strcmp(row->key, "sheets") == 0;
-    int count = (sheets || (row->flags & ROW_REQUIRED) || strcmp(row->key, "path") == 0) + pick(draw, sheets ? 5 : 3);
+    const bool some = sheets || (row->flags & (ROW_REQUIRED | ROW_KEYED)) || strcmp(row->key, "path") == 0;
+    int count = some + pick(draw, sheets ? 5 : 3);
     draw->moment = 0;
     putchar('[');
     for (int i = 0; i < count; i++) {
@@ -139,7 +142,9 @@ static void put_whole(Draw *draw, const Schema *schema, const SchemaRow *row, in
 static void put_names(Draw *draw, const SchemaRow *row) {
     int count = 0;
     while (row->names[count]) count++;
-    printf("\"%s\"", row->names[pick(draw, count)]);
+    const char *name = row->names[pick(draw, count)];
+    draw->paper |= strcmp(row->key, "method") == 0 && strcmp(name, "strand") != 0;
+    printf("\"%s\"", name);
 }
 
 static void put_base(Draw *draw) {
@@ -240,7 +245,10 @@ static void put_map(Draw *draw, const Schema *schema, void *object) {
         if (!row_allowed(row, kind) || (kind != ~0u && strcmp(row->key, "kind") == 0)) continue;
         if (path && (row->type == ROW_LIST || row->type == ROW_ROTATION)) continue; // a place, or a path
         if (row->sub && needs_file(row->sub, ~0u)) continue;
-        if (!is_drawn(draw, schema, row)) continue;
+        const bool paced = strcmp(row->key, "pace") == 0 || strcmp(row->key, "burn_by") == 0;
+        const bool refused = (draw->keyed && paced) || (draw->paper && strcmp(row->key, "isotropic") == 0);
+        if (refused || !is_drawn(draw, schema, row)) continue;
+        draw->keyed |= (row->flags & ROW_KEYED) != 0;
         put_key(draw, row->key);
         put_value(draw, schema, row, object);
         path |= row->type == ROW_POSITION;
