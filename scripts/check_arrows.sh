@@ -38,7 +38,7 @@ lab/bench        $program cli
 lab/page         $program cli bench
 lab/paper        $program cli bench page
 lab/validate     $program cli bench page
-examples
+samples
 "
 
 bad=0

@@ -55,7 +55,7 @@ class Layout(Case):
 
     def test_lines_fit(self):
         """The width that the project's C has."""
-        files = [*(ROOT / "bindings/python").rglob("*.py"), *(ROOT / "examples/python").rglob("*.py")]
+        files = [*(ROOT / "bindings/python").rglob("*.py"), *(ROOT / "samples").rglob("*.py")]
         self.assertGreater(len(files), 12)
         long = [f"{path.name}:{n}" for path in files for n, line in enumerate(path.read_text().split("\n"), 1)
                 if len(line) > 120]
@@ -69,7 +69,7 @@ class Layout(Case):
 
 class Burning(Case):
     def test_as_in_c(self):
-        """examples/c/burn.c, line by line."""
+        """samples/burn.c, line by line."""
         program = os.environ.get("SINGE_BURN")
         if not program:
             self.skipTest("SINGE_BURN names no program")
@@ -179,6 +179,16 @@ class Burning(Case):
         self.assertFalse(((fresh[..., 0] > 200) & (fresh[..., 2] < 150)).any())
         self.assertIn("<img", sim._repr_html_())
         self.assertTrue(singe.draw_png(sim.surface()).startswith(b"\x89PNG"))
+
+    def test_large_triangles_have_no_gaps(self):
+        sim = singe.Sim()
+        sim.sheet(*singe.grid((0.1, 0.1), (2, 2), jitter=0))
+        sim.commit()
+        picture = singe.draw(sim.surface(), 800, 600).astype(int)
+        paper = (picture != picture[0, 0]).any(axis=2)
+        left, right = paper.argmax(axis=1), 800 - paper[:, ::-1].argmax(axis=1)  # the square is convex
+        rows = paper.any(axis=1)
+        self.assertTrue((paper.sum(axis=1) == right - left)[rows].all())
 
 
 class Given(Case):

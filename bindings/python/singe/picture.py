@@ -32,7 +32,7 @@ def _samples(surface: Any, pixels: np.ndarray, most: int = 8_000_000) -> Tuple[n
     """Points that cover the triangles densely: (triangle, barycentric coordinates)."""
     corners = pixels[surface.triangles]
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    n = np.clip(np.ceil(1.5 * sides), 1, 64).astype(int)
+    n = np.clip(np.ceil(1.5 * sides), 1, 1024).astype(int)
     while (n.astype(np.int64) * (n + 1) // 2).sum() > most:
         n = np.maximum(n // 2, 1)
     triangles, weights = [], []

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { CELLS = 24, CORNERS = CELLS + 1, FRAMES = 240, STEPS_MAX = 8, THREADS = 2 };
+enum { CELLS = 24, CORNERS = CELLS + 1, FRAMES = 120, STEPS_MAX = 8, THREADS = 2 };
 
 // ---- the game's allocator: counts what it gives
 
