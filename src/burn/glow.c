@@ -59,26 +59,30 @@ static float glow_supply(const BurnJob *job, uint32_t i) {
     if (shell_is_corner(shell, i)) {
         for (uint32_t f = shell->fan_first[i]; f < shell->fan_first[i + 1]; f++) {
             uint32_t cell = shell->fan[f], centre = shell_centre(shell, cell);
+            const bool gone = glow_is_gone(job, cell);
+            edge |= gone;
+            if (!gone) fuel = float_max(fuel, job->burn->fuel[centre]);
+            if (edge) continue; // all of the air, whatever the ash
+
             int k = 0;
             while (shell->cells[cell][k] != i) k++;
-            edge = edge || glow_is_gone(job, cell) || glow_is_gone(job, shell_neighbour(shell, cell, k)) ||
+            edge = glow_is_gone(job, shell_neighbour(shell, cell, k)) ||
                    glow_is_gone(job, shell_neighbour(shell, cell, (k + 3) & 3));
-            if (!edge) ash = fmaxf(ash, glow_ash(job, centre));
-            if (!glow_is_gone(job, cell)) fuel = fmaxf(fuel, job->burn->fuel[centre]);
+            if (!edge) ash = float_max(ash, glow_ash(job, centre));
         }
     } else {
         uint32_t cell = i - shell->vertex_count;
         for (int k = 0; k < 4; k++) {
             uint32_t corner = shell->cells[cell][k];
             edge = edge || glow_is_gone(job, shell_neighbour(shell, cell, k));
-            if (!edge) ash = fmaxf(ash, glow_ash(job, corner));
-            fuel = fmaxf(fuel, job->burn->fuel[corner]);
+            if (!edge) ash = float_max(ash, glow_ash(job, corner));
+            fuel = float_max(fuel, job->burn->fuel[corner]);
         }
     }
 
     float squared = (1 - fuel) * (1 - fuel);
     squared *= squared;
-    return fmaxf(edge ? 1 : ash, field_at(shell->matter.char_air, i)) * (squared * squared);
+    return float_max(edge ? 1 : ash, field_at(shell->matter.char_air, i)) * (squared * squared);
 }
 
 static void glow_air_blocks(void *context, int begin, int end) {

@@ -79,7 +79,7 @@ static void react(BurnJob *job, uint32_t i, float excess) {
     burn->fuel[i] = left;
     burn->mass[i] = after < before || isnan(after) ? after : before;
     burn->burn_rate[i] = (before - burn->mass[i]) / job->h;
-    float glow = fresh > share ? burn_glow_heat(job, i) * span * (fresh - share) / fmaxf(before, floor_mass) : 0;
+    float glow = fresh > share ? burn_glow_heat(job, i) * span * (fresh - share) / float_max(before, floor_mass) : 0;
     burn->release[i] = (field_at(matter->heating, i) * (1 - yield) * (fuel - left) + glow) / job->h;
 }
 

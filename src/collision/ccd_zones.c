@@ -9,6 +9,7 @@
 // closed the gap. A zone that collides again halves its share, and has 0 from round ZONE_PATIENCE on, when it moves as
 // one piece (the impact zones of Provot, 1997). Zones are only ever joined, and shares only reduced, so the rounds end.
 // Held corners keep their own displacement.
+#include "common/real.h"
 #include "collision/ccd.h"
 #include "collision/feature_distance.h"
 
@@ -35,15 +36,15 @@ static float impact_lever(const Ccd *ccd, uint32_t cell, const float w[4], float
     for (int i = 0; i < 4; i++) {
         inverse[i] = ccd->plan->start[corner[i]][3];
         own += w[i] * w[i] * inverse[i];
-        if (w[i] != 0 && inverse[i] > 0) min = fminf(min, inverse[i]);
+        if (w[i] != 0 && inverse[i] > 0) min = float_min(min, inverse[i]);
     }
 
     for (int i = 0; i < 4; i++) {
-        inverse[i] = fminf(inverse[i], 4 * min);
+        inverse[i] = float_min(inverse[i], 4 * min);
         sum += w[i] * w[i] * inverse[i];
     }
 
-    for (int i = 0; i < 4; i++) lever[i] = sum > 0 ? fminf(w[i] * inverse[i] / sum, 2) : 0;
+    for (int i = 0; i < 4; i++) lever[i] = sum > 0 ? float_min(w[i] * inverse[i] / sum, 2) : 0;
     return own;
 }
 
@@ -99,7 +100,7 @@ static void impact(const Ccd *ccd, const CollisionPair *pair) {
     Float4 slip = end - impact_slip(ccd, pair, wa, wb, (const float(*)[4])ccd->plan->start);
 
     // after previous impacts have changed the displacements, these points are already farther apart than where they met
-    float repulsion = fminf(distance, 2 * ccd->plan->gap) + IMPACT_PART * ccd->plan->gap - float4_dot(end, normal);
+    float repulsion = float_min(distance, 2 * ccd->plan->gap) + IMPACT_PART * ccd->plan->gap - float4_dot(end, normal);
     if (repulsion <= 0) return;
 
     slip -= float4_dot(slip, normal) * normal;
@@ -191,7 +192,7 @@ void ccd_zones(const Ccd *ccd, int round) {
             zone_begin(ccd, v);
 
             uint32_t other = zone_root(plan, v);
-            share = fminf(share, plan->share[other]);
+            share = float_min(share, plan->share[other]);
             if (root == SHELL_NONE) root = other;
             if (other < root) {
                 plan->zone[root] = other;
@@ -201,7 +202,7 @@ void ccd_zones(const Ccd *ccd, int round) {
 
         // in the first round the share is the free one; later the displacements of the zone itself have changed
         float less = round == 0 ? 0.9f * pair->hit : round < ZONE_PATIENCE ? 0.5f * share : 0;
-        plan->share[root] = fminf(share, less);
+        plan->share[root] = float_min(share, less);
     }
 
     zones_move(ccd);

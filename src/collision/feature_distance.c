@@ -1,3 +1,4 @@
+#include "common/real.h"
 #include "collision/feature_distance.h"
 #include "collision/collision_plan.h"
 
@@ -227,8 +228,8 @@ float feature_sweep(const FeatureSweep *sweep, float gap, float noise) {
     float length[4];
     for (int i = 0; i < 4; i++)
         length[i] = sqrtf(float4_dot(sweep->displacement[i] - mean, sweep->displacement[i] - mean));
-    float late = fmaxf(length[2], length[3]);
-    float approach = sweep->edges ? fmaxf(length[0], length[1]) + late : length[0] + fmaxf(length[1], late);
+    float late = float_max(length[2], length[3]);
+    float approach = sweep->edges ? float_max(length[0], length[1]) + late : length[0] + float_max(length[1], late);
     if (sweep_is_apart(sweep, 2 * gap + noise)) return 2;
 
     float distance = sweep_distance(sweep, 0), time = 0;
@@ -236,7 +237,7 @@ float feature_sweep(const FeatureSweep *sweep, float gap, float noise) {
     if (close && sweep_distance(sweep, 1) < distance - noise) return 0;
 
     // impacts separate features by more than `stop`, however far they have moved
-    float keep = close ? 0.5f * distance : gap, stop = keep + 0.1f * fminf(distance - keep, 10 * gap);
+    float keep = close ? 0.5f * distance : gap, stop = keep + 0.1f * float_min(distance - keep, 10 * gap);
     if (approach < distance - keep) return 2;
 
     for (int round = 0; round < ROUNDS; round++) {
@@ -260,9 +261,9 @@ float feature_sweep(const FeatureSweep *sweep, float gap, float noise) {
                 for (int j = own; j < 4; j++) {
                     float left = height[i] - height[j] - keep, nearing = speed[j] - speed[i];
                     if (!(left > 0)) longest = 0;
-                    else if (nearing > 0) longest = fminf(longest, left / nearing);
+                    else if (nearing > 0) longest = float_min(longest, left / nearing);
                 }
-            next = fmaxf(next, time + 0.9f * longest);
+            next = float_max(next, time + 0.9f * longest);
         }
 
         if (next > 1) return 2;

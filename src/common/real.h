@@ -42,6 +42,10 @@ static inline double real_cbrt(double x) { return REAL(cbrt)(x); }
 
 #undef REAL
 
+/// fmaxf and fminf without a call: the other number where one is NaN.
+static inline float float_max(float a, float b) { return a > b || b != b ? a : b; }
+static inline float float_min(float a, float b) { return a < b || b != b ? a : b; }
+
 /// False for NaN.
 static inline bool float_within(float value, float low, float high) { return value >= low && value <= high; }
 

@@ -44,6 +44,7 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
                              .before = path_pose(&collider->path, before),
                              .after = path_pose(&collider->path, after)};
     Float3 low, high;
+    moving.is_still = memcmp(&moving.before, &moving.after, sizeof moving.before) == 0;
     if (collider->def.kind == SINGE_COLLIDER_DEFORMING) {
         deform_between(&collider->deform, before, after);
         moving.drift = collider->deform.pose->farthest;
@@ -275,7 +276,6 @@ static inline Float4Mask contact_simple(const Contact *job, const MovingCollider
                                         Float4Mask moves, Float3s *x, Float4Mask *through) {
     const SingeColliderDef *def = &moving->collider->def;
     const bool plane = def->kind == SINGE_COLLIDER_PLANE;
-    const bool still = memcmp(&moving->before, &moving->after, sizeof moving->before) == 0;
     const Float3s origin = float3s_all(moving->after.position);
     const Float3s local = float3s_rotate(moving->after.rotation, float3s_sub(*x, origin), true);
     Float3s normal;
@@ -306,7 +306,7 @@ static inline Float4Mask contact_simple(const Contact *job, const MovingCollider
 
     // friction
     Float3s slip = float3s_sub(after, previous);
-    if (!still) {
+    if (!moving->is_still) {
         const Float3s end = float3s_add(origin, float3s_rotate(moving->after.rotation, local, false));
         const Float3s start =
             float3s_add(float3s_all(moving->before.position), float3s_rotate(moving->before.rotation, local, false));

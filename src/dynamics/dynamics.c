@@ -4,6 +4,7 @@
 // error (Macklin et al., Small steps in physics simulation, 2019).
 #include "common/assertion.h"
 #include "common/clock.h"
+#include "common/float4.h"
 #include "dynamics/stiffness.h"
 #include "dynamics/dynamics_plan.h"
 
@@ -49,7 +50,7 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
         NEW(memory, plan->cell_normal, plan->cell_count) && NEW(memory, plan->height_wait, height_wait_count(shell)) &&
         NEW(memory, plan->colliders, plan->collider_capacity) && NEW(memory, plan->partial, plan_partials(shell)) &&
         plan->solver->create(memory, shell, plan) && patches_create(memory, shell, &plan->patches) &&
-        attach_create(memory, shell, &plan->attachments) &&
+        attach_create(memory, shell, &plan->attachments) && smooth_create(memory, shell, plan) &&
         (!settings->contact.enabled ||
          !collision_plan_create(memory, shell, &settings->contact, settings->time_step, &plan->collision));
     if (!done) {
@@ -77,6 +78,8 @@ void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) 
     FREE(memory, plan->height_wait, height_wait_count(shell));
     FREE(memory, plan->colliders, plan->collider_capacity);
     FREE(memory, plan->partial, plan_partials(shell));
+    FREE(memory, plan->reach[0], shell->springs[SINGE_BLUE].strand_count);
+    FREE(memory, plan->reach[1], shell->springs[SINGE_GREEN].strand_count);
     patches_free(memory, shell, &plan->patches);
     attach_free(memory, shell, &plan->attachments);
     FREE(memory, plan, 1);
@@ -134,17 +137,16 @@ bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider
     return true;
 }
 
-/// Counts particles that are not finite or farther than 10 km from the origin. 1e18 m/s: squares are finite.
+/// Not 0 if a particle is not finite or farther than 10 km from the origin. 1e18 m/s: squares are finite.
 static double dynamics_count_lost(void *task, int begin, int end) {
     const DynamicsState *dynamics = task;
-    double lost = 0;
+    Float4Mask here = {-1, -1, -1, -1};
     for (int i = begin; i < end; i++) {
-        const float *x = dynamics->position[i], *v = dynamics->velocity[i];
-        lost += !(fabsf(x[0]) < 1e4f && fabsf(x[1]) < 1e4f && fabsf(x[2]) < 1e4f) ||
-                !(fabsf(v[0]) < 1e18f && fabsf(v[1]) < 1e18f && fabsf(v[2]) < 1e18f);
+        const Float4 x = float4_load(dynamics->position[i]), v = float4_load(dynamics->velocity[i]);
+        here &= (x < 1e4f) & (x > -1e4f) & (v < 1e18f) & (v > -1e18f);
     }
 
-    return lost;
+    return (float4_bits(here) & 7) != 7; // the fourth is no coordinate
 }
 
 static SingeResult dynamics_check(DynamicsPlan *plan, Pool *pool, DynamicsState *dynamics, SingeError *error) {

@@ -15,6 +15,7 @@
 typedef struct MovingCollider {
     const Collider *collider;
     bool is_simple; ///< a plane, sphere, box or capsule: four particles at once
+    bool is_still;  ///< before and after are the same
     Pose before, after;
     Float3 axis[3];        ///< of the box, which has `after.position` for its origin
     float low[3], high[3]; ///< m
@@ -91,6 +92,7 @@ struct DynamicsPlan {
     CollisionPlan *collision; ///< NULL without contact of sheets
     Hinge *hinges;            ///< [green springs], or NULL without creases
     bool creased;             ///< there are creases after the last step
+    uint32_t *reach[2];       ///< [strands] of blue and green: springs in a smoothing_length; 0: fewer than two
     uint8_t *height_wait;     ///< [height_wait_count] substeps for which a block of cells is skipped
     float (*cell_normal)[4];  ///< unit times twice the area
     MovingCollider *colliders;
@@ -137,8 +139,12 @@ void patches_free(Memory *memory, const Shell *shell, Patches *patches);
 bool patch_follow(DynamicsPlan *plan, const Shell *shell);
 /// ... takes over their weights and lengths, and starts to sum.
 void patch_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state);
-/// Whether a spring is still in its strand.
-bool patch_is_in_strand(const DynamicsPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring, size_t slot);
+/// Whether a spring is still in its strand, from the lanes themselves: its ends are the nodes of its slot.
+static inline bool patch_is_in_strand(const DynamicsPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring,
+                                      size_t slot) {
+    const uint32_t *node = plan->strands.sets[colour].node + slot, *ends = shell->springs[colour].ends[spring];
+    return node[0] == 4 * ends[0] && node[STRAND_LANES] == 4 * ends[1];
+}
 /// Projects a colour's patches one by one.
 void patch_project(DynamicsPlan *plan, SingeColour colour, float inverse_h2, DynamicsState *dynamics);
 /// The forces of the step's substeps of h seconds, in plan->patches.pull.
@@ -151,6 +157,8 @@ size_t height_wait_count(const Shell *shell);
 void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
                     DynamicsState *dynamics);
 
+/// How many springs smoothing_length spans, in plan->reach. False when out of memory.
+bool smooth_create(Memory *memory, const Shell *shell, DynamicsPlan *plan);
 /// Internal friction of both layers over a step of h seconds (smooth.c).
 void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h,
                      DynamicsState *dynamics);

@@ -15,13 +15,6 @@
 #include <math.h>
 #include <string.h>
 
-/// From the lanes themselves: a spring whose ends are not the nodes of its slot is in no strand.
-bool patch_is_in_strand(const DynamicsPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring,
-                        size_t slot) {
-    const uint32_t *node = plan->strands.sets[colour].node + slot, *ends = shell->springs[colour].ends[spring];
-    return node[0] == 4 * ends[0] && node[STRAND_LANES] == 4 * ends[1];
-}
-
 bool patches_create(Memory *memory, const Shell *shell, Patches *patches) {
     patches->capacity = 8 * shell->spare_count; // as split.h allows
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {

@@ -4,6 +4,7 @@
 // to the ends' mean char_weight at m_min: char is soft.
 //
 // Drag of a sheet of area A on its normal velocity v_n: F = 1/2 rho C_d A v_n |v_n|; each layer takes half of it.
+#include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
 #include <string.h>
@@ -34,9 +35,9 @@ static void prepare_cells(void *task, int begin, int end) {
 
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         const uint32_t *corner = shell->cells[c];
-        Float3 a = float3_sub(float3_load(x[corner[2]]), float3_load(x[corner[0]]));
-        Float3 b = float3_sub(float3_load(x[corner[3]]), float3_load(x[corner[1]]));
-        float3_store(job->plan->cell_normal[c], float3_cross(a, b));
+        Float4 a = float4_load(x[corner[2]]) - float4_load(x[corner[0]]);
+        Float4 b = float4_load(x[corner[3]]) - float4_load(x[corner[1]]);
+        float4_store(job->plan->cell_normal[c], float4_cross(a, b));
 
         bool burns = burn_rate[shell_centre(shell, c)] > 0;
         for (int i = 0; i < 4; i++) burns |= burn_rate[corner[i]] > 0;
@@ -57,6 +58,8 @@ static void prepare_particles(void *task, int begin, int end) {
     const StateInput *state = job->state;
     const Shell *shell = job->shell;
     const Matter *matter = &shell->matter;
+    const Float3 mean = float3_load(job->wind->velocity);
+    const bool gusts = job->wind->gust > 0;
 
     for (int i = begin; i < end; i++) {
         // inverse mass; weight, which falls with char
@@ -74,16 +77,18 @@ static void prepare_particles(void *task, int begin, int end) {
         plan->drag[i] = 0.25f * drag * matter->area[i] / mass;
         if (drag == 0) continue;
 
-        Float3 normal = {0, 0, 0};
+        Float4 normal = {0, 0, 0, 0};
         if ((uint32_t)i >= shell->vertex_count)
-            normal = float3_load(plan->cell_normal[(uint32_t)i - shell->vertex_count]);
+            normal = float4_load(plan->cell_normal[(uint32_t)i - shell->vertex_count]);
         else
             for (uint32_t k = shell->fan_first[i]; k < shell->fan_first[i + 1]; k++)
                 if (state->ablate->cell_flags[shell->fan[k]] & SINGE_ALIVE)
-                    normal = float3_add(normal, float3_load(plan->cell_normal[shell->fan[k]]));
-        float3_store(plan->normal[i], float3_unit(normal));
-        Float3 air = wind_velocity(job->wind, float3_load(job->dynamics->position[i]), state->time);
-        float3_store(plan->air[i], state->gas->awake ? float3_add(air, float3_load(state->gas->air[i])) : air);
+                    normal += float4_load(plan->cell_normal[shell->fan[k]]);
+        const float length = sqrtf(float4_dot(normal, normal));
+        float4_store(plan->normal[i], length > 0 ? normal * (1 / length) : normal);
+        Float3 wind = gusts ? wind_velocity(job->wind, float3_load(job->dynamics->position[i]), state->time) : mean;
+        Float4 air = {wind.x, wind.y, wind.z, 0};
+        float4_store(plan->air[i], state->gas->awake ? air + float4_load(state->gas->air[i]) : air);
     }
 }
 

@@ -18,48 +18,99 @@
 
 #include <math.h>
 
+/// The two layers' strands.
+static const SingeColour SMOOTH_LAYERS[] = {SINGE_BLUE, SINGE_GREEN};
+
 typedef struct Smooth {
-    const DynamicsPlan *plan;
     const SpringSet *set;
-    const uint8_t *flags; ///< of the springs
+    const uint32_t *reach; ///< [strands] of the plan
+    const uint8_t *flags;  ///< of the springs
     float (*velocity)[4];
     const float (*position)[4]; ///< fourth: inverse mass
     uint32_t first_strand;
     float share;
 } Smooth;
 
-static inline void smooth_triple(const Smooth *job, uint32_t a, uint32_t b, uint32_t c) {
-    float wa = job->position[a][3], wb = job->position[b][3], wc = job->position[c][3];
-    float weight = wa + 4 * wb + wc;
+bool smooth_create(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
+    for (int layer = 0; layer < 2; layer++) {
+        const SpringSet *set = &shell->springs[SMOOTH_LAYERS[layer]];
+        uint32_t *reach;
+        if (!NEW(memory, plan->reach[layer], set->strand_count)) return false;
+
+        reach = plan->reach[layer];
+        for (uint32_t s = 0; s < set->strand_count; s++) {
+            const uint32_t *first = &set->strand_first[s];
+            const float springs = (float)(first[1] - first[0]);
+            float length = 0;
+            for (uint32_t k = first[0]; k < first[1]; k++) length += set->rest[k];
+            const float across = plan->settings.solver.smoothing_length * springs / length;
+            if (across >= 2) reach[s] = (uint32_t)(across < springs ? across + 0.5f : springs);
+        }
+    }
+
+    return true;
+}
+
+/// Velocities of three nodes, with the inverse masses w.
+static inline void smooth_triple(const Smooth *job, float wa, float wb, float wc, Float4 *va, Float4 *vb, Float4 *vc) {
+    const float weight = wa + 4 * wb + wc;
     if (weight <= 0) return;
 
-    Float4 va = float4_load(job->velocity[a]), vb = float4_load(job->velocity[b]), vc = float4_load(job->velocity[c]);
-    Float4 j = (job->share / weight) * (va - 2 * vb + vc);
-    float4_store(job->velocity[a], va - wa * j);
-    float4_store(job->velocity[b], vb + 2 * wb * j);
-    float4_store(job->velocity[c], vc - wc * j);
+    const Float4 j = (job->share / weight) * (*va - 2 * *vb + *vc);
+    *va -= wa * j;
+    *vb += 2 * wb * j;
+    *vc -= wc * j;
 }
 
 /// All triples of a strand whose outer nodes are `reach` springs from the middle one, and no spring between is gone.
 static void smooth_strand(const Smooth *job, uint32_t begin, uint32_t end, uint32_t reach) {
     const uint32_t(*ends)[2] = job->set->ends;
     uint32_t run = 0; // consecutive springs that are not gone
-    for (uint32_t k = begin; k < end; k++) {
+    for (uint32_t k = begin; k < end && reach > 1; k++) {
         if (!(job->flags[k] & SINGE_ALIVE)) run = 0;
         else run = run > 0 && ends[k][0] != ends[k - 1][1] ? 1 : run + 1; // a tear has separated them
-        if (run >= 2 * reach) smooth_triple(job, ends[k + 1 - 2 * reach][0], ends[k + 1 - reach][0], ends[k][1]);
+        if (run < 2 * reach) continue;
+
+        const uint32_t a = ends[k + 1 - 2 * reach][0], b = ends[k + 1 - reach][0], c = ends[k][1];
+        Float4 va = float4_load(job->velocity[a]), vb = float4_load(job->velocity[b]);
+        Float4 vc = float4_load(job->velocity[c]);
+        smooth_triple(job, job->position[a][3], job->position[b][3], job->position[c][3], &va, &vb, &vc);
+        float4_store(job->velocity[a], va);
+        float4_store(job->velocity[b], vb);
+        float4_store(job->velocity[c], vc);
+    }
+
+    // with a reach of 1, the last two nodes of a triple are the first two of the next, and stay in registers
+    for (uint32_t k = begin; k < end && reach == 1;) {
+        uint32_t a = ends[k][0], b = ends[k][1];
+        if (!(job->flags[k++] & SINGE_ALIVE)) continue;
+
+        Float4 va = float4_load(job->velocity[a]), vb = float4_load(job->velocity[b]);
+        float wa = job->position[a][3], wb = job->position[b][3];
+        for (; k < end && job->flags[k] & SINGE_ALIVE && ends[k][0] == b; k++) {
+            const uint32_t c = ends[k][1];
+            const float wc = job->position[c][3];
+            Float4 vc = float4_load(job->velocity[c]);
+            smooth_triple(job, wa, wb, wc, &va, &vb, &vc);
+            float4_store(job->velocity[a], va);
+            a = b;
+            b = c;
+            wa = wb;
+            wb = wc;
+            va = vb;
+            vb = vc;
+        }
+
+        float4_store(job->velocity[a], va);
+        float4_store(job->velocity[b], vb);
     }
 }
 
 static void smooth_range(void *task, int begin, int end) {
     const Smooth *job = task;
     for (int i = begin; i < end; i++) {
-        const uint32_t *first = &job->set->strand_first[job->first_strand + (uint32_t)i];
-        const float springs = (float)(first[1] - first[0]);
-        float length = 0;
-        for (uint32_t k = first[0]; k < first[1]; k++) length += job->set->rest[k];
-        float reach = job->plan->settings.solver.smoothing_length * springs / length;
-        if (reach >= 2) smooth_strand(job, first[0], first[1], (uint32_t)(reach < springs ? reach + 0.5f : springs));
+        const uint32_t strand = job->first_strand + (uint32_t)i, *first = &job->set->strand_first[strand];
+        smooth_strand(job, first[0], first[1], job->reach[strand]);
         smooth_strand(job, first[0], first[1], 1);
     }
 }
@@ -68,12 +119,11 @@ void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *
                      DynamicsState *dynamics) {
     if (plan->settings.solver.smoothing <= 0) return;
 
-    const SingeColour layers[] = {SINGE_BLUE, SINGE_GREEN};
     for (int layer = 0; layer < 2; layer++) {
-        const SpringSet *set = &shell->springs[layers[layer]];
-        Smooth job = {plan,
-                      set,
-                      ablate->spring_flags[layers[layer]],
+        const SpringSet *set = &shell->springs[SMOOTH_LAYERS[layer]];
+        Smooth job = {set,
+                      plan->reach[layer],
+                      ablate->spring_flags[SMOOTH_LAYERS[layer]],
                       dynamics->velocity,
                       (const float(*)[4])dynamics->position,
                       0,

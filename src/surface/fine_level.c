@@ -75,7 +75,7 @@ static float half_max(float length, float axis) { return length < 0.5f * axis ? 
 static float smooth_level(const Fine *fine, FineLocation location) {
     float level = fine_spline_at(fine->shell, &fine->splines[SPLINE_LEVEL], location);
     if (fine->flags[location.cell] & FINE_WHOLE) return level;
-    return fminf(level, fine_whole_level(fine_spline_at(fine->shell, &fine->splines[SPLINE_WHOLE], location)));
+    return float_min(level, fine_whole_level(fine_spline_at(fine->shell, &fine->splines[SPLINE_WHOLE], location)));
 }
 
 // ---- the edges of tears
@@ -111,7 +111,7 @@ static void tear_edge_vertex(Fine *fine, uint32_t vertex) {
         fine->flags[cell] = (uint8_t)((fine->flags[cell] | FINE_TEAR_EDGE) & ~FINE_EVEN);
     }
 
-    spline->corner[vertex] = fmaxf(-0.5f, fminf((border ? 2 : 1) * angle / PI - 1, 0.75f));
+    spline->corner[vertex] = float_max(-0.5f, float_min((border ? 2 : 1) * angle / PI - 1, 0.75f));
 }
 
 void fine_tear_edges(Fine *fine) {
@@ -138,7 +138,7 @@ static float fine_tear_level(const Fine *fine, FineLocation location) {
     uint32_t index = shell->matter.sheet[shell_centre(shell, location.cell)];
     const FineSheet *sheet = &fine->sheets[index];
     const uint32_t *at = shell->cells[location.cell];
-    float size = shell->sheets[index].cell_size, reach = fminf(sheet->reach, TEAR_EDGE_WANDERS * size);
+    float size = shell->sheets[index].cell_size, reach = float_min(sheet->reach, TEAR_EDGE_WANDERS * size);
 
     if (reach > 0) {
         // D, at most `reach` long
@@ -167,7 +167,7 @@ static float fine_tear_level(const Fine *fine, FineLocation location) {
     }
 
     float field = fine_spline_at(shell, &fine->splines[SPLINE_TEAR_EDGE], location);
-    return 0.5f * fmaxf(field - TEAR_EDGE_MIN, location.weight[2] - TEAR_EDGE_CENTROID);
+    return 0.5f * float_max(field - TEAR_EDGE_MIN, location.weight[2] - TEAR_EDGE_CENTROID);
 }
 
 // ---- the level
@@ -192,7 +192,7 @@ FineValue fine_value(const Fine *fine, FineLocation location) {
         }
 
         float depth = fabsf(NOISE_MEAN + sum); // reflected into 0 to 1, so that no edge is smooth
-        if (depth > 1) depth = fmaxf(2 - depth, 0);
+        if (depth > 1) depth = float_max(2 - depth, 0);
         depth *= own->reach;
         x = half_max(depth, fine->axes[location.cell][0]);
         y = half_max(depth, fine->axes[location.cell][1]);
@@ -213,6 +213,6 @@ FineValue fine_value(const Fine *fine, FineLocation location) {
     }
 
     // edges of tears
-    if (fine->flags[location.cell] & FINE_TEAR_EDGE) min = fminf(min, fine_tear_level(fine, location));
+    if (fine->flags[location.cell] & FINE_TEAR_EDGE) min = float_min(min, fine_tear_level(fine, location));
     return (FineValue){min, fine_spline_at(shell, &fine->splines[SPLINE_MASS], min_location)};
 }

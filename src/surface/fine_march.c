@@ -10,6 +10,7 @@
 // sides from the centre, at rest and now:
 //
 //   lambda^2 > TORN^2,   lambda^2 the larger eigenvalue of C^-1 C'
+#include "common/real.h"
 #include "common/assertion.h"
 #include "surface/surface_fine.h"
 
@@ -127,7 +128,7 @@ bool fine_is_torn(const Fine *fine, uint32_t cell, int side) {
     float det = rest[0] * rest[2] - rest[1] * rest[1];
     float half_trace = 0.5f * (rest[2] * now[0] - 2 * rest[1] * now[1] + rest[0] * now[2]) / det;
     float product = (now[0] * now[2] - now[1] * now[1]) / det;
-    return half_trace + sqrtf(fmaxf(0, half_trace * half_trace - product)) > TORN * TORN;
+    return half_trace + sqrtf(float_max(0, half_trace * half_trace - product)) > TORN * TORN;
 }
 
 // ---- a triangle of a cell

@@ -14,6 +14,7 @@
 // ignore torn cells, which are drawn flat. Where the surface may not be this far from a corner, all points around the
 // corner are moved by the same vector. This keeps tangent planes; moved by the whole distance, the patches pass through
 // the corners.
+#include "common/real.h"
 #include "surface/surface_fine.h"
 
 static Float3 corner_of(const Fine *fine, uint32_t vertex) { return float3_load(fine->corner[vertex]); }
@@ -63,7 +64,7 @@ static void count_cells(void *context, int begin, int end) {
     for (int v = begin; v < end; v++) {
         Ring ring = ring_of(fine, (uint32_t)v);
         bool closed = ring.borders == 0 && ring.cells > 0;
-        fine->valence[v] = closed ? (float)ring.cells : 2 * fmaxf((float)ring.cells, 2);
+        fine->valence[v] = closed ? (float)ring.cells : 2 * float_max((float)ring.cells, 2);
         fine->regular[v] = fine->valence[v] == 4;
     }
 }
@@ -117,7 +118,7 @@ static void put_limits(void *context, int begin, int end) {
         if (ring.cells > 0 && ring.borders == 0) limit = float3_scale(ring.inner, 1 / (float)ring.cells);
         if (ring.cells > 1 && ring.borders == 2) limit = float3_scale(float3_mad(ring.along, x, 4), 1 / 6.0f);
         float max = fine->max[v] * fine->share[v], left = float3_dot(float3_sub(limit, x), normal);
-        Float3 shift = float3_scale(normal, fmaxf(-max, fminf(left, max)) - left);
+        Float3 shift = float3_scale(normal, float_max(-max, float_min(left, max)) - left);
         float3_store(fine->shift[v], shift);
         float3_store(fine->limit[v], float3_add(limit, shift));
     }

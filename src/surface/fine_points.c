@@ -7,6 +7,7 @@
 //
 // A bent cell that is not split gets points to show its shape, in fewer parts. A side is drawn in the max of the
 // numbers of parts of its two cells.
+#include "common/real.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>
@@ -217,7 +218,7 @@ static FineValue bent_value(const Fine *fine, uint32_t particle, FineLocation lo
     if (fine->flags[location.cell] & FINE_EVEN) return *there;
 
     FineValue value = fine_value(fine, location);
-    value.level = there->level < 0 ? fminf(value.level, there->level) : fmaxf(value.level, 0);
+    value.level = there->level < 0 ? float_min(value.level, there->level) : float_max(value.level, 0);
     return value;
 }
 
@@ -255,7 +256,7 @@ SingeResult fine_points(Fine *fine, SingeError *error) {
         fine_spline_bounds(shell, &fine->splines[SPLINE_LEVEL], c, &low, &high);
         fine_spline_bounds(shell, &fine->splines[SPLINE_WHOLE], c, &whole, &wholest);
         fine_spline_bounds(shell, &fine->splines[SPLINE_MASS], c, &lightest, &heaviest);
-        low = fminf(low, fine_whole_level(whole));
+        low = float_min(low, fine_whole_level(whole));
         fine->low[c] = low;
         fine->flags[c] = low >= 0 && heaviest - lightest < 1e-5f ? FINE_EVEN : 0;
         if (whole == 1) fine->flags[c] |= FINE_WHOLE;

@@ -16,6 +16,7 @@
 //
 // Both edges of a tear coincide until they separate. They are cut differently on either side, so their corners are
 // drawn back from each other, by a small fraction of a cell's side.
+#include "common/real.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>
@@ -46,9 +47,11 @@ static Float3 centre_of(const uint32_t at[4], const float (*field)[4]) {
 static bool is_alive(const Fine *fine, uint32_t cell) { return fine->state->ablate.cell_flags[cell] & SINGE_ALIVE; }
 
 /// 0 up to `low`, 1 from `high` on, linear between.
-static float fade(float value, float low, float high) { return fmaxf(0, fminf((value - low) / (high - low), 1)); }
+static float fade(float value, float low, float high) {
+    return float_max(0, float_min((value - low) / (high - low), 1));
+}
 
-static void lessen(float *value, float max) { *value = fminf(*value, max); }
+static void lessen(float *value, float max) { *value = float_min(*value, max); }
 
 /// A torn side with its two tear edges: draws vertices that were one back from each other, and limits their shares. Where
 /// both edges end at one vertex, the tip of a tear, the share is that of the other end.
@@ -74,7 +77,7 @@ static void part_side(Fine *fine, const uint32_t one[2], const uint32_t other[2]
         }
 
         share[end] = fade(apart, TEAR_EDGES_CLOSED * side, TEAR_EDGES_OPEN * side);
-        min = fmaxf(min, share[end]);
+        min = float_max(min, share[end]);
     }
 
     for (int end = 0; end < 2; end++) {
@@ -109,7 +112,7 @@ static void gather_shares(Fine *fine) {
             Float3 a = float3_sub(float3_load(position[corner[0]]), centre),
                    b = float3_sub(float3_load(position[corner[1]]), centre);
             Float3 doubled = float3_cross(a, b), side = float3_sub(b, a);
-            float longest = fmaxf(float3_dot(side, side), fmaxf(float3_dot(a, a), float3_dot(b, b)));
+            float longest = float_max(float3_dot(side, side), float_max(float3_dot(a, a), float3_dot(b, b)));
             for (int k = 0; k < 2; k++) {
                 lessen(&fine->share[corner[k]], allowed(doubled, longest, float3_load(fine->normal[corner[k]])));
                 lessen(&fine->max[corner[k]], BULGE_MAX * float3_length(side));
@@ -131,7 +134,7 @@ void fine_position(Fine *fine) {
     memcpy(fine->corner, fine->state->dynamics.position, shell->vertex_count * sizeof *fine->corner);
     for (uint32_t v = 0; v < shell->vertex_count; v++) {
         fine->share[v] = 1;
-        fine->max[v] = fine->room ? fminf(fine->bulge_max, ROOM_SHARE * fine->room[v]) : fine->bulge_max;
+        fine->max[v] = fine->room ? float_min(fine->bulge_max, ROOM_SHARE * fine->room[v]) : fine->bulge_max;
     }
 
     for (uint32_t k = 0; k < shell->edge_spare_used; k++)
@@ -169,10 +172,10 @@ void fine_position(Fine *fine) {
         const uint32_t *at = shell->cells[c];
         float turn = 0, freedom = 0;
         for (int i = 0; i < 4; i++) {
-            freedom = fmaxf(freedom, fine->share[at[i]] * fine->max[at[i]]);
+            freedom = float_max(freedom, fine->share[at[i]] * fine->max[at[i]]);
             for (int k = 0; k < i; k++) {
                 Float3 turned = float3_sub(float3_load(fine->normal[at[i]]), float3_load(fine->normal[at[k]]));
-                turn = fmaxf(turn, float3_length(turned));
+                turn = float_max(turn, float3_length(turned));
             }
         }
 
@@ -245,7 +248,8 @@ void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocati
     float to_u = float3_dot(left, point.along_u), to_v = float3_dot(left, point.along_v);
     float du = det > 0 ? (to_u * vv - to_v * uv) / det : 2 * STEP_MAX;
     float dv = det > 0 ? (to_v * uu - to_u * uv) / det : 0;
-    share *= 1 - fade(fmaxf(fabsf(du), fabsf(dv)), 0.5f * STEP_MAX, STEP_MAX);
-    point = fine_patch_at(patch, u + fmaxf(-STEP_MAX, fminf(du, STEP_MAX)), v + fmaxf(-STEP_MAX, fminf(dv, STEP_MAX)));
+    share *= 1 - fade(float_max(fabsf(du), fabsf(dv)), 0.5f * STEP_MAX, STEP_MAX);
+    point = fine_patch_at(patch, u + float_max(-STEP_MAX, float_min(du, STEP_MAX)),
+                          v + float_max(-STEP_MAX, float_min(dv, STEP_MAX)));
     float3_store(normal, unit_or_up(float3_mad(float3_scale(lean, 1 - share), across(&point), share)));
 }

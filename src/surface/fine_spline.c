@@ -15,6 +15,7 @@
 // (Zwart 1973; Peters and Reif, The simplest subdivision scheme for smoothing polyhedra, 1997, for meshes that are not
 // regular: C1 except at their irregular vertices). All weights are positive: if no particle's mass grows, S does not
 // grow. It is exact for linear fields on parallelograms, and its isolines have no corners where cells meet.
+#include "common/real.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>
@@ -71,8 +72,8 @@ void fine_spline_bounds(const Shell *shell, const Spline *spline, uint32_t cell,
     *high = -INFINITY;
     for (int i = 0; i < 4; i++) { // the other coefficients are means of these
         float side = spline->edge[shell->cell_springs[cell].blue[i]], corner = spline->corner[shell->cells[cell][i]];
-        *low = fminf(*low, fminf(side, corner));
-        *high = fmaxf(*high, fmaxf(side, corner));
+        *low = float_min(*low, float_min(side, corner));
+        *high = float_max(*high, float_max(side, corner));
     }
 }
 
@@ -118,12 +119,12 @@ FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, floa
     x += dx;
     y += dy;
 
-    for (int crossing = 0; crossing < 2 && fmaxf(fabsf(x), fabsf(y)) > 0.5f; crossing++) {
+    for (int crossing = 0; crossing < 2 && float_max(fabsf(x), fabsf(y)) > 0.5f; crossing++) {
         int side = fabsf(x) > fabsf(y) ? (x > 0 ? 1 : 3) : (y > 0 ? 2 : 0);
         uint32_t other = shell_neighbour(shell, cell, side);
         if (other == SHELL_NONE) {
-            if (side & 1) x = fmaxf(-0.5f, fminf(x, 0.5f));
-            else y = fmaxf(-0.5f, fminf(y, 0.5f));
+            if (side & 1) x = float_max(-0.5f, float_min(x, 0.5f));
+            else y = float_max(-0.5f, float_min(y, 0.5f));
             continue;
         }
 
@@ -141,8 +142,8 @@ FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, floa
         cell = other;
     }
 
-    x = fmaxf(-0.5f, fminf(x, 0.5f));
-    y = fmaxf(-0.5f, fminf(y, 0.5f));
+    x = float_max(-0.5f, float_min(x, 0.5f));
+    y = float_max(-0.5f, float_min(y, 0.5f));
 
     // the position as weights
     const bool across = fabsf(x) > fabsf(y);

@@ -8,6 +8,7 @@
 // Of a vertex, velocity, uv and rest position are interpolated linearly between the corners of the cell's triangle and
 // its virtual centre. Temperatures and rates follow their splines. The mass is the one found with the level. The time of
 // ignition is the weighted mean over the corners that have ignited. fine_position.c gives position and normal.
+#include "common/real.h"
 #include "common/random.h"
 #include "surface/surface_fine.h"
 
@@ -52,11 +53,11 @@ static void fill_levels(Fine *fine) {
 
     for (uint32_t i = 0; i < fine->shell->particle_count; i++) {
         float level = fine->level[i], burnt = burn->time_burnt[i];
-        if (!(state->ablate.particle_flags[i] & SINGE_ALIVE)) level = fminf(level, -1e-4f); // also in a loose piece
+        if (!(state->ablate.particle_flags[i] & SINGE_ALIVE)) level = float_min(level, -1e-4f); // also in a loose piece
         if (level < 0 && burnt >= 0) {
             float loss = 1 - field_at(fine->shell->matter.mass_loss, i), took = burnt - burn->time_ignited[i];
             float gone = loss * (now - burnt);
-            level = fminf(level, gone < LEVEL_GONE * took ? -gone / took : -LEVEL_GONE);
+            level = float_min(level, gone < LEVEL_GONE * took ? -gone / took : -LEVEL_GONE);
         }
 
         fine->raw_level[i] = level;
@@ -114,9 +115,9 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
     surface->temperature_peak[v] = fine_spline_at(shell, &fine->splines[SPLINE_PEAK], *location);
     surface->burn_rate[v] = fine_spline_at(shell, &fine->splines[SPLINE_RATE], *location);
     surface->mass[v] = vertex->mass;
-    float fuel = fminf(fmaxf(fine_spline_at(shell, &fine->splines[SPLINE_FUEL], *location), 0), 1);
+    float fuel = float_min(float_max(fine_spline_at(shell, &fine->splines[SPLINE_FUEL], *location), 0), 1);
     surface->char_fraction[v] = yield * shell_char(vertex->mass, fuel, mass_min, yield);
-    surface->ash_fraction[v] = fmaxf(vertex->mass - fuel - surface->char_fraction[v], 0);
+    surface->ash_fraction[v] = float_max(vertex->mass - fuel - surface->char_fraction[v], 0);
     surface->burn[v] = shell_burn_progress(vertex->mass, mass_min);
 
     // fields that are not interpolated smoothly
@@ -175,7 +176,7 @@ static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError
         const float cell = shell->sheets[s].cell_size, splits = roundf(cell / (1.4142136f * detail->size));
         FineSheet *sheet = &fine->sheets[s];
         sheet->splits = splits < 1 ? 1 : splits > FINE_SPLITS_MAX ? FINE_SPLITS_MAX : (int)splits;
-        sheet->reach = fminf(detail->raggedness, 0.5f * cell);
+        sheet->reach = float_min(detail->raggedness, 0.5f * cell);
         sheet->octaves = fine_octaves(cell / (1.4142136f * (float)sheet->splits));
         sheet->seed = random_hash(s, 0, 0, detail->seed);
     }

@@ -39,7 +39,7 @@ float tear_strength(const TearPlan *plan, const Shell *shell, const State *state
     if (fuel >= 1 || isinf(fresh)) return fresh * weakened;
     float burnt = real_powf(field_at(matter->char_strength, vertex) / fresh, 1 - fuel);
     if (yield > min) burnt *= 1 + (LINE_ASH - 1) * ash;
-    return fresh * fminf(burnt, weakened);
+    return fresh * float_min(burnt, weakened);
 }
 
 typedef struct Measure {
@@ -170,7 +170,7 @@ static void smooth_cells(void *task, int begin, int end) {
 
 void tear_smooth(TearPlan *plan, const Shell *shell, const State *state, Pool *pool) {
     float size = shell->sheets[0].cell_size;
-    for (uint32_t s = 1; s < shell->sheet_count; s++) size = fminf(size, shell->sheets[s].cell_size);
+    for (uint32_t s = 1; s < shell->sheet_count; s++) size = float_min(size, shell->sheets[s].cell_size);
     float passes = floorf(4 * LINE_ZONE * LINE_ZONE / (size * size)) - 1;
     int count = passes < 0 ? 0 : passes > LINE_PASSES ? LINE_PASSES : (int)passes;
     count += count & 1; // even, so that the result is in smooth[0]
@@ -227,7 +227,7 @@ TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state,
     float c = (tensor_across(pull.force, float3_add(e1, e2)) - a - b) / 2;
     float mean = (a + b) / 2, radius = sqrtf((a - b) * (a - b) / 4 + c * c), angle = real_atan2f(c, (a - b) / 2) / 2;
     pull.across = float3_add(float3_scale(e1, real_cosf(angle)), float3_scale(e2, real_sinf(angle)));
-    pull.ratio = fmaxf(0, (mean + radius) / tear_strength(plan, shell, state, vertex));
+    pull.ratio = float_max(0, (mean + radius) / tear_strength(plan, shell, state, vertex));
 
     // the largest stretch of the edges and diagonals at the vertex
     float stretch = 0;
@@ -235,11 +235,11 @@ TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state,
         const CellSprings *springs = &shell->cell_springs[fan.cell[k]];
         const int corner = fan.corner[k];
         if (!(flags[fan.cell[k]] & SINGE_ALIVE)) continue;
-        stretch = fmaxf(stretch, edge_stretch(shell, state, SINGE_BLUE, springs->blue[corner]));
-        stretch = fmaxf(stretch, edge_stretch(shell, state, SINGE_BLUE, springs->blue[(corner + 3) & 3]));
-        stretch = fmaxf(stretch, edge_stretch(shell, state, SINGE_YELLOW, springs->yellow[corner & 1]));
+        stretch = float_max(stretch, edge_stretch(shell, state, SINGE_BLUE, springs->blue[corner]));
+        stretch = float_max(stretch, edge_stretch(shell, state, SINGE_BLUE, springs->blue[(corner + 3) & 3]));
+        stretch = float_max(stretch, edge_stretch(shell, state, SINGE_YELLOW, springs->yellow[corner & 1]));
     }
 
-    if (stretch > EDGE_STRETCH) pull.ratio = fmaxf(pull.ratio, stretch / EDGE_STRETCH);
+    if (stretch > EDGE_STRETCH) pull.ratio = float_max(pull.ratio, stretch / EDGE_STRETCH);
     return pull;
 }

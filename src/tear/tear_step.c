@@ -24,6 +24,7 @@
 // with its mass per area rho, and it stretches. Its own weight needs far less. But if it is held farther apart than its
 // geodesic length, by more than paper stretches before it breaks, it must tear though it is stronger: all its fresh
 // strengths are then lowered by one factor, so that the smallest is half of this.
+#include "common/real.h"
 #include "common/random.h"
 #include "tear/tear_plan.h"
 
@@ -54,7 +55,7 @@ float tear_carried(const Shell *shell, uint32_t index, float h) {
 static float weakest(const Sheet *sheet, Field strength) {
     float min = INFINITY;
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
-        min = fminf(min, field_at(strength, v));
+        min = float_min(min, field_at(strength, v));
     return min;
 }
 
@@ -79,9 +80,9 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
     plan->safe = INFINITY;
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         float strength = weakest(&shell->sheets[s], shell->matter.strength);
-        plan->safe = fminf(plan->safe, weakest(&shell->sheets[s], shell->matter.char_strength));
-        plan->min[s] = isinf(strength) ? 1 : fminf(1, 0.5f * tear_carried(shell, s, h) / strength);
-        plan->safe = fminf(plan->safe, strength * plan->min[s]);
+        plan->safe = float_min(plan->safe, weakest(&shell->sheets[s], shell->matter.char_strength));
+        plan->min[s] = isinf(strength) ? 1 : float_min(1, 0.5f * tear_carried(shell, s, h) / strength);
+        plan->safe = float_min(plan->safe, strength * plan->min[s]);
         plan->weakened[s] = 1;
     }
 
@@ -156,13 +157,14 @@ static bool is_left(const State *state, const Fan *fan, int k) {
 static int pick_edge(const TearEdge *edges, int begin, int count, Float3 direction, float draw) {
     float weight[SPLIT_FAN], min = INFINITY, sum = 0;
     for (int j = begin; j < count; j++)
-        if (edges[j].solid && float3_dot(edges[j].along, direction) > 0) min = fminf(min, edges[j].strength);
+        if (edges[j].solid && float3_dot(edges[j].along, direction) > 0) min = float_min(min, edges[j].strength);
     if (isinf(min)) return -1;
 
     for (int j = begin; j < count; j++) {
         float weaker = min / edges[j].strength;
-        weight[j] =
-            edges[j].solid ? fmaxf(0, float3_dot(edges[j].along, direction)) * weaker * weaker * weaker * weaker : 0;
+        weight[j] = edges[j].solid
+                        ? float_max(0, float3_dot(edges[j].along, direction)) * weaker * weaker * weaker * weaker
+                        : 0;
         sum += weight[j];
     }
 
@@ -271,7 +273,7 @@ typedef struct Ratios {
 static inline bool is_far_from_tearing(const Ratios *job, uint32_t vertex) {
     const Shell *shell = job->shell;
     const float strength = tear_strength(job->plan, shell, job->state, vertex);
-    const float least = 0.9f * fminf(TEAR_HINGE * strength, job->plan->safe), square = least * least;
+    const float least = 0.9f * float_min(TEAR_HINGE * strength, job->plan->safe), square = least * least;
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++) {
         const float *t = job->plan->smooth[0][shell->fan[k]];
         float norm = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);

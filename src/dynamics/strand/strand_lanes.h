@@ -14,7 +14,7 @@
 
 #include <stdatomic.h>
 
-enum { STRAND_LANES = 16, STRAND_KEEP = 3, PREPARE_RUN = 32 };
+enum { STRAND_LANES = 16, STRAND_KEEP = 3, PREPARE_RUN = 16 };
 _Static_assert(STRAND_LANES % 16 == 0, "the widest kernel has 16 lanes");
 
 /// Share of a bend beyond the limit that a substep removes (curvature.c).
@@ -52,6 +52,7 @@ typedef struct StrandSet {
     float *pull;           ///< [row_count STRAND_LANES] sums of mu, lambda over length; NULL: not needed
     uint32_t run_count;    ///< of springs: PREPARE_RUN each, in the springs' order
     _Atomic uint8_t *stale; ///< [run_count] 1: weights, lengths or limits of the run change in this step
+    uint32_t *run_strand;   ///< [run_count] the strand of the run's first spring
     uint8_t *creased;       ///< [run_count] 1: a crease had changed a length of the run
     uint8_t *seen;          ///< [run_count PREPARE_RUN] the springs' flags that the weights are for
     bool rings;             ///< some strands are rings

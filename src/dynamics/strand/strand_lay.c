@@ -385,8 +385,13 @@ bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowher
     // runs of springs that are prepared together
     set->run_count = springs->strand_first[set->strand_count] / PREPARE_RUN + 1;
     if (!NEW(memory, set->stale, set->run_count) || !NEW(memory, set->creased, set->run_count) ||
-        !NEW(memory, set->seen, (size_t)set->run_count * PREPARE_RUN))
+        !NEW(memory, set->seen, (size_t)set->run_count * PREPARE_RUN) || !NEW(memory, set->run_strand, set->run_count))
         return false;
+
+    for (uint32_t r = 0, s = 0; r < set->run_count; r++) {
+        while (s + 1 < set->strand_count && springs->strand_first[s + 1] <= r * PREPARE_RUN) s++;
+        set->run_strand[r] = s;
+    }
 
     // rows whose particles have consecutive numbers
     for (uint32_t g = 0; g < set->group_count; g++) {
@@ -406,6 +411,7 @@ bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowher
 
 void strand_set_free(Memory *memory, StrandSet *set) {
     FREE(memory, set->stale, set->run_count);
+    FREE(memory, set->run_strand, set->run_count);
     FREE(memory, set->creased, set->run_count);
     FREE(memory, set->seen, (size_t)set->run_count * PREPARE_RUN);
     FREE(memory, set->groups, set->group_capacity);

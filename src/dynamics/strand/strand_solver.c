@@ -89,18 +89,6 @@ typedef struct Prepare {
     bool all; ///< whatever has changed
 } Prepare;
 
-/// The strand of a spring.
-static uint32_t strand_of(const SpringSet *springs, uint32_t spring) {
-    uint32_t low = 0, high = springs->strand_count;
-    while (high - low > 1) {
-        uint32_t middle = low + (high - low) / 2;
-        if (springs->strand_first[middle] <= spring) low = middle;
-        else high = middle;
-    }
-
-    return low;
-}
-
 /// The springs of run r that are in strands end here.
 static uint32_t run_end(const SpringSet *springs, uint32_t r) {
     uint32_t all = springs->strand_first[springs->strand_count];
@@ -108,11 +96,13 @@ static uint32_t run_end(const SpringSet *springs, uint32_t r) {
 }
 
 /// Whether a run has a spring whose weight or length is another one now; `flags` and `crease` begin at the run.
-static bool run_changed(const StrandSet *set, uint32_t r, const uint8_t *flags, const float *crease, uint32_t count) {
+static inline bool run_changed(const StrandSet *set, uint32_t r, const uint8_t *flags, const float *crease,
+                               uint32_t count) {
     bool creased = set->creased[r];
     for (uint32_t k = 0; crease && k < count; k++) creased |= crease[k] != 0;
+    const uint8_t *seen = set->seen + (size_t)r * PREPARE_RUN;
     return creased || atomic_load_explicit(&set->stale[r], memory_order_relaxed) ||
-           memcmp(flags, set->seen + (size_t)r * PREPARE_RUN, count) != 0;
+           (count == PREPARE_RUN ? memcmp(flags, seen, PREPARE_RUN) : memcmp(flags, seen, count)) != 0;
 }
 
 /// Weights and lengths of runs into the lanes; a crease changes lengths of green springs.
@@ -135,7 +125,7 @@ static void prepare_runs(void *task, int begin, int end) {
         atomic_store_explicit(&set->stale[r], 1, memory_order_relaxed);
         memcpy(set->seen + first, flags + first, count);
         set->creased[r] = 0;
-        uint32_t s = strand_of(springs, first);
+        uint32_t s = set->run_strand[r];
         for (uint32_t k = first; k < last; k++) {
             while (k >= springs->strand_first[s + 1]) s++;
             const size_t slot = set->strand_slot[s] + (size_t)(k - springs->strand_first[s]) * STRAND_LANES;
@@ -164,7 +154,7 @@ static void prepare_limits(void *task, int begin, int end) {
         bool before = r > 0 && atomic_load_explicit(&set->stale[r - 1], memory_order_relaxed);
         if (first == last || !(stale || before)) continue;
         if (!stale) last = first + 1;
-        uint32_t s = strand_of(springs, first);
+        uint32_t s = set->run_strand[r];
         for (uint32_t k = first; k < last; s++) {
             const uint32_t to = springs->strand_first[s + 1] < last ? springs->strand_first[s + 1] : last;
             curvature_prepare(job->shell, job->state, job->colour, s, k, to, set);
