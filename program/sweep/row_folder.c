@@ -251,6 +251,24 @@ void sweep_free_command(char **command) {
     free(command);
 }
 
+bool sweep_row_is_due(const Sweep *sweep, uint32_t row) {
+    const RowState state = sweep_row_state(sweep, row);
+    return state == ROW_ABSENT || (state == ROW_FAILED && sweep->options->retry);
+}
+
+char *sweep_due_rows(const Sweep *sweep) {
+    char *rows = text_format("%s", "");
+    for (uint32_t row = 0, end; row < sweep->plan.row_count; row = end + 1) {
+        for (end = row; end < sweep->plan.row_count && sweep_row_is_due(sweep, end);) end++;
+        if (end == row) continue;
+        char *longer = end == row + 1 ? text_format("%s%s%u", rows, *rows ? "," : "", row + 1)
+                                      : text_format("%s%s%u-%u", rows, *rows ? "," : "", row + 1, end);
+        free(rows);
+        rows = longer;
+    }
+    return rows;
+}
+
 char *sweep_row_line(const Sweep *sweep, const char *number) {
     char *program = text_shell_quote(sweep->program), *plan = text_shell_quote(sweep->plan_path);
     char *folder = text_shell_quote(sweep->folder);

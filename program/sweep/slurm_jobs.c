@@ -89,20 +89,7 @@ static char *write_job(const Sweep *sweep, JobKind kind, const char *rows, Singe
 }
 
 ExitCode sweep_submit(Sweep *sweep) {
-    // "1-4,7": the rows that are neither complete nor running, from 1
-    char *rows = text_format("%s", "");
-    for (uint32_t row = 0, end; row < sweep->plan.row_count; row = end + 1) {
-        for (end = row; end < sweep->plan.row_count; end++) {
-            const RowState state = sweep_row_state(sweep, end);
-            if (state != ROW_ABSENT && !(state == ROW_FAILED && sweep->options->retry)) break;
-        }
-        if (end == row) continue;
-        char *longer = end == row + 1 ? text_format("%s%s%u", rows, *rows ? "," : "", row + 1)
-                                      : text_format("%s%s%u-%u", rows, *rows ? "," : "", row + 1, end);
-        free(rows);
-        rows = longer;
-    }
-
+    char *rows = sweep_due_rows(sweep);
     SingeError error = {0};
     char *folder = text_format("%s/slurm", sweep->folder), id[ID_SIZE] = "";
     bool good = !folder_make(folder, &error);

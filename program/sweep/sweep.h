@@ -29,7 +29,7 @@ typedef struct SweepOptions {
     int max_running;   ///< Slurm: rows at a time; 0: no limit
     int frames;        ///< Slurm: frames drawn by a rendering job
     SetList slurm;     ///< further options of sbatch
-    bool retry, print, submit, report, no_preview, quiet;
+    bool retry, print, openjd, submit, report, no_preview, quiet;
 } SweepOptions;
 
 typedef struct Sweep {
@@ -55,6 +55,11 @@ ExitCode sweep_prepare(Sweep *sweep);
 char *sweep_row_folder(const Sweep *sweep, uint32_t row, bool complete);
 RowState sweep_row_state(const Sweep *sweep, uint32_t row);
 
+/// Whether a row is neither complete nor running, and has not failed, or may fail again.
+bool sweep_row_is_due(const Sweep *sweep, uint32_t row);
+/// The rows that are due, from 1, in ranges: "1-4,7".
+char *sweep_due_rows(const Sweep *sweep);
+
 /// Checks the scene of a row, and stores its number of frames.
 ExitCode sweep_check_row(Sweep *sweep, uint32_t row);
 
@@ -75,6 +80,9 @@ ExitCode sweep_run_rows(Sweep *sweep);
 
 /// Writes the jobs' scripts, and submits them (slurm_jobs.c).
 ExitCode sweep_submit(Sweep *sweep);
+
+/// Prints the rows that are due and the report as a job of Open Job Description (openjd.c).
+ExitCode sweep_print_openjd(const Sweep *sweep);
 
 /// Writes report.csv, index.html and sheet.svg of the complete rows (sweep_report.c).
 ExitCode sweep_report(Sweep *sweep);

@@ -17,6 +17,7 @@ enum {
     OPT_RETRY,
     OPT_NO_PREVIEW,
     OPT_PRINT,
+    OPT_OPENJD,
     OPT_ROW,
     OPT_REPORT,
     OPT_SLURM,
@@ -34,6 +35,7 @@ static const ArgOption sweep_options[OPT_COUNT] = {
     [OPT_RETRY] = {"retry", 0, NULL, "runs rows that failed again"},
     [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no pictures and makes no videos"},
     [OPT_PRINT] = {"print", 0, NULL, "prints a command for each row that is due, and runs nothing"},
+    [OPT_OPENJD] = {"openjd", 0, NULL, "prints a job of Open Job Description, and runs nothing"},
     [OPT_ROW] = {"row", 0, "N", "runs only this row, as a job of a farm does"},
     [OPT_REPORT] = {"report", 0, NULL, "writes the report of the rows that are complete, and runs nothing"},
     [OPT_SLURM] = {"slurm", 0, NULL, "submits the rows, their pictures and the report to Slurm"},
@@ -53,6 +55,7 @@ const ArgCommand sweep_command = {
     "Exit codes: 0 all rows are complete, 1 a row failed or the sweep was interrupted, 2 bad input.",
     "singe sweep sweep.yaml -o out --jobs 4\n"
     "singe sweep sweep.yaml -o out --print\n"
+    "singe sweep sweep.yaml -o out --openjd > job.json\n"
     "singe sweep sweep.yaml -o out --slurm --max-running 20"};
 
 /// Absolute, so that jobs may start in any folder.
@@ -83,7 +86,7 @@ ExitCode sweep_prepare(Sweep *sweep) {
     free(named);
 
     // a sweep that runs or submits rows locks its folder; a row's job and a report do not
-    if (!result && !o->row && !o->report && !o->print) {
+    if (!result && !o->row && !o->report && !o->print && !o->openjd) {
         char *path = text_format("%s/sweep.lock", sweep->folder);
         result = lock_take(&sweep->lock, path, "rows", false, sweep->console, &error);
         free(path);
@@ -133,8 +136,7 @@ static ExitCode sweep_rows(Sweep *sweep) {
 
     // the commands of the rows that are due
     for (uint32_t row = 0; o->print && row < plan->row_count; row++) {
-        const RowState state = sweep_row_state(sweep, row);
-        if (state == ROW_COMPLETE || state == ROW_ELSEWHERE || (state == ROW_FAILED && !o->retry)) continue;
+        if (!sweep_row_is_due(sweep, row)) continue;
         char *number = text_format("%u", row + 1), *line = sweep_row_line(sweep, number);
         puts(line);
         free(line);
@@ -142,6 +144,7 @@ static ExitCode sweep_rows(Sweep *sweep) {
     }
 
     if (o->print) return EXIT_GOOD;
+    if (o->openjd) return sweep_print_openjd(sweep);
     if (o->submit) return sweep_submit(sweep);
     if (o->row) return sweep_run_rows(sweep);
 
@@ -167,6 +170,7 @@ int command_sweep(int argc, char **argv) {
         case OPT_RETRY: options.retry = true; break;
         case OPT_NO_PREVIEW: options.no_preview = true; break;
         case OPT_PRINT: options.print = true; break;
+        case OPT_OPENJD: options.openjd = true; break;
         case OPT_ROW: good = args_int(&reader, option, value, 1, PLAN_ROWS_MAX, &options.row); break;
         case OPT_REPORT: options.report = true; break;
         case OPT_SLURM: options.submit = true; break;
@@ -185,8 +189,8 @@ int command_sweep(int argc, char **argv) {
         if (!good) code = EXIT_INPUT;
     }
 
-    if (!code && !done && options.print + options.report + options.submit + (options.row > 0) > 1) {
-        args_complain(&reader, "--print, --report, --row and --slurm exclude each other");
+    if (!code && !done && options.print + options.openjd + options.report + options.submit + (options.row > 0) > 1) {
+        args_complain(&reader, "--print, --openjd, --report, --row and --slurm exclude each other");
         code = EXIT_INPUT;
     }
 

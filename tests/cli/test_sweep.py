@@ -201,9 +201,23 @@ class Sweep(Case):
         self.assertIn("has 3 rows", self.sweep("--row", "4", expect=2)[1])
         lines = self.sweep("--print")[0].splitlines()
         self.assertEqual([re.search(r"--row (\d+)", line).group(1) for line in lines], ["1", "3"])
-        for line in lines:
-            subprocess.run(["sh", "-c", line], check=True, capture_output=True, timeout=120)
+        # the first by its line, the last as a task of the job that OpenJD would run
+        subprocess.run(["sh", "-c", lines[0]], check=True, capture_output=True, timeout=120)
+        job = json.loads(self.sweep("--openjd")[0])
+        rows, report = job["steps"]
+        self.assertEqual((job["specificationVersion"], job["name"]), ("jobtemplate-2023-09", "plan"))
+        parameter = rows["parameterSpace"]["taskParameterDefinitions"][0]
+        self.assertEqual((parameter["name"], parameter["type"], parameter["range"]), ("Row", "INT", "3"))
+        self.assertEqual(report["dependencies"], [{"dependsOn": rows["name"]}])
+        for step in rows, report:
+            action = step["script"]["actions"]["onRun"]
+            args = [arg.replace("{{Task.Param.Row}}", "3") for arg in action["args"]]
+            subprocess.run([action["command"], *args], check=True, capture_output=True, timeout=120)
         self.assertEqual(self.complete(), ["0001", "0002", "0003"])
+        self.assertEqual(len(self.table("report.csv")), 3)
+        self.assertEqual([step["name"] for step in json.loads(self.sweep("--openjd")[0])["steps"]], ["Report"])
+        self.assertIn("exclude each other", self.sweep("--openjd", "--print", expect=2)[1])
+        self.assertIn("'{{' in a name", self.sweep("--openjd", out="a {{Task.Param.Row}}", expect=2)[1])
 
     def test_another_plan_or_scene_is_noticed(self):
         self.write_plan("parameters:\n  pace: [2, 5]\n")
