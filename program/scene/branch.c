@@ -7,6 +7,7 @@
 #include "scene/dump.h"
 #include "scene/faults.h"
 #include "scene/schema_rows.h"
+#include "scene/sequence.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -35,16 +36,6 @@ static const char *const changeable[] = {
     "sheets.material.name",
     "sheets.material.measured",
 };
-
-/// Parameters of materials that fix a sheet's mass, shape or start.
-static const char *const lasting[] = {"grammage", "specific_heat", "thickness", "temperature", "moisture"};
-
-static bool listed(const char *key, const char *const *keys, size_t count) {
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(key, keys[i]) == 0) return true;
-    return false;
-}
-#define LISTED(key, keys) listed(key, keys, sizeof(keys) / sizeof *(keys))
 
 /// Two scenes, and what has been found.
 typedef struct Comparison {
@@ -100,8 +91,10 @@ static void compare_maps(Comparison *comparison, const Schema *schema, const voi
         char key[160], name[200];
         snprintf(key, sizeof key, "%s%s", path, row->key);
         snprintf(name, sizeof name, "%s%s", shown_as, row->key);
-        if (LISTED(key, changeable)) continue;
-        if (material && row->type == ROW_PARAM && !LISTED(row->key, lasting)) continue;
+        bool may = false;
+        for (size_t k = 0; k < sizeof changeable / sizeof *changeable; k++) may |= strcmp(key, changeable[k]) == 0;
+        if (may) continue;
+        if (material && row->type == ROW_PARAM && !scene_param_lasts(row->key)) continue;
 
         char *was = dump_row_text(row, kind, before), *is = dump_row_text(row, kind, now);
         const bool whole = was && is && *was && *is; // both are given
@@ -313,14 +306,15 @@ SingeResult scene_branch(SceneWhole scene, SceneWhole before, int frame, SingeSi
             equal = pictures_equal(&scene.assets->fields[i][k].texture, &before.assets->fields[i][k].texture);
         if (equal) continue;
 
-        SingeSheetDef def;
-        scene_sheet_def(scene.scene, scene.assets, i, &def);
-        result = no_memory ? SINGE_ERROR_MEMORY : singe_sim_set_material(sim, builder.sheets[i], &def.material, NULL);
+        // scene_follow makes the step to this frame
+        const int last = frame > 1 ? frame - 1 : 1;
+        result = no_memory ? SINGE_ERROR_MEMORY
+                           : follow_material(scene.scene, scene.assets, sim, i, last, true, &fault.error);
         if (!result) continue;
         char path[40];
         snprintf(path, sizeof path, "sheets.%u.material", (unsigned)i);
         message_add(messages, scene.scene->text, location_of(scene.scene, path), "the material cannot change: %s",
-                    no_memory ? "out of memory" : singe_sim_error(sim)->message);
+                    no_memory ? "out of memory" : fault.error.message);
     }
     const uint32_t found = message_total(messages);
 

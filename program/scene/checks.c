@@ -1,6 +1,6 @@
 // Checks that involve more than one key.
 #include "common/printable.h"
-#include "scene/schema.h"
+#include "scene/values.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,8 +10,7 @@ static void complain(Reader *reader, SceneLocation location, const char *what) {
     message_add(reader->messages, reader->text, location, "%s", what);
 }
 
-/// Refuses lists whose times do not increase.
-static void check_times(Reader *reader, const YamlNode *list, const void *items, size_t size, uint32_t count) {
+void check_times(Reader *reader, const YamlNode *list, const void *items, size_t size, uint32_t count) {
     const YamlNode *node = list && list->kind == NODE_LIST ? list->first : NULL;
     float before = -1;
     for (uint32_t i = 0; node && i < count; i++, node = node->next) {

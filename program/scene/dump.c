@@ -53,8 +53,16 @@ static void put_numbers(FILE *file, const float *values, int count, Dimension di
     fputc(']', file);
 }
 
-static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param, const SceneFile *texture) {
+static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param, const SceneFollowed *followed) {
     const SingeField *field = param->field;
+    for (uint32_t i = 0; i < followed->key_count; i++) {
+        fputs(i ? ", {\"time\": " : "[{\"time\": ", file);
+        put_number(file, followed->keys[i].time, DIM_TIME);
+        fputs(", \"value\": ", file);
+        put_number(file, followed->keys[i].value, row->dimension);
+        fputs(i + 1 < followed->key_count ? "}" : "}]", file);
+    }
+    if (followed->key_count) return;
     if (!field) {
         put_number(file, param->value, row->dimension);
         return;
@@ -69,7 +77,7 @@ static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param,
         fprintf(file, ", \"octaves\": %d, \"seed\": %" PRIu32 "}", field->noise.octaves, field->noise.seed);
     } else {
         bool is_texture = field->kind == SINGE_FIELD_TEXTURE;
-        const char *name = is_texture ? texture->name : field->attribute;
+        const char *name = is_texture ? followed->texture.name : field->attribute;
         fprintf(file, ", \"%s\": ", is_texture ? "texture" : "attribute");
         put_text(file, name ? name : "");
     }

@@ -4,8 +4,10 @@
 #include "scene/messages.h"
 #include "scene/rotation.h"
 #include "scene/scene.h"
+#include "scene/sequence.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /// Bytes of a cell with its springs and its share of the drawn mesh, and bytes added by contact: more than flat sheets
 /// need, as the lists of contact grow where sheets crowd.
@@ -72,7 +74,11 @@ static double gas_cells(const Scene *scene, const SceneAssets *assets) {
 
 static double pixels_of(const SceneFile *file) {
     int width, height;
-    return file->path && image_size(file->path, &width, &height) ? (double)width * (double)height : 0;
+    char *first = file->path && sequence_name_fits(file->name) ? sequence_path(file->path, 1) : NULL;
+    const char *path = first ? first : file->path;
+    const double pixels = path && image_size(path, &width, &height) ? (double)width * (double)height : 0;
+    free(first);
+    return pixels;
 }
 
 /// Pixels of a collider's heights.
@@ -94,7 +100,7 @@ SceneSize scene_size(const Scene *scene, const SceneAssets *assets) {
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         pictures += picture_bytes * pixels_of(&scene->sheets[i].picture);
         for (size_t k = 0; k < SCENE_PARAM_SLOTS; k++)
-            pictures += texture_bytes * pixels_of(&scene->sheets[i].material.textures[k]);
+            pictures += texture_bytes * pixels_of(&scene->sheets[i].material.followed[k].texture);
     }
 
     for (uint32_t i = 0; i < scene->source_count; i++)

@@ -105,7 +105,8 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
     case ROW_FLOAT:
     case ROW_PARAM:
         add_quantity(buffer, size, row);
-        if (row->type == ROW_PARAM) expected_add(buffer, size, " or a map {from, to, texture | attribute | noise}");
+        if (row->type == ROW_PARAM)
+            expected_add(buffer, size, ", a map {from, to, texture | attribute | noise} or a list of {time, value}");
         break;
     case ROW_POSITION:
     case ROW_ROTATION:

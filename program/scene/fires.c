@@ -18,8 +18,8 @@ typedef struct Place {
     bool burns;
 } Place;
 
-static double param_least(SingeParam p) { return (double)(p.field ? fminf(p.value, p.to) : p.value); }
-static double param_most(SingeParam p) { return (double)(p.field ? fmaxf(p.value, p.to) : p.value); }
+static double param_least(SingeParam p) { return (double)fminf(p.value, p.to); }
+static double param_most(SingeParam p) { return (double)fmaxf(p.value, p.to); }
 static bool burns(const SingeMaterialDef *material) {
     return param_most(material->mass_rate) > 0 || param_most(material->pre_exponential) > 0;
 }

@@ -93,6 +93,16 @@ static void put_list(FILE *file, int length, const SchemaRow *row, void (*put)(F
 
 static void put_point(FILE *file, const SchemaRow *row) { put_list(file, 3, row, put_quantity); }
 
+/// A value at a time.
+static void put_key(FILE *file, const SchemaRow *row) {
+    const SchemaRow time = {"time", ROW_FLOAT, DIM_TIME, .min = 0, .max = 1e6};
+    fputs("{\"type\": \"object\", \"properties\": {\"time\": ", file);
+    put_quantity(file, &time);
+    fputs(", \"value\": ", file);
+    put_quantity(file, row);
+    fputs("}, \"required\": [\"time\", \"value\"], \"additionalProperties\": false}", file);
+}
+
 static void put_value(Definitions *definitions, const SchemaRow *row) {
     FILE *file = definitions->file;
     switch (row->type) {
@@ -142,8 +152,10 @@ static void put_value(Definitions *definitions, const SchemaRow *row) {
         fputs(", \"texture\": {\"type\": \"string\"}, \"attribute\": {\"type\": \"string\"}, \"noise\": ", file);
         put_reference(definitions, &schema_noise);
         fputs("}, \"required\": [\"from\", \"to\"], \"minProperties\": 3, \"maxProperties\": 3, "
-              "\"additionalProperties\": false}]}",
+              "\"additionalProperties\": false}, ",
               file);
+        put_list(file, 0, row, put_key);
+        fputs("]}", file);
         break;
     case ROW_MAP:
         if (!row->sub->choice) {

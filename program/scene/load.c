@@ -24,22 +24,39 @@ static SingeResult loader_fail(Loader *loader, const SceneFile *file, SingeResul
     return result;
 }
 
-static SingeResult load_image(Loader *loader, const SceneFile *file, Image *image) {
+static SingeResult read_image(const char *path, Image *image, SingeError *error) {
     Bytes bytes = {0};
-    SingeError error = {0};
-    SingeResult result = file_read(file->path, (SingeAllocator){0}, &bytes, &error);
-    if (!result) result = image_read(file->path, bytes.data, bytes.size, (SingeAllocator){0}, image, &error);
+    SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
+    if (!result) result = image_read(path, bytes.data, bytes.size, (SingeAllocator){0}, image, error);
     bytes_free(&bytes);
+    return result;
+}
+
+static SingeResult load_image(Loader *loader, const SceneFile *file, Image *image) {
+    SingeError error = {0};
+    SingeResult result = read_image(file->path, image, &error);
     return result ? loader_fail(loader, file, result, error.message) : SINGE_OK;
 }
 
-static void load_luminance(Loader *loader, const SceneFile *file, SingeTexture *picture) {
+SingeResult luminance_read(const char *path, SingeTexture *picture, SingeError *error) {
     Image image = {0};
-    SingeError error = {0};
-    if (load_image(loader, file, &image)) return;
-    SingeResult result = image_luminance(&image, (SingeAllocator){0}, picture, &error);
-    if (result) loader_fail(loader, file, result, error.message);
+    SingeResult result = read_image(path, &image, error);
+    if (!result) result = image_luminance(&image, (SingeAllocator){0}, picture, error);
     image_free(&image);
+    return result;
+}
+
+/// Of a numbered file the first, after a check that none is missing.
+static void load_luminance(Loader *loader, const SceneFile *file, SingeTexture *picture) {
+    SingeError error = {0};
+    const bool numbered = sequence_name_fits(file->name);
+    char *first = numbered ? sequence_path(file->path, 1) : NULL;
+    int length;
+    SingeResult result = numbered && !first ? SINGE_ERROR_MEMORY : SINGE_OK;
+    if (!result && numbered) result = sequence_length(file->path, 1, loader->scene->frames, &length, &error);
+    if (!result) result = luminance_read(first ? first : file->path, picture, &error);
+    free(first);
+    if (result) loader_fail(loader, file, result, error.message);
 }
 
 /// The simulation reports positions farther out as divergence.
@@ -132,12 +149,17 @@ static void load_sheet(Loader *loader, uint32_t index) {
 
     // what the material's parameters follow
     SingeMaterialDef material = sheet->material.def;
+    const SceneFile *attribute = NULL;
+    bool changes = false; // over time
     SceneParam row;
 
     for (int i = 0; scene_param(i, &row); i++) {
         const SingeField *field = scene_param_at(&material, &row)->field;
-        const SceneFile *file = &sheet->material.textures[row.slot];
+        const SceneFollowed *followed = &sheet->material.followed[row.slot];
+        const SceneFile *file = &followed->texture;
+        changes = changes || followed->key_count || (file->name && sequence_name_fits(file->name));
         if (!field) continue;
+        if (field->kind == SINGE_FIELD_ATTRIBUTE) attribute = file;
         assets->fields[index][row.slot] = *field;
         if (field->kind == SINGE_FIELD_TEXTURE) {
             load_luminance(loader, file, &assets->fields[index][row.slot].texture);
@@ -159,6 +181,10 @@ static void load_sheet(Loader *loader, uint32_t index) {
             message_add(loader->messages, scene->text, file->location, "%s: the mesh has no attribute '%s'%s", row.key,
                         shown(field->attribute).text, nearest_hint(&nearest, hint, sizeof hint));
     }
+    if (changes && attribute)
+        message_add(
+            loader->messages, scene->text, attribute->location,
+            "a material that changes over time, by keys or by a picture for each frame, cannot follow an attribute");
 }
 
 /// Reads the files of a collider or pin that moves with a mesh.

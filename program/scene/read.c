@@ -1,86 +1,11 @@
 // Reads the scene from the tree by the rows of the schema: maps, lists and parameters that vary.
+#include "scene/schema_rows.h"
 #include "scene/values.h"
 
+#include <math.h>
 #include <string.h>
 
 static void *read_at(void *object, size_t offset) { return (char *)object + offset; }
-
-// ---- parameters that may vary
-
-/// Finds the field that the parameter follows; returns the number of such keys.
-static int read_field(Reader *reader, const SchemaRow *row, const YamlNode *map, SingeField *field, SceneFile *file) {
-    const YamlNode *texture = node_find(map, "texture"), *attribute = node_find(map, "attribute"),
-                   *noise = node_find(map, "noise");
-    if (texture) {
-        SchemaRow part = {.key = "texture", .type = ROW_FILE};
-        field->kind = SINGE_FIELD_TEXTURE;
-        value_file(reader, &part, texture, file);
-    }
-
-    if (attribute) {
-        SchemaRow part = {.key = "attribute", .type = ROW_TEXT};
-        field->kind = SINGE_FIELD_ATTRIBUTE;
-        file->location = attribute->location;
-        if (value_is_text(attribute)) field->attribute = attribute->text;
-        else value_wrong(reader, attribute, &part);
-    }
-
-    if (noise) {
-        field->kind = SINGE_FIELD_NOISE;
-        file->location = noise->location;
-        if (noise->kind != NODE_MAP)
-            message_add(reader->messages, reader->text, noise->location,
-                        "%s.noise must be a map {scale: , octaves: , seed: }", row->key);
-        else if (default_noise(reader->arena, &field->noise)) schema_read(reader, &schema_noise, noise, &field->noise);
-    }
-
-    return !!texture + !!attribute + !!noise;
-}
-
-static void read_param(Reader *reader, const SchemaRow *row, const YamlNode *node, SingeParam *param, SceneFile *file) {
-    static const char *const keys[] = {"from", "to", "texture", "attribute", "noise"};
-    SingeParam result = singe_param(param->value);
-    *file = (SceneFile){0}; // drop that of the base material
-
-    if (node->kind != NODE_MAP) {
-        if (value_float(reader, row, node, &result.value)) {
-            result.to = result.value;
-            *param = result;
-        }
-        return;
-    }
-
-    unsigned given = 0;
-    for (const YamlNode *child = node->first; child; child = child->next) {
-        Nearest nearest = {.word = child->key};
-        int i = 0;
-        for (; i < 5 && strcmp(child->key, keys[i]) != 0; i++) nearest_offer(&nearest, keys[i]);
-        char hint[80], key[NODE_WORDS];
-        if (i == 5)
-            message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
-                        node_key(child, key, sizeof key), row->key, nearest_hint(&nearest, hint, sizeof hint));
-        else if (given & 1u << i)
-            message_add(reader->messages, reader->text, child->key_location, "'%s' is given twice in %s", keys[i],
-                        row->key);
-        else given |= 1u << i;
-    }
-
-    const YamlNode *from = node_find(node, "from"), *to = node_find(node, "to");
-    SchemaRow end = *row; // no line leads to infinity
-    end.flags &= ~(unsigned)ROW_INF;
-    bool good = from && to;
-    good = (!from || value_float(reader, &end, from, &result.value)) && good;
-    good = (!to || value_float(reader, &end, to, &result.to)) && good;
-
-    SingeField *field = arena_new(reader->arena, 1, sizeof *field);
-    if (!field) return;
-    int fields = read_field(reader, row, node, field, file);
-    result.field = field;
-    if (!from || !to || fields != 1)
-        message_add(reader->messages, reader->text, node->location,
-                    "%s as a map needs 'from', 'to' and one of 'texture', 'attribute' and 'noise'", row->key);
-    else if (good) *param = result;
-}
 
 // ---- lists
 
@@ -140,6 +65,118 @@ static void read_key_part(Reader *reader, const SchemaRow *row, const YamlNode *
     memcpy(&key, read_at(object, row->offset), sizeof key);
     if (!key || *(uint32_t *)read_at(object, row->extra) != 1) key = list_new(reader, object, row, 1, sizeof *key);
     if (key) value_vector(reader, row, node, row->type == ROW_POSITION ? key->position : key->rotation);
+}
+
+// ---- parameters that may vary
+
+/// Finds the field that the parameter follows; returns the number of such keys.
+static int read_field(Reader *reader, const SchemaRow *row, const YamlNode *map, SingeField *field, SceneFile *file) {
+    const YamlNode *texture = node_find(map, "texture"), *attribute = node_find(map, "attribute"),
+                   *noise = node_find(map, "noise");
+    if (texture) {
+        SchemaRow part = {.key = "texture", .type = ROW_FILE};
+        const bool numbered = texture->kind == NODE_VALUE && texture->text && strchr(texture->text, '#');
+        if (numbered && scene_param_lasts(row->key))
+            message_add(reader->messages, reader->text, texture->location,
+                        "%s is fixed at the start: it takes one picture", row->key);
+        if (numbered) part.flags = ROW_NUMBERED;
+        field->kind = SINGE_FIELD_TEXTURE;
+        value_file(reader, &part, texture, file);
+    }
+
+    if (attribute) {
+        SchemaRow part = {.key = "attribute", .type = ROW_TEXT};
+        field->kind = SINGE_FIELD_ATTRIBUTE;
+        file->location = attribute->location;
+        if (value_is_text(attribute)) field->attribute = attribute->text;
+        else value_wrong(reader, attribute, &part);
+    }
+
+    if (noise) {
+        field->kind = SINGE_FIELD_NOISE;
+        file->location = noise->location;
+        if (noise->kind != NODE_MAP)
+            message_add(reader->messages, reader->text, noise->location,
+                        "%s.noise must be a map {scale: , octaves: , seed: }", row->key);
+        else if (default_noise(reader->arena, &field->noise)) schema_read(reader, &schema_noise, noise, &field->noise);
+    }
+
+    return !!texture + !!attribute + !!noise;
+}
+
+/// A list of {time, value}. The parameter begins with the first value, and `to` is the one that is farthest from it.
+static void read_keys(Reader *reader, const SchemaRow *row, const YamlNode *list, SingeParam *param,
+                      SceneFollowed *followed) {
+    const SchemaRow rows[] = {
+        {"time", ROW_FLOAT, DIM_TIME, AT(SingeValueKey, time), .min = 0, .max = 1e6, .flags = ROW_REQUIRED,
+         .doc = "when"},
+        {"value", ROW_FLOAT, row->dimension, AT(SingeValueKey, value), .min = row->min, .max = row->max,
+         .flags = ROW_REQUIRED | (row->flags & (ROW_OPEN_MIN | ROW_OPEN_MAX)), .doc = row->doc},
+    };
+    const Schema schema = {.title = row->key, .size = sizeof(SingeValueKey), ROWS(rows)};
+    const SchemaRow keys = {
+        row->key,           ROW_LIST,      DIM_NONE, AT(SceneFollowed, keys), EXTRA(SceneFollowed, key_count),
+        .flags = ROW_KEYED, .sub = &schema};
+    if (scene_param_lasts(row->key))
+        message_add(reader->messages, reader->text, list->location, "%s is fixed at the start: it has no keys",
+                    row->key);
+    read_list(reader, &keys, list, followed);
+    check_times(reader, list, followed->keys, sizeof *followed->keys, followed->key_count);
+    if (!followed->key_count) return;
+    *param = singe_param(followed->keys[0].value);
+    for (uint32_t i = 1; i < followed->key_count; i++)
+        if (fabsf(followed->keys[i].value - param->value) > fabsf(param->to - param->value))
+            param->to = followed->keys[i].value;
+}
+
+static void read_param(Reader *reader, const SchemaRow *row, const YamlNode *node, SingeParam *param,
+                       SceneFollowed *followed) {
+    static const char *const keys[] = {"from", "to", "texture", "attribute", "noise"};
+    SingeParam result = singe_param(param->value);
+    *followed = (SceneFollowed){0}; // drop that of the base material
+
+    if (node->kind == NODE_LIST) {
+        read_keys(reader, row, node, param, followed);
+        return;
+    }
+    if (node->kind != NODE_MAP) {
+        if (value_float(reader, row, node, &result.value)) {
+            result.to = result.value;
+            *param = result;
+        }
+        return;
+    }
+
+    unsigned given = 0;
+    for (const YamlNode *child = node->first; child; child = child->next) {
+        Nearest nearest = {.word = child->key};
+        int i = 0;
+        for (; i < 5 && strcmp(child->key, keys[i]) != 0; i++) nearest_offer(&nearest, keys[i]);
+        char hint[80], key[NODE_WORDS];
+        if (i == 5)
+            message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
+                        node_key(child, key, sizeof key), row->key, nearest_hint(&nearest, hint, sizeof hint));
+        else if (given & 1u << i)
+            message_add(reader->messages, reader->text, child->key_location, "'%s' is given twice in %s", keys[i],
+                        row->key);
+        else given |= 1u << i;
+    }
+
+    const YamlNode *from = node_find(node, "from"), *to = node_find(node, "to");
+    SchemaRow end = *row; // no line leads to infinity
+    end.flags &= ~(unsigned)ROW_INF;
+    bool good = from && to;
+    good = (!from || value_float(reader, &end, from, &result.value)) && good;
+    good = (!to || value_float(reader, &end, to, &result.to)) && good;
+
+    SingeField *field = arena_new(reader->arena, 1, sizeof *field);
+    if (!field) return;
+    int fields = read_field(reader, row, node, field, &followed->texture);
+    result.field = field;
+    if (!from || !to || fields != 1)
+        message_add(reader->messages, reader->text, node->location,
+                    "%s as a map needs 'from', 'to' and one of 'texture', 'attribute' and 'noise'", row->key);
+    else if (good) *param = result;
 }
 
 // ---- maps

@@ -84,10 +84,18 @@ typedef struct SceneMeasured {
     float residue[2];     ///< share of the mass that remains
 } SceneMeasured;
 
+/// What a parameter follows: a picture, or one for each frame (a name with a run of #); or keys over time.
+typedef struct SceneFollowed {
+    SceneFile texture;
+    uint32_t key_count;
+    SingeValueKey *keys;
+} SceneFollowed;
+
 typedef struct SceneMaterial {
-    SingeMaterialDef def;                  ///< pictures have no values before scene_load
-    SceneFile textures[SCENE_PARAM_SLOTS]; ///< of parameters that follow a texture
-    char *name;                            ///< for messages, may be NULL
+    SingeMaterialDef
+        def; ///< pictures have no values before scene_load; what has keys has its first, and `to` the farthest
+    SceneFollowed followed[SCENE_PARAM_SLOTS];
+    char *name; ///< for messages, may be NULL
     SceneMeasured measured;
 } SceneMaterial;
 

@@ -113,6 +113,9 @@ static inline SingeParam *scene_param_at(SingeMaterialDef *def, const SceneParam
     return (SingeParam *)((char *)def + param->offset);
 }
 
+/// Whether a parameter fixes a sheet's mass, shape or start, and so cannot change.
+bool scene_param_lasts(const char *key);
+
 /// Reads a map into an object whose defaults are set.
 void schema_read(Reader *reader, const Schema *schema, const YamlNode *map, void *object);
 

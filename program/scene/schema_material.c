@@ -19,7 +19,7 @@ const Schema schema_noise = {.title = "a noise",
 // A value that may vary over the sheet; the slot of its texture follows from the member.
 #define PARAM(name, member, dim, text, ...)                                                                            \
     {                                                                                                                  \
-        name, ROW_PARAM, dim, AT(SceneMaterial, def.member), EXTRA(SceneMaterial, textures[SCENE_PARAM_SLOT(member)]), \
+        name, ROW_PARAM, dim, AT(SceneMaterial, def.member), EXTRA(SceneMaterial, followed[SCENE_PARAM_SLOT(member)]), \
             .doc = text, __VA_ARGS__                                                                                   \
     }
 static const SchemaRow weight_rows[] = {
@@ -94,7 +94,7 @@ const Schema schema_material = {
     .doc = "What a sheet is made of and how it burns. `material: newsprint` takes one as it is, `material: {base: "
            "newsprint, thickness: 2 mm}` changes it; the defaults are those of office-paper, 80 g/m2 at its real pace. "
            "Mass is always a fraction of the mass at the start. A value marked *varies* may also follow a texture, an "
-           "attribute or a noise (see *Values that vary*)."};
+           "attribute, a noise or keys over time (see *Values that vary*)."};
 
 static bool param_in(const Schema *schema, const char *prefix, int *index, SceneParam *param) {
     for (int i = 0; i < schema->row_count; i++) {
@@ -105,9 +105,16 @@ static bool param_in(const Schema *schema, const char *prefix, int *index, Scene
         if (row->type != ROW_PARAM || (*index)--) continue;
         snprintf(param->key, sizeof param->key, "%s%s", prefix, row->key);
         param->offset = row->offset - offsetof(SceneMaterial, def);
-        param->slot = (row->extra - offsetof(SceneMaterial, textures)) / sizeof(SceneFile);
+        param->slot = (row->extra - offsetof(SceneMaterial, followed)) / sizeof(SceneFollowed);
         return true;
     }
+    return false;
+}
+
+bool scene_param_lasts(const char *key) {
+    static const char *const lasting[] = {"grammage", "specific_heat", "thickness", "temperature", "moisture"};
+    for (size_t i = 0; i < sizeof lasting / sizeof *lasting; i++)
+        if (strcmp(key, lasting[i]) == 0) return true;
     return false;
 }
 

@@ -9,7 +9,9 @@
 #include "scene/sequence.h"
 
 #include "common/store.h"
+#include "scene/faults.h"
 #include "scene/closest_point.h"
+#include "scene/schema.h"
 #include "scene/solid.h"
 
 #include <math.h>
@@ -29,15 +31,34 @@ bool sequence_name_fits(const char *name) {
     return !strchr(run + strspn(run, "#"), '#') && strspn(run, "#") <= 9;
 }
 
-/// The name of a frame's file, from malloc; NULL when out of memory.
-static char *sequence_path(const SceneMotion *motion, int frame) {
-    const char *path = motion->mesh.path, *file = strrchr(path, '/'), *run = strchr(file ? file : path, '#');
+char *sequence_path(const char *path, int number) {
+    const char *file = strrchr(path, '/'), *run = strchr(file ? file : path, '#');
     const size_t size = strlen(path) + 16;
     char *made = malloc(size);
     if (made)
-        snprintf(made, size, "%.*s%0*d%s", (int)(run - path), path, (int)strspn(run, "#"), motion->first + frame,
+        snprintf(made, size, "%.*s%0*d%s", (int)(run - path), path, (int)strspn(run, "#"), number,
                  run + strspn(run, "#"));
     return made;
+}
+
+/// Whether a numbered file exists; also false when out of memory.
+static bool sequence_has(const char *path, int number) {
+    char *made = sequence_path(path, number);
+    const bool there = made && access(made, F_OK) == 0;
+    free(made);
+    return there;
+}
+
+SingeResult sequence_length(const char *path, int first, int most, int *length, SingeError *error) {
+    *length = 1;
+    while (*length < most && sequence_has(path, first + *length)) ++*length;
+    if (*length >= most || !sequence_has(path, first + *length + 1)) return SINGE_OK;
+    char *missing = sequence_path(path, first + *length);
+    if (!missing) return sequence_no_memory(error);
+    SingeResult result = refuse(error, SINGE_ERROR_FILE, "scene", -1,
+                                "%s: there is no such file, but the next one exists", short_name(missing));
+    free(missing);
+    return result;
 }
 
 /// Reads a frame; the first one allocates all.
@@ -91,31 +112,11 @@ static SingeResult sequence_read_frame(const SceneMotion *motion, const char *pa
 }
 
 SingeResult sequence_read(const SceneMotion *motion, int frames, SceneSequence *sequence, SingeError *error) {
-    SingeResult result = SINGE_OK;
+    int length = 0; // the frames with files: the motion stops after the last
     *sequence = (SceneSequence){0};
-
-    // the frames with files, at least one: the motion stops after the last
-    int length = 0;
-    for (bool there = true; length < frames && there && !result; length++) {
-        char *path = sequence_path(motion, length + 1);
-        there = path && access(path, F_OK) == 0;
-        if (!path) result = sequence_no_memory(error);
-        free(path);
-    }
-
-    // none may be missing in between
-    if (!result && length < frames) {
-        char *missing = sequence_path(motion, length), *after = sequence_path(motion, length + 1);
-        if (!missing || !after) result = sequence_no_memory(error);
-        else if (access(after, F_OK) == 0)
-            result = refuse(error, SINGE_ERROR_FILE, "scene", -1, "%s: there is no such file, but the next one exists",
-                            short_name(missing));
-        free(missing);
-        free(after);
-    }
-
+    SingeResult result = sequence_length(motion->mesh.path, motion->first, frames, &length, error);
     for (int frame = 0; !result && frame < length; frame++) {
-        char *path = sequence_path(motion, frame);
+        char *path = sequence_path(motion->mesh.path, motion->first + frame);
         result = path ? sequence_read_frame(motion, path, frame, length, sequence, error) : sequence_no_memory(error);
         free(path);
     }
@@ -251,20 +252,76 @@ static SingeResult follow_burn_by(const Scene *scene, SingeSim *sim, int frame, 
     return result;
 }
 
+/// Interpolates between keys; beyond the ends they are held.
+static double keys_at(const SingeValueKey *keys, uint32_t count, double time) {
+    uint32_t after = 0;
+    while (after < count && (double)keys[after].time <= time) after++;
+    double value = (double)keys[after ? after - 1 : 0].value;
+    if (after > 0 && after < count) {
+        const double begin = (double)keys[after - 1].time, end = (double)keys[after].time;
+        value += (time - begin) / (end - begin) * ((double)keys[after].value - value);
+    }
+    return value;
+}
+
 SingeResult scene_begin_step(const Scene *scene, SingeSim *sim, int frame, int step, SingeError *error) {
     if (scene->burn_by.given) return step ? SINGE_OK : follow_burn_by(scene, sim, frame, error);
     if (!scene->pace_count) return SINGE_OK;
     const double time = ((double)(frame - 1) + (double)step / scene->steps) / (double)scene->fps;
-    const SingeValueKey *keys = scene->paces;
-    uint32_t after = 0;
-    while (after < scene->pace_count && (double)keys[after].time <= time) after++;
-    double pace = (double)keys[after ? after - 1 : 0].value;
-    if (after > 0 && after < scene->pace_count) {
-        const double begin = (double)keys[after - 1].time, end = (double)keys[after].time;
-        pace += (time - begin) / (end - begin) * ((double)keys[after].value - pace);
-    }
+    const double pace = keys_at(scene->paces, scene->pace_count, time);
     const SingeResult result = singe_sim_set_pace(sim, fmaxf((float)pace, SCENE_PACE_MIN));
     if (result) *error = *singe_sim_error(sim);
+    return result;
+}
+
+// ---- materials over time
+
+SingeResult follow_material(const Scene *scene, const SceneAssets *assets, SingeSim *sim, uint32_t sheet, int frame,
+                            bool always, SingeError *error) {
+    const SceneFollowed *followed = scene->sheets[sheet].material.followed;
+    const double time = (frame - 1) / (double)scene->fps, before = (frame - 2) / (double)scene->fps;
+    bool changed = always;
+    for (int k = 0; k < SCENE_PARAM_SLOTS && frame > 1; k++) {
+        const SceneFollowed *by = &followed[k];
+        if (by->key_count)
+            changed |= keys_at(by->keys, by->key_count, time) != keys_at(by->keys, by->key_count, before);
+        else if (by->texture.name && sequence_name_fits(by->texture.name))
+            changed |= sequence_has(by->texture.path, frame);
+    }
+    if (!changed) return SINGE_OK;
+
+    SingeSheetDef def;
+    SingeField fields[SCENE_PARAM_SLOTS];
+    SceneParam param;
+    SingeResult result = SINGE_OK;
+    scene_sheet_def(scene, assets, sheet, &def);
+    for (int k = 0; k < SCENE_PARAM_SLOTS; k++) fields[k].texture.values = NULL;
+    for (int i = 0; scene_param(i, &param) && !result; i++) {
+        const SceneFollowed *by = &followed[param.slot];
+        SingeParam *value = scene_param_at(&def.material, &param);
+        if (by->key_count) *value = singe_param((float)keys_at(by->keys, by->key_count, time));
+        if (!by->texture.name || !sequence_name_fits(by->texture.name)) continue;
+
+        int number = frame; // the last picture stays
+        while (number > 1 && !sequence_has(by->texture.path, number)) number--;
+        SingeField *field = &fields[param.slot];
+        *field = assets->fields[sheet][param.slot];
+        field->texture = (SingeTexture){0};
+        char *path = sequence_path(by->texture.path, number);
+        result = path ? luminance_read(path, &field->texture, error) : sequence_no_memory(error);
+        free(path);
+        value->field = field;
+    }
+
+    SingeSheetId *ids = calloc((size_t)scene->sheet_count + 1, sizeof *ids);
+    if (!result && !ids) result = sequence_no_memory(error);
+    if (!result) {
+        singe_sim_sheets(sim, ids, scene->sheet_count);
+        result = singe_sim_set_material(sim, ids[sheet], &def.material, NULL);
+        if (result) *error = *singe_sim_error(sim);
+    }
+    free(ids);
+    for (int k = 0; k < SCENE_PARAM_SLOTS; k++) free((void *)fields[k].texture.values);
     return result;
 }
 
@@ -292,5 +349,7 @@ SingeResult scene_follow(const Scene *scene, SceneAssets *assets, SingeSim *sim,
     free(colliders);
     free(pins);
 
+    for (uint32_t i = 0; i < scene->sheet_count && !result; i++)
+        result = follow_material(scene, assets, sim, i, frame, false, error);
     return result;
 }

@@ -26,6 +26,9 @@ bool value_is_text(const YamlNode *node);
 bool value_names_files(const char *text);
 void value_name(Reader *reader, const SchemaRow *row, const YamlNode *node, char **field);
 
+/// Refuses lists whose times do not increase. The time is the first member of an entry of `size` bytes.
+void check_times(Reader *reader, const YamlNode *list, const void *items, size_t size, uint32_t count);
+
 /// Also checks that the file exists, if the reader has a folder.
 void value_file(Reader *reader, const SchemaRow *row, const YamlNode *node, SceneFile *field);
 

@@ -50,12 +50,14 @@ class Branch(Case):
         self.no_temporaries(out)
 
     def test_unchanged(self):
-        """With and without a checkpoint, on one thread and on two, the frames are those of the whole run."""
-        self.whole("--set", "checkpoints.every=3")
+        """With and without a checkpoint, on one thread and on two, the frames are those of the whole run, also where a
+        material has keys."""
+        keys = "sheets.0.material.drag=[{time: 0, value: 1}, {time: 0.1, value: 1}, {time: 0.2, value: 9}]"
+        self.whole("--set", "checkpoints.every=3", "--set", keys)
         self.assertEqual(sorted(os.listdir(self.path("whole", "checkpoints"))), ["tiny.0003.singe", "tiny.0006.singe"])
         for frame, threads in ((5, "2"),) if SANITIZED else ((1, "1"), (3, "2"), (5, "1")):
             with self.subTest(frame=frame):
-                _, err = self.branch(f"b{frame}", frame, args=("--threads", threads))
+                _, err = self.branch(f"b{frame}", frame, keys, args=("--threads", threads))
                 if frame < 5:  # the run's own last checkpoints depend on its speed
                     self.assertNotIn("again", err)
                 self.same(f"b{frame}")

@@ -427,6 +427,72 @@ TEST(solids_become_colliders_and_shapes) {
     rmdir(folder);
 }
 
+/// Steps from frame 1 to `frames`, and notes what has burnt at each, on the left half of the sheet and on the right.
+static void burn_frames(const char *text, const char *folder, int frames, double burnt[][2]) {
+    Scene *scene = NULL;
+    SceneAssets assets;
+    SceneMessages messages = {0};
+    SingeSim *sim;
+    SingeError error;
+    const SingeSimDef hooks = singe_default_sim();
+    SingeResult result = scene_parse("t", text, strlen(text), folder, NULL, 0, &scene, &messages);
+    if (!result) result = scene_load(scene, &assets, &messages);
+    if (!result) result = scene_build(scene, &assets, &hooks, &sim, &messages);
+    scene_messages_print(&messages, stderr);
+    assert_int_equal(result, SINGE_OK);
+    for (int frame = 1; frame <= frames; frame++) {
+        assert_int_equal(scene_follow(scene, &assets, sim, frame, &error), SINGE_OK);
+        for (int step = 0; step < scene->steps; step++) assert_int_equal(singe_sim_step(sim), SINGE_OK);
+        const SingeView view = singe_sim_view(sim);
+        burnt[frame][0] = burnt[frame][1] = 0;
+        for (uint32_t i = 0; i < view.vertex_count; i++)
+            burnt[frame][view.rest_position[i][0] > 0] += 1 - (double)view.mass[i];
+    }
+    singe_sim_destroy(sim);
+    scene_assets_free(&assets);
+    scene_free(scene);
+}
+
+// A sheet that begins hot burns where and while its material does.
+TEST(materials_follow_keys_and_numbered_pictures) {
+#define HOT                                                                                                                                                 \
+    "fps: 10\nsteps: 4\npace: 5\nsheets:\n  - grid: {size: [0.1, 0.1], cells: [6, 6]}\n    material: {temperature: 300 C, convection: 0, emissivity: 0, \n" \
+    "        diffusivity: 0, "
+    double burnt[7][2] = {{0}};
+    burn_frames(HOT "ignition_temperature: [{time: 0.1, value: 240 C}, {time: 0.2, value: 9000 C}]}\n", NULL, 4, burnt);
+    assert_true(burnt[1][0] > 0.1 && burnt[2][0] > burnt[1][0] + 0.1); // frame 2 is at 0.1 s
+    assert_true(burnt[3][0] == burnt[2][0] && burnt[4][0] == burnt[3][0] && burnt[4][1] == burnt[3][1]);
+
+    // white on the left, and from the third frame on on the right; the last picture stays
+    static const char text[] = "frames: 6\n" HOT "mass_rate: {from: 0, to: 9e-3, texture: matte.####.png}}\n";
+    const uint8_t sides[2][6] = {{255, 255, 255, 0, 0, 0}, {0, 0, 0, 255, 255, 255}};
+    char folder[] = "/tmp/singe-scene-XXXXXX", path[3][100];
+    SingeError error;
+    assert_non_null(mkdtemp(folder));
+    for (int n = 0; n < 3; n++) {
+        snprintf(path[n], sizeof path[n], "%s/matte.%04d.png", folder, n + 1);
+        assert_int_equal(png_write(path[n], 2, 1, sides[n > 1], &error), SINGE_OK);
+    }
+    burn_frames(text, folder, 5, burnt);
+    assert_true(burnt[2][0] > 4 * burnt[2][1]); // 16.5 and 3.5
+    assert_true(burnt[3][1] > burnt[2][1] + 8 && burnt[5][1] > burnt[3][1] + 0.5);
+
+    // the second is missing
+    Scene *scene;
+    SceneAssets assets;
+    SceneMessages messages = {0};
+    remove(path[1]);
+    assert_int_equal(scene_parse("t", text, strlen(text), folder, NULL, 0, &scene, &messages), SINGE_OK);
+    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_ERROR_FORMAT);
+    assert_non_null(strstr(messages.items[0].text, "matte.0002.png: there is no such file, but the next one exists"));
+    assert_int_equal(messages.items[0].location.line, 8);
+    scene_messages_free(&messages);
+    scene_free(scene);
+    remove(path[0]);
+    remove(path[2]);
+    rmdir(folder);
+}
+
 TEST(the_preview_has_what_the_scene_says) {
     Scene *scene = good_scene(
         SHEET "    colour: [0.5, 0.25, 1]\n"

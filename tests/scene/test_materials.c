@@ -149,8 +149,8 @@ TEST(material_files_are_found) {
     const SceneMaterial *material = material_of(scene);
     assert_string_equal(material->name, "my paper");
     assert_true(material->def.grammage.value == 0.045f && material->def.drag.value == 2);
-    const SceneFile *rate = &material->textures[SCENE_PARAM_SLOT(mass_rate)];
-    const SceneFile *thickness = &material->textures[SCENE_PARAM_SLOT(thickness)];
+    const SceneFile *rate = &material->followed[SCENE_PARAM_SLOT(mass_rate)].texture;
+    const SceneFile *thickness = &material->followed[SCENE_PARAM_SLOT(thickness)].texture;
     assert_string_equal(rate->name, "below/rate.png");
     assert_memory_equal(rate->path, folder.path, strlen(folder.path));
     assert_true(!material->def.thickness.field && !thickness->name); // the number replaced it

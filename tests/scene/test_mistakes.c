@@ -33,6 +33,16 @@ static void one(const char *line, const char *origin, const char *part) {
     scene_messages_free(&messages);
 }
 
+/// A material with one parameter that is wrong.
+static void one_of(const char *param, const char *part) {
+    char text[400];
+    snprintf(text, sizeof text, "sheets: [{grid: {size: [1, 1], cells: [2, 2]}, material: {%s}}]\n", param);
+    SceneMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
+    if (!strstr(messages.items[0].text, part)) fail_msg("%s", messages.items[0].text);
+    assert_int_equal(messages.count, 1);
+    scene_messages_free(&messages);
+}
+
 TEST(wrong_values_are_reported) {
     one("fps: fast", "bad.yaml:3:6", "fps must be a frame rate (1/s, fps, Hz), not 'fast'");
     one("fps: [1]", "bad.yaml:3:6", "not a list");
@@ -47,6 +57,14 @@ TEST(wrong_values_are_reported) {
     one("pace: 1e60", "bad.yaml:3:7", "'1e60' is out of range: pace must be 1e-6 to 1000000");
     one("pace: 1e999999", "bad.yaml:3:7", "");
     one("pace: 1e-60", "bad.yaml:3:7", "pace must be 1e-6 to 1000000");
+    one_of("drag: [{time: 1, value: 2}, {time: 1, value: 3}]", "times must increase");
+    one_of("drag: [{time: 1, value: -2}]", "value must be 0 to");
+    one_of("drag: [{time: 1}]", "drag needs 'value'");
+    one_of("drag: []", "'drag' is an empty list");
+    one_of("drag: [1]", "an entry of 'drag' must be a map");
+    one_of("moisture: [{time: 0, value: 0}]", "moisture is fixed at the start: it has no keys");
+    one_of("moisture: {from: 0, to: 1, texture: a.##.png}", "moisture is fixed at the start: it takes one picture");
+    one_of("drag: {from: 0, to: 1, texture: a.#.#.png}", "one run of #");
     one("pace: []", "bad.yaml:3:7", "'pace' is an empty list: it needs at least one entry");
     one("sources: [{kind: texture, texture: a.png, strength: []}]", "bad.yaml:3:53", "at least one entry");
     one("solver: {method: paper, isotropic: yes}", "bad.yaml:3:25", "'isotropic' needs the solver 'strand'");

@@ -58,8 +58,8 @@ static void check_full(const Scene *scene) {
     assert_true(material->grammage.value == 0.06f && material->heat_operator == SINGE_HEAT_UMBRELLA &&
                 !material->ablate);
     assert_true(material->thickness.field->kind == SINGE_FIELD_TEXTURE && material->thickness.to == 0.002f);
-    assert_string_equal(sheet->material.textures[SCENE_PARAM_SLOT(thickness)].name, "t.png");
-    assert_string_equal(sheet->material.textures[SCENE_PARAM_SLOT(weight[SINGE_BLUE])].name, "w.png");
+    assert_string_equal(sheet->material.followed[SCENE_PARAM_SLOT(thickness)].texture.name, "t.png");
+    assert_string_equal(sheet->material.followed[SCENE_PARAM_SLOT(weight[SINGE_BLUE])].texture.name, "w.png");
     assert_true(material->mass_rate.field->kind == SINGE_FIELD_NOISE && material->mass_rate.value == 0.01f &&
                 material->mass_rate.to == 0.02f && material->mass_rate.field->noise.seed == 7);
     assert_string_equal(material->mass_loss.field->attribute, "density");
@@ -67,7 +67,7 @@ static void check_full(const Scene *scene) {
                 material->weight[SINGE_BLUE].field->kind == SINGE_FIELD_TEXTURE);
     assert_true(material->compliance[SINGE_YELLOW].value == 1e-4f);
     assert_true(material->drag.field->kind == SINGE_FIELD_TEXTURE && isinf(material->rate_ceiling.value));
-    assert_string_equal(sheet->material.textures[SCENE_PARAM_SLOT(drag)].name, "d.png");
+    assert_string_equal(sheet->material.followed[SCENE_PARAM_SLOT(drag)].texture.name, "d.png");
     assert_true(scene->sheets[1].grid.given && scene->sheets[1].grid.cells[1] == 6);
     assert_string_equal(scene->sheets[1].name, "sheet2");
 }
@@ -134,7 +134,7 @@ TEST(every_parameter_that_may_vary_does) {
             assert_true(param->value == from && param->to == to);
             assert_int_equal(param->field->kind, SINGE_FIELD_TEXTURE + f);
             for (size_t slot = 0; slot < SCENE_PARAM_SLOTS; slot++)
-                assert_true((material->textures[slot].name != NULL) == (f == 0 && slot == row.slot));
+                assert_true((material->followed[slot].texture.name != NULL) == (f == 0 && slot == row.slot));
             *param = *scene_param_at(&standard, &row);
             SceneParam other;
             for (int i = 0; scene_param(i, &other); i++)

@@ -107,12 +107,20 @@ static void put_list(Draw *draw, const SchemaRow *row, void *object) {
     putchar(']');
 }
 
-/// A number, or a line between two by a noise.
+/// A number, keys over time, or a line between two by a noise.
 static void put_param(Draw *draw, const Schema *schema, const SchemaRow *row, const void *object) {
     SingeParam param;
     memcpy(&param, (const char *)object + row->offset, sizeof param);
     if (pick(draw, 5)) {
         put_number(draw, schema, row, (double)param.value);
+        return;
+    }
+    if (pick(draw, 3) == 0 && !scene_param_lasts(row->key)) {
+        for (int i = 0, count = 1 + pick(draw, 3); i < count; i++) {
+            printf("%s{\"time\": %g, \"value\": ", i ? ", " : "[", 0.03 * i);
+            put_number(draw, schema, row, (double)param.value);
+            fputs(i + 1 < count ? "}" : "}]", stdout);
+        }
         return;
     }
     fputs("{\"from\": ", stdout);
