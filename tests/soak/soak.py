@@ -13,6 +13,7 @@ import argparse
 import concurrent.futures
 import filecmp
 import json
+import math
 import os
 import re
 import resource
@@ -26,7 +27,8 @@ import extremes
 
 MEMORY_MB = 3000  # of a command under the address sanitizer, which keeps count
 SECONDS = 120     # of a command, on all processors
-SECONDS_EXTREME = 60  # the same for the small scenes of extremes.py
+SECONDS_EXTREME = 60  # the same for the small scenes of extremes.py,
+SECONDS_OF_FILM = 3   # and for each second of their film: gas takes steps of its own, of milliseconds of fire
 HANGS = 1800      # s by the clock, which a crowded machine stretches
 GOOD, FAILED, INPUT = 0, 1, 2
 SANITIZER = 99
@@ -49,24 +51,28 @@ class Soak:
         self.singe, self.draw = os.path.abspath(options.singe), os.path.abspath(options.draw)
         self.work = os.path.abspath(options.work)
         self.ends = extremes.read_ends(self.draw) if options.extremes else None
-        self.seconds = SECONDS_EXTREME if options.extremes else SECONDS
+        self.film = {}  # seconds of film, by the scene's folder
         self.counts = {"refused": 0, "checked": 0, "stopped": 0, "clean": 0, "faulty": 0, "found": 0}
 
-    def limit_time(self):
-        """A command that takes too long is ended by the system."""
-        resource.setrlimit(resource.RLIMIT_CPU, (self.seconds, self.seconds + 5))
+    def seconds(self, folder):
+        """The limit of a command on the scene in a folder."""
+        if not self.ends:
+            return SECONDS
+        return SECONDS_EXTREME + math.ceil(SECONDS_OF_FILM * self.film[folder])
 
     def call(self, folder, name, *arguments, codes):
         """Runs a command; its output is kept in folder/name.txt."""
+        seconds = self.seconds(folder)
+        limit = (seconds, seconds + 5)
         with open(os.path.join(folder, name + ".txt"), "w", encoding="utf-8", errors="replace") as said:
             try:
                 code = subprocess.run([self.singe, *arguments], stdin=subprocess.DEVNULL, stdout=said, stderr=said,
                                       timeout=HANGS, env=environment(), check=False,
-                                      preexec_fn=self.limit_time).returncode
+                                      preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, limit)).returncode
             except subprocess.TimeoutExpired as expired:
                 raise Finding(f"{name} takes more than {HANGS} s") from expired
         if code in (-signal.SIGXCPU, -signal.SIGKILL):
-            raise Finding(f"{name} takes more than {self.seconds} s of processors' time, or too much memory")
+            raise Finding(f"{name} takes more than {seconds} s of processors' time, or too much memory")
         if code not in codes:
             raise Finding(f"{name} ends with code {code}")
         with open(os.path.join(folder, name + ".txt"), encoding="utf-8", errors="replace") as said:
@@ -116,6 +122,7 @@ class Soak:
                 subprocess.run([self.draw, str(seed)], stdout=file, env=environment(), check=True)
                 return True
             scene, runs = extremes.draw_scene(self.ends, seed)
+            self.film[folder] = (scene["frames"] - 1) / scene.get("fps", 24)
             file.write(json.dumps(scene).encode())
             return runs
 
