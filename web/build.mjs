@@ -7,12 +7,12 @@ const here = new URL(".", import.meta.url).pathname;
 await rm(`${here}dist`, { recursive: true, force: true });
 await mkdir(`${here}dist`);
 await build({
-    absWorkingDir: here, entryPoints: ["src/main.ts", "src/worker.ts"], outdir: "dist", bundle: true, minify: true, format: "esm",
+    absWorkingDir: here, entryPoints: ["src/main.ts", "src/worker.ts", "src/how.ts"], outdir: "dist", bundle: true, minify: true, format: "esm",
     target: "es2022", alias: { singe: "../bindings/web/src/index.ts" }, logLevel: "warning", legalComments: "none",
 });
 await cp(`${here}../bindings/web/dist/singe.wasm`, `${here}dist/singe.wasm`);
 await cp(`${here}../examples/letter/letter.png`, `${here}dist/letter.png`);
-for (const name of ["index.html", "style.css"]) await cp(here + name, `${here}dist/${name}`);
+for (const name of ["index.html", "style.css", "how.html", "how.css"]) await cp(here + name, `${here}dist/${name}`);
 
 // what a visitor loads, but for the letter's picture
 let total = 0;

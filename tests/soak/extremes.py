@@ -38,6 +38,9 @@ def read_ends(draw):
     return rows
 
 
+MOST_CELLS_OF_SYSTEMS = 8  # along a side
+
+
 def mild(random_, cells=9):
     """A sheet that burns, falls on a plane and is held at a corner."""
     return {"frames": 3, "steps": 5, "preview": {"size": [32, 32], "samples": 1},
@@ -232,6 +235,9 @@ def draw_scene(rows, seed):
         scene["contact"] = {"enabled": False}  # what crosses freely gets farther
     for row, value in random_.sample(single, random_.choice([0, 0, 1, 2, 4])):
         put(scene, row, COSTS.get(row["path"], value))
+    if scene.get("solver", {}).get("method", "strand") != "strand":  # systems of a whole sheet: seconds a step
+        for sheet in scene["sheets"]:
+            sheet["grid"]["cells"] = [min(cells, MOST_CELLS_OF_SYSTEMS) for cells in sheet["grid"]["cells"]]
     return scene, True
 
 

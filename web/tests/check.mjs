@@ -171,6 +171,35 @@ const CASES = {
         assert.deepEqual(violations.filter(({ impact }) => ["serious", "critical"].includes(impact)).map(({ id, nodes }) => `${id}: ${nodes[0].html}`), []);
         await picture("settings");
     },
+    async "each sheet of \"how it works\" shows its stage alone"() {
+        await page.goto(`${address}how.html`);
+        await page.waitForFunction(() => globalThis.figures);
+        /** Sets controls, goes on, and returns what the sheet's statistics and its caption say. */
+        const after = (name, seconds, values = {}) => page.evaluate(([name, seconds, values]) => {
+            const figure = globalThis.figures.get(name);
+            for (const [key, value] of Object.entries(values)) figure.set(key, value);
+            for (let i = 0; i < seconds * 24; i++) figure.advance(1 / 24, 0);
+            const { burnt_fraction, temperature_max, strain_p99 } = figure.stats;
+            return { burnt: burnt_fraction, hottest: temperature_max, strain: strain_p99, heights: figure.heights, text: figure.text };
+        }, [name, seconds, values]);
+        assert.match((await after("shell", 0.5)).text, /^200 of 200 springs/);
+        const heated = await after("heat", 1);
+        assert.ok(heated.hottest > 500 && heated.burnt === 0, `${heated.hottest} K, ${heated.burnt} burnt`);
+        assert.ok((await after("combustion", 3)).burnt > 0.03);
+        assert.ok((await after("combustion", 3, { eta: 0.4 })).burnt < 0.03); // the torch alone
+        const flat = await after("shrinking", 4, { amount: 0, bias: 0 }), up = await after("shrinking", 4, { amount: 0.5, bias: 0.3 });
+        const down = await after("shrinking", 4, { amount: 0.5, bias: -0.3 }), rise = ([low, high]) => high + low;
+        assert.ok(flat.heights[1] - flat.heights[0] < 0.001, `flat: ${flat.heights}`);
+        assert.ok(rise(up.heights) * rise(down.heights) < 0 && up.heights[1] - up.heights[0] > 0.002, `${up.heights} and ${down.heights}`);
+        const [whole, hole] = [await after("ablation", 0), await after("ablation", 4)].map(({ text }) => Number.parseInt(text));
+        assert.ok(whole === 12 * 12 * 4 && hole !== whole && hole > 0, `${whole}, then ${hole} triangles`);
+        const strands = await after("projection", 1, { method: 0 }), hooke = await after("projection", 1, { method: 2 });
+        assert.ok(strands.strain < 0.02 && hooke.strain > 5 * strands.strain, `${strands.strain} and ${hooke.strain}`);
+        assert.ok(Number.parseFloat((await after("contact", 1)).text) > 0.3); // mm
+        await page.evaluate(axe);
+        const { violations } = await page.evaluate(() => globalThis.axe.run());
+        assert.deepEqual(violations.filter(({ impact }) => ["serious", "critical"].includes(impact)).map(({ id, nodes }) => `${id}: ${nodes[0].html}`), []);
+    },
     async "without WebGL 2 the page says so"() {
         const other = await page.context().browser().newPage();
         await other.addInitScript(() => { HTMLCanvasElement.prototype.getContext = () => null; });
