@@ -6,6 +6,7 @@ import { glbOf } from "./glb.js";
 import type { Frame, FromWorker, Shape, ToWorker } from "./messages.js";
 import { readObj } from "./obj.js";
 import { Renderer } from "./renderer.js";
+import { FireSound } from "./sound.js";
 import { fromLink, MATERIALS, RANGES, TIME_STEP, toLink, toYaml, type Point, type Settings, type Slider } from "./scene.js";
 
 type Tool = "match" | "breath" | "hand" | "pin";
@@ -128,6 +129,7 @@ function hear(message: FromWorker): void {
     frame = message;
     busy = false;
     motion = message.steps * TIME_STEP;
+    sound?.fire.hear(message.burning, message.tears, motion);
     if (message.steps) costOfStep += 0.2 * (message.ms / message.steps - costOfStep);
     if (!stepping) {
         renderer.show(message);
@@ -359,8 +361,19 @@ function chooseTool(wanted: Tool, quiet = false): void {
     else say("Drag the match over the paper. The right button, or two fingers, turn the view");
 }
 
+let sound: { context: AudioContext; fire: FireSound } | null = null;
+
+function setSound(wanted: boolean): void {
+    void sound?.context.close();
+    const context = wanted ? new AudioContext() : null;
+    sound = context && { context, fire: new FireSound(context) };
+    if (paused) void context?.suspend();
+}
+element<HTMLInputElement>("#sound").addEventListener("change", ({ target }) => setSound((target as HTMLInputElement).checked));
+
 function pause(wanted: boolean): void {
     paused = wanted;
+    void (paused ? sound?.context.suspend() : sound?.context.resume());
     last = performance.now();
     showPaused();
 }
@@ -535,6 +548,13 @@ Object.assign(globalThis, { page: {
         stepping = false;
         const { vertices, triangles, fire, lights, ...rest } = frame!;
         return { ...rest, ...{ vertexCount: vertices.length / FLOATS, triangleCount: triangles.length / 3 } };
+    },
+    /** Loudness, root mean square, of a second in which so many cells burn. */
+    async loudness(burning: number): Promise<number> {
+        const context = new OfflineAudioContext(1, 48_000, 48_000);
+        new FireSound(context).hear(burning, 0, 1);
+        const heard = (await context.startRendering()).getChannelData(0);
+        return Math.sqrt(heard.reduce((sum, x) => sum + x * x, 0) / heard.length);
     },
     /** Fewer pixels, for machines without a card. */
     quality(scale: number): void {
