@@ -24,18 +24,12 @@ static const char *const block_ends[] = {[BLOCK_NONE] = "",
                                          [BLOCK_PICTURES] = "</div>\n",
                                          [BLOCK_MEASURES] = "</table></div>\n"};
 
-typedef struct Taken {
-    char *item, *name;
-    double value;
-    ReportVerdict verdict;
-} Taken;
-
 struct ReportPage {
     char *folder;
     ReportGradeFn *grade; ///< or NULL
     Draft text, index, csv, json;
     int measures, failed, missing;
-    Taken *taken;       ///< [measures]
+    ReportTaken *taken; ///< [measures]
     SingeResult result; ///< the first failure
     SingeError error;
 };
@@ -47,7 +41,7 @@ struct Report {
     Block block;
     char *name, *heading;
     int pictures, measures, failed, missing;
-    Taken *taken;       ///< [measures]
+    ReportTaken *taken; ///< [measures]
     SingeResult result; ///< the first failure
     SingeError error;
 };
@@ -302,11 +296,12 @@ void report_bar(Report *report, const ReportBar *bar) {
 
     fputc('}', json);
 
-    Taken *larger = realloc(report->taken, ((size_t)report->measures + 1) * sizeof *larger);
+    ReportTaken *larger = realloc(report->taken, ((size_t)report->measures + 1) * sizeof *larger);
     if (larger) {
         report->taken = larger;
         larger[report->measures] =
-            (Taken){text_format("%s", report->name), text_format("%s", bar->name), bar->value, verdict};
+            (ReportTaken){text_format("%s", report->name), text_format("%s", bar->name), bar->value, verdict,
+                          text_format("%s", bar->bad_what ? bar->bad_what : "")};
         report->measures++;
     } else {
         report->result = SINGE_ERROR_MEMORY;
@@ -320,16 +315,17 @@ void report_measure(Report *report, const char *name, const char *what, double v
     report_bar(report, &(ReportBar){name, what, value, low, high, 0, NULL});
 }
 
-ReportVerdict report_find(const Report *report, const char *item, const char *name, double *value) {
+const ReportTaken *report_find(const Report *report, const char *item, const char *name) {
     for (int i = 0; i < report->page->measures; i++) {
-        const Taken *taken = &report->page->taken[i];
-        if (strcmp(taken->item, item) || strcmp(taken->name, name)) continue;
-        *value = taken->value;
-        return taken->verdict;
+        const ReportTaken *taken = &report->page->taken[i];
+        if (strcmp(taken->item, item) == 0 && strcmp(taken->name, name) == 0) return taken;
     }
 
-    return REPORT_UNKNOWN;
+    return NULL;
 }
+
+/// Frees what a measure holds.
+static void taken_free(const ReportTaken *taken) { free(taken->item), free(taken->name), free(taken->bad_what); }
 
 void report_end(ReportPage *page, Report *report) {
     const char *const *words = verdict_words[report->failed    ? REPORT_FAILS
@@ -360,12 +356,12 @@ void report_end(ReportPage *page, Report *report) {
 
     // moves a report's measures to the page's
     const size_t count = (size_t)page->measures + (size_t)report->measures;
-    Taken *larger = realloc(page->taken, (count + 1) * sizeof *larger);
+    ReportTaken *larger = realloc(page->taken, (count + 1) * sizeof *larger);
     if (larger) page->taken = larger;
     else page->result = SINGE_ERROR_MEMORY;
     for (int i = 0; i < report->measures; i++) {
         if (larger) larger[page->measures++] = report->taken[i];
-        else free(report->taken[i].item), free(report->taken[i].name);
+        else taken_free(&report->taken[i]);
     }
 
     page->failed += report->failed;
@@ -409,7 +405,7 @@ SingeResult report_page_close(ReportPage *page, int *failed, int *missing, Singe
     if (!result) result = write_draft(page, "measures.csv", &page->csv, NULL, error);
     if (!result) result = write_draft(page, "measures.json", &page->json, NULL, error);
     draft_free(&page->text), draft_free(&page->index), draft_free(&page->csv), draft_free(&page->json);
-    for (int i = 0; i < page->measures; i++) free(page->taken[i].item), free(page->taken[i].name);
+    for (int i = 0; i < page->measures; i++) taken_free(&page->taken[i]);
     free(page->taken);
     free(page->folder);
     free(page);

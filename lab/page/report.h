@@ -66,10 +66,18 @@ typedef struct ReportBar {
 } ReportBar;
 void report_bar(Report *report, const ReportBar *bar);
 
-typedef enum ReportVerdict { REPORT_UNKNOWN, REPORT_HOLDS, REPORT_MISSES, REPORT_FAILS } ReportVerdict;
+typedef enum ReportVerdict { REPORT_HOLDS, REPORT_MISSES, REPORT_FAILS } ReportVerdict;
 
-/// Whether a measure of an added item holds, or misses as is known, and its value; REPORT_UNKNOWN if it was not measured.
-ReportVerdict report_find(const Report *report, const char *item, const char *name, double *value);
+/// A measure that has been taken.
+typedef struct ReportTaken {
+    char *item, *name;
+    double value;
+    ReportVerdict verdict;
+    char *bad_what; ///< the case that must not hold, empty if its bar has none
+} ReportTaken;
+
+/// A measure of an added item, or NULL if it was not taken. Valid until the item at hand ends.
+const ReportTaken *report_find(const Report *report, const char *item, const char *name);
 
 /// The path of the report.
 const char *report_folder(const Report *report);

@@ -149,7 +149,7 @@ static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
                "sections 5, 8|balls in Figs 1, 11, textures in 4; or a hot start in 1, balls in 4, 11|section 8|all of "
                "these sources are there");
     report_bar(lab->report, &(ReportBar){"literal_steps", "eq 9 to the letter: steps that the sheet lasts", literal, 0,
-                                         100, ours, "as read"});
+                                         100, ours, "with h, as read here"});
     report_bar(lab->report,
                &(ReportBar){"ours_steps", "as read: steps of 200", ours, 200, 200, literal, "to the letter"});
     report_bar(lab->report, &(ReportBar){"mass_centre", "eq 16 with M: how far the centre moves", with_mass, 0, 1e-6,
@@ -204,7 +204,7 @@ SingeResult paper_readings(Lab *lab, SingeError *error) {
                "the time by the line, %.0f %% by ours: ash is seen before it goes",
                100 * sqrt(0.1));
     report_bar(lab->report, &(ReportBar){"eq1_printed", "eq 1 as printed: share of mass at which fire puts itself out",
-                                         printed, 0.9, 1, read, "as read"});
+                                         printed, 0.9, 1, read, "with the sign turned, as read here"});
     report_bar(lab->report,
                &(ReportBar){"eq1_read", "eq 1 as read: share of mass left", read, 0.149, 0.151, printed, "as printed"});
     report_bar(lab->report,

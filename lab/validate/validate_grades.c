@@ -68,14 +68,14 @@ SingeResult validate_grades(Lab *lab, SingeError *error) {
     int counts[GRADES] = {0}, missing = 0;
     report_heads(lab->report, "item|measure|grade|is|bar|compared with");
     for (const Graded *g = graded; g < graded + COUNT; g++) {
-        double value = NAN;
-        const ReportVerdict found = report_find(lab->report, g->item, g->measure, &value);
+        const ReportTaken *taken = report_find(lab->report, g->item, g->measure);
         counts[g->grade]++;
         missing += g->misses;
-        report_row(lab->report, "%s|%s|%s|%.3g|%s|%s", g->item, g->measure, grade_words[g->grade], value,
-                   found == REPORT_FAILS ? "fails"
-                   : g->misses           ? "misses"
-                                         : "holds",
+        report_row(lab->report, "%s|%s|%s|%.3g|%s|%s", g->item, g->measure, grade_words[g->grade],
+                   taken ? taken->value : (double)NAN,
+                   taken && taken->verdict == REPORT_FAILS ? "fails"
+                   : g->misses                             ? "misses"
+                                                           : "holds",
                    g->compared);
     }
 
