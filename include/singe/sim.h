@@ -314,7 +314,9 @@ typedef struct SingeStats {
     /// J, of what is left: of motion; of springs that give; of heights above the positions at rest.
     double energy_kinetic, energy_elastic, energy_gravity;
     /// J, what these three have lost since the start: to damping, air, friction and the solver, with the mass that has
-    /// gone, less what pins, colliders, wind and the fire have put in.
+    /// gone, less what pins, colliders, wind and the fire have put in. It is the remainder, their sum at the start less
+    /// that of now: dissipation is not measured by itself, and errors of the three are in it. Below 0 where more has
+    /// been put in than lost, as by a sheet that shrinks.
     double energy_lost;
 } SingeStats;
 

@@ -209,7 +209,7 @@ SingeResult validate_ledgers(Lab *lab, SingeError *error) {
     SingeResult result = SINGE_OK;
     report_heads(lab->report,
                  "scene|heat in J|combustion J|lost J|stored J|heat ledger|mass ledger|kinetic mJ|elastic mJ|gravity "
-                 "mJ|dissipated mJ");
+                 "mJ|lost mJ");
     for (int i = 0; i < 4 && !result; i++) {
         const char *sets[] = {i == 1 ? "gas=yes" : "", i == 3 ? "sheets.0.mesh=torus-small.obj" : "",
                               i == 2 ? "sheets.0.grid.cells=[30, 42]" : "", NULL};
