@@ -32,6 +32,7 @@ const ArgOption bench_all_options[BENCH_OPT_COUNT] = {
     [BENCH_OPT_CREASES] = {"creases", 0, NULL, "sharp bends leave creases, by the material's crease_radius"},
     [BENCH_OPT_JSON] = {"json", 0, NULL, "prints JSON"},
     [BENCH_OPT_CSV] = {"csv", 0, "FILE", "also writes the table to FILE"},
+    [BENCH_OPT_SVG] = {"svg", 0, "FILE", "also draws what was measured, as SVG"},
 };
 
 /// A command with only the accepted options, and the index of each among all options.
@@ -151,6 +152,7 @@ static bool read_option(Parser *parser, const char *text, BenchRequest *request)
     case BENCH_OPT_CREASES: o->creases = true; return true;
     case BENCH_OPT_JSON: request->json = true; return true;
     case BENCH_OPT_CSV: request->csv = text; return true;
+    case BENCH_OPT_SVG: request->svg = text; return true;
     case BENCH_OPT_COUNT: break;
     }
     return false;

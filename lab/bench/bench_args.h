@@ -32,6 +32,7 @@ typedef enum BenchOption {
     BENCH_OPT_CREASES,
     BENCH_OPT_JSON,
     BENCH_OPT_CSV,
+    BENCH_OPT_SVG,
     BENCH_OPT_COUNT
 } BenchOption;
 
@@ -41,6 +42,7 @@ typedef struct BenchRequest {
     BenchOptions options;
     bool json;
     const char *csv;       ///< path, or NULL
+    const char *svg;       ///< path, or NULL
     const char *materials; ///< "office-paper,./mine.yaml", or NULL for all that are built in
 } BenchRequest;
 

@@ -1,8 +1,10 @@
 // singe bench MEASUREMENT: cost and accuracy of the solver, measured on this machine.
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "bench/bench.h"
+#include "cli/text.h"
 #include "cli/args.h"
 #include "bench/bench_args.h"
 #include "bench/bench_materials.h"
@@ -78,7 +80,8 @@ static const struct {
          BENCH_BIT(QUICK) | OUTPUT,
      "The same burn on a grid and on one turned by 45 degrees: whether its folds follow the mesh."},
     {"plate", "bench plate", bench_plate,
-     BENCH_BIT(CELLS) | BENCH_BIT(SUBSTEPS) | BENCH_BIT(THREADS) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(QUICK) | OUTPUT,
+     BENCH_BIT(CELLS) | BENCH_BIT(SUBSTEPS) | BENCH_BIT(THREADS) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(QUICK) |
+         BENCH_BIT(SVG) | OUTPUT,
      "Strips that sag and discs that roll up, by the direction of their mesh: stiffness and curvatures."},
     {"spectrum", "bench spectrum", bench_spectrum,
      BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(QUICK) | BENCH_BIT(INSTRUCTIONS) |
@@ -89,13 +92,20 @@ static const struct {
 enum { MEASUREMENTS = sizeof measurements / sizeof *measurements };
 
 static void print_csv(FILE *file, const void *context) { table_write_csv(context, file); }
+static void print_text(FILE *file, const void *context) { fputs(context, file); }
 
 static ExitCode bench_measure(int m, const BenchRequest *request) {
     Console console = console_make(false);
     BenchTable table = {.text = request->json ? NULL : stdout};
     SingeError error = {.element = -1};
-    SingeResult result = measurements[m].run(&request->options, &table, &error);
+    BenchOptions options = request->options;
+    char *svg = NULL;
+    size_t size = 0;
+    if (request->svg) options.drawing = open_memstream(&svg, &size);
+    SingeResult result = measurements[m].run(&options, &table, &error);
     ExitCode code = EXIT_GOOD;
+    const bool drawn = options.drawing && text_stream_end(options.drawing, &svg);
+    if (request->svg && !drawn && !result) result = SINGE_ERROR_MEMORY;
 
     if (result) {
         fflush(stdout);
@@ -107,6 +117,8 @@ static ExitCode bench_measure(int m, const BenchRequest *request) {
     }
     if (!result && request->json) table_write_json(&table, stdout);
     if (!result && request->csv) code = console_write_table(&console, request->csv, print_csv, &table);
+    if (!result && drawn && !code) code = console_write_table(&console, request->svg, print_text, svg);
+    free(svg);
     table_free(&table);
     return code;
 }

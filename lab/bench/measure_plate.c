@@ -12,7 +12,8 @@
 // it. The disc rolls up. The noise is fixed in space and the mesh is turned: the disc should roll the same way. k1 and
 // k2 are the curvatures of the quadric that fits its inner part, `rolls` the direction of k1 in space.
 //
-// Each without and with the solver's `isotropic`.
+// Each without and with the solver's `isotropic`. The drawing has those with as many substeps as the red springs need, as
+// seen from one side and above; strips sag four times as far in it.
 #include <math.h>
 #include <stdlib.h>
 
@@ -40,6 +41,7 @@ typedef struct Plate {
     int cells;    ///< along the strip or across the disc
     int substeps; ///< 0: as many as the red springs need
     uint32_t seed;
+    bool drawn;
 } Plate;
 
 static const double strip_length = 0.06, strip_width = 0.02, clamped = 0.01, disc_diameter = 0.06;
@@ -110,6 +112,41 @@ static SingeResult fail(SingeSim *sim, Mesh *mesh, SingeResult result, SingeErro
     return result;
 }
 
+// ---- the drawing
+
+enum { DRAW_WIDE = 200, DRAW_HIGH = 115, DRAW_TOP = 30, DRAW_LEFT = 110 };
+
+static void draw_heads(FILE *svg) {
+    static const char *const rows[4] = {"strips", "strips, isotropic", "discs", "discs, isotropic"};
+    fprintf(svg,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
+            "font-family=\"sans-serif\" font-size=\"13\"><rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
+            DRAW_LEFT + 4 * DRAW_WIDE, DRAW_TOP + 4 * DRAW_HIGH, DRAW_LEFT + 4 * DRAW_WIDE, DRAW_TOP + 4 * DRAW_HIGH);
+    for (int k = 0; k < 4; k++) {
+        fprintf(svg, "<text x=\"%d\" y=\"20\" text-anchor=\"middle\">mesh at %d°</text>\n",
+                DRAW_LEFT + DRAW_WIDE * k + DRAW_WIDE / 2, 15 * k);
+        fprintf(svg, "<text x=\"8\" y=\"%d\">%s</text>\n", DRAW_TOP + DRAW_HIGH * k + DRAW_HIGH / 2, rows[k]);
+    }
+}
+
+/// The lines of its mesh, in the place of its kind and angle.
+static void draw_plate(const Plate *plate, bool disc, const SingeView *view) {
+    FILE *svg = plate->options->drawing;
+    const double scale = 2.3e3, az = 25 * pi / 180, sine = sin(35 * pi / 180), cosine = cos(35 * pi / 180);
+    const double x0 = DRAW_LEFT + DRAW_WIDE * (0.5 + round(plate->angle * 12 / pi));
+    const double y0 = DRAW_TOP + DRAW_HIGH * (0.5 + 2 * disc + plate->isotropic);
+    fprintf(svg, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"0.6\" d=\"",
+            plate->isotropic ? "#b2182b" : "#2166ac");
+    for (uint32_t s = 0; s < view->spring_count[SINGE_BLUE]; s++)
+        for (int end = 0; end < 2; end++) {
+            const float *p = view->position[view->springs[SINGE_BLUE][s][end]];
+            const double x = (double)p[0], y = (double)p[1], z = (double)p[2] * (disc ? 1 : 4);
+            fprintf(svg, "%c%.1f %.1f", end ? 'L' : 'M', x0 + scale * (cos(az) * x - sin(az) * y),
+                    y0 - scale * (cosine * z + sine * (sin(az) * x + cos(az) * y)));
+        }
+    fprintf(svg, "\"/>\n");
+}
+
 /// Stiffness over that of the material.
 static SingeResult strip_bend(const Plate *plate, double *ratio, SingeError *error) {
     SingeSim *sim = NULL;
@@ -134,6 +171,8 @@ static SingeResult strip_bend(const Plate *plate, double *ratio, SingeError *err
     result = singe_sim_add_pin(sim, &pin, &id);
     free(points);
     if (!result) result = plate_run(sim, 1.5);
+    view = singe_sim_view(sim);
+    if (!result && plate->drawn) draw_plate(plate, false, &view);
 
     // mean sag of the middle of the free end
     double sag = 0, count = 0;
@@ -160,6 +199,7 @@ static SingeResult disc_roll(const Plate *plate, double curvature[2], double *ro
     if (result) return fail(sim, &mesh, result, error);
 
     const SingeView view = singe_sim_view(sim);
+    if (plate->drawn) draw_plate(plate, true, &view);
     *rolls = geometry_curvatures(&view, 0, 0, 0.3 * disc_diameter, curvature) * 180 / pi;
     return fail(sim, &mesh, result, error);
 }
@@ -188,6 +228,7 @@ SingeResult bench_plate(const BenchOptions *options, BenchTable *table, SingeErr
     const int angle_count = options->quick ? 2 : 4;
     SingeResult result = SINGE_OK;
     *table = table_begin("plate", columns, COLUMNS, table->text);
+    if (options->drawing) draw_heads(options->drawing);
 
     for (int isotropic = 0; isotropic < 2; isotropic++) {
         Plate plate = {.options = options, .isotropic = isotropic, .seed = 1};
@@ -198,6 +239,7 @@ SingeResult bench_plate(const BenchOptions *options, BenchTable *table, SingeErr
             for (int a = 0; a < angle_count && !result; a++) {
                 plate.substeps = options->substeps ? options->substeps : substeps[s];
                 plate.angle = (options->quick ? few_angles : angles)[a] * pi / 180;
+                plate.drawn = options->drawing && s == (options->quick ? 2 : 3);
                 result = plate_row(&plate, false, table, error);
             }
 
@@ -206,6 +248,7 @@ SingeResult bench_plate(const BenchOptions *options, BenchTable *table, SingeErr
             plate.cells = cells;
             plate.substeps = 0;
             plate.angle = 0;
+            plate.drawn = false;
             result = plate_row(&plate, false, table, error);
         }
 
@@ -213,10 +256,12 @@ SingeResult bench_plate(const BenchOptions *options, BenchTable *table, SingeErr
         for (int a = 0; a < 4 && !result; a++) {
             plate.cells = 24;
             plate.substeps = 0;
+            plate.drawn = options->drawing;
             plate.angle = angles[a] * pi / 180;
             result = plate_row(&plate, true, table, error);
         }
     }
 
+    if (options->drawing) fprintf(options->drawing, "</svg>\n");
     return result;
 }

@@ -3,6 +3,7 @@
 #define BENCH_OPTIONS_H
 
 #include <stdbool.h>
+#include <stdio.h>
 
 #include "scene/words.h"
 #include "singe/singe.h"
@@ -56,6 +57,7 @@ typedef struct BenchOptions {
     double detail;    ///< m, of the drawn surface; 0: plain cells
     double limit_ms;  ///< 0: none
     bool quick;
+    FILE *drawing; ///< where the measurement is drawn, SVG, or NULL
     int material_count;
     const BenchMaterial *materials;
 } BenchOptions;

@@ -38,9 +38,14 @@ class Bench(Case):
     def test_tables(self):
         for name, options, keys in TINY:
             with self.subTest(name):
-                out, err = self.singe("bench", name, *options)
+                drawn = ["--svg", self.path("plate.svg")] if name == "plate" else []
+                out, err = self.singe("bench", name, *options, *drawn)
                 self.assertEqual(err, "")
                 self.assertGreaterEqual(len(out.splitlines()), 2)
+        with open(self.path("plate.svg")) as file:
+            svg = file.read()
+        self.assertEqual(svg.count("<path "), 12)  # strips at 0 and 45 degrees and four discs, without and with `isotropic`
+        self.assertTrue(svg.endswith("</svg>\n"))
 
     def test_json_and_csv(self):
         for name, options, keys in TINY:
