@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import re
+import shlex
 import unittest
 
 from support import Case
@@ -31,6 +32,44 @@ def documented(text):
             for key, one in zip(keys, values):
                 rows.append((material, key, one if " " in one or not unit else one + unit.group()))
     return rows
+
+
+class Tutorials(Case):
+    """docs/tutorials: their commands and scenes are good, and their C is that of the samples. test_sim runs the Python."""
+
+    def blocks(self, kind):
+        folder = os.path.join(ROOT, "docs", "tutorials")
+        return [(name, block) for name in sorted(os.listdir(folder))
+                for block in re.findall(rf"^```{kind}\n(.*?)^```$", page(os.path.join("tutorials", name)), re.MULTILINE | re.DOTALL)]
+
+    def test_commands(self):
+        options, found = {}, 0
+        for name, block in self.blocks(""):
+            for line in re.findall(r"^singe (.*)$", block, re.MULTILINE):
+                words = shlex.split(line, comments=True)
+                if words[0] not in options:
+                    options[words[0]] = set(re.findall(r"--?[a-z-]+", self.singe(words[0], "--help")[0]))
+                for word in words[1:]:
+                    found += 1
+                    if word.startswith("-"):
+                        self.assertIn(word, options[words[0]], f"{name}: singe {line}")
+        self.assertGreater(found, 40)
+
+    def test_scenes(self):
+        names = []
+        for _, block in self.blocks("yaml"):
+            names.append(re.match(r"# ([\w.]+)", block).group(1))
+            with open(self.path(names[-1]), "w") as file:
+                file.write(block)
+        self.singe("check", self.path("strip.yaml"), "--set", "sheets.0.grid.cells=[10, 2]")
+        self.singe("sweep", self.path("strips.yaml"), "-o", self.path("out"), "--print")
+        self.assertEqual(names, ["strip.yaml", "strips.yaml", "fit.yaml"])
+
+    def test_c(self):
+        for name, block in self.blocks("c"):
+            file, lines = re.fullmatch(r"// ([\w.]+)\n(.*)", block, re.DOTALL).groups()
+            with open(os.path.join(ROOT, "samples", file)) as source:
+                self.assertIn(lines, source.read(), f"{name}: {file} has other lines")
 
 
 class Docs(Case):

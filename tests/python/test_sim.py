@@ -1,7 +1,9 @@
 """The Python package: what a simulation takes, what it shows, and what it refuses."""
 
+import contextlib
 import ctypes
 import gc
+import io
 import logging
 import os
 import pickle
@@ -189,6 +191,20 @@ class Burning(Case):
         left, right = paper.argmax(axis=1), 800 - paper[:, ::-1].argmax(axis=1)  # the square is convex
         rows = paper.any(axis=1)
         self.assertTrue((paper.sum(axis=1) == right - left)[rows].all())
+
+
+class Tutorial(Case):
+    def test_student(self):
+        """docs/tutorials/student.md prints what it says, block after block."""
+        text = (ROOT / "docs/tutorials/student.md").read_text(encoding="utf-8")
+        blocks = re.findall(r"^```python\n(.*?)^```\n(?:```\n(.*?)^```\n)?", text, re.MULTILINE | re.DOTALL)
+        self.assertEqual(len(blocks), 7)
+        names = {}
+        for code, said in blocks:
+            shown = io.StringIO()
+            with contextlib.redirect_stdout(shown):
+                exec(code, names)
+            self.assertEqual(shown.getvalue(), said)
 
 
 class Given(Case):
