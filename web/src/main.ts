@@ -7,7 +7,7 @@ import type { Frame, FromWorker, Shape, ToWorker } from "./messages.js";
 import { readObj } from "./obj.js";
 import { Renderer } from "./renderer.js";
 import { FireSound } from "./sound.js";
-import { fromLink, MATERIALS, RANGES, TIME_STEP, toLink, toYaml, type Point, type Settings, type Slider } from "./scene.js";
+import { fromLink, MATERIALS, PLACES, RANGES, TIME_STEP, toLink, toYaml, type Place, type Point, type Settings, type Slider } from "./scene.js";
 
 type Tool = "match" | "breath" | "hand" | "pin";
 const LIVE: Slider[] = ["pace", "wind", "gravity"];
@@ -17,6 +17,12 @@ const FILE_MOST = 30e6; // bytes
 const HINTS: Record<Tool, string> = {
     match: "Drag the match over the paper", breath: "Hold to blow the fire out", hand: "Take the paper, pull, and tear it",
     pin: "Click to pin the paper to the table; click a pin to take it out",
+};
+/** Where the camera stands and looks, m. */
+const VIEWS: Record<Place, { at: Point; from: Point }> = {
+    table: { at: [0, -0.022, 0.012], from: [0.085, -0.455, 0.215] },
+    hung: { at: [0, 0, 0.2], from: [0.17, -0.88, 0.31] },
+    ball: { at: [0, -0.01, 0.05], from: [0.11, -0.5, 0.26] },
 };
 const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
@@ -96,8 +102,11 @@ function send(message: ToWorker): void { worker.postMessage(message); }
 /** A view of the whole sheet; portrait screens stand further away. */
 function place(): void {
     const away = Math.max(1, 0.95 * Math.sqrt(innerHeight / innerWidth) + 0.25);
-    controls.target.set(0, -0.022, 0.012);
-    renderer.camera.position.set(0.085, -0.455, 0.215).multiplyScalar(away);
+    const { at, from } = VIEWS[shape ? "table" : settings.place];
+    controls.target.set(...at);
+    renderer.camera.position.set(...from).sub(controls.target).multiplyScalar(away).add(controls.target);
+    renderer.setPlace(shape ? "table" : settings.place);
+    keyAt = settings.place === "hung" ? [0, -0.002, 0.1] : [0, -0.02, settings.place === "ball" ? 0.118 : 0.002];
     controls.update();
 }
 
@@ -334,7 +343,8 @@ function turn(aside: number, up: number): void {
 }
 
 function moveKey(x: number, y: number): void {
-    keyAt = [Math.max(-0.2, Math.min(0.2, keyAt[0] + x)), Math.max(-0.2, Math.min(0.2, keyAt[1] + y)), 0.002];
+    const within = (value: number, least: number, most: number) => Math.max(least, Math.min(most, value)), across = within(keyAt[0] + x, -0.2, 0.2);
+    keyAt = settings.place === "hung" ? [across, keyAt[1], within(keyAt[2] + y, 0, 0.4)] : [across, within(keyAt[1] + y, -0.2, 0.2), keyAt[2]];
     if (grabbed) grabbed.to = [grabbed.to[0] + x, grabbed.to[1] + y, grabbed.to[2] + Math.abs(y)];
     say(`${tool} at ${Math.round(1000 * keyAt[0])}, ${Math.round(1000 * keyAt[1])} mm: Enter ${keyHeld ? "ends" : "begins"}`);
 }
@@ -413,8 +423,11 @@ function say(text: string): void {
 // ---- settings
 
 function writeSettings(): void {
-    const material = form.elements.namedItem("material") as HTMLSelectElement;
-    material.replaceChildren(...Object.entries(MATERIALS).map(([value, text]) => new Option(text, value, false, value === settings.material)));
+    const choices = { material: Object.entries(MATERIALS), place: Object.entries(PLACES).map(([value, { label }]) => [value, label] as const) };
+    for (const [name, options] of Object.entries(choices)) {
+        const select = form.elements.namedItem(name) as HTMLSelectElement;
+        select.replaceChildren(...options.map(([value, text]) => new Option(text, value, false, value === settings[name as keyof typeof choices])));
+    }
     for (const key of Object.keys(RANGES) as Slider[]) {
         const { label, least, most, step, text } = RANGES[key], row = document.createElement("label");
         row.innerHTML = `${label} <output></output><input type="range" name="${key}" min="${least}" max="${most}" step="${step}">`;
@@ -429,7 +442,7 @@ function writeSettings(): void {
 form.addEventListener("input", ({ target }) => {
     const input = target as HTMLInputElement, key = input.name as keyof Settings;
     if (!(key in settings)) return;
-    const value = key === "material" ? input.value : key === "gas" ? input.checked : Number(input.value);
+    const value = target instanceof HTMLSelectElement ? input.value : key === "gas" ? input.checked : Number(input.value);
     settings = { ...settings, [key]: value };
     if (key in RANGES) input.closest("label")!.querySelector("output")!.textContent = RANGES[key as Slider].text(Number(value));
     if (LIVE.includes(key as Slider) && !(key === "gravity" && settings.gas)) send({ kind: "set", settings });
@@ -437,6 +450,7 @@ form.addEventListener("input", ({ target }) => {
 form.addEventListener("change", ({ target }) => {
     const key = (target as HTMLInputElement).name;
     if (!(key in settings)) return;
+    if (key === "place") place();
     if (!LIVE.includes(key as Slider) || (key === "gravity" && settings.gas)) restart(); // gravity is the gas's, too
     writeLink();
 });
@@ -466,6 +480,7 @@ async function takeFile(file: File): Promise<void> {
             shapeName = file.name;
             renderer.print((picture = null));
             settings = { ...settings, begin: false };
+            place();
             restart();
             say(`${file.name}: ${shape.positions.length / 3} vertices. Strike a match`);
         } else {

@@ -8,11 +8,13 @@ import {
 } from "three";
 import { ATTRIBUTES, FLOATS } from "./fields.js";
 import type { Frame } from "./messages.js";
-import type { Point } from "./scene.js";
+import { BALL, type Place, type Point } from "./scene.js";
 import { glowBytes, noiseBytes } from "../view/tables.js";
 import * as glsl from "../view/shaders.js";
 
-const LAMP = { at: new Vector3(-0.19, 0.21, 0.34), to: new Vector3(0.0, 0.01, 0), colour: [0.070, 0.049, 0.028] };
+/** Behind what lies, before what hangs. */
+const LAMPS = { lying: new Vector3(-0.19, 0.21, 0.34), hanging: new Vector3(-0.26, -0.34, 0.42) };
+const LAMP = { at: LAMPS.lying.clone(), to: new Vector3(0.0, 0.01, 0), colour: [0.070, 0.049, 0.028] };
 const NIGHT = new Vector3(0.0090, 0.0105, 0.0165);
 const EXPOSURE = 1.6;
 const SHADOW = 1024;
@@ -27,6 +29,8 @@ export class Renderer {
     private gl: WebGLRenderer;
     private scene = new Scene();
     private shadowScene = new Scene();
+    private lampView = new Matrix4();
+    private ball: Mesh;
     private lamp = new PerspectiveCamera(70, 1, 0.08, 1.2);
     private shared: Uniforms;
     private sceneTarget: WebGLRenderTarget;
@@ -58,16 +62,12 @@ export class Renderer {
         depth.minFilter = depth.magFilter = LinearFilter;
         this.shadowTarget.depthTexture = depth;
         this.lamp.up.set(0, 0, 1);
-        this.lamp.position.copy(LAMP.at);
-        this.lamp.lookAt(LAMP.to);
-        this.lamp.updateMatrixWorld();
-        const lampView = new Matrix4().multiplyMatrices(this.lamp.projectionMatrix, this.lamp.matrixWorldInverse);
 
         this.sceneTarget = new WebGLRenderTarget(4, 4, { type: HalfFloatType, samples: 4, depthTexture: new DepthTexture(4, 4, UnsignedIntType) });
         this.shared = {
             noiseMap: { value: noiseTexture() }, glowMap: { value: glowTexture() }, viewProjection: { value: new Matrix4() },
             eye: { value: new Vector3() }, lampAt: { value: LAMP.at }, lampTo: { value: LAMP.to }, lampColour: { value: new Vector3(...LAMP.colour as Point) },
-            nightColour: { value: NIGHT }, lampView: { value: lampView }, shadowMap: { value: depth }, time: { value: 0 },
+            nightColour: { value: NIGHT }, lampView: { value: this.lampView }, shadowMap: { value: depth }, time: { value: 0 },
             fireLights: { value: Array.from({ length: 6 }, () => new Vector4()) }, fireColour: { value: new Vector3(1, 0.46, 0.13) },
         };
 
@@ -76,7 +76,7 @@ export class Renderer {
         paper.side = DoubleSide;
         this.paper = new Mesh(new BufferGeometry(), paper);
         this.paper.frustumCulled = false;
-        const caster = material(glsl.PAPER_VERTEX, glsl.paper(glsl.LAMP), { ...paperUniforms, shadow: { value: 1 }, viewProjection: { value: lampView }, shadowMap: { value: null } });
+        const caster = material(glsl.PAPER_VERTEX, glsl.paper(glsl.LAMP), { ...paperUniforms, shadow: { value: 1 }, viewProjection: { value: this.lampView }, shadowMap: { value: null } });
         caster.side = DoubleSide;
         const cast = new Mesh(this.paper.geometry, caster);
         cast.frustumCulled = false;
@@ -93,7 +93,9 @@ export class Renderer {
             part.visible = false;
             part.rotation.set(-0.45, 0.0, -0.75); // held from the right, upwards
         }
-        this.scene.add(table, this.paper, ...this.match);
+        this.ball = new Mesh(new SphereGeometry(BALL.radius, 64, 40).translate(...BALL.at), this.solid([0.16, 0.15, 0.14], 0.12));
+        this.scene.add(table, this.paper, this.ball, ...this.match);
+        this.setPlace("table");
 
         this.passes = {
             fire: material(glsl.FULL_VERTEX, glsl.FIRE, {
@@ -164,6 +166,17 @@ export class Renderer {
             pin.visible = i < frame.pins.length;
             if (pin.visible) pin.position.set(...frame.pins[i]!);
         });
+    }
+
+    /** Sets the lamp, and the ball if there is one. */
+    setPlace(place: Place): void {
+        this.ball.visible = place === "ball";
+        LAMP.at.copy(place === "hung" ? LAMPS.hanging : LAMPS.lying);
+        LAMP.to.setZ(place === "hung" ? 0.17 : 0);
+        this.lamp.position.copy(LAMP.at);
+        this.lamp.lookAt(LAMP.to);
+        this.lamp.updateMatrixWorld();
+        this.lampView.multiplyMatrices(this.lamp.projectionMatrix, this.lamp.matrixWorldInverse);
     }
 
     /** Where a match burns, or null. */

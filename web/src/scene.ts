@@ -3,9 +3,12 @@
 export interface Stroke { start: number; end: number; path: { time: number; position: [number, number, number] }[] }
 export type Point = [number, number, number];
 
+export type Place = "table" | "hung" | "ball";
+
 /** All numbers are SI and kelvin, as in scenes. */
 export interface Settings {
     material: string;
+    place: Place;
     /** m, the distance between the model's layers */
     thickness: number;
     /** seconds of fire per second of motion */
@@ -23,11 +26,24 @@ export interface Settings {
 }
 
 export const STANDARD: Settings = {
-    material: "office-paper", thickness: 0.001, pace: 6, wind: 0, gravity: 1, cells: 42, seed: 1, gas: true, begin: true,
+    material: "office-paper", place: "table", thickness: 0.001, pace: 6, wind: 0, gravity: 1, cells: 42, seed: 1, gas: true, begin: true,
 };
 
 export const MATERIALS: Record<string, string> = {
     "office-paper": "Office paper", newsprint: "Newsprint", tissue: "Tissue", cotton: "Cotton",
+};
+
+export const BALL = { at: [0, 0, 0.055] as Point, radius: 0.055 };
+const HUNG = 0.19; // m, height of the middle of a sheet that hangs
+
+/** Where the sheet begins, what holds it, and the match that the page strikes. */
+export const PLACES: Record<Place, { label: string; rotate: Point; translate: Point; pins: Point[]; match: Point; flat: boolean }> = {
+    table: { label: "On the table", rotate: [0, 0, 0], translate: [0, 0, 0.0005], pins: [], match: [0.03, -0.045, 0], flat: true },
+    hung: {
+        label: "Hung up", rotate: [Math.PI / 2, 0, 0], translate: [0, 0, HUNG], match: [0.02, 0, HUNG - 0.148], flat: false,
+        pins: [-0.1, 0, 0.1].map((x) => [x, 0, HUNG + 0.148]),
+    },
+    ball: { label: "Over a ball", rotate: [0, 0, 0], translate: [0.004, 0.006, 0.118], pins: [], match: [0.05, -0.03, 0.118], flat: true },
 };
 
 /** Sliders: the least, the most, a step, and how a value reads. */
@@ -43,7 +59,6 @@ export type Slider = keyof typeof RANGES;
 
 /** A4, m. */
 export const SHEET = { width: 0.21, height: 0.297 };
-export const FIRST_MATCH: Point = [0.03, -0.045, 0];
 const G = 9.81;
 
 // ---- the simulation that settings ask for
@@ -100,6 +115,7 @@ export function fromLink(text: string): Linked {
     settings.cells = Math.round(settings.cells);
     settings.seed = Math.round(settings.seed);
     if (Object.keys(MATERIALS).includes(parts.get("material") ?? "")) settings.material = parts.get("material")!;
+    if (Object.keys(PLACES).includes(parts.get("place") ?? "")) settings.place = parts.get("place") as Place;
     settings.gas = parts.get("gas") !== "false";
     settings.begin = parts.get("begin") !== "false";
     const millis = (text: string) => text.split(/\.(?=-?\d)/).map((part) => Number(part) / 1000);
@@ -118,7 +134,7 @@ export function fromLink(text: string): Linked {
 
 /** The same burn for `singe run`: with the strokes of the match and the pins, without hands and breaths. */
 export function toYaml(s: Settings, strokes: Stroke[], pins: Point[], seconds: number, mesh: string | null, skipped: boolean): string {
-    const grid = gridOf(s), list = (numbers: readonly number[]) => `[${numbers.map((x) => +x.toFixed(6)).join(", ")}]`;
+    const grid = gridOf(s), where = PLACES[mesh ? "table" : s.place], list = (numbers: readonly number[]) => `[${numbers.map((x) => +x.toFixed(6)).join(", ")}]`;
     const frames = Math.max(2, Math.ceil(24 * seconds) + 1);
     const lines = [
         "# Made by Singe's page: singe run scene.yaml -o out",
@@ -132,13 +148,15 @@ export function toYaml(s: Settings, strokes: Stroke[], pins: Point[], seconds: n
         "sheets:", "  - name: sheet",
         mesh ? `    mesh: ${JSON.stringify(mesh)} # the file that was dropped; the page scales it to 25 cm`
             : `    grid: {size: ${list(grid.size)}, cells: [${grid.cells.join(", ")}], seed: ${s.seed}}`,
-        "    translate: [0, 0, 0.5 mm]", "    drop_pieces_below: 4 mm2", "    material:", `      base: ${s.material}`, `      thickness: ${s.thickness}`,
+        ...(where.flat ? [] : [`    rotate: ${list(where.rotate.map((angle) => (angle * 180) / Math.PI))}`]),
+        `    translate: ${list(where.translate)}`, "    drop_pieces_below: 4 mm2", "    material:", `      base: ${s.material}`, `      thickness: ${s.thickness}`,
         ...(s.material === "office-paper" ? [`      mass_rate: {from: 4e-3, to: 10e-3, noise: {scale: 3 cm, octaves: 5, seed: ${s.seed}}}`] : []),
         ...(strokes.length ? ["sources:"] : []),
         ...strokes.flatMap((stroke) => [
             `  - {kind: ball, start: ${stroke.start.toFixed(3)}, end: ${stroke.end.toFixed(3)}, radius: ${MATCH.radius}, falloff: ${MATCH.falloff}, temperature: ${MATCH.temperature},`,
             `     path: [${stroke.path.map((key) => `{time: ${key.time.toFixed(3)}, position: ${list(key.position)}}`).join(", ")}]}`]),
         "colliders:", "  - {kind: plane, friction: 0.4, offset: 0.5 mm}",
+        ...(!mesh && s.place === "ball" ? [`  - {kind: sphere, position: ${list(BALL.at)}, radius: ${BALL.radius}, friction: 0.4, offset: 0.5 mm}`] : []),
         ...(pins.length ? ["pins:", `  - {sheet: sheet, points: [${pins.map(list).join(", ")}], radius: 5 mm}`] : []),
         "preview:", "  ground: {height: 0, colour: [0.20, 0.105, 0.052]}",
     ];

@@ -2,7 +2,7 @@
 import { load, type Handle, type Simulation, type Singe } from "singe";
 import { fireOf, lightsOf, meshOf } from "./fields.js";
 import type { FromWorker, Shape, ToWorker } from "./messages.js";
-import { FIRST_MATCH, gridOf, MATCH, materialOptions, simulationOptions, TIME_STEP, type Point, type Settings, type Stroke } from "./scene.js";
+import { BALL, gridOf, MATCH, materialOptions, PLACES, simulationOptions, TIME_STEP, type Point, type Settings, type Stroke } from "./scene.js";
 
 const FAR: Point = [0, 0, 50]; // where an unused match or breath waits
 const BREATH = { radius: 0.025, falloff: 0.05, conductance: 900, temperature: 293.15 };
@@ -55,9 +55,9 @@ async function hear(message: ToWorker): Promise<void> {
 }
 
 function begin(wanted: Settings, shape: Shape | null, linked: Stroke[], pinned: Point[]): void {
-    const made = singe.create(simulationOptions(wanted));
+    const made = singe.create(simulationOptions(wanted)), where = PLACES[shape ? "table" : wanted.place];
     try {
-        const material = materialOptions(wanted), place = { translate: [0, 0, 0.0005] as const, drop_pieces_below: 4e-6 };
+        const material = materialOptions(wanted), place = { rotate: where.rotate, translate: where.translate, drop_pieces_below: 4e-6 };
         const added = shape
             ? made.addSheet({ positions: shape.positions, corners: shape.corners, sizes: shape.sizes, ...(shape.uv ? { uv: shape.uv } : {}) }, material, place)
             : made.addSheet(gridOf(wanted), material, place);
@@ -71,6 +71,7 @@ function begin(wanted: Settings, shape: Shape | null, linked: Stroke[], pinned: 
     }
     settings = wanted;
     sim.addCollider({ kind: "plane", friction: 0.4, offset: 0.0005 });
+    if (!shape && wanted.place === "ball") sim.addCollider({ kind: "sphere", position: BALL.at, radius: BALL.radius, friction: 0.4, offset: 0.0005 });
     match = sim.addSource({ kind: "ball", path: still(FAR), ...MATCH });
     breath = sim.addSource({ kind: "ball", path: still(FAR), ...BREATH });
     hand = null;
@@ -78,11 +79,11 @@ function begin(wanted: Settings, shape: Shape | null, linked: Stroke[], pinned: 
     matchAt = FAR;
     breathing = skipped = false;
     stroke = null;
-    const first: Stroke = { start: 0, end: 1.25, path: [{ time: 0, position: FIRST_MATCH }] };
+    const first: Stroke = { start: 0, end: 1.25, path: [{ time: 0, position: where.match }] };
     strokes = linked.length ? [...linked] : wanted.begin && !shape ? [first] : [];
     planned = [...strokes];
     for (const { start, end, path } of planned) sim.addSource({ kind: "ball", start, end, path, ...MATCH });
-    pins = pinned.map((rest) => ({ rest, handle: sim!.addPin({ sheet, points: rest, radius: 0.005 }) }));
+    pins = (pinned.length ? pinned : where.pins).map((rest) => ({ rest, handle: sim!.addPin({ sheet, points: rest, radius: 0.005 }) }));
     tell({ kind: "begun", springs: sim.view().spring_count.reduce((a, b) => a + b) });
     frame(0, 0);
 }

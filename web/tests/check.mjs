@@ -128,6 +128,21 @@ const CASES = {
         assert.ok("_TEMPERATURE" in json.meshes[0].primitives[0].attributes);
         assert.match((await saved("yaml")).toString(), /kind: ball, start: /);
     },
+    async "a sheet hangs and burns upwards, or falls over a ball"() {
+        await open(`cells=20&place=hung&pace=6`, folder ? 1 : 0.2);
+        const hung = await step(1.6);
+        assert.equal(hung.pins.length, 3);
+        assert.ok(hung.burnt > 0.02, `burnt ${hung.burnt}`);
+        await picture("hung");
+        await page.click("summary");
+        const [download] = await Promise.all([page.waitForEvent("download"), page.click("[data-save=yaml]")]);
+        assert.match(await readFile(await download.path(), "utf8"), /rotate: \[90, 0, 0\][^]*points: \[\[-0.1, 0, 0.338\]/);
+        await page.selectOption("[name=place]", "ball");
+        await open(`cells=20&gas=false&place=ball`, folder ? 1 : 0.2);
+        const ball = await step(1.2);
+        assert.ok(ball.burnt > 0.002 && ball.pins.length === 0, `burnt ${ball.burnt}`);
+        await picture("ball");
+    },
     async "the sound of the fire grows with it"() {
         await open(QUICK);
         const loud = await page.evaluate(() => Promise.all([0, 20, 400].map((burning) => globalThis.page.loudness(burning))));

@@ -146,10 +146,10 @@ export class Simulation {
     }
 
     /** Adds a sheet before the commit. Faces of any kind become quads (docs/meshes.md). */
-    addSheet(shape: Grid | Faces, material: Material = {}, options: SheetOptions & { translate?: Vector } = {}): Handle {
+    addSheet(shape: Grid | Faces, material: Material = {}, options: SheetOptions & Placement = {}): Handle {
         const { memory } = this;
         return memory.during(() => {
-            const { translate, ...rest } = options, { base, ...changes } = material;
+            const { translate, rotate, ...rest } = options, { base, ...changes } = material;
             const mesh = makeMesh(memory, shape), def = memory.take(memory.size("sheet"));
             try {
                 const view = memory.take(memory.size("meshview"));
@@ -164,7 +164,7 @@ export class Simulation {
                 memory.write(inside, "material", changes);
                 memory.write(def, "sheet", rest);
                 const positions = memory.array(view, "meshview", "positions") as Float32Array;
-                if (translate) for (let i = 0; i < positions.length; i++) positions[i]! += translate[i % 3]!;
+                place(positions, rotate ?? [0, 0, 0], translate ?? [0, 0, 0]);
                 const cells = memory.array(view, "meshview", "cells"), uv = memory.array(view, "meshview", "uv");
                 memory.write(def, "sheet", {
                     vertex_count: positions.length / 3, positions: positions.byteOffset, cell_count: cells.length / 4,
@@ -348,6 +348,9 @@ export class Simulation {
     }
 }
 
+/** Where a sheet begins: turned about x, then y, then z, in radians, and then moved, in m. */
+export interface Placement { rotate?: Vector; translate?: Vector }
+
 /** Arrays have one entry for each particle, unless said otherwise (SingeView). */
 export interface View {
     time: number; step: number; topology_version: number;
@@ -390,6 +393,20 @@ export interface Counts { particles: number; cells: number; springs: number[]; c
 function errorAt(memory: Memory, at: number): SingeError {
     const data = memory.data, element = Number(data.getBigInt64(memory.at(at, "error", "element"), true));
     return new SingeError(memory.text(memory.at(at, "error", "stage")), element, memory.text(memory.at(at, "error", "message")));
+}
+
+/** Turns positions about the axes, then moves them. */
+function place(positions: Float32Array, rotate: Vector, translate: Vector): void {
+    const axes = [[1, 2], [2, 0], [0, 1]] as const;
+    for (let i = 0; i < positions.length; i += 3) {
+        axes.forEach(([a, b], axis) => {
+            const angle = rotate[axis]!, [c, s, x, y] = [Math.cos(angle), Math.sin(angle), positions[i + a]!, positions[i + b]!];
+            if (!angle) return;
+            positions[i + a] = c * x - s * y;
+            positions[i + b] = s * x + c * y;
+        });
+        for (let k = 0; k < 3; k++) positions[i + k]! += translate[k]!;
+    }
 }
 
 function keys(memory: Memory, path: readonly Key[]): number {
