@@ -51,14 +51,6 @@ typedef struct Measure {
     int from;   ///< which of plan->smooth is read
 } Measure;
 
-/// The centroid of a cell's corners at rest: its centre, projected along the normal.
-static inline Float4 centroid(const Shell *shell, uint32_t cell) {
-    const uint32_t *corner = shell->cells[cell];
-    const float(*rest)[4] = (const float(*)[4])shell->rest_position;
-    Float4 a = float4_load(rest[corner[0]]) + float4_load(rest[corner[1]]);
-    return (a + (float4_load(rest[corner[2]]) + float4_load(rest[corner[3]]))) * 0.25f;
-}
-
 /// Length of an edge or a diagonal over its length at rest.
 static float edge_stretch(const Shell *shell, const State *state, SingeColour colour, uint32_t spring) {
     const uint32_t *ends = shell->springs[colour].ends[spring];
@@ -105,6 +97,7 @@ static double measure_cells(void *task, int begin, int end) {
     const Measure *job = task;
     const Shell *shell = job->shell;
     const float *const *pull = job->pull;
+    const float(*centroid)[4] = (const float(*)[4])job->plan->centroid;
     double near = 0;
 
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
@@ -116,7 +109,7 @@ static double measure_cells(void *task, int begin, int end) {
 
         // N of this step: xx, yy, zz and yz, zx, xy
         const CellSprings *springs = &shell->cell_springs[c];
-        const Float4 centre = centroid(shell, c);
+        const Float4 centre = float4_load(centroid[c]);
         Float4 p[4], along = float4_all(0), across = along;
         for (int i = 0; i < 4; i++) p[i] = float4_load(shell->rest_position[shell->cells[c][i]]);
         for (int i = 0; i < 4; i++) {
@@ -125,19 +118,22 @@ static double measure_cells(void *task, int begin, int end) {
             float share = other == SHELL_NONE ? 1 : 0.5f;
             measure_add(&along, &across, p[(i + 1) & 3] - p[i], share * pull[SINGE_BLUE][springs->blue[i]]);
             if (other == SHELL_NONE) continue;
-            measure_add(&along, &across, centroid(shell, other) - centre, 0.5f * pull[SINGE_GREEN][springs->green[i]]);
+            measure_add(&along, &across, float4_load(centroid[other]) - centre,
+                        0.5f * pull[SINGE_GREEN][springs->green[i]]);
         }
 
         for (int i = 0; i < 2; i++)
             measure_add(&along, &across, p[i + 2] - p[i], pull[SINGE_YELLOW][springs->yellow[i]]);
-        Tensor now = {along[0], along[1], along[2], across[0], across[1], across[2]};
-        float area = shell->matter.area[shell_centre(shell, c)];
-        for (int k = 0; k < 6; k++) now[k] /= area;
+        along /= float4_all(shell->matter.area[shell_centre(shell, c)]);
+        across /= float4_all(shell->matter.area[shell_centre(shell, c)]);
 
-        // filtered
-        float before = held[0] + held[1] + held[2], after = now[0] + now[1] + now[2];
-        float keep = after < 0.5f * before ? 0 : job->keep;
-        for (int k = 0; k < 6; k++) held[k] = now[k] + keep * (held[k] - now[k]);
+        // filtered; zz, yz, zx and xy last, as a tensor has no room for two fours
+        const Float4 rest = FLOAT4_SHUFFLE(along, across, 2, 4, 5, 6);
+        const Float4 held_first = float4_load(held), held_last = float4_load(held + 2);
+        const float before = held_first[0] + held_first[1] + held_first[2], after = along[0] + along[1] + along[2];
+        const float keep = after < 0.5f * before ? 0 : job->keep;
+        float4_store(held, along + keep * (held_first - along));
+        float4_store(held + 2, rest + keep * (held_last - rest));
         near += measure_is_near(job, c, held);
     }
 

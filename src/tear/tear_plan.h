@@ -37,6 +37,7 @@ typedef struct TearPull {
 
 struct TearPlan {
     uint32_t cell_count, vertex_count, particle_count;
+    float (*centroid)[4]; ///< [cells] m, at rest, of the corners: the centre, projected along the normal
     Tensor *smooth[2];    ///< [cells] N/m, averaged over the process zone, alternating
     float *ratio;         ///< [vertices] of TearPull
     uint8_t *torn;        ///< [vertices] an edge at it is torn

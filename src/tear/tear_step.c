@@ -24,6 +24,7 @@
 // with its mass per area rho, and it stretches. Its own weight needs far less. But if it is held farther apart than its
 // geodesic length, by more than paper stretches before it breaks, it must tear though it is stronger: all its fresh
 // strengths are then lowered by one factor, so that the smallest is half of this.
+#include "common/float4.h"
 #include "common/real.h"
 #include "common/random.h"
 #include "tear/tear_plan.h"
@@ -68,12 +69,20 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
     plan->vertex_count = shell->vertex_count;
     plan->particle_count = shell->particle_count;
     plan->sheet_count = shell->sheet_count;
-    if (!NEW(memory, plan->smooth[0], plan->cell_count) || !NEW(memory, plan->smooth[1], plan->cell_count) ||
-        !NEW(memory, plan->ratio, plan->vertex_count) || !NEW(memory, plan->torn, plan->vertex_count) ||
-        !NEW(memory, plan->leader, plan->particle_count) || !NEW(memory, plan->weakened, plan->sheet_count) ||
-        !NEW(memory, plan->min, plan->sheet_count) || !NEW(memory, plan->partial, pool_blocks((int)plan->cell_count))) {
+    if (!NEW(memory, plan->centroid, plan->cell_count) || !NEW(memory, plan->smooth[0], plan->cell_count) ||
+        !NEW(memory, plan->smooth[1], plan->cell_count) || !NEW(memory, plan->ratio, plan->vertex_count) ||
+        !NEW(memory, plan->torn, plan->vertex_count) || !NEW(memory, plan->leader, plan->particle_count) ||
+        !NEW(memory, plan->weakened, plan->sheet_count) || !NEW(memory, plan->min, plan->sheet_count) ||
+        !NEW(memory, plan->partial, pool_blocks((int)plan->cell_count))) {
         tear_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
+    }
+
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        const uint32_t *corner = shell->cells[c];
+        const float(*x)[4] = (const float(*)[4])shell->rest_position;
+        Float4 a = float4_load(x[corner[0]]) + float4_load(x[corner[1]]);
+        float4_store(plan->centroid[c], (a + (float4_load(x[corner[2]]) + float4_load(x[corner[3]]))) * 0.25f);
     }
 
     // strengths: no tear begins below `safe`
@@ -92,6 +101,7 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
 
 void tear_plan_free(Memory *memory, TearPlan *plan) {
     if (!plan) return;
+    FREE(memory, plan->centroid, plan->cell_count);
     for (int k = 0; k < 2; k++) FREE(memory, plan->smooth[k], plan->cell_count);
     FREE(memory, plan->ratio, plan->vertex_count);
     FREE(memory, plan->torn, plan->vertex_count);
