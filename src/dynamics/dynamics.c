@@ -44,10 +44,10 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     plan->kernels = kernels_choose(settings->instructions);
     plan->solver = solver->method == SINGE_SOLVER_STRAND ? &strand_solver : &paper_solver;
     const bool done =
-        NEW(memory, plan->inverse_mass, plan->particle_count) && NEW(memory, plan->drag, plan->particle_count) &&
-        NEW(memory, plan->normal, plan->particle_count) && NEW(memory, plan->air, plan->particle_count) &&
-        NEW(memory, plan->predicted, plan->particle_count) && NEW(memory, plan->soft, plan->particle_count) &&
-        NEW(memory, plan->cell_normal, plan->cell_count) && NEW(memory, plan->height_wait, height_wait_count(shell)) &&
+        NEW(memory, plan->inverse_mass, plan->particle_count) && NEW(memory, plan->normal, plan->particle_count) &&
+        NEW(memory, plan->air, plan->particle_count) && NEW(memory, plan->predicted, plan->particle_count) &&
+        NEW(memory, plan->soft, plan->particle_count) && NEW(memory, plan->cell_normal, plan->cell_count) &&
+        NEW(memory, plan->height_wait, height_wait_count(shell)) &&
         NEW(memory, plan->colliders, plan->collider_capacity) && NEW(memory, plan->partial, plan_partials(shell)) &&
         plan->solver->create(memory, shell, plan) && patches_create(memory, shell, &plan->patches) &&
         attach_create(memory, shell, &plan->attachments) && smooth_create(memory, shell, plan) &&
@@ -69,7 +69,6 @@ void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) 
     plan->solver->release(memory, shell, plan);
     collision_plan_free(memory, plan->collision);
     FREE(memory, plan->inverse_mass, plan->particle_count);
-    FREE(memory, plan->drag, plan->particle_count);
     FREE(memory, plan->normal, plan->particle_count);
     FREE(memory, plan->air, plan->particle_count);
     FREE(memory, plan->predicted, plan->particle_count);

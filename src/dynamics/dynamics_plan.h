@@ -5,6 +5,7 @@
 #include "dynamics/attach.h"
 #include "dynamics/brace.h"
 #include "dynamics/dynamics.h"
+#include "dynamics/move.h"
 #include "dynamics/solver.h"
 #include "dynamics/strand/strand_lanes.h"
 
@@ -27,6 +28,7 @@ typedef struct Kernels {
     StrandSolve *solve;
     AttachHold *hold;
     StrandBend *bend;
+    MoveRange *move;
     SingeInstructions instructions;
 } Kernels;
 
@@ -77,9 +79,8 @@ struct DynamicsPlan {
     const Solver *solver;
     // per particle, refreshed at every step
     float *inverse_mass;   ///< 1/kg; 0 if pinned or gone
-    float *drag;           ///< 1/m, k of the quadratic drag: dv/dt = -k |v_n| v_n
-    float (*normal)[4];    ///< unit
-    float (*air)[4];       ///< m/s, the wind there
+    float (*normal)[4];    ///< unit; fourth: 1/m, k of the quadratic drag, dv/dt = -k |v_n| v_n
+    float (*air)[4];       ///< m/s, the wind there; fourth: 1/s, damping
     float (*predicted)[4]; ///< m, x~ of eq 9
     const Kernels *kernels;
     float *soft;     ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min

@@ -74,7 +74,8 @@ static void prepare_particles(void *task, int begin, int end) {
 
         // drag, and what it needs: normal and air
         float drag = plan->settings.air_density * field_at(matter->drag, (uint32_t)i);
-        plan->drag[i] = 0.25f * drag * matter->area[i] / mass;
+        plan->air[i][3] = field_at(matter->damping, (uint32_t)i);
+        plan->normal[i][3] = 0;
         if (drag == 0) continue;
 
         Float4 normal = {0, 0, 0, 0};
@@ -85,10 +86,13 @@ static void prepare_particles(void *task, int begin, int end) {
                 if (state->ablate->cell_flags[shell->fan[k]] & SINGE_ALIVE)
                     normal += float4_load(plan->cell_normal[shell->fan[k]]);
         const float length = sqrtf(float4_dot(normal, normal));
-        float4_store(plan->normal[i], length > 0 ? normal * (1 / length) : normal);
+        if (length > 0) normal = normal * (1 / length);
+        normal[3] = 0.25f * drag * matter->area[i] / mass;
+        float4_store(plan->normal[i], normal);
         Float3 wind = gusts ? wind_velocity(job->wind, float3_load(job->dynamics->position[i]), state->time) : mean;
         Float4 air = {wind.x, wind.y, wind.z, 0};
-        float4_store(plan->air[i], state->gas->awake ? air + float4_load(state->gas->air[i]) : air);
+        if (state->gas->awake) air += float4_load(state->gas->air[i]);
+        float4_store(plan->air[i], float4_with(air, plan->air[i][3]));
     }
 }
 

@@ -81,12 +81,29 @@ static inline void float4s_pull(Float4s *x, const float *anchor, Lanes factor) {
     for (int e = 0; e < 4; e++) x->at[e] = _mm256_blend_ps(_mm256_add_ps(x->at[e], displacement.at[e]), x->at[e], 0x88);
 }
 
+// Quadruples of a particle each, two in a vector.
+
+static inline Lanes lanes_quadruple(const float p[4]) { return (Lanes)_mm256_broadcast_ps((const __m128 *)p); }
+static inline Lanes lanes_fourths(Lanes a) { return (Lanes)_mm256_permute_ps((__m256)a, 0xFF); }
+/// Sums of each quadruple's first three numbers.
+static inline Lanes lanes_sums(Lanes a) {
+    return (Lanes)_mm256_permute_ps((__m256)a, 0) + (Lanes)_mm256_permute_ps((__m256)a, 0x55) +
+           (Lanes)_mm256_permute_ps((__m256)a, 0xAA);
+}
+static inline Lanes lanes_abs(Lanes a) { return (Lanes)_mm256_andnot_ps(_mm256_set1_ps(-0.0f), (__m256)a); }
+static inline Lanes lanes_with_fourth(Lanes a, Lanes fourth) {
+    return (Lanes)_mm256_blend_ps((__m256)a, (__m256)fourth, 0x88);
+}
+
 #define ATTACH_HOLD attach_hold_v3
 #define STRAND_SOLVE strand_solve_v3
 #define STRAND_BEND strand_bend_v3
 #define STRAND_NARROWER strand_solve_v2
 #define BEND_NARROWER strand_bend_v2
+#define MOVE_RANGE move_range_v3
+#define MOVE_NARROWER move_range_four
 #include "dynamics/attach_kernel.h"
 #include "dynamics/strand/strand_kernel.h"
 #include "dynamics/curvature_kernel.h"
+#include "dynamics/move_kernel.h"
 #endif

@@ -86,12 +86,29 @@ static inline void float4s_pull(Float4s *x, const float *anchor, Lanes factor) {
     for (int e = 0; e < 4; e++) x->at[e] = _mm512_mask_add_ps(x->at[e], 0x7777, x->at[e], displacement.at[e]);
 }
 
+// Quadruples of a particle each, four in a vector.
+
+static inline Lanes lanes_quadruple(const float p[4]) { return (Lanes)_mm512_broadcast_f32x4(_mm_loadu_ps(p)); }
+static inline Lanes lanes_fourths(Lanes a) { return (Lanes)_mm512_permute_ps((__m512)a, 0xFF); }
+/// Sums of each quadruple's first three numbers.
+static inline Lanes lanes_sums(Lanes a) {
+    return (Lanes)_mm512_permute_ps((__m512)a, 0) + (Lanes)_mm512_permute_ps((__m512)a, 0x55) +
+           (Lanes)_mm512_permute_ps((__m512)a, 0xAA);
+}
+static inline Lanes lanes_abs(Lanes a) { return (Lanes)_mm512_abs_ps((__m512)a); }
+static inline Lanes lanes_with_fourth(Lanes a, Lanes fourth) {
+    return (Lanes)_mm512_mask_blend_ps(0x8888, (__m512)a, (__m512)fourth);
+}
+
 #define ATTACH_HOLD attach_hold_v4
 #define STRAND_SOLVE strand_solve_v4
 #define STRAND_BEND strand_bend_v4
 #define STRAND_NARROWER strand_solve_v3
 #define BEND_NARROWER strand_bend_v3
+#define MOVE_RANGE move_range_v4
+#define MOVE_NARROWER move_range_v3
 #include "dynamics/attach_kernel.h"
 #include "dynamics/strand/strand_kernel.h"
 #include "dynamics/curvature_kernel.h"
+#include "dynamics/move_kernel.h"
 #endif

@@ -1,0 +1,25 @@
+// The pass over particles between two projections, in vectors (move.c, move_kernel.h).
+#ifndef DYNAMICS_MOVE_H
+#define DYNAMICS_MOVE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/// Quadruples of all particles, and what is the same for all.
+typedef struct MoveLanes {
+    float *position;     ///< m; fourth: inverse mass, 0 for what does not move
+    float *velocity;     ///< m/s; fourth: 0
+    float *predicted;    ///< m
+    const float *normal; ///< unit; fourth: 1/m, k of the quadratic drag
+    const float *air;    ///< m/s; fourth: 1/s, damping
+    float h, inverse_h;  ///< s, 1/s
+    float keep;          ///< share of the velocity that damping leaves, where it is the same for all
+    float fall[4];       ///< m/s, of gravity in a substep; fourth: 0
+    bool drags, damps;   ///< some have drag; damping differs
+} MoveLanes;
+
+/// Particles [begin, end).
+typedef void MoveRange(const MoveLanes *job, size_t begin, size_t end, bool closes, bool opens);
+MoveRange move_range_four, move_range_v3, move_range_v4;
+
+#endif
