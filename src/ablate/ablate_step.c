@@ -20,6 +20,9 @@
 // next step, to particles that are then alive. It is not counted either, so that the ledger closes.
 #include "ablate/ablate_plan.h"
 
+/// Particles or cells that are looked at together.
+enum { ABLATE_RUN = 64 };
+
 // ---- holes
 
 typedef struct HoleSearch {
@@ -77,9 +80,17 @@ static void hole_report(const AblatePlan *plan, const StepContext *context, cons
     const StateInput *state = &context->state;
     HoleSearch search = {plan, shell, state, ablate, (float)state->time};
 
-    for (uint32_t i = 0; i < shell->particle_count; i++) {
-        if (!burnt_now(&search, i) || !(ablate->particle_flags[i] & SINGE_ALIVE) || !hole_opens(&search, i)) continue;
-        event_push(context->events, SINGE_EVENT_HOLE_OPENED, (int32_t)i, state->time, state->dynamics->position[i]);
+    // most runs have no particle that burnt through now
+    const float *burnt = state->burn->time_burnt;
+    for (uint32_t first = 0, last; first < shell->particle_count; first = last) {
+        int some = 0;
+        last = shell->particle_count - first < ABLATE_RUN ? shell->particle_count : first + ABLATE_RUN;
+        for (uint32_t i = first; i < last; i++) some |= burnt[i] == search.now;
+        for (uint32_t i = first; i < last && some; i++) {
+            if (!burnt_now(&search, i) || !(ablate->particle_flags[i] & SINGE_ALIVE) || !hole_opens(&search, i))
+                continue;
+            event_push(context->events, SINGE_EVENT_HOLE_OPENED, (int32_t)i, state->time, state->dynamics->position[i]);
+        }
     }
 }
 
@@ -162,9 +173,18 @@ void ablate_step(AblatePlan *plan, const StepContext *context, AblateState *abla
     ablate_label(plan, context->shell, ablate);
     ablate_levels(plan, context->shell, context->state.burn);
     hole_report(plan, context, ablate);
-    for (uint32_t c = 0; c < context->shell->cell_count; c++) // a cell whose centre is left keeps everything
-        if (plan->level[shell_centre(context->shell, c)] < 0 && ablate->cell_flags[c] & SINGE_ALIVE)
-            remove_from_cell(&removal, c);
+
+    // a cell whose centre is left keeps everything
+    const float *level = plan->level + shell_centre(context->shell, 0);
+    const uint32_t cells = context->shell->cell_count;
+    for (uint32_t first = 0, last; first < cells; first = last) {
+        int some = 0;
+        last = cells - first < ABLATE_RUN ? cells : first + ABLATE_RUN;
+        for (uint32_t c = first; c < last; c++) some |= level[c] < 0;
+        for (uint32_t c = first; c < last && some; c++)
+            if (level[c] < 0 && ablate->cell_flags[c] & SINGE_ALIVE) remove_from_cell(&removal, c);
+    }
+
     if (!removal.changed) return;
 
     piece_update(&removal, context->events);

@@ -82,6 +82,7 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
         moving.high[i] = ends[i][1] + margin;
     }
 
+    while (moving.ends < 2 && isinf(moving.low[moving.ends]) && isinf(moving.high[moving.ends])) moving.ends++;
     return moving;
 }
 
@@ -248,7 +249,7 @@ static inline Float4Mask contact_near(const MovingCollider *collider, Float4 x, 
     Float4 dx = x - origin.x, dy = y - origin.y, dz = z - origin.z;
     Float4Mask near = {-1, -1, -1, -1};
 
-    for (int i = 2; i >= 0; i--) {
+    for (int i = 2; i >= collider->ends; i--) {
         Float3 axis = collider->axis[i];
         Float4 along = dx * axis.x + dy * axis.y + dz * axis.z;
         near &= (along < collider->high[i]) & (along > collider->low[i]);
@@ -347,7 +348,7 @@ static double contact_block(void *task, int begin, int end) {
                     Float4 row[4] = {x.x, x.y, x.z, q[3]};
                     float4_transpose(row);
                     for (int i = 0; i < 4; i++)
-                        if (touched >> i & 1) float4_store(position[particle[i]], row[i]);
+                        if (touched == 15 || touched >> i & 1) float4_store(position[particle[i]], row[i]);
                     contacts += (uint64_t)__builtin_popcount(touched);
                     memcpy(q, &x, sizeof x);
                 }

@@ -20,6 +20,7 @@ typedef struct MovingCollider {
     Pose before, after;
     Float3 axis[3];        ///< of the box, which has `after.position` for its origin
     float low[3], high[3]; ///< m
+    int ends;              ///< first axis along which the box has ends
     float drift;           ///< m, max displacement of its surface in its frame: 0 except for a deforming mesh
 } MovingCollider;
 

@@ -73,10 +73,13 @@ static void prepare_particles(void *task, int begin, int end) {
         if (!alive) continue;
 
         // drag, and what it needs: normal and air
-        float drag = plan->settings.air_density * field_at(matter->drag, (uint32_t)i);
-        plan->air[i][3] = field_at(matter->damping, (uint32_t)i);
-        plan->normal[i][3] = 0;
-        if (drag == 0) continue;
+        const float drag = plan->settings.air_density * field_at(matter->drag, (uint32_t)i);
+        const float damping = field_at(matter->damping, (uint32_t)i);
+        if (drag == 0) {
+            plan->normal[i][3] = 0;
+            plan->air[i][3] = damping;
+            continue;
+        }
 
         Float4 normal = {0, 0, 0, 0};
         if ((uint32_t)i >= shell->vertex_count)
@@ -92,7 +95,7 @@ static void prepare_particles(void *task, int begin, int end) {
         Float3 wind = gusts ? wind_velocity(job->wind, float3_load(job->dynamics->position[i]), state->time) : mean;
         Float4 air = {wind.x, wind.y, wind.z, 0};
         if (state->gas->awake) air += float4_load(state->gas->air[i]);
-        float4_store(plan->air[i], float4_with(air, plan->air[i][3]));
+        float4_store(plan->air[i], float4_with(air, damping));
     }
 }
 

@@ -176,6 +176,9 @@ static void conduct_finish(void *context, int begin, int end) {
     uint32_t low = (uint32_t)pass->state->step, high = (uint32_t)(pass->state->step >> 32);
     // never at 0 K, however large the slack is: a much hotter sheet may give the range
     double min = fmax((double)pass->min - pass->slack, 0.5 * (double)pass->min), max = (double)pass->max + pass->slack;
+    bool makes = false; // some sheet's operator makes heat
+    for (uint32_t s = 0; s < pass->shell->sheet_count; s++)
+        makes |= pass->shell->sheets[s].material.heat_operator != SINGE_HEAT_SURFACE;
 
     for (int block = begin; block < end; block++) {
         double made = 0;
@@ -195,7 +198,7 @@ static void conduct_finish(void *context, int begin, int end) {
                 if (change != 0)
                     plan->next[i] = heat_round(temperature[i] + change, random_hash(i, low, high, HEAT_SEED));
                 within &= (double)plan->next[i] >= min && (double)plan->next[i] <= max;
-                if (pass->shell->sheets[matter->sheet[i]].material.heat_operator != SINGE_HEAT_SURFACE)
+                if (makes && pass->shell->sheets[matter->sheet[i]].material.heat_operator != SINGE_HEAT_SURFACE)
                     made += matter->capacity[i] * rise;
             }
         }
