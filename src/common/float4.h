@@ -37,6 +37,7 @@ static inline Float4 float4_select(Float4Mask mask, Float4 yes, Float4 no) {
 static inline Float4 float4_min(Float4 a, Float4 b) { return (Float4)_mm_min_ps((__m128)a, (__m128)b); }
 static inline Float4 float4_max(Float4 a, Float4 b) { return (Float4)_mm_max_ps((__m128)a, (__m128)b); }
 static inline Float4 float4_sqrt(Float4 a) { return (Float4)_mm_sqrt_ps((__m128)a); }
+static inline bool float4_any(Float4Mask mask) { return _mm_movemask_ps((__m128)mask) != 0; }
 /// Bit k is set if the mask is true in lane k.
 static inline unsigned float4_bits(Float4Mask mask) { return (unsigned)_mm_movemask_ps((__m128)mask); }
 #elif defined(__wasm_simd128__) // "pseudo-minimum": b where a < b is false, as above

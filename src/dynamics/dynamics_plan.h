@@ -6,6 +6,7 @@
 #include "dynamics/brace.h"
 #include "dynamics/dynamics.h"
 #include "dynamics/move.h"
+#include "dynamics/smooth.h"
 #include "dynamics/solver.h"
 #include "dynamics/strand/strand_lanes.h"
 
@@ -30,6 +31,7 @@ typedef struct Kernels {
     AttachHold *hold;
     StrandBend *bend;
     MoveRange *move;
+    SmoothGroup *smooth;
     SingeInstructions instructions;
 } Kernels;
 

@@ -54,8 +54,10 @@ bool patch_follow(DynamicsPlan *plan, const Shell *shell) {
         for (uint32_t s = 0; s < springs->strand_count; s++) {
             size_t slot = set->strand_slot[s];
             for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES)
-                if (!patch_is_in_strand(plan, shell, (SingeColour)colour, k, slot))
+                if (!patch_is_in_strand(plan, shell, (SingeColour)colour, k, slot)) {
                     patch_push(patches, (SingeColour)colour, k, set->compliance[slot]);
+                    set->groups[set->strand_group[s]].apart = true;
+                }
         }
     }
 

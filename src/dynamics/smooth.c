@@ -23,28 +23,51 @@ static const SingeColour SMOOTH_LAYERS[] = {SINGE_BLUE, SINGE_GREEN};
 
 typedef struct Smooth {
     const SpringSet *set;
+    SmoothLanes lanes;
+    SmoothGroup *group;    ///< for groups of lanes
     const uint32_t *reach; ///< [strands] of the plan
     const uint8_t *flags;  ///< of the springs
     float (*velocity)[4];
-    const float (*position)[4]; ///< fourth: inverse mass
-    uint32_t first_strand;
+    const float (*position)[4];                      ///< fourth: inverse mass
+    uint32_t first_group, group_count, first_strand; ///< of a family
     float share;
 } Smooth;
 
 bool smooth_create(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
     for (int layer = 0; layer < 2; layer++) {
-        const SpringSet *set = &shell->springs[SMOOTH_LAYERS[layer]];
-        uint32_t *reach;
-        if (!NEW(memory, plan->reach[layer], set->strand_count)) return false;
+        const SingeColour colour = SMOOTH_LAYERS[layer];
+        const SpringSet *springs = &shell->springs[colour];
+        StrandSet *set = &plan->strands.sets[colour];
+        const Field weight = shell->matter.weight[colour], char_weight = shell->matter.char_weight;
+        if (!NEW(memory, plan->reach[layer], springs->strand_count)) return false;
 
-        reach = plan->reach[layer];
-        for (uint32_t s = 0; s < set->strand_count; s++) {
-            const uint32_t *first = &set->strand_first[s];
-            const float springs = (float)(first[1] - first[0]);
+        // lanes know springs that are gone by their weights, and know no velocities of nodes that are not there
+        bool weighs = true;
+        for (uint32_t i = 0; i < shell->particle_count; i++)
+            weighs &= field_at(weight, i) > 0 && field_at(char_weight, i) > 0;
+        for (uint32_t g = 0; g < set->group_count; g++) {
+            StrandGroup *group = &set->groups[g];
+            const uint32_t *node = set->node + (size_t)group->row * STRAND_LANES;
+            group->apart = group->ring || !weighs;
+            group->reach = UINT32_MAX;
+            for (uint32_t row = 0; row <= group->rows; row++)
+                for (uint32_t lane = 0; lane < group->width; lane++)
+                    group->apart |= node[row * STRAND_LANES + lane] >= 4 * shell->particle_count;
+        }
+
+        // springs in a smoothing_length, of every strand, and of groups whose strands agree
+        for (uint32_t s = 0; s < springs->strand_count; s++) {
+            const uint32_t first = springs->strand_first[s], last = springs->strand_first[s + 1];
+            const float count = (float)(last - first);
             float length = 0;
-            for (uint32_t k = first[0]; k < first[1]; k++) length += set->rest[k];
-            const float across = plan->settings.solver.smoothing_length * springs / length;
-            if (across >= 2) reach[s] = (uint32_t)(across < springs ? across + 0.5f : springs);
+            for (uint32_t k = first; k < last; k++) length += springs->rest[k];
+            const float across = plan->settings.solver.smoothing_length * count / length;
+            const uint32_t reach = across >= 2 ? (uint32_t)(across < count ? across + 0.5f : count) : 0;
+            plan->reach[layer][s] = reach;
+            if (set->group_count == 0) continue;
+            StrandGroup *group = &set->groups[set->strand_group[s]];
+            group->apart |= group->reach != UINT32_MAX && group->reach != reach;
+            group->reach = reach;
         }
     }
 
@@ -106,10 +129,18 @@ static void smooth_strand(const Smooth *job, uint32_t begin, uint32_t end, uint3
     }
 }
 
+/// Groups in lanes, then the strands of the others.
 static void smooth_range(void *task, int begin, int end) {
     const Smooth *job = task;
-    for (int i = begin; i < end; i++) {
-        const uint32_t strand = job->first_strand + (uint32_t)i, *first = &job->set->strand_first[strand];
+    const StrandSet *set = job->lanes.set;
+    for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
+        if (i < job->group_count) {
+            if (!set->groups[job->first_group + i].apart) job->group(&job->lanes, job->first_group + i);
+            continue;
+        }
+
+        const uint32_t strand = job->first_strand + i - job->group_count, *first = &job->set->strand_first[strand];
+        if (set->group_count > 0 && !set->groups[set->strand_group[strand]].apart) continue;
         smooth_strand(job, first[0], first[1], job->reach[strand]);
         smooth_strand(job, first[0], first[1], 1);
     }
@@ -121,21 +152,30 @@ void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *
 
     for (int layer = 0; layer < 2; layer++) {
         const SpringSet *set = &shell->springs[SMOOTH_LAYERS[layer]];
-        Smooth job = {set,
-                      plan->reach[layer],
-                      ablate->spring_flags[SMOOTH_LAYERS[layer]],
-                      dynamics->velocity,
-                      (const float(*)[4])dynamics->position,
-                      0,
-                      1 - real_expf(-plan->settings.solver.smoothing * h)};
+        const StrandSet *lanes = &plan->strands.sets[SMOOTH_LAYERS[layer]];
+        const float share = 1 - real_expf(-plan->settings.solver.smoothing * h);
+        Smooth job = {.set = set,
+                      .lanes = {lanes, dynamics->position[0], dynamics->velocity[0], share},
+                      .group = plan->kernels->smooth,
+                      .reach = plan->reach[layer],
+                      .flags = ablate->spring_flags[SMOOTH_LAYERS[layer]],
+                      .velocity = dynamics->velocity,
+                      .position = (const float(*)[4])dynamics->position,
+                      .share = share};
 
-        // families in turn, their strands in parallel
+        // families in turn, their groups and strands in parallel
         for (uint32_t f = 0; f < set->family_count; f++) {
+            if (lanes->group_count > 0) {
+                job.first_group = lanes->family_first[f];
+                job.group_count = lanes->family_first[f + 1] - job.first_group;
+            }
+
             job.first_strand = set->family_first[f];
             const uint32_t last = set->family_first[f + 1], strands = last - job.first_strand;
             const uint32_t springs = set->strand_first[last] - set->strand_first[job.first_strand];
-            const int grain = (int)(2048 * strands / (springs + 1)) + 1; // about 2,048 springs: the min for a thread
-            pool_for(pool, (int)strands, grain, smooth_range, &job);
+            const int grain =
+                (int)(128 * strands / (springs + 1)) + 1; // about 2,048 springs in lanes: the min for a thread
+            pool_for(pool, (int)(job.group_count + strands), grain, smooth_range, &job);
         }
     }
 }

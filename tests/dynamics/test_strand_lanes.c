@@ -214,3 +214,58 @@ TEST(lanes_are_full) {
     Density valence = measure_lanes("random valence", quads_random_valence(30));
     assert_true((double)valence.springs > 0.6 * (double)valence.slots);
 }
+
+/// Velocities of a disturbed sheet after internal friction. `apart`: strand by strand, not in lanes.
+static void rub(Bench *bench, SingeInstructions instructions, bool apart, float *result) {
+    static const SingeColour layers[] = {SINGE_BLUE, SINGE_GREEN};
+    float(*velocity)[4] = bench->state.dynamics.velocity;
+    bool kept[2][256];
+    bench->plan->kernels = kernels_choose(instructions);
+    for (uint32_t i = 0; i < 4 * bench->shell.particle_count; i++)
+        velocity[0][i] = i % 4 < 3 ? random_unit(random_hash(i, 1, 5, 2)) - 0.5f : 0;
+    for (int i = 0; i < 2; i++) {
+        StrandSet *set = &bench->plan->strands.sets[layers[i]];
+        assert_true(set->group_count <= 256);
+        for (uint32_t g = 0; g < set->group_count; g++) {
+            kept[i][g] = set->groups[g].apart;
+            set->groups[g].apart |= apart;
+        }
+    }
+
+    dynamics_smooth(bench->plan, &bench->shell, &bench->state.ablate, bench->pool, 1 / 480.0f, &bench->state.dynamics);
+    memcpy(result, velocity, bench->shell.particle_count * sizeof *velocity);
+    for (int i = 0; i < 2; i++)
+        for (uint32_t g = 0; g < bench->plan->strands.sets[layers[i]].group_count; g++)
+            bench->plan->strands.sets[layers[i]].groups[g].apart = kept[i][g];
+}
+
+/// Internal friction in lanes of every width, against that of single strands. Returns the number of groups in lanes.
+static uint32_t compare_friction(Quads quads) {
+    Bench bench;
+    uint32_t groups = 0;
+    bench_open(&bench, quads, NULL, 2);
+    disturb(&bench);
+    const size_t bytes = bench.shell.particle_count * 4 * sizeof(float);
+    float *single = malloc(bytes), *lanes = malloc(bytes);
+    rub(&bench, SINGE_INSTRUCTIONS_PLAIN, true, single);
+    for (int i = SINGE_INSTRUCTIONS_PLAIN; i <= SINGE_INSTRUCTIONS_X86_V4; i++) {
+        if (!kernels_choose((SingeInstructions)i)) continue;
+        rub(&bench, (SingeInstructions)i, false, lanes);
+        assert_memory_equal(single, lanes, bytes);
+    }
+
+    const StrandSet *blue = &bench.plan->strands.sets[SINGE_BLUE];
+    for (uint32_t g = 0; g < blue->group_count; g++) groups += !blue->groups[g].apart;
+    free(single), free(lanes);
+    bench_close(&bench);
+    return groups;
+}
+
+TEST(friction_is_the_same_in_lanes) {
+    assert_true(compare_friction(quads_grid(47, 31, 0.01f, 0.01f, false)) > 3);
+    assert_true(compare_friction(quads_grid(60, 50, 0.003f, 0.003f, false)) > 3); // smoothing_length is seven springs
+    compare_friction(quads_with_hole(41, 38));
+    compare_friction(quads_grid(40, 19, 0.01f, 0.01f, true));
+    compare_friction(quads_shuffled(quads_grid(21, 20, 0.01f, 0.01f, false)));
+    compare_friction(quads_random_valence(9));
+}

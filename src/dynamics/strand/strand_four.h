@@ -70,6 +70,8 @@ static inline void float4s_pull(Float4s *x, const float *anchor, Lanes factor) {
     for (int e = 0; e < 4; e++) x->at[e] = float4_add_position(x->at[e], displacement.at[e]);
 }
 
+#ifdef STRAND_SOLVE
 #include "dynamics/attach_kernel.h"
 #include "dynamics/strand/strand_kernel.h"
 #include "dynamics/curvature_kernel.h"
+#endif

@@ -33,6 +33,8 @@ typedef struct StrandGroup {
     uint32_t columns; ///< in use
     uint32_t width;   ///< lanes: 4, 8 or 16, as many as columns at least
     bool ring;        ///< every lane is one ring of `rows` springs
+    bool apart;       ///< internal friction goes strand by strand (smooth.c)
+    uint32_t reach;   ///< otherwise, of its strands: DynamicsPlan.reach
 } StrandGroup;
 
 /// The strands of one colour. Family f is the groups [family_first[f], family_first[f + 1]).
@@ -42,15 +44,16 @@ typedef struct StrandSet {
     uint32_t group_capacity;
     StrandGroup *groups;
     uint32_t *family_first;
-    uint32_t *strand_slot; ///< [strands] slot of the strand's first spring; spring k lies k rows further
-    uint32_t *node;        ///< [row_count STRAND_LANES] four times the particle's number
-    uint32_t *contiguous;  ///< [row_count] node of column 0 where those of the other columns follow, or STRAND_GATHERED
-    float *length;         ///< [row_count STRAND_LANES] m, targets
-    float *weight;         ///< [row_count STRAND_LANES] W of eq 19, with char; 0 where there is no spring
-    float *compliance;     ///< [row_count STRAND_LANES] m/N
-    float *bend_limit;     ///< [row_count STRAND_LANES] m, as in curvature.c, at a node; NULL: none
-    float *pull;           ///< [row_count STRAND_LANES] sums of mu, lambda over length; NULL: not needed
-    uint32_t run_count;    ///< of springs: PREPARE_RUN each, in the springs' order
+    uint32_t *strand_group; ///< [strands]
+    uint32_t *strand_slot;  ///< [strands] slot of the strand's first spring; spring k lies k rows further
+    uint32_t *node;         ///< [row_count STRAND_LANES] four times the particle's number
+    uint32_t *contiguous; ///< [row_count] node of column 0 where those of the other columns follow, or STRAND_GATHERED
+    float *length;        ///< [row_count STRAND_LANES] m, targets
+    float *weight;        ///< [row_count STRAND_LANES] W of eq 19, with char; 0 where there is no spring
+    float *compliance;    ///< [row_count STRAND_LANES] m/N
+    float *bend_limit;    ///< [row_count STRAND_LANES] m, as in curvature.c, at a node; NULL: none
+    float *pull;          ///< [row_count STRAND_LANES] sums of mu, lambda over length; NULL: not needed
+    uint32_t run_count;   ///< of springs: PREPARE_RUN each, in the springs' order
     _Atomic uint8_t *stale; ///< [run_count] 1: weights, lengths or limits of the run change in this step
     uint32_t *run_strand;   ///< [run_count] the strand of the run's first spring
     uint8_t *creased;       ///< [run_count] 1: a crease had changed a length of the run

@@ -344,7 +344,8 @@ bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowher
     set->group_capacity = set->strand_count; // a strand has a group of its own at most
     if (!NEW(memory, set->groups, set->group_capacity) ||
         !NEW(memory, set->family_first, (size_t)set->family_count + 1) ||
-        !NEW(memory, set->strand_slot, set->strand_count) || !lay_strands(memory, springs, nowhere, set) ||
+        !NEW(memory, set->strand_slot, set->strand_count) || !NEW(memory, set->strand_group, set->strand_count) ||
+        !lay_strands(memory, springs, nowhere, set) ||
         !memory_grow(memory, &set->groups, set->group_capacity, set->group_count, sizeof *set->groups))
         return false;
     set->group_capacity = set->group_count;
@@ -375,6 +376,13 @@ bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowher
 
     // but for the particles along every strand
     for (uint32_t s = 0; s < set->strand_count; s++) {
+        uint32_t end = set->group_count; // groups are in order of rows
+        while (end - set->strand_group[s] > 1) {
+            const uint32_t middle = (set->strand_group[s] + end) / 2;
+            if (set->groups[middle].row <= set->strand_slot[s] / STRAND_LANES) set->strand_group[s] = middle;
+            else end = middle;
+        }
+
         uint32_t *node = set->node + set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, node += STRAND_LANES) {
             node[0] = 4 * springs->ends[k][0];
@@ -417,6 +425,7 @@ void strand_set_free(Memory *memory, StrandSet *set) {
     FREE(memory, set->groups, set->group_capacity);
     FREE(memory, set->family_first, (size_t)set->family_count + 1);
     FREE(memory, set->strand_slot, set->strand_count);
+    FREE(memory, set->strand_group, set->strand_count);
     memory_free(memory, &set->block, set_words(set), sizeof(float));
     FREE(memory, set->pull, (size_t)set->row_count * STRAND_LANES);
     FREE(memory, set->bend_limit, (size_t)set->row_count * STRAND_LANES);

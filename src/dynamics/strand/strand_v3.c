@@ -100,10 +100,15 @@ static inline Lanes lanes_with_fourth(Lanes a, Lanes fourth) {
 #define STRAND_BEND strand_bend_v3
 #define STRAND_NARROWER strand_solve_v2
 #define BEND_NARROWER strand_bend_v2
+#define LANES_SPREAD(a, e) (Lanes) _mm256_permute_ps((__m256)(a), (e)*0x55)
+#define FLOAT4S_SET(float4s, e, value) (float4s).at[e] = (__m256)(value)
+#define SMOOTH_GROUP smooth_group_v3
+#define SMOOTH_NARROWER smooth_group_four
 #define MOVE_RANGE move_range_v3
 #define MOVE_NARROWER move_range_four
 #include "dynamics/attach_kernel.h"
 #include "dynamics/strand/strand_kernel.h"
 #include "dynamics/curvature_kernel.h"
 #include "dynamics/move_kernel.h"
+#include "dynamics/smooth_kernel.h"
 #endif
