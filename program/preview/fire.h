@@ -9,10 +9,10 @@
 #include <stdint.h>
 
 enum {
-    FIRE_BORDER = 2, ///< empty cells around the gas, so that interpolation needs no bounds
-    FIRE_BRICK = 2,  ///< cells along the side of a brick, the unit of empty space that is skipped
-    FIRE_STEPS = 96, ///< max steps of a ray outside empty bricks
-    FIRE_NOISE = 16, ///< corners along the side of the lattice of noise, a power of two
+    FIRE_BORDER = 2,  ///< empty cells around the gas, so that interpolation needs no bounds
+    FIRE_BRICK = 2,   ///< cells along the side of a brick, the unit of empty space that is skipped
+    FIRE_STEPS = 128, ///< max steps of a ray outside empty bricks
+    FIRE_NOISE = 16,  ///< corners along the side of the lattice of noise, a power of two
     FIRE_COLOURS = 64,
 };
 
@@ -89,11 +89,23 @@ void fire_raise(Preview *preview);
 /// Computes the light on smoke, from daylight and flames. The lights have been gathered.
 void fire_light_smoke(Preview *preview);
 
-/// The values at a position, per metre.
+/// What is known of a position. A flame's light comes from a shell inside its edge, thinner than steps are long, so
+/// that a step needs both of its ends.
+typedef struct FirePoint {
+    Float3 soot, root;   ///< radiance per metre of the shell where it is brightest: yellow soot, blue root
+    Float3 lit;          ///< radiance per metre of the smoke
+    float depth;         ///< m inside the flame's edge, negative outside
+    float profile;       ///< light there relative to the shell's brightest
+    float shell;         ///< m, integral of that from the edge to the depth
+    float opaque, smoke; ///< 1/m, extinction of the shell and of the smoke
+} FirePoint;
+
+#define FIRE_OUTSIDE (-0.006f) ///< m, depth of what is far outside of flames
+
+/// The means over a step, per metre.
 typedef struct Matter {
     Float3 light;
     float dense; ///< 1/m, extinction
-    bool flame;
 } Matter;
 
 // fire_shade.c
@@ -105,7 +117,8 @@ float fire_share(const FireCell *cell);
 
 /// How bright a flame around p is now, 1 in the mean: tongues come and go.
 float fire_flicker(const Fire *fire, Float3 p);
-Matter fire_matter(const Preview *preview, Float3 p, int what);
+FirePoint fire_at_point(const Preview *preview, Float3 p, int what);
+Matter fire_between(const FirePoint *a, const FirePoint *b, float step);
 
 // fire_march.c
 /// Fills a tile whose upper left pixel is (x, y).

@@ -5,7 +5,8 @@
 
 #include "preview/internal.h"
 
-#define FIRE_EVEN 0.012f ///< difference of light, as l / (1 + l), that may be interpolated
+#define FIRE_SHORT 0.4f  ///< the shortest step relative to the usual one
+#define FIRE_EVEN 0.020f ///< difference of light, as l / (1 + l), that may be interpolated
 
 static void see_ray(const Preview *preview, Float3 d, FireView *view) {
     const Fire *fire = &preview->fire;
@@ -29,8 +30,9 @@ static void see_ray(const Preview *preview, Float3 d, FireView *view) {
     float clear = 1;
 
     // far away a step must still change a float
-    float fine = minf(0.35f * fire->cell, 0.0028f), min = maxf((far - t) / (4 * FIRE_STEPS), 1e-5f * far);
-    bool dark = true; // long steps until there is flame
+    float fine = minf(0.26f * fire->cell, 0.0022f), min = maxf((far - t) / (4 * FIRE_STEPS), 1e-5f * far);
+    bool dark = true, known = false; // long steps until there is flame; whether `here` is the point at t
+    FirePoint here;
 
     while (t < far && clear > 0.02f) {
         // what is in the brick here, and the length of the ray in it from here
@@ -48,6 +50,7 @@ static void see_ray(const Preview *preview, Float3 d, FireView *view) {
         int what = fire->seen[brick[0] + (size_t)fire->bricks[0] * (brick[1] + (size_t)fire->bricks[1] * brick[2])];
         if (!what) {
             t += maxf(minf(run, far - t), 0) + 2e-5f + 1e-6f * t;
+            known = false;
             continue;
         }
 
@@ -56,9 +59,13 @@ static void see_ray(const Preview *preview, Float3 d, FireView *view) {
         float step = maxf(what & FIRE_FLAME ? (dark ? 2 : 1) * fine : fire->cell, min);
         float next = maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step);
         step = next - t;
-        Matter m = fire_matter(preview, float3_mad(eye, d, t + 0.5f * step), what);
-        dark = !m.flame;
-        if (seek && m.flame) continue; // the same distance again in short steps
+        if (!known) here = fire_at_point(preview, float3_mad(eye, d, t), what);
+        known = true;
+        FirePoint there = fire_at_point(preview, float3_mad(eye, d, next), what);
+        dark = there.depth < -2 * fine;
+        if (seek && !dark) continue; // the same distance again in short steps
+        Matter m = fire_between(&here, &there, step);
+        here = there;
 
         // light of the step, absorbed within the step: (1 - exp(-d)) / d
         float depth = m.dense * step, kept = expf(-depth), mean = depth > 1e-3f ? (1 - kept) / depth : 1 - 0.5f * depth;

@@ -4,34 +4,45 @@
 // visible. Finer detail is added: the lookup position is shifted by noise (domain warping), which rises with the gas and
 // grows longer as the gas accelerates, so flames have tongues and streaks and flicker.
 //
-// A flame over paper is a thin sheet of burning gas around clear, hot vapour. With f the share that burns, r the height
-// above the paper and N noise of the width of a tongue, it lies where
+// A flame over paper is a thin shell of glowing soot around clear, hot vapour. With f the share that burns, r the height
+// above the paper and N noise of the width of a tongue, its edge lies where
 //
-//     e = f + a(r) N - c (r / H)^2 = EDGE,   H = (1 + h N) FLAME_HEIGHT,
+//     e = f + a(r) N - EDGE - TAPER r / H = 0,   H = (1 + h N) FLAME_HEIGHT,
 //
-// thin, with a fainter glow inside. It begins at the paper, is faint and blue in the first millimetres, where there is no
-// soot yet, yellow above, orange and torn at its tips. Soot glows as a black body between FLAME_COOL and FLAME_HOT; it
-// hides almost nothing behind it.
+// so that a tongue narrows to a tip, and is as tall as its fire is strong. The depth inside of the edge is d = e/|grad
+// e|, in metres, whatever the size of the cells. Light comes from the shell's profile
+//
+//     P(d) = 0 outside, d/w in the first w = SHELL_RISE, then fill + (1 - fill) exp(-(d - w)/SHELL)
+//
+// and a step of a ray takes its mean between the depths of its ends, by the integral of P: the shell is thinner than a
+// step. It begins at the paper, is faint and blue in the first millimetres, where there is no soot yet, yellow above,
+// orange at its tips. Soot glows as a black body between FLAME_COOL and FLAME_HOT; it hides almost nothing behind it.
 
 #include "preview/internal.h"
 
 // Gas leaves the paper slowly and accelerates: v^2 = BASE_SPEED^2 + 2 BUOYANCY h at the height h. An eddy that was formed
 // at the base grows longer as it rises, and moves by the same share of its length in every frame.
 #define BASE_SPEED 0.14f ///< m/s
-#define BUOYANCY 5.0f    ///< m/s2
+#define BUOYANCY 3.0f    ///< m/s2
 #define EDDY_RATE 8.0f   ///< 1/s, eddies that pass a height
+#define EDDY_WIDE 0.014f ///< m across
+#define EDDY_FINE 0.006f
+#define SMOKE_EDDY 0.02f
 
-#define FLAME_COOL 1350.0f ///< K
+#define FLAME_COOL 1400.0f ///< K
 #define FLAME_HOT 2050.0f
-#define FLAME_DIM 0.25f ///< radiance of a thick flame at its coolest and its hottest
-#define FLAME_BRIGHT 4.6f
-#define SOOT_DENSE 12.5f    ///< 1/m: radiance per metre relative to that of a thick flame
-#define SOOT_OPAQUE 6.0f    ///< 1/m, extinction
-#define BLUE_DENSE 1.2f     ///< 1/m: radiance of the base per metre
-#define EDGE 0.19f          ///< burning share at a flame's edge
+#define FLAME_DIM 0.3f ///< radiance of a thick flame at its coolest and its hottest
+#define FLAME_BRIGHT 5.2f
+#define SOOT_DENSE 42.0f    ///< 1/m: radiance per metre relative to that of a thick flame
+#define SOOT_OPAQUE 14.0f   ///< 1/m, extinction
+#define BLUE_DENSE 7.5f     ///< 1/m: radiance of the root per metre
+#define SHELL_RISE 0.0005f  ///< m, w
+#define SHELL 0.0018f       ///< m
+#define EDGE 0.17f          ///< burning share at a flame's edge
+#define TAPER 0.40f         ///< what is added to it over a flame's height
 #define STAND_OFF 0.0006f   ///< m above the paper, below which nothing is visible
-#define SOOT_BEGINS 0.0034f ///< m
-#define SOOT_FULL 0.0125f
+#define SOOT_BEGINS 0.0032f ///< m
+#define SOOT_FULL 0.0105f
 
 // ---- looking up
 
@@ -112,32 +123,56 @@ float fire_flicker(const Fire *fire, Float3 p) {
     return maxf(1 + 0.5f * whole.a + 0.8f * part.c, 0.1f);
 }
 
-/// Emission and absorption of flame per metre.
-static Float3 shade_flame(const Fire *fire, const FireCell *cell, Noise wide, Noise fine, float *opaque) {
-    float rise = cell->rise / cell->flame, stand = stepf(STAND_OFF, 4 * STAND_OFF, rise);
-    if (stand <= 0) return float3(0, 0, 0);
-    float tall = maxf(rise, 0) / (FLAME_HEIGHT * (1 + 0.6f * wide.c + 0.25f * fine.c)), torn = stepf(0, 0.018f, rise);
-    float present = minf(5 * cell->flame, 1);
-    float edge = cell->flame + present * ((0.05f + 0.13f * torn) * wide.c + (0.03f + 0.10f * torn) * fine.c);
-    edge -= EDGE + 0.09f * tall * tall;
-    float body = stepf(0, 0.05f, edge);
-    if (body <= 0) return float3(0, 0, 0);
+/// The flame at a position, from its cell, the gradient of its share in 1/m, and the noises.
+static void shade_flame(const Fire *fire, const FireCell *cell, float slope, Noise wide, Noise fine, FirePoint *point) {
+    float rise = maxf(cell->rise / cell->flame, 0), torn = stepf(0, 0.02f, rise);
+    float tall = rise / (FLAME_HEIGHT * (1 + 0.45f * wide.c + 0.2f * fine.d));
+    float coarse = 0.08f + 0.55f * torn + 0.15f * minf(tall, 1), small = 0.03f + 0.26f * torn;
+    float edge = cell->flame * (1 + coarse * wide.c + small * (0.6f - 2.2f * fabsf(fine.c))) - EDGE - TAPER * tall -
+                 0.2f * (1 - torn);
+    float noisy = cell->flame * (coarse / EDDY_WIDE + small / EDDY_FINE);
+    point->depth = maxf(edge / sqrtf(slope * slope + 0.4f * noisy * noisy + 1), FIRE_OUTSIDE);
 
-    float fold = 0.8f * wide.d + 0.35f * fine.c, sheet = maxf(1 - 20 * fold * fold, 0);
-    float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.0025f * fine.d), cooling = stepf(0.4f, 1.5f, tall);
+    // the shell's profile, and its integral from the edge
+    float tip = stepf(0.35f, 1.4f, tall), fill = mixf(0.02f, 0.12f, tip);
+    float outer = clampf(point->depth, 0, SHELL_RISE), inner = maxf(point->depth - SHELL_RISE, 0);
+    float fading = (1 - fill) * expf(-inner / SHELL);
+    point->profile = outer / SHELL_RISE * (fill + fading);
+    point->shell = 0.5f * outer * outer / SHELL_RISE + fill * inner + SHELL * (1 - fill - fading);
+
+    float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.001f * fine.d);
+    float strong = stepf(0, 0.25f, edge), hot = 0.35f + 0.42f * strong - 0.3f * tip + 0.25f * wide.d + 0.15f * fine.a;
     soot *= soot;
-    float thin = mixf(0.14f, 0.04f + 1.2f * sheet * sheet, torn) * body;
-    float hot = 0.50f + 0.3f * stepf(0.05f, 0.3f, edge) + 0.2f * sheet - 0.45f * cooling + 0.12f * fine.d;
-    *opaque = SOOT_OPAQUE * thin * soot;
-    Float3 glow = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * thin * soot);
-
-    return float3_mad(glow, float3(0.22f, 0.50f, 1.25f), BLUE_DENSE * body * stand * (1 - soot));
+    float root = stepf(STAND_OFF, 4 * STAND_OFF, rise) * (1 - soot);
+    soot *= 0.3f + 1.2f * stepf(-0.5f, 0.5f, 0.7f * wide.d + 0.6f * fine.a);
+    point->opaque = SOOT_OPAQUE * soot;
+    point->soot = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * soot);
+    point->root = float3_scale(float3(0.12f, 0.42f, 1.25f), BLUE_DENSE * root);
 }
 
-/// Quadratic B-spline over 3 x 3 x 3 cells at p.
-static FireCell cell_at(const Fire *fire, Float3 p) {
-    const Float3 g = float3_scale(float3_sub(p, fire->origin), 1 / fire->cell); // cells from the centre of the first
-    float f[3], w[3][3];
+Matter fire_between(const FirePoint *a, const FirePoint *b, float step) {
+    float smoke = 0.5f * (a->smoke + b->smoke);
+    Matter m = {float3_scale(float3_add(a->lit, b->lit), 0.5f), smoke};
+    if (!(a->depth > 0 || b->depth > 0)) return m;
+
+    // the mean of the profile between the two depths, which differ by no more than the step
+    float apart = b->depth - a->depth, part = 0.5f * (a->profile + b->profile);
+    if (fabsf(apart) > 5e-5f) part = minf(fabsf(b->shell - a->shell) / minf(fabsf(apart), step), 1);
+    float from = a->depth > b->depth ? 0.5f + 0.5f * (b->depth <= 0) : 0.5f * (a->depth > 0); // of the end inside
+    from = 1 - from;
+    Float3 light = float3_add(float3_mix(a->soot, b->soot, from), float3_mix(a->root, b->root, from));
+    m.light = float3_mad(m.light, light, part);
+    m.dense += part * mixf(a->opaque, b->opaque, from);
+    return m;
+}
+
+/// p in cells, counted from the centre of the first.
+static Float3 in_cells(const Fire *fire, Float3 p) { return float3_scale(float3_sub(p, fire->origin), 1 / fire->cell); }
+
+/// Quadratic B-spline over 3 x 3 x 3 cells at p, and the length of the gradient of `flame` if `slope` is not NULL.
+static FireCell cell_at(const Fire *fire, Float3 p, float *slope) {
+    const Float3 g = in_cells(fire, p);
+    float f[3], w[3][3], v[3][3];
     int base[3];
     const float at[3] = {g.x, g.y, g.z};
 
@@ -149,9 +184,13 @@ static FireCell cell_at(const Fire *fire, Float3 p) {
         w[c][0] = 0.5f * (0.5f - f[c]) * (0.5f - f[c]);
         w[c][1] = 0.75f - f[c] * f[c];
         w[c][2] = 0.5f * (0.5f + f[c]) * (0.5f + f[c]);
+        v[c][0] = f[c] - 0.5f;
+        v[c][1] = -2 * f[c];
+        v[c][2] = f[c] + 0.5f;
     }
 
     Four sum = {0, 0, 0, 0};
+    float along[3] = {0, 0, 0};
     for (int z = 0; z < 3; z++)
         for (int y = 0; y < 3; y++) {
             size_t row = (size_t)base[0] + (size_t)fire->size[0] *
@@ -160,55 +199,51 @@ static FireCell cell_at(const Fire *fire, Float3 p) {
             Four across = four_load(&cells[0].flame) * w[0][0] + four_load(&cells[1].flame) * w[0][1] +
                           four_load(&cells[2].flame) * w[0][2];
             sum += across * (w[2][z] * w[1][y]);
+            float change = cells[0].flame * v[0][0] + cells[1].flame * v[0][1] + cells[2].flame * v[0][2];
+            along[0] += change * w[1][y] * w[2][z];
+            along[1] += across[0] * v[1][y] * w[2][z];
+            along[2] += across[0] * w[1][y] * v[2][z];
         }
 
+    if (slope) *slope = sqrtf(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]) / fire->cell;
     return (FireCell){sum[0], sum[1], sum[2], sum[3]};
 }
 
-/// Flame and smoke at p, as the eddies have shifted them.
-static FireCell fire_sample(const Fire *fire, Float3 p, int what, Float3 *light, float *opaque) {
-    FireCell cell = cell_at(fire, p);
-    float height = cell.flame > 1e-4f ? cell.rise / cell.flame : p.z - fire->low.z;
-    float passed = eddies_passed(height, fire->moment);
-    Noise wide = eddies(fire, p, passed, 0.019f, 1);
-    Float3 shifted = float3_mad(p, float3(wide.a, wide.b, 0), 0.7f * FIRE_WARP_WIDE);
-
-    // whether the small eddies can bring flame there
-    Float3 g = float3_scale(float3_sub(shifted, fire->origin), 1 / fire->cell);
-    size_t x = (size_t)clampf(g.x + 0.5f, 0, (float)(fire->size[0] - 1));
-    size_t y = (size_t)clampf(g.y + 0.5f, 0, (float)(fire->size[1] - 1));
-    size_t z = (size_t)clampf(g.z + 0.5f, 0, (float)(fire->size[2] - 1));
-
-    if (fire->burns[x + (size_t)fire->size[0] * (y + (size_t)fire->size[1] * z)]) {
-        Noise fine = eddies(fire, shifted, passed, 0.0075f, 1.7f);
-        cell = cell_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), 0.7f * FIRE_WARP_FINE));
-        if (cell.flame > 0.05f) *light = shade_flame(fire, &cell, wide, fine, opaque);
-    } else if (what & FIRE_SMOKE) {
-        cell = cell_at(fire, shifted);
-    }
-
-    cell.smoke *= maxf(1 + 0.9f * wide.d, 0);
-    return cell;
-}
-
-Matter fire_matter(const Preview *preview, Float3 p, int what) {
+FirePoint fire_at_point(const Preview *preview, Float3 p, int what) {
     const Fire *fire = &preview->fire;
-    Matter m = {{0, 0, 0}, 0, false};
-    FireCell cell;
+    FirePoint point = {.depth = FIRE_OUTSIDE};
+    FireCell cell = cell_at(fire, p, NULL);
 
-    if (what & FIRE_FLAME) {
-        cell = fire_sample(fire, p, what, &m.light, &m.dense);
-        m.flame = m.light.z > 0;
-    } else {
-        cell = cell_at(fire, p);
-        cell.smoke *= maxf(1 + 0.9f * eddies(fire, p, eddies_passed(p.z - fire->low.z, fire->moment), 0.02f, 1).d, 0);
+    // smoke alone is moved by large eddies, as flames are, which small eddies move, too
+    bool flame = what & FIRE_FLAME;
+    float height = flame && cell.flame > 1e-4f ? cell.rise / cell.flame : p.z - fire->low.z;
+    float passed = eddies_passed(height, fire->moment), size = flame ? EDDY_WIDE : SMOKE_EDDY;
+    Noise wide = eddies(fire, p, passed, size, 1);
+
+    if (flame) {
+        Float3 shifted = float3_mad(p, float3(wide.a, wide.b, 0), 0.7f * FIRE_WARP_WIDE);
+
+        // whether the small eddies can bring flame there
+        Float3 g = in_cells(fire, shifted);
+        size_t x = (size_t)clampf(g.x + 0.5f, 0, (float)(fire->size[0] - 1));
+        size_t y = (size_t)clampf(g.y + 0.5f, 0, (float)(fire->size[1] - 1));
+        size_t z = (size_t)clampf(g.z + 0.5f, 0, (float)(fire->size[2] - 1));
+
+        if (fire->burns[x + (size_t)fire->size[0] * (y + (size_t)fire->size[1] * z)]) {
+            float slope;
+            Noise fine = eddies(fire, shifted, passed, EDDY_FINE, 1.6f);
+            cell = cell_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), 0.7f * FIRE_WARP_FINE), &slope);
+            if (cell.flame > 0.02f) shade_flame(fire, &cell, slope, wide, fine, &point);
+        } else if (what & FIRE_SMOKE) {
+            cell = cell_at(fire, shifted, NULL);
+        }
     }
 
     // soot and tar scatter about a third, in all directions
+    point.smoke = maxf(cell.smoke * (1 + 0.9f * wide.d), 0);
     Float3 lit = float3_mad(float3_scale(fire->daylight, 0.35f), float3(1, 0.5f, 0.16f), 0.35f * cell.glow);
-    if (cell.smoke > 0) m.light = float3_mad(m.light, lit, cell.smoke);
-    m.dense += cell.smoke;
-    return m;
+    point.lit = float3_scale(lit, point.smoke);
+    return point;
 }
 
 // ---- for programs that draw the cells themselves
@@ -238,11 +273,10 @@ SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, doub
         for (int y = 0; y < size[1]; y++)
             for (int x = 0; x < size[0]; x++, i++) {
                 const Float3 p = float3_mad(origin, float3((float)x, (float)y, (float)z), side);
-                Float3 light = {0, 0, 0};
-                float opaque = 0;
-                const FireCell cell = fire_sample(fire, p, FIRE_FLAME | FIRE_SMOKE, &light, &opaque);
-                flame[i] = float3_luminance(light) / brightest;
-                smoke[i] = maxf(cell.smoke, 0);
+                FirePoint point = fire_at_point(preview, p, FIRE_FLAME | FIRE_SMOKE);
+                smoke[i] = point.smoke;
+                point.lit = float3(0, 0, 0);
+                flame[i] = float3_luminance(fire_between(&point, &point, side).light) / brightest;
             }
 
     return SINGE_OK;
