@@ -3,7 +3,7 @@
 #
 # usage: check.sh SINGE FOLDER [GROUP...]     FOLDER/NAME is the environment of a client, FOLDER/work/NAME what it made
 #
-# The groups are usd, vtk, paraview, alembic, gltf, vat and blender; all of them without one. gltf and vat read images with
+# The groups are usd, vtk, paraview, alembic, rerun, gltf, vat and blender; all of them without one. gltf and vat read images with
 # vtk's Python.
 #
 # Exit codes: 0 all is good; 1 a client found a fault; 3 none did, but some could not be installed.
@@ -12,7 +12,7 @@ singe=$(realpath "$1")
 mkdir -p "$2"
 folder=$(realpath "$2")
 shift 2
-groups=" ${*:-usd vtk paraview alembic gltf vat blender} "
+groups=" ${*:-usd vtk paraview alembic rerun gltf vat blender} "
 here=$(cd "$(dirname "$0")" && pwd)
 locks=$here/../locks
 python=${PYTHON:-python3}
@@ -86,6 +86,10 @@ alembic_client() {
     if environment alembic; then client alembic alembic_client.py; else lacking alembic "PyPI's alembic3d"; fi
 }
 
+rerun_client() {
+    if environment rerun; then client rerun rerun_client.py; else lacking rerun "PyPI's rerun-sdk"; fi
+}
+
 # those of the lock file, once; no package runs a script of its own
 npm_packages() {
     cmp -s "$locks/package-lock.json" "$folder/npm/done" && return
@@ -137,7 +141,7 @@ blender_client() {
     done
 }
 
-for group in usd vtk paraview alembic gltf vat blender; do
+for group in usd vtk paraview alembic rerun gltf vat blender; do
     if [[ $groups == *" $group "* ]]; then "${group}_client"; fi
 done
 [ $failed -eq 0 ] || exit 1

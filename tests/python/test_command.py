@@ -1,5 +1,6 @@
 """The Python package: run, check, measure and caches."""
 
+import importlib.util
 import os
 import re
 import shutil
@@ -75,6 +76,9 @@ class Command(Case):
 
     def test_alembic(self):
         cache = singe.run(self.scene(), self.dir / "out", frames=3, preview=False)
+        if not importlib.util.find_spec("rerun"):
+            with self.assertRaisesRegex(ImportError, "pip install rerun-sdk"):
+                singe.log_to_rerun(cache)
         try:
             import alembic3d  # noqa: F401
         except ImportError:

@@ -21,6 +21,7 @@ from .errors import (ArgumentError, CommandError, CommandMissingError, DivergedE
                      LimitError, MeshError, OutOfMemoryError, Problem, SceneError, StateError, VersionError)
 from .objects import Collider, Grid, Pin, Sheet, Source, grid
 from .picture import draw, draw_png
+from .rerun_log import log_to_rerun
 from .simulation import Sim, materials
 from .views import Gas, StepView, Surface
 
@@ -32,4 +33,4 @@ RED, GREEN, BLUE, YELLOW = range(4)
 IGNITED, HOLE_OPENED, PIECE_FREED = range(3)
 
 __all__ = [name for name in dir() if not name.startswith("_") and name not in
-           ("alembic", "cache", "command", "errors", "objects", "picture", "simulation", "views")]
+           ("alembic", "cache", "command", "errors", "objects", "picture", "rerun_log", "simulation", "views")]

@@ -46,6 +46,13 @@ def _samples(surface: Any, pixels: np.ndarray, most: int = 8_000_000) -> Tuple[n
     return which, np.column_stack([two, 1 - two.sum(axis=1)])
 
 
+def colours(burn: np.ndarray, temperature: np.ndarray, shade: Any = 1.0) -> np.ndarray:
+    """sRGB [n, 3], 0 to 255, of burning paper: `burn` from 0 fresh to 1 ash, temperature in K, light on it."""
+    colour = np.stack([np.interp(burn, _BURN, _COLOUR[:, c]) * shade + np.interp(temperature, _HEAT, _GLOW[:, c])
+                       for c in range(3)], axis=1)
+    return np.minimum(colour, 255).astype(np.uint8)
+
+
 def draw(surface: Any, width: int = 480, height: int = 360) -> np.ndarray:
     """A picture [height, width, 3] of 8 bits; the remaining surface fills it."""
     picture = np.broadcast_to(_GROUND, (height * width, 3)).copy()
@@ -68,9 +75,7 @@ def draw(surface: Any, width: int = 480, height: int = 360) -> np.ndarray:
     order = np.argsort(depth, kind="stable")  # the last to be written is the nearest
     burn, heat = at(surface.burn), at(surface.temperature)
     shade = 0.35 + 0.65 * np.abs(at(surface.normal) @ (_LIGHT / np.linalg.norm(_LIGHT)))
-    colour = np.stack([np.interp(burn, _BURN, _COLOUR[:, c]) * shade + np.interp(heat, _HEAT, _GLOW[:, c])
-                       for c in range(3)], axis=1)
-    picture[cell[order]] = np.minimum(colour, 255)[order]
+    picture[cell[order]] = colours(burn, heat, shade)[order]
     return picture.reshape(height, width, 3).astype(np.uint8)
 
 
