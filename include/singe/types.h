@@ -66,12 +66,16 @@ static inline SingeSheetDef singe_default_sheet(void) {
 }
 
 typedef enum SingeSourceKind {
-    SINGE_SOURCE_BALL = 0,     ///< a hot ball on a path; heats its neighbourhood
-    SINGE_SOURCE_TEXTURE = 1,  ///< a flux drawn on the sheet: over uv, black none, white full
-    SINGE_SOURCE_SPOT = 2,     ///< a hot ball that stands still
-    SINGE_SOURCE_CALLBACK = 3, ///< a function of the caller
-    SINGE_SOURCE_ARRIVAL = 4,  ///< a picture of when the front arrives where
-    SINGE_SOURCE_WATER = 5,    ///< a picture of where the sheet is wetted
+    SINGE_SOURCE_BALL = 0,       ///< a hot ball on a path; heats its neighbourhood
+    SINGE_SOURCE_TEXTURE = 1,    ///< a flux drawn on the sheet: over uv, black none, white full
+    SINGE_SOURCE_SPOT = 2,       ///< a hot ball that stands still
+    SINGE_SOURCE_CALLBACK = 3,   ///< a function of the caller
+    SINGE_SOURCE_ARRIVAL = 4,    ///< a picture of when the front arrives where
+    SINGE_SOURCE_WATER = 5,      ///< a picture of where the sheet is wetted
+    SINGE_SOURCE_JET = 6,        ///< air blown from a nozzle; it cools, and puts fires out
+    SINGE_SOURCE_VORTEX = 7,     ///< air that turns about an axis
+    SINGE_SOURCE_ATTRACT = 8,    ///< air that flows to a point; it draws sheets along
+    SINGE_SOURCE_TURBULENCE = 9, ///< swirls of air everywhere
 } SingeSourceKind;
 
 struct SingeView;
@@ -88,32 +92,37 @@ typedef void SingeFluxFn(void *context, const struct SingeView *view, float *flu
 /// a sheet has two layers, and takes up twice as much per square metre.
 ///
 /// Defaults: kind SINGE_SOURCE_SPOT, end INFINITY, temperature 1200, conductance 150, radius 0.005, falloff 0.01, flux
-/// 30e3, arrival_to 1, lead 0.1, wetting 0.1; all else 0 or NULL.
+/// 30e3, arrival_to 1, lead 0.1, wetting 0.1, direction {0, 0, 1}, speed 5, blow_out 4; all else 0 or NULL.
 typedef struct SingeSourceDef {
     size_t struct_size;
     /// ball: a hot ball on a path; spot: a hot ball that stands still; texture: a flux drawn on the sheet; arrival: a
-    /// picture of when the front arrives where; water: a picture of where the sheet is wetted
+    /// picture of when the front arrives where; water: a picture of where the sheet is wetted. These move air, which
+    /// bends flames, carries sheets and cools them: jet from a nozzle, vortex about an axis, attract to a point,
+    /// turbulence everywhere
     SingeSourceKind kind;
     float start;       ///< s, any, also infinite; time at which it starts
     float end;         ///< s, any, also infinite; time at which it ends; inf: never
     float temperature; ///< K, ball and spot, 1e-3 to 1e5; of the ball or the flame
     float conductance; ///< W/(m2 K), ball and spot, 0 to 1e9; heat transfer coefficient to the sheet
-    float radius;      ///< m, ball and spot, >= 0; full heat within it
-    float falloff;     ///< m, ball and spot, >= 0; beyond the radius, over which the heat falls to nothing
+    /// m, ball and spot and jet and vortex and attract and turbulence, >= 0; full heat within it; of a jet's nozzle;
+    /// where a vortex or attraction is fastest; of turbulence's swirls
+    float radius;
+    float falloff; ///< m, ball and spot, >= 0; beyond the radius, over which the heat falls to nothing
     /// W, ball and spot, 0 to 1e6; of a flame that it carries: the flame's gas rises and burns from its centre, if the
     /// scene has gas; a match has 60 W. It heats sheets through the gas alone
     float power;
-    uint32_t path_count;      ///< of ball and spot; 0: at rest at position. A spot has at most 1
+    uint32_t path_count;      ///< of ball, spot, jet, vortex and attract; 0: at rest at position. A spot has at most 1
     const SingePoseKey *path; ///< [path_count] positions only
     SingeTexture texture;     ///< texture source, or arrival map
     /// W/m2, texture, finite; into each of the sheet's two layers where the texture is white; times texture and
     /// strength at most 1e15 W/m2. Below 0 it cools, but not below 1 K
     float flux;
-    uint32_t strength_count;       ///< texture: key frames that multiply flux; 0 means 1
+    /// texture, water and what moves air: key frames that multiply flux, wetting or speed; 0 means 1
+    uint32_t strength_count;
     const SingeValueKey *strength; ///< [strength_count]
     SingeFluxFn *callback;         ///< not saved; must be set again after a load
     void *callback_context;        ///< its first argument
-    float position[3];             ///< m, of a ball or spot without a path
+    float position[3];             ///< m, of what has no path
     void *user_data;               ///< for the caller's use; see singe_sim_source_user_data
     float arrival_from;            ///< s, arrival, 0 to 1e9; when the front arrives where the map is black
     float arrival_to; ///< s, arrival, 0 to 1e9; when it arrives where the map is white; pure white never ignites
@@ -122,6 +131,12 @@ typedef struct SingeSourceDef {
     /// kg/(m2 s), water, 0 to 1e6; water that falls where the picture is white, at the air's temperature. It needs a
     /// sheet with moisture above 0, which holds at most three times its own mass
     float wetting;
+    /// jet and vortex, finite; in which a jet blows; a vortex turns about it, counter-clockwise seen against it
+    float direction[3];
+    float speed; ///< m/s, jet and vortex and attract and turbulence, 0 to 1000; of the air, where it is fastest
+    /// m/s, jet, > 0; speed of the jet's air past a sheet from which on its flame gives the sheet no heat; it gives
+    /// less from half of that on. inf: never
+    float blow_out;
 } SingeSourceDef;
 
 SINGE_API void singe_init_source(SingeSourceDef *def, size_t struct_size);
@@ -185,6 +200,7 @@ typedef struct SingeColliderDef {
     float position[3];    ///< m, without a path
     float rotation[4];    ///< quaternion x, y, z, w, without a path; {0,0,0,1} is none
     void *user_data;      ///< for the caller's use; see singe_sim_collider_user_data
+    bool smothers;        ///< yes: what burns within contact_distance, in either layer, gets no air and goes out
 } SingeColliderDef;
 
 SINGE_API void singe_init_collider(SingeColliderDef *def, size_t struct_size);

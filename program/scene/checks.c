@@ -67,8 +67,12 @@ void finish_sheet(Reader *reader, const YamlNode *map, void *object) {
 void finish_source(Reader *reader, const YamlNode *map, void *object) {
     SceneSource *source = object;
     if (!node_find(map, "kind")) return;
-    if (source->def.kind == SINGE_SOURCE_BALL && !check_path(reader, map, source->keys, source->key_count))
-        complain(reader, map->location, "a ball needs 'path' or 'position'");
+    const bool moves = source->def.kind == SINGE_SOURCE_BALL ||
+                       (source->def.kind >= SINGE_SOURCE_JET && source->def.kind != SINGE_SOURCE_TURBULENCE);
+    if (moves && !check_path(reader, map, source->keys, source->key_count))
+        complain(reader, map->location,
+                 source->def.kind == SINGE_SOURCE_BALL ? "a ball needs 'path' or 'position'"
+                                                       : "what moves air needs 'path' or 'position'");
     const YamlNode *end = node_find(map, "end");
     if (source->def.end < source->def.start)
         complain(reader, end ? end->location : map->location, "a source must not end before its start");

@@ -130,14 +130,14 @@ static SceneLocation *source_location(void *object) { return &((SceneSource *)ob
     AS_ROW_AT(#name, TYPE, def.name, length, dimension, kinds, text, range)
 #define SINGE_APART(key, TYPE, name, length, dimension, standard, range, kinds, text) \
     AS_ROW_AT(key, TYPE, def.name, length, dimension, kinds, text, range)
+#define MOVABLE (BIT(SINGE_SOURCE_BALL) | BIT(SINGE_SOURCE_JET) | BIT(SINGE_SOURCE_VORTEX) | BIT(SINGE_SOURCE_ATTRACT))
 static const SchemaRow source_rows[] = {
 #include "singe/source.def"
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
      .kinds = BIT(SINGE_SOURCE_SPOT), .flags = ROW_REQUIRED, SPACE, .doc = "its centre"},
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
-     .kinds = BIT(SINGE_SOURCE_BALL), .flags = ROW_SHORT, LOCATION,
-     .doc = "its centre, when it does not move; this or `path`"},
-    {"path", ROW_LIST, DIM_NONE, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .kinds = BIT(SINGE_SOURCE_BALL),
+     .kinds = MOVABLE, .flags = ROW_SHORT, LOCATION, .doc = "its centre, when it does not move; this or `path`"},
+    {"path", ROW_LIST, DIM_NONE, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .kinds = MOVABLE,
      .sub = &schema_key, .doc = "its trajectory; this or `position`"},
     {"texture", ROW_FILE, DIM_NONE, AT(SceneSource, texture), .kinds = BIT(SINGE_SOURCE_TEXTURE), .flags = ROW_REQUIRED,
      .doc = "PNG or JPEG over the sheets' uv: white is the full flux, black none"},
@@ -153,18 +153,23 @@ static const SchemaRow source_rows[] = {
     {"strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count),
      .kinds = BIT(SINGE_SOURCE_TEXTURE), .min = 0, .max = 1e6, .sub = &schema_strength,
      .doc = "multiplies the flux over time; 1 when not given"},
+    {"strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count),
+     .kinds = (MOVABLE & ~BIT(SINGE_SOURCE_BALL)) | BIT(SINGE_SOURCE_TURBULENCE), .min = -1e6, .max = 1e6,
+     .sub = &schema_strength, .doc = "multiplies the speed over time; 1 when not given"},
     {"visible", ROW_BOOL, DIM_NONE, AT(SceneSource, visible), .kinds = BIT(SINGE_SOURCE_BALL),
      .doc = "drawn in the preview"},
 };
 #undef OF
-const Schema schema_source = {.title = "a source",
-                              .size = sizeof(SceneSource),
-                              ROWS(source_rows),
-                              .kind_offset = offsetof(SceneSource, def.kind),
-                              .defaults = default_source,
-                              .finish = finish_source,
-                              .location = source_location,
-                              .doc = "Something that heats the sheets. Its `kind` decides which other keys it has."};
+#undef MOVABLE
+const Schema schema_source = {
+    .title = "a source",
+    .size = sizeof(SceneSource),
+    ROWS(source_rows),
+    .kind_offset = offsetof(SceneSource, def.kind),
+    .defaults = default_source,
+    .finish = finish_source,
+    .location = source_location,
+    .doc = "Something that heats or wets the sheets, or moves the air. Its `kind` decides which other keys it has."};
 
 static SceneLocation *collider_location(void *object) { return &((SceneCollider *)object)->location; }
 #define OF SceneCollider

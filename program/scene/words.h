@@ -6,7 +6,7 @@
 
 /// The words of each enum, indexed by value: "" where scenes have no word for it, NULL after the last.
 typedef struct EnumWords {
-    const char *SingeSourceKind[8];
+    const char *SingeSourceKind[12];
     const char *SingeColliderKind[8];
     const char *SingeContactSides[8];
     const char *SingeSolverMethod[8];

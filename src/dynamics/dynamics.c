@@ -175,7 +175,7 @@ static SingeResult dynamics_part(Memory *memory, DynamicsPlan *plan, const StepC
     float h = context->h;
 
     // what stays the same during the part
-    dynamics_prepare(plan, shell, state, context->wind, pool, dynamics);
+    dynamics_prepare(plan, shell, state, context->wind, context->sources, pool, dynamics);
     if (plan->collision)
         TRY(dynamics_contact_result(collision_open(memory, plan->collision, shell, state, pool, h, first, dynamics),
                                     error));

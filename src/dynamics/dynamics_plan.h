@@ -107,7 +107,7 @@ struct DynamicsPlan {
 
 /// Inverse masses, weights, normals, drag and wind for this step (prepare.c).
 void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, const SingeWindDef *wind,
-                      Pool *pool, DynamicsState *dynamics);
+                      const SourceList *sources, Pool *pool, DynamicsState *dynamics);
 
 /// The stages for each particle between two projections (move.c).
 typedef struct Between {

@@ -6,6 +6,7 @@
 // Drag of a sheet of area A on its normal velocity v_n: F = 1/2 rho C_d A v_n |v_n|; each layer takes half of it.
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
+#include "world/air.h"
 
 #include <string.h>
 
@@ -17,7 +18,8 @@ typedef struct Prepare {
     const Shell *shell;
     const StateInput *state;
     const SingeWindDef *wind;
-    DynamicsState *dynamics; ///< its positions get the inverse mass
+    const SourceList *sources; ///< that move air; or NULL
+    DynamicsState *dynamics;   ///< its positions get the inverse mass
 } Prepare;
 
 /// Marks the run of a spring, if it is in a strand, to be prepared again. Several threads may mark one.
@@ -93,6 +95,8 @@ static void prepare_particles(void *task, int begin, int end) {
         normal[3] = 0.25f * drag * matter->area[i] / mass;
         float4_store(plan->normal[i], normal);
         Float3 wind = gusts ? wind_velocity(job->wind, float3_load(job->dynamics->position[i]), state->time) : mean;
+        if (job->sources)
+            wind = float3_add(wind, air_velocity(job->sources, float3_load(job->dynamics->position[i]), state->time));
         Float4 air = {wind.x, wind.y, wind.z, 0};
         if (state->gas->awake) air += float4_load(state->gas->air[i]);
         float4_store(plan->air[i], float4_with(air, damping));
@@ -100,8 +104,8 @@ static void prepare_particles(void *task, int begin, int end) {
 }
 
 void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, const SingeWindDef *wind,
-                      Pool *pool, DynamicsState *dynamics) {
-    Prepare job = {plan, shell, state, wind, dynamics};
+                      const SourceList *sources, Pool *pool, DynamicsState *dynamics) {
+    Prepare job = {plan, shell, state, wind, air_of(sources, state->time), dynamics};
     memset(plan->height_wait, 0, height_wait_count(shell));
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, prepare_cells, &job);
     pool_for(pool, (int)shell->particle_count, POOL_BLOCK, prepare_particles, &job);

@@ -24,6 +24,7 @@
 // along an intact sheet, and only flakes and edges are in its path.
 #include "common/real.h"
 #include "gas/gas_plan.h"
+#include "world/air.h"
 
 static const float SHEET_REACH = 1.25f; ///< cells
 static const float SHEET_LAYER = 7e-3f; ///< m, of the gas that flows along a sheet
@@ -178,6 +179,7 @@ static void sheets_meet(void *context, int begin, int end) {
     const GasPlan *plan = pass->plan;
     const Matter *matter = &pass->shell->matter;
     float ambient = plan->settings.ambient_temperature, g0 = plan->settings.def.conductance, position[3];
+    const SourceList *airs = air_of(pass->sources, pass->state->time);
     float thick = plan->cell / SHEET_LAYER, lightest = 1 - ambient / GAS_HOTTEST;
 
     for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
@@ -198,8 +200,11 @@ static void sheets_meet(void *context, int begin, int end) {
             open += normal * normal * plan->open[d][gas_at(&plan->grid, at[0], at[1], at[2])];
         }
 
+        // the dynamics adds what sources move
+        const Float3 moved = airs ? air_velocity(airs, x, pass->state->time) : (Float3){0, 0, 0};
+        const float apart[3] = {moved.x, moved.y, moved.z};
         for (int d = 0; d < 3; d++)
-            air[d] = open * gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], position);
+            air[d] = open * (gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], position) - apart[d]);
 
         // temperature of the gas upstream, which flows along the sheet: if a cell is thicker than that layer, all of
         // its heat is in the layer

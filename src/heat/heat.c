@@ -65,7 +65,9 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
         }
 
         // heat of combustion
+        const float out = plan->puts_out ? plan->put_out[i] : 0;
         float combustion = release[i] * h;
+        if (out > 0 && (fuel[i] > 0 || out == HEAT_SMOTHERED)) combustion *= out < 1 ? 1 - out : 0;
         float T1 = T + combustion;
 
         // sources, implicit in their conductance

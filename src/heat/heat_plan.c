@@ -82,6 +82,7 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
     }
 
     for (size_t k = 0; k < ARRAYS; k++) *arrays[k] = (float *)plan->scratch + k * stride;
+    plan->put_out = plan->product; // until conduction
 
     // thickening, then conductances, which must stay finite in a step
     SingeResult result = plan_thicken(plan, shell, error);

@@ -80,6 +80,9 @@ struct HeatPlan {
 
     // sources, per particle
     float *flux, *source_conductance, *source_temperature; ///< W/m2, W/(m2 K), conductance times K
+    bool puts_out;                                         ///< something moves air or smothers
+    float *
+        put_out; ///< share of its flame's heat that a particle lacks, or HEAT_SMOTHERED: of all; the memory of `product`
 
     // solver, per particle
     float *star;       ///< T* after sources and losses, K
@@ -89,6 +92,8 @@ struct HeatPlan {
     float *next;          ///< the new temperature, K
     double (*partial)[4]; ///< [blocks]
 };
+
+#define HEAT_SMOTHERED 2.0f
 
 /// Input of a step's passes.
 typedef struct HeatPass {

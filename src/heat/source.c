@@ -5,6 +5,7 @@
 
 #include "common/def_table.h"
 #include "heat/heat_plan.h"
+#include "world/air.h"
 
 // --- the kinds
 
@@ -13,6 +14,8 @@ static void source_texture(HeatPass *pass, const Source *source, const SingeView
 static void source_callback(HeatPass *pass, const Source *source, const SingeView *view);
 static void source_arrives(HeatPass *pass, const Source *source, const SingeView *view);
 static void source_wets(HeatPass *pass, const Source *source, const SingeView *view);
+static void source_blow(HeatPass *pass, const Source *source, const SingeView *view);
+static SingeResult source_check_air(const SingeSourceDef *def, SingeError *error);
 static SingeResult source_check_ball(const SingeSourceDef *def, SingeError *error);
 static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *error);
 static SingeResult source_check_arrival(const SingeSourceDef *def, SingeError *error);
@@ -29,6 +32,10 @@ static const struct SourceKind {
     [SINGE_SOURCE_CALLBACK] = {NULL, source_callback, false}, // its function may be set later
     [SINGE_SOURCE_ARRIVAL] = {source_check_arrival, source_arrives, false},
     [SINGE_SOURCE_WATER] = {source_check_texture, source_wets, false},
+    [SINGE_SOURCE_JET] = {source_check_air, source_blow, true},
+    [SINGE_SOURCE_VORTEX] = {source_check_air, source_blow, true},
+    [SINGE_SOURCE_ATTRACT] = {source_check_air, source_blow, true},
+    [SINGE_SOURCE_TURBULENCE] = {source_check_air, source_blow, false},
 };
 
 // --- creating a source ----------------------------------------------------------------------------------
@@ -39,6 +46,34 @@ static SingeResult source_bad(SingeError *error, const char *what) {
 
 /// Max flux of a texture, W/m2: far beyond any fire, and finite in all computations of a step.
 static const float SOURCE_FLUX_MAX = 1e15f;
+
+static SingeResult source_check_strength(const SingeSourceDef *def, SingeError *error) {
+    if (def->strength_count && !def->strength) return source_bad(error, "strength is missing");
+    for (uint32_t k = 0; k < def->strength_count; k++) {
+        const SingeValueKey *key = &def->strength[k];
+        if (!isfinite(key->time) || !isfinite(key->value) || (k && !(key->time > key[-1].time)))
+            return error_set(error, SINGE_ERROR_ARGUMENT, "source", k,
+                             "key %u of strength: times must increase and all be finite", k);
+    }
+    return SINGE_OK;
+}
+
+/// Max speed of air, m/s: ten thousand metres are crossed in many steps.
+static const float SOURCE_SPEED_MAX = 1000;
+
+static SingeResult source_check_air(const SingeSourceDef *def, SingeError *error) {
+    const float *d = def->direction;
+    if (def->kind != SINGE_SOURCE_TURBULENCE && (def->path_count < 1 || !def->path))
+        return source_bad(error, "what moves air needs a path");
+    const bool aims = def->kind == SINGE_SOURCE_JET || def->kind == SINGE_SOURCE_VORTEX;
+    if (aims && !(hypot(hypot((double)d[0], (double)d[1]), (double)d[2]) > 1e-9))
+        return source_bad(error, "the direction must be longer than 1e-9");
+    TRY(source_check_strength(def, error));
+    for (uint32_t k = 0; k < def->strength_count; k++)
+        if (!(def->speed * fabsf(def->strength[k].value) <= SOURCE_SPEED_MAX))
+            return source_bad(error, "speed times strength must be at most 1000 m/s");
+    return SINGE_OK;
+}
 
 static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *error) {
     const SingeTexture *texture = &def->texture;
@@ -54,15 +89,8 @@ static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *e
                              "value %lld of the texture is not finite", (long long)k);
     }
 
-    // key frames of the strength
-    if (def->strength_count && !def->strength) return source_bad(error, "strength is missing");
-    for (uint32_t k = 0; k < def->strength_count; k++) {
-        const SingeValueKey *key = &def->strength[k];
-        if (!isfinite(key->time) || !isfinite(key->value) || (k && !(key->time > key[-1].time)))
-            return error_set(error, SINGE_ERROR_ARGUMENT, "source", k,
-                             "key %u of strength: times must increase and all be finite", k);
-        strongest = fmaxf(strongest, fabsf(key->value));
-    }
+    TRY(source_check_strength(def, error));
+    for (uint32_t k = 0; k < def->strength_count; k++) strongest = fmaxf(strongest, fabsf(def->strength[k].value));
 
     // the largest flux
     if (def->kind == SINGE_SOURCE_TEXTURE &&
@@ -152,17 +180,18 @@ SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceD
 
     // copies of its arrays; a texture waits until there are particles
     SingeResult result = SINGE_OK;
-    if (source_has_path(&def)) {
-        result = path_set(&source->path, memory, def.path_count, def.path, "source", error);
-    } else if (source_is_drawn(&def)) {
+    if (source_has_path(&def)) result = path_set(&source->path, memory, def.path_count, def.path, "source", error);
+    if (!result && (source_is_drawn(&def) || source_blows(&def))) {
+        if (!NEW(memory, source->strength, def.strength_count)) result = source_no_memory(error);
+        else source->strength_count = def.strength_count;
+        if (source->strength_count) memcpy(source->strength, def.strength, def.strength_count * sizeof *def.strength);
+    }
+    if (!result && source_is_drawn(&def)) {
         const SingeTexture *texture = &def.texture;
         float *values;
-        bool ok = NEW(memory, source->strength, def.strength_count);
-        if (ok) source->strength_count = def.strength_count;
-        if (ok && def.strength_count) memcpy(source->strength, def.strength, def.strength_count * sizeof *def.strength);
-        if (ok && shell->particle_count) {
+        if (shell->particle_count) {
             result = source_set_texture(memory, shell, texture, source, error);
-        } else if (ok && NEW(memory, values, texture_size(texture))) {
+        } else if (NEW(memory, values, texture_size(texture))) {
             memcpy(values, texture->values, texture_size(texture) * sizeof *values);
             source->waiting = (SingeTexture){texture->width, texture->height, values};
         } else {
@@ -276,19 +305,6 @@ static void source_texture_task(void *context, int begin, int end) {
         if (plan->alive[i]) plan->flux[i] += job->strength * job->source->texture[i];
 }
 
-/// The strength at a time: linear between keys, held beyond the ends, 1 without keys.
-static float source_strength(const Source *source, double time) {
-    uint32_t count = source->strength_count, k = 0;
-    const SingeValueKey *keys = source->strength;
-    while (k < count && time >= keys[k].time) k++;
-    float strength = count == 0 ? 1 : keys[k < count ? k : count - 1].value;
-    if (k > 0 && k < count) {
-        double part = (time - keys[k - 1].time) / ((double)keys[k].time - keys[k - 1].time);
-        strength = (float)(keys[k - 1].value + part * ((double)keys[k].value - keys[k - 1].value));
-    }
-    return strength;
-}
-
 static void source_texture(HeatPass *pass, const Source *source, const SingeView *view) {
     (void)view;
     float strength = source_strength(source, pass->state->time);
@@ -315,6 +331,35 @@ static void source_wets(HeatPass *pass, const Source *source, const SingeView *v
     job.strength = source->def.wetting * source_strength(source, pass->state->time);
     if (source->texture && job.strength > 0)
         pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_wet_task, &job);
+}
+
+// Forced convection at a flat plate of length l in laminar flow (Incropera et al., Nu = .664 Re^(1/2) Pr^(1/3)), with
+// l = 5 cm and air of 300 K: h = SOURCE_COOLING sqrt(u). Flames are blown off where the air outruns them.
+static const float SOURCE_COOLING = 17; // W/(m2 K) (s/m)^(1/2)
+
+static void source_blow_task(void *context, int begin, int end) {
+    const SourceJob *job = context;
+    HeatPlan *plan = job->pass->plan;
+    const StateInput *state = job->pass->state;
+    const float *temperature = job->pass->heat->temperature, *burn_rate = state->burn->burn_rate;
+    const SingeSourceDef *def = &job->source->def;
+    const float ambient = plan->settings.ambient_temperature;
+
+    for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
+        if (!plan->alive[i] || (temperature[i] == ambient && burn_rate[i] == 0)) continue;
+        const Float3 air = source_air(job->source, float3_load(state->dynamics->position[i]), state->time);
+        if (float3_dot(air, air) == 0) continue;
+        const float u = float3_length(float3_sub(air, float3_load(state->dynamics->velocity[i])));
+        source_add(plan, i, SOURCE_COOLING * sqrtf(u), ambient);
+        const float share = def->kind == SINGE_SOURCE_JET ? 2 * u / def->blow_out - 1 : 0;
+        plan->put_out[i] = fmaxf(plan->put_out[i], fminf(share, 1));
+    }
+}
+
+static void source_blow(HeatPass *pass, const Source *source, const SingeView *view) {
+    (void)view;
+    SourceJob job = {.pass = pass, .source = source};
+    pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_blow_task, &job);
 }
 
 /// A map adds no heat before conduction (arrival.c).
@@ -344,10 +389,13 @@ static void source_contact_task(void *context, int begin, int end) {
         if (!plan->alive[i]) continue;
         Float3 normal, local = pose_unapply(&job->pose, float3_load(x[i]));
 
-        // distance at which a layer is in contact
+        // distances at which a layer is in contact, and at which it gets no air
         float behind = def->contact_distance + (def->sides == SINGE_SIDES_BOTH ? field_at(thickness, i) : 0);
-        float limit = nextafterf(behind, INFINITY), distance = collider_distance(job->collider, local, limit, &normal);
-        if (!(distance <= behind)) continue;
+        float reach = def->smothers ? def->contact_distance + field_at(thickness, i) : behind;
+        float limit = nextafterf(reach, INFINITY), distance = collider_distance(job->collider, local, limit, &normal);
+        if (!(distance <= reach)) continue;
+        if (def->smothers) plan->put_out[i] = HEAT_SMOTHERED;
+        if (!(distance <= behind) || !(def->conductance > 0)) continue;
 
         // of two layers only the one that faces the collider, by the sum of the normals of the cells at the particle
         if (def->sides != SINGE_SIDES_BOTH || distance > def->contact_distance) {
@@ -406,15 +454,20 @@ void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *
     memset(plan->source_conductance, 0, plan->particles * sizeof *plan->source_conductance);
     memset(plan->source_temperature, 0, plan->particles * sizeof *plan->source_temperature);
 
+    plan->puts_out = air_of(sources, time) != NULL;
+    for (uint32_t k = 0; colliders && k < colliders->count; k++)
+        plan->puts_out |= colliders->items[k].generation && colliders->items[k].def.smothers;
+    if (plan->puts_out) memset(plan->put_out, 0, plan->particles * sizeof *plan->put_out);
+
     for (uint32_t k = 0; sources && k < sources->count; k++) {
         const Source *source = &sources->items[k];
         if (source_is_lit(source, time)) source_kinds[source->def.kind].add(pass, source, view);
     }
 
-    // colliders that conduct, and the gas
+    // colliders that conduct or smother, and the gas
     for (uint32_t k = 0; colliders && k < colliders->count; k++) {
         const Collider *collider = &colliders->items[k];
-        if (collider->generation == 0 || !(collider->def.conductance > 0)) continue;
+        if (collider->generation == 0 || (!(collider->def.conductance > 0) && !collider->def.smothers)) continue;
         SourceJob job = {.pass = pass, .collider = collider, .pose = path_pose(&collider->path, time)};
         pool_for(pass->pool, (int)plan->particles, POOL_BLOCK, source_contact_task, &job);
     }

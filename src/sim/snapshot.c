@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-enum { SNAPSHOT_VERSION = 11 };
+enum { SNAPSHOT_VERSION = 12 };
 
 typedef struct SnapshotHeader {
     char magic[8];           ///< "SINGESIM"

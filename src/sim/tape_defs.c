@@ -265,7 +265,7 @@ void tape_source_def(Tape *tape, const SingeSourceDef *given, SingeSourceDef *de
     tape_data(tape, def->position, 3, sizeof(float));
     const bool textured = source_is_drawn(def);
     if (textured) def->path = NULL; // nobody reads it
-    else def->strength = NULL;
+    else if (!source_blows(def)) def->strength = NULL;
     tape_array(tape, &def->path, 8 * (uint64_t)def->path_count, sizeof(float));
     TAPE(tape, def->strength_count);
     tape_array(tape, &def->strength, 2 * (uint64_t)def->strength_count, sizeof(float));

@@ -32,6 +32,12 @@ static inline bool source_is_drawn(const SingeSourceDef *def) {
     return def->kind == SINGE_SOURCE_TEXTURE || def->kind == SINGE_SOURCE_ARRIVAL || def->kind == SINGE_SOURCE_WATER;
 }
 
+/// Whether its kind moves air (world/air.h).
+static inline bool source_blows(const SingeSourceDef *def) {
+    return def->kind == SINGE_SOURCE_JET || def->kind == SINGE_SOURCE_VORTEX || def->kind == SINGE_SOURCE_ATTRACT ||
+           def->kind == SINGE_SOURCE_TURBULENCE;
+}
+
 /// Whether a slot holds a source that is lit at this time.
 static inline bool source_is_lit(const Source *source, double time) {
     return source->generation && time >= source->def.start && time < source->def.end;

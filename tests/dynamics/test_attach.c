@@ -20,7 +20,7 @@ static void hold(Bench *bench, const SingeMaterialDef *material, int count, cons
     bench_open(bench, quads_grid(SIDE, SIDE, cell, cell, false), material, 1);
     for (int k = 0; k < count; k++) bench->state.dynamics.pinned[held[k]] = 1;
     dynamics_plan_hold(bench->plan, &bench->shell, &bench->state);
-    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, bench->pool,
+    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, NULL, bench->pool,
                      &bench->state.dynamics);
 }
 
@@ -139,7 +139,7 @@ TEST(nothing_is_held_by_what_is_gone) {
             assert_int_equal(bench.plan->attachments.source[0][0], SHELL_NONE);
         }
 
-        dynamics_prepare(bench.plan, &bench.shell, STATE_INPUT(&bench.state), &bench.wind, bench.pool,
+        dynamics_prepare(bench.plan, &bench.shell, STATE_INPUT(&bench.state), &bench.wind, NULL, bench.pool,
                          &bench.state.dynamics);
         for (uint32_t v = 1; v < bench.shell.vertex_count; v++) bench.state.dynamics.position[v][2] = -1;
         project(&bench);

@@ -36,7 +36,7 @@ static void fold(Bench *bench, float angle, int turns) {
 }
 
 static void prepare(Bench *bench) {
-    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, NULL,
+    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, NULL, NULL,
                      &bench->state.dynamics);
 }
 

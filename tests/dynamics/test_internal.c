@@ -18,7 +18,7 @@ static SingeMaterialDef plain(void) {
 }
 
 static void prepare(Bench *bench) {
-    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, bench->pool,
+    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, NULL, bench->pool,
                      &bench->state.dynamics);
 }
 

@@ -16,7 +16,7 @@ static void open_jumble(Bench *bench, int threads) {
     bench_open(bench, quads_grid(24, 20, 0.005f, 0.004f, false), NULL, threads);
     DynamicsState *dynamics = &bench->state.dynamics;
     dynamics->pinned[shell_centre(&bench->shell, 7)] = dynamics->pinned[bench->shell.cells[7][1]] = 1;
-    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, bench->pool, dynamics);
+    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, NULL, bench->pool, dynamics);
     for (uint32_t i = 0; i < bench->shell.particle_count; i++)
         for (uint32_t k = 0; k < 3; k++) {
             dynamics->position[i][k] += 0.006f * scatter(3 * i + k);
@@ -82,7 +82,7 @@ TEST(pinned_and_crushed_cells_stay_ordered) {
     float(*x)[4] = bench.state.dynamics.position, *pinned = x[shell_centre(&bench.shell, 0)];
     float *crushed = x[shell_centre(&bench.shell, 8)];
     bench.state.dynamics.pinned[shell_centre(&bench.shell, 0)] = 1;
-    dynamics_prepare(bench.plan, &bench.shell, STATE_INPUT(&bench.state), &bench.wind, bench.pool,
+    dynamics_prepare(bench.plan, &bench.shell, STATE_INPUT(&bench.state), &bench.wind, NULL, bench.pool,
                      &bench.state.dynamics);
     pinned[2] = -0.002f;
     for (int i = 0; i < 4; i++) x[bench.shell.cells[8][i]][1] = x[bench.shell.cells[8][i]][2] = 0;

@@ -323,7 +323,7 @@ TEST(bad_defs_are_refused) {
     bad[count] = spot, bad[count++].path_count = 2;
     bad[count] = spot, bad[count++].path = NULL;
     bad[count] = spot, bad[count++].start = NAN;
-    bad[count] = spot, bad[count++].kind = (SingeSourceKind)9;
+    bad[count] = spot, bad[count++].kind = (SingeSourceKind)17;
     bad[count] = picture, bad[count++].texture.width = 0;
     bad[count] = picture, bad[count++].texture.values = NULL;
     bad[count] = picture, bad[count++].texture.values = pixels;

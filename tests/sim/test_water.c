@@ -1,4 +1,5 @@
-// Water in sheets: it boils off before they burn, takes the heat that is published, and puts fires out.
+// What puts fires out. Water boils off before sheets burn and takes the heat that is published; a jet of air blows the
+// flame off and cools; a collider smothers.
 #include "support/support.h"
 
 #include <math.h>
@@ -17,6 +18,7 @@ static SingeSim *lit(float moisture, bool burns) {
     material.moisture = singe_param(moisture);
     material.convection = singe_param(0);
     material.emissivity = singe_param(0);
+    material.drag = singe_param(0.01f);
     material.ablate = false;
     if (!burns) material.mass_rate = singe_param(0);
     SingeSim *sim = test_sim(&def, test_grid(4, 4, 5e-3f, 5e-3f), &material);
@@ -112,6 +114,64 @@ TEST(rain_puts_a_fire_out) {
     test_assert_same(wet, loaded);
     singe_sim_destroy(dry), singe_sim_destroy(wet), singe_sim_destroy(loaded);
     free(bytes.data);
+}
+
+/// A burning sheet at which a jet blows, or onto which a plate comes down, from the 170th step on.
+static SingeSim *put_out(float speed, float blow_out, bool smothers, float conductance) {
+    SingeSim *sim = lit(0, true);
+    SingeSourceDef jet = singe_default_source();
+    SingeColliderDef plate = singe_default_collider();
+    SingeSourceId id, heat;
+    SingeColliderId collider;
+    const SingeValueKey strength[] = {{170 / 480.0f, 0}, {171 / 480.0f, 1}};
+    singe_sim_sources(sim, &heat, 1);
+    jet.kind = SINGE_SOURCE_JET;
+    jet.radius = 0.05f;
+    jet.position[2] = -0.1f;
+    jet.speed = speed;
+    jet.blow_out = blow_out;
+    jet.strength_count = 2;
+    jet.strength = strength;
+    test_ok(sim, singe_sim_add_source(sim, &jet, &id));
+    test_steps(sim, 170);
+    plate.position[2] = -1.5e-3f;
+    plate.smothers = smothers;
+    plate.conductance = conductance;
+    if (smothers || conductance > 0) test_ok(sim, singe_sim_add_collider(sim, &plate, &collider));
+    test_ok(sim, singe_sim_remove_source(sim, heat));
+    test_steps(sim, 160);
+    assert_true(singe_sim_stats(sim).ledgers_close);
+    return sim;
+}
+
+TEST(a_jet_blows_a_fire_out) {
+    SingeSim *calm = put_out(0, 4, false, 0), *fanned = put_out(10, INFINITY, false, 0),
+             *blown = put_out(10, 4, false, 0);
+    const SingeStats free_ = singe_sim_stats(calm), cooled = singe_sim_stats(fanned), out = singe_sim_stats(blown);
+    print_message("mass %g, fanned %g, blown out %g; hottest %g, %g, %g K\n", free_.mass, cooled.mass, out.mass,
+                  (double)free_.temperature_max, (double)cooled.temperature_max, (double)out.temperature_max);
+    assert_true(out.mass > cooled.mass && cooled.mass > free_.mass);
+    assert_true(out.temperature_max < 513); // below ignition, so it stays out
+    const SingeView view = singe_sim_view(blown);
+    for (uint32_t i = 0; i < view.particle_count; i++) assert_true(view.burn_rate[i] == 0);
+
+    TestBytes bytes = test_save(blown);
+    const SingeSimDef hooks = singe_default_sim();
+    SingeSim *loaded;
+    assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &loaded, NULL), SINGE_OK);
+    test_steps(blown, 20), test_steps(loaded, 20);
+    test_assert_same(blown, loaded);
+    singe_sim_destroy(calm), singe_sim_destroy(fanned), singe_sim_destroy(blown), singe_sim_destroy(loaded);
+    free(bytes.data);
+}
+
+TEST(a_plate_smothers_a_fire) {
+    SingeSim *plain = put_out(0, 4, false, 100), *smothered = put_out(0, 4, true, 100);
+    print_message("hottest %g, smothered %g K\n", (double)singe_sim_stats(plain).temperature_max,
+                  (double)singe_sim_stats(smothered).temperature_max);
+    assert_true(singe_sim_stats(smothered).mass > singe_sim_stats(plain).mass);
+    assert_true(singe_sim_stats(smothered).temperature_max < 513);
+    singe_sim_destroy(plain), singe_sim_destroy(smothered);
 }
 
 TEST(bad_water_is_refused) {

@@ -1,7 +1,8 @@
-// Wind: the mean, the gusts' bound, seed and smoothness.
+// Wind: the mean, the gusts' bound, seed and smoothness. Air that sources move.
 #include "support/support.h"
 
 #include "common/def_table.h"
+#include "world/air.h"
 #include "world/wind.h"
 
 #include <string.h>
@@ -84,4 +85,41 @@ TEST(bad_winds_are_refused) {
     BAD(gust_size, -1);
     BAD(gust_size, INFINITY);
 #undef BAD
+}
+
+/// The air of one source at the origin, whose axis is z.
+static Float3 moved(SingeSourceKind kind, Float3 position, double time) {
+    SingePoseKey key = {.rotation = {0, 0, 0, 1}};
+    SingeValueKey strength[] = {{1, 0}, {2, 1}};
+    Source source = {.generation = 1, .def = singe_default_source(), .path = {1, &key}, 2, strength};
+    source.def.kind = kind;
+    source.def.radius = 0.01f;
+    source.def.speed = 8;
+    source.def.direction[2] = 5; // its length does not matter
+    return air_velocity(&(SourceList){1, 1, &source}, position, time);
+}
+
+// The jet has its speed at the nozzle, half of it at twice 11.6 radii, and half of that at its half-width there.
+TEST(sources_move_air) {
+    assert_true(moved(SINGE_SOURCE_JET, float3(0, 0, 0.05f), 2).z == 8);
+    assert_true(fabsf(moved(SINGE_SOURCE_JET, float3(0, 0, 0.05f), 1.5).z - 4) < 1e-5f); // half of its strength
+    assert_true(fabsf(moved(SINGE_SOURCE_JET, float3(0, 0, 0.232f), 2).z - 4) < 1e-3f);
+    assert_true(fabsf(moved(SINGE_SOURCE_JET, float3(0, 0.232f * 0.096f, 0.232f), 2).z - 2) < 1e-3f);
+    assert_true(moved(SINGE_SOURCE_JET, float3(0, 0, -0.001f), 2).z == 0);
+    assert_true(moved(SINGE_SOURCE_JET, float3(0, 0, 0.05f), 0.5).z == 0);
+
+    // fastest at the radius, and still at the axis or the point
+    const Float3 turned = moved(SINGE_SOURCE_VORTEX, float3(0.01f, 0, 0.3f), 2);
+    assert_true(fabsf(turned.y - 8) < 1e-4f && turned.x == 0 && turned.z == 0);
+    assert_true(float3_length(moved(SINGE_SOURCE_VORTEX, float3(0, 0, 0.3f), 2)) == 0);
+    assert_true(fabsf(moved(SINGE_SOURCE_ATTRACT, float3(0, 0, 0.01f), 2).z + 8) < 1e-4f);
+    assert_true(fabsf(moved(SINGE_SOURCE_ATTRACT, float3(0, -0.03f, 0), 2).y - 4.8f) < 1e-4f);
+    double square = 0;
+    for (int i = 0; i < 1000; i++) {
+        const Float3 u = moved(SINGE_SOURCE_TURBULENCE, float3(0.003f * (float)i, 0, 0), 2 + 0.01 * i);
+        assert_true(fabsf(u.x) <= 8 && fabsf(u.y) <= 8 && fabsf(u.z) <= 8);
+        square += (double)(u.x * u.x) / 1000;
+    }
+    assert_true(sqrt(square) > 1 && sqrt(square) < 5);
+    assert_true(float3_length(moved(SINGE_SOURCE_WATER, float3(0, 0, 0.05f), 2)) == 0);
 }

@@ -17,7 +17,9 @@ ENUMS = {
     "SingeHeatOperator": {"SINGE_HEAT_SURFACE": 0, "SINGE_HEAT_UMBRELLA": 1, "SINGE_HEAT_UMBRELLA_LIVE": 2},
     "SingeColour": {"SINGE_RED": 0, "SINGE_GREEN": 1, "SINGE_BLUE": 2, "SINGE_YELLOW": 3, "SINGE_COLOUR_COUNT": 4},
     "SingeSourceKind": {"SINGE_SOURCE_BALL": 0, "SINGE_SOURCE_TEXTURE": 1, "SINGE_SOURCE_SPOT": 2,
-                        "SINGE_SOURCE_CALLBACK": 3, "SINGE_SOURCE_ARRIVAL": 4, "SINGE_SOURCE_WATER": 5},
+                        "SINGE_SOURCE_CALLBACK": 3, "SINGE_SOURCE_ARRIVAL": 4, "SINGE_SOURCE_WATER": 5,
+                        "SINGE_SOURCE_JET": 6, "SINGE_SOURCE_VORTEX": 7, "SINGE_SOURCE_ATTRACT": 8,
+                        "SINGE_SOURCE_TURBULENCE": 9},
     "SingeColliderKind": {"SINGE_COLLIDER_PLANE": 0, "SINGE_COLLIDER_SPHERE": 1, "SINGE_COLLIDER_BOX": 2,
                           "SINGE_COLLIDER_CAPSULE": 3, "SINGE_COLLIDER_HEIGHTFIELD": 4, "SINGE_COLLIDER_MESH": 5,
                           "SINGE_COLLIDER_DEFORMING": 6},
@@ -138,7 +140,8 @@ class SingeSourceDef(Structure):
                 ("texture", SingeTexture), ("flux", c_float), ("strength_count", c_uint32),
                 ("strength", POINTER(SingeValueKey)), ("callback", SingeFluxFn), ("callback_context", c_void_p),
                 ("position", c_float * 3), ("user_data", c_void_p), ("arrival_from", c_float),
-                ("arrival_to", c_float), ("lead", c_float), ("wetting", c_float)]
+                ("arrival_to", c_float), ("lead", c_float), ("wetting", c_float), ("direction", c_float * 3),
+                ("speed", c_float), ("blow_out", c_float)]
 
 
 class SingeColliderDef(Structure):
@@ -148,7 +151,7 @@ class SingeColliderDef(Structure):
                 ("path", POINTER(SingePoseKey)), ("sides", c_int), ("vertex_count", c_uint32),
                 ("vertices", POINTER(c_float)), ("triangle_count", c_uint32), ("triangles", POINTER(c_uint32)),
                 ("columns", c_uint32), ("rows", c_uint32), ("size", c_float * 2), ("heights", POINTER(c_float)),
-                ("position", c_float * 3), ("rotation", c_float * 4), ("user_data", c_void_p)]
+                ("position", c_float * 3), ("rotation", c_float * 4), ("user_data", c_void_p), ("smothers", c_bool)]
 
 
 class SingePinDef(Structure):

@@ -20,8 +20,10 @@ export interface SheetOptions {
 
 export interface SourceOptions {
     /** ball: a hot ball on a path; spot: a hot ball that stands still; texture: a flux drawn on the sheet; arrival:
-     *  a picture of when the front arrives where; water: a picture of where the sheet is wetted */
-    kind?: "ball" | "texture" | "spot" | "arrival" | "water";
+     *  a picture of when the front arrives where; water: a picture of where the sheet is wetted. These move air,
+     *  which bends flames, carries sheets and cools them: jet from a nozzle, vortex about an axis, attract to a
+     *  point, turbulence everywhere */
+    kind?: "ball" | "texture" | "spot" | "arrival" | "water" | "jet" | "vortex" | "attract" | "turbulence";
     /** s, any, also infinite; time at which it starts */
     start?: number;
     /** s, any, also infinite; time at which it ends; inf: never */
@@ -30,7 +32,8 @@ export interface SourceOptions {
     temperature?: number;
     /** W/(m2 K), ball and spot, 0 to 1e9; heat transfer coefficient to the sheet */
     conductance?: number;
-    /** m, ball and spot, >= 0; full heat within it */
+    /** m, ball and spot and jet and vortex and attract and turbulence, >= 0; full heat within it; of a jet's
+     *  nozzle; where a vortex or attraction is fastest; of turbulence's swirls */
     radius?: number;
     /** m, ball and spot, >= 0; beyond the radius, over which the heat falls to nothing */
     falloff?: number;
@@ -50,6 +53,13 @@ export interface SourceOptions {
     /** kg/(m2 s), water, 0 to 1e6; water that falls where the picture is white, at the air's temperature. It needs
      *  a sheet with moisture above 0, which holds at most three times its own mass */
     wetting?: number;
+    /** jet and vortex, finite; in which a jet blows; a vortex turns about it, counter-clockwise seen against it */
+    direction?: Vector;
+    /** m/s, jet and vortex and attract and turbulence, 0 to 1000; of the air, where it is fastest */
+    speed?: number;
+    /** m/s, jet, > 0; speed of the jet's air past a sheet from which on its flame gives the sheet no heat; it gives
+     *  less from half of that on. inf: never */
+    blow_out?: number;
 }
 
 export interface ColliderOptions {
@@ -77,6 +87,8 @@ export interface ColliderOptions {
     sides?: "touching" | "both";
     /** m, heightfield, 1e-6 to 1e4; of the rectangle, from the first nodes to the last, along its own x and y */
     size?: readonly number[];
+    /** yes: what burns within contact_distance, in either layer, gets no air and goes out */
+    smothers?: boolean;
 }
 
 export interface PinOptions {
