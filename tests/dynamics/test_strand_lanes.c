@@ -222,7 +222,7 @@ static void rub(Bench *bench, SingeInstructions instructions, bool apart, float 
     bool kept[2][256];
     bench->plan->kernels = kernels_choose(instructions);
     for (uint32_t i = 0; i < 4 * bench->shell.particle_count; i++)
-        velocity[0][i] = i % 4 < 3 ? random_unit(random_hash(i, 1, 5, 2)) - 0.5f : 0;
+        velocity[i / 4][i % 4] = i % 4 < 3 ? random_unit(random_hash(i, 1, 5, 2)) - 0.5f : 0;
     for (int i = 0; i < 2; i++) {
         StrandSet *set = &bench->plan->strands.sets[layers[i]];
         assert_true(set->group_count <= 256);
