@@ -114,11 +114,18 @@ web-package:
 web-serve: web
 	cd web && node serve.mjs
 
-# plays with the page in Chromium, and prints its speed there; looks at a burn by `singe view` in Chromium and Firefox
+# plays with the page in Chromium, and prints its speed there; looks at a burn by `singe view` in Chromium and Firefox, and in a notebook's
+# cell
 check-web: web
 	cmake --preset release
-	cmake --build --preset release --target singe_program
+	cmake --build --preset release --target singe_program singe_python
+	[ -x build/notebook/bin/python ] || python3 -m venv build/notebook
+	build/notebook/bin/pip install --quiet --disable-pip-version-check --require-hashes -r tests/locks/notebook.txt
+	build/singe run examples/letter -o build/notebook/run --force --quiet --no-preview \
+	    --set frames=12 --set sheets.0.grid.cells=[42,60]
 	cd web && npm test
+	cd web && SINGE_PROGRAM=../build/singe SINGE_LIBRARY=$(CURDIR)/build/python/singe/libsinge.so \
+	    PYTHONPATH=../bindings/python node tests/notebook.mjs ../build/notebook/bin/python ../build/notebook/run
 
 # the documentation as a site in build/site/html, with references made from the headers and the docstrings: needs doxygen;
 # Sphinx is installed into build/site. Warnings and dead links are errors. Where `make web` was run, its page is inside

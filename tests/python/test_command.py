@@ -10,6 +10,7 @@ import unittest
 from support import ROOT, SCENE, Case, singe
 
 import numpy as np
+from singe import notebook
 
 
 @unittest.skipUnless(os.environ.get("SINGE_PROGRAM"), "SINGE_PROGRAM names no command")
@@ -73,6 +74,26 @@ class Command(Case):
         self.assertEqual((frame.position.shape, frame.uv.shape, frame.triangles.shape), ((0, 3), (0, 2), (0, 3)))
         self.assertEqual(len(frame.temperature), 0)
         self.assertFalse(frame.position.flags.writeable)
+
+    def test_view(self):
+        """Without anywidget: what it needs. Its server answers the page's questions, and no others, and ends."""
+        cache = singe.run(self.scene(), self.dir / "out", frames=2, preview=False)
+        if not importlib.util.find_spec("anywidget"):
+            with self.assertRaisesRegex(ImportError, "pip install anywidget"):
+                singe.view(cache)
+            self.assertIsNone(cache._repr_mimebundle_())
+        try:
+            server = notebook.Server(cache.folder)
+        except singe.CommandError as error:
+            self.assertIn("built without", str(error))
+            return
+        self.assertEqual(server.ask("state")[0], 200)
+        self.assertIn(b"<canvas", server.ask("")[1])
+        self.assertEqual([server.ask(path)[0] for path in ("../state", "x y", "none.js", "view.js?a")], [404] * 4)
+        server.close()
+        self.assertEqual(server.ask("state")[0], 503)
+        with self.assertRaises(singe.CommandError):
+            notebook.Server(self.dir / "nothing")
 
     def test_alembic(self):
         cache = singe.run(self.scene(), self.dir / "out", frames=3, preview=False)

@@ -23,6 +23,7 @@ from .objects import Collider, Grid, Pin, Sheet, Source, grid
 from .picture import draw, draw_png
 from .rerun_log import log_to_rerun
 from .simulation import Sim, materials
+from .notebook import view
 from .views import Gas, StepView, Surface
 
 # bits of flags
@@ -33,4 +34,5 @@ RED, GREEN, BLUE, YELLOW = range(4)
 IGNITED, HOLE_OPENED, PIECE_FREED = range(3)
 
 __all__ = [name for name in dir() if not name.startswith("_") and name not in
-           ("alembic", "cache", "command", "errors", "objects", "picture", "rerun_log", "simulation", "views")]
+           ("alembic", "cache", "command", "errors", "notebook", "objects", "picture", "rerun_log", "simulation",
+            "views")]

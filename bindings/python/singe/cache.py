@@ -183,6 +183,14 @@ class Cache:
     def __repr__(self) -> str:
         return f"<singe.Cache {str(self.folder)!r}: {len(self)} frames, {self.record.get('result')}>"
 
+    def _repr_mimebundle_(self, **chosen: Any) -> Any:
+        """In a notebook with anywidget a cache is alive (singe.view). None, where it is not: then it is a picture."""
+        try:
+            from .notebook import view
+            return view(self)._repr_mimebundle_(**chosen)
+        except (ImportError, errors.CommandError, OSError):
+            return None
+
     def _repr_html_(self) -> str:
         drawn = self.picture()
         if drawn:
