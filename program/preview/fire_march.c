@@ -30,8 +30,9 @@ static void see_ray(const Preview *preview, Float3 d, FireView *view) {
     float clear = 1;
 
     // far away a step must still change a float
-    float fine = minf(0.26f * fire->cell, 0.0022f), min = maxf((far - t) / (4 * FIRE_STEPS), 1e-5f * far);
-    bool dark = true, known = false; // long steps until there is flame; whether `here` is the point at t
+    float fine = minf(0.28f * fire->cell, 0.0024f), min = maxf((far - t) / (4 * FIRE_STEPS), 1e-5f * far);
+    bool dark = true;   // long steps until there is flame, and short ones at its edges
+    bool known = false; // whether `here` is the point at t
     FirePoint here;
 
     while (t < far && clear > 0.02f) {
@@ -55,12 +56,13 @@ static void see_ray(const Preview *preview, Float3 d, FireView *view) {
         }
 
         // steps begin at multiples of their length: neighbouring rays then look at neighbouring positions
-        bool seek = dark && (what & FIRE_FLAME);
-        float step = maxf(what & FIRE_FLAME ? (dark ? 2 : 1) * fine : fire->cell, min);
-        float next = maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step);
-        step = next - t;
         if (!known) here = fire_at_point(preview, float3_mad(eye, d, t), what);
         known = true;
+        bool seek = dark && (what & FIRE_FLAME);
+        float length = dark ? 2 * fine : fabsf(here.depth) < 1.5f * fine ? 0.5f * fine : fine;
+        float step = maxf(what & FIRE_FLAME ? length : fire->cell, min);
+        float next = maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step);
+        step = next - t;
         FirePoint there = fire_at_point(preview, float3_mad(eye, d, next), what);
         dark = there.depth < -2 * fine;
         if (seek && !dark) continue; // the same distance again in short steps

@@ -35,13 +35,13 @@
 #define FLAME_BRIGHT 5.2f
 #define SOOT_DENSE 42.0f    ///< 1/m: radiance per metre relative to that of a thick flame
 #define SOOT_OPAQUE 14.0f   ///< 1/m, extinction
-#define BLUE_DENSE 7.5f     ///< 1/m: radiance of the root per metre
+#define BLUE_DENSE 5.5f     ///< 1/m: radiance of the root per metre
 #define SHELL_RISE 0.0005f  ///< m, w
 #define SHELL 0.0018f       ///< m
 #define EDGE 0.17f          ///< burning share at a flame's edge
 #define TAPER 0.40f         ///< what is added to it over a flame's height
 #define STAND_OFF 0.0006f   ///< m above the paper, below which nothing is visible
-#define SOOT_BEGINS 0.0032f ///< m
+#define SOOT_BEGINS 0.0038f ///< m
 #define SOOT_FULL 0.0105f
 
 // ---- looking up
@@ -212,11 +212,29 @@ static FireCell cell_at(const Fire *fire, Float3 p, float *slope) {
 FirePoint fire_at_point(const Preview *preview, Float3 p, int what) {
     const Fire *fire = &preview->fire;
     FirePoint point = {.depth = FIRE_OUTSIDE};
-    FireCell cell = cell_at(fire, p, NULL);
+    FireCell cell = {0, 0, 0, 0};
+
+    // height above the paper: where there is flame its own, linear between the cells, as it only turns the eddies
+    bool flame = what & FIRE_FLAME;
+    float height = p.z - fire->low.z, f[3];
+    if (flame) {
+        const Float3 g = in_cells(fire, p);
+        const float at[3] = {g.x, g.y, g.z};
+        size_t base = 0, over[3] = {1, (size_t)fire->size[0], (size_t)fire->size[0] * (size_t)fire->size[1]};
+        for (int c = 0; c < 3; c++)
+            base += over[c] * (size_t)fire_split(clampf(at[c], 0, (float)fire->size[c] - 1.01f), &f[c]);
+        Four sum = {0, 0, 0, 0};
+        for (int k = 0; k < 8; k++) {
+            size_t corner = base + (k & 1 ? over[0] : 0) + (k & 2 ? over[1] : 0) + (k & 4 ? over[2] : 0);
+            float weight = (k & 1 ? f[0] : 1 - f[0]) * (k & 2 ? f[1] : 1 - f[1]) * (k & 4 ? f[2] : 1 - f[2]);
+            sum += four_load(&fire->cells[corner].flame) * weight;
+        }
+        if (sum[0] > 1e-4f) height = sum[1] / sum[0];
+    } else {
+        cell = cell_at(fire, p, NULL);
+    }
 
     // smoke alone is moved by large eddies, as flames are, which small eddies move, too
-    bool flame = what & FIRE_FLAME;
-    float height = flame && cell.flame > 1e-4f ? cell.rise / cell.flame : p.z - fire->low.z;
     float passed = eddies_passed(height, fire->moment), size = flame ? EDDY_WIDE : SMOKE_EDDY;
     Noise wide = eddies(fire, p, passed, size, 1);
 
