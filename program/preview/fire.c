@@ -9,9 +9,10 @@
 
 #include <string.h>
 
-#define BURNING 2e6f      ///< W/m3, q0
-#define FLAME_SEEN 0.085f ///< a smaller value is outside the flame, whatever the noise
-#define SMOKE_SEEN 0.08f  ///< 1/m
+#define BURNING 2e6f       ///< W/m3, q0
+#define FIRE_PASSING 0.75f ///< share of the gas over burning paper that came from flames below
+#define FLAME_SEEN 0.085f  ///< a smaller value is outside the flame, whatever the noise
+#define SMOKE_SEEN 0.08f   ///< 1/m
 
 static size_t fire_at(const Fire *fire, int x, int y, int z) {
     return (size_t)x + (size_t)fire->size[0] * ((size_t)y + (size_t)fire->size[1] * (size_t)z);
@@ -49,23 +50,22 @@ static void raise_cells(Preview *preview) {
                 cell->flame = drift[2];
                 if (cell->flame <= 0) continue;
 
-                // the paper in the cell, or just above it, where the flame has not arrived yet
-                const float *root = fire->roots[fire->roots[here][0] > 0 ? here : above];
-                if (root[0] > 0) {
-                    float height = fire->origin.z + (float)z * fire->cell - root[1] / root[0];
-                    cell->rise = cell->flame * maxf(height, -fire->cell);
-                    continue;
-                }
-
                 // the layer below, where the gas came from: at (x - vx/vz, y - vy/vz)
                 float fx, fy;
                 int ix = noise_floor((float)x - drift[0], &fx), iy = noise_floor((float)y - drift[1], &fy);
                 const FireCell *a = &fire->cells[fire_at(fire, ix, iy, z - 1)], *b = a + fire->size[0];
                 float flame = mixf(mixf(a[0].flame, a[1].flame, fx), mixf(b[0].flame, b[1].flame, fx), fy);
                 float rise = mixf(mixf(a[0].rise, a[1].rise, fx), mixf(b[0].rise, b[1].rise, fx), fy);
-                if (flame <= 0) continue;
-                float share = minf(2 * flame / cell->flame, 1);
-                cell->rise = cell->flame * share * (rise / flame + fire->cell);
+                if (flame > 0)
+                    cell->rise = cell->flame * minf(2 * flame / cell->flame, 1) * (rise / flame + fire->cell);
+
+                // the paper in the cell, or just above it, where the flame has not arrived yet; up a hanging sheet gas
+                // that has burnt for a while passes what begins to
+                const float *root = fire->roots[fire->roots[here][0] > 0 ? here : above];
+                if (root[0] > 0) {
+                    float height = maxf(fire->origin.z + (float)z * fire->cell - root[1] / root[0], -fire->cell);
+                    cell->rise = mixf(cell->flame * height, cell->rise, flame > 0 ? FIRE_PASSING : 0);
+                }
             }
 }
 
