@@ -30,6 +30,7 @@ const ArgOption bench_all_options[BENCH_OPT_COUNT] = {
     [BENCH_OPT_SEEDS] = {"seeds", 0, "N,N,...", "seeds of the noise, 1 to 1000000 [1,2,3,4]"},
     [BENCH_OPT_OUTLINE] = {"outline", 0, "square|disc", "only this outline [both]"},
     [BENCH_OPT_CREASES] = {"creases", 0, NULL, "sharp bends leave creases, by the material's crease_radius"},
+    [BENCH_OPT_RED] = {"red", 0, "M/N", "compliance of red springs, 1e-6 to 1e6 m/N [the material's]"},
     [BENCH_OPT_JSON] = {"json", 0, NULL, "prints JSON"},
     [BENCH_OPT_CSV] = {"csv", 0, "FILE", "also writes the table to FILE"},
     [BENCH_OPT_SVG] = {"svg", 0, "FILE", "also draws what was measured, as SVG"},
@@ -150,6 +151,7 @@ static bool read_option(Parser *parser, const char *text, BenchRequest *request)
         return true;
     }
     case BENCH_OPT_CREASES: o->creases = true; return true;
+    case BENCH_OPT_RED: return read_one(parser, text, 1e-6, 1e6, "m/N from 1e-6 to 1e6", &o->red);
     case BENCH_OPT_JSON: request->json = true; return true;
     case BENCH_OPT_CSV: request->csv = text; return true;
     case BENCH_OPT_SVG: request->svg = text; return true;

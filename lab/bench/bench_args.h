@@ -30,6 +30,7 @@ typedef enum BenchOption {
     BENCH_OPT_SEEDS,
     BENCH_OPT_OUTLINE,
     BENCH_OPT_CREASES,
+    BENCH_OPT_RED,
     BENCH_OPT_JSON,
     BENCH_OPT_CSV,
     BENCH_OPT_SVG,

@@ -75,9 +75,9 @@ static const struct {
      BENCH_BIT(SUBSTEPS) | BENCH_BIT(THREADS) | BENCH_BIT(QUICK) | BENCH_BIT(INSTRUCTIONS) | OUTPUT,
      "A strip is folded by 180 degrees and released: the angle that remains, by resolution and time step."},
     {"isotropy", "bench isotropy", bench_isotropy,
-     BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(CURVATURE) | BENCH_BIT(CREASES) | BENCH_BIT(OUTLINE) |
-         BENCH_BIT(SEEDS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SUBSTEPS) | BENCH_BIT(INSTRUCTIONS) |
-         BENCH_BIT(QUICK) | OUTPUT,
+     BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(CURVATURE) | BENCH_BIT(CREASES) | BENCH_BIT(RED) |
+         BENCH_BIT(OUTLINE) | BENCH_BIT(SEEDS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SUBSTEPS) |
+         BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(QUICK) | OUTPUT,
      "The same burn on a grid and on one turned by 45 degrees: whether its folds follow the mesh."},
     {"plate", "bench plate", bench_plate,
      BENCH_BIT(CELLS) | BENCH_BIT(SUBSTEPS) | BENCH_BIT(THREADS) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(QUICK) |

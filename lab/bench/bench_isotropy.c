@@ -19,7 +19,7 @@
 
 enum { MOMENTS = 6 };
 
-enum { OUTLINE, CELL, THICKNESS, LIMIT, CREASES, SEED, STRAIGHT, TURNED, EFFECT, MEAN, BEND, COLUMNS };
+enum { OUTLINE, CELL, THICKNESS, LIMIT, CREASES, RED, SEED, STRAIGHT, TURNED, EFFECT, MEAN, BEND, COLUMNS };
 
 static const BenchColumn columns[COLUMNS] = {
     [OUTLINE] = {"outline", NULL, 8, NULL},
@@ -27,6 +27,7 @@ static const BenchColumn columns[COLUMNS] = {
     [THICKNESS] = {"thickness_mm", "%.3g", 13, NULL},
     [LIMIT] = {"curvature_max", "%.0f", 14, NULL},
     [CREASES] = {"creases", NULL, 8, NULL},
+    [RED] = {"red_m_n", "%.3g", 8, NULL}, // compliance, the solver's own softness included
     [SEED] = {"seed", "%.0f", 5, NULL},
     [STRAIGHT] = {"r_0", "%.3f", 7, NULL},
     [TURNED] = {"r_45", "%.3f", 7, NULL},
@@ -79,6 +80,7 @@ static SingeResult isotropy_sheet(SingeSim *sim, const Burn *burn, double angle,
     paper->shrink_front = singe_param_field(0.5f, 1.3f, &noises[3]);
     paper->shrink_back = singe_param(0.65f);
     paper->char_yield = singe_param(0);
+    if (burn->options->red > 0) paper->compliance[SINGE_RED] = singe_param((float)burn->options->red);
     paper->heat_share = singe_param(0.2f);
     paper->ash_density = singe_param(0.3f); // eq 4
 
@@ -159,12 +161,22 @@ static SingeResult isotropy_compare(const Burn *burn, int index, BenchTable *tab
     const double r_0 = wrinkles_bias(&straight), r_45 = wrinkles_bias(&turned);
     const double bend = total(straight.crease, WRINKLE_BINS) + total(turned.crease, WRINKLE_BINS);
     *sum += 0.5 * log(r_0 / r_45);
+
+    // red springs give by the material's compliance, or by (a + r) h^2/m of the solver where that is more (stiffness.c)
+    const SingeSolverDef solver = singe_default_solver();
+    const SingeMaterialDef usual = singe_default_material();
+    const double red = burn->options->red > 0 ? burn->options->red : (double)usual.compliance[SINGE_RED].value;
+    const double h = (double)singe_default_sim().time_step / (burn->options->substeps ? burn->options->substeps : 8);
+    const double cell = size / burn->cells, mass = cell * cell * (double)usual.grammage.value / 2;
+    const double lean = (cell * cell / 2 + pow(burn->thickness, 2)) / pow(burn->thickness, 2);
+    const double own = (2.5 + (double)solver.regularisation[SINGE_RED]) * h * h / mass * lean;
     BenchValue row[COLUMNS] = {
         [OUTLINE] = bench_text(burn->disc ? "disc" : "square"),
         [CELL] = bench_number(1e3 * size / burn->cells),
         [THICKNESS] = bench_number(1e3 * burn->thickness),
         [LIMIT] = bench_number(burn->limit),
         [CREASES] = bench_text(burn->creases ? "yes" : "no"),
+        [RED] = bench_number(fmax(red, own)),
         [SEED] = bench_number(burn->seed),
         [STRAIGHT] = bench_number(r_0),
         [TURNED] = bench_number(r_45),

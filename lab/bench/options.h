@@ -45,6 +45,7 @@ typedef struct BenchOptions {
     BenchOutline outline;
     bool creases; ///< sharp bends are plastic
     bool contact; ///< with themselves
+    double red;   ///< m/N, compliance of red springs; 0: the material's
     BenchState state;
     SingeSolverMethod solver;
     SingeInstructions instructions;
