@@ -28,6 +28,7 @@ static const float LINE_FILTER = 5e-3f; ///< tau, s
 static const float LINE_ZONE = 1.5e-3f; ///< m, standard deviation of the average
 static const float LINE_ASH = 0.05f;    ///< strength of ash over that of char
 static const float EDGE_STRETCH = 1.4f;
+static const float WET_FROM = 0.1f, WET_TO = 0.6f; ///< water over the dry mass: air-dry, and soaked
 enum { LINE_PASSES = 12 };
 
 float tear_strength(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex) {
@@ -35,6 +36,11 @@ float tear_strength(const TearPlan *plan, const Shell *shell, const State *state
     float fresh = field_at(matter->strength, vertex), weakened = plan->weakened[matter->sheet[vertex]];
     float min = field_at(matter->mass_min, vertex), yield = field_at(matter->char_yield, vertex);
     float fuel = state->burn.fuel[vertex], ash = 1 - fuel - shell_char(state->burn.mass[vertex], fuel, min, yield);
+
+    // water opens the bonds between fibres: paper that is soaked keeps some 10 % of its strength (Hubbe, Mini-Encyclopedia
+    // of Papermaking Wet-End Chemistry: more than 10 or 15 % is wet-strength paper)
+    const float soaked = state->heat.water ? (state->heat.water[vertex] - WET_FROM) / (WET_TO - WET_FROM) : 0;
+    if (soaked > 0) weakened *= real_powf(TEAR_WET, float_min(soaked, 1));
 
     if (fuel >= 1 || isinf(fresh)) return fresh * weakened;
     float burnt = real_powf(field_at(matter->char_strength, vertex) / fresh, 1 - fuel);

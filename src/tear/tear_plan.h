@@ -50,6 +50,9 @@ struct TearPlan {
     float *min;      ///< [sheets] that factor while it is held farther apart than its length
 };
 
+/// Strength of soaked sheet over that of dry sheet.
+#define TEAR_WET 0.1f
+
 /// N/m, the line force at which a vertex tears.
 float tear_strength(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex);
 

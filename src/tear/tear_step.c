@@ -91,7 +91,7 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
         float strength = weakest(&shell->sheets[s], shell->matter.strength);
         plan->safe = float_min(plan->safe, weakest(&shell->sheets[s], shell->matter.char_strength));
         plan->min[s] = isinf(strength) ? 1 : float_min(1, 0.5f * tear_carried(shell, s, h) / strength);
-        plan->safe = float_min(plan->safe, strength * plan->min[s]);
+        plan->safe = float_min(plan->safe, strength * plan->min[s] * (shell_holds_water(shell) ? TEAR_WET : 1));
         plan->weakened[s] = 1;
     }
 

@@ -545,6 +545,54 @@ class Title(Example):
         self.assertLess(last["ignited"], 0.4 * self.rows[0]["particles"])
 
 
+class PutOut(Example):
+    """A fire that is put out stays out, and has left most of the sheet."""
+
+    NAME = "blown-out"
+    OTHERS = ("rained-on", "smothered")
+
+    def test_stays_out(self):
+        for name in (self.NAME, *self.OTHERS):
+            if name != self.NAME:
+                self.NAME = name
+                self.run_example("whole", "--threads", "1", "--force")
+                self.rows = [{k: float(v) for k, v in row.items()} for row in self.stats("whole")]
+            with self.subTest(name):
+                self.common()
+                burnt = self.column("burnt_fraction")
+                self.say["burnt"] = f"{burnt[23]:.3f} at 1 s, {burnt[47]:.3f} at 2 s, {burnt[59]:.3f} at the end"
+                self.say["hottest at the end"] = f"{self.rows[-1]['temperature_max'] - ZERO_CELSIUS:.0f} C"
+                self.report()
+                self.assertTrue(0.05 < burnt[23] < 0.3)
+                self.assertLess(burnt[59] - burnt[23], 0.1) # without it 0.3 and more burns
+                self.assertLess(burnt[59] - burnt[52], 1e-4)
+                self.assertLess(self.rows[-1]["temperature_max"], 350 + ZERO_CELSIUS)
+
+
+class Branches(Case):
+    """Small runs of four examples, branched at ten random frames with nothing changed, give the bytes of the whole."""
+
+    FRAMES = 14
+    SETS = {"letter": ("sheets.0.grid.cells=[21, 30]",), "note": (), "title": ("sheets.0.grid.cells=[44, 20]",),
+            "blown-out": ("sheets.0.grid.cells=[16, 16]", "sources.1.strength=2", "pace=12")}
+
+    def test_ten_random_frames(self):
+        seed = int(time.time())
+        chosen = random.Random(seed)
+        for name, sets in self.SETS.items():
+            scene = os.path.join(EXAMPLES, name, name + ".yaml")
+            given = [part for one in sets for part in ("--set", one)] + ["--frames", str(self.FRAMES)]
+            more = ["--no-preview", "--quiet", *given]
+            self.singe("run", scene, "-o", self.path(name), "--set", "checkpoints.every=5", *more, timeout=800)
+            for frame in chosen.sample(range(1, self.FRAMES), 3 if name in ("letter", "title") else 2):
+                with self.subTest(name, seed=seed, frame=frame):
+                    threads = str(1 + frame % 2)
+                    self.singe("run", scene, "-o", self.path(name + "-b"), "--force", "--from", f"{self.path(name)}:{frame}",
+                               "--threads", threads, *more, timeout=800)
+                    self.assertEqual(self.plys(name), self.plys(name + "-b"))
+                    self.assertEqual(self.numbers(name), self.numbers(name + "-b"))
+
+
 class SameBytes(Example):
     """Any number of threads, and a run that is killed and goes on, give the same cache."""
 

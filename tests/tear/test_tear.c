@@ -155,6 +155,21 @@ TEST(pulled_apart_it_tears_at_its_weakest_line) {
     singe_sim_destroy(sim);
 }
 
+/// Where it is soaked it has a tenth of its strength, and tears there.
+TEST(it_tears_where_it_is_wet) {
+    SingeSimDef def = pull_def();
+    SingeMaterialDef material = singe_default_material();
+    material.moisture = singe_param_field(0, 1, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "weak"});
+    SingeSim *sim = pulled(&def, 4, 1, &material);
+    test_steps(sim, STEPS);
+    const SingeView view = singe_sim_view(sim);
+    assert_true(singe_sim_stats(sim).tears > ACROSS / 2);
+    for (uint32_t v = (ALONG + 1) * (ACROSS + 1); v < view.vertex_count; v++)
+        if (view.particle_flags[v] & SINGE_ALIVE)
+            assert_true(fabsf(view.rest_position[v][0] - WEAK * side) < 0.5f * side);
+    singe_sim_destroy(sim);
+}
+
 /// In a strip that hangs at rest the line force is the weight of what hangs below, over the width.
 TEST(line_force_of_a_hanging_strip_is_its_weight) {
     enum { WIDE = 6, LONG = 16 };
