@@ -75,7 +75,7 @@ static void prepare_particles(void *task, int begin, int end) {
         if (!alive) continue;
 
         // drag, and what it needs: normal and air
-        const float drag = plan->settings.air_density * field_at(matter->drag, (uint32_t)i);
+        float drag = plan->settings.air_density * field_at(matter->drag, (uint32_t)i);
         const float damping = field_at(matter->damping, (uint32_t)i);
         if (drag == 0) {
             plan->normal[i][3] = 0;
