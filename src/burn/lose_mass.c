@@ -76,6 +76,7 @@ static void react(BurnJob *job, uint32_t i, float excess) {
 
     // mass, and the heat of both
     float after = min + (1 - min) * left + span * share;
+    if (after >= before) left = fuel; // too little for the mass's last digit: springs follow only what loses mass
     burn->fuel[i] = left;
     burn->mass[i] = after < before || isnan(after) ? after : before;
     burn->burn_rate[i] = (before - burn->mass[i]) / job->h;

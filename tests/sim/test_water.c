@@ -18,7 +18,7 @@ static SingeSim *lit(float moisture, bool burns) {
     material.moisture = singe_param(moisture);
     material.convection = singe_param(0);
     material.emissivity = singe_param(0);
-    material.drag = singe_param(0.01f);
+    material.drag = singe_param(0);
     material.ablate = false;
     if (!burns) material.mass_rate = singe_param(0);
     SingeSim *sim = test_sim(&def, test_grid(4, 4, 5e-3f, 5e-3f), &material);
