@@ -23,12 +23,13 @@ void glb_begin(GlbFile *f, const OutputScene *scene, SingeAllocator a) {
                    .nodes.allocator = a,
                    .animations.allocator = a,
                    .scratch.allocator = a,
+                   .corners.allocator = a,
                    .scene = scene};
 }
 
 void glb_free(GlbFile *f) {
     sink_free(&f->text), sink_free(&f->data), sink_free(&f->views), sink_free(&f->accessors), sink_free(&f->meshes);
-    sink_free(&f->nodes), sink_free(&f->animations), sink_free(&f->scratch);
+    sink_free(&f->nodes), sink_free(&f->animations), sink_free(&f->scratch), sink_free(&f->corners);
 }
 
 // ---- JSON
@@ -217,7 +218,7 @@ SingeResult glb_finish(GlbFile *f, const char *up, const char *extras, const cha
     }
 
     sink.failed = sink.failed || f->text.failed || f->data.failed || f->views.failed || f->accessors.failed ||
-                  f->meshes.failed || f->nodes.failed || f->animations.failed || f->scratch.failed;
+                  f->meshes.failed || f->nodes.failed || f->animations.failed || f->scratch.failed || f->corners.failed;
     return sink_write(&sink, path, error);
 }
 
@@ -230,17 +231,18 @@ typedef struct GlbMeshes {
     bool lean; ///< only drawn and common attributes
 } GlbMeshes;
 
-/// How a packed file rounds an attribute. Custom ones are on grids: 1 K, 4 mm/s, a 1024th.
+/// How a packed file rounds an attribute: on a grid, to half of its step. A grid packs better than 16 bits of the same step,
+/// as what is left is in the last bits.
 static GlbRounding rounding_of(const GlbFile *f, const char *name) {
+    static const struct {
+        const char *name;
+        int bits;
+    } grids[] = {{"TEXCOORD_0", -13}, {"COLOR_0", -9}, {"_TEMPERATURE", 0}, {"_VELOCITY", -8}};
     if (strcmp(name, "POSITION") == 0) return (GlbRounding){GLB_GRID, f->grid, 0};
     if (strcmp(name, "NORMAL") == 0) return (GlbRounding){GLB_DIRECTION, 0, 0};
-    if (strcmp(name, "TEXCOORD_0") == 0) return (GlbRounding){GLB_SHARE, 2, 0};
-    if (strcmp(name, "COLOR_0") == 0) return (GlbRounding){GLB_SHARE, 6, 0};
-    return (GlbRounding){GLB_GRID,
-                         strcmp(name, "_TEMPERATURE") == 0 ? 0
-                         : strcmp(name, "_VELOCITY") == 0  ? -8
-                                                           : -10,
-                         0};
+    for (size_t i = 0; i < sizeof grids / sizeof *grids; i++)
+        if (strcmp(name, grids[i].name) == 0) return (GlbRounding){GLB_GRID, grids[i].bits, 0};
+    return (GlbRounding){GLB_GRID, -10, 0};
 }
 
 static void put_named(GlbMeshes *w, const char *name, size_t begin, uint32_t count, int width, const float *box) {
@@ -271,18 +273,25 @@ static void put_vectors(GlbMeshes *w, const SheetPart *part, const char *name, f
 
 // ---- meshes
 
-/// Numbers a sheet's vertices by their first use: neighbours in the file are then neighbours on the sheet, and pack
-/// better. Those that no triangle has go.
-static void sort_by_use(SheetParts *p, SheetPart *part) {
+/// Lists the corners of a sheet's triangles. In a packed file neighbours shall be neighbours on the sheet, which packs
+/// better: triangles follow each other in strips, and vertices are numbered by their first use. Those that no triangle
+/// has go.
+static void list_corners(GlbMeshes *w, SheetPart *part) {
+    SheetParts *p = &w->parts;
+    w->file->corners.size = 0;
+    for (uint32_t i = 0; i < part->triangle_count; i++)
+        for (int k = 0; k < 3; k++) sink_u32(&w->file->corners, p->surface->triangles[part->triangles[i]][k]);
+    if (!w->file->packed || w->file->corners.failed) return;
+
+    uint32_t *corners = (uint32_t *)(void *)w->file->corners.bytes;
+    glb_sort_triangles(w->file, corners, 3 * (size_t)part->triangle_count, p->surface->vertex_count);
     uint32_t *vertices = p->vertices + p->vertex_first[part->sheet], count = 0;
     for (uint32_t i = 0; i < part->count; i++) p->local[vertices[i]] = UINT32_MAX;
-    for (uint32_t i = 0; i < part->triangle_count; i++)
-        for (int k = 0; k < 3; k++) {
-            const uint32_t vertex = p->surface->triangles[part->triangles[i]][k];
-            if (p->local[vertex] != UINT32_MAX) continue;
-            p->local[vertex] = count;
-            vertices[count++] = vertex;
-        }
+    for (uint32_t i = 0; i < 3 * part->triangle_count; i++) {
+        if (p->local[corners[i]] != UINT32_MAX) continue;
+        p->local[corners[i]] = count;
+        vertices[count++] = corners[i];
+    }
     part->count = count;
 }
 
@@ -308,7 +317,8 @@ static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
     GlbFile *f = w->file;
 
     if (!part.count || !part.triangle_count) return false;
-    if (f->packed) sort_by_use(&w->parts, &part);
+    list_corners(w, &part);
+    if (f->corners.failed) return false; // glb_finish says so
     sink_text(&f->meshes, "%s{\"name\":", f->mesh_count++ ? "," : "");
     glb_put_string(&f->meshes, f->scene->sheets[sheet].name);
     sink_text(&f->meshes, ",\"primitives\":[{\"material\":%u,\"attributes\":{", sheet);
@@ -361,9 +371,8 @@ static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
 
     f->meshes.size--; // the last comma
     const size_t corner_begin = w->file->data.size;
-    for (uint32_t i = 0; i < part.triangle_count; i++)
-        for (int k = 0; k < 3; k++)
-            sink_u32(&w->file->data, w->parts.local[w->surface->triangles[part.triangles[i]][k]]);
+    const uint32_t *listed = (const uint32_t *)(const void *)w->file->corners.bytes;
+    for (uint32_t i = 0; i < 3 * part.triangle_count; i++) sink_u32(&w->file->data, w->parts.local[listed[i]]);
     const GlbRounding corners = {GLB_TRIANGLES, 0, part.count};
     sink_text(&f->meshes, "},\"indices\":%u}]}",
               f->packed ? glb_put_packed(f, corner_begin, 3 * part.triangle_count, 1, corners, false)

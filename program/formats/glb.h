@@ -7,6 +7,7 @@
 
 typedef struct GlbFile {
     Sink text, data, views, accessors, meshes, nodes, animations, scratch;
+    Sink corners; ///< of the triangles of the mesh in the making: vertices of the surface
     const OutputScene *scene;
     uint32_t view_count, mesh_count, node_count;
     bool packed;            ///< vertices and corners are rounded and packed
@@ -33,8 +34,7 @@ uint32_t glb_put_accessor(GlbFile *file, size_t begin, uint32_t count, int width
 /// How values are rounded before they are packed.
 typedef struct GlbRounding {
     enum {
-        GLB_GRID,  ///< floats; multiples of two to the power of `bits`, or coarser where they are too large for that
-        GLB_SHARE, ///< of 0 to 1, in 16 bits of which the last `bits` are spared; on a grid if some are not
+        GLB_GRID, ///< floats; multiples of two to the power of `bits`, or coarser where they are too large for that
         GLB_DIRECTION, ///< unit vectors, in 8 bits a component
         GLB_TRIANGLES, ///< corners of triangles with `vertices` vertices: whole numbers
     } kind;
@@ -43,6 +43,8 @@ typedef struct GlbRounding {
 } GlbRounding;
 
 bool glb_pack_available(void);
+/// Puts triangles that share vertices next to each other; `vertices` bounds the numbers of corners[count].
+void glb_sort_triangles(GlbFile *file, uint32_t *corners, size_t count, uint32_t vertices);
 /// Packs the `count` times `width` floats, or corners, written since `begin`, and adds their view and accessor. `box`:
 /// with min and max. Returns the accessor's number.
 uint32_t glb_put_packed(GlbFile *file, size_t begin, uint32_t count, int width, GlbRounding rounding, bool box);

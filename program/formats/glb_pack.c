@@ -5,11 +5,16 @@
 #include "common/store.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #ifndef SINGE_MESHOPT
 
 bool glb_pack_available(void) { return false; }
+
+void glb_sort_triangles(GlbFile *f, uint32_t *corners, size_t count, uint32_t vertices) {
+    (void)f, (void)corners, (void)count, (void)vertices;
+}
 
 uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, GlbRounding rounding, bool box) {
     (void)count, (void)width, (void)rounding, (void)box;
@@ -23,7 +28,34 @@ uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, Glb
 
 bool glb_pack_available(void) { return true; }
 
-enum { GLB_BYTE = 5120, GLB_USHORT = 5123, GLB_FLOAT32 = 5126, GLB_UINT32 = 5125, GRID_LARGEST = (1 << 23) - 1 };
+/// What meshoptimizer may use: memory that is there, as it ends the program where it gets none.
+static _Thread_local struct {
+    uint8_t *next;
+    size_t left;
+} arena;
+
+static void *arena_take(size_t size) {
+    const size_t rounded = (size + 63) & ~(size_t)63;
+    if (rounded > arena.left) abort(); // see `most`
+    uint8_t *taken = arena.next;
+    arena.next += rounded, arena.left -= rounded;
+    return taken;
+}
+
+static void arena_give(void *taken) { (void)taken; }
+
+void glb_sort_triangles(GlbFile *f, uint32_t *corners, size_t count, uint32_t vertices) {
+    // its lists: corners twice and scores and flags of triangles, 10 bytes a corner; three of vertices. Twice that
+    const size_t most = 20 * count + 24 * (size_t)vertices + 8192;
+    f->scratch.size = 0;
+    uint8_t *room = sink_room(&f->scratch, most + 64);
+    if (!room) return;
+    arena.next = room + (64 - (uintptr_t)room % 64), arena.left = most;
+    meshopt_setAllocator(arena_take, arena_give);
+    meshopt_optimizeVertexCacheStrip(corners, corners, count, vertices);
+}
+
+enum { GLB_BYTE = 5120, GLB_FLOAT32 = 5126, GLB_UINT32 = 5125, GRID_LARGEST = (1 << 23) - 1 };
 
 /// Floats as the extension's exponential filter has them, all with one exponent: 24 bits of a multiple, 8 of the
 /// exponent. Rounds `values` to what a reader will get.
@@ -50,13 +82,9 @@ uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, Glb
     const size_t total = (size_t)count * (size_t)width;
     const bool corners = rounding.kind == GLB_TRIANGLES;
     if (f->data.failed) return f->view_count;
-    for (size_t i = 0; i < total && rounding.kind == GLB_SHARE; i++) // what is no share keeps its range
-        if (!(values[i] >= 0 && values[i] <= 1)) rounding = (GlbRounding){GLB_GRID, -15, 0};
 
     // the bytes of an element; those of vertices must be multiples of four
-    const uint32_t stride = rounding.kind == GLB_GRID                 ? 4 * (uint32_t)width
-                            : rounding.kind == GLB_SHARE && width > 2 ? 8
-                                                                      : 4;
+    const uint32_t stride = rounding.kind == GLB_GRID ? 4 * (uint32_t)width : 4;
 
     // the stream before packing
     f->scratch.size = 0;
@@ -65,12 +93,6 @@ uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, Glb
     uint8_t *stream = f->scratch.bytes;
     if (corners) memcpy(stream, values, 4 * total);
     else if (rounding.kind == GLB_GRID) round_to_grid(values, total, rounding.bits, stream);
-    else if (rounding.kind == GLB_SHARE) // of 0 to 1 in 16 bits, of which the last ones are 0 (1 has them all set)
-        for (size_t i = 0; i < total; i++) {
-            const long step = lrintf(values[i] * (float)(65536 >> rounding.bits)) << rounding.bits;
-            const uint16_t share = (uint16_t)(step < 0 ? 0 : step > 65535 ? 65535 : step);
-            memcpy(stream + i / (size_t)width * stride + 2 * (i % (size_t)width), &share, 2);
-        }
     else
         for (uint32_t i = 0; i < count; i++) {
             const float direction[4] = {values[3 * i], values[3 * i + 1], values[3 * i + 2], 1};
@@ -110,14 +132,13 @@ uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, Glb
     f->unpacked += (size_t)count * stride;
     sink_align(&f->data, 4);
 
-    const bool share = rounding.kind == GLB_SHARE, direction = rounding.kind == GLB_DIRECTION;
+    const bool direction = rounding.kind == GLB_DIRECTION;
     sink_text(&f->accessors, "%s{\"bufferView\":%u,\"componentType\":%d,\"count\":%u,\"type\":\"%s\"%s", comma,
               f->view_count,
               corners     ? GLB_UINT32
-              : share     ? GLB_USHORT
               : direction ? GLB_BYTE
                           : GLB_FLOAT32,
-              (unsigned)count, types[width], share || direction ? ",\"normalized\":true" : "");
+              (unsigned)count, types[width], direction ? ",\"normalized\":true" : "");
     for (int side = 0; box && side < 2; side++) {
         sink_text(&f->accessors, side ? "],\"max\":[" : ",\"min\":[");
         for (int c = 0; c < width; c++) {

@@ -114,19 +114,37 @@ async function checkPacked() {
         const was = Array.from({length: a.count}, (_, i) => plain.data.readUInt32LE(view.byteOffset + 4 * i));
         if (corners.length !== was.length) throw new Error('corners');
         if (Object.keys(before.attributes).join() !== Object.keys(after.attributes).join()) throw new Error('attributes');
-        const turns = []; // a packed triangle may begin at another of its corners
-        for (const name of Object.keys(ERRORS)) {
-            const old = plain.accessor(before.attributes[name]), {values, width} = read(after.attributes[name]);
-            const far = (t, turn) => {
-                let most = 0;
-                for (let k = 0; k < 3; k++) for (let c = 0; c < width; c++)
-                    most = Math.max(most, Math.abs(values[corners[3 * t + (k + turn) % 3] * width + c] - old[was[3 * t + k] * width + c]));
-                return most;
-            };
-            for (let t = 0; 3 * t < was.length; t++) {
-                if (name === 'POSITION') turns[t] = [0, 1, 2].reduce((best, turn) => far(t, turn) < far(t, best) ? turn : best, 0);
-                worst[name] = Math.max(worst[name] || 0, far(t, turns[t]));
+        const old = {}, now = {};
+        for (const name of Object.keys(ERRORS)) old[name] = plain.accessor(before.attributes[name]), now[name] = read(after.attributes[name]);
+        // the largest error of a plain triangle u against a packed one t that begins at another of its corners
+        const far = (name, t, u, turn) => {
+            const {values, width} = now[name];
+            let most = 0;
+            for (let k = 0; k < 3; k++) for (let c = 0; c < width; c++)
+                most = Math.max(most, Math.abs(values[corners[3 * t + (k + turn) % 3] * width + c] - old[name][was[3 * u + k] * width + c]));
+            return most;
+        };
+        // packed triangles have an order of their own: each is the plain one, used once, that is nearest in space and on the sheet
+        const cellsOf = (points, triangle) => [0, 1, 2].map(c => Math.floor(2 ** 10 * triangle.reduce((sum, v) => sum + points[3 * v + c], 0)));
+        const there = new Map();
+        for (let u = 0; 3 * u < was.length; u++) {
+            const key = cellsOf(old.POSITION, was.slice(3 * u, 3 * u + 3)).join();
+            if (!there.has(key)) there.set(key, new Set());
+            there.get(key).add(u);
+        }
+        for (let t = 0; 3 * t < was.length; t++) {
+            const [x, y, z] = cellsOf(now.POSITION.values, corners.slice(3 * t, 3 * t + 3));
+            let best = null;
+            for (let n = 0; n < 27; n++) {
+                const home = there.get([x + n % 3 - 1, y + Math.floor(n / 3) % 3 - 1, z + Math.floor(n / 9) - 1].join());
+                for (const u of home ?? []) for (let turn = 0; turn < 3; turn++) {
+                    const off = far('POSITION', t, u, turn) + far('TEXCOORD_0', t, u, turn);
+                    if (!best || off < best.off) best = {off, u, turn, home};
+                }
             }
+            if (!best) throw new Error('a packed triangle is none of the plain ones');
+            best.home.delete(best.u);
+            for (const name of Object.keys(ERRORS)) worst[name] = Math.max(worst[name] || 0, far(name, t, best.u, best.turn));
         }
     });
     for (const [name, bound] of Object.entries(ERRORS))
