@@ -45,7 +45,7 @@ build-tsan:
 	cmake --build --preset tsan --target threaded_tests
 
 # Smaller pictures, without lens and shutter, which would take most of the time. `singe render out/note` draws them whole.
-DEMO_LOOK = --set preview.size=[640,360] --set preview.camera.aperture=0 --set preview.shutter=0
+DEMO_LOOK = --set preview.size=[640,360] --set preview.camera.aperture=0 --set preview.shutter=0 --set preview.samples=13
 
 demo:
 	scripts/setup.sh
