@@ -136,7 +136,7 @@ site:
 	build/site/venv/bin/pip install --quiet --disable-pip-version-check --require-hashes -r tests/locks/site.txt
 	mkdir -p build/site/doxygen
 	doxygen docs/site/Doxyfile
-	SINGE_LIBRARY=$(CURDIR)/build/python/singe/libsinge.so build/site/venv/bin/sphinx-build --quiet --fail-on-warning \
+	SINGE_LIBRARY=$(CURDIR)/build/python/singe/libsinge.so build/site/venv/bin/sphinx-build --quiet --fresh-env --fail-on-warning \
 	    -c docs/site -d build/site/doctrees . build/site/html
 	docs/site/check.py build/site/html
 
