@@ -18,6 +18,7 @@
 #include "dynamics/attach.h"
 
 #include "common/float3.h"
+#include "common/real.h"
 
 /// A number of vertices that makes whole blocks of lanes for any kernel.
 enum { ATTACH_BLOCK = 16 };
@@ -212,11 +213,17 @@ void attach_position(Attachments *attachments, const Shell *shell, const Dynamic
                 spread->apart[p][q] = apart;
                 spread->ratio[p][q] = apart / attachments->length[source[p]][q];
                 spread->max = fmaxf(spread->max, isfinite(spread->ratio[p][q]) ? spread->ratio[p][q] : 0);
-                spread->tight |=
-                    spread->ratio[p][q] > 1.001f; // sources held at their own distance are not pulled apart
+                // sources held at their own distance are not pulled apart
+                spread->tight |= spread->ratio[p][q] > ATTACH_TIGHT;
+                if (shell->spare_count > 0) spread->ratio[p][q] = fmaxf(spread->ratio[p][q] / ATTACH_EASE, 1);
             }
         }
 
+        // springs take over evenly in the logarithm of the share
+        const float beyond = (spread->max - ATTACH_EASE) / (ATTACH_LOOSE - ATTACH_EASE);
+        const bool eases = shell->spare_count > 0 && beyond > 0;
+        spread->share = eases ? real_expf(-9 * beyond) : 1;
+        spread->gives = eases || spread->tight;
         if (attach_rests(shell, spread)) spread->count = 0;
     }
 }

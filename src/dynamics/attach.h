@@ -12,14 +12,25 @@ enum { ATTACH_SOURCES = 4, ATTACH_PERIOD = 96, ATTACH_TORN_PERIOD = 8 };
 _Static_assert(ATTACH_SOURCES == 4, "kernels load the lengths of a vertex as one quadruple");
 _Static_assert(ATTACH_PERIOD % ATTACH_TORN_PERIOD == 0, "a measurement of a fire is one of a tear");
 
+/// Sources farther apart than ATTACH_TIGHT times their distance along the sheet pull it apart. A sheet that can tear is
+/// left to its springs little by little from ATTACH_EASE on, and altogether from ATTACH_LOOSE on, before it tears: springs
+/// that take a load at once throw its vertices.
+#define ATTACH_TIGHT 1.001f
+#define ATTACH_EASE 1.0001f
+#define ATTACH_LOOSE 1.0015f
+
 /// A sheet's sources in a substep.
 typedef struct AttachSpread {
     int count;                                   ///< 0 also where a tight sheet may tear
+    float share;                                 ///< of a vertex's excess that is taken back
     float max;                                   ///< of the ratios
     bool tight;                                  ///< two sources are farther apart than their distance along the sheet
+    bool gives;                                  ///< lengths grow with the distances of the sources
     float position[ATTACH_SOURCES][3];           ///< m
     float apart[ATTACH_SOURCES][ATTACH_SOURCES]; ///< m, of source p from source q < p
-    float ratio[ATTACH_SOURCES][ATTACH_SOURCES]; ///< of `apart` and their distance along the sheet
+    float ratio
+        [ATTACH_SOURCES]
+        [ATTACH_SOURCES]; ///< of `apart` and their distance along the sheet; of a sheet that can tear, over ATTACH_EASE
 } AttachSpread;
 
 /// Held vertices of a sheet, far from each other, and every vertex's distance from them.
@@ -65,7 +76,7 @@ static inline float attach_stretched(const AttachSpread *spread) { return spread
 /// Whether sources hold nothing for now: a sheet that can tear and is held farther apart than it reaches is left to its
 /// springs, so that it may tear.
 static inline bool attach_rests(const Shell *shell, const AttachSpread *spread) {
-    return spread->tight && shell->spare_count > 0;
+    return spread->max >= ATTACH_LOOSE && shell->spare_count > 0;
 }
 
 /// attach_position and attach_range for all vertices.

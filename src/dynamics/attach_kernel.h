@@ -26,7 +26,7 @@ void ATTACH_HOLD(const AttachSpread *spread, const float *length, float *positio
         LaneNode node = float4s_node(&point), by_source = float4s_node(&lengths);
         Lanes max[ATTACH_SOURCES] = {by_source.x, by_source.y, by_source.z, by_source.w};
         bool moved = false;
-        if (spread->tight) attach_stretch(spread, max);
+        if (spread->gives) attach_stretch(spread, max);
         for (int k = 0; k < spread->count; k++) {
             const float *anchor = spread->position[k];
             Lanes dx = node.x - lanes_all(anchor[0]), dy = node.y - lanes_all(anchor[1]);
@@ -39,6 +39,7 @@ void ATTACH_HOLD(const AttachSpread *spread, const float *length, float *positio
             if (lanes_any_less(max_square, square))
                 pull = lanes_where_less(max_square, square, lanes_sqrt(limit / square) - one, pull);
             pull = lanes_where_less(limit, square, pull, zero);
+            pull = pull * lanes_all(spread->share);
             pull = lanes_where_less(zero, node.w, pull, zero); // held vertices stay
             node.x += dx * pull;
             node.y += dy * pull;

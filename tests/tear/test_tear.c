@@ -39,7 +39,7 @@ static void grip(SingeSim *sim, bool right, float by) {
 }
 
 /// A strip of this strength that is pulled apart; where `line` is not 1, a row of vertices across has that share of it.
-static SingeSim *pulled(const SingeSimDef *def, float strength, float line, const SingeMaterialDef *from) {
+static SingeSim *pulled(const SingeSimDef *def, float strength, float line, const SingeMaterialDef *from, float by) {
     TestMesh mesh = test_grid(ALONG, ACROSS, side, side);
     float weak[(ALONG + 1) * (ACROSS + 1)];
     for (uint32_t v = 0; v < mesh.vertex_count; v++) weak[v] = v % (ALONG + 1) == WEAK;
@@ -57,7 +57,7 @@ static SingeSim *pulled(const SingeSimDef *def, float strength, float line, cons
     test_ok(sim, singe_sim_commit(sim));
     test_mesh_free(&mesh);
     grip(sim, false, 0);
-    grip(sim, true, 9e-3f);
+    grip(sim, true, by);
     return sim;
 }
 
@@ -126,7 +126,7 @@ static void check_view(SingeSim *sim) {
 
 TEST(pulled_apart_it_tears_at_its_weakest_line) {
     SingeSimDef def = pull_def();
-    SingeSim *sim = pulled(&def, 4, 0.5f, NULL);
+    SingeSim *sim = pulled(&def, 4, 0.5f, NULL, 9e-3f);
     size_t freed = 0, events;
 
     for (int k = 0; k < STEPS; k++) {
@@ -160,13 +160,34 @@ TEST(it_tears_where_it_is_wet) {
     SingeSimDef def = pull_def();
     SingeMaterialDef material = singe_default_material();
     material.moisture = singe_param_field(0, 1, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "weak"});
-    SingeSim *sim = pulled(&def, 4, 1, &material);
+    SingeSim *sim = pulled(&def, 4, 1, &material, 9e-3f);
     test_steps(sim, STEPS);
     const SingeView view = singe_sim_view(sim);
     assert_true(singe_sim_stats(sim).tears > ACROSS / 2);
     for (uint32_t v = (ALONG + 1) * (ACROSS + 1); v < view.vertex_count; v++)
         if (view.particle_flags[v] & SINGE_ALIVE)
             assert_true(fabsf(view.rest_position[v][0] - WEAK * side) < 0.5f * side);
+    singe_sim_destroy(sim);
+}
+
+/// Where a sheet that can tear is pulled apart slowly, its attachments leave it to its springs without a jerk.
+TEST(springs_take_over_smoothly) {
+    SingeSimDef def = pull_def();
+    SingeSim *sim = pulled(&def, 40, 1, NULL, 0.3e-3f);
+    float fastest = 0;
+    for (int k = 0; k < STEPS; k++) {
+        test_steps(sim, 1);
+        SingeView view = singe_sim_view(sim);
+        for (uint32_t v = 0; v < view.vertex_count; v++) {
+            const float *u = view.velocity[v];
+            if (!(view.particle_flags[v] & SINGE_PINNED))
+                fastest = fmaxf(fastest, sqrtf(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]));
+        }
+    }
+
+    print_message("the end moves at %.4f m/s, the fastest vertex at %.4f\n", 0.3e-3 / 0.25, (double)fastest);
+    assert_int_equal(singe_sim_stats(sim).tears, 0);
+    assert_true(fastest < 0.03f); // .52 if they let go at once
     singe_sim_destroy(sim);
 }
 
@@ -200,7 +221,7 @@ TEST(line_force_of_a_hanging_strip_is_its_weight) {
 
 TEST(uniform_sheets_tear_too) {
     SingeSimDef def = pull_def();
-    SingeSim *sim = pulled(&def, 2, 1, NULL);
+    SingeSim *sim = pulled(&def, 2, 1, NULL, 9e-3f);
     test_steps(sim, STEPS);
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.tears > ACROSS / 2 && stats.pieces >= 2);
@@ -245,7 +266,7 @@ static TearEdges drawn_tear_edges(float raggedness) {
     enum { ROWS = 6 * ACROSS };
     SingeSimDef def = pull_def();
     def.surface_detail = 0.4e-3f, def.surface_raggedness = raggedness;
-    SingeSim *sim = pulled(&def, 4, 0.5f, NULL);
+    SingeSim *sim = pulled(&def, 4, 0.5f, NULL, 9e-3f);
     test_steps(sim, STEPS);
     assert_int_equal(singe_sim_stats(sim).pieces, 2);
     check_surface(sim);
@@ -295,7 +316,7 @@ TEST(tear_edges_wander_and_fit) {
 TEST(without_tearing_it_stays_whole) {
     SingeSimDef def = pull_def();
     def.solver.tearing = false;
-    SingeSim *sim = pulled(&def, 2, 0.5f, NULL);
+    SingeSim *sim = pulled(&def, 2, 0.5f, NULL, 9e-3f);
     test_steps(sim, 30);
     assert_int_equal(singe_sim_stats(sim).tears, 0);
     assert_int_equal(singe_sim_view(sim).vertex_count, (ALONG + 1) * (ACROSS + 1));
@@ -311,7 +332,7 @@ static SingeSim *burning(int threads, SingeInstructions instructions) {
     def.pace = 8;
     def.surface_detail = 0.5e-3f;
     material.char_strength = singe_param(0.5f);
-    SingeSim *sim = pulled(&def, 4, 0.5f, &material);
+    SingeSim *sim = pulled(&def, 4, 0.5f, &material, 9e-3f);
     test_spot(sim, 14 * side, 0, 0, 0.01f, 1200, 400);
     return sim;
 }
@@ -462,7 +483,7 @@ TEST(a_tear_without_memory_fails_cleanly) {
 TEST(strong_sheets_tear_when_held_too_far_apart) {
     SingeSimDef def = pull_def();
     def.solver.substeps = 2;
-    SingeSim *sim = pulled(&def, 500, 0.5f, NULL);
+    SingeSim *sim = pulled(&def, 500, 0.5f, NULL, 9e-3f);
     test_steps(sim, STEPS);
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.tears > 0 && stats.pieces == 2);
