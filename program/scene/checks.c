@@ -67,8 +67,9 @@ void finish_sheet(Reader *reader, const YamlNode *map, void *object) {
 void finish_source(Reader *reader, const YamlNode *map, void *object) {
     SceneSource *source = object;
     if (!node_find(map, "kind")) return;
-    const bool moves = source->def.kind == SINGE_SOURCE_BALL ||
-                       (source->def.kind >= SINGE_SOURCE_JET && source->def.kind != SINGE_SOURCE_TURBULENCE);
+    const SingeSourceKind kind = source->def.kind;
+    const bool moves = kind == SINGE_SOURCE_BALL || kind == SINGE_SOURCE_JET || kind == SINGE_SOURCE_VORTEX ||
+                       kind == SINGE_SOURCE_ATTRACT;
     if (moves && !check_path(reader, map, source->keys, source->key_count))
         complain(reader, map->location,
                  source->def.kind == SINGE_SOURCE_BALL ? "a ball needs 'path' or 'position'"

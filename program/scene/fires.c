@@ -174,7 +174,7 @@ static double heat_of(const Scene *scene, const SceneSource *source, const Place
 static bool source_lights(const Scene *scene, const SceneAssets *assets, const SceneSource *source, const Place *places,
                           bool lit, const SingeLog *log) {
     const bool mapped = source->def.kind == SINGE_SOURCE_ARRIVAL;
-    if (source->def.kind >= SINGE_SOURCE_WATER) return false; // it puts fires out, or fans them
+    if (source_wets_or_blows(&source->def)) return false; // it puts fires out, or fans them
     const bool everywhere = mapped || source->def.kind == SINGE_SOURCE_TEXTURE;
     // a flame of its own is some 0.24 m high at 1 kW, and its hot gas rises farther
     const bool flame = !everywhere && scene->sim.gas.enabled && source->def.power > 0;

@@ -74,7 +74,7 @@ const char *source_heats_nothing(const Scene *scene, const SceneSource *source) 
     for (uint32_t i = 0; i < source->strength_count; i++) weak = weak && source->strength[i].value == 0;
 
     if (def->kind == SINGE_SOURCE_TEXTURE && (def->flux == 0 || weak)) return "its flux is 0";
-    if (def->kind >= SINGE_SOURCE_ARRIVAL) return NULL; // it heats by a map, wets or blows
+    if (def->kind == SINGE_SOURCE_ARRIVAL || source_wets_or_blows(def)) return NULL;
     const bool flame = def->kind != SINGE_SOURCE_TEXTURE && scene->sim.gas.enabled && def->power > 0;
     if (def->kind != SINGE_SOURCE_TEXTURE && def->conductance == 0 && !flame) return "its conductance is 0";
     if (def->kind != SINGE_SOURCE_TEXTURE && def->radius + def->falloff == 0 && !flame)

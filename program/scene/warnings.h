@@ -17,4 +17,9 @@ void scene_warn_of_fires(const Scene *scene, const SceneAssets *assets, const Si
 /// The lowest temperature at which a sheet of the scene begins to burn, K; INFINITY if none can.
 double scene_ignition(const Scene *scene);
 
+/// Whether a source lights nothing: it wets, or moves air.
+static inline bool source_wets_or_blows(const SingeSourceDef *def) {
+    return def->kind >= SINGE_SOURCE_WATER && def->kind <= SINGE_SOURCE_TURBULENCE;
+}
+
 #endif
