@@ -115,7 +115,7 @@ class Resume(Case):
 
     def test_ctrl_c_between_steps(self):
         """It does not wait for the frame, and nothing of it is lost."""
-        self.scene = self.write_scene(frames=4, cells=20, steps=300)
+        self.scene = self.write_scene(frames=4, cells=20, steps=800)
         self.run_scene("whole", "--quiet")
         stopped = 0
         for attempt in range(3):
@@ -133,7 +133,7 @@ class Resume(Case):
             self.assertEqual((self.record(out)["result"], len(self.plys(out)), len(self.stats(out))),
                              ("interrupted", done, done))
             self.singe("verify", self.path(out))
-            stopped += self.record(out)["totals"]["steps"] % 300 != 0
+            stopped += self.record(out)["totals"]["steps"] % 800 != 0
             self.assertIn(f"continuing from frame {done}", self.run_scene(out, "--resume")[1])
             self.same_as_whole(out)
         self.assertGreater(stopped, 0, "never stopped within a frame")
