@@ -96,7 +96,8 @@ def plain(text):
 
 
 def kinds_in_words(kinds):
-    return " and ".join(name.lower() for name in re.findall(r"BIT\(SINGE_[A-Z]+?_(\w+)\)", kinds))
+    names = [name.lower() for name in re.findall(r"BIT\(SINGE_[A-Z]+?_(\w+)\)", kinds)]
+    return " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
 
 
 def comment(line, text):

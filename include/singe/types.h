@@ -104,8 +104,8 @@ typedef struct SingeSourceDef {
     float end;         ///< s, any, also infinite; time at which it ends; inf: never
     float temperature; ///< K, ball and spot, 1e-3 to 1e5; of the ball or the flame
     float conductance; ///< W/(m2 K), ball and spot, 0 to 1e9; heat transfer coefficient to the sheet
-    /// m, ball and spot and jet and vortex and attract and turbulence, >= 0; full heat within it; of a jet's nozzle;
-    /// where a vortex or attraction is fastest; of turbulence's swirls
+    /// m, ball, spot, jet, vortex, attract and turbulence, >= 0; full heat within it; of a jet's nozzle; where a vortex
+    /// or attraction is fastest; of turbulence's swirls
     float radius;
     float falloff; ///< m, ball and spot, >= 0; beyond the radius, over which the heat falls to nothing
     /// W, ball and spot, 0 to 1e6; of a flame that it carries: the flame's gas rises and burns from its centre, if the
@@ -133,7 +133,7 @@ typedef struct SingeSourceDef {
     float wetting;
     /// jet and vortex, finite; in which a jet blows; a vortex turns about it, counter-clockwise seen against it
     float direction[3];
-    float speed; ///< m/s, jet and vortex and attract and turbulence, 0 to 1000; of the air, where it is fastest
+    float speed; ///< m/s, jet, vortex, attract and turbulence, 0 to 1000; of the air, where it is fastest
     /// m/s, jet, > 0; speed of the jet's air past a sheet from which on its flame gives the sheet no heat; it gives
     /// less from half of that on. inf: never
     float blow_out;

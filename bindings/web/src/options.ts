@@ -32,8 +32,8 @@ export interface SourceOptions {
     temperature?: number;
     /** W/(m2 K), ball and spot, 0 to 1e9; heat transfer coefficient to the sheet */
     conductance?: number;
-    /** m, ball and spot and jet and vortex and attract and turbulence, >= 0; full heat within it; of a jet's
-     *  nozzle; where a vortex or attraction is fastest; of turbulence's swirls */
+    /** m, ball, spot, jet, vortex, attract and turbulence, >= 0; full heat within it; of a jet's nozzle; where a
+     *  vortex or attraction is fastest; of turbulence's swirls */
     radius?: number;
     /** m, ball and spot, >= 0; beyond the radius, over which the heat falls to nothing */
     falloff?: number;
@@ -55,7 +55,7 @@ export interface SourceOptions {
     wetting?: number;
     /** jet and vortex, finite; in which a jet blows; a vortex turns about it, counter-clockwise seen against it */
     direction?: Vector;
-    /** m/s, jet and vortex and attract and turbulence, 0 to 1000; of the air, where it is fastest */
+    /** m/s, jet, vortex, attract and turbulence, 0 to 1000; of the air, where it is fastest */
     speed?: number;
     /** m/s, jet, > 0; speed of the jet's air past a sheet from which on its flame gives the sheet no heat; it gives
      *  less from half of that on. inf: never */
