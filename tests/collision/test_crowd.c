@@ -304,6 +304,25 @@ TEST(flags_in_the_wind_keep_their_shape) {
     for (int k = 0; k < 3; k++) singe_sim_destroy(sims[k]);
 }
 
+/// Two vertices that tremble at 2 m/s, as at burnt edges, do not split the step of a whole sheet; if all do, it is split.
+TEST(a_few_cells_do_not_split_the_step) {
+    SingeSim *sim = flag(28, 0, 1);
+    test_steps(sim, 1);
+    float(*velocity)[4] = sim->state.dynamics.velocity;
+    int parts[2];
+    for (uint32_t all = 0; all < 2; all++) {
+        for (uint32_t v = 100; v < sim->shell.vertex_count; v++)
+            if (all || v % 300 == 100) velocity[v][2] = v & 1 ? -2 : 2;
+        parts[all] = collision_parts(sim->dynamics->collision, &sim->shell, STATE_INPUT(&sim->state), sim->pool,
+                                     sim->def.time_step, &sim->state.dynamics);
+    }
+
+    print_message("%d part, %d if all cells tremble\n", parts[0], parts[1]);
+    assert_int_equal(parts[0], 1);
+    assert_true(parts[1] > 8);
+    singe_sim_destroy(sim);
+}
+
 /// Pairs of boxes that the search compares, per cell, of a flat sheet in one of three positions.
 static double compared(uint32_t nx, uint32_t ny, float dx, float dy, int position) {
     SingeSimDef def = singe_default_sim();
