@@ -27,6 +27,11 @@ bool mesh_name_ends(const char *name, const char *ending) {
     return true;
 }
 
+bool mesh_name_is_stage(const char *name) {
+    return mesh_name_ends(name, ".usd") || mesh_name_ends(name, ".usda") || mesh_name_ends(name, ".usdc") ||
+           mesh_name_ends(name, ".usdz");
+}
+
 SingeResult polygons_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                           Polygons *polygons, SingeError *error) {
     memset(polygons, 0, sizeof *polygons);
@@ -35,6 +40,8 @@ SingeResult polygons_read(const char *name, const uint8_t *bytes, size_t size, S
         if (mesh_name_ends(name, mesh_formats[i].ending))
             return mesh_formats[i].read(name, bytes, size, allocator, polygons, error);
 
+    if (mesh_name_is_stage(name))
+        return refuse(error, SINGE_ERROR_FORMAT, "mesh", -1, "%s: " MESH_STAGE_HELP, short_name(name));
     char known[96] = "";
     for (size_t i = 0; i < FORMATS; i++) {
         if (i) strcat(known, ", ");

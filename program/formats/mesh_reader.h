@@ -11,6 +11,12 @@ enum { MESH_ANSWER_BASE = 16 << 20, MESH_ANSWER_TIMES = 64 };
 /// Whether a file's name has this ending (".obj"), in any case.
 bool mesh_name_ends(const char *name, const char *ending);
 
+/// Whether a file's name is that of an OpenUSD stage, and what is said of one.
+bool mesh_name_is_stage(const char *name);
+#define MESH_STAGE_HELP                                                                                              \
+    "is an OpenUSD stage, which only the Python package reads: python3 -m singe.usd STAGE --sheets /PRIM -o FOLDER " \
+    "makes a scene of it"
+
 // ---- the answer of a reader in a child process: polygons, all of which the parent validates
 //
 //     MeshCounts

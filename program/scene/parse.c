@@ -2,6 +2,7 @@
 #include "scene/values.h"
 
 #include "common/printable.h"
+#include "formats/mesh_reader.h"
 
 #include <string.h>
 
@@ -102,6 +103,11 @@ SingeResult scene_read(const char *path, const char *const *sets, int set_count,
     Bytes bytes = {0};
     SingeError error;
     *scene = NULL;
+    if (mesh_name_is_stage(path)) {
+        message_add(messages, &text, (SceneLocation){0}, MESH_STAGE_HELP);
+        return SINGE_ERROR_FORMAT;
+    }
+
     SingeResult result = file_read_max(path, SCENE_BYTES_MAX, (SingeAllocator){0}, &bytes, &error);
     if (result) {
         message_add(messages, &text, (SceneLocation){0}, "%s", error.message);

@@ -41,12 +41,16 @@ def command_path() -> pathlib.Path:
 
 
 def main() -> None:
-    """The console script: replaces itself by the command."""
+    """The console script: replaces itself by the command. A stage of OpenUSD becomes a scene first."""
+    arguments = sys.argv[1:]
+    if arguments[:1] in (["run"], ["check"]) and any(word.split("=")[0] == "--sheets" for word in arguments):
+        from . import usd
+        arguments = usd.told(usd.command, arguments)
     try:
         path = str(command_path())
     except errors.CommandMissingError as error:
         sys.exit(f"singe: error: {error}")
-    os.execv(path, [path, *sys.argv[1:]])
+    os.execv(path, [path, *arguments])
 
 
 class _Process:
