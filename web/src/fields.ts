@@ -1,5 +1,6 @@
 // From the library's surface and gas to what the shaders read: the fields of program/preview/mesh_in.c and fire.c.
 import type { Gas, Surface } from "singe";
+import { refineGas } from "../view/gas.js";
 
 const CHAR_LEAF = 0.64; // the look of a leaf of char (paper_look.h)
 
@@ -87,14 +88,15 @@ export function meshOf(surface: Surface, time: number, pace: number): Mesh {
 
 // ---- the fire
 
-const BURNING = 2e6; // W/m3 at which half of the gas counts as burning
+const BURNING = 0.8e6; // W/m3 at which half of the gas counts as burning: less than in fire.c, as cells are larger
 const EXTINCTION = 8700; // m2/kg of soot
+const PASSING = 0.75; // share of the gas over burning paper that came from flames below
 const FLAME_END = 0.17; // m
 const LIGHTS = 6;
 
 export interface Fire {
     size: [number, number, number]; origin: [number, number, number]; cell: number;
-    /** four bytes a cell: flame, flame times height in FLAME_END, smoke in 20 1/m, unused */
+    /** four bytes a cell: flame, flame times height in FLAME_END, smoke in 20 1/m, the gradient of flame once it is refined */
     cells: Uint8Array;
     /** box of what is not empty, m; null if nothing is */
     bounds: { low: [number, number, number]; high: [number, number, number] } | null;
@@ -117,25 +119,30 @@ export function fireOf(gas: Gas, surface: Surface): Fire {
         rootHeight[index(x, y, z)]! += rate * surface.position[3 * i + 2]!;
     }
 
-    // heights above the paper, layer by layer, carried up with the gas
+    // height times flame, layer by layer: where the gas came from, at (x - vx/vz, y - vy/vz) below; over paper mostly its
+    // own height. Up a hanging sheet gas that has burnt for a while passes what begins to.
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    const below = (of: Float32Array, x: number, y: number, z: number) => {
+        const ix = Math.floor(x), iy = Math.floor(y), fx = x - ix, fy = y - iy;
+        const one = (u: number, v: number) => (u < 0 || v < 0 || u >= nx || v >= ny ? 0 : of[index(u, v, z)]!);
+        return (one(ix, iy) * (1 - fx) + one(ix + 1, iy) * fx) * (1 - fy) + (one(ix, iy + 1) * (1 - fx) + one(ix + 1, iy + 1) * fx) * fy;
+    };
     for (let z = 0, i = 0; z < nz; z++)
         for (let y = 0; y < ny; y++)
             for (let x = 0; x < nx; x++, i++) {
                 const power = gas.flame[i]!, smoke = Math.max(gas.smoke[i]!, 0) * EXTINCTION;
                 let f = power > 0 ? power / (power + BURNING) : 0, r = 0;
                 if (f > 0) {
-                    const above = z + 1 < nz ? i + nx * ny : i, root = rootRate[i]! > 0 ? i : above;
+                    const up = Math.max(gas.velocity[3 * i + 2]!, 0.1);
+                    const from = [x - clamp(gas.velocity[3 * i]! / up, -1, 1), y - clamp(gas.velocity[3 * i + 1]! / up, -1, 1), z - 1] as const;
+                    const fed = z > 0 ? below(flame, ...from) : 0, above = z + 1 < nz ? i + nx * ny : i, root = rootRate[i]! > 0 ? i : above;
+                    if (fed > 0) r = Math.min((2 * fed) / f, 1) * (below(rise, ...from) / fed + gas.cell);
                     if (rootRate[root]! > 0) {
-                        r = Math.max(gas.origin[2] + (z + 0.5) * gas.cell - rootHeight[root]! / rootRate[root]!, -gas.cell);
-                    } else if (z > 0) {
-                        const up = Math.max(gas.velocity[3 * i + 2]!, 0.1);
-                        const bx = clamp(Math.round(x - clamp(gas.velocity[3 * i]! / up, -1, 1)), 0, nx - 1);
-                        const by = clamp(Math.round(y - clamp(gas.velocity[3 * i + 1]! / up, -1, 1)), 0, ny - 1), below = index(bx, by, z - 1);
-                        r = flame[below]! > 0 ? Math.min((2 * flame[below]!) / f, 1) * (rise[below]! + gas.cell) : 0;
+                        const height = Math.max(gas.origin[2] + (z + 0.5) * gas.cell - rootHeight[root]! / rootRate[root]!, -gas.cell);
+                        r = height + (r - height) * (fed > 0 ? PASSING : 0);
                     }
                     flame[i] = f;
-                    rise[i] = r;
+                    rise[i] = f * r;
                     f *= 1 - step(0.6 * FLAME_END, FLAME_END, r);
                 }
                 cells[4 * i] = 255 * f;
@@ -151,6 +158,12 @@ export function fireOf(gas: Gas, surface: Surface): Fire {
             }
     const place = (at: number[], more: number) => at.map((x, c) => gas.origin[c]! + (x + more) * gas.cell) as [number, number, number];
     return { size: gas.size, origin: gas.origin, cell: gas.cell, cells, bounds: low[0]! < high[0]! ? { low: place(low, -1), high: place(high, 1) } : null };
+}
+
+/** Smaller cells, as the shader reads them. */
+export function refined(fire: Fire): Fire {
+    const { size, cells } = refineGas(fire.size, fire.cells);
+    return { ...fire, size, cells, cell: (fire.cell * fire.size[0]) / size[0] };
 }
 
 /** The light of flames, or without gas that of what burns, gathered into the strongest cells of a coarse grid. */

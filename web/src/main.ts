@@ -7,7 +7,7 @@ import type { Frame, FromWorker, Shape, ToWorker } from "./messages.js";
 import { readObj } from "./obj.js";
 import { Renderer } from "./renderer.js";
 import { FireSound } from "./sound.js";
-import { fromLink, MATERIALS, PLACES, RANGES, TIME_STEP, toLink, toYaml, type Place, type Point, type Settings, type Slider } from "./scene.js";
+import { fromLink, MATERIALS, PLACES, RANGES, SHEET, TIME_STEP, toLink, toYaml, type Place, type Point, type Settings, type Slider } from "./scene.js";
 
 type Tool = "match" | "breath" | "hand" | "pin";
 const LIVE: Slider[] = ["pace", "wind", "gravity"];
@@ -20,7 +20,7 @@ const HINTS: Record<Tool, string> = {
 };
 /** Where the camera stands and looks, m. */
 const VIEWS: Record<Place, { at: Point; from: Point }> = {
-    table: { at: [0, -0.022, 0.012], from: [0.085, -0.455, 0.215] },
+    table: { at: [0, -0.012, 0.022], from: [0.085, -0.47, 0.178] },
     hung: { at: [0, 0, 0.2], from: [0.17, -0.88, 0.31] },
     ball: { at: [0, -0.01, 0.05], from: [0.11, -0.5, 0.26] },
 };
@@ -99,12 +99,21 @@ function start(): void {
 
 function send(message: ToWorker): void { worker.postMessage(message); }
 
-/** A view of the whole sheet; portrait screens stand further away. */
+/** A view of the whole sheet: on portrait screens from further away, until its corners are on them. */
 function place(): void {
-    const away = Math.max(1, 0.95 * Math.sqrt(innerHeight / innerWidth) + 0.25);
-    const { at, from } = VIEWS[shape ? "table" : settings.place];
+    const where = shape ? "table" : settings.place, { at, from } = VIEWS[where], { camera } = renderer;
+    const corners = [-1, 1].flatMap((x) => [-1, 1].map((y) => (where === "hung" ? [x * SHEET.width, 0, 0.38 + y * SHEET.height] : [x * SHEET.width, y * SHEET.height, 0])));
     controls.target.set(...at);
-    renderer.camera.position.set(...from).sub(controls.target).multiplyScalar(away).add(controls.target);
+    camera.aspect = innerWidth / innerHeight;
+    const up = where === "hung" ? 1 : Math.max(1, 2.6 - 2 * camera.aspect); // a tall screen has room for a look from higher up
+    camera.updateProjectionMatrix();
+    for (let away = 1; away < 3; away *= 1.04) {
+        camera.position.set(from[0], from[1], up * from[2]).sub(controls.target).multiplyScalar(away).add(controls.target);
+        camera.lookAt(controls.target);
+        camera.updateMatrixWorld();
+        if (corners.every((corner) => Math.abs(new Vector3(...corner).multiplyScalar(0.5).project(camera).x) < 0.97)) break;
+    }
+    controls.maxDistance = Math.max(1.1, 1.2 * camera.position.distanceTo(controls.target));
     renderer.setPlace(shape ? "table" : settings.place);
     keyAt = settings.place === "hung" ? [0, -0.002, 0.1] : [0, -0.02, settings.place === "ball" ? 0.118 : 0.002];
     controls.update();

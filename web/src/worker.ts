@@ -1,6 +1,6 @@
 // The simulation, away from the page's own thread. The page asks for one frame at a time, so nothing queues up.
 import { load, type Handle, type Simulation, type Singe } from "singe";
-import { fireOf, lightsOf, meshOf } from "./fields.js";
+import { fireOf, lightsOf, meshOf, refined } from "./fields.js";
 import type { FromWorker, Shape, ToWorker } from "./messages.js";
 import { BALL, gridOf, MATCH, materialOptions, PLACES, simulationOptions, TIME_STEP, type Point, type Settings, type Stroke } from "./scene.js";
 
@@ -181,8 +181,8 @@ function plannedMatch(time: number): Point | null {
 
 function frame(steps: number, ms: number): void {
     const surface = sim!.draw(), view = sim!.view(), stats = sim!.stats();
-    const mesh = meshOf(surface, view.time, settings.pace), gas = sim!.gas(), fire = gas ? fireOf(gas, surface) : null;
-    const lights = lightsOf(fire, mesh), positions = view.position;
+    const mesh = meshOf(surface, view.time, settings.pace), gas = sim!.gas(), cells = gas ? fireOf(gas, surface) : null;
+    const lights = lightsOf(cells, mesh), fire = cells && refined(cells), positions = view.position;
     const places = pins.map(({ rest, handle }) => { // beside the first particle that the pin holds
         const particle = sim!.pinParticles(handle)[0] ?? 0;
         return [0, 1, 2].map((c) => positions[4 * particle + c]! + rest[c]! - view.rest_position[4 * particle + c]!) as Point;

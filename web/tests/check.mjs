@@ -8,6 +8,7 @@ import { mkdir, readFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { chromium } from "playwright-core";
 import { serve } from "../serve.mjs";
+import { refineGas } from "../view/gas.js";
 import { CHROMIUM, CHROMIUM_ARGS } from "./browsers.mjs";
 
 const only = process.env.ONLY, words = process.argv.slice(2), folder = words[0] === "--pictures" ? words[1] : null;
@@ -227,6 +228,33 @@ const CASES = {
         await page.evaluate(axe);
         const { violations } = await page.evaluate(() => globalThis.axe.run());
         assert.deepEqual(violations.filter(({ impact }) => ["serious", "critical"].includes(impact)).map(({ id, nodes }) => `${id}: ${nodes[0].html}`), []);
+    },
+    async "refined gas is the quadratic spline of its cells"() {
+        const size = [6, 5, 4], cells = new Uint8Array(4 * 6 * 5 * 4), at = (x, y, z) => 4 * (x + 6 * (y + 5 * z));
+        cells[at(2, 2, 1)] = 250;
+        cells[at(3, 2, 2)] = 200;
+        const clamped = (i, n) => Math.min(Math.max(i, 0), n - 1);
+        /** The sum of weights of one axis times another's. @param weights of the cells from floor(u - start) on */
+        const sum = (data, n, p, weights, start) => {
+            let total = 0;
+            const [x, y, z] = p.map((u) => Math.floor(u - start)), w = p.map((u) => weights(u - start - Math.floor(u - start)));
+            for (let k = 0; k < w[2].length; k++)
+                for (let j = 0; j < w[1].length; j++)
+                    for (let i = 0; i < w[0].length; i++)
+                        total += w[0][i] * w[1][j] * w[2][k] * data[4 * (clamped(x + i, n[0]) + n[0] * (clamped(y + j, n[1]) + n[1] * clamped(z + k, n[2])))];
+            return total;
+        };
+        const spline = (p) => sum(cells, size, p, (f) => [0.5 * (1 - f) ** 2, 0.75 - (f - 0.5) ** 2, 0.5 * f * f], 1);
+        const linear = (data, n, p) => sum(data, n, p, (f) => [1 - f, f], 0.5), fine = refineGas(size, cells);
+        let worst = 0, worstBefore = 0;
+        for (let k = 0; k < 600; k++) {
+            const p = [1.2 + 0.0057 * k, 1.5 + ((k * 0.37) % 2), 1 + ((k * 0.71) % 2)];
+            worst = Math.max(worst, Math.abs(linear(fine.cells, fine.size, p.map((u) => 2 * u)) - spline(p)));
+            worstBefore = Math.max(worstBefore, Math.abs(linear(cells, size, p) - spline(p)));
+        }
+        assert.deepEqual(fine.size, [12, 10, 8]);
+        assert.ok(worst < 25 && worstBefore > 80, `${worst} of 255 beside the spline, ${worstBefore} before`);
+        assert.ok(fine.cells[4 * (6 + 12 * (4 + 10 * 2)) + 3] > 10); // the gradient
     },
     async "without WebGL 2 the page says so"() {
         const other = await page.context().browser().newPage();

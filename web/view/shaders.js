@@ -276,7 +276,10 @@ void main() {
     gl_Position = vec4(position.xy, 0.0, 1.0);
 }`;
 
-/** Marches through flame and smoke (fire_shade.c, fire_march.c). Light, and in alpha what is left of what lies behind. */
+/**
+ * Marches through flame and smoke (fire_shade.c, fire_march.c): flames are thin shells of soot, and a step takes its
+ * mean from the depths of both its ends. Light, and in alpha what is left of what lies behind.
+ */
 export const FIRE = /* glsl */ `${NOISE}${GLOW}
 in vec2 at;
 uniform sampler3D fireMap;
@@ -288,7 +291,9 @@ uniform vec4 fireLights[6];
 uniform vec3 fireColour;
 out vec4 colour;
 
-const float BASE_SPEED = 0.14, BUOYANCY = 5.0, EDDY_RATE = 8.0, FLAME_HEIGHT = 0.058, FLAME_END = 0.17, EDGE = 0.19;
+const float BASE_SPEED = 0.14, BUOYANCY = 3.0, EDDY_RATE = 8.0, EDDY_WIDE = 0.014, EDDY_FINE = 0.006, FLAME_HEIGHT = 0.058, FLAME_END = 0.17;
+const float SOOT_DENSE = 42.0, SOOT_OPAQUE = 14.0, BLUE_DENSE = 3.5, SHELL_RISE = 0.0005, SHELL = 0.0018, EDGE = 0.17, TAPER = 0.40;
+const float STAND_OFF = 0.0006, SOOT_BEGINS = 0.0038, SOOT_FULL = 0.0105, OUTSIDE = -0.006;
 
 float passed(float height) {
     float speed = sqrt(BASE_SPEED * BASE_SPEED + 2.0 * BUOYANCY * max(height, 0.0));
@@ -298,23 +303,44 @@ vec4 eddies(vec3 p, float gone, float width, float often) {
     vec2 q = mat2(0.829, 0.559, -0.559, 0.829) * p.xy / width;
     return noise4(vec3(q.x + 0.21 * gone, q.y + 0.17 * gone, -often * gone));
 }
-/** flame, height above the paper times flame (m), smoke (1/m) */
-vec3 gas(vec3 p) { return texture(fireMap, (p - origin) / span).rgb * vec3(1.0, FLAME_END, 20.0); }
+/** flame, height above the paper times flame (m), smoke (1/m), gradient of flame (1/m) */
+vec4 gas(vec3 p) { return texture(fireMap, (p - origin) / span) * vec4(1.0, FLAME_END, 20.0, float(textureSize(fireMap, 0).x) / span.x); }
 
-vec3 flame(vec3 c, vec4 wide, vec4 fine, out float opaque) {
-    opaque = 0.0;
-    float rise = c.g / c.r, stand = stepf(0.0006, 0.0024, rise);
-    if (stand <= 0.0) return vec3(0.0);
-    float tall = max(rise, 0.0) / (FLAME_HEIGHT * (1.0 + 0.6 * wide.b + 0.25 * fine.b)), torn = stepf(0.0, 0.018, rise), present = min(5.0 * c.r, 1.0);
-    float edge = c.r + present * ((0.05 + 0.13 * torn) * wide.b + (0.03 + 0.10 * torn) * fine.b) - EDGE - 0.09 * tall * tall;
-    float body = stepf(0.0, 0.05, edge);
-    if (body <= 0.0) return vec3(0.0);
-    float fold = 0.8 * wide.a + 0.35 * fine.b, sheet = max(1.0 - 20.0 * fold * fold, 0.0);
-    float soot = stepf(0.0035, 0.019, rise + 0.003 * fine.a), cooling = stepf(0.4, 1.5, tall);
-    float thin = mix(0.14, 0.04 + 1.2 * sheet * sheet, torn) * body;
-    float hot = 0.50 + 0.3 * stepf(0.05, 0.3, edge) + 0.2 * sheet - 0.45 * cooling + 0.12 * fine.a;
-    opaque = 6.0 * thin * soot;
-    return flameColour(clamp(hot, 0.0, 1.0)) * 14.0 * thin * soot + vec3(0.22, 0.50, 1.25) * 1.2 * body * stand * (1.0 - soot);
+/** light of soot and root, 1/m; depth inside the edge, m; light there; its integral from the edge; extinction, 1/m */
+struct Point { vec3 soot, root; float depth, profile, shell, opaque; };
+
+Point flame(vec4 c, vec4 wide, vec4 fine) {
+    Point point = Point(vec3(0.0), vec3(0.0), OUTSIDE, 0.0, 0.0, 0.0);
+    if (c.r <= 0.02) return point;
+    float rise = max(c.g / c.r, 0.0), torn = stepf(0.0, 0.02, rise), tall = rise / (FLAME_HEIGHT * (1.0 + 0.45 * wide.b + 0.2 * fine.a));
+    float coarse = 0.08 + 0.55 * torn + 0.15 * min(tall, 1.0), small = 0.03 + 0.26 * torn;
+    float edge = c.r * (1.0 + coarse * wide.b + small * (0.6 - 2.2 * abs(fine.b))) - EDGE - TAPER * tall - 0.2 * (1.0 - torn);
+    float noisy = c.r * (coarse / EDDY_WIDE + small / EDDY_FINE);
+    point.depth = max(edge * inversesqrt(c.a * c.a + 0.4 * noisy * noisy + 1.0), OUTSIDE);
+
+    float tip = stepf(0.35, 1.4, tall), fill = mix(0.02, 0.12, tip), outer = clamp(point.depth, 0.0, SHELL_RISE), inner = max(point.depth - SHELL_RISE, 0.0);
+    float fading = (1.0 - fill) * exp(-inner / SHELL);
+    point.profile = outer / SHELL_RISE * (fill + fading);
+    point.shell = 0.5 * outer * outer / SHELL_RISE + fill * inner + SHELL * (1.0 - fill - fading);
+
+    float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.001 * fine.a);
+    float hot = 0.35 + 0.42 * stepf(0.0, 0.25, edge) - 0.3 * tip + 0.25 * wide.a + 0.15 * fine.r;
+    soot *= soot;
+    float root = stepf(STAND_OFF, 4.0 * STAND_OFF, rise) * (1.0 - soot);
+    soot *= 0.3 + 1.2 * stepf(-0.5, 0.5, 0.7 * wide.a + 0.6 * fine.r);
+    point.opaque = SOOT_OPAQUE * soot;
+    point.soot = flameColour(clamp(hot, 0.0, 1.0)) * SOOT_DENSE * soot;
+    point.root = vec3(0.12, 0.42, 1.25) * BLUE_DENSE * root;
+    return point;
+}
+
+/** The mean light of a step between two points, per metre, and its extinction. */
+vec4 between(Point a, Point b, float step_) {
+    if (max(a.depth, b.depth) <= 0.0) return vec4(0.0);
+    float apart = abs(b.depth - a.depth), part = 0.5 * (a.profile + b.profile);
+    if (apart > 5e-5) part = min(abs(b.shell - a.shell) / min(apart, step_), 1.0);
+    float end = a.depth > b.depth ? (b.depth <= 0.0 ? 0.0 : 0.5) : (a.depth > 0.0 ? 0.5 : 1.0); // of the end inside
+    return part * vec4(mix(a.soot, b.soot, end) + mix(a.root, b.root, end), mix(a.opaque, b.opaque, end));
 }
 
 /** The flame of a match: a drop around its head, dark at the wood, blue at its foot. */
@@ -341,31 +367,33 @@ void main() {
     vec3 light = vec3(0.0);
     float clear = 1.0, jitter = fract(52.9829 * fract(dot(gl_FragCoord.xy, vec2(0.06711, 0.00584)) + 0.618 * fract(time * 7.0)));
     if (t < end) {
-        float pace = clamp((end - t) / 90.0, 0.0024, 0.008);
+        float short_ = max((end - t) / 140.0, 0.0022), pace = 2.0 * short_;
+        Point here = Point(vec3(0.0), vec3(0.0), OUTSIDE, 0.0, 0.0, 0.0);
         t += pace * jitter;
-        for (int i = 0; i < 110 && t < end && clear > 0.02; i++) {
-            vec3 p = eye + ray * t, c = gas(p), j = vec3(0.0);
-            float dense = 0.0;
-            if (c.r > 0.02 || c.b > 0.1) {
-                float gone = passed(c.r > 0.01 ? c.g / c.r : p.z - paperHeight);
-                vec4 wide = eddies(p, gone, 0.019, 1.0);
-                vec3 q = p + vec3(wide.rg, 0.0) * 0.0055;
-                vec4 fine = eddies(q, gone, 0.0075, 1.7);
-                c = gas(q + vec3(fine.rg, 0.0) * 0.0020);
-                if (c.r > 0.05) j = flame(c, wide, fine, dense);
-                float smoke = c.b * max(1.0 + 0.9 * wide.a, 0.0);
+        for (int i = 0; i < 140 && t < end && clear > 0.02; i++) {
+            vec3 p = eye + ray * t;
+            vec4 c = gas(p), j = vec4(0.0);
+            Point there = Point(vec3(0.0), vec3(0.0), OUTSIDE, 0.0, 0.0, 0.0);
+            if (c.r > 0.004 || c.b > 0.1) {
+                float gone = passed(c.r > 0.004 ? c.g / c.r : p.z - paperHeight);
+                vec4 wide = eddies(p, gone, EDDY_WIDE, 1.0);
+                vec3 q = p + vec3(wide.rg, 0.0) * 0.0039;
+                vec4 fine = eddies(q, gone, EDDY_FINE, 1.6);
+                c = gas(q + vec3(fine.rg, 0.0) * 0.0013);
+                there = flame(c, wide, fine);
+                float smoke = max(c.b * (1.0 + 0.9 * wide.a), 0.0);
                 if (smoke > 0.0) {
                     vec3 lamp = lampColour * 0.10 / max(dot(lampAt - p, lampAt - p), 0.02), glow = vec3(0.0);
                     for (int k = 0; k < 6; k++) { vec3 f = fireLights[k].xyz - p; glow += fireColour * fireLights[k].w / (dot(f, f) + 0.003); }
-                    j += 0.05 * smoke * (lamp + 0.35 * min(glow, vec3(1.5)));
-                    dense += smoke;
+                    j += vec4(0.05 * smoke * (lamp + 0.35 * min(glow, vec3(1.5))), smoke);
                 }
-            } else {
-                t += pace; // a longer step through clear air
             }
-            float depth = dense * pace, kept = exp(-depth);
-            light += j * clear * pace * (depth > 1e-3 ? (1.0 - kept) / depth : 1.0);
+            j += between(here, there, pace);
+            here = there;
+            float depth = j.a * pace, kept = exp(-depth);
+            light += j.rgb * clear * pace * (depth > 1e-3 ? (1.0 - kept) / depth : 1.0);
             clear *= kept;
+            pace = there.depth > -2.0 * short_ ? short_ : 2.0 * short_;
             t += pace;
         }
     }

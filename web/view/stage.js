@@ -1,5 +1,6 @@
 // Draws a frame by WebGL 2: ground, sheets and shapes in the scene's light, then fire, a lens's halo and the film's curve,
 // with the shaders of the page; or one field of the sheets by colour.
+import { refineGas } from "./gas.js";
 import * as glsl from "./shaders.js";
 import { glowBytes, noiseBytes } from "./tables.js";
 import { FIELDS, VERTEX_BYTES } from "./frame.js";
@@ -389,7 +390,8 @@ export class Stage {
             last = sheet;
         }
         if (this.gas) gl.deleteTexture(this.gas);
-        this.gas = frame.gas ? this.texture3d(...frame.gas.size, frame.gas.cells, gl.CLAMP_TO_EDGE) : null;
+        const gas = frame.gas && refineGas(frame.gas.size, frame.gas.cells);
+        this.gas = gas && this.texture3d(...gas.size, gas.cells, gl.CLAMP_TO_EDGE);
     }
 
     /** The matrix of a camera {eye, target, up, fov}, which sees the whole of the scene's picture. */
