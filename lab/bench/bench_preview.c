@@ -1,4 +1,5 @@
-// singe bench preview: the cost of a picture of a synthetic burning sheet of about 100,000 triangles.
+// singe bench preview and picture: the cost of pictures of a synthetic burning sheet of about 100,000 triangles, and how far
+// they are from pictures with 256 samples.
 #include "bench/bench.h"
 
 #include <math.h>
@@ -15,6 +16,18 @@ static const BenchColumn columns[COLUMNS] = {
     [PICTURE] = {"picture", NULL, 8, NULL},   [TRIANGLES] = {"triangles", "%.0f", 10, NULL},
     [SAMPLES] = {"samples", "%.0f", 8, NULL}, [SECONDS] = {"cpu_s", "%.3f", 8, NULL},
     [MIN] = {"min_cpu_s", "%.3f", 12, NULL},  [WALL] = {"wall_s", "%.3f", 8, NULL},
+};
+
+enum { NAME, PIXELS, TAKEN, PICTURE_SECONDS, PICTURE_WALL, PICTURE_ERROR, PICTURE_BOIL, PICTURE_COLUMNS };
+
+static const BenchColumn picture_columns[PICTURE_COLUMNS] = {
+    [NAME] = {"picture", NULL, 8, NULL},
+    [PIXELS] = {"pixels", "%.0f", 8, NULL},
+    [TAKEN] = {"samples", "%.0f", 8, NULL},
+    [PICTURE_SECONDS] = {"cpu_s", "%.3f", 8, NULL},
+    [PICTURE_WALL] = {"wall_s", "%.3f", 8, NULL},
+    [PICTURE_ERROR] = {"rms_error", "%.2f", 10, NULL},
+    [PICTURE_BOIL] = {"rms_boil", "%.2f", 10, NULL},
 };
 
 enum { CELLS_X = 198, CELLS_Y = 280, ACROSS = CELLS_X + 1, REPEATS = 5 };
@@ -157,51 +170,163 @@ static const Shot shots[] = {
     {"firenear", {0.03f, -0.24f, 0.15f}, {0.01f, -0.005f, 0.03f}, 0.5f, 0, 0, true},
 };
 
-static SingeResult preview_bench_measure(const BenchOptions *options, const Shot *shot, const SingeSurface *surface,
-                                         BenchTable *table, SingeError *error) {
-    PreviewDef def = preview_default();
-    def.width = 1280;
-    def.height = 720;
-    def.samples = 16;
-    def.thread_count = options->threads;
-    memcpy(def.camera.eye, shot->eye, sizeof shot->eye), memcpy(def.camera.target, shot->target, sizeof shot->target);
-    def.camera.fov = shot->fov;
-    def.camera.aperture = shot->aperture;
-    def.shutter = shot->shutter;
-    def.sky = PREVIEW_SKY_STUDIO;
-    double cpu[REPEATS], wall[REPEATS];
-    uint8_t *rgb = malloc((size_t)def.width * (size_t)def.height * 3);
-    Preview *preview = NULL;
-    SingeResult result = rgb ? preview_create(&def, (SingeAllocator){0}, &preview, error) : SINGE_ERROR_MEMORY;
-    Flames *flames = shot->fire && !result ? make_flames() : NULL;
-    if (shot->fire && !result) result = flames ? preview_set_gas(preview, &flames->gas, error) : SINGE_ERROR_MEMORY;
+/// Pictures of a shot in one size. `def` must outlive `preview`.
+typedef struct Easel {
+    PreviewDef def;
+    Preview *preview;
+    Flames *flames;
+    uint8_t *rgb;
+} Easel;
 
-    // the first picture also prepares the table's appearance, which a film does once
-    if (!result) result = preview_draw(preview, surface, 1, rgb, error);
+static void easel_end(Easel *easel) {
+    preview_destroy(easel->preview);
+    free(easel->rgb);
+    free(easel->flames);
+    *easel = (Easel){.preview = NULL};
+}
+
+static SingeResult easel_begin(const BenchOptions *options, const Shot *shot, int width, int samples, Easel *easel,
+                               SingeError *error) {
+    PreviewDef *def = &easel->def;
+    *easel = (Easel){.def = preview_default()};
+    def->width = width;
+    def->height = width * 9 / 16;
+    def->samples = samples;
+    def->thread_count = options->threads;
+    memcpy(def->camera.eye, shot->eye, sizeof shot->eye);
+    memcpy(def->camera.target, shot->target, sizeof shot->target);
+    def->camera.fov = shot->fov;
+    def->camera.aperture = shot->aperture;
+    def->shutter = shot->shutter;
+    def->sky = PREVIEW_SKY_STUDIO;
+    easel->rgb = malloc((size_t)def->width * (size_t)def->height * 3);
+    if (shot->fire) easel->flames = make_flames();
+    if (!easel->rgb || (shot->fire && !easel->flames)) return SINGE_ERROR_MEMORY;
+    SingeResult result = preview_create(def, (SingeAllocator){0}, &easel->preview, error);
+    if (!result && shot->fire) result = preview_set_gas(easel->preview, &easel->flames->gas, error);
+    return result;
+}
+
+/// Median and least seconds of processor time, and median seconds, of pictures after the first: that one also prepares the
+/// table's appearance, which a film does once.
+static SingeResult easel_time(Easel *easel, const SingeSurface *surface, double *cpu, double *min, double *wall,
+                              SingeError *error) {
+    double used[REPEATS], passed[REPEATS];
+    SingeResult result = preview_draw(easel->preview, surface, 1, easel->rgb, error);
     for (int i = 0; i < REPEATS && !result; i++) {
-        double began = machine_cpu_clock(), clock = machine_clock();
-        result = preview_draw(preview, surface, 1 + i / 24.0, rgb, error);
-        cpu[i] = machine_cpu_clock() - began, wall[i] = machine_clock() - clock;
+        const double began = machine_cpu_clock(), clock = machine_clock();
+        result = preview_draw(easel->preview, surface, 1 + i / 24.0, easel->rgb, error);
+        used[i] = machine_cpu_clock() - began;
+        passed[i] = machine_clock() - clock;
     }
 
-    preview_destroy(preview);
-    free(rgb), free(flames);
     if (result) return result;
-    double seconds = numbers_median(cpu, REPEATS);
-    BenchValue row[COLUMNS] = {
-        [PICTURE] = bench_text(shot->name),    [TRIANGLES] = bench_number(surface->triangle_count),
-        [SAMPLES] = bench_number(def.samples), [SECONDS] = bench_number(seconds),
-        [MIN] = bench_number(cpu[0]),          [WALL] = bench_number(numbers_median(wall, REPEATS))};
+    *cpu = numbers_median(used, REPEATS);
+    *min = used[0];
+    *wall = numbers_median(passed, REPEATS);
+    return SINGE_OK;
+}
+
+static SingeResult preview_bench_measure(const BenchOptions *options, const Shot *shot, const SingeSurface *surface,
+                                         BenchTable *table, SingeError *error) {
+    Easel easel;
+    double cpu, min, wall;
+    SingeResult result = easel_begin(options, shot, 1280, 16, &easel, error);
+    if (!result) result = easel_time(&easel, surface, &cpu, &min, &wall, error);
+    easel_end(&easel);
+    if (result) return result;
+    BenchValue row[COLUMNS] = {[PICTURE] = bench_text(shot->name), [TRIANGLES] = bench_number(surface->triangle_count),
+                               [SAMPLES] = bench_number(16),       [SECONDS] = bench_number(cpu),
+                               [MIN] = bench_number(min),          [WALL] = bench_number(wall)};
     return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
+}
+
+// ---- the error
+
+enum { PICTURE_WIDTH = 960, REFERENCE_SAMPLES = 256, PAN_FRAMES = 2 };
+
+/// Draws the shot in the reference's size, the second frame with the camera turned by a third of a pixel. Returns the
+/// pictures, one after the other; NULL after an error.
+static uint8_t *draw_pan(const BenchOptions *options, const Shot *shot, const SingeSurface *surface, int width,
+                         int samples, size_t *bytes, SingeError *error) {
+    *bytes = (size_t)width * (size_t)(width * 9 / 16) * 3;
+    uint8_t *pictures = malloc(PAN_FRAMES * *bytes);
+    SingeResult result = pictures ? SINGE_OK : SINGE_ERROR_MEMORY;
+    for (int frame = 0; frame < PAN_FRAMES && !result; frame++) {
+        Shot aimed = *shot;
+        const float reach = hypotf(aimed.target[1] - aimed.eye[1], aimed.target[2] - aimed.eye[2]);
+        aimed.target[0] += (float)frame * reach * aimed.fov * 16 / 9 / (float)width / 3;
+        Easel easel;
+        result = easel_begin(options, &aimed, width, samples, &easel, error);
+        if (!result) result = preview_draw(easel.preview, surface, 1 + frame / 24.0, easel.rgb, error);
+        if (!result) memcpy(pictures + (size_t)frame * *bytes, easel.rgb, *bytes);
+        easel_end(&easel);
+    }
+
+    if (!result) return pictures;
+    free(pictures);
+    return NULL;
+}
+
+static SingeResult picture_measure(const BenchOptions *options, const Shot *shot, const SingeSurface *surface,
+                                   BenchTable *table, SingeError *error) {
+    Easel easel;
+    double cpu, min, wall;
+    SingeResult result = easel_begin(options, shot, PICTURE_WIDTH, 16, &easel, error);
+    if (!result) result = easel_time(&easel, surface, &cpu, &min, &wall, error);
+    easel_end(&easel);
+    if (result) return result;
+
+    // e of both frames, and how much it changes between them
+    const int width = options->quick ? 160 : 320;
+    size_t bytes;
+    uint8_t *drawn = draw_pan(options, shot, surface, width, 16, &bytes, error);
+    uint8_t *whole = drawn ? draw_pan(options, shot, surface, width, REFERENCE_SAMPLES, &bytes, error) : NULL;
+    double squares = 0, changes = 0;
+    for (size_t i = 0; whole && i < bytes; i++) {
+        const double first = (double)drawn[i] - whole[i], second = (double)drawn[bytes + i] - whole[bytes + i];
+        squares += 0.5 * (first * first + second * second);
+        changes += (second - first) * (second - first);
+    }
+    const bool good = whole;
+    free(drawn);
+    free(whole);
+    if (!good) return error->code ? error->code : SINGE_ERROR_MEMORY;
+
+    BenchValue row[PICTURE_COLUMNS] = {[NAME] = bench_text(shot->name),
+                                       [PIXELS] = bench_number(PICTURE_WIDTH * (PICTURE_WIDTH * 9 / 16)),
+                                       [TAKEN] = bench_number(16),
+                                       [PICTURE_SECONDS] = bench_number(cpu),
+                                       [PICTURE_WALL] = bench_number(wall),
+                                       [PICTURE_ERROR] = bench_number(sqrt(squares / (double)bytes)),
+                                       [PICTURE_BOIL] = bench_number(sqrt(changes / (double)bytes))};
+    return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
+}
+
+typedef SingeResult ShotFn(const BenchOptions *options, const Shot *shot, const SingeSurface *surface,
+                           BenchTable *table, SingeError *error);
+
+static SingeResult measure_shots(const BenchOptions *options, ShotFn *measure, const Shot *first, size_t count,
+                                 BenchTable *table, SingeError *error) {
+    SingeSurface surface;
+    void *block = make_surface(&surface);
+    SingeResult result = block ? SINGE_OK : SINGE_ERROR_MEMORY;
+    for (size_t i = 0; i < count && !result; i++) result = measure(options, &first[i], &surface, table, error);
+    free(block);
+    return result;
 }
 
 SingeResult bench_preview(const BenchOptions *options, BenchTable *table, SingeError *error) {
     *table = table_begin("preview", columns, COLUMNS, table->text);
-    SingeSurface surface;
-    void *block = make_surface(&surface);
-    SingeResult result = block ? SINGE_OK : SINGE_ERROR_MEMORY;
-    for (size_t i = 0; i < sizeof shots / sizeof *shots && !result; i++)
-        result = preview_bench_measure(options, &shots[i], &surface, table, error);
-    free(block);
-    return result;
+    return measure_shots(options, preview_bench_measure, shots, sizeof shots / sizeof *shots, table, error);
+}
+
+SingeResult bench_picture(const BenchOptions *options, BenchTable *table, SingeError *error) {
+    static const Shot near[] = {
+        {"table", {0.05f, -0.40f, 0.36f}, {0, -0.012f, 0}, 0.58f, 0, 0, false},
+        {"lens", {0.08f, -0.28f, 0.09f}, {0, 0.02f, 0.005f}, 0.52f, 0.003f, 0.02f, false},
+        {"flames", {0.08f, -0.28f, 0.09f}, {0, 0.02f, 0.005f}, 0.52f, 0.003f, 0.02f, true},
+    };
+    *table = table_begin("picture", picture_columns, PICTURE_COLUMNS, table->text);
+    return measure_shots(options, picture_measure, near, sizeof near / sizeof *near, table, error);
 }

@@ -27,8 +27,9 @@ typedef struct Block {
     Float3 fire_light[LANES];
     float fire_clear[LANES];
     float low[LANES], high[LANES];
-    float clear[LANES];           ///< of a shadow ray
-    bool hidden;                  ///< whether a ray to sun or sky was blocked
+    float shown[LANES], squares[LANES]; ///< sums of the samples' luminance, as l / (1 + l), and of its square
+    float clear[LANES];                 ///< of a shadow ray
+    bool hidden;                        ///< whether a ray to sun or sky was blocked
     float spread;                 ///< pixels over which lens and shutter spread what is seen, the largest of the points
     Float3 lit[LIT_KINDS][LANES]; ///< light before occlusion, summed over samples
     float lit_seen[LIT_KINDS][LANES], lit_asked[LIT_KINDS][LANES];      ///< luminance found visible, and tested
@@ -94,5 +95,9 @@ void seen_write(const Preview *preview, size_t pixel, const Block *block, int la
 /// along columns, and adds the light to the picture.
 void seen_smooth(Preview *preview, Block *block);
 void seen_finish(Preview *preview, Block *block);
+
+// soften.c
+/// Smooths the noise that is left where lens and shutter blur. Called per block once the light has been added.
+void soften(Preview *preview, Block *block);
 
 #endif

@@ -108,6 +108,11 @@ static void see_ground(const Preview *preview, Block *block, int lane) {
     ground_shade(preview, distance, &preview->table[pixel_index(preview, block, lane)], point);
 }
 
+/// The length of a motion as the eye sees it, along a unit ray.
+static float moved_across(Float3 motion, Float3 ray) {
+    return float3_length(float3_mad(motion, ray, -float3_dot(motion, ray)));
+}
+
 /// The point that a lane's ray sees; false if it passes through a hole and must continue.
 static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
     Float3 o = block->origin[lane], d = block->direction[lane], normal = {0, 0, 1}, found = {0, 0, 1};
@@ -141,7 +146,7 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
     if (shape) {
         point->hit = true;
         point->temperature = shape->temperature;
-        point->moved = preview->def.shutter * float3_length(float3_load(shape->velocity));
+        point->moved = preview->def.shutter * moved_across(float3_load(shape->velocity), d);
         point->normal = point->geometric = float3_dot(found, point->view) >= 0 ? found : float3_scale(found, -1);
         shape_shade(preview, shape, moment, point);
         return true;
@@ -163,8 +168,8 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
     point->temperature = state.temperature;
     point->burn = state.burn;
     if (preview->def.shutter > 0)
-        point->moved = float3_length(
-            float3_sub(float3_load(preview->scene.moved[1][t[0]]), float3_load(preview->scene.moved[0][t[0]])));
+        point->moved = moved_across(
+            float3_sub(float3_load(preview->scene.moved[1][t[0]]), float3_load(preview->scene.moved[0][t[0]])), d);
 
     return paper_shade(preview, &state, point) || last;
 }
@@ -268,6 +273,8 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
         float shown = l / (1 + l);
         block->low[i] = minf(block->low[i], shown);
         block->high[i] = maxf(block->high[i], shown);
+        block->shown[i] += shown;
+        block->squares[i] += shown * shown;
     }
 }
 
@@ -302,21 +309,17 @@ static bool is_beside_edge(const Block *block, int lane) {
 
 /// The lanes whose first samples differ, from each other or from their neighbours'. Returns how many.
 static int find_restless(const Block *block, const int *active, int *more) {
-    int hits = 0, samples = 0, count = 0;
+    int count = 0;
     float low = INFINITY, high = -INFINITY;
     for (int i = 0; i < LANES; i++) {
-        hits += active[i] ? block->layer[i].hits : 0;
-        samples += active[i] ? block->layer[i].samples : 0;
         low = minf(low, block->low[i]);
         high = maxf(high, block->high[i]);
     }
 
-    // where a lens or a shutter blurs strongly, all first samples of some pixels miss what their neighbours' hit
-    bool mixed = block->spread > 1 && hits > 0 && hits < samples;
-
     for (int i = 0; i < LANES; i++) {
-        bool calm = !is_edge(&block->layer[i]) && !is_beside_edge(block, i) &&
-                    block->high[i] - block->low[i] < 0.026f && high - low < 0.15f && !mixed;
+        const float range = block->high[i] - block->low[i];
+        bool calm = !is_edge(&block->layer[i]) && !is_beside_edge(block, i) && range < 0.026f && high - low < 0.15f;
+        if (block->spread > 1) calm = range < 0.026f && !is_edge(&block->layer[i]);
         more[i] = active[i] && !calm ? -1 : 0;
         count += more[i] != 0;
     }
@@ -324,28 +327,27 @@ static int find_restless(const Block *block, const int *active, int *more) {
     return count;
 }
 
-/// Takes SAMPLES_FIRST samples of every pixel (half of all where a lens or a shutter blurs a sheet or a shape), and the
-/// rest of pixels that need it. Bare blocks get the first only, and one if its rays are not blocked.
+/// Takes SAMPLES_FIRST samples of every pixel, and the rest of pixels that need it, half of them where a lens or a shutter
+/// blurs a sheet or a shape. Bare blocks get the first only, and two if their rays are not blocked.
 static void add_samples(const Preview *preview, Block *block, const int *active, bool bare, int *taken) {
     int more[LANES], samples = preview->def.samples, first = SAMPLES_FIRST;
     if (samples < first || is_still(preview)) first = samples;
     for (int s = 0; s < first; s++) {
         add_sample(preview, block, active, bare, s, true);
         if (bare && s == 1 && !block->hidden && !is_still(preview)) first = s + 1;
-        if (s == SAMPLES_FIRST - 1 && !bare && block->spread > 1 && samples > first) first = (samples / 2 + 3) / 4 * 4;
-        if (first > samples) first = samples;
     }
 
-    bool on = first < samples && !bare && find_restless(block, active, more);
+    const int most = block->spread > 1 ? (samples + 1) / 2 : samples; // what is left is smoothed (soften.c)
+    bool on = first < most && !bare && find_restless(block, active, more);
     bool ask = block->spread > 1; // only pixels that show several faces need more rays
     for (int i = 0; i < LANES; i++) {
         ask = ask || (active[i] && is_edge(&block->layer[i]));
-        taken[i] = on && more[i] ? samples : first;
+        taken[i] = on && more[i] ? most : first;
     }
 
-    for (int s = first; s < samples && on; s++) {
+    for (int s = first; s < most && on; s++) {
         // after half of the samples: only lanes whose samples still differ visibly
-        if (s == samples / 2 && block->spread <= 1) {
+        if (s == samples / 2) {
             on = false;
             for (int i = 0; i < LANES; i++) {
                 if (more[i] && !is_edge(&block->layer[i]) && block->high[i] - block->low[i] < 0.22f) {
@@ -377,6 +379,7 @@ static void draw_block(Preview *preview, Block *block) {
         block->sum[i] = float3(0, 0, 0);
         block->low[i] = block->fire_from[i] = INFINITY;
         block->high[i] = block->fire_to[i] = -INFINITY;
+        block->shown[i] = block->squares[i] = 0;
         block->time[i] = 0.5f;
         block->layer[i] = (LayerSum){.depth = INFINITY, .sheet = -1, .piece = -1};
     }
@@ -507,6 +510,7 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     draw_all(preview, draw_block);
     draw_all(preview, seen_smooth);
     draw_all(preview, seen_finish);
+    draw_all(preview, soften);
 
     const size_t pixels = (size_t)preview->def.width * (size_t)preview->def.height;
     for (size_t i = 0; layers->beauty && i < pixels; i++) store(layers->beauty, i, preview->picture[i]);

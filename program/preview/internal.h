@@ -101,7 +101,7 @@ typedef struct Point {
     bool lit;                                 ///< false: glow only
     float distance;                           ///< m, from the lens; infinite: nothing
     float temperature, burn;
-    float moved;          ///< m, its way while the shutter is open
+    float moved;          ///< m, its way across the view while the shutter is open
     int32_t sheet, piece; ///< -1: none
     bool hit;             ///< a sheet or a shape
 } Point;

@@ -183,7 +183,7 @@ static Float3 lamps_gather(const EmberLights *l, const Point *point, int count, 
 static void ask_lamps(const Preview *preview, Block *block, const float wanted[LANES], float (*weight)[LIGHT_LIMIT],
                       int sample) {
     const EmberLights *l = &preview->scene.lights;
-    const float golden = 0.61803399f;
+    const float golden = 0.61803399f, dither = hash_unit(preview->def.seed ^ 0x5bd1e995u);
     const int count = preview->scene.light_count;
 
     for (int i = 0; i < LANES; i++) {
@@ -192,7 +192,8 @@ static void ask_lamps(const Preview *preview, Block *block, const float wanted[L
         if (wanted[i] <= 0) continue;
 
         // the lamp in which a random number falls
-        float random = hash_unit(block->key[i] ^ 0x5bd1e995u) + golden * (float)sample, total = 0, sum = 0;
+        float random = dither + 0.75487767f * (float)block->x[i] + 0.56984029f * (float)block->y[i], total = 0, sum = 0;
+        random += golden * (float)sample;
         random -= floorf(random);
         for (int k = 0; k < count; k++) total += weight[i][k];
         int lamp = 0;

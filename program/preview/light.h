@@ -39,12 +39,17 @@ typedef struct Sky {
 /// Light whose visibility rays test.
 enum { LIT_SUN, LIT_SKY, LIT_LAMPS, LIT_KINDS };
 
+/// What Lit.light holds once the light has been added to the picture: the colour, and as c / (1 + l).
+enum { SOFT_COLOUR, SOFT_SHOWN };
+
 /// The light of a pixel by its kind, before occlusion.
 typedef struct Lit {
     Float3 light[LIT_KINDS]; ///< as it reaches the eye
     float seen[LIT_KINDS];   ///< visible share, by few rays; -1: none were traced
     Float3 normal;           ///< of the last sample
     float distance;          ///< m, the same; negative: the pixel shows several faces
+    float noise;             ///< variance of the mean of the samples, as l / (1 + l)
+    float blur;              ///< pixels over which lens and shutter spread what is seen here
     int32_t sheet;
 } Lit;
 

@@ -9,7 +9,12 @@
 
 void seen_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples, bool mixed) {
     const Point *point = &block->point[lane];
-    Lit lit = {.normal = point->geometric, .distance = mixed ? -1 : point->distance, .sheet = point->sheet};
+    Lit lit = {.normal = point->geometric,
+               .distance = mixed ? -1 : point->distance,
+               .blur = block->spread,
+               .sheet = point->sheet};
+    const float count = (float)samples, mean = block->shown[lane] / count;
+    lit.noise = samples > 1 ? maxf(block->squares[lane] / count - mean * mean, 0) / (count - 1) : 0;
     for (int k = 0; k < LIT_KINDS; k++) {
         lit.light[k] = float3_scale(block->lit[k][lane], 1 / (float)samples);
         float asked = block->lit_asked[k][lane];
@@ -69,12 +74,17 @@ void seen_finish(Preview *preview, Block *block) {
         int x = block->x[i], y = block->y[i];
         if (x >= w || y >= h) continue;
         size_t pixel = (size_t)y * (size_t)w + (size_t)x;
-        const Lit *lit = &preview->lit[pixel];
+        Lit *lit = &preview->lit[pixel];
         float seen[LIT_KINDS];
         if (lit->distance < 0)
             for (int k = 0; k < LIT_KINDS; k++) seen[k] = lit->seen[k];
         else smooth_line(lit, &preview->seen[pixel], sizeof *preview->seen, w, y, h - 1 - y, reach, seen);
-        for (int k = 0; k < LIT_KINDS; k++)
-            preview->picture[pixel] = float3_mad(preview->picture[pixel], lit->light[k], seen[k] < 0 ? 1 : seen[k]);
+        Float3 colour = preview->picture[pixel];
+        for (int k = 0; k < LIT_KINDS; k++) colour = float3_mad(colour, lit->light[k], seen[k] < 0 ? 1 : seen[k]);
+        preview->picture[pixel] = colour;
+
+        // of light before occlusion nothing more is needed
+        lit->light[SOFT_COLOUR] = colour;
+        lit->light[SOFT_SHOWN] = float3_scale(colour, 1 / (1 + float3_luminance(colour)));
     }
 }

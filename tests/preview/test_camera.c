@@ -59,6 +59,34 @@ TEST(a_lens_blurs_what_is_out_of_focus) {
     assert_true(far < 0.3f * pinhole);
 }
 
+/// What a lens blurs is smooth with few samples: stripes out of focus differ from those of very many samples by less than
+/// the bar in the root mean square, of 255. One sample, from which nothing is known of its noise, breaks it.
+TEST(what_a_lens_blurs_is_smooth) {
+    static uint8_t exact[BYTES], few[BYTES];
+    uint8_t texels[3 * STRIPES];
+    Image image;
+    const Image *pictures[1];
+    Float4 q;
+    PreviewDef def;
+
+    striped(&q, &def, pictures, &image, texels);
+    def.camera.aperture = 0.04f, def.camera.focus = 0.25f, def.samples = 1024;
+    draw(&def, &q.surface, 0, exact);
+    const int samples[] = {16, 1};
+    for (int k = 0; k < 2; k++) {
+        def.samples = samples[k];
+        draw(&def, &q.surface, 0, few);
+        float squares = 0;
+        for (int y = H / 2 - 14; y < H / 2 + 14; y++)
+            for (int x = W / 2 - 14; x < W / 2 + 14; x++) {
+                const float wrong = (float)(pixel(few, x, y)[1] - pixel(exact, x, y)[1]);
+                squares += wrong * wrong / (28 * 28);
+            }
+        print_message("stripes out of focus, %d samples: rms %.1f of 255\n", samples[k], (double)sqrtf(squares));
+        assert_true((squares < 6 * 6) == (samples[k] == 16));
+    }
+}
+
 /// Blur of the lens is drawn wherever it reaches.
 TEST(blur_is_drawn_wherever_it_reaches) {
     static uint8_t wide[BYTES], none[BYTES];
