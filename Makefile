@@ -106,9 +106,9 @@ web: web-package
 
 web-package:
 	cmake --preset wasm
-	cmake --build --preset wasm --target singe_wasm
+	cmake --build --preset wasm --target singe_wasm singe_files_wasm
 	cd bindings/web && npm ci --ignore-scripts && npm run build
-	cp build-wasm/web/singe.wasm bindings/web/dist
+	cp build-wasm/web/singe.wasm build-wasm/web/singe-files.wasm bindings/web/dist
 
 # the page at http://127.0.0.1:8080
 web-serve: web

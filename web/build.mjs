@@ -10,7 +10,7 @@ await build({
     absWorkingDir: here, entryPoints: ["src/main.ts", "src/worker.ts", "src/how.ts"], outdir: "dist", bundle: true, minify: true, format: "esm",
     target: "es2022", alias: { singe: "../bindings/web/src/index.ts" }, logLevel: "warning", legalComments: "none",
 });
-await cp(`${here}../bindings/web/dist/singe.wasm`, `${here}dist/singe.wasm`);
+for (const name of ["singe.wasm", "singe-files.wasm"]) await cp(`${here}../bindings/web/dist/${name}`, `${here}dist/${name}`);
 await cp(`${here}../examples/letter/letter.png`, `${here}dist/letter.png`);
 for (const name of ["index.html", "style.css", "how.html", "how.css"]) await cp(here + name, `${here}dist/${name}`);
 

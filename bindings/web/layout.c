@@ -324,6 +324,7 @@ static const LayoutArray arrays[] = {
     MESH(FLOAT, positions, 3, vertex_count)                          //
     MESH(UINT32, cells, 4, cell_count)                               //
     MESH(FLOAT, uv, 2, vertex_count)                                 //
+    MESH(FLOAT, corner_uv, 8, cell_count)                            //
 };
 
 // ---- words and sizes

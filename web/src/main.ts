@@ -1,11 +1,12 @@
 // The page: input, settings, and one request for a frame after another.
 import { MOUSE, Plane, Raycaster, TOUCH, Triangle, Vector2, Vector3 } from "three";
+import { loadFiles, type Files } from "singe";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { FLOATS } from "./fields.js";
 import { glbOf } from "./glb.js";
 import type { Frame, FromWorker, Shape, ToWorker } from "./messages.js";
-import { readObj } from "./obj.js";
 import { Renderer } from "./renderer.js";
+import { shapeOf } from "./shape.js";
 import { FireSound } from "./sound.js";
 import { fromLink, MATERIALS, PLACES, RANGES, SHEET, TIME_STEP, toLink, toYaml, type Place, type Point, type Settings, type Slider } from "./scene.js";
 
@@ -14,6 +15,7 @@ const LIVE: Slider[] = ["pace", "wind", "gravity"];
 const LONGEST_FRAME = 1 / 10; // s of motion in a frame
 const BUDGET = { least: 45, most: 250 }; // ms of computing in a frame, more where drawing takes long
 const FILE_MOST = 30e6; // bytes
+const PAPER: Point = [0.86, 0.852, 0.832]; // linear, as in shaders.js
 const HINTS: Record<Tool, string> = {
     match: "Drag the match over the paper", breath: "Hold to blow the fire out", hand: "Take the paper, pull, and tear it",
     pin: "Click to pin the paper to the table; click a pin to take it out",
@@ -144,6 +146,8 @@ function hear(message: FromWorker): void {
         linkedPins = [];
         return;
     }
+    if (message.kind === "surface")
+        return void files().then((writer) => save(new Blob([writer.writeUsdc(message.surface, "singe", PAPER)], { type: "model/vnd.usd" }), "singe.usdc"));
     frame = message;
     busy = false;
     motion = message.steps * TIME_STEP;
@@ -481,11 +485,21 @@ function showFacts(now: Frame): void {
 
 // ---- files in
 
+let loading: Promise<Files> | null = null;
+
+/** The readers and the writer of files, loaded when they are first needed. */
+function files(): Promise<Files> {
+    loading ??= loadFiles(new URL("./singe-files.wasm", import.meta.url).href);
+    loading.catch(() => { loading = null; });
+    return loading;
+}
+
 async function takeFile(file: File): Promise<void> {
     try {
         if (file.size > FILE_MOST) throw new Error(`it has more than ${FILE_MOST / 1e6} MB`);
-        if (/\.obj$/i.test(file.name)) {
-            shape = readObj(await file.text());
+        if (/\.(obj|ply|stl|glb|gltf)$/i.test(file.name)) {
+            const reader = await files().catch(() => { throw new Error("the reader of meshes could not be loaded"); });
+            shape = shapeOf(reader.readMesh(file.name, new Uint8Array(await file.arrayBuffer())), file.name);
             shapeName = file.name;
             renderer.print((picture = null));
             settings = { ...settings, begin: false };
@@ -494,14 +508,15 @@ async function takeFile(file: File): Promise<void> {
             say(`${file.name}: ${shape.positions.length / 3} vertices. Strike a match`);
         } else {
             picture = await createImageBitmap(file, { imageOrientation: "flipY" }).catch(() => {
-                throw new Error("it is neither a picture that this browser reads, nor an OBJ");
+                throw new Error("it is neither a picture that this browser reads, nor a mesh (OBJ, PLY, STL, GLB)");
             });
             renderer.print(picture);
             say(`${file.name} is printed`);
             draw();
         }
     } catch (error) {
-        say(`${file.name} was not taken: ${(error as Error).message}`);
+        const { message } = error as Error;
+        say(message.startsWith(file.name) ? message : `${file.name} was not taken: ${message}`);
     }
 }
 
@@ -532,6 +547,9 @@ let recorder: MediaRecorder | null = null;
 const SAVES: Record<string, () => void> = {
     png: () => { draw(); canvas.toBlob((blob) => blob && save(blob, "singe.png")); },
     glb: () => frame && save(new Blob([glbOf(frame)], { type: "model/gltf-binary" }), "singe.glb"),
+    usdc: () => {
+        void files().then(() => send({ kind: "surface" }), () => say("The writer of USD could not be loaded"));
+    },
     yaml: () => frame && save(new Blob([toYaml(settings, frame.strokes, frame.pinRests, frame.time, shapeName, frame.skipped)], { type: "text/yaml" }), "singe.yaml"),
     link: () => {
         writeLink();

@@ -1,8 +1,9 @@
 // Between the page and its worker.
+import type { Surface } from "singe";
 import type { Fire, Lights } from "./fields.js";
 import type { Point, Settings, Stroke } from "./scene.js";
 
-export interface Shape { positions: Float32Array; corners: Uint32Array; sizes: Uint32Array; uv: Float32Array | null }
+export interface Shape { positions: Float32Array; corners: Uint32Array; sizes: Uint32Array; corner_uv: Float32Array | null }
 
 export type ToWorker =
     | { kind: "load"; wasm: string }
@@ -11,7 +12,7 @@ export type ToWorker =
     | { kind: "set"; settings: Settings }
     | { kind: "grab"; rest: Point; at: Point } | { kind: "release" }
     | { kind: "pin"; rest: Point } | { kind: "unpin"; index: number }
-    | { kind: "mark" } | { kind: "undo" };
+    | { kind: "mark" } | { kind: "undo" } | { kind: "surface" };
 
 export interface Frame {
     kind: "frame";
@@ -22,4 +23,5 @@ export interface Frame {
 }
 
 export type FromWorker =
-    | { kind: "loaded"; version: string } | Frame | { kind: "failed"; message: string } | { kind: "begun"; springs: number };
+    | { kind: "loaded"; version: string } | Frame | { kind: "failed"; message: string } | { kind: "begun"; springs: number }
+    | { kind: "surface"; surface: Surface };

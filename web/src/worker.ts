@@ -51,6 +51,7 @@ async function hear(message: ToWorker): Promise<void> {
     case "unpin": sim.removePin(pins.splice(message.index, 1)[0]!.handle); return;
     case "mark": return mark();
     case "undo": return undo();
+    case "surface": return tell({ kind: "surface", surface: sim.draw() }); // posting copies it
     }
 }
 
@@ -59,7 +60,7 @@ function begin(wanted: Settings, shape: Shape | null, linked: Stroke[], pinned: 
     try {
         const material = materialOptions(wanted), place = { rotate: where.rotate, translate: where.translate, drop_pieces_below: 4e-6 };
         const added = shape
-            ? made.addSheet({ positions: shape.positions, corners: shape.corners, sizes: shape.sizes, ...(shape.uv ? { uv: shape.uv } : {}) }, material, place)
+            ? made.addSheet({ positions: shape.positions, corners: shape.corners, sizes: shape.sizes, ...(shape.corner_uv ? { corner_uv: shape.corner_uv } : {}) }, material, place)
             : made.addSheet(gridOf(wanted), material, place);
         made.commit();
         sim?.destroy();

@@ -4,7 +4,7 @@
 // Chromium draws by SwiftShader, without a card.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { mkdir, readFile } from "node:fs/promises";
+import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { chromium } from "playwright-core";
 import { serve } from "../serve.mjs";
@@ -103,7 +103,7 @@ const CASES = {
         await file("a.png", "image/png", Buffer.from("no picture"));
         await told("neither a picture");
         await file("bad.obj", "text/plain", Buffer.from("v 0 0 0\nv 1 0 0\nf 1 2 9\n"));
-        await told("line 3: there is no vertex 9");
+        await told("bad.obj:3: corner 3 is out of range");
         await file("knot.obj", "text/plain", Buffer.from("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n"));
         await page.waitForTimeout(500);
         assert.ok((await step(0.05)).time > 0); // what was there goes on
@@ -114,8 +114,23 @@ const CASES = {
         await told("169 vertices");
         const lit = await use("match", [0, 0, 0], [0.01, 0, 0], 1);
         assert.ok(lit.burnt > 0.002);
+
+        // PLY and GLB, by the command's own readers: the page's GLB comes back, and with its middle cut out it does not
+        const ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+        await file("quad.ply", "text/plain", Buffer.from(`${ply}4 0 1 2 3\n`));
+        await told("quad.ply: 4 vertices");
+        await file("cut.ply", "text/plain", Buffer.from(`${ply}4 0 1 2 7\n`));
+        await told("cut.ply:14:.*7 is out of range");
+        await open(QUICK);
+        await page.click("summary");
+        const [download] = await Promise.all([page.waitForEvent("download"), page.click("[data-save=glb]")]), glb = await readFile(await download.path());
+        await file("sheet.glb", "model/gltf-binary", glb);
+        await told("sheet.glb: \\d+ vertices");
+        assert.ok((await use("match", [0, 0, 0], [0.01, 0, 0], 0.6)).burnt > 0.001);
+        await file("short.glb", "model/gltf-binary", glb.subarray(0, glb.length >> 1));
+        await told("short.glb: ");
     },
-    async "PNG, GLB and scene are saved"() {
+    async "PNG, GLB, USDC and scene are saved"() {
         await open(QUICK);
         await use("match", [0, 0, 0], [0.02, 0, 0], 0.6);
         await page.click("summary");
@@ -128,6 +143,10 @@ const CASES = {
         assert.equal(glb.readUInt32LE(8), glb.length);
         assert.ok("_TEMPERATURE" in json.meshes[0].primitives[0].attributes);
         assert.match((await saved("yaml")).toString(), /kind: ball, start: /);
+        const usdc = await saved("usdc");
+        assert.equal(usdc.subarray(0, 8).toString(), "PXR-USDC");
+        assert.ok(usdc.length > 10_000 && usdc.readBigUInt64LE(16) < usdc.length, `${usdc.length} bytes`);
+        if (folder) await writeFile(`${folder}/page.usdc`, usdc);
     },
     async "a sheet hangs and burns upwards, or falls over a ball"() {
         await open(`cells=20&place=hung&pace=6`, folder ? 1 : 0.2);

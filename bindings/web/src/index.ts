@@ -39,6 +39,8 @@ export interface Faces {
     sizes?: ArrayLike<number>;
     /** u, v of each vertex */
     uv?: ArrayLike<number>;
+    /** u, v of each corner, where the mesh has seams */
+    corner_uv?: ArrayLike<number>;
 }
 
 export interface Source extends SourceOptions { position?: Vector; path?: readonly Key[] }
@@ -166,9 +168,11 @@ export class Simulation {
                 const positions = memory.array(view, "meshview", "positions") as Float32Array;
                 place(positions, rotate ?? [0, 0, 0], translate ?? [0, 0, 0]);
                 const cells = memory.array(view, "meshview", "cells"), uv = memory.array(view, "meshview", "uv");
+                const seams = memory.array(view, "meshview", "corner_uv");
                 memory.write(def, "sheet", {
                     vertex_count: positions.length / 3, positions: positions.byteOffset, cell_count: cells.length / 4,
                     cells: cells.byteOffset, uv: uv.length ? uv.byteOffset : 0,
+                    corner_uv: seams.length ? seams.byteOffset : 0,
                 });
                 return this.handle((id) => memory.call.singe_sim_add_sheet(this.sim, def, id));
             } finally {
@@ -428,12 +432,13 @@ function makeMesh(memory: Memory, shape: Grid | Faces): number {
     const place = memory.take(4), error = memory.take(memory.size("error"));
     let result: number;
     if ("positions" in shape) {
-        const def = memory.take(memory.size("mesh")), { positions, corners, sizes, uv } = shape;
+        const def = memory.take(memory.size("mesh")), { positions, corners, sizes, uv, corner_uv } = shape;
         const face_count = sizes ? sizes.length : corners.length / 3;
         memory.call.singe_init_mesh(def, memory.size("mesh"));
         memory.write(def, "mesh", {
             vertex_count: positions.length / 3, positions: memory.put(positions), face_count, corners: memory.put(corners, "uint32"),
             face_sizes: sizes ? memory.put(sizes, "uint32") : 0, uv: uv ? memory.put(uv) : 0,
+            corner_uv: corner_uv ? memory.put(corner_uv) : 0,
         });
         result = memory.call.singe_mesh_create(def, place, error);
     } else {
@@ -446,4 +451,5 @@ function makeMesh(memory: Memory, shape: Grid | Faces): number {
     return memory.u32(place);
 }
 
+export { Files, loadFiles, type FileFaces } from "./files.js";
 export type { Numbers };

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFile } from "node:fs/promises";
 import { test } from "node:test";
-import { load, SingeError } from "../dist/index.js";
+import { load, loadFiles, SingeError } from "../dist/index.js";
 
 const singe = await load(await readFile(new URL("../dist/singe.wasm", import.meta.url)));
 
@@ -111,4 +111,23 @@ test("memory does not grow from one simulation to the next", () => {
     const before = singe.memory.memory.buffer.byteLength;
     for (let i = 0; i < 20; i++) burn();
     assert.equal(singe.memory.memory.buffer.byteLength, before);
+});
+
+test("files are read and written as the command does", async () => {
+    const files = await loadFiles(await readFile(new URL("../dist/singe-files.wasm", import.meta.url))), text = (words) => new TextEncoder().encode(words);
+    const square = files.readMesh("square.obj", text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nf 1/1 2/2 3/2 4/1\n"));
+    assert.deepEqual([...square.corners, ...square.sizes], [0, 1, 2, 3, 4]);
+    assert.deepEqual([...square.corner_uv], [0, 0, 1, 1, 1, 1, 0, 0]);
+    for (const [name, words, message] of [
+        ["a.obj", "v 0 0 0\nf 1 1 7\n", "a.obj:2: corner 3 is out of range"], ["a.ply", "plx", "a.ply:1: not a PLY file"], ["a.glb", "glTF", "a.glb: not glTF"],
+        ["a.stl", "solid\n", 'a.stl:2: "endsolid" is missing'], ["a.fbx", "", "a.fbx: the page reads OBJ"], ["a.txt", "", "a.txt: unknown mesh format"],
+        ["a.gltf", '{"asset":{"version":"2.0"},"scenes":[{}],"buffers":[{"uri":"../b.bin","byteLength":4}]}', "a.gltf: "],
+    ]) assert.throws(() => files.readMesh(name, text(words)), (error) => error.message.startsWith(message), name);
+
+    const sim = burnAsInC();
+    sim.advance(0.2);
+    const usdc = files.writeUsdc(sim.draw(), "a sheet"), toc = new DataView(usdc.buffer).getBigUint64(16, true);
+    assert.equal(new TextDecoder().decode(usdc.subarray(0, 8)), "PXR-USDC");
+    assert.ok(usdc.length > 10_000 && toc < usdc.length);
+    sim.destroy();
 });
