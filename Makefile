@@ -15,7 +15,7 @@ HOURS ?= 1
 MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 .PHONY: all web-package build build-asan build-fuzz build-shared build-tsan configure demo test check check-examples gate \
-        site check-clients check-blender check-farm check-packages check-platforms web web-serve check-web check-web-core torture mutations coverage fuzz-long soak pictures clean
+        site check-clients check-godot check-blender check-farm check-packages check-platforms web web-serve check-web check-web-core torture mutations coverage fuzz-long soak pictures clean
 
 all: build
 
@@ -82,6 +82,10 @@ gate: build
 # installs other programs into build/clients and lets them read the output of a burn; docs/usd.md and others have the table
 check-clients: build
 	tests/clients/check.sh build/singe build/clients
+
+# the node SingeSheet in Godot 4: $GODOT, or Debian's package of it, which root unpacks into build/clients/godot
+check-godot: build
+	tests/clients/godot.py build/singe build/clients/godot
 
 # the extension in Blender 4.5 and 5.2; WHEELS=FOLDER also installs it together with its program
 check-blender: build
