@@ -4,6 +4,7 @@
 usage: check.py FOLDER_OF_PROGRAMS NAME...
 """
 
+import concurrent.futures
 import pathlib
 import re
 import subprocess
@@ -29,7 +30,9 @@ def check(source, program):
 
 def main():
     folder, names = pathlib.Path(sys.argv[1]), sys.argv[2:]
-    wrong = {name: fault for name in names if (fault := check(HERE / f"{name}.c", folder / name))}
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        found = pool.map(lambda name: check(HERE / f"{name}.c", folder / name), names)
+    wrong = {name: fault for name, fault in zip(names, found) if fault}
     for name, fault in wrong.items():
         print(f"{name}: {fault}")
     print(f"{len(names)} samples, {len(wrong)} wrong")

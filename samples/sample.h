@@ -58,6 +58,12 @@ static inline SingePinId sample_pin(SingeSim *sim, SingeSheetId sheet, float x, 
     return id;
 }
 
+/// A table at z = 0.
+static inline void sample_table(SingeSim *sim) {
+    SingeColliderDef table = singe_default_collider();
+    TRY(sim, singe_sim_add_collider(sim, &table, NULL));
+}
+
 /// A match that burns at a point for half a second.
 static inline void sample_match(SingeSim *sim, float x, float y, float z) {
     SingeSourceDef match = singe_default_source();
