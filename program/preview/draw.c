@@ -327,8 +327,8 @@ static int find_restless(const Block *block, const int *active, int *more) {
     return count;
 }
 
-/// Takes SAMPLES_FIRST samples of every pixel, and the rest of pixels that need it, half of them where a lens or a shutter
-/// blurs a sheet or a shape. Bare blocks get the first only, and two if their rays are not blocked.
+/// Takes SAMPLES_FIRST samples of every pixel, and the rest of pixels that need it. Bare blocks get the first only, and two
+/// if their rays are not blocked.
 static void add_samples(const Preview *preview, Block *block, const int *active, bool bare, int *taken) {
     int more[LANES], samples = preview->def.samples, first = SAMPLES_FIRST;
     if (samples < first || is_still(preview)) first = samples;
@@ -337,16 +337,15 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
         if (bare && s == 1 && !block->hidden && !is_still(preview)) first = s + 1;
     }
 
-    const int most = block->spread > 1 ? (samples + 1) / 2 : samples; // what is left is smoothed (soften.c)
-    bool on = first < most && !bare && find_restless(block, active, more);
+    bool on = first < samples && !bare && find_restless(block, active, more);
     bool ask = block->spread > 1; // only pixels that show several faces need more rays
     for (int i = 0; i < LANES; i++) {
         ask = ask || (active[i] && is_edge(&block->layer[i]));
-        taken[i] = on && more[i] ? most : first;
+        taken[i] = on && more[i] ? samples : first;
     }
 
-    for (int s = first; s < most && on; s++) {
-        // after half of the samples: only lanes whose samples still differ visibly
+    for (int s = first; s < samples && on; s++) {
+        // after half of the samples: only lanes whose samples still differ visibly; soften.c smooths what lenses blur
         if (s == samples / 2) {
             on = false;
             for (int i = 0; i < LANES; i++) {
