@@ -94,7 +94,7 @@ static void advect_look(void *context, int begin, int end) {
         // boxes around the moving gas in this plane, and its max speed
         for (int j = 0; j < grid->n[1]; j++)
             for (int first = 0; first < grid->n[0]; first += SWEEP_RUN) {
-                int count = grid->n[0] - first, busy[GAS_BOXES][2] = {{INT_MAX, -1}, {INT_MAX, -1}, {INT_MAX, -1}};
+                int count = grid->n[0] - first, busy[GAS_BOXES][2];
                 count = count < SWEEP_RUN ? count : SWEEP_RUN;
                 const size_t c = gas_at(grid, first, j, k);
                 const float *const *through = (const float *const *)&pass->from->field[GAS_THROUGH];
@@ -103,6 +103,10 @@ static void advect_look(void *context, int begin, int end) {
                 float speed[SWEEP_RUN];
 
                 for (int i = 0; i < count; i++) speed[i] = 0;
+                for (int b = 0; b < GAS_BOXES; b++) {
+                    busy[b][0] = INT_MAX;
+                    busy[b][1] = -1;
+                }
 
                 // max speed through the cells' faces
                 for (int d = 0; d < 3; d++) {
@@ -119,7 +123,7 @@ static void advect_look(void *context, int begin, int end) {
                 float calm = ADVECT_CALM;
                 for (int d = 0; d < 3; d++) calm = fmaxf(calm, fabsf(pass->wind[d]) + ADVECT_CALM);
                 for (int i = 0; i < count; i++) {
-                    const bool something[GAS_BOXES] = {L[i] > 0 || fuel[i] > 0, smoke[i] > 0,
+                    const bool something[GAS_BOXES] = {L[i] > 0, fuel[i] > 0, smoke[i] > 0,
                                                        speed[i] > calm || L[i] > ADVECT_LIGHT};
                     max = speed[i] > max ? speed[i] : max;
                     for (int b = 0; b < GAS_BOXES; b++)
@@ -210,7 +214,7 @@ void gas_advect(GasPass *pass) {
     float slower = displacement > ADVECT_PARTS_MAX ? ADVECT_PARTS_MAX / displacement : 1;
     pass->courant = slower * pass->dt / (plan->cell * (float)parts);
 
-    // boxes outside which nothing is carried: for heat and fuel, for smoke, and for momentum, of which still air has
+    // boxes outside which nothing is carried: for heat, for fuel, for smoke, and for momentum, of which still air has
     // little; in a part nothing moves farther than a cell
     for (int b = 0; b < GAS_BOXES; b++) {
         GasBox *box = &pass->busy[b];
@@ -228,7 +232,7 @@ void gas_advect(GasPass *pass) {
     for (int f = 0; f < GAS_CARRIED; f++) {
         pass->field = f;
         if (f >= GAS_VELOCITY) gas_planes(pass, grid, advect_to_momentum);
-        advect_field(pass, f, &pass->busy[f < GAS_SMOKE ? 0 : f < GAS_VELOCITY ? 1 : 2], parts);
+        advect_field(pass, f, &pass->busy[f < GAS_VELOCITY ? f : GAS_VELOCITY], parts);
         if (f >= GAS_VELOCITY) gas_planes(pass, grid, advect_to_velocity);
     }
 }

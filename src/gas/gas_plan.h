@@ -20,7 +20,7 @@
 enum {
     GAS_GHOSTS = 2, ///< cells around the grid that stay 0: still air of the ambient temperature
     GAS_LEVELS = 12,
-    GAS_BOXES = 3,
+    GAS_BOXES = 4,
 };
 
 /// Fields of a cell. The first ones are advected. GAS_THROUGH + d is the speed through its lower face along axis d,
@@ -105,7 +105,7 @@ struct GasPlan {
     float *mixing;                   ///< half the share of a difference that mixes through a face of the cell
     float *expansion;                ///< L that a step adds
     double *partial;                 ///< [planes]
-    GasBox (*plane_busy)[GAS_BOXES]; ///< [planes] where there is heat or fuel, smoke, momentum to carry
+    GasBox (*plane_busy)[GAS_BOXES]; ///< [planes] where there is heat, fuel, smoke, momentum to carry
     float (*normal)[3];              ///< [particles] unit
     int *hot;                        ///< [planes] whether anything there is warmer than the air around
     float *scratch;                  ///< all of them but the normals
