@@ -15,7 +15,7 @@ HOURS ?= 1
 MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 .PHONY: all web-package build build-asan build-fuzz build-shared build-tsan configure demo test check check-examples gate \
-        site check-clients check-godot check-blender check-farm check-packages check-platforms web web-serve check-web check-web-core torture mutations coverage fuzz-long soak pictures clean
+        site check-clients check-godot check-blender check-farm check-packages check-platforms web web-serve check-web check-web-core torture mutations coverage fuzz-long soak pictures bench-peers clean
 
 all: build
 
@@ -159,6 +159,10 @@ torture:
 mutations:
 	scripts/setup.sh
 	tests/mutations/mutations.py
+
+# the swinging sheet in other solvers and in this one, and the table of docs/performance.md
+bench-peers: build
+	scripts/bench_peers.py build/singe --table
 
 # how much of each folder of src, program/formats and program/scene the tests reach; docs/coverage.md lists the rest
 coverage:
