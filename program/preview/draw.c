@@ -16,6 +16,8 @@ enum {
     HOLE_LIMIT = 4,
 };
 
+static const float CALM = 0.026f; ///< range of a pixel's first samples, as l / (1 + l), that needs no more of them
+
 static void store(float (*layer)[3], size_t pixel, Float3 value) {
     if (layer) float3_store(layer[pixel], value);
 }
@@ -307,8 +309,8 @@ static bool is_beside_edge(const Block *block, int lane) {
     return false;
 }
 
-/// The lanes whose first samples differ, from each other or from their neighbours'. Returns how many.
-static int find_restless(const Block *block, const int *active, int *more) {
+/// The lanes whose first samples differ by more than `calm`, or from their neighbours'. Returns how many.
+static int find_restless(const Block *block, const int *active, float calm, int *more) {
     int count = 0;
     float low = INFINITY, high = -INFINITY;
     for (int i = 0; i < LANES; i++) {
@@ -317,27 +319,27 @@ static int find_restless(const Block *block, const int *active, int *more) {
     }
 
     for (int i = 0; i < LANES; i++) {
-        const float range = block->high[i] - block->low[i];
-        bool calm = !is_edge(&block->layer[i]) && !is_beside_edge(block, i) && range < 0.026f && high - low < 0.15f;
-        if (block->spread > 1) calm = range < 0.026f && !is_edge(&block->layer[i]);
-        more[i] = active[i] && !calm ? -1 : 0;
+        bool rests = !is_edge(&block->layer[i]) && block->high[i] - block->low[i] < calm;
+        if (block->spread <= 1) rests = rests && !is_beside_edge(block, i) && high - low < 0.15f;
+        more[i] = active[i] && !rests ? -1 : 0;
         count += more[i] != 0;
     }
 
     return count;
 }
 
-/// Takes SAMPLES_FIRST samples of every pixel, and the rest of pixels that need it. Bare blocks get the first only, and two
-/// if their rays are not blocked.
+/// Takes SAMPLES_FIRST samples of every pixel, and the rest of pixels that need it. Bare blocks get the first only. Where
+/// nothing blocks the light two are enough, in bare blocks and in those that are evenly lit.
 static void add_samples(const Preview *preview, Block *block, const int *active, bool bare, int *taken) {
     int more[LANES], samples = preview->def.samples, first = SAMPLES_FIRST;
     if (samples < first || is_still(preview)) first = samples;
     for (int s = 0; s < first; s++) {
         add_sample(preview, block, active, bare, s, true);
-        if (bare && s == 1 && !block->hidden && !is_still(preview)) first = s + 1;
+        if (s != 1 || block->hidden || is_still(preview)) continue;
+        if (bare || (block->spread <= 1 && !find_restless(block, active, 0.5f * CALM, more))) first = s + 1;
     }
 
-    bool on = first < samples && !bare && find_restless(block, active, more);
+    bool on = first < samples && !bare && first > 2 && find_restless(block, active, CALM, more);
     bool ask = block->spread > 1; // only pixels that show several faces need more rays
     for (int i = 0; i < LANES; i++) {
         ask = ask || (active[i] && is_edge(&block->layer[i]));
