@@ -260,12 +260,11 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
         sum->burn += point->burn;
     }
 
-    light_add_sun(preview, block, active, sample, through, ask);
-
     // sky and lamps change slowly enough for every second sample, but not where faces meet
     const bool all = sample < 0 || sample >= SAMPLES_FIRST || preview->def.samples == 1 || is_still(preview);
-    light_add_sky(preview, block, active, sample, through, ask && (all || sample % 2 == 0));
     lamps_add(preview, block, active, sample, through, ask && (all || sample % 2 != 0));
+    light_add_sun(preview, block, active, sample, through, ask);
+    light_add_sky(preview, block, active, sample, through, ask && (all || sample % 2 == 0));
 
     // how much the samples differ, but for what hides the light
     for (int i = 0; i < LANES; i++) {

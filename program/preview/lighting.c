@@ -38,6 +38,13 @@ bool light_reaches(const Block *block, const int *active, int lane) {
     return active[lane] && block->point[lane].lit && block->point[lane].fade < 0.995f;
 }
 
+/// Whether light of a kind adds too little to what else lights the lane's point for its shadow to be seen: under 2 % of it.
+/// Lamps are added before, in every sample.
+static bool is_outshone(const Block *block, int lane, float luminance) {
+    const float lamps = float3_luminance(block->lit[LIT_LAMPS][lane]) / (float)block->layer[lane].samples;
+    return luminance < 0.02f * lamps;
+}
+
 void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],
                    bool ask) {
     float asked[LANES];
@@ -56,7 +63,7 @@ void light_add_sun(const Preview *preview, Block *block, const int *active, int 
         Float3 light = float3_scale(float3_mul(light_reflect(point, l), preview->sun_light), through[i]);
         block->lit[LIT_SUN][i] = float3_add(block->lit[LIT_SUN][i], light);
         asked[i] = float3_luminance(light);
-        if (!ask || asked[i] < 1e-4f) continue;
+        if (!ask || asked[i] < 1e-4f || is_outshone(block, i, asked[i])) continue;
         float side = float3_dot(point->geometric, l) > 0 ? preview->scene.epsilon : -preview->scene.epsilon;
         aim_ray(&block->shadow, i, float3_mad(point->position, point->geometric, side), l, 0, INFINITY, block->time[i]);
         block->valid[i] = -1;
@@ -156,9 +163,10 @@ static void ask_sky(const Preview *preview, Block *block, const int *active, int
 
 void light_add_sky(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],
                    bool ask) {
-    float open[LANES];
-    if (ask) ask_sky(preview, block, active, sample, open);
+    float open[LANES], luminance[LANES];
+    int asked[LANES];
     for (int i = 0; i < LANES; i++) {
+        asked[i] = 0;
         if (!light_reaches(block, active, i)) continue;
         const Point *point = &block->point[i];
         Float3 ambient = sky_ambient(&preview->sky, point->normal);
@@ -179,9 +187,15 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
 
         light = float3_scale(light, through[i]);
         block->lit[LIT_SKY][i] = float3_add(block->lit[LIT_SKY][i], light);
-        float luminance = float3_luminance(light);
-        if (!ask || luminance < 1e-6f) continue;
-        block->lit_asked[LIT_SKY][i] += luminance;
-        block->lit_seen[LIT_SKY][i] += luminance * open[i];
+        luminance[i] = float3_luminance(light);
+        asked[i] = ask && luminance[i] > 1e-6f && !is_outshone(block, i, luminance[i]) ? -1 : 0;
+    }
+
+    if (!ask) return;
+    ask_sky(preview, block, asked, sample, open);
+    for (int i = 0; i < LANES; i++) {
+        if (!asked[i]) continue;
+        block->lit_asked[LIT_SKY][i] += luminance[i];
+        block->lit_seen[LIT_SKY][i] += luminance[i] * open[i];
     }
 }
