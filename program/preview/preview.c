@@ -110,15 +110,13 @@ static bool image_is_good(const Image *image) {
            image->height <= SIZE_LIMIT;
 }
 
-static SingeResult check_camera(const PreviewCamera *camera, SingeError *error) {
+static SingeResult check_view(const PreviewDef *def, SingeError *error) {
+    const PreviewCamera *camera = &def->camera;
     Float3 up = float3_load(camera->up), view = float3_sub(float3_load(camera->target), float3_load(camera->eye));
     if (!(float3_dot(view, view) > 1e-12f))
         return preview_refuse(error, -1, "camera: eye and target are the same point");
     if (!(float3_dot(up, up) > 1e-12f)) return preview_refuse(error, -1, "camera: up has no direction");
-    return SINGE_OK;
-}
 
-static SingeResult check_light(const PreviewDef *def, SingeError *error) {
     Float3 sun = float3_load(def->sun_direction);
     if (!(float3_dot(sun, sun) > 1e-20f)) return preview_refuse(error, -1, "sun_direction must not be zero");
     if (def->sky == PREVIEW_SKY_PICTURE && !(def->sky_picture && image_is_good(def->sky_picture)))
@@ -132,8 +130,7 @@ static SingeResult check_light(const PreviewDef *def, SingeError *error) {
 
 static SingeResult check_def(const PreviewDef *def, SingeError *error) {
     SingeResult result = check_rows(def, error);
-    if (!result) result = check_camera(&def->camera, error);
-    if (!result) result = check_light(def, error);
+    if (!result) result = check_view(def, error);
     if (!result) result = check_shapes(def->shapes, def->shape_count, error);
     for (uint32_t s = 0; !result && def->pictures && s < def->sheet_count; s++) {
         if (def->pictures[s] && !image_is_good(def->pictures[s]))

@@ -137,20 +137,6 @@ static bool arrays_equal(const void *a, const void *b, size_t count, size_t size
     return memcmp(a, b, count * size) == 0;
 }
 
-static bool meshes_equal(const Mesh *a, const Mesh *b) {
-    bool equal = a->vertex_count == b->vertex_count && a->cell_count == b->cell_count &&
-                 a->source_count == b->source_count && a->attribute_count == b->attribute_count &&
-                 arrays_equal(a->positions, b->positions, a->vertex_count, 3 * sizeof(float)) &&
-                 arrays_equal(a->cells, b->cells, a->cell_count, 4 * sizeof(uint32_t)) &&
-                 arrays_equal(a->uv, b->uv, a->vertex_count, 2 * sizeof(float)) &&
-                 arrays_equal(a->corner_uv, b->corner_uv, a->cell_count, 8 * sizeof(float)) &&
-                 arrays_equal(a->became, b->became, a->source_count, sizeof(uint32_t));
-    for (uint32_t i = 0; equal && i < a->attribute_count; i++)
-        equal = strcmp(a->attributes[i].name, b->attributes[i].name) == 0 &&
-                arrays_equal(a->attributes[i].values, b->attributes[i].values, a->vertex_count, sizeof(float));
-    return equal;
-}
-
 static bool pictures_equal(const SingeTexture *a, const SingeTexture *b) {
     return a->width == b->width && a->height == b->height &&
            arrays_equal(a->values, b->values, (size_t)a->width * (size_t)a->height, sizeof(float));
@@ -182,7 +168,18 @@ SingeResult scene_may_branch(SceneWhole scene, SceneWhole before, SceneMessages 
     for (uint32_t i = 0; message_total(messages) == found && i < scene.scene->sheet_count; i++) {
         char path[40];
         snprintf(path, sizeof path, "sheets.%u.mesh", (unsigned)i);
-        if (!meshes_equal(&scene.assets->meshes[i], &before.assets->meshes[i])) refuse_change(&comparison, path, "");
+        const Mesh *a = &scene.assets->meshes[i], *b = &before.assets->meshes[i];
+        bool equal = a->vertex_count == b->vertex_count && a->cell_count == b->cell_count &&
+                     a->source_count == b->source_count && a->attribute_count == b->attribute_count &&
+                     arrays_equal(a->positions, b->positions, a->vertex_count, 3 * sizeof(float)) &&
+                     arrays_equal(a->cells, b->cells, a->cell_count, 4 * sizeof(uint32_t)) &&
+                     arrays_equal(a->uv, b->uv, a->vertex_count, 2 * sizeof(float)) &&
+                     arrays_equal(a->corner_uv, b->corner_uv, a->cell_count, 8 * sizeof(float)) &&
+                     arrays_equal(a->became, b->became, a->source_count, sizeof(uint32_t));
+        for (uint32_t k = 0; equal && k < a->attribute_count; k++)
+            equal = strcmp(a->attributes[k].name, b->attributes[k].name) == 0 &&
+                    arrays_equal(a->attributes[k].values, b->attributes[k].values, a->vertex_count, sizeof(float));
+        if (!equal) refuse_change(&comparison, path, "");
     }
 
     // earlier frames have no events in the table

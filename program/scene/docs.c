@@ -119,15 +119,6 @@ static void put_type(FILE *file, const SchemaRow *row) {
     }
 }
 
-static bool has_default(const SchemaRow *row, const void *object) {
-    if ((row->flags & (ROW_REQUIRED | ROW_SHORT)) || row->sub || row->type == ROW_POSITION || row->type == ROW_ROTATION)
-        return false;
-    if (row->type == ROW_TEXT || row->type == ROW_NAME || row->type == ROW_FILE || row->type == ROW_POINTS ||
-        row->type == ROW_INDICES)
-        return false;
-    return object != NULL;
-}
-
 static void put_row(FILE *file, const SchemaRow *row, const void *object) {
     char range[80];
     row_range(row, range, sizeof range);
@@ -136,11 +127,11 @@ static void put_row(FILE *file, const SchemaRow *row, const void *object) {
     fprintf(file, "| `%s` | ", row->key);
     put_type(file, row);
     fprintf(file, " | %s%s%s | ", range, row->flags & ROW_INF ? ", inf" : "", row->flags & ROW_NONE ? ", none" : "");
-    if (row->flags & ROW_REQUIRED) {
-        fputs("*required*", file);
-    } else if (has_default(row, object)) {
-        dump_value(row, object, file);
-    }
+    bool has_default = object && !(row->flags & (ROW_REQUIRED | ROW_SHORT)) && !row->sub;
+    static const int without[] = {ROW_POSITION, ROW_ROTATION, ROW_TEXT, ROW_NAME, ROW_FILE, ROW_POINTS, ROW_INDICES};
+    for (size_t i = 0; i < sizeof without / sizeof *without; i++) has_default &= (int)row->type != without[i];
+    if (row->flags & ROW_REQUIRED) fputs("*required*", file);
+    else if (has_default) dump_value(row, object, file);
     fprintf(file, " | %s |\n", row->doc);
 }
 

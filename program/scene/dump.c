@@ -84,17 +84,6 @@ static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param,
     fputc('}', file);
 }
 
-static void put_formats(FILE *file, OutputSet set) {
-    bool first = true;
-    fputc('[', file);
-    for (int i = 0; i < OUTPUT_COUNT; i++) {
-        if (!output_has(set, i)) continue;
-        fprintf(file, "%s\"%s\"", first ? "" : ", ", output_formats[i].name);
-        first = false;
-    }
-    fputc(']', file);
-}
-
 void dump_value(const SchemaRow *row, const void *object, FILE *file) {
     const void *field = dump_at(object, row->offset);
     switch (row->type) {
@@ -122,7 +111,17 @@ void dump_value(const SchemaRow *row, const void *object, FILE *file) {
             fprintf(file, "%s\"%s\"", i ? ", " : "[", enum_words.SingeColour[((const SingeColour *)field)[i]]);
         fputc(']', file);
         break;
-    case ROW_FORMATS: put_formats(file, *(const OutputSet *)field); break;
+    case ROW_FORMATS: {
+        const char *between = "";
+        fputc('[', file);
+        for (int i = 0; i < OUTPUT_COUNT; i++) {
+            if (!output_has(*(const OutputSet *)field, i)) continue;
+            fprintf(file, "%s\"%s\"", between, output_formats[i].name);
+            between = ", ";
+        }
+        fputc(']', file);
+        break;
+    }
     case ROW_PARAM: put_param(file, row, field, dump_at(object, row->extra)); break;
     case ROW_POINTS: {
         const ScenePoint *points = items_at(object, row);

@@ -38,19 +38,6 @@ static double carried(const SceneKey *keys, uint32_t count) {
     return length;
 }
 
-/// How far a sheet falls until a plane that stands still below it stops it, at most `most`.
-static double fall_of(const Scene *scene, const Place *place, const float *gravity, double g, double most) {
-    for (uint32_t i = 0; i < scene->collider_count; i++) {
-        const SceneCollider *collider = &scene->colliders[i];
-        const bool level = collider->key_count == 1 && collider->keys[0].rotation[0] == 0 &&
-                           collider->keys[0].rotation[1] == 0 && gravity[0] == 0 && gravity[1] == 0 && gravity[2] < 0;
-        if (collider->def.kind != SINGE_COLLIDER_PLANE || !level) continue;
-        const double gap = place->high[2] - (double)collider->keys[0].position[2];
-        if (gap >= 0) most = fmin(most, gap);
-    }
-    return g > 0 ? most : 0;
-}
-
 static Place place_of(const Scene *scene, const SceneAssets *assets, uint32_t index) {
     const Mesh *mesh = &assets->meshes[index];
     const SceneSheet *sheet = &scene->sheets[index];
@@ -105,7 +92,18 @@ static Place place_of(const Scene *scene, const SceneAssets *assets, uint32_t in
         }
         g = sqrt(g);
         place.slack += (sqrt(blown) + sqrt(flown)) * time;
-        const double length = fall_of(scene, &place, gravity, g, 0.5 * g * time * time);
+
+        // until a plane that stands still below it stops it
+        double length = 0.5 * g * time * time;
+        for (uint32_t i = 0; i < scene->collider_count; i++) {
+            const SceneCollider *collider = &scene->colliders[i];
+            const bool level = collider->key_count == 1 && collider->keys[0].rotation[0] == 0 &&
+                               collider->keys[0].rotation[1] == 0 && gravity[0] == 0 && gravity[1] == 0 &&
+                               gravity[2] < 0;
+            if (collider->def.kind != SINGE_COLLIDER_PLANE || !level) continue;
+            const double gap = place.high[2] - (double)collider->keys[0].position[2];
+            if (gap >= 0) length = fmin(length, gap);
+        }
         for (int c = 0; c < 3 && g > 0; c++) place.fall[c] = (double)gravity[c] / g * length;
     }
     return place;

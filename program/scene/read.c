@@ -59,14 +59,6 @@ static void read_elements(Reader *reader, const SchemaRow *row, const YamlNode *
     }
 }
 
-/// The position or the rotation of the only key of a path.
-static void read_key_part(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
-    SceneKey *key;
-    memcpy(&key, read_at(object, row->offset), sizeof key);
-    if (!key || *(uint32_t *)read_at(object, row->extra) != 1) key = list_new(reader, object, row, 1, sizeof *key);
-    if (key) value_vector(reader, row, node, row->type == ROW_POSITION ? key->position : key->rotation);
-}
-
 // ---- parameters that may vary
 
 /// Finds the field that the parameter follows; returns the number of such keys.
@@ -254,7 +246,13 @@ static void read_row(Reader *reader, const SchemaRow *row, const YamlNode *node,
         break;
     }
     case ROW_POSITION:
-    case ROW_ROTATION: read_key_part(reader, row, node, object); break;
+    case ROW_ROTATION: { // of the only key of a path
+        SceneKey *key;
+        memcpy(&key, field, sizeof key);
+        if (!key || *(uint32_t *)read_at(object, row->extra) != 1) key = list_new(reader, object, row, 1, sizeof *key);
+        if (key) value_vector(reader, row, node, row->type == ROW_POSITION ? key->position : key->rotation);
+        break;
+    }
     }
 }
 

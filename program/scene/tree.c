@@ -185,14 +185,6 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
     return true;
 }
 
-/// A --set value that is a word or a number, perhaps with a unit, and so needs no YAML.
-static bool is_plain(const char *bytes, size_t size) {
-    static const char inside[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789./%+-_() ";
-    if (!size || strspn(bytes, inside) != size || bytes[size - 1] == ' ') return false;
-    const char *first = bytes + (*bytes == '-' || *bytes == '+');
-    return strspn(first, inside) > 0 && !strchr("-%() +_/", *first) && strncmp(first, "..", 2) != 0;
-}
-
 static YamlNode *plain_node(SceneArena *arena, const char *bytes, size_t size, SceneLocation location) {
     YamlNode *node = arena_new(arena, 1, sizeof *node);
     char *text = arena_text(arena, bytes, size);
@@ -206,8 +198,16 @@ YamlNode *tree_read(SceneArena *arena, const SceneText *text, const char *bytes,
                     SceneMessages *messages) {
     Builder builder = {.arena = arena, .text = text, .messages = messages, .origin = origin};
     if (!bytes_are_text(&builder, bytes, size)) return NULL;
-    if (origin.set && (!size || is_plain(bytes, size))) // PATH= alone is a value, too
-        return plain_node(arena, bytes, size, origin);
+
+    // a --set value that is a word or a number, perhaps with a unit, needs no YAML; PATH= alone is a value, too
+    static const char inside[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789./%+-_() ";
+    bool plain = !size || (strspn(bytes, inside) == size && bytes[size - 1] != ' ');
+    if (origin.set && plain && size) {
+        const char *first = bytes + (*bytes == '-' || *bytes == '+');
+        plain = strspn(first, inside) > 0 && !strchr("-%() +_/", *first) && strncmp(first, "..", 2) != 0;
+    }
+    if (origin.set && plain) return plain_node(arena, bytes, size, origin);
+
     if (size == 0) { // libfyaml takes length 0 for "count yourself"
         bytes = "\n";
         size = 1;

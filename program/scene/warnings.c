@@ -44,20 +44,6 @@ static void warn_of_pin(const Scene *scene, const SceneAssets *assets, const Sce
     }
 }
 
-/// A probe whose point is not on the sheet: for uv by more than rounding, for points as for pins.
-static void warn_of_probe(const Scene *scene, const SceneAssets *assets, uint32_t index, const SingeLog *log) {
-    const SceneProbe *probe = &scene->probes[index];
-    const double gap = assets->probes[index].distance;
-    if (probe->kind == SCENE_PROBE_UV && gap > 1e-4)
-        message_warn(log, scene->text, probe->location,
-                     "the sheet has no uv [%.6g, %.6g]: the probe takes the nearest, %.3g away", (double)probe->uv[0],
-                     (double)probe->uv[1], gap);
-    else if (probe->kind == SCENE_PROBE_POINT && gap > 0.1 * diagonal(&assets->meshes[probe->sheet_index]))
-        message_warn(log, scene->text, probe->location,
-                     "the probe's point [%.6g, %.6g, %.6g] m misses the sheet: it takes the nearest point, %.3g m away",
-                     (double)probe->point[0], (double)probe->point[1], (double)probe->point[2], gap);
-}
-
 /// A motion that ends before the scene does.
 static void warn_of_motion(const Scene *scene, const SceneMotion *motion, const SceneSequence *sequence,
                            const SingeLog *log) {
@@ -95,5 +81,19 @@ void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *l
         warn_of_motion(scene, &scene->colliders[i].motion, &assets->collider_motions[i], log);
     for (uint32_t i = 0; i < scene->pin_count; i++)
         warn_of_motion(scene, &scene->pins[i].motion, &assets->pin_motions[i], log);
-    for (uint32_t i = 0; i < scene->probe_count; i++) warn_of_probe(scene, assets, i, log);
+
+    // probes whose point is not on the sheet: for uv by more than rounding, for points as for pins
+    for (uint32_t i = 0; i < scene->probe_count; i++) {
+        const SceneProbe *probe = &scene->probes[i];
+        const double gap = assets->probes[i].distance;
+        if (probe->kind == SCENE_PROBE_UV && gap > 1e-4)
+            message_warn(log, scene->text, probe->location,
+                         "the sheet has no uv [%.6g, %.6g]: the probe takes the nearest, %.3g away",
+                         (double)probe->uv[0], (double)probe->uv[1], gap);
+        else if (probe->kind == SCENE_PROBE_POINT && gap > 0.1 * diagonal(&assets->meshes[probe->sheet_index]))
+            message_warn(
+                log, scene->text, probe->location,
+                "the probe's point [%.6g, %.6g, %.6g] m misses the sheet: it takes the nearest point, %.3g m away",
+                (double)probe->point[0], (double)probe->point[1], (double)probe->point[2], gap);
+    }
 }

@@ -38,14 +38,6 @@ static void write_float(FILE *out, float value) {
     fprintf(out, strpbrk(text, ".e") ? "%sf" : "%s", text);
 }
 
-static bool same(const SingeParam *a, const SingeParam *b) {
-    if (!a->field != !b->field || a->value != b->value) return false;
-    if (!a->field) return true;
-    const SingeNoise *p = &a->field->noise, *q = &b->field->noise;
-    return a->to == b->to && a->field->kind == b->field->kind && p->scale == q->scale && p->octaves == q->octaves &&
-           p->seed == q->seed;
-}
-
 static void write_param(FILE *out, const PresetRow *row, int colour, const SingeParam *param) {
     char name[80], noise[80];
     if (row->colours) snprintf(name, sizeof name, "%s[%d]", row->name, colour);
@@ -77,9 +69,15 @@ static void write_material(FILE *out, const char *name, const SingeMaterialDef *
 
     for (size_t i = 0; i < sizeof params / sizeof *params; i++)
         for (int colour = 0; colour < (params[i].colours ? params[i].colours : 1); colour++) {
-            const SingeParam *param = (const SingeParam *)((const char *)def + params[i].offset) + colour;
-            if (!same(param, (const SingeParam *)((const char *)&standard + params[i].offset) + colour))
-                write_param(out, &params[i], colour, param);
+            const SingeParam *a = (const SingeParam *)((const char *)def + params[i].offset) + colour;
+            const SingeParam *b = (const SingeParam *)((const char *)&standard + params[i].offset) + colour;
+            bool same = !a->field == !b->field && a->value == b->value;
+            if (same && a->field) {
+                const SingeNoise *p = &a->field->noise, *q = &b->field->noise;
+                same = a->to == b->to && a->field->kind == b->field->kind && p->scale == q->scale &&
+                       p->octaves == q->octaves && p->seed == q->seed;
+            }
+            if (!same) write_param(out, &params[i], colour, a);
         }
     if (def->reference_grammage != standard.reference_grammage) {
         fprintf(out, "    def->reference_grammage = ");
