@@ -356,6 +356,14 @@ SINGE_NODISCARD static inline SingeResult singe_sim_surface(SingeSim *sim, Singe
     return singe_sim_draw(sim, surface, sizeof *surface);
 }
 
+/// Draws a mesh in place of a sheet from now on (SingeRenderMeshDef), beside other meshes that the sheet may have. The
+/// caller may free its arrays after the call. The simulation frees the mesh; it is in no snapshot, recording or clone:
+/// add it to those again. SINGE_ERROR_STATE before the commit; SINGE_ERROR_MESH with the vertex or triangle in
+/// `element`: damaged, without triangles, or too far from the sheet; SINGE_ERROR_ARGUMENT; SINGE_ERROR_LIMIT for more
+/// than 16,777,216 triangles; SINGE_ERROR_MEMORY.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_render_mesh(SingeSim *sim, SingeSheetId sheet,
+                                                                const SingeRenderMeshDef *def);
+
 /// The present gas. The simulation owns the arrays, whose contents change with each step. Fills `struct_size` bytes,
 /// the caller's sizeof.
 SINGE_API void singe_sim_read_gas(const SingeSim *sim, SingeGas *gas, size_t struct_size);

@@ -29,7 +29,8 @@ typedef struct SingeSurface {
     float *burn;                  ///< burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash
     float *time_ignited;          ///< s, -1 never
     int32_t *piece;               ///< id
-    /// vertex of the input mesh (numbered over all sheets), -1: new; several vertices on a seam may share it
+    /// vertex of the input mesh (numbered over all sheets, then over all render meshes), -1: new; several vertices on a
+    /// seam may share it
     int32_t *source_vertex;
     int32_t *sheet;                              ///< index of the sheet, in the order added
     uint32_t (*triangles)[3];                    ///< counter-clockwise seen from the front
@@ -41,6 +42,31 @@ typedef struct SingeSurface {
 SINGE_API void singe_surface_release(SingeSurface *surface, size_t struct_size);
 
 static inline void singe_surface_free(SingeSurface *surface) { singe_surface_release(surface, sizeof *surface); }
+
+/// A mesh that is drawn in place of a sheet: finer than its cells, thick, with hems, seams and buttons. Each vertex is
+/// bound to the position of the sheet at rest that is nearest to it, and keeps its distance from there, along the sheet
+/// and along its normal. The mesh burns and tears with the sheet and has its temperature, char and all else; nothing of
+/// the mesh acts on the simulation (src/surface/render_mesh.c).
+typedef struct SingeRenderMeshDef {
+    size_t struct_size;
+    uint32_t vertex_count, triangle_count;
+    const float *positions;    ///< [3 * vertex_count] m, where the sheet is at rest
+    const float *uv;           ///< [2 * vertex_count], or NULL, the default: the sheet's
+    const uint32_t *triangles; ///< [3 * triangle_count] counter-clockwise seen from outside
+    float reach;               ///< m, no vertex is farther from the sheet, >= 0; 0, the default: the side of a cell
+    float edge_max; ///< m, longer edges are halved, >= 0; 0, the default, is half a side of a cell, which is the most
+    float rigid;    ///< m, parts that hang together and are at most this large keep their shape, as buttons do; 0: none
+    bool beside;    ///< the sheet is drawn, too; false
+} SingeRenderMeshDef;
+
+/// Fills a Def with the defaults: `struct_size` bytes, the caller's sizeof.
+SINGE_API void singe_init_render_mesh(SingeRenderMeshDef *def, size_t struct_size);
+
+static inline SingeRenderMeshDef singe_default_render_mesh(void) {
+    SingeRenderMeshDef def;
+    singe_init_render_mesh(&def, sizeof def);
+    return def;
+}
 
 /// The hot gas around the sheets, on a grid of cubes of side `cell` along the axes, x fastest. Cell (i, j, k) is entry
 /// i + size[0] (j + size[1] k) and spans origin + cell (i..i+1, j..j+1, k..k+1). Values hold at its centre.

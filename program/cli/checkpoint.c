@@ -76,6 +76,12 @@ static uint64_t hash_files(uint64_t hash, const SceneAssets *assets) {
             hash = hash_array(hash, mesh->attributes[k].name, strlen(mesh->attributes[k].name), 1);
             hash = hash_array(hash, mesh->attributes[k].values, mesh->vertex_count, sizeof(float));
         }
+        const SingeRenderMeshDef *render = &assets->renders[i].def;
+        if (render->positions) {
+            hash = hash_array(hash, render->positions, 3 * (size_t)render->vertex_count, sizeof(float));
+            hash = hash_array(hash, render->uv, 2 * (size_t)render->vertex_count, sizeof(float));
+            hash = hash_array(hash, render->triangles, 3 * (size_t)render->triangle_count, sizeof(uint32_t));
+        }
         hash = hash_image(hash, &assets->images[i]);
         for (int k = 0; k < SCENE_PARAM_SLOTS; k++) hash = hash_picture(hash, &assets->fields[i][k].texture);
     }
@@ -220,7 +226,13 @@ SingeResult checkpoint_read_file(const char *path, const SingeSimDef *hooks, Sce
     result = read_trailer(path, &bytes, hash, assets, &trailer, error);
     if (!result) {
         SingeError inner = {0};
+        uint32_t sheet;
         result = singe_sim_load(hooks, bytes.data, (size_t)trailer.snapshot_size, &checkpoint->sim, &inner);
+        if (!result) result = scene_bind_meshes(assets, checkpoint->sim, &sheet, &inner);
+        if (result) {
+            singe_sim_destroy(checkpoint->sim);
+            checkpoint->sim = NULL;
+        }
         if (result)
             checkpoint_refuse(path, result, inner.message[0] ? inner.message : singe_result_name(result), error);
         else checkpoint->progress = (Progress){(int)trailer.frame, (int)trailer.step};

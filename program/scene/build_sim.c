@@ -197,7 +197,8 @@ static SingeResult construct(SceneBuilder *builder, SceneFault *fault) {
         }
     }
 
-    return SINGE_OK;
+    fault->object = FAULT_RENDER_MESH;
+    return scene_bind_meshes(builder->assets, builder->sim, &fault->index, &fault->error);
 }
 
 SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const SingeSimDef *hooks, SingeSim **sim,

@@ -17,6 +17,8 @@ static const double gas_bytes = 160, gas_cells_usual = 200e3, gas_cells_max = 2e
 /// Bytes per pixel: of the drawn picture, of a sheet's picture, of a parameter's texture while it is read, and of a
 /// heightfield, simulated and drawn (measured with 1 and 9 million pixels: 42 to 45 and 300 to 330).
 static const double pixel_bytes = 80, picture_bytes = 3, texture_bytes = 7, height_bytes = 45, drawn_height_bytes = 300;
+/// Of a triangle of a mesh that is drawn in place of a sheet.
+static const double render_bytes = 600;
 static const double program_bytes = 40e6;
 
 static uint64_t sheet_cells(const Scene *scene, const SceneAssets *assets, uint32_t index) {
@@ -94,6 +96,9 @@ SceneSize scene_size(const Scene *scene, const SceneAssets *assets) {
     }
 
     size.memory += (double)size.cells * (cell_bytes + (scene->sim.contact.enabled ? contact_bytes : 0));
+
+    for (uint32_t i = 0; i < scene->sheet_count && assets; i++)
+        size.memory += render_bytes * (double)assets->renders[i].def.triangle_count;
 
     // all pictures that are read
     double pictures = picture_bytes * pixels_of(&scene->preview.environment_picture);

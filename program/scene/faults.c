@@ -93,6 +93,7 @@ void fault_report(const Scene *scene, const SceneAssets *assets, const SceneFaul
     case FAULT_SOURCE: location = scene->sources[fault->index].location; break;
     case FAULT_COLLIDER: location = scene->colliders[fault->index].location; break;
     case FAULT_PIN: location = scene->pins[fault->index].location; break;
+    case FAULT_RENDER_MESH: location = scene->sheets[fault->index].render_mesh.mesh.location; break;
     }
 
     message_add(messages, scene->text, location, "%s: %s", error->stage[0] ? error->stage : "simulation",

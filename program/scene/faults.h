@@ -6,7 +6,7 @@
 
 /// The object of a scene at which its construction failed, and the library's error.
 typedef struct SceneFault {
-    enum { FAULT_SIM, FAULT_SHEET, FAULT_COMMIT, FAULT_SOURCE, FAULT_COLLIDER, FAULT_PIN } object;
+    enum { FAULT_SIM, FAULT_SHEET, FAULT_COMMIT, FAULT_SOURCE, FAULT_COLLIDER, FAULT_PIN, FAULT_RENDER_MESH } object;
     uint32_t index; ///< of the sheet, source, collider or pin
     SingeError error;
 } SceneFault;

@@ -1,7 +1,9 @@
 // Reads the files of a scene: meshes, which are transformed, and pictures.
 #include "common/printable.h"
+#include "common/store.h"
 #include "scene/faults.h"
 #include "scene/probes.h"
+#include "scene/render_file.h"
 #include "scene/rotation.h"
 #include "scene/schema.h"
 #include "scene/sequence.h"
@@ -72,9 +74,9 @@ double metres_per_unit(int unit, float scale) {
     return units[unit] * (double)scale;
 }
 
-/// Scales, rotates and translates positions. Returns whether all can be simulated.
-static bool transform(const SceneSheet *sheet, float *positions, uint32_t count) {
-    const double scale = metres_per_unit(sheet->mesh.name ? sheet->units : SCENE_UNITS_M, sheet->scale);
+/// Scales, rotates and translates positions, of a file or of a grid. Returns whether all can be simulated.
+static bool transform(const SceneSheet *sheet, bool file, float *positions, uint32_t count) {
+    const double scale = metres_per_unit(file ? sheet->units : SCENE_UNITS_M, sheet->scale);
     double r[9];
     rotation_matrix(sheet->rotate, r);
     bool near = true;
@@ -83,7 +85,7 @@ static bool transform(const SceneSheet *sheet, float *positions, uint32_t count)
     for (uint32_t v = 0; v < count; v++) {
         float *p = positions + 3 * (size_t)v;
         double x = (double)p[0] * scale, y = (double)p[1] * scale, z = (double)p[2] * scale;
-        if (sheet->mesh.name && sheet->up == SCENE_UP_Y) {
+        if (file && sheet->up == SCENE_UP_Y) {
             double up = y;
             y = -z;
             z = up;
@@ -97,9 +99,20 @@ static bool transform(const SceneSheet *sheet, float *positions, uint32_t count)
     return near;
 }
 
+static const char too_far[] = "the sheet reaches beyond 10 km from the origin";
+
+/// Reads a file's polygons and puts them where the sheet is.
+static SingeResult read_polygons(const SceneSheet *sheet, const char *path, Polygons *polygons, SingeError *error) {
+    Bytes bytes = {0};
+    SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
+    if (!result) result = polygons_read(path, bytes.data, bytes.size, (SingeAllocator){0}, polygons, error);
+    bytes_free(&bytes);
+    if (result || transform(sheet, true, polygons->positions, polygons->vertex_count)) return result;
+    return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s", too_far);
+}
+
 /// Reads a file's polygons and converts them to quads, or makes the grid.
 static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh, MeshReport *report) {
-    static const char too_far[] = "the sheet reaches beyond 10 km from the origin";
     SingeError error = {0};
     if (!sheet->mesh.name) {
         const uint32_t columns = (uint32_t)sheet->grid.cells[0], rows = (uint32_t)sheet->grid.cells[1];
@@ -112,28 +125,36 @@ static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh, MeshR
         }
 
         mesh_grid_wear(mesh, columns, rows, &sheet->grid.wear);
-        if (!transform(sheet, mesh->positions, mesh->vertex_count))
+        if (!transform(sheet, false, mesh->positions, mesh->vertex_count))
             message_add(loader->messages, loader->scene->text, at.location, "%s", too_far);
         return;
     }
 
-    Bytes bytes = {0};
     Polygons polygons = {0};
     MeshOptions options = mesh_default_options();
     options.weld = sheet->weld;
     options.quads = (MeshQuads)sheet->quads;
     const char *path = sheet->mesh.path;
-    SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, &error);
-    if (!result) result = polygons_read(path, bytes.data, bytes.size, (SingeAllocator){0}, &polygons, &error);
-    bytes_free(&bytes);
-    if (!result && !transform(sheet, polygons.positions, polygons.vertex_count)) {
-        snprintf(error.message, sizeof error.message, "%s", too_far);
-        result = SINGE_ERROR_MESH;
-    }
-
+    SingeResult result = read_polygons(sheet, path, &polygons, &error);
     if (!result) result = mesh_make(path, &polygons, &options, (SingeAllocator){0}, mesh, report, &error);
     polygons_free(&polygons);
     if (result) loader_fail(loader, &sheet->mesh, result, error.message);
+}
+
+/// The mesh that is drawn in place of a sheet.
+static void load_render_mesh(Loader *loader, const SceneSheet *sheet, RenderFile *file) {
+    const SceneRenderMesh *given = &sheet->render_mesh;
+    Polygons polygons = {0};
+    SingeError error = {0};
+    if (!given->mesh.name) return;
+    SingeResult result = read_polygons(sheet, given->mesh.path, &polygons, &error);
+    if (!result) result = render_file_make(given->mesh.path, &polygons, file, &error);
+    polygons_free(&polygons);
+    if (result) loader_fail(loader, &given->mesh, result, error.message);
+    file->def.reach = given->reach;
+    file->def.edge_max = given->edge_max;
+    file->def.rigid = given->rigid;
+    file->def.beside = given->beside;
 }
 
 static void load_sheet(Loader *loader, uint32_t index) {
@@ -142,6 +163,7 @@ static void load_sheet(Loader *loader, uint32_t index) {
     SceneAssets *assets = loader->assets;
     Mesh *mesh = &assets->meshes[index];
     load_mesh(loader, sheet, mesh, &assets->reports[index]);
+    load_render_mesh(loader, sheet, &assets->renders[index]);
     memcpy(assets->colours[index], sheet->colour, sizeof sheet->colour);
     assets->transmittances[index] = sheet->transmittance;
     if (sheet->picture.name && !load_image(loader, &sheet->picture, &assets->images[index]))
@@ -254,6 +276,7 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
                             .pin_count = scene->pin_count};
     assets->meshes = many(&loader, scene->sheet_count, sizeof *assets->meshes);
     assets->reports = many(&loader, scene->sheet_count, sizeof *assets->reports);
+    assets->renders = many(&loader, scene->sheet_count, sizeof *assets->renders);
     assets->images = many(&loader, scene->sheet_count, sizeof *assets->images);
     assets->pictures = many(&loader, scene->sheet_count, sizeof *assets->pictures);
     assets->colours = many(&loader, scene->sheet_count, sizeof *assets->colours);
@@ -293,6 +316,7 @@ static void picture_free(SingeTexture *picture) {
 void scene_assets_free(SceneAssets *assets) {
     for (uint32_t i = 0; i < assets->sheet_count; i++) {
         if (assets->meshes) mesh_free(&assets->meshes[i]);
+        if (assets->renders) render_file_free(&assets->renders[i]);
         if (assets->images) image_free(&assets->images[i]);
         for (int p = 0; p < SCENE_PARAM_SLOTS && assets->fields; p++) picture_free(&assets->fields[i][p].texture);
     }
@@ -310,6 +334,7 @@ void scene_assets_free(SceneAssets *assets) {
     free(assets->probes);
     free(assets->meshes);
     free(assets->reports);
+    free(assets->renders);
     free(assets->images);
     free(assets->pictures);
     free(assets->colours);

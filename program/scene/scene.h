@@ -104,11 +104,20 @@ typedef enum SceneUnits { SCENE_UNITS_M, SCENE_UNITS_CM, SCENE_UNITS_MM, SCENE_U
 
 typedef enum SceneUp { SCENE_UP_Z, SCENE_UP_Y } SceneUp;
 
+/// A mesh that is drawn in place of a sheet.
+typedef struct SceneRenderMesh {
+    bool given;
+    SceneFile mesh;
+    float reach, edge_max, rigid; ///< m
+    bool beside;
+} SceneRenderMesh;
+
 typedef struct SceneSheet {
     SceneLocation location;
     char *name;
     SceneFile mesh; ///< or grid
     SceneGrid grid;
+    SceneRenderMesh render_mesh;
     SceneFile picture;       ///< drawn on both sides, may be absent
     float colour[3];         ///< linear tint
     float transmittance;     ///< share of light transmitted, in the preview
@@ -328,10 +337,19 @@ typedef struct SceneSequence {
 } SceneSequence;
 
 /// The meshes (transforms applied) and pictures that a scene names.
+/// A mesh that is drawn in place of a sheet, as it was read.
+typedef struct RenderFile {
+    SingeRenderMeshDef def; ///< points at the arrays
+    float *positions;       ///< [3 * def.vertex_count] m
+    float *uv;              ///< [2 * def.vertex_count] or NULL
+    uint32_t *triangles;    ///< [3 * def.triangle_count]
+} RenderFile;
+
 typedef struct SceneAssets {
     uint32_t sheet_count, source_count, collider_count, pin_count;
     Mesh *meshes;                            ///< [sheet_count]
     MeshReport *reports;                     ///< [sheet_count] repairs of meshes from files
+    RenderFile *renders;                     ///< [sheet_count], zeroed if there is none
     Image *images;                           ///< [sheet_count], zeroed if there is none
     const Image **pictures;                  ///< [sheet_count], for PreviewDef; NULL if there is none
     float (*colours)[3];                     ///< [sheet_count], for PreviewDef
@@ -349,6 +367,11 @@ typedef struct SceneAssets {
 /// names; also of meshes that the library would refuse.
 SINGE_NODISCARD SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *messages);
 void scene_assets_free(SceneAssets *assets);
+
+/// Binds the meshes that are drawn in place of sheets, to a simulation that was built or loaded; in snapshots they are
+/// not. On failure *sheet is the one whose mesh does not fit, and *error the library's.
+SINGE_NODISCARD SingeResult scene_bind_meshes(const SceneAssets *assets, SingeSim *sim, uint32_t *sheet,
+                                              SingeError *error);
 
 /// An estimate from a scene's numbers, before anything is built.
 typedef struct SceneSize {

@@ -76,6 +76,26 @@ static const Schema schema_grid = {.title = "a grid",
                                    .defaults = default_grid,
                                    .doc = "A rectangle around the origin in the x-y plane, facing up (+z)."};
 
+static const SchemaRow render_mesh_rows[] = {
+    {"mesh", ROW_FILE, DIM_NONE, AT(SceneRenderMesh, mesh), .flags = ROW_REQUIRED,
+     .doc = "a file of triangles, quads or polygons, in the same `units`, `up` and place as the sheet's own"},
+    {"reach", ROW_FLOAT, DIM_LENGTH, AT(SceneRenderMesh, reach), WITHIN(0, 1e4),
+     .doc = "no vertex is farther from the sheet; 0: the side of a cell"},
+    {"edge", ROW_FLOAT, DIM_LENGTH, AT(SceneRenderMesh, edge_max), WITHIN(0, 1e4),
+     .doc = "longer edges are halved until they are not; 0: half the side of a cell, which is the most"},
+    {"rigid", ROW_FLOAT, DIM_LENGTH, AT(SceneRenderMesh, rigid), WITHIN(0, 1e4),
+     .doc = "parts that hang together and are at most this large keep their shape, as buttons do; 0: none"},
+    {"beside", ROW_BOOL, DIM_NONE, AT(SceneRenderMesh, beside), .doc = "the sheet is drawn, too"},
+};
+static const Schema schema_render_mesh = {
+    .title = "a render mesh",
+    .size = sizeof(SceneRenderMesh),
+    ROWS(render_mesh_rows),
+    .doc =
+        "A mesh that is drawn in place of a sheet: finer, thick, with hems, seams and buttons "
+        "([render-meshes.md](render-meshes.md)). It is bound to the sheet by positions at rest, and burns and tears with "
+        "it."};
+
 static SceneLocation *sheet_location(void *object) { return &((SceneSheet *)object)->location; }
 #define OF SceneSheet
 #define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
@@ -88,6 +108,8 @@ static const SchemaRow sheet_rows[] = {
             "`grid`"},
     {"grid", ROW_MAP, DIM_NONE, AT(SceneSheet, grid), EXTRA(SceneSheet, grid.given), .sub = &schema_grid,
      .doc = "a rectangle made by the program"},
+    {"render_mesh", ROW_MAP, DIM_NONE, AT(SceneSheet, render_mesh), EXTRA(SceneSheet, render_mesh.given),
+     .sub = &schema_render_mesh, .doc = "a mesh that is drawn in place of the sheet; the sheet itself by default"},
     {"picture", ROW_FILE, DIM_NONE, AT(SceneSheet, picture),
      .doc = "PNG or JPEG, printed on both sides in the preview"},
     {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneSheet, colour), .length = 3, WITHIN(0, 1),

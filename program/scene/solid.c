@@ -63,8 +63,7 @@ static double ear(const float *vertices, const uint32_t *left, uint32_t count, u
     return square;
 }
 
-/// Cuts a face into count - 2 triangles; `left` has its corners and is consumed.
-static void face_cut(const float *vertices, uint32_t *left, uint32_t count, uint32_t *triangles) {
+void solid_cut_face(const float *vertices, uint32_t *left, uint32_t count, uint32_t *triangles) {
     double normal[3] = {0, 0, 0}; // twice the area by components
     for (uint32_t i = 0; i < count; i++) {
         const float *a = vertices + 3 * (size_t)left[i], *b = vertices + 3 * (size_t)left[(i + 1) % count];
@@ -120,7 +119,7 @@ SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size,
     for (uint32_t f = 0; !result && f < polygons.face_count; f++) {
         uint32_t first = polygons.first[f], corners = polygons.first[f + 1] - first;
         memcpy(left, polygons.corners + first, corners * sizeof *left);
-        face_cut(surface->vertices, left, corners, surface->triangles + 3 * (size_t)surface->triangle_count);
+        solid_cut_face(surface->vertices, left, corners, surface->triangles + 3 * (size_t)surface->triangle_count);
         surface->triangle_count += corners - 2;
     }
 

@@ -8,6 +8,9 @@
 SINGE_NODISCARD SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size, double scale,
                                             SceneSolid *solid, SingeError *error);
 
+/// Cuts a face into count - 2 triangles; `left` has its corners and is consumed.
+void solid_cut_face(const float *vertices, uint32_t *left, uint32_t count, uint32_t *triangles);
+
 /// Heights from a picture, between the heights of black and of white, over a rectangle of that size, and the drawn
 /// surface.
 SINGE_NODISCARD SingeResult solid_make_heights(const SingeTexture *picture, const float size[2], const float heights[2],

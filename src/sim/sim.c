@@ -159,6 +159,8 @@ void singe_sim_destroy(SingeSim *sim) {
     for (uint32_t i = 0; i < sim->sources.count; i++) sim_free_source(sim, &sim->sources.items[i]);
     for (uint32_t i = 0; i < sim->colliders.count; i++) collider_free(memory, &sim->colliders.items[i]);
     for (uint32_t i = 0; i < sim->pins.count; i++) sim_free_pin(sim, &sim->pins.items[i]);
+    for (uint32_t i = 0; i < sim->render_mesh_count; i++) render_mesh_free(memory, sim->render_meshes[i]);
+    FREE(memory, sim->render_meshes, sim->render_mesh_count);
     FREE(memory, sim->sources.items, sim->sources.capacity);
     FREE(memory, sim->colliders.items, sim->colliders.capacity);
     FREE(memory, sim->pins.items, sim->pins.capacity);

@@ -8,6 +8,7 @@
 #include "dynamics/dynamics.h"
 #include "gas/gas.h"
 #include "heat/heat.h"
+#include "surface/render_mesh.h"
 #include "tear/tear.h"
 #include "sim/recorder.h"
 
@@ -32,6 +33,11 @@ struct SingeSim {
     SourceList sources;
     ColliderList colliders;
     PinList pins;
+
+    // what is drawn in place of sheets
+    RenderMesh **render_meshes;
+    uint32_t render_mesh_count;
+    int32_t render_vertex_count; ///< of all, as they were given
 
     // the changing part
     State state;

@@ -93,19 +93,72 @@ void singe_sim_read_counts(const SingeSim *sim, SingeCounts *out, size_t struct_
     sim_write_result(out, struct_size, &counts, sizeof counts);
 }
 
+/// The surface's max distance from flat triangles: less than half of the distance that contact keeps between surfaces,
+/// where it does not report them as near.
+static float bulge_max(const SingeSim *sim) {
+    float cell = INFINITY;
+    for (uint32_t s = 0; s < sim->shell.sheet_count; s++) cell = fminf(cell, sim->shell.sheets[s].cell_size);
+    return sim->def.contact.enabled ? 0.45f * fminf(sim->def.contact.thickness, 0.4f * cell) : 0;
+}
+
+void singe_init_render_mesh(SingeRenderMeshDef *def, size_t struct_size) {
+    if (struct_size < sizeof struct_size) return;
+    memset(def, 0, struct_size);
+    memcpy(def, &struct_size, sizeof struct_size);
+}
+
+SingeResult singe_sim_add_render_mesh(SingeSim *sim, SingeSheetId id, const SingeRenderMeshDef *given) {
+    SingeRenderMeshDef def = singe_default_render_mesh();
+    if (!sim_read_def(&def, sizeof def, given, SIZE_MAX))
+        return sim_fail(sim, SINGE_ERROR_ARGUMENT, "render mesh", -1,
+                        "struct_size is that of no version; start from singe_default_render_mesh()");
+    if (!sim->committed)
+        return sim_fail(sim, SINGE_ERROR_STATE, "render mesh", -1, "singe_sim_commit must come before a render mesh");
+    if (id.generation != 1 || id.index >= sim->sheet_count)
+        return sim_fail(sim, SINGE_ERROR_ARGUMENT, "render mesh", id.index, "there is no such sheet");
+
+    // its vertices are numbered after those of the sheets and of other meshes
+    const Sheet *sheet = &sim->shell.sheets[id.index], *last = &sim->shell.sheets[sim->sheet_count - 1];
+    const uint64_t first = (uint64_t)last->source_first + last->source_count + (uint64_t)sim->render_vertex_count;
+    if (first + def.vertex_count > INT32_MAX)
+        return sim_fail(sim, SINGE_ERROR_LIMIT, "render mesh", -1, "more vertices than can be numbered");
+    const RenderSheet bound = {.source = &sim->sheets[id.index],
+                               .cell_first = sheet->cell_first,
+                               .cell_size = sheet->cell_size,
+                               .bulge_max = bulge_max(sim),
+                               .number_first = (int32_t)first};
+    RenderMesh *mesh;
+    TRY(render_mesh_create(&sim->memory, sim->pool, &bound, &def, &mesh, &sim->error));
+    const uint32_t count = sim->render_mesh_count;
+    if (!memory_grow(&sim->memory, &sim->render_meshes, count, count + 1, sizeof(RenderMesh *))) {
+        render_mesh_free(&sim->memory, mesh);
+        return sim_fail(sim, SINGE_ERROR_MEMORY, "render mesh", -1, "out of memory for the render mesh");
+    }
+    sim->render_meshes[count] = mesh;
+    sim->render_mesh_count = count + 1;
+    sim->render_vertex_count += (int32_t)def.vertex_count;
+    return SINGE_OK;
+}
+
 SingeResult call_draw(SingeSim *sim, SingeSurface *surface, size_t struct_size) {
     if (struct_size < sizeof *surface)
         return sim_fail(sim, SINGE_ERROR_ARGUMENT, "surface", -1, "struct_size is smaller than a SingeSurface");
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "surface", -1, "singe_sim_commit must come before the surface");
 
-    // bulges: less than half of the distance that contact keeps between surfaces, where it does not report them as near
-    float cell = INFINITY;
-    for (uint32_t s = 0; s < sim->shell.sheet_count; s++) cell = fminf(cell, sim->shell.sheets[s].cell_size);
-    float bulge_max = sim->def.contact.enabled ? 0.45f * fminf(sim->def.contact.thickness, 0.4f * cell) : 0;
-    SurfaceDetail detail = {sim->def.surface_detail, sim->def.surface_raggedness, (uint32_t)sim->def.seed, NULL,
-                            bulge_max};
-    if (!(detail.size > 0)) return surface_draw(sim->ablate, &sim->shell, &sim->state, surface, &sim->error);
+    SurfaceDetail detail = {.size = sim->def.surface_detail,
+                            .raggedness = sim->def.surface_raggedness,
+                            .seed = (uint32_t)sim->def.seed,
+                            .bulge_max = bulge_max(sim),
+                            .meshes = sim->render_meshes,
+                            .mesh_count = sim->render_mesh_count};
+    const bool coarse = !(detail.size > 0);
+    if (coarse && detail.mesh_count == 0)
+        return surface_draw(sim->ablate, &sim->shell, &sim->state, surface, &sim->error);
+    if (coarse) { // cells are not refined
+        detail.size = INFINITY;
+        detail.raggedness = 0;
+    }
 
     float *room;
     if (!NEW(&sim->memory, room, sim->shell.vertex_count))

@@ -137,7 +137,6 @@ static float fine_tear_level(const Fine *fine, FineLocation location) {
     const Shell *shell = fine->shell;
     uint32_t index = shell->matter.sheet[shell_centre(shell, location.cell)];
     const FineSheet *sheet = &fine->sheets[index];
-    const uint32_t *at = shell->cells[location.cell];
     float size = shell->sheets[index].cell_size, reach = float_min(sheet->reach, TEAR_EDGE_WANDERS * size);
 
     if (reach > 0) {
@@ -155,15 +154,7 @@ static float fine_tear_level(const Fine *fine, FineLocation location) {
 
         float length = float3_length(sum);
         const Float3 displacement = float3_scale(sum, length > 1 ? reach / length : reach);
-
-        // the position there
-        Float3 corner[4];
-        for (int i = 0; i < 4; i++) corner[i] = float3_load(shell->rest_position[at[i]]);
-        Float3 along =
-            float3_scale(float3_sub(float3_add(corner[1], corner[2]), float3_add(corner[0], corner[3])), 0.5f);
-        Float3 up = float3_scale(float3_sub(float3_add(corner[3], corner[2]), float3_add(corner[0], corner[1])), 0.5f);
-        location = fine_walk(shell, location, float3_dot(displacement, along) / float3_dot(along, along),
-                             float3_dot(displacement, up) / float3_dot(up, up));
+        location = fine_move(shell, location, displacement);
     }
 
     float field = fine_spline_at(shell, &fine->splines[SPLINE_TEAR_EDGE], location);

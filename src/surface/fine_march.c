@@ -37,7 +37,7 @@ typedef struct Piece {
 } Piece;
 
 static uint32_t add_vertex(Fine *fine, FineLocation location, float mass, uint32_t source) {
-    fine->vertices[fine->vertex_count] = (FineVertex){location, mass, source};
+    fine->vertices[fine->vertex_count] = (FineVertex){location, mass, source, NULL};
     return ++fine->vertex_count;
 }
 
@@ -219,6 +219,9 @@ static void march_cells(Marching *march) {
     for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
         if (fine->cell_triangle && march->drawing) fine->cell_triangle[c] = fine->surface->triangle_count;
         if (!(fine->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+        bool hidden = false;
+        for (uint32_t m = 0; m < fine->mesh_count; m++) hidden |= render_hides(fine->meshes[m], c);
+        if (hidden) continue;
 
         uint32_t before = fine->surface->triangle_count;
         uint32_t line[4][FINE_SPLITS_MAX]; // cuts of the lines from the corners to the centre
@@ -245,8 +248,8 @@ SingeResult fine_march(Fine *fine, SingeError *error) {
 
     // count; a crossed triangle has two cuts, most of which are shared
     march_cells(&march);
-    TRY(surface_reserve_triangles(fine->surface, march.triangles, error));
-    uint64_t max = 2 * march.crossed;
+    TRY(surface_reserve_triangles(fine->surface, march.triangles + fine->extra_triangles, error));
+    uint64_t max = 2 * march.crossed + fine->extra_vertices;
     for (uint32_t p = 0; p < fine->point_count; p++) max += fine->values[p].level >= 0;
     if (max > INT32_MAX) return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "too many vertices");
 

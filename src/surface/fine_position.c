@@ -253,3 +253,12 @@ void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocati
                           v + float_max(-STEP_MAX, float_min(dv, STEP_MAX)));
     float3_store(normal, unit_or_up(float3_mad(float3_scale(lean, 1 - share), across(&point), share)));
 }
+
+FineFrame fine_frame(const Fine *fine, uint32_t cell, Float3 normal) {
+    const uint32_t *at = fine->shell->cells[cell];
+    Float3 corner[4];
+    for (int i = 0; i < 4; i++) corner[i] = float3_load(fine->corner[at[i]]);
+    Float3 along = float3_sub(float3_add(corner[1], corner[2]), float3_add(corner[0], corner[3]));
+    along = float3_unit(float3_mad(along, normal, -float3_dot(along, normal)));
+    return (FineFrame){{along, float3_cross(normal, along), normal}};
+}

@@ -152,3 +152,12 @@ FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, floa
                           .side = (uint8_t)(across ? (x > 0 ? 1 : 3) : (y > 0 ? 2 : 0)),
                           .weight = {out - along, out + along, 1 - 2 * out}};
 }
+
+FineLocation fine_move(const Shell *shell, FineLocation location, Float3 displacement) {
+    Float3 corner[4];
+    for (int i = 0; i < 4; i++) corner[i] = float3_load(shell->rest_position[shell->cells[location.cell][i]]);
+    Float3 along = float3_scale(float3_sub(float3_add(corner[1], corner[2]), float3_add(corner[0], corner[3])), 0.5f);
+    Float3 up = float3_scale(float3_sub(float3_add(corner[3], corner[2]), float3_add(corner[0], corner[1])), 0.5f);
+    return fine_walk(shell, location, float3_dot(displacement, along) / float3_dot(along, along),
+                     float3_dot(displacement, up) / float3_dot(up, up));
+}

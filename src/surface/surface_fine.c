@@ -66,8 +66,8 @@ static void fill_levels(Fine *fine) {
 
 // ---- vertices
 
-/// Interpolates between a triangle's corners: two particles, and the mean of four for the virtual centre.
-static Float3 blend(const uint32_t at[4], const FineLocation *location, const float (*field)[4]) {
+// Two particles, and the mean of four for the virtual centre.
+Float3 fine_blend(const uint32_t at[4], const FineLocation *location, const float (*field)[4]) {
     Float3 sum = {0, 0, 0};
     for (int i = 0; i < 4; i++) {
         float weight = 0.25f * location->weight[2];
@@ -93,10 +93,10 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
     fine_position_at(fine, patch, location, surface->position[v], surface->normal[v]);
     const DynamicsState *dynamics = &state->dynamics;
     float3_store(surface->velocity[v],
-                 surface_velocity(state, blend(at, location, (const float(*)[4])dynamics->position),
-                                  blend(at, location, (const float(*)[4])dynamics->earlier),
-                                  blend(at, location, (const float(*)[4])dynamics->velocity)));
-    float3_store(surface->rest_position[v], blend(at, location, (const float(*)[4])shell->rest_position));
+                 surface_velocity(state, fine_blend(at, location, (const float(*)[4])dynamics->position),
+                                  fine_blend(at, location, (const float(*)[4])dynamics->earlier),
+                                  fine_blend(at, location, (const float(*)[4])dynamics->velocity)));
+    float3_store(surface->rest_position[v], fine_blend(at, location, (const float(*)[4])shell->rest_position));
 
     // means over the triangle's corners
     float mass_min = 0, yield = 0, u = 0, w = 0;
@@ -134,6 +134,7 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
     surface->piece[v] = state->ablate.piece[particle[0]];
     surface->sheet[v] = shell->matter.sheet[centre];
     surface->source_vertex[v] = vertex->source == SHELL_NONE ? -1 : shell->source_vertex[vertex->source];
+    if (vertex->render) render_place(fine, vertex, v);
 }
 
 static void fill_range(void *context, int begin, int end) {
@@ -153,8 +154,7 @@ static void fill_range(void *context, int begin, int end) {
 
 // ---- the drawing
 
-static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError *error) {
-    const State *state = fine->state;
+SingeResult fine_open(Fine *fine, const SurfaceDetail *detail, SingeError *error) {
     const Shell *shell = fine->shell;
     FineArray arrays[FINE_ARRAYS_MAX];
     const int count = list_arrays(fine, arrays);
@@ -181,6 +181,31 @@ static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError
         sheet->seed = random_hash(s, 0, 0, detail->seed);
     }
 
+    fine_position(fine);
+    return SINGE_OK;
+}
+
+void fine_close(Fine *fine) {
+    FineArray arrays[FINE_ARRAYS_MAX];
+    const int count = list_arrays(fine, arrays);
+    for (int i = 0; i < count; i++)
+        memory_free(fine->memory, (char *)fine + arrays[i].offset, arrays[i].count, arrays[i].size);
+
+    for (int f = 0; f < SPLINE_COUNT; f++) {
+        FREE(fine->memory, fine->splines[f].edge, fine->shell->springs[SINGE_BLUE].count);
+        FREE(fine->memory, fine->splines[f].corner, fine->shell->vertex_count);
+    }
+
+    FREE(fine->memory, fine->values, fine->point_count);
+    FREE(fine->memory, fine->drawn, fine->point_count);
+    FREE(fine->memory, fine->cuts, fine->cut_count);
+    FREE(fine->memory, fine->vertices, fine->vertex_capacity);
+    render_release(fine);
+}
+
+static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError *error) {
+    const State *state = fine->state;
+    TRY(fine_open(fine, detail, error));
     fill_levels(fine);
 
     // splines of the fields
@@ -195,9 +220,10 @@ static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError
     fine_spline_cells(fine, &fine->splines[SPLINE_WHOLE]);
 
     // points, triangles, vertices, seams
-    fine_position(fine);
     TRY(fine_points(fine, error));
+    TRY(render_levels(fine, error));
     TRY(fine_march(fine, error));
+    render_march(fine);
     TRY(surface_reserve_vertices(fine->surface, fine->vertex_count, error));
     pool_for(fine->pool, (int)fine->vertex_count, 256, fill_range, fine);
     fine->surface->vertex_count = fine->vertex_count;
@@ -213,24 +239,10 @@ SingeResult surface_draw_fine(AblatePlan *plan, const Shell *shell, const State 
     fine.level = ablate_levels(plan, shell, &state->burn);
     fine.rim = ablate_rim(plan);
     surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
+    fine.meshes = detail->meshes;
+    fine.mesh_count = detail->mesh_count;
     SingeResult result = fine_draw(&fine, detail, error);
-
-    // release the arrays
-    FineArray arrays[FINE_ARRAYS_MAX];
-    int count = list_arrays(&fine, arrays);
-    for (int i = 0; i < count; i++)
-        memory_free(fine.memory, (char *)&fine + arrays[i].offset, arrays[i].count, arrays[i].size);
-
-    for (int f = 0; f < SPLINE_COUNT; f++) {
-        FREE(fine.memory, fine.splines[f].edge, fine.shell->springs[SINGE_BLUE].count);
-        FREE(fine.memory, fine.splines[f].corner, fine.shell->vertex_count);
-    }
-
-    FREE(fine.memory, fine.values, fine.point_count);
-    FREE(fine.memory, fine.drawn, fine.point_count);
-    FREE(fine.memory, fine.cuts, fine.cut_count);
-    FREE(fine.memory, fine.vertices, fine.vertex_capacity);
-
+    fine_close(&fine);
     if (result) surface_clear(surface);
     return result;
 }

@@ -3,6 +3,7 @@
 #define SURFACE_SURFACE_FINE_H
 
 #include "common/float3.h"
+#include "surface/render_mesh.h"
 #include "surface/surface_parts.h"
 
 /// A cell's side is split into at most this many parts.
@@ -48,11 +49,23 @@ typedef struct FineValue {
     float level, mass;
 } FineValue;
 
+/// A vertex of a render mesh, or a cut of one: bound to a position on its sheet (render_mesh.c).
+typedef struct RenderVertex {
+    FineLocation foot;          ///< where it is bound
+    float offset[3], normal[3]; ///< from there, m, and unit length: along the foot's frame (fine_frame)
+    float rest[3];              ///< m, as it was given
+    float uv[2];                ///< the sheet's is drawn without has_uv
+    int32_t source;             ///< number in the drawn surface, or -1 for a new one
+    bool has_uv;
+    bool rigid; ///< of a part that keeps its shape
+} RenderVertex;
+
 /// A vertex to draw.
 typedef struct FineVertex {
     FineLocation location;
     float mass;
-    uint32_t source; ///< vertex of the input, or SHELL_NONE
+    uint32_t source;            ///< vertex of the input, or SHELL_NONE
+    const RenderVertex *render; ///< what is drawn there in place of the sheet, or NULL
 } FineVertex;
 
 /// How a sheet's cells near the front are split.
@@ -110,8 +123,27 @@ typedef struct Fine {
     FineVertex *vertices; ///< [vertex_capacity]
     uint32_t vertex_count, vertex_capacity;
     uint32_t *cell_triangle; ///< [cells + 1] first of a cell's triangles, where the sheets have seams; else NULL
+    RenderMesh *const *meshes;
+    uint32_t mesh_count;
+    struct RenderDrawing *renders;            ///< [mesh_count]
+    uint64_t extra_vertices, extra_triangles; ///< max numbers that the render meshes add
     SingeSurface *surface;
 } Fine;
+
+/// Axes at a position of the drawn surface: along its cell's first axis, across it, and the normal.
+typedef struct FineFrame {
+    Float3 axis[3];
+} FineFrame;
+
+// ---- surface_fine.c
+
+/// Allocates a drawing's arrays and finds where its surface is. The shell, state, memory and surface are set.
+SingeResult fine_open(Fine *fine, const SurfaceDetail *detail, SingeError *error);
+/// Frees what a drawing has allocated.
+void fine_close(Fine *fine);
+
+/// Interpolates between the corners of a cell's triangle.
+Float3 fine_blend(const uint32_t at[4], const FineLocation *location, const float (*field)[4]);
 
 // ---- fine_spline.c
 
@@ -129,6 +161,9 @@ float fine_spline_at(const Shell *shell, const Spline *spline, FineLocation loca
 /// The position displaced by (x, y) from another one, in sides of its cell along the cell's own axes (corner 0 to 1,
 /// corner 0 to 3), at most half a cell along each. Beyond the sheet's border, the nearest point on it.
 FineLocation fine_walk(const Shell *shell, FineLocation location, float x, float y);
+
+/// The same by a displacement in space at rest, m.
+FineLocation fine_move(const Shell *shell, FineLocation location, Float3 displacement);
 
 /// A position in its cell's own coordinates: corners at (-1/2, -1/2), (1/2, -1/2), (1/2, 1/2), (-1/2, 1/2).
 void fine_coordinates(FineLocation location, float *x, float *y);
@@ -209,5 +244,18 @@ void fine_position(Fine *fine);
 /// Position and unit normal at a location; `patch` is that of its cell.
 void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocation *location, float position[3],
                       float normal[3]);
+
+/// The frame at a cell's position that has this normal.
+FineFrame fine_frame(const Fine *fine, uint32_t cell, Float3 normal);
+
+// ---- render_draw.c
+
+/// Finds which vertices of the render meshes are drawn, and sets the max numbers that they add.
+SingeResult render_levels(Fine *fine, SingeError *error);
+/// Draws their triangles and lists their vertices.
+void render_march(Fine *fine);
+/// Puts vertex v of the surface, which lies at its foot, where the render mesh has it.
+void render_place(const Fine *fine, const FineVertex *vertex, uint32_t v);
+void render_release(Fine *fine);
 
 #endif

@@ -149,6 +149,29 @@ class Burning(Case):
         with self.assertRaises(singe.ArgumentError):
             singe.Sim(record=path, pace=-1)
 
+    def test_render_mesh(self):
+        sim = singe.Sim()
+        points, faces, uv = singe.grid((0.1, 0.1), (10, 10), jitter=0)
+        sheet = sim.sheet(points, faces, uv)
+        sim.commit()
+        fine, quads, fine_uv = singe.grid((0.1, 0.1), (40, 40), jitter=0)
+        fine = fine + np.float32([0, 0, 3e-4])
+        triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+        with self.assertRaises(ValueError):
+            sheet.render_mesh(fine, quads)
+        with self.assertRaises(ValueError):
+            sheet.render_mesh(fine, triangles, uv=uv)
+        with self.assertRaises(TypeError):
+            sheet.render_mesh(fine, triangles, reech=1)
+        with self.assertRaisesRegex(singe.Error, "vertex 0 is 1 m away|such as vertex 0"):
+            sheet.render_mesh(fine + np.float32([0, 0, 1]), triangles)
+        sheet.render_mesh(fine, triangles, uv=1 - fine_uv, rigid=1e-3)
+        surface = sim.surface()
+        self.assertEqual(len(surface.triangles), len(triangles))
+        given = surface.source_vertex - len(points)
+        self.assertTrue(np.allclose(surface.position, fine[given], atol=1e-7))
+        self.assertTrue(np.allclose(surface.uv, 1 - fine_uv[given]))
+
     def test_surface_and_gas(self):
         sim = burning(gas={"cell_size": 0.008}, surface_detail=0.001)
         sim.advance(0.4)

@@ -366,6 +366,48 @@ static const char nut[] = "v -2 -2 0\nv 2 -2 0\nv 2 0 0\nv 1 0 0\nv 1 -1 0\nv -1
                           "f 8 7 6 5 4 3 2 1\nf 9 10 11 12 13 14 15 16\nf 1 2 10\nf 1 10 9\nf 2 3 11 10\nf 3 4 12 11\n"
                           "f 4 5 13 12\nf 5 6 14 13\nf 6 7 15 14\nf 7 8 16 15\nf 8 1 9 16\n";
 
+/// A mesh in place of a sheet is placed as the sheet is, triangulated, and one vertex for each uv; one that does not fit
+/// is refused at its file.
+TEST(render_meshes_are_bound) {
+    char folder[] = "/tmp/singe-XXXXXX";
+    static const char mesh[] = "v -50 0 0\nv 50 0 0\nv 50 50 0\nv 0 90 0\nv -50 50 0\nv -50 -50 0\nv 50 -50 0\n"
+                               "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                               "f 1/1 2/2 3/3 4/4 5/4\nf 6/1 7/2 2/3 1/4\n";
+    assert_non_null(mkdtemp(folder));
+    write_text(folder, "a.obj", mesh);
+    for (int far = 0; far < 2; far++) {
+        char text[400];
+        snprintf(text, sizeof text,
+                 "sheets:\n  - grid: {size: [100 mm, 100 mm], cells: [10, 10], jitter: 0}\n    units: mm\n"
+                 "    render_mesh: {mesh: a.obj, reach: %s}\n",
+                 far ? "1 mm" : "50 mm");
+        Scene *scene;
+        SceneAssets assets;
+        SceneMessages messages = {0};
+        SingeSim *sim;
+        SingeSimDef hooks = singe_default_sim();
+        assert_int_equal(scene_parse("t.yaml", text, strlen(text), folder, NULL, 0, &scene, &messages), SINGE_OK);
+        assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
+        const RenderFile *file = &assets.renders[0];
+        assert_int_equal(file->def.vertex_count, 9);
+        assert_int_equal(file->def.triangle_count, 5);
+        assert_true(fabsf(file->positions[0] + 0.05f) < 1e-7f);
+        const SingeResult result = scene_build(scene, &assets, &hooks, &sim, &messages);
+        assert_int_equal(result, far ? SINGE_ERROR_MESH : SINGE_OK);
+        assert_int_equal(messages.count, far);
+        if (far) assert_string_equal(messages.items[0].origin, "t.yaml:4:25");
+        if (far) assert_non_null(strstr(messages.items[0].text, "vertices are farther from the sheet than its reach"));
+        if (!far) singe_sim_destroy(sim);
+        scene_messages_free(&messages);
+        scene_assets_free(&assets);
+        scene_free(scene);
+    }
+    char path[80];
+    snprintf(path, sizeof path, "%s/a.obj", folder);
+    assert_int_equal(remove(path), 0);
+    assert_int_equal(rmdir(folder), 0);
+}
+
 /// Meshes and height fields become colliders and shapes; an open mesh is reported at its collider.
 TEST(solids_become_colliders_and_shapes) {
     char folder[] = "/tmp/singe-scene-XXXXXX", text[600], path[100];

@@ -3,7 +3,10 @@
 #define TESTS_SURFACE_DRAWING_H
 
 #include "ablate/burning_sheet.h"
+#include "shell/split.h"
 #include "surface/surface_fine.h"
+
+#include <string.h>
 
 typedef struct Drawing {
     BurningSheet *sheet;
@@ -107,6 +110,23 @@ static inline void expect_linear_fields(const Drawing *d, Linear level, double n
         assert_int_equal(s->piece[v], 0);
         if (s->source_vertex[v] < 0) continue;
         assert_memory_equal(p, d->sheet->state.dynamics.position[s->source_vertex[v]], 12);
+    }
+}
+
+/// Tears the sheet along y = row from its border on, up to `length` cells far; the tear edges stay at one position.
+static inline void tear_along(Drawing *d, uint32_t row, uint32_t length) {
+    BurningSheet *b = d->sheet;
+    for (uint32_t i = 0; i < length; i++) {
+        ShellSplit split = {.vertex = corner_at(b, i, row)};
+        Fan fan;
+        split_fan(&b->shell, split.vertex, &fan);
+        for (int k = 0; k < fan.count; k++) split.cells |= (uint32_t)(fan.cell[k] >= row * b->nx) << k;
+        assert_true(split_is_possible(&b->shell, &fan, &split));
+        uint32_t spare = split_vertex(&b->shell, &fan, &split).spare;
+        memcpy(b->state.dynamics.position[spare], b->state.dynamics.position[split.vertex], 16);
+        b->state.burn.mass[spare] = b->state.burn.mass[split.vertex];
+        b->state.ablate.particle_flags[spare] = SINGE_ALIVE;
+        b->shell.split_count++;
     }
 }
 

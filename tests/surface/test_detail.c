@@ -3,7 +3,6 @@
 
 #include "drawn_mesh.h"
 #include "common/random.h"
-#include "shell/split.h"
 #include "support/support.h"
 
 #include <string.h>
@@ -192,23 +191,6 @@ TEST(crumpled_sheets_are_not_turned_over) {
                              float3_length(float3_sub(float3_load(s->position[v]), float3_load(plain->position[v]))));
         assert_true(farthest > 0.01f && (!(seed & 1) || farthest < 0.0601f));
         drawing_free(round), drawing_free(straight);
-    }
-}
-
-/// Tears the sheet along y = row from its border on, up to `length` cells far; the tear edges stay at one position.
-static void tear_along(Drawing *d, uint32_t row, uint32_t length) {
-    BurningSheet *b = d->sheet;
-    for (uint32_t i = 0; i < length; i++) {
-        ShellSplit split = {.vertex = corner_at(b, i, row)};
-        Fan fan;
-        split_fan(&b->shell, split.vertex, &fan);
-        for (int k = 0; k < fan.count; k++) split.cells |= (uint32_t)(fan.cell[k] >= row * b->nx) << k;
-        assert_true(split_is_possible(&b->shell, &fan, &split));
-        uint32_t spare = split_vertex(&b->shell, &fan, &split).spare;
-        memcpy(b->state.dynamics.position[spare], b->state.dynamics.position[split.vertex], 16);
-        b->state.burn.mass[spare] = b->state.burn.mass[split.vertex];
-        b->state.ablate.particle_flags[spare] = SINGE_ALIVE;
-        b->shell.split_count++;
     }
 }
 

@@ -226,6 +226,12 @@ class SingeSurface(Structure):
                 ("allocator", SingeAllocator)]
 
 
+class SingeRenderMeshDef(Structure):
+    _fields_ = [("struct_size", c_size_t), ("vertex_count", c_uint32), ("triangle_count", c_uint32),
+                ("positions", POINTER(c_float)), ("uv", POINTER(c_float)), ("triangles", POINTER(c_uint32)),
+                ("reach", c_float), ("edge_max", c_float), ("rigid", c_float), ("beside", c_bool)]
+
+
 class SingeGas(Structure):
     _fields_ = [("size", c_uint32 * 3), ("origin", c_float * 3), ("cell", c_float), ("temperature", POINTER(c_float)),
                 ("smoke", POINTER(c_float)), ("flame", POINTER(c_float)), ("velocity", POINTER(c_float * 3))]
@@ -310,8 +316,8 @@ STRUCTS = [SingeError, SingeAllocator, SingeLog, SingeRecord, SingeTasks, SingeS
            SingeColliderId, SingePinId, SingeTexture, SingeNoise, SingeAttribute, SingeField, SingeParam,
            SingeMaterialDef, SingePoseKey, SingeValueKey, SingeSheetDef, SingeSourceDef, SingeColliderDef,
            SingePinDef, SingeWindDef, SingeSolverDef, SingeGasDef, SingeContactDef, SingeSimDef, SingeMeshDef,
-           SingeGridDef, SingeMeshView, SingeSurface, SingeGas, SingeView, SingeSheetRange, SingeEvent, SingeTimers,
-           SingeStats, SingeCounts, SingeReplay, SingeNetworkDef, SingeNetworkReport]
+           SingeGridDef, SingeMeshView, SingeSurface, SingeRenderMeshDef, SingeGas, SingeView, SingeSheetRange,
+           SingeEvent, SingeTimers, SingeStats, SingeCounts, SingeReplay, SingeNetworkDef, SingeNetworkReport]
 # enumerations of fields
 FIELD_ENUMS = {"SingeError.code": "SingeResult", "SingeField.kind": "SingeFieldKind",
                "SingeMaterialDef.heat_operator": "SingeHeatOperator", "SingeSourceDef.kind": "SingeSourceKind",
@@ -344,6 +350,7 @@ FUNCTIONS = {
     "singe_mesh_destroy": (None, [c_void_p]),
     "singe_mesh_read": (None, [c_void_p, POINTER(SingeMeshView), c_size_t]),
     "singe_surface_release": (None, [POINTER(SingeSurface), c_size_t]),
+    "singe_init_render_mesh": (None, [POINTER(SingeRenderMeshDef), c_size_t]),
     "singe_sim_create": (c_int, [POINTER(SingeSimDef), POINTER(c_void_p), POINTER(SingeError)]),
     "singe_sim_destroy": (None, [c_void_p]),
     "singe_sim_error": (POINTER(SingeError), [c_void_p]),
@@ -390,6 +397,7 @@ FUNCTIONS = {
     "singe_sim_read_stats": (None, [c_void_p, POINTER(SingeStats), c_size_t]),
     "singe_sim_read_counts": (None, [c_void_p, POINTER(SingeCounts), c_size_t]),
     "singe_sim_draw": (c_int, [c_void_p, POINTER(SingeSurface), c_size_t]),
+    "singe_sim_add_render_mesh": (c_int, [c_void_p, SingeSheetId, POINTER(SingeRenderMeshDef)]),
     "singe_sim_read_gas": (None, [c_void_p, POINTER(SingeGas), c_size_t]),
     "singe_sim_save": (c_int, [c_void_p, POINTER(POINTER(c_uint8)), POINTER(c_size_t)]),
     "singe_sim_free_bytes": (None, [c_void_p, POINTER(c_uint8), c_size_t]),

@@ -232,6 +232,30 @@ class Sheet(Object):
         array = floats(velocity, 3, "velocity")
         self._sim._call("singe_sim_set_velocity", self.id, first, len(array), pointer(array, ctypes.c_float, keep))
 
+    def render_mesh(self, points: Any, triangles: Any, uv: Any = None, **options: Any) -> None:
+        """Draws a mesh in place of the sheet from now on: finer, thick, with hems, seams and buttons.
+
+        `points` [n, 3] in m, where the sheet is at rest; `triangles` [m, 3]; `uv` [n, 2] or the sheet's. Options: `reach`,
+        m, how far a point may be from the sheet (the side of a cell); `edge_max`, m, longer edges are halved (half a
+        cell's side); `rigid`, m, parts at most this large keep their shape, as buttons do (0: none); `beside`: the sheet
+        is drawn, too. After the commit. Saved simulations and copies are without it.
+        """
+        keep: List[Any] = []
+        made = default(_abi.SingeRenderMeshDef, "singe_init_render_mesh")
+        assign(made, options, keep)
+        positions, corners = floats(points, 3, "points"), indices(np.asarray(triangles), "triangles")
+        if corners.ndim != 2 or corners.shape[1] != 3:
+            raise ValueError(f"triangles must have the shape [n, 3], not {list(corners.shape)}")
+        made.vertex_count, made.triangle_count = len(positions), len(corners)
+        made.positions = pointer(positions, ctypes.c_float, keep)
+        made.triangles = pointer(corners, ctypes.c_uint32, keep)
+        if uv is not None:
+            array = floats(uv, 2, "uv")
+            if len(array) != len(positions):
+                raise ValueError(f"uv must have {len(positions)} rows, not {len(array)}")
+            made.uv = pointer(array, ctypes.c_float, keep)
+        self._sim._call("singe_sim_add_render_mesh", self.id, ctypes.byref(made))
+
     def set_material(self, material: Any, share: Any = None) -> None:
         """Changes the material of a region: share[vertices of the sheet], 0 (unchanged) to 1 (`material`).
 

@@ -1,0 +1,13 @@
+// Meshes that are drawn in place of sheets, from files.
+#ifndef SCENE_RENDER_FILE_H
+#define SCENE_RENDER_FILE_H
+
+#include "scene/scene.h"
+
+/// Triangles of a file's polygons, whose positions are in metres and placed. Corners with different uv become vertices of
+/// their own.
+SINGE_NODISCARD SingeResult render_file_make(const char *name, const Polygons *polygons, RenderFile *file,
+                                             SingeError *error);
+void render_file_free(RenderFile *file);
+
+#endif

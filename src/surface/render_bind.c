@@ -1,0 +1,187 @@
+// Finds the position of a sheet at rest that is nearest to each vertex of a render mesh, and what the vertex keeps from
+// there. Cells lie in a hashed grid by their centroids; its cubes have sides of the reach and the largest cell's radius,
+// so the 27 cubes around a position hold all cells within reach.
+#include "surface/render_parts.h"
+
+typedef struct Binding {
+    const Fine *fine;
+    RenderMesh *mesh;
+    float cube;             ///< m
+    float (*centroid)[4];   ///< [cells] and the radius, m
+    uint32_t *first, *list; ///< [mask + 2], [cells] the cells of a slot
+    uint32_t mask;
+    uint32_t begin;
+    float *distance; ///< [vertices of the mesh from `begin` on] m, INFINITY where no cell is near
+} Binding;
+
+static uint32_t slot_of(const Binding *binding, int x, int y, int z) {
+    uint32_t hash = ((uint32_t)x * 0x9e3779b1u) ^ ((uint32_t)y * 0x85ebca77u) ^ ((uint32_t)z * 0xc2b2ae3du);
+    return (hash ^ hash >> 15) & binding->mask;
+}
+
+/// Weights of the point of a triangle that is nearest to p (Ericson, Real-Time Collision Detection, 2005, 5.1.5);
+/// returns the square of the distance.
+static float nearest(Float3 p, const Float3 corner[3], float weight[3]) {
+    const Float3 ab = float3_sub(corner[1], corner[0]), ac = float3_sub(corner[2], corner[0]);
+    const Float3 ap = float3_sub(p, corner[0]), bp = float3_sub(p, corner[1]), cp = float3_sub(p, corner[2]);
+    const float d1 = float3_dot(ab, ap), d2 = float3_dot(ac, ap), d3 = float3_dot(ab, bp), d4 = float3_dot(ac, bp);
+    const float d5 = float3_dot(ab, cp), d6 = float3_dot(ac, cp);
+    const float va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+    float v, w;
+    if (d1 <= 0 && d2 <= 0) {
+        v = 0;
+        w = 0;
+    } else if (d3 >= 0 && d4 <= d3) {
+        v = 1;
+        w = 0;
+    } else if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+        v = d1 / (d1 - d3);
+        w = 0;
+    } else if (d6 >= 0 && d5 <= d6) {
+        v = 0;
+        w = 1;
+    } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+        v = 0;
+        w = d2 / (d2 - d6);
+    } else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+        w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        v = 1 - w;
+    } else {
+        const float sum = va + vb + vc;
+        v = sum > 0 ? vb / sum : 0;
+        w = sum > 0 ? vc / sum : 0;
+    }
+
+    weight[0] = 1 - v - w;
+    weight[1] = v;
+    weight[2] = w;
+    const Float3 from = float3_sub(p, float3_mad(float3_mad(corner[0], ab, v), ac, w));
+    return float3_dot(from, from);
+}
+
+/// The nearest position of the sheet, among the cells within a cube of p's; its distance.
+static float find_foot(const Binding *binding, Float3 p, FineLocation *foot) {
+    const Shell *shell = binding->fine->shell;
+    const int x = (int)floorf(p.x / binding->cube), y = (int)floorf(p.y / binding->cube),
+              z = (int)floorf(p.z / binding->cube);
+    float min = INFINITY;
+    for (int k = 0; k < 27; k++) {
+        const uint32_t slot = slot_of(binding, x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1);
+        for (uint32_t i = binding->first[slot]; i < binding->first[slot + 1]; i++) {
+            const uint32_t cell = binding->list[i], *at = shell->cells[cell];
+            const Float3 centroid = float3_load(binding->centroid[cell]);
+            if (float3_length(float3_sub(p, centroid)) - binding->centroid[cell][3] > sqrtf(min)) continue;
+
+            for (uint8_t side = 0; side < 4; side++) {
+                const Float3 corner[3] = {float3_load(shell->rest_position[at[side]]),
+                                          float3_load(shell->rest_position[at[(side + 1) & 3]]), centroid};
+                FineLocation there = {.cell = cell, .side = side};
+                const float square = nearest(p, corner, there.weight);
+                if (!(square < min)) continue;
+                min = square;
+                *foot = there;
+            }
+        }
+    }
+    return sqrtf(min);
+}
+
+static void find_range(void *context, int begin, int end) {
+    const Binding *binding = context;
+    for (int k = begin; k < end; k++) {
+        RenderVertex *vertex = &binding->mesh->vertices[binding->begin + (uint32_t)k];
+        binding->distance[k] = find_foot(binding, float3_load(vertex->offset), &vertex->foot);
+    }
+}
+
+static void bind_range(void *context, int begin, int end) {
+    const Binding *binding = context;
+    const Fine *fine = binding->fine;
+    for (int v = begin; v < end; v++) {
+        RenderVertex *vertex = &binding->mesh->vertices[v];
+        float position[3], normal[3];
+        const FinePatch patch = fine_patch(fine, vertex->foot.cell);
+        fine_position_at(fine, &patch, &vertex->foot, position, normal);
+        const FineFrame frame = fine_frame(fine, vertex->foot.cell, float3_load(normal));
+        const Float3 from = float3_sub(float3_load(vertex->rest), float3_load(position));
+        const Float3 turned = float3_load(vertex->normal);
+        for (int k = 0; k < 3; k++) {
+            vertex->offset[k] = float3_dot(from, frame.axis[k]);
+            vertex->normal[k] = float3_dot(turned, frame.axis[k]);
+        }
+    }
+}
+
+void render_bind(const Fine *fine, RenderMesh *mesh) {
+    Binding binding = {.fine = fine, .mesh = mesh};
+    pool_for(fine->pool, (int)mesh->vertex_count, 64, bind_range, &binding);
+}
+
+/// Puts the cells into the grid.
+static void fill_grid(Binding *binding, float reach) {
+    const Shell *shell = binding->fine->shell;
+    float radius = 0;
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        const uint32_t *at = shell->cells[c];
+        const FineLocation centre = {.cell = c, .weight = {0, 0, 1}};
+        const Float3 centroid = fine_blend(at, &centre, (const float(*)[4])shell->rest_position);
+        float3_store(binding->centroid[c], centroid);
+        for (int i = 0; i < 4; i++) {
+            const Float3 from = float3_sub(float3_load(shell->rest_position[at[i]]), centroid);
+            binding->centroid[c][3] = fmaxf(binding->centroid[c][3], float3_length(from));
+        }
+        radius = fmaxf(radius, binding->centroid[c][3]);
+    }
+
+    // counted, then listed from the end of each slot
+    binding->cube = fmaxf(reach + radius, 1e-5f); // 20 km have 2^31 of these
+    for (int pass = 0; pass < 2; pass++) {
+        for (uint32_t c = 0; c < shell->cell_count; c++) {
+            const float *at = binding->centroid[c];
+            const uint32_t slot = slot_of(binding, (int)floorf(at[0] / binding->cube),
+                                          (int)floorf(at[1] / binding->cube), (int)floorf(at[2] / binding->cube));
+            if (pass == 0) binding->first[slot]++;
+            else binding->list[--binding->first[slot]] = c;
+        }
+        for (uint32_t s = 0; s <= binding->mask && pass == 0; s++) binding->first[s + 1] += binding->first[s];
+    }
+}
+
+SingeResult render_find_feet(const Fine *fine, float reach, uint32_t first, RenderMesh *mesh, SingeError *error) {
+    Memory *memory = fine->memory;
+    const uint32_t cells = fine->shell->cell_count, count = mesh->vertex_count - first;
+    Binding binding = {.fine = fine, .mesh = mesh, .mask = 7, .begin = first};
+    while (binding.mask < cells) binding.mask = 2 * binding.mask + 1;
+    SingeResult result = SINGE_OK;
+    if (NEW(memory, binding.centroid, cells) && NEW(memory, binding.list, cells) &&
+        NEW(memory, binding.first, (size_t)binding.mask + 2) && NEW(memory, binding.distance, count)) {
+        fill_grid(&binding, reach);
+        pool_for(fine->pool, (int)count, 64, find_range, &binding);
+
+        uint32_t far = 0, worst = 0;
+        for (uint32_t k = 0; k < count; k++) {
+            far += !(binding.distance[k] <= reach);
+            if (binding.distance[k] > binding.distance[worst]) worst = k;
+        }
+        if (far && first)
+            result = error_set(error, SINGE_ERROR_MESH, "render mesh", -1,
+                               "the middle of an edge is farther from the sheet than its reach, %g m", (double)reach);
+        else if (far && binding.distance[worst] < INFINITY)
+            result =
+                error_set(error, SINGE_ERROR_MESH, "render mesh", worst,
+                          "%u of %u vertices are farther from the sheet than its reach, %g m; vertex %u is %g m away",
+                          far, count, (double)reach, worst, (double)binding.distance[worst]);
+        else if (far)
+            result = error_set(error, SINGE_ERROR_MESH, "render mesh", worst,
+                               "%u of %u vertices are farther from the sheet than its reach, %g m, such as vertex %u",
+                               far, count, (double)reach, worst);
+    } else {
+        result = error_set(error, SINGE_ERROR_MEMORY, "render mesh", -1, "out of memory for the render mesh");
+    }
+
+    FREE(memory, binding.centroid, cells);
+    FREE(memory, binding.list, cells);
+    FREE(memory, binding.first, (size_t)binding.mask + 2);
+    FREE(memory, binding.distance, count);
+    return result;
+}
