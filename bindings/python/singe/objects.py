@@ -235,18 +235,20 @@ class Sheet(Object):
     def render_mesh(self, points: Any, triangles: Any, uv: Any = None, **options: Any) -> None:
         """Draws a mesh in place of the sheet from now on: finer, thick, with hems, seams and buttons.
 
-        `points` [n, 3] in m, where the sheet is at rest; `triangles` [m, 3]; `uv` [n, 2] or the sheet's. Options: `reach`,
-        m, how far a point may be from the sheet (the side of a cell); `edge_max`, m, longer edges are halved (half a
-        cell's side); `rigid`, m, parts at most this large keep their shape, as buttons do (0: none); `beside`: the sheet
-        is drawn, too. After the commit. Saved simulations and copies are without it.
+        `points` [n, 3] in m, where the sheet is at rest; `triangles` [m, 3]; `uv` [n, 2] or the sheet's.
+        Options: `reach`, m, how far a point may be from the sheet (the side of a cell); `edge_max`, m, longer
+        edges are halved (half a cell's side); `rigid`, m, parts at most this large keep their shape, as buttons
+        do (0: none); `beside`: the sheet is drawn, too. After the commit. Saved simulations and copies are
+        without it.
         """
         keep: List[Any] = []
         made = default(_abi.SingeRenderMeshDef, "singe_init_render_mesh")
         assign(made, options, keep)
-        positions, corners = floats(points, 3, "points"), indices(np.asarray(triangles), "triangles")
-        if corners.ndim != 2 or corners.shape[1] != 3:
-            raise ValueError(f"triangles must have the shape [n, 3], not {list(corners.shape)}")
-        made.vertex_count, made.triangle_count = len(positions), len(corners)
+        given, positions = np.asarray(triangles), floats(points, 3, "points")
+        if given.ndim != 2 or given.shape[1] != 3:
+            raise ValueError(f"triangles must have the shape [n, 3], not {list(given.shape)}")
+        corners = indices(given, "triangles")
+        made.vertex_count, made.triangle_count = len(positions), len(given)
         made.positions = pointer(positions, ctypes.c_float, keep)
         made.triangles = pointer(corners, ctypes.c_uint32, keep)
         if uv is not None:
