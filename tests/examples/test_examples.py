@@ -496,6 +496,35 @@ class Shirt(Example):
         self.assertLessEqual(max(self.column("strain_mean")), 0.01)
 
 
+class Garment(Example):
+    """A sewn shirt is drawn in place of the coarse one that burns; its buttons keep their size."""
+
+    NAME = "garment"
+
+    def test_is_drawn_as_it_is_sewn(self):
+        def buttons(frame):
+            """Widths of what is left of the buttons: vertices whose rest position is off the front's middle."""
+            sizes, near = [], {}
+            for vertex in self.vertices(frame):
+                if vertex["s"] > 0.98 and vertex["t"] > 0.98:
+                    near.setdefault(round(vertex["rest_z"] / 0.05), []).append([vertex[axis] for axis in "xyz"])
+            for points in near.values():
+                if len(points) > 100:
+                    sizes.append(max(math.dist(a, b) for a in points[::3] for b in points[::3]))
+            return sizes
+
+        first, last = buttons(1), buttons(len(self.rows))
+        self.say["buttons"] = f"{len(first)}, {len(last)} at the end, {1e3 * min(last):.2f} to {1e3 * max(last):.2f} mm"
+        self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
+        self.report()
+        self.assertEqual(self.cells, 1312)
+        self.assertEqual(len(first), 5)
+        self.assertTrue(0.0135 < min(first) <= max(first) < 0.0155)
+        self.assertTrue(0.0135 < min(last) <= max(last) < 0.0155)
+        self.assertTrue(0.04 < self.rows[-1]["burnt_fraction"] < 0.2)
+        self.assertGreater(min(row["triangles"] for row in self.rows), 60000)
+
+
 class BurningTorus(Example):
     """A closed surface falls on the ground, burns, caves in and falls apart."""
 
