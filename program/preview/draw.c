@@ -6,6 +6,7 @@
 // background: nothing is intersected, and where no shadow can fall one sample is enough. Random numbers depend only on
 // the pixel's position and the sample's number, not on threads.
 
+#include "preview/airborne.h"
 #include "preview/block.h"
 
 #include <pthread.h>
@@ -511,6 +512,7 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     draw_all(preview, seen_smooth);
     draw_all(preview, seen_finish);
     draw_all(preview, soften);
+    airborne_draw(preview);
 
     const size_t pixels = (size_t)preview->def.width * (size_t)preview->def.height;
     for (size_t i = 0; layers->beauty && i < pixels; i++) store(layers->beauty, i, preview->picture[i]);

@@ -81,8 +81,9 @@ struct Preview {
     float (*seen)[LIT_KINDS]; ///< [height * width] visible shares, smoothed along rows
     Table *table;             ///< [height * width], once `table_known`
     bool table_known;
-    uint8_t *mask;   ///< [mask_size] for each block, whether a sheet or a shape may touch it
-    Float3 *glow[2]; ///< [quarter height * quarter width] for the bloom
+    struct Veil *veil; ///< [height * width] sparks and wisps
+    uint8_t *mask;     ///< [mask_size] for each block, whether a sheet or a shape may touch it
+    Float3 *glow[2];   ///< [quarter height * quarter width] for the bloom
     PreviewScene scene;
     Fire fire;
     PreviewLayers layers; ///< being drawn

@@ -1,6 +1,6 @@
 // Creates and destroys a preview: the Def is checked field by field, then everything for a frame is allocated.
 
-#include "preview/internal.h"
+#include "preview/airborne.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -32,6 +32,8 @@ PreviewDef preview_default(void) {
         .ground_colour = {0.235f, 0.145f, 0.085f},
         .background = {0.16f, 0.15f, 0.145f},
         .exposure = 1,
+        .sparks = 1,
+        .wisps = 1,
         .hottest = 5000,
         .pace = 1,
     };
@@ -160,13 +162,14 @@ static SingeResult preview_allocate(Preview *preview, SingeError *error) {
     preview->table = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(Table));
     preview->lit = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof *preview->lit);
     preview->seen = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof *preview->seen);
+    preview->veil = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof *preview->veil);
     preview->mask = allocator_resize(*allocator, NULL, 0, mask_size(preview));
 
     for (int i = 0; i < 2; i++)
         preview->glow[i] = allocator_resize(*allocator, NULL, 0, glow_count(def) * sizeof(Float3));
     preview->textures = allocator_resize(*allocator, NULL, 0, def->sheet_count * sizeof(Texture));
     if (preview->textures) memset(preview->textures, 0, def->sheet_count * sizeof(Texture));
-    if (!preview->picture || !preview->lit || !preview->seen || !preview->table || !preview->mask ||
+    if (!preview->picture || !preview->lit || !preview->seen || !preview->table || !preview->veil || !preview->mask ||
         !preview->glow[0] || !preview->glow[1] || (def->sheet_count && !preview->textures))
         return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a picture of %d x %d", def->width,
                             def->height);
@@ -251,6 +254,7 @@ void preview_destroy(Preview *preview) {
     allocator_resize(allocator, preview->lit, preview->lit ? pixel_count(def) * sizeof *preview->lit : 0, 0);
     allocator_resize(allocator, preview->seen, preview->seen ? pixel_count(def) * sizeof *preview->seen : 0, 0);
     allocator_resize(allocator, preview->table, pixel_count(def) * sizeof(Table), 0);
+    allocator_resize(allocator, preview->veil, preview->veil ? pixel_count(def) * sizeof *preview->veil : 0, 0);
     allocator_resize(allocator, preview->mask, mask_size(preview), 0);
 
     for (int i = 0; i < 2; i++) allocator_resize(allocator, preview->glow[i], glow_count(def) * sizeof(Float3), 0);

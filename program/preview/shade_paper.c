@@ -215,18 +215,6 @@ static Float3 ember_line(const Preview *preview, const PaperState *state, const 
     return float3_scale(blackbody_glow(preview->blackbody, temperature), EMBER_GAIN * maxf(strength, 0));
 }
 
-/// A leaf of char that glows away, at its own temperature where it burns. Its heat spreads over a cell or two, but real
-/// ember lines are thinner: they follow threads of noise, and break.
-static Float3 leaf(const Preview *preview, const PaperState *state, const Bent *bent, float air) {
-    float activity = ember_activity(state->glowing);
-    if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return float3(0, 0, 0);
-    float life = line_life(preview, bent) * minf(air, 1.2f);
-    float temperature =
-        ember_temperature(state->temperature) + 130 * (life - 0.5f) + 70 * bent->fine + 40 * bent->medium;
-    float strength = activity * (0.15f + 0.85f * life) * air;
-    return float3_scale(blackbody_glow(preview->blackbody, temperature), EMBER_GAIN * strength);
-}
-
 static Float3 sparks(const Preview *preview, const PaperState *state, const Bent *bent, float air, float footprint) {
     float warm = stepf(420, 640, state->temperature) * stepf(0.76f, 0.86f, bent->burn);
     if (warm <= 0 || state->age <= 0) return float3(0, 0, 0);
@@ -243,7 +231,16 @@ static void ember_shade(const Preview *preview, const PaperState *state, const B
     float air = ember_air(preview, point->position);
     point->glow = float3_add(ember_line(preview, state, bent, air, point->footprint),
                              sparks(preview, state, bent, air, point->footprint));
-    point->glow = float3_add(point->glow, leaf(preview, state, bent, air));
+
+    // a leaf of char that glows away, at its own temperature where it burns. Its heat spreads over a cell or two, but
+    // real ember lines are thinner: they follow threads of noise, and break
+    const float activity = ember_activity(state->glowing);
+    if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return;
+    float life = line_life(preview, bent) * minf(air, 1.2f);
+    float temperature =
+        ember_temperature(state->temperature) + 130 * (life - 0.5f) + 70 * bent->fine + 40 * bent->medium;
+    float strength = activity * (0.15f + 0.85f * life) * air;
+    point->glow = float3_mad(point->glow, blackbody_glow(preview->blackbody, temperature), EMBER_GAIN * strength);
 }
 
 // ---- the sheet

@@ -216,6 +216,7 @@ typedef struct ScenePreview {
     float ground_colour[3];
     float background[3];
     float exposure;
+    float sparks, wisps;
     float hottest; ///< K
     bool plain;
     float shutter; ///< share of a frame's time

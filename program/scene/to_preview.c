@@ -18,6 +18,8 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
         .ground_height = preview->ground_height,
         .exposure = preview->exposure,
         .hottest = preview->hottest,
+        .sparks = preview->sparks,
+        .wisps = preview->wisps,
         .plain = preview->plain,
         .shutter = preview->shutter / scene->fps,
         .pace = (float)scene->sim.pace,

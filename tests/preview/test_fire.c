@@ -287,6 +287,45 @@ TEST(the_rim_is_seen_through_the_flames) {
     }
 }
 
+/// An ember line throws sparks; what is hot and has no flame sends up a wisp of smoke. A cold sheet does neither, nor
+/// does one of which both are taken away, which is how embers were drawn before.
+TEST(embers_throw_sparks_and_smoke) {
+    enum { FRAMES = 6, EMBERS, SMOULDERING, COLD, TAKEN_AWAY, CASES };
+    static float fire[W * H][4];
+    static Burning paper;
+
+    for (int kind = EMBERS; kind < CASES; kind++) {
+        burning_make(&paper);
+        for (int v = 0; v < 4 * WIDE; v++) {
+            paper.burn[v] = paper.position[v][1] > 0.004f ? 0.9f : 0.3f;
+            paper.temperature[v] = kind == COLD ? 293 : 1050;
+            paper.rate[v] = kind == SMOULDERING ? 0 : 1;
+        }
+        PreviewDef def = aside(0);
+        def.camera = (PreviewCamera){
+            .eye = {0, -1, H / 2000.0f}, .target = {0, 0, H / 2000.0f}, .up = {0, 0, 1}, .fov = 2 * atanf(H / 2000.0f)};
+        if (kind == TAKEN_AWAY) def.sparks = def.wisps = 0;
+        Preview *preview = NULL;
+        SingeError error;
+        PreviewLayers layers = {.fire = fire};
+        assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+        int sparks = 0;
+        float smoke = 0;
+        for (int k = 0; k < FRAMES; k++) {
+            assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, &error), SINGE_OK);
+            for (int i = 0; i < W * (H - 10); i++) {
+                sparks += fire[i][0] > 0.05f && fire[i][0] > 2 * fire[i][2];
+                smoke = fmaxf(smoke, fire[i][3]);
+            }
+        }
+        preview_destroy(preview);
+        print_message("case %d: %d pixels of sparks, smoke hides %.3f\n", kind, sparks, (double)smoke);
+        assert_true((sparks > 10 * FRAMES) == (kind == EMBERS));
+        assert_true((smoke > 0.02f) == (kind == SMOULDERING));
+        assert_true(kind < COLD || (sparks == 0 && smoke == 0));
+    }
+}
+
 /// Flicker continues over time and stays where the gas is.
 TEST(flicker_goes_on_in_time) {
     static uint8_t a[BYTES], b[BYTES];

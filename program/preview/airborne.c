@@ -1,0 +1,167 @@
+// Where sparks and wisps come from, and how they reach the picture.
+//
+// The veil is what they add at a pixel: light J, a sum of radiance times optical depth for smoke, and optical depth D.
+// Over a picture P, with smoke and sparks mixed, it gives P exp(-D) + J (1 - exp(-D)) / D.
+
+#include "preview/airborne.h"
+
+#include <string.h>
+
+#define FORWARD 0.45f     ///< g of the smoke's phase function
+#define LEAF_WIDTH 0.008f ///< m: a leaf that glows as a whole counts as a line for each
+
+// ---- embers
+
+void ember_sites(const Preview *preview, float size, EmberSite sites[SITE_LIMIT]) {
+    const PreviewScene *scene = &preview->scene;
+    memset(sites, 0, SITE_LIMIT * sizeof *sites);
+    for (uint32_t t = 0; t < scene->triangle_count; t++) {
+        const PaperVertex *v[3];
+        Float3 position = {0, 0, 0}, rest = {0, 0, 0};
+        float hottest = 0, low = 1, high = 0, rate = 0, flaming = 0, gradient = 0;
+        for (int k = 0; k < 3; k++) {
+            v[k] = &scene->vertices[scene->triangles[t][k]];
+            hottest = maxf(hottest, v[k]->temperature);
+            low = minf(low, v[k]->burn);
+            high = maxf(high, v[k]->burn);
+            rate += v[k]->burn_rate / 3;
+            flaming += v[k]->flaming / 3;
+            gradient += v[k]->gradient / 3;
+            rest = float3_mad(rest, float3_load(v[k]->rest), 1.0f / 3);
+            position = float3_mad(position, float3_load(scene->positions[scene->triangles[t][k]]), 1.0f / 3);
+        }
+        if (hottest < 600 || high < 0.15f) continue;
+
+        // the glowing line runs where burn is EMBER_BURN; leaves of char glow as a whole, with threads
+        const float *p[3];
+        for (int k = 0; k < 3; k++) p[k] = scene->positions[scene->triangles[t][k]];
+        Float3 a = float3_sub(float3_load(p[1]), float3_load(p[0])),
+               b = float3_sub(float3_load(p[2]), float3_load(p[0]));
+        const Float3 normal = float3_cross(a, b);
+        float area = 0.5f * float3_length(normal), live = ember_activity(rate);
+        float length = low < EMBER_BURN && high > EMBER_BURN ? area * maxf(gradient, 20) / maxf(high - low, 0.02f) : 0;
+        length = live * minf(length, 2 * sqrtf(area)) + ember_activity(rate - flaming) * area / LEAF_WIDTH;
+        if (hottest < BLACKBODY_MIN) length = 0;
+        float smoulder = area * stepf(600, 760, hottest) * (1 - stepf(0.02f, 0.2f, flaming));
+        if (length + smoulder <= 0) continue;
+
+        float rests[3], within;
+        float3_store(rests, rest);
+        uint32_t key = hash_u32((uint32_t)v[0]->sheet + 1);
+        for (int c = 0; c < 3; c++) key = hash_u32(key ^ (uint32_t)noise_floor(rests[c] / size + 0.37f, &within));
+        key |= 1;
+        for (uint32_t i = 0; i < SITE_LIMIT; i++) {
+            EmberSite *site = &sites[(key + i) & (SITE_LIMIT - 1)];
+            if (site->key && site->key != key) continue;
+            float weight = length + 0.1f * smoulder / size;
+            site->key = key;
+            site->length += length;
+            site->flaming += rate > 0 ? length * flaming / rate : 0;
+            site->smoulder += smoulder;
+            site->weight += weight;
+            site->level += area > 0 ? 0.5f * weight * fabsf(normal.z) / area : 0;
+            site->position = float3_mad(site->position, position, weight);
+            break;
+        }
+    }
+
+    for (int i = 0; i < SITE_LIMIT; i++) {
+        if (!(sites[i].weight > 0)) continue;
+        sites[i].position = float3_scale(sites[i].position, 1 / sites[i].weight);
+        sites[i].level /= sites[i].weight;
+    }
+}
+
+// ---- the picture
+
+Float3 smoke_light(const Preview *preview, Float3 p) {
+    const EmberLights *lamps = &preview->scene.lights;
+    const Float3 blue = {0.88f, 0.93f, 1.0f}; // of fine, fresh smoke
+    Float3 d = float3_unit_or(float3_sub(p, preview->camera.eye), float3(0, 1, 0));
+    const float g = FORWARD, cosine = float3_dot(preview->sun, d);
+    const float phase = (1 - g * g) / powf(1 + g * g - 2 * g * cosine, 1.5f);
+    Float3 sky = float3_add(sky_ambient(&preview->sky, float3(0, 0, 1)), sky_ambient(&preview->sky, float3(0, 0, -1)));
+    Float3 light = float3_mad(float3_scale(sky, 0.5f), preview->sun_light, 0.25f * phase);
+    for (int k = 0; k < preview->scene.light_count; k++) {
+        Float3 to = float3_sub(float3(lamps->x[k], lamps->y[k], lamps->z[k]), p);
+        float share = 0.25f / (float3_dot(to, to) + lamps->softness[k] + 4e-4f);
+        light = float3_mad(light, float3(lamps->strength[0][k], lamps->strength[1][k], lamps->strength[2][k]), share);
+    }
+    return float3_mul(light, blue);
+}
+
+bool airborne_project(const Preview *preview, Float3 p, float at[2], float *depth) {
+    const Camera *camera = &preview->camera;
+    Float3 ray = float3_sub(p, camera->eye);
+    *depth = float3_dot(ray, camera->forward);
+    if (*depth < 0.01f) return false;
+    float x = float3_dot(ray, camera->right) / (*depth * float3_dot(camera->right, camera->right));
+    float y = float3_dot(ray, camera->up) / (*depth * float3_dot(camera->up, camera->up));
+    at[0] = 0.5f * (x + 1) * (float)preview->def.width - 0.5f;
+    at[1] = 0.5f * (1 - y) * (float)preview->def.height - 0.5f;
+    return fabsf(x) < 1.5f && fabsf(y) < 1.5f;
+}
+
+void airborne_sight(const Preview *preview, const Float3 *points, int count, float seen[SIGHT_POINTS]) {
+    _Alignas(64) struct RTCRay16 rays;
+    _Alignas(64) int valid[LANES];
+    const Float3 eye = preview->camera.eye;
+    for (int i = 0; i < LANES; i++) {
+        valid[i] = i < count ? -1 : 0;
+        Float3 to = i < count ? float3_sub(points[i], eye) : float3(0, 0, 1);
+        float distance = float3_length(to), near = 4 * preview->scene.epsilon;
+        rays.org_x[i] = eye.x;
+        rays.org_y[i] = eye.y;
+        rays.org_z[i] = eye.z;
+        rays.dir_x[i] = to.x / distance;
+        rays.dir_y[i] = to.y / distance;
+        rays.dir_z[i] = to.z / distance;
+        rays.tnear[i] = 0;
+        rays.tfar[i] = valid[i] ? maxf(distance - near, 0) : -1;
+        rays.time[i] = 0.5f;
+        rays.mask[i] = ~0u;
+        rays.id[i] = (unsigned)i;
+        rays.flags[i] = 0;
+    }
+    tracer_occlude(preview, valid, &rays, seen);
+    for (int i = 0; i < count; i++)
+        if (isfinite(preview->def.ground_height) && points[i].z < preview->def.ground_height) seen[i] = 0;
+}
+
+void airborne_dot(Preview *preview, const float at[2], float radius, Float3 light, float depth) {
+    const int width = preview->def.width, height = preview->def.height;
+    radius = maxf(radius, 1.1f);
+    int left = (int)maxf(ceilf(at[0] - radius), 0), right = (int)minf(floorf(at[0] + radius), (float)width - 1);
+    int top = (int)maxf(ceilf(at[1] - radius), 0), bottom = (int)minf(floorf(at[1] + radius), (float)height - 1);
+    const float inverse = 1 / (radius * radius), whole = 3 / PI_F * inverse;
+
+    // (1 - (d/R)^2)^2, of which the integral is pi R^2 / 3
+    for (int y = top; y <= bottom; y++)
+        for (int x = left; x <= right; x++) {
+            float dx = (float)x - at[0], dy = (float)y - at[1], rest = 1 - (dx * dx + dy * dy) * inverse;
+            if (rest <= 0) continue;
+            Veil *veil = &preview->veil[(size_t)y * (size_t)width + (size_t)x];
+            float share = whole * rest * rest;
+            veil->light = float3_mad(veil->light, light, share);
+            veil->depth += share * depth;
+        }
+}
+
+void airborne_draw(Preview *preview) {
+    const size_t pixels = (size_t)preview->def.width * (size_t)preview->def.height;
+    memset(preview->veil, 0, pixels * sizeof *preview->veil);
+    wisps_draw(preview);
+    sparks_draw(preview);
+    for (size_t i = 0; i < pixels; i++) {
+        const Veil *veil = &preview->veil[i];
+        if (veil->depth + veil->light.x <= 0) continue;
+        float clear = expf(-veil->depth), part = veil->depth > 1e-3f ? (1 - clear) / veil->depth : 1;
+        Float3 light = float3_scale(veil->light, part);
+        light = float3(minf(light.x, 40), minf(light.y, 40), minf(light.z, 40));
+        preview->picture[i] = float3_mad(light, preview->picture[i], clear);
+        if (!preview->layers.fire) continue;
+        float *fire = preview->layers.fire[i];
+        float3_store(fire, float3_mad(light, float3_load(fire), clear));
+        fire[3] = 1 - (1 - fire[3]) * clear;
+    }
+}
