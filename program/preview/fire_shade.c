@@ -32,7 +32,8 @@
 #define FLAME_COOL 1400.0f ///< K
 #define FLAME_HOT 2050.0f
 #define FLAME_DIM 0.3f ///< radiance of a thick flame at its coolest and its hottest
-#define FLAME_BRIGHT 5.2f
+#define FLAME_BRIGHT 9.5f
+#define FLAME_BAKED 5.2f    ///< radiance of what is 1 where gas is baked
 #define SOOT_DENSE 42.0f    ///< 1/m: radiance per metre relative to that of a thick flame
 #define SOOT_OPAQUE 14.0f   ///< 1/m, extinction
 #define BLUE_DENSE 5.5f     ///< 1/m: radiance of the root per metre
@@ -98,7 +99,7 @@ void fire_fill_colours(Preview *preview) {
     for (int i = 0; i < FIRE_COLOURS; i++) {
         float hot = (float)i / (FIRE_COLOURS - 1);
         Float3 glow = blackbody_glow(preview->blackbody, mixf(FLAME_COOL, FLAME_HOT, hot));
-        float brightness = mixf(FLAME_DIM, FLAME_BRIGHT, hot * hot);
+        float brightness = mixf(FLAME_DIM, FLAME_BRIGHT, hot * hot * hot);
         preview->fire.colours[i] = float3_scale(glow, brightness / maxf(float3_luminance(glow), 1e-6f));
     }
 }
@@ -109,7 +110,7 @@ static Float3 flame_colour(const Fire *fire, float hot) {
     return float3_mix(fire->colours[i], fire->colours[i + 1], x - (float)i);
 }
 
-Float3 fire_emission(const Preview *preview) { return float3_scale(flame_colour(&preview->fire, 1), 103); }
+Float3 fire_emission(const Preview *preview) { return float3_scale(flame_colour(&preview->fire, 1), 56.5f); }
 
 float fire_share(const FireCell *cell) {
     if (cell->flame <= 0.05f) return 0;
@@ -281,7 +282,7 @@ SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, doub
     fire_raise(preview);
 
     const float side = fire->cell / (float)detail, first = (FIRE_BORDER - 0.5f) * fire->cell + 0.5f * side;
-    const float brightest = SOOT_DENSE * float3_luminance(fire->colours[FIRE_COLOURS - 1]);
+    const float bright = SOOT_DENSE * FLAME_BAKED;
     const Float3 origin = float3_add(fire->origin, float3(first, first, first));
     int size[3];
 
@@ -294,7 +295,7 @@ SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, doub
                 FirePoint point = fire_at_point(preview, p, FIRE_FLAME | FIRE_SMOKE);
                 smoke[i] = point.smoke;
                 point.lit = float3(0, 0, 0);
-                flame[i] = float3_luminance(fire_between(&point, &point, side).light) / brightest;
+                flame[i] = float3_luminance(fire_between(&point, &point, side).light) / bright;
             }
 
     return SINGE_OK;

@@ -21,7 +21,7 @@ enum {
 #define SPEEDING 0.13f    ///< m/s2
 #define RIBBON 0.0060f    ///< m, half of its width where it begins
 #define THREAD 0.0009f    ///< m, radius there
-#define WISP_DEPTH 7e-3f  ///< m, optical depth across a wisp times its width
+#define WISP_DEPTH 5e-3f  ///< m, optical depth across a wisp times its width
 #define WISP_AREA 2.5e-5f ///< m2 that smoulder and give half of the densest wisp
 #define FORWARD 0.45f     ///< g of the phase function
 
