@@ -100,7 +100,8 @@ static void mark_all(Fire *fire) {
     for (int z = 1; z < fire->size[2] - 1; z++)
         for (int y = 1; y < fire->size[1] - 1; y++)
             for (int x = 1; x < fire->size[0] - 1; x++) {
-                if (fire->cells[fire_at(fire, x, y, z)].smoke > SMOKE_SEEN) mark_bricks(fire, x, y, z, 1, FIRE_SMOKE);
+                if (fire->cells[fire_at(fire, x, y, z)].smoke > SMOKE_SEEN)
+                    mark_bricks(fire, x, y, z, 1 + 1.5f * SMOKE_WARP / fire->cell, FIRE_SMOKE);
 
                 // the max of the spline in the cell's box: the largest of its Bezier points, which are the means of
                 // the cells that meet in its faces, edges and corners
@@ -276,9 +277,10 @@ void fire_light_smoke(Preview *preview) {
     const EmberLights *lights = &preview->scene.lights;
     if (!fire->visible) return;
 
-    // the sun lights one side, the sky all
+    // the sun lights one side, more the more it comes from behind, the sky all
+    const float behind = maxf(float3_dot(preview->sun, preview->camera.forward), 0);
     Float3 sky = float3_add(sky_ambient(&preview->sky, float3(0, 0, 1)), sky_ambient(&preview->sky, float3(0, 0, -1)));
-    fire->daylight = float3_mad(float3_scale(sky, 0.5f), preview->sun_light, 0.28f);
+    fire->daylight = float3_mad(float3_scale(sky, 0.5f), preview->sun_light, 0.28f + 0.3f * behind * behind);
     for (int z = 0; z < fire->size[2]; z++)
         for (int y = 0; y < fire->size[1]; y++)
             for (int x = 0; x < fire->size[0]; x++) {

@@ -27,7 +27,8 @@
 #define EDDY_RATE 8.0f   ///< 1/s, eddies that pass a height
 #define EDDY_WIDE 0.014f ///< m across
 #define EDDY_FINE 0.006f
-#define SMOKE_EDDY 0.02f
+#define SMOKE_EDDY 0.028f
+#define SMOKE_SPEED 0.5f ///< m/s, at which they rise
 
 #define FLAME_COOL 1400.0f ///< K
 #define FLAME_HOT 2050.0f
@@ -216,9 +217,8 @@ FirePoint fire_at_point(const Preview *preview, Float3 p, int what) {
     FireCell cell = {0, 0, 0, 0};
 
     // height above the paper: where there is flame its own, linear between the cells, as it only turns the eddies
-    bool flame = what & FIRE_FLAME;
-    float height = p.z - fire->low.z, f[3];
-    if (flame) {
+    if (what & FIRE_FLAME) {
+        float height = p.z - fire->low.z, f[3];
         const Float3 g = in_cells(fire, p);
         const float at[3] = {g.x, g.y, g.z};
         size_t base = 0, over[3] = {1, (size_t)fire->size[0], (size_t)fire->size[0] * (size_t)fire->size[1]};
@@ -231,35 +231,40 @@ FirePoint fire_at_point(const Preview *preview, Float3 p, int what) {
             sum += four_load(&fire->cells[corner].flame) * weight;
         }
         if (sum[0] > 1e-4f) height = sum[1] / sum[0];
-    } else {
-        cell = cell_at(fire, p, NULL);
-    }
 
-    // smoke alone is moved by large eddies, as flames are, which small eddies move, too
-    float passed = eddies_passed(height, fire->moment), size = flame ? EDDY_WIDE : SMOKE_EDDY;
-    Noise wide = eddies(fire, p, passed, size, 1);
-
-    if (flame) {
+        // large eddies move it, then small ones
+        float passed = eddies_passed(height, fire->moment);
+        Noise wide = eddies(fire, p, passed, EDDY_WIDE, 1);
         Float3 shifted = float3_mad(p, float3(wide.a, wide.b, 0), 0.7f * FIRE_WARP_WIDE);
 
         // whether the small eddies can bring flame there
-        Float3 g = in_cells(fire, shifted);
-        size_t x = (size_t)clampf(g.x + 0.5f, 0, (float)(fire->size[0] - 1));
-        size_t y = (size_t)clampf(g.y + 0.5f, 0, (float)(fire->size[1] - 1));
-        size_t z = (size_t)clampf(g.z + 0.5f, 0, (float)(fire->size[2] - 1));
+        const Float3 h = in_cells(fire, shifted);
+        size_t x = (size_t)clampf(h.x + 0.5f, 0, (float)(fire->size[0] - 1));
+        size_t y = (size_t)clampf(h.y + 0.5f, 0, (float)(fire->size[1] - 1));
+        size_t z = (size_t)clampf(h.z + 0.5f, 0, (float)(fire->size[2] - 1));
 
         if (fire->burns[x + (size_t)fire->size[0] * (y + (size_t)fire->size[1] * z)]) {
             float slope;
             Noise fine = eddies(fire, shifted, passed, EDDY_FINE, 1.6f);
             cell = cell_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), 0.7f * FIRE_WARP_FINE), &slope);
             if (cell.flame > 0.02f) shade_flame(fire, &cell, slope, wide, fine, &point);
-        } else if (what & FIRE_SMOKE) {
-            cell = cell_at(fire, shifted, NULL);
         }
     }
 
+    // smoke is cloudy: eddies as tall as wide move and thin it; what is inside of flames is bare of them
+    if (!(what & FIRE_SMOKE)) return point;
+    point.smoke = cell.smoke;
+    if (point.depth < 0) {
+        const float passed = (SMOKE_SPEED * fire->moment - p.z) / SMOKE_EDDY;
+        Noise wide = eddies(fire, p, passed, SMOKE_EDDY, 0.8f);
+        Noise small = eddies(fire, p, passed, SMOKE_EDDY / 2.6f, 2.2f);
+        Float3 moved = float3_mad(float3_mad(p, float3(wide.a, wide.b, wide.c), SMOKE_WARP),
+                                  float3(small.a, small.b, small.c), 0.5f * SMOKE_WARP);
+        cell = cell_at(fire, moved, NULL);
+        point.smoke = cell.smoke * maxf(1 + 2 * wide.d + 1.1f * small.d, 0);
+    }
+
     // soot and tar scatter about a third, in all directions
-    point.smoke = maxf(cell.smoke * (1 + 0.9f * wide.d), 0);
     Float3 lit = float3_mad(float3_scale(fire->daylight, 0.35f), float3(1, 0.5f, 0.16f), 0.35f * cell.glow);
     point.lit = float3_scale(lit, point.smoke);
     return point;
