@@ -22,6 +22,7 @@ enum {
 #define RIBBON 0.0060f    ///< m, half of its width where it begins
 #define THREAD 0.0009f    ///< m, radius there
 #define WISP_DEPTH 5e-3f  ///< m, optical depth across a wisp times its width
+#define SMOKING 6.0f      ///< sites of which half smoke
 #define WISP_AREA 2.5e-5f ///< m2 that smoulder and give half of the densest wisp
 #define FORWARD 0.45f     ///< g of the phase function
 
@@ -85,6 +86,12 @@ void wisps_draw(Preview *preview) {
     const Fire *fire = &preview->fire;
     if (preview->def.wisps <= 0) return;
     ember_sites(preview, WISP_CELL, sites);
+
+    // of many only some smoke at a time
+    int count = 0;
+    for (int i = 0; i < SITE_LIMIT; i++) count += sites[i].smoulder > 0.2f * WISP_AREA;
+    const float still = 0.80f - 0.30f * minf(SMOKING / (float)(count + 1), 1);
+
     for (int i = 0; i < SITE_LIMIT; i++) {
         if (sites[i].smoulder <= 0) continue;
 
@@ -103,8 +110,8 @@ void wisps_draw(Preview *preview) {
         const float turn = 2 * PI_F * hash_unit(sites[i].key), live = 0.5f + 0.5f * noise2(0.7f * now, 0, sites[i].key);
         Wisp wisp = {.from = sites[i].position,
                      .across = float3(cosf(turn), sinf(turn), 0),
-                     .strength =
-                         area / (area + WISP_AREA) * (1 - stepf(0.02f, 0.15f, flame)) * stepf(0.5f, 0.85f, live),
+                     .strength = area / (area + WISP_AREA) * (1 - stepf(0.02f, 0.15f, flame)) *
+                                 stepf(still, still + 0.3f, live),
                      .now = now,
                      .seed = sites[i].key & 0xffff};
         wisp.strength *= preview->def.wisps * stepf(0.2f, 0.5f, sites[i].level); // up a hanging sheet it spreads
