@@ -15,7 +15,7 @@ HOURS ?= 1
 MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 .PHONY: all web-package build build-asan build-fuzz build-shared build-tsan configure demo test check check-examples gate \
-        site check-clients check-godot check-blender check-farm check-packages check-platforms web web-serve check-web check-web-core torture mutations coverage fuzz-long soak pictures bench-peers clean
+        site check-clients check-godot check-unity check-blender check-farm check-packages check-platforms web web-serve check-web check-web-core torture mutations coverage fuzz-long soak pictures bench-peers clean
 
 all: build
 
@@ -86,6 +86,10 @@ check-clients: build
 # the node SingeSheet in Godot 4: $GODOT, or Debian's package of it, which root unpacks into build/clients/godot
 check-godot: build
 	tests/clients/godot.py build/singe build/clients/godot
+
+# the script and the plug-in for Unity, by Mono and without Unity
+check-unity:
+	tests/clients/unity.py build/clients/unity
 
 # the extension in Blender 4.5 and 5.2; WHEELS=FOLDER also installs it together with its program
 check-blender: build

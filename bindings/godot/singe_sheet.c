@@ -3,17 +3,16 @@
 // written in place; what has burnt away are triangles without area. Only a surface that outgrows it is made anew.
 //
 // A node's axes are y up; the sheet lies in its x-y plane and is simulated in its axes, with gravity turned into them.
+#include "burning_sheet.h"
 #include "cache.h"
 #include "godot.h"
 
-#include <singe/mesh.h>
 #include <singe/singe.h>
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum {
     FORMAT_VERTEX = 1,
@@ -23,8 +22,7 @@ enum {
     FORMAT_INDEX = 1 << 12,
     FORMAT_DYNAMIC = 1 << 26,
     SURFACE_FORMAT = FORMAT_VERTEX | FORMAT_NORMAL | FORMAT_COLOUR | FORMAT_UV | FORMAT_INDEX | FORMAT_DYNAMIC,
-    PATH_SIZE = 1024,
-    KEPT = 8
+    PATH_SIZE = 1024
 };
 static const int64_t surface_format = SURFACE_FORMAT | (int64_t)1 << 35; // version 2, of Godot 4.2 and later
 
@@ -37,22 +35,9 @@ static struct {
 typedef struct SingeSheet {
     void *object; ///< the engine's
     uint64_t mesh;
-    // properties
-    float size[2];
-    int32_t cells[2];
-    char material[64], cache[PATH_SIZE];
-    double pace, detail;
-    int64_t frame, threads;
-    // live
-    SingeSim *sim;
-    SingeSheetId id;
-    SingeSurface surface;
-    uint64_t allocations, allocations_at_start;
-    struct { ///< blocks that drawing has freed, for the next frame
-        void *block;
-        size_t size;
-    } kept[KEPT];
-    double milliseconds, processor_milliseconds; ///< of the last frame
+    BurningSheet live;
+    char cache[PATH_SIZE];
+    int64_t frame;
     // what is drawn
     GodotBytes vertices, attributes, indices;
     int64_t vertex_room, index_room, normal_offset, normal_stride, colour_offset, uv_offset, attribute_stride,
@@ -61,42 +46,6 @@ typedef struct SingeSheet {
     float box[6]; ///< position and size
     CacheFrame played;
 } SingeSheet;
-
-// ---- memory, which is counted
-
-static void *sheet_resize(void *context, void *block, size_t old_size, size_t new_size) {
-    SingeSheet *self = context;
-    (void)old_size;
-    if (!new_size) {
-        free(block);
-        return NULL;
-    }
-    self->allocations++;
-    return realloc(block, new_size);
-}
-
-/// For drawing, which frees in each frame what it has asked for.
-static void *sheet_resize_kept(void *context, void *block, size_t old_size, size_t new_size) {
-    SingeSheet *self = context;
-    for (int i = 0; i < KEPT && !block; i++)
-        if (self->kept[i].block && self->kept[i].size >= new_size) {
-            block = self->kept[i].block;
-            self->kept[i].block = NULL;
-            return block;
-        }
-    for (int i = 0; i < KEPT && block && !new_size; i++)
-        if (!self->kept[i].block) {
-            self->kept[i].block = block, self->kept[i].size = old_size;
-            return NULL;
-        }
-    return sheet_resize(context, block, old_size, new_size);
-}
-
-static double now(void) {
-    struct timespec time;
-    timespec_get(&time, TIME_UTC);
-    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
-}
 
 // ---- drawing
 
@@ -110,24 +59,6 @@ static uint32_t octahedron(const float n[3]) {
         x = folded;
     }
     return (uint32_t)((x * 0.5f + 0.5f) * 65535) | (uint32_t)((y * 0.5f + 0.5f) * 65535) << 16;
-}
-
-static uint8_t byte_of(float value) { return (uint8_t)(fminf(fmaxf(value, 0), 1) * 255); }
-
-/// Red, green and blue are how far it has browned, charred and turned to ash, for the material's `albedo`; alpha is how
-/// brightly it glows.
-static void colour_of(const SheetVertex *v, uint8_t colour[4]) {
-    const float brown = fminf(fmaxf((v->peak - 430) / 200, 0), 1);
-    const float black = fminf(3 * v->burn, 1), grey = v->burn > 0.5f ? 2 * v->burn - 1 : 0;
-    static const float fresh[3] = {1, 1, 1}, scorched[3] = {0.45f, 0.26f, 0.1f}, charred[3] = {0.02f, 0.018f, 0.016f},
-                       ash[3] = {0.35f, 0.34f, 0.33f};
-    for (int c = 0; c < 3; c++) {
-        float value = fresh[c] + brown * (scorched[c] - fresh[c]);
-        value += black * (charred[c] - value);
-        value += grey * (ash[c] - value);
-        colour[c] = byte_of(value);
-    }
-    colour[3] = byte_of((v->temperature - 900) / 500);
 }
 
 /// Makes room for a mesh, half as much again as it has now.
@@ -186,7 +117,7 @@ static void sheet_show(SingeSheet *self, int64_t vertices, int64_t triangles, co
         }
         const uint32_t normal = octahedron(v.normal);
         uint8_t colour[4];
-        colour_of(&v, colour);
+        burning_colour(v.temperature, v.peak, v.burn, colour);
         memcpy(points + 12 * i, v.position, 12);
         memcpy(normals + self->normal_stride * i, &normal, 4);
         memcpy(attributes + self->attribute_stride * i + self->colour_offset, colour, 4);
@@ -217,12 +148,9 @@ static void surface_vertex(const void *mesh, int64_t i, SheetVertex *v) {
 }
 
 static void sheet_draw(SingeSheet *self) {
-    if (singe_sim_surface(self->sim, &self->surface)) {
-        godot_error("cannot draw", singe_sim_error(self->sim)->message);
-        return;
-    }
-    sheet_show(self, self->surface.vertex_count, self->surface.triangle_count,
-               (const uint32_t(*)[3])self->surface.triangles, surface_vertex, &self->surface);
+    const SingeSurface *surface = &self->live.surface;
+    sheet_show(self, surface->vertex_count, surface->triangle_count, (const uint32_t(*)[3])surface->triangles,
+               surface_vertex, surface);
 }
 
 // ---- living
@@ -248,34 +176,16 @@ static void *sheet_create(void *object) {
     }
     SingeSheet *self = calloc(1, sizeof *self);
     if (!self) abort(); // as the engine does
-    *self = (SingeSheet){.object = object,
-                         .size = {0.2f, 0.2f},
-                         .cells = {32, 32},
-                         .material = "office-paper",
-                         .pace = 8,
-                         .frame = 1,
-                         .threads = 1};
-    self->surface.allocator = (SingeAllocator){sheet_resize_kept, self};
+    *self = (SingeSheet){.object = object, .live = burning_default(), .frame = 1};
     godot_call(calls.mesh_create, NULL, NULL, &self->mesh);
     const void *arguments[] = {&self->mesh};
     godot_call(calls.set_base, object, arguments, NULL);
     return self;
 }
 
-static void sheet_stop(SingeSheet *self) {
-    singe_sim_destroy(self->sim);
-    self->sim = NULL;
-    singe_surface_free(&self->surface);
-    for (int i = 0; i < KEPT; i++) {
-        free(self->kept[i].block);
-        self->kept[i].block = NULL;
-    }
-    self->surface.allocator = (SingeAllocator){sheet_resize_kept, self};
-}
-
 static void sheet_destroy(void *data) {
     SingeSheet *self = data;
-    sheet_stop(self);
+    burning_stop(&self->live);
     cache_free(&self->played);
     const void *arguments[] = {&self->mesh};
     godot_call(calls.free_rid, NULL, arguments, NULL);
@@ -287,18 +197,13 @@ static void sheet_destroy(void *data) {
 
 static void sheet_process(void *data, double seconds) {
     SingeSheet *self = data;
-    if (!self->sim) return;
-    const double before = now();
-    const clock_t used = clock();
-    // a slow frame slows the fire down and makes no more steps than a frame has time for
-    if (singe_sim_advance(self->sim, seconds, 4, NULL)) {
-        godot_error("the sheet stands still", singe_sim_error(self->sim)->message);
-        sheet_stop(self);
+    if (!self->live.sim) return;
+    if (burning_advance(&self->live, seconds)) {
+        sheet_draw(self);
         return;
     }
-    sheet_draw(self);
-    self->milliseconds = now() - before;
-    self->processor_milliseconds = 1e3 * (double)(clock() - used) / CLOCKS_PER_SEC;
+    godot_error("the sheet stands still", self->live.error.message);
+    burning_stop(&self->live);
 }
 
 static void sheet_bounds(const void *data, float box[6]) { memcpy(box, ((const SingeSheet *)data)->box, 24); }
@@ -315,132 +220,78 @@ static void sheet_gravity(const SingeSheet *self, float gravity[3]) {
     for (int c = 0; c < 3; c++) gravity[c] *= length > 0 ? -9.81f / sqrtf(length) : 0;
 }
 
-/// Builds the sheet; false, with the reason in *error, if it cannot be.
-static bool sheet_build(SingeSheet *self, SingeError *error) {
-    SingeGridDef grid = singe_default_grid();
-    SingeSimDef def = singe_default_sim();
-    SingeSheetDef sheet = singe_default_sheet();
-    for (int i = 0; i < 2; i++) {
-        grid.size[i] = self->size[i];
-        grid.cells[i] = (uint32_t)(self->cells[i] > 0 ? self->cells[i] : 0);
-    }
-    def.allocator = (SingeAllocator){sheet_resize, self};
-    def.pace = (float)self->pace, def.surface_detail = (float)self->detail, def.thread_count = (int)self->threads;
-    def.time_step = 1.0f / 120;
-    sheet_gravity(self, def.gravity);
-    if (singe_material_preset(self->material, &sheet.material, error)) return false;
-    SingeMesh *mesh = NULL;
-    if (singe_mesh_create_grid(&grid, &mesh, error)) return false;
-    singe_mesh_fill_sheet(mesh, &sheet);
-    bool good = !singe_sim_create(&def, &self->sim, error);
-    if (good && (singe_sim_add_sheet(self->sim, &sheet, &self->id) || singe_sim_commit(self->sim) ||
-                 singe_sim_advance(self->sim, 0, 0, NULL))) {
-        *error = *singe_sim_error(self->sim);
-        good = false;
-    }
-    singe_mesh_destroy(mesh);
-    return good;
-}
-
 static void sheet_start(void *data, const GodotValue *const *arguments, GodotValue *result) {
     SingeSheet *self = data;
-    SingeError error = {0};
     (void)arguments;
-    sheet_stop(self);
-    result->yes = sheet_build(self, &error);
-    if (!result->yes) {
-        godot_error("cannot start", error.message);
-        sheet_stop(self);
-        return;
-    }
-    sheet_draw(self);
-    self->allocations_at_start = self->allocations;
+    sheet_gravity(self, self->live.gravity);
+    result->yes = burning_start(&self->live);
+    if (result->yes) sheet_draw(self);
+    else godot_error("cannot start", self->live.error.message);
 }
 
-/// Says why a call on the simulation failed, or that there is none.
-static void sheet_answer(SingeSheet *self, GodotValue *result, SingeResult done) {
-    result->yes = self->sim && !done;
-    if (!self->sim) godot_error("not possible", "the sheet has not started");
-    if (self->sim && done) godot_error("not possible", singe_sim_error(self->sim)->message);
+/// The result of a call on the sheet; what went wrong is printed.
+static void sheet_answer(const SingeSheet *self, GodotValue *result, bool good) {
+    result->yes = good;
+    if (!good) godot_error("not possible", self->live.error.message);
 }
 
 static void sheet_pin(void *data, const GodotValue *const *arguments, GodotValue *result) {
     SingeSheet *self = data;
-    SingePinDef pin = singe_default_pin();
-    pin.sheet = self->id, pin.point_count = 1, pin.points = arguments[0]->vector,
-    pin.radius = (float)arguments[1]->real;
-    sheet_answer(self, result, self->sim ? singe_sim_add_pin(self->sim, &pin, NULL) : SINGE_OK);
+    sheet_answer(self, result, burning_pin(&self->live, arguments[0]->vector, (float)arguments[1]->real));
 }
 
 static void sheet_ignite(void *data, const GodotValue *const *arguments, GodotValue *result) {
     SingeSheet *self = data;
-    SingeSourceDef match = singe_default_source();
-    memcpy(match.position, arguments[0]->vector, sizeof match.position);
-    match.radius = match.falloff = (float)arguments[1]->real, match.temperature = 1123;
-    if (self->sim) match.start = (float)singe_sim_view(self->sim).time;
-    match.end = match.start + (float)arguments[2]->real;
-    sheet_answer(self, result, self->sim ? singe_sim_add_source(self->sim, &match, NULL) : SINGE_OK);
+    sheet_answer(
+        self, result,
+        burning_ignite(&self->live, arguments[0]->vector, (float)arguments[1]->real, (float)arguments[2]->real));
 }
 
 static void sheet_blow(void *data, const GodotValue *const *arguments, GodotValue *result) {
     SingeSheet *self = data;
-    SingeWindDef wind = singe_default_sim().wind;
-    memcpy(wind.velocity, arguments[0]->vector, sizeof wind.velocity);
-    wind.gust = (float)arguments[1]->real;
-    sheet_answer(self, result, self->sim ? singe_sim_set_wind(self->sim, &wind) : SINGE_OK);
+    sheet_answer(self, result, burning_blow(&self->live, arguments[0]->vector, (float)arguments[1]->real));
 }
 
 static void sheet_add_sphere(void *data, const GodotValue *const *arguments, GodotValue *result) {
     SingeSheet *self = data;
-    SingeColliderDef ball = singe_default_collider();
-    ball.kind = SINGE_COLLIDER_SPHERE, ball.radius = (float)arguments[1]->real;
-    memcpy(ball.position, arguments[0]->vector, sizeof ball.position);
-    sheet_answer(self, result, self->sim ? singe_sim_add_collider(self->sim, &ball, NULL) : SINGE_OK);
+    sheet_answer(self, result, burning_add_sphere(&self->live, arguments[0]->vector, (float)arguments[1]->real));
 }
 
 static void sheet_add_plane(void *data, const GodotValue *const *arguments, GodotValue *result) {
     SingeSheet *self = data;
-    SingeColliderDef plane = singe_default_collider();
-    const float *n = arguments[1]->vector, length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    memcpy(plane.position, arguments[0]->vector, sizeof plane.position);
-    // the shortest turn from z to the normal
-    const float w = length + n[2], scale = sqrtf(n[0] * n[0] + n[1] * n[1] + w * w);
-    const float turn[4] = {-n[1] / scale, n[0] / scale, 0, w / scale}, over[4] = {1, 0, 0, 0};
-    memcpy(plane.rotation, scale > 1e-6f ? turn : over, sizeof turn);
-    sheet_answer(self, result, self->sim ? singe_sim_add_collider(self->sim, &plane, NULL) : SINGE_OK);
+    sheet_answer(self, result, burning_add_plane(&self->live, arguments[0]->vector, arguments[1]->vector));
 }
 
 static void sheet_end(void *data, const GodotValue *const *arguments, GodotValue *result) {
     (void)arguments, (void)result;
-    sheet_stop(data);
+    burning_stop(&((SingeSheet *)data)->live);
 }
 
 static void sheet_burnt(void *data, const GodotValue *const *arguments, GodotValue *result) {
     const SingeSheet *self = data;
     (void)arguments;
-    result->real = self->sim ? singe_sim_stats(self->sim).burnt_fraction : 0;
+    result->real = self->live.sim ? singe_sim_stats(self->live.sim).burnt_fraction : 0;
 }
 
 static void sheet_springs(void *data, const GodotValue *const *arguments, GodotValue *result) {
     const SingeSheet *self = data;
     (void)arguments;
-    result->whole = self->sim ? singe_sim_stats(self->sim).springs : 0;
+    result->whole = self->live.sim ? singe_sim_stats(self->live.sim).springs : 0;
 }
 
 static void sheet_milliseconds(void *data, const GodotValue *const *arguments, GodotValue *result) {
     (void)arguments;
-    result->real = ((const SingeSheet *)data)->milliseconds;
+    result->real = ((const SingeSheet *)data)->live.milliseconds;
 }
 
 static void sheet_processor(void *data, const GodotValue *const *arguments, GodotValue *result) {
     (void)arguments;
-    result->real = ((const SingeSheet *)data)->processor_milliseconds;
+    result->real = ((const SingeSheet *)data)->live.processor_time;
 }
 
 static void sheet_allocations(void *data, const GodotValue *const *arguments, GodotValue *result) {
-    const SingeSheet *self = data;
     (void)arguments;
-    result->whole = (int64_t)(self->allocations - self->allocations_at_start);
+    result->whole = (int64_t)((const SingeSheet *)data)->live.allocations;
 }
 
 static void sheet_triangles(void *data, const GodotValue *const *arguments, GodotValue *result) {
@@ -452,7 +303,7 @@ static void sheet_triangles(void *data, const GodotValue *const *arguments, Godo
 
 /// Shows the frame of the cache that `frame` names.
 static void sheet_play(SingeSheet *self) {
-    if (!self->cache[0] || self->sim) return;
+    if (!self->cache[0] || self->live.sim) return;
     char why[PATH_SIZE + 128];
     GodotValue path = godot_string(self->cache);
     char file[PATH_SIZE];
@@ -468,6 +319,11 @@ static void sheet_play(SingeSheet *self) {
 
 // ---- properties
 
+static void sheet_cells(SingeSheet *self, const int32_t cells[2]) {
+    for (int i = 0; i < 2; i++)
+        self->live.cells[i] = cells[i] > 0 ? (uint32_t)cells[i] : 0; // 0 is refused at the start
+}
+
 #define PROPERTY(name, set, get)                                                                       \
     static void sheet_set_##name(void *data, const GodotValue *const *arguments, GodotValue *result) { \
         SingeSheet *self = data;                                                                       \
@@ -479,13 +335,13 @@ static void sheet_play(SingeSheet *self) {
         (void)arguments;                                                                               \
         get;                                                                                           \
     }
-PROPERTY(size, memcpy(self->size, arguments[0]->vector, 8), memcpy(result->vector, self->size, 8))
-PROPERTY(cells, memcpy(self->cells, arguments[0]->cells, 8), memcpy(result->cells, self->cells, 8))
-PROPERTY(material, godot_text(arguments[0], self->material, sizeof self->material),
-         *result = godot_string(self->material))
-PROPERTY(pace, self->pace = arguments[0]->real, result->real = self->pace)
-PROPERTY(detail, self->detail = arguments[0]->real, result->real = self->detail)
-PROPERTY(threads, self->threads = arguments[0]->whole, result->whole = self->threads)
+PROPERTY(size, memcpy(self->live.size, arguments[0]->vector, 8), memcpy(result->vector, self->live.size, 8))
+PROPERTY(cells, sheet_cells(self, arguments[0]->cells), memcpy(result->cells, self->live.cells, 8))
+PROPERTY(material, godot_text(arguments[0], self->live.material, sizeof self->live.material),
+         *result = godot_string(self->live.material))
+PROPERTY(pace, self->live.pace = (float)arguments[0]->real, result->real = (double)self->live.pace)
+PROPERTY(detail, self->live.detail = (float)arguments[0]->real, result->real = (double)self->live.detail)
+PROPERTY(threads, self->live.threads = (int)arguments[0]->whole, result->whole = self->live.threads)
 PROPERTY(frame, self->frame = arguments[0]->whole; sheet_play(self), result->whole = self->frame)
 PROPERTY(cache, godot_text(arguments[0], self->cache, PATH_SIZE); sheet_play(self), *result = godot_string(self->cache))
 
