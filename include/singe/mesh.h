@@ -1,5 +1,9 @@
 /// Singe: converts meshes of triangles and polygons to the quads of a sheet (docs/meshes.md). These functions are in
 /// libsinge_input, a second library. They need no simulation.
+///
+/// What they do not do: they read no files, make no uv, and change no resolution: cells are as large as the faces, and
+/// with SINGE_MESH_SPLIT their sides are half as long.
+/// Parts of a mesh that cross each other stay so.
 #ifndef SINGE_MESH_H
 #define SINGE_MESH_H
 

@@ -3,6 +3,14 @@
 /// One thread at a time may call into one simulation; different simulations are independent.
 /// Particles are numbered over all sheets: first every vertex of every sheet (the corner or blue
 /// layer) in the order added, then one particle for every cell (the centre or green layer).
+///
+/// What it does not do:
+/// - Colliders do not burn, and sheets do not push them: they are where the host says. There are no rigid bodies.
+/// - Sheets are thin. There are no solids, threads or liquids; water is a mass that a sheet holds.
+/// - Sheets are not remeshed: cells go and vertices split, and nothing else changes how they are connected. No sheet
+///   can be added after the commit.
+/// - Time runs forward. To go back, load what singe_sim_save has saved.
+/// - Different simulations do not feel each other.
 #ifndef SINGE_SIM_H
 #define SINGE_SIM_H
 

@@ -1,4 +1,7 @@
 /// Singe: the results of a simulation for renderers: the surface of its sheets, and the gas.
+///
+/// What it does not do: it has no colours and no light. Temperature, `burn` and what is left of char and ash say how a
+/// vertex should look; program/preview is one way. Vertices have no identity from frame to frame but `source_vertex`.
 #ifndef SINGE_SURFACE_H
 #define SINGE_SURFACE_H
 
