@@ -94,9 +94,11 @@ def debian(work, suite, wanted):
     source.mkdir()
     archive = subprocess.run(["git", "-C", ROOT, "archive", "HEAD"], check=True, capture_output=True).stdout
     subprocess.run(["tar", "-x", "-C", source], input=archive, check=True)
-    inside(builder, "cd /source; apt-get -qq update; scripts/setup.sh; apt-get -qq install -y dpkg-dev file; "
+    inside(builder, "cd /source; apt-get -qq update; scripts/setup.sh; apt-get -qq install -y dpkg-dev file lintian; "
                     "cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr "
-                    "-DSINGE_TESTS=OFF -DSINGE_PYTHON=OFF; cmake --build build; cd build; cpack -G DEB")
+                    "-DSINGE_TESTS=OFF -DSINGE_PYTHON=OFF; cmake --build build; cd build; cpack -G DEB; "
+                    "lintian --allow-root --fail-on error,warning --tag-display-limit 0 *.deb")
+    print(f"{suite}: lintian has nothing to say", flush=True)
     root = bare_root(work, suite, f"{suite}-install")
     for package in (source / "build").glob("*.deb"):
         shutil.copy(package, root / "tmp")
