@@ -1,7 +1,7 @@
 // Looks at a burn by `singe view` in the browsers that are here:
 // node --experimental-websocket tests/view.mjs [--pictures FOLDER]
 //
-// SINGE=PROGRAM, build/singe without it. It burns a coarse letter first, and then all cases look at the same cache.
+// ONLY=PATTERN runs the first case and those whose title has it. SINGE=PROGRAM, build/singe without it. It burns a coarse letter first, and then all cases look at the same cache.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { mkdir, mkdtemp, rm } from "node:fs/promises";
@@ -10,7 +10,7 @@ import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { BROWSERS, until } from "./browsers.mjs";
 
-const words = process.argv.slice(2), pictures = words[0] === "--pictures" ? words[1] : null;
+const only = process.env.ONLY, words = process.argv.slice(2), pictures = words[0] === "--pictures" ? words[1] : null;
 const ROOT = new URL("../../", import.meta.url).pathname, SINGE = process.env.SINGE ?? `${ROOT}build/singe`;
 const FRAMES = 30, SIZES = [[1100, 700], [360, 740], [740, 360]];
 const work = await mkdtemp(join(tmpdir(), "singe-view-test-")), cache = join(work, "letter");
@@ -80,13 +80,16 @@ const CASES = {
     async "each layer has its own colours and legend"(page) {
         await goTo(page, FRAMES);
         const seen = [];
-        for (const layer of ["paper", "temperature", "char", "strain"]) {
+        for (const layer of ["paper", "temperature", "char", "strain", "gas"]) {
             await click(page, `[data-layer=${layer}]`);
             const one = await colour(page), legend = await page.evaluate(() => !document.querySelector("#legend").hidden);
             assert.equal(legend, layer !== "paper");
             for (const [other, there] of seen) assert.ok(apart(one, there) > 1, `${layer} looks like ${other}`);
             seen.push([layer, one]);
         }
+        const middle = await colour(page);
+        await page.evaluate(() => { const slice = document.querySelector("#slice"); slice.value = 0.1; slice.dispatchEvent(new Event("input")); });
+        assert.ok(apart(await colour(page), middle) > 0.3, "the slice moves");
         await click(page, "[data-layer=paper]");
         const lit = await colour(page);
         await click(page, "#fire");
@@ -121,18 +124,25 @@ const CASES = {
         execFileSync(SINGE, [...args, "--frames", "14", "--no-preview", "--set", "sheets.0.grid.cells=[42, 59]"], { cwd: ROOT, stdio: "pipe" });
         await click(page, "#branch");
     },
-    async "a picture of what is seen is saved"(page) {
-        const size = await page.evaluate(() => new Promise((resolve) => {
+    async "a picture and a video of what is seen are saved"(page) {
+        const saved = (button) => page.evaluate((id) => new Promise((resolve) => {
             const make = URL.createObjectURL;
             URL.createObjectURL = (blob) => {
                 URL.createObjectURL = make;
                 blob.arrayBuffer().then((b) => resolve([b.byteLength, ...new Uint8Array(b, 0, 4)]));
                 return make.call(URL, blob);
             };
-            document.querySelector("#still").click();
-        }));
-        assert.deepEqual(size.slice(1), [0x89, 0x50, 0x4e, 0x47]);
-        assert.ok(size[0] > 5000, `${size[0]} bytes`);
+            document.querySelector(id).click();
+        }), button);
+        const [bytes, ...begins] = await saved("#still");
+        assert.deepEqual(begins, [0x89, 0x50, 0x4e, 0x47]);
+        assert.ok(bytes > 5000, `${bytes} bytes`);
+        await goTo(page, FRAMES - 3);
+        if (!(await page.evaluate(() => "VideoEncoder" in globalThis))) return; // Firefox before 130
+        const [length, ...webm] = await saved("#film");
+        assert.deepEqual(webm, [0x1a, 0x45, 0xdf, 0xa3]);
+        assert.ok(length > 2000, `${length} bytes`);
+        assert.equal((await state(page)).shown, FRAMES);
     },
     async "nothing stands outside the window, from a phone to a wide screen"(page, _, name) {
         await goTo(page, 24);
@@ -168,6 +178,7 @@ process.chdir(ROOT);
 for (const [name, open] of Object.entries(BROWSERS)) {
     const served = await view(cache), page = await open();
     for (const [title, run] of Object.entries(CASES)) {
+        if (only && !title.match(`cache opens|${only}`)) continue;
         const begun = Date.now();
         try {
             await run(page, served, name.toLowerCase());

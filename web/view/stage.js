@@ -131,6 +131,22 @@ void main() {
     float line = (1.0 - min(min(d.x, d.y), 1.0)) * clamp(1.5 - 3.0 * max(w.x, w.y), 0.0, 1.0), far = distance(eye, vPosition) / reach;
     colour = vec4(mix(vec3(0.062, 0.056, 0.052), vec3(0.075, 0.068, 0.062) + 0.07 * line, exp(-4.0 * far * far)), 1.0);
 }`;
+/** The gas in a plane: the share that burns by colour, smoke in grey, a border around the cells. */
+const SLICE = /* glsl */ `precision highp float;
+precision highp sampler3D;
+in vec3 vPosition;
+uniform sampler3D fireMap;
+uniform sampler2D colours;
+uniform vec3 origin, span;
+out vec4 colour;
+void main() {
+    vec3 at = (vPosition - origin) / span, off = abs(at - 0.5), wide = fwidth(at);
+    if (any(greaterThan(off, vec3(0.5)))) discard;
+    vec4 c = texture(fireMap, at);
+    float burning = smoothstep(0.01, 0.12, c.r), grey = 0.85 * (1.0 - exp(-2.5 * c.b)), rim = any(greaterThan(off, 0.5 - 1.5 * wide)) ? 0.5 : 0.0;
+    vec3 smoke = vec3(0.42, 0.40, 0.39);
+    colour = vec4(mix(smoke, texture(colours, vec2(c.r, 0.5)).rgb, burning), max(max(burning, grey), max(rim, 0.10)));
+}`;
 const COPY = /* glsl */ `precision highp float;
 in vec2 at;
 uniform sampler2D map;
@@ -145,6 +161,7 @@ export const LAYERS = {
     char: { index: 1, low: 0, high: 1, unit: "burnt", show: (x) => `${Math.round(100 * x)} %`, stops: ["#f0e6d6", "#d9a860", "#8a5222", "#2c1a12", "#1b1918", "#55524f", "#b9b4ab"] },
     strain: { index: 2, low: -0.15, high: 0.15, unit: "stretch", show: (x) => `${x > 0 ? "+" : ""}${Math.round(100 * x)} %`, stops: ["#2a5da8", "#5b8fc7", "#a9c6dd", "#ece6da", "#eab48a", "#d6703f", "#a8321f"] },
 };
+LAYERS.gas = { index: 1, low: 0, high: 1, unit: "burning", show: (x) => (x === 0.5 ? "of the gas burns" : `${Math.round(100 * x)} %`), stops: ["#2b1512", "#7c1d10", "#d9480f", "#ff922b", "#ffd43b", "#fff3bf"] };
 export const cssGradient = (layer) => `linear-gradient(90deg, ${LAYERS[layer].stops.join(", ")})`;
 function ramp({ stops }) {
     const bytes = new Uint8Array(1024), colours = stops.map(hex);
@@ -197,10 +214,11 @@ export class Stage {
         this.gl = gl;
         this.canvas = canvas;
         this.layer = "paper";
+        this.slice = 0.5;
         this.fire = true;
         this.programs = {
             wood: this.program(glsl.PLAIN_VERTEX, GROUND_WOOD), plain: this.program(glsl.PLAIN_VERTEX, GROUND_PLAIN), shape: this.program(glsl.PLAIN_VERTEX, SHAPE),
-            paper: this.program(SHEET_VERTEX, glsl.paper(DAY)), field: this.program(SHEET_VERTEX, FIELD), grid: this.program(glsl.PLAIN_VERTEX, FIELD_GROUND),
+            paper: this.program(SHEET_VERTEX, glsl.paper(DAY)), field: this.program(SHEET_VERTEX, FIELD), slice: this.program(glsl.PLAIN_VERTEX, SLICE), grid: this.program(glsl.PLAIN_VERTEX, FIELD_GROUND),
             fire: this.program(glsl.FULL_VERTEX, glsl.FIRE), merge: this.program(glsl.FULL_VERTEX, glsl.MERGE), bright: this.program(glsl.FULL_VERTEX, glsl.BRIGHT),
             blur: this.program(glsl.FULL_VERTEX, glsl.BLUR), film: this.program(glsl.FULL_VERTEX, glsl.FILM), copy: this.program(glsl.FULL_VERTEX, COPY),
         };
@@ -455,6 +473,8 @@ export class Stage {
             this.drawMesh(this.quad);
         }
 
+        if (this.layer === "gas" && frame.gas) this.drawSlice(camera, matrix);
+
         const { scene } = this.targets;
         const copy = (to, bits) => {
             gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.many);
@@ -480,12 +500,28 @@ export class Stage {
         this.pass("film", null, { map: merged.texture, halo: halo.texture, glare: glare.texture, exposure: room.exposure, vignette: 0, resolution: [merged.width, merged.height] });
     }
 
+    /** An upright plane across the look, `this.slice` of the way through the gas. */
+    drawSlice({ eye, target, up }, viewProjection) {
+        const { gl } = this, { size, cell, corner } = this.frame.gas, span = size.map((n) => n * cell), middle = add(corner, span, 0.5);
+        const level = (v) => unit(add(v, up, -dot(v, up))), ahead = level(add(target, eye, -1)), right = cross(ahead, up);
+        const reach = (axis) => axis.reduce((sum, a, c) => sum + 0.5 * span[c] * Math.abs(a), 0);
+        const centre = add(middle, ahead, (2 * this.slice - 1) * reach(ahead)), columns = [[right, reach(right)], [up, reach(up)], [ahead, 1]];
+        gl.enable(gl.BLEND);
+        gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ZERO, gl.ONE);
+        gl.depthMask(false);
+        const modelMatrix = Float32Array.from([...columns.flatMap(([axis, s]) => [...axis.map((a) => a * s), 0]), ...centre, 1]);
+        this.use(this.programs.slice, { viewProjection, modelMatrix, fireMap: this.gas, colours: this.ramps.gas, origin: corner, span });
+        this.drawMesh(this.quad);
+        gl.depthMask(true);
+        gl.disable(gl.BLEND);
+    }
+
     drawSheets(program, shared) {
-        const { gl, sheets } = this, layer = LAYERS[this.layer];
+        const { gl, sheets } = this, layer = LAYERS[this.layer === "gas" ? "char" : this.layer];
         for (const { sheet, first, count } of sheets.runs) {
             const look = this.pictures[sheet] ?? { texture: this.white, colour: [1, 1, 1], transmittance: 0.22 };
             const more = program === "paper" ? { printMap: look.texture, tint: look.colour, transmittance: look.transmittance }
-                : { colours: this.ramps[this.layer], range: [layer.index, layer.low, layer.high] };
+                : { colours: this.ramps[this.layer === "gas" ? "char" : this.layer], range: [layer.index, layer.low, layer.high] };
             this.use(this.programs[program], { ...shared, ...more });
             gl.bindVertexArray(sheets.array);
             gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 4 * first);

@@ -1,6 +1,7 @@
 // The view: asks the program for state, frames and tables, and shows them. All addresses are relative, behind the token.
 import { cssGradient, LAYERS, Stage } from "./stage.js";
 import { pick, positionOf, readFrame, sourceOf, vertexValues } from "./frame.js";
+import { Film } from "./webm.js";
 import { add, cross, dot, length, unit } from "./math.js";
 import { drawLines, EVENT_COLOURS, PLOTS, readTable } from "./plots.js";
 
@@ -323,6 +324,7 @@ function setLayer(name) {
     for (const button of $("layers").children) button.setAttribute("aria-checked", button.dataset.layer === name);
     const layer = LAYERS[name];
     $("legend").hidden = !layer;
+    $("slice").hidden = name !== "gas";
     if (layer) {
         $("legend").firstElementChild.style.background = cssGradient(name);
         const [low, middle, high] = $("legend").querySelectorAll("span"), show = (v) => layer.show(v) + (layer.unit === "°C" ? " °C" : "");
@@ -381,9 +383,39 @@ function writeCommand() {
 
 async function saveStill() {
     stage.draw(camera);
-    const blob = await new Promise((resolve) => canvas.toBlob(resolve, "image/png")), link = document.createElement("a");
+    const blob = await new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
+    save(blob, `${room.name}.${String(shown).padStart(4, "0")}${stage.layer === "paper" ? "" : `.${stage.layer}`}.png`);
+}
+
+/** A video from this frame to the last, or until the button is pressed again. It waits for frames that come slowly. */
+let filming = false;
+async function saveFilm() {
+    if (filming) { filming = false; return; }
+    filming = true;
+    play(false);
+    follow(false);
+    $("film").textContent = "Stop";
+    try {
+        const film = await Film.make(canvas, room.fps);
+        if (!film) throw new Error("this browser has no WebCodecs, which videos need");
+        if (shown >= state.last) await advanceTo(state.first);
+        for (let frame = shown; filming && frame <= state.last; frame++) {
+            await advanceTo(frame);
+            stage.draw(camera);
+            film.add();
+            while (film.encoder.encodeQueueSize > 4) await new Promise((resolve) => setTimeout(resolve, 5));
+        }
+        save(await film.end(), `${room.name}.webm`);
+    } catch (error) {
+        $("status").textContent = `No video: ${error.message}`;
+    }
+    filming = false;
+    $("film").textContent = "Video";
+}
+function save(blob, name) {
+    const link = document.createElement("a");
     link.href = URL.createObjectURL(blob);
-    link.download = `${room.name}.${String(shown).padStart(4, "0")}${stage.layer === "paper" ? "" : `.${stage.layer}`}.png`;
+    link.download = name;
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
@@ -404,6 +436,11 @@ function bind() {
     $("home").addEventListener("click", goHome);
     $("fire").addEventListener("click", () => setFire(!stage.fire));
     $("still").addEventListener("click", saveStill);
+    $("film").addEventListener("click", saveFilm);
+    $("slice").addEventListener("input", () => {
+        stage.slice = +$("slice").value;
+        dirty = true;
+    });
     $("branch").addEventListener("click", () => openBranch($("branching").hidden));
     $("copy").addEventListener("click", async () => {
         $("command").select();
@@ -439,8 +476,8 @@ function bind() {
             " ": button ? null : () => play(!playing), Home: () => goTo(state.first), End: () => goTo(state.last),
             ArrowLeft: () => (event.shiftKey && on ? turn(-0.1, 0) : goTo(wanted - 1)), ArrowRight: () => (event.shiftKey && on ? turn(0.1, 0) : goTo(wanted + 1)),
             ArrowUp: on ? () => turn(0, 0.1) : null, ArrowDown: on ? () => turn(0, -0.1) : null, "+": () => nearer(0.9), "-": () => nearer(1 / 0.9),
-            1: () => setLayer("paper"), 2: () => setLayer("temperature"), 3: () => setLayer("char"), 4: () => setLayer("strain"),
-            c: goHome, f: () => setFire(!stage.fire), p: saveStill, b: () => openBranch($("branching").hidden), l: () => state.live && follow(!following), Escape: forget,
+            1: () => setLayer("paper"), 2: () => setLayer("temperature"), 3: () => setLayer("char"), 4: () => setLayer("strain"), 5: () => setLayer("gas"),
+            c: goHome, f: () => setFire(!stage.fire), p: saveStill, v: saveFilm, b: () => openBranch($("branching").hidden), l: () => state.live && follow(!following), Escape: forget,
         };
         const act = keys[event.key];
         if (act) { event.preventDefault(); act(); }
