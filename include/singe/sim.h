@@ -56,8 +56,8 @@ SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_collider(SingeSim *sim, cons
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_remove_collider(SingeSim *sim, SingeColliderId id);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *def, SingePinId *id);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_remove_pin(SingeSim *sim, SingePinId id);
-/// Replaces the path of a ball or spot, a collider or a pin. Times are simulation time, in s, and increase. The
-/// particles of a pin follow the new path from their present positions.
+/// Replaces the path of a source that has a position (ball, spot, jet, vortex, attract), a collider or a pin. Times are
+/// simulation time, in s, and increase. The particles of a pin follow the new path from their present positions.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_source(SingeSim *sim, SingeSourceId id, uint32_t path_count,
                                                             const SingePoseKey *path);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_collider(SingeSim *sim, SingeColliderId id, uint32_t path_count,

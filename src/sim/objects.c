@@ -47,8 +47,8 @@ SingeResult call_set_source_callback(SingeSim *sim, SingeSourceId id, SingeFluxF
 SingeResult call_move_source(SingeSim *sim, SingeSourceId id, uint32_t count, const SingePoseKey *path) {
     Source *source = OBJECT_FIND(sim->sources, id);
     if (!source) return object_stale(sim, "source", id.index);
-    if (source->def.kind != SINGE_SOURCE_BALL && source->def.kind != SINGE_SOURCE_SPOT)
-        return sim_fail(sim, SINGE_ERROR_ARGUMENT, "source", id.index, "only balls and spots have a position");
+    if (!source->path.count)
+        return sim_fail(sim, SINGE_ERROR_ARGUMENT, "source", id.index, "a source of this kind has no position");
     if (count == 0) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "source", id.index, "the path needs at least one key");
     if (source->def.kind == SINGE_SOURCE_SPOT && count != 1)
         return sim_fail(sim, SINGE_ERROR_ARGUMENT, "source", id.index, "the path of a spot has exactly one key");

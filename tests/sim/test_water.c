@@ -127,13 +127,15 @@ static SingeSim *put_out(float speed, float blow_out, bool smothers, float condu
     singe_sim_sources(sim, &heat, 1);
     jet.kind = SINGE_SOURCE_JET;
     jet.radius = 0.05f;
-    jet.position[2] = -0.1f;
+    jet.position[0] = 5; // far away, until it is moved
     jet.speed = speed;
     jet.blow_out = blow_out;
     jet.strength_count = 2;
     jet.strength = strength;
     test_ok(sim, singe_sim_add_source(sim, &jet, &id));
     test_steps(sim, 170);
+    const SingePoseKey below = {.position = {0, 0, -0.1f}, .rotation = {0, 0, 0, 1}};
+    test_ok(sim, singe_sim_move_source(sim, id, 1, &below));
     plate.position[2] = -1.5e-3f;
     plate.smothers = smothers;
     plate.conductance = conductance;

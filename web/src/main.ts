@@ -250,8 +250,8 @@ function target(): Point | null {
 }
 
 function breathDirection(at: Point): Point {
-    const from = renderer.camera.position.clone().sub(new Vector3(...at)).setZ(0).normalize();
-    return [-from.x, -from.y, -0.15];
+    const ahead = new Vector3(...at).sub(renderer.camera.position).setZ(0).normalize();
+    return ahead.setZ(settings.place === "hung" ? -0.1 : -0.7).normalize().toArray() as Point; // onto the table
 }
 
 function beginUse(hit: Hit | null): void {

@@ -1,6 +1,7 @@
 // What is burnt, and how: the settings of the page, in its link, and as a scene for `singe run`.
 
-export interface Stroke { start: number; end: number; path: { time: number; position: [number, number, number] }[] }
+/** What a match or, with its direction, a breath did: where it was when, m and s. */
+export interface Stroke { start: number; end: number; path: { time: number; position: [number, number, number] }[]; direction?: Point }
 export type Point = [number, number, number];
 
 export type Place = "table" | "hung" | "ball";
@@ -89,16 +90,19 @@ export function gridOf(s: Settings) {
 
 // ---- the link
 
-/** Only what differs from the standard, and the strokes of the match in mm and ms. */
+/** Only what differs from the standard, and the strokes of the match and the breath in mm and ms. */
 export function toLink(s: Settings, strokes: Stroke[], pins: Point[]): string {
     const parts = new URLSearchParams();
     for (const key of Object.keys(STANDARD) as (keyof Settings)[])
         if (s[key] !== STANDARD[key]) parts.set(key, String(s[key]));
     const mm = (x: number) => Math.round(1000 * x);
     if (pins.length) parts.set("pins", pins.map((pin) => pin.map(mm).join(".")).join("_"));
-    const texts = strokes.map((stroke) =>
-        stroke.path.map((key) => [mm(key.time), ...key.position.map(mm)].join(".")).join("_") + `_${mm(stroke.end)}`);
-    if (texts.length) parts.set("match", texts.join("~"));
+    const text = ({ direction, path, end }: Stroke) =>
+        [...(direction ? [direction.map(mm)] : []), ...path.map((key) => [mm(key.time), ...key.position.map(mm)]), [mm(end)]].map((part) => part.join(".")).join("_");
+    for (const [name, kind] of [["match", false], ["breath", true]] as const) {
+        const texts = strokes.filter(({ direction }) => !!direction === kind).map(text);
+        if (texts.length) parts.set(name, texts.join("~"));
+    }
     return parts.toString();
 }
 
@@ -122,24 +126,29 @@ export function fromLink(text: string): Linked {
     const sound = (numbers: number[], count: number) => numbers.length === count && numbers.every((x) => Math.abs(x) < 100);
     const pins = (parts.get("pins") ?? "").split("_").map(millis).filter((pin) => sound(pin, 3)) as Point[];
     const strokes: Stroke[] = [];
-    for (const stroke of (parts.get("match") ?? "").split("~").slice(0, 50)) {
-        const keys = stroke.split("_"), end = Number(keys.pop()) / 1000, path = keys.map(millis);
-        if (!path.length || !path.every((key, i) => sound(key, 4) && (i === 0 || key[0]! > path[i - 1]![0]!)) || !(end > path[0]![0]!)) continue;
-        strokes.push({ start: path[0]![0]!, end, path: path.map(([time, ...position]) => ({ time: time!, position: position as Point })) });
-    }
+    for (const name of ["match", "breath"] as const)
+        for (const stroke of (parts.get(name) ?? "").split("~").slice(0, 50)) {
+            const keys = stroke.split("_"), end = Number(keys.pop()) / 1000, path = keys.map(millis), direction = name === "breath" ? path.shift() : null;
+            if (!path.length || !path.every((key, i) => sound(key, 4) && (i === 0 || key[0]! > path[i - 1]![0]!)) || !(end > path[0]![0]!)) continue;
+            if (direction && !(sound(direction, 3) && Math.hypot(...direction) > 0.1)) continue;
+            strokes.push({
+                start: path[0]![0]!, end, path: path.map(([time, ...position]) => ({ time: time!, position: position as Point })),
+                ...(direction ? { direction: direction as Point } : {}),
+            });
+        }
     return { settings, strokes, pins };
 }
 
 // ---- the scene
 
-/** The same burn for `singe run`: with the strokes of the match and the pins, without hands and breaths. */
+/** The same burn for `singe run`: with the strokes of the match, breaths and pins, without hands. */
 export function toYaml(s: Settings, strokes: Stroke[], pins: Point[], seconds: number, mesh: string | null, skipped: boolean): string {
     const grid = gridOf(s), where = PLACES[mesh ? "table" : s.place], list = (numbers: readonly number[]) => `[${numbers.map((x) => +x.toFixed(6)).join(", ")}]`;
     const frames = Math.max(2, Math.ceil(24 * seconds) + 1);
     const lines = [
         "# Made by Singe's page: singe run scene.yaml -o out",
         "# For finer cells raise `cells` and `steps` together.",
-        ...(skipped ? ["# The hand and the breath are not in here: scenes have no such objects."] : []),
+        ...(skipped ? ["# The hand is not in here: scenes have no such object."] : []),
         `frames: ${frames}`, "fps: 24", `steps: ${Math.round(1 / (24 * TIME_STEP))}`, `pace: ${s.pace}`, `seed: ${s.seed}`,
         `gravity: ${list([0, 0, -G * s.gravity])}`, "detail: 1.5 mm", "raggedness: 2 mm",
         "solver: {substeps: 4}", "tearing: yes", "creases: no", "contact: {enabled: no}",
@@ -152,9 +161,11 @@ export function toYaml(s: Settings, strokes: Stroke[], pins: Point[], seconds: n
         `    translate: ${list(where.translate)}`, "    drop_pieces_below: 4 mm2", "    material:", `      base: ${s.material}`, `      thickness: ${s.thickness}`,
         ...(s.material === "office-paper" ? [`      mass_rate: {from: 4e-3, to: 10e-3, noise: {scale: 3 cm, octaves: 5, seed: ${s.seed}}}`] : []),
         ...(strokes.length ? ["sources:"] : []),
-        ...strokes.flatMap((stroke) => [
-            `  - {kind: ball, start: ${stroke.start.toFixed(3)}, end: ${stroke.end.toFixed(3)}, radius: ${MATCH.radius}, falloff: ${MATCH.falloff}, temperature: ${MATCH.temperature},`,
-            `     path: [${stroke.path.map((key) => `{time: ${key.time.toFixed(3)}, position: ${list(key.position)}}`).join(", ")}]}`]),
+        ...strokes.flatMap(({ start, end, path, direction }) => [
+            `  - {kind: ${direction ? "jet" : "ball"}, start: ${start.toFixed(3)}, end: ${end.toFixed(3)}, ` +
+                (direction ? `direction: ${list(direction)}, radius: ${BREATH.radius}, speed: ${BREATH.speed},`
+                    : `radius: ${MATCH.radius}, falloff: ${MATCH.falloff}, temperature: ${MATCH.temperature},`),
+            `     path: [${path.map((key) => `{time: ${key.time.toFixed(3)}, position: ${list(key.position)}}`).join(", ")}]}`]),
         "colliders:", "  - {kind: plane, friction: 0.4, offset: 0.5 mm}",
         ...(!mesh && s.place === "ball" ? [`  - {kind: sphere, position: ${list(BALL.at)}, radius: ${BALL.radius}, friction: 0.4, offset: 0.5 mm}`] : []),
         ...(pins.length ? ["pins:", `  - {sheet: sheet, points: [${pins.map(list).join(", ")}], radius: 5 mm}`] : []),
@@ -165,3 +176,10 @@ export function toYaml(s: Settings, strokes: Stroke[], pins: Point[], seconds: n
 
 /** A match's flame. */
 export const MATCH = { radius: 0.01, falloff: 0.015, temperature: 1123 };
+
+/** A mouth, and how far it is from what it blows on, m; m/s. */
+export const BREATH = { radius: 0.03, speed: 8 };
+export const MOUTH = 0.15;
+
+export const sourceOf = ({ start, end, path, direction }: Stroke) =>
+    direction ? { kind: "jet" as const, start, end, path, direction, ...BREATH } : { kind: "ball" as const, start, end, path, ...MATCH };

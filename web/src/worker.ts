@@ -2,11 +2,9 @@
 import { load, type Handle, type Simulation, type Singe } from "singe";
 import { fireOf, lightsOf, meshOf, refined } from "./fields.js";
 import type { FromWorker, Shape, ToWorker } from "./messages.js";
-import { BALL, gridOf, MATCH, materialOptions, PLACES, simulationOptions, TIME_STEP, type Point, type Settings, type Stroke } from "./scene.js";
+import { BALL, BREATH, gridOf, MATCH, materialOptions, MOUTH, PLACES, simulationOptions, sourceOf, TIME_STEP, type Point, type Settings, type Stroke } from "./scene.js";
 
-const FAR: Point = [0, 0, 50]; // where an unused match or breath waits
-const BREATH = { radius: 0.025, falloff: 0.05, conductance: 900, temperature: 293.15 };
-const BREATH_SPEED = 1.6; // m/s
+const FAR: Point = [0, 0, 50]; // where an unused match waits
 const MARKS = 6;
 
 /** What a mark brings back; the bytes are the simulation's. */
@@ -16,13 +14,14 @@ let singe: Singe;
 let sim: Simulation | null = null;
 let settings: Settings;
 let sheet: Handle;
-let match: Handle, breath: Handle;
+let match: Handle;
+let jet: { handle: Handle; stroke: Stroke } | null = null;
 let hand: { handle: Handle; at: Point } | null = null;
 let pins: { rest: Point; handle: Handle }[] = [];
 let marks: Mark[] = [];
 let planned: Stroke[] = []; // of the link, or the first match
 let strokes: Stroke[] = [], stroke: Stroke | null = null;
-let matchAt: Point = FAR, breathing = false, skipped = false;
+let matchAt: Point = FAR, skipped = false;
 
 const tell = (message: FromWorker, transfer: Transferable[] = []) => self.postMessage(message, { transfer });
 const still = (position: Point) => [{ time: 0, position }];
@@ -74,16 +73,15 @@ function begin(wanted: Settings, shape: Shape | null, linked: Stroke[], pinned: 
     sim.addCollider({ kind: "plane", friction: 0.4, offset: 0.0005 });
     if (!shape && wanted.place === "ball") sim.addCollider({ kind: "sphere", position: BALL.at, radius: BALL.radius, friction: 0.4, offset: 0.0005 });
     match = sim.addSource({ kind: "ball", path: still(FAR), ...MATCH });
-    breath = sim.addSource({ kind: "ball", path: still(FAR), ...BREATH });
-    hand = null;
+    hand = jet = null;
     marks = [];
     matchAt = FAR;
-    breathing = skipped = false;
+    skipped = false;
     stroke = null;
     const first: Stroke = { start: 0, end: 1.25, path: [{ time: 0, position: where.match }] };
     strokes = linked.length ? [...linked] : wanted.begin && !shape ? [first] : [];
     planned = [...strokes];
-    for (const { start, end, path } of planned) sim.addSource({ kind: "ball", start, end, path, ...MATCH });
+    for (const one of planned) sim.addSource(sourceOf(one));
     pins = (pinned.length ? pinned : where.pins).map((rest) => ({ rest, handle: sim!.addPin({ sheet, points: rest, radius: 0.005 }) }));
     tell({ kind: "begun", springs: sim.view().spring_count.reduce((a, b) => a + b) });
     frame(0, 0);
@@ -92,14 +90,9 @@ function begin(wanted: Settings, shape: Shape | null, linked: Stroke[], pinned: 
 function change(wanted: Settings): void {
     settings = { ...settings, pace: wanted.pace, wind: wanted.wind, gravity: wanted.gravity };
     sim!.setPace(settings.pace);
-    setWind();
+    sim!.setWind(simulationOptions(settings).wind);
     // with gas the largest component may not change
     if (!settings.gas) sim!.setGravity(simulationOptions(settings).gravity);
-}
-
-function setWind(direction: Point | null = null): void {
-    const { wind } = simulationOptions(settings), [x, y, z] = direction ?? [0, 0, 0];
-    sim!.setWind({ ...wind, velocity: [wind.velocity[0] + BREATH_SPEED * x, BREATH_SPEED * y, BREATH_SPEED * z] });
 }
 
 // ---- fire, breath and hand
@@ -108,21 +101,32 @@ function moveMatch(at: Point | null, now: number, then: number): void {
     const from = stroke ? matchAt : at ?? FAR;
     sim!.moveSource(match, at ? [{ time: now, position: from }, { time: then, position: at }] : still(FAR));
     if (at && !stroke) strokes.push((stroke = { start: now, end: then, path: [{ time: now, position: at }] }));
-    if (at && stroke) {
-        stroke.end = then;
-        const last = stroke.path[stroke.path.length - 1]!;
-        if (then > last.time + 0.05) stroke.path.push({ time: then, position: at });
-    }
+    else if (at) extend(stroke!, at, then);
     if (!at) stroke = null;
     matchAt = at ?? FAR;
 }
 
-function blow(wanted: { at: Point; direction: Point } | null): void {
-    if (!wanted && !breathing) return;
-    sim!.moveSource(breath, still(wanted ? wanted.at : FAR));
-    setWind(wanted ? wanted.direction : null);
-    breathing = !!wanted;
-    skipped ||= breathing;
+function extend(one: Stroke, position: Point, time: number): void {
+    one.end = time;
+    if (time > one.path[one.path.length - 1]!.time + 0.05) one.path.push({ time, position });
+}
+
+/** A jet from a mouth, which keeps the direction in which it began. */
+function blow(wanted: { at: Point; direction: Point } | null, now: number, then: number): void {
+    if (!wanted) {
+        if (jet) sim!.removeSource(jet.handle);
+        jet = null;
+        return;
+    }
+    const direction = jet?.stroke.direction ?? wanted.direction, position = wanted.at.map((x, c) => x - MOUTH * direction[c]!) as Point;
+    if (jet) {
+        const { path } = jet.stroke;
+        sim!.moveSource(jet.handle, [{ time: now, position: path[path.length - 1]!.position }, { time: then, position }]);
+        return extend(jet.stroke, position, then);
+    }
+    const begun: Stroke = { start: now, end: then, path: [{ time: now, position }], direction };
+    jet = { handle: sim!.addSource({ kind: "jet", path: still(position), direction, ...BREATH }), stroke: begun };
+    strokes.push(begun);
 }
 
 function grab(rest: Point, at: Point): void {
@@ -151,8 +155,7 @@ function undo(): void {
     sim!.destroy();
     sim = restored;
     ({ strokes, pins, skipped } = before);
-    stroke = hand = null;
-    blow(null);
+    stroke = hand = jet = null;
     moveMatch(null, 0, 0);
     frame(0, 0);
 }
@@ -162,7 +165,7 @@ function undo(): void {
 function advance(message: Extract<ToWorker, { kind: "advance" }>): void {
     const now = sim!.view().time, then = now + Math.max(message.seconds, TIME_STEP), begun = performance.now();
     moveMatch(message.match, now, then);
-    blow(message.breath);
+    blow(message.breath, now, then);
     if (hand && message.hand) {
         sim!.movePin(hand.handle, [{ time: now, position: hand.at }, { time: then, position: message.hand }]);
         hand.at = message.hand;
@@ -173,7 +176,7 @@ function advance(message: Extract<ToWorker, { kind: "advance" }>): void {
 
 /** Where a planned stroke holds its match now, to draw it. */
 function plannedMatch(time: number): Point | null {
-    const now = planned.find(({ start, end }) => time >= start && time < end);
+    const now = planned.find(({ start, end, direction }) => !direction && time >= start && time < end);
     if (!now) return null;
     let i = 0;
     while (i + 1 < now.path.length && now.path[i + 1]!.time < time) i++;

@@ -61,9 +61,18 @@ const CASES = {
         const fire = await step(1);
         assert.ok(fire.burning > 20);
         await page.click("[data-tool=breath]");
-        for (const to of [[0.03, -0.045, 0], [0.05, -0.045, 0], [0.01, -0.045, 0], [0.03, -0.02, 0], [0.03, -0.07, 0]]) await use("breath", to, to, 0.4);
+        for (const to of [[0.03, -0.045, 0], [0.05, -0.045, 0], [0.01, -0.045, 0], [0.03, -0.02, 0], [0.03, -0.07, 0]]) {
+            await use("breath", to, to, 0.4);
+            await step(1 / 24); // a breath ends
+        }
         const out = await step(0.2);
         assert.ok(out.burning < fire.burning / 4, `${fire.burning} burn before, ${out.burning} after`);
+        assert.equal(out.strokes.filter(({ direction }) => direction).length, 5);
+        assert.match(new URL(page.url()).hash, /breath=/);
+        await page.click("summary");
+        const [download] = await Promise.all([page.waitForEvent("download"), page.click("[data-save=yaml]")]), yaml = await readFile(await download.path(), "utf8");
+        assert.equal(yaml.match(/kind: jet, start: [\d.]+, end: [\d.]+, direction: /g).length, 5);
+        if (folder) await writeFile(`${folder}/breath.yaml`, yaml);
     },
     async "the hand lifts and tears"() {
         await open(`${QUICK}&pins=-95.0.0_-95.-60.0_-95.60.0`);
@@ -173,11 +182,12 @@ const CASES = {
         await page.uncheck("#sound");
     },
     async "a link brings the settings, the match and the pins"() {
-        await open(`${QUICK}&wind=1.5&material=tissue&match=0.0.0.0_400.20.0.0_900&pins=50.50.0`);
+        await open(`${QUICK}&wind=1.5&material=tissue&match=0.0.0.0_400.20.0.0_900&pins=50.50.0&breath=0.820.-570_700.0.-123.86_800`);
         const state = await step(0.8);
         assert.equal(state.pins.length, 1);
+        assert.deepEqual(state.strokes[1].direction, [0, 0.82, -0.57]);
         assert.ok(state.burnt > 0.002, `burnt ${state.burnt}`);
-        await open("cells=1e9&material=gold&match=nonsense&pins=a.b.c~&pace=-3");
+        await open("cells=1e9&material=gold&match=nonsense&pins=a.b.c~&pace=-3&breath=0.0.0_0.0.0.0_9~1_2");
         assert.equal((await step(0.05)).pins.length, 0);
     },
     async "keys do what the pointer does"() {

@@ -8,6 +8,7 @@ import { mkdir, mkdtemp, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
+import { serve } from "../serve.mjs";
 import { BROWSERS, until } from "./browsers.mjs";
 
 const only = process.env.ONLY, words = process.argv.slice(2), pictures = words[0] === "--pictures" ? words[1] : null;
@@ -169,6 +170,25 @@ const CASES = {
         await until(page, () => globalThis.view.state.shown === 8 && !globalThis.view.state.burning, null, "the last frame is shown as it burns");
         assert.equal(await textOf(page, "#status"), "8 frames burnt");
         await live.end();
+    },
+    async "the page in web/dist burns a sheet, and holds it by hand"(page) {
+        const { server, address } = await serve(), step = (seconds) => page.evaluate((s) => globalThis.page.step(s), seconds);
+        await page.open(`${address}#cells=20&gas=false&match=0.0.0.0_400.20.0.0_900&pins=-95.0.0_-95.-60.0_-95.60.0`);
+        await until(page, () => document.querySelector("#view")?.classList.contains("ready"), null, "the sheet is shown");
+        await page.evaluate(() => globalThis.page.quality(0.2));
+        const at = (point) => page.evaluate((p) => globalThis.page.project(p), point), lit = await step(1);
+        assert.ok(lit.strokes.length === 1 && lit.burnt > 0.001, `burnt ${lit.burnt}`);
+        await click(page, "[data-tool=hand]");
+        await page.drag(await at([0.08, -0.05, 0]), await at([0.16, -0.05, 0.03]));
+        assert.equal((await step(0.1)).skipped, true); // a hand was there
+        const told = await page.evaluate(() => {
+            const drop = new DataTransfer();
+            drop.items.add(new File(["ply\nformat nonsense\n"], "broken.ply"));
+            dispatchEvent(new DragEvent("drop", { dataTransfer: drop }));
+            return true;
+        }) && await until(page, () => document.querySelector("#hint").textContent.match(/broken.*/)?.[0], null, "a broken file is told of");
+        assert.match(told, /^broken\.ply:2: /);
+        server.close();
     },
 };
 
