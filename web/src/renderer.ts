@@ -14,8 +14,8 @@ import * as glsl from "../view/shaders.js";
 
 /** Behind what lies, before what hangs. */
 const LAMPS = { lying: new Vector3(-0.19, 0.21, 0.34), hanging: new Vector3(-0.26, -0.34, 0.42) };
-const LAMP = { at: LAMPS.lying.clone(), to: new Vector3(0.0, 0.01, 0), colour: [0.074, 0.052, 0.030] };
-const NIGHT = new Vector3(0.0090, 0.0105, 0.0165);
+const LAMP = { at: LAMPS.lying.clone(), to: new Vector3(0.0, 0.01, 0), colour: [0.092, 0.064, 0.037] };
+const NIGHT = new Vector3(0.0150, 0.0172, 0.0262);
 const EXPOSURE = 1.0;
 const SHADOW = 1024;
 const FIRE_LIGHT = 3.6e-5; // strength of a cell that burns fully
