@@ -477,7 +477,7 @@ function writeLink(): void {
 function showFacts(now: Frame): void {
     const rows = {
         Time: `${now.time.toFixed(2)} s`, Burnt: `${(100 * now.burnt).toFixed(1)} %`, Hottest: `${Math.round(now.hottest - 273)} °C`,
-        Pieces: String(now.pieces), Springs: now.springs.toLocaleString("en"), "Of real time": `${Math.round(100 * Math.min(speed, 1))} %`,
+        Pieces: String(now.pieces), Springs: now.springs.toLocaleString("en"), Memory: `${Math.round(now.memory / 1e6)} MB`, "Of real time": `${Math.round(100 * Math.min(speed, 1))} %`,
     };
     facts.replaceChildren(...Object.entries(rows).flatMap(([name, value]) => [
         Object.assign(document.createElement("dt"), { textContent: name }), Object.assign(document.createElement("dd"), { textContent: value })]));
@@ -553,7 +553,7 @@ const SAVES: Record<string, () => void> = {
     yaml: () => frame && save(new Blob([toYaml(settings, frame.strokes, frame.pinRests, frame.time, shapeName, frame.skipped)], { type: "text/yaml" }), "singe.yaml"),
     link: () => {
         writeLink();
-        navigator.clipboard?.writeText(location.href).then(() => say("The link is copied: it has the settings, the pins and the match"), () => say("The link is in the address bar"));
+        navigator.clipboard?.writeText(location.href).then(() => say("The link is copied: settings, pins, match and breath are in it"), () => say("The link is in the address bar"));
     },
     webm: () => {
         const button = element('[data-save="webm"]');

@@ -19,7 +19,7 @@ export interface Frame {
     vertices: Float32Array; triangles: Uint32Array; burning: number;
     fire: Fire | null; lights: Lights;
     time: number; steps: number; ms: number; burnt: number; pieces: number; tears: number; springs: number; hottest: number;
-    pins: Point[]; match: Point | null; marks: number; skipped: boolean; strokes: Stroke[]; pinRests: Point[];
+    pins: Point[]; match: Point | null; marks: number; memory: number; skipped: boolean; strokes: Stroke[]; pinRests: Point[];
 }
 
 export type FromWorker =

@@ -194,6 +194,7 @@ function frame(steps: number, ms: number): void {
     tell({
         kind: "frame", ...mesh, fire, lights, time: view.time, steps, ms, burnt: stats.burnt_fraction, pieces: stats.pieces, tears: stats.tears,
         springs: stats.springs, hottest: stats.temperature_max, pins: places, match: plannedMatch(view.time), marks: marks.length, skipped,
+        memory: singe.memory.memory.buffer.byteLength + marks.reduce((sum, { bytes }) => sum + bytes.length, 0),
         strokes, pinRests: pins.map(({ rest }) => rest),
     }, [mesh.vertices.buffer, mesh.triangles.buffer, lights.buffer, ...(fire ? [fire.cells.buffer] : [])] as Transferable[]);
 }

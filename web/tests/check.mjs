@@ -1,6 +1,7 @@
 // Plays with the page in Debian's Chromium: node tests/check.mjs [--pictures FOLDER]
 //
-// ONLY=PATTERN runs the cases whose title has it. Motion comes from explicit calls, so a slow machine changes nothing.
+// ONLY=PATTERN runs the cases whose title has it; SOAK=MINUTES plays for so long and looks at memory. Motion comes from
+// explicit calls, so a slow machine changes nothing.
 // Chromium draws by SwiftShader, without a card.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -11,7 +12,7 @@ import { serve } from "../serve.mjs";
 import { refineGas } from "../view/gas.js";
 import { CHROMIUM, CHROMIUM_ARGS } from "./browsers.mjs";
 
-const only = process.env.ONLY, words = process.argv.slice(2), folder = words[0] === "--pictures" ? words[1] : null;
+const minutes = Number(process.env.SOAK ?? 0), only = process.env.ONLY ?? (minutes ? "^$" : ""), words = process.argv.slice(2), folder = words[0] === "--pictures" ? words[1] : null;
 const QUICK = "cells=20&gas=false&begin=false"; // a coarse sheet without gas
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 
@@ -301,6 +302,31 @@ const CASES = {
     },
 };
 
+/** SOAK=MINUTES: new sheets, matches, breaths, hands and undos for so long; memory is no more at the end than after the first third. */
+async function soak(minutes) {
+    const devtools = await page.context().newCDPSession(page), end = Date.now() + 60_000 * minutes, seen = [];
+    await devtools.send("Performance.enable");
+    await open("cells=20&begin=false", 0.1);
+    for (let round = 0; Date.now() < end; round++) {
+        await page.click("#again");
+        await step(0.05);
+        await use("match", [0, 0, 0], [0.02, 0.01, 0], 0.5);
+        await use("breath", [0.02, 0, 0], [0, 0, 0], 0.2);
+        await use("hand", [0.09, 0.1, 0], [0.12, 0.12, 0.04], 0.3);
+        await page.keyboard.press("z");
+        const { memory } = await step(0.2);
+        await devtools.send("HeapProfiler.collectGarbage");
+        const { metrics } = await devtools.send("Performance.getMetrics"), heap = metrics.find(({ name }) => name === "JSHeapUsedSize").value;
+        seen.push({ memory, heap });
+    }
+    const third = Math.ceil(seen.length / 3), most = (key, from, to) => Math.max(...seen.slice(from, to).map((one) => one[key])) / 1e6;
+    for (const key of ["memory", "heap"]) {
+        const [early, late] = [most(key, 0, third), most(key, third)];
+        console.log(`${key}: ${early.toFixed(1)} MB in the first ${third} rounds, ${late.toFixed(1)} MB in the ${seen.length - third} after`);
+        if (late > 1.1 * early) failures++;
+    }
+}
+
 /** Steps a second of the page's sheet, 24,780 springs, without and with gas, as this machine is now. */
 async function speed() {
     for (const [title, hash] of [["sheet alone", "gas=false"], ["with gas", ""]]) {
@@ -331,6 +357,7 @@ for (const [title, run] of Object.entries(CASES).filter(([title]) => !only || ne
         console.log(`FAILED ${title}\n  ${String(error.message).split("\n").slice(0, 6).join("\n  ")}`);
     }
 }
+if (minutes) await soak(minutes);
 if (!only || only === "speed") await speed();
 await browser.close();
 server.close();
