@@ -5,15 +5,16 @@
 // where it leaves a notch. Of neighbours that burn through in the same step only the first in order of particle opens a
 // hole. A centre is never at the boundary.
 //
-// Removal (section 6): "if both triangles that share a spring disappear, we remove that spring".
-//
 // Triangle i of a cell joins corners i and i + 1 and the virtual centre. It is gone when its three levels are negative;
-// mass never grows, so it stays gone. Then
+// mass never grows, so it stays gone. A cell is gone when its four triangles are, and
 //
-//   blue   i goes when triangle i and the one across side i (none at the boundary) are gone
-//   red    i goes when triangles i - 1 and i are gone
-//   yellow   goes when its cell's four triangles are gone
-//   green    goes when either of its cells' four triangles are gone
+//   red, yellow   go with their cell
+//   green         goes with the first of its two cells
+//   blue          goes with the last of its cells, two or, at a boundary or a tear, one
+//
+// Section 6 removes a red or blue spring as soon as both triangles that share it have disappeared. That leaves a burnt
+// corner of a cell that is not gone on a single yellow spring. It is not drawn but moves: it spun about the corner
+// opposite at up to 8 m/s, shook what hung there, and was in the way of other cells.
 //
 // and a particle goes with its last spring, with its mass and its enthalpy C (T - T_amb). The mass that it burnt in the
 // step that removes it is in mass_burnt, but that step's heat of combustion is not released: heat is released in the
@@ -117,39 +118,20 @@ void remove_spring(Removal *removal, SingeColour colour, uint32_t spring) {
     }
 }
 
-/// The remaining triangles of a cell: bit i is the triangle of side i.
-static unsigned triangles_left(const AblatePlan *plan, const Shell *shell, uint32_t cell) {
-    const uint32_t *corners = shell->cells[cell];
-    unsigned left = 0;
-    if (plan->level[shell_centre(shell, cell)] >= 0) return 15;
-
-    for (unsigned i = 0; i < 4; i++)
-        if (plan->level[corners[i]] >= 0) left |= 1u << i | 1u << ((i + 3) & 3);
+/// Whether any of a cell's triangles is left: all have the centre, and each corner has two.
+static bool any_triangle_left(const AblatePlan *plan, const Shell *shell, uint32_t cell) {
+    bool left = plan->level[shell_centre(shell, cell)] >= 0;
+    for (int i = 0; i < 4; i++) left |= plan->level[shell->cells[cell][i]] >= 0;
     return left;
 }
 
-static void remove_from_cell(Removal *removal, uint32_t cell) {
-    const Shell *shell = removal->shell;
-    const CellSprings *springs = &shell->cell_springs[cell];
-    unsigned left = triangles_left(removal->plan, shell, cell);
-
+/// Removes the sides of a cell that is gone where no other cell has them.
+static void remove_sides(Removal *removal, uint32_t cell) {
     for (int i = 0; i < 4; i++) {
-        if (left >> i & 1) continue;
-        if (!(left >> ((i + 3) & 3) & 1)) remove_spring(removal, SINGE_RED, springs->red[i]);
-
-        // the triangle across side i shares the side's corners, so only the other centre remains to be checked
-        uint32_t other = shell_neighbour(shell, cell, i);
-        if (other == SHELL_NONE || !(removal->ablate->cell_flags[other] & SINGE_ALIVE) ||
-            removal->plan->level[shell_centre(shell, other)] < 0)
-            remove_spring(removal, SINGE_BLUE, springs->blue[i]);
+        const uint32_t other = shell_neighbour(removal->shell, cell, i);
+        if (other == SHELL_NONE || !(removal->ablate->cell_flags[other] & SINGE_ALIVE))
+            remove_spring(removal, SINGE_BLUE, removal->shell->cell_springs[cell].blue[i]);
     }
-
-    if (left) return;
-    for (int i = 0; i < 4; i++)
-        if (springs->green[i] != SHELL_NONE) remove_spring(removal, SINGE_GREEN, springs->green[i]);
-    for (int i = 0; i < 2; i++) remove_spring(removal, SINGE_YELLOW, springs->yellow[i]);
-    removal->ablate->cell_flags[cell] &= (uint8_t)~SINGE_ALIVE;
-    removal->changed = true;
 }
 
 // ---- the stage
@@ -164,6 +146,9 @@ static Removal removal_begin(AblatePlan *plan, const StepContext *context, Ablat
 
 void ablate_torn(AblatePlan *plan, const StepContext *context, AblateState *ablate) {
     Removal removal = removal_begin(plan, context, ablate);
+    for (uint32_t c = 0; c < context->shell->cell_count;
+         c++) // a tear beside a cell that is gone gave it a side of its own
+        if (!(ablate->cell_flags[c] & SINGE_ALIVE)) remove_sides(&removal, c);
     piece_update(&removal, context->events);
     ablate->topology_version++;
 }
@@ -181,8 +166,18 @@ void ablate_step(AblatePlan *plan, const StepContext *context, AblateState *abla
         int some = 0;
         last = cells - first < ABLATE_RUN ? cells : first + ABLATE_RUN;
         for (uint32_t c = first; c < last; c++) some |= level[c] < 0;
-        for (uint32_t c = first; c < last && some; c++)
-            if (level[c] < 0 && ablate->cell_flags[c] & SINGE_ALIVE) remove_from_cell(&removal, c);
+        for (uint32_t c = first; c < last && some; c++) {
+            if (!(ablate->cell_flags[c] & SINGE_ALIVE) || any_triangle_left(plan, context->shell, c)) continue;
+
+            const CellSprings *springs = &context->shell->cell_springs[c];
+            ablate->cell_flags[c] &= (uint8_t)~SINGE_ALIVE;
+            for (int i = 0; i < 4; i++) remove_spring(&removal, SINGE_RED, springs->red[i]);
+            for (int i = 0; i < 4; i++)
+                if (springs->green[i] != SHELL_NONE) remove_spring(&removal, SINGE_GREEN, springs->green[i]);
+            for (int i = 0; i < 2; i++) remove_spring(&removal, SINGE_YELLOW, springs->yellow[i]);
+            remove_sides(&removal, c);
+            removal.changed = true;
+        }
     }
 
     if (!removal.changed) return;

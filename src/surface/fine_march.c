@@ -10,6 +10,7 @@
 // sides from the centre, at rest and now:
 //
 //   lambda^2 > TORN^2,   lambda^2 the larger eigenvalue of C^-1 C'
+#include "ablate/ablate.h"
 #include "common/real.h"
 #include "common/assertion.h"
 #include "surface/surface_fine.h"
@@ -116,11 +117,8 @@ static void metric(const uint32_t at[4], int side, const float (*field)[4], floa
 }
 
 bool fine_is_torn(const Fine *fine, uint32_t cell, int side) {
-    // only a cell that has lost a spring
-    const CellSprings *springs = &fine->shell->cell_springs[cell];
-    uint8_t *const *flags = fine->state->ablate.spring_flags, left = SINGE_ALIVE;
-    for (int i = 0; i < 4; i++) left &= flags[SINGE_BLUE][springs->blue[i]] & flags[SINGE_RED][springs->red[i]];
-    if (left) return false;
+    // only a cell that has burnt
+    if (ablate_level(fine->shell, fine->state, shell_centre(fine->shell, cell)) >= 0) return false;
 
     float rest[3], now[3];
     metric(fine->shell->cells[cell], side, (const float(*)[4])fine->shell->rest_position, rest);
