@@ -48,7 +48,7 @@ SingeResult collision_open(Memory *memory, CollisionPlan *plan, const Shell *she
 
 /// Pushes points apart that are too near, in a substep of h seconds that began at `predicted` less h times the
 /// velocities.
-void repulsion_apply(CollisionPlan *plan, const Shell *shell, const float (*predicted)[4], float h,
+void repulsion_apply(CollisionPlan *plan, const Shell *shell, Pool *pool, const float (*predicted)[4], float h,
                      DynamicsState *dynamics);
 
 /// Closes the step: no cell of the drawn mesh has passed through another since collision_open.

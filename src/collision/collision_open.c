@@ -289,6 +289,7 @@ static SingeResult open_step(Memory *memory, CollisionPlan *plan, const Shell *s
     plan->counters.dropped += count - plan->repulsion_count;
     block_list_read(list, pool, blocks, plan->repulsion_count, keep_repulsion, &job);
     plan->counters.pairs += plan->listed_count;
+    repulsion_sort(plan, shell, (const float(*)[4])dynamics->position);
     return SINGE_OK;
 }
 

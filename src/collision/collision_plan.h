@@ -31,6 +31,9 @@ enum {
 _Static_assert(COLLISION_ENTRIES_MAX >= 8, "a box overlaps eight cubes of the grid at least");
 _Static_assert(COLLISION_OUTSIDE <= COLLISION_BLOCK, "a block of cells outside is a block of pairs at most");
 
+/// Max stripes of a crowd (repulsion.c).
+enum { COLLISION_STRIPES = 128 };
+
 /// Max parts of a step.
 enum { COLLISION_PARTS = 64 };
 
@@ -160,8 +163,11 @@ struct CollisionPlan {
     uint32_t *bucket_first;  ///< [bucket_count + 2]
     CollisionPair *pairs;    ///< [pair_capacity]
     Repulsion *repulsions;   ///< [repulsion_capacity]
-    BlockList found_pairs;   ///< CollisionPair, as they are found
-    BlockList found;         ///< Repulsion, as they are found
+    /// a crowd's stripes, or 0: repulsions active[stripe_first[s]] to active[stripe_first[s + 1]] are those of stripe s
+    uint32_t stripe_count, stripe_first[COLLISION_STRIPES + 2];
+    uint32_t stripe_pushed[COLLISION_STRIPES]; ///< how many of them a pass has pushed apart
+    BlockList found_pairs;                     ///< CollisionPair, as they are found
+    BlockList found;                           ///< Repulsion, as they are found
 
     // the step
     float (*start)[4]; ///< [vertices] m
@@ -179,7 +185,7 @@ struct CollisionPlan {
     uint32_t *changed_list; ///< [changed_count] of them
     uint32_t changed_count;
     uint64_t work, work_max; ///< of CCD in this step: pairs checked, and features swept; and its bound
-    uint32_t *active;        ///< [hit_count] pairs that collide
+    uint32_t *active;        ///< [hit_count] pairs that collide; before CCD, repulsions by stripes
     uint32_t hit_count;
     uint32_t *around_first; ///< [cells + 2] a cell's pairs are around[around_first[c]] to around[around_first[c + 1]]
     uint32_t *around;       ///< [2 pair_capacity]
@@ -192,6 +198,9 @@ struct CollisionPlan {
     double *partial;               ///< [pool_blocks(pair_capacity)]
     CollisionCounters counters;
 };
+
+/// Sorts the repulsions of a crowd, whose vertices are at x, into stripes that threads can share.
+void repulsion_sort(CollisionPlan *plan, const Shell *shell, const float (*x)[4]);
 
 /// Finds the pairs for plan->position, speed, alive. Their distances are those at plan->position. SINGE_ERROR_MEMORY:
 /// then there are none.

@@ -11,9 +11,15 @@
 // nearer at rest than twice the thickness (the edges of a tear) are kept apart by four times CCD's gap only.
 //
 // One pass carries a push from a layer to the next. In a crowd, where layers lie on many others, there are more passes, in
-// turn forwards and backwards: what they leave is work for CCD, which costs many times more.
+// turn forwards and backwards: what they leave is work for CCD, which costs many times more. A crowd's pairs are sorted into
+// stripes across its longest axis, each wider than twice what a pair's corners reach from its first corner. So stripes
+// that are not beside each other share no vertex: threads take the even ones, then the odd ones. Stripes follow from the
+// positions alone, not from the number of threads.
 #include "common/clock.h"
 #include "collision/collision_plan.h"
+
+#include <math.h>
+#include <string.h>
 
 /// Repulsions per cell from which on there are more passes, and the most passes. Folds and heaps have up to .8, ten layers
 /// 2 to 5.
@@ -40,25 +46,45 @@ static void points_add(Points *points, const uint32_t corner[4], const float wei
     }
 }
 
-static inline void repulsion_push(CollisionPlan *plan, const Shell *shell, const Repulsion *repulsion,
-                                  const float (*predicted)[4], float h, DynamicsState *dynamics) {
+typedef struct Push {
+    CollisionPlan *plan;
+    const Shell *shell;
+    const float (*predicted)[4];
+    float h;
+    DynamicsState *dynamics;
+    bool back; ///< from the last to the first
+    int odd;   ///< stripes
+} Push;
+
+/// Returns whether the points were too near.
+static inline bool repulsion_push(const Push *push, const Repulsion *repulsion) {
+    const CollisionPlan *plan = push->plan;
+    const DynamicsState *dynamics = push->dynamics;
     float(*x)[4] = dynamics->position, wa[4] = {0}, wb[4] = {0};
     const Float4 normal = {repulsion->normal[0], repulsion->normal[1], repulsion->normal[2], 0};
     const CollisionPair *pair = &plan->pairs[repulsion->pair];
+    collision_weights(repulsion->kind, repulsion->first, repulsion->second, repulsion->u, repulsion->v, wa, wb);
+
+    // most points are far enough apart: by more than what rounding leaves, if the cells have corners in common
+    const uint32_t *a = push->shell->cells[pair->a], *b = push->shell->cells[pair->b];
+    Float4 apart = {0};
+    for (int i = 0; i < 4; i++) apart += wa[i] * float4_load(x[a[i]]);
+    for (int i = 0; i < 4; i++) apart -= wb[i] * float4_load(x[b[i]]);
+    if (float4_dot(apart, normal) > 1.01f * repulsion->target) return false;
+
     Points points;
     points.count = 0;
-    collision_weights(repulsion->kind, repulsion->first, repulsion->second, repulsion->u, repulsion->v, wa, wb);
-    points_add(&points, shell->cells[pair->a], wa, 1);
-    points_add(&points, shell->cells[pair->b], wb, -1);
+    points_add(&points, a, wa, 1);
+    points_add(&points, b, wb, -1);
 
     // how much too near the two points are
     Float4 separation = {0};
     for (uint32_t i = 0; i < points.count; i++) separation += points.weight[i] * float4_load(x[points.node[i]]);
     float height = float4_dot(separation, normal) - repulsion->target, weight = 0;
-    if (height >= 0) return;
+    if (height >= 0) return false;
 
     for (uint32_t i = 0; i < points.count; i++) weight += points.weight[i] * points.weight[i] * x[points.node[i]][3];
-    if (weight <= 0) return;
+    if (weight <= 0) return false;
 
     // move them apart along the normal
     Float4 away = -height / weight * normal;
@@ -67,42 +93,102 @@ static inline void repulsion_push(CollisionPlan *plan, const Shell *shell, const
         float4_store(x[points.node[i]], position + position[3] * points.weight[i] * away);
     }
 
-    plan->counters.repulsions++;
-    if (!(plan->def.friction > 0)) return;
+    if (!(plan->def.friction > 0)) return true;
 
     // friction: take back slip across the normal, at most `max`
     const float max = -plan->def.friction * height;
     Float4 slip = {0};
     for (uint32_t i = 0; i < points.count; i++) {
         uint32_t at = points.node[i];
-        Float4 before = float4_load(predicted[at]) - h * float4_load(dynamics->velocity[at]);
+        Float4 before = float4_load(push->predicted[at]) - push->h * float4_load(dynamics->velocity[at]);
         slip += points.weight[i] * (float4_load(x[at]) - before);
     }
 
     slip[3] = 0;
     slip -= float4_dot(slip, normal) * normal;
     float length = sqrtf(float4_dot(slip, slip));
-    if (!(length > 0)) return;
+    if (!(length > 0)) return true;
 
     Float4 back = (length <= max ? 1 : max / length) / weight * slip;
     for (uint32_t i = 0; i < points.count; i++) {
         Float4 position = float4_load(x[points.node[i]]);
         float4_store(x[points.node[i]], position - position[3] * points.weight[i] * back);
     }
+
+    return true;
 }
 
-void repulsion_apply(CollisionPlan *plan, const Shell *shell, const float (*predicted)[4], float h,
+static void push_stripes(void *task, int begin, int end) {
+    const Push *push = task;
+    CollisionPlan *plan = push->plan;
+    for (int k = begin; k < end; k++) {
+        const int s = 2 * k + push->odd;
+        const uint32_t first = plan->stripe_first[s], last = plan->stripe_first[s + 1];
+        uint32_t pushed = 0;
+        for (uint32_t i = first; i < last; i++)
+            pushed += repulsion_push(push, &plan->repulsions[plan->active[push->back ? first + last - 1 - i : i]]);
+        plan->stripe_pushed[s] = pushed;
+    }
+}
+
+void repulsion_sort(CollisionPlan *plan, const Shell *shell, const float (*x)[4]) {
+    const uint32_t count = plan->repulsion_count;
+    plan->stripe_count = 0;
+    if (count <= CROWD_FROM * (uint64_t)plan->cell_count || count > plan->listed_count) return; // `active` has no room
+
+    // where pairs are, and how far their corners reach
+    Float4 low = float4_all(INFINITY), high = -low, reach = {0};
+    for (uint32_t k = 0; k < count; k++) {
+        const CollisionPair *pair = &plan->pairs[plan->repulsions[k].pair];
+        const Float4 here = float4_load(x[shell->cells[pair->a][0]]);
+        low = float4_min(low, here);
+        high = float4_max(high, here);
+        for (int i = 0; i < 8; i++) {
+            const Float4 off = float4_load(x[shell->cells[i < 4 ? pair->a : pair->b][i & 3]]) - here;
+            reach = float4_max(reach, float4_max(off, -off));
+        }
+    }
+
+    int axis = 0;
+    for (int d = 1; d < 3; d++)
+        if (high[d] - low[d] > high[axis] - low[axis]) axis = d;
+    const float length = high[axis] - low[axis];
+    const float width = fmaxf(2.1f * reach[axis], length / (COLLISION_STRIPES - 1));
+    if (!(width > 0) || !(length > 3 * width)) return;
+
+    // sort
+    uint32_t *first = plan->stripe_first;
+    plan->stripe_count = (uint32_t)(length / width) + 1;
+    memset(first, 0, sizeof plan->stripe_first);
+    for (int turn = 0; turn < 2; turn++) {
+        for (uint32_t k = 0; k < count; k++) {
+            const float at = x[shell->cells[plan->pairs[plan->repulsions[k].pair].a][0]][axis];
+            const uint32_t s = (uint32_t)((at - low[axis]) / width);
+            if (turn == 0) first[s + 2]++;
+            else plan->active[first[s + 1]++] = k;
+        }
+        for (uint32_t s = 0; turn == 0 && s < plan->stripe_count; s++) first[s + 2] += first[s + 1];
+    }
+}
+
+void repulsion_apply(CollisionPlan *plan, const Shell *shell, Pool *pool, const float (*predicted)[4], float h,
                      DynamicsState *dynamics) {
     const double start = clock_seconds();
     const uint32_t count = plan->repulsion_count, cells = plan->cell_count;
+    Push push = {plan, shell, predicted, h, dynamics, false, 0};
     uint64_t passes = 1;
     if (count > CROWD_FROM * (uint64_t)cells) passes = 1 + 2 * (uint64_t)count / cells;
     if (passes > CROWD_PASSES) passes = CROWD_PASSES;
     for (uint64_t pass = 0; pass < passes; pass++) {
-        const uint64_t before = plan->counters.repulsions;
-        for (uint32_t k = 0; k < count; k++)
-            repulsion_push(plan, shell, &plan->repulsions[pass & 1 ? count - 1 - k : k], predicted, h, dynamics);
-        if (plan->counters.repulsions == before) break;
+        uint64_t pushed = 0;
+        push.back = pass & 1;
+        for (push.odd = 0; push.odd < 2 && plan->stripe_count > 0; push.odd++)
+            pool_for(pool, (int)(plan->stripe_count + 1 - (uint32_t)push.odd) / 2, 1, push_stripes, &push);
+        for (uint32_t s = 0; s < plan->stripe_count; s++) pushed += plan->stripe_pushed[s];
+        for (uint32_t k = 0; k < count && plan->stripe_count == 0; k++)
+            pushed += repulsion_push(&push, &plan->repulsions[push.back ? count - 1 - k : k]);
+        plan->counters.repulsions += pushed;
+        if (pushed == 0) break;
     }
 
     plan->counters.push_seconds += clock_seconds() - start;

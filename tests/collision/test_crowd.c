@@ -194,6 +194,37 @@ TEST(crowds_grow_the_lists) {
     check_growth(&soup, true);
 }
 
+/// Threads share a wide stack by stripes. Two of them share vertices only if they are neighbours.
+TEST(stripes_share_no_vertex) {
+    const Crowd wide = {6, 20, 0.5e-3f, false};
+    SingeSim *sims[3] = {crowd(&wide, 1, NULL), crowd(&wide, 3, NULL)};
+    test_steps(sims[0], 6), test_steps(sims[1], 6);
+    test_ok(sims[0], singe_sim_clone(sims[0], &sims[2]));
+    for (int k = 0; k < 3; k++) test_steps(sims[k], 3);
+    test_assert_same(sims[0], sims[1]);
+    test_assert_same(sims[0], sims[2]);
+
+    CollisionPlan *plan = sims[0]->dynamics->collision;
+    const Shell *shell = &sims[0]->shell;
+    repulsion_sort(plan, shell, (const float(*)[4])sims[0]->state.dynamics.position);
+    print_message("%u repulsions in %u stripes\n", plan->repulsion_count, plan->stripe_count);
+    assert_true(plan->stripe_count > 4);
+    assert_int_equal(plan->stripe_first[plan->stripe_count], plan->repulsion_count);
+    uint32_t *lowest = malloc(shell->vertex_count * sizeof *lowest);
+    memset(lowest, 0xff, shell->vertex_count * sizeof *lowest);
+    for (uint32_t s = 0; s < plan->stripe_count; s++)
+        for (uint32_t k = plan->stripe_first[s]; k < plan->stripe_first[s + 1]; k++) {
+            const CollisionPair *pair = &plan->pairs[plan->repulsions[plan->active[k]].pair];
+            for (int i = 0; i < 8; i++) {
+                uint32_t *low = &lowest[shell->cells[i < 4 ? pair->a : pair->b][i & 3]];
+                if (*low == UINT32_MAX) *low = s;
+                assert_true(s - *low <= 1);
+            }
+        }
+    free(lowest);
+    for (int k = 0; k < 3; k++) singe_sim_destroy(sims[k]);
+}
+
 TEST(what_lists_grow_to_decides_nothing) {
     const Crowd *scenes[] = {&stack, &soup};
     for (int k = 0; k < 2; k++) {

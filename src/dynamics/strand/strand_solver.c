@@ -253,7 +253,7 @@ static SingeResult strands_project(DynamicsPlan *plan, const Substep *substep) {
             substep->counters->seconds += clock_seconds() - start;
         }
     height_project(plan, shell, ablate, pool, dynamics);
-    if (plan->collision) repulsion_apply(plan->collision, shell, (const float(*)[4])plan->predicted, h, dynamics);
+    if (plan->collision) repulsion_apply(plan->collision, shell, pool, (const float(*)[4])plan->predicted, h, dynamics);
     contact_centroids(plan, shell, ablate, substep->collider_count, pool, h, dynamics);
     return SINGE_OK;
 }
