@@ -24,7 +24,7 @@ for name in "${order[@]}"; do
     drawn=$EPOCHREALTIME
     build/singe render "$out" --sheet 4x2 --only-sheet --quiet
     jpeg "$out/frames/$name.$frame.png" "docs/gallery/$name.jpg"
-    jpeg "$out/sheet.png" "docs/gallery/$name-sheet.jpg"
+    ffmpeg -loglevel error -y -i "$out/sheet.png" -qscale:v 7 -update 1 "docs/gallery/$name-sheet.jpg"
     build/singe measure "$out" --frames "${measured[$name]}" > "docs/gallery/$name.txt"
     awk -v name="$name" -v a="$begun" -v b="$burnt" -v c="$drawn" -v frames="$(ls "$out/ply" | wc -l)" -v n="$(nproc)" \
         'BEGIN { printf "%-15s %3d frames in %5.1f s, a picture in %.2f s, on %d threads\n", name, frames, b - a, c - b, n }'
