@@ -13,6 +13,7 @@ struct Pictures {
     PreviewDef def;
     Preview *preview;
     PreviewShape *shapes;
+    PreviewStart *starts;
     uint32_t shape_max;
     uint8_t *rgb;
     PreviewLayers layers; ///< empty unless they are kept
@@ -33,10 +34,16 @@ static SingeResult open_def(const Job *job, const PreviewDef *def, Pictures **ma
     pictures->scene = job->scene;
     pictures->assets = &job->assets;
     pictures->def = *def;
+    pictures->starts = calloc(job->assets.sheet_count + 1, sizeof *pictures->starts);
+    for (uint32_t s = 0; pictures->starts && s < job->assets.sheet_count; s++) {
+        const Mesh *mesh = &job->assets.meshes[s];
+        pictures->starts[s] = (PreviewStart){mesh->vertex_count, mesh->cell_count, mesh->positions, mesh->cells};
+    }
+    pictures->def.starts = pictures->starts;
     pictures->shape_max = scene_shapes(job->scene, &job->assets, 0, NULL, 0);
     pictures->shapes = calloc(pictures->shape_max + 1, sizeof *pictures->shapes);
     pictures->rgb = malloc((size_t)pictures->def.width * (size_t)pictures->def.height * 3);
-    SingeResult result = pictures->shapes && pictures->rgb ? SINGE_OK : no_memory(error);
+    SingeResult result = pictures->shapes && pictures->starts && pictures->rgb ? SINGE_OK : no_memory(error);
     interrupt_guard_begin();
     if (!result) result = preview_create(&pictures->def, (SingeAllocator){0}, &pictures->preview, error);
     interrupt_guard_end();
@@ -195,6 +202,7 @@ void pictures_close(Pictures *pictures) {
                             l->temperature, l->burn, l->depth,  l->sheet,    l->piece};
     for (size_t i = 0; i < sizeof layers / sizeof *layers; i++) free(layers[i]);
     free(pictures->shapes);
+    free(pictures->starts);
     free(pictures->rgb);
     free(pictures);
 }

@@ -69,6 +69,9 @@ enum {
 /// Reflected share of the light along l, per unit of irradiance: diffuse and a Blinn-Phong lobe.
 Float3 light_reflect(const Point *point, Float3 l);
 
+/// The share of the light along the mirrored view that the point reflects.
+float light_mirrored(const Point *point);
+
 /// Whether the point that the lane sees is lit.
 bool light_reaches(const Block *block, const int *active, int lane);
 

@@ -109,6 +109,8 @@ static void see_ground(const Preview *preview, Block *block, int lane) {
 
     start_point(point, preview, block->origin[lane], d, distance);
     ground_shade(preview, distance, &preview->table[pixel_index(preview, block, lane)], point);
+    point->mirrored = mirror_see(preview, block->x[lane], block->y[lane]);
+    point->glow = float3_scale(point->mirrored.light, light_mirrored(point));
 }
 
 /// The length of a motion as the eye sees it, along a unit ray.
@@ -409,9 +411,84 @@ static void draw_block(Preview *preview, Block *block) {
     }
 }
 
+/// What the ground mirrors in the 4 x 4 blocks of pixels of which `block` is the first: a few rays through the middle of
+/// each, spread by the ground's roughness, and one through the fire.
+static void draw_mirrored(Preview *preview, Block *block) {
+    enum { RAYS = 4, APART = BLOCK * BLOCK };
+    const float roughness = 0.06f;
+    if (!preview->mirrored[0] || block->x[0] % APART || block->y[0] % APART) return;
+    int active[LANES];
+    Float3 origin[LANES], towards[LANES];
+    block->tile = NULL;
+
+    for (int i = 0; i < LANES; i++) {
+        int x = block->x[0] + BLOCK * (i % BLOCK), y = block->y[0] + BLOCK * (i / BLOCK);
+        active[i] = 0;
+        block->time[i] = 0.5f;
+        sample_pixel(x / BLOCK, y / BLOCK, preview->def.seed, block->turn[i]);
+        if (x >= preview->def.width || y >= preview->def.height) continue;
+        *mirror_block(preview, x, y) = (Mirrored){.hides = 0};
+        camera_ray(&preview->camera, 2 * ((float)x + 0.5f * BLOCK) / (float)preview->def.width - 1,
+                   1 - 2 * ((float)y + 0.5f * BLOCK) / (float)preview->def.height, (const float[2]){0, 0}, &origin[i],
+                   &towards[i]);
+        float distance = hit_ground(preview, origin[i], towards[i]);
+        if (!isfinite(distance)) continue;
+        origin[i] = float3_mad(origin[i], towards[i], distance);
+        origin[i].z += preview->scene.epsilon;
+        towards[i].z = -towards[i].z;
+        active[i] = -1;
+    }
+
+    float reached[LANES], share = 1.0f / RAYS;
+    for (int s = 0; s < RAYS; s++) {
+        int hit[LANES];
+        memset(block->lit, 0, sizeof block->lit);
+        for (int i = 0; i < LANES; i++) {
+            float square[2], disc[2];
+            sample_square((uint32_t)s, block->turn[i][0], block->turn[i][1], square);
+            sample_disc(square, disc);
+            Float3 bent =
+                float3(towards[i].x + 2 * roughness * disc[0], towards[i].y + 2 * roughness * disc[1], towards[i].z);
+            block->origin[i] = origin[i];
+            block->direction[i] = float3_unit_or(bent, towards[i]);
+            block->sum[i] = float3(0, 0, 0);
+        }
+        find_points(preview, block, active);
+        for (int i = 0; i < LANES; i++) {
+            hit[i] = active[i] && block->point[i].hit ? -1 : 0;
+            if (active[i] && !s) reached[i] = block->point[i].distance;
+        }
+        add_light(preview, block, hit, SAMPLE_CENTRE, false);
+        for (int i = 0; i < LANES; i++) {
+            if (!hit[i]) continue;
+            Mirrored *mirrored =
+                mirror_block(preview, block->x[0] + BLOCK * (i % BLOCK), block->y[0] + BLOCK * (i / BLOCK));
+            mirrored->hides += share;
+            for (int k = 0; k < LIT_KINDS; k++) block->sum[i] = float3_add(block->sum[i], block->lit[k][i]);
+            mirrored->light = float3_mad(mirrored->light, block->sum[i], share);
+        }
+    }
+
+    // four blocks see the same fire
+    Float3 light = {0, 0, 0};
+    float clear = 1;
+    bool known = false;
+    for (int k = 0; preview->fire.visible && k < LANES; k++) {
+        const int i = k / 4 % 2 * 2 + k % 2 + BLOCK * (k / 8 * 2 + k % 4 / 2);
+        known = known && k % 4;
+        if (!active[i]) continue;
+        Mirrored *mirrored =
+            mirror_block(preview, block->x[0] + BLOCK * (i % BLOCK), block->y[0] + BLOCK * (i / BLOCK));
+        if (!known) fire_along(preview, origin[i], towards[i], reached[i], &light, &clear);
+        known = true;
+        mirrored->light = float3_mad(light, mirrored->light, clear);
+        mirrored->hides = 1 - clear * (1 - mirrored->hides);
+    }
+}
+
 /// The table's own colour in every pixel. The camera does not move, so it is computed once.
 static void fill_table(Preview *preview, Block *block) {
-    Table sum[LANES] = {{{0, 0, 0}, {0, 0}, 0}};
+    Table sum[LANES] = {{.polish = 0}};
     int count[LANES] = {0};
     for (int i = 0; i < LANES; i++) block->key[i] = sample_key(block->x[i], block->y[i], preview->def.seed);
 
@@ -433,6 +510,8 @@ static void fill_table(Preview *preview, Block *block) {
             ground_look(preview, position, block->direction[i].z, wide * distance, &look);
             sum[i].albedo = float3_add(sum[i].albedo, look.albedo);
             sum[i].polish += look.polish;
+            sum[i].crumb += look.crumb;
+            sum[i].crumbs += look.crumbs;
             sum[i].tilt[0] += look.tilt[0];
             sum[i].tilt[1] += look.tilt[1];
             count[i]++;
@@ -445,6 +524,8 @@ static void fill_table(Preview *preview, Block *block) {
         preview->table[pixel_index(preview, block, i)] =
             (Table){.albedo = float3_scale(sum[i].albedo, share),
                     .polish = share * sum[i].polish,
+                    .crumb = share * sum[i].crumb,
+                    .crumbs = share * sum[i].crumbs,
                     .tilt = {share * sum[i].tilt[0], share * sum[i].tilt[1]}};
     }
 }
@@ -508,6 +589,9 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     mask_fill(preview);
     if (!preview->table_known) draw_all(preview, fill_table);
     preview->table_known = true;
+    stain_fill(preview);
+    draw_all(preview, draw_mirrored);
+    mirror_smooth(preview);
     draw_all(preview, draw_block);
     draw_all(preview, seen_smooth);
     draw_all(preview, seen_finish);

@@ -125,6 +125,9 @@ Matter fire_between(const FirePoint *a, const FirePoint *b, float step);
 /// Fills a tile whose upper left pixel is (x, y).
 void fire_see(const Preview *preview, int x, int y, FireTile *tile);
 
+/// The light of the fire along a ray up to `distance`, and the transmittance.
+void fire_along(const Preview *preview, Float3 origin, Float3 direction, float distance, Float3 *light, float *clear);
+
 /// The light of the fire up to `distance` for a pixel of the tile, counted from its upper left, and the transmittance.
 void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear);
 

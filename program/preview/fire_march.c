@@ -8,9 +8,8 @@
 #define FIRE_SHORT 0.4f  ///< the shortest step relative to the usual one
 #define FIRE_EVEN 0.020f ///< difference of light, as l / (1 + l), that may be interpolated
 
-static void see_ray(const Preview *preview, Float3 d, FireView *view) {
+static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view) {
     const Fire *fire = &preview->fire;
-    const Float3 eye = preview->camera.eye;
     const float from[3] = {eye.x, eye.y, eye.z}, ray[3] = {d.x, d.y, d.z};
     const float low[3] = {fire->low.x, fire->low.y, fire->low.z}, high[3] = {fire->high.x, fire->high.y, fire->high.z};
 
@@ -91,7 +90,7 @@ static void see_corner(const Preview *preview, int x, int y, int k, FireTile *ti
     float v = 1 - 2 * (float)(y + 2 * (k / FIRE_ACROSS)) / (float)preview->def.height;
     Float3 origin, direction;
     camera_ray(&preview->camera, u, v, disc, &origin, &direction);
-    see_ray(preview, direction, &tile->views[k]);
+    see_ray(preview, origin, direction, &tile->views[k]);
     tile->empty = tile->empty && !tile->views[k].count;
 }
 
@@ -154,6 +153,14 @@ static void add_view(const FireView *view, float distance, float weight, Float3 
 
     *light = float3_mad(*light, sum, weight);
     *clear += weight * left;
+}
+
+void fire_along(const Preview *preview, Float3 origin, Float3 direction, float distance, Float3 *light, float *clear) {
+    FireView view;
+    see_ray(preview, origin, direction, &view);
+    *light = float3(0, 0, 0);
+    *clear = 0;
+    add_view(&view, distance, 1, light, clear);
 }
 
 void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear) {

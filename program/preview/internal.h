@@ -30,8 +30,9 @@ typedef struct Texture {
 /// The table at a pixel.
 typedef struct Table {
     Float3 albedo;
-    float tilt[2]; ///< slope of its surface along x and y
-    float polish;  ///< its reflectance
+    float tilt[2];       ///< slope of its surface along x and y
+    float polish;        ///< its reflectance
+    float crumb, crumbs; ///< albedo of the crumbs there if the ground is stained, times their cover; and that
 } Table;
 
 /// The sheets that are drawn, and the lamps.
@@ -48,6 +49,19 @@ typedef struct PreviewScene {
     EmberLights lights;
     int light_count;
 } PreviewScene;
+
+/// What burning sheets leave on the ground (stain.c).
+typedef struct Stain {
+    int size[2]; ///< cells
+    float corner[2], cell;
+    float *grids[3]; ///< [size[1] * size[0]] where sheets lay; what is whole of them, and the stain; NULL: none
+} Stain;
+
+/// What the ground mirrors of sheets, shapes and fire.
+typedef struct Mirrored {
+    Float3 light;
+    float hides; ///< share of the sky behind
+} Mirrored;
 
 /// The data of a PreviewSolid for rays.
 typedef struct Facets {
@@ -86,7 +100,9 @@ struct Preview {
     Float3 *glow[2];   ///< [quarter height * quarter width] for the bloom
     PreviewScene scene;
     Fire fire;
-    PreviewLayers layers; ///< being drawn
+    Stain stain;
+    Mirrored *mirrored[2]; ///< [mask_size] for each block, and the same while it is smoothed; NULL: the ground is dull
+    PreviewLayers layers;  ///< being drawn
     double time;
 };
 
@@ -97,6 +113,7 @@ typedef struct Point {
     float transmission;                       ///< share of the light from behind that is transmitted
     float gloss, shininess;                   ///< Blinn-Phong lobe of the sun
     float mirror;                             ///< reflectance for the blurred sky
+    Mirrored mirrored;                        ///< in front of the sky
     float footprint;                          ///< m, a pixel's size here
     float fade;                               ///< 0 visible to 1 faded into the background
     bool lit;                                 ///< false: glow only
@@ -173,6 +190,32 @@ void mask_fill(Preview *preview);
 
 /// Whether a sheet or a shape may be seen in the block of this pixel.
 bool mask_covers(const Preview *preview, int x, int y);
+
+// stain.c
+SingeResult stain_create(Preview *preview, SingeError *error);
+void stain_free(Preview *preview);
+
+/// Computes the frame's stain. The surface has been loaded.
+void stain_fill(Preview *preview);
+
+/// Whether a sheet lay there at the start.
+bool stain_may_be(const Preview *preview, float x, float y);
+
+/// The stain at a point of the ground, 0 to 1.
+float stain_at(const Preview *preview, float x, float y);
+
+// mirror.c
+SingeResult mirror_create(Preview *preview, SingeError *error);
+void mirror_free(Preview *preview);
+
+/// The block of a pixel, or NULL where the ground is dull.
+Mirrored *mirror_block(const Preview *preview, int x, int y);
+
+/// Smooths what was traced for the frame.
+void mirror_smooth(Preview *preview);
+
+/// What a pixel of the ground mirrors.
+Mirrored mirror_see(const Preview *preview, int x, int y);
 
 // shade_ground.c
 void ground_look(const Preview *preview, Float3 position, float cosine, float distance, Table *table);

@@ -148,7 +148,7 @@ void light_gather(Preview *preview) {
 
 // ---- their light
 
-static const float too_faint = 4e-3f;
+static const float too_faint = 1e-3f;
 
 static inline Four four_max(Four a, Four b) {
     for (int k = 0; k < 4; k++) a[k] = maxf(a[k], b[k]);

@@ -34,6 +34,11 @@ Float3 light_reflect(const Point *point, Float3 l) {
     return out;
 }
 
+float light_mirrored(const Point *point) {
+    float rest = 1 - maxf(float3_dot(point->normal, point->view), 0), rest2 = rest * rest;
+    return point->mirror * (0.06f + 0.54f * rest2 * rest2 * rest);
+}
+
 bool light_reaches(const Block *block, const int *active, int lane) {
     return active[lane] && block->point[lane].lit && block->point[lane].fade < 0.995f;
 }
@@ -179,10 +184,10 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
 
         // dull surfaces reflect more at grazing angles (Schlick 1994), but less than smooth ones
         if (point->mirror > 0) {
-            float cosine = maxf(float3_dot(point->normal, point->view), 0), rest = 1 - cosine, rest2 = rest * rest;
+            float cosine = maxf(float3_dot(point->normal, point->view), 0);
             Float3 out = float3_mad(float3_scale(point->view, -1), point->normal, 2 * cosine);
-            float share = point->mirror * (0.06f + 0.54f * rest2 * rest2 * rest);
-            light = float3_add(light, float3_scale(sky_mirrored(&preview->sky, out), share));
+            float clear = light_mirrored(point) * (1 - point->mirrored.hides);
+            light = float3_add(light, float3_scale(sky_mirrored(&preview->sky, out), clear));
         }
 
         light = float3_scale(light, through[i]);

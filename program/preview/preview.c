@@ -30,6 +30,8 @@ PreviewDef preview_default(void) {
         .sky_colour = {0.4f, 0.45f, 0.53f},
         .ground_height = 0,
         .ground_colour = {0.235f, 0.145f, 0.085f},
+        .ground_gloss = 2,
+        .ground_stain = 1,
         .background = {0.16f, 0.15f, 0.145f},
         .exposure = 1,
         .sparks = 1,
@@ -142,6 +144,13 @@ static SingeResult check_def(const PreviewDef *def, SingeError *error) {
     for (uint32_t s = 0; !result && def->colours && s < def->sheet_count; s++)
         if (!all_between(def->colours[s], 3, 0, 1e4f))
             result = preview_refuse(error, s, "a sheet's colour is out of range");
+    for (uint32_t s = 0; !result && def->starts && s < def->sheet_count; s++) {
+        const PreviewStart *start = &def->starts[s];
+        bool good = (!start->vertex_count || start->positions) && (!start->cell_count || start->cells);
+        for (size_t k = 0; good && k < 4 * (size_t)start->cell_count; k++) good = start->cells[k] < start->vertex_count;
+        if (!good) result = preview_refuse(error, s, "a sheet's start lacks an array, or uses a vertex it has not");
+    }
+
     for (uint32_t s = 0; !result && def->transmittances && s < def->sheet_count; s++)
         if (!all_between(&def->transmittances[s], 1, 0, 1))
             result = preview_refuse(error, s, "a sheet's transmittance must lie between 0 and 1");
@@ -202,6 +211,8 @@ SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Prev
     sky_fill(preview);
 
     result = preview_allocate(preview, error);
+    if (!result) result = stain_create(preview, error);
+    if (!result) result = mirror_create(preview, error);
     if (!result) result = tracer_open(preview, error);
     if (!result) result = preview_set_shapes(preview, def->shapes, def->shape_count, error);
     if (result) preview_destroy(preview);
@@ -244,6 +255,8 @@ void preview_destroy(Preview *preview) {
     SingeAllocator allocator = preview->allocator;
     tracer_free(preview);
     fire_free(preview);
+    stain_free(preview);
+    mirror_free(preview);
     facets_free(preview);
     tracer_close(preview);
 

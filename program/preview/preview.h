@@ -49,6 +49,13 @@ typedef enum PreviewGround {
 /// Of office paper, 80 g/m2; its opacity of 85 to 92 % by ISO 2471 comes to about that.
 #define PREVIEW_TRANSMITTANCE 0.22f
 
+/// The quads of a sheet at the start, in the world.
+typedef struct PreviewStart {
+    uint32_t vertex_count, cell_count;
+    const float *positions; ///< [3 * vertex_count] m
+    const uint32_t *cells;  ///< [4 * cell_count] vertices
+} PreviewStart;
+
 typedef struct PreviewDef {
     int width, height, samples; ///< samples a pixel, >= 1
     int thread_count;
@@ -63,6 +70,8 @@ typedef struct PreviewDef {
     float ground_height;      ///< m, z of the ground; -INFINITY for none
     PreviewGround ground;
     float ground_colour[3]; ///< linear
+    float ground_gloss;     ///< factor on what the ground mirrors; 0: it is dull, and no reflections are traced
+    float ground_stain;     ///< how dark burning sheets stain the ground they lay on; 0: they do not
     float background[3];
     float exposure; ///< multiplies before tone mapping
     float sparks;   ///< how many embers throw, relative to the usual
@@ -75,6 +84,7 @@ typedef struct PreviewDef {
     const Image *const *pictures; ///< [sheet_count] picture on both sides of each sheet, NULL entries are white
     const float (*colours)[3];    ///< [sheet_count] tint of each sheet, linear
     const float *transmittances;  ///< [sheet_count] share of light transmitted; NULL: PREVIEW_TRANSMITTANCE
+    const PreviewStart *starts;   ///< [sheet_count] for the stain; NULL: none. Read while the preview is created
     uint32_t sheet_count;
     uint32_t shape_count;
     const PreviewShape *shapes;

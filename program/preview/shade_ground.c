@@ -118,6 +118,29 @@ Float3 background_colour(const Preview *preview, Float3 direction) {
     return float3_scale(base, height > 0 ? mixf(1.12f, 0.62f, height) : mixf(1.12f, 0.75f, -height));
 }
 
+/// Crumbs of pale ash and of char, one or none in each square of two lattices, as they lie where the stain is full.
+static void crumbs(const Preview *preview, Float3 position, float footprint, Table *table) {
+    for (uint32_t k = 0; k < 2; k++) {
+        const float wide = k ? 0.0019f : 0.0052f;
+        float fx, fy, shown = visible(0.4f * wide, footprint);
+        if (shown <= 0) continue;
+        int i = noise_floor(position.x / wide + 0.37f * (float)k, &fx);
+        int j = noise_floor(position.y / wide + 0.61f * (float)k, &fy);
+        uint32_t key = sample_key(i, j, preview->def.seed + 311 + k);
+        if (hash_unit(key) > 0.4f) continue;
+        float x = fx - mixf(0.35f, 0.65f, hash_unit(key + 1)), y = fy - mixf(0.35f, 0.65f, hash_unit(key + 2));
+        float turn = 2 * PI_F * hash_unit(key + 3), around = atan2f(y, x);
+        float size = mixf(0.08f, 0.33f, hash_unit(key + 4) * hash_unit(key + 5));
+        float edge = 1 + 0.33f * cosf(2 * (around - turn)) + 0.17f * sinf(3 * around + 7 * turn);
+        edge += 0.08f * sinf(7 * around + 3 * turn);
+        float cover = shown * (1 - stepf(0.85f, 1.15f, sqrtf(x * x + y * y) / (size * edge)));
+        float pale = hash_unit(key + 6), value = pale > 0.55f ? 0.10f + 0.28f * pale * pale : 0.02f;
+        value *= 1 + 0.3f * noise2(position.x * 2600, position.y * 2600, key & 255);
+        table->crumb = mixf(table->crumb, value, cover);
+        table->crumbs += (1 - table->crumbs) * cover;
+    }
+}
+
 /// A pixel's size on the table: the mean of along and across.
 static float footprint(const Preview *preview, float distance, float cosine) {
     return preview->camera.pixel * distance / sqrtf(maxf(fabsf(cosine), 0.02f));
@@ -129,6 +152,29 @@ void ground_look(const Preview *preview, Float3 position, float cosine, float di
     if (preview->def.ground == PREVIEW_GROUND_WOOD) wood(preview, position, size, table);
     if (preview->def.ground == PREVIEW_GROUND_STONE) stone(preview, position, size, table);
     table->albedo = float3_mul(table->albedo, float3_load(preview->def.ground_colour));
+    if (stain_may_be(preview, position.x, position.y)) crumbs(preview, position, size, table);
+}
+
+/// Scorches the ground under burnt paper, ragged at the scale of the picture: tan, then brown and dull with soot.
+static void ground_stain(const Preview *preview, const Table *table, Point *point) {
+    const uint32_t seed = preview->def.seed + 277;
+    float x = point->position.x, y = point->position.y;
+    float aside = 0.006f * noise2(x * 60, y * 60, seed + 3), along = 0.006f * noise2(x * 60, y * 60, seed + 4);
+    float stain = stain_at(preview, x + aside, y + along);
+    if (stain < 0.004f) return;
+
+    float ragged = 0.5f * noise2(x * 34, y * 34, seed) + 0.35f * noise2(x * 130, y * 130, seed + 1);
+    ragged += 0.25f * noise2(x * 420, y * 420, seed + 2) * visible(0.0024f, point->footprint);
+    const float depth = preview->def.ground_stain * clampf(stain * (0.75f + 0.75f * ragged), 0, 1);
+    const float tan = stepf(0.02f, 0.4f, depth), soot = 0.6f * stepf(0.15f, 1.1f, depth);
+    point->albedo = float3_mul(point->albedo, float3_mix(float3(1, 1, 1), float3(0.74f, 0.60f, 0.46f), tan));
+    point->albedo = float3_mix(point->albedo, float3(0.016f, 0.014f, 0.013f), soot);
+    point->mirror *= 1 - 0.6f * soot;
+    point->gloss *= 1 - 0.8f * soot;
+
+    const float lie = preview->def.ground_stain * stepf(0.05f, 0.6f, stain), cover = lie * table->crumbs;
+    point->albedo = float3_mad(float3_scale(point->albedo, 1 - cover), float3(1, 1, 0.97f), lie * table->crumb);
+    point->mirror *= 1 - cover;
 }
 
 void ground_shade(const Preview *preview, float distance, const Table *table, Point *point) {
@@ -141,5 +187,6 @@ void ground_shade(const Preview *preview, float distance, const Table *table, Po
     point->albedo = table->albedo;
     point->gloss = 0.10f * table->polish;
     point->shininess = 26;
-    point->mirror = table->polish;
+    point->mirror = table->polish * preview->def.ground_gloss;
+    if (preview->stain.grids[0]) ground_stain(preview, table, point);
 }

@@ -213,7 +213,7 @@ typedef struct ScenePreview {
     float environment_turn; ///< radians
     PreviewGround ground;
     float ground_height; ///< -INFINITY for none
-    float ground_colour[3];
+    float ground_colour[3], ground_gloss, ground_stain;
     float background[3];
     float exposure;
     float sparks, wisps;

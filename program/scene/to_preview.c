@@ -27,6 +27,8 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
         .sky_picture = assets->sky.rgb ? &assets->sky : NULL,
         .sky_turn = preview->environment_turn,
         .ground = preview->ground,
+        .ground_gloss = preview->ground_gloss,
+        .ground_stain = preview->ground_stain,
         .seed = (uint32_t)scene->sim.seed,
         .pictures = assets->pictures,
         .colours = (const float(*)[3])assets->colours,

@@ -89,6 +89,26 @@ TEST(a_sheet_before_a_flame_shines_through) {
     assert_true(ink < 0.4f * white[2]);
 }
 
+/// A glossy ground mirrors a glowing ball: the camera looks at its image. A dull ground, as all were, breaks the bar.
+TEST(a_glossy_ground_mirrors_embers) {
+    static float beauty[W * H][3];
+    PreviewDef def = at_night();
+    PreviewShape ball = {
+        .kind = SINGE_COLLIDER_SPHERE, .position = {0, 0, 0.08f}, .radius = 0.025f, .temperature = 1250};
+    SingeSurface nothing = {0};
+    float seen[3];
+    def.shapes = &ball, def.shape_count = 1;
+    def.camera = (PreviewCamera){.eye = {0, -0.5f, 0.1f}, .target = {0, 0, -0.08f}, .up = {0, 0, 1}, .fov = 0.6f};
+    for (int k = 0; k < 3; k++) {
+        def.ground_gloss = 3 * (float)k;
+        see(&def, &nothing, NULL, beauty);
+        seen[k] = box(beauty, W / 2, H / 2) - box(beauty, 8, H / 2);
+    }
+    print_message("mirrored by gloss 0, 3, 6: %.4f %.4f %.4f\n", (double)seen[0], (double)seen[1], (double)seen[2]);
+    assert_true(seen[1] > seen[0] + 0.002f);
+    assert_float_equal((seen[2] - seen[0]) / (seen[1] - seen[0]), 2, 0.1);
+}
+
 static void see_shadow(int samples, float (*beauty)[3]) {
     Float4 q;
     PreviewDef def = above();

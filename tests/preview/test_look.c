@@ -190,6 +190,44 @@ TEST(each_ground_has_its_look) {
     }
 }
 
+/// The ground is stained where a sheet lay that has burnt away, and not where it is whole, beside it, below one that
+/// hung, or if it is to stay clean. The stain is darker than a tenth; without one the table is the same to a level.
+TEST(burning_sheets_stain_the_ground) {
+    static uint8_t rgb[BYTES];
+    static const uint32_t cells[4] = {0, 1, 2, 3};
+    Float4 q;
+    SingeSurface nothing = {0};
+    PreviewStart start = {4, 1, &q.position[0][0], cells};
+    PreviewDef def = above();
+    quad_make(&q, 0.09f, 0.001f);
+    def.ground = PREVIEW_GROUND_PLAIN;
+    draw(&def, &nothing, 0, rgb);
+    const float clean = middle(rgb, 1), beside = pixel(rgb, 2, H / 2)[1];
+
+    def.starts = &start, def.sheet_count = 1;
+    draw(&def, &nothing, 0, rgb);
+    print_message("the table is %.1f clean, %.1f stained\n", (double)clean, (double)middle(rgb, 1));
+    assert_true(middle(rgb, 1) < 0.9f * clean);
+    assert_float_equal(pixel(rgb, 2, H / 2)[1], beside, 3);
+    def.ground_stain = 0;
+    draw(&def, &nothing, 0, rgb);
+    assert_float_equal(middle(rgb, 1), clean, 1);
+
+    def.ground_stain = 1;
+    for (int i = 0; i < 4; i++) q.position[i][2] = 0.1f; // whole, and lifted
+    float lifted[12];
+    memcpy(lifted, q.position, sizeof lifted);
+    for (int i = 0; i < 4; i++) q.position[i][0] += 1; // out of sight
+    float low[12];
+    memcpy(low, q.rest, sizeof low);
+    start.positions = low;
+    draw(&def, &q.surface, 0, rgb);
+    assert_float_equal(middle(rgb, 1), clean, 1);
+    start.positions = lifted;
+    draw(&def, &nothing, 0, rgb);
+    assert_float_equal(middle(rgb, 1), clean, 1);
+}
+
 /// Pyrolysis leaves a black leaf, however little its mass, which greys as it glows away. It glows where char burns: not
 /// where a hot leaf no longer burns, nor where it still has fuel, which burns in the flame.
 TEST(char_is_black_and_greys) {
