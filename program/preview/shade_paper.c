@@ -123,7 +123,8 @@ static void tilt(Float3 position, float millimetres, float height, bool folded, 
 // ---- ash
 
 // Ash: the remaining leaf of mineral fibres, thin enough to transmit light. It is sooty at first and pales within about
-// ten seconds, in patches; veins and the rims of holes are palest. Print remains on it as a change of tone.
+// ten seconds, in patches; veins and the rims of holes are palest. It crackles into scales some millimetres wide, with
+// dark lines between them. Print remains on it, darker and duller than the filler of the paper around it.
 
 /// The share of ash, 0 to 1.
 static float ash_amount(const Bent *bent) {
@@ -153,12 +154,15 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 
     float cloud = paper_noise(p, 14, size, 19) + 0.5f * bent->coarse + 0.2f * bent->medium;
     float pale = stepf(1, 16, state->age + 5 * cloud), rim = stepf(0.25f, 0.6f, ash_lace(bent, size));
-    float value = mixf(0.034f, 0.20f, pale) + (0.010f + 0.06f * pale) * cloud + (0.02f + 0.06f * pale) * vein;
+    float value = mixf(0.036f, 0.30f, pale) + (0.010f + 0.07f * pale) * cloud + (0.02f + 0.06f * pale) * vein;
     value += (0.006f + 0.022f * pale) * fibre + 0.006f * bent->fine;
     value += (0.03f + 0.07f * pale) * maxf(rim, stepf(0.35f, 0.95f, state->rim + 0.25f * bent->fine));
 
-    Float3 tone = float3_mix(float3(0.98f, 0.99f, 1.03f), float3(1.03f, 1.0f, 0.95f), pale);
-    Float3 grey = float3_scale(tone, clampf(value * (1 - 0.4f * ink), 0.02f, 0.5f));
+    const float crackle = paper_cracks(bent, 3.2f, 0.035f, size), fine = paper_cracks(bent, 1.1f, 0.05f, size);
+    value *= 1 - 0.45f * crackle - 0.25f * fine * (1 - crackle);
+
+    Float3 tone = float3_mix(float3(0.98f, 0.99f, 1.03f), float3(1.02f, 1.0f, 0.965f), pale);
+    Float3 grey = float3_scale(tone, clampf(value * (1 - (0.35f + 0.3f * pale) * ink), 0.02f, 0.55f));
     point->albedo = float3_mix(point->albedo, grey, amount);
     point->gloss *= 1 - 0.8f * amount;
     point->mirror = mixf(point->mirror, 0.55f - 0.25f * pale, amount);
