@@ -99,7 +99,7 @@ static Inner inner(int which) {
 static bool is_asked(FolderParts parts, int which) {
     const bool others[] = {parts.pictures, parts.gas, parts.gas_detail, parts.exr, parts.checkpoints};
     if (which >= OUTPUT_COUNT) return others[which - OUTPUT_COUNT];
-    return which == OUTPUT_ply || output_has(parts.outputs, which);
+    return which == OUTPUT_ply ? !parts.elsewhere : output_has(parts.outputs, which);
 }
 
 static char *frame_path(const Folder *folder, int which, int frame) {

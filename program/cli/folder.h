@@ -41,6 +41,7 @@ SINGE_NODISCARD SingeResult folder_make(const char *path, SingeError *error);
 /// What a run writes besides the cache: folders, each for one kind of file, and tables.
 typedef struct FolderParts {
     bool pictures, gas, gas_detail, exr, checkpoints, events, probes;
+    bool elsewhere; ///< the cache is in another folder: no ply/
     OutputSet outputs;
 } FolderParts;
 

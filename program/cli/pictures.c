@@ -102,8 +102,12 @@ const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, co
         pictures->shape_max = count;
     }
     count = scene_shapes(pictures->scene, pictures->assets, time, pictures->shapes, pictures->shape_max);
+    PreviewCamera camera;
+    scene_camera(pictures->scene, time, &camera);
+    camera.aperture = pictures->def.camera.aperture; // a picture to be measured is sharp
     interrupt_guard_begin();
-    SingeResult result = preview_set_shapes(pictures->preview, pictures->shapes, count, error);
+    SingeResult result = preview_set_camera(pictures->preview, &camera, error);
+    if (!result) result = preview_set_shapes(pictures->preview, pictures->shapes, count, error);
     if (!result) result = preview_set_gas(pictures->preview, gas, error);
     if (!result)
         result = preview_draw_layers(pictures->preview, surface, time, pictures->rgb, &pictures->layers, error);

@@ -13,9 +13,21 @@
 #include "cli/video.h"
 #include "common/printable.h"
 
-enum { OPT_SET, OPT_FRAMES, OPT_SHEET, OPT_ONLY_SHEET, OPT_EXR, OPT_GIF, OPT_THREADS, OPT_QUIET, OPT_COUNT };
+enum {
+    OPT_OUTPUT,
+    OPT_SET,
+    OPT_FRAMES,
+    OPT_SHEET,
+    OPT_ONLY_SHEET,
+    OPT_EXR,
+    OPT_GIF,
+    OPT_THREADS,
+    OPT_QUIET,
+    OPT_COUNT
+};
 
 static const ArgOption render_options[OPT_COUNT] = {
+    [OPT_OUTPUT] = {"output", 'o', "FOLDER", "writes to this folder, not into the cache's"},
     [OPT_SET] = {"set", 0, "preview.PATH=VALUE", "sets a value of the scene; may be repeated"},
     [OPT_FRAMES] = {"frames", 0, "A-B", "draws only these frames (or A alone), and no video"},
     [OPT_SHEET] = {"sheet", 0, "CxR", "also writes DIR/sheet.png: C by R frames, spread over the run"},
@@ -33,11 +45,11 @@ const ArgCommand render_command = {"render",
                                    OPT_COUNT,
                                    "Exit codes: 0 success, 1 failed or interrupted, 2 bad input.",
                                    "singe render out --set preview.exposure=2\n"
-                                   "singe render out --frames 24 --exr\n"
+                                   "singe render out --frames 24 --exr -o stills --set preview.samples=256\n"
                                    "singe render out --sheet 4x2 --only-sheet"};
 
 typedef struct RenderOptions {
-    const char *folder;
+    const char *folder, *output; ///< output NULL: the same
     SetList sets;
     int first, last;   ///< 0: all
     int columns, rows; ///< 0: no sheet
@@ -49,7 +61,7 @@ typedef struct Render {
     Console *console;
     const RenderOptions *options;
     Job job;
-    Folder folder;
+    Folder folder, drawn; ///< the cache's, and that of the pictures
     Pictures *pictures;
     ContactSheet sheet;
     int first, last; ///< frames to draw
@@ -67,6 +79,11 @@ static ExitCode render_parse(int argc, char **argv, RenderOptions *o, bool *done
     for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
         bool good = true;
         switch (option) {
+        case OPT_OUTPUT:
+            o->output = value;
+            good = value[0] != 0;
+            if (!good) args_complain(&reader, "--output: expected a folder");
+            break;
         case OPT_SET:
             good = strncmp(value, "preview.", 8) == 0;
             if (good) set_add(&o->sets, value);
@@ -137,8 +154,8 @@ static SingeResult draw_all(Render *render, bool *interrupted, SingeError *error
         if (!result) result = frame_draw(&frame, render->pictures, &rgb, error);
         frame_free(&frame);
         if (!result && !o->only_sheet) {
-            char *png = folder_png(&render->folder, number);
-            char *exr = o->exr ? folder_exr(&render->folder, number) : NULL;
+            char *png = folder_png(&render->drawn, number);
+            char *exr = o->exr ? folder_exr(&render->drawn, number) : NULL;
             result = frame_write_picture(render->pictures, rgb, png, exr, error);
             free(png);
             free(exr);
@@ -152,7 +169,7 @@ static SingeResult draw_all(Render *render, bool *interrupted, SingeError *error
     }
 
     if (!render->sheet.rgb) return SINGE_OK;
-    return png_write(render->folder.sheet, render->sheet.width, render->sheet.height, render->sheet.rgb, error);
+    return png_write(render->drawn.sheet, render->sheet.width, render->sheet.height, render->sheet.rgb, error);
 }
 
 static ExitCode render_frames(Render *render) {
@@ -161,13 +178,15 @@ static ExitCode render_frames(Render *render) {
     bool interrupted = false;
     SingeResult result = pictures_open(&render->job, &render->pictures, &error);
 
+    if (!result && o->output) result = folder_make(render->drawn.path, &error);
+
     // several processes may draw parts of a run at the same time; one that draws all of it makes the video, and must be
     // alone
     if (!result && !o->only_sheet)
         result =
-            lock_take(&render->lock, render->folder.pictures_lock, "pictures", o->first > 0, render->console, &error);
-    const FolderParts parts = {.pictures = !o->only_sheet, .exr = o->exr};
-    if (!result) result = folder_create(&render->folder, parts, &error);
+            lock_take(&render->lock, render->drawn.pictures_lock, "pictures", o->first > 0, render->console, &error);
+    const FolderParts parts = {.pictures = !o->only_sheet, .exr = o->exr, .elsewhere = o->output != NULL};
+    if (!result) result = folder_create(&render->drawn, parts, &error);
     if (!result && o->exr) result = pictures_keep_layers(render->pictures, &error);
     if (!result && o->columns) {
         int width, height;
@@ -184,16 +203,16 @@ static ExitCode render_frames(Render *render) {
     }
 
     if (interrupted) return EXIT_FAILED;
-    if (!o->quiet && o->columns) printf("%s\n", render->folder.sheet);
+    if (!o->quiet && o->columns) printf("%s\n", render->drawn.sheet);
 
     // the films
     const double fps = (double)render->job.scene->fps;
     VideoResult gif = VIDEO_NO_PROGRAM, video = VIDEO_NO_PROGRAM;
-    if (o->gif) gif = gif_make(render->console, &render->folder, fps, render->first, render->last);
-    if (gif == VIDEO_MADE && !o->quiet) printf("%s\n", render->folder.gif);
+    if (o->gif) gif = gif_make(render->console, &render->drawn, fps, render->first, render->last);
+    if (gif == VIDEO_MADE && !o->quiet) printf("%s\n", render->drawn.gif);
     if (!o->first && !o->only_sheet)
-        video = video_make(render->console, &render->folder, fps, render->first, render->last);
-    if (video == VIDEO_MADE && !o->quiet) printf("%s\n", render->folder.video);
+        video = video_make(render->console, &render->drawn, fps, render->first, render->last);
+    if (video == VIDEO_MADE && !o->quiet) printf("%s\n", render->drawn.video);
     return video == VIDEO_FAILED || gif == VIDEO_FAILED ? EXIT_FAILED : EXIT_GOOD;
 }
 
@@ -208,6 +227,7 @@ int command_render(int argc, char **argv) {
         code = job_reopen(&render.job, &console, options.folder, &options.sets, options.threads);
         if (!code) {
             render.folder = folder_name(options.folder, render.job.scene->name);
+            render.drawn = folder_name(options.output ? options.output : options.folder, render.job.scene->name);
             render.first = options.first;
             render.last = options.last;
             code = folder_span(&render.folder, &console, &render.first, &render.last);
@@ -217,6 +237,7 @@ int command_render(int argc, char **argv) {
         pictures_close(render.pictures);
         lock_release(&render.lock);
         folder_free(&render.folder);
+        folder_free(&render.drawn);
         job_close(&render.job);
     }
 

@@ -221,6 +221,19 @@ SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Prev
     return result;
 }
 
+SingeResult preview_set_camera(Preview *preview, const PreviewCamera *camera, SingeError *error) {
+    if (memcmp(&preview->def.camera, camera, sizeof *camera) == 0) return SINGE_OK;
+    PreviewDef def = preview->def;
+    def.camera = *camera;
+    SingeResult result = check_rows(&def, error);
+    if (!result) result = check_camera(camera, error);
+    if (result) return result;
+    preview->def.camera = *camera;
+    preview->camera = camera_make(&preview->def);
+    preview->table_known = false;
+    return SINGE_OK;
+}
+
 SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uint32_t count, SingeError *error) {
     SingeResult result = check_shapes(shapes, count, error);
     if (result) return result;

@@ -101,6 +101,9 @@ bool preview_draws(void);
 SINGE_NODISCARD SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Preview **preview,
                                            SingeError *error);
 
+/// Replaces the camera. The picture of the ground is prepared again for it, so a camera that moves costs more.
+SINGE_NODISCARD SingeResult preview_set_camera(Preview *preview, const PreviewCamera *camera, SingeError *error);
+
 /// Replaces the shapes (they move from frame to frame); the array is copied.
 SINGE_NODISCARD SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uint32_t count,
                                                SingeError *error);

@@ -135,6 +135,17 @@ void finish_camera(Reader *reader, const YamlNode *map, void *object) {
 void finish_preview(Reader *reader, const YamlNode *map, void *object) {
     ScenePreview *preview = object;
     preview->camera_given = camera_given(node_find(map, "camera"));
+    check_times(reader, node_find(map, "camera_path"), preview->camera_keys, sizeof *preview->camera_keys,
+                preview->camera_key_count);
+    const YamlNode *place = preview->camera_key_count ? node_find(map, "camera_path") : NULL;
+    place = place && place->kind == NODE_LIST ? place->first : NULL;
+    for (uint32_t i = 0; place && i < preview->camera_key_count; i++, place = place->next) {
+        PreviewCamera camera = preview->camera;
+        memcpy(camera.eye, preview->camera_keys[i].eye, sizeof camera.eye);
+        memcpy(camera.target, preview->camera_keys[i].target, sizeof camera.target);
+        finish_camera(reader, place, &camera);
+    }
+    preview->camera_given = preview->camera_given || preview->camera_key_count > 0;
     const YamlNode *light = node_find(map, "light"), *direction = node_find(light, "direction");
     const float *d = preview->light_direction;
     if (direction && (double)d[0] * (double)d[0] + (double)d[1] * (double)d[1] + (double)d[2] * (double)d[2] < 1e-18)

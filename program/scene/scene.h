@@ -201,10 +201,19 @@ typedef struct SceneProbe {
     float point[3]; ///< m, in the world at the start
 } SceneProbe;
 
+/// Where the camera is at a time.
+typedef struct SceneCameraKey {
+    float time; ///< s; first, as check_times reads it
+    float eye[3], target[3];
+    float fov, focus; ///< as in PreviewCamera; fov 0: the camera's
+} SceneCameraKey;
+
 typedef struct ScenePreview {
     int size[2]; ///< pixels
     int samples;
     PreviewCamera camera;
+    uint32_t camera_key_count; ///< 0: the camera stands still
+    SceneCameraKey *camera_keys;
     bool camera_given; ///< its eye or target; otherwise scene_frame places it
     float light_direction[3], light_angle, light_colour[3];
     float sky[3];
@@ -427,6 +436,9 @@ SINGE_NODISCARD SingeResult scene_branch(SceneWhole scene, SceneWhole before, in
 bool scene_looks_alike(SceneWhole scene, SceneWhole before);
 
 // ---- from scene to preview
+
+/// The camera at a time: it follows its path smoothly.
+void scene_camera(const Scene *scene, double time, PreviewCamera *camera);
 
 /// Places a camera that is not given so that all sheets, at their start, fill the picture. If that is more than 10 km
 /// from the origin, the camera keeps its default position.

@@ -13,6 +13,24 @@ static const SchemaRow camera_rows[] = {
 #include "preview/preview.def"
 };
 #undef OF
+static const SchemaRow camera_key_rows[] = {
+    {"time", ROW_FLOAT, DIM_TIME, AT(SceneCameraKey, time), .min = 0, .max = 1e6, .flags = ROW_REQUIRED, .doc = "when"},
+    {"eye", ROW_VECTOR, DIM_LENGTH, AT(SceneCameraKey, eye), .length = 3, LOCATION, .flags = ROW_REQUIRED,
+     .doc = "its position"},
+    {"target", ROW_VECTOR, DIM_LENGTH, AT(SceneCameraKey, target), .length = 3, LOCATION, .flags = ROW_REQUIRED,
+     .doc = "what it looks at"},
+    {"fov", ROW_FLOAT, DIM_ANGLE, AT(SceneCameraKey, fov), WITHIN(0, 175 * DEGREE),
+     .doc = "angle of view from bottom to top; 0: the camera's"},
+    {"focus", ROW_FLOAT, DIM_LENGTH, AT(SceneCameraKey, focus), WITHIN(0, 1e4),
+     .doc = "distance of the focus along the line of sight; 0: the target's"},
+};
+static const Schema schema_camera_key = {
+    .title = "an entry of the camera's path",
+    .size = sizeof(SceneCameraKey),
+    ROWS(camera_key_rows),
+    .doc = "The camera at a time, in place of `camera`'s eye, target, focus and fov. It moves smoothly through the "
+           "entries, and stands still before the first and after the last. Times must increase."};
+
 static const Schema schema_camera = {.title = "the camera",
                                      .size = sizeof(PreviewCamera),
                                      ROWS(camera_rows),
@@ -72,6 +90,8 @@ static const SchemaRow preview_rows[] = {
     {"size", ROW_INTS, DIM_NONE, AT(ScenePreview, size), .length = 2, WITHIN(16, 16384),
      .doc = "width and height in pixels, even numbers for video"},
     {"camera", ROW_MAP, DIM_NONE, AT(ScenePreview, camera), .sub = &schema_camera, .doc = "the camera"},
+    {"camera_path", ROW_LIST, DIM_NONE, AT(ScenePreview, camera_keys), EXTRA(ScenePreview, camera_key_count),
+     .sub = &schema_camera_key, .doc = "where the camera is when, and what it focuses; empty: it stands still"},
     {"light", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_light, .doc = "the distant light"},
     {"environment", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_environment,
      .doc = "distribution of the sky's light"},

@@ -4,6 +4,7 @@
 #include "scene/scene.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *def) {
@@ -35,11 +36,66 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
         .transmittances = assets->transmittances,
         .sheet_count = assets->sheet_count,
     };
+    scene_camera(scene, 0, &def->camera);
     memcpy(def->sun_direction, preview->light_direction, sizeof def->sun_direction);
     memcpy(def->sun_colour, preview->light_colour, sizeof def->sun_colour);
     memcpy(def->sky_colour, preview->sky, sizeof def->sky_colour);
     memcpy(def->ground_colour, preview->ground_colour, sizeof def->ground_colour);
     memcpy(def->background, preview->background, sizeof def->background);
+}
+
+// ---- a camera that moves
+
+/// The cubic through p[1] and p[2] at their times t[1] and t[2], with the slopes there of the parabolas through three
+/// neighbours (Catmull & Rom 1974, for times that are not evenly spaced).
+static float camera_between(const double t[4], const float p[4], double time) {
+    double span = t[2] - t[1], s = fmin(fmax((time - t[1]) / span, 0), 1), slope[2], step[3];
+    for (int k = 0; k < 3; k++) step[k] = t[k + 1] > t[k] ? ((double)p[k + 1] - (double)p[k]) / (t[k + 1] - t[k]) : 0;
+    for (int k = 0; k < 2; k++) {
+        double before = t[k + 1] - t[k], after = t[k + 2] - t[k + 1];
+        slope[k] = before > 0 && after > 0 ? (step[k] * after + step[k + 1] * before) / (before + after) : 0;
+    }
+    double u = s * s * (3 - 2 * s), rise = s * (1 - s) * (1 - s) * slope[0] - s * s * (1 - s) * slope[1];
+    return (float)((1 - u) * (double)p[1] + u * (double)p[2] + span * rise);
+}
+
+/// The distance of a key's target.
+static float camera_focus(const SceneCameraKey *key) {
+    Float3 view = float3_sub(float3_load(key->target), float3_load(key->eye));
+    return float3_length(view);
+}
+
+void scene_camera(const Scene *scene, double time, PreviewCamera *camera) {
+    const ScenePreview *preview = &scene->preview;
+    const SceneCameraKey *keys = preview->camera_keys;
+    const uint32_t count = preview->camera_key_count;
+    *camera = preview->camera;
+    if (!count) return;
+
+    // the two keys before the time and the two after it; at the ends the last one again
+    uint32_t next = 0, at[4];
+    while (next < count && (double)keys[next].time <= time) next++;
+    at[1] = next ? next - 1 : 0;
+    at[2] = next < count ? next : count - 1;
+    at[0] = at[1] && next < count ? at[1] - 1 : at[1];
+    at[3] = next && at[2] + 1 < count ? at[2] + 1 : at[2];
+    double t[4];
+    for (int k = 0; k < 4; k++) t[k] = (double)keys[at[k]].time;
+    const size_t members[] = {offsetof(SceneCameraKey, eye), offsetof(SceneCameraKey, target),
+                              offsetof(SceneCameraKey, fov), offsetof(SceneCameraKey, focus)};
+    float *const into[] = {camera->eye, camera->target, &camera->fov, &camera->focus};
+    for (int m = 0; m < 4; m++)
+        for (int c = 0; c < (m < 2 ? 3 : 1); c++) {
+            float p[4];
+            for (int k = 0; k < 4; k++) {
+                memcpy(&p[k], (const char *)&keys[at[k]] + members[m] + (size_t)c * sizeof(float), sizeof(float));
+                if (m == 2 && !(p[k] > 0)) p[k] = preview->camera.fov;
+                if (m == 3 && !(p[k] > 0)) p[k] = camera_focus(&keys[at[k]]);
+            }
+            into[m][c] = at[2] > at[1] ? camera_between(t, p, time) : p[1];
+        }
+    camera->fov = fmaxf(1e-3f, fminf(camera->fov, 3.1f)); // a cubic may overshoot
+    camera->focus = fmaxf(0, camera->focus);
 }
 
 // ---- the default camera: the sheets fill the picture

@@ -92,6 +92,14 @@ class Render(Case):
         shutil.move(self.path("o"), self.path("moved"))
         self.singe("render", "moved", "--frames", "1", cwd=self.dir)
 
+        # into a folder of its own, which is made; the cache's pictures stay
+        before = [digest(self.png(i, "moved")) for i in range(1, 7)]
+        self.singe("render", "moved", "--frames", "2", "-o", "a/shot", "--set", "preview.size=[80, 40]", cwd=self.dir)
+        self.assertEqual(os.listdir(self.path("a", "shot")), ["frames"])
+        self.assertEqual(png_size(self.png(2, "a/shot")), (80, 40))
+        self.assertEqual([digest(self.png(i, "moved")) for i in range(1, 7)], before)
+        self.assertIn("expected a folder", self.singe("render", "moved", "-o", "", cwd=self.dir, expect=2)[1])
+
     def test_bad_caches(self):
         self.assertIn("run.json", self.singe("render", self.path("none"), expect=2)[1])
         os.mkdir(self.path("empty"))

@@ -662,6 +662,36 @@ TEST(mesh_files_are_scaled_and_welded) {
     rmdir(folder);
 }
 
+/// The camera passes its path's entries at their times, smoothly: its speed at an entry does not jump, as on straight
+/// lines. It stands still before and after, and pulls its focus.
+TEST(a_camera_follows_its_path) {
+    Scene *scene =
+        good_scene("{sheets: [{grid: {size: [1, 1], cells: [2, 2]}}], preview: {camera: {fov: 40}, camera_path: ["
+                   "{time: 1, eye: [0, -2, 1], target: [0, 0, 1]},"
+                   "{time: 2, eye: [1, -2, 1], target: [0, 0, 1], fov: 20, focus: 1},"
+                   "{time: 4, eye: [1, -4, 1], target: [0, 0, 1]}]}}",
+                   NULL, 0);
+    PreviewCamera camera, before, after;
+    scene_camera(scene, 0, &camera);
+    assert_true(camera.eye[0] == 0 && camera.eye[1] == -2 && camera.focus == 2);
+    scene_camera(scene, 2, &camera);
+    assert_true(camera.eye[0] == 1 && camera.eye[1] == -2 && camera.focus == 1);
+    assert_float_equal(camera.fov, 0.34906585, 1e-6);
+    scene_camera(scene, 9, &camera);
+    assert_true(camera.eye[0] == 1 && camera.eye[1] == -4);
+    assert_float_equal(camera.focus, 4.1231056, 1e-6);
+    assert_float_equal(camera.fov, 0.6981317, 1e-6);
+    scene_camera(scene, 1.99, &before);
+    scene_camera(scene, 2, &camera);
+    scene_camera(scene, 2.01, &after);
+    for (int c = 0; c < 2; c++) {
+        float in = (camera.eye[c] - before.eye[c]) / 0.01f, out = (after.eye[c] - camera.eye[c]) / 0.01f;
+        print_message("speed along %c into the entry %.2f, out of it %.2f m/s\n", "xy"[c], (double)in, (double)out);
+        assert_float_equal(in, out, 0.1); // straight lines: 1 and 0, 0 and -1
+    }
+    scene_free(scene);
+}
+
 TEST(the_camera_finds_the_sheets) {
     static const char *const scenes[] = {
         "sheets: [{grid: {size: [0.2, 0.3], cells: [4, 6]}}]",
