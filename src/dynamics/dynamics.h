@@ -12,7 +12,7 @@
 typedef struct DynamicsSettings {
     float gravity[3];
     float air_density;
-    SingeSolverDef solver; ///< substeps 0: as many as the sheets' stiffness needs
+    SingeSolverDef solver; ///< substeps 0: as many as stiffness and load need
     SingeContactDef contact;
     float time_step; ///< s
     SingeInstructions instructions;

@@ -124,7 +124,7 @@ float stiffness_compliance(Stiffness *stiffness, uint32_t spring) {
     return compliance > stiffness->own ? compliance - stiffness->own : 0;
 }
 
-int stiffness_substeps(const Shell *shell, float h, float regularisation) {
+int stiffness_substeps(const Shell *shell, float h, float regularisation, float gravity) {
     const float softness = COUPLING + regularisation;
     float count = 1;
     for (uint32_t i = 0; i < shell->sheet_count; i++) {
@@ -136,7 +136,9 @@ int stiffness_substeps(const Shell *shell, float h, float regularisation) {
             min = fminf(min, compliance * thickness_share(shell, sheet, centre));
         }
 
-        if (sheet->cell_count > 0) count = fmaxf(count, ceilf(h * sqrtf(softness / (min * mass))));
+        if (sheet->cell_count == 0) continue;
+        count = fmaxf(count, ceilf(h * sqrtf(softness / (min * mass))));
+        count = fmaxf(count, ceilf(sqrtf(shell_load(shell, i, gravity) / shell_carried(shell, i, h))));
     }
 
     return count < STIFFNESS_MAX ? (int)count : STIFFNESS_MAX;

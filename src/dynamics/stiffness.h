@@ -28,7 +28,7 @@ void stiffness_begin(const Shell *shell, SingeColour colour, float h, const Sing
 float stiffness_compliance(Stiffness *stiffness, uint32_t spring);
 
 /// The smallest number of substeps in a step of h seconds for which all red springs of this regularisation can be as
-/// stiff as they should.
-int stiffness_substeps(const Shell *shell, float h, float regularisation);
+/// stiff as they should, and sheets carry what a plume asks of them.
+int stiffness_substeps(const Shell *shell, float h, float regularisation, float gravity);
 
 #endif

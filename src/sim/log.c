@@ -24,7 +24,7 @@ static void sim_log_solver(const SingeSim *sim) {
     const char *each = solver->method == SINGE_SOLVER_ALL_AT_ONCE ? "system" : "colour";
     if (solver->method == SINGE_SOLVER_STRAND) {
         if (solver->substeps == 0)
-            sim_log(sim, SINGE_LOG_INFO, "solver: %d substeps for the sheets' stiffness",
+            sim_log(sim, SINGE_LOG_INFO, "solver: %d substeps for the sheets' stiffness and load",
                     dynamics_plan_substeps(sim->dynamics));
         return;
     }
@@ -56,10 +56,20 @@ void sim_log_commit(const SingeSim *sim) {
         const Sheet *sheet = &sim->shell.sheets[s];
         sim_log(sim, SINGE_LOG_INFO, "sheet %u: cells of %.3g mm, its front %.3g times as thick as a real one", s,
                 1e3 * (double)sheet->cell_size, (double)sim->thickening[s]);
+        const float carried = shell_carried(&sim->shell, s, h), load = shell_load(&sim->shell, s, gravity);
         if (sim->tear)
             sim_log(sim, SINGE_LOG_INFO,
                     "sheet %u: tears at line forces up to %.3g N/m; substeps of %.3g ms carry no more", s,
-                    (double)tear_carried(&sim->shell, s, h), 1e3 * (double)h);
+                    (double)carried, 1e3 * (double)h);
+
+        // a sheet that hangs from its upper border; less by a factor of two gives stretch that is seen and no tear
+        const float times = sqrtf(load / carried);
+        if (sim->tear && sim->gas && times > 2)
+            sim_log(
+                sim, SINGE_LOG_WARNING,
+                "sheet %u: hanging in its plume it carries about %.2g N/m, and its substeps %.2g: it will stretch and "
+                "may tear; %d substeps carry that",
+                s, (double)load, (double)carried, (int)ceilf(times * (float)dynamics_plan_substeps(sim->dynamics)));
         if (gravity * h * h > fall_max * sheet->cell_size)
             sim_log(sim, SINGE_LOG_WARNING,
                     "sheet %u: a substep of %.3g ms is long for cells of %.3g mm: the sheet will stretch; "

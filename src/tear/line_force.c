@@ -7,7 +7,7 @@
 //   share 1     for red and yellow springs, and springs at the border; 1/2 for springs of two cells
 //
 // Where an edge or a cell's diagonal is EDGE_STRETCH times as long as at rest, as in threads of char that carry more
-// than substeps can hold (T in tear_step.c), its ends tear, whatever their strength.
+// than substeps can hold (shell/carried.c), its ends tear, whatever their strength.
 //
 // Both layers are included: N is that of the sheet. It is filtered over time, so that loads shorter than some
 // milliseconds tear nothing,

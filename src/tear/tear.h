@@ -16,9 +16,6 @@ typedef struct TearPlan TearPlan;
 SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPlan **plan);
 void tear_plan_free(Memory *memory, TearPlan *plan);
 
-/// N/m, the max line force that a sheet's substeps can hold; above it the sheet stretches (tear_step.c).
-float tear_carried(const Shell *shell, uint32_t sheet, float h);
-
 /// Sets a sheet's strength for this step from the distance at which it is held, over its geodesic length.
 void tear_stretched(TearPlan *plan, uint32_t sheet, float stretch);
 

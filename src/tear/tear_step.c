@@ -15,15 +15,9 @@
 // the cells' orientation, and tears prefer weaker parts of the sheet. The random numbers are multiples of the golden
 // section, one per split: they are distributed as evenly as possible, so that a tear stays close to its line.
 //
-// The max line force. A sheet under tension T vibrates transversely at 4 T/(rho s^2) at most, in (1/s)^2, which
-// substeps of h resolve while it is below about 1/h^2. If a sheet is pulled apart farther, projections can hold it only
-// to
-//
-//   T = 0.2 rho s^2/h^2     (measured: 0.19 to 0.35, from 20 to 3 substeps of 1/480 s)
-//
-// with its mass per area rho, and it stretches. Its own weight needs far less. But if it is held farther apart than its
-// geodesic length, by more than paper stretches before it breaks, it must tear though it is stronger: all its fresh
-// strengths are then lowered by one factor, so that the smallest is half of this.
+// Substeps carry a line force T (shell/carried.c); pulled apart farther, a sheet stretches. If it is held farther apart
+// than its geodesic length, by more than paper stretches before it breaks, it must tear though it is stronger: all its
+// fresh strengths are then lowered by one factor, so that the smallest is half of T.
 #include "common/float4.h"
 #include "common/real.h"
 #include "common/random.h"
@@ -32,7 +26,6 @@
 #include <math.h>
 #include <string.h>
 
-static const float STEP_CARRIES = 0.2f;
 static const float STRETCH_MAX = 1.03f; ///< paper breaks at 2 to 4 %
 
 /// In TearPlan.leader.
@@ -40,17 +33,6 @@ static const float STRETCH_MAX = 1.03f; ///< paper breaks at 2 to 4 %
 
 /// Min line force across an edge that tears, over N_1. Edges within 10 degrees of N_1's direction carry less.
 static const float EDGE_MIN = 0.03f;
-
-float tear_carried(const Shell *shell, uint32_t index, float h) {
-    const Sheet *sheet = &shell->sheets[index];
-    double mass = 0, area = 0;
-    for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
-        mass += 2 * (double)shell->matter.mass[shell_centre(shell, c)];
-        area += (double)shell->matter.area[shell_centre(shell, c)];
-    }
-
-    return (float)(mass / area) * sheet->cell_size * sheet->cell_size / (h * h) * STEP_CARRIES;
-}
 
 /// A sheet's smallest strength.
 static float weakest(const Sheet *sheet, Field strength) {
@@ -90,7 +72,7 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         float strength = weakest(&shell->sheets[s], shell->matter.strength);
         plan->safe = float_min(plan->safe, weakest(&shell->sheets[s], shell->matter.char_strength));
-        plan->min[s] = isinf(strength) ? 1 : float_min(1, 0.5f * tear_carried(shell, s, h) / strength);
+        plan->min[s] = isinf(strength) ? 1 : float_min(1, 0.5f * shell_carried(shell, s, h) / strength);
         plan->safe = float_min(plan->safe, strength * plan->min[s] * (shell_holds_water(shell) ? TEAR_WET : 1));
         plan->weakened[s] = 1;
     }

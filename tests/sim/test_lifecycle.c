@@ -282,6 +282,38 @@ TEST(warns_once_of_conduction_cut_short) {
     singe_sim_destroy(sim);
 }
 
+typedef struct HeardSubsteps {
+    int asked, chosen; ///< substeps that a warning asks for, and that the solver chose
+} HeardSubsteps;
+
+static void hear_substeps(void *context, SingeLogLevel level, const char *line) {
+    HeardSubsteps *heard = context;
+    const char *asks = strstr(line, "may tear; "), *chooses = strstr(line, "solver: ");
+    if (level == SINGE_LOG_WARNING && asks) sscanf(asks, "may tear; %d", &heard->asked);
+    if (chooses) sscanf(chooses, "solver: %d", &heard->chosen);
+}
+
+/// Tissue in a plume: the default's three substeps do not carry it, and a warning says how many do. So many are quiet, and
+/// are chosen if the scene leaves it to the solver, which by stiffness alone would take 1. Office paper needs no warning.
+TEST(substeps_follow_from_mass_and_load) {
+    HeardSubsteps heard[4] = {{0}};
+    for (int k = 0; k < 4; k++) {
+        SingeSimDef def = singe_default_sim();
+        def.solver.tearing = def.gas.enabled = true;
+        def.solver.substeps = k == 1 ? heard[0].asked : k == 2 ? 0 : 3;
+        def.log = (SingeLog){hear_substeps, &heard[k]};
+        SingeMaterialDef material = singe_default_material();
+        material.grammage = singe_param(k == 3 ? 0.08f : 0.02f);
+        material.compliance[SINGE_RED] = singe_param(1e3f); // soft
+        singe_sim_destroy(test_sim(&def, test_grid(60, 60, 0.00125f, 0.00125f), &material));
+    }
+    print_message("asked for %d, then %d; chosen %d\n", heard[0].asked, heard[1].asked, heard[2].chosen);
+    assert_in_range(heard[0].asked, 6, 10);
+    assert_int_equal(heard[1].asked, 0);
+    assert_int_equal(heard[2].chosen, heard[0].asked);
+    assert_int_equal(heard[3].asked, 0);
+}
+
 TEST(every_byte_is_counted_and_freed) {
     TestAllocator hook = {0};
     SingeSimDef def = scene_def();
