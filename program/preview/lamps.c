@@ -111,6 +111,11 @@ void light_gather(Preview *preview) {
     scene->lights = (EmberLights){.x = {0}};
     for (int k = 0; k < LIGHT_LIMIT; k++) scene->lights.softness[k] = 1;
 
+    const Float3 lamp = float3_scale(float3_load(preview->def.lamp_colour), FILM_SPEED);
+    const float radius = maxf(preview->def.lamp_radius, 1e-4f);
+    if (float3_luminance(lamp) > 0)
+        add_light(scene, float3_load(preview->def.lamp_position), lamp, 0.3f * radius * radius, radius);
+
     for (uint32_t k = 0; k < preview->shape_count && scene->light_count < LIGHT_LIMIT / 2; k++) {
         const PreviewShape *shape = &preview->shapes[k];
         if (!(shape->temperature > BLACKBODY_MIN) || shape->kind == SINGE_COLLIDER_PLANE) continue;

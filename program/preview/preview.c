@@ -65,6 +65,7 @@ static SingeResult check_rows(const PreviewDef *def, SingeError *error) {
     {#target, TYPE(def->target), length, range},
 #define PREVIEW_CAMERA PREVIEW_MAIN
 #define PREVIEW_LIGHT PREVIEW_MAIN
+#define PREVIEW_LAMP PREVIEW_MAIN
 #define PREVIEW_ENVIRONMENT PREVIEW_MAIN
 #define PREVIEW_GROUND PREVIEW_MAIN
     const struct {

@@ -63,6 +63,9 @@ typedef struct PreviewDef {
     float sun_direction[3]; ///< towards the light, any length > 0
     float sun_angle;        ///< radians, apparent radius: how soft shadows are
     float sun_colour[3];    ///< of about 2.2 with a sky of 0.4, white paper comes to 230 of 255
+    float lamp_position[3]; ///< m, of a near lamp
+    float lamp_radius;      ///< m, > 0: how soft its shadows are
+    float lamp_colour[3];   ///< of its light at 1 m; 0: none
     float sky_colour[3];    ///< ambient light from above
     PreviewSky sky;
     const Image *sky_picture; ///< latitudes from the top, longitudes around z; its centre is towards +y

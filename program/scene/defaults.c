@@ -27,6 +27,7 @@ static void default_preview(ScenePreview *preview) {
     SET_##TYPE(preview->camera.member, standard)
 #define PREVIEW_LIGHT(TYPE, key, member, target, length, dimension, standard, range, text) \
     SET_##TYPE(preview->member, standard)
+#define PREVIEW_LAMP PREVIEW_LIGHT
 #define PREVIEW_ENVIRONMENT PREVIEW_LIGHT
 #define PREVIEW_GROUND PREVIEW_LIGHT
 #define PREVIEW_MAIN PREVIEW_LIGHT

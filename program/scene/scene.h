@@ -216,6 +216,7 @@ typedef struct ScenePreview {
     SceneCameraKey *camera_keys;
     bool camera_given; ///< its eye or target; otherwise scene_frame places it
     float light_direction[3], light_angle, light_colour[3];
+    float lamp_position[3], lamp_radius, lamp_colour[3];
     float sky[3];
     PreviewSky environment; ///< of the sky, if it has no picture
     SceneFile environment_picture;

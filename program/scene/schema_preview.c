@@ -48,6 +48,20 @@ static const Schema schema_light = {
     .title = "the light", .size = sizeof(ScenePreview), ROWS(light_rows), .doc = "One distant light."};
 
 #define OF ScenePreview
+#define PREVIEW_LAMP(TYPE, key, member, target, length, dimension, standard, range, text) \
+    AS_ROW_AT(#key, TYPE, member, length, dimension, ALWAYS, text, range)
+static const SchemaRow lamp_rows[] = {
+#include "preview/preview.def"
+};
+#undef OF
+static const Schema schema_lamp = {
+    .title = "the lamp",
+    .size = sizeof(ScenePreview),
+    ROWS(lamp_rows),
+    .doc =
+        "A lamp near the sheets, with soft shadows; its light falls with the square of the distance. It is not drawn."};
+
+#define OF ScenePreview
 #define PREVIEW_ENVIRONMENT(TYPE, key, member, target, length, dimension, standard, range, text) \
     AS_ROW_AT(#key, TYPE, member, length, dimension, ALWAYS, text, range)
 static const SchemaRow environment_rows[] = {
@@ -93,6 +107,7 @@ static const SchemaRow preview_rows[] = {
     {"camera_path", ROW_LIST, DIM_NONE, AT(ScenePreview, camera_keys), EXTRA(ScenePreview, camera_key_count),
      .sub = &schema_camera_key, .doc = "where the camera is when, and what it focuses; empty: it stands still"},
     {"light", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_light, .doc = "the distant light"},
+    {"lamp", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_lamp, .doc = "a near lamp"},
     {"environment", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_environment,
      .doc = "distribution of the sky's light"},
     {"ground", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_ground, .doc = "the floor"},

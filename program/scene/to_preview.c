@@ -16,6 +16,7 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
         .thread_count = 1,
         .camera = preview->camera,
         .sun_angle = preview->light_angle,
+        .lamp_radius = preview->lamp_radius,
         .ground_height = preview->ground_height,
         .exposure = preview->exposure,
         .hottest = preview->hottest,
@@ -39,6 +40,8 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
     scene_camera(scene, 0, &def->camera);
     memcpy(def->sun_direction, preview->light_direction, sizeof def->sun_direction);
     memcpy(def->sun_colour, preview->light_colour, sizeof def->sun_colour);
+    memcpy(def->lamp_position, preview->lamp_position, sizeof def->lamp_position);
+    memcpy(def->lamp_colour, preview->lamp_colour, sizeof def->lamp_colour);
     memcpy(def->sky_colour, preview->sky, sizeof def->sky_colour);
     memcpy(def->ground_colour, preview->ground_colour, sizeof def->ground_colour);
     memcpy(def->background, preview->background, sizeof def->background);

@@ -89,6 +89,29 @@ TEST(a_sheet_before_a_flame_shines_through) {
     assert_true(ink < 0.4f * white[2]);
 }
 
+/// A near lamp lights what is below it, less with the square of the distance, and not what a sheet hides from it.
+TEST(a_lamp_lights_what_is_near) {
+    static float beauty[W * H][3];
+    Float4 q;
+    SingeSurface nothing = {0};
+    PreviewDef def = at_night();
+    float share = 0, seen[4];
+    const float height[4] = {0, 0.15f, 0.3f, 0.15f};
+    def.ground_gloss = 0, def.transmittances = &share, def.sheet_count = 1;
+    quad_make(&q, 0.03f, 0.1f);
+    for (int k = 0; k < 4; k++) {
+        for (int c = 0; c < 3; c++) def.lamp_colour[c] = k ? 0.05f : 0;
+        def.lamp_position[2] = height[k], def.lamp_radius = 0.01f;
+        def.camera.eye[1] = -0.5f, def.camera.up[2] = 1; // past the sheet
+        see(&def, k == 3 ? &q.surface : &nothing, NULL, beauty);
+        seen[k] = box(beauty, W / 2, H / 2);
+    }
+    print_message("lamp: none %.4f, at 15 cm %.4f, at 30 cm %.4f, behind a sheet %.4f\n", (double)seen[0],
+                  (double)seen[1], (double)seen[2], (double)seen[3]);
+    assert_float_equal((seen[1] - seen[0]) / (seen[2] - seen[0]), 4, 0.3);
+    assert_true(seen[3] < seen[0] + 0.1f * (seen[1] - seen[0]));
+}
+
 /// A glossy ground mirrors a glowing ball: the camera looks at its image. A dull ground, as all were, breaks the bar.
 TEST(a_glossy_ground_mirrors_embers) {
     static float beauty[W * H][3];
