@@ -120,6 +120,8 @@ Float3 background_colour(const Preview *preview, Float3 direction) {
 
 /// Crumbs of pale ash and of char, one or none in each square of two lattices, as they lie where the stain is full.
 static void crumbs(const Preview *preview, Float3 position, float footprint, Table *table) {
+    const float often =
+        0.4f * clampf(0.8f + 1.4f * noise2(position.x * 26, position.y * 26, preview->def.seed), 0.05f, 1.6f);
     for (uint32_t k = 0; k < 2; k++) {
         const float wide = k ? 0.0019f : 0.0052f;
         float fx, fy, shown = visible(0.4f * wide, footprint);
@@ -127,7 +129,7 @@ static void crumbs(const Preview *preview, Float3 position, float footprint, Tab
         int i = noise_floor(position.x / wide + 0.37f * (float)k, &fx);
         int j = noise_floor(position.y / wide + 0.61f * (float)k, &fy);
         uint32_t key = sample_key(i, j, preview->def.seed + 311 + k);
-        if (hash_unit(key) > 0.4f) continue;
+        if (hash_unit(key) > often) continue;
         float x = fx - mixf(0.35f, 0.65f, hash_unit(key + 1)), y = fy - mixf(0.35f, 0.65f, hash_unit(key + 2));
         float turn = 2 * PI_F * hash_unit(key + 3), around = atan2f(y, x);
         float size = mixf(0.08f, 0.33f, hash_unit(key + 4) * hash_unit(key + 5));

@@ -12,11 +12,11 @@
 enum {
     STAIN_LIMIT = 320, ///< cells along a side
     STAIN_RIM = 14,    ///< of them free around the sheets
-    STAIN_REACH = 12,  ///< cells over which a mean is taken, to each side
+    STAIN_REACH = 24,  ///< cells over which a mean is taken, to each side
 };
 #define STAIN_CELL 0.8e-3f ///< m, the least
 #define STAIN_SOFT 2.2e-3f ///< m
-#define STAIN_INSET 0.05f  ///< of a sheet's larger side, over which its border fades
+#define STAIN_INSET 0.07f  ///< of a sheet's larger side, over which its border fades
 #define STAIN_NEAR 1.5e-3f ///< m above the ground: what lies there stains fully
 #define STAIN_FAR 9e-3f    ///< and what is as high not at all
 
