@@ -227,7 +227,7 @@ SingeResult preview_set_camera(Preview *preview, const PreviewCamera *camera, Si
     PreviewDef def = preview->def;
     def.camera = *camera;
     SingeResult result = check_rows(&def, error);
-    if (!result) result = check_camera(camera, error);
+    if (!result) result = check_view(&def, error);
     if (result) return result;
     preview->def.camera = *camera;
     preview->camera = camera_make(&preview->def);
