@@ -266,6 +266,51 @@ static bool make_values(Plan *plan, uint64_t rows) {
     return plan->values;
 }
 
+/// Whether two values are the same to a scene, as 2, 2.0 and "2" are.
+static bool values_agree(const char *a, const char *b) {
+    bool in_word = false;
+    for (;;) {
+        a += strspn(a, " \"");
+        b += strspn(b, " \"");
+        double x, y;
+        const uint8_t *after_a = (const uint8_t *)a, *after_b = (const uint8_t *)b;
+        if (!in_word && number_double(&after_a, after_a + strlen(a), &x) == NUMBER_OK &&
+            number_double(&after_b, after_b + strlen(b), &y) == NUMBER_OK) {
+            if (x != y) return false;
+            a = (const char *)after_a;
+            b = (const char *)after_b;
+            continue;
+        }
+
+        if (*a != *b) return false;
+        if (!*a) return true;
+        in_word = !strchr(" [{,:", *a);
+        a++;
+        b++;
+    }
+}
+
+/// Finds values that make two rows the same: of a parameter of a grid, or of all of a list. `message` names them.
+static void find_equal_rows(const Plan *plan, uint32_t *parameter, char *message, size_t size) {
+    uint32_t stride = 1; // rows between two values of a grid's parameter; the last one varies fastest
+    for (uint32_t p = plan->parameter_count; p-- > 0 && !*message;) {
+        const bool list = plan->method == PLAN_LIST;
+        const uint32_t count = choices(&plan->parameters[p]);
+        *parameter = list ? 0 : p;
+        for (uint32_t b = 1; b < count && !*message; b++)
+            for (uint32_t a = 0; a < b && !*message; a++) {
+                bool same = values_agree(plan_value(plan, a * stride, p), plan_value(plan, b * stride, p));
+                for (uint32_t q = 0; q < p && list && same; q++)
+                    same = values_agree(plan_value(plan, a, q), plan_value(plan, b, q));
+                if (same)
+                    snprintf(message, size, "%s %u and %u are the same: %.60s", list ? "rows" : "values", a + 1, b + 1,
+                             shown(plan_value(plan, b * stride, p)).text);
+            }
+        if (list) return;
+        stride *= count;
+    }
+}
+
 /// Every combination, or the n-th values of all parameters. `message` says why there are none, about `parameter`.
 static void make_chosen(Plan *plan, uint32_t *parameter, char *message, size_t size) {
     const bool list = plan->method == PLAN_LIST;
@@ -299,6 +344,7 @@ static void make_chosen(Plan *plan, uint32_t *parameter, char *message, size_t s
                          : range_text(plan, &plan->parameters[p], (double)index / (plan->parameters[p].steps - 1));
             rest /= count;
         }
+    if (!arena_failed(plan->arena)) find_equal_rows(plan, parameter, message, size);
 }
 
 /// Random values; without memory the arena has failed.
@@ -439,16 +485,42 @@ static bool path_covers(const char *a, const char *b) {
     }
 }
 
-/// Refuses parameters that replace each other or what `set` gives. A parameter may be a part of what `set` gives.
-static void check_overlaps(PlanReader *reader) {
+/// What a set value has at the path, which begins with `skipped`, the set's own: a value without parts where the path
+/// goes on, or NULL.
+static const YamlNode *path_blocked(const YamlNode *node, const char *skipped, const char *path) {
+    const char *step;
+    while (path_step(&skipped, &step)) path_step(&path, &step);
+    for (size_t length; node && (length = path_step(&path, &step));) {
+        const YamlNode *child = node->first;
+        if (node->kind == NODE_VALUE) return node;
+        if (node->kind == NODE_LIST)
+            for (unsigned long index = strtoul(step, NULL, 10); child && index; index--) child = child->next;
+        else
+            while (child && (strlen(child->key) != length || memcmp(child->key, step, length) != 0))
+                child = child->next;
+        node = child;
+    }
+    return NULL;
+}
+
+/// Refuses parameters that replace each other or what `set` gives. A parameter may be a part of what `set` gives as a map.
+static void check_overlaps(PlanReader *reader, const YamlNode *set) {
     const Plan *plan = reader->plan;
     for (uint32_t p = 0; p < plan->parameter_count; p++) {
         const PlanParameter *parameter = &plan->parameters[p];
-        for (uint32_t i = 0; i < plan->set_count; i++)
+        const YamlNode *given = set ? set->first : NULL;
+        for (uint32_t i = 0; i < plan->set_count; i++, given = given->next) {
+            const bool inside = path_covers(plan->sets[i], parameter->key);
+            const YamlNode *word = inside ? path_blocked(given, plan->sets[i], parameter->key) : NULL;
             if (path_covers(parameter->key, plan->sets[i]))
                 message_add(&reader->messages, &reader->text, parameter->key_location,
-                            "'%s' replaces what 'set' gives in line %d; give one of them", shown(parameter->key).text,
+                            "'%s' is already set in line %d; remove one", shown(parameter->key).text,
                             plan->set_locations[i].line);
+            if (word)
+                message_add(&reader->messages, &reader->text, word->location,
+                            "'%s' sets a part of this, so 'set' must give a map, such as {base: %s}",
+                            shown(parameter->key).text, shown(word->text).text);
+        }
         for (uint32_t q = 0; q < p; q++)
             if (path_covers(parameter->key, plan->parameters[q].key) ||
                 path_covers(plan->parameters[q].key, parameter->key))
@@ -471,7 +543,7 @@ static void read_plan(PlanReader *reader, bool fit) {
 
     if (!check_once(reader, root, "the plan")) return;
     for (const YamlNode *node = root->first; node; node = node->next) read_key(reader, node);
-    if (!arena_failed(plan->arena)) check_overlaps(reader);
+    if (!arena_failed(plan->arena)) check_overlaps(reader, node_find(root, "set"));
 
     const bool drawn = plan->method == PLAN_RANDOM || plan->method == PLAN_LATIN_HYPERCUBE;
     if (!plan->scene) message_add(messages, text, root->location, "a plan needs 'scene'");

@@ -116,10 +116,19 @@ class Sweep(Case):
             ("parameters:\n  pace: {from: 1, to: 2, from: 2, steps: 2}\n", 3, "'from' is given twice in a range"),
             ("set: {fps: 24, fps: 25}\nparameters: {pace: [1]}\n", 2, "'fps' is given twice in set"),
             ("parameters: {pace: [1]}\nscene: tiny.yaml\n", 3, "'scene' is given twice in the plan"),
-            ("set: {pace: 3}\nparameters:\n  pace: [1]\n", 4, "'pace' replaces what 'set' gives in line 2"),
-            ("set: {'sources[0].start': 1}\nparameters:\n  sources.00.start: [1]\n", 4, "replaces what 'set' gives"),
-            ("set: {gas.cell_size: 1 cm}\nparameters:\n  gas: [no]\n", 4, "'gas' replaces what 'set' gives"),
+            ("set: {pace: 3}\nparameters:\n  pace: [1]\n", 4, "'pace' is already set in line 2"),
+            ("set: {'sources[0].start': 1}\nparameters:\n  sources.00.start: [1]\n", 4, "is already set"),
+            ("set: {gas.cell_size: 1 cm}\nparameters:\n  gas: [no]\n", 4, "'gas' is already set"),
             ("parameters:\n  gas: [no]\n  gas.cell_size: [1 cm]\n", 4, "set the same value"),
+            ("parameters:\n  fps: [24]\n  pace: [1, 2, 2.0]\n", 4, "values 2 and 3 are the same: 2.0"),
+            ("parameters:\n  pace: [2, 3, \"2\"]\n", 3, "values 1 and 3 are the same"),
+            ("parameters:\n  wind.velocity: [[0, 1, 2], [0, 1.0, 2 ]]\n", 3, "values 1 and 2 are the same"),
+            ("parameters:\n  sheets.0.grid.seed: {from: 1, to: 4, steps: 5, whole: yes}\n", 3, "values 3 and 4"),
+            ("method: list\nparameters:\n  fps: [24, 25, 24]\n  pace: [2, 2, 2.0]\n", 4, "rows 1 and 3 are the same"),
+            ("set: {fps: 24, sheets.0.material: newsprint}\nparameters:\n  sheets[0].material.grammage: [0.04]\n", 2,
+             "'sheets[0].material.grammage' sets a part of this, so 'set' must give a map, such as {base: newsprint}"),
+            ("set:\n  sheets.0:\n    material: newsprint\nparameters:\n  sheets.0.material.grammage: [0.04]\n", 4,
+             "such as {base: newsprint}"),
         ):
             with self.subTest(text):
                 self.write_plan(text)
@@ -217,7 +226,7 @@ class Sweep(Case):
         self.assertEqual(len(self.table("report.csv")), 3)
         self.assertEqual([step["name"] for step in json.loads(self.sweep("--openjd")[0])["steps"]], ["Report"])
         self.assertIn("exclude each other", self.sweep("--openjd", "--print", expect=2)[1])
-        self.assertIn("'{{' in a name", self.sweep("--openjd", out="a {{Task.Param.Row}}", expect=2)[1])
+        self.assertIn("reserves '{{'", self.sweep("--openjd", out="a {{Task.Param.Row}}", expect=2)[1])
 
     def test_another_plan_or_scene_is_noticed(self):
         self.write_plan("parameters:\n  pace: [2, 5]\n")
