@@ -1,8 +1,8 @@
 #!/bin/bash
-# Data flows one way (docs/architecture.md): checks every #include against the table below.
+# Data flows one way: checks every #include against the table below, which is the only list of these rules.
 #   check_arrows.sh [ROOT]
 # The first word of a row is a folder. The others are what its files may include, besides their own folder and
-# include/singe: folders, or single headers. Nothing else may see a folder: only tests see all of them.
+# include/singe: folders, or single headers. No other file may include from that folder, except tests, which may include all.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 

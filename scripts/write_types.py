@@ -41,6 +41,8 @@ def arguments(text):
 def rows(text):
     """(macro, arguments) of each row of a table."""
     text = re.sub(r"//[^\n]*", "", text)
+    for name, bits in re.findall(r"^#define (SINGE_\w+) \\\n *\((.*)\)", text, re.MULTILINE):
+        text = re.sub(rf"\b{name}\b", re.sub(r"1u << (\w+)", r"BIT(\1)", bits), text)  # a set of kinds
     for match in re.finditer(r"^SINGE_(FIELD|APART|HIDDEN|HOOK|COUNT|OTHER|WORD|DIMENSION|PARAM|PARAM_BACK|PARAM_COLOURS|SCALAR)\(", text, re.MULTILINE):
         depth, i, quoted = 1, match.end(), False
         while depth:

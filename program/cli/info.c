@@ -6,6 +6,7 @@
 
 #include "cli/args.h"
 #include "cli/folder.h"
+#include "cli/job.h"
 #include "cli/lock.h"
 #include "cli/text.h"
 #include "common/printable.h"
@@ -67,8 +68,7 @@ static ExitCode book_open(Book *book, Console *console, const char *folder) {
         book->done = number_member(json, size, "frames_done");
     }
     const bool good = !result && value_names_files(book->name) && book->frames > 0;
-    if (!result && !good)
-        console_error(console, "%s is not the record of a run, or it is damaged", shown_path(path).text);
+    if (!result && !good) job_refuse_record(console, path);
     free(path);
     return good ? EXIT_GOOD : EXIT_INPUT;
 }
@@ -221,7 +221,7 @@ int command_clean(int argc, char **argv) {
     SingeError error = {0};
     ExitCode code = book_open(&book, &console, path);
     if (!code && book.done < 1) {
-        console_error(&console, "%s/run.json lists no frames: the run has not ended, or was killed; --resume ends it",
+        console_error(&console, "%s/run.json lists no frames: the run is unfinished; complete it with --resume",
                       shown_path(path).text);
         code = EXIT_INPUT;
     }

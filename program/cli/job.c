@@ -221,6 +221,10 @@ char *job_recorded_path(const char *folder) {
     return path;
 }
 
+void job_refuse_record(Console *console, const char *path) {
+    console_error(console, "%s is not the record of a run, or it is damaged", shown_path(path).text);
+}
+
 ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetList *sets, int threads) {
     SingeError error = {0};
     Bytes bytes = {0};
@@ -239,10 +243,10 @@ ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetLis
         text_json_member(json, bytes.size, "scene_folder", &scene_folder, &folder_size)) {
         char *base = text_json_unquote(scene_folder, folder_size);
         if (base) code = job_parse(job, console, record, scene, scene_size, base, sets, threads);
-        else console_error(console, "%s: bad \"scene_folder\"", record);
+        else job_refuse_record(console, record);
         free(base);
     } else {
-        console_error(console, "%s is not a record of a run: no \"scene\" and \"scene_folder\"", record);
+        job_refuse_record(console, record);
     }
     bytes_free(&bytes);
     free(record);

@@ -45,6 +45,9 @@ ExitCode job_parse(Job *job, Console *console, const char *name, const char *tex
 /// The scene's path in the record of a run's folder, from malloc; NULL if the folder is none.
 char *job_recorded_path(const char *folder);
 
+/// Says that FOLDER/run.json, at `path`, is damaged or something else.
+void job_refuse_record(Console *console, const char *path);
+
 /// Reads the scene in a run's record, FOLDER/run.json.
 ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetList *sets, int threads);
 

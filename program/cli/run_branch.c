@@ -1,4 +1,4 @@
-// A run that goes on from a frame of an earlier one: `singe run SCENE --from DIR:FRAME`.
+// A run that continues from a frame of an earlier one: `singe run SCENE --from DIR:FRAME`.
 //
 // The earlier run is found as its record describes it, and its simulation at that frame: from the nearest checkpoint
 // before, or from the start, with the scene that it had. Its drawn surface must be that of the frame in the cache. Only
@@ -124,7 +124,7 @@ static ExitCode read_record(Run *run, const char *folder) {
         run->record.from = lineage_text(folder, branch->frame, at);
         if (!run->record.from) code = EXIT_FAILED;
     } else {
-        console_error(run->console, "%s is not the record of a run, or it is damaged", shown_path(path).text);
+        job_refuse_record(run->console, path);
     }
     bytes_free(&bytes);
     free(base);
@@ -399,7 +399,7 @@ SingeResult branch_fill(Run *run, SingeError *error) {
     run->wall_before = run->totals->wall_seconds;
     run->record.resumed_from = run->record.frames_done = branch->frame;
     run->first = branch->frame + 1;
-    console_note(run->console, "going on from frame %d of %s", branch->frame, from->path);
+    console_note(run->console, "continuing from frame %d of %s", branch->frame, from->path);
 
     // the checkpoint at the branch is kept, as no other has its scene and its frame
     result = run_write_checkpoint(run, (Progress){branch->frame, 0}, error);
@@ -445,7 +445,7 @@ SingeResult run_keep_checkpoint(Run *run, int frame, SingeError *error) {
     const double most = 1e6 * (double)run->job.scene->checkpoints.megabytes;
     if (result || most <= 0) return result;
 
-    // every second one goes until the rest fit
+    // every second one is deleted until the rest fit
     const char *from = run->record.from;
     const int branch = from ? ancestor_frame((Ancestor){from, strlen(from)}) : 0;
     KeptSizes sizes = {run->keep_every, branch, 0, NULL};

@@ -264,7 +264,7 @@ static ExitCode find_folder(Verify *verify, const char *path) {
     size_t size;
     if (text_json_member(json, bytes.size, "name", &value, &size)) name = text_json_unquote(value, size);
     if (name) verify->folder = folder_name(path, name);
-    else console_error(&verify->console, "%s is not the record of a run: it has no \"name\"", record);
+    else job_refuse_record(&verify->console, record);
     verify->crossed = text_json_member(json, bytes.size, "totals", &totals, &size) &&
                       text_json_member(totals, size, "crossed_at_start", &value, &size) && size && *value >= '1' &&
                       *value <= '9';

@@ -1,5 +1,6 @@
 // Checks that involve more than one key.
 #include "common/printable.h"
+#include "scene/schema_rows.h"
 #include "scene/values.h"
 
 #include <math.h>
@@ -67,13 +68,9 @@ void finish_sheet(Reader *reader, const YamlNode *map, void *object) {
 void finish_source(Reader *reader, const YamlNode *map, void *object) {
     SceneSource *source = object;
     if (!node_find(map, "kind")) return;
-    const SingeSourceKind kind = source->def.kind;
-    const bool moves = kind == SINGE_SOURCE_BALL || kind == SINGE_SOURCE_JET || kind == SINGE_SOURCE_VORTEX ||
-                       kind == SINGE_SOURCE_ATTRACT;
-    if (moves && !check_path(reader, map, source->keys, source->key_count))
-        complain(reader, map->location,
-                 source->def.kind == SINGE_SOURCE_BALL ? "a ball needs 'path' or 'position'"
-                                                       : "what moves air needs 'path' or 'position'");
+    const bool movable = SOURCES_MOVABLE & BIT(source->def.kind);
+    if (movable && !check_path(reader, map, source->keys, source->key_count))
+        complain(reader, map->location, "a source of this kind needs 'path' or 'position'");
     const YamlNode *end = node_find(map, "end");
     if (source->def.end < source->def.start)
         complain(reader, end ? end->location : map->location, "a source must not end before its start");
@@ -218,7 +215,7 @@ void finish_scene(Reader *reader, const YamlNode *map, void *object) {
     const YamlNode *isotropic = node_find(node_find(map, "solver"), "isotropic");
     if (isotropic && scene->sim.solver.isotropic && scene->sim.solver.method != SINGE_SOLVER_STRAND)
         complain(reader, isotropic->key_location,
-                 "'isotropic' needs the solver 'strand': the paper's have no such springs");
+                 "'isotropic' needs the solver 'strand': the paper's solvers lack its springs");
 
     const YamlNode *detail = node_find(node_find(map, "gas"), "detail");
     if (detail) scene->gas_detail_location = detail->location;
@@ -226,7 +223,7 @@ void finish_scene(Reader *reader, const YamlNode *map, void *object) {
     if (scene->pace_count) scene->sim.pace = fmaxf(scene->paces[0].value, SCENE_PACE_MIN);
     if (scene->pace_count && scene->burn_by.given)
         complain(reader, node_find(map, "burn_by")->key_location,
-                 "'burn_by' sets the pace, so 'pace' has no keys; give one number");
+                 "'burn_by' changes the pace, so 'pace' must be one number");
 
     bool many_sheets = sheets && sheets->count > 1000; // comparing their names would take long
     if (sheets && sheets->kind == NODE_LIST) {

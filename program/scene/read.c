@@ -30,7 +30,7 @@ static void read_list(Reader *reader, const SchemaRow *row, const YamlNode *node
     char *items = list_new(reader, object, row, node->count, schema->size);
     for (const YamlNode *child = node->first; items && child; child = child->next, items += schema->size) {
         if (schema->defaults && !schema->defaults(reader->arena, items)) return;
-        if (schema->location) *schema->location(items) = child->location;
+        if (schema->located) memcpy(items, &child->location, sizeof child->location);
         if (child->kind == NODE_MAP) {
             schema_read(reader, schema, child, items);
         } else {
@@ -70,7 +70,7 @@ static int read_field(Reader *reader, const SchemaRow *row, const YamlNode *map,
         const bool numbered = texture->kind == NODE_VALUE && texture->text && strchr(texture->text, '#');
         if (numbered && scene_param_lasts(row->key))
             message_add(reader->messages, reader->text, texture->location,
-                        "%s is fixed at the start: it takes one picture", row->key);
+                        "%s is fixed at the start: it accepts one picture only", row->key);
         if (numbered) part.flags = ROW_NUMBERED;
         field->kind = SINGE_FIELD_TEXTURE;
         value_file(reader, &part, texture, file);
@@ -110,7 +110,7 @@ static void read_keys(Reader *reader, const SchemaRow *row, const YamlNode *list
         row->key,           ROW_LIST,      DIM_NONE, AT(SceneFollowed, keys), EXTRA(SceneFollowed, key_count),
         .flags = ROW_KEYED, .sub = &schema};
     if (scene_param_lasts(row->key))
-        message_add(reader->messages, reader->text, list->location, "%s is fixed at the start: it has no keys",
+        message_add(reader->messages, reader->text, list->location, "%s is fixed at the start: it accepts no keys",
                     row->key);
     read_list(reader, &keys, list, followed);
     check_times(reader, list, followed->keys, sizeof *followed->keys, followed->key_count);

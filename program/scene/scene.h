@@ -249,7 +249,6 @@ typedef struct SceneCheckpoints {
 /// How much has burnt by when; the pace follows.
 typedef struct SceneBurnBy {
     bool given;
-    SceneLocation location;
     float fraction; ///< of the initial mass
     int frame;
 } SceneBurnBy;
@@ -415,7 +414,7 @@ SINGE_NODISCARD SingeResult scene_begin_step(const Scene *scene, SingeSim *sim, 
 SINGE_NODISCARD SingeResult scene_follow(const Scene *scene, SceneAssets *assets, SingeSim *sim, int frame,
                                          SingeError *error);
 
-// ---- branches: a scene goes on from a frame of another
+// ---- branches: a scene continues from a frame of another
 
 /// A scene with its files.
 typedef struct SceneWhole {

@@ -56,7 +56,7 @@ static const Schema schema_solver = {
 static const SchemaRow gas_rows[] = {
 #include "singe/gas.def"
     {"detail", ROW_INT, DIM_NONE, AT(Scene, gas_detail), WITHIN(1, PREVIEW_BAKE_MAX),
-     .doc = "above 1: `gas_detail/` has each frame on cells so many times finer along a side, with the tongues and "
+     .doc = "above 1: `gas_detail/` has each frame on cells finer by this factor along a side, with the tongues and "
             "streaks of our pictures, for other renderers ([formats.md](formats.md#the-gas))"},
 };
 #undef OF
@@ -88,20 +88,21 @@ static const SchemaRow checkpoints_rows[] = {
     {"every", ROW_INT, DIM_NONE, AT(SceneCheckpoints, every), WITHIN(0, 1000000),
      .doc = "keeps the checkpoints of frames N, 2N, 3N, ... in `checkpoints/`; 0: none"},
     {"megabytes", ROW_FLOAT, DIM_NONE, AT(SceneCheckpoints, megabytes), WITHIN(0, 1e9),
-     .doc = "what they may take: beyond it every second one goes. 0: any amount. Alone it begins with every 10 frames"},
+     .doc =
+         "disk limit in MB; above it, every second checkpoint is deleted. 0: no limit. Given alone, every 10th frame "
+         "is kept at first"},
 };
 static const Schema schema_checkpoints = {
     .title = "checkpoints",
     .size = sizeof(SceneCheckpoints),
     ROWS(checkpoints_rows),
     .doc =
-        "A run always keeps its last two checkpoints, to go on after an interruption. More of them let a branch begin "
-        "at once ([directing.md](directing.md)); without, it simulates the frames before it again."};
+        "A run always keeps its last two checkpoints, to resume from. With more, a branch begins at once ([directing.md](directing.md)); otherwise it first simulates the earlier frames again."};
 
 static const SchemaRow output_rows[] = {
     {"formats", ROW_FORMATS, DIM_NONE, AT(SceneOutput, formats),
      .doc =
-         "of the frames, each in a folder of its own ([formats.md](formats.md)); `ply` is the cache, which is always "
+         "formats of the frames, each in its own folder ([formats.md](formats.md)); `ply` is the cache, which is always "
          "written"},
     {"events", ROW_BOOL, DIM_NONE, AT(SceneOutput, events),
      .doc = "`events.csv`: ignitions, holes and pieces that come free, with time and position"},
@@ -129,19 +130,16 @@ static const Schema schema_pace = {.title = "a pace's entry",
 
 static const SchemaRow burn_by_rows[] = {
     {"fraction", ROW_FLOAT, DIM_FRACTION, AT(SceneBurnBy, fraction), .flags = ROW_REQUIRED, .min = 1e-3, .max = 1,
-     .doc = "of the mass at the start that is to be burnt or gone (`burnt_fraction` of `stats.csv`)"},
+     .doc = "share of the initial mass that is burnt or gone (`burnt_fraction` of `stats.csv`)"},
     {"frame", ROW_INT, DIM_NONE, AT(SceneBurnBy, frame), .flags = ROW_REQUIRED, .min = 2, .max = 1e6,
      .doc = "by this frame"},
 };
-static SceneLocation *burn_by_location(void *object) { return &((SceneBurnBy *)object)->location; }
 static const Schema schema_burn_by = {
     .title = "burn_by",
     .size = sizeof(SceneBurnBy),
     ROWS(burn_by_rows),
-    .location = burn_by_location,
     .doc =
-        "The pace follows the fire from frame to frame, between a thousandth and a thousand of `pace`, so that so much "
-        "has burnt by that frame. From then on it is `pace` again."};
+        "The pace follows the fire from frame to frame, between a thousandth and a thousand of `pace`, so that this share has burnt by that frame. From then on it is `pace` again."};
 
 #define OF Scene
 #define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
@@ -156,9 +154,9 @@ static const SchemaRow scene_rows[] = {
     {"fps", ROW_FLOAT, DIM_FRAME_RATE, AT(Scene, fps), .min = 1e-3, .max = 1e5, .doc = "frames per second"},
     {"steps", ROW_INT, DIM_NONE, AT(Scene, steps), WITHIN(1, 100000), .doc = "simulation steps per frame"},
     {"pace", ROW_LIST, DIM_NONE, AT(Scene, paces), EXTRA(Scene, pace_count), .sub = &schema_pace, .flags = ROW_KEYED,
-     .doc = "over time: slow motion, haste, and at 0 a fire that stands still; or a number"},
+     .doc = "over time, or a number: below 1 slow motion, above 1 fast; 0 freezes the fire"},
     {"burn_by", ROW_MAP, DIM_NONE, AT(Scene, burn_by), EXTRA(Scene, burn_by.given), .sub = &schema_burn_by,
-     .doc = "how much is to have burnt by which frame"},
+     .doc = "how much of the mass burns by a given frame"},
 #include "singe/sim.def"
     {"sheets", ROW_LIST, DIM_NONE, AT(Scene, sheets), EXTRA(Scene, sheet_count), .sub = &schema_sheet,
      .flags = ROW_REQUIRED, .doc = "sheets that burn, at least one"},
@@ -183,8 +181,8 @@ static const SchemaRow scene_rows[] = {
      .doc = "contact of sheets with themselves and each other"},
     {"preview", ROW_MAP, DIM_NONE, AT(Scene, preview), .sub = &schema_preview, .doc = "how frames are drawn"},
     {"checkpoints", ROW_MAP, DIM_NONE, AT(Scene, checkpoints), .sub = &schema_checkpoints,
-     .doc = "which of them are kept"},
-    {"output", ROW_MAP, DIM_NONE, AT(Scene, output), .sub = &schema_output, .doc = "what is written of them"},
+     .doc = "which checkpoints are kept"},
+    {"output", ROW_MAP, DIM_NONE, AT(Scene, output), .sub = &schema_output, .doc = "files for other programs"},
 };
 #undef OF
 const Schema schema_scene = {.title = "the scene",

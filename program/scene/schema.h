@@ -84,8 +84,7 @@ typedef struct Schema {
     bool (*defaults)(SceneArena *arena, void *object);
     /// Checks that involve several rows.
     void (*finish)(Reader *reader, const YamlNode *map, void *object);
-    /// Where the object stores its location; NULL if it does not.
-    SceneLocation *(*location)(void *object);
+    bool located; ///< an object begins with its SceneLocation
 } Schema;
 
 extern const Schema schema_scene;

@@ -43,8 +43,7 @@ static const SchemaRow motion_rows[] = {
             "stands still"},
     {"first", ROW_INT, DIM_NONE, AT(SceneMotion, first), WITHIN(0, 1e6), .doc = "number of the file of frame 1"},
     {"scale", ROW_FLOAT, DIM_NONE, AT(SceneMotion, scale), WITHIN(1e-6, 1e4), .doc = "times `units`"},
-    {"units", ROW_ENUM, DIM_NONE, AT(SceneMotion, units), .names = units_names,
-     .doc = "what the numbers of the files are"},
+    {"units", ROW_ENUM, DIM_NONE, AT(SceneMotion, units), .names = units_names, .doc = "unit of the files' numbers"},
     {"up", ROW_ENUM, DIM_NONE, AT(SceneMotion, up), .names = up_names,
      .doc = "the files' axis that points up; files whose y is up are turned by 90 degrees about x"},
 };
@@ -96,7 +95,6 @@ static const Schema schema_render_mesh = {
         "([render-meshes.md](render-meshes.md)). It is bound to the sheet by positions at rest, and burns and tears with "
         "it."};
 
-static SceneLocation *sheet_location(void *object) { return &((SceneSheet *)object)->location; }
 #define OF SceneSheet
 #define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
     AS_ROW_AT(#name, TYPE, name, length, dimension, kinds, text, range)
@@ -117,17 +115,17 @@ static const SchemaRow sheet_rows[] = {
     {"transmittance", ROW_FLOAT, DIM_FRACTION, AT(SceneSheet, transmittance), WITHIN(0, 1),
      .doc = "in the preview: share of the light on one side of the fresh sheet that leaves it on the other"},
     {"scale", ROW_FLOAT, DIM_NONE, AT(SceneSheet, scale), WITHIN(1e-6, 1e4),
-     .doc = "times `units`: how large the mesh file is made"},
+     .doc = "factor on the mesh file's size, besides `units`"},
     {"units", ROW_ENUM, DIM_NONE, AT(SceneSheet, units), .names = units_names,
-     .doc = "what a number in the mesh file is; `ft` is a foot"},
+     .doc = "unit of the mesh file's numbers; `ft` is a foot"},
     {"up", ROW_ENUM, DIM_NONE, AT(SceneSheet, up), .names = up_names,
      .doc = "the mesh file's axis that points up; a file whose y is up is turned by 90 degrees about x"},
     {"weld", ROW_FLOAT, DIM_LENGTH, AT(SceneSheet, weld), FROM(0),
-     .doc = "vertices on open edges of the mesh that are this near are one, whatever their uv; 0: 1/100000 of its "
+     .doc = "vertices on open edges of the mesh that are this close are merged, whatever their uv; 0: 1/100000 of its "
             "size"},
     {"quads", ROW_ENUM, DIM_NONE, AT(SceneSheet, quads), .names = quads_names,
-     .doc = "what becomes of triangles and polygons: `pair` joins triangles two by two; `split` makes n quads of every "
-            "face of n corners, with sides half as long"},
+     .doc =
+         "how triangles and polygons become quads: `pair` joins triangles two by two; `split` cuts every face of n corners into n quads with sides half as long"},
     {"rotate", ROW_VECTOR, DIM_ANGLE, AT(SceneSheet, rotate), .length = 3, TURN,
      .doc = "about x, then y, then z, after the scaling and `up`"},
     {"translate", ROW_VECTOR, DIM_LENGTH, AT(SceneSheet, translate), .length = 3, WITHIN(-9000, 9000),
@@ -141,48 +139,43 @@ const Schema schema_sheet = {.title = "a sheet",
                              ROWS(sheet_rows),
                              .defaults = default_sheet,
                              .finish = finish_sheet,
-                             .location = sheet_location,
+                             .located = true,
                              .doc = "A piece of cloth or paper: a mesh, or a grid, and a material."};
 
 // ---- sources, colliders, pins
 
-static SceneLocation *source_location(void *object) { return &((SceneSource *)object)->location; }
 #define OF SceneSource
 #define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
     AS_ROW_AT(#name, TYPE, def.name, length, dimension, kinds, text, range)
 #define SINGE_APART(key, TYPE, name, length, dimension, standard, range, kinds, text) \
     AS_ROW_AT(key, TYPE, def.name, length, dimension, kinds, text, range)
-#define MOVABLE (BIT(SINGE_SOURCE_BALL) | BIT(SINGE_SOURCE_JET) | BIT(SINGE_SOURCE_VORTEX) | BIT(SINGE_SOURCE_ATTRACT))
+#define PICTURE_OF(kind, text)                                                                          \
+    "texture", ROW_FILE, DIM_NONE, AT(SceneSource, texture), .kinds = BIT(kind), .flags = ROW_REQUIRED, \
+                                                             .doc = "PNG or JPEG over the sheets' uv: " text
+#define STRENGTH_OF(what, kinds_, low)                                                                     \
+    "strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count), \
+        .kinds = kinds_, .min = low, .max = 1e6, .sub = &schema_strength,                                  \
+        .doc = "multiplies " what " over time; 1 when not given"
 static const SchemaRow source_rows[] = {
 #include "singe/source.def"
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
      .kinds = BIT(SINGE_SOURCE_SPOT), .flags = ROW_REQUIRED, SPACE, .doc = "its centre"},
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
-     .kinds = MOVABLE, .flags = ROW_SHORT, LOCATION, .doc = "its centre, when it does not move; this or `path`"},
-    {"path", ROW_LIST, DIM_NONE, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .kinds = MOVABLE,
+     .kinds = SOURCES_MOVABLE, .flags = ROW_SHORT, LOCATION,
+     .doc = "its centre, when it does not move; this or `path`"},
+    {"path", ROW_LIST, DIM_NONE, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .kinds = SOURCES_MOVABLE,
      .sub = &schema_key, .doc = "its trajectory; this or `position`"},
-    {"texture", ROW_FILE, DIM_NONE, AT(SceneSource, texture), .kinds = BIT(SINGE_SOURCE_TEXTURE), .flags = ROW_REQUIRED,
-     .doc = "PNG or JPEG over the sheets' uv: white is the full flux, black none"},
-    {"texture", ROW_FILE, DIM_NONE, AT(SceneSource, texture), .kinds = BIT(SINGE_SOURCE_ARRIVAL), .flags = ROW_REQUIRED,
-     .doc =
-         "PNG or JPEG over the sheets' uv: the time of ignition from black, `from`, to the lightest grey, `to`; pure "
-         "white never ignites"},
-    {"texture", ROW_FILE, DIM_NONE, AT(SceneSource, texture), .kinds = BIT(SINGE_SOURCE_WATER), .flags = ROW_REQUIRED,
-     .doc = "PNG or JPEG over the sheets' uv: it rains where it is white, and nowhere where it is black"},
-    {"strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count),
-     .kinds = BIT(SINGE_SOURCE_WATER), .min = 0, .max = 1e6, .sub = &schema_strength,
-     .doc = "multiplies the rain over time; 1 when not given"},
-    {"strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count),
-     .kinds = BIT(SINGE_SOURCE_TEXTURE), .min = 0, .max = 1e6, .sub = &schema_strength,
-     .doc = "multiplies the flux over time; 1 when not given"},
-    {"strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count),
-     .kinds = (MOVABLE & ~BIT(SINGE_SOURCE_BALL)) | BIT(SINGE_SOURCE_TURBULENCE), .min = -1e6, .max = 1e6,
-     .sub = &schema_strength, .doc = "multiplies the speed over time; 1 when not given"},
+    {PICTURE_OF(SINGE_SOURCE_TEXTURE, "white is the full flux, black none")},
+    {PICTURE_OF(SINGE_SOURCE_ARRIVAL,
+                "the time of ignition from black, `from`, to the lightest grey, `to`; pure white never ignites")},
+    {PICTURE_OF(SINGE_SOURCE_WATER, "it rains where it is white, and nowhere where it is black")},
+    {STRENGTH_OF("the rain", BIT(SINGE_SOURCE_WATER), 0)},
+    {STRENGTH_OF("the flux", BIT(SINGE_SOURCE_TEXTURE), 0)},
+    {STRENGTH_OF("the speed", SINGE_SOURCES_OF_AIR, -1e6)},
     {"visible", ROW_BOOL, DIM_NONE, AT(SceneSource, visible), .kinds = BIT(SINGE_SOURCE_BALL),
      .doc = "drawn in the preview"},
 };
 #undef OF
-#undef MOVABLE
 const Schema schema_source = {
     .title = "a source",
     .size = sizeof(SceneSource),
@@ -190,10 +183,9 @@ const Schema schema_source = {
     .kind_offset = offsetof(SceneSource, def.kind),
     .defaults = default_source,
     .finish = finish_source,
-    .location = source_location,
+    .located = true,
     .doc = "Something that heats or wets the sheets, or moves the air. Its `kind` decides which other keys it has."};
 
-static SceneLocation *collider_location(void *object) { return &((SceneCollider *)object)->location; }
 #define OF SceneCollider
 #define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
     AS_ROW_AT(#name, TYPE, def.name, length, dimension, kinds, text, range)
@@ -209,18 +201,17 @@ static const SchemaRow collider_rows[] = {
          "a mesh that deforms, such as a character, in the collider's own frame; sheets are pushed and carried along "
          "by it"},
     {"scale", ROW_FLOAT, DIM_NONE, AT(SceneCollider, scale), .kinds = BIT(SINGE_COLLIDER_MESH), WITHIN(1e-6, 1e4),
-     .doc = "times `units`: how large the mesh file is made"},
+     .doc = "factor on the mesh file's size, besides `units`"},
     {"units", ROW_ENUM, DIM_NONE, AT(SceneCollider, units), .kinds = BIT(SINGE_COLLIDER_MESH), .names = units_names,
-     .doc = "what the numbers of the mesh file are: `m`, `cm`, `mm`, `in` or `ft`"},
+     .doc = "unit of the mesh file's numbers: `m`, `cm`, `mm`, `in` or `ft`"},
     {"picture", ROW_FILE, DIM_NONE, AT(SceneCollider, picture), .kinds = BIT(SINGE_COLLIDER_HEIGHTFIELD),
      .flags = ROW_REQUIRED,
-     .doc = "PNG or JPEG of the heights seen from above, x to the right and y up: a height at each pixel's centre, "
-            "straight between"},
+     .doc =
+         "PNG or JPEG of the heights seen from above, x to the right and y up: a height at each pixel's centre, linear in between"},
     {"heights", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, heights), .length = 2,
-     .kinds = BIT(SINGE_COLLIDER_HEIGHTFIELD), WITHIN(-1e3, 1e3),
-     .doc = "own z where the picture is black, and where it is white"},
+     .kinds = BIT(SINGE_COLLIDER_HEIGHTFIELD), WITHIN(-1e3, 1e3), .doc = "local z of black, and of white"},
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
-     .flags = ROW_SHORT, LOCATION, .doc = "of its centre, when it does not move; instead of `path`"},
+     .flags = ROW_SHORT, LOCATION, .doc = "of its centre, if it does not move; instead of `path`"},
     {"rotation", ROW_ROTATION, DIM_ANGLE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
      .flags = ROW_SHORT, TURN, .doc = "about x, then y, then z, when it does not move; instead of `path`"},
     {"path", ROW_LIST, DIM_NONE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .sub = &schema_key,
@@ -237,10 +228,9 @@ const Schema schema_collider = {
     .kind_offset = offsetof(SceneCollider, def.kind),
     .defaults = default_collider,
     .finish = finish_collider,
-    .location = collider_location,
+    .located = true,
     .doc = "A solid that sheets rest on and slide over. Its `kind` decides which keys it has."};
 
-static SceneLocation *pin_location(void *object) { return &((ScenePin *)object)->location; }
 #define OF ScenePin
 #define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
     AS_ROW_AT(#name, TYPE, name, length, dimension, kinds, text, range)
@@ -264,11 +254,10 @@ const Schema schema_pin = {.title = "a pin",
                            ROWS(pin_rows),
                            .defaults = default_pin,
                            .finish = finish_pin,
-                           .location = pin_location,
+                           .located = true,
                            .doc = "Holds part of a sheet."};
 
 static const char *const probe_names[] = {[SCENE_PROBE_UV] = "uv", [SCENE_PROBE_POINT] = "point", NULL};
-static SceneLocation *probe_location(void *object) { return &((SceneProbe *)object)->location; }
 static const SchemaRow probe_rows[] = {
     {"kind", ROW_ENUM, DIM_NONE, AT(SceneProbe, kind), .names = probe_names, .flags = ROW_REQUIRED,
      .doc = "how its position is given: `uv`, the sheet's texture coordinates, or `point`, the world at the start"},
@@ -285,6 +274,6 @@ const Schema schema_probe = {.title = "a probe",
                              .size = sizeof(SceneProbe),
                              ROWS(probe_rows),
                              .kind_offset = offsetof(SceneProbe, kind),
-                             .location = probe_location,
+                             .located = true,
                              .doc =
                                  "A point of a sheet, whose temperature, mass and position are written every frame."};

@@ -4,6 +4,7 @@
 
 #include "scene/schema.h"
 #include "scene/words.h"
+#include "singe/source.def"
 
 #define AT(type, member) .offset = offsetof(type, member)
 #define EXTRA(type, member) .extra = offsetof(type, member)
@@ -30,6 +31,8 @@
 // the kinds that have a row
 #define ALWAYS 0
 #define BIT(KIND) (1u << (KIND))
+/// Sources that have a path or a position.
+#define SOURCES_MOVABLE ((SINGE_SOURCES_OF_AIR & ~BIT(SINGE_SOURCE_TURBULENCE)) | BIT(SINGE_SOURCE_BALL))
 
 // Rows of the library's tables (singe/*.def), for an object of type OF that holds the Def at HELD, "def." or nothing.
 #define ROW_OF_FLOAT ROW_FLOAT

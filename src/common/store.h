@@ -35,6 +35,9 @@ static inline bool struct_size_is_possible(size_t size) {
     return size > sizeof size && size % sizeof size == 0 && size <= 65536;
 }
 
+/// The message where it cannot; `defaults` is the function that sets it.
+#define STRUCT_SIZE_UNKNOWN(defaults) "unknown struct_size; start from " #defaults "()"
+
 static inline uint32_t load_u32_little(const uint8_t *p) {
     return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }

@@ -63,8 +63,6 @@ static const float SOURCE_SPEED_MAX = 1000;
 
 static SingeResult source_check_air(const SingeSourceDef *def, SingeError *error) {
     const float *d = def->direction;
-    if (def->kind != SINGE_SOURCE_TURBULENCE && (def->path_count < 1 || !def->path))
-        return source_bad(error, "what moves air needs a path");
     const bool aims = def->kind == SINGE_SOURCE_JET || def->kind == SINGE_SOURCE_VORTEX;
     if (aims && !(hypot(hypot((double)d[0], (double)d[1]), (double)d[2]) > 1e-9))
         return source_bad(error, "the direction must be longer than 1e-9");
@@ -111,7 +109,6 @@ static SingeResult source_check_arrival(const SingeSourceDef *def, SingeError *e
 }
 
 static SingeResult source_check_ball(const SingeSourceDef *def, SingeError *error) {
-    if (def->path_count < 1 || !def->path) return source_bad(error, "a ball or spot needs a path");
     if (def->kind == SINGE_SOURCE_SPOT && def->path_count != 1)
         return source_bad(error, "the path of a spot has exactly one key");
     return SINGE_OK;
@@ -119,6 +116,8 @@ static SingeResult source_check_ball(const SingeSourceDef *def, SingeError *erro
 
 static SingeResult source_check(const SingeSourceDef *def, SingeError *error) {
     TRY(def_check(&source_table, def, error));
+    if (source_kinds[def->kind].has_path && (def->path_count < 1 || !def->path))
+        return source_bad(error, "a source of this kind needs a path");
     return source_kinds[def->kind].check ? source_kinds[def->kind].check(def, error) : SINGE_OK;
 }
 
@@ -140,7 +139,7 @@ static SingeResult source_set_texture(Memory *memory, const Shell *shell, const 
         mapped = shell->uv[i][0] != 0 || shell->uv[i][1] != 0;
     if (!mapped) return source_bad(error, "a texture needs a sheet with uv");
     if (source->def.kind == SINGE_SOURCE_WATER && !shell_holds_water(shell))
-        return source_bad(error, "water needs a sheet whose moisture is above 0; others have no room for it");
+        return source_bad(error, "water needs a sheet whose moisture is above 0; other sheets cannot hold water");
     if (!NEW(memory, source->texture, shell->particle_count)) return source_no_memory(error);
     bool arrives = source->def.kind == SINGE_SOURCE_ARRIVAL;
     for (uint32_t i = 0; i < shell->particle_count; i++)
@@ -231,7 +230,7 @@ SingeResult source_check_read(const Shell *shell, const Source *source, SingeErr
         for (uint32_t i = 0; i < shell->particle_count; i++)
             if (!(source->texture[i] >= 0 && source->texture[i] <= 1) && source->texture[i] != SOURCE_NEVER &&
                 source->texture[i] != SOURCE_UNMAPPED)
-                return source_bad(error, "the arrival map has other values than times");
+                return source_bad(error, "the arrival map must contain times only");
     } else {
         TRY(source_check(&def, error));
     }

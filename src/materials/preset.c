@@ -26,8 +26,7 @@ SingeResult singe_material_preset(const char *name, SingeMaterialDef *def, Singe
 
     const size_t size = def->struct_size;
     if (!struct_size_is_possible(size))
-        return refuse(error, SINGE_ERROR_ARGUMENT, "material", -1,
-                      "struct_size is that of no version; start from singe_default_material()");
+        return refuse(error, SINGE_ERROR_ARGUMENT, "material", -1, STRUCT_SIZE_UNKNOWN(singe_default_material));
     SingeMaterialDef made = singe_default_material();
     preset->apply(&made);
     singe_init_material(def, size); // fields of a newer header than ours become 0

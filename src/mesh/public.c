@@ -22,7 +22,7 @@ static void fill_def(void *def, size_t size, const void *standard, size_t known)
     memcpy(def, &size, sizeof size);
 }
 
-/// Copies the common bytes of a caller's Def over *def, which holds the defaults. False if struct_size is that of no version.
+/// Copies the common bytes of a caller's Def over *def, which holds the defaults. False if struct_size is unknown.
 static bool read_def(void *def, size_t size, const void *given) {
     size_t known;
     if (!given) return false;
@@ -85,8 +85,7 @@ static SingeMesh *new_mesh(SingeAllocator allocator) {
 SingeResult singe_mesh_create(const SingeMeshDef *given, SingeMesh **mesh, SingeError *error) {
     SingeMeshDef def = singe_default_mesh();
     *mesh = NULL;
-    if (!read_def(&def, sizeof def, given))
-        return bad(error, "struct_size is that of no version; start from singe_default_mesh()");
+    if (!read_def(&def, sizeof def, given)) return bad(error, STRUCT_SIZE_UNKNOWN(singe_default_mesh));
     const char *name = def.name ? def.name : "mesh";
 
     // what mesh_make assumes
@@ -98,7 +97,7 @@ SingeResult singe_mesh_create(const SingeMeshDef *given, SingeMesh **mesh, Singe
     for (uint32_t i = 0; i < def.attribute_count; i++)
         if (!def.attributes[i].name || !def.attributes[i].values)
             return bad(error, "an attribute has no name or no values");
-    if (def.quads != SINGE_MESH_PAIR && def.quads != SINGE_MESH_SPLIT) return bad(error, "quads is not a known choice");
+    if (def.quads != SINGE_MESH_PAIR && def.quads != SINGE_MESH_SPLIT) return bad(error, "quads has an unknown value");
     if (!(def.weld >= 0 && isfinite(def.weld))) return bad(error, "weld must be 0 or more");
     if (!(def.smallest >= 0 && def.smallest <= 1)) return bad(error, "smallest must be between 0 and 1");
 
@@ -143,8 +142,7 @@ SingeResult singe_mesh_create(const SingeMeshDef *given, SingeMesh **mesh, Singe
 SingeResult singe_mesh_create_grid(const SingeGridDef *given, SingeMesh **mesh, SingeError *error) {
     SingeGridDef def = singe_default_grid();
     *mesh = NULL;
-    if (!read_def(&def, sizeof def, given))
-        return bad(error, "struct_size is that of no version; start from singe_default_grid()");
+    if (!read_def(&def, sizeof def, given)) return bad(error, STRUCT_SIZE_UNKNOWN(singe_default_grid));
     if (!(def.jitter >= 0 && def.jitter <= 0.3f)) return bad(error, "grid: jitter must be between 0 and 0.3");
     if (!(def.displacement >= 0 && isfinite(def.displacement)))
         return bad(error, "grid: displacement must be 0 or more");

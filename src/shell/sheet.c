@@ -63,9 +63,9 @@ static SingeResult check_def(const SingeSheetDef *def, const char *name, SingeEr
 
     // arrays
     if (!def->positions || !def->cells) return argument(name, "positions or cells are NULL", error);
-    if (def->corner_uv && !def->uv) return argument(name, "corner_uv needs uv, too", error);
+    if (def->corner_uv && !def->uv) return argument(name, "corner_uv needs uv", error);
     if (def->corner_source_vertex && (!def->corner_uv || !def->source_vertex))
-        return argument(name, "corner_source_vertex needs corner_uv and source_vertex, too", error);
+        return argument(name, "corner_source_vertex needs corner_uv and source_vertex", error);
     if (def->source_vertex && def->source_count > INT32_MAX) return argument(name, "source_count is too large", error);
     if (def->attribute_count && !def->attributes) return argument(name, "attributes are NULL", error);
     for (uint32_t i = 0; i < def->attribute_count; i++)
@@ -175,7 +175,7 @@ SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, Shee
     SingeSheetDef def;
     memset(source, 0, sizeof *source);
     if (!given || !sheet_read_def(given, &def))
-        return argument("sheet", "struct_size is that of no version; start from singe_default_sheet()", error);
+        return argument("sheet", STRUCT_SIZE_UNKNOWN(singe_default_sheet), error);
     Sheet *sheet = &source->sheet;
     copy_name(def.name ? def.name : "sheet", sheet->name, sizeof sheet->name);
     TRY(check_def(&def, sheet->name, error));
@@ -191,7 +191,8 @@ SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, Shee
 #define SINGE_SCALAR(TYPE, name, dimension, standard, range, text) sheet->material.name = def.material.name;
 #include "singe/material.def"
     if (!source_alloc(memory, &def, source)) {
-        SingeResult result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for sheet '%s'", sheet->name);
+        SingeResult result =
+            error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "out of memory for sheet '%s'", sheet->name);
         sheet_source_free(memory, source);
         return result;
     }

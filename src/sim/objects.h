@@ -2,15 +2,15 @@
 #ifndef SIM_OBJECTS_H
 #define SIM_OBJECTS_H
 
+#include "common/store.h"
 #include "sim/calls.h"
 
-/// Reads the part of a caller's Def that it knows, over the defaults; fails if its struct_size is that of no version.
-#define OBJECT_DEF(sim, stage, local, given, defaults)                                        \
-    do {                                                                                      \
-        (local) = (defaults)();                                                               \
-        if (!sim_read_def(&(local), sizeof(local), (given), SIZE_MAX))                        \
-            return sim_fail((sim), SINGE_ERROR_ARGUMENT, (stage), -1,                         \
-                            "struct_size is that of no version; start from " #defaults "()"); \
+/// Reads the part of a caller's Def that it knows, over the defaults; fails if its struct_size is unknown.
+#define OBJECT_DEF(sim, stage, local, given, defaults)                                                \
+    do {                                                                                              \
+        (local) = (defaults)();                                                                       \
+        if (!sim_read_def(&(local), sizeof(local), (given), SIZE_MAX))                                \
+            return sim_fail((sim), SINGE_ERROR_ARGUMENT, (stage), -1, STRUCT_SIZE_UNKNOWN(defaults)); \
     } while (0)
 
 static inline SingeResult object_stale(SingeSim *sim, const char *stage, uint32_t index) {

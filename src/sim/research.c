@@ -1,5 +1,6 @@
 // The public interface to the paper's solver on the caller's own networks (singe/research.h).
 #include "common/error.h"
+#include "common/store.h"
 #include "reference/spring_network.h"
 #include "singe/research.h"
 #include "sim/sim_internal.h"
@@ -47,7 +48,8 @@ static SingeResult network_check(const SingeNetworkDef *def, SingeError *error) 
     if (def->particle_count == 0 || !def->positions) return network_refuse(error, -1, "there are no particles");
     if (def->spring_count == 0 || !def->ends || !def->lengths) return network_refuse(error, -1, "there are no springs");
     if (def->spring_count > INT32_MAX / 4 || def->particle_count > INT32_MAX / 4)
-        return error_set(error, SINGE_ERROR_LIMIT, "network", -1, "more springs or particles than the indices hold");
+        return error_set(error, SINGE_ERROR_LIMIT, "network", -1,
+                         "too many springs or particles: at most 536870911 of each");
     if (def->set_count == 0 || def->set_count > def->spring_count)
         return network_refuse(error, -1, "set_count must be between 1 and the number of springs");
     if (!(def->regularisation >= 0 && def->regularisation <= 1e6))
@@ -144,7 +146,7 @@ SingeResult singe_network_create(const SingeNetworkDef *given, SingeNetwork **ou
     *out = NULL;
     SingeNetworkDef def = network_standard;
     if (!given || !sim_read_def(&def, sizeof def, given, given->struct_size))
-        return network_refuse(error, -1, "struct_size is that of no version; start from singe_default_network()");
+        return network_refuse(error, -1, STRUCT_SIZE_UNKNOWN(singe_default_network));
     TRY(network_check(&def, error));
     Memory memory = memory_make(def.allocator);
     SingeNetwork *network = memory_new(&memory, 1, sizeof *network);

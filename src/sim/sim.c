@@ -90,8 +90,7 @@ SingeResult sim_make(const SingeSimDef *given, SingeSim **out, SingeError *error
     *out = NULL;
     SingeSimDef def;
     if (!sim_read_sim_def(given, &def))
-        return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1,
-                         "struct_size is that of no version; start from singe_default_sim()");
+        return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, STRUCT_SIZE_UNKNOWN(singe_default_sim));
     TRY(sim_check_def(&def, error));
     if (!dynamics_runs_here(def.instructions))
         return error_set(error, SINGE_ERROR_LIMIT, "simulation", -1, "this processor lacks the requested instructions");

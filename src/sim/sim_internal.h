@@ -72,7 +72,7 @@ SingeResult sim_make(const SingeSimDef *def, SingeSim **sim, SingeError *error);
 SingeResult sim_fail(SingeSim *sim, SingeResult code, const char *stage, int64_t element, const char *message);
 
 /// Copies the part of a caller's Def that both headers know, which begins with its struct_size, over *def of `size`
-/// bytes that holds the defaults. `given_size` bounds what may be read. False when struct_size is that of no version.
+/// bytes that holds the defaults. `given_size` bounds what may be read. False when struct_size is unknown.
 bool sim_read_def(void *def, size_t size, const void *given, size_t given_size);
 
 /// Fills the caller's `size` bytes from our result; 0 where the caller's is longer.

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "singe/sim.h"
+#include "singe/source.def"
 #include "world/path.h"
 
 /// A heat source of the simulation. Textures are evaluated once, at every particle.
@@ -34,8 +35,7 @@ static inline bool source_is_drawn(const SingeSourceDef *def) {
 
 /// Whether its kind moves air (world/air.h).
 static inline bool source_blows(const SingeSourceDef *def) {
-    return def->kind == SINGE_SOURCE_JET || def->kind == SINGE_SOURCE_VORTEX || def->kind == SINGE_SOURCE_ATTRACT ||
-           def->kind == SINGE_SOURCE_TURBULENCE;
+    return (unsigned)def->kind < 32 && SINGE_SOURCES_OF_AIR >> def->kind & 1;
 }
 
 /// Whether a slot holds a source that is lit at this time.
