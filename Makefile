@@ -23,7 +23,7 @@ build:
 	cmake --preset release
 	cmake --build --preset release
 
-# all presets at once, as each takes one core
+# configures all presets in parallel; each uses one core
 configure:
 	printf '%s\n' release asan fuzz shared tsan | xargs -P $$(nproc) -n 1 cmake --preset
 
@@ -79,7 +79,7 @@ check-examples: build
 gate: build
 	tests/gate/gate.py --singe build/singe --folder build/gate --least 209 --failed 0
 
-# installs other programs into build/clients and lets them read the output of a burn; docs/usd.md and others have the table
+# installs other programs into build/clients, and checks that they read the output of a burn; docs/usd.md and others have the table
 check-clients: build
 	tests/clients/check.sh build/singe build/clients
 
@@ -122,8 +122,7 @@ web-package:
 web-serve: web
 	cd web && node serve.mjs
 
-# plays with the page in Chromium, and prints its speed there; looks at a burn by `singe view` in Chromium and Firefox, and in a notebook's
-# cell
+# tests the page in Chromium and measures its speed; views a burn by `singe view` in Chromium and Firefox, and in a notebook
 check-web: web
 	cmake --preset release
 	cmake --build --preset release --target singe_program singe_python
@@ -154,12 +153,12 @@ check-web-core: web-package
 	cmake --build --preset portable --target hash_runs
 	cd bindings/web && SINGE_NATIVE=$(CURDIR)/build-portable/tests/platforms/hash_runs npm test && node tests/speed.mjs
 
-# lets every allocation, write, open, ... of whole commands fail once. Takes hours; Ctrl-C ends it and prints its table
+# makes each allocation, write and open of whole commands fail once. Takes hours; Ctrl-C ends it and prints its table
 torture:
 	cmake --preset release
 	cmake --build --preset release --target torture
 
-# changes lines of the core one at a time; each change must die in the test that is named for it
+# changes lines of the core one at a time; the test named for each change must fail
 mutations:
 	scripts/setup.sh
 	tests/mutations/mutations.py

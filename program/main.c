@@ -14,7 +14,7 @@
 
 /// The commands, group by group: of the help, the manual, completion and every message that lists them.
 static const Command commands[] = {
-    {"new", command_new, &new_command, "burn", "writes a commented scene to begin with"},
+    {"new", command_new, &new_command, "burn", "writes a commented scene to start from"},
     {"run", command_run, &run_command, "burn", "burns a scene: cache, pictures, video, numbers"},
     {"check", command_check, &check_command, "burn", "checks a scene, and prints its size and cost"},
     {"info", command_info, &info_command, "burn",

@@ -70,7 +70,7 @@ typedef enum SingeSourceKind {
     SINGE_SOURCE_TEXTURE = 1,    ///< a flux drawn on the sheet: over uv, black none, white full
     SINGE_SOURCE_SPOT = 2,       ///< a hot ball that stands still
     SINGE_SOURCE_CALLBACK = 3,   ///< a function of the caller
-    SINGE_SOURCE_ARRIVAL = 4,    ///< a picture of when the front arrives where
+    SINGE_SOURCE_ARRIVAL = 4,    ///< a picture of the front's arrival times
     SINGE_SOURCE_WATER = 5,      ///< a picture of where the sheet is wetted
     SINGE_SOURCE_JET = 6,        ///< air blown from a nozzle; it cools, and puts fires out
     SINGE_SOURCE_VORTEX = 7,     ///< air that turns about an axis
@@ -96,13 +96,13 @@ typedef void SingeFluxFn(void *context, const struct SingeView *view, float *flu
 typedef struct SingeSourceDef {
     size_t struct_size;
     /// ball: a hot ball on a path; spot: a hot ball that stands still; texture: a flux drawn on the sheet; arrival: a
-    /// picture of when the front arrives where; water: a picture of where the sheet is wetted. These move air, which
-    /// bends flames, carries sheets and cools them: jet from a nozzle, vortex about an axis, attract to a point,
-    /// turbulence everywhere
+    /// picture of the front's arrival times; water: a picture of where the sheet is wetted. These move air, which bends
+    /// flames, carries sheets and cools them: jet from a nozzle, vortex about an axis, attract to a point, turbulence
+    /// everywhere
     SingeSourceKind kind;
     float start;       ///< s, any, also infinite; time at which it starts
     float end;         ///< s, any, also infinite; time at which it ends; inf: never
-    float temperature; ///< K, ball and spot, 1e-3 to 1e5; of the ball or the flame
+    float temperature; ///< K, ball and spot, 1e-3 to 1e5; of the ball or flame
     float conductance; ///< W/(m2 K), ball and spot, 0 to 1e9; heat transfer coefficient to the sheet
     /// m, ball, spot, jet, vortex, attract and turbulence, >= 0; full heat within it; of a jet's nozzle; where a vortex
     /// or attraction is fastest; of turbulence's swirls
@@ -114,8 +114,8 @@ typedef struct SingeSourceDef {
     uint32_t path_count;      ///< of ball, spot, jet, vortex and attract; 0: at rest at position. A spot has at most 1
     const SingePoseKey *path; ///< [path_count] positions only
     SingeTexture texture;     ///< texture source, or arrival map
-    /// W/m2, texture, finite; into each of the sheet's two layers where the texture is white; times texture and
-    /// strength at most 1e15 W/m2. Below 0 it cools, but not below 1 K
+    /// W/m2, texture, finite; into each of the sheet's two layers where the texture is white; at most 1e15 W/m2 after
+    /// strength and the texture. Below 0 it cools, but not below 1 K
     float flux;
     /// texture, water and what moves air: key frames that multiply flux, wetting or speed; 0 means 1
     uint32_t strength_count;

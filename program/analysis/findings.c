@@ -36,7 +36,7 @@ void findings_add(Findings *findings, Fault fault, const char *format, ...) {
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    const char *more = findings->reported[fault] == REPORTED ? "; more of this kind are only counted" : "";
+    const char *more = findings->reported[fault] == REPORTED ? "; further ones are only counted" : "";
     findings_say(findings, true, "%s: %s%s", findings->file, text, more);
 }
 

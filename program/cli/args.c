@@ -154,7 +154,7 @@ int args_next(ArgReader *reader, const char **value) {
     }
 
     if (!command->operand || (++reader->operand_count > 1 && !strstr(command->operand, "...")))
-        return args_complain(reader, "one argument too many: '%s'", shown(argument).text);
+        return args_complain(reader, "unexpected argument '%s'", shown(argument).text);
     reader->index++;
     *value = argument;
     return ARG_OPERAND;

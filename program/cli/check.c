@@ -251,8 +251,7 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
         const double frame = scene->steps * times.step + times.surface + times.picture;
         char text[32];
         console_duration(frame * scene->frames, text);
-        printf("thickening    %.3g: the front is so many times as thick as a real one, as the cells need\n",
-               (double)thickening);
+        printf("thickening    %.3g: the fire front is widened by this factor to span the cells\n", (double)thickening);
         printf("frames        %d at %.4g a second, %d steps of %.3g ms each\n", scene->frames, (double)scene->fps,
                scene->steps, 1e3 * (double)scene->sim.time_step);
         printf("time          about %s: a step %.2f ms, a surface %.2f ms, a picture %.0f ms, with %d threads\n", text,

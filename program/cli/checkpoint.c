@@ -188,11 +188,11 @@ static SingeResult checkpoint_refuse(const char *path, SingeResult code, const c
 static SingeResult read_trailer(const char *path, const Bytes *bytes, SceneHash hash, const SceneAssets *assets,
                                 Trailer *trailer, SingeError *error) {
     if (bytes->size < sizeof *trailer)
-        return checkpoint_refuse(path, SINGE_ERROR_FORMAT, "the checkpoint is cut short", error);
+        return checkpoint_refuse(path, SINGE_ERROR_FORMAT, "the checkpoint is truncated", error);
     size_t size = bytes->size - sizeof *trailer;
     memcpy(trailer, bytes->data + size, sizeof *trailer);
     if (memcmp(trailer->magic, checkpoint_magic, sizeof trailer->magic) != 0 || trailer->snapshot_size != size)
-        return checkpoint_refuse(path, SINGE_ERROR_FORMAT, "not a checkpoint of this version, or cut short", error);
+        return checkpoint_refuse(path, SINGE_ERROR_FORMAT, "not a checkpoint of this version, or truncated", error);
     uint64_t checksum = hash_bytes(hash_bytes(hash_start, bytes->data, size), trailer, offsetof(Trailer, checksum));
     if (checksum != trailer->checksum || trailer->frame < 1 || trailer->frame > INT_MAX || trailer->step > INT_MAX)
         return checkpoint_refuse(path, SINGE_ERROR_FORMAT, "the checkpoint is damaged (its checksum differs)", error);

@@ -134,7 +134,7 @@ ExitCode stats_table_read(StatsTable *table, const char *path, Console *console)
     Bytes bytes = {0};
     SingeError error = {0};
     if (access(path, F_OK) != 0 && errno == ENOENT) {
-        console_warn(console, "no %s: inverted cells are not known", path);
+        console_warn(console, "%s is missing, so inverted cells cannot be counted", path);
         return EXIT_GOOD;
     }
 
@@ -155,7 +155,7 @@ ExitCode stats_table_read(StatsTable *table, const char *path, Console *console)
     table->rows = calloc(lines + 1, sizeof *table->rows);
     const bool good = table->rows && read_rows(table, &text);
     if (!table->rows) console_error(console, "%s: out of memory", path);
-    else if (!good) console_error(console, "%s:%lld: not a line of statistics", path, (long long)text.line - 1);
+    else if (!good) console_error(console, "%s:%lld: expected a line of statistics", path, (long long)text.line - 1);
     bytes_free(&bytes);
     if (!table->rows) return EXIT_FAILED;
     return good ? EXIT_GOOD : EXIT_INPUT;

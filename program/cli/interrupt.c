@@ -62,7 +62,7 @@ bool interrupt_asked(void) { return interrupt_flag != 0; }
 
 /// Only what a signal handler may do.
 static void end_by_abort(int number) {
-    static const char text[] = "singe: error: preview: out of memory; all frames written so far are whole\n";
+    static const char text[] = "singe: error: preview: out of memory; all frames written so far are complete\n";
     (void)number;
     ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
     (void)written;

@@ -61,7 +61,8 @@ SingeResult lock_take(Lock *lock, const char *path, const char *what, bool share
             SingeResult result = held ? refuse_held(fd, path, what, shared, error) : SINGE_OK;
             if (!held) {
                 unlink(path);
-                console_warn(console, "%.*s: the file system has no locks: let nothing else write there meanwhile",
+                console_warn(console,
+                             "%.*s: the file system does not support locks: make sure that nothing else writes there",
                              (int)(strrchr(path, '/') - path), path);
             }
             close(fd);

@@ -37,14 +37,14 @@ static const ArgOption new_options[OPT_COUNT] = {
 const ArgCommand new_command = {
     "new",
     "TEMPLATE",
-    "Writes a scene with comments to begin with: letter, cloth, mesh or sweep.",
+    "Writes a commented scene to start from: letter, cloth, mesh or sweep.",
     new_options,
     OPT_COUNT,
     "letter  a sheet of paper burns on a table\n"
     "cloth   a cloth hangs, and burns in the wind\n"
-    "mesh    a mesh burns, in place of which you put yours\n"
+    "mesh    a sample mesh burns; replace it with yours\n"
     "sweep   the letter burns many times with other parameters\n\n"
-    "Exit codes: 0 success, 1 a file could not be written, 2 bad input, or there is such a file already.",
+    "Exit codes: 0 success, 1 a file could not be written, 2 bad input, or the file already exists.",
     "singe new letter\n"
     "singe new mesh -o lamp"};
 
@@ -93,7 +93,7 @@ int command_new(int argc, char **argv) {
     for (int i = 0; i < 2; i++) paths[i] = text_format("%s%s%s", before, slash, files[i] ? files[i] : "");
     ExitCode code = EXIT_GOOD;
     if (!force && lstat(paths[1], &info) == 0) {
-        console_error(&console, "%s is there already; --force replaces it", shown_path(paths[1]).text);
+        console_error(&console, "%s already exists; --force replaces it", shown_path(paths[1]).text);
         code = EXIT_INPUT;
     }
     for (int i = 0; i < 2 && !code; i++) {

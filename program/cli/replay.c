@@ -18,11 +18,11 @@ static const ArgOption replay_options[OPT_COUNT] = {
 const ArgCommand replay_command = {
     "replay",
     "FILE",
-    "Makes the calls of a recording (singe run --record) once more, and compares the state after every step.",
+    "Repeats the calls of a recording (singe run --record) and compares the state after every step.",
     replay_options,
     OPT_COUNT,
-    "Exit codes: 0 nothing differs, also where a crash has cut the recording short, 1 something differs, or there is no\n"
-    "memory, 2 not a recording, or a damaged one.",
+    "Exit codes: 0 identical (a truncated recording is compared up to its end), 1 different, or out of memory,\n"
+    "2 not a recording, or a damaged one.",
     "singe run letter.yaml --record letter.replay\n"
     "singe replay letter.replay --threads 1"};
 
@@ -30,7 +30,7 @@ const ArgCommand replay_command = {
 static ExitCode replay_report(const SingeReplay *replay, Console *console) {
     if (strcmp(replay->version, singe_version()) != 0)
         console_note(console, "recorded by singe %s; this is %s", shown(replay->version).text, singe_version());
-    if (!replay->complete) console_note(console, "the recording was cut short, as by a crash: it has no end");
+    if (!replay->complete) console_note(console, "the recording is truncated, perhaps by a crash");
     if (!replay->same) {
         printf("differs first: %s\n", replay->what);
         return EXIT_FAILED;

@@ -33,8 +33,8 @@ static const ArgOption run_options[OPT_COUNT] = {
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]; the result does not depend on them"},
     [OPT_SET] = {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated"},
     [OPT_RESUME] = {"resume", 0, NULL, "continues from DIR/checkpoint.singe"},
-    [OPT_FROM] = {"from", 0, "DIR:FRAME", "goes on from a frame of an earlier run, with what has changed since"},
-    [OPT_FORCE] = {"force", 'f', NULL, "replaces an earlier run in DIR without a question, which a terminal is asked"},
+    [OPT_FROM] = {"from", 0, "DIR:FRAME", "starts from a frame of an earlier run, with a changed scene"},
+    [OPT_FORCE] = {"force", 'f', NULL, "replaces an earlier run in DIR without asking"},
     [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no pictures and makes no video"},
     [OPT_EXR] = {"exr", 0, NULL, "also writes DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
     [OPT_RECORD] = {"record", 0, "FILE", "also writes a recording, which `singe replay` repeats and compares"},
@@ -121,9 +121,8 @@ static SingeResult end_frame(Run *run, SingeError *error) {
     if (halts > run->halts && !run->halted) {
         run->halted = true;
         console_warn(run->console,
-                     "in frame %d sheets move so fast that contact would take too long: in %" PRIu64 " of its %d steps "
-                     "they all stood still (reported once; contact_halts in stats.csv); use more steps, or slower "
-                     "motion",
+                     "in frame %d contact was too costly in %" PRIu64 " of %d steps, so all sheets were held still "
+                     "(reported once; contact_halts in stats.csv); use more steps, or slower motion",
                      frame, halts - run->halts, run->job.scene->steps);
     }
     run->halts = halts;
@@ -202,10 +201,10 @@ static void print_summary(Run *run) {
                      "%g); the steps may be so short that temperatures hardly change in one",
                      stats.ledger_error, stats.mass_ledger_error, SINGE_LEDGER_BOUND);
     if (run->strained)
-        console_warn(run->console,
-                     "in frame %d one edge in a hundred is strained by %.0f %% or more (strain_p99): the sheets move "
-                     "too fast, are pulled too hard or are too soft; `singe verify` counts edges of twice their length",
-                     run->strained, 100 * run->strain);
+        console_warn(
+            run->console,
+            "in frame %d one edge in a hundred is strained by %.0f %% or more (strain_p99): the sheets move too fast, are pulled too hard, or are too soft; `singe verify` counts edges of twice their length",
+            run->strained, 100 * run->strain);
 
     const double frames = record->frames_done > 0 ? record->frames_done : 1;
     console_note(run->console, "last frame: %u triangles, %.0f %% of them near the front; %.1f ms a surface",

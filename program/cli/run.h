@@ -1,5 +1,5 @@
 // Internals of singe run: a run in progress, and its parts. run.c is the command, run_begin.c begins or resumes a run,
-// run_branch.c goes on from another, run_frame.c steps to a frame and writes it, record.c writes DIR/run.json.
+// run_branch.c continues from another, run_frame.c steps to a frame and writes it, record.c writes DIR/run.json.
 #ifndef CLI_RUN_H
 #define CLI_RUN_H
 
@@ -67,7 +67,7 @@ typedef struct FrameWriting {
     SingeError error;
 } FrameWriting;
 
-/// The run that this one goes on from.
+/// The run that this one continues from.
 typedef struct Branch {
     int frame; ///< 0: this is no branch
     Job job;   ///< its scene at that frame

@@ -45,7 +45,6 @@ static ExitCode resume(Run *run) {
     Checkpoint checkpoint;
     SingeError error = {0};
     SingeResult result =
-
         checkpoint_read(&run->folder, &run->job.hooks, run->hash, &run->job.assets, &checkpoint, &error);
     if (result) {
         console_result(run->console, &error);
@@ -120,7 +119,6 @@ SingeResult run_draw_missing(Run *run, bool *whole, SingeError *error) {
     if (count) console_note(run->console, "drawing %d missing pictures", count);
 
     *whole = true;
-
     for (int number = 1; number <= last && count && !result && *whole; number++) {
         if (!lacks_picture(run, number)) continue;
         Frame frame;
@@ -143,7 +141,6 @@ SingeResult run_convert_missing(Run *run, bool *whole, SingeError *error) {
     const bool fine = run_parts(run).gas_detail;
 
     *whole = true;
-
     for (int frame = 1; frame <= last && !result && *whole; frame++) {
         const OutputSet missing = outputs_missing(&run->outputs, frame);
         if (missing) result = outputs_convert(&run->outputs, frame, missing, error);
@@ -200,9 +197,8 @@ static bool may_replace(const Run *run) {
             run->folder.name);
     fflush(stderr);
     if (fgets(answer, sizeof answer, stdin) && (answer[0] == 'y' || answer[0] == 'Y')) return true;
-    console_error(run->console,
-                  "nothing was replaced; -o names another folder, --force replaces without a question, and "
-                  "--resume continues a run");
+    console_error(run->console, "nothing was replaced; -o names another folder, --force replaces without asking, and "
+                                "--resume continues a run");
     return false;
 }
 
@@ -240,7 +236,7 @@ ExitCode run_prepare(Run *run, const RunOptions *options) {
         char *lineage = branch_lineage(&run->folder);
         if (lineage)
             console_error(run->console,
-                          "%s is a branch that was cut short before its first checkpoint; give its --from",
+                          "%s is a branch that stopped before its first checkpoint; give its --from again",
                           run->folder.path);
         free(lineage);
         if (lineage) return EXIT_INPUT;

@@ -99,7 +99,7 @@ static struct aiFile *source_open(struct aiFileIO *io, const char *name, const c
         opened->bytes = source->bytes;
         opened->size = source->size;
     } else if (good && !path_is_inside(source->name, name)) {
-        note_refused(source, "; it refers to something that is not a file in its folder or below");
+        note_refused(source, "; it may refer only to files in its folder or below");
         good = false;
     } else if (good && file_read(name, (SingeAllocator){0}, &opened->own, NULL)) {
         note_refused(source, "; it refers to a file that cannot be read");

@@ -81,11 +81,11 @@ static SingeResult load_file(Gltf *gltf, uint32_t number, const uint8_t *at, con
 
     if (good) path[length] = 0;
     if (!good || !path_is_inside(gltf->name, path))
-        return gltf_bad(gltf, "buffers", number, "it refers to something that is not a file in its folder or below");
+        return gltf_bad(gltf, "buffers", number, "it may refer only to files in its folder or below");
     SingeError error = {0};
     SingeResult result = file_read_max(path, BUFFERS_LIMIT - gltf->loaded_size, gltf->allocator, bytes, &error);
     if (result == SINGE_ERROR_MEMORY) return refuse_memory(gltf->error, "gltf", gltf->name);
-    if (result == SINGE_ERROR_LIMIT) return gltf_bad(gltf, "buffers", number, "buffers have more than 1 GiB");
+    if (result == SINGE_ERROR_LIMIT) return gltf_bad(gltf, "buffers", number, "buffers exceed 1 GiB");
     return result ? gltf_bad(gltf, "buffers", number, "the file that it refers to cannot be read") : SINGE_OK;
 }
 
@@ -105,7 +105,7 @@ static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **byte
         const uint8_t *comma = memchr(at, ',', (size_t)(end - at));
         bool inside = end - at > 5 && memcmp(at, "data:", 5) == 0;
         if (inside && (!comma || comma - at < 7 || memcmp(comma - 7, ";base64", 7) != 0))
-            return gltf_bad(gltf, "buffers", number, "its data are not base64");
+            return gltf_bad(gltf, "buffers", number, "its data is not base64");
         if (inside) {
             at = comma + 1;
             static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -121,7 +121,7 @@ static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **byte
                 const char *place = *at ? strchr(digits, *at) : NULL;
                 int digit = place ? (int)(place - digits) : *at == '-' ? 62 : *at == '_' ? 63 : -1;
                 if (digit < 0 && *at == '\\' && at + 1 < end && at[1] == '/') continue; // an escaped / of JSON
-                if (digit < 0) return gltf_bad(gltf, "buffers", number, "its data are not base64");
+                if (digit < 0) return gltf_bad(gltf, "buffers", number, "its data is not base64");
                 bits = bits << 6 | (uint32_t)digit;
                 held += 6;
                 if (held >= 8) {
@@ -143,7 +143,7 @@ static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **byte
 
     uint64_t claimed;
     if (!take_count(gltf, buffer, "byteLength", *size, *size, &claimed))
-        return gltf_bad(gltf, "buffers", number, "its data are shorter than its byteLength");
+        return gltf_bad(gltf, "buffers", number, "its data is shorter than its byteLength");
     *size = claimed;
     return SINGE_OK;
 }
@@ -167,15 +167,15 @@ static SingeResult find_elements(Gltf *gltf, int64_t object, uint32_t number, ui
     int64_t view;
     uint64_t offset;
     TRY(gltf_index(gltf, object, "bufferView", gltf->view_count, &view));
-    if (view == JSON_NONE) return gltf_bad(gltf, "accessors", number, "it has no data, or compressed ones");
+    if (view == JSON_NONE) return gltf_bad(gltf, "accessors", number, "it has no data, or its data is compressed");
     if (!take_count(gltf, object, "byteOffset", 0, INT64_MAX, &offset))
-        return gltf_bad(gltf, "accessors", number, "its byteOffset is not a count");
+        return gltf_bad(gltf, "accessors", number, "its byteOffset must be a whole number from 0");
 
     Slice slice = {0};
 
     int64_t held = gltf->views[view], extensions = json_member(&gltf->json, held, "extensions"), buffer;
     if (json_member(&gltf->json, extensions, "EXT_meshopt_compression") != JSON_NONE)
-        return gltf_bad(gltf, "bufferViews", (uint32_t)view, "compressed data are not supported");
+        return gltf_bad(gltf, "bufferViews", (uint32_t)view, "compressed data is not supported");
     TRY(gltf_index(gltf, held, "buffer", gltf->buffer_count, &buffer));
     if (buffer == JSON_NONE) return gltf_bad(gltf, "bufferViews", (uint32_t)view, "it has no buffer");
 
@@ -232,9 +232,9 @@ static SingeResult find_accessor(Gltf *gltf, int64_t number) {
         TRY(find_elements(gltf, indices, (uint32_t)number, sparse_count, gltf_type_size((uint32_t)index_type),
                           &accessor.sparse_index, &step));
         if (step != gltf_type_size((uint32_t)index_type))
-            return gltf_bad(gltf, "accessors", (uint32_t)number, "sparse indices with gaps");
+            return gltf_bad(gltf, "accessors", (uint32_t)number, "sparse indices must be contiguous");
         TRY(find_elements(gltf, values, (uint32_t)number, sparse_count, size, &accessor.sparse_bytes, &step));
-        if (step != size) return gltf_bad(gltf, "accessors", (uint32_t)number, "sparse elements with gaps");
+        if (step != size) return gltf_bad(gltf, "accessors", (uint32_t)number, "sparse elements must be contiguous");
         accessor.sparse_count = (uint32_t)sparse_count;
     }
 
@@ -268,7 +268,7 @@ static SingeResult read_meshes(Gltf *gltf) {
             int64_t extensions = json_member(&gltf->json, at, "extensions");
             uint64_t mode;
             if (json_member(&gltf->json, extensions, "KHR_draco_mesh_compression") != JSON_NONE)
-                return gltf_bad(gltf, "meshes", primitive.mesh, "compressed data are not supported");
+                return gltf_bad(gltf, "meshes", primitive.mesh, "compressed data is not supported");
             if (!take_count(gltf, at, "mode", 4, 6, &mode))
                 return gltf_bad(gltf, "meshes", primitive.mesh, "a primitive's mode is not known");
             primitive.mode = (uint32_t)mode;
@@ -290,7 +290,7 @@ static SingeResult read_meshes(Gltf *gltf) {
                                 "texture coordinates are not VEC2, or fewer than the positions");
             if (indices && (indices->width != 1 || indices->sparse_count ||
                             (indices->type != 5121 && indices->type != 5123 && indices->type != 5125)))
-                return gltf_bad(gltf, "meshes", primitive.mesh, "indices are of another type than unsigned integers");
+                return gltf_bad(gltf, "meshes", primitive.mesh, "indices must be unsigned integers");
 
             if (!store_grow(gltf->allocator, &gltf->primitives, &gltf->primitive_capacity, gltf->primitive_count + 1,
                             sizeof primitive))
@@ -308,7 +308,7 @@ static SingeResult read_meshes(Gltf *gltf) {
 /// Finds the two chunks of a GLB. `json` becomes the range of the text.
 static SingeResult find_chunks(Gltf *gltf, const uint8_t *bytes, size_t size, const uint8_t **json, size_t *json_size) {
     if (size < 20 || load_u32_little(bytes + 8) > size || load_u32_little(bytes + 8) < 20)
-        return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "byte 8: the file is shorter than it says");
+        return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "byte 8: the file is shorter than its header states");
     const uint8_t *end = bytes + load_u32_little(bytes + 8), *at = bytes + 12;
     size_t length = load_u32_little(at);
     if (load_u32_little(at + 4) != 0x4e4f534a || length > (size_t)(end - at) - 8)

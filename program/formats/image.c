@@ -108,7 +108,7 @@ static bool png_decode(PngJob *job) {
     int passes = png_set_interlace_handling(png);
     png_read_update_info(png, job->info);
     size_t row = (size_t)job->width * (size_t)job->channels;
-    if (png_get_rowbytes(png, job->info) != row) png_error(png, "an unknown kind of pixel");
+    if (png_get_rowbytes(png, job->info) != row) png_error(png, "unsupported pixel type");
     job->pixel_count = (size_t)job->width * (size_t)job->height;
     job->pixels = store_new(job->allocator, job->pixel_count, (size_t)job->channels);
 

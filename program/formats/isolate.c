@@ -255,7 +255,7 @@ static SingeResult wait_for(Child *child, Bytes *answer) {
         struct pollfd ready = {.fd = child->pipe, .events = POLLIN};
         int count = poll(&ready, 1, LOOK_MS);
         if (count < 0 && errno != EINTR && errno != EAGAIN)
-            result = refuse(child->error, SINGE_ERROR_FILE, "file", -1, "%s: its reader cannot be waited for",
+            result = refuse(child->error, SINGE_ERROR_FILE, "file", -1, "%s: cannot wait for its reader",
                             short_name(child->name));
         else result = isolate_look(child);
         if (result || count <= 0) continue;

@@ -43,7 +43,7 @@ static SingeResult take_string(Parser *parser) {
         if (*parser->at < ' ') return json_bad(parser, "a string has a control character");
         if (*parser->at == '\\' && parser->at + 1 < parser->end) parser->at++;
     }
-    if (parser->at == parser->end) return json_bad(parser, "a string has no end");
+    if (parser->at == parser->end) return json_bad(parser, "unterminated string");
     TRY(json_add(parser, JSON_STRING, begin, parser->at));
     parser->at++;
     return SINGE_OK;
@@ -52,14 +52,14 @@ static SingeResult take_string(Parser *parser) {
 /// Reads a value, or the beginning of an object or array.
 static SingeResult take_value(Parser *parser) {
     skip_blanks(parser);
-    if (parser->at == parser->end) return json_bad(parser, "the text ends too soon");
+    if (parser->at == parser->end) return json_bad(parser, "unexpected end of the text");
     uint8_t c = *parser->at;
     if (c == '"') return take_string(parser);
 
     if (c != '{' && c != '[') {
         const uint8_t *begin = parser->at;
         while (parser->at<parser->end && * parser->at> ' ' && !strchr(",]}[{:\"", *parser->at)) parser->at++;
-        if (parser->at == begin) return json_bad(parser, "a value is missing");
+        if (parser->at == begin) return json_bad(parser, "expected a value");
         return json_add(parser, JSON_PLAIN, begin, parser->at);
     }
 
@@ -91,7 +91,7 @@ SingeResult json_read(const char *name, const uint8_t *text, size_t size, SingeA
         }
 
         if (open->count) {
-            if (parser.at == parser.end || *parser.at != ',') return json_bad(&parser, "a comma or an end is missing");
+            if (parser.at == parser.end || *parser.at != ',') return json_bad(&parser, "expected a comma or the end");
             parser.at++;
             skip_blanks(&parser);
         }
@@ -100,7 +100,7 @@ SingeResult json_read(const char *name, const uint8_t *text, size_t size, SingeA
         if (object) {
             TRY(take_string(&parser));
             skip_blanks(&parser);
-            if (parser.at == parser.end || *parser.at != ':') return json_bad(&parser, "a colon is missing");
+            if (parser.at == parser.end || *parser.at != ':') return json_bad(&parser, "expected a colon");
             parser.at++;
         }
 

@@ -54,8 +54,7 @@ SingeResult polygons_read(const char *name, const uint8_t *bytes, size_t size, S
 // ---- answers of a child process
 
 static SingeResult refuse_answer(const char *name, SingeError *error) {
-    return refuse(error, SINGE_ERROR_FORMAT, "mesh", -1, "%s: cannot be read: its reader's answer is damaged",
-                  short_name(name));
+    return refuse(error, SINGE_ERROR_FORMAT, "mesh", -1, "%s: its reader returned damaged data", short_name(name));
 }
 
 static SingeResult take_arrays(const char *name, const uint8_t *at, Polygons *made, SingeError *error) {

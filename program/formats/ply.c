@@ -543,7 +543,7 @@ SingeResult ply_read_header(Ply *ply) {
         else if (!ended) return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a line of a PLY header");
         text_skip_blanks(&ply->text);
         if (!text_at_line_end(&ply->text)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "too many words on the line");
-        if (ply->text.at == ply->text.end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the header is cut off");
+        if (ply->text.at == ply->text.end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the header is truncated");
     }
 
     if (!known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the header has no format line");

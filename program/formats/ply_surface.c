@@ -145,7 +145,7 @@ static SingeResult surface_check_header(const Ply *ply, SingeSurface *surface, d
     if (!list || !list->is_list || list->count_type != PLY_UINT8 || list->type != PLY_INT32 ||
         !text_word_is(list->name, list->name_end, "vertex_indices"))
         return ply_refuse(ply, SINGE_ERROR_FORMAT,
-                          "not a cache of this version of Singe: other elements or properties");
+                          "not a cache of this version of Singe: unexpected elements or properties");
 
     surface->vertex_count = vertices->count;
     surface->triangle_count = faces->count;

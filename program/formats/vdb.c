@@ -349,7 +349,8 @@ static SingeResult write_gas(const char *path, const Gas *gas, double time, bool
     if (!isfinite(time))
         return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "%s: the time is not finite", short_name(path));
     if (!gas_cells(&gas->view) || !gas_shape_is_good(&gas->view))
-        return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "%s: no gas, or too much", short_name(path));
+        return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "%s: the gas has no cells, or too many",
+                      short_name(path));
 
     Writer writer = {.gas = gas, .half = half, .coolest = gas_coolest(&gas->view), .block_count = 1};
     for (int c = 0; c < 3; c++) writer.block_count *= (gas->view.size[c] + GAS_BLOCK - 1) / GAS_BLOCK;
@@ -464,7 +465,7 @@ static SingeResult read_metadata(Reader *r, bool of_file) {
     for (uint32_t i = 0; i < count; i++) {
         Text name = get_string(r), type = get_string(r);
         uint32_t size = get_u32(r);
-        if (!name.bytes || !type.bytes || !has(r, size)) return vdb_read_bad(r, "metadata are cut off");
+        if (!name.bytes || !type.bytes || !has(r, size)) return vdb_read_bad(r, "the metadata is truncated");
         Reader value = *r;
         r->at += size;
         if (of_file && is(name, "time") && is(type, "double") && size == 8) r->time = get_double(&value);
@@ -490,7 +491,7 @@ static const uint8_t *take_node(Reader *r, size_t mask_bytes) {
 
 static SingeResult read_node(Reader *r, Reader *buffers, const uint32_t low[3], VdbField field) {
     const uint8_t *children = take_node(r, VDB_LOWER_MASK);
-    if (!children) return vdb_read_bad(r, "a node is cut off or has values of its own");
+    if (!children) return vdb_read_bad(r, "a node is truncated, or has values of its own");
 
     for (uint32_t n = 0; n < 8 * VDB_LOWER_MASK; n++) {
         const uint32_t at[3] = {low[0] + (n >> 8) * GAS_BLOCK, low[1] + (n >> 4 & 15) * GAS_BLOCK,
@@ -502,13 +503,13 @@ static SingeResult read_node(Reader *r, Reader *buffers, const uint32_t low[3], 
             float *to = vdb_field(r->gas, field);
             const uint8_t *mask = vdb_read_take(r, VDB_LEAF_MASK), *again = vdb_read_take(buffers, VDB_LEAF_MASK + 1);
             if (!mask || !again || again[VDB_LEAF_MASK] || memcmp(mask, again, VDB_LEAF_MASK) != 0)
-                return vdb_read_bad(buffers, "a leaf is cut off, or its masks differ");
+                return vdb_read_bad(buffers, "a leaf is truncated, or its masks differ");
             for (uint32_t cell = 0; cell < 8 * VDB_LEAF_MASK; cell++) {
                 if (!vdb_bit(mask, cell)) continue;
                 uint32_t x = at[0] + (cell >> 6), y = at[1] + (cell >> 3 & 7), z = at[2] + (cell & 7);
                 if (x >= gas->size[0] || y >= gas->size[1] || z >= gas->size[2])
-                    return vdb_read_bad(r, "a cell outside of the gas");
-                if (!has(buffers, 4 * (uint64_t)width)) return vdb_read_bad(buffers, "the values are cut off");
+                    return vdb_read_bad(r, "a cell lies outside the gas");
+                if (!has(buffers, 4 * (uint64_t)width)) return vdb_read_bad(buffers, "the values are truncated");
                 for (uint32_t k = 0; k < width; k++) {
                     float value = get_float(buffers);
                     if (!isfinite(value)) return vdb_read_bad(buffers, "a value is not finite");
@@ -529,31 +530,31 @@ static const uint8_t *vdb_read_position(const Reader *r, uint64_t offset) {
 static SingeResult read_grid(Reader *r, VdbField field) {
     if (!is(get_string(r), vdb_fields[field].name) || !is(get_string(r), vdb_fields[field].type) ||
         !is(get_string(r), ""))
-        return vdb_read_bad(r, "other grids than those of Singe");
+        return vdb_read_bad(r, "unexpected grids");
     Reader body = *r, buffers = *r;
     body.at = vdb_read_position(r, get_u64(r));
     buffers.at = vdb_read_position(r, get_u64(r));
 
     const uint8_t *end = vdb_read_position(r, get_u64(r));
-    if (!body.at || !buffers.at || !end || end < r->at) return vdb_read_bad(r, "a grid lies outside of the file");
+    if (!body.at || !buffers.at || !end || end < r->at) return vdb_read_bad(r, "a grid lies outside the file");
     r->at = end;
-    if (get_u32(&body) != VDB_ACTIVE_VALUES) return vdb_read_bad(&body, "another compression than by active values");
+    if (get_u32(&body) != VDB_ACTIVE_VALUES) return vdb_read_bad(&body, "unsupported compression");
     TRY(read_metadata(&body, false));
 
-    if (!is(get_string(&body), VDB_MAP)) return vdb_read_bad(&body, "another map than " VDB_MAP);
+    if (!is(get_string(&body), VDB_MAP)) return vdb_read_bad(&body, "unsupported map; expected " VDB_MAP);
     double position[3], scale[3];
     for (int c = 0; c < 3; c++) position[c] = get_double(&body);
     for (int c = 0; c < 3; c++) scale[c] = get_double(&body);
-    if (!vdb_read_take(&body, 12 * 8)) return vdb_read_bad(&body, "the map is cut off");
+    if (!vdb_read_take(&body, 12 * 8)) return vdb_read_bad(&body, "the map is truncated");
 
     SingeGas map = body.gas->view;
     map.cell = (float)scale[0];
     for (int c = 0; c < 3; c++) map.origin[c] = (float)(position[c] - 0.5 * scale[0]);
     if (!gas_shape_is_good(&map) || scale[1] != scale[0] || scale[2] != scale[0])
-        return vdb_read_bad(&body, "a bad map");
+        return vdb_read_bad(&body, "invalid map");
     if (field == 0) body.gas->view = map;
     else if (memcmp(map.origin, body.gas->view.origin, sizeof map.origin) != 0 || map.cell != body.gas->view.cell)
-        return vdb_read_bad(&body, "grids of different maps");
+        return vdb_read_bad(&body, "the grids have different maps");
 
     bool good = get_u32(&body) == 1;
     float background = 0;
@@ -564,14 +565,14 @@ static SingeResult read_grid(Reader *r, VdbField field) {
     }
 
     uint32_t tiles = get_u32(&body), children = get_u32(&body);
-    if (!good || tiles || children > 1) return vdb_read_bad(&body, "the tree's root is not as Singe writes it");
+    if (!good || tiles || children > 1) return vdb_read_bad(&body, "unexpected root of the tree");
     if (field == VDB_TEMPERATURE) gas_fill(body.gas, background);
     if (!children) return SINGE_OK;
     static const uint8_t zero[12];
 
     const uint8_t *origin = vdb_read_take(&body, 12), *nodes = take_node(&body, VDB_UPPER_MASK);
     if (!origin || memcmp(origin, zero, 12) != 0 || !nodes)
-        return vdb_read_bad(&body, "the tree is cut off or lies elsewhere");
+        return vdb_read_bad(&body, "the tree is truncated or misplaced");
 
     for (uint32_t n = 0; n < 8 * VDB_UPPER_MASK; n++) {
         enum { SIDE = GAS_BLOCK << VDB_LOWER_LOG };
@@ -584,20 +585,20 @@ static SingeResult read_grid(Reader *r, VdbField field) {
 
 static SingeResult read_all(Reader *r) {
     if (get_u64(r) != VDB_MAGIC) return vdb_read_bad(r, "not a VDB file");
-    if (get_u32(r) != VDB_VERSION) return vdb_read_bad(r, "a VDB file of another version");
+    if (get_u32(r) != VDB_VERSION) return vdb_read_bad(r, "unsupported version of VDB");
     vdb_read_take(r, 8); // of the library
     const uint8_t *offsets = vdb_read_take(r, 1);
     if (!offsets || *offsets != 1 || !vdb_read_take(r, VDB_ID))
-        return vdb_read_bad(r, "the head is cut off or has no offsets");
+        return vdb_read_bad(r, "the header is truncated, or has no offsets");
     r->time = (double)NAN;
     TRY(read_metadata(r, true));
     if (!isfinite(r->time) || !gas_cells(&r->gas->view))
         return vdb_read_bad(r, "not a gas of Singe: no time or no size");
     if (r->extinction != (double)GAS_EXTINCTION || r->flame_unit != (double)GAS_FLAME_UNIT)
-        return vdb_read_bad(r, "its density or its flame is in other units than those of this version");
+        return vdb_read_bad(r, "density or flame has the units of another version of Singe");
     r->gas->view.cell = 1; // set by the grids
     if (!gas_shape_is_good(&r->gas->view)) return vdb_read_bad(r, "more cells than a gas can have");
-    if (get_u32(r) != VDB_FIELDS + 1) return vdb_read_bad(r, "other grids than those of Singe");
+    if (get_u32(r) != VDB_FIELDS + 1) return vdb_read_bad(r, "unexpected grids");
 
     TRY(gas_make(r->gas, r->name, 0, r->error));
     for (int f = 0; f < VDB_FIELDS; f++) TRY(read_grid(r, (VdbField)f));

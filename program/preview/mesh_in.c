@@ -175,7 +175,7 @@ static SingeResult check_surface(const SingeSurface *surface, SingeError *error)
     if (surface->vertex_count &&
         !(surface->position && surface->normal && surface->uv && surface->rest_position && surface->temperature &&
           surface->temperature_peak && surface->burn && surface->burn_rate && surface->sheet))
-        return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the surface lacks one of the arrays that are drawn");
+        return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the surface lacks an array that drawing needs");
     if (surface->triangle_count && !surface->triangles)
         return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the surface has a triangle count but no triangles");
     for (uint32_t t = 0; t < surface->triangle_count; t++)

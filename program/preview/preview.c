@@ -120,7 +120,7 @@ static SingeResult check_view(const PreviewDef *def, SingeError *error) {
     Float3 up = float3_load(camera->up), view = float3_sub(float3_load(camera->target), float3_load(camera->eye));
     if (!(float3_dot(view, view) > 1e-12f))
         return preview_refuse(error, -1, "camera: eye and target are the same point");
-    if (!(float3_dot(up, up) > 1e-12f)) return preview_refuse(error, -1, "camera: up has no direction");
+    if (!(float3_dot(up, up) > 1e-12f)) return preview_refuse(error, -1, "camera: up must not be zero");
 
     Float3 sun = float3_load(def->sun_direction);
     if (!(float3_dot(sun, sun) > 1e-20f)) return preview_refuse(error, -1, "sun_direction must not be zero");

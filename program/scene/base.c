@@ -106,7 +106,7 @@ static bool chain_open(Reader *reader, const YamlNode *node, const SceneFile *fi
         }
     if (link->depth <= BASES_MAX) return true;
 
-    message_add(reader->messages, reader->text, node->location, "materials are based on each other more than %d deep",
+    message_add(reader->messages, reader->text, node->location, "more than %d materials are based on one another",
                 BASES_MAX);
     return false;
 }

@@ -1,4 +1,4 @@
-// A scene that goes on from a frame of another: what may differ between the two, and how a simulation takes it over.
+// A scene that continues from a frame of another: what may differ between the two, and how a simulation takes it over.
 //
 // Two scenes are compared key by key, as text, with the schema's tables; the files that they name by their contents. The
 // keys in `changeable` may differ, and parameters of materials that do not fix a sheet's mass, shape or start. All else

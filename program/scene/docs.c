@@ -63,8 +63,8 @@ static const char after_units[] =
     "drag: [{time: 0, value: 1.3}, {time: 2 s, value: 4}]        # over time, interpolated\n"
     "```\n"
     "\n"
-    "Keys and numbered pictures are taken at each frame ([directing.md](directing.md#values-over-time)). What a sheet\n"
-    "begins with takes neither: `grammage`, `specific_heat`, `thickness`, `temperature`, `moisture`.\n"
+    "Keys and numbered pictures are taken at each frame ([directing.md](directing.md#values-over-time)). Initial\n"
+    "values accept neither: `grammage`, `specific_heat`, `thickness`, `temperature`, `moisture`.\n"
     "\n"
     "## Changing a value from the command line\n"
     "\n"
@@ -136,7 +136,7 @@ static void put_row(FILE *file, const SchemaRow *row, const void *object) {
 }
 
 static void put_table(FILE *file, const Schema *schema, const void *object, unsigned kind, bool shared) {
-    fputs("| key | value | range | default | what |\n|---|---|---|---|---|\n", file);
+    fputs("| key | value | range | default | meaning |\n|---|---|---|---|---|\n", file);
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
         bool common = !row->kinds;

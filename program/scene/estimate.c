@@ -149,7 +149,7 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
 
     if (pixels * (height_bytes + (heights && heights->visible ? drawn_height_bytes : 0)) > 0.5 * wanted) {
         message_add(messages, scene->text, heights->picture.location,
-                    "the scene needs about %s of memory, and there are %s: give its heightfield fewer pixels",
+                    "the scene needs about %s of memory, but only %s are available: give its heightfield fewer pixels",
                     bytes_text(wanted, needs), bytes_text(room, has));
         return false;
     }
@@ -158,7 +158,7 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
     for (uint32_t i = 1; i < scene->sheet_count; i++)
         if (sheet_cells(scene, assets, i) > sheet_cells(scene, assets, largest)) largest = i;
     message_add(messages, scene->text, scene->sheets[largest].location, // there is at least one sheet
-                "the scene needs about %s of memory, and there are %s: give its sheets fewer cells",
+                "the scene needs about %s of memory, but only %s are available: give its sheets fewer cells",
                 bytes_text(wanted, needs), bytes_text(room, has));
 
     return false;

@@ -222,12 +222,11 @@ static bool source_lights(const Scene *scene, const SceneAssets *assets, const S
     if (!touches && between != UINT32_MAX) {
         message_warn(
             log, scene->text, source->location,
-            "the source lights nothing: it reaches %.3g m, and the cells of sheet '%s' are %.3g m large, so that "
-            "it lies between their particles",
+            "the source lights nothing: it reaches %.3g m, and the cells of sheet '%s' are %.3g m large, so it falls between their particles",
             reach, scene->sheets[between].name, places[between].cell);
     } else if (!touches) {
         message_warn(log, scene->text, source->location,
-                     "the source misses the sheets: what it heats ends %.3g m from sheet '%s', the nearest", nearest,
+                     "the source misses the sheets: its heat ends %.3g m short of the nearest, '%s'", nearest,
                      scene->sheets[near].name);
     } else if (!lit) {
         message_warn(log, scene->text, source->location,

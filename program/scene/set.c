@@ -50,9 +50,11 @@ static YamlNode *setter_walk(Setter *setter, YamlNode *root) {
             unsigned long index = digits < 10 && !step[digits] ? strtoul(step, NULL, 10) : ULONG_MAX;
             for (child = node->first; child && index; child = child->next) index--;
             if (!child) {
-                message_add(setter->messages, setter->text, setter->location,
-                            "'%s' is not an entry of that list, which has %u entries (the first is 0)", step,
-                            (unsigned)node->count);
+                char last[40];
+                snprintf(last, sizeof last, node->count == 1 ? "only entry 0" : "entries 0 to %u",
+                         (unsigned)node->count - 1);
+                message_add(setter->messages, setter->text, setter->location, "no entry '%s': the list %s%s", step,
+                            node->count ? "has " : "is empty", node->count ? last : "");
                 return NULL;
             }
         } else if (node->kind == NODE_MAP) {

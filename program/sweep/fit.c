@@ -184,7 +184,7 @@ static bool masks_error(const FitTarget *target, const Sweep *sweep, uint32_t ro
     }
 
     if (good && !count) {
-        console_error(sweep->console, "%s: no frame has such a file", pattern);
+        console_error(sweep->console, "%s: no frame has a mask of this name", pattern);
         good = false;
     }
 

@@ -29,8 +29,7 @@ ExitCode sweep_print_openjd(const Sweep *sweep) {
     const char *const texts[] = {sweep->program, sweep->plan_path, sweep->folder, sweep->plan.name};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         if (!strstr(texts[i], "{{")) continue;
-        console_error(sweep->console, "--openjd: '{{' in a name has a meaning of its own there: %s",
-                      shown(texts[i]).text);
+        console_error(sweep->console, "--openjd: Open Job Description reserves '{{'; rename %s", shown(texts[i]).text);
         return EXIT_INPUT;
     }
     if (strlen(sweep->plan.name) > NAME_MAX_OPENJD) {

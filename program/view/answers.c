@@ -53,7 +53,7 @@ static void put_text(FILE *out, const char *name, const char *text) {
     text_json_string(out, text);
 }
 
-static Answer answer_nothing(void) { return answer_text(404, "there is no such thing"); }
+static Answer answer_nothing(void) { return answer_text(404, "not found"); }
 
 /// Of a stream of open_memstream that has been written.
 static Answer answer_stream(FILE *stream, char **text, const char *type) {

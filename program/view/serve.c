@@ -87,11 +87,10 @@ static enum MHD_Result respond(void *context, struct MHD_Connection *connection,
     for (size_t i = 0; formed && i < token_size; i++) difference |= (unsigned)(url[i + 1] ^ token[i]);
 
     Answer answer;
-    if (!is_one_of(host, server->host[0], server->host[1]))
-        answer = answer_text(MHD_HTTP_FORBIDDEN, "this is not the host that was asked for");
+    if (!is_one_of(host, server->host[0], server->host[1])) answer = answer_text(MHD_HTTP_FORBIDDEN, "wrong host name");
     else if ((origin && !is_one_of(origin, server->origin[0], server->origin[1])) ||
              (site && !is_one_of(site, "same-origin", "none")))
-        answer = answer_text(MHD_HTTP_FORBIDDEN, "another site may not ask");
+        answer = answer_text(MHD_HTTP_FORBIDDEN, "requests from other sites are refused");
     else if (difference)
         answer = answer_text(MHD_HTTP_FORBIDDEN, "the address lacks the token that singe view printed");
     else if (strcmp(method, "GET") != 0) answer = answer_text(MHD_HTTP_METHOD_NOT_ALLOWED, "only GET");

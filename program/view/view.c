@@ -27,8 +27,7 @@ const ArgCommand view_command = {
     "Shows a burn in a browser: the cache in DIR, or SCENE while it burns, again each time its file is saved.",
     view_options,
     OPT_COUNT,
-    "Only this machine can open the address, and only whoever knows it. From afar: ssh -L PORT:127.0.0.1:PORT, and "
-    "--port PORT.\nExit codes: 0 ended by Ctrl-C, 1 failed, 2 bad input.",
+    "The address works on this machine only; keep it secret. From another machine: ssh -L PORT:127.0.0.1:PORT and --port PORT.\nExit codes: 0 ended by Ctrl-C, 1 failed, 2 bad input.",
     "singe view letter.yaml\n"
     "singe view out"};
 

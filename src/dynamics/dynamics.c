@@ -155,7 +155,7 @@ static SingeResult dynamics_check(DynamicsPlan *plan, Pool *pool, DynamicsState 
     while (dynamics_count_lost(dynamics, i, i + 1) == 0) i++;
     return error_set(
         error, SINGE_ERROR_DIVERGED, "dynamics", i,
-        "particle %d has no finite position within 10 km, or velocity; a smaller time_step or more substeps may help",
+        "particle %d has left 10 km, or its position or velocity is not finite; a smaller time_step or more substeps may help",
         i);
 }
 

@@ -20,7 +20,8 @@
 enum { SHEET_LIMIT = UINT16_MAX };
 
 static SingeResult shell_no_memory(const Shell *shell, SingeError *error) {
-    return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells", shell->cell_count);
+    return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "out of memory for a shell of %u cells",
+                     shell->cell_count);
 }
 
 /// Counts the vertices and cells of all sheets, and allocates the arrays.
@@ -199,7 +200,7 @@ static SingeResult spring_colour(Memory *memory, const HalfEdges *mesh, Shell *s
 
     if (!NEW(memory, loose.ends, count) || !NEW(memory, loose.mate, (size_t)2 * count) || !NEW(memory, number, count) ||
         !NEW(memory, ends, (size_t)mesh->fan_longest + 1))
-        result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for %u springs", count);
+        result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "out of memory for %u springs", count);
 
     if (!result) {
         for (uint32_t e = 0; e < 2 * count; e++) loose.mate[e] = SHELL_NONE;

@@ -44,8 +44,8 @@ static SingeResult match_edges(Memory *memory, Shell *shell, HalfEdges *mesh, Si
         sort_by(shell, half_high, NULL, by_high, slot);
         sort_by(shell, half_low, by_high, order, slot);
     } else {
-        result =
-            error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the edges of %u cells", shell->cell_count);
+        result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "out of memory for the edges of %u cells",
+                           shell->cell_count);
     }
 
     for (uint32_t k = 0, size; k < count && !result; k += size) {
@@ -117,7 +117,7 @@ SingeResult half_edge_build(Memory *memory, Shell *shell, HalfEdges *mesh, Singe
     if (!NEW(memory, mesh->twin, (size_t)4 * shell->cell_count) || !NEW(memory, mesh->fan_start, shell->vertex_count) ||
         !NEW(memory, mesh->fan_size, shell->vertex_count)) {
         half_edge_free(memory, mesh);
-        return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the mesh of %u cells",
+        return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "out of memory for the mesh of %u cells",
                          shell->cell_count);
     }
 

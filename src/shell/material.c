@@ -102,15 +102,15 @@ static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, P
     const SingeField *follows = field->follows;
     if (!follows) return SINGE_OK;
     if (!isfinite(field->param->value) || !isfinite(field->param->to)) // an infinity cannot be interpolated
-        return field_fail(field->source, rule, "varies between numbers that are not both finite", error);
+        return field_fail(field->source, rule, "must vary between two finite numbers", error);
     switch ((int)follows->kind) {
     case SINGE_FIELD_TEXTURE:
-        if (!def->uv) return field_fail(field->source, rule, "is a texture but the sheet has no uv", error);
+        if (!def->uv) return field_fail(field->source, rule, "has a texture, but the sheet has no uv", error);
         if (follows->texture.width < 1 || follows->texture.height < 1 || !follows->texture.values)
-            return field_fail(field->source, rule, "is an empty texture", error);
+            return field_fail(field->source, rule, "has an empty texture", error);
         return SINGE_OK;
     case SINGE_FIELD_ATTRIBUTE:
-        if (!follows->attribute) return field_fail(field->source, rule, "names no attribute", error);
+        if (!follows->attribute) return field_fail(field->source, rule, "needs the name of an attribute", error);
         for (uint32_t i = 0; i < def->attribute_count; i++)
             if (strcmp(def->attributes[i].name, follows->attribute) == 0) field->attribute = def->attributes[i].values;
         if (!field->attribute)
@@ -119,11 +119,11 @@ static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, P
         return SINGE_OK;
     case SINGE_FIELD_NOISE:
         if (!range_has(&(const FieldRange)OVER(0), follows->noise.scale))
-            return field_fail(field->source, rule, "is noise whose scale is not above 0", error);
+            return field_fail(field->source, rule, "needs noise with a scale above 0", error);
         if (follows->noise.octaves < 1 || follows->noise.octaves > 8)
-            return field_fail(field->source, rule, "is noise of other than 1 to 8 octaves", error);
+            return field_fail(field->source, rule, "needs noise with 1 to 8 octaves", error);
         return SINGE_OK;
-    default: return field_fail(field->source, rule, "varies by an unknown kind of field", error);
+    default: return field_fail(field->source, rule, "has an unknown kind of field", error);
     }
 }
 
@@ -158,9 +158,8 @@ static SingeResult check_value(const ParamRule *rule, const Sheet *sheet, uint32
     if (range_has(&rule->range, value)) return SINGE_OK;
     bool corner = i < sheet->vertex_count;
     uint32_t element = corner ? i : i - sheet->vertex_count;
-    return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", element,
-                     "sheet '%s': %s must be %s, which it is not at %s %u", sheet->name, rule->name, rule->range.words,
-                     corner ? "vertex" : "cell", element);
+    return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", element, "sheet '%s': %s must be %s; %s %u violates this",
+                     sheet->name, rule->name, rule->range.words, corner ? "vertex" : "cell", element);
 }
 
 /// Evaluates a rule's parameter into values[particles].
@@ -223,7 +222,8 @@ SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSou
         const bool varies = param->field && param->field->kind != SINGE_FIELD_NONE;
         ParamField field = {.param = param, .follows = varies ? param->field : NULL, .source = source};
         if (!*values && !NEW(memory, *values, total))
-            return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for sheet '%s'", source->sheet.name);
+            return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "out of memory for sheet '%s'",
+                             source->sheet.name);
         TRY(field_open(def, rule, &field, error));
         TRY(evaluate(&field, rule, *values, error));
 

@@ -177,7 +177,7 @@ SingeResult strand_build(Memory *memory, uint32_t particle_count, const LooseSpr
     if (done) return SINGE_OK;
 
     strand_free(memory, set);
-    return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the strands of %u springs", count);
+    return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "out of memory for the strands of %u springs", count);
 }
 
 void strand_free(Memory *memory, SpringSet *set) {

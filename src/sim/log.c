@@ -54,7 +54,7 @@ void sim_log_commit(const SingeSim *sim) {
     float gravity = float3_length(float3_load(sim->def.gravity));
     for (uint32_t s = 0; s < sim->shell.sheet_count; s++) {
         const Sheet *sheet = &sim->shell.sheets[s];
-        sim_log(sim, SINGE_LOG_INFO, "sheet %u: cells of %.3g mm, its front %.3g times as thick as a real one", s,
+        sim_log(sim, SINGE_LOG_INFO, "sheet %u: cells of %.3g mm; its fire front is widened %.3g times", s,
                 1e3 * (double)sheet->cell_size, (double)sim->thickening[s]);
         const float carried = shell_carried(&sim->shell, s, h), load = shell_load(&sim->shell, s, gravity);
         if (sim->tear)
@@ -104,7 +104,7 @@ void sim_log_contacts(SingeSim *sim, const CollisionCounters *contacts) {
         const float *at = sim->shell.rest_position[sim->shell.cells[contacts->intersecting_first][0]];
         sim_log(sim, SINGE_LOG_WARNING,
                 "contact: %u cells intersect or coincide with others as the simulation starts, one near (%.4g, %.4g, "
-                "%.4g) m; they are ignored until they have separated",
+                "%.4g) m; contact between them is off until they separate",
                 contacts->intersecting, (double)at[0], (double)at[1], (double)at[2]);
     }
     if (contacts->unresolved && !sim->crossing_warned) {

@@ -215,7 +215,8 @@ SingeResult call_set_pin_positions(SingeSim *sim, SingePinId id, const float *po
     Pin *pin = OBJECT_FIND(sim->pins, id);
     if (!pin) return object_stale(sim, "pin", id.index);
     if (!sim->committed)
-        return sim_fail(sim, SINGE_ERROR_STATE, "pin", -1, "what a pin holds is not known before singe_sim_commit");
+        return sim_fail(sim, SINGE_ERROR_STATE, "pin", -1,
+                        "call singe_sim_commit first: it chooses the particles that a pin holds");
     if (!isfinite(time)) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "the time is not finite");
     TRY(motion_check(pin->count, positions, pin_position_max, "pin", &sim->error));
     if (pin->count == 0) return SINGE_OK;

@@ -133,7 +133,7 @@ static void player_explain(Player *player, uint64_t first) {
         report->step++;
         report_what(report, "the heat of a callback, after step %llu", (unsigned long long)step);
     } else {
-        report_what(report, "what follows step %llu: %s was recorded", (unsigned long long)step,
+        report_what(report, "the record after step %llu: expected %s", (unsigned long long)step,
                     call_name(kind) ? call_name(kind) : "the end");
     }
 }
@@ -418,7 +418,7 @@ static SingeResult player_fail(const Player *player, uint8_t kind, uint64_t at, 
                          "the recording is damaged: the arguments of %s at byte %llu are wrong", name, byte);
     if (kind >= RECORD_CALL)
         return error_set(error, SINGE_ERROR_FORMAT, "replay", (int64_t)at,
-                         "the recording is damaged: there is no call %d, at byte %llu", kind, byte);
+                         "the recording is damaged: unknown call %d at byte %llu", kind, byte);
     return error_set(error, SINGE_ERROR_FORMAT, "replay", (int64_t)at,
                      "the recording is damaged: the record at byte %llu is wrong or misplaced", byte);
 }
@@ -434,13 +434,13 @@ static SingeResult player_begin(Player *player, const SingeSimDef *hooks, SingeE
     memcpy(player->report.version, header.singe, sizeof header.singe);
     if (header.version > RECORD_VERSION || header.version == 0)
         return error_set(error, SINGE_ERROR_VERSION, "replay", 0,
-                         "the recording has version %u of the format; this is singe %s, which reads up to version %d",
-                         header.version, singe_version(), RECORD_VERSION);
+                         "the recording has format %u; singe %s reads formats up to %d", header.version,
+                         singe_version(), RECORD_VERSION);
 
     uint8_t kind = 0;
     if (!player_peek(player, &kind) || (kind != RECORD_CREATE && kind != RECORD_LOAD))
         return error_set(error, SINGE_ERROR_FORMAT, "replay", (int64_t)tape->offset,
-                         "no simulation is made at byte %llu, where the recording begins",
+                         "a recording must begin with the creation of a simulation, not with what is at byte %llu",
                          (unsigned long long)tape->offset);
     SingeSimDef def = singe_default_sim(), given;
     if (!sim_read_sim_def(hooks, &given))

@@ -25,7 +25,7 @@ SingeResult call_set_gravity(SingeSim *sim, const float gravity[3]) {
     TRY(def_check_field(&sim_table, "gravity", gravity, "gravity", &sim->error));
     if (sim->gas && gravity_axis(gravity) != gravity_axis(sim->def.gravity))
         return sim_fail(sim, SINGE_ERROR_STATE, "gravity", -1,
-                        "the gas grid lies above the sheets: gravity must stay largest along the same axis");
+                        "gravity must stay largest along the same axis, as the gas grid was laid along it");
     memcpy(sim->def.gravity, gravity, sizeof sim->def.gravity);
     if (sim->dynamics) dynamics_plan_set_gravity(sim->dynamics, gravity);
     if (sim->gas) gas_plan_set_gravity(sim->gas, gravity);
@@ -43,12 +43,12 @@ SingeResult call_set_pace(SingeSim *sim, float pace) {
 SingeResult call_set_velocity(SingeSim *sim, SingeSheetId id, uint32_t first, uint32_t count, const float *velocity) {
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "velocity", -1,
-                        "singe_sim_commit must come first; a sheet's Def has the velocity at the start");
+                        "call singe_sim_commit first; the velocity at the start is in the sheet's Def");
     if (id.generation != 1 || id.index >= sim->sheet_count) return object_stale(sim, "velocity", id.index);
     const Sheet *sheet = &sim->shell.sheets[id.index];
     if (count > sheet->vertex_count || first > sheet->vertex_count - count)
         return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "velocity", first,
-                         "sheet '%s' has %u vertices with those in reserve", sheet->name, sheet->vertex_count);
+                         "sheet '%s' has only %u vertices, including its reserve", sheet->name, sheet->vertex_count);
     if (count && !velocity) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "velocity", -1, "velocity is NULL");
     for (size_t k = 0; k < 3 * (size_t)count; k++)
         if (!float_within(velocity[k], -1e4f, 1e4f))

@@ -113,7 +113,7 @@ static SingeResult snapshot_body(Stream *stream, SingeSim *sim) {
     stream->failed |= ok && stream->mode == STREAM_READ && stream->offset != stream->size;
     if (stream->failed)
         return sim_fail(sim, SINGE_ERROR_FORMAT, "load", (int64_t)stream->offset,
-                        "the snapshot is cut short or inconsistent");
+                        "the snapshot is truncated or inconsistent");
     return ok ? SINGE_OK : sim_fail(sim, SINGE_ERROR_MEMORY, "load", -1, "out of memory");
 }
 
@@ -158,7 +158,7 @@ SingeResult singe_sim_load(const SingeSimDef *hooks, const uint8_t *bytes, size_
         return error_set(error, SINGE_ERROR_VERSION, "load", 0,
                          "the snapshot is from another version or another kind of machine");
     if (header.size != expected.size)
-        return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "the snapshot is cut short");
+        return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "the snapshot is truncated");
     if (header.checksum != expected.checksum)
         return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "the snapshot is damaged: wrong checksum");
 

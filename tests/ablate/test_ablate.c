@@ -230,7 +230,7 @@ TEST(all_can_go) {
     finish(b, plan);
 }
 
-TEST(nothing_goes_without_ablation) {
+TEST(no_springs_break_without_ablation) {
     SingeMaterialDef material = plain_material();
     material.ablate = false;
     BurningSheet *b = burning_sheet(3, 3, 0.01f, &material);

@@ -178,7 +178,7 @@ class Bench(Case):
             ([], "a measurement is missing"),
             (["swin"], "did you mean 'swing'?"),
             (["--swing"], "unknown measurement"),
-            (["swing", "x"], "one argument too many"),
+            (["swing", "x"], "unexpected argument"),
             (["swing", "--cells", "1"], "whole numbers from 2 to 2000"),
             (["swing", "--cells", "8,"], "whole numbers from 2 to 2000"),
             (["swing", "--cells", "8.5"], "whole numbers"),

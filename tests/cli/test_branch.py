@@ -1,4 +1,4 @@
-"""Runs that go on from a frame of an earlier run."""
+"""Runs that continue from a frame of an earlier run."""
 
 import json
 import os
@@ -68,7 +68,7 @@ class Branch(Case):
                                          self.path("b5", "ply", "tiny.0002.ply")))
 
     def test_killed(self):
-        """A branch that was killed goes on from its own checkpoint, and stays a branch."""
+        """A branch that was killed continues from its own checkpoint, and stays a branch."""
         self.whole()
         out = self.path("k")
         run = self.start("run", self.scene, "-o", out, "--from", f"{self.path('whole')}:3", "--no-preview",
@@ -159,7 +159,7 @@ class Branch(Case):
             with self.subTest(wrong):
                 self.assertIn(part, self.run_scene("no", "--set", wrong, expect=2)[1])
         keys = ("--set", "pace=[{time: 0, value: 1}, {time: 1, value: 2}]", "--set", "burn_by={fraction: 50 %, frame: 9}")
-        self.assertIn("'pace' has no keys", self.run_scene("no", *keys, expect=2)[1])
+        self.assertIn("'pace' must be one number", self.run_scene("no", *keys, expect=2)[1])
 
     def test_a_run_is_its_scene(self):
         """The folder of a run stands for the scene that it has burnt, wherever the command runs."""

@@ -47,7 +47,7 @@ class Failure(Case):
         self.assertIn("tiny.yaml: cannot start a process to read it: Too many open files", err)
         self.assertNotIn("memory", err)
         err = limited(resource.RLIMIT_DATA, 40 << 20, 2)
-        self.assertRegex(err, r"tiny.yaml:6:5: error: the scene needs about \d\d+ MB of memory, and there are 42 MB")
+        self.assertRegex(err, r"tiny.yaml:6:5: error: the scene needs about \d\d+ MB of memory, but only 42 MB are available")
 
     def test_stats_in_the_way(self):
         os.makedirs(self.path("o", "stats.csv"))

@@ -183,7 +183,7 @@ class Fit(Case):
                           expect=1)
         self.assertIn("has no temperatures of probe 'q'", err)
         _, err = self.fit("scene: tiny.yaml\ntarget: {masks: mask##.png}\nevaluations: 1\n" + RANGE, out="g", expect=1)
-        self.assertIn("no frame has such a file", err)
+        self.assertIn("no frame has a mask of this name", err)
 
 
 if __name__ == "__main__":

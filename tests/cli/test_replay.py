@@ -43,7 +43,7 @@ class Replay(Case):
         for threads in "1", "3":
             out, err = self.singe("replay", path, "--threads", threads)
             self.assertRegex(out, r"^the same: 10 steps, \d+ calls\n$")
-            self.assertEqual(err.replace(self.dir, "").count("cut short"), 0)
+            self.assertEqual(err.replace(self.dir, "").count("truncated"), 0)
 
     def test_what_resumes_is_recorded_from_there_on(self):
         self.run_scene("part", "--frames", "4")
@@ -71,12 +71,12 @@ class Replay(Case):
         run.communicate()
         out, err = self.singe("replay", path)
         self.assertRegex(out, "the same: [1-9]")
-        self.assertIn("cut short", err)
+        self.assertIn("truncated", err)
 
         # the same where it was cut within a record
         out, err = self.singe("replay", self.changed(path, lambda data: data[:-5]))
         self.assertIn("the same:", out)
-        self.assertIn("cut short", err)
+        self.assertIn("truncated", err)
 
     def test_calls_that_do_not_matter_are_left_out(self):
         """A command that fails where a source (18) is added and a step (36) follows."""
@@ -111,9 +111,9 @@ class Replay(Case):
             data[[at for at, kind, _ in self.records(data) if kind == 36][2]] = 250
             return data
 
-        self.assertIn("has version 99", self.singe("replay", self.changed(path, newer), expect=2)[1])
+        self.assertIn("has format 99", self.singe("replay", self.changed(path, newer), expect=2)[1])
         self.assertRegex(self.singe("replay", self.changed(path, unknown_call), expect=2)[1],
-                         r"the recording is damaged: there is no call 250, at byte \d+")
+                         r"the recording is damaged: unknown call 250 at byte \d+")
 
     def test_a_recording_that_cannot_be_written_is_a_failure(self):
         _, err = self.run_scene("nowhere", "--record", self.path("no", "where"), expect=1)

@@ -123,7 +123,7 @@ class New(Case):
     def test_new_replaces_nothing_unless_it_is_told_to(self):
         with open(self.path("letter.yaml"), "w") as file:
             file.write("mine\n")
-        self.assertIn("is there already", self.singe("new", "letter", "-o", self.dir, expect=2)[1])
+        self.assertIn("already exists", self.singe("new", "letter", "-o", self.dir, expect=2)[1])
         with open(self.path("letter.yaml")) as file:
             self.assertEqual(file.read(), "mine\n")
         self.singe("new", "letter", "-o", self.dir, "--force")

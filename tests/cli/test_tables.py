@@ -91,7 +91,7 @@ class Tables(Case):
         self.assertEqual({row["there"] for row in left[gone:]}, {"0"})
 
     def test_same_bytes(self):
-        """Any number of threads; a run that goes on from a checkpoint."""
+        """Any number of threads; a run that continues from a checkpoint."""
         self.run_scene("whole", "--quiet", "--threads", "1")
         self.run_scene("two", "--quiet", "--threads", "2")
         self.assertEqual(self.bytes("whole"), self.bytes("two"))

@@ -387,14 +387,14 @@ class Verify(Case):
         self.assertIn("no line of frame 6", self.verify(expect=1)[1])
         os.remove(path)
         out, err, _ = self.verify()
-        self.assertIn("inverted cells are not known", err)
+        self.assertIn("inverted cells cannot be counted", err)
 
     def test_stretch(self):
         self.damage(lambda s: [vertex.update(x=1.01 * vertex["x"]) for vertex in s.vertices], 6)
         self.verify()
         _, err, rows = self.verify("--stretch", "1", expect=1)
         self.assertGreater(rows[-1]["stretched_edges"], 0)
-        self.assertIn("more of this kind are only counted", err)
+        self.assertIn("further ones are only counted", err)
         self.assertEqual(err.count("mm at rest"), 3)
 
     def test_refusals(self):

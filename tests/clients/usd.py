@@ -123,7 +123,7 @@ def check_interrupted(singe, folder):
     same_files = all(open(os.path.join(out, name), "rb").read() == open(os.path.join(folder, "out", name), "rb").read()
                      for name in ["burn.usda"] + ["usd/burn.%04d.usdc" % frame for frame in range(1, FRAMES + 1)])
     assert same_files
-    print("killed after frame 6: its root names %d frames; gone on with, all files are the same" % frames)
+    print("killed after frame 6: its root names %d frames; after resuming, all files are identical" % frames)
 
 
 def check_single(singe, out):

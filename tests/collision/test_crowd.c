@@ -225,7 +225,7 @@ TEST(stripes_share_no_vertex) {
     for (int k = 0; k < 3; k++) singe_sim_destroy(sims[k]);
 }
 
-TEST(what_lists_grow_to_decides_nothing) {
+TEST(list_sizes_do_not_affect_results) {
     const Crowd *scenes[] = {&stack, &soup};
     for (int k = 0; k < 2; k++) {
         SingeSim *usual = crowd(scenes[k], 1, NULL), *small = crowd(scenes[k], 1, NULL);
@@ -243,7 +243,7 @@ TEST(what_lists_grow_to_decides_nothing) {
 }
 
 /// Where a list may not grow, what is lost is counted, and is the same for any number of threads.
-TEST(what_is_dropped_is_counted) {
+TEST(dropped_pairs_are_counted) {
     const struct {
         const Crowd *scene;
         bool pairs, repulsions;

@@ -99,7 +99,7 @@ TEST(sweeps_stop_in_time) {
     assert_true(met > 100 && free_displacements > 1000);
 }
 
-TEST(what_is_near_may_only_part) {
+TEST(near_cells_may_only_separate) {
     FeatureSweep sweep = {.position = {{0, 0, 1e-3f, 0}, {-1, -1, 0, 0}, {1, -1, 0, 0}, {0, 1, 0, 0}}};
     sweep.displacement[0] = (Float4){0, 0, 1e-2f, 0};
     assert_true(feature_sweep(&sweep, 1e-3f, 0) > 1);
@@ -151,7 +151,7 @@ static bool cells_pierce(const Float4 a[5], const Float4 b[5], const unsigned sh
 
 /// Cells that are proven apart do not cross: two cells at a side, and two at a corner with one between that shares a
 /// side with each, bent and sheared at random.
-TEST(what_is_parted_does_not_cross) {
+TEST(cells_proven_apart_do_not_cross) {
     int level[2] = {0}, parted[2] = {0}, crossed[2] = {0};
     for (int trial = 0; trial < 200000; trial++) {
         Float4 grid[3][3], cell[3][5];

@@ -31,7 +31,7 @@ TEST(a_broken_invariant_ends_the_program) {
 #endif
 }
 
-TEST(what_holds_goes_on) {
+TEST(true_assertions_continue) {
     evaluated = 0;
     SINGE_ASSERT(look(true));
 #ifdef SINGE_ASSERTIONS

@@ -3,7 +3,7 @@
 
 #include "common/memory.h"
 
-TEST(counts_what_is_held) {
+TEST(memory_in_use_is_counted) {
     TestAllocator hook = {0};
     Memory memory = memory_make(test_allocator(&hook));
     double *array;
@@ -27,7 +27,7 @@ TEST(counts_what_is_held) {
     assert_int_equal(hook.faults, 0);
 }
 
-TEST(nothing_can_be_freed) {
+TEST(empty_arrays_can_be_freed) {
     TestAllocator hook = {0};
     Memory memory = memory_make(test_allocator(&hook));
     int *array;

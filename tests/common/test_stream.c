@@ -20,7 +20,7 @@ static void walk(Stream *stream, Things *things) {
     stream_data(stream, things->list, sizeof things->list);
 }
 
-TEST(what_is_written_is_read) {
+TEST(streams_read_what_they_wrote) {
     Things out = {12345, 6.5, {1, 2, 3, 4, 5}}, in;
     Stream measure = {.mode = STREAM_MEASURE};
     walk(&measure, &out);

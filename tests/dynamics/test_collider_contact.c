@@ -149,7 +149,7 @@ TEST(sheets_slip_above_the_angle_of_friction) {
     triangles_free(&triangles);
 }
 
-TEST(what_lies_still_does_not_creep) {
+TEST(resting_sheets_do_not_creep) {
     Triangles triangles = triangles_box(2, 2, 2, 0.1f);
     const float heights[25] = {0};
     for (int kind = SINGE_COLLIDER_PLANE; kind <= SINGE_COLLIDER_MESH; kind++) {
@@ -291,7 +291,7 @@ static double fastest(const Bench *bench, int *under) {
 }
 
 /// A block comes down on a sheet that lies on a plate, nearer than sheet and offsets are thick, and is lifted again.
-TEST(what_is_pressed_stays_and_rests) {
+TEST(pressed_sheets_stay_and_rest) {
     for (float gap = 2e-3f; gap > 0.2e-3f; gap /= 2) {
         Bench bench;
         SingeMaterialDef material = singe_default_material();
@@ -335,7 +335,7 @@ TEST(what_is_pressed_stays_and_rests) {
 }
 
 /// A plate that turns about its edge hits a sheet in flight: nothing gets through.
-TEST(a_swat_passes_nothing) {
+TEST(swung_plates_let_nothing_through) {
     Bench bench;
     SingeMaterialDef material = plain();
     bench_open(&bench, quads_grid(16, 16, 0.002f, 0.002f, false), &material, 1);
@@ -453,7 +453,7 @@ static double look(Bench *bench, Float3 at, uint64_t *contacts) {
 }
 
 /// A mesh of 10,000 triangles: a sheet that is far from it, above it, and one of which all particles touch it.
-TEST(what_is_far_costs_next_to_nothing) {
+TEST(far_colliders_cost_almost_nothing) {
     Bench bench;
     SingeMaterialDef material = plain();
     material.thickness = singe_param(0.0004f); // both layers in reach

@@ -127,7 +127,7 @@ TEST(gentle_bends_are_not_touched) {
 }
 
 /// A limit beyond what cells of this size bear is that of the cells: beta, 45 degrees for these.
-TEST(coarse_cells_have_their_own) {
+TEST(coarse_cells_set_the_curvature_limit) {
     Bench bench;
     const float beta = atanf(2 * singe_default_material().thickness.value / cell);
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), 1e5f);
@@ -155,7 +155,7 @@ TEST(char_folds_as_it_likes) {
     bench_close(&bench);
 }
 
-TEST(what_is_gone_does_not_bend) {
+TEST(removed_springs_do_not_bend) {
     Bench bench;
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 2, 1);

@@ -135,7 +135,7 @@ TEST(distances_go_around_a_hole) {
 }
 
 /// No path leads across cells that are gone.
-TEST(nothing_leads_across_gone_cells) {
+TEST(paths_avoid_removed_cells) {
     Distances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
     remove_cells(&d, 0, SIDE, 20, 21);

@@ -195,7 +195,7 @@ TEST(some_sides_have_no_max) {
         bench.plan->attachments.spread[0].tight = kind == 3;
         bool found =
             dynamics_limit(bench.plan, &bench.shell, STATE_INPUT(&bench.state), bench.pool, &bench.state.dynamics);
-        assert_true(found == (kind == 4)); // there is none of these
+        assert_true(found == (kind == 4)); // burnt, soft, held or tightly attached sides have none
         assert_true(kind == 4 ? x[7][0] < far - 1e-3f : x[7][0] == far);
         bench_close(&bench);
     }

@@ -54,7 +54,7 @@ static uint8_t *many(void) {
     return bytes;
 }
 
-TEST(answers_come_whole) {
+TEST(answers_arrive_complete) {
     uint8_t *bytes = many();
     Bytes answer;
     SingeError error;

@@ -151,7 +151,7 @@ TEST(corners_keep_their_uv) {
     polygons_free(&mesh);
 }
 
-TEST(registry_goes_by_the_ending) {
+TEST(readers_are_chosen_by_extension) {
     Polygons mesh;
     SingeError error;
     static const char text[] = SQUARE "f 1 2 3 4\n";

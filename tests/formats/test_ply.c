@@ -179,7 +179,7 @@ TEST(refuses_bad_headers) {
                  "integer type");
     expect_error(HEADER "elephant\n", SINGE_ERROR_FORMAT, 3, "this is not a line of a PLY header");
     expect_error(HEADER "element vertex 4\n" XYZ "element face 1\n" FACES "end_header", SINGE_ERROR_FORMAT, 9,
-                 "cut off");
+                 "truncated");
 }
 
 TEST(refuses_bad_bodies) {

@@ -257,7 +257,7 @@ TEST(without_memory_there_is_no_file) {
         if (format != OUTPUT_textures || exr_available()) check_memory(format);
 }
 
-/// Sheets of which nothing is left are a file in every format.
+/// A fully burnt sheet still yields a valid file in every format.
 TEST(every_format_has_empty_frames) {
     const SingeSurface none = {0};
     SingeError error;

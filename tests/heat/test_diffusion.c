@@ -361,7 +361,7 @@ TEST(layers_even_out_at_their_rate) {
     rig_close(&rig);
 }
 
-TEST(what_is_gone_conducts_nothing) {
+TEST(removed_particles_conduct_nothing) {
     RigDef def = rig_default(8, 2, 0.002f, 0.002f);
     def.shape = shear;
     Rig rig;

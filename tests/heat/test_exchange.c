@@ -269,7 +269,7 @@ TEST(any_heat_ends_finite) {
 }
 
 /// Refused with the sheet's name, and not found in a step.
-TEST(what_conducts_beyond_floats_is_refused) {
+TEST(conductances_beyond_floats_are_refused) {
     for (int k = 0; k < 4; k++) {
         RigDef def = rig_default(3, 2, 0.002f, 0.002f);
         Rig rig;

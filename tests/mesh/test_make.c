@@ -50,7 +50,7 @@ static int irregular(const Mesh *mesh) {
 }
 
 // Where all pairs are as good, as in a mesh of equilateral triangles, quads go on each other's rows.
-TEST(rows_go_on) {
+TEST(quads_continue_rows) {
     text.size = 0;
     const int n = 20;
     for (int j = 0; j <= n; j++)

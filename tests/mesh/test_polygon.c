@@ -269,7 +269,7 @@ TEST(faces_in_contact_with_themselves_are_split) {
     assert_covers_but(&shape, 56, 0.02, "a hole that touches a side");
 }
 
-TEST(what_crosses_itself_is_refused) {
+TEST(self_crossing_polygons_are_refused) {
     static const double star[][2] = {{1, 0}, {0.309, 0.951}, {-0.809, 0.588}, {-0.809, -0.588}, {0.309, -0.951}};
     Shape shape = SHAPE(few, 0, 2, 1, 3);
     assert_refused(&shape, "a bow tie");

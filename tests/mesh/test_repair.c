@@ -304,7 +304,7 @@ TEST(quads_on_their_triangles_are_left_out) {
     mesh_free(&made.mesh);
 }
 
-TEST(what_cannot_be_repaired_is_refused) {
+TEST(irreparable_meshes_are_refused) {
     text.size = 0;
     text_add(&text, "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
     Made made = make_with(&text, mesh_default_options());

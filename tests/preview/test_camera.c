@@ -61,7 +61,7 @@ TEST(a_lens_blurs_what_is_out_of_focus) {
 
 /// What a lens blurs is smooth with few samples: stripes out of focus differ from those of very many samples by less than
 /// the bar in the root mean square, of 255. One sample, from which nothing is known of its noise, breaks it.
-TEST(what_a_lens_blurs_is_smooth) {
+TEST(out_of_focus_pictures_are_smooth) {
     static uint8_t exact[BYTES], few[BYTES];
     uint8_t texels[3 * STRIPES];
     Image image;

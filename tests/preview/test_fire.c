@@ -327,7 +327,7 @@ TEST(embers_throw_sparks_and_smoke) {
 }
 
 /// Flicker continues over time and stays where the gas is.
-TEST(flicker_goes_on_in_time) {
+TEST(flicker_continues_over_time) {
     static uint8_t a[BYTES], b[BYTES];
     static Ball ball;
     SingeSurface nothing = {0};

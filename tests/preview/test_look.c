@@ -130,7 +130,7 @@ TEST(ash_pales_with_time) {
 }
 
 /// Surfaces that face up get the same light from any sky; those that face sideways do not.
-TEST(what_faces_up_does_not_depend_on_the_sky) {
+TEST(light_on_upward_faces_is_the_same_for_any_sky) {
     static uint8_t rgb[BYTES];
     enum { PW = 16, PH = 8 };
     uint8_t texels[PW * PH * 3];

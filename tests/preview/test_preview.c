@@ -50,7 +50,7 @@ TEST(frames_between_leave_no_trace) {
 }
 
 /// State that a preview keeps between frames (the table, the mask, the shapes) does not affect the next frame.
-TEST(what_is_kept_does_not_show) {
+TEST(kept_state_does_not_affect_the_picture) {
     SingeSurface burning, hanging, nothing = {0};
     assert_true(synthetic_make(SYNTHETIC_FLAT, 20, 0.05f, &burning));
     assert_true(synthetic_make(SYNTHETIC_HANGING, 20, 0.05f, &hanging));

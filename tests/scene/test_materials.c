@@ -293,7 +293,7 @@ TEST(wrong_materials_are_reported) {
     expect_mistake(in, "    material: picture.yaml\n", "picture.yaml:1:38", "there is no such file", 1);
     expect_mistake(in, "    material: unknown.yaml\n", "unknown.yaml:1:7", "did you mean 'newsprint'?", 1);
     expect_mistake(in, "    material: range.yaml\n", "range.yaml:1:19", "must be a range from low to high", 1);
-    expect_mistake(in, "    material: deep0.yaml\n", "deep15.yaml:1:7", "more than 16 deep", 1);
+    expect_mistake(in, "    material: deep0.yaml\n", "deep15.yaml:1:7", "more than 16 materials", 1);
     expect_mistake(in, "    material: long.yaml\n", "scene.yaml:3:15", "larger than 1 MiB", 1);
 
     // reported once however many sheets are made of it, and behind those of the scene

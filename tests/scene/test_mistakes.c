@@ -62,8 +62,9 @@ TEST(wrong_values_are_reported) {
     one_of("drag: [{time: 1}]", "drag needs 'value'");
     one_of("drag: []", "'drag' is an empty list");
     one_of("drag: [1]", "an entry of 'drag' must be a map");
-    one_of("moisture: [{time: 0, value: 0}]", "moisture is fixed at the start: it has no keys");
-    one_of("moisture: {from: 0, to: 1, texture: a.##.png}", "moisture is fixed at the start: it takes one picture");
+    one_of("moisture: [{time: 0, value: 0}]", "moisture is fixed at the start: it accepts no keys");
+    one_of("moisture: {from: 0, to: 1, texture: a.##.png}",
+           "moisture is fixed at the start: it accepts one picture only");
     one_of("drag: {from: 0, to: 1, texture: a.#.#.png}", "one run of #");
     one("pace: []", "bad.yaml:3:7", "'pace' is an empty list: it needs at least one entry");
     one("sources: [{kind: texture, texture: a.png, strength: []}]", "bad.yaml:3:53", "at least one entry");
@@ -180,7 +181,7 @@ TEST(wrong_objects_are_reported) {
     one("sources: [3]", "bad.yaml:3:11", "must be a map, not '3'");
     one("sources: {kind: ball}", "bad.yaml:3:10", "a list of maps");
     one("sources: [{kind: bal, position: [0, 0, 0]}]", "bad.yaml:3:18", "did you mean 'ball'?");
-    one("sources: [{kind: ball}]", "bad.yaml:3:11", "a ball needs 'path' or 'position'");
+    one("sources: [{kind: ball}]", "bad.yaml:3:11", "a source of this kind needs 'path' or 'position'");
     one("sources: [{kind: ball, path: []}]", "bad.yaml:3:30", "at least one entry");
     one("sources: [{kind: ball, path: [{time: 0}], position: [0, 0, 0]}]", "bad.yaml:3:43", "stands for a path");
     one("sources: [{kind: ball, path: [{position: [0, 0, 0]}]}]", "bad.yaml:3:31", "needs 'time'");
@@ -411,11 +412,11 @@ TEST(all_mistakes_are_reported_at_once) {
     expect_message(&messages, 2, "bad.yaml:3:5", "needs 'mesh'");
     expect_message(&messages, 3, "bad.yaml:4:16", "did you mean 'grammage'?");
     expect_message(&messages, 4, "bad.yaml:4:39", "possible are: m, cm, mm, um, in");
-    expect_message(&messages, 5, "bad.yaml:5:11", "a ball needs");
+    expect_message(&messages, 5, "bad.yaml:5:11", "a source of this kind needs");
     expect_message(&messages, 6, "bad.yaml:6:8", "steps must be 1 to 100000");
     expect_message(&messages, 7, "--set fps=-1", "out of range");
     expect_message(&messages, 8, "--set nme=x", "did you mean 'name'?");
-    expect_message(&messages, 9, "--set sources.3.kind=ball", "'3' is not an entry of that list, which has 1");
+    expect_message(&messages, 9, "--set sources.3.kind=ball", "no entry '3': the list has only entry 0");
     expect_message(&messages, 10, "--set steps.x=1", "'0' has no 'x' in it");
     expect_message(&messages, 11, "--set novalue", "expected PATH=VALUE");
     expect_message(&messages, 12, "--set =3", "expected PATH=VALUE");

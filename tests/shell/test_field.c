@@ -84,13 +84,13 @@ TEST(attributes_are_taken_as_they_are) {
     sheet_source_free(&memory, &source);
 
     values[6] = -5; // -400
-    refuse(&square.def, 6, "mass_rate must be 0 or more, which it is not at vertex 6");
+    refuse(&square.def, 6, "mass_rate must be 0 or more; vertex 6 violates this");
     values[6] = NAN;
     refuse(&square.def, 6, "vertex 6");
     field.attribute = "char";
     refuse(&square.def, -1, "no attribute 'char'");
     field.attribute = NULL;
-    refuse(&square.def, -1, "names no attribute");
+    refuse(&square.def, -1, "needs the name of an attribute");
     square_free(&square);
 }
 

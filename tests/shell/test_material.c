@@ -136,7 +136,7 @@ TEST(every_parameter_can_vary) {
 
             param.to = INFINITY; // no line leads there, not even for a ceiling that may be infinite
             memcpy((char *)&def.material + varying[k].offset, &param, sizeof param);
-            refuse(&def, -1, "not both finite");
+            refuse(&def, -1, "must vary between two finite numbers");
             param.to = 0.9f;
         }
 

@@ -84,7 +84,7 @@ TEST(touching_spheres_are_refused) {
 }
 
 // The element is the second sheet's own, not the shell's.
-TEST(the_element_is_the_sheets_own) {
+TEST(errors_name_the_element_within_its_sheet) {
     Memory memory = memory_make((SingeAllocator){0});
     QuadMesh good = mesh_grid(3, 3, 1, 1), bad = mesh_grid(2, 2, 1, 1);
     memcpy(bad.cells[1], bad.cells[3], sizeof bad.cells[1]);

@@ -84,7 +84,7 @@ TEST(the_front_arrives_when_the_map_says) {
     }
 }
 
-TEST(what_does_not_keep_to_the_map_is_counted) {
+TEST(particles_that_miss_the_map_are_counted) {
     SingeSourceId id;
     SingeSim *sim = mapped(10, 1, 9e-3f, &id);
     test_steps(sim, 100);

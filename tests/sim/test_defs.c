@@ -232,7 +232,7 @@ TEST(a_def_inside_may_be_older) {
     test_mesh_free(&mesh);
 }
 
-TEST(what_a_newer_def_adds_is_not_read) {
+TEST(fields_of_newer_defs_are_ignored) {
     struct {
         SingeWindDef wind;
         double unknown[4];

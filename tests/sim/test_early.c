@@ -27,7 +27,7 @@ TEST(the_order_does_not_matter) {
 }
 
 /// An object that is invalid fails at the commit as it would after it, and the commit can be repeated.
-TEST(what_waits_can_be_refused) {
+TEST(invalid_objects_fail_at_the_commit) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
     test_ok(NULL, singe_sim_create(&def, &sim, NULL));
@@ -62,7 +62,7 @@ TEST(what_waits_can_be_refused) {
 }
 
 /// Removed before the commit, an object leaves nothing behind.
-TEST(what_is_removed_before_the_commit_is_gone) {
+TEST(objects_removed_before_the_commit_leave_nothing) {
     TestAllocator hook = {0};
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);

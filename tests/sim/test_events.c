@@ -129,7 +129,7 @@ TEST(a_cut_makes_one_piece) {
 }
 
 /// The switches: nothing goes with ablation off, or with m_loss under m_min.
-TEST(nothing_goes_where_it_is_switched_off) {
+TEST(no_cells_vanish_with_ablation_off) {
     for (int which = 0; which < 2; which++) {
         SingeSimDef def = calm();
         SingeMaterialDef material = scene_quick_material();

@@ -91,7 +91,7 @@ TEST(threads_change_only_the_note_of_their_number) {
     free(three.bytes);
 }
 
-TEST(what_is_loaded_is_recorded_from_there_on) {
+TEST(recordings_may_begin_with_a_snapshot) {
     Scene scene = scene_make(NULL, 8);
     test_steps(scene.sim, 3);
     TestBytes bytes = test_save(scene.sim);

@@ -370,7 +370,7 @@ TEST(frames_of_whole_steps_stay_whole) {
     singe_sim_destroy(sim);
 }
 
-TEST(who_falls_behind_slows_down) {
+TEST(advance_takes_at_most_max_steps) {
     SingeSim *sim = test_sim(NULL, test_grid(2, 2, 0.01f, 0.01f), NULL);
     const double h = (double)singe_default_sim().time_step;
     uint32_t steps;

@@ -160,7 +160,7 @@ static TestBytes small_snapshot(void) {
 }
 
 /// At the ends of what is legal a step may fail, but what it leaves can be saved and loaded.
-TEST(what_any_step_leaves_loads) {
+TEST(the_state_after_any_step_loads) {
     static const float temperatures[] = {1e-3f, 293.15f, 1e5f, 1e15f}, masses[] = {1e-30f, 0.08f, 1e20f};
     static const float heats[] = {1e-20f, 1400, 1e30f}, exchanges[] = {0, 14, 1e30f}, fluxes[] = {-3e38f, 30e3f, 3e38f};
     uint32_t refused = 0, loaded = 0;

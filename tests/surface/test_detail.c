@@ -222,7 +222,7 @@ TEST(tear_edges_at_one_point_are_drawn_apart) {
 }
 
 /// A cell's triangles that have been pulled apart are left out once springs of it have burnt, and not before.
-TEST(what_a_lost_corner_pulls_apart_is_left_out) {
+TEST(triangles_pulled_apart_by_a_lost_corner_are_left_out) {
     Drawing *d = fine_drawing(6, 6, 1, 0.2f, 0);
     const uint32_t cell = cell_at(d->sheet, 2, 2), corner = d->sheet->shell.cells[cell][0];
     const float room[49] = {0};

@@ -78,7 +78,7 @@ static void raster(const SingeSurface *s, int width, int height, float step, uin
     }
 }
 
-TEST(what_is_gone_stays_gone) {
+TEST(removed_surface_stays_removed) {
     enum { WIDTH = 301, HEIGHT = 226 };
     static uint8_t before[WIDTH * HEIGHT], after[WIDTH * HEIGHT];
     Drawing *d = fine_drawing(12, 9, 1, 0.1f, 0.5f);

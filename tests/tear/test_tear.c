@@ -527,7 +527,7 @@ static uint32_t twins(const SingeView *view, uint32_t input_count, uint32_t of) 
 }
 
 /// A tear that runs into a vertex of more cells than can be split ends there.
-TEST(a_hub_of_many_cells_stays_whole) {
+TEST(tears_end_at_vertices_of_many_cells) {
     SingeSimDef def = pull_def();
     TestMesh mesh = make_disc();
     float weak[1 + SPOKES * RINGS];

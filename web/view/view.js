@@ -335,7 +335,7 @@ function setLayer(name) {
     dirty = true;
 }
 
-// ---- branching: the command that goes on from here
+// ---- branching: the command that continues from here
 
 const BRANCHES = [
     ["pace", "Pace of the fire", 0.25, 20, 0.25, (s) => s.pace], ["wind.velocity.0", "Wind along x, m/s", -4, 4, 0.1, (s) => s.wind?.velocity?.[0]],

@@ -113,7 +113,7 @@ def frames_in(cache):
 
 
 def can_branch(cache, frame, frames):
-    """Whether a frame (from 1) of a cache is there to go on from, and not the last of the new run."""
+    """Whether a frame (from 1) of a cache is there to continue from, and not the last of the new run."""
     return os.path.exists(os.path.join(cache, "run.json")) and 0 < frame <= frames_in(cache) and frame < frames
 
 

@@ -60,7 +60,7 @@ class Burning:
         elif branch:
             frame = branch_frame(scene)
             if not files.is_own(folder) or not job.can_branch(os.path.join(folder, "cache"), frame, frame_count(scene)):
-                raise export.ExportError(f"the burn has no frame {scene.frame_current} to go on from: move to one that "
+                raise export.ExportError(f"the burn has no frame {scene.frame_current} to continue from: move to one that "
                                          "is burnt and is not the scene's last")
             load.clear(context, os.path.join(folder, "cache"))
             files.set_aside(folder)
@@ -130,7 +130,7 @@ class SINGE_OT_burn(bpy.types.Operator, Burning):
     preview: BoolProperty(options={"SKIP_SAVE"}, description="Coarse, without gas")
     resume: BoolProperty(options={"SKIP_SAVE"}, description="Continue a burn that was stopped")
     branch: BoolProperty(options={"SKIP_SAVE"},
-                         description="Keep the burn up to the current frame, and go on with what has changed since: wind, "
+                         description="Keep the burn up to the current frame, and continue with what has changed since: wind, "
                                      "pins, colliders, fire, materials, pace")
 
     def _begin(self, context):
@@ -143,7 +143,7 @@ class SINGE_OT_burn(bpy.types.Operator, Burning):
 
     def _fail(self, context, error):
         said = files.sentence(error)
-        if not isinstance(error, ERRORS):  # the file has what nobody thought of
+        if not isinstance(error, ERRORS):  # unexpected scene content
             traceback.print_exception(error)
             said = f"the extension cannot use this scene: {type(error).__name__}: {said}; the console shows more"
         say(context.scene, said, True)

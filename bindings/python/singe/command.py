@@ -183,7 +183,7 @@ def run(scene: Path, out: Optional[Path] = None, *, frames: Optional[int] = None
 
     settings: values of the scene to override, such as {"pace": 8, "sheets.0.grid.cells": [40, 60]}. progress: called
     with (frames done, frames). Ctrl-C, or an exception in `progress`, lets the command write a checkpoint, from which
-    resume=True goes on. start: the folder of an earlier run and the frame of it to go on from, as in `branch`.
+    resume=True continues a run. start: the folder of an earlier run and its frame to continue from, as in `branch`.
     SceneError has file, line and column of each error.
     """
     folder = pathlib.Path(out) if out is not None else pathlib.Path("out") / pathlib.Path(scene).stem

@@ -20,15 +20,15 @@ export interface SheetOptions {
 
 export interface SourceOptions {
     /** ball: a hot ball on a path; spot: a hot ball that stands still; texture: a flux drawn on the sheet; arrival:
-     *  a picture of when the front arrives where; water: a picture of where the sheet is wetted. These move air,
-     *  which bends flames, carries sheets and cools them: jet from a nozzle, vortex about an axis, attract to a
-     *  point, turbulence everywhere */
+     *  a picture of the front's arrival times; water: a picture of where the sheet is wetted. These move air, which
+     *  bends flames, carries sheets and cools them: jet from a nozzle, vortex about an axis, attract to a point,
+     *  turbulence everywhere */
     kind?: "ball" | "texture" | "spot" | "arrival" | "water" | "jet" | "vortex" | "attract" | "turbulence";
     /** s, any, also infinite; time at which it starts */
     start?: number;
     /** s, any, also infinite; time at which it ends; inf: never */
     end?: number;
-    /** K, ball and spot, 1e-3 to 1e5; of the ball or the flame */
+    /** K, ball and spot, 1e-3 to 1e5; of the ball or flame */
     temperature?: number;
     /** W/(m2 K), ball and spot, 0 to 1e9; heat transfer coefficient to the sheet */
     conductance?: number;
@@ -40,8 +40,8 @@ export interface SourceOptions {
     /** W, ball and spot, 0 to 1e6; of a flame that it carries: the flame's gas rises and burns from its centre, if
      *  the scene has gas; a match has 60 W. It heats sheets through the gas alone */
     power?: number;
-    /** W/m2, texture, finite; into each of the sheet's two layers where the texture is white; times texture and
-     *  strength at most 1e15 W/m2. Below 0 it cools, but not below 1 K */
+    /** W/m2, texture, finite; into each of the sheet's two layers where the texture is white; at most 1e15 W/m2
+     *  after strength and the texture. Below 0 it cools, but not below 1 K */
     flux?: number;
     /** s, arrival, 0 to 1e9; when the front arrives where the map is black */
     arrival_from?: number;
