@@ -225,25 +225,31 @@ void finish_scene(Reader *reader, const YamlNode *map, void *object) {
         complain(reader, node_find(map, "burn_by")->key_location,
                  "'burn_by' changes the pace, so 'pace' must be one number");
 
-    bool many_sheets = sheets && sheets->count > 1000; // comparing their names would take long
+    // a step takes as long as there are objects, and their names are compared
+    static const char *const lists[] = {"sheets", "sources", "colliders", "pins", "probes"};
+    bool many = false;
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
+        const YamlNode *list = node_find(map, lists[i]);
+        if (!list || list->kind != NODE_LIST || list->count <= SCENE_OBJECTS_MAX) continue;
+        message_add(reader->messages, reader->text, list->location, "a scene has at most %d %s", SCENE_OBJECTS_MAX,
+                    lists[i]);
+        many = true;
+    }
+    if (many) return;
+
     if (sheets && sheets->kind == NODE_LIST) {
         if (!sheets->count) complain(reader, sheets->location, "a scene needs at least one sheet");
-        else if (many_sheets) complain(reader, sheets->location, "a scene has at most 1000 sheets");
         else
             check_names(reader, sheets, "sheet", scene->sheets, sizeof *scene->sheets, offsetof(SceneSheet, name),
                         scene->sheet_count);
     }
-
-    if (many_sheets) return;
 
     const YamlNode *node = pins && pins->kind == NODE_LIST ? pins->first : NULL;
     for (uint32_t i = 0; node && i < scene->pin_count; i++, node = node->next)
         if (scene->pins[i].sheet && scene->sheet_count)
             resolve_sheet(reader, node, scene, scene->pins[i].sheet, &scene->pins[i].sheet_index);
 
-    if (probes && probes->kind == NODE_LIST && probes->count > 1000) {
-        complain(reader, probes->location, "a scene has at most 1000 probes");
-    } else if (probes && probes->kind == NODE_LIST) {
+    if (probes && probes->kind == NODE_LIST) {
         check_names(reader, probes, "probe", scene->probes, sizeof *scene->probes, offsetof(SceneProbe, name),
                     scene->probe_count);
         node = probes->first;

@@ -67,7 +67,10 @@ typedef struct Reader {
     Scene *scene;
 } Reader;
 
-enum { SCENE_BYTES_MAX = 1 << 20 }; ///< of a scene or a material file
+enum {
+    SCENE_BYTES_MAX = 1 << 20, ///< of a scene or a material file
+    SCENE_OBJECTS_MAX = 1000,  ///< sheets, and so on, each
+};
 
 typedef struct Schema {
     const char *title; ///< "a sheet": for messages and headings

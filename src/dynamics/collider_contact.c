@@ -29,6 +29,9 @@ static const float CONTACT_SPEED = 20;
 /// Max steps in which a displacement is followed.
 enum { CONTACT_STEPS = 128 };
 
+/// A block of particles or cells lists the colliders it may touch: at most CONTACT_LISTED, of more than CONTACT_FEW.
+enum { CONTACT_FEW = 4, CONTACT_LISTED = 256 };
+
 /// A position this near outside a surface, as a share of the offset or in m, counts as on it.
 static const float CONTACT_SKIN = 1.0f / 16, CONTACT_SKIN_MIN = 1e-6f;
 
@@ -83,6 +86,22 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
     }
 
     while (moving.ends < 2 && isinf(moving.low[moving.ends]) && isinf(moving.high[moving.ends])) moving.ends++;
+
+    // the box along the world's axes; a collider without an end somewhere is near everything
+    for (int i = 0; i < 3; i++) {
+        float middle = 0, reach = 0;
+        for (int k = 0; k < 3; k++) {
+            const Float3 a = moving.axis[k];
+            const float part = i == 0 ? a.x : i == 1 ? a.y : a.z;
+            middle += part * 0.5f * (moving.low[k] + moving.high[k]);
+            reach += fabsf(part) * 0.5f * (moving.high[k] - moving.low[k]);
+        }
+        const float at = i == 0 ? moving.after.position.x : i == 1 ? moving.after.position.y : moving.after.position.z;
+        const float slack = 1e-5f * (fabsf(at) + fabsf(middle) + reach); // of rounding, here and in contact_near
+        const bool bounded = isfinite(middle) && isfinite(reach);
+        moving.world_low[i] = bounded ? at + middle - reach - slack : -INFINITY;
+        moving.world_high[i] = bounded ? at + middle + reach + slack : INFINITY;
+    }
     return moving;
 }
 
@@ -259,6 +278,58 @@ static inline Float4Mask contact_near(const MovingCollider *collider, Float4 x, 
     return near;
 }
 
+/// The colliders that positions in a box may touch, in their order.
+typedef struct Nearby {
+    Float4 low[3], high[3]; ///< m, of the box: a minimum and maximum in each lane
+    uint32_t count;         ///< of colliders; of all if it is not listed
+    bool listed;            ///< whether they are in `index`
+    uint32_t index[CONTACT_LISTED];
+} Nearby;
+
+static inline Nearby nearby_empty(void) {
+    const Float4 far = float4_all(INFINITY);
+    return (Nearby){.low = {far, far, far}, .high = {-far, -far, -far}};
+}
+
+static inline void nearby_add(Nearby *nearby, const Float4 q[3]) {
+    for (int i = 0; i < 3; i++) {
+        nearby->low[i] = float4_min(nearby->low[i], q[i]);
+        nearby->high[i] = float4_max(nearby->high[i], q[i]);
+    }
+}
+
+/// Whether the positions are in the box.
+static inline bool nearby_holds(const Nearby *nearby, const Float4 q[3]) {
+    Float4Mask in = {-1, -1, -1, -1};
+    for (int i = 0; i < 3; i++) in &= (q[i] >= nearby->low[i]) & (q[i] <= nearby->high[i]);
+    return float4_bits(in) == 15;
+}
+
+static void nearby_list(Nearby *nearby, const DynamicsPlan *plan, uint32_t collider_count) {
+    float low[3], high[3];
+    for (int i = 0; i < 3; i++) {
+        const Float4 least = nearby->low[i], most = nearby->high[i];
+        low[i] = fminf(fminf(least[0], least[1]), fminf(least[2], least[3]));
+        high[i] = fmaxf(fmaxf(most[0], most[1]), fmaxf(most[2], most[3]));
+        nearby->low[i] = float4_all(low[i]);
+        nearby->high[i] = float4_all(high[i]);
+    }
+
+    nearby->listed = true;
+    for (uint32_t c = 0; c < collider_count; c++) {
+        const MovingCollider *moving = &plan->colliders[c];
+        bool near = true;
+        for (int i = 0; i < 3; i++) near &= !(moving->world_low[i] > high[i]) && !(moving->world_high[i] < low[i]);
+        if (!near) continue;
+        nearby->listed = nearby->count < CONTACT_LISTED;
+        if (!nearby->listed) {
+            nearby->count = collider_count;
+            return;
+        }
+        nearby->index[nearby->count++] = c;
+    }
+}
+
 typedef struct Contact {
     const DynamicsPlan *plan;
     uint32_t collider_count;
@@ -325,8 +396,17 @@ static double contact_block(void *task, int begin, int end) {
     const Contact *job = task;
     uint64_t contacts = 0;
     float(*position)[4] = job->dynamics->position;
+    Nearby nearby = {.count = job->collider_count};
+    if (job->collider_count > CONTACT_FEW) {
+        nearby = nearby_empty();
+        for (int i = begin; i < end; i++) {
+            const float *x = position[i];
+            nearby_add(&nearby, (const Float4[3]){float4_all(x[0]), float4_all(x[1]), float4_all(x[2])});
+        }
+        nearby_list(&nearby, job->plan, job->collider_count);
+    }
 
-    for (int first = begin; first < end && job->collider_count > 0; first += 4) {
+    for (int first = begin; first < end && nearby.count > 0; first += 4) {
         // the last of a block is repeated in lanes without a particle
         int particle[4];
         for (int i = 0; i < 4; i++) particle[i] = first + i < end ? first + i : end - 1;
@@ -334,9 +414,12 @@ static double contact_block(void *task, int begin, int end) {
         for (int i = 0; i < 4; i++) q[i] = float4_load(position[particle[i]]);
         float4_transpose(q);
         const Float4Mask lane = {0, 1, 2, 3}, moves = (q[3] != 0) & (lane < end - first);
-        for (uint32_t c = 0; c < job->collider_count; c++) {
+        bool listed = nearby.listed;
+        for (uint32_t k = 0, c; k < (listed ? nearby.count : job->collider_count); k++) {
+            c = listed ? nearby.index[k] : k;
             const MovingCollider *collider = &job->plan->colliders[c];
             if (!float4_bits(contact_near(collider, q[0], q[1], q[2]))) continue;
+            const uint64_t before = contacts;
 
             unsigned one_by_one = float4_bits(moves);
             if (collider->is_simple) {
@@ -355,14 +438,21 @@ static double contact_block(void *task, int begin, int end) {
             }
 
             // along their displacements
-            if (!one_by_one) continue;
-            float offset = collider->collider->def.offset;
-            for (int i = 0; i < 4; i++)
-                if (one_by_one >> i & 1)
-                    contacts +=
-                        contact_particle(collider, offset, contact_previous(job, particle[i]), position[particle[i]]);
-            for (int i = 0; i < 4; i++) q[i] = float4_load(position[particle[i]]);
-            float4_transpose(q);
+            if (one_by_one) {
+                float offset = collider->collider->def.offset;
+                for (int i = 0; i < 4; i++)
+                    if (one_by_one >> i & 1)
+                        contacts += contact_particle(collider, offset, contact_previous(job, particle[i]),
+                                                     position[particle[i]]);
+                for (int i = 0; i < 4; i++) q[i] = float4_load(position[particle[i]]);
+                float4_transpose(q);
+            }
+
+            // moved out of the box: other colliders may be near, of those that follow
+            if (listed && contacts > before && !nearby_holds(&nearby, q)) {
+                listed = false;
+                k = c;
+            }
         }
     }
 
@@ -396,22 +486,27 @@ typedef struct Centroid {
     float h;
 } Centroid;
 
+/// The mean of a cell's corners.
+static inline Float4 centroid_at(const Centroid *job, uint32_t cell) {
+    const uint32_t *corner = job->shell->cells[cell];
+    Float4 sum = {0, 0, 0, 0};
+    for (int j = 0; j < 4; j++) sum += float4_load(job->dynamics->position[corner[j]]);
+    return sum * 0.25f;
+}
+
 /// Which of the cells [first, end), at most four of them, have a centroid that a collider may touch: bits.
-static unsigned centroid_touching(const Centroid *job, int first, int end) {
-    const float(*position)[4] = (const float(*)[4])job->dynamics->position;
+static unsigned centroid_touching(const Centroid *job, const Nearby *nearby, int first, int end) {
     Float4 q[4];
     unsigned alive = 0, touching = 0;
     for (int i = 0; i < 4; i++) {
-        const uint32_t cell = job->cells[first + i < end ? first + i : first], *corner = job->shell->cells[cell];
-        Float4 sum = {0, 0, 0, 0};
-        for (int j = 0; j < 4; j++) sum += float4_load(position[corner[j]]);
-        q[i] = sum * 0.25f;
+        const uint32_t cell = job->cells[first + i < end ? first + i : first];
+        q[i] = centroid_at(job, cell);
         if (first + i < end && job->ablate->cell_flags[cell] & SINGE_ALIVE) alive |= 1u << i;
     }
 
     float4_transpose(q);
-    for (uint32_t c = 0; c < job->collider_count && touching != alive; c++) {
-        const MovingCollider *moving = &job->plan->colliders[c];
+    for (uint32_t k = 0; k < nearby->count && touching != alive; k++) {
+        const MovingCollider *moving = &job->plan->colliders[nearby->listed ? nearby->index[k] : k];
         const SingeColliderDef *def = &moving->collider->def;
         if (def->kind == SINGE_COLLIDER_PLANE) continue;
         Float4Mask near = contact_near(moving, q[0], q[1], q[2]);
@@ -430,9 +525,19 @@ static unsigned centroid_touching(const Centroid *job, int first, int end) {
 static void centroid_cells(void *task, int begin, int end) {
     const Centroid *job = task;
     float(*position)[4] = job->dynamics->position;
+    Nearby nearby = {.count = job->collider_count};
+    if (job->collider_count > CONTACT_FEW) {
+        nearby = nearby_empty();
+        for (int k = begin; k < end; k++) {
+            const Float4 x = centroid_at(job, job->cells[k]);
+            nearby_add(&nearby, (const Float4[3]){float4_all(x[0]), float4_all(x[1]), float4_all(x[2])});
+        }
+        nearby_list(&nearby, job->plan, job->collider_count);
+    }
+
     unsigned touching = 0; // bit i: cell k + i of four
-    for (int k = begin; k < end; k++, touching >>= 1) {
-        if ((k - begin) % 4 == 0) touching = centroid_touching(job, k, end);
+    for (int k = begin; k < end && nearby.count > 0; k++, touching >>= 1) {
+        if ((k - begin) % 4 == 0) touching = centroid_touching(job, &nearby, k, end);
         if (!(touching & 1)) continue;
 
         const uint32_t *corner = job->shell->cells[job->cells[k]];

@@ -19,10 +19,11 @@ typedef struct MovingCollider {
     bool is_simple; ///< a plane, sphere, box or capsule: four particles at once
     bool is_still;  ///< before and after are the same
     Pose before, after;
-    Float3 axis[3];        ///< of the box, which has `after.position` for its origin
-    float low[3], high[3]; ///< m
-    int ends;              ///< first axis along which the box has ends
-    float drift;           ///< m, max displacement of its surface in its frame: 0 except for a deforming mesh
+    Float3 axis[3];                    ///< of the box, which has `after.position` for its origin
+    float low[3], high[3];             ///< m
+    int ends;                          ///< first axis along which the box has ends
+    float world_low[3], world_high[3]; ///< m, the box along the world's axes
+    float drift; ///< m, max displacement of its surface in its frame: 0 except for a deforming mesh
 } MovingCollider;
 
 /// The loops that have a version for each instruction set.

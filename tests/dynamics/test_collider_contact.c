@@ -398,8 +398,9 @@ TEST(particles_move_four_at_once_as_one_by_one) {
             for (uint32_t k = 0; k < 3; k++) {
                 const uint32_t draw = 8 * i + k;
                 const float centre = trial < 4 ? 0 : keys[0].position[k];
-                dynamics->position[i][k] = centre + 0.03f * (random_unit(draw) - 0.5f);
-                dynamics->velocity[i][k] = (i % 5 == 0 ? 8.0f : 0.5f) * (random_unit(draw + 4) - 0.5f);
+                dynamics->position[i][k] = centre + 0.03f * (random_unit(random_hash(draw, 0, 0, 1)) - 0.5f);
+                dynamics->velocity[i][k] =
+                    (i % 5 == 0 ? 8.0f : 0.5f) * (random_unit(random_hash(draw + 4, 0, 0, 1)) - 0.5f);
             }
             dynamics->position[i][3] = i % 7 == 0 ? 0 : 1;
             memcpy(bench.plan->predicted[i], dynamics->position[i], sizeof *one);
@@ -421,6 +422,67 @@ TEST(particles_move_four_at_once_as_one_by_one) {
     }
 
     assert_true(all > 1000);
+}
+
+/// A sheet among pegs, some of which it overlaps: its blocks list colliders by their boxes, or take all where they are
+/// many, and particles are pushed from one into the next.
+TEST(of_many_colliders_none_is_missed) {
+    enum { MOST = 600 };
+    const float h = STEP / 3, none[4] = {0, 0, 0, 1};
+    for (int trial = 0; trial < 6; trial++) {
+        const uint32_t near = trial < 3 ? 40 : 400, count = near + 200;
+        Bench bench;
+        SingeMaterialDef material = plain();
+        bench_open(&bench, quads_grid(40, 40, 0.002f, 0.002f, false), &material, 1);
+        assert_true(dynamics_plan_reserve(&bench.memory, bench.plan, MOST));
+        Collider *colliders = calloc(MOST, sizeof *colliders);
+        for (uint32_t c = 0; c < count; c++) {
+            float draw[8];
+            for (uint32_t k = 0; k < 8; k++) draw[k] = random_unit(random_hash(c, k, 0, (uint32_t)trial)) - 0.5f;
+            SingeColliderDef def = singe_default_collider();
+            const SingeColliderKind kinds[] = {SINGE_COLLIDER_SPHERE, SINGE_COLLIDER_BOX, SINGE_COLLIDER_CAPSULE};
+            def.kind = kinds[c % 3];
+            def.radius = def.height = 0.004f;
+            def.half_size[0] = def.half_size[1] = def.half_size[2] = 0.003f;
+            const float far = c < near ? 0.09f : 3;
+            const float side = sqrtf(1 - draw[3] * draw[3]);
+            SingePoseKey keys[2] = {
+                {0, {0.04f + far * draw[0], 0.04f + far * draw[1], 0.01f * draw[2]}, {0, side, 0, draw[3]}}};
+            keys[1] = keys[0];
+            keys[1].time = h;
+            keys[1].position[2] += 0.01f * draw[4];
+            def.path = keys;
+            def.path_count = 2;
+            assert_int_equal(collider_create(&bench.memory, &def, &colliders[c], &bench.error), SINGE_OK);
+            bench.plan->colliders[c] = contact_collider(&colliders[c], 0, (double)h);
+        }
+
+        DynamicsState *dynamics = &bench.state.dynamics;
+        const uint32_t particles = bench.shell.particle_count;
+        position(&bench, none, float3(0, 0, 0));
+        float(*one)[4] = malloc(particles * sizeof *one);
+        for (uint32_t i = 0; i < particles; i++) {
+            dynamics->position[i][3] = 1;
+            dynamics->velocity[i][2] = i % 3 == 0 ? -4.0f : 0.5f;
+            memcpy(bench.plan->predicted[i], dynamics->position[i], sizeof *one);
+            memcpy(one[i], dynamics->position[i], sizeof *one);
+        }
+
+        uint64_t contacts = 0;
+        for (uint32_t i = 0; i < particles; i++) {
+            Float3 before = float3_mad(float3_load(one[i]), float3_load(dynamics->velocity[i]), -h);
+            for (uint32_t c = 0; c < count; c++)
+                contacts += contact_particle(&bench.plan->colliders[c], colliders[c].def.offset, before, one[i]);
+        }
+        assert_true(contacts > 500);
+        assert_int_equal(contact_project(bench.plan, count, NULL, h, dynamics), contacts);
+        assert_memory_equal(dynamics->position, one, particles * sizeof *one);
+
+        free(one);
+        for (uint32_t c = 0; c < count; c++) collider_free(&bench.memory, &colliders[c]);
+        free(colliders);
+        bench_close(&bench);
+    }
 }
 
 // ---- cost

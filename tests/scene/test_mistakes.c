@@ -244,6 +244,10 @@ TEST(wrong_syntax_is_reported) {
     whole("hello", "bad.yaml:1:1", "a scene must be a map");
     whole("frames: 3\n", "bad.yaml:1:1", "needs 'sheets'");
     whole("sheets: []\n", "bad.yaml:1:9", "at least one sheet");
+    char many[40000] = "sheets: [{grid: {size: [1, 1], cells: [1, 1]}}]\nsources: [";
+    for (int i = 0; i <= 1000; i++) strcat(many, "{kind: spot, position: [0, 0, 0]},");
+    many[strlen(many) - 1] = ']';
+    whole(many, "bad.yaml:2:10", "at most 1000 sources");
     whole("frames: [1, 2\n", "bad.yaml:2:1", "not valid YAML");
     whole("frames: \"abc\n", "bad.yaml:1:10", "not valid YAML");
     whole("a: &x 1\n", "bad.yaml:1:7", "anchors and aliases");
