@@ -3,17 +3,19 @@
 #include <signal.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "cli/cli.h"
 
 // The only statics of the program: a signal handler cannot exchange data in another way.
-static volatile sig_atomic_t interrupt_flag;
+static volatile sig_atomic_t interrupt_flag, interrupt_second, interrupt_left;
 enum { DRAFTS_MAX = 8 };
 static const char *volatile interrupt_drafts[DRAFTS_MAX];
 
 static void note_signal(int number) {
     (void)number;
+    interrupt_second = (sig_atomic_t)(time(NULL) & 0x3fffffff);
     interrupt_flag = 1;
     struct sigaction plain = {.sa_handler = SIG_DFL};
     sigaction(SIGINT, &plain, NULL);
@@ -59,6 +61,14 @@ void interrupt_watch(void) {
 }
 
 bool interrupt_asked(void) { return interrupt_flag != 0; }
+
+bool interrupt_overdue(void) {
+    if (!interrupt_flag || (time(NULL) & 0x3fffffff) - interrupt_second < 2) return false;
+    interrupt_left = 1;
+    return true;
+}
+
+bool interrupt_left_work(void) { return interrupt_left != 0; }
 
 /// Only what a signal handler may do.
 static void end_by_abort(int number) {

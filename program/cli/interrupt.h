@@ -14,6 +14,12 @@ void interrupt_watch(void);
 /// Whether the run was asked to end.
 bool interrupt_asked(void);
 
+/// Whether it was asked a second or two ago: work that takes long is given up then. From any thread.
+bool interrupt_overdue(void);
+
+/// Whether interrupt_overdue has ever been true: what failed since was given up.
+bool interrupt_left_work(void);
+
 /// Registers a draft (file_draft) to be removed if the program ends early: by an abort within the guard, or by exit
 /// when out of memory. It must be disowned before it is freed. Ignores NULL and more than 8 drafts.
 void interrupt_own(const char *draft);

@@ -24,7 +24,7 @@
 #include "formats/formats.h"
 
 enum { OPT_FRAMES, OPT_CSV, OPT_NO_PREVIEW, OPT_COUNT };
-enum { EMBER_FRAMES = 4, EMBER_SCALE = 3, RUN = 64 };
+enum { EMBER_FRAMES = 4, EMBER_SCALE = 3, EMBER_WIDE = 4096, RUN = 64 };
 
 /// m at rest from all that has ignited, beyond which the sheet is cold.
 static const float cold_from = 0.09f;
@@ -443,7 +443,10 @@ int command_measure(int argc, char **argv) {
     measure.folder = folder_name(path, measure.job.scene->name);
     code = folder_span(&measure.folder, &measure.console, &measure.first, &measure.last);
     SingeError error = {0};
-    if (!code && draws && pictures_open_sharp(&measure.job, EMBER_SCALE, &measure.pictures, &error)) {
+    const int *size = measure.job.scene->preview.size;
+    int scale = EMBER_SCALE; // embers are thinner than a pixel, unless the pictures are large
+    while (scale > 1 && scale * (size[0] > size[1] ? size[0] : size[1]) > EMBER_WIDE) scale--;
+    if (!code && draws && pictures_open_sharp(&measure.job, scale, &measure.pictures, &error)) {
         console_result(&measure.console, &error);
         code = EXIT_FAILED;
     }

@@ -56,6 +56,7 @@ static PreviewDef scene_def(const Job *job) {
     PreviewDef def;
     scene_preview(job->scene, &job->assets, &def);
     def.thread_count = job->hooks.thread_count;
+    def.stop = interrupt_overdue;
     return def;
 }
 

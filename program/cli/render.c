@@ -160,6 +160,8 @@ static SingeResult draw_all(Render *render, bool *interrupted, SingeError *error
             free(png);
             free(exr);
         }
+        *interrupted = result && interrupt_left_work();
+        if (*interrupted) return SINGE_OK;
         if (result) return result;
 
         put_tiles(render, number, rgb);

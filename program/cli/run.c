@@ -102,6 +102,12 @@ static SingeResult stop(Run *run, Progress progress, SingeError *error) {
     return result ? result : run_write_checkpoint(run, progress, error);
 }
 
+/// A picture took so long that it was given up. Its frame is not whole, and a checkpoint would be beyond it.
+static SingeResult leave(Run *run) {
+    run->record.result = "interrupted";
+    return SINGE_OK;
+}
+
 /// From this 99th percentile of strain on, sheets no longer look like sheets.
 static const double strain_max = 0.5;
 
@@ -146,6 +152,7 @@ static SingeResult run_frames(Run *run, SingeError *error) {
         SingeError step_error;
         const SingeResult stepped = frame > 1 ? run_advance(run, frame, &step_error) : SINGE_OK;
         SingeResult result = end_frame(run, error);
+        if (result && interrupt_left_work()) return leave(run);
         if (!result && stepped) {
             *error = step_error;
             result = stepped;
@@ -158,6 +165,7 @@ static SingeResult run_frames(Run *run, SingeError *error) {
         if (!result) result = run_begin_frame(run, frame, last, error);
         const bool asked = interrupt_asked();
         if (!result && (asked || last)) result = end_frame(run, error);
+        if (result && interrupt_left_work()) return leave(run);
         if (!result && asked && !last) return stop(run, (Progress){frame, 0}, error);
         if (result) return result;
     }
@@ -248,7 +256,8 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
 
     print_summary(run);
     if (!run->console->quiet) printf("%s\n", record->video ? run->folder.video : run->folder.path);
-    if (strcmp(record->result, "interrupted") == 0) console_note(run->console, "--resume continues from here");
+    if (strcmp(record->result, "interrupted") == 0 && record->frames_done > 0)
+        console_note(run->console, "--resume continues from here");
     return strcmp(record->result, "complete") == 0 && video != VIDEO_FAILED ? EXIT_GOOD : EXIT_FAILED;
 }
 

@@ -537,6 +537,7 @@ static void *draw_tiles(void *context) {
     FireTile *fire = job->fire ? &job->preview->fire.tiles[atomic_fetch_add(&job->threads, 1)] : NULL;
 
     for (int tile; (tile = atomic_fetch_add(&job->next, 1)) < job->count;) {
+        if (def->stop && def->stop()) break;
         int x0 = tile % job->across * TILE, y0 = tile / job->across * TILE;
         if (fire) fire_see(job->preview, x0, y0, fire);
         block.tile = fire && !fire->empty ? fire : NULL;
@@ -588,7 +589,7 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     fire_light_smoke(preview);
     mask_fill(preview);
     if (!preview->table_known) draw_all(preview, fill_table);
-    preview->table_known = true;
+    preview->table_known = !(preview->def.stop && preview->def.stop());
     stain_fill(preview);
     draw_all(preview, draw_mirrored);
     mirror_smooth(preview);
@@ -596,6 +597,8 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     draw_all(preview, seen_smooth);
     draw_all(preview, seen_finish);
     draw_all(preview, soften);
+    if (preview->def.stop && preview->def.stop())
+        return preview_fail(error, SINGE_ERROR_STATE, -1, "the picture was given up");
     airborne_draw(preview);
 
     const size_t pixels = (size_t)preview->def.width * (size_t)preview->def.height;

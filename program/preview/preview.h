@@ -59,6 +59,8 @@ typedef struct PreviewStart {
 typedef struct PreviewDef {
     int width, height, samples; ///< samples a pixel, >= 1
     int thread_count;
+    bool (*stop)(void); ///< asked from all threads now and then: once true, drawing fails with SINGE_ERROR_STATE. May
+                        ///< be NULL
     PreviewCamera camera;
     float sun_direction[3]; ///< towards the light, any length > 0
     float sun_angle;        ///< radians, apparent radius: how soft shadows are

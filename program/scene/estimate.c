@@ -154,6 +154,15 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
         return false;
     }
 
+    const int *size = scene->preview.size;
+    if (wanted > 2 * scene_size(scene, assets).memory) {
+        message_add(messages, scene->text, (SceneLocation){0},
+                    "the scene needs about %s of memory, and there are %s: give its pictures fewer pixels than %d x %d "
+                    "(preview.size), or run it with --no-preview",
+                    bytes_text(wanted, needs), bytes_text(room, has), size[0], size[1]);
+        return false;
+    }
+
     uint32_t largest = 0;
     for (uint32_t i = 1; i < scene->sheet_count; i++)
         if (sheet_cells(scene, assets, i) > sheet_cells(scene, assets, largest)) largest = i;

@@ -396,8 +396,8 @@ SceneSize scene_size(const Scene *scene, const SceneAssets *assets);
 /// Approximate bytes of its pictures.
 double scene_picture_memory(const Scene *scene);
 
-/// Whether `wanted` bytes fit into `room` (0: unknown, they do); otherwise there is a message at the largest sheet.
-/// `assets` is NULL before scene_load.
+/// Whether `wanted` bytes fit into `room` (0: unknown, they do); otherwise there is a message about what needs most: a
+/// heightfield, the pictures or the largest sheet. `assets` is NULL before scene_load.
 bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, double room, SceneMessages *messages);
 
 /// Makes the simulation: sheets, commit, sources, colliders, pins. Allocator, log, tasks and thread_count are taken

@@ -113,6 +113,25 @@ class Resume(Case):
     def test_terminate(self):
         self.interrupted(signal.SIGTERM)
 
+    @unittest.skipUnless(HAS_PREVIEW, "without pictures")
+    def test_ctrl_c_in_a_picture(self):
+        """A picture that would take minutes is given up. Frames before it stay."""
+        self.run_scene("p", "--quiet", "--frames", "2")
+        for wait in 0.5, 2, 8:  # it may come before anything watches for it
+            render = self.start("render", self.path("p"), "--set", "preview.size=[8192,8192]", "--set",
+                                "preview.samples=256")
+            self.addCleanup(lambda render=render: render.poll() is None and render.kill())
+            time.sleep(wait)
+            begun = time.monotonic()
+            render.send_signal(signal.SIGINT)
+            _, err = render.communicate(timeout=120)
+            if render.returncode != -signal.SIGINT:
+                break
+        self.assertLess(time.monotonic() - begun, 30)
+        self.assertEqual(render.returncode, 1, err)
+        self.assertNotIn("error", err)
+        self.no_temporaries("p")
+
     def test_ctrl_c_between_steps(self):
         """It does not wait for the frame, and nothing of it is lost."""
         self.scene = self.write_scene(frames=4, cells=20, steps=800)
