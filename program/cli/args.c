@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "common/printable.h"
+#include "scene/schema.h"
 
 ArgReader args_begin(const ArgCommand *command, int argc, char **argv) {
     return (ArgReader){.command = command, .argc = argc, .argv = argv};
@@ -26,45 +27,18 @@ int args_complain(const ArgReader *reader, const char *format, ...) {
     return ARG_ERROR;
 }
 
-enum { WORD_MAX = 32 };
-
-/// Levenshtein's distance, one row at a time.
-static int edit_distance(const char *a, const char *b) {
-    int row[WORD_MAX + 1];
-    size_t la = strlen(a), lb = strlen(b);
-    if (la > WORD_MAX || lb > WORD_MAX) return WORD_MAX;
-
-    for (size_t j = 0; j <= lb; j++) row[j] = (int)j;
-
-    for (size_t i = 1; i <= la; i++) {
-        int diagonal = row[0];
-        row[0] = (int)i;
-        for (size_t j = 1; j <= lb; j++) {
-            int change = diagonal + (a[i - 1] != b[j - 1]);
-            diagonal = row[j];
-            int gap = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
-            row[j] = change < gap ? change : gap;
-        }
-    }
-    return row[lb];
-}
-
 const char *args_nearest(const char *word, const void *first, int count, unsigned long stride) {
-    const char *best = NULL;
-    int best_distance = 4;
+    Nearest nearest = {.word = word};
+    const size_t length = strlen(word);
 
     for (int i = 0; i < count; i++) {
         const char *name;
         memcpy(&name, (const char *)first + (unsigned long)i * stride, sizeof name);
-        int distance = edit_distance(word, name);
-        size_t length = strlen(word);
-        if (length >= 3 && strncmp(word, name, length) == 0) distance = 1; // `word` is its beginning
-        if (distance < best_distance && distance < (int)strlen(name)) {
-            best_distance = distance;
-            best = name;
-        }
+        const bool begun = length >= 3 && strncmp(word, name, length) == 0 && length < strlen(name);
+        if (!begun) nearest_offer(&nearest, name);
+        else if (!nearest.best || nearest.distance > 1) nearest = (Nearest){word, name, 1};
     }
-    return best;
+    return nearest.best;
 }
 
 static int unknown_option(const ArgReader *reader, const char *argument, const char *name) {
@@ -93,9 +67,9 @@ static int take_long(ArgReader *reader, const char *argument, const char **value
         return i;
     }
 
-    char shown[WORD_MAX + 1];
-    snprintf(shown, sizeof shown, "%.*s", (int)(length < WORD_MAX ? length : WORD_MAX), name);
-    return unknown_option(reader, argument, shown);
+    char word[41]; // longer words are no misspellings
+    snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word - 1), name);
+    return unknown_option(reader, argument, word);
 }
 
 static int take_letter(ArgReader *reader, const char **value) {

@@ -234,12 +234,17 @@ SingeResult folder_thin(const Folder *folder, int every, int last, int *removed,
     return result;
 }
 
-/// Removes half-written files other than frames.
-static SingeResult clean_top(const Folder *folder, int *removed, SingeError *error) {
+SingeResult folder_sweep(const Folder *folder, SingeError *error) {
     static const char *const names[] = {"run.json",  "checkpoint.singe", "checkpoint.previous.singe",
                                         "sheet.png", "preview.mp4",      "preview.gif"};
+    int removed = 0;
+    SingeResult result = SINGE_OK;
+    for (int i = 0; i < FOLDER_COUNT && !result; i++) result = clean_frames(folder, i, NULL, &removed, error);
+    if (result) return result;
+
+    // half-written files other than frames
     DIR *dir = opendir(folder->path);
-    SingeResult result = dir ? SINGE_OK : folder_fail(folder->path, "list", errno, error);
+    if (!dir) return folder_fail(folder->path, "list", errno, error);
     for (struct dirent *entry; !result && (entry = next_entry(dir, folder->path, &result, error));) {
         const char *file = entry->d_name;
         bool ours = false;
@@ -253,17 +258,10 @@ static SingeResult clean_top(const Folder *folder, int *removed, SingeError *err
             if (ending && strncmp(rest, ending, strlen(ending)) == 0)
                 ours = ours || is_temporary(rest + strlen(ending));
         }
-        if (ours) result = remove_at(dir, folder->path, file, removed, error);
+        if (ours) result = remove_at(dir, folder->path, file, &removed, error);
     }
 
-    if (dir) closedir(dir);
-    return result;
-}
-
-SingeResult folder_sweep(const Folder *folder, SingeError *error) {
-    int removed = 0;
-    SingeResult result = clean_top(folder, &removed, error);
-    for (int i = 0; i < FOLDER_COUNT && !result; i++) result = clean_frames(folder, i, NULL, &removed, error);
+    closedir(dir);
     return result;
 }
 

@@ -137,28 +137,22 @@ static SingeResult check_cells(const SingeSheetDef *def, const char *name, Singe
     return SINGE_OK;
 }
 
-/// Whether the masses and heat capacities that the cell would have with the grammage of its particle, and of each
-/// corner's, are in range.
-static bool mass_fits(const SheetSource *source, uint32_t cell) {
-    const uint32_t *corners = source->cells[cell], vertices = source->sheet.vertex_count;
-    const float *p[4];
-    for (int i = 0; i < 4; i++) p[i] = source->position[corners[i]];
-    double area = cell_shape(p).area;
-    for (int i = 0; i < 5; i++) {
-        uint32_t particle = i < 4 ? corners[i] : vertices + cell;
-        double mass = area * (double)sheet_param(source, PARAM_GRAMMAGE, particle);
-        if (!in_float(mass) || !in_float(mass * (double)sheet_param(source, PARAM_SPECIFIC_HEAT, particle)))
-            return false;
-    }
-
-    return true;
-}
-
+/// The masses and heat capacities that each cell would have with the grammage of its particle, and of each corner's.
 static SingeResult check_masses(const SheetSource *source, SingeError *error) {
-    for (uint32_t c = 0; c < source->sheet.cell_count; c++)
-        if (!mass_fits(source, c))
-            return element_fail(source->sheet.name, "cell", c, "has a mass or heat capacity outside 1e-30 to 1e30",
-                                error);
+    const uint32_t vertices = source->sheet.vertex_count;
+    for (uint32_t c = 0; c < source->sheet.cell_count; c++) {
+        const uint32_t *corners = source->cells[c];
+        const float *p[4];
+        for (int i = 0; i < 4; i++) p[i] = source->position[corners[i]];
+        const double area = cell_shape(p).area;
+        for (int i = 0; i < 5; i++) {
+            const uint32_t particle = i < 4 ? corners[i] : vertices + c;
+            const double mass = area * (double)sheet_param(source, PARAM_GRAMMAGE, particle);
+            if (!in_float(mass) || !in_float(mass * (double)sheet_param(source, PARAM_SPECIFIC_HEAT, particle)))
+                return element_fail(source->sheet.name, "cell", c, "has a mass or heat capacity outside 1e-30 to 1e30",
+                                    error);
+        }
+    }
     return SINGE_OK;
 }
 
