@@ -64,7 +64,7 @@ void soften(Preview *preview, Block *block) {
     Window window;
     window_fill(preview, block, &window);
     const int reach = (int)minf(first->blur + 0.5f, SOFT_REACH);
-    const float strong = clampf(0.6f + 0.15f * first->blur, 0.8f, 1.2f); // allowed difference, in standard deviations
+    const float strong = 1.2f; // allowed difference, in standard deviations
     for (int lane = 0; lane < LANES; lane++) {
         if (block->x[lane] >= w || block->y[lane] >= h) continue;
         const int px = margin + lane % BLOCK, py = margin + lane / BLOCK;
