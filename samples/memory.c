@@ -2,7 +2,7 @@
 //
 // Prints:
 //   30 steps: 0 allocations
-//   under a limit: sheet: no memory for a shell of 400 cells
+//   under a limit: sheet: out of memory for a shell of 400 cells
 //   left at the end: 0 bytes
 #include "sample.h"
 
