@@ -39,6 +39,8 @@ typedef struct SingeSurface {
     uint32_t (*triangles)[3];                    ///< counter-clockwise seen from the front
     uint32_t vertex_capacity, triangle_capacity; ///< allocated
     SingeAllocator allocator;                    ///< of the arrays
+    float *water;                                ///< over the mass before it burns; 0 where no sheet holds water
+    bool wet;                                    ///< a sheet held water at the start
 } SingeSurface;
 
 /// Frees a surface's arrays and zeroes its `struct_size` bytes, the caller's sizeof; NULL is allowed.

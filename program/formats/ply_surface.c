@@ -48,10 +48,13 @@ static const Column columns[] = {
     INTEGER("piece_id", piece),
     INTEGER("vertex_id", source_vertex),
     INTEGER("sheet", sheet),
+    COLUMN("water", water, 1, 0), // only where a sheet holds water
 };
 
 enum { COLUMNS = sizeof columns / sizeof *columns };
-enum { VERTEX_SIZE = 4 * COLUMNS, FACE_SIZE = 1 + 3 * 4, HEADER_LIMIT = 2048 };
+enum { FACE_SIZE = 1 + 3 * 4, HEADER_LIMIT = 2048 };
+
+static size_t column_count(const SingeSurface *surface) { return surface->wet ? COLUMNS : COLUMNS - 1; }
 
 static uint8_t *column_array(const SingeSurface *surface, const Column *column) {
     uint8_t *array;
@@ -61,7 +64,7 @@ static uint8_t *column_array(const SingeSurface *surface, const Column *column) 
 
 // Bytes after the header.
 static uint64_t surface_data_size(const SingeSurface *surface) {
-    return (uint64_t)VERTEX_SIZE * surface->vertex_count + (uint64_t)FACE_SIZE * surface->triangle_count;
+    return 4 * (uint64_t)column_count(surface) * surface->vertex_count + (uint64_t)FACE_SIZE * surface->triangle_count;
 }
 
 uint64_t ply_surface_size(const SingeSurface *surface) { return HEADER_LIMIT / 2 + surface_data_size(surface); }
@@ -85,7 +88,8 @@ SingeResult ply_write_surface(const char *path, const SingeSurface *surface, dou
                                 "ply\nformat binary_little_endian 1.0\ncomment singe %s time %s\nelement vertex %u\n",
                                 SINGE_VERSION, number, surface->vertex_count);
 
-    for (size_t i = 0; i < COLUMNS; i++)
+    const size_t count = column_count(surface);
+    for (size_t i = 0; i < count; i++)
         n += (size_t)snprintf(text + n, HEADER_LIMIT - n, "property %s %s\n", columns[i].integer ? "int" : "float",
                               columns[i].name);
     n += (size_t)snprintf(text + n, HEADER_LIMIT - n,
@@ -94,11 +98,11 @@ SingeResult ply_write_surface(const char *path, const SingeSurface *surface, dou
 
     uint8_t *out = bytes + n;
     const uint8_t *source[COLUMNS];
-    for (size_t i = 0; i < COLUMNS; i++)
+    for (size_t i = 0; i < count; i++)
         source[i] = surface->vertex_count ? column_array(surface, &columns[i]) + 4 * columns[i].index : NULL;
 
     for (uint32_t v = 0; v < surface->vertex_count; v++)
-        for (size_t i = 0; i < COLUMNS; i++, out += 4) {
+        for (size_t i = 0; i < count; i++, out += 4) {
             uint32_t bits;
             memcpy(&bits, source[i], sizeof bits);
             source[i] += 4 * columns[i].width;
@@ -132,9 +136,12 @@ static SingeResult surface_check_header(const Ply *ply, SingeSurface *surface, d
     // the columns, and triangles; `burnt` was called `char`, which shading languages reserve, before version 0.2
     const PlyElement *vertices = ply_element(ply, "vertex"), *faces = ply_element(ply, "face");
     bool fits = header->format == PLY_LITTLE && header->element_count == 2 && vertices == &header->elements[0] &&
-                faces && vertices->property_count == COLUMNS && faces->property_count == 1;
+                faces && faces->property_count == 1;
+    surface->wet = fits && vertices->property_count == COLUMNS;
+    const size_t count = column_count(surface);
+    fits = fits && vertices->property_count == count;
 
-    for (size_t i = 0; fits && i < COLUMNS; i++) {
+    for (size_t i = 0; fits && i < count; i++) {
         const PlyProperty *property = &header->properties[vertices->first_property + i];
         fits = !property->is_list && property->type == (columns[i].integer ? PLY_INT32 : PLY_FLOAT32) &&
                (text_word_is(property->name, property->name_end, columns[i].name) ||
@@ -159,10 +166,11 @@ static SingeResult surface_check_header(const Ply *ply, SingeSurface *surface, d
 
 static SingeResult surface_unpack(Ply *ply, SingeSurface *surface) {
     uint8_t *target[COLUMNS];
-    for (size_t i = 0; i < COLUMNS; i++) target[i] = column_array(surface, &columns[i]) + 4 * columns[i].index;
+    const size_t count = column_count(surface);
+    for (size_t i = 0; i < count; i++) target[i] = column_array(surface, &columns[i]) + 4 * columns[i].index;
 
     for (uint32_t v = 0; v < surface->vertex_count; v++)
-        for (size_t i = 0; i < COLUMNS; i++, ply->text.at += 4) {
+        for (size_t i = 0; i < count; i++, ply->text.at += 4) {
             uint32_t bits = load_u32_little(ply->text.at);
             if (!columns[i].integer && (bits & 0x7f800000) == 0x7f800000)
                 return ply_refuse(ply, SINGE_ERROR_FORMAT, "%s of vertex %u is not a finite number", columns[i].name,
@@ -199,7 +207,7 @@ SingeResult ply_read_surface(const char *name, const uint8_t *bytes, size_t size
         surface->allocator = allocator;
         surface->vertex_capacity = surface->vertex_count ? surface->vertex_count : 1;
         surface->triangle_capacity = surface->triangle_count ? surface->triangle_count : 1;
-        for (size_t i = 0; i < COLUMNS && !result; i++) {
+        for (size_t i = 0; i < column_count(surface) && !result; i++) {
             if (columns[i].index) continue;
             void *array = store_new(allocator, surface->vertex_capacity, 4 * (size_t)columns[i].width);
             if (!array) result = refuse_memory(error, "ply", name);

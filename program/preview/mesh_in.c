@@ -53,6 +53,7 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
         .flaming = rate,
         .sheet = surface->sheet[i],
         .piece = surface->piece ? surface->piece[i] : -1,
+        .water = surface->wet && surface->water ? clampf(finite_or(surface->water[i], 0), 0, 10) : 0,
     };
 
     // an unknown time of ignition counts as long ago

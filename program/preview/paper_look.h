@@ -30,6 +30,7 @@ typedef struct PaperVertex {
     float spacing;       ///< m, size of the surrounding triangles at rest
     float age;           ///< s of the fire's real time since ignition; 0: not yet
     int32_t piece;
+    float water; ///< over the mass before it burns
 } PaperVertex;
 
 /// The interpolated fields that determine the appearance of a hit.
@@ -39,6 +40,7 @@ typedef struct PaperState {
     float glowing; ///< 1/s, the part of burn_rate due to char without fuel
     float age;     ///< s of the fire's real time since ignition; 0: not yet
     int32_t sheet, piece;
+    float water; ///< over the mass before it burns
 } PaperState;
 
 /// The sheet's fields at a point in a triangle.

@@ -70,6 +70,7 @@ void paper_state(const PreviewScene *scene, uint32_t triangle, float u, float v,
         .rim = min > 0.5f ? 0.25f : w * a->rim + u * b->rim + v * c->rim,
         .sheet = a->sheet,
         .piece = a->piece,
+        .water = w * a->water + u * b->water + v * c->water,
     };
 }
 
@@ -282,6 +283,25 @@ static void fresh(const Preview *preview, const PaperState *state, Point *point)
     float cloud = 1 + 0.018f * paper_noise(askew(state->rest), 2.4f, point->footprint, 5);
     point->albedo = float3_scale(float3_mul(white, colour), cloud);
     point->transmission = paper_transmittance(preview, state->sheet);
+
+    // Wet: a film of water throws a share p of the light that leaves the fibres back to them, so that an albedo a becomes
+    // a (1 - p)/(1 - p a) (Lekner and Dorf, Why some things are darker when wet, Applied Optics 27, 1988; p is about 0.44
+    // for water). Pores full of water scatter less, so more light passes, and the film mirrors the sky. Air-dry paper holds
+    // 5 to 8 % and shows none of it.
+    const float film =
+        stepf(0.15f, 0.9f, state->water + 0.06f * paper_noise(askew(state->rest), 6, point->footprint, 6));
+    if (film <= 0 || state->water <= 0) return;
+    const float p = 0.44f * film;
+    Float3 dry = point->albedo;
+    point->albedo =
+        float3((1 - p) * dry.x / (1 - p * dry.x), (1 - p) * dry.y / (1 - p * dry.y), (1 - p) * dry.z / (1 - p * dry.z));
+    const float passed = point->transmission;
+    point->transmission = mixf(passed, minf(2 * passed, 0.6f), film);
+    point->albedo =
+        float3_scale(point->albedo, (1 - point->transmission) / (1 - minf(passed, 0.9f))); // is not reflected
+    point->gloss = 0.05f * film;
+    point->shininess = 30;
+    point->mirror = 0.5f * film;
 }
 
 /// Char: browner where it is thin, bluer where complete; print (1) remains readable on it, as a dull grey.

@@ -117,7 +117,7 @@ static void draw_cells(const Drawing *drawing) {
 
 typedef struct Sample {
     Float3 position, velocity, rest;
-    float u, v, temperature, temperature_peak, mass, burn_rate, coal, ash, burn, time_ignited;
+    float u, v, temperature, temperature_peak, mass, burn_rate, coal, ash, burn, time_ignited, water;
     int32_t piece, sheet;
 } Sample;
 
@@ -147,6 +147,7 @@ static Sample sample_particle(const Shell *shell, const State *state, uint32_t p
         .ash = fmaxf(burn->mass[particle] - burn->fuel[particle] - coal, 0),
         .burn = shell_burn_progress(burn->mass[particle], min),
         .time_ignited = burn->time_ignited[particle],
+        .water = state->heat.water ? state->heat.water[particle] : 0,
         .piece = state->ablate.piece[particle],
         .sheet = shell->matter.sheet[particle],
     };
@@ -197,6 +198,7 @@ static Sample sample_cut(const Drawing *drawing, const uint32_t ends[2]) {
         .time_ignited = a.time_ignited < 0   ? b.time_ignited // -1, never
                         : b.time_ignited < 0 ? a.time_ignited
                                              : mix(a.time_ignited, b.time_ignited, t),
+        .water = mix(a.water, b.water, t),
         .piece = a.piece,
         .sheet = a.sheet,
     };
@@ -271,6 +273,7 @@ static SingeResult draw(Drawing *drawing, SingeError *error) {
         surface->ash_fraction[v] = sample.ash;
         surface->burn[v] = sample.burn;
         surface->time_ignited[v] = sample.time_ignited;
+        surface->water[v] = sample.water;
         surface->piece[v] = sample.piece;
         surface->sheet[v] = sample.sheet;
         surface->source_vertex[v] = key < keys->centre ? shell->source_vertex[key] : -1;
@@ -293,6 +296,7 @@ SingeResult surface_draw(AblatePlan *plan, const Shell *shell, const State *stat
     drawing.keys.red = drawing.keys.blue + shell->springs[SINGE_BLUE].count;
     drawing.keys.count = drawing.keys.red + shell->springs[SINGE_RED].count;
     surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
+    surface->wet = state->heat.water != NULL;
 
     SingeResult result;
     if (NEW(&memory, drawing.output, drawing.keys.count) &&

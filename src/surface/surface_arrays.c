@@ -27,6 +27,7 @@ static const SurfaceArray vertex_arrays[] = {
     ARRAY(piece),
     ARRAY(source_vertex),
     ARRAY(sheet),
+    ARRAY(water),
 };
 static const SurfaceArray triangle_array = ARRAY(triangles);
 

@@ -99,13 +99,15 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
     float3_store(surface->rest_position[v], fine_blend(at, location, (const float(*)[4])shell->rest_position));
 
     // means over the triangle's corners
-    float mass_min = 0, yield = 0, u = 0, w = 0;
+    float mass_min = 0, yield = 0, u = 0, w = 0, water = 0;
     for (int i = 0; i < 3; i++) {
         u += location->weight[i] * shell->uv[particle[i]][0];
         w += location->weight[i] * shell->uv[particle[i]][1];
         mass_min += location->weight[i] * field_at(shell->matter.mass_min, particle[i]);
         yield += location->weight[i] * field_at(shell->matter.char_yield, particle[i]);
+        if (state->heat.water) water += location->weight[i] * state->heat.water[particle[i]];
     }
+    surface->water[v] = water;
 
     surface->uv[v][0] = u;
     surface->uv[v][1] = w;
@@ -239,6 +241,7 @@ SingeResult surface_draw_fine(AblatePlan *plan, const Shell *shell, const State 
     fine.level = ablate_levels(plan, shell, &state->burn);
     fine.rim = ablate_rim(plan);
     surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
+    surface->wet = state->heat.water != NULL;
     fine.meshes = detail->meshes;
     fine.mesh_count = detail->mesh_count;
     SingeResult result = fine_draw(&fine, detail, error);

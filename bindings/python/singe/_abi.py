@@ -223,7 +223,7 @@ class SingeSurface(Structure):
                 ("ash_fraction", POINTER(c_float)), ("burn", POINTER(c_float)), ("time_ignited", POINTER(c_float)),
                 ("piece", POINTER(c_int32)), ("source_vertex", POINTER(c_int32)), ("sheet", POINTER(c_int32)),
                 ("triangles", POINTER(c_uint32 * 3)), ("vertex_capacity", c_uint32), ("triangle_capacity", c_uint32),
-                ("allocator", SingeAllocator)]
+                ("allocator", SingeAllocator), ("water", POINTER(c_float)), ("wet", c_bool)]
 
 
 class SingeRenderMeshDef(Structure):
