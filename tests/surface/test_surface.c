@@ -264,7 +264,7 @@ TEST(survives_lack_of_memory) {
         }
     }
 
-    assert_int_equal(failures, 2 * 18);
+    assert_int_equal(failures, 2 * 19);
     singe_surface_free(NULL);
     drawing_free(small), drawing_free(large);
 }
