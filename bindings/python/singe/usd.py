@@ -104,7 +104,8 @@ class _Reader:
             self.stage = self.pxr.Usd.Stage.Open(self.path)
         except self.pxr.Tf.ErrorException as error:
             # the first error has the file, the line and what was expected
-            raise _fault(self.path, "is not a stage: " + (str(error).strip().splitlines() or [""])[-1].strip()) from error
+            said = (str(error).strip().splitlines() or [""])[-1].strip()
+            raise _fault(self.path, "is not a stage: " + said) from error
         self.up = str(self.pxr.UsdGeom.GetStageUpAxis(self.stage))
         if self.up not in ("Y", "Z"):
             raise _fault(self.path, f"upAxis is {self.up}, expected Y or Z")
@@ -119,7 +120,8 @@ class _Reader:
     def _read_range(self) -> None:
         """The time codes of the frames; one of them where the stage says no range."""
         codes = float(self.stage.GetTimeCodesPerSecond())
-        self.fps = float(self.stage.GetFramesPerSecond()) if self.stage.HasAuthoredMetadata("framesPerSecond") else codes
+        has_rate = self.stage.HasAuthoredMetadata("framesPerSecond")
+        self.fps = float(self.stage.GetFramesPerSecond()) if has_rate else codes
         start, end = float(self.stage.GetStartTimeCode()), float(self.stage.GetEndTimeCode())
         self.ranged = bool(self.stage.HasAuthoredTimeCodeRange())
         if not (codes > 0 and self.fps > 0 and np.isfinite([codes, self.fps, start, end]).all()):
@@ -129,7 +131,8 @@ class _Reader:
         step = codes / self.fps
         count = int((end - start) / step + 1e-6) + 1 if self.ranged else 1
         if count > _FRAMES_MAX:
-            self.note(self.path, f"{start:g} to {end:g} are {count} frames, which is no shot: all stands as at {start:g}")
+            self.note(self.path, f"{start:g} to {end:g} are {count} frames, which is no shot: all stands as at "
+                                 f"{start:g}")
             self.ranged, count = False, 1
         self.times = [self.pxr.Usd.TimeCode(start + step * frame) for frame in range(count)]
 
@@ -212,7 +215,8 @@ class _Reader:
             r = columns @ turn
             angles = np.degrees([np.arctan2(r[2, 1], r[2, 2]), np.arcsin(np.clip(-r[2, 0], -1, 1)),
                                  np.arctan2(r[1, 0], r[0, 0])])
-            entries.append({"time": round(frame / self.fps, 9), "position": _numbers(origin), "rotation": _numbers(angles)})
+            entries.append({"time": round(frame / self.fps, 9), "position": _numbers(origin),
+                            "rotation": _numbers(angles)})
         if len(entries) > 1:
             return {"path": entries}
         del entries[0]["time"]
@@ -232,7 +236,8 @@ class _Reader:
         if counts.min() < 3:
             raise _fault(path, f"face {int(np.argmin(counts))} has {counts.min()} corners, expected 3 or more")
         if counts.sum() != len(corners):
-            raise _fault(path, f"faceVertexCounts add up to {counts.sum()}, but there are {len(corners)} faceVertexIndices")
+            raise _fault(path, f"faceVertexCounts add up to {counts.sum()}, but there are {len(corners)} "
+                               "faceVertexIndices")
         if corners.min() < 0 or corners.max() >= len(points):
             wrong = int(np.argmax((corners < 0) | (corners >= len(points))))
             raise _fault(path, f"faceVertexIndices[{wrong}] is {corners[wrong]}, but there are {len(points)} points")
@@ -253,7 +258,7 @@ class _Reader:
 
     def _uv(self, prim: Any, time: Any, name: Optional[str], counts: np.ndarray, corners: np.ndarray,
             points: int) -> Optional[np.ndarray]:
-        """Of each corner. Where there are too few or too many they are an error for a picture (`name`), else left out."""
+        """Of each corner. Too few or too many are an error where a picture needs them (`name`), else left out."""
         variables = self.pxr.UsdGeom.PrimvarsAPI(prim)
         found = [variables.FindPrimvarWithInheritance(one) for one in (name, "st", "uv", "UVMap") if one]
         found += [one for one in variables.GetPrimvars() if one.GetTypeName().role == "TextureCoordinate"]
@@ -283,7 +288,8 @@ class _Reader:
             if str(variable.GetInterpolation()) not in ("vertex", "varying") or name in _RESERVED:
                 continue
             values = np.array(variable.ComputeFlattened(time))
-            if values.shape == (points,) and values.dtype.kind in "fiu" and re.fullmatch("[A-Za-z_][A-Za-z0-9_]*", name):
+            named = re.fullmatch("[A-Za-z_][A-Za-z0-9_]*", name)
+            if values.shape == (points,) and values.dtype.kind in "fiu" and named:
                 made[name] = values
         return made
 
@@ -331,7 +337,8 @@ class _Reader:
         shader, colour = self._connected(surface, "diffuseColor")
         if shader is None or shader.GetIdAttr().Get() == "UsdUVTexture":
             return shader, colour
-        self.note(shader.GetPath(), f"a {shader.GetIdAttr().Get()} colours the surface, and only a UsdUVTexture is read")
+        self.note(shader.GetPath(), f"a {shader.GetIdAttr().Get()} colours the surface, and only a UsdUVTexture is "
+                                    "read")
         return None, None
 
     def _picture(self, texture: Any) -> Optional[str]:
@@ -383,7 +390,8 @@ class _Reader:
         if "picture" in keys and mesh.uv is None:
             self.note(prim.GetPath(), "has a picture and no uv to put it on")
         if self.moves(prim) or self.pxr.UsdGeom.Mesh(prim).GetPointsAttr().ValueMightBeTimeVarying():
-            self.note(prim.GetPath(), "moves in the stage; the sheet starts as it is at the first frame and then moves freely")
+            self.note(prim.GetPath(), "moves in the stage; the sheet starts as it is at the first frame and then moves "
+                                      "freely")
         keys["mesh"] = keys["name"] + ".ply"
         _write_ply(self.folder / keys["mesh"], mesh)
         return keys
@@ -405,9 +413,11 @@ class _Reader:
         columns, _ = self.matrix(prim, self.times[0])
         sizes = np.linalg.norm(columns, axis=0)
         if np.abs(columns.T @ columns - np.diag(sizes**2)).max() > 1e-4 * sizes.max()**2 or not sizes.min() > 0:
-            raise _fault(path, f"its transform shears it or makes it flat: a {kind} must stay one. A Mesh may be sheared")
+            raise _fault(path, f"its transform shears it or makes it flat: a {kind} must stay one. A Mesh may be "
+                               "sheared")
         if kind in ("Sphere", "Capsule") and sizes.max() > 1.0001 * sizes.min():
-            raise _fault(path, f"is stretched, {sizes.min():g} to {sizes.max():g}: a {kind} must stay one. A Mesh may be stretched")
+            raise _fault(path, f"is stretched, {sizes.min():g} to {sizes.max():g}: a {kind} must stay one. A Mesh may "
+                               "be stretched")
         turn = np.eye(3)
         if kind in ("Capsule", "Plane"):
             axis = "XYZ".index(str(getattr(geom, kind)(prim).GetAxisAttr().Get()))
@@ -429,8 +439,10 @@ class _Reader:
         keys = self.poses(prim, np.eye(3))
         for entry in keys.get("path", [keys]):
             del entry["rotation"]
-        radius = {"radius": _number(np.linalg.norm(self.matrix(prim, self.times[0])[0][:, 0])
-                                    * self.pxr.UsdGeom.Sphere(prim).GetRadiusAttr().Get())} if prim.IsA(self.pxr.UsdGeom.Sphere) else {}
+        radius = {}
+        if prim.IsA(self.pxr.UsdGeom.Sphere):
+            scale = np.linalg.norm(self.matrix(prim, self.times[0])[0][:, 0])
+            radius["radius"] = _number(scale * self.pxr.UsdGeom.Sphere(prim).GetRadiusAttr().Get())
         return {"kind": "ball" if "path" in keys else "spot", **radius, **keys}
 
 
@@ -496,7 +508,8 @@ def command(arguments: Sequence[str]) -> List[str]:
         else:
             rest.append(word)
     if "stage" not in given:
-        raise _fault("--sheets", "names prims of an OpenUSD stage, and there is no file that ends in " + ", ".join(ENDINGS))
+        raise _fault("--sheets", "names prims of an OpenUSD stage, and there is no file that ends in "
+                                 + ", ".join(ENDINGS))
     lists = {name[2:]: [path for path in given.get(name, "").split(",") if path] for name in _LISTS}
     folder = pathlib.Path("out") / (pathlib.Path(given["stage"]).stem + "-scene")
     return [arguments[0], str(scene(given["stage"], folder, also=given.get("--also"), **lists)), *rest]
