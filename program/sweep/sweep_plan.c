@@ -518,7 +518,7 @@ static void check_overlaps(PlanReader *reader, const YamlNode *set) {
                             plan->set_locations[i].line);
             if (word)
                 message_add(&reader->messages, &reader->text, word->location,
-                            "'%s' sets a part of this, so 'set' must give a map, such as {base: %s}",
+                            "'%s' sets a part of this, so 'set' must give a map (of a material: {base: %s})",
                             shown(parameter->key).text, shown(word->text).text);
         }
         for (uint32_t q = 0; q < p; q++)

@@ -126,9 +126,9 @@ class Sweep(Case):
             ("parameters:\n  sheets.0.grid.seed: {from: 1, to: 4, steps: 5, whole: yes}\n", 3, "values 3 and 4"),
             ("method: list\nparameters:\n  fps: [24, 25, 24]\n  pace: [2, 2, 2.0]\n", 4, "rows 1 and 3 are the same"),
             ("set: {fps: 24, sheets.0.material: newsprint}\nparameters:\n  sheets[0].material.grammage: [0.04]\n", 2,
-             "'sheets[0].material.grammage' sets a part of this, so 'set' must give a map, such as {base: newsprint}"),
+             "'sheets[0].material.grammage' sets a part of this, so 'set' must give a map (of a material: {base: newsprint})"),
             ("set:\n  sheets.0:\n    material: newsprint\nparameters:\n  sheets.0.material.grammage: [0.04]\n", 4,
-             "such as {base: newsprint}"),
+             "of a material: {base: newsprint}"),
         ):
             with self.subTest(text):
                 self.write_plan(text)
