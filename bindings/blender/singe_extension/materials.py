@@ -1,14 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Materials of burning paper and cloth, from the cache's attributes, and of the gas. Their nodes need no extension."""
 
+import math
+
 import bpy
 
-# `temperature_peak` at which paper begins to brown, and at which it is black, K
-BROWN, BLACK = 470.0, 640.0
-# the flame's emission per metre where `flame` is 1 (docs/blender.md)
-FLAME_LIGHT = 118.0
-# strength of `ember`, high enough for embers to be visible next to a lit sheet
-EMBER_LIGHT = 1.5
+# paper browns by its peak temperature from BROWN to CHAR, K, in the logarithm of what it is above the room's
+ROOM, BROWN, CHAR = 293.0, 348.0, 653.0
+# how much of each colour is left as paper scorches, from fresh to charred (program/formats/burn_colour.c)
+SCORCH = ((0, (1, 1, 1)), (0.14, (0.965, 0.90, 0.74)), (0.32, (0.85, 0.655, 0.36)), (0.50, (0.55, 0.315, 0.105)),
+          (0.69, (0.225, 0.098, 0.032)), (0.86, (0.062, 0.031, 0.018)), (1, (0.020, 0.016, 0.014)))
+SOOT, INK_ON_CHAR, ASH = (0.012, 0.0105, 0.0095, 1), (0.05, 0.048, 0.046, 1), (0.34, 0.33, 0.315, 1)
+# the flame's emission per metre where `flame` is 1 (docs/blender.md), and how much more its hottest core emits
+FLAME_LIGHT, FLAME_CORE = 218.0, 7.0
+# strength of `ember` in its cracks, whose skin is some 110 K hotter than the sheet's mean, and between them
+EMBER_CRACKS, EMBER_CRUST = 14.0, 0.3
 
 
 def _node(tree, kind, location, **values):
@@ -70,55 +76,124 @@ def base_of(sheet):
     return None, (0.86, 0.82, 0.74, 1)
 
 
+def _ramp(tree, value, stops, location):
+    node = _node(tree, "ShaderNodeValToRGB", location)
+    ramp = node.color_ramp
+    while len(ramp.elements) < len(stops):
+        ramp.elements.new(1.0)
+    for element, (position, colour) in zip(ramp.elements, stops):
+        element.position, element.color = position, (*colour, 1)
+    tree.links.new(value, node.inputs[0])
+    return node.outputs[0]
+
+
+def _noise(tree, rest, scale, detail, location):
+    node = _node(tree, "ShaderNodeTexNoise", location, Scale=scale, Detail=detail, Roughness=0.6)
+    tree.links.new(rest, node.inputs["Vector"])
+    return node.outputs[0]
+
+
+def _scorched(tree, peak, burnt, noise):
+    """0 fresh to 1 charred, by the peak temperature and the burnt share, as in program/formats/burn_colour.c."""
+    above = _math(tree, "MAXIMUM", (-1500, 100), _math(tree, "SUBTRACT", (-1650, 100), peak, ROOM), BROWN - ROOM)
+    by_heat = _math(tree, "LOGARITHM", (-1350, 100), _math(tree, "DIVIDE", (-1500, 0), above, BROWN - ROOM), math.e)
+    by_heat = _range(tree, by_heat, 0, math.log((CHAR - ROOM) / (BROWN - ROOM)), (-1200, 100))
+    by_heat = _math(tree, "MULTIPLY", (-1050, 100), by_heat, 0.76)
+    left = _math(tree, "EXPONENT", (-1200, -50), _math(tree, "MULTIPLY", (-1350, -50), burnt, -7.5))
+    scorched = _math(tree, "SUBTRACT", (-750, 50), 1.0,
+                     _math(tree, "MULTIPLY", (-900, 0), _math(tree, "SUBTRACT", (-900, 100), 1.0, by_heat), left))
+    # uneven where it is browning, not where it is fresh
+    uneven = _math(tree, "ADD", (-750, -100), _math(tree, "MULTIPLY", (-900, -150), noise, 0.7), 0.65)
+    return _math(tree, "MINIMUM", (-600, 50), _math(tree, "MULTIPLY", (-650, 0), scorched, uneven), 1.0)
+
+
 def sheet_material(name, image, colour):
-    """Paper or cloth: its picture or colour, browned and blackened by its peak temperature, grey ash, and embers."""
+    """Paper or cloth: its picture or colour, scorched, black char on which ink is still seen, grey ash, and embers."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     tree = material.node_tree
     tree.nodes.clear()
     links = tree.links
 
-    fresh = colour
+    fresh, ink = colour, None
     if image:
-        picture = _node(tree, "ShaderNodeTexImage", (-900, 300), image=image)
-        links.new(_attribute(tree, "st", (-1100, 300)).outputs["Vector"], picture.inputs["Vector"])
+        picture = _node(tree, "ShaderNodeTexImage", (-900, 500), image=image)
+        links.new(_attribute(tree, "st", (-1100, 500)).outputs["Vector"], picture.inputs["Vector"])
         fresh = picture.outputs["Color"]
+        grey = _node(tree, "ShaderNodeRGBToBW", (-700, 600))
+        links.new(fresh, grey.inputs[0])
+        ink = _range(tree, grey.outputs[0], 0.55, 0.1, (-500, 600))
 
-    peak = _attribute(tree, "temperature_peak", (-1100, 0)).outputs["Fac"]
-    burnt = _attribute(tree, "burnt", (-1100, -200)).outputs["Fac"]
-    ash = _attribute(tree, "ash_fraction", (-1100, -400)).outputs["Fac"]
-    brown = _mix(tree, _range(tree, peak, BROWN, 0.5 * (BROWN + BLACK), (-700, 0)), fresh, (0.10, 0.042, 0.014, 1),
-                 (-500, 200))
-    black = _mix(tree, _range(tree, peak, 0.5 * (BROWN + BLACK), BLACK, (-700, -150)), brown, (0.012, 0.010, 0.009, 1),
-                 (-300, 200))
-    fine = _node(tree, "ShaderNodeTexNoise", (-900, -600), Scale=900.0, Detail=4.0)
-    links.new(_attribute(tree, "rest", (-1100, -600)).outputs["Vector"], fine.inputs["Vector"])
-    speckled = _math(tree, "MULTIPLY", (-700, -450), ash, _math(tree, "ADD", (-700, -600), fine.outputs[0], 0.5))
-    grey = _range(tree, speckled, 0.05, 0.16, (-500, -400))
-    coloured = _mix(tree, grey, black, (0.30, 0.29, 0.28, 1), (-100, 200))
+    rest = _attribute(tree, "rest", (-1900, -500)).outputs["Vector"]
+    peak = _attribute(tree, "temperature_peak", (-1900, 100)).outputs["Fac"]
+    burnt = _attribute(tree, "burnt", (-1900, -100)).outputs["Fac"]
+    ash = _attribute(tree, "ash_fraction", (-1900, -300)).outputs["Fac"]
+    medium = _noise(tree, rest, 220.0, 5.0, (-1600, -500))
+    fine = _noise(tree, rest, 1500.0, 4.0, (-1600, -700))
 
-    # embers: hot char glows in patches, where air reaches it. `ember` is the cache's colour of that glow. The attribute
-    # `temperature` cannot be used: Cycles reserves the name for volumes, and reads 0 for meshes
-    ember = _attribute(tree, "ember", (-1100, -800)).outputs["Color"]
-    patches = _node(tree, "ShaderNodeTexNoise", (-900, -900), Scale=220.0, Detail=5.0, Roughness=0.7)
-    links.new(_attribute(tree, "rest", (-1100, -1000)).outputs["Vector"], patches.inputs["Vector"])
-    glow = _math(tree, "MULTIPLY", (-300, -900), _range(tree, burnt, 0.15, 0.4, (-700, -750)),
-                 _range(tree, patches.outputs[0], 0.46, 0.68, (-500, -900)))
+    scorch = _ramp(tree, _scorched(tree, peak, burnt, medium), SCORCH, (-450, 100))
+    brown = _node(tree, "ShaderNodeMix", (-150, 300), data_type="RGBA", blend_type="MULTIPLY")
+    brown.inputs[0].default_value = 1
+    for socket, value in ((brown.inputs[6], fresh), (brown.inputs[7], scorch)):
+        if isinstance(value, tuple):
+            socket.default_value = value
+        else:
+            links.new(value, socket)
 
-    paper = _node(tree, "ShaderNodeBsdfPrincipled", (150, 200), Roughness=0.85)
+    # char, paler where there was ink; then ash, in flakes
+    char = _range(tree, burnt, 0.12, 0.46, (-300, -50))
+    soot = _mix(tree, ink, SOOT, INK_ON_CHAR, (-150, 50)) if ink else SOOT
+    black = _mix(tree, char, brown.outputs[2], soot, (50, 200))
+    speckled = _math(tree, "MULTIPLY", (-600, -350), ash,
+                     _math(tree, "ADD", (-750, -450), _math(tree, "MULTIPLY", (-900, -450), medium, 1.6), -0.1))
+    coloured = _mix(tree, _range(tree, speckled, 0.05, 0.14, (-300, -350)), black, ASH, (250, 200))
+
+    # embers: hot char glows in its cracks, where air reaches it. `ember` is the cache's colour of that glow. The
+    # attribute `temperature` cannot be used: Cycles reserves the name for volumes, and reads 0 for meshes
+    ember = _attribute(tree, "ember", (-1100, -900)).outputs["Color"]
+    bent = _node(tree, "ShaderNodeVectorMath", (-1350, -900), operation="MULTIPLY_ADD")
+    wander = _node(tree, "ShaderNodeTexNoise", (-1600, -1000), Scale=450.0, Detail=3.0)
+    links.new(rest, wander.inputs["Vector"])
+    links.new(wander.outputs["Color"], bent.inputs[0])
+    bent.inputs[1].default_value = (0.0022, 0.0022, 0.0022)
+    links.new(rest, bent.inputs[2])
+    plates = _node(tree, "ShaderNodeTexVoronoi", (-1150, -1050), feature="DISTANCE_TO_EDGE", Scale=520.0)
+    links.new(bent.outputs[0], plates.inputs["Vector"])
+    cracks = _range(tree, plates.outputs["Distance"], 0.13, 0.0, (-950, -1050))
+    patches = _range(tree, medium, 0.42, 0.62, (-950, -1250))
+    open_ = _math(tree, "MULTIPLY", (-750, -1100), _math(tree, "POWER", (-850, -1050), cracks, 2.0), patches)
+    strength = _math(tree, "ADD", (-400, -1100), _math(tree, "MULTIPLY", (-600, -1100), open_, EMBER_CRACKS),
+                     EMBER_CRUST)
+    glow = _math(tree, "MULTIPLY", (-200, -1000), _range(tree, burnt, 0.15, 0.5, (-600, -900)), strength)
+
+    # char is brittle and rough
+    bump = _node(tree, "ShaderNodeBump", (50, -200), Distance=0.0004)
+    links.new(char, bump.inputs["Strength"])
+    links.new(_math(tree, "ADD", (-150, -250), medium, _math(tree, "MULTIPLY", (-300, -250), fine, 0.4)),
+              bump.inputs["Height"])
+
+    paper = _node(tree, "ShaderNodeBsdfPrincipled", (450, 200), Roughness=0.85)
     paper.inputs["Specular IOR Level"].default_value = 0.1
     links.new(coloured, paper.inputs["Base Color"])
-    links.new(ember, paper.inputs["Emission Color"])
-    links.new(_math(tree, "MULTIPLY", (-100, -800), glow, EMBER_LIGHT), paper.inputs["Emission Strength"])
-    through = _node(tree, "ShaderNodeBsdfTranslucent", (150, -150))
+    links.new(bump.outputs[0], paper.inputs["Normal"])
+    # Blender's view bleaches bright red to pink: embers are orange
+    red = _node(tree, "ShaderNodeSeparateColor", (-400, -850))
+    links.new(ember, red.inputs[0])
+    orange = _node(tree, "ShaderNodeCombineColor", (0, -850))
+    links.new(red.outputs[0], orange.inputs[0])
+    links.new(_math(tree, "MULTIPLY_ADD", (-200, -850), red.outputs[0], 0.1, red.outputs[1]), orange.inputs[1])
+    links.new(red.outputs[2], orange.inputs[2])
+    links.new(orange.outputs[0], paper.inputs["Emission Color"])
+    links.new(glow, paper.inputs["Emission Strength"])
+    through = _node(tree, "ShaderNodeBsdfTranslucent", (450, -150))
     links.new(coloured, through.inputs["Color"])
-    mixed = _node(tree, "ShaderNodeMixShader", (400, 200))
+    mixed = _node(tree, "ShaderNodeMixShader", (700, 200))
     # burnt parts transmit no light
-    links.new(_math(tree, "MULTIPLY", (150, 400), _math(tree, "SUBTRACT", (-50, 400), 1.0, burnt), 0.22),
+    links.new(_math(tree, "MULTIPLY", (450, 400), _math(tree, "SUBTRACT", (250, 400), 1.0, char), 0.3),
               mixed.inputs["Fac"])
     links.new(paper.outputs[0], mixed.inputs[1])
     links.new(through.outputs[0], mixed.inputs[2])
-    output = _node(tree, "ShaderNodeOutputMaterial", (600, 200))
+    output = _node(tree, "ShaderNodeOutputMaterial", (900, 200))
     links.new(mixed.outputs[0], output.inputs["Surface"])
     return material
 
@@ -135,12 +210,13 @@ def fire_material():
     volume = _node(tree, "ShaderNodeVolumePrincipled", (200, 0))
     volume.inputs["Color"].default_value = (0.05, 0.05, 0.05, 1)
     flame = _attribute(tree, "flame", (-600, -100)).outputs["Fac"]
-    # orange at the edge, yellow inside
-    hue = _node(tree, "ShaderNodeMix", (-150, -250), data_type="RGBA")
-    hue.inputs[6].default_value, hue.inputs[7].default_value = (1, 0.22, 0.03, 1), (1, 0.45, 0.12, 1)
-    tree.links.new(_range(tree, flame, 0.0, 0.5, (-350, -250)), hue.inputs[0])
-    tree.links.new(hue.outputs[2], volume.inputs["Emission Color"])
-    tree.links.new(_math(tree, "MULTIPLY", (-350, -100), flame, FLAME_LIGHT), volume.inputs["Emission Strength"])
+    # red at the edge, orange, and a pale core that is far brighter
+    hue = _ramp(tree, _range(tree, flame, 0.0, 0.6, (-450, -300)),
+                ((0, (1, 0.14, 0.0)), (0.35, (1, 0.30, 0.0)), (1, (1, 0.55, 0.05))), (-250, -300))
+    tree.links.new(hue, volume.inputs["Emission Color"])
+    core = _math(tree, "MULTIPLY_ADD", (-300, -50), flame, FLAME_CORE, 1.0)
+    tree.links.new(_math(tree, "MULTIPLY", (-100, -100), _math(tree, "MULTIPLY", (-200, 50), flame, core), FLAME_LIGHT),
+                   volume.inputs["Emission Strength"])
     output = _node(tree, "ShaderNodeOutputMaterial", (500, 0))
     tree.links.new(volume.outputs[0], output.inputs["Volume"])
     return material

@@ -14,7 +14,7 @@ from mathutils import Vector
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import singe_extension
 
-FRAMES, SHOWN = 60, (12, 30)
+FRAMES, SHOWN = 60, (12, 20)
 
 
 def group(candidate, name, test):
@@ -43,18 +43,19 @@ def main(program, folder):
     scene.singe.pace, scene.singe.gas_detail = 6, 4
     assert bpy.ops.singe.burn() == {"FINISHED"}, scene.singe.message
 
-    bpy.ops.object.camera_add(location=(0.12, -0.62, 0.24))
+    bpy.ops.object.camera_add(location=(0.1, -0.5, 0.22))
     camera = bpy.context.object
-    camera.rotation_euler = (Vector((0, 0, 0.22)) - camera.location).to_track_quat("-Z", "Y").to_euler()
+    camera.rotation_euler = (Vector((0, 0, 0.2)) - camera.location).to_track_quat("-Z", "Y").to_euler()
     camera.data.clip_start = 0.01
     scene.camera = camera
     bpy.ops.object.light_add(type="AREA", location=(0.35, -0.45, 0.55))
     light = bpy.context.object
-    light.data.energy, light.data.size = 2.2, 0.3
+    light.data.energy, light.data.size = 3, 0.3
     light.rotation_euler = (Vector((0, 0, 0.2)) - light.location).to_track_quat("-Z", "Y").to_euler()
     scene.world = bpy.data.worlds.new("dark")
     scene.world.use_nodes = True
-    scene.world.node_tree.nodes["Background"].inputs[0].default_value = (0.006, 0.007, 0.009, 1)
+    scene.world.node_tree.nodes["Background"].inputs[0].default_value = (0.03, 0.035, 0.05, 1)
+    scene.view_settings.look = "AgX - High Contrast"  # otherwise flames are pale
     scene.render.engine, scene.cycles.samples = "CYCLES", 96
     scene.cycles.use_denoising = True
     scene.render.resolution_x, scene.render.resolution_y = 400, 480
