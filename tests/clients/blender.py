@@ -98,7 +98,7 @@ def light_by_flame():
     """The flame for its light."""
     nodes, links, volume = gas_material(Color=(0.05, 0.05, 0.05, 1), Emission_Color=(1, 0.33, 0.07, 1))
     flame, times = nodes.new("ShaderNodeAttribute"), nodes.new("ShaderNodeMath")
-    flame.attribute_name, times.operation, times.inputs[1].default_value = "flame", "MULTIPLY", 118
+    flame.attribute_name, times.operation, times.inputs[1].default_value = "flame", "MULTIPLY", 218
     links.new(flame.outputs["Fac"], times.inputs[0])
     links.new(times.outputs[0], volume.inputs["Emission Strength"])
 
@@ -112,7 +112,7 @@ def check_gas(scene, folder, sharp):
         if name == "flame":
             light_by_flame()
         else:
-            gas_material(Temperature=1, Blackbody_Intensity=1, Blackbody_Tint=(167, 167, 167, 1))
+            gas_material(Temperature=1, Blackbody_Intensity=1, Blackbody_Tint=(309, 309, 309, 1))
         lit = draw(scene, os.path.join(folder, "gas-%s.png" % name), False) - sharp
         red, green, blue = lit[above].mean((0, 1))
         print("the flame by %s adds %.3f, %.3f, %.3f there" % (name, red, green, blue))
@@ -127,7 +127,7 @@ def check_gas_by_night(scene, folder):
     """A Principled Volume with its own tint: in a room that only the fire lights, exposed for it."""
     sky, sun, gas = scene.world.node_tree.nodes["Background"].inputs[1], bpy.data.objects["sun"], bpy.data.objects["gas"]
     gas_material(Temperature=1, Blackbody_Intensity=1)
-    sky.default_value, sun.hide_render, scene.view_settings.exposure = 0, True, 7
+    sky.default_value, sun.hide_render, scene.view_settings.exposure = 0, True, 8
     flame = (slice(150, 200), slice(290, 345), slice(0, 3))
     gas.hide_render = True
     dark = draw(scene, os.path.join(folder, "night-without.png"), False)[flame].mean((0, 1))

@@ -221,7 +221,7 @@ TEST(tear_edges_at_one_point_are_drawn_apart) {
     }
 }
 
-/// A cell's triangles that have been pulled apart are left out once springs of it have burnt, and not before.
+/// A cell's triangles that have been pulled apart are left out once its centre has burnt, and not before.
 TEST(triangles_pulled_apart_by_a_lost_corner_are_left_out) {
     Drawing *d = fine_drawing(6, 6, 1, 0.2f, 0);
     const uint32_t cell = cell_at(d->sheet, 2, 2), corner = d->sheet->shell.cells[cell][0];
@@ -234,8 +234,9 @@ TEST(triangles_pulled_apart_by_a_lost_corner_are_left_out) {
     draw_fine(d);
     assert_int_equal(d->surface.triangle_count, whole);
     for (int k = 0; k < 4; k++) {
-        uint32_t other = d->sheet->shell.fan[d->sheet->shell.fan_first[corner] + (uint32_t)k];
-        d->sheet->state.ablate.spring_flags[SINGE_BLUE][d->sheet->shell.cell_springs[other].blue[0]] = 0;
+        const Shell *shell = &d->sheet->shell;
+        const uint32_t centre = shell_centre(shell, shell->fan[shell->fan_first[corner] + (uint32_t)k]);
+        d->sheet->state.burn.mass[centre] -= ablate_level(shell, &d->sheet->state, centre) + 1e-4f;
     }
 
     draw_fine(d);
