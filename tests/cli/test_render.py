@@ -105,7 +105,7 @@ class Render(Case):
         os.mkdir(self.path("empty"))
         with open(self.path("empty", "run.json"), "w") as file:
             file.write("{}")
-        self.assertIn("not a record", self.singe("render", self.path("empty"), expect=2)[1])
+        self.assertIn("not the record of a run", self.singe("render", self.path("empty"), expect=2)[1])
         self.assertIn("1-6", self.singe("render", self.path("o"), "--frames", "5-9", expect=2)[1])
         with open(self.path("o", "ply", "tiny.0004.ply"), "r+b") as file:
             file.truncate(500)
