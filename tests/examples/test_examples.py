@@ -201,12 +201,10 @@ class Letter(Example):
         # what office paper does, lying free
         self.assertTrue(4.4e-3 <= last["front_speed"] <= 7.0e-3)
         self.assertGreaterEqual(last["burnt_fraction"], 0.5)
-        self.assertGreaterEqual(max(self.column("pieces")), 2)
-        self.assertGreaterEqual(last["pieces_freed"], 1)
         self.assertGreater(last["particles"], 100)
         self.assertGreater(ash, 100)
         self.assertGreater(last["holes_opened"], 0)
-        self.assertGreater(last["tears"], 0)
+        self.assertLessEqual(last["tears"], 20)  # nothing pulls at it; burnt corners that spun tore it some fifty times
         self.assertEqual(max(self.column("inverted_cells")), 0)
         # the demo stays small
         self.assertLessEqual(self.rows[0]["springs"], 110000)
