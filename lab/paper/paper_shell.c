@@ -213,9 +213,12 @@ SingeResult paper_burn_to(Lab *lab, LabGrid *grid, const float *mass, double mas
 
 // ---- Fig 5: the states of a spring
 
-enum { STATES = 5, STATE_COLUMNS = STATES + 1 };
-static const double state_mass[STATE_COLUMNS][2] = {{1, .75}, {.75, .5}, {.95, .2}, {.8, .2}, {.1, .05}, {.1, .1}};
-static const double state_loss = 0.3;
+enum { STATES = 5, STATE_COLUMNS = STATES + 2 };
+static const double state_mass[STATES][2] = {{1, .75}, {.75, .5}, {.95, .2}, {.8, .2}, {.1, .05}};
+static const double state_loss = 0.3, state_beside = 0.1;
+
+/// The column of a case. The last one has a burnt column on either side: springs go with their cells.
+static int state_column(int i) { return i < STATES - 1 ? i : i + 1; }
 
 /// An end's mass above m_loss.
 static double state_left(int i, int end) { return state_mass[i][end] - state_loss; }
@@ -259,10 +262,11 @@ static void state_table(Lab *lab, const double *ratio, const double *cut, double
 SingeResult paper_fig5(Lab *lab, SingeError *error) {
     const double cell = 0.01;
     float mass[2 * STATE_COLUMNS];
-    LabGrid grid = lab_grid(STATES, 1, (float)cell);
+    LabGrid grid = lab_grid(STATE_COLUMNS - 1, 1, (float)cell);
 
-    for (int i = 0; i < STATE_COLUMNS; i++)
-        for (int k = 0; k < 2; k++) mass[i + k * STATE_COLUMNS] = (float)fmin(state_mass[i][k], 0.999999);
+    for (int i = 0; i < 2 * STATE_COLUMNS; i++) mass[i] = (float)state_beside;
+    for (int i = 0; i < STATES; i++)
+        for (int k = 0; k < 2; k++) mass[state_column(i) + k * STATE_COLUMNS] = (float)fmin(state_mass[i][k], 0.999999);
     lab_sets_mass(&grid.material);
     SingeSim *sim;
     SingeSurface surface = {0};
@@ -271,7 +275,7 @@ SingeResult paper_fig5(Lab *lab, SingeError *error) {
         SingeView view = singe_sim_view(sim);
         double worst, worst_cut, ratio[STATES], cut[STATES], worst_centre = 0, one_end = 0;
         for (int i = 0; i < STATES; i++) {
-            ratio[i] = state_ratio(&view, (uint32_t)i);
+            ratio[i] = state_ratio(&view, (uint32_t)state_column(i));
             cut[i] = -1; // or the end of the drawn surface on the column, as a share of its height
             for (uint32_t v = 0; v < surface.vertex_count && state_is_cut(i) && cut[i] < 0; v++) {
                 double x = (double)surface.rest_position[v][0], y = (double)surface.rest_position[v][1];
