@@ -50,6 +50,16 @@ static uint32_t point_vertex(Fine *fine, const Piece *piece, int corner) {
     return fine->drawn[point];
 }
 
+void fine_fan(Fine *fine, const uint32_t *polygon, int count) {
+    if (count > 1 && polygon[count - 1] == polygon[0]) count--;
+    for (int k = 2; k < count; k++) {
+        uint32_t *triangle = fine->surface->triangles[fine->surface->triangle_count++];
+        triangle[0] = polygon[0] - 1;
+        triangle[1] = polygon[k - 1] - 1;
+        triangle[2] = polygon[k] - 1;
+    }
+}
+
 static void march_draw(Fine *fine, const Piece *piece) {
     const float level[3] = {fine->values[piece->point[0]].level, fine->values[piece->point[1]].level,
                             fine->values[piece->point[2]].level};
@@ -84,15 +94,7 @@ static void march_draw(Fine *fine, const Piece *piece) {
             if (!count || polygon[count - 1] != vertex[m]) polygon[count++] = vertex[m];
     }
 
-    if (count > 1 && polygon[count - 1] == polygon[0]) count--;
-
-    // a fan of triangles
-    for (int k = 2; k < count; k++) {
-        uint32_t *triangle = fine->surface->triangles[fine->surface->triangle_count++];
-        triangle[0] = polygon[0] - 1;
-        triangle[1] = polygon[k - 1] - 1;
-        triangle[2] = polygon[k] - 1;
-    }
+    fine_fan(fine, polygon, count);
 }
 
 /// The entry in `cuts` of part i of a cell's side that is in `parts` parts.

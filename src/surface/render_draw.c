@@ -205,14 +205,7 @@ static void draw_part(Fine *fine, RenderDrawing *drawing, uint32_t t, const bool
         for (int m = 0; m < made; m++)
             if (!count || polygon[count - 1] != corner[m]) polygon[count++] = corner[m];
     }
-    if (count > 1 && polygon[count - 1] == polygon[0]) count--;
-
-    for (int k = 2; k < count; k++) {
-        uint32_t *triangle = fine->surface->triangles[fine->surface->triangle_count++];
-        triangle[0] = polygon[0] - 1;
-        triangle[1] = polygon[k - 1] - 1;
-        triangle[2] = polygon[k] - 1;
-    }
+    fine_fan(fine, polygon, count);
 }
 
 void render_march(Fine *fine) {

@@ -215,6 +215,10 @@ SingeResult fine_march(Fine *fine, SingeError *error);
 /// Whether a cell's triangle is left out.
 bool fine_is_torn(const Fine *fine, uint32_t cell, int side);
 
+/// Adds the polygon of `count` vertices, each its number plus 1, as triangles of the surface around the first. The last may
+/// be the first again.
+void fine_fan(Fine *fine, const uint32_t *polygon, int count);
+
 // ---- fine_patch.c
 
 /// A cell's points b_ij: i along side 0, j along side 3 backwards.
