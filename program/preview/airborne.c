@@ -8,6 +8,7 @@
 #include <string.h>
 
 #define FORWARD 0.45f     ///< g of the smoke's phase function
+#define LIGHT_MOST 40.0f  ///< of a pixel: a spark that flies at the eye is all in one
 #define LEAF_WIDTH 0.008f ///< m: a leaf that glows as a whole counts as a line for each
 
 // ---- embers
@@ -157,7 +158,8 @@ void airborne_draw(Preview *preview) {
         if (veil->depth + veil->light.x <= 0) continue;
         float clear = expf(-veil->depth), part = veil->depth > 1e-3f ? (1 - clear) / veil->depth : 1;
         Float3 light = float3_scale(veil->light, part);
-        light = float3(minf(light.x, 40), minf(light.y, 40), minf(light.z, 40));
+        const float most = maxf(light.x, maxf(light.y, light.z));
+        if (most > LIGHT_MOST) light = float3_scale(light, LIGHT_MOST / most); // its colour stays
         preview->picture[i] = float3_mad(light, preview->picture[i], clear);
         if (!preview->layers.fire) continue;
         float *fire = preview->layers.fire[i];
