@@ -204,7 +204,7 @@ class Letter(Example):
         self.assertGreater(last["particles"], 100)
         self.assertGreater(ash, 100)
         self.assertGreater(last["holes_opened"], 0)
-        self.assertLessEqual(last["tears"], 20)  # nothing pulls at it; burnt corners that spun did
+        self.assertLessEqual(last["tears"], 2)  # nothing pulls at it: 0; with burnt corners that spun, 19
         self.assertEqual(max(self.column("inverted_cells")), 0)
         # the demo stays small
         self.assertLessEqual(self.rows[0]["springs"], 110000)
