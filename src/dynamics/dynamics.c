@@ -34,8 +34,11 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     plan->settings = *settings;
     SingeSolverDef *solver = &plan->settings.solver;
     if (solver->substeps == 0)
-        solver->substeps = stiffness_substeps(shell, settings->time_step, solver->regularisation[SINGE_RED],
-                                              float3_length(float3_load(settings->gravity)));
+        solver->substeps = stiffness_substeps(shell, settings->time_step, solver->regularisation[SINGE_RED]);
+    else if (settings->plume) {
+        const int carrying = stiffness_carrying(shell, settings->time_step);
+        if (carrying > 2 * solver->substeps) solver->substeps = carrying; // fewer by less than that stretch, and hold
+    }
     plan->particle_count = shell->particle_count;
     plan->cell_count = shell->cell_count;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)

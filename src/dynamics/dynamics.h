@@ -13,6 +13,7 @@ typedef struct DynamicsSettings {
     float gravity[3];
     float air_density;
     SingeSolverDef solver; ///< substeps 0: as many as stiffness and load need
+    bool plume;            ///< sheets that may tear hang in hot gas: at least as many as that load needs
     SingeContactDef contact;
     float time_step; ///< s
     SingeInstructions instructions;

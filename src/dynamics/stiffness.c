@@ -124,9 +124,18 @@ float stiffness_compliance(Stiffness *stiffness, uint32_t spring) {
     return compliance > stiffness->own ? compliance - stiffness->own : 0;
 }
 
-int stiffness_substeps(const Shell *shell, float h, float regularisation, float gravity) {
-    const float softness = COUPLING + regularisation;
+int stiffness_carrying(const Shell *shell, float h) {
     float count = 1;
+    for (uint32_t i = 0; i < shell->sheet_count; i++)
+        if (shell->sheets[i].cell_count)
+            count = fmaxf(count, ceilf(sqrtf(shell_load(shell, i) / shell_carried(shell, i, h))));
+
+    return count < STIFFNESS_MAX ? (int)count : STIFFNESS_MAX;
+}
+
+int stiffness_substeps(const Shell *shell, float h, float regularisation) {
+    const float softness = COUPLING + regularisation;
+    float count = (float)stiffness_carrying(shell, h);
     for (uint32_t i = 0; i < shell->sheet_count; i++) {
         const Sheet *sheet = &shell->sheets[i];
         float mass = particle_mass(shell, sheet), min = INFINITY;
@@ -138,7 +147,6 @@ int stiffness_substeps(const Shell *shell, float h, float regularisation, float 
 
         if (sheet->cell_count == 0) continue;
         count = fmaxf(count, ceilf(h * sqrtf(softness / (min * mass))));
-        count = fmaxf(count, ceilf(sqrtf(shell_load(shell, i, gravity) / shell_carried(shell, i, h))));
     }
 
     return count < STIFFNESS_MAX ? (int)count : STIFFNESS_MAX;

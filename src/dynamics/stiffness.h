@@ -4,7 +4,7 @@
 
 #include "shell/shell.h"
 
-/// Max substeps per step that stiffness_substeps returns.
+/// Max substeps per step that are asked for here.
 enum { STIFFNESS_MAX = 1000 };
 
 /// The springs of a colour for the solver.
@@ -27,8 +27,10 @@ void stiffness_begin(const Shell *shell, SingeColour colour, float h, const Sing
 /// Compliance of a spring, m/N.
 float stiffness_compliance(Stiffness *stiffness, uint32_t spring);
 
-/// The smallest number of substeps in a step of h seconds for which all red springs of this regularisation can be as
-/// stiff as they should, and sheets carry what a plume asks of them.
-int stiffness_substeps(const Shell *shell, float h, float regularisation, float gravity);
+/// The smallest number of substeps in a step of h seconds for which sheets carry what a plume asks of them.
+int stiffness_carrying(const Shell *shell, float h);
+
+/// The smallest number, at least that, for which all red springs of this regularisation can be as stiff as they should.
+int stiffness_substeps(const Shell *shell, float h, float regularisation);
 
 #endif

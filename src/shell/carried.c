@@ -18,6 +18,10 @@
 static const double CARRIES = 0.2;
 static const double PLUME = 1; ///< q, Pa
 
+/// g, m/s2. A caller may set another gravity in any step; what depends on loads is chosen once, at the commit, and again
+/// when a snapshot is loaded, with the same result.
+static const double GRAVITY = 9.81;
+
 /// Mass per area at the start, kg/m2, and the area, m2. The sheet has cells.
 static double sheet_density(const Shell *shell, uint32_t index, double *area) {
     const Sheet *sheet = &shell->sheets[index];
@@ -34,7 +38,7 @@ float shell_carried(const Shell *shell, uint32_t index, float h) {
     return (float)(CARRIES * density * side * side / ((double)h * (double)h));
 }
 
-float shell_load(const Shell *shell, uint32_t index, float gravity) {
+float shell_load(const Shell *shell, uint32_t index) {
     double area, density = sheet_density(shell, index, &area);
-    return (float)(sqrt(area) * (density * (double)gravity + PLUME));
+    return (float)(sqrt(area) * (density * GRAVITY + PLUME));
 }

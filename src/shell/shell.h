@@ -326,8 +326,8 @@ static inline uint32_t shell_centre(const Shell *shell, uint32_t cell) { return 
 /// N/m, the max line force that substeps of h hold; above it the sheet stretches.
 float shell_carried(const Shell *shell, uint32_t sheet, float h);
 
-/// N/m, the line force of its weight and of a plume where it hangs.
-float shell_load(const Shell *shell, uint32_t sheet, float gravity);
+/// N/m, the line force of its weight on Earth and of a plume where it hangs.
+float shell_load(const Shell *shell, uint32_t sheet);
 
 /// Number of springs of a colour that are in strands. They come first, followed by the spares of tears.
 static inline uint32_t shell_strand_springs(const Shell *shell, int colour) {

@@ -236,6 +236,7 @@ SingeResult sim_build(SingeSim *sim) {
     DynamicsSettings dynamics = {.gravity = {def->gravity[0], def->gravity[1], def->gravity[2]},
                                  .air_density = def->air_density,
                                  .solver = def->solver,
+                                 .plume = tears && def->gas.enabled,
                                  .contact = def->contact,
                                  .time_step = def->time_step,
                                  .instructions = def->instructions,

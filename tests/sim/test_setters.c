@@ -75,6 +75,20 @@ TEST(set_later_is_saved) {
     }
 }
 
+/// Substeps that follow from the load do not change when a simulation with another gravity is loaded.
+TEST(substeps_are_those_of_the_commit) {
+    SingeSimDef def = singe_default_sim();
+    def.solver.substeps = 0;
+    SingeMaterialDef material = singe_default_material();
+    material.compliance[SINGE_RED] = singe_param(1e3f);
+    const float gravity[3] = {0, 0, -200};
+    SingeSim *sim = test_sim(&def, test_grid(20, 20, 0.00125f, 0.00125f), &material);
+    test_steps(sim, 3);
+    test_ok(sim, singe_sim_set_gravity(sim, gravity));
+    assert_loads_the_same(sim);
+    singe_sim_destroy(sim);
+}
+
 /// A sheet that lies still in warmer air takes heat from it, and its ledger goes on without a jump.
 TEST(warmer_air_warms) {
     SingeSim *sim = test_sim(NULL, test_grid(6, 6, 0.01f, 0.01f), NULL);
