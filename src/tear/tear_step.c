@@ -17,7 +17,8 @@
 //
 // Substeps carry a line force T (shell/carried.c); pulled apart farther, a sheet stretches. If it is held farther apart
 // than its geodesic length, by more than paper stretches before it breaks, it must tear though it is stronger: all its
-// fresh strengths are then lowered by one factor, so that the smallest is half of T.
+// fresh strengths are then lowered by one factor, so that the smallest is half of T, and char keeps at most a quarter of
+// that: real char breaks first, as it is hundreds of times weaker.
 #include "common/float4.h"
 #include "common/real.h"
 #include "common/random.h"

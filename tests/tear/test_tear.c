@@ -491,6 +491,30 @@ TEST(strong_sheets_tear_when_held_too_far_apart) {
     singe_sim_destroy(sim);
 }
 
+/// In a sheet that must tear, what is charred gives way, not fresh paper at its grips.
+TEST(char_tears_before_paper_that_must_tear) {
+    SingeSimDef def = pull_def();
+    def.solver.substeps = 2;
+    def.pace = 10;
+    SingeSim *sim = pulled(&def, 500, 1, NULL, 0);
+    for (int j = 0; j <= ACROSS; j++) test_spot(sim, 0.5f * ALONG * side, (float)j * side, 0, 6e-3f, 800, 40);
+    test_steps(sim, STEPS);
+    uint32_t fresh = 0, charred = 0;
+    grip(sim, true, 9e-3f);
+    test_steps(sim, STEPS);
+
+    const SingeView view = singe_sim_view(sim);
+    for (uint32_t v = (ALONG + 1) * (ACROSS + 1); v < view.vertex_count; v++) {
+        if (!(view.particle_flags[v] & SINGE_ALIVE)) continue;
+        if (view.mass[v] < 0.8f) charred++;
+        else fresh++;
+    }
+    print_message("%u vertices torn in char, %u in paper\n", charred, fresh);
+    assert_true(charred > 0);
+    assert_int_equal(fresh, 0);
+    singe_sim_destroy(sim);
+}
+
 /// A disc: a hub of SPOKES / 2 cells, more than a split knows, in rings of SPOKES vertices.
 enum { SPOKES = 56, RINGS = 6 };
 
