@@ -100,13 +100,24 @@ class Exporter:
         self.fps = context.scene.render.fps / context.scene.render.fps_base
         self.frames = range(context.scene.frame_start, context.scene.frame_end + 1)
         self.moving, self.followed, self.paths = [], [], []
+        self.made = set()  # names of files
 
     def write(self):
-        """Writes all files and returns the path of the scene file."""
+        """Writes all files; those of an earlier burn that are no longer needed go. If it fails, so do those that it has
+        made."""
         sheets = objects(self.scene, "SHEET")
         if not sheets:
             raise ExportError("no object is a sheet: set Singe to Sheet in an object's Physics tab")
         files.take(self.folder)
+        before = files.inputs(self.folder)
+        try:
+            self._write(sheets)
+        except BaseException:
+            self._remove(self.made - before)
+            raise
+        self._remove(before - self.made)
+
+    def _write(self, sheets):
         now = self.scene.frame_current
         try:
             self.scene.frame_set(self.frames.start)
@@ -118,7 +129,15 @@ class Exporter:
         with files.create(path + ".part") as file:
             file.write((files.MARK + json.dumps(document, indent=1)).encode())
         os.replace(path + ".part", path)
-        return path
+
+    def _made(self, name):
+        """The path of a file that is about to be made."""
+        self.made.add(name)
+        return os.path.join(self.folder, name)
+
+    def _remove(self, names):
+        for name in names:
+            files.remove(os.path.join(self.folder, name))
 
     def _document(self, sheets):
         settings, scene = self.settings, self.scene
@@ -150,7 +169,7 @@ class Exporter:
             scene.view_settings.view_transform = "Raw"
             scene.render.image_settings.file_format = "PNG"
             scene.render.image_settings.color_mode = "RGB"
-            path = os.path.join(self.folder, name)
+            path = self._made(name)
             files.remove(path)
             image.save_render(path, scene=scene)
         except RuntimeError as error:
@@ -175,7 +194,7 @@ class Exporter:
             document["pins"].append(self._pin(sheet, mesh, entry["name"]))
         rate = mesh.weights.get("rate_group")
         mesh.weights = {} if rate is None else {"speed": np.clip(rate, 0, 1)}
-        meshes.write_ply(os.path.join(self.folder, file), mesh)
+        meshes.write_ply(self._made(file), mesh)
         document["sheets"].append(entry)
 
     def _material(self, sheet, mesh, texture):
@@ -260,7 +279,7 @@ class Exporter:
             self.moving.append((collider, file))
         else:
             entry["mesh"] = f"{file}.ply"
-            meshes.write_ply(os.path.join(self.folder, f"{file}.ply"), mesh)
+            meshes.write_ply(self._made(f"{file}.ply"), mesh)
         return entry
 
     def _wind(self):
@@ -288,7 +307,7 @@ class Exporter:
             for candidate, file, *_ in (*self.moving, *self.followed):
                 mesh = first_mesh(self.scene, candidate)
                 mesh.uv, mesh.weights = None, {}
-                meshes.write_ply(os.path.join(self.folder, f"{file}.{number + 1:04}.ply"), mesh)
+                meshes.write_ply(self._made(f"{file}.{number + 1:04}.ply"), mesh)
             for index, (candidate, *_) in enumerate(self.paths):
                 keys[index].append({"time": number / self.fps, "position": self._position(candidate)})
         for index, (_, entry, _) in enumerate(self.paths):

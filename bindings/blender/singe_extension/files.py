@@ -1,38 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which files a burn may write and delete. A .blend file names the folder, and it may come from a stranger: so a burn
-writes only into a folder that is empty or that a burn has marked as its own, through no symbolic link, and Free Cache
-deletes single files by the names that a burn gives them, never a folder with what is in it. Needs no Blender."""
+writes only into a folder that is empty or that a burn has marked as its own, through no symbolic link. Free Cache deletes
+single files: those that run.json and burn.yaml list, and which have a name that a burn gives; never a folder with what is
+in it. Needs no Blender."""
 
 import errno
+import json
 import os
 import re
 import stat
 
 MARK = "# Written by Singe's extension for Blender\n"  # the first line of burn.yaml; a comment of YAML
 SCENE = "burn.yaml"
-
-_FRAME = r"burn\.(\d{4}|[1-9]\d{4,8})"
-_DRAFT = r"(\.\d+-\d+\.tmp){0,2}"  # of a program that was killed while it wrote
 CACHE = "cache"
 EARLIER = "earlier"  # the cache of which a branch is made, until it has begun
-# the names of files of a cache by folder; a folder comes after those inside it
-_CACHE = {
-    "cache/ply": rf"{_FRAME}\.ply{_DRAFT}",
-    "cache/usd": rf"{_FRAME}\.usdc{_DRAFT}",
-    "cache/gas": rf"{_FRAME}\.vdb{_DRAFT}",
-    "cache/gas_detail": rf"{_FRAME}\.vdb{_DRAFT}",
-    "cache/frames": rf"{_FRAME}\.png{_DRAFT}",
-    "cache/exr": rf"{_FRAME}\.exr{_DRAFT}",
-    "cache/checkpoints": rf"{_FRAME}\.singe{_DRAFT}",
-    "cache": r"(burn\.usda|run\.json|(stats|events|probes)\.csv|checkpoint(\.previous)?\.singe|sheet\.png"
-             rf"|preview\.(mp4|gif)){_DRAFT}|(cache|pictures)\.lock",
-}
-_MADE = {
-    **_CACHE,
-    **{part.replace(CACHE, EARLIER, 1): names for part, names in _CACHE.items()},
-    "": r"burn\.yaml(\.part)?|log\.txt|sheet\d+(-speed\.png|(-pin\.\d{4,})?\.ply)"
-        r"|collider-\d+-[0-9a-f]+(\.\d{4,})?\.ply",
-}
+
+_DRAFT = r"(?P<draft>(\.\d+-\d+\.tmp){0,2})"  # of a program that was killed while it wrote
+# the endings of a frame's files, by the folder in a cache
+_FRAMES = {"ply": "ply", "usd": "usdc", "gas": "vdb", "gas_detail": "vdb", "frames": "png", "exr": "exr",
+           "checkpoints": "singe"}
+_SINGLE = (r"burn\.usda|run\.json|(stats|events|probes)\.csv|checkpoint(\.previous)?\.singe|sheet\.png"
+           r"|preview\.(mp4|gif)")
+_BEFORE_ITS_FIRST_FRAME = r"run\.json|(cache|pictures)\.lock"  # what a run has before run.json lists anything
+_INPUT = r"sheet\d+(-speed\.png|(-pin\.\d{4,})?\.ply)|collider-\d+-[0-9a-f]+(\.\d{4,})?\.ply"
+_OWN = r"burn\.yaml(\.part)?|log\.txt"
 
 
 class FolderError(Exception):
@@ -52,10 +43,9 @@ def sentence(error):
     return printable(f"cannot use {error.filename}: {reason}" if error.filename else reason)
 
 
-def _places(folder, within=""):
-    """(folder, pattern of the names of files) of each folder of a burn, or of those within one of them."""
-    return [(os.path.join(folder, *part.split("/")) if part else folder, names) for part, names in _MADE.items()
-            if not within or part.split("/")[0] == within]
+def _places(cache):
+    """The folders of a cache; one comes after those inside it."""
+    return [os.path.join(cache, kind) for kind in _FRAMES] + [cache]
 
 
 def is_own(folder):
@@ -69,7 +59,7 @@ def is_own(folder):
 
 def take(folder):
     """Makes the folder of a burn and marks it; FolderError if it belongs to others."""
-    for place, _ in _places(folder):
+    for place in (*_places(os.path.join(folder, CACHE)), *_places(os.path.join(folder, EARLIER)), folder):
         if os.path.islink(place):
             raise FolderError(f"{place} is a symbolic link: choose another cache folder")
     if is_own(folder):
@@ -106,17 +96,99 @@ def remove(path):
         pass
 
 
+def _object(path, skip=0):
+    """The object of JSON in a file, which may be anything: {} if it is no such object."""
+    try:
+        found = json.loads(read(path)[skip:])
+    except (OSError, ValueError, RecursionError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def _scene_of(cache):
+    """The scene that the cache's run.json lists; {} if it lists none, or that of another program's run."""
+    scene = _object(os.path.join(cache, "run.json")).get("scene")
+    return scene if isinstance(scene, dict) and scene.get("name") == "burn" else {}
+
+
+def _frames_of(scene):
+    frames = scene.get("frames")
+    return frames if isinstance(frames, int) else 0
+
+
+def _is_within(place):
+    """Whether this is a folder of a cache, to which no link leads."""
+    return os.path.isdir(place) and not os.path.islink(place) and not os.path.islink(os.path.dirname(place))
+
+
+def _names(place):
+    """The names of the files and links in a folder."""
+    return [name for name in sorted(os.listdir(place)) if not stat.S_ISDIR(os.lstat(os.path.join(place, name)).st_mode)]
+
+
+def _made_in_cache(cache):
+    """The files of a cache that its run.json lists, and what a killed run has left half-written; run.json is the last."""
+    scene, made = _scene_of(cache), []
+    single = f"{_SINGLE}|{_BEFORE_ITS_FIRST_FRAME}" if scene else _BEFORE_ITS_FIRST_FRAME
+    for kind, ending in _FRAMES.items():
+        place = os.path.join(cache, kind)
+        for name in _names(place) if _is_within(place) else ():
+            found = re.fullmatch(rf"burn\.(\d{{4}}|[1-9]\d{{4,8}})\.{ending}{_DRAFT}", name)
+            if found and (found["draft"] or int(found[1]) <= _frames_of(scene)):
+                made.append(os.path.join(place, name))
+    for name in _names(cache) if _is_within(cache) else ():
+        half = re.fullmatch(rf"({_SINGLE}){_DRAFT}", name)
+        if re.fullmatch(single, name) or half and half["draft"]:
+            made.append(os.path.join(cache, name))
+    return sorted(made, key=lambda path: os.path.basename(path) == "run.json")
+
+
+def _words(scene):
+    """All strings of a scene."""
+    words, left = set(), [scene]
+    while left:
+        value = left.pop()
+        if isinstance(value, str):
+            words.add(value)
+        elif isinstance(value, (dict, list)):
+            left += value.values() if isinstance(value, dict) else value
+    return words
+
+
+def inputs(folder):
+    """The names of the files beside burn.yaml that a burn has written for the program to read: those that its scene
+    names, or the scene of a run that is there."""
+    scenes = [_object(os.path.join(folder, SCENE), len(MARK)),
+              *(_scene_of(os.path.join(folder, part)) for part in (CACHE, EARLIER))]
+    lists, found = [(_words(scene), _frames_of(scene)) for scene in scenes], set()
+    for name in _names(folder):
+        numbered = re.fullmatch(r"(.+)\.(\d{4,})\.ply", name)
+        word, frame = (f"{numbered[1]}.####.ply", int(numbered[2])) if numbered else (name, 0)
+        if re.fullmatch(_INPUT, name) and any(word in words and frame <= frames for words, frames in lists):
+            found.add(name)
+    return found
+
+
 def free(folder):
     """Deletes the files that a burn has written into a folder, and the folders that are empty then. Returns the number
     of files; 0 if no burn has marked the folder."""
-    return _free(folder, "") if is_own(folder) else 0
+    if not is_own(folder):
+        return 0
+    names = [*inputs(folder), *(name for name in _names(folder) if re.fullmatch(_OWN, name))]
+    count = sum(_free(os.path.join(folder, part)) for part in (CACHE, EARLIER))
+    # the mark goes last, so that a deletion that fails half-way can be repeated
+    for name in sorted(names, key=lambda name: name == SCENE):
+        os.unlink(os.path.join(folder, name))
+    if not os.listdir(folder):
+        os.rmdir(folder)
+    return count + len(names)
 
 
 def set_aside(folder):
     """Makes the cache the earlier one, for a branch. FolderError if it is not of a burn."""
     take(folder)
     put_back(folder)
-    _free(folder, EARLIER)
+    _free(os.path.join(folder, EARLIER))
     os.rename(os.path.join(folder, CACHE), os.path.join(folder, EARLIER))
 
 
@@ -126,27 +198,19 @@ def put_back(folder):
     if not is_own(folder) or os.path.islink(earlier) or not os.path.isdir(earlier):
         return
     if os.path.exists(os.path.join(cache, "checkpoint.singe")):
-        _free(folder, EARLIER)
+        _free(earlier)
         return
-    _free(folder, CACHE)
+    _free(cache)
     if not os.path.exists(cache):
         os.rename(earlier, cache)
 
 
-def _free(folder, within):
-    count = 0
-    for place, names in _places(folder, within):
-        if place != folder and (os.path.islink(place) or os.path.islink(os.path.dirname(place))):
-            continue
-        if not os.path.isdir(place):
-            continue
-        found = [name for name in os.listdir(place) if re.fullmatch(names, name)]
-        # the mark goes last, so that a deletion that fails half-way can be repeated
-        for name in sorted(found, key=lambda name: name == SCENE):
-            path = os.path.join(place, name)
-            if not stat.S_ISDIR(os.lstat(path).st_mode):
-                os.unlink(path)
-                count += 1
-        if not os.listdir(place):
+def _free(cache):
+    """Deletes what a run has made in a cache, and the folders that are empty then. Returns the number of files."""
+    made = _made_in_cache(cache)
+    for path in made:
+        os.unlink(path)
+    for place in _places(cache):
+        if _is_within(place) and not os.listdir(place):
             os.rmdir(place)
-    return count
+    return len(made)

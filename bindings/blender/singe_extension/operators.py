@@ -222,6 +222,7 @@ class SINGE_OT_free(bpy.types.Operator):
         return context.window_manager.invoke_confirm(self, event)
 
     def execute(self, context):
+        message = ""
         try:
             for preview in (False, True):
                 folder = burn_folder(context.scene, preview)
@@ -229,12 +230,13 @@ class SINGE_OT_free(bpy.types.Operator):
                     self.report({"ERROR"}, "the scene is burning: cancel it first")
                     return {"CANCELLED"}
                 load.clear(context, os.path.join(folder, "cache"))
-                files.free(folder)
+                if files.free(folder) and os.path.isdir(folder):
+                    message = f"{files.printable(folder)} has files that Singe did not make: they stay"
         except ERRORS as error:
             self.report({"ERROR"}, files.sentence(error))
             return {"CANCELLED"}
         context.scene.singe.progress = 0
-        say(context.scene, "")
+        say(context.scene, message)
         return {"FINISHED"}
 
 

@@ -25,7 +25,8 @@ MADE = """burn.yaml burn.yaml.part log.txt sheet0.ply sheet12-speed.png sheet0-p
           cache/ply/burn.0002.ply.77-1.tmp cache/ply/burn.12345.ply cache/usd/burn.0001.usdc cache/gas/burn.0001.vdb
           cache/gas_detail/burn.0001.vdb cache/frames/burn.0001.png cache/exr/burn.0001.exr
           cache/checkpoints/burn.0010.singe earlier/run.json earlier/ply/burn.0001.ply""".split()
-OTHERS = """notes.txt sheet.ply sheet0.ply.bak mysheet0.ply collider-0.ply cache/notes.txt cache/letter.usda
+OTHERS = """notes.txt sheet.ply sheet3.ply sheet3-speed.png collider-0-7f12ac.ply collider-4-7f12ab.0001.ply
+            sheet0-pin.12346.ply cache/ply/burn.12346.ply earlier/usd/burn.99999.usdc sheet0.ply.bak mysheet0.ply collider-0.ply cache/notes.txt cache/letter.usda
             cache/run.json.bak cache/ply/letter.0001.ply cache/ply/burn.1.ply cache/ply/burn.0001.usdc
             cache/ply/burn.00012.ply cache/burn.0001.ply cache/old/burn.0001.ply burn.0001.ply""".split()
 
@@ -39,11 +40,19 @@ class Case(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.dir, ignore_errors=True)
         self.folder = self.dir / "cache" / "preview"
 
-    def fill(self, names):
+    def fill(self, names, frames=12345):
+        """Files with these names, in a folder whose run.json and burn.yaml list the inputs and frames of a burn."""
+        scene = {"name": "burn", "frames": frames, "sheets": [{"mesh": "sheet0.ply"}, {"mesh": "sheet12.ply"}],
+                 "pins": [{"motion": {"mesh": "sheet0-pin.####.ply"}}], "rate": {"texture": "sheet12-speed.png"},
+                 "colliders": [{"mesh": "collider-0-7f12ab.ply"}, {"motion": {"mesh": "collider-3-7f12ab.####.ply"}}]}
         for name in names:
             path = self.folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
-            if name != "burn.yaml" or not path.exists():
+            if path.name == "run.json":
+                path.write_text(json.dumps({"frames": frames, "scene": scene}))
+            elif name == "burn.yaml":
+                path.write_text((files.MARK if path.exists() else "x") + json.dumps(scene))
+            else:
                 path.write_text("x")
 
     def left(self):
@@ -96,6 +105,30 @@ class Free(Case):
         self.fill(MADE + OTHERS)
         self.assertEqual(files.free(str(self.folder)), 0)
         self.assertEqual(self.left(), sorted(MADE + OTHERS))
+
+    def test_what_run_json_does_not_list(self):
+        """Frames after the run's last, and all frames and tables of a folder whose run.json lists nothing."""
+        for record in ("", "[]", "x", "[" * 100000, '{"scene": 3}', '{"scene": {"name": "burn"}}',
+                       '{"scene": {"name": "letter", "frames": 12345}}', '{"scene": {"name": "burn", "frames": "9"}}', None):
+            files.take(str(self.folder))
+            self.fill([name for name in MADE if not name.startswith("earlier")])
+            if record is None:
+                (self.folder / "cache" / "run.json").unlink()
+            else:
+                (self.folder / "cache" / "run.json").write_text(record)
+            files.free(str(self.folder))
+            left = {name for name in self.left() if name.startswith("cache/ply/burn.") and not name.endswith(".tmp")}
+            self.assertEqual(left, {"cache/ply/burn.0001.ply", "cache/ply/burn.12345.ply"}, record)
+            self.assertFalse((self.folder / "cache" / "ply" / "burn.0002.ply.77-1.tmp").exists())
+            self.assertEqual((self.folder / "cache" / "stats.csv").exists(), '"burn"' not in (record or ""))
+            shutil.rmtree(self.folder)
+
+    def test_inputs_that_no_scene_names(self):
+        files.take(str(self.folder))
+        self.fill(["burn.yaml", "sheet0.ply", "sheet1.ply", "sheet0-pin.0003.ply", "collider-3-7f12ab.0004.ply"], 3)
+        self.assertEqual(files.inputs(str(self.folder)), {"sheet0.ply", "sheet0-pin.0003.ply"})
+        files.free(str(self.folder))
+        self.assertEqual(self.left(), ["collider-3-7f12ab.0004.ply", "sheet1.ply"])
 
     def test_no_folder(self):
         self.assertEqual(files.free(str(self.dir / "nowhere")), 0)
