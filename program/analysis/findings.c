@@ -1,6 +1,7 @@
 #include "analysis/findings.h"
 
 #include <float.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -134,9 +135,7 @@ static void add_crossing(const CacheFrame *frame, uint32_t a, uint32_t b, Findin
     const uint32_t *s = frame->triangles[a], *t = frame->triangles[b];
     const float *p = frame->position[s[0]];
     if (is_near(&findings->initial, frame, a) && is_near(&findings->initial, frame, b)) {
-        if (findings->from_start++ < REPORTED && findings->begins)
-            findings_say(findings, false, "%s: triangles %u and %u cross from the start near (%.4g, %.4g, %.4g) m",
-                         findings->file, a, b, (double)p[0], (double)p[1], (double)p[2]);
+        findings->from_start++;
         return;
     }
 
@@ -155,6 +154,15 @@ static void add_crossing(const CacheFrame *frame, uint32_t a, uint32_t b, Findin
     findings->near += one == other && gap <= side;
     findings_add(findings, FAULT_CROSSING, "triangles %u and %u, %s, cross near (%.4g, %.4g, %.4g) m", a, b, where,
                  (double)p[0], (double)p[1], (double)p[2]);
+}
+
+/// One warning for all pairs that cross in the first frame: sheets that lie in one place have thousands.
+static void say_from_start(const CacheFrame *frame, const uint32_t pair[2], const Findings *findings) {
+    const float *p = frame->position[frame->triangles[pair[0]][0]];
+    findings_say(findings, false,
+                 "%s: pairs of triangles that cross from the start: %" PRIu64
+                 ", the first of them %u and %u, near (%.4g, %.4g, %.4g) m",
+                 findings->file, findings->from_start, pair[0], pair[1], (double)p[0], (double)p[1], (double)p[2]);
 }
 
 static bool check_crossings(const CacheFrame *frame, const uint32_t *sound, uint32_t count, Findings *findings) {
@@ -185,6 +193,7 @@ static bool check_crossings(const CacheFrame *frame, const uint32_t *sound, uint
     }
 
     for (size_t i = 0; i < list.count; i++) add_crossing(frame, list.pairs[i][0], list.pairs[i][1], findings);
+    if (findings->begins && findings->from_start) say_from_start(frame, list.pairs[0], findings);
     crossings_free(&list);
     return good;
 }
@@ -345,11 +354,14 @@ bool check_surface(const CacheFrame *frame, Findings *findings) {
     return good;
 }
 
+static void say_nothing(void *context, bool fault, const char *message) {
+    (void)context, (void)fault, (void)message;
+}
+
 bool check_start(const CacheFrame *frame, Findings *findings) {
     Findings quiet = *findings;
-    for (int f = 0; f < FAULT_COUNT; f++) quiet.reported[f] = REPORTED;
+    quiet.report = say_nothing;
     quiet.begins = true;
-    quiet.from_start = REPORTED;
     const bool good = check_surface(frame, &quiet);
     findings->initial = quiet.initial;
     return good;
