@@ -6,6 +6,7 @@
 //   run/1/frame/12            a frame, as preview_pack writes it
 //   run/1/solid/12/0          the triangles of a frame's shape
 //   run/1/picture/0           what is printed on a sheet: width and height, then RGB
+//   run/1/cells               the sheets' cells at rest: counts of vertices and cells, positions, four corners each
 //   run/1/vertex/12/345       a vertex of the input in a frame
 //   run/1/stats.csv, events.csv, probes.csv, run.json
 //
@@ -252,6 +253,35 @@ static Answer answer_picture(const Exhibit *shown, int sheet) {
                        3 * (size_t)image->width * (size_t)image->height, NULL, 0);
 }
 
+/// The cells of all sheets, as one mesh.
+static Answer answer_cells(const Exhibit *shown) {
+    const SceneAssets *assets = &shown->job.assets;
+    uint32_t counts[2] = {0, 0};
+    for (uint32_t s = 0; s < assets->sheet_count; s++) {
+        counts[0] += assets->meshes[s].vertex_count;
+        counts[1] += assets->meshes[s].cell_count;
+    }
+
+    const size_t position_bytes = 3 * sizeof(float) * counts[0], corner_bytes = 4 * sizeof(uint32_t) * counts[1];
+    const size_t size = sizeof counts + position_bytes + corner_bytes;
+    char *bytes = malloc(size);
+    if (!bytes) return answer_data(NULL, 0);
+
+    memcpy(bytes, counts, sizeof counts);
+    char *position = bytes + sizeof counts;
+    uint32_t *corner = (uint32_t *)(void *)(position + position_bytes);
+    uint32_t first = 0;
+    for (uint32_t s = 0; s < assets->sheet_count; s++) {
+        const Mesh *mesh = &assets->meshes[s];
+        const size_t length = 3 * sizeof(float) * mesh->vertex_count;
+        memcpy(position, mesh->positions, length);
+        position += length;
+        for (size_t k = 0; k < 4 * (size_t)mesh->cell_count; k++) *corner++ = first + mesh->cells[k];
+        first += mesh->vertex_count;
+    }
+    return answer_data(bytes, size);
+}
+
 static Answer answer_vertex(Exhibit *shown, int number, int wanted) {
     Frame frame;
     SingeError error = {0};
@@ -330,6 +360,7 @@ Answer answer_to(View *view, const char *path) {
     int run, a, b;
     if (!take_number(&rest, &run) || !shown->number || run != shown->number || *rest++ != '/') return answer_nothing();
     if (strcmp(rest, "room") == 0) return answer_room(shown);
+    if (strcmp(rest, "cells") == 0) return answer_cells(shown);
     if (strcmp(rest, "stats.csv") == 0) return answer_file(folder->stats, "text/csv");
     if (strcmp(rest, "events.csv") == 0) return answer_file(folder->events, "text/csv");
     if (strcmp(rest, "probes.csv") == 0) return answer_file(folder->probes, "text/csv");

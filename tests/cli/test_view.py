@@ -83,6 +83,15 @@ class Cache(Case):
         vertex = json.loads(self.view.ask("run/1/vertex/1/0")[1])
         self.assertAlmostEqual(vertex["values"][0], 293.15, 2)
         self.assertAlmostEqual(vertex["values"][5], 0, 5)
+        status, mesh = self.view.ask("run/1/cells")
+        vertices, cells = struct.unpack_from("<2I", mesh)
+        self.assertEqual((status, vertices, cells, len(mesh)), (200, 13 * 13, 12 * 12, 8 + 12 * vertices + 16 * cells))
+        corners = struct.unpack_from(f"<{4 * cells}I", mesh, 8 + 12 * vertices)
+        self.assertEqual(set(corners), set(range(vertices)))
+        # the page finds them in a frame by the bits of their rest positions
+        frame = self.view.ask("run/1/frame/1")[1]
+        drawn = {frame[at + 16 : at + 28] for at in range(592, 592 + 64 * struct.unpack_from("<I", frame, 4)[0], 64)}
+        self.assertLessEqual({mesh[at : at + 12] for at in range(8, 8 + 12 * vertices, 12)}, drawn)
         with open(self.path("out", "stats.csv"), "rb") as file:
             self.assertEqual(self.view.ask("run/1/stats.csv"), (200, file.read()))
         status, page = self.view.ask("")

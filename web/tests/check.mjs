@@ -9,7 +9,9 @@ import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { chromium } from "playwright-core";
 import { serve } from "../serve.mjs";
+import { gapsOf, REACH } from "../view/contact.js";
 import { refineGas } from "../view/gas.js";
+import { placesOf, readCells } from "../view/strands.js";
 import { CHROMIUM, CHROMIUM_ARGS } from "./browsers.mjs";
 
 const minutes = Number(process.env.SOAK ?? 0), only = process.env.ONLY ?? (minutes ? "^$" : ""), words = process.argv.slice(2), folder = words[0] === "--pictures" ? words[1] : null;
@@ -285,6 +287,41 @@ const CASES = {
         assert.deepEqual(fine.size, [12, 10, 8]);
         assert.ok(worst < 25 && worstBefore > 80, `${worst} of 255 beside the spline, ${worstBefore} before`);
         assert.ok(fine.cells[4 * (6 + 12 * (4 + 10 * 2)) + 3] > 10); // the gradient
+    },
+    async "contact tells what is near: the ground, a ball, another sheet, its own far parts"() {
+        // strips of 6 vertices along x, 2 mm apart at rest and where they lie
+        const strip = (sheet, place) => Array.from({ length: 12 }, (_, i) => ({ sheet, rest: [0.002 * (i >> 1), 0.002 * (i & 1), 0], at: place(0.002 * (i >> 1), 0.002 * (i & 1)) }));
+        const corners = Array.from({ length: 5 }, (_, c) => [2 * c, 2 * c + 2, 2 * c + 1, 2 * c + 1, 2 * c + 2, 2 * c + 3]).flat();
+        const frame = (all, shapes = []) => {
+            const vertices = new Uint8Array(64 * all.length), reals = new Float32Array(vertices.buffer);
+            all.forEach(({ sheet, rest, at }, i) => { vertices[64 * i + 15] = sheet; reals.set(at, 16 * i); reals.set(rest, 16 * i + 4); });
+            const triangles = Uint32Array.from({ length: (corners.length * all.length) / 12 }, (_, k) => corners[k % corners.length] + 12 * Math.floor(k / corners.length));
+            return { vertices, reals, vertexCount: all.length, triangles, shapes };
+        };
+        const near = (gaps, i, metres) => assert.ok(Math.abs(gaps[i] - 255 * (1 - metres / REACH)) < 1.5, `${gaps[i]} of 255 at ${metres} m`);
+        const flat = (z) => (x, y) => [x, y, z], alone = gapsOf(frame(strip(0, flat(0.1))), null);
+        assert.ok(alone.every((gap) => gap === 0), `a sheet alone: ${alone}`);
+        gapsOf(frame(strip(0, flat(0.1))), 0.099).forEach((_, i, gaps) => near(gaps, i, 0.001));
+        gapsOf(frame([...strip(0, flat(0)), ...strip(1, (x, y) => [x + 0.001, y, 0.003])]), null).slice(2, 10).forEach((_, i, gaps) => near(gaps, i, 0.003));
+        const shape = { position: [0.004, 0, 0.02], rotation: [0, 0, 0, 1], half: [0, 0, 0], radius: 0.018, height: 0 };
+        near(gapsOf(frame(strip(0, flat(0)), [{ ...shape, kind: 1 }]), null), 4, 0.002);
+        near(gapsOf(frame(strip(0, flat(0)), [{ ...shape, kind: 2, half: [0.1, 0.019, 0.1], rotation: [Math.SQRT1_2, 0, 0, Math.SQRT1_2] }]), null), 4, 0.001); // turned, it is low
+        const folded = gapsOf(frame(strip(0, (x, y) => [x < 0.005 ? x : 0.009 - x, y, x < 0.005 ? 0 : 0.001])), null);
+        near(folded, 0, 0.001); // its end lies over its begin, 10 mm apart at rest
+        assert.equal(folded[4], 0); // beside the fold are neighbours
+
+        // 3 by 2 cells, of which one vertex is gone and one was torn
+        const counts = [12, 6], buffer = new ArrayBuffer(8 + 12 * 12 + 16 * 6), words = new Uint32Array(buffer), rest = new Float32Array(buffer);
+        words.set(counts);
+        for (let v = 0; v < 12; v++) rest.set([v % 4, Math.floor(v / 4), 0], 2 + 3 * v);
+        for (let c = 0; c < 6; c++) { const v = (c % 3) + 4 * Math.floor(c / 3); words.set([v, v + 1, v + 5, v + 4], 2 + 36 + 4 * c); }
+        const cells = readCells(buffer);
+        assert.deepEqual(cells.ends.map(({ length }) => length / 2), [17, 24, 7, 12]);
+        const seen = [...Array(12).keys(), 5].filter((v) => v !== 2), reals = new Float32Array(16 * seen.length);
+        seen.forEach((v, i) => { reals.set([v, i === 11 ? 2 : 1, 0], 16 * i); reals.set([v % 4, Math.floor(v / 4), 0], 16 * i + 4); });
+        const places = placesOf(cells, { vertexCount: seen.length, reals, words: new Uint32Array(reals.buffer) });
+        assert.deepEqual([...Array(12).keys()].filter((v) => !places[4 * v + 3]), [2, 5]);
+        assert.deepEqual([...places.slice(28, 32)], [7, 1, 0, 1]);
     },
     async "without WebGL 2 the page says so"() {
         const other = await page.context().browser().newPage();

@@ -81,13 +81,15 @@ const CASES = {
     async "each layer has its own colours and legend"(page) {
         await goTo(page, FRAMES);
         const seen = [];
-        for (const layer of ["paper", "temperature", "char", "strain", "gas"]) {
+        for (const layer of ["paper", "temperature", "char", "strain", "gas", "contact", "strands"]) {
             await click(page, `[data-layer=${layer}]`);
+            if (layer === "strands") await until(page, () => Boolean(globalThis.view.stage.cells), null, "the cells are there");
             const one = await colour(page), legend = await page.evaluate(() => !document.querySelector("#legend").hidden);
             assert.equal(legend, layer !== "paper");
             for (const [other, there] of seen) assert.ok(apart(one, there) > 1, `${layer} looks like ${other}`);
             seen.push([layer, one]);
         }
+        await click(page, "[data-layer=gas]");
         const middle = await colour(page);
         await page.evaluate(() => { const slice = document.querySelector("#slice"); slice.value = 0.1; slice.dispatchEvent(new Event("input")); });
         assert.ok(apart(await colour(page), middle) > 0.3, "the slice moves");

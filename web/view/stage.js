@@ -3,10 +3,12 @@
 import { refineGas } from "./gas.js";
 import * as glsl from "./shaders.js";
 import { glowBytes, noiseBytes } from "./tables.js";
+import { gapsOf, REACH } from "./contact.js";
 import { FIELDS, VERTEX_BYTES } from "./frame.js";
 import { add, apply, cross, dot, invert, length, lookAt, multiply, orthographic, perspective, placed, unit } from "./math.js";
+import { COLOURS, placesOf } from "./strands.js";
 
-const SHADOW = 2048, LIGHTS = 16;
+const SHADOW = 2048, LIGHTS = 16, GAP = FIELDS.length, TABLE = 1024; // the attribute of contact; texels of a row of a table
 
 /** The scene's sun, sky and lamps, after program/preview/lighting.c and lamps.c: what LAMP is for the page. */
 const DAY = /* glsl */ `
@@ -58,6 +60,7 @@ const SHEET_VERTEX = /* glsl */ `
 in vec3 position, normal, rest;
 in vec2 uv;
 in vec4 heat, look, more;
+in float gap;
 uniform mat4 viewProjection;
 out vec3 vPosition, vNormal, vRest;
 out vec2 vUv;
@@ -69,7 +72,7 @@ void main() {
     vUv = uv;
     vHeat = heat * vec4(5000.0, 5000.0, 64.0, 64.0);
     vLook = look * vec4(1.0, 400.0, 1.0, 655.35);
-    vMore = vec4(more.xy, more.z * 4.0 - 1.0, 0.0);
+    vMore = vec4(more.xy, more.z * 4.0 - 1.0, gap);
     gl_Position = viewProjection * vec4(position, 1.0);
 }`;
 
@@ -116,7 +119,7 @@ uniform vec3 eye, range; // range: which, and the ends
 uniform sampler2D colours;
 out vec4 colour;
 void main() {
-    float value = range.x < 0.5 ? vHeat.x : range.x < 1.5 ? vLook.x : vMore.z, t = clamp((value - range.y) / (range.z - range.y), 0.0, 1.0);
+    float value = range.x < 0.5 ? vHeat.x : range.x < 1.5 ? vLook.x : range.x < 2.5 ? vMore.z : vMore.w, t = clamp((value - range.y) / (range.z - range.y), 0.0, 1.0);
     vec3 n = normalize(vNormal), view = normalize(eye - vPosition);
     float shade = 0.58 + 0.42 * abs(dot(n, view)) + 0.10 * n.x;
     colour = vec4(texture(colours, vec2(t, 0.5)).rgb * shade, 1.0);
@@ -131,6 +134,39 @@ void main() {
     float line = (1.0 - min(min(d.x, d.y), 1.0)) * clamp(1.5 - 3.0 * max(w.x, w.y), 0.0, 1.0), far = distance(eye, vPosition) / reach;
     colour = vec4(mix(vec3(0.062, 0.056, 0.052), vec3(0.075, 0.068, 0.062) + 0.07 * line, exp(-4.0 * far * far)), 1.0);
 }`;
+/** A spring as a bar of some pixels, a little in front of the sheet. An end is a vertex, or the mean of a cell's corners. */
+const STRAND_VERTEX = /* glsl */ `
+precision highp usampler2D;
+in uvec2 ends;
+uniform sampler2D places;
+uniform usampler2D cellMap;
+uniform int vertexCount;
+uniform mat4 viewProjection;
+uniform vec3 eye;
+uniform vec2 resolution;
+uniform float thick; // pixels
+vec4 place(int k) { return texelFetch(places, ivec2(k % ${TABLE}, k / ${TABLE}), 0); }
+vec4 end(int k) {
+    if (k < vertexCount) return place(k);
+    k -= vertexCount;
+    uvec4 corner = texelFetch(cellMap, ivec2(k % ${TABLE}, k / ${TABLE}), 0);
+    vec4 a = place(int(corner.x)), b = place(int(corner.y)), c = place(int(corner.z)), d = place(int(corner.w));
+    return vec4(0.25 * (a.xyz + b.xyz + c.xyz + d.xyz), min(min(a.w, b.w), min(c.w, d.w)));
+}
+void main() {
+    vec4 a = end(int(ends.x)), b = end(int(ends.y));
+    vec4 p = viewProjection * vec4(mix(a.xyz, eye, 0.003), 1.0), q = viewProjection * vec4(mix(b.xyz, eye, 0.003), 1.0);
+    if (min(a.w, b.w) < 0.5 || min(p.w, q.w) <= 0.0) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; } // outside
+    vec2 along = (q.xy / q.w - p.xy / p.w) * resolution * 0.5;
+    float size = length(along), wide = clamp(0.16 * size, 0.4, thick);
+    vec2 across = vec2(-along.y, along.x) / max(size, 1e-6);
+    gl_Position = gl_VertexID < 2 ? p : q;
+    gl_Position.xy += ((gl_VertexID & 1) == 0 ? wide : -wide) * across * gl_Position.w / resolution;
+}`;
+const STRAND = /* glsl */ `precision highp float;
+uniform vec3 tint;
+out vec4 colour;
+void main() { colour = vec4(tint, 1.0); }`;
 /** The gas in a plane: the share that burns by colour, smoke in grey, a border around the cells. */
 const SLICE = /* glsl */ `precision highp float;
 precision highp sampler3D;
@@ -162,7 +198,17 @@ export const LAYERS = {
     strain: { index: 2, low: -0.15, high: 0.15, unit: "stretch", show: (x) => `${x > 0 ? "+" : ""}${Math.round(100 * x)} %`, stops: ["#2a5da8", "#5b8fc7", "#a9c6dd", "#ece6da", "#eab48a", "#d6703f", "#a8321f"] },
 };
 LAYERS.gas = { index: 1, low: 0, high: 1, unit: "burning", show: (x) => (x === 0.5 ? "of the gas burns" : `${Math.round(100 * x)} %`), stops: ["#2b1512", "#7c1d10", "#d9480f", "#ff922b", "#ffd43b", "#fff3bf"] };
-export const cssGradient = (layer) => `linear-gradient(90deg, ${LAYERS[layer].stops.join(", ")})`;
+LAYERS.contact = { index: 3, low: 0, high: 1, show: (x) => `${1000 * REACH * (1 - x)} mm`, stops: ["#2b2622", "#31485a", "#3f7f8c", "#74b79a", "#e6d27a", "#fff6d8"] };
+LAYERS.strands = { index: 1, low: 0, high: 1, stops: ["#1d1917", "#1d1917"], names: COLOURS };
+export function cssGradient(layer) {
+    const { stops, names } = LAYERS[layer], parts = names ? names.map(([colour], i) => `${colour} ${(100 * i) / names.length}% ${(100 * (i + 1)) / names.length}%`) : stops;
+    return `linear-gradient(90deg, ${parts.join(", ")})`;
+}
+/** What stands under a layer's colours. */
+export function legendOf(layer) {
+    const { low, high, unit, show, names } = LAYERS[layer];
+    return names ? names.map(([, name]) => name) : [low, (low + high) / 2, high].map((value) => show(value) + (unit === "°C" ? " °C" : ""));
+}
 function ramp({ stops }) {
     const bytes = new Uint8Array(1024), colours = stops.map(hex);
     for (let i = 0; i < 256; i++) {
@@ -219,7 +265,7 @@ export class Stage {
         this.programs = {
             wood: this.program(glsl.PLAIN_VERTEX, GROUND_WOOD), plain: this.program(glsl.PLAIN_VERTEX, GROUND_PLAIN), shape: this.program(glsl.PLAIN_VERTEX, SHAPE),
             paper: this.program(SHEET_VERTEX, glsl.paper(DAY)), field: this.program(SHEET_VERTEX, FIELD), slice: this.program(glsl.PLAIN_VERTEX, SLICE), grid: this.program(glsl.PLAIN_VERTEX, FIELD_GROUND),
-            fire: this.program(glsl.FULL_VERTEX, glsl.FIRE), merge: this.program(glsl.FULL_VERTEX, glsl.MERGE), bright: this.program(glsl.FULL_VERTEX, glsl.BRIGHT),
+            strand: this.program(STRAND_VERTEX, STRAND), fire: this.program(glsl.FULL_VERTEX, glsl.FIRE), merge: this.program(glsl.FULL_VERTEX, glsl.MERGE), bright: this.program(glsl.FULL_VERTEX, glsl.BRIGHT),
             blur: this.program(glsl.FULL_VERTEX, glsl.BLUR), film: this.program(glsl.FULL_VERTEX, glsl.FILM), copy: this.program(glsl.FULL_VERTEX, COPY),
         };
         const { side, bytes } = noiseBytes(), glow = glowBytes();
@@ -231,7 +277,7 @@ export class Stage {
         this.kinds = { 1: this.mesh(...sphere()), 2: this.mesh(...box()) };
         this.solids = new Map();
         this.pictures = [];
-        this.sheets = { array: gl.createVertexArray(), vertices: gl.createBuffer(), triangles: gl.createBuffer(), runs: [] };
+        this.sheets = { array: gl.createVertexArray(), vertices: gl.createBuffer(), triangles: gl.createBuffer(), gaps: gl.createBuffer(), runs: [] };
         this.targets = {};
         this.shadowMap = gl.createTexture();
         gl.bindTexture(gl.TEXTURE_2D, this.shadowMap);
@@ -256,6 +302,7 @@ export class Stage {
             if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) throw new Error(gl.getShaderInfoLog(shader));
         }
         FIELDS.forEach(([name], i) => gl.bindAttribLocation(program, i, name));
+        gl.bindAttribLocation(program, GAP, "gap");
         gl.linkProgram(program);
         if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) throw new Error(gl.getProgramInfoLog(program));
         const uniforms = new Map();
@@ -379,6 +426,7 @@ export class Stage {
         this.solids.clear();
         this.room = room;
         this.frame = null;
+        this.cells = null;
         this.pictures = room.sheets.map((sheet, i) => ({
             ...sheet, texture: pictures[i] ? this.texture2d(pictures[i].width, pictures[i].height, gl.SRGB8_ALPHA8, gl.RGBA, gl.UNSIGNED_BYTE, pictures[i].rgba, true) : this.white,
         }));
@@ -394,6 +442,8 @@ export class Stage {
             gl.enableVertexAttribArray(i);
             gl.vertexAttribPointer(i, size, gl[type], type !== "FLOAT" && name !== "sheet", VERTEX_BYTES, at);
         });
+        gl.disableVertexAttribArray(GAP);
+        sheets.contactOf = null;
         gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, sheets.triangles);
         gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, frame.triangles, gl.STREAM_DRAW);
         gl.bindVertexArray(null);
@@ -449,6 +499,7 @@ export class Stage {
             groundColour: room.ground_colour, background: room.background, reach, stone: room.ground === 1 ? 1 : 0, shadow: 0,
         };
 
+        if (this.layer === "contact") this.findContact();
         gl.disable(gl.BLEND);
         gl.disable(gl.CULL_FACE);
         gl.enable(gl.DEPTH_TEST);
@@ -465,7 +516,10 @@ export class Stage {
         const back = paper ? room.background : [0.062, 0.056, 0.052];
         gl.clearColor(back[0], back[1], back[2], 1);
         gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+        if (this.layer === "strands") gl.enable(gl.POLYGON_OFFSET_FILL); // the springs stand out of the sheet
+        gl.polygonOffset(4, 4);
         this.drawSheets(paper ? "paper" : "field", shared);
+        gl.disable(gl.POLYGON_OFFSET_FILL);
         this.drawShapes(shared);
         if (room.ground_height !== null) {
             const s = 3 * reach;
@@ -474,6 +528,7 @@ export class Stage {
         }
 
         if (this.layer === "gas" && frame.gas) this.drawSlice(camera, matrix);
+        if (this.layer === "strands" && this.cells) this.drawStrands(camera, matrix);
 
         const { scene } = this.targets;
         const copy = (to, bits) => {
@@ -516,6 +571,64 @@ export class Stage {
         gl.disable(gl.BLEND);
     }
 
+    /** @param cells of readCells: the sheets at rest */
+    setCells(cells) {
+        const { gl } = this, table = (inner, format, type, values) => {
+            const rows = Math.max(Math.ceil(values.length / 4 / TABLE), 1), whole = new values.constructor(4 * TABLE * rows);
+            whole.set(values);
+            const texture = this.texture2d(TABLE, rows, inner, format, type, whole);
+            for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
+            return texture;
+        };
+        const bars = cells.ends.map((ends) => {
+            const array = gl.createVertexArray(), place = gl.getAttribLocation(this.programs.strand.program, "ends");
+            gl.bindVertexArray(array);
+            gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+            gl.bufferData(gl.ARRAY_BUFFER, ends, gl.STATIC_DRAW);
+            gl.enableVertexAttribArray(place);
+            gl.vertexAttribIPointer(place, 2, gl.UNSIGNED_INT, 8, 0);
+            gl.vertexAttribDivisor(place, 1);
+            gl.bindVertexArray(null);
+            return { array, count: ends.length / 2 };
+        });
+        this.cells = { cells, bars, map: table(gl.RGBA32UI, gl.RGBA_INTEGER, gl.UNSIGNED_INT, cells.cells), table };
+    }
+
+    drawStrands(camera, viewProjection) {
+        const { gl, cells: { cells, bars, map, table }, canvas } = this, places = table(gl.RGBA32F, gl.RGBA, gl.FLOAT, placesOf(cells, this.frame));
+        bars.forEach(({ array, count }, colour) => {
+            const tint = hex(COLOURS[colour][0]).map((part) => part / 255);
+            this.use(this.programs.strand, {
+                places, cellMap: map, vertexCount: cells.vertexCount, viewProjection, eye: camera.eye, resolution: [canvas.width, canvas.height], thick: (1.7 * canvas.width) / canvas.clientWidth, tint,
+            });
+            gl.bindVertexArray(array);
+            gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
+        });
+        gl.bindVertexArray(null);
+        gl.deleteTexture(places);
+    }
+
+    /** Gives the card how near the frame's vertices come to something. */
+    findContact() {
+        const { gl, frame, room, sheets } = this;
+        if (sheets.contactOf === frame) return;
+        sheets.contactOf = frame;
+        const solids = frame.shapes.flatMap((shape, i) => {
+            const solid = this.solids.get(this.solidKey(i)), pose = placed(shape.position, shape.rotation, [1, 1, 1]);
+            if (!shape.solid || !solid) return [];
+            const positions = new Float32Array(solid.points.length);
+            for (let k = 0; k < positions.length; k += 3) positions.set(apply(pose, solid.points.subarray(k, k + 3)), k);
+            return [{ positions, triangles: solid.triangles }];
+        });
+        gl.bindVertexArray(sheets.array);
+        gl.bindBuffer(gl.ARRAY_BUFFER, sheets.gaps);
+        frame.gaps ??= gapsOf(frame, room.ground_height, solids);
+        gl.bufferData(gl.ARRAY_BUFFER, frame.gaps, gl.STREAM_DRAW);
+        gl.enableVertexAttribArray(GAP);
+        gl.vertexAttribPointer(GAP, 1, gl.UNSIGNED_BYTE, true, 1, 0);
+        gl.bindVertexArray(null);
+    }
+
     drawSheets(program, shared) {
         const { gl, sheets } = this, layer = LAYERS[this.layer === "gas" ? "char" : this.layer];
         for (const { sheet, first, count } of sheets.runs) {
@@ -539,7 +652,7 @@ export class Stage {
             if (!mesh) return;
             const size = shape.kind === 2 ? shape.half : shape.kind === 1 || shape.kind === 3 ? [shape.radius, shape.radius, shape.radius] : [1, 1, 1];
             const turn = shape.kind === 1 ? [0, 0, 0, 1] : shape.rotation;
-            this.use(this.programs.shape, { ...shared, modelMatrix: placed(shape.position, turn, size), albedo: shape.colour, kelvin: shape.temperature });
+            this.use(this.programs.shape, { ...shared, modelMatrix: placed(shape.position, turn, size), albedo: shape.colour, kelvin: this.layer === "paper" ? shape.temperature : 0 });
             this.drawMesh(mesh);
         });
     }
@@ -560,7 +673,7 @@ export class Stage {
             const v = index[t], face = unit(flat[Math.floor(t / 3)]), smooth = unit([sums[3 * v], sums[3 * v + 1], sums[3 * v + 2]]);
             values.push(...at(v), ...(dot(face, smooth) > 0.75 ? smooth : face));
         }
-        this.solids.set(this.solidKey(i), this.mesh(values, Uint32Array.from({ length: index.length }, (_, k) => k)));
+        this.solids.set(this.solidKey(i), { ...this.mesh(values, Uint32Array.from({ length: index.length }, (_, k) => k)), points: p, triangles: index });
     }
 
     drawMesh({ array, count }) {

@@ -1,8 +1,9 @@
 // The view: asks the program for state, frames and tables, and shows them. All addresses are relative, behind the token.
-import { cssGradient, LAYERS, Stage } from "./stage.js";
+import { cssGradient, LAYERS, legendOf, Stage } from "./stage.js";
 import { pick, positionOf, readFrame, sourceOf, vertexValues } from "./frame.js";
 import { Film } from "./webm.js";
 import { add, cross, dot, length, unit } from "./math.js";
+import { readCells } from "./strands.js";
 import { drawLines, EVENT_COLOURS, PLOTS, readTable } from "./plots.js";
 
 const $ = (id) => document.getElementById(id);
@@ -101,6 +102,7 @@ async function beginRun(number) {
         return { width, height, rgba };
     }));
     stage.setRoom(room, pictures);
+    if (stage.layer === "strands") needCells();
     if (!camera) goHome();
     $("name").textContent = room.name;
     document.title = `${room.name} · singe view`;
@@ -327,11 +329,19 @@ function setLayer(name) {
     $("slice").hidden = name !== "gas";
     if (layer) {
         $("legend").firstElementChild.style.background = cssGradient(name);
-        const [low, middle, high] = $("legend").querySelectorAll("span"), show = (v) => layer.show(v) + (layer.unit === "°C" ? " °C" : "");
-        low.textContent = show(layer.low);
-        middle.textContent = show((layer.low + layer.high) / 2);
-        high.textContent = show(layer.high);
+        $("legend").classList.toggle("names", Boolean(layer.names));
+        $("legend").querySelector("p").replaceChildren(...legendOf(name).map((textContent) => Object.assign(document.createElement("span"), { textContent })));
     }
+    if (name === "strands") needCells();
+    dirty = true;
+}
+
+/** The cells of the run's sheets, which one layer alone needs. */
+async function needCells() {
+    if (!room || stage.cells) return;
+    const mine = run, buffer = await ofRun("cells", "arrayBuffer").catch(() => null);
+    if (!buffer || mine !== run || stage.cells) return;
+    stage.setCells(readCells(buffer));
     dirty = true;
 }
 
@@ -477,6 +487,7 @@ function bind() {
             ArrowLeft: () => (event.shiftKey && on ? turn(-0.1, 0) : goTo(wanted - 1)), ArrowRight: () => (event.shiftKey && on ? turn(0.1, 0) : goTo(wanted + 1)),
             ArrowUp: on ? () => turn(0, 0.1) : null, ArrowDown: on ? () => turn(0, -0.1) : null, "+": () => nearer(0.9), "-": () => nearer(1 / 0.9),
             1: () => setLayer("paper"), 2: () => setLayer("temperature"), 3: () => setLayer("char"), 4: () => setLayer("strain"), 5: () => setLayer("gas"),
+            6: () => setLayer("contact"), 7: () => setLayer("strands"),
             c: goHome, f: () => setFire(!stage.fire), p: saveStill, v: saveFilm, b: () => openBranch($("branching").hidden), l: () => state.live && follow(!following), Escape: forget,
         };
         const act = keys[event.key];
