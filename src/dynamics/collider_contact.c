@@ -305,7 +305,7 @@ static inline bool nearby_holds(const Nearby *nearby, const Float4 q[3]) {
     return float4_bits(in) == 15;
 }
 
-static void nearby_list(Nearby *nearby, const DynamicsPlan *plan, uint32_t collider_count) {
+static void nearby_list(Nearby *nearby, const DynamicsPlan *plan, uint32_t from, uint32_t to) {
     float low[3], high[3];
     for (int i = 0; i < 3; i++) {
         const Float4 least = nearby->low[i], most = nearby->high[i];
@@ -316,14 +316,14 @@ static void nearby_list(Nearby *nearby, const DynamicsPlan *plan, uint32_t colli
     }
 
     nearby->listed = true;
-    for (uint32_t c = 0; c < collider_count; c++) {
+    for (uint32_t c = from; c < to; c++) {
         const MovingCollider *moving = &plan->colliders[c];
         bool near = true;
         for (int i = 0; i < 3; i++) near &= !(moving->world_low[i] > high[i]) && !(moving->world_high[i] < low[i]);
         if (!near) continue;
         nearby->listed = nearby->count < CONTACT_LISTED;
         if (!nearby->listed) {
-            nearby->count = collider_count;
+            nearby->count = to - from;
             return;
         }
         nearby->index[nearby->count++] = c;
@@ -332,7 +332,7 @@ static void nearby_list(Nearby *nearby, const DynamicsPlan *plan, uint32_t colli
 
 typedef struct Contact {
     const DynamicsPlan *plan;
-    uint32_t collider_count;
+    uint32_t from, to; ///< colliders of the plan
     float h;
     DynamicsState *dynamics;
 } Contact;
@@ -392,18 +392,18 @@ static inline Float4Mask contact_simple(const Contact *job, const MovingCollider
     return touches;
 }
 
-static double contact_block(void *task, int begin, int end) {
-    const Contact *job = task;
+/// Contact with the colliders [from, to) of the job, in their order, of particle after particle.
+static uint64_t contact_colliders(const Contact *job, int begin, int end) {
     uint64_t contacts = 0;
     float(*position)[4] = job->dynamics->position;
-    Nearby nearby = {.count = job->collider_count};
-    if (job->collider_count > CONTACT_FEW) {
+    Nearby nearby = {.count = job->to - job->from};
+    if (nearby.count > CONTACT_FEW) {
         nearby = nearby_empty();
         for (int i = begin; i < end; i++) {
             const float *x = position[i];
             nearby_add(&nearby, (const Float4[3]){float4_all(x[0]), float4_all(x[1]), float4_all(x[2])});
         }
-        nearby_list(&nearby, job->plan, job->collider_count);
+        nearby_list(&nearby, job->plan, job->from, job->to);
     }
 
     for (int first = begin; first < end && nearby.count > 0; first += 4) {
@@ -415,8 +415,8 @@ static double contact_block(void *task, int begin, int end) {
         float4_transpose(q);
         const Float4Mask lane = {0, 1, 2, 3}, moves = (q[3] != 0) & (lane < end - first);
         bool listed = nearby.listed;
-        for (uint32_t k = 0, c; k < (listed ? nearby.count : job->collider_count); k++) {
-            c = listed ? nearby.index[k] : k;
+        for (uint32_t k = 0, c; k < (listed ? nearby.count : job->to - job->from); k++) {
+            c = listed ? nearby.index[k] : job->from + k;
             const MovingCollider *collider = &job->plan->colliders[c];
             if (!float4_bits(contact_near(collider, q[0], q[1], q[2]))) continue;
             const uint64_t before = contacts;
@@ -451,9 +451,53 @@ static double contact_block(void *task, int begin, int end) {
             // moved out of the box: other colliders may be near, of those that follow
             if (listed && contacts > before && !nearby_holds(&nearby, q)) {
                 listed = false;
-                k = c;
+                k = c - job->from;
             }
         }
+    }
+
+    return contacts;
+}
+
+/// Contact with a plane, in lanes. What is left over goes as with other colliders.
+static uint64_t contact_plane(const Contact *job, uint32_t c, int begin, int end) {
+    const MovingCollider *moving = &job->plan->colliders[c];
+    const int whole = end - (end - begin) % 4;
+    const PlaneLanes plane = {.position = job->dynamics->position[0],
+                              .velocity = job->dynamics->velocity[0],
+                              .predicted = job->plan->predicted[0],
+                              .h = job->h,
+                              .before = moving->before,
+                              .after = moving->after,
+                              .is_still = moving->is_still,
+                              .offset = moving->collider->def.offset,
+                              .friction = moving->collider->def.friction};
+    Contact rest = *job;
+    rest.from = c;
+    rest.to = c + 1;
+    return job->plan->kernels->plane(&plane, (size_t)begin, (size_t)whole) + contact_colliders(&rest, whole, end);
+}
+
+static bool contact_is_plane(const Contact *job, uint32_t c) {
+    return job->plan->colliders[c].collider->def.kind == SINGE_COLLIDER_PLANE;
+}
+
+/// Colliders in their order: planes one by one, those between them together.
+static double contact_block(void *task, int begin, int end) {
+    const Contact *job = task;
+    uint64_t contacts = 0;
+    for (uint32_t c = job->from, next; c < job->to; c = next) {
+        next = c + 1;
+        if (contact_is_plane(job, c)) {
+            contacts += contact_plane(job, c, begin, end);
+            continue;
+        }
+
+        while (next < job->to && !contact_is_plane(job, next)) next++;
+        Contact some = *job;
+        some.from = c;
+        some.to = next;
+        contacts += contact_colliders(&some, begin, end);
     }
 
     return (double)contacts;
@@ -461,13 +505,13 @@ static double contact_block(void *task, int begin, int end) {
 
 uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
                        int end) {
-    Contact job = {plan, collider_count, h, dynamics};
+    Contact job = {plan, 0, collider_count, h, dynamics};
     return (uint64_t)contact_block(&job, begin, end);
 }
 
 uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics) {
     if (collider_count == 0) return 0;
-    Contact job = {plan, collider_count, h, dynamics};
+    Contact job = {plan, 0, collider_count, h, dynamics};
     return (uint64_t)pool_sum(pool, (int)plan->particle_count, contact_block, &job, plan->partial);
 }
 
@@ -532,7 +576,7 @@ static void centroid_cells(void *task, int begin, int end) {
             const Float4 x = centroid_at(job, job->cells[k]);
             nearby_add(&nearby, (const Float4[3]){float4_all(x[0]), float4_all(x[1]), float4_all(x[2])});
         }
-        nearby_list(&nearby, job->plan, job->collider_count);
+        nearby_list(&nearby, job->plan, 0, job->collider_count);
     }
 
     unsigned touching = 0; // bit i: cell k + i of four

@@ -5,7 +5,9 @@
 #include "dynamics/attach.h"
 #include "dynamics/brace.h"
 #include "dynamics/dynamics.h"
+#include "dynamics/height.h"
 #include "dynamics/move.h"
+#include "dynamics/plane.h"
 #include "dynamics/smooth.h"
 #include "dynamics/solver.h"
 #include "dynamics/strand/strand_lanes.h"
@@ -32,6 +34,8 @@ typedef struct Kernels {
     AttachHold *hold;
     StrandBend *bend;
     MoveRange *move;
+    PlaneRange *plane;
+    HeightRange *height;
     SmoothGroup *smooth;
     SingeInstructions instructions;
 } Kernels;

@@ -32,52 +32,12 @@
 /// Substeps to wait, and cells that wait together.
 enum { HEIGHT_WAIT = 5, HEIGHT_BLOCK = 64 };
 
-/// Max correction at once, over the square root of |n|, which is 1.4 cells: otherwise shells thicker than their cells
-/// would be thrown about.
-static const float HEIGHT_MAX = 0.05f;
-
 typedef struct Height {
-    DynamicsPlan *plan;
-    const Shell *shell;
-    const AblateState *ablate;
-    float (*position)[4];
-    const uint32_t *cells; ///< of the family
-    uint32_t count;
-    uint8_t *wait; ///< of its blocks
+    HeightRange *range;
+    HeightLanes lanes;
+    uint32_t count; ///< of the family's cells
+    uint8_t *wait;  ///< of its blocks
 } Height;
-
-/// Whether a height is enough, by its square: `above` is the height times |n|, `square` is |n|^2.
-static bool height_is_enough(float above, float square, float enough) {
-    return above > 0 && above * above >= enough * enough * square;
-}
-
-/// Returns whether the centre is twice as high as it must be.
-static inline bool height_cell(const Height *job, uint32_t c) {
-    const float(*x)[4] = (const float(*)[4])job->position;
-    uint32_t centre = shell_centre(job->shell, c);
-    const uint32_t *corner = job->shell->cells[c];
-    Float4 p0 = float4_load(x[corner[0]]), p1 = float4_load(x[corner[1]]);
-    Float4 p2 = float4_load(x[corner[2]]), p3 = float4_load(x[corner[3]]);
-    Float4 normal = float4_cross(p2 - p0, p3 - p1), mean = 0.25f * (p0 + p1 + (p2 + p3));
-    normal[3] = 0; // positions hold masses there
-    float enough = job->plan->settings.solver.height_min * field_at(job->shell->matter.thickness, centre);
-    float above = float4_dot(float4_load(x[centre]) - mean, normal), square = float4_dot(normal, normal);
-    if (height_is_enough(above, square, 2 * enough)) return true;
-    if (height_is_enough(above, square, enough) || !(square > 0)) return false;
-
-    // too low: project it
-    float *x_centre = job->position[centre], length = sqrtf(square);
-    float missing = enough - above / length, max = HEIGHT_MAX * sqrtf(length);
-    float w[4] = {p0[3], p1[3], p2[3], p3[3]}, weight = x_centre[3] + (w[0] + w[1] + w[2] + w[3]) / 16;
-    if (weight <= 0) return false;
-
-    float gain = job->plan->settings.solver.height_gain;
-    Float4 correction = gain * (missing < max ? missing : max) / (weight * length) * normal;
-    float4_store(x_centre, float4_load(x_centre) + x_centre[3] * correction);
-    for (int i = 0; i < 4; i++)
-        float4_store(job->position[corner[i]], float4_load(job->position[corner[i]]) - 0.25f * w[i] * correction);
-    return false;
-}
 
 /// Blocks of the family's cells.
 static void height_blocks(void *task, int begin, int end) {
@@ -89,11 +49,8 @@ static void height_blocks(void *task, int begin, int end) {
             continue;
         }
 
-        bool all_high = true;
-        uint32_t first = (uint32_t)b * HEIGHT_BLOCK, last = first + HEIGHT_BLOCK;
-        for (uint32_t k = first; k < (last < job->count ? last : job->count); k++)
-            if (job->ablate->cell_flags[job->cells[k]] & SINGE_ALIVE) all_high &= height_cell(job, job->cells[k]);
-        if (all_high) *wait = HEIGHT_WAIT;
+        const uint32_t first = (uint32_t)b * HEIGHT_BLOCK, last = first + HEIGHT_BLOCK;
+        if (job->range(&job->lanes, first, last < job->count ? last : job->count)) *wait = HEIGHT_WAIT;
     }
 }
 
@@ -101,13 +58,22 @@ size_t height_wait_count(const Shell *shell) { return shell->cell_count / HEIGHT
 
 void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
                     DynamicsState *dynamics) {
-    if (plan->settings.solver.height_min <= 0) return;
+    const SingeSolverDef *solver = &plan->settings.solver;
+    if (solver->height_min <= 0) return;
 
+    HeightLanes lanes = {.position = dynamics->position[0],
+                         .corner = (const uint32_t(*)[4])shell->cells,
+                         .flags = ablate->cell_flags,
+                         .first_centre = shell_centre(shell, 0),
+                         .thickness = shell->matter.thickness,
+                         .min = solver->height_min,
+                         .gain = solver->height_gain};
     uint8_t *wait = plan->height_wait;
     for (uint32_t f = 0; f < shell->cell_family_count; f++) {
         uint32_t first = shell->cell_family_first[f], count = shell->cell_family_first[f + 1] - first;
         uint32_t blocks = (count + HEIGHT_BLOCK - 1) / HEIGHT_BLOCK;
-        Height job = {plan, shell, ablate, dynamics->position, shell->cell_order + first, count, wait};
+        lanes.cells = shell->cell_order + first;
+        Height job = {plan->kernels->height, lanes, count, wait};
         pool_for(pool, (int)blocks, POOL_BLOCK / HEIGHT_BLOCK, height_blocks, &job);
         wait += blocks;
     }
@@ -139,7 +105,7 @@ static void order_cells(void *task, int begin, int end) {
         normal[3] = 0; // positions hold masses there
         float min = ORDER_MIN * job->plan->settings.solver.height_min * field_at(job->shell->matter.thickness, centre);
         float above = float4_dot(float4_load(x[centre]) - mean, normal), square = float4_dot(normal, normal);
-        if (height_is_enough(above, square, min) || !(square > 0)) continue;
+        if ((above > 0 && above * above >= min * min * square) || !(square > 0)) continue;
 
         // up to z_low
         float length = sqrtf(square);

@@ -67,6 +67,42 @@ TEST(only_centres_move) {
     bench_close(&bench);
 }
 
+/// Positions after one projection of all heights, some cells of which are gone.
+static void lift(Bench *bench, SingeInstructions instructions, const float (*start)[4], float (*result)[4]) {
+    const size_t size = bench->shell.particle_count * sizeof *result;
+    float(*x)[4] = bench->state.dynamics.position;
+    bench->plan->kernels = kernels_choose(instructions);
+    memset(bench->plan->height_wait, 0, height_wait_count(&bench->shell));
+    memcpy(x, start, size);
+    height_project(bench->plan, &bench->shell, &bench->state.ablate, bench->pool, &bench->state.dynamics);
+    memcpy(result, x, size);
+}
+
+TEST(heights_are_the_same_in_lanes_of_every_width) {
+    Bench bench;
+    open_jumble(&bench, 2);
+    const size_t size = bench.shell.particle_count * sizeof *bench.state.dynamics.position;
+    float(*start)[4] = malloc(size), (*four)[4] = malloc(size), (*lanes)[4] = malloc(size);
+    memcpy(start, bench.state.dynamics.position, size);
+    for (uint32_t c = 0; c < bench.shell.cell_count; c += 9) bench.state.ablate.cell_flags[c] = 0;
+    lift(&bench, SINGE_INSTRUCTIONS_PLAIN, (const float(*)[4])start, four);
+    for (int i = SINGE_INSTRUCTIONS_X86_V2; i <= SINGE_INSTRUCTIONS_X86_V4; i++) {
+        if (!kernels_choose((SingeInstructions)i)) continue;
+        lift(&bench, (SingeInstructions)i, (const float(*)[4])start, lanes);
+        assert_memory_equal(four, lanes, size);
+    }
+
+    // what was low has risen, unless it is held; what is gone has not
+    for (uint32_t c = 0; c < bench.shell.cell_count; c++) {
+        const uint32_t centre = shell_centre(&bench.shell, c);
+        const bool moved = memcmp(start[centre], four[centre], sizeof *start) != 0, gone = c % 9 == 0;
+        assert_true(!(moved && (gone || bench.state.dynamics.pinned[centre])));
+    }
+    assert_memory_not_equal(start, four, size);
+    free(start), free(four), free(lanes);
+    bench_close(&bench);
+}
+
 TEST(bytes_do_not_depend_on_threads) {
     Bench one, three;
     open_jumble(&one, 1), open_jumble(&three, 3);

@@ -70,8 +70,8 @@ MUTATIONS = [
      "dynamics_internal", "compliant_springs_swing_with_their_period_and_energy"),
     ("dynamics/move_kernel.h", "velocity - slip * k / (one + k) * normal,",
      "velocity - lanes_all(0.9f) * slip * k / (one + k) * normal,", "motion", "drag_gives_a_terminal_speed"),
-    ("dynamics/collider_contact.c", "max = def->friction * depth;",
-     "max = 0.5f * def->friction * depth;", "motion", "friction_holds_a_block_on_a_slope"),
+    ("dynamics/plane_kernel.h", "max = lanes_all(plane->friction) * depth;",
+     "max = lanes_all(0.5f * plane->friction) * depth;", "motion", "friction_holds_a_block_on_a_slope"),
     # eq 10 to 19: projection
     ("dynamics/strand/strand_kernel.h", "Lanes e = (square - target) * lanes_all(0.5f);",
      "Lanes e = (square - target) * lanes_all(0.45f);", "strand_project", "chains_match_a_dense_solver"),

@@ -104,11 +104,17 @@ static inline Lanes lanes_with_fourth(Lanes a, Lanes fourth) {
 #define FLOAT4S_SET(float4s, e, value) (float4s).at[e] = (__m256)(value)
 #define SMOOTH_GROUP smooth_group_v3
 #define SMOOTH_NARROWER smooth_group_four
+#define HEIGHT_RANGE height_range_v3
+#define HEIGHT_NARROWER height_range_four
+#define PLANE_RANGE plane_range_v3
+#define PLANE_NARROWER plane_range_four
 #define MOVE_RANGE move_range_v3
 #define MOVE_NARROWER move_range_four
 #include "dynamics/attach_kernel.h"
 #include "dynamics/strand/strand_kernel.h"
 #include "dynamics/curvature_kernel.h"
+#include "dynamics/height_kernel.h"
+#include "dynamics/plane_kernel.h"
 #include "dynamics/move_kernel.h"
 #include "dynamics/smooth_kernel.h"
 #endif
