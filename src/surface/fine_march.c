@@ -214,6 +214,37 @@ static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *f
 
 // ---- all cells
 
+/// A cell's four triangles where nothing cuts or splits them; false if something does. Most cells are whole.
+static bool march_whole(Marching *march, uint32_t cell) {
+    Fine *fine = march->fine;
+    const uint32_t *at = fine->shell->cells[cell], centre = shell_centre(fine->shell, cell);
+    if (fine->splits[cell] != 1 || !(fine->values[centre].level >= 0)) return false;
+    for (int side = 0; side < 4; side++)
+        if (fine_parts(fine, cell, side) != 1 || !(fine->values[at[side]].level >= 0)) return false;
+
+    for (int side = 0; side < 4; side++) {
+        if (fine_is_torn(fine, cell, side)) continue;
+        march->triangles += !march->drawing;
+        if (!march->drawing) continue;
+
+        const Piece piece = {.point = {at[side], at[(side + 1) & 3], centre},
+                             .location = {fine_point_location(cell, side, 1, 0, 0),
+                                          fine_point_location(cell, side, 1, 1, 0),
+                                          fine_point_location(cell, side, 1, 0, 1)}};
+        march_draw(fine, &piece);
+    }
+    return true;
+}
+
+/// Where cells' triangles are cut or split.
+static void march_cell(Marching *march, uint32_t cell) {
+    const Fine *fine = march->fine;
+    uint32_t line[4][FINE_SPLITS_MAX]; // cuts of the lines from the corners to the centre
+    for (int side = 0; side < 4; side++) memset(line[side], 0, (size_t)fine->splits[cell] * sizeof *line[side]);
+    for (int side = 0; side < 4; side++)
+        if (!fine_is_torn(fine, cell, side)) march_triangle(march, cell, side, line[side], line[(side + 1) & 3]);
+}
+
 static void march_cells(Marching *march) {
     const Fine *fine = march->fine;
     for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
@@ -224,10 +255,7 @@ static void march_cells(Marching *march) {
         if (hidden) continue;
 
         uint32_t before = fine->surface->triangle_count;
-        uint32_t line[4][FINE_SPLITS_MAX]; // cuts of the lines from the corners to the centre
-        for (int side = 0; side < 4; side++) memset(line[side], 0, (size_t)fine->splits[c] * sizeof *line[side]);
-        for (int side = 0; side < 4; side++)
-            if (!fine_is_torn(fine, c, side)) march_triangle(march, c, side, line[side], line[(side + 1) & 3]);
+        if (!march_whole(march, c)) march_cell(march, c);
         if (fine_is_split(fine, c)) fine->surface->fine_triangle_count += fine->surface->triangle_count - before;
     }
 
