@@ -67,6 +67,46 @@ static float edge_stretch(const Shell *shell, const State *state, SingeColour co
     return length / shell->springs[colour].rest[spring];
 }
 
+/// Whether a line force, by its square, is below the share of the strength of any corner that tears: of dry cells that
+/// have not burnt by their sheet's weakest vertex.
+static bool measure_is_far(const Measure *job, uint32_t cell, float square) {
+    const TearPlan *plan = job->plan;
+    const State *state = job->state;
+    const uint32_t *corner = job->shell->cells[cell];
+    const float *fuel = state->burn.fuel;
+    if (state->heat.water) return false;
+    for (int i = 0; i < 4; i++)
+        if (!(fuel[corner[i]] >= 1)) return false;
+
+    const uint32_t sheet = job->shell->matter.sheet[corner[0]];
+    const float hinge = TEAR_HINGE * (plan->fresh[sheet] * plan->weakened[sheet]);
+    return square <= hinge * hinge;
+}
+
+/// Whether an edge or a diagonal of a cell is EDGE_STRETCH times as long as at rest. Roots only of those that may be.
+static bool measure_is_stretched(const Measure *job, uint32_t cell) {
+    const Shell *shell = job->shell;
+    const CellSprings *springs = &shell->cell_springs[cell];
+    const float *blue = shell->springs[SINGE_BLUE].rest, *yellow = shell->springs[SINGE_YELLOW].rest;
+    const float doubtful = 0.95f * EDGE_STRETCH * EDGE_STRETCH;
+    Float4 x[4];
+    for (int i = 0; i < 4; i++) x[i] = float4_load(job->state->dynamics.position[shell->cells[cell][i]]);
+    for (int i = 0; i < 4; i++) {
+        const Float4 d = x[(i + 1) & 3] - x[i];
+        const float rest = blue[springs->blue[i]];
+        if (float4_dot(d, d) < doubtful * rest * rest) continue;
+        if (edge_stretch(shell, job->state, SINGE_BLUE, springs->blue[i]) > EDGE_STRETCH) return true;
+    }
+
+    for (int i = 0; i < 2; i++) {
+        const Float4 d = x[i + 2] - x[i];
+        const float rest = yellow[springs->yellow[i]];
+        if (float4_dot(d, d) < doubtful * rest * rest) continue;
+        if (edge_stretch(shell, job->state, SINGE_YELLOW, springs->yellow[i]) > EDGE_STRETCH) return true;
+    }
+    return false;
+}
+
 /// Whether a tensor's norm, which no principal value exceeds, reaches the strength of a corner.
 static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
     const Shell *shell = job->shell;
@@ -77,7 +117,8 @@ static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
     if (square < safe * safe) return false;
 
     // a share of the strength is enough where a cell at the corner is gone
-    for (int i = 0; i < 4; i++) {
+    const bool far = measure_is_far(job, cell, square);
+    for (int i = 0; i < 4 && !far; i++) {
         uint32_t corner = shell->cells[cell][i];
         float strength = tear_strength(job->plan, shell, job->state, corner), hinge = TEAR_HINGE * strength;
         if (square > strength * strength) return true;
@@ -85,13 +126,7 @@ static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
             if (square > hinge * hinge && !(flags[shell->fan[k]] & SINGE_ALIVE)) return true;
     }
 
-    const CellSprings *springs = &shell->cell_springs[cell];
-    for (int i = 0; i < 4; i++)
-        if (edge_stretch(shell, job->state, SINGE_BLUE, springs->blue[i]) > EDGE_STRETCH) return true;
-    for (int i = 0; i < 2; i++)
-        if (edge_stretch(shell, job->state, SINGE_YELLOW, springs->yellow[i]) > EDGE_STRETCH) return true;
-
-    return false;
+    return measure_is_stretched(job, cell);
 }
 
 /// tensor_add on the two halves of a tensor.

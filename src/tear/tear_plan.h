@@ -47,6 +47,7 @@ struct TearPlan {
     uint32_t sheet_count;
     float safe;      ///< N/m, nothing tears below: the min of all strengths, fresh, as char or weakened
     float *weakened; ///< [sheets] max share of its fresh strength in this step
+    float *fresh;    ///< [sheets] N/m, strength of the weakest vertex before it burns
     float *min;      ///< [sheets] that factor while it is held farther apart than its length
 };
 

@@ -55,8 +55,8 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
     if (!NEW(memory, plan->centroid, plan->cell_count) || !NEW(memory, plan->smooth[0], plan->cell_count) ||
         !NEW(memory, plan->smooth[1], plan->cell_count) || !NEW(memory, plan->ratio, plan->vertex_count) ||
         !NEW(memory, plan->torn, plan->vertex_count) || !NEW(memory, plan->leader, plan->particle_count) ||
-        !NEW(memory, plan->weakened, plan->sheet_count) || !NEW(memory, plan->min, plan->sheet_count) ||
-        !NEW(memory, plan->partial, pool_blocks((int)plan->cell_count))) {
+        !NEW(memory, plan->weakened, plan->sheet_count) || !NEW(memory, plan->fresh, plan->sheet_count) ||
+        !NEW(memory, plan->min, plan->sheet_count) || !NEW(memory, plan->partial, pool_blocks((int)plan->cell_count))) {
         tear_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
@@ -71,7 +71,7 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
     // strengths: no tear begins below `safe`
     plan->safe = INFINITY;
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
-        float strength = weakest(&shell->sheets[s], shell->matter.strength);
+        const float strength = plan->fresh[s] = weakest(&shell->sheets[s], shell->matter.strength);
         plan->safe = float_min(plan->safe, weakest(&shell->sheets[s], shell->matter.char_strength));
         plan->min[s] = isinf(strength) ? 1 : float_min(1, 0.5f * shell_carried(shell, s, h) / strength);
         plan->safe = float_min(plan->safe, strength * plan->min[s] * (shell_holds_water(shell) ? TEAR_WET : 1));
@@ -90,6 +90,7 @@ void tear_plan_free(Memory *memory, TearPlan *plan) {
     FREE(memory, plan->torn, plan->vertex_count);
     FREE(memory, plan->leader, plan->particle_count);
     FREE(memory, plan->weakened, plan->sheet_count);
+    FREE(memory, plan->fresh, plan->sheet_count);
     FREE(memory, plan->min, plan->sheet_count);
     FREE(memory, plan->partial, pool_blocks((int)plan->cell_count));
     FREE(memory, plan, 1);
