@@ -53,16 +53,17 @@ extern "C" {
 /// What a fallible function returns. Zero is success.
 typedef enum SingeResult {
     SINGE_OK = 0,
-    SINGE_ERROR_ARGUMENT = 1, ///< a Def field or argument is out of its range
-    SINGE_ERROR_MEMORY = 2,   ///< the allocator returned NULL
-    SINGE_ERROR_MESH = 3,     ///< the mesh is degenerate, non-manifold or indexes out of range
-    SINGE_ERROR_HANDLE = 4,   ///< the handle is stale or invalid
-    SINGE_ERROR_STATE = 5,    ///< the call is not allowed now (a sheet added after the first step)
-    SINGE_ERROR_DIVERGED = 6, ///< a stage produced a value that is not finite; state rolled back
-    SINGE_ERROR_FORMAT = 7,   ///< bytes do not follow their format (file, snapshot, scene)
-    SINGE_ERROR_VERSION = 8,  ///< the snapshot is of another version
-    SINGE_ERROR_FILE = 9,     ///< the operating system refused a file
-    SINGE_ERROR_LIMIT = 10,   ///< an input larger than the format or the index type allows
+    SINGE_ERROR_ARGUMENT = 1,   ///< a Def field or argument is out of its range
+    SINGE_ERROR_MEMORY = 2,     ///< the allocator returned NULL
+    SINGE_ERROR_MESH = 3,       ///< the mesh is degenerate, non-manifold or indexes out of range
+    SINGE_ERROR_HANDLE = 4,     ///< the handle is stale or invalid
+    SINGE_ERROR_STATE = 5,      ///< the call is not allowed now (a sheet added after the first step)
+    SINGE_ERROR_DIVERGED = 6,   ///< a stage produced a value that is not finite; state rolled back
+    SINGE_ERROR_FORMAT = 7,     ///< bytes do not follow their format (file, snapshot, scene)
+    SINGE_ERROR_VERSION = 8,    ///< the snapshot is of another version
+    SINGE_ERROR_FILE = 9,       ///< the operating system refused a file
+    SINGE_ERROR_LIMIT = 10,     ///< an input larger than the format or the index type allows
+    SINGE_ERROR_CANCELLED = 11, ///< the host has asked to give the step up (SingeCancel); state rolled back
 } SingeResult;
 
 /// The short English name of a result ("out of memory").
@@ -102,6 +103,14 @@ typedef struct SingeRecord {
     bool (*write)(void *context, const void *bytes, size_t size);
     void *context;
 } SingeRecord;
+
+/// Asked often during a step, on any of its threads, whether to give it up; so it must be quick. Once it has answered true
+/// the step fails with SINGE_ERROR_CANCELLED, and the simulation is as it was before it. A step may also end as usual, if
+/// it was nearly done. A zeroed struct means that no step is given up.
+typedef struct SingeCancel {
+    bool (*asked)(void *context);
+    void *context;
+} SingeCancel;
 
 /// A range of independent work items [begin, end).
 typedef void SingeTaskFn(void *task, int begin, int end);

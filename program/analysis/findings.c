@@ -354,9 +354,7 @@ bool check_surface(const CacheFrame *frame, Findings *findings) {
     return good;
 }
 
-static void say_nothing(void *context, bool fault, const char *message) {
-    (void)context, (void)fault, (void)message;
-}
+static void say_nothing(void *context, bool fault, const char *message) { (void)context, (void)fault, (void)message; }
 
 bool check_start(const CacheFrame *frame, Findings *findings) {
     Findings quiet = *findings;

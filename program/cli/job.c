@@ -15,6 +15,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "cli/interrupt.h"
 #include "cli/outputs.h"
 #include "cli/text.h"
 #include "common/allocator.h"
@@ -112,10 +113,16 @@ static ExitCode job_tell(Job *job, Console *console, SingeResult result, SceneMe
     return job_exit(result);
 }
 
+static bool is_overdue(void *context) {
+    (void)context;
+    return interrupt_overdue();
+}
+
 static void set_hooks(Job *job, Console *console, int threads) {
     job->hooks = singe_default_sim();
     job->hooks.allocator = allocator_or_libc((SingeAllocator){0});
     job->hooks.log = console_log(console);
+    job->hooks.cancel = (SingeCancel){.asked = is_overdue};
     job->hooks.thread_count = threads;
 }
 

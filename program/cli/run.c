@@ -102,7 +102,7 @@ static SingeResult stop(Run *run, Progress progress, SingeError *error) {
     return result ? result : run_write_checkpoint(run, progress, error);
 }
 
-/// A picture took so long that it was given up. Its frame is not whole, and a checkpoint would be beyond it.
+/// A picture or a step took so long that it was given up. Its frame is not whole, and a checkpoint would be beyond it.
 static SingeResult leave(Run *run) {
     run->record.result = "interrupted";
     return SINGE_OK;

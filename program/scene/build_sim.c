@@ -210,6 +210,7 @@ SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const Sin
     def.log = hooks->log;
     def.tasks = hooks->tasks;
     def.record = hooks->record;
+    def.cancel = hooks->cancel;
     def.thread_count = hooks->thread_count;
 
     *sim = NULL;

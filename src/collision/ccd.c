@@ -238,6 +238,7 @@ static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *
     // stop colliding cells until there are none: impacts one by one, then zones
     for (int impacts = 0, zones = 0;;) {
         uint32_t hits;
+        if (pool_cancelled(pool)) return SINGE_ERROR_CANCELLED;
         TRY(ccd_look(&ccd, state, pool, h, stopped || plan->closed, &hits));
         const bool spent = ccd_is_spent(plan);
         if (hits == 0 && !spent) break;

@@ -32,6 +32,10 @@ void collision_plan_free(Memory *memory, CollisionPlan *plan);
 SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags,
                                   Stream *stream);
 
+/// Keeps the last search, on which the next steps depend, before a step that may fail; and puts it back if it has.
+void collision_plan_keep(CollisionPlan *plan);
+void collision_plan_restore(Memory *memory, CollisionPlan *plan, const Shell *shell);
+
 /// Must be called when the corners of cells have changed.
 void collision_plan_forget(CollisionPlan *plan);
 

@@ -29,7 +29,7 @@ typedef struct Array {
     size_t count, size;
 } Array;
 
-enum { ARRAYS = 35 };
+enum { ARRAYS = 39 };
 
 /// The plan's arrays, to create and to free them.
 static void list_arrays(CollisionPlan *plan, Array list[ARRAYS]) {
@@ -43,6 +43,10 @@ static void list_arrays(CollisionPlan *plan, Array list[ARRAYS]) {
         ARRAY(alive, cells),
         ARRAY(initial_first, cells + 2),
         ARRAY(intersecting, cells),
+        ARRAY(kept.position, vertices),
+        ARRAY(kept.speed, vertices),
+        ARRAY(kept.alive, cells),
+        ARRAY(kept.initial_first, cells + 2),
         ARRAY(boxes, cells),
         ARRAY(slabs, cells),
         ARRAY(rest, cells),
@@ -83,6 +87,7 @@ void collision_plan_free(Memory *memory, CollisionPlan *plan) {
     list_arrays(plan, list);
     for (int k = 0; k < ARRAYS; k++) memory_free(memory, list[k].at, list[k].count, list[k].size);
     FREE(memory, plan->initial_other, plan->initial_capacity);
+    FREE(memory, plan->kept.initial_other, plan->initial_capacity);
     block_list_free(memory, &plan->found_pairs);
     block_list_free(memory, &plan->found);
     FREE(memory, plan, 1);
@@ -168,6 +173,19 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     return SINGE_OK;
 }
 
+/// Repeats the search of which the input is there.
+static SingeResult search_again(Memory *memory, CollisionPlan *plan, const Shell *shell) {
+    initial_mark(plan);
+    plan->closed = false;
+    const uint32_t restless = plan->restless;
+    TRY(broad_search(memory, plan, shell, NULL));
+    plan->restless = restless;
+
+    // how far pairs have moved since is unknown
+    for (uint32_t k = 0; k < plan->listed_count; k++) plan->pairs[k].distance = 0;
+    return SINGE_OK;
+}
+
 SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags,
                                   Stream *stream) {
     STREAM(stream, plan->searched);
@@ -211,15 +229,41 @@ SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const She
 
     if (stream->failed || !plan->searched) return SINGE_OK;
 
-    initial_mark(plan);
-    plan->closed = false;
-    uint32_t restless = plan->restless;
-    TRY(broad_search(memory, plan, shell, NULL));
-    plan->restless = restless;
+    return search_again(memory, plan, shell);
+}
 
-    // how far pairs have moved since is unknown
-    for (uint32_t k = 0; k < plan->listed_count; k++) plan->pairs[k].distance = 0;
-    return SINGE_OK;
+/// Copies the last search's input, to the copy or back from it.
+static void copy_search(CollisionPlan *plan, bool back) {
+    const size_t points = plan->vertex_count * sizeof *plan->position;
+    const size_t cells = plan->cell_count, first = (cells + 2) * sizeof *plan->initial_first;
+    const size_t others = plan->initial_capacity * sizeof *plan->initial_other;
+#define COPY(name, size) memcpy(back ? plan->name : plan->kept.name, back ? plan->kept.name : plan->name, size)
+    COPY(position, points);
+    COPY(speed, points);
+    COPY(alive, cells);
+    COPY(initial_first, first);
+    if (others) COPY(initial_other, others);
+#undef COPY
+}
+
+void collision_plan_keep(CollisionPlan *plan) {
+    copy_search(plan, false);
+    plan->kept.searched = plan->searched;
+    plan->kept.restless = plan->restless;
+    plan->kept.step = plan->step;
+    plan->kept.counters = plan->counters;
+}
+
+void collision_plan_restore(Memory *memory, CollisionPlan *plan, const Shell *shell) {
+    copy_search(plan, true);
+    plan->searched = plan->kept.searched;
+    plan->restless = plan->kept.restless;
+    plan->step = plan->kept.step;
+    plan->h = plan->time_step;
+    plan->closed = false;
+    if (!plan->searched) initial_mark(plan);
+    else if (search_again(memory, plan, shell)) collision_plan_forget(plan);
+    plan->counters = plan->kept.counters;
 }
 
 // a search from a later step than the present one counts as none

@@ -145,6 +145,17 @@ struct CollisionPlan {
     uint32_t initial_capacity;
     uint8_t *intersecting; ///< [cells] 1: in one of these pairs
 
+    // the same as it was before the step, for one that fails
+    struct {
+        uint32_t searched, restless;
+        uint64_t step;
+        float (*position)[4], (*speed)[4];
+        uint8_t *alive;
+        uint32_t *initial_first;
+        uint32_t *initial_other; ///< [initial_capacity]
+        CollisionCounters counters;
+    } kept;
+
     // results of the search, and of collision_open
     uint32_t steps;      ///< for which the search is valid
     float slack, reach;  ///< m; reach is thickness + slack

@@ -51,9 +51,14 @@ void initial_mark(CollisionPlan *plan) {
 
 bool initial_reserve(Memory *memory, CollisionPlan *plan, uint32_t count) {
     FREE(memory, plan->initial_other, plan->initial_capacity);
+    FREE(memory, plan->kept.initial_other, plan->initial_capacity);
     plan->initial_capacity = 0;
     if (count == 0) return true;
     if (!NEW(memory, plan->initial_other, count)) return false;
+    if (!NEW(memory, plan->kept.initial_other, count)) {
+        FREE(memory, plan->initial_other, count);
+        return false;
+    }
 
     plan->initial_capacity = count;
     return true;

@@ -30,6 +30,7 @@ const char *singe_result_name(SingeResult result) {
     case SINGE_ERROR_VERSION: return "other version";
     case SINGE_ERROR_FILE: return "file error";
     case SINGE_ERROR_LIMIT: return "too large";
+    case SINGE_ERROR_CANCELLED: return "cancelled";
     }
     return "unknown result";
 }

@@ -32,6 +32,8 @@ struct Pool {
     atomic_int watching, asleep; ///< workers
     atomic_bool caller_asleep;
     atomic_bool quit;
+    SingeCancel cancel;
+    atomic_bool cancelled; ///< the host has said so
 };
 
 static inline void pool_pause(void) {
@@ -128,6 +130,24 @@ void pool_destroy(Memory *memory, Pool *pool) {
     condition_close(&pool->wake);
     condition_close(&pool->over);
     memory_free(memory, (void *)&pool, 1, sizeof *pool);
+}
+
+void pool_set_cancel(Pool *pool, SingeCancel cancel) {
+    pool->cancel = cancel;
+    atomic_store(&pool->cancelled, false);
+}
+
+bool pool_cancelled(Pool *pool) {
+    if (!pool || !pool->cancel.asked) return false;
+    if (atomic_load_explicit(&pool->cancelled, memory_order_relaxed)) return true;
+    if (!pool->cancel.asked(pool->cancel.context)) return false;
+    atomic_store(&pool->cancelled, true);
+    return true;
+}
+
+SingeResult pool_check_cancelled(Pool *pool, const char *stage, SingeError *error) {
+    if (!pool_cancelled(pool)) return SINGE_OK;
+    return error_set(error, SINGE_ERROR_CANCELLED, stage, -1, "the step was given up, as the host has asked");
 }
 
 void pool_for(Pool *pool, int count, int grain, SingeTaskFn *run, void *context) {

@@ -14,6 +14,14 @@ enum { POOL_BLOCK = 1024 };
 SingeResult pool_create(Memory *memory, SingeTasks tasks, int thread_count, Pool **pool);
 void pool_destroy(Memory *memory, Pool *pool);
 
+/// Sets what pool_cancelled asks, and forgets its answer.
+void pool_set_cancel(Pool *pool, SingeCancel cancel);
+/// Whether the host has asked to give up what is under way; on any thread. Once true, until pool_set_cancel. A NULL pool is
+/// never asked.
+bool pool_cancelled(Pool *pool);
+/// The error of a stage that was given up, or SINGE_OK.
+SingeResult pool_check_cancelled(Pool *pool, const char *stage, SingeError *error);
+
 /// Calls run(context, begin, end) over [0, count) in ranges of at least `grain` items, and returns when all are done.
 /// Items must be independent. A NULL pool runs everything in the calling thread.
 void pool_for(Pool *pool, int count, int grain, SingeTaskFn *run, void *context);

@@ -524,6 +524,7 @@ typedef struct Centroid {
     const DynamicsPlan *plan;
     const Shell *shell;
     const AblateState *ablate;
+    Pool *pool;
     DynamicsState *dynamics;
     const uint32_t *cells; ///< of the family
     uint32_t collider_count;
@@ -581,6 +582,7 @@ static void centroid_cells(void *task, int begin, int end) {
 
     unsigned touching = 0; // bit i: cell k + i of four
     for (int k = begin; k < end && nearby.count > 0; k++, touching >>= 1) {
+        if ((k - begin) % 64 == 0 && pool_cancelled(job->pool)) return; // which fails the step
         if ((k - begin) % 4 == 0) touching = centroid_touching(job, &nearby, k, end);
         if (!(touching & 1)) continue;
 
@@ -635,7 +637,7 @@ void contact_centroids(DynamicsPlan *plan, const Shell *shell, const AblateState
 
     for (uint32_t f = 0; any && f < shell->cell_family_count; f++) {
         uint32_t first = shell->cell_family_first[f], count = shell->cell_family_first[f + 1] - first;
-        Centroid job = {plan, shell, ablate, dynamics, shell->cell_order + first, collider_count, h};
+        Centroid job = {plan, shell, ablate, pool, dynamics, shell->cell_order + first, collider_count, h};
         pool_for(pool, (int)count, POOL_BLOCK, centroid_cells, &job);
     }
 }

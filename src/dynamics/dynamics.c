@@ -162,7 +162,8 @@ static SingeResult dynamics_check(DynamicsPlan *plan, Pool *pool, DynamicsState 
         i);
 }
 
-static SingeResult dynamics_contact_result(SingeResult result, SingeError *error) {
+static SingeResult dynamics_contact_result(SingeResult result, Pool *pool, SingeError *error) {
+    if (result == SINGE_ERROR_CANCELLED) return pool_check_cancelled(pool, "contact", error);
     return result ? error_set(error, result, "contact", -1, "out of memory for the list of contacts") : SINGE_OK;
 }
 
@@ -182,7 +183,7 @@ static SingeResult dynamics_part(Memory *memory, DynamicsPlan *plan, const StepC
     dynamics_prepare(plan, shell, state, context->wind, context->sources, pool, dynamics);
     if (plan->collision)
         TRY(dynamics_contact_result(collision_open(memory, plan->collision, shell, state, pool, h, first, dynamics),
-                                    error));
+                                    pool, error));
 
     // each pass closes a substep and opens the next: one pass more than substeps
     Substep part = {shell, state, pool, 0, h / (float)solver->substeps, dynamics, counters, error};
@@ -197,6 +198,7 @@ static SingeResult dynamics_part(Memory *memory, DynamicsPlan *plan, const StepC
         // velocities of the last substep, prediction of the next; held particles are at its end before the others start
         if (between.opens) dynamics_move_pins(plan, context->pins, ablate, after, part.h, dynamics);
         counters->contacts += dynamics_move(plan, shell, pool, part.h, &between, dynamics);
+        TRY(pool_check_cancelled(pool, "dynamics", error));
         if (!between.opens) break;
 
         // the colliders in use, with their poses at both ends of the substep
@@ -226,7 +228,7 @@ static SingeResult dynamics_part(Memory *memory, DynamicsPlan *plan, const StepC
         bool limited = plan->solver->limit(plan, shell, state, pool, dynamics);
         if (!plan->collision || (turn > 0 && !limited)) break;
         const uint64_t stops = collision_counters(plan->collision).stops;
-        TRY(dynamics_contact_result(ccd_apply(memory, plan->collision, shell, state, pool, h, dynamics), error));
+        TRY(dynamics_contact_result(ccd_apply(memory, plan->collision, shell, state, pool, h, dynamics), pool, error));
         if (collision_counters(plan->collision).stops == stops || ccd_is_busy(plan->collision)) break;
     }
 
@@ -238,8 +240,8 @@ static SingeResult dynamics_part(Memory *memory, DynamicsPlan *plan, const StepC
     return dynamics_check(plan, pool, dynamics, error);
 }
 
-SingeResult dynamics_step(Memory *memory, DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics,
-                          DynamicsCounters *counters) {
+static SingeResult dynamics_parts(Memory *memory, DynamicsPlan *plan, const StepContext *context,
+                                  DynamicsState *dynamics, DynamicsCounters *counters) {
     const StateInput *state = &context->state;
     const bool parts = plan->collision && plan->solver->takes_parts;
     const int count =
@@ -252,8 +254,19 @@ SingeResult dynamics_step(Memory *memory, DynamicsPlan *plan, const StepContext 
         TRY(dynamics_part(memory, plan, &part, k == 0, dynamics, counters));
         if (count > 1 && collision_counters(plan->collision).halts > halts) break; // the rest of the step, too
     }
+    return SINGE_OK;
+}
 
-    StateInput done = *state;
+SingeResult dynamics_step(Memory *memory, DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics,
+                          DynamicsCounters *counters) {
+    if (plan->collision) collision_plan_keep(plan->collision);
+    const SingeResult result = dynamics_parts(memory, plan, context, dynamics, counters);
+    if (result) {
+        if (plan->collision) collision_plan_restore(memory, plan->collision, context->shell);
+        return result;
+    }
+
+    StateInput done = context->state;
     done.dynamics = dynamics; // nothing writes it from here on
     if (plan->settings.solver.attachments) attach_update(&plan->attachments, context->shell, &done, false);
     return SINGE_OK;

@@ -17,6 +17,7 @@
 typedef struct Move {
     DynamicsPlan *plan;
     const Shell *shell;
+    Pool *pool;
     DynamicsState *dynamics;
     Between between;
     float h;
@@ -27,6 +28,7 @@ typedef struct Move {
 static double move_block(void *task, int begin, int end) {
     const Move *job = task;
     DynamicsPlan *plan = job->plan;
+    if (job->between.collider_count > 0 && pool_cancelled(job->pool)) return 0; // which fails the step
     uint64_t contacts = contact_range(plan, job->between.collider_count, job->h, job->dynamics, begin, end);
     plan->kernels->move(&job->lanes, (size_t)begin, (size_t)end, job->between.closes, job->between.opens);
     if (job->between.attaches)
@@ -38,7 +40,7 @@ uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float
                        DynamicsState *dynamics) {
     const Field drag = shell->matter.drag, damping = shell->matter.damping;
     const float *gravity = plan->settings.gravity;
-    Move job = {plan, shell, dynamics, *between, h, {0}};
+    Move job = {plan, shell, pool, dynamics, *between, h, {0}};
     job.lanes = (MoveLanes){.position = dynamics->position[0],
                             .velocity = dynamics->velocity[0],
                             .predicted = plan->predicted[0],

@@ -258,6 +258,7 @@ static SingeResult paper_project(DynamicsPlan *plan, const Substep *substep) {
         } else {
             TRY(paper_step(paper, pool, counters, &solved, substep->error));
         }
+        TRY(pool_check_cancelled(pool, "dynamics", substep->error));
 
         counters->seconds += clock_seconds() - start;
         if (substep->collider_count == 0) continue;

@@ -235,7 +235,7 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
     double enough = tolerance * tolerance * whole;
     pass->direction = 0;
     pass->turn = 0;
-    for (int k = 0; k < CONDUCT_ITERATIONS && residual > enough; k++) {
+    for (int k = 0; k < CONDUCT_ITERATIONS && residual > enough && !pool_cancelled(pass->pool); k++) {
         pass->turn = !pass->turn;
         heat_blocks(pass, conduct_direction);
         heat_blocks(pass, conduct_product);

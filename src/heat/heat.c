@@ -193,6 +193,7 @@ SingeResult heat_step(HeatPlan *plan, const StepContext *context, HeatState *hea
 
     // eq 2 and 3: diffusion
     TRY(heat_conduct(&pass, counters, &made, context->error));
+    TRY(pool_check_cancelled(context->pool, "heat", context->error));
 
     heat_blocks(&pass, heat_take_over);
     heat->heat_in += in + made + heat_arrive(&pass, context->sources);

@@ -47,7 +47,7 @@ ProjectionReport conjugate_gradient(Network *network, uint32_t group, Pool *pool
     double rest = square;
     pool_for(pool, rows, POOL_BLOCK, conjugate_begin, &job);
 
-    while (rest > enough && report.iterations < network->rules.iterations) {
+    while (rest > enough && report.iterations < network->rules.iterations && !pool_cancelled(pool)) {
         double curvature = pool_sum(pool, rows, kernel->multiply, &job, network->partial);
         report.iterations++;
         if (!(curvature > 0) || !isfinite(curvature)) {

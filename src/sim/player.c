@@ -34,6 +34,7 @@ typedef struct Player {
     uint32_t change_count, change_capacity;
     SingeSurface surface;
     SingeReplay report;
+    uint64_t given_up; ///< the step from which on the recorded call was given up; UINT64_MAX: it was not
 } Player;
 
 // ---- records
@@ -221,22 +222,38 @@ static const float *read_share(Player *player, SingeSheetId id) {
     return share;
 }
 
+/// The number of steps that the recording has of the call being read, and whether the call's answer is that it was given
+/// up.
+static uint32_t recorded_steps(Player *player, bool *given_up) {
+    const uint64_t begin = player->begin, end = player->end, offset = player->tape.offset;
+    uint32_t recorded = 0, code = 0;
+    uint8_t kind = 0;
+    bool there;
+    player->tape.offset = end;
+    while ((there = player_peek(player, &kind)) && is_of_step(kind)) {
+        recorded += kind == RECORD_STATE;
+        player->tape.offset = player->end;
+    }
+    if (there && kind == RECORD_RESULT && player->end - player->tape.offset >= sizeof code) TAPE(&player->tape, code);
+    *given_up = code == SINGE_ERROR_CANCELLED;
+    player->begin = begin;
+    player->end = end;
+    player->tape.offset = offset;
+    return recorded;
+}
+
+/// The hook of the replay: gives up what was given up.
+static bool player_gives_up(void *context) {
+    const Player *player = context;
+    return player->sim && player->sim->state.step >= player->given_up;
+}
+
 /// Bounds the steps of an advance that would make more than were recorded, and one more: a hostile recording may ask for
 /// any number.
 static uint32_t bound_steps(Player *player, double seconds, uint32_t steps_max) {
     const SingeSim *sim = player->sim;
-    const uint64_t begin = player->begin, end = player->end, offset = player->tape.offset;
-    uint32_t recorded = 0;
-    uint8_t kind;
-    player->tape.offset = end;
-    while (player_peek(player, &kind) && is_of_step(kind)) {
-        recorded += kind == RECORD_STATE;
-        player->tape.offset = player->end;
-    }
-    player->begin = begin;
-    player->end = end;
-    player->tape.offset = offset;
-
+    bool given_up;
+    const uint32_t recorded = recorded_steps(player, &given_up);
     const double all = (sim->remainder + seconds) / (double)sim->def.time_step;
     if (!(all > (double)recorded + 1) || (steps_max && steps_max <= recorded)) return steps_max;
     return recorded + 1;
@@ -386,6 +403,9 @@ static void player_call(Player *player, uint8_t kind) {
     SingeSim *sim = player->sim;
     const uint64_t before = sim->state.step;
     SingeResult result = SINGE_OK;
+    bool given_up;
+    const uint32_t recorded = recorded_steps(player, &given_up);
+    player->given_up = given_up ? before + recorded : UINT64_MAX;
     recorder_flush(sim->recorder); // what follows is the call
     player->compared = player->end;
     player->call_begins = true;
@@ -457,6 +477,7 @@ static SingeResult player_begin(Player *player, const SingeSimDef *hooks, SingeE
     def.thread_count = given.thread_count;
     def.instructions = given.instructions;
     def.record = (SingeRecord){player_compare, player};
+    def.cancel = (SingeCancel){player_gives_up, player};
 
     const size_t saved = (size_t)(player->end - tape->offset);
     SingeResult result = kind == RECORD_CREATE
@@ -469,7 +490,8 @@ static SingeResult player_begin(Player *player, const SingeSimDef *hooks, SingeE
 
 SingeResult singe_replay_read(const SingeSimDef *hooks, const uint8_t *bytes, size_t size, SingeReplay *replay,
                               size_t struct_size, SingeError *error) {
-    Player player = {.tape = {.mode = STREAM_READ, .bytes = bytes, .size = size, .callback = player_heat}};
+    Player player = {.tape = {.mode = STREAM_READ, .bytes = bytes, .size = size, .callback = player_heat},
+                     .given_up = UINT64_MAX};
     Tape *tape = &player.tape;
     player.memory = memory_make(hooks->allocator);
     player.report.struct_size = struct_size;

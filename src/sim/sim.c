@@ -83,6 +83,11 @@ bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
     if (rest == 0) return true;
     if (rest < sizeof def->record) return false;
     memcpy(&def->record, bytes, sizeof def->record);
+    bytes += sizeof def->record;
+    rest -= sizeof def->record;
+    if (rest == 0) return true;
+    if (rest < sizeof def->cancel) return false;
+    memcpy(&def->cancel, bytes, sizeof def->cancel);
     return true;
 }
 

@@ -149,6 +149,8 @@ SingeResult sim_step(SingeSim *sim) {
         if (sim->colliders.items[i].generation) collider_at(&sim->colliders.items[i], sim->state.time);
     if (sim->state.step == 0) sim_find_buried(sim);
 
+    pool_set_cancel(sim->pool, sim->def.cancel);
+
     // a copy for rollback
     State before = sim->state;
     SingeTimers timers = sim->timers;

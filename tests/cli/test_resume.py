@@ -132,6 +132,27 @@ class Resume(Case):
         self.assertNotIn("error", err)
         self.no_temporaries("p")
 
+    def test_ctrl_c_in_a_step(self):
+        """A step of which the colliders take long is given up. Frames and the checkpoint before it stay."""
+        ball = "{kind: sphere, position: [0, 0, 0], radius: 0.3}"
+        self.scene = self.write_scene(frames=3, cells=150, steps=1, gas="{enabled: no}",
+                                      extra=f"colliders: [{', '.join([ball] * 990)}]\n")
+        run = self.start_until("s", -1, "--no-preview", "--threads", "1")
+        begun = ""  # the first frame, before any step
+        while run.poll() is None and not begun:
+            time.sleep(0.01)
+            begun = os.path.isdir(self.path("s", "ply")) and os.listdir(self.path("s", "ply"))
+        time.sleep(1)
+        begun = time.monotonic()
+        run.send_signal(signal.SIGINT)
+        _, err = run.communicate(timeout=200)
+        print(f"given up after {time.monotonic() - begun:.1f} s")
+        self.assertLess(time.monotonic() - begun, 10)
+        self.assertEqual((run.returncode, self.record("s")["result"]), (1, "interrupted"), err)
+        self.assertNotIn("error", err)
+        self.assertEqual(len(self.plys("s")), self.record("s")["frames_done"])
+        self.no_temporaries("s")
+
     def test_ctrl_c_between_steps(self):
         """It does not wait for the frame, and nothing of it is lost."""
         self.scene = self.write_scene(frames=4, cells=20, steps=800)

@@ -235,12 +235,25 @@ static SingeRecord record(int which) {
 
 // ---- two simulations
 
+/// How often a simulation is asked whether to give up a step before it says yes; less than 0: it does not. A clone has
+/// the hook of the simulation that it was made from.
+static _Atomic int patience[2] = {-1, -1};
+
+static bool is_out_of_patience(void *context) {
+    _Atomic int *left = context;
+    if (*left < 0) return false;
+    if (*left == 0) return true;
+    (*left)--;
+    return false;
+}
+
 /// Two sheets, 1 mm from each other; or five in one place, for whose contacts the lists must grow.
 static SingeSim *make(Input input, int which) {
     SingeSimDef def = singe_default_sim();
     const unsigned choices = input_byte(&input);
     const bool crowded = choices & 64;
     def.record = record(which);
+    def.cancel = (SingeCancel){is_out_of_patience, &patience[which]};
     def.thread_count = 1 + which, def.contact.enabled = choices & 1;
     def.solver.creases = choices & 2, def.solver.tearing = choices & 4, def.pace = 4;
     def.gas.enabled = choices & 8, def.gas.cell_size = 0.02f, def.gas.height = 0.05f;
@@ -289,6 +302,7 @@ static void copy_over(bool load, SingeSim *sims[2]) {
     singe_sim_destroy(sims[1]);
     SingeSimDef hooks = singe_default_sim();
     hooks.thread_count = 2;
+    hooks.cancel = (SingeCancel){is_out_of_patience, &patience[1]};
     if (load || getenv("SINGE_RECORD")) {
         hooks.record = record(1);
         if (singe_sim_load(&hooks, bytes, size, &sims[1], NULL)) abort();
@@ -296,6 +310,18 @@ static void copy_over(bool load, SingeSim *sims[2]) {
         abort();
     }
     singe_sim_free_bytes(sims[0], bytes, size);
+}
+
+/// A step that is given up changes nothing; each step asks three times at least.
+static void give_up_both(Input input, SingeSim *const sims[2]) {
+    const int asks = (int)input_pick(&input, 3);
+    for (int k = 0; k < 2; k++) {
+        const uint64_t before = digest_view(sims[k]);
+        patience[0] = patience[1] = asks;
+        const SingeResult result = singe_sim_step(sims[k]);
+        patience[0] = patience[1] = -1;
+        demand(result != SINGE_OK && digest_view(sims[k]) == before);
+    }
 }
 
 /// Returns the steps made; a step that fails changes nothing.
@@ -323,6 +349,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t length) {
         const unsigned kind = input_pick(&record, 32);
         if (kind < sizeof calls / sizeof *calls) call_both(calls[kind], record, sims);
         else if (kind == 31) copy_over(input_pick(&record, 2), sims);
+        else if (kind == 30) give_up_both(record, sims);
         else steps += step_both(record, sims);
     }
 

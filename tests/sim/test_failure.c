@@ -2,6 +2,8 @@
 #include "scenes.h"
 
 #include <math.h>
+#include <stdatomic.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -76,6 +78,95 @@ TEST(a_failure_late_in_the_step_changes_nothing) {
     test_assert_same(sim, copy);
     singe_sim_destroy(copy);
     singe_sim_destroy(sim);
+}
+
+typedef struct Asked {
+    atomic_int count, yes; ///< how often the hook was asked, and from which time on it says yes; 0: never
+} Asked;
+
+static bool ask(void *context) {
+    Asked *asked = context;
+    const int count = atomic_fetch_add(&asked->count, 1) + 1, yes = atomic_load(&asked->yes);
+    return yes > 0 && count >= yes;
+}
+
+/// Four sheets that fly into each other, two of which cross from the start, over a hot ball; one is burning.
+static SingeSim *crowd_make(Asked *asked, int threads) {
+    SingeSimDef def = scene_def();
+    def.contact.enabled = true, def.thread_count = threads, def.cancel = (SingeCancel){ask, asked};
+    SingeSim *sim;
+    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    for (int s = 0; s < 4; s++) {
+        TestMesh mesh = test_grid(9, 9, 0.007f, 0.007f);
+        test_mesh_move(&mesh, -0.03f, -0.03f, 0.0015f * (float)(s / 2 + 10));
+        for (uint32_t v = 0; v < mesh.vertex_count && s == 1; v++)
+            mesh.positions[3 * v + 2] += 0.1f * (mesh.positions[3 * v] + 0.01f);
+        SingeSheetDef sheet = test_sheet(&mesh);
+        sheet.velocity[2] = s < 2 ? 3 : -3;
+        sheet.material.temperature = singe_param(s == 0 ? 800 : 300);
+        SingeSheetId id;
+        test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
+        test_mesh_free(&mesh);
+    }
+    SingeColliderDef ball = singe_default_collider();
+    SingeColliderId id;
+    ball.kind = SINGE_COLLIDER_SPHERE, ball.radius = 0.01f, ball.conductance = 100, ball.temperature = 700;
+    test_ok(sim, singe_sim_add_collider(sim, &ball, &id));
+    test_ok(sim, singe_sim_commit(sim));
+    return sim;
+}
+
+/// Gives up the next step at each of some times of asking; nothing changes, in the state and in the timers.
+static int give_up(SingeSim *sim, Asked *asked) {
+    SingeSim *copy;
+    int given_up = 0;
+    atomic_store(&asked->count, 0);
+    atomic_store(&asked->yes, 0);
+    test_ok(sim, singe_sim_clone(sim, &copy));
+    test_ok(copy, singe_sim_step(copy));
+    const int polls = atomic_load(&asked->count);
+    singe_sim_destroy(copy);
+    assert_true(polls > 5);
+
+    TestBytes before = test_save(sim);
+    const SingeTimers timers = singe_sim_timers(sim);
+    for (int n = 1; n <= polls; n += 1 + polls / 9, given_up++) {
+        atomic_store(&asked->count, 0);
+        atomic_store(&asked->yes, n);
+        test_refused(sim, SINGE_ERROR_CANCELLED, singe_sim_step(sim));
+        const SingeTimers now = singe_sim_timers(sim);
+        assert_memory_equal(&now, &timers, sizeof timers);
+        TestBytes after = test_save(sim);
+        assert_int_equal(before.size, after.size);
+        assert_memory_equal(before.data, after.data, before.size);
+        free(after.data);
+    }
+    free(before.data);
+    atomic_store(&asked->yes, 0);
+    return given_up;
+}
+
+/// A step that is given up, wherever that is, changes nothing: neither what is saved nor what follows.
+TEST(a_step_that_is_given_up_changes_nothing) {
+    for (int threads = 1; threads <= 2; threads++) {
+        Asked asked = {0}, never = {0};
+        SingeSim *sim = crowd_make(&asked, threads), *twin = crowd_make(&never, 1);
+        int given_up = 0;
+        for (int step = 0; step < 30; step++) {
+            given_up += give_up(sim, &asked);
+            test_ok(sim, singe_sim_step(sim));
+            test_ok(twin, singe_sim_step(twin));
+            test_assert_same(sim, twin);
+        }
+        const SingeTimers timers = singe_sim_timers(sim), other = singe_sim_timers(twin);
+        print_message("given up %d times; %llu collisions stopped, %u cells crossed from the start\n", given_up,
+                      (unsigned long long)timers.contact_stops, singe_sim_stats(sim).intersecting_cells);
+        assert_true(given_up > 150 && timers.contact_stops > 0 && singe_sim_stats(sim).intersecting_cells > 0);
+        assert_int_equal(timers.contact_stops, other.contact_stops);
+        assert_int_equal(timers.contact_pairs, other.contact_pairs);
+        singe_sim_destroy(sim);
+        singe_sim_destroy(twin);
+    }
 }
 
 TEST(steps_allocate_nothing) {

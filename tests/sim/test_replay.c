@@ -110,6 +110,30 @@ TEST(recordings_may_begin_with_a_snapshot) {
     free(tape.bytes);
 }
 
+static bool yes_if(void *context) { return *(const bool *)context; }
+
+TEST(what_was_given_up_is_given_up_again) {
+    Tape tape = {0};
+    bool gives_up = false;
+    SingeSimDef def = recorded(scene_def(), &tape);
+    def.cancel = (SingeCancel){yes_if, &gives_up};
+    Scene scene = scene_make(&def, 8);
+    test_steps(scene.sim, 3);
+    gives_up = true;
+    test_refused(scene.sim, SINGE_ERROR_CANCELLED, singe_sim_step(scene.sim));
+    uint32_t steps;
+    test_refused(scene.sim, SINGE_ERROR_CANCELLED, singe_sim_advance(scene.sim, 0.1, 4, &steps));
+    assert_int_equal(steps, 0);
+    gives_up = false;
+    test_steps(scene.sim, 3);
+    singe_sim_destroy(scene.sim);
+    SingeReplay replay = replay_all(&tape);
+    assert_string_equal(replay.what, "");
+    assert_true(replay.same && replay.complete);
+    assert_int_equal(replay.steps, 6);
+    free(tape.bytes);
+}
+
 // ---- what differs
 
 TEST(the_first_step_that_differs_is_named) {

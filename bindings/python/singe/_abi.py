@@ -9,8 +9,8 @@ VERSION = "0.2.0"
 ENUMS = {
     "SingeResult": {"SINGE_OK": 0, "SINGE_ERROR_ARGUMENT": 1, "SINGE_ERROR_MEMORY": 2, "SINGE_ERROR_MESH": 3,
                     "SINGE_ERROR_HANDLE": 4, "SINGE_ERROR_STATE": 5, "SINGE_ERROR_DIVERGED": 6,
-                    "SINGE_ERROR_FORMAT": 7, "SINGE_ERROR_VERSION": 8, "SINGE_ERROR_FILE": 9,
-                    "SINGE_ERROR_LIMIT": 10},
+                    "SINGE_ERROR_FORMAT": 7, "SINGE_ERROR_VERSION": 8, "SINGE_ERROR_FILE": 9, "SINGE_ERROR_LIMIT": 10,
+                    "SINGE_ERROR_CANCELLED": 11},
     "SingeLogLevel": {"SINGE_LOG_INFO": 0, "SINGE_LOG_WARNING": 1, "SINGE_LOG_ERROR": 2},
     "SingeFieldKind": {"SINGE_FIELD_NONE": 0, "SINGE_FIELD_TEXTURE": 1, "SINGE_FIELD_ATTRIBUTE": 2,
                        "SINGE_FIELD_NOISE": 3},
@@ -54,6 +54,10 @@ class SingeLog(Structure):
 
 class SingeRecord(Structure):
     _fields_ = [("write", CFUNCTYPE(c_bool, c_void_p, c_void_p, c_size_t)), ("context", c_void_p)]
+
+
+class SingeCancel(Structure):
+    _fields_ = [("asked", CFUNCTYPE(c_bool, c_void_p)), ("context", c_void_p)]
 
 
 class SingeTasks(Structure):
@@ -190,7 +194,7 @@ class SingeSimDef(Structure):
                 ("ambient_temperature", c_float), ("air_density", c_float), ("heat_tolerance", c_float),
                 ("surface_detail", c_float), ("surface_raggedness", c_float), ("wind", SingeWindDef),
                 ("solver", SingeSolverDef), ("gas", SingeGasDef), ("contact", SingeContactDef),
-                ("record", SingeRecord)]
+                ("record", SingeRecord), ("cancel", SingeCancel)]
 
 
 class SingeMeshDef(Structure):
@@ -312,7 +316,7 @@ class SingeNetworkReport(Structure):
     _fields_ = [("iterations", c_uint32), ("residual", c_double)]
 
 
-STRUCTS = [SingeError, SingeAllocator, SingeLog, SingeRecord, SingeTasks, SingeSheetId, SingeSourceId,
+STRUCTS = [SingeError, SingeAllocator, SingeLog, SingeRecord, SingeCancel, SingeTasks, SingeSheetId, SingeSourceId,
            SingeColliderId, SingePinId, SingeTexture, SingeNoise, SingeAttribute, SingeField, SingeParam,
            SingeMaterialDef, SingePoseKey, SingeValueKey, SingeSheetDef, SingeSourceDef, SingeColliderDef,
            SingePinDef, SingeWindDef, SingeSolverDef, SingeGasDef, SingeContactDef, SingeSimDef, SingeMeshDef,

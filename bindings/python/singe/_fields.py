@@ -15,7 +15,7 @@ from ._library import library
 
 COLOURS = ("red", "green", "blue", "yellow")
 # counts and pointers that arrays set, and fields that Python callers do not need
-_HIDDEN = {"struct_size", "user_data", "allocator", "log", "record", "tasks", "callback", "callback_context"}
+_HIDDEN = {"struct_size", "user_data", "allocator", "log", "record", "cancel", "tasks", "callback", "callback_context"}
 
 
 @dataclasses.dataclass
