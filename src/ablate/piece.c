@@ -1,7 +1,9 @@
 // Pieces: particles that are connected by springs.
 //
 // Disjoint sets over the live springs, with path halving; the root of a set is its smallest particle, so that the
-// result does not depend on the order of the springs. When a piece falls apart, the part with most particles keeps its
+// result does not depend on the order of the springs. Red springs suffice: they join all particles of each cell that is
+// left, every other spring that is left lies in such a cell or joins two that share a side, and with its red springs a
+// cell goes whole (ablate_step.c). When a piece falls apart, the part with most particles keeps its
 // id (among equals the one with the smallest particle); the others get new ids in order of their smallest particle. A
 // particle without springs belongs to no piece.
 #include "common/assertion.h"
@@ -24,15 +26,13 @@ static uint32_t piece_find(uint32_t *root, uint32_t i) {
 static void find_sets(AblatePlan *plan, const Shell *shell, const AblateState *ablate) {
     uint32_t *root = plan->root;
     for (uint32_t i = 0; i < shell->particle_count; i++) root[i] = i;
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
-        const SpringSet *springs = &shell->springs[colour];
-        const uint8_t *flags = ablate->spring_flags[colour];
-        for (uint32_t s = 0; s < springs->count; s++) {
-            if (!(flags[s] & SINGE_ALIVE)) continue;
-            uint32_t a = piece_find(root, springs->ends[s][0]), b = piece_find(root, springs->ends[s][1]);
-            if (a < b) root[b] = a;
-            else root[a] = b;
-        }
+    const SpringSet *red = &shell->springs[SINGE_RED];
+    const uint8_t *flags = ablate->spring_flags[SINGE_RED];
+    for (uint32_t s = 0; s < red->count; s++) {
+        if (!(flags[s] & SINGE_ALIVE)) continue;
+        uint32_t a = piece_find(root, red->ends[s][0]), b = piece_find(root, red->ends[s][1]);
+        if (a < b) root[b] = a;
+        else root[a] = b;
     }
 
     // a root precedes the other particles of its set, so one lookup is enough
