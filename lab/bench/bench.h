@@ -29,6 +29,8 @@ BenchFn bench_heap;
 BenchFn bench_collapse;
 /// Sheets fall on top of each other over a sphere: cost of the crowd, strain, crossings, memory.
 BenchFn bench_stack;
+/// A sheet held at two corners in gusts of several speeds: processor time, over that of the first.
+BenchFn bench_wind;
 /// Bytes per spring.
 BenchFn bench_memory;
 

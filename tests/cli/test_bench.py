@@ -18,6 +18,7 @@ TINY = (
     ("step", ["--springs", "1000", "--steps", "3"], ["step_ms", "heat_ms", "contacts"]),
     ("front", ["--material", "tissue", "--quick"], ["speed_mm_s_is", "hottest_C_from", "finding"]),
     ("surface", ["--springs", "1000", "--steps", "20"], ["detail_mm", "triangles", "fine_pct", "surface_ms"]),
+    ("wind", ["--cells", "12", "--time", "0.05"], ["wind_m_s", "of_first", "crossing"]),
     ("memory", ["--springs", "1000"], ["bytes_spring", "all_bytes_spring"]),
     ("compare", ["--springs", "250", "--time", "0.1", "--quick"], ["ratio", "no_more_error"]),
     ("--compare", ["--springs", "250", "--time", "0.1", "--quick"], ["ratio"]),
