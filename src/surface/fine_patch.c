@@ -143,6 +143,10 @@ static const uint8_t net_locations[4][4][2] = {{{0, 0}, {1, 0}, {0, 1}, {1, 1}},
                                                {{3, 3}, {2, 3}, {3, 2}, {2, 2}},
                                                {{0, 3}, {0, 2}, {1, 3}, {1, 2}}};
 
+static Float4 float4_at(Float3 p) { return (Float4){p.x, p.y, p.z, 0}; }
+
+static Float3 float4_point(Float4 p) { return float3(p[0], p[1], p[2]); }
+
 FinePatch fine_patch(const Fine *fine, uint32_t cell) {
     const Shell *shell = fine->shell;
     const uint32_t *at = shell->cells[cell], *sides = shell->cell_springs[cell].blue;
@@ -153,12 +157,12 @@ FinePatch fine_patch(const Fine *fine, uint32_t cell) {
         uint32_t next = sides[i], last = sides[(i + 3) & 3];
         Float3 shift = float3_load(fine->shift[at[i]]);
         const uint8_t(*location)[2] = net_locations[i];
-        patch.net[location[0][0]][location[0][1]] = float3_load(fine->limit[at[i]]);
+        patch.net[location[0][0]][location[0][1]] = float4_at(float3_load(fine->limit[at[i]]));
         patch.net[location[1][0]][location[1][1]] =
-            float3_add(shift, float3_load(fine->rail[next][ends[next][0] != at[i]]));
+            float4_at(float3_add(shift, float3_load(fine->rail[next][ends[next][0] != at[i]])));
         patch.net[location[2][0]][location[2][1]] =
-            float3_add(shift, float3_load(fine->rail[last][ends[last][0] != at[i]]));
-        patch.net[location[3][0]][location[3][1]] = float3_add(shift, float3_load(fine->inner[cell][i]));
+            float4_at(float3_add(shift, float3_load(fine->rail[last][ends[last][0] != at[i]])));
+        patch.net[location[3][0]][location[3][1]] = float4_at(float3_add(shift, float3_load(fine->inner[cell][i])));
     }
 
     return patch;
@@ -179,21 +183,21 @@ static void bernstein(float t, float value[4], float slope[4]) {
 
 FinePoint fine_patch_at(const FinePatch *patch, float u, float v) {
     float bu[4], du[4], bv[4], dv[4];
-    FinePoint point = {0};
+    Float4 position = {0}, along_u = {0}, along_v = {0};
     bernstein(u, bu, du);
     bernstein(v, bv, dv);
 
     for (int i = 0; i < 4; i++) {
-        Float3 row = {0, 0, 0}, slope = {0, 0, 0};
+        Float4 row = {0}, slope = {0};
         for (int j = 0; j < 4; j++) {
-            row = float3_mad(row, patch->net[i][j], bv[j]);
-            slope = float3_mad(slope, patch->net[i][j], dv[j]);
+            row += patch->net[i][j] * bv[j];
+            slope += patch->net[i][j] * dv[j];
         }
 
-        point.position = float3_mad(point.position, row, bu[i]);
-        point.along_u = float3_mad(point.along_u, row, du[i]);
-        point.along_v = float3_mad(point.along_v, slope, bu[i]);
+        position += row * bu[i];
+        along_u += row * du[i];
+        along_v += slope * bu[i];
     }
 
-    return point;
+    return (FinePoint){float4_point(position), float4_point(along_u), float4_point(along_v)};
 }

@@ -3,6 +3,7 @@
 #define SURFACE_SURFACE_FINE_H
 
 #include "common/float3.h"
+#include "common/float4.h"
 #include "surface/render_mesh.h"
 #include "surface/surface_parts.h"
 
@@ -223,7 +224,7 @@ void fine_fan(Fine *fine, const uint32_t *polygon, int count);
 
 /// A cell's points b_ij: i along side 0, j along side 3 backwards.
 typedef struct FinePatch {
-    Float3 net[4][4];
+    Float4 net[4][4]; ///< fourth: 0
 } FinePatch;
 
 /// A point of a patch and its derivatives.
