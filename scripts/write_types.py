@@ -8,7 +8,6 @@ Everything else of the headers is written by hand. --check: changes nothing, and
 of scenes that is wider than the library's is refused.
 """
 
-import math
 import pathlib
 import re
 import sys
@@ -61,35 +60,8 @@ def in_words(found):
     """A range as the header states it; "" if there is none."""
     name, inside = re.match(r"(\w+)(?:\((.*)\))?$", found).groups()
     bounds = arguments(inside) if inside else []
-    if name.startswith("IN_SCENES"):
-        return in_words(bounds[0])
     return {"WITHIN": "{0} to {1}", "BELOW": "{0} to below {1}", "OVER_UP_TO": "above {0}, to {1}", "FROM": ">= {0}",
-            "OVER": "> {0}", "OVER_OR_INF": "> {0}", "FINITE": "finite", "NUMBER": "any, also infinite",
-            "ANY": ""}[name].format(*bounds)
-
-
-def bounds(found):
-    """(low, high) of a range that has numbers; infinite where it ends nowhere."""
-    name, inside = re.match(r"(\w+)(?:\((.*)\))?$", found, re.DOTALL).groups()
-    numbers = [eval(part, {"__builtins__": {}}, {"DEGREE": math.pi / 180}) for part in arguments(inside)] if inside else []
-    if name in ("WITHIN", "BELOW", "OVER_UP_TO"):
-        return tuple(numbers)
-    return (numbers[0] if numbers else -math.inf, math.inf)
-
-
-def wide_scenes(text):
-    """Ranges of scenes in a table that reach beyond those of the library."""
-    for match in re.finditer(r"IN_SCENES(?:_OR_INF)?\(", text):
-        depth, i = 1, match.end()
-        while depth:
-            depth += (text[i] == "(") - (text[i] == ")")
-            i += 1
-        found, low, high = arguments(text[match.end():i - 1])
-        if found == "range":
-            continue  # the definition of the macro
-        inside, outside = bounds(f"WITHIN({low}, {high})"), bounds(found)
-        if inside[0] < outside[0] or inside[1] > outside[1]:
-            yield f"IN_SCENES({found}, {low}, {high})"
+            "FROM_OR_INF": ">= {0}", "OVER": "> {0}", "OVER_OR_INF": "> {0}", "ANY": ""}[name].format(*bounds)
 
 
 def plain(text):
@@ -205,9 +177,6 @@ def material_header(text, tables, units):
 def main():
     tables = {file.stem: list(rows(file.read_text(encoding="utf-8"))) for file in FOLDER.glob("*.def")}
     units = {"DIM_" + row[0]: row[2] for _, row in tables["dimensions"]}
-    for file in [*sorted(FOLDER.glob("*.def")), FOLDER.parents[1] / "program/preview/preview.def"]:
-        for fault in wide_scenes(re.sub(r"//[^\n]*", "", file.read_text(encoding="utf-8"))):
-            sys.exit(f"{file.name}: {fault}: scenes accept what the library refuses")
     for name, write in (("types.h", types_header), ("material.h", material_header)):
         header = FOLDER / name
         before = header.read_text(encoding="utf-8")

@@ -85,14 +85,14 @@ typedef enum SingeColour {
 /// over the sheet; the others have one value for it. Defaults: singe/material.def.
 typedef struct SingeMaterialDef {
     size_t struct_size;
-    SingeParam grammage; ///< kg/m2, > 0; mass per area before it burns
-    /// kg/m2, >= 0; diffusivity, layer_exchange, mass_rate and char_rate are given for this mass per area; on a lighter
-    /// sheet they are larger in proportion, and its fire is faster. 0: they hold for any mass. One number for the whole
-    /// sheet
+    SingeParam grammage; ///< kg/m2, 1e-6 to 1e6; mass per area before it burns
+    /// kg/m2, 0 to 1e6; diffusivity, layer_exchange, mass_rate and char_rate are given for this mass per area; on a
+    /// lighter sheet they are larger in proportion, and its fire is faster. 0: they hold for any mass. One number for
+    /// the whole sheet
     float reference_grammage;
-    SingeParam specific_heat; ///< J/(kg K), > 0; heat capacity of a kilogram
-    /// m, > 0; distance between the model's two layers; it sets the size of the wrinkles, and is larger than the real
-    /// sheet's
+    SingeParam specific_heat; ///< J/(kg K), 1e-3 to 1e9; heat capacity of a kilogram
+    /// m, 1e-6 to 100; distance between the model's two layers; it sets the size of the wrinkles, and is larger than
+    /// the real sheet's
     SingeParam thickness;
     /// surface: finite volumes in each layer; umbrella: the paper's eq 3, with springs' initial lengths; umbrella-live:
     /// eq 3 as printed, with the springs that are left and the lengths they have
@@ -105,7 +105,7 @@ typedef struct SingeMaterialDef {
     /// >= 0; widens the burning front this many times (1 or more) at the same speed, so that cells can hold it; 0: as
     /// little as the cells need; one number for the whole sheet
     float thickening;
-    SingeParam temperature;          ///< K, 1e-3 to 1e5; initial temperature
+    SingeParam temperature;          ///< K, 1 to 1e4; initial temperature
     SingeParam ignition_temperature; ///< K, > 0; temperature above which the sheet burns
     SingeParam heat_of_combustion;   ///< J/kg, >= 0; heat released per kilogram burnt
     /// 0 to 1; share of it that stays in the sheet; the rest goes into the flame. eta of eq 1, the temperature rise
@@ -139,8 +139,8 @@ typedef struct SingeMaterialDef {
     /// 0 to 2; the same for the back layer; a difference of 5 to 10 % curls the sheet towards the side that shrinks
     /// more
     SingeParam shrink_back;
-    /// rad, finite; direction of the fibres: angle from the direction of increasing u (x on a grid) towards increasing
-    /// v; without uv from the first side of each cell
+    /// rad, -6.2831853 to 6.2831853; direction of the fibres: angle from the direction of increasing u (x on a grid)
+    /// towards increasing v; without uv from the first side of each cell
     SingeParam fibre_angle;
     SingeParam fibre_shrink; ///< 0.1 to 10; ratio of the shrinkage across the fibres to that along them; 1: isotropic
     bool ablate;             ///< no: burnt cells are not removed (Fig 4 b)

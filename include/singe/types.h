@@ -42,7 +42,7 @@ typedef struct SingeSheetDef {
     uint32_t attribute_count;         ///< 0 without attributes
     const SingeAttribute *attributes; ///< [attribute_count]
     SingeMaterialDef material;        ///< what it is made of
-    float velocity[3];                ///< m/s, finite; at the start
+    float velocity[3];                ///< m/s, -1e6 to 1e6; at the start
     float drop_pieces_below;          ///< m2, >= 0; loose pieces smaller than this vanish; 0 keeps all
     /// [8 * cell_count] uv of each cell's corners, or NULL: those of the vertices. A vertex lies on a seam if its cells
     /// have different uv: it is drawn once for each uv, at the same position. uv is needed as well: the particle of a
@@ -100,12 +100,12 @@ typedef struct SingeSourceDef {
     /// flames, carries sheets and cools them: jet from a nozzle, vortex about an axis, attract to a point, turbulence
     /// everywhere
     SingeSourceKind kind;
-    float start;       ///< s, any, also infinite; time at which it starts
-    float end;         ///< s, any, also infinite; time at which it ends; inf: never
-    float temperature; ///< K, ball and spot, 1e-3 to 1e5; of the ball or flame
+    float start;       ///< s, >= 0; time at which it starts
+    float end;         ///< s, >= 0; time at which it ends; inf: never
+    float temperature; ///< K, ball and spot, 1 to 1e4; of the ball or flame
     float conductance; ///< W/(m2 K), ball and spot, 0 to 1e9; heat transfer coefficient to the sheet
-    /// m, ball, spot, jet, vortex, attract and turbulence, >= 0; full heat within it; of a jet's nozzle; where a vortex
-    /// or attraction is fastest; of turbulence's swirls
+    /// m, ball, spot, jet, vortex, attract and turbulence, 0 to 1e4; full heat within it; of a jet's nozzle; where a
+    /// vortex or attraction is fastest; of turbulence's swirls
     float radius;
     float falloff; ///< m, ball and spot, >= 0; beyond the radius, over which the heat falls to nothing
     /// W, ball and spot, 0 to 1e6; of a flame that it carries: the flame's gas rises and burns from its centre, if the
@@ -114,8 +114,8 @@ typedef struct SingeSourceDef {
     uint32_t path_count;      ///< of ball, spot, jet, vortex and attract; 0: at rest at position. A spot has at most 1
     const SingePoseKey *path; ///< [path_count] positions only
     SingeTexture texture;     ///< texture source, or arrival map
-    /// W/m2, texture, finite; into each of the sheet's two layers where the texture is white; at most 1e15 W/m2 after
-    /// strength and the texture. Below 0 it cools, but not below 1 K
+    /// W/m2, texture, -1e9 to 1e9; into each of the sheet's two layers where the texture is white; at most 1e15 W/m2
+    /// after strength and the texture. Below 0 it cools, but not below 1 K
     float flux;
     /// texture, water and what moves air: key frames that multiply flux, wetting or speed; 0 means 1
     uint32_t strength_count;
@@ -131,7 +131,7 @@ typedef struct SingeSourceDef {
     /// kg/(m2 s), water, 0 to 1e6; water that falls where the picture is white, at the air's temperature. It needs a
     /// sheet with moisture above 0, which holds at most three times its own mass
     float wetting;
-    /// jet and vortex, finite; in which a jet blows; a vortex turns about it, counter-clockwise seen against it
+    /// jet and vortex, -1e6 to 1e6; in which a jet blows; a vortex turns about it, counter-clockwise seen against it
     float direction[3];
     float speed; ///< m/s, jet, vortex, attract and turbulence, 0 to 1000; of the air, where it is fastest
     /// m/s, jet, > 0; speed of the jet's air past a sheet from which on its flame gives the sheet no heat; it gives
@@ -173,12 +173,12 @@ typedef struct SingeColliderDef {
     /// plane (its normal is its own z axis), sphere, box, capsule (along its own z axis), heightfield (solid below
     /// heights over a rectangle of its own x-y plane) or mesh (what a closed mesh encloses)
     SingeColliderKind kind;
-    float radius;             ///< m, sphere and capsule, 1e-6 to 1e6; of the sphere or the capsule
-    float half_size[3];       ///< m, box, 1e-6 to 1e6; half of the box's lengths along its own axes
-    float height;             ///< m, capsule, 0 to 1e6; between the centres of the capsule's caps
+    float radius;             ///< m, sphere and capsule, 1e-6 to 1e4; of the sphere or the capsule
+    float half_size[3];       ///< m, box, 1e-6 to 1e4; half of the box's lengths along its own axes
+    float height;             ///< m, capsule, 0 to 1e4; between the centres of the capsule's caps
     float friction;           ///< 0 to 1000; Coulomb's coefficient
     float offset;             ///< m, 0 to 1000; distance that sheets keep from the surface
-    float temperature;        ///< K, 1e-3 to 1e5; matters when conductance is not 0
+    float temperature;        ///< K, 1 to 1e4; matters when conductance is not 0
     float conductance;        ///< W/(m2 K), 0 to 1e9; heat exchanged in contact; 0 for none
     float contact_distance;   ///< m, 0 to 1000; how near counts as contact for heat
     uint32_t path_count;      ///< 0: at rest at position and rotation
@@ -356,8 +356,8 @@ static inline SingeGasDef singe_default_gas(void) {
 typedef struct SingeContactDef {
     size_t struct_size;
     bool enabled; ///< no: sheets pass through themselves, as in the paper
-    /// m, above 0, to 1; distance kept between surfaces, at most 2/5 of the smallest cell; not the material's
-    /// thickness, which is the distance between the model's layers
+    /// m, 1e-6 to 1; distance kept between surfaces, at most 2/5 of the smallest cell; not the material's thickness,
+    /// which is the distance between the model's layers
     float thickness;
     float friction; ///< 0 to 1000; Coulomb's coefficient
 } SingeContactDef;

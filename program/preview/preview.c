@@ -28,6 +28,7 @@ PreviewDef preview_default(void) {
         .sun_angle = 0.045f,
         .sun_colour = {2.2f, 2.05f, 1.85f},
         .sky_colour = {0.4f, 0.45f, 0.53f},
+        .lamp_radius = 0.03f,
         .ground_height = 0,
         .ground_colour = {0.235f, 0.145f, 0.085f},
         .ground_gloss = 2,
@@ -55,7 +56,6 @@ static SingeResult preview_refuse(SingeError *error, int64_t element, const char
 static SingeResult check_rows(const PreviewDef *def, SingeError *error) {
 #define DEGREE (3.14159265358979323846 / 180)
 #define WITHIN(low, high) (float)(low), (float)(high), "between " #low " and " #high
-#define IN_SCENES(range, low, high) range
 #define FLOAT(place) &(place)
 #define VECTOR(place) (place)
 #define INT(place) \

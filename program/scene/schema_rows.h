@@ -11,7 +11,7 @@
 #define DEGREE (3.14159265358979323846 / 180)
 #define ROWS(table) .rows = (table), .row_count = (int)(sizeof(table) / sizeof *(table))
 
-// ranges, in held units; those of the library's tables may be narrower in scenes, never wider
+// ranges, in held units: those of the library's tables, up to 1e9
 #define MUCH 1e9
 #define ANY .min = 0, .max = 0 // any number of the type
 #define SPACE .min = -1e6, .max = 1e6
@@ -19,13 +19,10 @@
 #define TURN .min = -1e6 * DEGREE, .max = 1e6 * DEGREE
 #define OVER(low) .flags = ROW_OPEN_MIN, .min = (low), .max = MUCH
 #define FROM(low) .min = (low), .max = MUCH
+#define FROM_OR_INF(low) .flags = ROW_INF, .min = (low), .max = MUCH
 #define OVER_OR_INF(low) .flags = ROW_OPEN_MIN | ROW_INF, .min = (low), .max = MUCH
 #define OVER_UP_TO(low, high) .flags = ROW_OPEN_MIN, .min = (low), .max = (high)
 #define WITHIN(low, high) .min = (low), .max = (high)
-#define FINITE ANY
-#define NUMBER ANY
-#define IN_SCENES(range, low, high) WITHIN(low, high)
-#define IN_SCENES_OR_INF(range, low, high) .flags = ROW_INF, WITHIN(low, high)
 #define BELOW(low, high) .flags = ROW_OPEN_MAX, .min = (low), .max = (high)
 
 // the kinds that have a row

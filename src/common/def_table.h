@@ -25,18 +25,14 @@ typedef struct FieldRange {
     { (float)(low), (float)(high), true, false, "above " #low " and at most " #high }
 #define FROM(low) \
     { (float)(low), INFINITY, false, true, #low " or more" }
+#define FROM_OR_INF(low) \
+    { (float)(low), INFINITY, false, false, #low " or more" }
 #define OVER(low) \
     { (float)(low), INFINITY, true, true, "above " #low }
 #define OVER_OR_INF(low) \
     { (float)(low), INFINITY, true, false, "above " #low }
-#define FINITE \
-    { -INFINITY, INFINITY, true, true, "finite" }
-#define NUMBER \
-    { -INFINITY, INFINITY, false, false, "a number" }
 #define ANY \
     { 0, 0, false, false, NULL }
-#define IN_SCENES(range, low, high) range
-#define IN_SCENES_OR_INF(range, low, high) range
 
 static inline bool range_has(const FieldRange *range, float x) {
     return (range->low_open ? x > range->low : x >= range->low) &&

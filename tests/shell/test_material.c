@@ -25,6 +25,9 @@ static const struct {
 };
 enum { VARYING = sizeof varying / sizeof varying[0] };
 
+/// A number for each of the first parameters; the third is a temperature.
+static float number_of(int k) { return k == 2 ? 300 : 0.01f * (float)(k + 1); }
+
 // Every parameter goes to its own slot, front and back of shrinkage each to its layer, and through the
 // shell into Matter.
 TEST(every_number_goes_to_its_slot) {
@@ -37,7 +40,7 @@ TEST(every_number_goes_to_its_slot) {
 
     enum { FIRST = sizeof params / sizeof *params };
     m->reference_grammage = 0;
-    for (int k = 0; k < FIRST; k++) *params[k] = singe_param(0.01f * (float)(k + 1));
+    for (int k = 0; k < FIRST; k++) *params[k] = singe_param(number_of(k));
     m->shrink_front = singe_param(1.25f), m->shrink_back = singe_param(0.75f);
     for (int k = 0; k < 4; k++) m->weight[k] = singe_param(0.5f + 0.1f * (float)k);
     SingeParam *more[] = {&m->layer_exchange,
@@ -78,7 +81,7 @@ TEST(every_number_goes_to_its_slot) {
     for (uint32_t p = 0; p < shell.particle_count; p++) {
         for (int k = 0; k < FIRST; k++)
             if (params[k] != &m->heat_of_combustion && params[k] != &m->heat_share)
-                assert_true(field_at(fields[k], p) == 0.01f * (float)(k + 1));
+                assert_true(field_at(fields[k], p) == number_of(k));
         assert_true(field_at(matter->heating, p) == share * heat / m->specific_heat.value);
         assert_true(field_at(matter->gas_heat, p) == heat * (1 - share));
         assert_true(field_at(matter->shrink, p) == (p < 9 ? 0.75f : 1.25f));
@@ -87,7 +90,7 @@ TEST(every_number_goes_to_its_slot) {
         for (int k = 0; k < 4; k++) assert_true(field_at(matter->compliance[k], p) == 0.3f + 0.1f * (float)k);
     }
 
-    for (int k = 0; k < FIRST; k++) assert_true(sheet_param(&source, k, 3) == 0.01f * (float)(k + 1));
+    for (int k = 0; k < FIRST; k++) assert_true(sheet_param(&source, k, 3) == number_of(k));
     shell_free(&memory, &shell);
     sheet_source_free(&memory, &source);
     square_free(&square);
@@ -114,14 +117,17 @@ TEST(every_parameter_can_vary) {
         def.material.thickness = param;
         SheetSource known = evaluate(&memory, &def);
         for (int k = 0; k < VARYING; k++) {
+            const float unit = varying[k].param == PARAM_TEMPERATURE ? 1024 : 1;
+            param.value = 0.5f * unit;
+            param.to = 0.9f * unit;
             def = square.def;
             memcpy((char *)&def.material + varying[k].offset, &param, sizeof param);
             SheetSource source = evaluate(&memory, &def);
-            float low = 1, high = 0;
+            float low = INFINITY, high = 0;
             for (uint32_t i = 0; i < total; i++) {
                 bool here = varying[k].places & (i < 49 ? AT_VERTICES : AT_CENTRES);
                 for (int p = 0; p < PARAM_COUNT; p++) {
-                    float expected = here && p == varying[k].param ? sheet_param(&known, PARAM_THICKNESS, i)
+                    float expected = here && p == varying[k].param ? unit * sheet_param(&known, PARAM_THICKNESS, i)
                                                                    : sheet_param(&plain, p, i);
                     assert_true(sheet_param(&source, p, i) == expected);
                 }
@@ -131,13 +137,12 @@ TEST(every_parameter_can_vary) {
                 high = fmaxf(high, sheet_param(&source, varying[k].param, i));
             }
 
-            assert_true(low >= 0.5f && high <= 0.9f && high - low > 0.1f);
+            assert_true(low >= 0.5f * unit && high <= 0.9f * unit && high - low > 0.1f * unit);
             sheet_source_free(&memory, &source);
 
             param.to = INFINITY; // no line leads there, not even for a ceiling that may be infinite
             memcpy((char *)&def.material + varying[k].offset, &param, sizeof param);
             refuse(&def, -1, "must vary between two finite numbers");
-            param.to = 0.9f;
         }
 
         sheet_source_free(&memory, &known);
@@ -177,10 +182,12 @@ TEST(mass_and_capacity_vary) {
 
     float tiny[25];
     for (int v = 0; v < 25; v++) tiny[v] = v == 18 ? 0 : 1;
+    for (int v = 0; v < 25; v++)
+        for (int c = 0; c < 3; c++) square.mesh.position[v][c] *= 1e-12f; // cells of a quarter of a picometre
     SingeAttribute attribute = {"thin", tiny};
     square.def.attribute_count = 1, square.def.attributes = &attribute;
     square.def.material.grammage =
-        singe_param_field(1e-30f, 0.1f, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "thin"});
+        singe_param_field(1e-6f, 0.1f, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "thin"});
     SingeError error = {0};
     assert_int_equal(sheet_source_create(&memory, &square.def, &source, &error), SINGE_ERROR_MESH);
     assert_int_equal(error.element, 10); // the first cell at vertex 18
@@ -223,7 +230,8 @@ TEST(rates_are_stated_for_a_grammage) {
         sheet_source_free(&memory, &source);
     }
 
-    m->reference_grammage = 1e30f, m->mass_rate = singe_param(1e30f);
+    m->reference_grammage = 1e6f;
+    m->mass_rate = singe_param(1e35f);
     refuse(&square.def, -1, "mass_rate is too large for its grammage");
     m->reference_grammage = 0, m->heat_of_combustion = singe_param(1e38f), m->specific_heat = singe_param(0.01f);
     refuse(&square.def, -1, "heat_of_combustion is too large for its specific heat");

@@ -12,7 +12,7 @@ export type Vector = readonly [number, number, number];
 export interface Key { time: number; position: Vector; rotation?: readonly [number, number, number, number] }
 
 export interface SheetOptions {
-    /** m/s, finite; at the start */
+    /** m/s, -1e6 to 1e6; at the start */
     velocity?: Vector;
     /** m2, >= 0; loose pieces smaller than this vanish; 0 keeps all */
     drop_pieces_below?: number;
@@ -24,24 +24,24 @@ export interface SourceOptions {
      *  bends flames, carries sheets and cools them: jet from a nozzle, vortex about an axis, attract to a point,
      *  turbulence everywhere */
     kind?: "ball" | "texture" | "spot" | "arrival" | "water" | "jet" | "vortex" | "attract" | "turbulence";
-    /** s, any, also infinite; time at which it starts */
+    /** s, >= 0; time at which it starts */
     start?: number;
-    /** s, any, also infinite; time at which it ends; inf: never */
+    /** s, >= 0; time at which it ends; inf: never */
     end?: number;
-    /** K, ball and spot, 1e-3 to 1e5; of the ball or flame */
+    /** K, ball and spot, 1 to 1e4; of the ball or flame */
     temperature?: number;
     /** W/(m2 K), ball and spot, 0 to 1e9; heat transfer coefficient to the sheet */
     conductance?: number;
-    /** m, ball, spot, jet, vortex, attract and turbulence, >= 0; full heat within it; of a jet's nozzle; where a
-     *  vortex or attraction is fastest; of turbulence's swirls */
+    /** m, ball, spot, jet, vortex, attract and turbulence, 0 to 1e4; full heat within it; of a jet's nozzle; where
+     *  a vortex or attraction is fastest; of turbulence's swirls */
     radius?: number;
     /** m, ball and spot, >= 0; beyond the radius, over which the heat falls to nothing */
     falloff?: number;
     /** W, ball and spot, 0 to 1e6; of a flame that it carries: the flame's gas rises and burns from its centre, if
      *  the scene has gas; a match has 60 W. It heats sheets through the gas alone */
     power?: number;
-    /** W/m2, texture, finite; into each of the sheet's two layers where the texture is white; at most 1e15 W/m2
-     *  after strength and the texture. Below 0 it cools, but not below 1 K */
+    /** W/m2, texture, -1e9 to 1e9; into each of the sheet's two layers where the texture is white; at most 1e15
+     *  W/m2 after strength and the texture. Below 0 it cools, but not below 1 K */
     flux?: number;
     /** s, arrival, 0 to 1e9; when the front arrives where the map is black */
     arrival_from?: number;
@@ -53,7 +53,8 @@ export interface SourceOptions {
     /** kg/(m2 s), water, 0 to 1e6; water that falls where the picture is white, at the air's temperature. It needs
      *  a sheet with moisture above 0, which holds at most three times its own mass */
     wetting?: number;
-    /** jet and vortex, finite; in which a jet blows; a vortex turns about it, counter-clockwise seen against it */
+    /** jet and vortex, -1e6 to 1e6; in which a jet blows; a vortex turns about it, counter-clockwise seen against
+     *  it */
     direction?: Vector;
     /** m/s, jet, vortex, attract and turbulence, 0 to 1000; of the air, where it is fastest */
     speed?: number;
@@ -66,17 +67,17 @@ export interface ColliderOptions {
     /** plane (its normal is its own z axis), sphere, box, capsule (along its own z axis), heightfield (solid below
      *  heights over a rectangle of its own x-y plane) or mesh (what a closed mesh encloses) */
     kind?: "plane" | "sphere" | "box" | "capsule" | "heightfield" | "mesh";
-    /** m, sphere and capsule, 1e-6 to 1e6; of the sphere or the capsule */
+    /** m, sphere and capsule, 1e-6 to 1e4; of the sphere or the capsule */
     radius?: number;
-    /** m, box, 1e-6 to 1e6; half of the box's lengths along its own axes */
+    /** m, box, 1e-6 to 1e4; half of the box's lengths along its own axes */
     half_size?: Vector;
-    /** m, capsule, 0 to 1e6; between the centres of the capsule's caps */
+    /** m, capsule, 0 to 1e4; between the centres of the capsule's caps */
     height?: number;
     /** 0 to 1000; Coulomb's coefficient */
     friction?: number;
     /** m, 0 to 1000; distance that sheets keep from the surface */
     offset?: number;
-    /** K, 1e-3 to 1e5; matters when conductance is not 0 */
+    /** K, 1 to 1e4; matters when conductance is not 0 */
     temperature?: number;
     /** W/(m2 K), 0 to 1e9; heat exchanged in contact; 0 for none */
     conductance?: number;
@@ -171,7 +172,7 @@ export interface GasOptions {
 export interface ContactOptions {
     /** no: sheets pass through themselves, as in the paper */
     enabled?: boolean;
-    /** m, above 0, to 1; distance kept between surfaces, at most 2/5 of the smallest cell; not the material's
+    /** m, 1e-6 to 1; distance kept between surfaces, at most 2/5 of the smallest cell; not the material's
      *  thickness, which is the distance between the model's layers */
     thickness?: number;
     /** 0 to 1000; Coulomb's coefficient */
@@ -208,16 +209,16 @@ export interface SimOptions {
 }
 
 export interface MaterialOptions {
-    /** kg/m2, > 0; mass per area before it burns */
+    /** kg/m2, 1e-6 to 1e6; mass per area before it burns */
     grammage?: Param;
-    /** kg/m2, >= 0; diffusivity, layer_exchange, mass_rate and char_rate are given for this mass per area; on a
+    /** kg/m2, 0 to 1e6; diffusivity, layer_exchange, mass_rate and char_rate are given for this mass per area; on a
      *  lighter sheet they are larger in proportion, and its fire is faster. 0: they hold for any mass. One number
      *  for the whole sheet */
     reference_grammage?: number;
-    /** J/(kg K), > 0; heat capacity of a kilogram */
+    /** J/(kg K), 1e-3 to 1e9; heat capacity of a kilogram */
     specific_heat?: Param;
-    /** m, > 0; distance between the model's two layers; it sets the size of the wrinkles, and is larger than the
-     *  real sheet's */
+    /** m, 1e-6 to 100; distance between the model's two layers; it sets the size of the wrinkles, and is larger
+     *  than the real sheet's */
     thickness?: Param;
     /** surface: finite volumes in each layer; umbrella: the paper's eq 3, with springs' initial lengths; umbrella-
      *  live: eq 3 as printed, with the springs that are left and the lengths they have */
@@ -235,7 +236,7 @@ export interface MaterialOptions {
     /** >= 0; widens the burning front this many times (1 or more) at the same speed, so that cells can hold it; 0:
      *  as little as the cells need; one number for the whole sheet */
     thickening?: number;
-    /** K, 1e-3 to 1e5; initial temperature */
+    /** K, 1 to 1e4; initial temperature */
     temperature?: Param;
     /** K, > 0; temperature above which the sheet burns */
     ignition_temperature?: Param;
@@ -279,8 +280,8 @@ export interface MaterialOptions {
     /** 0 to 2; the same for the back layer; a difference of 5 to 10 % curls the sheet towards the side that shrinks
      *  more */
     shrink_back?: Param;
-    /** rad, finite; direction of the fibres: angle from the direction of increasing u (x on a grid) towards
-     *  increasing v; without uv from the first side of each cell */
+    /** rad, -6.2831853 to 6.2831853; direction of the fibres: angle from the direction of increasing u (x on a
+     *  grid) towards increasing v; without uv from the first side of each cell */
     fibre_angle?: Param;
     /** 0.1 to 10; ratio of the shrinkage across the fibres to that along them; 1: isotropic */
     fibre_shrink?: Param;
