@@ -125,7 +125,7 @@ static void *write_files(void *argument) {
     const int frame = writing->frame;
     double begun = console_clock(), clock = begun, *seconds = writing->output_seconds;
     SingeResult result = SINGE_OK;
-    const char *name, *exr = NULL;
+    const char *name = NULL, *exr = NULL;
 
     for (int i = 0; i < OUTPUT_COUNT && !result; i++) {
         if (!output_has(run->outputs.formats, i)) continue;

@@ -10,6 +10,9 @@
 
 #include <string.h>
 
+#define SOLVER(method, solver) [method] = &(solver),
+static const Solver *const solvers[] = {SOLVERS(SOLVER)};
+
 /// Max number of blocks of a sum: over the particles, or the springs of two colours.
 static int plan_partials(const Shell *shell) {
     int particles = pool_blocks((int)shell->particle_count), springs = 0;
@@ -46,15 +49,16 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
 
     // arrays, and what the solver needs
     plan->kernels = kernels_choose(settings->instructions);
-    plan->solver = solver->method == SINGE_SOLVER_STRAND ? &strand_solver : &paper_solver;
+    plan->solver = solvers[solver->method];
     const bool done =
         NEW(memory, plan->inverse_mass, plan->particle_count) && NEW(memory, plan->normal, plan->particle_count) &&
         NEW(memory, plan->air, plan->particle_count) && NEW(memory, plan->predicted, plan->particle_count) &&
         NEW(memory, plan->soft, plan->particle_count) && NEW(memory, plan->cell_normal, plan->cell_count) &&
         NEW(memory, plan->height_wait, height_wait_count(shell)) &&
         NEW(memory, plan->colliders, plan->collider_capacity) && NEW(memory, plan->partial, plan_partials(shell)) &&
-        plan->solver->create(memory, shell, plan) && patches_create(memory, shell, &plan->patches) &&
-        attach_create(memory, shell, &plan->attachments) && smooth_create(memory, shell, plan) &&
+        (!plan->solver->create || plan->solver->create(memory, shell, plan)) &&
+        patches_create(memory, shell, &plan->patches) && attach_create(memory, shell, &plan->attachments) &&
+        smooth_create(memory, shell, plan) &&
         (!settings->contact.enabled ||
          !collision_plan_create(memory, shell, &settings->contact, settings->time_step, &plan->collision));
     if (!done) {
@@ -70,7 +74,7 @@ int dynamics_plan_substeps(const DynamicsPlan *plan) { return plan->settings.sol
 
 void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
     if (!plan) return;
-    plan->solver->release(memory, shell, plan);
+    if (plan->solver->release) plan->solver->release(memory, shell, plan);
     collision_plan_free(memory, plan->collision);
     FREE(memory, plan->inverse_mass, plan->particle_count);
     FREE(memory, plan->normal, plan->particle_count);
@@ -219,13 +223,13 @@ static SingeResult dynamics_part(Memory *memory, DynamicsPlan *plan, const StepC
     }
 
     // forces for the tears
-    if (shell->spare_count > 0) plan->solver->gather(plan, shell, pool, part.h);
+    if (shell->spare_count > 0 && plan->solver->gather) plan->solver->gather(plan, shell, pool, part.h);
     TRY(dynamics_check(plan, pool, dynamics, error));
 
     // limits and CCD alternate: what CCD has stopped may be too far from what it has not. Where that takes much work, CCD
     // has the last word
     for (int turn = 0; turn < TURNS; turn++) {
-        bool limited = plan->solver->limit(plan, shell, state, pool, dynamics);
+        bool limited = plan->solver->limit && plan->solver->limit(plan, shell, state, pool, dynamics);
         if (!plan->collision || (turn > 0 && !limited)) break;
         const uint64_t stops = collision_counters(plan->collision).stops;
         TRY(dynamics_contact_result(ccd_apply(memory, plan->collision, shell, state, pool, h, dynamics), pool, error));

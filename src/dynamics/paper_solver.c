@@ -278,28 +278,5 @@ static SingeResult paper_project(DynamicsPlan *plan, const Substep *substep) {
     return SINGE_OK;
 }
 
-/// Sheets do not tear by these methods: they have no forces of a step.
-static void paper_gather(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h) {
-    (void)plan;
-    (void)shell;
-    (void)pool;
-    (void)h;
-}
-
-/// What these methods leave too long is shown as it is.
-static bool paper_limit(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
-                        DynamicsState *dynamics) {
-    (void)plan;
-    (void)shell;
-    (void)state;
-    (void)pool;
-    (void)dynamics;
-    return false;
-}
-
-const Solver paper_solver = {.create = paper_create,
-                             .release = paper_release,
-                             .prepare = paper_prepare,
-                             .project = paper_project,
-                             .gather = paper_gather,
-                             .limit = paper_limit};
+const Solver paper_solver = {
+    .create = paper_create, .release = paper_release, .prepare = paper_prepare, .project = paper_project};

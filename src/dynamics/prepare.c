@@ -109,5 +109,5 @@ void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *
     memset(plan->height_wait, 0, height_wait_count(shell));
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, prepare_cells, &job);
     pool_for(pool, (int)shell->particle_count, POOL_BLOCK, prepare_particles, &job);
-    plan->solver->prepare(plan, shell, state, pool, dynamics);
+    if (plan->solver->prepare) plan->solver->prepare(plan, shell, state, pool, dynamics);
 }

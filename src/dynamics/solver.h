@@ -18,6 +18,7 @@ typedef struct Substep {
     SingeError *error;
 } Substep;
 
+/// All but `project` may be NULL: then there is nothing to do.
 typedef struct Solver {
     /// What the method needs, in the plan. False when out of memory; `release` frees what is there then, too.
     bool (*create)(Memory *memory, const Shell *shell, DynamicsPlan *plan);
@@ -30,10 +31,10 @@ typedef struct Solver {
     /// Projects a substep: springs, heights of centres, contact.
     SingeResult (*project)(DynamicsPlan *plan, const Substep *substep);
 
-    /// Once a step: the springs' forces, from which sheets tear (plan->patches.pull).
+    /// Once a step: the springs' forces, from which sheets tear (plan->patches.pull). NULL: sheets do not tear.
     void (*gather)(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h);
 
-    /// After the substeps: shortens what is left far too long. True if it has found any.
+    /// After the substeps: shortens what is left far too long. True if it has found any. NULL: it is shown as it is.
     bool (*limit)(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, DynamicsState *dynamics);
 
     /// Contact of particles with colliders, eq 13 and attachments are left to the pass between two projections (move.c);
@@ -45,5 +46,13 @@ typedef struct Solver {
 } Solver;
 
 extern const Solver strand_solver, paper_solver;
+
+/// Which solver each method has: ROW(method, solver).
+#define SOLVERS(ROW)                              \
+    ROW(SINGE_SOLVER_STRAND, strand_solver)       \
+    ROW(SINGE_SOLVER_PAPER, paper_solver)         \
+    ROW(SINGE_SOLVER_PAPER_LITERAL, paper_solver) \
+    ROW(SINGE_SOLVER_ALL_AT_ONCE, paper_solver)   \
+    ROW(SINGE_SOLVER_MASS_SPRING, paper_solver)
 
 #endif
