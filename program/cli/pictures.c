@@ -37,7 +37,8 @@ static SingeResult open_def(const Job *job, const PreviewDef *def, Pictures **ma
     pictures->starts = calloc(job->assets.sheet_count + 1, sizeof *pictures->starts);
     for (uint32_t s = 0; pictures->starts && s < job->assets.sheet_count; s++) {
         const Mesh *mesh = &job->assets.meshes[s];
-        pictures->starts[s] = (PreviewStart){mesh->vertex_count, mesh->cell_count, mesh->positions, mesh->cells};
+        pictures->starts[s] = (PreviewStart){mesh->vertex_count, mesh->cell_count, mesh->positions,
+                                             mesh->cells,        mesh->uv,         mesh->corner_uv};
     }
     pictures->def.starts = pictures->starts;
     pictures->shape_max = scene_shapes(job->scene, &job->assets, 0, NULL, 0);

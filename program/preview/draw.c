@@ -167,6 +167,7 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
     point->normal = float3_dot(smooth, point->geometric) >= 0 ? smooth : float3_scale(smooth, -1);
     PaperState state;
     paper_state(&preview->scene, hit->primID[lane], u, v, &state);
+    if (cloth_weave(preview, state.sheet)) cloth_frame(&preview->scene, hit->primID[lane], point);
     point->hit = true;
     point->sheet = state.sheet;
     point->piece = state.piece;

@@ -42,7 +42,7 @@ static void pass_sheets(const struct RTCFilterFunctionNArguments *arguments) {
         if (burn > PAPER_WHOLE) {
             PaperState state;
             paper_state(scene, triangle[i], u[i], v[i], &state);
-            if (paper_is_hole(&state, footprint)) {
+            if (paper_is_hole(preview, &state, footprint)) {
                 arguments->valid[i] = 0;
                 continue;
             }

@@ -88,6 +88,7 @@ struct Preview {
     uint32_t shape_count;
     Facets *facets;    ///< of the solids drawn so far
     Texture *textures; ///< [def.sheet_count]
+    Weave *weaves;     ///< [def.sheet_count]
     float linear[256]; ///< sRGB byte to linear
     Float3 blackbody[BLACKBODY_COUNT];
     Float3 *picture;          ///< [height * width] radiance
@@ -113,6 +114,7 @@ typedef struct Point {
     float transmission;                       ///< share of the light from behind that is transmitted
     float gloss, shininess;                   ///< Blinn-Phong lobe of the sun
     float mirror;                             ///< reflectance for the blurred sky
+    Float3 across[2];                         ///< unit, across the warp and the weft of woven sheets
     Mirrored mirrored;                        ///< in front of the sky
     float footprint;                          ///< m, a pixel's size here
     float fade;                               ///< 0 visible to 1 faded into the background

@@ -172,6 +172,36 @@ static void measure(Preview *preview) {
     }
 }
 
+/// The distance from the border of a piece, along sides of triangles, on woven sheets.
+static void find_edges(const Preview *preview) {
+    const PreviewScene *scene = &preview->scene;
+    bool woven = false;
+    for (uint32_t i = 0; i < scene->vertex_count; i++) {
+        PaperVertex *v = &scene->vertices[i];
+        const Weave *weave = cloth_weave(preview, v->sheet);
+        v->edge = weave && v->rim < 0.5f ? CLOTH_EDGE * weave->pitch : 0;
+        woven = woven || weave;
+    }
+
+    // forwards and backwards by turns; only burnt cloth has loose threads
+    bool changes = woven;
+    const uint32_t sides = 3 * scene->triangle_count;
+    for (uint32_t pass = 0; changes; pass++) {
+        changes = false;
+        for (uint32_t i = 0; i < sides; i++) {
+            const uint32_t k = pass & 1 ? sides - 1 - i : i, *t = scene->triangles[k / 3];
+            PaperVertex *a = &scene->vertices[t[k % 3]], *b = &scene->vertices[t[(k + 1) % 3]];
+            if (maxf(a->burn, b->burn) < 0.5f * PAPER_WHOLE || fabsf(a->edge - b->edge) < 1e-6f) continue;
+            Float3 side = float3_sub(float3_load(a->rest), float3_load(b->rest));
+            PaperVertex *far = a->edge > b->edge ? a : b, *near = a->edge > b->edge ? b : a;
+            float edge = near->edge + float3_length(side);
+            if (!(edge < far->edge)) continue;
+            far->edge = edge;
+            changes = true;
+        }
+    }
+}
+
 static SingeResult check_surface(const SingeSurface *surface, SingeError *error) {
     if (surface->vertex_count &&
         !(surface->position && surface->normal && surface->uv && surface->rest_position && surface->temperature &&
@@ -235,6 +265,7 @@ SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError 
         for (int end = 0; moves && end < 2; end++) memset(scene->moved[end][i], 0, sizeof *scene->moved[end]);
     }
 
+    find_edges(preview);
     measure(preview);
     return SINGE_OK;
 }

@@ -10,6 +10,7 @@
 typedef struct Point Point;
 typedef struct Preview Preview;
 typedef struct PreviewScene PreviewScene;
+typedef struct PreviewDef PreviewDef;
 
 /// The data of a vertex for shading.
 typedef struct PaperVertex {
@@ -31,7 +32,10 @@ typedef struct PaperVertex {
     float age;           ///< s of the fire's real time since ignition; 0: not yet
     int32_t piece;
     float water; ///< over the mass before it burns
+    float edge;  ///< m at rest, to the nearest border of a piece, on woven sheets: at most CLOTH_EDGE threads
 } PaperVertex;
+
+#define CLOTH_EDGE 24.0f
 
 /// The interpolated fields that determine the appearance of a hit.
 typedef struct PaperState {
@@ -41,17 +45,51 @@ typedef struct PaperState {
     float age;     ///< s of the fire's real time since ignition; 0: not yet
     int32_t sheet, piece;
     float water; ///< over the mass before it burns
+    float edge;  ///< m, of woven sheets
 } PaperState;
 
 /// The sheet's fields at a point in a triangle.
 void paper_state(const PreviewScene *scene, uint32_t triangle, float u, float v, PaperState *state);
 
 /// Whether the burnt sheet has a hole there at the picture's scale. Only where burn > PAPER_WHOLE.
-bool paper_is_hole(const PaperState *state, float footprint);
+bool paper_is_hole(const Preview *preview, const PaperState *state, float footprint);
 
 /// Share of the light on one side of a fresh sheet that is transmitted to the other.
 float paper_transmittance(const Preview *preview, int32_t sheet);
 #define PAPER_WHOLE 0.35f
+
+// ---- cloth (shade_cloth.c)
+
+/// How a sheet is woven.
+typedef struct Weave {
+    float pitch;      ///< m from thread to thread; 0: it is not
+    float threads[2]; ///< in a unit of u, and of v
+} Weave;
+
+/// The threads at a point: the warp, which is crossed along u, and the weft.
+typedef struct Cloth {
+    float shown;     ///< 1 where a pixel resolves threads, 0 where it does not
+    float burnt;     ///< 0 whole cloth, 1 char or ash
+    float across[2]; ///< from the middle of each thread, -1 and 1 at its sides
+    float tone[2];   ///< of each thread, -0.5 to 0.5
+    float end[2];    ///< 1 at the burnt end of each, 0 some threads away from it
+    bool gone[2];
+    int top; ///< the thread that is seen
+} Cloth;
+
+/// Counts the threads of a sheet at the start.
+void cloth_count(const PreviewDef *def, uint32_t sheet, Weave *weave);
+
+/// NULL if the sheet is not woven.
+const Weave *cloth_weave(const Preview *preview, int32_t sheet);
+
+/// The directions across the threads where a ray has hit.
+void cloth_frame(const PreviewScene *scene, uint32_t triangle, Point *point);
+void cloth_find(const Weave *weave, const PaperState *state, float burn, float footprint, Cloth *cloth);
+bool cloth_is_hole(const Cloth *cloth);
+
+/// Tilts the normal; returns a factor on the albedo.
+float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *cloth, Point *point);
 
 /// False at a hole.
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point);

@@ -152,6 +152,9 @@ static SingeResult check_def(const PreviewDef *def, SingeError *error) {
         if (!good) result = preview_refuse(error, s, "a sheet's start lacks an array, or uses a vertex it has not");
     }
 
+    for (uint32_t s = 0; !result && def->looks && s < def->sheet_count; s++)
+        if (!all_between(&def->looks[s].weave, 1, 0, 0.1f))
+            result = preview_refuse(error, s, "a sheet's weave must lie between 0 and 0.1 m");
     for (uint32_t s = 0; !result && def->transmittances && s < def->sheet_count; s++)
         if (!all_between(&def->transmittances[s], 1, 0, 1))
             result = preview_refuse(error, s, "a sheet's transmittance must lie between 0 and 1");
@@ -179,10 +182,12 @@ static SingeResult preview_allocate(Preview *preview, SingeError *error) {
         preview->glow[i] = allocator_resize(*allocator, NULL, 0, glow_count(def) * sizeof(Float3));
     preview->textures = allocator_resize(*allocator, NULL, 0, def->sheet_count * sizeof(Texture));
     if (preview->textures) memset(preview->textures, 0, def->sheet_count * sizeof(Texture));
+    preview->weaves = allocator_resize(*allocator, NULL, 0, def->sheet_count * sizeof(Weave));
     if (!preview->picture || !preview->lit || !preview->seen || !preview->table || !preview->veil || !preview->mask ||
-        !preview->glow[0] || !preview->glow[1] || (def->sheet_count && !preview->textures))
+        !preview->glow[0] || !preview->glow[1] || (def->sheet_count && !(preview->textures && preview->weaves)))
         return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a picture of %d x %d", def->width,
                             def->height);
+    for (uint32_t s = 0; s < def->sheet_count; s++) cloth_count(def, s, &preview->weaves[s]);
     for (uint32_t s = 0; s < def->sheet_count && def->pictures; s++) {
         SingeResult result = texture_create(preview, &preview->textures[s], def->pictures[s], error);
         if (result) return result;
@@ -276,6 +281,7 @@ void preview_destroy(Preview *preview) {
 
     for (uint32_t s = 0; preview->textures && s < def->sheet_count; s++) texture_free(preview, &preview->textures[s]);
     allocator_resize(allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);
+    allocator_resize(allocator, preview->weaves, preview->weaves ? def->sheet_count * sizeof(Weave) : 0, 0);
     allocator_resize(allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
     allocator_resize(allocator, preview->picture, pixel_count(def) * sizeof(Float3), 0);
     allocator_resize(allocator, preview->lit, preview->lit ? pixel_count(def) * sizeof *preview->lit : 0, 0);

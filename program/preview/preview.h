@@ -54,7 +54,14 @@ typedef struct PreviewStart {
     uint32_t vertex_count, cell_count;
     const float *positions; ///< [3 * vertex_count] m
     const uint32_t *cells;  ///< [4 * cell_count] vertices
+    const float *uv;        ///< [2 * vertex_count], or NULL; threads are counted along it
+    const float *corner_uv; ///< [8 * cell_count] of each cell's corners, in place of `uv`, or NULL
 } PreviewStart;
+
+/// What a material looks like before it burns.
+typedef struct PreviewLook {
+    float weave; ///< m from one thread of the cloth to the next, along u and along v; 0: paper
+} PreviewLook;
 
 typedef struct PreviewDef {
     int width, height, samples; ///< samples a pixel, >= 1
@@ -89,7 +96,10 @@ typedef struct PreviewDef {
     const Image *const *pictures; ///< [sheet_count] picture on both sides of each sheet, NULL entries are white
     const float (*colours)[3];    ///< [sheet_count] tint of each sheet, linear
     const float *transmittances;  ///< [sheet_count] share of light transmitted; NULL: PREVIEW_TRANSMITTANCE
-    const PreviewStart *starts;   ///< [sheet_count] for the stain; NULL: none. Read while the preview is created
+    const PreviewLook *looks;     ///< [sheet_count]; NULL: paper
+    const PreviewStart
+        *starts; ///< [sheet_count] for the stain and the threads of cloth; NULL: none of them. Read while
+                 ///< the preview is created
     uint32_t sheet_count;
     uint32_t shape_count;
     const PreviewShape *shapes;

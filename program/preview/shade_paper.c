@@ -71,6 +71,7 @@ void paper_state(const PreviewScene *scene, uint32_t triangle, float u, float v,
         .sheet = a->sheet,
         .piece = a->piece,
         .water = w * a->water + u * b->water + v * c->water,
+        .edge = min > 0.5f ? 0.5f * a->spacing : w * a->edge + u * b->edge + v * c->edge,
     };
 }
 
@@ -258,9 +259,15 @@ static bool is_hole(const PaperState *state, const Bent *bent, float footprint) 
     return bent->burn > 0.7f && ash_amount(bent) * stepf(0.72f, 0.95f, ash_lace(bent, footprint)) > 0.5f;
 }
 
-bool paper_is_hole(const PaperState *state, float footprint) {
+bool paper_is_hole(const Preview *preview, const PaperState *state, float footprint) {
     if (state->burn <= PAPER_WHOLE) return false;
     Bent bent = shade_paper_bend(state, footprint);
+    const Weave *weave = cloth_weave(preview, state->sheet);
+    if (weave) {
+        Cloth cloth;
+        cloth_find(weave, state, bent.burn, footprint, &cloth);
+        return cloth_is_hole(&cloth);
+    }
     return is_hole(state, &bent, footprint);
 }
 
@@ -329,10 +336,20 @@ static void char_shade(const Bent *bent, Float3 burnt, float ink, Point *point) 
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point) {
     fresh(preview, state, point);
     bool touched = state->burn > 0 || maxf(state->peak, state->temperature) > 325;
-    if (!touched) return true;
+    const Weave *weave = cloth_weave(preview, state->sheet);
+    if (!touched && !weave) return true;
 
-    Bent bent = shade_paper_bend(state, point->footprint);
-    if (is_hole(state, &bent, point->footprint)) return false;
+    Bent bent = {.burn = 0};
+    if (touched) bent = shade_paper_bend(state, point->footprint);
+    Cloth cloth;
+    float threads = 1;
+    if (weave) {
+        cloth_find(weave, state, bent.burn, point->footprint, &cloth);
+        if (cloth_is_hole(&cloth)) return false;
+        threads = cloth_shade(weave, state, &cloth, point);
+        if (!touched) point->albedo = float3_scale(point->albedo, threads);
+        if (!touched) return true;
+    } else if (is_hole(state, &bent, point->footprint)) return false;
 
     // browned by heat, up to 0.76, and by what has burnt
     const float first = 55, last = 360, above = bent.peak - 293; // K above a room's
@@ -345,6 +362,10 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
     char_shade(&bent, burnt, print, point);
     ash_shade(state, &bent, print, point);
     ember_shade(preview, state, &bent, point);
+    if (weave) {
+        point->albedo = float3_scale(point->albedo, threads);
+        point->glow = float3_scale(point->glow, mixf(1, threads, cloth.shown) * (1 + 1.5f * cloth.end[cloth.top]));
+    }
 
     return true;
 }

@@ -35,6 +35,7 @@ static const char *const changeable[] = {
     "sheets.mesh", // compared by its contents
     "sheets.material.name",
     "sheets.material.measured",
+    "sheets.material.look",
 };
 
 /// Two scenes, and what has been found.
@@ -198,6 +199,7 @@ bool scene_looks_alike(SceneWhole scene, SceneWhole before) {
     for (uint32_t i = 0; alike && i < scene.scene->sheet_count; i++) {
         const SceneSheet *a = &scene.scene->sheets[i], *b = &before.scene->sheets[i];
         alike = memcmp(a->colour, b->colour, sizeof a->colour) == 0 && a->transmittance == b->transmittance &&
+                memcmp(&a->material.look, &b->material.look, sizeof a->material.look) == 0 &&
                 images_equal(&scene.assets->images[i], &before.assets->images[i]);
     }
     return alike;

@@ -42,7 +42,8 @@ void finish_material(Reader *reader, const YamlNode *map, void *object) {
     SceneMaterial *material = object;
     const YamlNode *measured = node_find(map, "measured");
     for (const YamlNode *child = map->first; child && !measured && node_find(map, "base"); child = child->next)
-        if (strcmp(child->key, "base") != 0 && strcmp(child->key, "name") != 0) material->measured = (SceneMeasured){0};
+        if (strcmp(child->key, "base") != 0 && strcmp(child->key, "name") != 0 && strcmp(child->key, "look") != 0)
+            material->measured = (SceneMeasured){0};
     const float *ranges[] = {material->measured.speed, material->measured.temperature, material->measured.residue};
     static const char *const keys[] = {"speed", "temperature", "residue"};
 

@@ -166,6 +166,7 @@ static void load_sheet(Loader *loader, uint32_t index) {
     load_render_mesh(loader, sheet, &assets->renders[index]);
     memcpy(assets->colours[index], sheet->colour, sizeof sheet->colour);
     assets->transmittances[index] = sheet->transmittance;
+    assets->looks[index] = sheet->material.look;
     if (sheet->picture.name && !load_image(loader, &sheet->picture, &assets->images[index]))
         assets->pictures[index] = &assets->images[index];
 
@@ -281,6 +282,7 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     assets->pictures = many(&loader, scene->sheet_count, sizeof *assets->pictures);
     assets->colours = many(&loader, scene->sheet_count, sizeof *assets->colours);
     assets->transmittances = many(&loader, scene->sheet_count, sizeof *assets->transmittances);
+    assets->looks = many(&loader, scene->sheet_count, sizeof *assets->looks);
     assets->fields = many(&loader, scene->sheet_count, sizeof *assets->fields);
     assets->source_textures = many(&loader, scene->source_count, sizeof *assets->source_textures);
     assets->solids = many(&loader, scene->collider_count, sizeof *assets->solids);
@@ -339,6 +341,7 @@ void scene_assets_free(SceneAssets *assets) {
     free(assets->pictures);
     free(assets->colours);
     free(assets->transmittances);
+    free(assets->looks);
     free(assets->fields);
     free(assets->source_textures);
     *assets = (SceneAssets){0};

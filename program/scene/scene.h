@@ -97,6 +97,7 @@ typedef struct SceneMaterial {
     SceneFollowed followed[SCENE_PARAM_SLOTS];
     char *name; ///< for messages, may be NULL
     SceneMeasured measured;
+    PreviewLook look;
 } SceneMaterial;
 
 /// The unit of a mesh file, and its axis that points up.
@@ -364,6 +365,7 @@ typedef struct SceneAssets {
     const Image **pictures;                  ///< [sheet_count], for PreviewDef; NULL if there is none
     float (*colours)[3];                     ///< [sheet_count], for PreviewDef
     float *transmittances;                   ///< the same
+    PreviewLook *looks;                      ///< the same
     SingeField (*fields)[SCENE_PARAM_SLOTS]; ///< [sheet_count] of parameters that vary, with their textures
     SingeTexture *source_textures;           ///< [source_count]
     SceneSolid *solids;                      ///< [collider_count], zeroed for primitives

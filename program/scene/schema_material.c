@@ -68,6 +68,15 @@ static const Schema schema_measured = {
     .doc = "Published measurements of the material's fire, for `singe bench front`. They do not affect the "
            "simulation. 0 and 0: unknown."};
 
+static const SchemaRow look_rows[] = {
+    {"weave", ROW_FLOAT, DIM_LENGTH, AT(SceneMaterial, look.weave), WITHIN(0, 0.1),
+     .doc = "distance between the threads of cloth, along u and along v; 0: paper"},
+};
+static const Schema schema_look = {.title = "a look",
+                                   .size = sizeof(SceneMaterial),
+                                   ROWS(look_rows),
+                                   .doc = "What pictures show of a material. It does not affect the simulation."};
+
 static const SchemaRow material_rows[] = {
     {"base", ROW_BASE, DIM_NONE, .offset = 0, .flags = ROW_SHORT,
      .doc = "the material that the other keys change: a built-in one, or a file of the same keys "
@@ -84,6 +93,7 @@ static const SchemaRow material_rows[] = {
 #include "singe/material.def"
     {"measured", ROW_MAP, DIM_NONE, AT(SceneMaterial, measured), EXTRA(SceneMaterial, measured.given),
      .sub = &schema_measured, .doc = "published measurements of its fire"},
+    {"look", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_look, .doc = "what pictures show of it"},
 };
 const Schema schema_material = {
     .title = "a material",

@@ -35,6 +35,7 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
         .pictures = assets->pictures,
         .colours = (const float(*)[3])assets->colours,
         .transmittances = assets->transmittances,
+        .looks = assets->looks,
         .sheet_count = assets->sheet_count,
     };
     scene_camera(scene, 0, &def->camera);

@@ -197,7 +197,7 @@ TEST(burning_sheets_stain_the_ground) {
     static const uint32_t cells[4] = {0, 1, 2, 3};
     Float4 q;
     SingeSurface nothing = {0};
-    PreviewStart start = {4, 1, &q.position[0][0], cells};
+    PreviewStart start = {4, 1, &q.position[0][0], cells, NULL, NULL};
     PreviewDef def = above();
     quad_make(&q, 0.09f, 0.001f);
     def.ground = PREVIEW_GROUND_PLAIN;

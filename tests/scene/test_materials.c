@@ -312,3 +312,26 @@ TEST(wrong_materials_are_reported) {
     scene_free(scene);
     expect_mistake(NULL, "    material: silk\n", "scene.yaml:3:15", "the built-in ones are", 1);
 }
+
+/// A look is a part of the material that pictures alone show: it comes with the base, may be changed, and leaves what was
+/// measured of the fire.
+TEST(looks_come_with_their_base) {
+    const char *const head = "sheets:\n  - grid: {size: [1, 1], cells: [2, 2]}\n    material: ";
+    const struct {
+        const char *material;
+        float weave;
+        bool measured;
+    } cases[] = {{"cotton", 0.4e-3f, true},
+                 {"office-paper", 0, true},
+                 {"{base: cotton, look: {weave: 1 mm}}", 1e-3f, true},
+                 {"{base: cotton, thickness: 1 mm}", 0.4e-3f, false},
+                 {"{base: tissue, look: {weave: 0.2 mm}}", 0.2e-3f, true}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[200];
+        snprintf(text, sizeof text, "%s%s\n", head, cases[i].material);
+        Scene *scene = folder_scene(NULL, text, NULL, 0);
+        assert_float_equal(material_of(scene)->look.weave, cases[i].weave, 1e-7);
+        assert_int_equal(material_of(scene)->measured.speed[1] > 0, cases[i].measured);
+        scene_free(scene);
+    }
+}

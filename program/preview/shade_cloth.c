@@ -1,0 +1,181 @@
+// Woven cloth: its threads, and what a fire leaves of them.
+//
+// Threads run along v (the warp) and along u (the weft), in a plain weave. They are counted from the sheet at the start, so
+// that they stay where they are while it burns. Where a pixel no longer resolves them, they fade, and what is left is the
+// unevenness of bundles of 2, 4, 8, ... threads.
+//
+// Threads give way one by one. A thread's fate is the sum of noise over bundles of 1 to 16 threads, each an octave: so
+// single threads, and tufts of them, stand out at a burnt edge, and holes in burnt cloth are slits along threads, of many
+// sizes. There is a hole where neither thread is left.
+
+#include "preview/internal.h"
+
+enum { OCTAVES = 5 };
+#define FRAY 7.0f ///< threads, mean depth to which a burnt edge loses them
+#define FATE_MOST 1.0f
+#define LONG 16.0f     ///< how much longer than wide the patches are in which a bundle has one fate
+#define CLOSED 0.5f    ///< half a thread's width over the pitch, of whole cloth
+#define SHRUNKEN 0.36f ///< the same of char
+
+// ---- the threads of a sheet
+
+/// Lengths of the cell's first and last side, and how far they go along u and v.
+static void cloth_side(const PreviewStart *start, uint32_t cell, int corner, Float3 *side, float uv[2]) {
+    const uint32_t a = start->cells[4 * cell], b = start->cells[4 * cell + (uint32_t)corner];
+    const float *from = start->corner_uv ? start->corner_uv + 8 * (size_t)cell : start->uv + 2 * (size_t)a;
+    const float *to = start->corner_uv ? from + 2 * corner : start->uv + 2 * (size_t)b;
+    *side = float3_sub(float3_load(start->positions + 3 * (size_t)b), float3_load(start->positions + 3 * (size_t)a));
+    for (int k = 0; k < 2; k++) uv[k] = to[k] - from[k];
+}
+
+void cloth_count(const PreviewDef *def, uint32_t sheet, Weave *weave) {
+    *weave = (Weave){.pitch = 0};
+    const PreviewStart *start = def->starts ? &def->starts[sheet] : NULL;
+    const float pitch = def->looks ? def->looks[sheet].weave : 0;
+    if (!(pitch > 0) || !start || !(start->uv || start->corner_uv)) return;
+
+    // P = P0 + U u + V v in each cell; the means of |U| and |V|, weighted by the area over uv
+    double length[2] = {0, 0}, total = 0;
+    for (uint32_t cell = 0; cell < start->cell_count; cell++) {
+        Float3 p, q;
+        float a[2], b[2];
+        cloth_side(start, cell, 1, &p, a);
+        cloth_side(start, cell, 3, &q, b);
+        const float turn = a[0] * b[1] - a[1] * b[0];
+        if (!(fabsf(turn) > 1e-14f)) continue;
+        Float3 u = float3_scale(float3_sub(float3_scale(p, b[1]), float3_scale(q, a[1])), 1 / turn);
+        Float3 v = float3_scale(float3_sub(float3_scale(q, a[0]), float3_scale(p, b[0])), 1 / turn);
+        length[0] += (double)(fabsf(turn) * float3_length(u));
+        length[1] += (double)(fabsf(turn) * float3_length(v));
+        total += (double)fabsf(turn);
+    }
+
+    for (int k = 0; k < 2 && total > 0; k++) weave->threads[k] = (float)(length[k] / total) / pitch;
+    if (weave->threads[0] > 0 && weave->threads[1] > 0 && weave->threads[0] < 1e7f && weave->threads[1] < 1e7f)
+        weave->pitch = pitch;
+}
+
+const Weave *cloth_weave(const Preview *preview, int32_t sheet) {
+    if (!preview->weaves || sheet < 0 || (uint32_t)sheet >= preview->def.sheet_count) return NULL;
+    const Weave *weave = &preview->weaves[sheet];
+    return weave->pitch > 0 ? weave : NULL;
+}
+
+void cloth_frame(const PreviewScene *scene, uint32_t triangle, Point *point) {
+    const uint32_t *t = scene->triangles[triangle];
+    const PaperVertex *a = &scene->vertices[t[0]], *b = &scene->vertices[t[1]], *c = &scene->vertices[t[2]];
+    Float3 origin = float3_load(scene->positions[t[0]]);
+    Float3 p = float3_sub(float3_load(scene->positions[t[1]]), origin);
+    Float3 q = float3_sub(float3_load(scene->positions[t[2]]), origin);
+    const float pu = b->uv[0] - a->uv[0], pv = b->uv[1] - a->uv[1], qu = c->uv[0] - a->uv[0], qv = c->uv[1] - a->uv[1];
+    const float turn = pu * qv - pv * qu > 0 ? 1 : -1;
+    point->across[0] =
+        float3_unit_or(float3_scale(float3_sub(float3_scale(p, qv), float3_scale(q, pv)), turn), float3(1, 0, 0));
+    point->across[1] =
+        float3_unit_or(float3_scale(float3_sub(float3_scale(q, pu), float3_scale(p, qu)), turn), float3(0, 1, 0));
+}
+
+// ---- a point
+
+static float resolved(float threads, float wide) { return clampf(1.6f - 0.8f * wide / threads, 0, 1); }
+
+/// How much sooner than others a thread gives way there, about -1 to 1. `wide`: a pixel's size in threads.
+static float thread_fate(int thread, float along, float wide, uint32_t seed) {
+    float sum = 0, size = 1, weight = 0.45f;
+    for (uint32_t octave = 0; octave < OCTAVES; octave++, size *= 2, weight *= 1.12f) {
+        const float shown = resolved(size, wide);
+        if (shown <= 0) continue;
+        const float bundle = octave ? ((float)thread + 0.5f) / size : (float)thread;
+        sum += shown * weight * noise2(bundle, along / (LONG * size), seed + 7 * octave);
+    }
+    return clampf(sum, -FATE_MOST, FATE_MOST);
+}
+
+/// How far burnt cloth has fallen to pieces there, about -1 to 1: rips along both families, of sizes in octaves.
+static float cloth_damage(float x, float y, float wide) {
+    const float aspect = 3.5f;
+    float sum = 0, weight = 0.55f;
+    for (uint32_t octave = 0; octave < 4; octave++) {
+        const float size = 36 / (float)(1 << octave) / (1 + 0.4f * (float)octave), shown = resolved(size, wide);
+        if (shown <= 0) break;
+        const float warp = noise2(x / size, y / (aspect * size), 151 + octave);
+        const float weft = noise2(x / (aspect * size), y / size, 161 + octave);
+        sum += shown * weight * (warp + weft);
+        weight *= 0.8f;
+    }
+    return sum;
+}
+
+void cloth_find(const Weave *weave, const PaperState *state, float burn, float footprint, Cloth *cloth) {
+    const float wide = footprint / weave->pitch, burnt = stepf(PAPER_WHOLE, 0.6f, burn);
+    const float x = state->uv[0] * weave->threads[0], y = state->uv[1] * weave->threads[1];
+    const float hot = ember_activity(state->burn_rate) * stepf(600, 760, state->temperature);
+    const float edge = state->edge / weave->pitch, loose = burnt * (1 - stepf(2, CLOTH_EDGE, edge));
+    *cloth = (Cloth){.shown = clampf(1.9f - 3.6f * wide, 0, 1), .burnt = burnt};
+    if (cloth->shown + burnt <= 0) return;
+
+    // burnt threads lie unevenly, and their ends bend aside
+    float at[2] = {x, y};
+    if (burnt > 0 && cloth->shown > 0) {
+        const float aside = cloth->shown * (0.5f * burnt + 2 * loose);
+        at[0] += aside * noise2(0.13f * x, 0.08f * y, 61);
+        at[1] += aside * noise2(0.08f * x, 0.13f * y, 62);
+    }
+
+    const float damage = burnt > 0 ? cloth_damage(at[0], at[1], wide) : 0, worn = 1.2f - 0.85f * stepf(0.45f, 1, burn);
+    const float reach = FRAY * (0.45f + FATE_MOST + 2.2f * maxf(damage, 0)) + 3;
+    int thread[2];
+    for (int k = 0; k < 2; k++) {
+        float within, along = at[1 - k];
+        thread[k] = noise_floor(at[k], &within);
+        const uint32_t seed = 71 + 100 * (uint32_t)k;
+        const float own = hash_unit((uint32_t)thread[k] * 0x9e3779b1u + seed);
+        float half = CLOSED;
+        if (burnt > 0 && cloth->shown > 0) {
+            const float thin = 0.8f + 0.5f * own + 0.3f * noise2(1.7f * (float)thread[k], 0.21f * along, seed + 40);
+            half = mixf(CLOSED, SHRUNKEN * thin, burnt * cloth->shown);
+        }
+        cloth->across[k] = (within - 0.5f) / half;
+        cloth->tone[k] = own - 0.5f;
+        cloth->gone[k] = fabsf(cloth->across[k]) > 1;
+        if (burnt <= 0) continue;
+
+        // far from where it could give way?
+        const float doubt = 0.5f * FATE_MOST + 0.5f * cloth->tone[k];
+        if (edge > reach && damage + doubt < worn) continue;
+        const float fate = thread_fate(thread[k], along, wide, seed);
+        const float bite = burnt * FRAY * (1 - 0.75f * hot) * maxf(0.45f + fate + 2.2f * maxf(damage, -0.1f), 0);
+        cloth->gone[k] = cloth->gone[k] || edge < bite || damage + 0.5f * fate + 0.5f * cloth->tone[k] > worn;
+        cloth->end[k] = 1 - stepf(0, 3, edge - bite);
+    }
+
+    cloth->top = (thread[0] + thread[1]) & 1;
+    if (cloth->gone[cloth->top]) cloth->top = 1 - cloth->top;
+}
+
+bool cloth_is_hole(const Cloth *cloth) { return cloth->gone[0] && cloth->gone[1]; }
+
+float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *cloth, Point *point) {
+    const int top = cloth->top;
+    const float wide = point->footprint / weave->pitch, across = clampf(cloth->across[top], -1, 1);
+
+    // a thread is a cylinder that goes over its neighbour and dips beside it
+    const float over = 0.9f * clampf(cloth->across[1 - top], -1, 1);
+    Float3 lean = float3_mad(float3_scale(point->across[top], across * (0.55f + 0.35f * across * across)),
+                             point->across[1 - top], 0.5f * over);
+    Float3 tilted = float3_unit_or(float3_mad(point->normal, lean, 0.6f * cloth->shown), point->normal);
+    if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
+
+    // slubs: bundles of threads that are thicker for some way
+    const float fine = clampf(2 - 0.9f * wide, 0, 1), coarse = resolved(9, wide);
+    float slub = 0;
+    for (int k = 0; k < 2; k++) {
+        const float at = state->uv[k] * weave->threads[k], along = state->uv[1 - k] * weave->threads[1 - k];
+        if (fine > 0) slub += fine * 0.05f * noise2(0.4f * at, 0.011f * along, 91 + (uint32_t)k);
+        if (coarse > 0) slub += coarse * 0.03f * noise2(0.11f * at, 0.004f * along, 93 + (uint32_t)k);
+    }
+
+    const float a2 = across * across, dip = over * over;
+    const float tone = 1 + 0.16f * cloth->tone[top] - 0.30f * a2 * a2 - 0.22f * dip * dip;
+    return (1 + slub) * mixf(1, 1.12f * tone, cloth->shown);
+}

@@ -1,0 +1,89 @@
+// Woven cloth: threads that are seen from near, and what a fire leaves of them.
+
+#include "fixture.h"
+#include "synthetic.h"
+
+#include <math.h>
+
+static const uint32_t QUAD[4] = {0, 1, 2, 3};
+
+/// Root mean square over the picture's middle of what changes from pixel to pixel along rows, of 255.
+static float grain(float weave) {
+    static uint8_t rgb[BYTES];
+    Float4 q;
+    quad_make(&q, 0.1f, 0.01f);
+    const PreviewLook look = {.weave = weave};
+    const PreviewStart start = {4, 1, q.position[0], QUAD, q.uv[0], NULL};
+    PreviewDef def = above();
+    def.looks = &look, def.starts = &start, def.sheet_count = 1;
+    draw(&def, &q.surface, 0, rgb);
+
+    enum { HALF = 10 };
+    float sum = 0;
+    for (int y = H / 2 - HALF; y < H / 2 + HALF; y++)
+        for (int x = W / 2 - HALF; x < W / 2 + HALF; x++) {
+            const float step = (float)pixel(rgb, x + 1, y)[1] - (float)pixel(rgb, x, y)[1];
+            sum += step * step;
+        }
+    return sqrtf(sum) / (2 * HALF);
+}
+
+/// A pixel is 5.8 mm wide here: it resolves threads of 40 mm, and none of 5 mm or less, which must not make patterns.
+TEST(threads_are_seen_from_near_alone) {
+    const float paper = grain(0), near = grain(0.04f), far = grain(0.005f), farther = grain(0.0011f);
+    print_message("rms from pixel to pixel: paper %.2f, threads of 40 mm %.2f, 5 mm %.2f, 1.1 mm %.2f\n", (double)paper,
+                  (double)near, (double)far, (double)farther);
+    assert_true(near > 3 * paper);
+    assert_true(far < paper + 1 && farther < paper + 1);
+}
+
+/// What is left of a burnt sheet, seen from straight above.
+typedef struct Remains {
+    int covered, border; ///< pixels, and sides of pixels between what is covered and what is not
+} Remains;
+
+static Remains burn_sheet(float weave) {
+    enum { WIDE = 240, HIGH = 240 };
+    static float coverage[HIGH * WIDE];
+    const float corners[12] = {-0.105f, -0.1485f, 0, 0.105f, -0.1485f, 0, 0.105f, 0.1485f, 0, -0.105f, 0.1485f, 0};
+    const float uv[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+    const PreviewLook look = {.weave = weave};
+    const PreviewStart start = {4, 1, corners, QUAD, uv, NULL};
+    SingeSurface sheet;
+    assert_true(synthetic_make(SYNTHETIC_COLD, 84, 0.04f, &sheet));
+
+    PreviewDef def = above();
+    def.width = WIDE, def.height = HIGH, def.samples = 4;
+    def.camera.eye[0] = def.camera.target[0] = 0.012f, def.camera.eye[1] = def.camera.target[1] = 0.02f;
+    def.camera.fov = 0.22f;
+    def.ground_height = -INFINITY;
+    def.looks = &look, def.starts = &start, def.sheet_count = 1;
+    Preview *preview = NULL;
+    SingeError error = {0};
+    const PreviewLayers layers = {.coverage = coverage};
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+    assert_int_equal(preview_draw_layers(preview, &sheet, 30, NULL, &layers, &error), SINGE_OK);
+    preview_destroy(preview);
+    synthetic_free(&sheet);
+
+    Remains remains = {0, 0};
+    for (int y = 0; y + 1 < HIGH; y++)
+        for (int x = 0; x + 1 < WIDE; x++) {
+            const bool here = coverage[y * WIDE + x] > 0.5f;
+            remains.covered += here;
+            remains.border += here != (coverage[y * WIDE + x + 1] > 0.5f);
+            remains.border += here != (coverage[(y + 1) * WIDE + x] > 0.5f);
+        }
+    return remains;
+}
+
+/// Threads of 1.5 mm, 3 pixels, end one by one at the hole: its border is longer than paper's, and most of the cloth is
+/// still there.
+TEST(burnt_cloth_frays_into_threads) {
+    const Remains paper = burn_sheet(0), cloth = burn_sheet(0.0015f);
+    print_message("paper: %d pixels, border %d; cloth: %d, %d\n", paper.covered, paper.border, cloth.covered,
+                  cloth.border);
+    assert_true(paper.border > 100);
+    assert_true(cloth.border > 1.4f * (float)paper.border);
+    assert_true(cloth.covered < paper.covered && cloth.covered > 0.75f * (float)paper.covered);
+}
