@@ -267,3 +267,35 @@ TEST(char_is_black_and_greys) {
                   (double)red[1], (double)red[2], (double)red[3]);
     assert_true(red[2] > red[0] + 1.5f && red[2] > red[1] + 1.5f && red[3] > red[0] + 1.5f);
 }
+
+/// Change from pixel to pixel of the bare table over its mean, along the planks and across them, seen from `height` m.
+static void table_grain(float height, float change[2]) {
+    static uint8_t rgb[BYTES];
+    SingeSurface nothing = {0};
+    PreviewDef def = above();
+    def.camera.eye[0] = def.camera.target[0] = 0.3f, def.camera.eye[1] = def.camera.target[1] = 0.06f;
+    def.camera.eye[2] = height, def.camera.fov = 0.3f;
+    def.samples = 16;
+    draw(&def, &nothing, 0, rgb);
+
+    float sum[2] = {0, 0};
+    for (int y = 0; y + 1 < H; y++)
+        for (int x = 0; x + 1 < W; x++) {
+            const float here = pixel(rgb, x, y)[1];
+            sum[0] += fabsf((float)pixel(rgb, x + 1, y)[1] - here);
+            sum[1] += fabsf((float)pixel(rgb, x, y + 1)[1] - here);
+        }
+    for (int k = 0; k < 2; k++) change[k] = sum[k] / (W * H) / mean(rgb, 1);
+}
+
+/// A wooden table has fibres and pores: fine lines along its planks, which a camera sees from near.
+TEST(wood_has_a_grain) {
+    float near[2], far[2];
+    table_grain(0.12f, near);
+    table_grain(3, far);
+    print_message("along, across: %.2f, %.2f %% from near, %.2f, %.2f %% from afar\n", (double)(100 * near[0]),
+                  (double)(100 * near[1]), (double)(100 * far[0]), (double)(100 * far[1]));
+    assert_true(near[1] > 2.5f * near[0]);
+    assert_true(near[1] > 0.045f); // 0.035 by year rings alone
+    assert_true(far[0] < 0.011f && far[1] < 0.05f);
+}
