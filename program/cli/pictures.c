@@ -3,8 +3,10 @@
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
+#include "cli/cryptomatte.h"
 #include "cli/interrupt.h"
 
 struct Pictures {
@@ -140,8 +142,9 @@ SingeResult pictures_keep_layers(Pictures *pictures, SingeError *error) {
     l->depth = calloc(count, sizeof *l->depth);
     l->sheet = calloc(count, sizeof *l->sheet);
     l->piece = calloc(count, sizeof *l->piece);
+    l->mattes = calloc(count, sizeof *l->mattes);
     bool all = l->beauty && l->glow && l->normal && l->coverage && l->fire && l->temperature && l->burn && l->depth &&
-               l->sheet && l->piece;
+               l->sheet && l->piece && l->mattes;
     return all ? SINGE_OK : no_memory(error);
 }
 
@@ -158,13 +161,12 @@ static uint32_t *count_ids(const int32_t *ids, size_t count) {
     return counted;
 }
 
-SingeResult pictures_write_layers(const Pictures *pictures, const char *path, SingeError *error) {
-    const PreviewLayers *l = &pictures->layers;
-    int width = pictures->def.width, height = pictures->def.height;
-    uint32_t *sheet = count_ids(l->sheet, (size_t)width * (size_t)height);
-    uint32_t *piece = count_ids(l->piece, (size_t)width * (size_t)height);
-    const ExrChannel channels[] = {
+enum { LAYER_CHANNELS = 19, MATTE_LAYERS = 2 };
 
+static SingeResult write_layers(const Pictures *pictures, const char *path, const uint32_t *sheet,
+                                const uint32_t *piece, const Cryptomatte mattes[MATTE_LAYERS], SingeError *error) {
+    const PreviewLayers *l = &pictures->layers;
+    ExrChannel channels[LAYER_CHANNELS + MATTE_LAYERS * CRYPTOMATTE_CHANNELS] = {
         {"R", EXR_KIND_HALF, &l->beauty[0][0], 3},
         {"G", EXR_KIND_HALF, &l->beauty[0][1], 3},
         {"B", EXR_KIND_HALF, &l->beauty[0][2], 3},
@@ -185,8 +187,41 @@ SingeResult pictures_write_layers(const Pictures *pictures, const char *path, Si
         {"id.sheet", EXR_KIND_ID, sheet, 1},
         {"id.piece", EXR_KIND_ID, piece, 1},
     };
-    SingeResult result = sheet && piece ? SINGE_OK : no_memory(error);
-    if (!result) result = exr_write(path, width, height, channels, (int)(sizeof channels / sizeof *channels), error);
+    ExrText texts[MATTE_LAYERS * CRYPTOMATTE_TEXTS + 1] = {{NULL, NULL}};
+    for (int m = 0; m < MATTE_LAYERS; m++) {
+        memcpy(channels + LAYER_CHANNELS + m * CRYPTOMATTE_CHANNELS, mattes[m].channels, sizeof mattes[m].channels);
+        memcpy(texts + m * CRYPTOMATTE_TEXTS, mattes[m].texts, sizeof mattes[m].texts);
+    }
+    return exr_write(path, pictures->def.width, pictures->def.height, channels,
+                     (int)(sizeof channels / sizeof *channels), texts, error);
+}
+
+/// The names of the sheets; one without a name is "sheet N". NULL if there is no memory.
+static const char **sheet_names(const Scene *scene) {
+    enum { LONG = 24 };
+    const char **names = calloc(scene->sheet_count + 1, sizeof *names + LONG);
+    for (uint32_t i = 0; names && i < scene->sheet_count; i++) {
+        char *own = (char *)(names + scene->sheet_count + 1) + LONG * (size_t)i;
+        snprintf(own, LONG, "sheet %u", i);
+        names[i] = scene->sheets[i].name ? scene->sheets[i].name : own;
+    }
+    return names;
+}
+
+SingeResult pictures_write_layers(const Pictures *pictures, const char *path, SingeError *error) {
+    const PreviewLayers *l = &pictures->layers;
+    const size_t pixels = (size_t)pictures->def.width * (size_t)pictures->def.height;
+    const PreviewMatte(*shares)[PREVIEW_MATTES] = (const PreviewMatte(*)[PREVIEW_MATTES])l->mattes;
+    uint32_t *sheet = count_ids(l->sheet, pixels), *piece = count_ids(l->piece, pixels);
+    const char **names = sheet_names(pictures->scene);
+    Cryptomatte mattes[MATTE_LAYERS] = {{.values = NULL}, {.values = NULL}};
+    bool room = sheet && piece && names;
+    room = room && cryptomatte_make(&mattes[0], "CryptoSheet", false, names, shares, pixels);
+    room = room && cryptomatte_make(&mattes[1], "CryptoPiece", true, names, shares, pixels);
+
+    SingeResult result = room ? write_layers(pictures, path, sheet, piece, mattes, error) : no_memory(error);
+    for (int m = 0; m < MATTE_LAYERS; m++) cryptomatte_free(&mattes[m]);
+    free(names);
     free(sheet);
     free(piece);
     return result;
@@ -204,8 +239,8 @@ void pictures_close(Pictures *pictures) {
     interrupt_guard_end();
 
     const PreviewLayers *l = &pictures->layers;
-    void *const layers[] = {l->beauty,      l->glow, l->normal, l->coverage, l->fire,
-                            l->temperature, l->burn, l->depth,  l->sheet,    l->piece};
+    void *const layers[] = {l->beauty, l->glow,  l->normal, l->coverage, l->fire,  l->temperature,
+                            l->burn,   l->depth, l->sheet,  l->piece,    l->mattes};
     for (size_t i = 0; i < sizeof layers / sizeof *layers; i++) free(layers[i]);
     free(pictures->shapes);
     free(pictures->starts);

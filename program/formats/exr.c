@@ -7,8 +7,8 @@
 bool exr_available(void) { return false; }
 
 SingeResult exr_write(const char *path, int width, int height, const ExrChannel *channels, int count,
-                      SingeError *error) {
-    (void)width, (void)height, (void)channels, (void)count;
+                      const ExrText *texts, SingeError *error) {
+    (void)width, (void)height, (void)channels, (void)count, (void)texts;
     return refuse(error, SINGE_ERROR_STATE, "exr", -1, "%s: this singe was built without EXR", short_name(path));
 }
 
@@ -86,7 +86,7 @@ static exr_result_t exr_encode(exr_context_t file, int width, int height, const 
 }
 
 SingeResult exr_write(const char *path, int width, int height, const ExrChannel *channels, int count,
-                      SingeError *error) {
+                      const ExrText *texts, SingeError *error) {
     if (width < 1 || height < 1 || width > IMAGE_SIDE_LIMIT || height > IMAGE_SIDE_LIMIT || count < 1)
         return refuse(error, SINGE_ERROR_ARGUMENT, "exr", -1, "%s: %d channels of %d by %d pixels cannot be written",
                       short_name(path), count, width, height);
@@ -106,6 +106,7 @@ SingeResult exr_write(const char *path, int width, int height, const ExrChannel 
 
     for (int i = 0; i < count && !done; i++)
         done = exr_add_channel(file, part, channels[i].name, types[channels[i].kind], EXR_PERCEPTUALLY_LINEAR, 1, 1);
+    for (; texts && texts->name && !done; texts++) done = exr_attr_set_string(file, part, texts->name, texts->value);
     if (!done) done = exr_write_header(file);
     if (!done) done = exr_encode(file, width, height, channels, count);
 

@@ -110,9 +110,15 @@ typedef struct ExrChannel {
 
 /// False in a program built without OpenEXR, where exr_write fails.
 bool exr_available(void);
-/// Writes an EXR file of one part, whole or not at all. Names of channels must differ.
+/// A text in the file's header.
+typedef struct ExrText {
+    const char *name, *value;
+} ExrText;
+
+/// Writes an EXR file of one part, whole or not at all. Names of channels must differ. `texts` end with a NULL name; NULL:
+/// none.
 SINGE_NODISCARD SingeResult exr_write(const char *path, int width, int height, const ExrChannel *channels, int count,
-                                      SingeError *error);
+                                      const ExrText *texts, SingeError *error);
 /// Luminance (Rec. 709 weights of the encoded values, 0 to 1) as the SingeTexture of a parameter; values are allocated
 /// with `allocator`, [width * height].
 SINGE_NODISCARD SingeResult image_luminance(const Image *image, SingeAllocator allocator, SingeTexture *picture,

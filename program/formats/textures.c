@@ -152,7 +152,7 @@ SingeResult textures_write_frame(const char *path, const OutputScene *scene, con
         result = refuse(error, SINGE_ERROR_MESH, "textures", -1, "%s: no sheet has uv", short_name(path));
     if (!result)
         result = exr_write(path, scene->texture_size, scene->texture_size, layers->channels,
-                           (int)(TEXTURE_CHANNELS * layers->count), error);
+                           (int)(TEXTURE_CHANNELS * layers->count), NULL, error);
 
     const size_t pixels = (size_t)scene->texture_size * (size_t)scene->texture_size;
     for (uint32_t i = 0; i < layers->count; i++)

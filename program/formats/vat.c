@@ -188,7 +188,7 @@ static SingeResult write_texture(const char *path, const char *ending, const Vat
     for (int i = 0; i < count; i++) channels[i] = (ExrChannel){names[i], kind, &texels[0][i], 4};
     if ((size_t)snprintf(name, sizeof name, "%s%s", path, ending) >= sizeof name)
         return refuse(error, SINGE_ERROR_LIMIT, "vat", -1, "%s: the name is too long", short_name(path));
-    return exr_write(name, vat->width, vat->height, channels, count, error);
+    return exr_write(name, vat->width, vat->height, channels, count, NULL, error);
 }
 
 /// A vertex of the GLB: a vertex of the mesh with one uv.

@@ -10,6 +10,7 @@ typedef struct LayerSum {
     float fire_hides, temperature, burn, depth;
     int hits, samples;
     int32_t sheet, piece;
+    PreviewMatte mattes[PREVIEW_MATTES]; ///< their shares are numbers of samples
 } LayerSum;
 
 typedef struct Block {

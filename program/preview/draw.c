@@ -42,6 +42,20 @@ static void layers_write(const Preview *preview, size_t pixel, const LayerSum *s
     if (layers->depth) layers->depth[pixel] = sum->depth;
     if (layers->sheet) layers->sheet[pixel] = sum->sheet;
     if (layers->piece) layers->piece[pixel] = sum->piece;
+    for (int k = 0; layers->mattes && k < PREVIEW_MATTES; k++) {
+        layers->mattes[pixel][k] = sum->mattes[k];
+        layers->mattes[pixel][k].share *= sample;
+    }
+}
+
+/// Counts a sample of the piece, if it is among the first that the pixel has met.
+static void matte_count(LayerSum *sum, int32_t sheet, int32_t piece) {
+    for (int k = 0; k < PREVIEW_MATTES; k++) {
+        PreviewMatte *matte = &sum->mattes[k];
+        if (matte->share > 0 && (matte->sheet != sheet || matte->piece != piece)) continue;
+        *matte = (PreviewMatte){sheet, piece, matte->share + 1};
+        return;
+    }
 }
 
 typedef struct Job {
@@ -258,6 +272,7 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
         sum->fire_hides += 1 - clear;
         if (!point->hit) continue;
         sum->hits++;
+        if (preview->layers.mattes && point->sheet >= 0) matte_count(sum, point->sheet, point->piece);
         sum->glow = float3_mad(sum->glow, point->glow, clear);
         sum->normal = float3_add(sum->normal, point->normal);
         sum->temperature += point->temperature;

@@ -142,18 +142,27 @@ SINGE_NODISCARD SingeResult preview_bake_gas(Preview *preview, const SingeSurfac
 SINGE_NODISCARD SingeResult preview_draw(Preview *preview, const SingeSurface *surface, double time, uint8_t *rgb,
                                          SingeError *error);
 
+enum { PREVIEW_MATTES = 4 };
+
+/// What a piece of a sheet covers of a pixel.
+typedef struct PreviewMatte {
+    int32_t sheet, piece;
+    float share; ///< of the samples; 0: none, and none after it
+} PreviewMatte;
+
 /// Additional pictures, [height * width], rows from the top. NULL: not wanted. *Mean* is over all samples of a pixel,
 /// *of hits* over those that hit a sheet or a shape (0 if none did), *first* of one sample.
 typedef struct PreviewLayers {
-    float (*beauty)[3];     ///< mean; linear Rec. 709, before halo, exposure and film
-    float (*glow)[3];       ///< mean; the part of beauty emitted by hot surfaces
-    float *coverage;        ///< share of the samples that are hits
-    float (*normal)[3];     ///< of hits, in the world's axes, towards the eye
-    float *temperature;     ///< of hits, K
-    float *burn;            ///< of hits, 0 fresh to 1 ash; 0 on shapes
-    float *depth;           ///< first, m along the camera's view; infinite if there is nothing
-    int32_t *sheet, *piece; ///< first; -1 if there is none
-    float (*fire)[4];       ///< mean; light of flame and smoke, and their opacity
+    float (*beauty)[3];                     ///< mean; linear Rec. 709, before halo, exposure and film
+    float (*glow)[3];                       ///< mean; the part of beauty emitted by hot surfaces
+    float *coverage;                        ///< share of the samples that are hits
+    float (*normal)[3];                     ///< of hits, in the world's axes, towards the eye
+    float *temperature;                     ///< of hits, K
+    float *burn;                            ///< of hits, 0 fresh to 1 ash; 0 on shapes
+    float *depth;                           ///< first, m along the camera's view; infinite if there is nothing
+    int32_t *sheet, *piece;                 ///< first; -1 if there is none
+    float (*fire)[4];                       ///< mean; light of flame and smoke, and their opacity
+    PreviewMatte (*mattes)[PREVIEW_MATTES]; ///< mean; the first pieces that the samples hit
 } PreviewLayers;
 
 /// As preview_draw, and fills the layers. `rgb` may be NULL.

@@ -17,8 +17,8 @@ def unpack(data, size):
     return bytes(out)
 
 
-def read(path):
-    """(width, height, {channel: values of the pixels, rows from the top})."""
+def header(path):
+    """(the file's bytes, where its header ends, {attribute: bytes})."""
     with open(path, "rb") as file:
         data = file.read()
     assert data[:4] == b"\x76\x2f\x31\x01", path
@@ -29,7 +29,12 @@ def read(path):
         size, = struct.unpack_from("<I", data, kind + 1)
         attributes[name] = data[kind + 5 : kind + 5 + size]
         at = kind + 5 + size
-    at += 1
+    return data, at + 1, attributes
+
+
+def read(path):
+    """(width, height, {channel: values of the pixels, rows from the top})."""
+    data, at, attributes = header(path)
     channels, start, listed = [], 0, attributes["channels"]
     while listed[start]:
         end = listed.index(b"\0", start)

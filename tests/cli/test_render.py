@@ -1,11 +1,13 @@
 """Pictures drawn again from a cache."""
 
 import hashlib
+import json
 import os
 import shutil
 import struct
 import unittest
 
+import exr
 from support import HAS_EXR, HAS_FFMPEG, HAS_PREVIEW, Case
 
 
@@ -19,6 +21,22 @@ def png_size(path):
 def digest(path):
     with open(path, "rb") as file:
         return hashlib.sha256(file.read()).hexdigest()
+
+
+def murmur(text):
+    """MurmurHash3, 32 bits, seed 0 (Appleby), with an exponent that is neither 0 nor 255, as Cryptomatte asks."""
+    data, mask, h = text.encode(), 0xffffffff, 0
+    whole = len(data) // 4 * 4
+    for at in range(0, len(data), 4):
+        k = int.from_bytes(data[at : at + 4], "little") * 0xcc9e2d51 & mask
+        h ^= ((k << 15 | k >> 17) & mask) * 0x1b873593 & mask
+        if at < whole:
+            h = ((h << 13 | h >> 19) & mask) * 5 + 0xe6546b64 & mask
+    h ^= len(data)
+    h = (h ^ h >> 16) * 0x85ebca6b & mask
+    h = (h ^ h >> 13) * 0xc2b2ae35 & mask
+    h ^= h >> 16
+    return h ^ 1 << 23 if h >> 23 & 255 in (0, 255) else h
 
 
 @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
@@ -62,7 +80,7 @@ class Render(Case):
                    "--set", "preview.shutter=0.5", "--set", "preview.ground.kind=stone")
         self.assertEqual(sorted(os.listdir(self.path("o", "exr"))), ["tiny.0002.exr", "tiny.0003.exr"])
         with open(self.path("o", "exr", "tiny.0002.exr"), "rb") as file:
-            head = file.read(1000)
+            head = file.read(4000)
         self.assertEqual(head[:4], b"\x76\x2f\x31\x01")
         for name in (b"R", b"Z", b"glow.R", b"normal.X", b"temperature.K", b"char.Y", b"coverage.Y", b"id.sheet",
                      b"id.piece"):
@@ -73,6 +91,38 @@ class Render(Case):
         self.assertNotEqual([digest(self.png(i)) for i in range(1, 7)], before)
         self.run_scene("o", "--quiet", preview=True)  # an earlier run's layers go with it
         self.assertFalse(os.path.exists(self.path("o", "exr")))
+
+    @unittest.skipUnless(HAS_EXR, "built without EXR")
+    def test_mattes(self):
+        """Cryptomatte layers: numbers of names that the manifest has, whose shares are what sheets cover of a pixel."""
+        self.assertEqual(murmur("hello"), 0x248bfa47)
+        self.singe("render", self.path("o"), "--frames", "2", "--exr", "--set", "preview.samples=16")
+        path = self.path("o", "exr", "tiny.0002.exr")
+        _, _, image = exr.read(path)
+        _, _, attributes = exr.header(path)
+        partly = 0
+        for layer in ("CryptoSheet", "CryptoPiece"):
+            key = "cryptomatte/%07x/" % (murmur(layer) >> 4)
+            self.assertEqual(attributes[key + "name"], layer.encode())
+            self.assertEqual(attributes[key + "hash"], b"MurmurHash3_32")
+            self.assertEqual(attributes[key + "conversion"], b"uint32_to_float32")
+            names = json.loads(attributes[key + "manifest"])
+            self.assertTrue(names)
+            for name, number in names.items():
+                self.assertEqual(int(number, 16), murmur(name), name)
+                self.assertEqual("/" in name, layer == "CryptoPiece", name)
+            known, met = {int(number, 16) for number in names.values()}, set()
+            pairs = [(layer + "%02d." % (k // 2) + "RB"[k % 2], layer + "%02d." % (k // 2) + "GA"[k % 2]) for k in range(4)]
+            for i, covered in enumerate(image["coverage.Y"]):
+                shares = [image[share][i] for _, share in pairs]
+                self.assertEqual(shares, sorted(shares, reverse=True))
+                self.assertAlmostEqual(sum(shares), covered, delta=2e-3)  # a half
+                partly += 0 < shares[0] < 1
+                for number, share in pairs:
+                    if image[share][i] > 0:
+                        met.add(struct.unpack("<I", struct.pack("<f", image[number][i]))[0])
+            self.assertEqual(met, known)
+        self.assertGreater(partly, 20)  # edges are smooth
 
     @unittest.skipUnless(HAS_FFMPEG, "no ffmpeg")
     def test_gif(self):

@@ -68,7 +68,7 @@ TEST(layers_read_back) {
                                    {"Z", EXR_KIND_FLOAT, depth, 1},
                                    {"id.piece", EXR_KIND_ID, id, 1}};
     SingeError error = {0};
-    assert_int_equal(exr_write(path, WIDTH, HEIGHT, channels, 5, &error), SINGE_OK);
+    assert_int_equal(exr_write(path, WIDTH, HEIGHT, channels, 5, NULL, &error), SINGE_OK);
     const char *const names[3] = {"R", "G", "B"};
     for (int c = 0; c < 3; c++) {
         read_channel(names[c], EXR_PIXEL_HALF, got);
@@ -87,15 +87,15 @@ TEST(bad_layers_are_refused) {
     const ExrChannel twice[] = {{"R", EXR_KIND_HALF, values, 1}, {"R", EXR_KIND_HALF, values, 1}};
     SingeError error = {0};
 
-    assert_int_equal(exr_write(path, 0, 5, twice, 1, &error), SINGE_ERROR_ARGUMENT);
-    assert_int_equal(exr_write(path, 5, 1 << 20, twice, 1, &error), SINGE_ERROR_ARGUMENT);
-    assert_int_equal(exr_write(path, 5, 5, twice, 0, &error), SINGE_ERROR_ARGUMENT);
-    assert_int_equal(exr_write(path, WIDTH, HEIGHT, twice, 2, &error), SINGE_ERROR_FORMAT);
+    assert_int_equal(exr_write(path, 0, 5, twice, 1, NULL, &error), SINGE_ERROR_ARGUMENT);
+    assert_int_equal(exr_write(path, 5, 1 << 20, twice, 1, NULL, &error), SINGE_ERROR_ARGUMENT);
+    assert_int_equal(exr_write(path, 5, 5, twice, 0, NULL, &error), SINGE_ERROR_ARGUMENT);
+    assert_int_equal(exr_write(path, WIDTH, HEIGHT, twice, 2, NULL, &error), SINGE_ERROR_FORMAT);
     assert_non_null(strstr(error.message, "cannot encode"));
     char nowhere[600];
     snprintf(nowhere, sizeof nowhere, "%s/none/a.exr", folder);
-    assert_int_equal(exr_write(nowhere, WIDTH, HEIGHT, twice, 1, &error), SINGE_ERROR_FILE);
-    assert_int_equal(exr_write(nowhere, WIDTH, HEIGHT, twice, 1, NULL), SINGE_ERROR_FILE);
+    assert_int_equal(exr_write(nowhere, WIDTH, HEIGHT, twice, 1, NULL, &error), SINGE_ERROR_FILE);
+    assert_int_equal(exr_write(nowhere, WIDTH, HEIGHT, twice, 1, NULL, NULL), SINGE_ERROR_FILE);
 }
 
 static void make_folder(int argc, char **argv) {

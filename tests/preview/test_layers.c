@@ -15,7 +15,8 @@ static void draw_layers(const PreviewDef *def, const SingeSurface *surface, uint
     Preview *preview = NULL;
     SingeError error = {0};
     const PreviewLayers layers = {kept->beauty, kept->glow,  kept->coverage, kept->normal, kept->temperature,
-                                  kept->burn,   kept->depth, kept->sheet,    kept->piece,  NULL};
+                                  kept->burn,   kept->depth, kept->sheet,    kept->piece,  NULL,
+                                  NULL};
     assert_int_equal(preview_create(def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
     assert_int_equal(preview_draw_layers(preview, surface, 1, rgb, &layers, &error), SINGE_OK);
     preview_destroy(preview);
