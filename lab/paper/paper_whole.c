@@ -165,7 +165,7 @@ SingeResult paper_whole(Lab *lab, SingeError *error) {
                                          "to its letter, Fig 4"});
     report_bar(lab->report,
                &(ReportBar){"strain_all", "Fig 1, mean strain of all four colours, the least of the orders of colours",
-                            fmin(mean[0], fmin(mean[1], mean[2])), 0.03, 1, orders[LAST_BLUE].strain[SINGE_BLUE],
+                            fmin(mean[0], fmin(mean[1], mean[2])), 0.04, 1, orders[LAST_BLUE].strain[SINGE_BLUE],
                             "of blue alone, where it is the last"});
     report_bar(lab->report,
                &(ReportBar){"curl", "Fig 1, the paper's system: curl of the rim, 90 of 100 have less, degrees",
