@@ -118,6 +118,13 @@ static double shrink_share(const Wrinkling *a, const Wrinkling *b, int from) {
     return (double)count / (MOMENTS - from);
 }
 
+/// m, from 0.2 s on.
+static double least_height(const Wrinkling *wrinkling) {
+    double least = INFINITY;
+    for (int k = 1; k < MOMENTS; k++) least = fmin(least, wrinkling->height[k]);
+    return least;
+}
+
 SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
     enum { FINER = 60 };
     Wrinkling w[SHRINK_CASES], finer, pressed;
@@ -156,8 +163,8 @@ SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
         "The outcome is one of the springs' stiffness and the cells' size, and not of the method. Springs of 1 N/m are "
         "pressed together and lose all detail in cells as large as these, as in the paper's figure; in %d cells a side "
         "they have %.2f mm of it at the end. Springs of 100 N/m give so much in their plane that the sheet buckles as "
-        "a whole and rolls up, with waves higher than the paper's at nearly every moment; they are longer and fewer.",
-        FINER, 1e3 * finer.height[last]);
+        "a whole and rolls up, with longer and fewer waves, higher than the paper's in %.0f %% of the moments.",
+        FINER, 1e3 * finer.height[last], 100 * firm);
 
     // how far its weight bends a cell of springs of 1 N/m, rho g s^4/(k t^2), over the thickness: 80 g/m2, 1 mm
     const double weight = 0.08 * 9.81 / 1 / pow(1e-3, 3);
@@ -186,10 +193,9 @@ SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
                &(ReportBar){"strand", "the same of our strands", shrink_share(&w[SHRINK_STRAND], &w[SHRINK_SOFT], 0),
                             0.9, 1, shrink_share(&w[SHRINK_STRAND], &w[SHRINK_STIFF], 0), "than springs of 100 N/m"});
     report_bar(lab->report,
-               &(ReportBar){"stiff",
-                            "share of the moments in which springs of 100 N/m have higher wrinkles than "
-                            "the paper's method: they do not lose them",
-                            firm, 0.8, 1, shrink_share(&w[SHRINK_SOFT], &w[SHRINK_PAPER], 0), "springs of 1 N/m"});
+               &(ReportBar){"stiff", "m, the least height from 0.2 s on of springs of 100 N/m: they do not lose them",
+                            least_height(&w[SHRINK_STIFF]), 1e-4, INFINITY, least_height(&w[SHRINK_SOFT]),
+                            "springs of 1 N/m"});
     return SINGE_OK;
 }
 
