@@ -13,4 +13,8 @@ LabFn paper_fig1, paper_fig2, paper_fig3, paper_fig4, paper_fig5, paper_fig6, pa
 SingeResult paper_burn_to(Lab *lab, LabGrid *grid, const float *mass, double mass_loss, SingeSim **sim,
                           SingeSurface *surface, SingeError *error);
 
+/// Which springs of a partly burnt cell go: the longest side of such a cell over its length at rest while it hangs, with
+/// section 6's rule of triangles or with all springs until the cell is gone.
+SingeResult paper_longest_side(Lab *lab, bool by_triangles, double *longest, SingeError *error);
+
 #endif

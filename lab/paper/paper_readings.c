@@ -121,6 +121,9 @@ static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
     view = singe_sim_view(sim);
     const int narrow = row_length(&view);
     singe_sim_destroy(sim);
+    double by_triangles, by_cells;
+    if ((result = paper_longest_side(lab, true, &by_triangles, error))) return result;
+    if ((result = paper_longest_side(lab, false, &by_cells, error))) return result;
     const double divided = spring_error(0.1, true), multiplied = spring_error(0.1, false);
     report_heads(lab->report, "where|the paper|our reading|the other reading");
     report_row(lab->report,
@@ -140,6 +143,12 @@ static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
                "too long: after 7 projections off by %.1e if divided, by %.2f if multiplied, which is softer, as in "
                "Fig 10",
                divided, multiplied);
+    report_row(
+        lab->report,
+        "section 6|a spring goes when both triangles that share it have disappeared|all springs of a cell go with "
+        "it|a burnt corner hangs on one yellow spring and swings: sides of a cell that is partly left reach %.2f "
+        "of their length, here %.2f",
+        by_triangles, by_cells);
     report_row(lab->report,
                "Table 2|10,000 springs in the last row|100,000|7412.92 ms at 0.074 ms each are %.0f springs",
                7412.92 / 0.074);
@@ -159,6 +168,8 @@ static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
                             divided / 0.2, 10, INFINITY, multiplied / 0.2, "eq 19"});
     report_bar(lab->report, &(ReportBar){"multiplied", "eq 19: the same", multiplied / 0.2, 0.2, 0.8, divided / 0.2,
                                          "section 7.2's division"});
+    report_bar(lab->report, &(ReportBar){"removal", "longest side of a cell with one corner left, over that at rest",
+                                         by_cells, 0.9, 1.1, by_triangles, "by section 6's rule of triangles"});
     report_bar(lab->report,
                &(ReportBar){"row", "entries in a row of the matrix", row, 7, 7, narrow, "a strip one cell wide"});
     return SINGE_OK;
