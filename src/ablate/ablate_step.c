@@ -12,13 +12,13 @@
 //   green         goes with the first of its two cells
 //   blue          goes with the last of its cells, two or, at a boundary or a tear, one
 //
-// Section 6 removes a red or blue spring as soon as both triangles that share it have disappeared. That leaves a burnt
-// corner of a cell that is not gone on a single yellow spring. It is not drawn but moves: it spun about the corner
-// opposite at up to 8 m/s, shook what hung there, and was in the way of other cells.
-//
 // and a particle goes with its last spring, with its mass and its enthalpy C (T - T_amb). The mass that it burnt in the
 // step that removes it is in mass_burnt, but that step's heat of combustion is not released: heat is released in the
 // next step, to particles that are then alive. It is not counted either, so that the ledger closes.
+//
+// Section 6 removes a red or blue spring as soon as both triangles that share it have disappeared. That leaves a burnt
+// corner of a cell that is not gone on a single yellow spring. It is not drawn but moves: it spun about the corner
+// opposite at up to 8 m/s, shook what hung there, and was in the way of other cells.
 #include "ablate/ablate_plan.h"
 
 /// Particles or cells that are looked at together.
