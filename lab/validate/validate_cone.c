@@ -2,7 +2,9 @@
 //
 // A bed sheet of cotton lies on calcium silicate under a flux q from above: the Fire Safety Research Institute's
 // materials database (github.com/ulfsri/fsri_materials_database, 01_Data/Cotton_Sheet/Cone, 29 April 2022, three runs a
-// flux, each with a spark). Without losses a thin sheet ignites after t = C'' (T_ign - T_a)/(eps q).
+// flux, each with a spark). Without losses a thin sheet ignites after t = C'' (T_ign - T_a)/(eps q). What it lies on takes
+// as much heat again: a half-space, touched all over. Which board it was is not said; the measures are taken on one for
+// insulation, whose data are complete (MASEA, calcium silicate), and the table has a building board and no board as well.
 #include <math.h>
 #include <string.h>
 
@@ -24,27 +26,75 @@ typedef struct ConeRun {
     double total;            ///< MJ/m2 within these seconds
 } ConeRun;
 
+enum { BOARD_CELLS = 40 };
+static const double board_cell = 0.25e-3, ambient = 293.15, STEFAN_BOLTZMANN = 5.670374e-8; // m, K, W/(m2 K4)
+
+/// What the sheet lies on.
+typedef struct Board {
+    const char *name;
+    double conductivity, density, specific_heat; ///< W/(m K), kg/m3, J/(kg K); conductivity 0: air
+} Board;
+
+enum { INSULATING, DENSE, AIR, BOARDS };
+static const Board boards[BOARDS] = {
+    {"insulating board", 0.0623, 270, 1162}, {"building board", 0.2, 870, 1000}, {"air on both sides", 0, 0, 0}};
+
+typedef struct Cone {
+    const SingeMaterialDef *cotton;
+    const Board *board;
+    double temperature[BOARD_CELLS]; ///< K
+    double absorbed;                 ///< W/m2
+} Cone;
+
 static void cone_heats(void *context, const SingeView *view, float *flux, float *conductance,
                        float *conductance_temperature) {
-    (void)conductance, (void)conductance_temperature;
-    for (uint32_t v = 0; v < view->vertex_count; v++)
-        flux[v] += *(const float *)context; // the corners' layer: from above
+    const Cone *cone = context;
+    const SingeMaterialDef *cotton = cone->cotton;
+    const float contact = (float)(2 * cone->board->conductivity / board_cell);
+    for (uint32_t v = 0; v < view->vertex_count; v++) flux[v] += (float)cone->absorbed; // from above
+    if (contact == 0) return;
+
+    // the other layer touches the board, and loses nothing to the air
+    for (uint32_t i = view->vertex_count; i < view->particle_count; i++) {
+        const double hot = (double)view->temperature[i], left = fmax((double)view->mass[i], 0.15);
+        const double radiates = STEFAN_BOLTZMANN * (double)cotton->emissivity.value * (pow(hot, 4) - pow(ambient, 4));
+        flux[i] += (float)((radiates + (double)cotton->convection.value * (hot - ambient)) / left);
+        conductance[i] += contact;
+        conductance_temperature[i] += contact * (float)cone->temperature[0];
+    }
+}
+
+/// A time step of the board, under the mean of the layer that lies on it.
+static void board_step(Cone *cone, const SingeView *view, double h) {
+    const Board *board = cone->board;
+    const double per_cell = h / (board->density * board->specific_heat * board_cell);
+    double mean = 0, flux[BOARD_CELLS + 1] = {0}; // W/m2, into each cell from the one before
+    for (uint32_t i = view->vertex_count; i < view->particle_count; i++)
+        mean += (double)view->temperature[i] / (view->particle_count - view->vertex_count);
+    flux[0] = 2 * board->conductivity / board_cell * (mean - cone->temperature[0]);
+    for (int k = 1; k < BOARD_CELLS; k++)
+        flux[k] = board->conductivity / board_cell * (cone->temperature[k - 1] - cone->temperature[k]);
+    for (int k = 0; k < BOARD_CELLS; k++) cone->temperature[k] += per_cell * (flux[k] - flux[k + 1]);
 }
 
 /// Cotton as it is, its patches by their means, flat and held, under a flux.
-static SingeResult cone_burn(Lab *lab, const SingeMaterialDef *cotton, double kilowatt, ConeRun *run,
-                             SingeError *error) {
+static SingeResult cone_burn(Lab *lab, const SingeMaterialDef *cotton, const Board *board, double kilowatt,
+                             ConeRun *run, SingeError *error) {
     LabGrid grid = lab_grid(2, 2, 0.01f);
     SingeSim *sim;
     SingeSourceDef source = singe_default_source();
     SingeSourceId id;
-    float absorbed = (float)(1e3 * kilowatt) * cotton->emissivity.value;
+    // what the sheet absorbs of the heater's radiation is its emissivity at the heater's temperature: 0.88 at 600 K, 0.77
+    // at 1200 K (FSRI); the heater is black and fills 0.8 of the view
+    const double heater = pow(1e3 * kilowatt / (0.8 * STEFAN_BOLTZMANN), 0.25);
+    Cone cone = {cotton, board, {0}, 1e3 * kilowatt * (0.88 - 0.11 * (heater - 600) / 600)};
+    for (int k = 0; k < BOARD_CELLS; k++) cone.temperature[k] = ambient;
     grid.material = *cotton;
     grid.material.mass_loss = singe_param(0); // burnt or not, it stays on its plate
     grid.material.thickening = 1;             // no front
     source.kind = SINGE_SOURCE_CALLBACK;
     source.callback = cone_heats;
-    source.callback_context = &absorbed;
+    source.callback_context = &cone;
     SingeResult result = lab_build(lab, &grid, &sim, error);
     if (result) return result;
     if ((result = singe_sim_add_source(sim, &source, &id))) *error = *singe_sim_error(sim);
@@ -54,6 +104,7 @@ static SingeResult cone_burn(Lab *lab, const SingeMaterialDef *cotton, double ki
     for (double time = 0; time < 40 && !result; time += step) {
         result = lab_steps(sim, 1, error);
         SingeView view = singe_sim_view(sim);
+        if (board->conductivity > 0) board_step(&cone, &view, step);
         double mass = 0;
         for (uint32_t i = 0; i < view.particle_count; i++) mass += (double)view.mass[i] / view.particle_count;
         if (isnan(run->ignition) && mass < 0.9999) run->ignition = time;
@@ -81,18 +132,21 @@ SingeResult validate_cone(Lab *lab, SingeError *error) {
     }
     cotton = &materials.items[0].def;
 
-    ConeRun runs[FLUXES];
+    ConeRun all[BOARDS][FLUXES], *runs = all[INSULATING];
     double measured[FLUXES], seconds[SECONDS], total = 0;
     SingeResult result = SINGE_OK;
     report_heads(lab->report,
-                 "kW/m2|ignites after s|measured s|here over measured|peak kW/m2|measured|here over measured");
-    for (int i = 0; i < FLUXES && !result; i++) {
-        result = cone_burn(lab, cotton, cone_flux[i], &runs[i], error);
-        measured[i] = (cone_ignition[i][0] + cone_ignition[i][1] + cone_ignition[i][2]) / 3;
-        if (!result)
-            report_row(lab->report, "%.0f|%.2f|%.2f|%.2f|%.0f|%.0f|%.2f", cone_flux[i], runs[i].ignition, measured[i],
-                       runs[i].ignition / measured[i], runs[i].peak, cone_peak[i], runs[i].peak / cone_peak[i]);
-    }
+                 "on|kW/m2|ignites after s|measured s|here over measured|peak kW/m2|measured|here over measured");
+    for (int b = 0; b < BOARDS; b++)
+        for (int i = 0; i < FLUXES && !result; i++) {
+            ConeRun *run = &all[b][i];
+            result = cone_burn(lab, cotton, &boards[b], cone_flux[i], run, error);
+            measured[i] = (cone_ignition[i][0] + cone_ignition[i][1] + cone_ignition[i][2]) / 3;
+            if (!result)
+                report_row(lab->report, "%s|%.0f|%.2f|%.2f|%.2f|%.0f|%.0f|%.2f", boards[b].name, cone_flux[i],
+                           run->ignition, measured[i], run->ignition / measured[i], run->peak, cone_peak[i],
+                           run->peak / cone_peak[i]);
+        }
     bench_materials_close(&materials);
     if (result) return result;
 
@@ -108,11 +162,13 @@ SingeResult validate_cone(Lab *lab, SingeError *error) {
                 "Nothing was set by these runs but the sheet's mass per area (1.06 g on 88.4 cm²). Its own numbers are "
                 "those of a <em>front</em>, within which a strip of a millimetre burns in a fraction of a second; a "
                 "whole sheet that is heated at once burns at that rate, too, where in the calorimeter air must come "
-                "from above it. The heat in all is right, its time is not.");
+                "from above it. The heat in all is right, its time is not. Times to ignition depend on the board as "
+                "much as on the sheet; which one it was is not reported.");
     static const char *const names[FLUXES] = {"ignition_25", "ignition_50", "ignition_75"};
     for (int i = 0; i < FLUXES; i++)
-        report_measure(lab->report, names[i], "time to ignition over the measured one", runs[i].ignition / measured[i],
-                       VALIDATE_LOW, VALIDATE_HIGH);
+        report_bar(lab->report,
+                   &(ReportBar){names[i], "time to ignition over the measured one", runs[i].ignition / measured[i],
+                                VALIDATE_LOW, VALIDATE_HIGH, all[AIR][i].ignition / measured[i], "without the board"});
     const double power = log(runs[2].ignition / runs[0].ignition) / log(cone_flux[2] / cone_flux[0]);
     report_measure(lab->report, "power", "exponent of the time to ignition over the flux, less the measured one",
                    power - log(measured[2] / measured[0]) / log(cone_flux[2] / cone_flux[0]), -0.25, 0.25);
