@@ -1,6 +1,5 @@
 // The view of `singe view` in a notebook's cell. Its page, its modules and its data come through the kernel, by messages
 // {id, path}, from the server that the kernel has started, so that nothing but the kernel need reach it.
-const MODULES = ["math", "tables", "shaders", "frame", "plots", "stage", "view"]; // each after those that it imports
 let views = 0;
 
 function render({ model, el }) {
@@ -22,6 +21,14 @@ function render({ model, el }) {
         return said;
     };
 
+    const imports = /from "\.\/(\w+)\.js"/g;
+    /** A module as an object of the browser, after those that it imports. */
+    const load = async (name) => {
+        const code = await text(`${name}.js`);
+        for (const [, other] of code.matchAll(imports)) urls[other] ??= await load(other);
+        return URL.createObjectURL(new Blob([code.replace(imports, (_, other) => `from "${urls[other]}"`)], { type: "text/javascript" }));
+    };
+
     const frame = document.createElement("iframe");
     frame.title = "singe view";
     frame.style.cssText = `width: 100%; height: ${model.get("height")}px; border: 0; display: block`;
@@ -29,10 +36,7 @@ function render({ model, el }) {
     el.append(frame);
 
     (async () => {
-        for (const name of MODULES) {
-            const code = (await text(`${name}.js`)).replace(/from "\.\/(\w+)\.js"/g, (_, other) => `from "${urls[other]}"`);
-            urls[name] = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
-        }
+        urls.view = await load("view");
         const style = await text("view.css"), page = await text("index.html");
         if (closed) return;
         frame.srcdoc = page
