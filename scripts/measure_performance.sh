@@ -19,4 +19,4 @@ bench swing "" --cells 32,50,100,150 --thickness 1,2,5
 bench surface
 bench compare
 bench stability
-build/singe bench plot lab/bench/results/"$name"-{dynamics,paper}.csv -o docs/performance.svg
+scripts/draw_cost.py lab/bench/results/"$name"-{dynamics,paper}.csv docs/performance.svg

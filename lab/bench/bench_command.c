@@ -27,8 +27,6 @@ static const struct {
 } measurements[] = {
     {"swing", "bench swing", bench_swing, TRAJECTORY,
      "A sheet of 1 m x 1 m, held at corners, falls from the horizontal: time per frame, strain, motion."},
-    {"mesh", "bench mesh", bench_mesh, TRAJECTORY | BENCH_BIT(QUICK),
-     "The same sheet from a mesh of triangles that become quads: cells, strands, strain, motion."},
     {"hang-and-shrink", "bench hang-and-shrink", bench_hang_and_shrink, TRAJECTORY,
      "A sheet that hangs from two corner patches shrinks to 0.8 of its size: the numbers of swing."},
     {"tear", "bench tear", bench_tear, BENCH_BIT(THREADS) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(SUBSTEPS) | OUTPUT,
@@ -72,10 +70,6 @@ static const struct {
      BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) | BENCH_BIT(QUICK) | SOLVER |
          OUTPUT,
      "Whether swinging and strongly shrinking sheets are stable at any thickness, resolution and time step."},
-    {"look", "bench look", bench_look,
-     BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) |
-         BENCH_BIT(QUICK) | SOLVER | OUTPUT,
-     "Rest shape, sag and wrinkles at several time steps, substeps and resolutions."},
     {"fold", "bench fold", bench_fold,
      BENCH_BIT(SUBSTEPS) | BENCH_BIT(THREADS) | BENCH_BIT(QUICK) | BENCH_BIT(INSTRUCTIONS) | OUTPUT,
      "A strip is folded by 180 degrees and released: the angle that remains, by resolution and time step."},
@@ -150,9 +144,7 @@ const ArgCommand bench_command = {
                 "singe bench step --springs 100000 --threads 2 --csv step.csv",
 };
 
-const char *bench_measurement_word(int index) {
-    return index < MEASUREMENTS ? measurements[index].name : index == MEASUREMENTS ? "plot" : NULL;
-}
+const char *bench_measurement_word(int index) { return index < MEASUREMENTS ? measurements[index].name : NULL; }
 
 int command_bench(int argc, char **argv) {
     if (argc < 1) {
@@ -163,13 +155,11 @@ int command_bench(int argc, char **argv) {
     if (strcmp(argv[0], "--help") == 0 || strcmp(argv[0], "-h") == 0) {
         printf("usage: singe bench MEASUREMENT [options]\n\nmeasurements:\n");
         for (int i = 0; i < MEASUREMENTS; i++) printf("  %-16s %s\n", measurements[i].name, measurements[i].summary);
-        printf("  %-16s %s\n", "plot", "Draws cost over the number of springs, from tables written with --csv.");
         printf("\n  singe bench MEASUREMENT --help   shows its options\n");
         args_examples(&bench_command);
         return EXIT_GOOD;
     }
 
-    if (strcmp(argv[0], "plot") == 0) return bench_plot(argc - 1, argv + 1);
     int m = bench_find(strcmp(argv[0], "--compare") == 0 ? "compare" : argv[0]);
     if (m < 0) return EXIT_INPUT;
     BenchRequest request;

@@ -3,11 +3,12 @@
 import csv
 import json
 import math
-import os
+import subprocess
+import sys
 import unittest
 import xml.dom.minidom
 
-from support import Case
+from support import ROOT, Case
 
 # a measurement, options that make it short, and keys that its rows must have
 TINY = (
@@ -28,7 +29,6 @@ TINY = (
     ("isotropy", ["--quick", "--outline", "disc", "--cells", "12", "--time", "0.05", "--seeds", "3"],
      ["r_0", "r_45", "effect", "mean"]),
     ("plate", ["--quick", "--cells", "12", "--substeps", "3"], ["over_D", "k1_per_m", "rolls_deg"]),
-    ("look", ["--cells", "8", "--quick", "--time", "0.2"], ["sag_m", "shape_mm", "wavelength_mm"]),
 )
 
 
@@ -122,46 +122,13 @@ class Bench(Case):
         self.assertIn("above the limit of 0.001 ms", err)
         self.singe("bench", "step", "--springs", "1000", "--steps", "3", "--limit-ms", "10000")
 
-    def test_plot(self):
+    def test_draw_cost(self):
         table, picture = self.path("a&b.csv"), self.path("cost.svg")
         self.singe("bench", "dynamics", "--springs", "250,1000", "--steps", "2", "--quick", "--csv", table)
-        out, _ = self.singe("bench", "plot", table, table, "-o", picture)
-        self.assertEqual(out.strip(), picture)
+        subprocess.run([sys.executable, ROOT + "/scripts/draw_cost.py", table, picture], check=True)
         texts = [node.firstChild.data for node in xml.dom.minidom.parse(picture).getElementsByTagName("text")]
         self.assertIn("strand, 1 thread, a&b", texts)
         self.assertTrue(any("Table 2" in text for text in texts))
-
-    def test_plot_refuses(self):
-        for text, hint in (
-            ("", "no rows"),
-            ("# nothing\n", "no rows"),
-            ("springs,ms\n1,2\n", "columns springs and step_ms"),
-            ("springs,step_ms\n", "no rows"),
-            ("springs,step_ms\n1000\n", "bad.csv:2: has fewer fields"),
-            ("springs,step_ms\n1000,fast\n", "bad.csv:2: springs and step_ms must be numbers"),
-            ("springs,step_ms\n1000,-1\n", "numbers above 0"),
-            ("springs,step_ms\n1000,nan\n", "numbers above 0"),
-            ("solver,springs,step_ms\n" + "".join(f"s{i},1,1\n" for i in range(40)), "more curves"),
-            ("springs,step_ms\n" + "1,1\n" * 100, "more curves or points"),
-            ("," * 9000, "columns"),
-        ):
-            with self.subTest(text[:40]):
-                with open(self.path("bad.csv"), "w") as file:
-                    file.write(text)
-                _, err = self.singe("bench", "plot", self.path("bad.csv"), "-o", self.path("x.svg"), expect=2)
-                self.assertIn(hint, err)
-                self.assertFalse(os.path.exists(self.path("x.svg")))
-        self.assertIn("needs -o", self.singe("bench", "plot", self.write_csv(), expect=2)[1])
-        self.assertIn("needs FILE", self.singe("bench", "plot", "-o", self.path("x.svg"), expect=2)[1])
-        self.assertIn("nothing.csv", self.singe("bench", "plot", "nothing.csv", "-o", "x", expect=2, cwd=self.dir)[1])
-        bad = self.path("no", "where.svg")
-        self.assertIn("cannot write", self.singe("bench", "plot", self.write_csv(), "-o", bad, expect=1)[1])
-
-    def write_csv(self):
-        path = self.path("good.csv")
-        with open(path, "w") as file:
-            file.write("springs,step_ms\n1000,1\n")
-        return path
 
     def test_help(self):
         out, _ = self.singe("bench", "--help")
@@ -172,7 +139,6 @@ class Bench(Case):
             for option in options:
                 if option.startswith("--"):
                     self.assertIn(option, help)
-        self.assertIn("-o, --out", self.singe("bench", "plot", "--help")[0])
 
     def test_bad_usage(self):
         for args, hint in (

@@ -132,7 +132,7 @@ class Usage(Case):
             ["check", bad + ".yaml"], ["check", bad], ["check", "mesh.yaml"], ["run", bad], ["render", bad],
             ["verify", bad], ["measure", bad], ["run", self.scene, "--set", bad], ["run", self.scene, "--" + bad],
             ["run", self.scene, bad], ["run", self.scene, "--threads", bad], ["bench", bad], ["paper", bad], [bad],
-            ["validate", "--only", bad], ["run", "--set", f"{bad}=1", self.scene], ["bench", "plot", bad],
+            ["validate", "--only", bad], ["run", "--set", f"{bad}=1", self.scene],
             ["bench", "front", "--material", bad], ["render", ".", "--frames", bad], [long], ["run", "--" + long],
             ["bench", long], ["run", self.scene, "--threads", long], ["paper", long], ["bench", "swing", "--time", bad],
         ):
